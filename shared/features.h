@@ -1,0 +1,34 @@
+// From raw measurements to the finite lattice that the student sees [SPEC 6].
+// The same code runs in training, in the proof, in the simulator and on the edge. Pure integers.
+//
+//   minute of the quarter-hour  T_qh 0..14     quarter-hour of the local day  qh 0..95
+//   local month                 mo   1..12     state of charge                0..200  (0.5 %)
+//   indicative price            -500..1500     (1 EUR/MWh, clamped: beyond is the guard's)
+#pragma once
+
+#include <cstdint>
+
+#include "shared/local_time.h"
+#include "shared/units_and_limits.h"
+
+namespace bess {
+
+/// One point of the lattice. Invariant: every field inside the range given above.
+struct LatticeState {
+  std::int16_t t_qh;
+  std::int16_t qh;
+  std::int16_t month;
+  std::int16_t soc_index;
+  std::int16_t price_eur_per_mwh;
+  friend constexpr bool operator==(const LatticeState&, const LatticeState&) = default;
+};
+
+/// Nearest lattice index of a SoC given in 1e-4 (0..10000), halves up; outside values are clamped.
+std::int16_t soc_index_of(std::int32_t soc_e4);
+/// Nearest whole EUR/MWh, halves up, clamped to the lattice.
+std::int16_t lattice_price_of(std::int32_t price_centi_eur_per_mwh);
+
+LatticeState make_lattice_state(const LocalMinute& now, std::int32_t soc_e4,
+                                std::int32_t price_centi_eur_per_mwh);
+
+}  // namespace bess

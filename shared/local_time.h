@@ -1,0 +1,37 @@
+// UTC instants and their local wall-clock minute [SPEC 2]. Everything is stored in UTC seconds;
+// qh, mo and T_qh come from local time, so a day has 92, 96 or 100 quarter-hours.
+// localtime_r of the C library does the work. The zone is set once at start-up as a POSIX rule, which
+// needs no tzdata on the target; afterwards neither function allocates.
+#pragma once
+
+#include <cstdint>
+
+namespace bess {
+
+/// Belgium: CET, summer time from the last Sunday of March to the last Sunday of October.
+inline constexpr const char* kBrusselsTimeZone = "CET-1CEST,M3.5.0,M10.5.0/3";
+
+struct LocalMinute {
+  int year;
+  int month;                   ///< 1..12
+  int day;                     ///< 1..31
+  int minute_of_day;           ///< 0..1439, wall clock
+  int quarter_hour;            ///< qh 0..95, wall clock
+  int minute_of_quarter_hour;  ///< T_qh 0..14
+};
+
+/// Sets TZ for the process (setenv + tzset). Call once, before any thread is started.
+void set_market_time_zone(const char* posix_rule = kBrusselsTimeZone);
+
+/// Local wall-clock minute of a UTC instant in seconds since 1970.
+LocalMinute local_minute_of(std::int64_t utc_s);
+
+struct CivilTime {
+  int year, month, day, hour, minute, second;
+};
+
+/// Seconds since 1970 of a UTC calendar time (proleptic Gregorian); fields must be in range.
+std::int64_t utc_from_civil(const CivilTime& t);
+CivilTime civil_from_utc(std::int64_t utc_s);
+
+}  // namespace bess

@@ -1,0 +1,111 @@
+// The student: 5 -> 64 -> 32 -> 3, ReLU, entirely in integers [SPEC 5, 6].
+//
+//   lattice state --input map--> x int16[5] --Affine,ReLU--> int16[64] --Affine,ReLU--> int16[32]
+//                 --Affine--> logits int32[3] (discharge, idle, charge) --argmax--> action
+//
+// The input map is part of the net: evenly scaled time and SoC, and a table for the price, which holds
+// the monotone price map that was fitted on the training days. Only differences of logits matter, so the
+// last layer is not rescaled. The struct is a trivial type with inline storage: no heap, no pointers.
+#pragma once
+
+#include <cstdint>
+
+#include "shared/action.h"
+#include "shared/crc32.h"
+#include "shared/features.h"
+#include "shared/nn/affine.h"
+#include "shared/nn/clipped_relu.h"
+
+namespace bess {
+
+inline constexpr int kStudentInputs = 5;
+inline constexpr int kStudentHidden1 = 64;
+inline constexpr int kStudentHidden2 = 32;
+
+// Inputs are Q14: 0 .. 16384 spans the whole range of each quantity.
+inline constexpr int kInputOne = 1 << 14;
+inline constexpr int kTqhScale = kInputOne / (kTqhCount - 1);
+inline constexpr int kQhScale = kInputOne / (kQhCount - 1);
+inline constexpr int kMonthScale = kInputOne / (kMonthCount - 1);
+inline constexpr int kSocScale = kInputOne / (kSocCount - 1);
+static_assert(kSocScale * (kSocCount - 1) <= INT16_MAX && kSocScale > 0);
+
+struct StudentNet {
+  std::int16_t price_map[kPriceCount];  ///< Q14, strictly increasing, from lattice price -500 upwards
+  Affine<kStudentInputs, kStudentHidden1> layer1;
+  ClippedRelu<kStudentHidden1> relu1;
+  Affine<kStudentHidden1, kStudentHidden2> layer2;
+  ClippedRelu<kStudentHidden2> relu2;
+  Affine<kStudentHidden2, kActionCount> layer3;
+
+  /// Network input of a lattice state, order T_qh, qh, mo, SoC, price.
+  constexpr void quantise(const LatticeState& s, std::int16_t (&x)[kStudentInputs]) const {
+    x[0] = static_cast<std::int16_t>(s.t_qh * kTqhScale);
+    x[1] = static_cast<std::int16_t>(s.qh * kQhScale);
+    x[2] = static_cast<std::int16_t>((s.month - 1) * kMonthScale);
+    x[3] = static_cast<std::int16_t>(s.soc_index * kSocScale);
+    x[4] = price_map[s.price_eur_per_mwh - kLatticePriceMinEurPerMwh];
+  }
+
+  /// Logits of discharge, idle, charge for a quantised input.
+  constexpr void propagate(const std::int16_t (&x)[kStudentInputs],
+                           std::int32_t (&logits)[kActionCount]) const {
+    std::int32_t sum1[kStudentHidden1];
+    std::int16_t hidden1[kStudentHidden1];
+    std::int32_t sum2[kStudentHidden2];
+    std::int16_t hidden2[kStudentHidden2];
+    layer1.propagate(x, sum1);
+    relu1.propagate(sum1, hidden1);
+    layer2.propagate(hidden1, sum2);
+    relu2.propagate(sum2, hidden2);
+    layer3.propagate(hidden2, logits);
+  }
+
+  [[nodiscard]] constexpr Action decide(const LatticeState& s) const {
+    std::int16_t x[kStudentInputs] = {};
+    std::int32_t logits[kActionCount] = {};
+    quantise(s, x);
+    propagate(x, logits);
+    return argmax_action(logits);
+  }
+};
+
+namespace detail {
+template <int kInputs, int kOutputs>
+constexpr void add_layer(Crc32& crc, const Affine<kInputs, kOutputs>& layer) {
+  for (const auto& row : layer.weight) {
+    for (const std::int16_t w : row) crc.add_integer(w);
+  }
+  for (const std::int32_t b : layer.bias) crc.add_integer(b);
+}
+}  // namespace detail
+
+/// Hash of the architecture: weights exported for another shape or input map do not compile.
+constexpr std::uint32_t student_architecture_hash() {
+  Crc32 crc;
+  for (const int fact : {kStudentInputs, kStudentHidden1, kStudentHidden2, kActionCount, kTqhScale,
+                         kQhScale, kMonthScale, kSocScale, kPriceCount, kLatticePriceMinEurPerMwh}) {
+    crc.add_integer(fact);
+  }
+  return crc.value();
+}
+
+/// Hash of every number of the net, in declaration order, independent of the machine's byte order.
+constexpr std::uint32_t student_weights_hash(const StudentNet& net) {
+  Crc32 crc;
+  for (const std::int16_t p : net.price_map) crc.add_integer(p);
+  detail::add_layer(crc, net.layer1);
+  crc.add_integer(net.relu1.shift);
+  detail::add_layer(crc, net.layer2);
+  crc.add_integer(net.relu2.shift);
+  detail::add_layer(crc, net.layer3);
+  return crc.value();
+}
+
+/// One golden state and what the net must answer: shipped in the weight header, run at every start.
+struct StudentSelfCheck {
+  LatticeState state;
+  std::int32_t logits[kActionCount];
+};
+
+}  // namespace bess

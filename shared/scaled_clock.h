@@ -1,0 +1,50 @@
+// UTC that may run faster than the wall: the same clock for edge, battery and market simulators, so that
+// a day passes in two minutes. All processes of one machine agree because they share CLOCK_MONOTONIC.
+// scale = 1 and a zero anchor mean: real time, straight from CLOCK_REALTIME.
+#pragma once
+
+#include <time.h>
+
+#include <cstdint>
+
+namespace bess {
+
+inline constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
+
+inline std::int64_t clock_ns(clockid_t id) {
+  timespec t{};
+  clock_gettime(id, &t);
+  return std::int64_t{t.tv_sec} * kNanosecondsPerSecond + t.tv_nsec;
+}
+
+struct ScaledClock {
+  std::int64_t anchor_monotonic_ns = 0;  ///< wall instant (CLOCK_MONOTONIC) of anchor_utc_s
+  std::int64_t anchor_utc_s = 0;
+  std::int32_t scale = 1;  ///< simulated seconds per wall second
+
+  [[nodiscard]] bool is_real_time() const { return scale == 1 && anchor_monotonic_ns == 0; }
+
+  /// Simulated (or real) UTC in nanoseconds since 1970.
+  [[nodiscard]] std::int64_t now_utc_ns() const {
+    if (is_real_time()) return clock_ns(CLOCK_REALTIME);
+    return anchor_utc_s * kNanosecondsPerSecond +
+           (clock_ns(CLOCK_MONOTONIC) - anchor_monotonic_ns) * scale;
+  }
+  /// CLOCK_MONOTONIC instant at which the simulated clock shows `utc_ns`.
+  [[nodiscard]] std::int64_t monotonic_ns_at(std::int64_t utc_ns) const {
+    if (is_real_time()) return clock_ns(CLOCK_MONOTONIC) + utc_ns - clock_ns(CLOCK_REALTIME);
+    return anchor_monotonic_ns + (utc_ns - anchor_utc_s * kNanosecondsPerSecond) / scale;
+  }
+  /// Wall nanoseconds that a simulated duration takes.
+  [[nodiscard]] std::int64_t wall_ns(std::int64_t simulated_ns) const { return simulated_ns / scale; }
+};
+
+/// Sleeps until a CLOCK_MONOTONIC instant; returns at once when it has passed. Survives signals only
+/// as far as `clock_nanosleep` does: true when the instant was reached, false when interrupted.
+inline bool sleep_until_monotonic(std::int64_t monotonic_ns) {
+  timespec t{.tv_sec = static_cast<time_t>(monotonic_ns / kNanosecondsPerSecond),
+             .tv_nsec = static_cast<long>(monotonic_ns % kNanosecondsPerSecond)};
+  return clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &t, nullptr) == 0;
+}
+
+}  // namespace bess

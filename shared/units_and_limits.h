@@ -1,0 +1,42 @@
+// Physical constants and limits of the whole chain in one place, with asserts on how they relate.
+// Nothing here depends on a battery or a market: those are configuration (battery_model.h).
+// Sign convention everywhere: power and energy are positive when the battery CHARGES, grid side.
+#pragma once
+
+#include <cstdint>
+
+namespace bess {
+
+// --- Time grid [SPEC 2, 3] -------------------------------------------------------------------
+inline constexpr int kMinutesPerStep = 2;  ///< one decision every 2 minutes
+inline constexpr int kSecondsPerStep = 60 * kMinutesPerStep;
+inline constexpr int kMinutesPerQuarterHour = 15;
+inline constexpr int kMinutesPerDay = 24 * 60;
+inline constexpr int kStepsPerDay = kMinutesPerDay / kMinutesPerStep;
+inline constexpr double kHoursPerStep = kMinutesPerStep / 60.0;
+static_assert(kStepsPerDay == 720);
+
+// --- The lattice of everything the student can see [SPEC 6] ------------------------------------
+inline constexpr int kTqhCount = kMinutesPerQuarterHour;                       ///< T_qh 0..14
+inline constexpr int kQhCount = kMinutesPerDay / kMinutesPerQuarterHour;       ///< qh 0..95
+inline constexpr int kMonthCount = 12;                                         ///< mo 1..12
+inline constexpr int kSocCount = 201;                                          ///< SoC k * 0.5 %
+inline constexpr int kLatticePriceMinEurPerMwh = -500;
+inline constexpr int kLatticePriceMaxEurPerMwh = 1500;
+inline constexpr int kPriceCount = kLatticePriceMaxEurPerMwh - kLatticePriceMinEurPerMwh + 1;
+inline constexpr int kContextCount = kTqhCount * kQhCount * kMonthCount;
+inline constexpr std::int64_t kLatticeStateCount =
+    std::int64_t{kContextCount} * kSocCount * kPriceCount;
+static_assert(kPriceCount == 2001 && kLatticeStateCount == 6'950'033'280);
+
+// --- Prices as the edge counts them: integer hundredths of EUR/MWh [SPEC 7] --------------------
+inline constexpr std::int32_t kCentiPerEur = 100;
+/// Prices outside +-15,000 EUR/MWh are refused as implausible.
+inline constexpr std::int32_t kPlausiblePriceMaxCentiEurPerMwh = 15'000 * kCentiPerEur;
+
+// --- SoC as the edge counts it: integer hundredths of a percent --------------------------------
+inline constexpr std::int32_t kSocFullE4 = 10'000;  ///< 100 %
+inline constexpr std::int32_t kSocE4PerLatticeStep = kSocFullE4 / (kSocCount - 1);
+static_assert(kSocE4PerLatticeStep * (kSocCount - 1) == kSocFullE4);
+
+}  // namespace bess

@@ -1,0 +1,4 @@
+# Address and undefined-behaviour sanitizers. Use: cmake -C toolchains/asan.cmake -S . -B build-asan
+set(CMAKE_BUILD_TYPE RelWithDebInfo CACHE STRING "")
+set(BESS_NATIVE OFF CACHE BOOL "")
+set(BESS_SANITIZE "address,undefined" CACHE STRING "")

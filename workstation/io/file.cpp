@@ -1,0 +1,120 @@
+#include "workstation/io/file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include "workstation/io/user_error.h"
+
+namespace bess {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_gzip_name(const fs::path& path) { return path.extension() == ".gz"; }
+
+std::string gzip(std::string_view contents) {
+  z_stream stream{};
+  constexpr int kGzipWindowBits = 15 + 16;
+  if (deflateInit2(&stream, 6, Z_DEFLATED, kGzipWindowBits, 8, Z_DEFAULT_STRATEGY) != Z_OK) {
+    fail("zlib cannot start compressing");
+  }
+  std::string out(deflateBound(&stream, contents.size()), '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(contents.data()));
+  stream.avail_in = static_cast<uInt>(contents.size());
+  stream.next_out = reinterpret_cast<Bytef*>(out.data());
+  stream.avail_out = static_cast<uInt>(out.size());
+  const int status = deflate(&stream, Z_FINISH);
+  out.resize(stream.total_out);
+  deflateEnd(&stream);
+  if (status != Z_STREAM_END) fail("zlib failed to compress ({})", status);
+  return out;
+}
+
+/// A temporary file that disappears unless it is committed under its final name.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(const fs::path& target)
+      : target_(target), path_(target.string() + ".part." + std::to_string(getpid())) {
+    fd_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+    if (fd_ < 0) fail("{}: cannot write here: {}", target_.string(), std::strerror(errno));
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  ~TemporaryFile() {
+    if (fd_ >= 0) close(fd_);
+    if (!committed_) unlink(path_.c_str());
+  }
+
+  void write(std::string_view contents) {
+    while (!contents.empty()) {
+      const ssize_t written = ::write(fd_, contents.data(), contents.size());
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0) give_up();
+      contents.remove_prefix(static_cast<std::size_t>(written));
+    }
+  }
+  void commit() {
+    if (fsync(fd_) != 0 && errno != EINVAL) give_up();
+    const int status = close(fd_);
+    fd_ = -1;
+    if (status != 0 || rename(path_.c_str(), target_.c_str()) != 0) give_up();
+    committed_ = true;
+  }
+
+ private:
+  [[noreturn]] void give_up() const {
+    fail("{}: writing failed: {}; nothing was changed", target_.string(), std::strerror(errno));
+  }
+
+  fs::path target_;
+  std::string path_;
+  int fd_ = -1;
+  bool committed_ = false;
+};
+
+}  // namespace
+
+std::string read_file(const fs::path& path) {
+  if (fs::is_directory(path)) fail("{}: is a folder, not a file", path.string());
+  gzFile file = gzopen(path.c_str(), "rb");  // reads plain files as they are
+  if (file == nullptr) fail("{}: cannot open: {}", path.string(), std::strerror(errno));
+  std::string contents;
+  constexpr std::size_t kChunk = 1 << 20;
+  int got = 0;
+  do {
+    const std::size_t size = contents.size();
+    contents.resize(size + kChunk);
+    got = gzread(file, contents.data() + size, kChunk);
+    contents.resize(size + static_cast<std::size_t>(std::max(got, 0)));
+  } while (got > 0);
+  int status = Z_OK;
+  const std::string reason = gzerror(file, &status);
+  const int close_status = gzclose(file);
+  if (got < 0 || close_status == Z_BUF_ERROR || status == Z_BUF_ERROR) {
+    fail("{}: truncated or damaged gzip file ({}); fetch or copy it again", path.string(),
+         reason.empty() ? "unexpected end" : reason);
+  }
+  return contents;
+}
+
+void write_file(const fs::path& path, std::string_view contents) {
+  if (path.has_parent_path()) {
+    std::error_code error;
+    fs::create_directories(path.parent_path(), error);
+    if (error) fail("{}: cannot create: {}", path.parent_path().string(), error.message());
+  }
+  TemporaryFile file(path);
+  if (is_gzip_name(path)) {
+    file.write(gzip(contents));
+  } else {
+    file.write(contents);
+  }
+  file.commit();
+}
+
+}  // namespace bess

@@ -1,0 +1,42 @@
+// The one exchange format between markets and everything that learns or evaluates: a dense series of
+// minutes with the indicative price (what could be seen) and the settled price (what is paid).
+// File: CSV or .csv.gz, header `minute_utc,indicative_eur_mwh,settled_eur_mwh`, UTC with Z, strictly
+// ascending; empty indicative = not published, empty settled = not settled. Lines starting with # are
+// provenance comments.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace bess {
+
+struct MinuteSeries {
+  std::int64_t start_utc_s = 0;     ///< first minute, a multiple of 60
+  std::vector<double> indicative;   ///< [minute] EUR/MWh, NaN = not published
+  std::vector<double> settled;      ///< [minute] EUR/MWh of the minute's quarter-hour, NaN = unknown
+
+  [[nodiscard]] std::size_t size() const { return settled.size(); }
+  [[nodiscard]] std::int64_t utc_s(std::size_t minute) const {
+    return start_utc_s + 60 * static_cast<std::int64_t>(minute);
+  }
+};
+
+/// Parses a minute file's text; `name` is used in messages. Throws UserError naming the line.
+MinuteSeries parse_minute_csv(std::string_view text, std::string_view name);
+MinuteSeries read_minute_file(const std::filesystem::path& path);
+
+/// CSV text of a series, prices with two decimals; minutes without any price are left out. `provenance`
+/// becomes # comment lines at the head (one per line of the string, may be empty).
+std::string format_minute_csv(const MinuteSeries& series, std::string_view provenance);
+void write_minute_file(const std::filesystem::path& path, const MinuteSeries& series,
+                       std::string_view provenance);
+
+/// "2023-01-01T00:00:00Z".
+std::string format_utc(std::int64_t utc_s);
+/// Accepts YYYY-MM-DDTHH:MM[:SS] followed by Z or +hh:mm; false when malformed or out of range.
+bool parse_utc(std::string_view text, std::int64_t& utc_s);
+
+}  // namespace bess
