@@ -10,9 +10,9 @@ std::int16_t soc_index_of(std::int32_t soc_e4) {
 }
 
 std::int16_t lattice_price_of(std::int32_t price_centi_eur_per_mwh) {
-  const std::int32_t clamped = clamp_to<std::int32_t>(price_centi_eur_per_mwh,
-                                                      kLatticePriceMinEurPerMwh * kCentiPerEur,
-                                                      kLatticePriceMaxEurPerMwh * kCentiPerEur);
+  const std::int32_t clamped =
+      clamp_to<std::int32_t>(price_centi_eur_per_mwh, kLatticePriceMinEurPerMwh * kCentiPerEur,
+                             kLatticePriceMaxEurPerMwh * kCentiPerEur);
   return static_cast<std::int16_t>(rounding_divide(clamped, kCentiPerEur));
 }
 

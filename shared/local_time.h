@@ -1,7 +1,7 @@
 // UTC instants and their local wall-clock minute [SPEC 2]. Everything is stored in UTC seconds;
 // qh, mo and T_qh come from local time, so a day has 92, 96 or 100 quarter-hours.
-// localtime_r of the C library does the work. The zone is set once at start-up as a POSIX rule, which
-// needs no tzdata on the target; afterwards neither function allocates.
+// localtime_r of the C library does the work. The zone is set once at start-up as a POSIX rule,
+// which needs no tzdata on the target; afterwards neither function allocates.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
-// UTC that may run faster than the wall: the same clock for edge, battery and market simulators, so that
-// a day passes in two minutes. All processes of one machine agree because they share CLOCK_MONOTONIC.
-// scale = 1 and a zero anchor mean: real time, straight from CLOCK_REALTIME.
+// UTC that may run faster than the wall: the same clock for edge, battery and market simulators, so
+// that a day passes in two minutes. All processes of one machine agree because they share
+// CLOCK_MONOTONIC. scale = 1 and a zero anchor mean: real time, straight from CLOCK_REALTIME.
 #pragma once
 
 #include <time.h>
@@ -36,11 +36,14 @@ struct ScaledClock {
     return anchor_monotonic_ns + (utc_ns - anchor_utc_s * kNanosecondsPerSecond) / scale;
   }
   /// Wall nanoseconds that a simulated duration takes.
-  [[nodiscard]] std::int64_t wall_ns(std::int64_t simulated_ns) const { return simulated_ns / scale; }
+  [[nodiscard]] std::int64_t wall_ns(std::int64_t simulated_ns) const {
+    return simulated_ns / scale;
+  }
 };
 
-/// Sleeps until a CLOCK_MONOTONIC instant; returns at once when it has passed. Survives signals only
-/// as far as `clock_nanosleep` does: true when the instant was reached, false when interrupted.
+/// Sleeps until a CLOCK_MONOTONIC instant; returns at once when it has passed. Survives signals
+/// only as far as `clock_nanosleep` does: true when the instant was reached, false when
+/// interrupted.
 inline bool sleep_until_monotonic(std::int64_t monotonic_ns) {
   timespec t{.tv_sec = static_cast<time_t>(monotonic_ns / kNanosecondsPerSecond),
              .tv_nsec = static_cast<long>(monotonic_ns % kNanosecondsPerSecond)};

@@ -1,5 +1,5 @@
-// bess-train: from prices to a proved, exported student. Each subcommand lives in cli/; this file only
-// wires them together and turns errors into one line and an exit code.
+// bess-train: from prices to a proved, exported student. Each subcommand lives in cli/; this file
+// only wires them together and turns errors into one line and an exit code.
 //   exit 0 done   1 the input or its content is bad   2 the command line is bad   3 interrupted
 #include <CLI/CLI.hpp>
 

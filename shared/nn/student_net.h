@@ -3,9 +3,10 @@
 //   lattice state --input map--> x int16[5] --Affine,ReLU--> int16[64] --Affine,ReLU--> int16[32]
 //                 --Affine--> logits int32[3] (discharge, idle, charge) --argmax--> action
 //
-// The input map is part of the net: evenly scaled time and SoC, and a table for the price, which holds
-// the monotone price map that was fitted on the training days. Only differences of logits matter, so the
-// last layer is not rescaled. The struct is a trivial type with inline storage: no heap, no pointers.
+// The input map is part of the net: evenly scaled time and SoC, and a table for the price, which
+// holds the monotone price map that was fitted on the training days. Only differences of logits
+// matter, so the last layer is not rescaled. The struct is a trivial type with inline storage: no
+// heap, no pointers.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +32,8 @@ inline constexpr int kSocScale = kInputOne / (kSocCount - 1);
 static_assert(kSocScale * (kSocCount - 1) <= INT16_MAX && kSocScale > 0);
 
 struct StudentNet {
-  std::int16_t price_map[kPriceCount];  ///< Q14, strictly increasing, from lattice price -500 upwards
+  std::int16_t
+      price_map[kPriceCount];  ///< Q14, strictly increasing, from lattice price -500 upwards
   Affine<kStudentInputs, kStudentHidden1> layer1;
   ClippedRelu<kStudentHidden1> relu1;
   Affine<kStudentHidden1, kStudentHidden2> layer2;
@@ -83,8 +85,9 @@ constexpr void add_layer(Crc32& crc, const Affine<kInputs, kOutputs>& layer) {
 /// Hash of the architecture: weights exported for another shape or input map do not compile.
 constexpr std::uint32_t student_architecture_hash() {
   Crc32 crc;
-  for (const int fact : {kStudentInputs, kStudentHidden1, kStudentHidden2, kActionCount, kTqhScale,
-                         kQhScale, kMonthScale, kSocScale, kPriceCount, kLatticePriceMinEurPerMwh}) {
+  for (const int fact :
+       {kStudentInputs, kStudentHidden1, kStudentHidden2, kActionCount, kTqhScale, kQhScale,
+        kMonthScale, kSocScale, kPriceCount, kLatticePriceMinEurPerMwh}) {
     crc.add_integer(fact);
   }
   return crc.value();

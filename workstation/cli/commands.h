@@ -1,5 +1,5 @@
-// The subcommands of bess-train: one file each in this folder, which declares its options, its help with
-// examples, and runs it as the subcommand's callback.
+// The subcommands of bess-train: one file each in this folder, which declares its options, its help
+// with examples, and runs it as the subcommand's callback.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,5 +1,5 @@
-// Whole files in and out. Reading understands gzip; writing is beside-and-rename, so that a file under
-// its final name is always complete.
+// Whole files in and out. Reading understands gzip; writing is beside-and-rename, so that a file
+// under its final name is always complete.
 #pragma once
 
 #include <filesystem>
@@ -11,8 +11,9 @@ namespace bess {
 /// Contents of a plain or gzip file. Throws UserError when it is missing, unreadable or truncated.
 std::string read_file(const std::filesystem::path& path);
 
-/// Writes `contents` to `path` (gzip when the name ends in .gz): to a temporary file in the same folder,
-/// synced, then renamed. Creates missing parent folders. Throws UserError; never leaves a partial file.
+/// Writes `contents` to `path` (gzip when the name ends in .gz): to a temporary file in the same
+/// folder, synced, then renamed. Creates missing parent folders. Throws UserError; never leaves a
+/// partial file.
 void write_file(const std::filesystem::path& path, std::string_view contents);
 
 }  // namespace bess

@@ -1,0 +1,65 @@
+// Runs a policy over days of the market and counts its money [SPEC 3, 4].
+// Day reset: every day starts at the initial SoC and ends free. Carried over: the days of the split
+// are chained, each starts where the one before it ended and only the first starts at the initial
+// SoC.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "shared/battery_model.h"
+#include "workstation/env/market_steps.h"
+#include "workstation/env/policy.h"
+
+namespace bess {
+
+struct EvaluationOptions {
+  BatteryParameters battery;
+  double initial_soc_frac = 0.5;
+  bool carry_soc = false;
+};
+
+struct DayResult {
+  std::string date;
+  double profit_eur;
+  double cycles;  ///< equivalent full cycles: energy through / 2C
+  int switches;   ///< changes of the action
+  double soc_end_frac;
+};
+
+struct Evaluation {
+  std::vector<DayResult> days;
+  double capacity_mwh = 0;
+
+  [[nodiscard]] double profit_eur_per_day_per_mwh() const;
+  [[nodiscard]] double standard_error() const;  ///< of the mean over days, same unit
+  [[nodiscard]] double worst_day_eur_per_mwh() const;
+  [[nodiscard]] double cycles_per_day() const;
+  [[nodiscard]] double switches_per_day() const;
+  [[nodiscard]] double soc_end_mean() const;
+};
+
+/// One decided step, for records and pictures.
+struct StepRecord {
+  std::int64_t utc_s;
+  double observed_eur_per_mwh;
+  double paid_eur_per_mwh;
+  double soc_frac;  ///< before the step
+  Action action;
+  double power_w;  ///< really exchanged, charge positive
+  double profit_eur;
+};
+
+/// Evaluates `policy` on `days` of `market`. Appends every step to `records` when it is given.
+Evaluation evaluate(const MarketSteps& market, const std::vector<MarketDay>& days, Policy& policy,
+                    const EvaluationOptions& options, std::vector<StepRecord>* records = nullptr);
+
+/// Mean and standard error of the day-by-day difference a - b, EUR per day per MWh. Same days
+/// required.
+struct PairedDifference {
+  double mean;
+  double standard_error;
+};
+PairedDifference paired_difference(const Evaluation& a, const Evaluation& b);
+
+}  // namespace bess

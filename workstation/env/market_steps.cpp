@@ -1,0 +1,114 @@
+#include "workstation/env/market_steps.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "shared/local_time.h"
+#include "shared/units_and_limits.h"
+#include "workstation/io/user_error.h"
+
+namespace bess {
+namespace {
+
+constexpr int kObservationDelayMaxMin = 5;
+constexpr int kTrainDayLast = 20;  // [SPEC 4]: 1-20 train, 21-25 validation, 26-end test
+constexpr int kValidationDayLast = 25;
+
+Split split_of_day(int day_of_month) {
+  if (day_of_month <= kTrainDayLast) return Split::kTrain;
+  return day_of_month <= kValidationDayLast ? Split::kValidation : Split::kTest;
+}
+
+/// Index of the newest published row for each minute, -1 before the first one.
+std::vector<std::int64_t> newest_published(const MinuteSeries& series) {
+  std::vector<std::int64_t> newest(series.size());
+  std::int64_t last = -1;
+  for (std::size_t m = 0; m < series.size(); ++m) {
+    if (!std::isnan(series.indicative[m])) last = static_cast<std::int64_t>(m);
+    newest[m] = last;
+  }
+  return newest;
+}
+
+double paid_price(const MinuteSeries& series, std::size_t minute, Settlement settlement) {
+  const double first = series.settled[minute];
+  return settlement == Settlement::kStep ? first : 0.5 * (first + series.settled[minute + 1]);
+}
+
+bool same_date(const MarketDay& day, const LocalMinute& local) {
+  return day.day == local.day && day.month == local.month && day.year == local.year;
+}
+
+}  // namespace
+
+Split parse_split(std::string_view name) {
+  for (const Split split : {Split::kTrain, Split::kValidation, Split::kTest, Split::kAll}) {
+    if (name == split_name(split)) return split;
+  }
+  fail("unknown split \"{}\": use train, val, test or all", name);
+}
+
+std::string_view split_name(Split split) {
+  constexpr std::string_view kNames[] = {"train", "val", "test", "all"};
+  return kNames[static_cast<int>(split)];
+}
+
+Settlement parse_settlement(std::string_view name) {
+  if (name == "minute") return Settlement::kMinute;
+  if (name == "step") return Settlement::kStep;
+  fail("unknown settlement \"{}\": use minute or step", name);
+}
+
+std::string MarketDay::date() const { return fmt::format("{:04}-{:02}-{:02}", year, month, day); }
+
+std::vector<MarketDay> MarketSteps::days_of(Split split) const {
+  std::vector<MarketDay> selected;
+  for (const MarketDay& day : days) {
+    if (split == Split::kAll || day.split == split) selected.push_back(day);
+  }
+  return selected;
+}
+
+MarketSteps make_market_steps(const MinuteSeries& series, const MarketOptions& options) {
+  if (options.observation_delay_min < 0 ||
+      options.observation_delay_min > kObservationDelayMaxMin) {
+    fail("observation delay {} min is out of range: use 0 to {}", options.observation_delay_min,
+         kObservationDelayMaxMin);
+  }
+  const std::vector<std::int64_t> newest = newest_published(series);
+  MarketSteps market;
+  market.steps.reserve(series.size() / kMinutesPerStep);
+  const std::size_t first = series.start_utc_s / 60 % kMinutesPerStep == 0 ? 0 : 1;
+  for (std::size_t m = first; m + 1 < series.size(); m += kMinutesPerStep) {
+    const std::int64_t visible = static_cast<std::int64_t>(m) - options.observation_delay_min;
+    if (visible < 0) continue;
+    const std::int64_t row = newest[static_cast<std::size_t>(visible)];
+    const double paid = paid_price(series, m, options.settlement);
+    if (row < 0 || std::isnan(paid)) continue;
+    const std::int64_t utc_s = series.utc_s(m);
+    const LocalMinute local = local_minute_of(utc_s);
+    if (market.days.empty() || !same_date(market.days.back(), local)) {
+      market.days.push_back(
+          {local.year, local.month, local.day, split_of_day(local.day), market.steps.size(), 0});
+    }
+    ++market.days.back().step_count;
+    market.steps.push_back(
+        {.utc_s = utc_s,
+         .observed_eur_per_mwh = series.indicative[static_cast<std::size_t>(row)],
+         .paid_eur_per_mwh = paid,
+         .observed_age_min = static_cast<std::int16_t>(static_cast<std::int64_t>(m) - row),
+         .t_qh = static_cast<std::int8_t>(local.minute_of_quarter_hour),
+         .quarter_hour = static_cast<std::int8_t>(local.quarter_hour),
+         .month = static_cast<std::int8_t>(local.month),
+         .half_hour_phase = static_cast<std::int8_t>(local.minute_of_day % 30 / kMinutesPerStep)});
+  }
+  std::erase_if(market.days, [](const MarketDay& d) { return d.step_count < kCompleteDaySteps; });
+  if (market.days.empty()) {
+    fail("the prices hold no complete local day (at least {} of 720 decisions); add more days",
+         kCompleteDaySteps);
+  }
+  return market;
+}
+
+}  // namespace bess

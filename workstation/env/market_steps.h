@@ -1,0 +1,72 @@
+// The market as a controller meets it: one record per 2-minute decision, with what was published by
+// then and what the step will be paid at. Built once from a minute series; every policy, baseline
+// and learner reads the same records, so look-ahead is impossible below this line: `observed_*`
+// never depends on a row later than `decision minute - observation delay`.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "workstation/market/minute_series.h"
+
+namespace bess {
+
+/// How a step's energy is paid when a quarter-hour ends inside it [SPEC 4].
+enum class Settlement {
+  kMinute,  ///< each minute at the price of its own quarter-hour (default)
+  kStep,    ///< the whole step at the quarter-hour in which it starts (the paper's wording)
+};
+
+enum class Split { kTrain, kValidation, kTest, kAll };
+
+/// "train", "val", "test", "all"; throws UserError otherwise.
+Split parse_split(std::string_view name);
+std::string_view split_name(Split split);
+/// "minute", "step"; throws UserError otherwise.
+Settlement parse_settlement(std::string_view name);
+
+struct MarketOptions {
+  int observation_delay_min = 1;  ///< 0..5; the newest visible row at minute t is t - delay
+  Settlement settlement = Settlement::kMinute;
+};
+
+struct MarketStep {
+  std::int64_t utc_s;             ///< start of the step
+  double observed_eur_per_mwh;    ///< newest indicative price published by then
+  double paid_eur_per_mwh;        ///< mean settled price of the step's two minutes
+  std::int16_t observed_age_min;  ///< decision minute minus the row's minute
+  std::int8_t t_qh;               ///< local minute of the quarter-hour, 0..14
+  std::int8_t quarter_hour;       ///< local, 0..95
+  std::int8_t month;              ///< local, 1..12
+  std::int8_t half_hour_phase;    ///< (minute of the half-hour) / 2, 0..14
+};
+
+/// Consecutive steps of one local calendar day that can be traded.
+struct MarketDay {
+  int year, month, day;
+  Split split;
+  std::size_t first_step;  ///< index into MarketSteps::steps
+  std::size_t step_count;
+  [[nodiscard]] std::string date() const;  ///< "2023-01-31"
+};
+
+struct MarketSteps {
+  std::vector<MarketStep> steps;  ///< ascending in time; steps that cannot be settled are absent
+  std::vector<MarketDay> days;    ///< complete days only
+
+  [[nodiscard]] std::span<const MarketStep> of(const MarketDay& day) const {
+    return {steps.data() + day.first_step, day.step_count};
+  }
+  [[nodiscard]] std::vector<MarketDay> days_of(Split split) const;
+};
+
+/// A day with fewer tradable steps than this is left out (a 23-hour day has exactly 690).
+inline constexpr std::size_t kCompleteDaySteps = 690;
+
+/// Throws UserError when the options are out of range or no complete day remains.
+MarketSteps make_market_steps(const MinuteSeries& series, const MarketOptions& options);
+
+}  // namespace bess

@@ -1,0 +1,48 @@
+// What every controller is here, baseline or network: a function of what was published and of the
+// SoC.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+
+#include "shared/action.h"
+#include "workstation/env/market_steps.h"
+
+namespace bess {
+
+class Policy {
+ public:
+  Policy() = default;
+  Policy(const Policy&) = delete;
+  Policy& operator=(const Policy&) = delete;
+  virtual ~Policy() = default;
+
+  /// Called before each run of consecutive steps. Only perfect foresight looks at `ahead`; it is a
+  /// bound, not a policy.
+  virtual void begin(std::span<const MarketStep> ahead) { (void)ahead; }
+  /// Decides one step. `index` counts from the last begin().
+  [[nodiscard]] virtual Action decide(const MarketStep& step, std::size_t index,
+                                      double soc_frac) const = 0;
+};
+
+/// Charges below `low`, discharges above `high`, idles between [Paper, Eq. 13].
+class RuleBasedPolicy final : public Policy {
+ public:
+  RuleBasedPolicy(double low_eur_per_mwh, double high_eur_per_mwh)
+      : low_(low_eur_per_mwh), high_(high_eur_per_mwh) {}
+  [[nodiscard]] Action decide(const MarketStep& step, std::size_t, double) const override {
+    if (step.observed_eur_per_mwh < low_) return Action::kCharge;
+    return step.observed_eur_per_mwh > high_ ? Action::kDischarge : Action::kIdle;
+  }
+
+ private:
+  double low_;
+  double high_;
+};
+
+/// The paper's thresholds: quartiles of the whole of 2023, hence with look-ahead [SPEC 4].
+inline constexpr double kPaperRuleLowEurPerMwh = 11;
+inline constexpr double kPaperRuleHighEurPerMwh = 179;
+
+}  // namespace bess
