@@ -1,0 +1,78 @@
+// Two hidden ReLU layers and a linear head, in float, forward and backward: the teacher
+// (5-256-128-out) and the float student (5-64-32-3) are both this. Plain Eigen; samples are
+// columns, so every matrix is [features x samples]. All parameters lie in one flat vector: save,
+// load, Adam and averaging are single loops. Layout: W1 [h1 x in], b1, W2 [h2 x h1], b2, W3 [out x
+// h2], b3, each column-major.
+#pragma once
+
+#include <Eigen/Dense>
+
+#include <cstdint>
+
+namespace bess {
+
+using Matrix = Eigen::MatrixXf;
+using MatrixRef = Eigen::Ref<const Matrix>;
+using Parameters = Eigen::VectorXf;
+
+struct MlpShape {
+  int inputs;
+  int hidden1;
+  int hidden2;
+  int outputs;
+  [[nodiscard]] Eigen::Index parameter_count() const {
+    return static_cast<Eigen::Index>(hidden1) * (inputs + 1) +
+           static_cast<Eigen::Index>(hidden2) * (hidden1 + 1) +
+           static_cast<Eigen::Index>(outputs) * (hidden2 + 1);
+  }
+  friend bool operator==(const MlpShape&, const MlpShape&) = default;
+};
+
+/// The layers seen inside a flat vector; Scalar is float or const float.
+template <typename Scalar>
+struct MlpView {
+  using Plain = std::remove_const_t<Scalar>;
+  template <typename T>
+  using Mapped = Eigen::Map<std::conditional_t<std::is_const_v<Scalar>, const T, T>>;
+  using DynamicMatrix = Eigen::Matrix<Plain, Eigen::Dynamic, Eigen::Dynamic>;
+  using DynamicVector = Eigen::Matrix<Plain, Eigen::Dynamic, 1>;
+  Mapped<DynamicMatrix> w1;
+  Mapped<DynamicVector> b1;
+  Mapped<DynamicMatrix> w2;
+  Mapped<DynamicVector> b2;
+  Mapped<DynamicMatrix> w3;
+  Mapped<DynamicVector> b3;
+
+  MlpView(const MlpShape& s, Scalar* p)
+      : w1(p, s.hidden1, s.inputs),
+        b1(w1.data() + w1.size(), s.hidden1),
+        w2(b1.data() + b1.size(), s.hidden2, s.hidden1),
+        b2(w2.data() + w2.size(), s.hidden2),
+        w3(b2.data() + b2.size(), s.outputs, s.hidden2),
+        b3(w3.data() + w3.size(), s.outputs) {}
+};
+using ConstMlp = MlpView<const float>;
+using MutableMlp = MlpView<float>;
+
+/// Activations of one tile of samples, and their gradients on the way back.
+struct MlpTile {
+  Matrix h1, h2;    ///< [hidden x samples] after ReLU
+  Matrix dh1, dh2;  ///< gradients before ReLU
+};
+
+/// Uniform in +-1/sqrt(fan in) as PyTorch does, but for the first layer, whose weights are uniform
+/// in
+/// +-1 with the kinks spread over the inputs' unit cube. Drawn from the named seed.
+Parameters initial_parameters(const MlpShape& shape, std::uint64_t seed);
+
+/// h1 = relu(W1 x + b1), h2 = relu(W2 h1 + b2). x is [inputs x samples].
+void forward_hidden(const ConstMlp& mlp, const MatrixRef& x, MlpTile& tile);
+/// z = W3 h2 + b3, all outputs. z is [outputs x samples].
+void forward_head(const ConstMlp& mlp, const MlpTile& tile, Matrix& z);
+
+/// Adds dL/dW3, dL/db3 for all outputs and sets tile.dh2 from dz = dL/dz.
+void backward_head(const ConstMlp& mlp, const MatrixRef& dz, MlpTile& tile, MutableMlp& gradient);
+/// Adds the gradients of the two hidden layers; needs tile.dh2 from the head.
+void backward_hidden(const ConstMlp& mlp, const MatrixRef& x, MlpTile& tile, MutableMlp& gradient);
+
+}  // namespace bess

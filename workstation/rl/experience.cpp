@@ -1,0 +1,105 @@
+#include "workstation/rl/experience.h"
+
+#include <algorithm>
+
+#include "workstation/io/user_error.h"
+
+namespace bess {
+namespace {
+
+double full_battery_hours(const BatteryParameters& battery) {
+  return battery.capacity_wh / battery.power_w_max;
+}
+
+/// Moves a normalised input by `shift` and keeps it in its range.
+void move_input(float& x, double shift) {
+  x = std::clamp(x + static_cast<float>(shift), 0.0F, 1.0F);
+}
+
+}  // namespace
+
+TrainingMarket::TrainingMarket(const MarketSteps& market, const PriceMap& price_map,
+                               const BatteryParameters& battery, Horizon horizon,
+                               const RewardShaping& shaping)
+    : battery_(battery),
+      shaping_(shaping),
+      reward_centre_(static_cast<float>(shaping.reward_centre_eur_per_h) * kRewardScale),
+      potential_(shaping.stored_energy_eur_per_mwh * full_battery_hours(battery) *
+                 double{kPaperPowerMw} / kHoursPerStep * double{kRewardScale}) {
+  const std::vector<MarketDay> training = market.days_of(Split::kTrain);
+  if (training.empty()) fail("no training days (local days 1 to 20) in these prices; add some");
+  for (std::size_t d = 0; d < training.size(); ++d) {
+    const std::size_t first = steps_.size();
+    const auto steps = market.of(training[d]);
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      const bool last = i + 1 == steps.size();
+      // At the end of a day the successor is the first step of the next training day, if that
+      // follows at once; a block's last step has no successor that may be looked at, so it is left
+      // out.
+      const MarketStep* next = last ? nullptr : &steps[i + 1];
+      if (last && d + 1 < training.size()) next = &market.of(training[d + 1])[0];
+      const bool follows = next != nullptr && next->utc_s == steps[i].utc_s + kSecondsPerStep;
+      const bool terminal = last && horizon == Horizon::kDay;
+      if (!follows && !terminal) continue;
+      const NetworkContext here = network_context(steps[i], price_map);
+      steps_.push_back({here, follows ? network_context(*next, price_map) : here,
+                        static_cast<float>(steps[i].paid_eur_per_mwh), terminal});
+    }
+    days_.push_back({first, steps_.size() - first});
+  }
+}
+
+double TrainingMarket::make_transition(std::size_t index, double soc_frac, Action action,
+                                       Transition& out) const {
+  const Step& step = steps_[index];
+  const BatteryStep moved =
+      battery_step(battery_, soc_frac, power_sign(action) * battery_.power_w_max, kHoursPerStep);
+  write_input(step.context, soc_frac, out.state);
+  write_input(step.next, moved.soc_frac, out.next_state);
+  // r = -p * price in EUR/h for a battery of the paper's 4 MW: scaled by P, so that the same
+  // support and learning rate serve every size [SPEC 3, 4].
+  const auto power_frac = static_cast<float>(moved.power_w / battery_.power_w_max);
+  out.reward = -power_frac * kPaperPowerMw * step.paid_eur_per_mwh * kRewardScale - reward_centre_;
+  const double next_potential = step.terminal ? 0.0 : shaping_.gamma * moved.soc_frac;
+  out.reward += static_cast<float>(potential_ * (next_potential - soc_frac));
+  out.action = static_cast<std::int32_t>(action);
+  out.terminal = step.terminal ? 1 : 0;
+  return moved.soc_frac;
+}
+
+std::vector<double> observed_training_prices(const MarketSteps& market) {
+  std::vector<double> prices;
+  for (const MarketDay& day : market.days_of(Split::kTrain)) {
+    for (const MarketStep& step : market.of(day)) prices.push_back(step.observed_eur_per_mwh);
+  }
+  return prices;
+}
+
+void draw_counterfactual(const TrainingMarket& market, std::size_t count,
+                         const ContextJitter& jitter, Random& random,
+                         std::vector<Transition>& out) {
+  constexpr int kQuarterHourInput = 1;  // order of write_input
+  constexpr int kMonthInput = 2;
+  out.resize(count);
+  std::size_t index = 0;
+  double soc_frac = 0;
+  double quarter_hour_shift = 0;
+  double month_shift = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t action = i % kActionCount;
+    if (action == 0) {
+      index = random.index(market.step_count());
+      soc_frac = market.draw_soc(random);
+      quarter_hour_shift = random.normal() * jitter.quarter_hours / (kQhCount - 1);
+      month_shift = random.normal() * jitter.months / (kMonthCount - 1);
+    }
+    Transition& transition = out[i];
+    market.make_transition(index, soc_frac, static_cast<Action>(action), transition);
+    for (float* x : {transition.state, transition.next_state}) {
+      move_input(x[kQuarterHourInput], quarter_hour_shift);
+      move_input(x[kMonthInput], month_shift);
+    }
+  }
+}
+
+}  // namespace bess

@@ -1,0 +1,91 @@
+// Where experience comes from. Two named sources [SPEC 4]:
+//   counterfactual  prices do not react to us, so one observed price transition is a valid
+//   transition for
+//                   EVERY SoC and action: each sample draws a training step, a SoC and an action.
+//   replay          the paper's: epsilon-greedy days from a uniform SoC into a ring of the last 1e6
+//                   transitions (replay.h).
+#pragma once
+
+#include <vector>
+
+#include "shared/battery_model.h"
+#include "workstation/env/market_steps.h"
+#include "workstation/io/random.h"
+#include "workstation/rl/transition.h"
+
+namespace bess {
+
+enum class Horizon {
+  kContinuing,  ///< midnight is a truncation: bootstrapping goes on into the next training day
+  kDay,         ///< terminal at local midnight (the paper's episodes)
+};
+
+/// Changes of the reward that change no decision but make it far quicker to learn.
+struct RewardShaping {
+  /// Subtracted from every reward. With a continuing horizon all values move by the same constant
+  /// [Naik et al. 2024, reward centring], and the level of ~2e5 need not be climbed first.
+  double reward_centre_eur_per_h = 0;
+  /// Potential Phi(s) = worth of the stored energy at this price: r + gamma Phi(s') - Phi(s)
+  /// [Ng, Harada, Russell 1999]. What is left to learn is timing, not that energy has a price.
+  double stored_energy_eur_per_mwh = 0;
+  double gamma = 0.999;
+};
+
+/// Standard deviations of a random shift of the calendar inputs, the same for a state and its
+/// successor. Twenty days share a (month, quarter-hour): without it the network learns their prices
+/// by heart.
+struct ContextJitter {
+  double quarter_hours = 4;
+  double months = 2;
+};
+
+/// Training steps with their successor, ready to become transitions.
+class TrainingMarket {
+ public:
+  /// Throws UserError when `market` has no training days.
+  TrainingMarket(const MarketSteps& market, const PriceMap& price_map,
+                 const BatteryParameters& battery, Horizon horizon, const RewardShaping& shaping);
+
+  /// The transition of taking `action` at `soc_frac` in step `index`; also returns the SoC after
+  /// it.
+  double make_transition(std::size_t index, double soc_frac, Action action, Transition& out) const;
+  [[nodiscard]] double draw_soc(Random& random) const {
+    return battery_.soc_min_frac +
+           random.uniform() * (battery_.soc_max_frac - battery_.soc_min_frac);
+  }
+
+  [[nodiscard]] std::size_t step_count() const { return steps_.size(); }
+  [[nodiscard]] const NetworkContext& context(std::size_t index) const {
+    return steps_[index].context;
+  }
+  /// First step and number of steps of each training day.
+  struct Day {
+    std::size_t first;
+    std::size_t count;
+  };
+  [[nodiscard]] const std::vector<Day>& days() const { return days_; }
+
+ private:
+  struct Step {
+    NetworkContext context;
+    NetworkContext next;
+    float paid_eur_per_mwh;
+    bool terminal;
+  };
+  BatteryParameters battery_;
+  RewardShaping shaping_;
+  float reward_centre_;  ///< scaled
+  double potential_;     ///< scaled worth of a full battery
+  std::vector<Step> steps_;
+  std::vector<Day> days_;
+};
+
+/// Observed prices of all training decisions, for fitting the price map.
+std::vector<double> observed_training_prices(const MarketSteps& market);
+
+/// Draws `count` counterfactual transitions. Each price transition and SoC serves all three actions
+/// in a row: they share its noise, so that what tells the actions apart is not drowned in it.
+void draw_counterfactual(const TrainingMarket& market, std::size_t count,
+                         const ContextJitter& jitter, Random& random, std::vector<Transition>& out);
+
+}  // namespace bess

@@ -1,0 +1,44 @@
+// Network input of a state [SPEC 4]: T_qh/14, qh/95, (mo-1)/11, SoC over its 0..1 range, mapped
+// price. The scales are those of the integer student (shared/nn/student_net.h), so that a float
+// student of the same weights sees the same numbers.
+#pragma once
+
+#include "shared/nn/student_net.h"
+#include "workstation/env/market_steps.h"
+#include "workstation/rl/price_map.h"
+
+namespace bess {
+
+inline constexpr int kNetworkInputs = kStudentInputs;
+
+/// What of a state does not depend on the battery, ready for the network.
+struct NetworkContext {
+  float t_qh, quarter_hour, month, price;
+};
+
+inline float scaled_input(int value, int scale) {
+  return static_cast<float>(value * scale) / static_cast<float>(kInputOne);
+}
+inline float scaled_soc(double soc_frac) {
+  return static_cast<float>(soc_frac * (kSocCount - 1) * kSocScale / kInputOne);
+}
+
+inline NetworkContext network_context(int t_qh, int quarter_hour, int month, float mapped_price) {
+  return {scaled_input(t_qh, kTqhScale), scaled_input(quarter_hour, kQhScale),
+          scaled_input(month - 1, kMonthScale), mapped_price};
+}
+inline NetworkContext network_context(const MarketStep& step, const PriceMap& price_map) {
+  return network_context(step.t_qh, step.quarter_hour, step.month,
+                         price_map(step.observed_eur_per_mwh));
+}
+
+/// Writes the five inputs in the student's order.
+inline void write_input(const NetworkContext& context, double soc_frac, float* x) {
+  x[0] = context.t_qh;
+  x[1] = context.quarter_hour;
+  x[2] = context.month;
+  x[3] = scaled_soc(soc_frac);
+  x[4] = context.price;
+}
+
+}  // namespace bess

@@ -1,0 +1,35 @@
+// The paper's experience: epsilon-greedy days from a uniform initial SoC, into a ring of
+// transitions. Days are acted in lock-step, many at once with the weights of that moment, because
+// one forward pass over 32 columns costs little more than one over a single column.
+#pragma once
+
+#include <vector>
+
+#include "workstation/rl/experience.h"
+#include "workstation/rl/teacher.h"
+
+namespace bess {
+
+class Replay {
+ public:
+  Replay(const TrainingMarket& market, std::size_t capacity)
+      : market_(market), capacity_(capacity) {}
+
+  /// Plays `days` days drawn with replacement, exploring with probability epsilon.
+  void play(const Teacher& teacher, std::size_t days, double epsilon, Random& random);
+
+  /// `count` transitions drawn with replacement; valid until the next play().
+  void draw(std::size_t count, Random& random, std::vector<const Transition*>& out) const;
+
+  [[nodiscard]] std::size_t size() const { return ring_.size(); }
+
+ private:
+  void store(const Transition& transition);
+
+  const TrainingMarket& market_;
+  std::size_t capacity_;
+  std::size_t next_ = 0;  ///< slot that the next transition overwrites once the ring is full
+  std::vector<Transition> ring_;
+};
+
+}  // namespace bess

@@ -1,0 +1,56 @@
+// The teacher: a network over the five inputs whose output is action values (DQN) or value
+// distributions (C51). One file holds everything needed to use it again: method, support, price
+// map, parameters.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "workstation/env/policy.h"
+#include "workstation/nn/mlp.h"
+#include "workstation/rl/c51.h"
+#include "workstation/rl/price_map.h"
+
+namespace bess {
+
+enum class Method { kC51, kDqn };
+Method parse_method(std::string_view name);  ///< "c51", "dqn"; throws UserError otherwise
+std::string_view method_name(Method method);
+
+struct Teacher {
+  Method method;
+  Support support;  ///< C51 only; scaled units
+  MlpShape shape;
+  PriceMap price_map;
+  Parameters parameters;
+  std::string provenance;  ///< one line: prices, seed, steps
+
+  /// Expected action values [3 x samples] in units of 1e4 EUR/h for inputs [5 x samples].
+  [[nodiscard]] Matrix action_values(const MatrixRef& x, MlpTile& tile) const;
+};
+
+/// Outputs of the network for a method.
+MlpShape teacher_shape(Method method, const Support& support);
+
+/// Versioned, checksummed, written beside and renamed. load throws UserError when the file is not a
+/// teacher, is damaged, or is of another version.
+void save_teacher(const std::filesystem::path& path, const Teacher& teacher);
+Teacher load_teacher(const std::filesystem::path& path);
+/// True when the file starts like a teacher's.
+bool is_teacher_file(const std::filesystem::path& path);
+
+/// Greedy by expected value, ties to the lowest action.
+class TeacherPolicy final : public Policy {
+ public:
+  explicit TeacherPolicy(const Teacher& teacher) : teacher_(teacher), x_(kNetworkInputs, 1) {}
+  [[nodiscard]] Action decide(const MarketStep& step, std::size_t index,
+                              double soc_frac) const override;
+
+ private:
+  const Teacher& teacher_;
+  mutable Matrix x_;
+  mutable MlpTile tile_;
+};
+
+}  // namespace bess

@@ -1,0 +1,62 @@
+// Training of the teacher: one readable loop of draw, learn, blend the target, look at the
+// validation days. Differences from the paper: Adam; counterfactual experience and a continuing
+// horizon by default (the `paper` preset has replay and daily episodes); the weights that earned
+// most on the validation days win.
+#pragma once
+
+#include <atomic>
+#include <functional>
+
+#include "workstation/env/evaluate.h"
+#include "workstation/rl/experience.h"
+#include "workstation/rl/teacher.h"
+
+namespace bess {
+
+enum class Source { kCounterfactual, kReplay };
+
+struct TrainOptions {
+  Method method = Method::kC51;
+  Source source = Source::kCounterfactual;
+  Horizon horizon = Horizon::kContinuing;
+  long steps = 4'000;           ///< gradient steps
+  long batch_size = 2'048;      ///< transitions a step
+  double learning_rate = 2e-3;  ///< of Adam, falling to `learning_rate_end` along a cosine
+  double learning_rate_end = 5e-5;
+  double gamma = 0.999;
+  double tau = 0.3;  ///< target <- tau * online + (1 - tau) * target, each step
+  int atoms = 51;
+  bool shape_rewards = true;  ///< centre (continuing only) and value the stored energy
+  ContextJitter jitter;       ///< counterfactual source only
+  double value_min_eur_per_h = -1.5e5;
+  double value_max_eur_per_h = 1.5e5;
+  long replay_capacity = 1'000'000;
+  double epsilon_start = 1.0;  ///< falls linearly to epsilon_end over the first half of the steps
+  double epsilon_end = 0.05;
+  double average_decay = 0.99;  ///< of the averaged weights that are validated and kept; 0 = none
+  long validate_every = 250;    ///< gradient steps
+  std::uint64_t seed = 1;
+  int threads = 2;
+};
+
+struct CurvePoint {
+  long step;
+  double loss;
+  double validation_eur_per_day_per_mwh;
+  double edge_mass_frac;  ///< target mass on the two end atoms; above 1 % the support is too narrow
+};
+
+struct TrainResult {
+  Teacher teacher;  ///< best on the validation days
+  std::vector<CurvePoint> curve;
+  double best_validation_eur_per_day_per_mwh;
+  long best_step;
+  double seconds;
+};
+
+/// Trains on the training days of `market` and selects on its validation days. `interrupted` ends
+/// it early with what is best so far. Throws UserError for options out of range or missing days.
+TrainResult train_teacher(const MarketSteps& market, const BatteryParameters& battery,
+                          const TrainOptions& options, const std::atomic<bool>& interrupted);
+
+}  // namespace bess
