@@ -1,0 +1,307 @@
+#include "workstation/correction/distil.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "workstation/correction/policy_loss.h"
+#include "workstation/io/user_error.h"
+#include "workstation/io/progress.h"
+
+namespace bess {
+namespace {
+
+enum Seed : std::uint64_t { kSeedStudent = 11, kSeedLattices = 12, kSeedVisited = 13 };
+/// Passes over the training days, each from its own initial SoC, with this share of random actions.
+constexpr int kVisitedPasses = 4;
+constexpr double kVisitedExploration = 0.1;
+/// How far the axes of a counterexample's lattice reach: rows in EUR/MWh and columns in SoC steps.
+constexpr int kCounterexamplePriceReach = 40;
+constexpr int kCounterexampleSocReach = 10;
+
+int clamped(int value, int low, int high) { return std::clamp(value, low, high); }
+
+/// Fills `axis` with sorted distinct values until it has `count`, drawing more from `draw`.
+template <typename Draw>
+void fill_distinct(std::vector<int>& axis, int count, Draw draw) {
+  std::ranges::sort(axis);
+  axis.erase(std::ranges::unique(axis).begin(), axis.end());
+  while (static_cast<int>(axis.size()) < count) {
+    const int value = draw();
+    const auto at = std::ranges::lower_bound(axis, value);
+    if (at == axis.end() || *at != value) axis.insert(at, value);
+  }
+}
+
+}  // namespace
+
+Matrix visited_inputs(const Teacher& teacher, const MarketSteps& market,
+                      const BatteryParameters& battery, std::uint64_t seed) {
+  Random random(derive_seed(seed, kSeedVisited));
+  const std::vector<MarketDay> training = market.days_of(Split::kTrain);
+  std::size_t steps = 0;
+  for (const MarketDay& day : training) steps += day.step_count;
+  Matrix visited(kNetworkInputs, static_cast<Eigen::Index>(steps * kVisitedPasses));
+  Eigen::Index at = 0;
+  // All days of all passes side by side: one forward pass over many columns per step of the day.
+  struct Episode {
+    std::span<const MarketStep> steps;
+    double soc_frac;
+  };
+  std::vector<Episode> episodes;
+  std::size_t longest = 0;
+  for (int pass = 0; pass < kVisitedPasses; ++pass) {
+    for (const MarketDay& day : training) {
+      const double soc = battery.soc_min_frac +
+                         random.uniform() * (battery.soc_max_frac - battery.soc_min_frac);
+      episodes.push_back({market.of(day), soc});
+      longest = std::max(longest, day.step_count);
+    }
+  }
+  MlpTile tile;
+  for (std::size_t step = 0; step < longest; ++step) {
+    const Eigen::Index first = at;
+    for (const Episode& episode : episodes) {
+      if (step >= episode.steps.size()) continue;
+      write_input(network_context(episode.steps[step], teacher.price_map), episode.soc_frac,
+                  visited.col(at++).data());
+    }
+    const Matrix values = teacher.action_values(visited.middleCols(first, at - first), tile);
+    Eigen::Index column = 0;
+    for (Episode& episode : episodes) {
+      if (step >= episode.steps.size()) continue;
+      Action action = argmax_action(values.col(column++).data());
+      if (random.uniform() < kVisitedExploration) {
+        action = static_cast<Action>(random.index(kActionCount));
+      }
+      episode.soc_frac = battery_step(battery, episode.soc_frac,
+                                      power_sign(action) * battery.power_w_max, kHoursPerStep)
+                             .soc_frac;
+    }
+  }
+  return visited;
+}
+
+Distiller::Distiller(const Teacher& teacher, const Matrix& visited, const DistilOptions& options)
+    : teacher_(teacher),
+      visited_(visited),
+      options_(options),
+      random_(derive_seed(options.seed, kSeedLattices)),
+      student_(initial_parameters(kStudentShape, derive_seed(options.seed, kSeedStudent))),
+      adam_(kStudentShape.parameter_count()),
+      team_(options.threads),
+      workers_(static_cast<std::size_t>(options.threads)) {}
+
+void Distiller::draw_axes(const LatticeState* centre, LatticeAxes& axes) {
+  const auto visited_price = [this] {  // an observed network input, back to EUR/MWh
+    const auto column = static_cast<Eigen::Index>(random_.index(visited_.cols()));
+    const auto& table = teacher_.price_map.table();
+    const auto mapped = static_cast<std::int16_t>(visited_(4, column) * kInputOne);
+    return static_cast<int>(std::ranges::lower_bound(table, mapped) - table.begin()) +
+           kLatticePriceMinEurPerMwh;
+  };
+  const auto draw_price = [&] {
+    if (centre != nullptr && random_.uniform() < 0.7) {
+      const auto shift = static_cast<int>(random_.index(2 * kCounterexamplePriceReach + 1));
+      return centre->price_eur_per_mwh + shift - kCounterexamplePriceReach;
+    }
+    if (random_.uniform() < 0.5) return visited_price();
+    return kLatticePriceMinEurPerMwh + static_cast<int>(random_.index(kPriceCount));
+  };
+  const auto draw_soc = [&] {
+    if (centre != nullptr && random_.uniform() < 0.7) {
+      const auto shift = static_cast<int>(random_.index(2 * kCounterexampleSocReach + 1));
+      return centre->soc_index + shift - kCounterexampleSocReach;
+    }
+    return static_cast<int>(random_.index(kSocCount));
+  };
+  const auto& correction = options_.correction;
+  axes.price_eur_per_mwh = {kLatticePriceMinEurPerMwh, kLatticePriceMaxEurPerMwh};
+  for (const int threshold :
+       {correction.low_price_eur_per_mwh, correction.high_price_eur_per_mwh}) {
+    axes.price_eur_per_mwh.push_back(
+        clamped(threshold, kLatticePriceMinEurPerMwh, kLatticePriceMaxEurPerMwh));
+  }
+  if (centre != nullptr) axes.price_eur_per_mwh.push_back(centre->price_eur_per_mwh);
+  fill_distinct(axes.price_eur_per_mwh, options_.lattice_prices, [&] {
+    return clamped(draw_price(), kLatticePriceMinEurPerMwh, kLatticePriceMaxEurPerMwh);
+  });
+  std::vector<int> socs{0, kSocCount - 1};
+  if (centre != nullptr) socs.push_back(centre->soc_index);
+  fill_distinct(socs, options_.lattice_socs,
+                [&] { return clamped(draw_soc(), 0, kSocCount - 1); });
+  axes.mapped_price.clear();
+  for (const int price : axes.price_eur_per_mwh) {
+    axes.mapped_price.push_back(double{teacher_.price_map(price)});
+  }
+  axes.soc.clear();
+  for (const int soc : socs) axes.soc.push_back(double{scaled_input(soc, kSocScale)});
+}
+
+Distiller::Lattice Distiller::draw_lattice(const std::vector<LatticeState>& counterexamples,
+                                           bool near_counterexample) {
+  Lattice lattice;
+  if (near_counterexample) {
+    const LatticeState& centre = counterexamples[random_.index(counterexamples.size())];
+    const auto nearby = [this](int value, int low, int high) {
+      return clamped(value + static_cast<int>(random_.index(3)) - 1, low, high);
+    };
+    lattice.t_qh = nearby(centre.t_qh, 0, kTqhCount - 1);
+    lattice.quarter_hour = nearby(centre.qh, 0, kQhCount - 1);
+    lattice.month = nearby(centre.month, 1, kMonthCount);
+    draw_axes(&centre, lattice.axes);
+    return lattice;
+  }
+  lattice.t_qh = static_cast<int>(random_.index(kTqhCount));
+  lattice.quarter_hour = static_cast<int>(random_.index(kQhCount));
+  lattice.month = 1 + static_cast<int>(random_.index(kMonthCount));
+  draw_axes(nullptr, lattice.axes);
+  return lattice;
+}
+
+void Distiller::lattice_inputs(const Lattice& lattice, Matrix& x) const {
+  const auto& axes = lattice.axes;
+  x.resize(kNetworkInputs, static_cast<Eigen::Index>(axes.soc.size() * axes.mapped_price.size()));
+  Eigen::Index at = 0;
+  for (const double price : axes.mapped_price) {
+    const NetworkContext context = network_context(lattice.t_qh, lattice.quarter_hour,
+                                                   lattice.month, static_cast<float>(price));
+    for (const double soc : axes.soc) {
+      float* column = x.col(at++).data();
+      write_input(context, 0, column);
+      column[3] = static_cast<float>(soc);
+    }
+  }
+}
+
+/// log mu for the worker's inputs: softmax of the teacher's values over the temperature.
+Eigen::MatrixXd Distiller::teacher_logits(Worker& worker) const {
+  const double inverse_temperature =
+      1 / (options_.temperature_eur_per_h * double{kRewardScale});
+  const Matrix values = teacher_.action_values(worker.x, worker.teacher_tile);
+  return log_softmax(values.cast<double>() * inverse_temperature);
+}
+
+void Distiller::backward_student(Worker& worker) const {
+  const ConstMlp student(kStudentShape, student_.data());
+  MutableMlp gradient(kStudentShape, worker.gradient.data());
+  backward_head(student, worker.dz, worker.student_tile, gradient);
+  backward_hidden(student, worker.x, worker.student_tile, gradient);
+}
+
+void Distiller::learn_lattice(const Lattice& lattice, CorrectionLayer& layer, double weight,
+                              Worker& worker) {
+  const ConstMlp student(kStudentShape, student_.data());
+  lattice_inputs(lattice, worker.x);
+  const Eigen::MatrixXd log_mu = teacher_logits(worker);
+  forward_hidden(student, worker.x, worker.student_tile);
+  forward_head(student, worker.student_tile, worker.z);
+  const Eigen::MatrixXd logits = worker.z.cast<double>();
+  const Eigen::MatrixXd log_student = log_softmax(logits);
+  if (!options_.correct) {
+    worker.losses.teacher += weight * kl_divergence(log_student, log_mu);
+    worker.dz = (weight * options_.omega * kl_gradient_first(log_student, log_mu)).cast<float>();
+    backward_student(worker);
+    return;
+  }
+  Eigen::MatrixXd corrected, through_layer;
+  layer.forward(lattice.axes, logits, corrected);
+  const Eigen::MatrixXd log_corrected = log_softmax(corrected);
+  worker.losses.teacher += weight * kl_divergence(log_corrected, log_mu);
+  worker.losses.correction += weight * kl_divergence(log_student, log_corrected);
+  const Eigen::MatrixXd gradient_corrected =
+      options_.omega * kl_gradient_first(log_corrected, log_mu) +
+      kl_gradient_second(log_student, log_corrected);
+  layer.backward(gradient_corrected, through_layer);
+  worker.dz =
+      (weight * (through_layer + kl_gradient_first(log_student, log_corrected))).cast<float>();
+  backward_student(worker);
+}
+
+void Distiller::learn_visited(const std::vector<Eigen::Index>& columns, double weight,
+                              Worker& worker) {
+  const ConstMlp student(kStudentShape, student_.data());
+  worker.x.resize(kNetworkInputs, static_cast<Eigen::Index>(columns.size()));
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    worker.x.col(static_cast<Eigen::Index>(c)) = visited_.col(columns[c]);
+  }
+  const Eigen::MatrixXd log_mu = teacher_logits(worker);
+  forward_hidden(student, worker.x, worker.student_tile);
+  forward_head(student, worker.student_tile, worker.z);
+  const Eigen::MatrixXd log_student = log_softmax(worker.z.cast<double>());
+  worker.losses.visited += weight * kl_divergence(log_student, log_mu);
+  worker.dz = (weight * options_.omega * kl_gradient_first(log_student, log_mu)).cast<float>();
+  backward_student(worker);
+}
+
+Distiller::Losses Distiller::step(const std::vector<Lattice>& lattices,
+                                  std::vector<CorrectionLayer>& layers,
+                                  const std::vector<Eigen::Index>& visited, double learning_rate) {
+  const double lattice_weight =
+      1.0 / static_cast<double>(lattices.size() * options_.lattice_prices * options_.lattice_socs);
+  const double visited_weight = 1.0 / static_cast<double>(visited.size());
+  team_.run([&](int index) {
+    Worker& worker = workers_[static_cast<std::size_t>(index)];
+    worker.gradient.setZero(kStudentShape.parameter_count());
+    worker.losses = {};
+    const auto team = static_cast<std::size_t>(team_.size());
+    for (auto l = static_cast<std::size_t>(index); l < lattices.size(); l += team) {
+      learn_lattice(lattices[l], layers[static_cast<std::size_t>(index)], lattice_weight, worker);
+    }
+    const std::size_t share = (visited.size() + team - 1) / team;
+    const std::size_t begin = std::min(visited.size(), share * static_cast<std::size_t>(index));
+    const std::size_t end = std::min(visited.size(), begin + share);
+    if (begin < end) {
+      learn_visited({visited.begin() + static_cast<std::ptrdiff_t>(begin),
+                     visited.begin() + static_cast<std::ptrdiff_t>(end)},
+                    visited_weight, worker);
+    }
+  });
+  Losses losses;
+  for (std::size_t w = 0; w < workers_.size(); ++w) {
+    if (w > 0) workers_[0].gradient += workers_[w].gradient;
+    losses.teacher += workers_[w].losses.teacher;
+    losses.correction += workers_[w].losses.correction;
+    losses.visited += workers_[w].losses.visited;
+  }
+  adam_.update(student_, workers_[0].gradient, static_cast<float>(learning_rate));
+  return losses;
+}
+
+void Distiller::run(int epochs, const std::vector<LatticeState>& counterexamples,
+                    double margin_scale, const std::atomic<bool>& interrupted) {
+  CorrectionOptions correction = options_.correction;
+  correction.price_slope *= margin_scale;
+  correction.soc_slope *= margin_scale;
+  std::vector<CorrectionLayer> layers;
+  for (int i = 0; i < team_.size(); ++i) {
+    layers.emplace_back(correction, options_.lattice_prices, options_.lattice_socs);
+  }
+  const int steps = options_.steps_per_epoch;
+  const int lattices_per_step = std::max(1, options_.lattices_per_epoch / steps);
+  const int visited_per_step = std::max(1, options_.visited_per_epoch / steps);
+  Progress progress(options_.correct ? "correct and distil" : "distil", "epochs", epochs);
+  for (int epoch = 0; epoch < epochs && !interrupted; ++epoch) {
+    const double blend = 0.5 * (1 + std::cos(std::numbers::pi * epoch / epochs));
+    const double rate = options_.learning_rate * (0.1 + 0.9 * blend);
+    Losses mean;
+    for (int s = 0; s < steps; ++s) {
+      std::vector<Lattice> lattices;
+      for (int l = 0; l < lattices_per_step; ++l) {
+        lattices.push_back(draw_lattice(counterexamples, !counterexamples.empty() && l % 2 == 0));
+      }
+      std::vector<Eigen::Index> columns(static_cast<std::size_t>(visited_per_step));
+      for (Eigen::Index& c : columns) c = static_cast<Eigen::Index>(random_.index(visited_.cols()));
+      const Losses losses = step(lattices, layers, columns, rate);
+      mean.teacher += losses.teacher / steps;
+      mean.correction += losses.correction / steps;
+      mean.visited += losses.visited / steps;
+    }
+    curve_.push_back({static_cast<int>(curve_.size()) + 1, mean.teacher, mean.correction,
+                      mean.visited});
+    progress.update(epoch + 1, fmt::format("teacher KL {:.4f}  correction KL {:.2e}",
+                                           mean.visited, mean.correction));
+  }
+}
+
+}  // namespace bess

@@ -1,0 +1,102 @@
+// Distillation of the teacher into the 5-64-32-3 student through the correction layer [Paper, Eq. 11, 12].
+// An epoch is 64 context lattices of 32 prices x 16 SoCs, on which the layer corrects, and 32,768 states
+// that the teacher visits, which only follow the teacher; it is taken in small steps of Adam. The layer is
+// dropped afterwards: the student alone decides.
+#pragma once
+
+#include <atomic>
+#include <vector>
+
+#include "shared/battery_model.h"
+#include "shared/features.h"
+#include "workstation/correction/correction_layer.h"
+#include "workstation/io/random.h"
+#include "workstation/nn/adam.h"
+#include "workstation/nn/thread_team.h"
+#include "workstation/rl/teacher.h"
+
+namespace bess {
+
+struct DistilOptions {
+  bool correct = true;         ///< false: plain distillation, for comparison
+  CorrectionOptions correction;
+  double omega = 1e-4;         ///< the paper's trade-off: larger follows the teacher and violates more
+  double temperature_eur_per_h = 100;  ///< of the teacher's softmax over action values
+  int epochs = 600;
+  int steps_per_epoch = 16;    ///< Adam steps that share one epoch's states
+  int lattices_per_epoch = 64;
+  int lattice_prices = 32;
+  int lattice_socs = 16;
+  int visited_per_epoch = 32'768;
+  double learning_rate = 1e-3; ///< falling to a tenth along a cosine
+  int repair_rounds = 12;      ///< proofs, each followed by counterexample training if it fails
+  int repair_epochs = 40;
+  std::uint64_t seed = 1;
+  int threads = 2;
+};
+
+inline constexpr MlpShape kStudentShape{kStudentInputs, kStudentHidden1, kStudentHidden2,
+                                        kActionCount};
+
+/// Inputs of states that the teacher's policy meets on the training days, with some exploration.
+Matrix visited_inputs(const Teacher& teacher, const MarketSteps& market,
+                      const BatteryParameters& battery, std::uint64_t seed);
+
+struct DistilPoint {
+  int epoch;
+  double teacher_loss;     ///< mean KL(pi || mu) over lattices
+  double correction_loss;  ///< mean KL(pi' || pi) over lattices
+  double visited_loss;     ///< mean KL(pi' || mu) over visited states
+};
+
+class Distiller {
+ public:
+  /// Keeps references: `teacher` and `visited` must outlive it.
+  Distiller(const Teacher& teacher, const Matrix& visited, const DistilOptions& options);
+
+  /// Trains for `epochs`. Half of the lattices are laid around `counterexamples` when there are any, and
+  /// slope margins are multiplied by `margin_scale`.
+  void run(int epochs, const std::vector<LatticeState>& counterexamples, double margin_scale,
+           const std::atomic<bool>& interrupted);
+
+  [[nodiscard]] const Parameters& parameters() const { return student_; }
+  [[nodiscard]] const std::vector<DistilPoint>& curve() const { return curve_; }
+
+ private:
+  /// One context with its axes.
+  struct Lattice {
+    int t_qh, quarter_hour, month;
+    LatticeAxes axes;
+  };
+  struct Losses {
+    double teacher = 0, correction = 0, visited = 0;
+  };
+  struct Worker {
+    Parameters gradient;
+    Losses losses;
+    MlpTile teacher_tile, student_tile;
+    Matrix x, z, dz;
+  };
+
+  Lattice draw_lattice(const std::vector<LatticeState>& counterexamples, bool near_counterexample);
+  void draw_axes(const LatticeState* centre, LatticeAxes& axes);
+  void lattice_inputs(const Lattice& lattice, Matrix& x) const;
+  Eigen::MatrixXd teacher_logits(Worker& worker) const;
+  void backward_student(Worker& worker) const;
+  void learn_lattice(const Lattice& lattice, CorrectionLayer& layer, double weight, Worker& worker);
+  void learn_visited(const std::vector<Eigen::Index>& columns, double weight, Worker& worker);
+  Losses step(const std::vector<Lattice>& lattices, std::vector<CorrectionLayer>& layers,
+              const std::vector<Eigen::Index>& visited, double learning_rate);
+
+  const Teacher& teacher_;
+  const Matrix& visited_;
+  DistilOptions options_;
+  Random random_;
+  Parameters student_;
+  Adam adam_;
+  ThreadTeam team_;
+  std::vector<Worker> workers_;
+  std::vector<DistilPoint> curve_;
+};
+
+}  // namespace bess

@@ -1,0 +1,17 @@
+// From the float student to the integer one: the largest power-of-two scale for each layer at which no
+// weight leaves int16, no accumulator can leave int32 and no activation saturates for ANY lattice input.
+#pragma once
+
+#include "shared/nn/student_net.h"
+#include "workstation/nn/mlp.h"
+#include "workstation/rl/price_map.h"
+
+namespace bess {
+
+/// Throws UserError when the weights are so large that no scale fits.
+StudentNet quantise_student(const Parameters& student, const PriceMap& price_map);
+
+/// Largest value that any int32 accumulator of the net can reach in magnitude, over all inputs.
+std::int64_t accumulator_bound(const StudentNet& net);
+
+}  // namespace bess

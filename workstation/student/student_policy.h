@@ -1,0 +1,29 @@
+// The integer student as a policy: exactly what the edge computes from price and SoC.
+#pragma once
+
+#include <cmath>
+
+#include "shared/nn/student_net.h"
+#include "workstation/env/policy.h"
+
+namespace bess {
+
+class StudentPolicy final : public Policy {
+ public:
+  explicit StudentPolicy(const StudentNet& net) : net_(net) {}
+  [[nodiscard]] Action decide(const MarketStep& step, std::size_t, double soc_frac) const override {
+    const auto price_centi = static_cast<std::int32_t>(
+        std::lround(step.observed_eur_per_mwh * kCentiPerEur));
+    const auto soc_e4 = static_cast<std::int32_t>(std::lround(soc_frac * kSocFullE4));
+    return net_.decide({.t_qh = step.t_qh,
+                        .qh = step.quarter_hour,
+                        .month = step.month,
+                        .soc_index = soc_index_of(soc_e4),
+                        .price_eur_per_mwh = lattice_price_of(price_centi)});
+  }
+
+ private:
+  const StudentNet& net_;
+};
+
+}  // namespace bess

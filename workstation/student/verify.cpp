@@ -1,0 +1,298 @@
+#include "workstation/student/verify.h"
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+#include "workstation/io/progress.h"
+
+namespace bess {
+namespace {
+
+/// Boxes of at most this many states are evaluated one by one: a bound costs as much as a few states.
+constexpr int kSmallBox = 6;
+
+struct Box {
+  int soc_begin, soc_end, price_begin, price_end;  ///< half-open, lattice indices
+  [[nodiscard]] int size() const { return (soc_end - soc_begin) * (price_end - price_begin); }
+};
+
+/// Weights split by sign, so that interval bounds are two plain products.
+template <int kInputs, int kOutputs>
+struct SignedLayer {
+  std::int32_t positive[kInputs][kOutputs];
+  std::int32_t negative[kInputs][kOutputs];
+  std::int32_t bias[kOutputs];
+
+  explicit SignedLayer(const Affine<kInputs, kOutputs>& layer) {
+    for (int o = 0; o < kOutputs; ++o) {
+      bias[o] = layer.bias[o];
+      for (int i = 0; i < kInputs; ++i) {
+        positive[i][o] = std::max<std::int32_t>(layer.weight[i][o], 0);
+        negative[i][o] = std::min<std::int32_t>(layer.weight[i][o], 0);
+      }
+    }
+  }
+  void bound(const std::int16_t (&low)[kInputs], const std::int16_t (&high)[kInputs],
+             std::int32_t (&out_low)[kOutputs], std::int32_t (&out_high)[kOutputs]) const {
+    for (int o = 0; o < kOutputs; ++o) out_low[o] = out_high[o] = bias[o];
+    for (int i = 0; i < kInputs; ++i) {
+      const std::int32_t l = low[i];
+      const std::int32_t h = high[i];
+      for (int o = 0; o < kOutputs; ++o) {
+        out_low[o] += positive[i][o] * l + negative[i][o] * h;
+        out_high[o] += positive[i][o] * h + negative[i][o] * l;
+      }
+    }
+  }
+};
+
+/// Decides boxes of one net. Holds nothing that changes, so threads share it.
+class BoxBounds {
+ public:
+  explicit BoxBounds(const StudentNet& net) : net_(net), layer1_(net.layer1), layer2_(net.layer2) {}
+
+  /// True when every state of the box has the same action, which is then in `action`.
+  bool single_action(const LatticeState& low_corner, const LatticeState& high_corner,
+                     Action& action) const {
+    std::int16_t x_low[kStudentInputs];
+    std::int16_t x_high[kStudentInputs];
+    net_.quantise(low_corner, x_low);
+    net_.quantise(high_corner, x_high);
+    std::int32_t sum1_low[kStudentHidden1], sum1_high[kStudentHidden1];
+    std::int16_t h1_low[kStudentHidden1], h1_high[kStudentHidden1];
+    layer1_.bound(x_low, x_high, sum1_low, sum1_high);
+    net_.relu1.propagate(sum1_low, h1_low);
+    net_.relu1.propagate(sum1_high, h1_high);
+    std::int32_t sum2_low[kStudentHidden2], sum2_high[kStudentHidden2];
+    std::int16_t h2_low[kStudentHidden2], h2_high[kStudentHidden2];
+    layer2_.bound(h1_low, h1_high, sum2_low, sum2_high);
+    net_.relu2.propagate(sum2_low, h2_low);
+    net_.relu2.propagate(sum2_high, h2_high);
+    for (const Action candidate : {Action::kCharge, Action::kIdle, Action::kDischarge}) {
+      if (wins(candidate, h2_low, h2_high)) {
+        action = candidate;
+        return true;
+      }
+    }
+    return false;
+  }
+
+ private:
+  /// Whether `candidate` beats both others for all hidden activations inside the bounds: the smallest
+  /// possible difference of logits decides, ties going to the lower action as in argmax_action.
+  [[nodiscard]] bool wins(Action candidate, const std::int16_t (&low)[kStudentHidden2],
+                          const std::int16_t (&high)[kStudentHidden2]) const {
+    const int c = static_cast<int>(candidate);
+    for (int other = 0; other < kActionCount; ++other) {
+      if (other == c) continue;
+      std::int64_t least = std::int64_t{net_.layer3.bias[c]} - net_.layer3.bias[other];
+      for (int i = 0; i < kStudentHidden2; ++i) {
+        const std::int64_t w =
+            std::int64_t{net_.layer3.weight[i][c]} - net_.layer3.weight[i][other];
+        least += w * (w > 0 ? low[i] : high[i]);
+      }
+      const bool beats = other > c ? least >= 0 : least > 0;
+      if (!beats) return false;
+    }
+    return true;
+  }
+
+  const StudentNet& net_;
+  SignedLayer<kStudentInputs, kStudentHidden1> layer1_;
+  SignedLayer<kStudentHidden1, kStudentHidden2> layer2_;
+};
+
+/// Fills the action grid of one context.
+class GridFiller {
+ public:
+  GridFiller(const StudentNet& net, const BoxBounds& bounds) : net_(net), bounds_(bounds) {}
+
+  std::int64_t fill(const LatticeState& context, bool exhaustive, std::vector<std::int8_t>& grid) {
+    state_ = context;
+    grid.resize(static_cast<std::size_t>(kSocCount) * kPriceCount);
+    grid_ = grid.data();
+    evaluated_ = 0;
+    const Box whole{0, kSocCount, 0, kPriceCount};
+    if (exhaustive) {
+      evaluate(whole);
+    } else {
+      fill_box(whole);
+    }
+    return evaluated_;
+  }
+
+ private:
+  [[nodiscard]] LatticeState state_at(int soc, int price) const {
+    LatticeState state = state_;
+    state.soc_index = static_cast<std::int16_t>(soc);
+    state.price_eur_per_mwh = static_cast<std::int16_t>(kLatticePriceMinEurPerMwh + price);
+    return state;
+  }
+  void evaluate(const Box& box) {
+    for (int s = box.soc_begin; s < box.soc_end; ++s) {
+      for (int p = box.price_begin; p < box.price_end; ++p) {
+        grid_[s * kPriceCount + p] = static_cast<std::int8_t>(net_.decide(state_at(s, p)));
+      }
+    }
+    evaluated_ += box.size();
+  }
+  void fill_box(const Box& box) {
+    if (box.size() <= kSmallBox) {
+      evaluate(box);
+      return;
+    }
+    Action action{};
+    if (bounds_.single_action(state_at(box.soc_begin, box.price_begin),
+                              state_at(box.soc_end - 1, box.price_end - 1), action)) {
+      for (int s = box.soc_begin; s < box.soc_end; ++s) {
+        std::fill_n(grid_ + s * kPriceCount + box.price_begin, box.price_end - box.price_begin,
+                    static_cast<std::int8_t>(action));
+      }
+      return;
+    }
+    halve(box);
+  }
+  /// Halves the side that spans more of its input's range.
+  void halve(const Box& box) {
+    const int socs = box.soc_end - box.soc_begin;
+    const int prices = box.price_end - box.price_begin;
+    const int price_span = net_.price_map[box.price_end - 1] - net_.price_map[box.price_begin];
+    Box first = box;
+    Box second = box;
+    if (prices > 1 && (socs == 1 || price_span >= (socs - 1) * kSocScale)) {
+      first.price_end = second.price_begin = box.price_begin + prices / 2;
+    } else {
+      first.soc_end = second.soc_begin = box.soc_begin + socs / 2;
+    }
+    fill_box(first);
+    fill_box(second);
+  }
+
+  const StudentNet& net_;
+  const BoxBounds& bounds_;
+  LatticeState state_{};
+  std::int8_t* grid_ = nullptr;
+  std::int64_t evaluated_ = 0;
+};
+
+LatticeState context_at(int index) {
+  return {.t_qh = static_cast<std::int16_t>(index % kTqhCount),
+          .qh = static_cast<std::int16_t>(index / kTqhCount % kQhCount),
+          .month = static_cast<std::int16_t>(index / (kTqhCount * kQhCount) + 1),
+          .soc_index = 0,
+          .price_eur_per_mwh = 0};
+}
+
+/// Counts violations of one context's grid into `certificate` and keeps their states.
+class GridChecker {
+ public:
+  GridChecker(const VerifyOptions& options, Certificate& certificate)
+      : options_(options), certificate_(certificate) {}
+
+  void check(const LatticeState& context, const std::vector<std::int8_t>& grid) {
+    context_ = context;
+    kept_in_context_ = 0;
+    const int low = std::clamp(options_.low_price_eur_per_mwh - kLatticePriceMinEurPerMwh, -1,
+                               kPriceCount - 1);
+    const int high =
+        std::clamp(options_.high_price_eur_per_mwh - kLatticePriceMinEurPerMwh, 0, kPriceCount);
+    constexpr auto kCharge = static_cast<std::int8_t>(Action::kCharge);
+    constexpr auto kDischarge = static_cast<std::int8_t>(Action::kDischarge);
+    for (int s = 0; s < kSocCount; ++s) {
+      const std::int8_t* row = &grid[static_cast<std::size_t>(s) * kPriceCount];
+      count(certificate_.violations_property_1, s, 0, low + 1,
+            [&](int p) { return row[p] != kCharge; });
+      count(certificate_.violations_property_2, s, high, kPriceCount,
+            [&](int p) { return row[p] != kDischarge; });
+      count(certificate_.violations_property_3, s, 0, kPriceCount - 1,
+            [&](int p) { return row[p + 1] > row[p]; });
+      if (s + 1 == kSocCount) break;
+      count(certificate_.violations_property_3, s, 0, kPriceCount,
+            [&](int p) { return row[p + kPriceCount] > row[p]; });
+    }
+  }
+
+ private:
+  template <typename Violates>
+  void count(std::int64_t& total, int soc, int begin, int end, Violates violates) {
+    std::int64_t found = 0;
+    for (int p = begin; p < end; ++p) found += violates(p) ? 1 : 0;  // branch-free: vectorises
+    total += found;
+    for (int p = begin; found > 0 && p < end && kept_in_context_ < kKeptPerContext; ++p) {
+      if (violates(p)) keep(soc, p);
+    }
+  }
+  void keep(int soc, int price) {
+    ++kept_in_context_;
+    LatticeState state = context_;
+    state.soc_index = static_cast<std::int16_t>(soc);
+    state.price_eur_per_mwh = static_cast<std::int16_t>(kLatticePriceMinEurPerMwh + price);
+    certificate_.counterexamples.push_back(state);
+  }
+
+  static constexpr int kKeptPerContext = 16;
+  const VerifyOptions& options_;
+  Certificate& certificate_;
+  LatticeState context_{};
+  int kept_in_context_ = 0;
+};
+
+void thin_out(std::vector<LatticeState>& states, std::size_t count_max) {
+  if (states.size() <= count_max) return;
+  for (std::size_t i = 0; i < count_max; ++i) states[i] = states[i * states.size() / count_max];
+  states.resize(count_max);
+}
+
+}  // namespace
+
+std::int64_t fill_action_grid(const StudentNet& net, int t_qh, int quarter_hour, int month,
+                              bool exhaustive, std::vector<std::int8_t>& grid) {
+  const BoxBounds bounds(net);
+  const LatticeState context{static_cast<std::int16_t>(t_qh),
+                             static_cast<std::int16_t>(quarter_hour),
+                             static_cast<std::int16_t>(month), 0, 0};
+  return GridFiller(net, bounds).fill(context, exhaustive, grid);
+}
+
+Certificate verify_student(const StudentNet& net, const VerifyOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  const BoxBounds bounds(net);
+  const int contexts = (kContextCount + options.context_stride - 1) / options.context_stride;
+  std::vector<Certificate> parts(static_cast<std::size_t>(options.threads));
+  std::atomic<int> done{0};
+  Progress progress("verify", "contexts", contexts);
+  const auto work = [&](int worker) {
+    Certificate& part = parts[static_cast<std::size_t>(worker)];
+    GridFiller filler(net, bounds);
+    GridChecker checker(options, part);
+    std::vector<std::int8_t> grid;
+    for (int c = worker; c < contexts; c += options.threads) {
+      const LatticeState context = context_at(c * options.context_stride);
+      part.states_evaluated += filler.fill(context, options.exhaustive, grid);
+      checker.check(context, grid);
+      part.states_checked += std::int64_t{kSocCount} * kPriceCount;
+      const int finished = ++done;
+      if (worker == 0) progress.update(finished);
+    }
+  };
+  std::vector<std::thread> threads;
+  for (int w = 1; w < options.threads; ++w) threads.emplace_back(work, w);
+  work(0);
+  for (std::thread& thread : threads) thread.join();
+  Certificate total;
+  for (const Certificate& part : parts) {
+    total.states_checked += part.states_checked;
+    total.states_evaluated += part.states_evaluated;
+    total.violations_property_1 += part.violations_property_1;
+    total.violations_property_2 += part.violations_property_2;
+    total.violations_property_3 += part.violations_property_3;
+    total.counterexamples.insert(total.counterexamples.end(), part.counterexamples.begin(),
+                                 part.counterexamples.end());
+  }
+  thin_out(total.counterexamples, options.counterexamples_max);
+  total.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return total;
+}
+
+}  // namespace bess
