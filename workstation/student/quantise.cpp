@@ -115,7 +115,9 @@ StudentNet quantise_student(const Parameters& student, const PriceMap& price_map
 std::int64_t accumulator_bound(const StudentNet& net) {
   const std::int64_t hidden1 = activation_bound(net.layer1, net.relu1.shift, kInputOne);
   const std::int64_t hidden2 = activation_bound(net.layer2, net.relu2.shift, hidden1);
-  return std::max({layer_bound(net.layer1, kInputOne), layer_bound(net.layer2, hidden1),
+  const auto rounding = [](int shift) { return shift > 0 ? std::int64_t{1} << (shift - 1) : 0; };
+  return std::max({layer_bound(net.layer1, kInputOne) + rounding(net.relu1.shift),
+                   layer_bound(net.layer2, hidden1) + rounding(net.relu2.shift),
                    layer_bound(net.layer3, hidden2)});
 }
 

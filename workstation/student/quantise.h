@@ -11,7 +11,7 @@ namespace bess {
 /// Throws UserError when the weights are so large that no scale fits.
 StudentNet quantise_student(const Parameters& student, const PriceMap& price_map);
 
-/// Largest value that any int32 accumulator of the net can reach in magnitude, over all inputs.
+/// Largest magnitude that any int32 sum of the net can reach over all inputs, rounding included.
 std::int64_t accumulator_bound(const StudentNet& net);
 
 }  // namespace bess

@@ -1,0 +1,149 @@
+#include "workstation/student/student_file.h"
+
+#include <cJSON.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <memory>
+#include <span>
+
+#include "shared/nn/exported_student.h"
+#include "workstation/io/file.h"
+#include "workstation/io/user_error.h"
+#include "workstation/student/quantise.h"
+
+namespace bess {
+namespace {
+
+constexpr int kFormatVersion = 1;
+using Json = std::unique_ptr<cJSON, decltype(&cJSON_Delete)>;
+
+/// One named array of the net. All arrays are listed once, for reading and for writing.
+template <typename Net, typename Visit>
+void visit_arrays(Net& net, Visit visit) {
+  visit("price_map", std::span(net.price_map));
+  visit("layer1_weight", std::span(&net.layer1.weight[0][0], kStudentInputs * kStudentHidden1));
+  visit("layer1_bias", std::span(net.layer1.bias));
+  visit("relu1_shift", std::span(&net.relu1.shift, 1));
+  visit("layer2_weight", std::span(&net.layer2.weight[0][0], kStudentHidden1 * kStudentHidden2));
+  visit("layer2_bias", std::span(net.layer2.bias));
+  visit("relu2_shift", std::span(&net.relu2.shift, 1));
+  visit("layer3_weight", std::span(&net.layer3.weight[0][0], kStudentHidden2 * kActionCount));
+  visit("layer3_bias", std::span(net.layer3.bias));
+}
+
+/// Reads fields of one JSON object; every complaint names the file and the key.
+class FieldReader {
+ public:
+  FieldReader(const cJSON* object, const std::string& name) : object_(object), name_(name) {}
+
+  [[nodiscard]] double number(const char* key) const {
+    const cJSON* item = field(key);
+    if (!cJSON_IsNumber(item)) fail("{}: \"{}\" is not a number", name_, key);
+    return item->valuedouble;
+  }
+  [[nodiscard]] std::string text(const char* key) const {
+    const cJSON* item = field(key);
+    if (!cJSON_IsString(item)) fail("{}: \"{}\" is not a text", name_, key);
+    return item->valuestring;
+  }
+  template <typename T>
+  void integers(const char* key, std::span<T> out) const {
+    const cJSON* array = field(key);
+    if (!cJSON_IsArray(array) || cJSON_GetArraySize(array) != static_cast<int>(out.size())) {
+      fail("{}: \"{}\" is not an array of {} integers", name_, key, out.size());
+    }
+    const cJSON* item = array->child;
+    for (T& value : out) {
+      const double x = cJSON_IsNumber(item) ? item->valuedouble : 0.5;
+      value = static_cast<T>(clamp_to<double>(x, std::numeric_limits<T>::min(),
+                                              std::numeric_limits<T>::max()));
+      if (static_cast<double>(value) != x) {
+        fail("{}: \"{}\" holds something else than integers of {} bits", name_, key, 8 * sizeof(T));
+      }
+      item = item->next;
+    }
+  }
+
+ private:
+  [[nodiscard]] const cJSON* field(const char* key) const {
+    const cJSON* item = cJSON_GetObjectItemCaseSensitive(object_, key);
+    if (item == nullptr) fail("{}: not a student file: \"{}\" is missing", name_, key);
+    return item;
+  }
+  const cJSON* object_;
+  const std::string& name_;
+};
+
+void check_net(const StudentNet& net, const std::string& name) {
+  constexpr int kShiftMax = 30;
+  for (const int shift : {net.relu1.shift, net.relu2.shift}) {
+    if (shift < 0 || shift > kShiftMax) fail("{}: shift {} is not in 0..{}", name, shift, kShiftMax);
+  }
+  for (int i = 0; i < kPriceCount; ++i) {
+    if (net.price_map[i] < 0 || net.price_map[i] > kInputOne ||
+        (i > 0 && net.price_map[i] <= net.price_map[i - 1])) {
+      fail("{}: price map does not rise strictly within 0..{} at {} EUR/MWh", name, kInputOne,
+           i + kLatticePriceMinEurPerMwh);
+    }
+  }
+  if (accumulator_bound(net) > INT32_MAX) {
+    fail("{}: weights so large that a 32-bit accumulator could overflow", name);
+  }
+}
+
+}  // namespace
+
+void save_student(const std::filesystem::path& path, const StudentFile& student) {
+  check_net(student.net, path.string());
+  Json provenance(cJSON_CreateString(student.provenance.c_str()), cJSON_Delete);
+  const std::unique_ptr<char, decltype(&cJSON_free)> quoted(
+      cJSON_PrintUnformatted(provenance.get()), cJSON_free);
+  std::string text = fmt::format(
+      "{{\n\"format\": \"bess-student\",\n\"version\": {},\n\"architecture_hash\": {},\n"
+      "\"weights_hash\": {},\n\"provenance\": {},\n\"low_price_eur_per_mwh\": {},\n"
+      "\"high_price_eur_per_mwh\": {}",
+      kFormatVersion, student_architecture_hash(), student_weights_hash(student.net), quoted.get(),
+      student.low_price_eur_per_mwh, student.high_price_eur_per_mwh);
+  visit_arrays(student.net, [&text](const char* key, auto values) {
+    text += fmt::format(",\n\"{}\": [{}]", key, fmt::join(values, ","));
+  });
+  write_file(path, text + "\n}\n");
+}
+
+StudentFile load_student(const std::filesystem::path& path) {
+  return parse_student(read_file(path), path.string());
+}
+
+StudentFile parse_student(const std::string& text, const std::string& name) {
+  const Json json(cJSON_ParseWithLength(text.data(), text.size()), cJSON_Delete);
+  if (!cJSON_IsObject(json.get())) {
+    fail("{}: not a student file (JSON); make one with 'bess-train distil'", name);
+  }
+  const FieldReader in(json.get(), name);
+  if (in.text("format") != "bess-student") fail("{}: \"format\" is not \"bess-student\"", name);
+  if (in.number("version") != kFormatVersion) {
+    fail("{}: version {}, this program reads {}; distil again", name, in.number("version"),
+         kFormatVersion);
+  }
+  if (in.number("architecture_hash") != student_architecture_hash()) {
+    fail("{}: made for another student architecture; distil again", name);
+  }
+  StudentFile student{};
+  visit_arrays(student.net, [&in](const char* key, auto values) { in.integers(key, values); });
+  check_net(student.net, name);
+  if (in.number("weights_hash") != student_weights_hash(student.net)) {
+    fail("{}: damaged: the weights do not match their hash; copy it again or distil again", name);
+  }
+  student.low_price_eur_per_mwh = static_cast<int>(in.number("low_price_eur_per_mwh"));
+  student.high_price_eur_per_mwh = static_cast<int>(in.number("high_price_eur_per_mwh"));
+  student.provenance = in.text("provenance");
+  return student;
+}
+
+StudentFile compiled_student() {
+  return {kExportedStudent, BESS_STUDENT_LOW_PRICE_EUR_PER_MWH, BESS_STUDENT_HIGH_PRICE_EUR_PER_MWH,
+          BESS_STUDENT_PROVENANCE};
+}
+
+}  // namespace bess
