@@ -10,6 +10,8 @@ constexpr std::int64_t kValueLimit = 1'000'000'000;
 constexpr std::string_view kCommandNames[kCommandCount] = {"charge", "idle", "discharge",
                                                            "release"};
 
+std::string quoted(std::string_view name) { return std::string("\"").append(name).append("\""); }
+
 TomlTable child(TomlTable& parent, const toml::table* table, std::string where) {
   return {table, parent.file(), std::move(where), parent.error()};
 }
@@ -30,8 +32,7 @@ void for_each_table(TomlTable& parent, std::string_view key, Function read) {
 std::int8_t point_index(TomlTable& table, const toml::node& at, std::string_view name,
                         const RegisterMap& map) {
   const int index = find_point(map, name);
-  if (index < 0)
-    table.fail_at(at, std::string("no [[point]] is named \"").append(name).append("\""));
+  if (index < 0) table.fail_at(at, "no [[point]] is named " + quoted(name));
   return static_cast<std::int8_t>(index);
 }
 
@@ -153,8 +154,8 @@ void read_write(TomlTable& table, const RegisterMap& map, std::int32_t default_f
     if (value.point < 0 || !read_value(table, (*values)[i], value)) return;
     const RegisterPoint& point = map.points[value.point];
     if (next_address >= 0 && point.address != next_address) {
-      return table.fail_at((*points)[i], "\"" + name->get() +
-                                             "\" does not follow the point before it: a block "
+      return table.fail_at((*points)[i], quoted(name->get()) +
+                                             " does not follow the point before it: a block "
                                              "write needs neighbouring registers");
     }
     if (next_address < 0) write.address = point.address;
@@ -294,8 +295,7 @@ bool load_register_map(const std::string& path, std::string_view variant, Regist
   root.finish();
   for (const std::string_view name : {"soc", "battery_power"}) {
     if (root.ok() && find_point(map, name) < 0) {
-      root.fail("point",
-                std::string("\"").append(name).append("\" is missing: the controller needs it"));
+      root.fail("point", quoted(name) + " is missing: the controller needs it");
     }
   }
   if (root.ok()) prove_power_range(root, map);
