@@ -33,7 +33,7 @@ constexpr std::string_view status_name(Status status) {
 constexpr std::string_view status_text(Status status) {
   constexpr std::string_view kTexts[] = {
       "ok",
-      "not connected (is it switched on, is host and port right, is another client connected?)",
+      "no connection (are host and port right, is it running, does it serve one client only?)",
       "no answer in time (is the unit id right?)",
       "answered with a Modbus exception (does the register map fit this model?)",
       "answered with something that does not belong to the question",
