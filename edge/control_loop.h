@@ -56,6 +56,7 @@ class ControlLoop {
     count_missed_ticks(tick_utc_s);
     record = CycleRecord{.utc_s = tick_utc_s, .cycle = ++cycle_};
     if (!sleep_until_s(tick_utc_s - settings_.read_lead_s)) return false;
+    request_price(tick_utc_s);  // before the battery is read: a slow bus must not cost the price
     read_battery(record);
     if (!sleep_until_s(tick_utc_s)) return false;
     await_price(record);
@@ -73,6 +74,7 @@ class ControlLoop {
     record = CycleRecord{.utc_s = clock_.now_utc_ns() / kNanosecondsPerSecond,
                          .cycle = cycle_,
                          .mode = mode_,
+                         .reason = Reason::kStopRequested,
                          .battery_status = Status::kOk,
                          .missed_ticks = missed_ticks_};
     if (!settings_.control || !has_ordered_) return Status::kOk;
@@ -80,7 +82,9 @@ class ControlLoop {
     const Status zero_status = record.battery_status;
     write_release(record);
     if (record.battery_status == Status::kOk) record.battery_status = zero_status;
-    return record.battery_status;
+    const Status status = record.battery_status;
+    if (status == Status::kOk) read_battery(record);  // the SoC that is left, for the log
+    return status;
   }
 
  private:
@@ -102,13 +106,20 @@ class ControlLoop {
     if (!record.has_measurement) record.measurement = BatteryMeasurement{};
   }
 
+  std::int64_t price_deadline_ns(std::int64_t tick_utc_s) const {
+    return clock_.monotonic_ns_at((tick_utc_s + settings_.price_wait_s) * kNanosecondsPerSecond);
+  }
+
+  void request_price(std::int64_t tick_utc_s) {
+    request_ns_ = clock_.monotonic_ns();
+    prices_.request(tick_utc_s - 60, clock_.monotonic_ns_at(tick_utc_s * kNanosecondsPerSecond),
+                    price_deadline_ns(tick_utc_s));
+  }
+
   /// Waits for the row of the minute before the tick, in slices so that a stop request is seen.
   void await_price(CycleRecord& record) {
     constexpr std::int64_t kSliceNs = kNanosecondsPerSecond / 10;
-    const std::int64_t deadline_ns =
-        clock_.monotonic_ns_at((record.utc_s + settings_.price_wait_s) * kNanosecondsPerSecond);
-    request_ns_ = clock_.monotonic_ns();
-    prices_.request(record.utc_s - 60, deadline_ns);
+    const std::int64_t deadline_ns = price_deadline_ns(record.utc_s);
     while (!clock_.stop_requested()) {
       const std::int64_t now_ns = clock_.monotonic_ns();
       if (now_ns >= deadline_ns) break;

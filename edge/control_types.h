@@ -38,6 +38,7 @@ struct PriceReport {
 
 /// Why the guard ordered something else than the student. Order is precedence: lower numbers win.
 enum class Reason : std::uint8_t {
+  kStopRequested,
   kClock,
   kLink,
   kAlarm,
@@ -58,9 +59,10 @@ enum class Reason : std::uint8_t {
 constexpr bool is_stop_reason(Reason reason) { return reason <= Reason::kLastStopReason; }
 
 constexpr std::string_view reason_name(Reason reason) {
-  constexpr std::string_view kNames[] = {
-      "clock",    "link",     "alarm",     "temperature", "off_grid",  "no_price",   "price_age",
-      "price_qh", "soc_full", "soc_empty", "power_limit", "price_low", "price_high", "student"};
+  constexpr std::string_view kNames[] = {"stop_requested", "clock",      "link",      "alarm",
+                                         "temperature",    "off_grid",   "no_price",  "price_age",
+                                         "price_qh",       "soc_full",   "soc_empty", "power_limit",
+                                         "price_low",      "price_high", "student"};
   return kNames[static_cast<int>(reason)];
 }
 

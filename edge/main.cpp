@@ -32,9 +32,11 @@ void release_after_failed_check(const char*, const char*, int) {
   static_cast<void>(battery_of_check_handler->release());
 }
 
-int run_loop(Loop& loop, std::int64_t cycles, bess::EventLog& log) {
+/// Runs until a stop is requested or `cycles` are done; the last order keeps its whole step.
+int run_loop(Loop& loop, std::int64_t cycles, bess::EdgeClock& clock, bess::EventLog& log) {
   bess::CycleRecord record;
   for (std::int64_t i = 0; i != cycles && loop.run_cycle(record); ++i) log.write(record);
+  clock.sleep_until_utc_ns((record.utc_s + bess::kSecondsPerStep) * bess::kNanosecondsPerSecond);
   const bess::Status status = loop.stop(record);
   log.write(record);
   log.note(status == bess::Status::kOk
@@ -85,5 +87,5 @@ int main(int argc, char** argv) {
     check_handler() = release_after_failed_check;
   }
   static Loop loop(config.control, battery, prices, clock);
-  return run_loop(loop, command_line.cycles, log);
+  return run_loop(loop, command_line.cycles, clock, log);
 }

@@ -96,10 +96,12 @@ PriceFeed::~PriceFeed() {
   curl_easy_cleanup(static_cast<CURL*>(curl_));
 }
 
-void PriceFeed::request(std::int64_t minute_utc_s, std::int64_t deadline_monotonic_ns) {
+void PriceFeed::request(std::int64_t minute_utc_s, std::int64_t start_monotonic_ns,
+                        std::int64_t deadline_monotonic_ns) {
   {
     const std::lock_guard lock(mutex_);
     job_ = {.minute_utc_s = minute_utc_s,
+            .start_ns = start_monotonic_ns,
             .deadline_ns = deadline_monotonic_ns,
             .number = job_.number + 1};
   }
@@ -136,12 +138,11 @@ void PriceFeed::run() {
 }
 
 void PriceFeed::serve(const Job& job) {
-  const std::int64_t first_ns = clock_ns(CLOCK_MONOTONIC);
   const std::int64_t spacing_ns =
       clock_.wall_ns(settings_.wait_s * kNanosecondsPerSecond / settings_.requests_per_cycle);
   for (int i = 0; i < settings_.requests_per_cycle; ++i) {
-    const std::int64_t start_ns = first_ns + i * spacing_ns;
-    if (i > 0 && (start_ns >= job.deadline_ns || !pause_until(start_ns))) return;
+    const std::int64_t start_ns = job.start_ns + i * spacing_ns;
+    if ((i > 0 && start_ns >= job.deadline_ns) || !pause_until(start_ns)) return;
     const std::int64_t request_ns = clock_ns(CLOCK_MONOTONIC);
     PriceRow row;
     const Status status = fetch_once(row);

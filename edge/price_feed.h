@@ -60,6 +60,7 @@ class PriceFeed {
 
   struct Job {
     std::int64_t minute_utc_s = 0;
+    std::int64_t start_ns = 0;
     std::int64_t deadline_ns = 0;
     std::int64_t number = 0;
   };

@@ -1,6 +1,7 @@
 // bess-sim battery: options and composition.
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdio>
 #include <map>
 
@@ -11,6 +12,7 @@
 #include "tools/sim/clock_options.h"
 #include "tools/sim/commands.h"
 #include "tools/sim/sim_error.h"
+#include "tools/sim/stop_signal.h"
 
 namespace bess {
 namespace {
@@ -53,7 +55,7 @@ void run_battery(BatteryOptions& options) {
               options.server.host.c_str(), server.port(), map.unit,
               utc_text(clock.now_utc_ns() / kNanosecondsPerSecond).c_str(), clock.scale);
   std::fflush(stdout);
-  server.run(stop);
+  server.run(stop.fd());
   if (!options.record_path.empty()) write_battery_record(options.record_path, simulated);
   std::printf("bess-sim battery: stopped at SoC %.2f %%\n", 100 * simulated.soc_frac());
 }

@@ -4,6 +4,7 @@
 #include <modbus/modbus.h>
 #include <poll.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <chrono>
@@ -60,9 +61,9 @@ BatteryServer::~BatteryServer() {
   modbus_free(context_);
 }
 
-void BatteryServer::run(const StopSignal& stop) {
+void BatteryServer::run(int stop_fd) {
   while (true) {
-    pollfd events[3] = {{.fd = stop.fd(), .events = POLLIN, .revents = 0},
+    pollfd events[3] = {{.fd = stop_fd, .events = POLLIN, .revents = 0},
                         {.fd = listen_fd_, .events = POLLIN, .revents = 0},
                         {.fd = client_fd_, .events = POLLIN, .revents = 0}};
     if (poll(events, 3, -1) < 0 && errno != EINTR) return;

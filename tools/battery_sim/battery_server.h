@@ -8,7 +8,6 @@
 #include "edge/registers/register_map.h"
 #include "shared/scaled_clock.h"
 #include "tools/battery_sim/simulated_battery.h"
-#include "tools/sim/stop_signal.h"
 
 struct _modbus;
 struct _modbus_mapping_t;
@@ -43,8 +42,8 @@ class BatteryServer {
   ~BatteryServer();
 
   [[nodiscard]] int port() const { return port_; }
-  /// Serves until a stop is requested.
-  void run(const StopSignal& stop);
+  /// Serves until `stop_fd` becomes readable.
+  void run(int stop_fd);
 
  private:
   struct Request;
