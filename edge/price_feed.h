@@ -45,9 +45,10 @@ class PriceFeed {
   PriceFeed& operator=(const PriceFeed&) = delete;
   ~PriceFeed();
 
-  /// Starts fetching until the row of `minute_utc_s` is in, the requests are used up or time is
-  /// over.
-  void request(std::int64_t minute_utc_s, std::int64_t deadline_monotonic_ns);
+  /// From `start` on fetches until the row of `minute_utc_s` is in, the requests are used up or the
+  /// deadline has passed.
+  void request(std::int64_t minute_utc_s, std::int64_t start_monotonic_ns,
+               std::int64_t deadline_monotonic_ns);
   /// Waits for the end of the request, at most until the instant given; true when it has ended.
   bool wait(std::int64_t until_monotonic_ns);
   PriceReport latest();
