@@ -21,9 +21,9 @@ namespace bess {
 
 struct BatteryLinkSettings {
   bool rtu = false;
-  FixedText<63> host = FixedText<63>("127.0.0.1");  ///< numeric IPv4: names would need the resolver
+  FixedText<63> host = "127.0.0.1";  ///< numeric IPv4: names would need the resolver
   std::int32_t port = 502;
-  FixedText<127> device = FixedText<127>("/dev/ttyUSB0");
+  FixedText<127> device = "/dev/ttyUSB0";
   std::int32_t baud = 9'600;
   std::int32_t unit = -1;                 ///< -1 = the map's
   std::int32_t response_timeout_ms = -1;  ///< wall time; -1 = the map's

@@ -20,9 +20,9 @@ namespace bess {
 struct PriceFeedSettings {
   FixedText<511> url;
   FixedText<255> ca_file;  ///< empty = the system's
-  FixedText<31> rows_field = FixedText<31>("results");
-  FixedText<31> time_field = FixedText<31>("datetime");
-  FixedText<31> price_field = FixedText<31>("imbalanceprice");
+  FixedText<31> rows_field = "results";
+  FixedText<31> time_field = "datetime";
+  FixedText<31> price_field = "imbalanceprice";
   std::int32_t timeout_ms = 5'000;  ///< of one request, wall time
   std::int32_t requests_per_cycle = 4;
   std::int32_t wait_s = 20;  ///< over which the requests of a cycle are spread

@@ -15,6 +15,7 @@ class FixedText {
   constexpr FixedText(std::string_view text) {  // NOLINT: implicit on purpose, like std::string
     static_cast<void>(assign(text));
   }
+  constexpr FixedText(const char* text) : FixedText(std::string_view(text)) {}  // NOLINT: as above
   /// False when the text was cut.
   constexpr bool assign(std::string_view text) {
     size_ = text.size() < kCapacity ? text.size() : kCapacity;

@@ -32,7 +32,8 @@ int main(int argc, char** argv) {
   bess::add_battery_command(app);
   bess::add_market_command(app);
   add_clock_command(app);
-  if (argc > 1 && argv[1][0] != '-' && app.get_subcommand_no_throw(argv[1]) == nullptr) {
+  const auto is_named = [&](const CLI::App* command) { return command->get_name() == argv[1]; };
+  if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(is_named).empty()) {
     std::fprintf(stderr, "bess-sim: unknown subcommand %s (see bess-sim --help)\n", argv[1]);
     return 2;
   }
