@@ -169,7 +169,7 @@ TEST(MapFile, EveryMistakeIsOneClearLine) {
       {"minimum_gap_ms = 400", "minimum_gap = 400", "minimum_gap is not a known key"},
       {"unit = 85", "unit = \"85\"", "unit must be a whole number"},
       {"unit = 85", "unit = 300", "unit must lie between 0 and 255"},
-      {"type = \"s16\"                # device", "type = \"f32\" # device", "type must be one of"},
+      {"type = \"s16\"", "type = \"f32\"", "type must be one of"},
       {"[1, \"power\", 0, 2,", "[1, \"watts\", 0, 2,", "a value must be a number"},
       {"\"dispatch_mode\",\n", "\"dispatch_flow\",\n", "does not follow the point before it"},
       {"measure = [\"soc\"", "measure = [\"sco\"", "no [[point]] is named \"sco\""},

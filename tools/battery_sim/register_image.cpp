@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::int64_t kModeSocControl = 2;
 constexpr std::int64_t kRoomTemperatureDeciC = 200;
+constexpr std::int64_t kDefaultDispatchTimeS = 90;  // what the vendor's stop block writes back
 
 int required_point(const RegisterMap& map, std::string_view name) {
   const int point = find_point(map, name);
@@ -37,6 +38,7 @@ RegisterImage::RegisterImage(const RegisterMap& map, SimulatedBattery& battery,
   for (const RegisterPoint& point : map.points) required_point(map, point.name.view());
   set(power_, 0);
   set(find_point(map_, "dispatch_reactive_power"), 0);
+  set(time_, kDefaultDispatchTimeS);
 }
 
 void RegisterImage::refresh(std::int64_t utc_ns) {
