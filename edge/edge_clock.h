@@ -1,0 +1,70 @@
+// The control thread's time: UTC (possibly scaled), absolute deadlines, and the request to stop.
+// SIGTERM and SIGINT are blocked in every thread and taken synchronously while waiting, so no
+// signal is lost between a test and a sleep and no handler runs in the middle of an order.
+#pragma once
+
+#include <pthread.h>
+#include <signal.h>
+#include <sys/timex.h>
+#include <time.h>
+
+#include "shared/scaled_clock.h"
+
+namespace bess {
+
+class EdgeClock {
+ public:
+  /// Construct before any thread is started: the threads inherit the blocked signals.
+  EdgeClock(const ScaledClock& clock, bool require_synchronised)
+      : clock_(clock), require_synchronised_(require_synchronised) {
+    sigemptyset(&stop_signals_);
+    sigaddset(&stop_signals_, SIGTERM);
+    sigaddset(&stop_signals_, SIGINT);
+    pthread_sigmask(SIG_BLOCK, &stop_signals_, nullptr);
+  }
+
+  [[nodiscard]] std::int64_t now_utc_ns() const { return clock_.now_utc_ns(); }
+  [[nodiscard]] std::int64_t monotonic_ns() const { return clock_ns(CLOCK_MONOTONIC); }
+  [[nodiscard]] std::int64_t monotonic_ns_at(std::int64_t utc_ns) const {
+    return clock_.monotonic_ns_at(utc_ns);
+  }
+  [[nodiscard]] const ScaledClock& scaled() const { return clock_; }
+
+  /// Waits for an instant; false when a stop was requested. Re-read every second, because the real
+  /// clock may be stepped while waiting.
+  bool sleep_until_utc_ns(std::int64_t utc_ns) {
+    while (!stop_requested()) {
+      const std::int64_t left_ns = monotonic_ns_at(utc_ns) - monotonic_ns();
+      if (left_ns <= 0) return true;
+      take_stop_signal(left_ns < kNanosecondsPerSecond ? left_ns : kNanosecondsPerSecond);
+    }
+    return false;
+  }
+
+  bool stop_requested() {
+    if (!stop_requested_) take_stop_signal(0);
+    return stop_requested_;
+  }
+
+  /// Simulated time is always right; real time must be disciplined by NTP, or every order is a
+  /// guess.
+  [[nodiscard]] bool is_synchronised() const {
+    if (!require_synchronised_ || !clock_.is_real_time()) return true;
+    timex state{};
+    return adjtimex(&state) != TIME_ERROR && (state.status & STA_UNSYNC) == 0;
+  }
+
+ private:
+  void take_stop_signal(std::int64_t wait_ns) {
+    const timespec timeout{.tv_sec = static_cast<time_t>(wait_ns / kNanosecondsPerSecond),
+                           .tv_nsec = static_cast<long>(wait_ns % kNanosecondsPerSecond)};
+    if (sigtimedwait(&stop_signals_, nullptr, &timeout) > 0) stop_requested_ = true;
+  }
+
+  ScaledClock clock_;
+  bool require_synchronised_;
+  sigset_t stop_signals_{};
+  bool stop_requested_ = false;
+};
+
+}  // namespace bess

@@ -1,0 +1,157 @@
+#include "edge/edge_config.h"
+
+#include <arpa/inet.h>
+
+#include <filesystem>
+
+#include "edge/registers/codec.h"
+#include "edge/registers/map_file.h"
+#include "edge/registers/toml_reader.h"
+#include "shared/utc_text.h"
+
+namespace bess {
+namespace {
+
+TomlTable section(TomlTable& root, std::string_view name) {
+  return {root.table(name), root.file(), std::string("[").append(name).append("]"), root.error()};
+}
+
+bool is_numeric_ipv4(const char* host) {
+  in_addr address{};
+  return inet_pton(AF_INET, host, &address) == 1;
+}
+
+void read_battery(TomlTable table, EdgeConfig& config) {
+  FixedText<255> map_file("maps/alphaess.toml");
+  RegisterName variant;
+  int transport = 0;
+  table.text("map", map_file);
+  table.text("variant", variant);
+  table.choice("transport", transport, {"tcp", "rtu"});
+  table.text("host", config.link.host);
+  table.integer("port", config.link.port, 1, 65'535);
+  table.text("device", config.link.device);
+  table.integer("baud", config.link.baud, 1'200, 256'000);
+  table.integer("unit", config.link.unit, 0, 255);
+  table.integer("response_timeout_ms", config.link.response_timeout_ms, 10, 30'000);
+  table.integer("power_w", config.control.guard.power_w, 1, 100'000'000);
+  table.integer("capacity_wh", config.capacity_wh, 1, 1'000'000'000);
+  table.integer("capacity_tolerance_percent", config.capacity_tolerance_percent, 0, 100);
+  table.integer("start_timeout_s", config.start_timeout_s, 0, 3'600);
+  table.boolean("start_without_battery", config.start_without_battery);
+  table.integer("read_lead_s", config.control.read_lead_s, 0, 60);
+  config.link.rtu = transport == 1;
+  table.finish();
+  if (!config.link.rtu && !is_numeric_ipv4(config.link.host.c_str())) {
+    table.fail("host",
+               "must be a numeric IPv4 address such as \"192.168.1.20\": a name would "
+               "depend on the resolver at every reconnect");
+  }
+  if (!table.ok()) return;
+  const auto folder = std::filesystem::path(table.file()).parent_path();
+  const std::string map_path = (folder / map_file.c_str()).string();
+  load_register_map(map_path, variant.view(), config.map, table.error());
+}
+
+/// A power that the map cannot express, or an order that outlives its timer, must stop the start.
+void check_battery_against_map(TomlTable table, EdgeConfig& config) {
+  if (!table.ok()) return;
+  const std::int32_t power_w = config.control.guard.power_w;
+  if (power_w > config.map.charge_w_max || power_w > config.map.discharge_w_max) {
+    table.fail("power_w", "= " + std::to_string(power_w) + " is more than the map " +
+                              std::string(config.map.name.view()) + " can express (charge " +
+                              std::to_string(config.map.charge_w_max) + " W, discharge " +
+                              std::to_string(config.map.discharge_w_max) + " W)");
+  }
+}
+
+void read_price(TomlTable table, PriceFeedSettings& price) {
+  table.require("url");
+  table.text("url", price.url);
+  table.text("ca_file", price.ca_file);
+  table.text("rows_field", price.rows_field);
+  table.text("time_field", price.time_field);
+  table.text("price_field", price.price_field);
+  table.integer("timeout_ms", price.timeout_ms, 10, 60'000);
+  table.integer("requests_per_cycle", price.requests_per_cycle, 1, 4);
+  table.integer("wait_s", price.wait_s, 1, 60);
+  table.finish();
+  const std::string_view url = price.url.view();
+  if (table.ok() && !url.starts_with("http://") && !url.starts_with("https://")) {
+    table.fail("url", "must start with http:// or https://");
+  }
+}
+
+void read_guard(TomlTable table, EdgeConfig& config) {
+  GuardSettings& guard = config.control.guard;
+  table.scaled("low_price_eur_per_mwh", guard.low_price_centi_eur_per_mwh, 100, -15'000, 15'000);
+  table.scaled("high_price_eur_per_mwh", guard.high_price_centi_eur_per_mwh, 100, -15'000, 15'000);
+  table.scaled("soc_min", guard.soc_min_e4, 10'000, 0, 1);
+  table.scaled("soc_max", guard.soc_max_e4, 10'000, 0, 1);
+  table.scaled("soc_hysteresis", guard.soc_hysteresis_e4, 10'000, 0, 0.2);
+  table.integer("price_age_s_max", guard.price_age_s_max, 60, 1'800);
+  table.scaled("temperature_min_c", guard.temperature_min_deci_c, 10, -50, 100);
+  table.scaled("temperature_max_c", guard.temperature_max_deci_c, 10, -50, 100);
+  table.integer("hold_s", config.control.hold_s, 0, 3'600);
+  table.boolean("require_synchronised_clock", config.require_synchronised_clock);
+  table.finish();
+  if (guard.low_price_centi_eur_per_mwh >= guard.high_price_centi_eur_per_mwh) {
+    table.fail("low_price_eur_per_mwh", "must be below high_price_eur_per_mwh");
+  }
+  if (guard.soc_min_e4 + 2 * guard.soc_hysteresis_e4 >= guard.soc_max_e4) {
+    table.fail("soc_min", "must be below soc_max by more than twice soc_hysteresis");
+  }
+  if (guard.temperature_min_deci_c >= guard.temperature_max_deci_c) {
+    table.fail("temperature_min_c", "must be below temperature_max_c");
+  }
+}
+
+void read_log(TomlTable table, EdgeConfig& config) {
+  FixedText<511> csv;
+  table.text("csv", csv);
+  table.finish();
+  if (csv.empty()) return;
+  const auto folder = std::filesystem::path(table.file()).parent_path();
+  if (!config.log_csv.assign((folder / csv.c_str()).string())) table.fail("csv", "is too long");
+}
+
+void read_simulation(TomlTable table, ScaledClock& clock) {
+  FixedText<31> utc_start;
+  std::int32_t scale = 1;
+  std::int64_t anchor_ns = 0;
+  table.integer("time_scale", scale, 1, 100'000);
+  table.text("utc_start", utc_start);
+  table.integer("anchor_monotonic_ns", anchor_ns, 0, INT64_MAX);
+  table.finish();
+  if (table.native() == nullptr) return;
+  clock.scale = scale;
+  clock.anchor_monotonic_ns = anchor_ns != 0 ? anchor_ns : clock_ns(CLOCK_MONOTONIC);
+  table.require("utc_start");
+  if (table.ok() && !parse_utc_text(utc_start.view(), clock.anchor_utc_s)) {
+    table.fail("utc_start", "must be a UTC instant such as \"2023-03-26T00:00:00Z\"");
+  }
+}
+
+}  // namespace
+
+bool load_edge_config(const std::string& path, EdgeConfig& config, std::string& error) {
+  toml::table document;
+  if (!parse_toml_file(path, document, error)) return false;
+  TomlTable root(&document, path, "", error);
+  root.boolean("control", config.control.control);
+  root.require("price");
+  read_battery(section(root, "battery"), config);
+  check_battery_against_map(section(root, "battery"), config);
+  read_price(section(root, "price"), config.price);
+  read_guard(section(root, "guard"), config);
+  read_log(section(root, "log"), config);
+  read_simulation(section(root, "simulation"), config.clock);
+  root.finish();
+  config.control.price_wait_s = config.price.wait_s;
+  if (config.map.dead_man_duration_s > 0) {
+    config.control.order_duration_s = config.map.dead_man_duration_s;
+  }
+  return error.empty();
+}
+
+}  // namespace bess

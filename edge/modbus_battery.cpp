@@ -1,0 +1,292 @@
+#include "edge/modbus_battery.h"
+
+#include <modbus/modbus.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <cerrno>
+
+#include "shared/check.h"
+
+namespace bess {
+namespace {
+
+constexpr int kAttempts = 2;  // a dropped connection is mended once within the cycle
+
+Status status_of_errno(int error) {
+  switch (error) {
+    case ETIMEDOUT:
+    case EINPROGRESS:  // what libmodbus 3.1.6 leaves when connecting times out
+      return Status::kTimeout;
+    case EMBXILFUN:
+    case EMBXILADD:
+    case EMBXILVAL:
+    case EMBXSFAIL:
+    case EMBXACK:
+    case EMBXSBUSY:
+    case EMBXNACK:
+    case EMBXMEMPAR:
+    case EMBXGPATH:
+    case EMBXGTAR:
+      return Status::kBusException;
+    case EMBBADCRC:
+    case EMBBADDATA:
+    case EMBBADEXC:
+    case EMBUNKEXC:
+    case EMBMDATA:
+    case EMBBADSLAVE:
+      return Status::kBadReply;
+    default:
+      return Status::kNotConnected;
+  }
+}
+
+std::int32_t to_int32(std::int64_t value) {
+  return static_cast<std::int32_t>(std::clamp<std::int64_t>(value, INT32_MIN, INT32_MAX));
+}
+
+}  // namespace
+
+ModbusBattery::ModbusBattery(const BatteryLinkSettings& link, const RegisterMap& map,
+                             const ScaledClock& clock)
+    : link_(link),
+      map_(map),
+      clock_(clock),
+      response_timeout_ms_(link.response_timeout_ms > 0 ? link.response_timeout_ms
+                                                        : map.response_timeout_ms),
+      soc_(find_point(map, "soc")),
+      power_(find_point(map, "battery_power")),
+      capacity_(find_point(map, "capacity")),
+      charge_limit_(find_point(map, "charge_power_max")),
+      discharge_limit_(find_point(map, "discharge_power_max")),
+      temperature_min_(find_point(map, "temperature_min")),
+      temperature_max_(find_point(map, "temperature_max")) {
+  context_ = link_.rtu ? modbus_new_rtu(link_.device.c_str(), link_.baud, 'N', 8, 1)
+                       : modbus_new_tcp(link_.host.c_str(), link_.port);
+  BESS_CHECK(context_ != nullptr);
+  const auto seconds = static_cast<std::uint32_t>(response_timeout_ms_ / 1'000);
+  const auto microseconds = static_cast<std::uint32_t>(response_timeout_ms_ % 1'000 * 1'000);
+  modbus_set_error_recovery(context_, MODBUS_ERROR_RECOVERY_NONE);
+  modbus_set_response_timeout(context_, seconds, microseconds);
+  modbus_set_byte_timeout(context_, seconds, microseconds);
+  modbus_set_slave(context_, link_.unit >= 0 ? link_.unit : map_.unit);
+  plan_reads();
+}
+
+ModbusBattery::~ModbusBattery() {
+  close();
+  modbus_free(context_);
+}
+
+void ModbusBattery::close() {
+  if (connected_) modbus_close(context_);
+  connected_ = false;
+}
+
+/// Merges the measured points into as few requests as the map allows.
+void ModbusBattery::plan_reads() {
+  StaticVector<std::int8_t, 16> order = map_.measure;
+  std::sort(order.begin(), order.end(), [this](std::int8_t a, std::int8_t b) {
+    return map_.points[a].address < map_.points[b].address;
+  });
+  const int read_max = std::min(map_.registers_per_read_max, kSpanRegistersMax);
+  for (const std::int8_t index : order) {
+    const RegisterPoint& point = map_.points[index];
+    const int end = point.address + point.register_count();
+    if (!spans_.empty()) {
+      ReadSpan& last = spans_[spans_.size() - 1];
+      const int gap = point.address - (last.address + last.count);
+      if (gap <= map_.read_gap_registers_max && end - last.address <= read_max &&
+          last.function == point.read_function) {
+        last.count = static_cast<std::uint16_t>(std::max<int>(last.count, end - last.address));
+        continue;
+      }
+    }
+    spans_.push_back({.address = point.address,
+                      .count = static_cast<std::uint16_t>(point.register_count()),
+                      .function = point.read_function});
+  }
+}
+
+Status ModbusBattery::connect() {
+  if (connected_) return Status::kOk;
+  if (modbus_connect(context_) != 0) {
+    const Status status = status_of_errno(errno);
+    modbus_close(context_);  // a failed connect may leave a socket behind
+    return status;
+  }
+  connected_ = true;
+  return Status::kOk;
+}
+
+/// The device's minimum gap runs in simulated time, like everything that the battery itself times.
+void ModbusBattery::wait_for_gap() {
+  while (clock_ns(CLOCK_MONOTONIC) < next_request_ns_) sleep_until_monotonic(next_request_ns_);
+}
+
+Status ModbusBattery::finish_request(bool succeeded) {
+  const int error = errno;
+  next_request_ns_ =
+      clock_ns(CLOCK_MONOTONIC) + clock_.wall_ns(std::int64_t{map_.minimum_gap_ms} * 1'000'000);
+  if (succeeded) return Status::kOk;
+  const Status status = status_of_errno(error);
+  recover();
+  return status;
+}
+
+void ModbusBattery::recover() {
+  if (!link_.rtu) return close();
+  // RTU has no transaction id: a late reply must have come and gone before the next question.
+  const std::int64_t quiet_ns = std::int64_t{std::max(response_timeout_ms_, 1'000)} * 1'000'000;
+  const std::int64_t until_ns = clock_ns(CLOCK_MONOTONIC) + quiet_ns;
+  while (clock_ns(CLOCK_MONOTONIC) < until_ns) sleep_until_monotonic(until_ns);
+  if (modbus_flush(context_) < 0) close();
+}
+
+Status ModbusBattery::read_registers(const ReadSpan& span, std::uint16_t* registers) {
+  if (const Status status = connect(); status != Status::kOk) return status;
+  wait_for_gap();
+  const int got = span.function == 4
+                      ? modbus_read_input_registers(context_, span.address, span.count, registers)
+                      : modbus_read_registers(context_, span.address, span.count, registers);
+  return finish_request(got == span.count);
+}
+
+Status ModbusBattery::write_block(const BlockWrite& write, const RegisterBlock& block) {
+  if (const Status status = connect(); status != Status::kOk) return status;
+  wait_for_gap();
+  const int sent = write.function == 6 ? modbus_write_register(context_, write.address, block[0])
+                                       : modbus_write_registers(context_, write.address,
+                                                                block.size(), block.data());
+  return finish_request(sent == block.size());
+}
+
+Status ModbusBattery::read_point(int point, std::int64_t& value) {
+  const RegisterPoint& p = map_.points[point];
+  std::uint16_t registers[2] = {};
+  const ReadSpan span{.address = p.address,
+                      .count = static_cast<std::uint16_t>(p.register_count()),
+                      .function = p.read_function};
+  const Status status = read_registers(span, registers);
+  if (status != Status::kOk) return status;
+  return decode(p, registers, value) ? Status::kOk : Status::kImplausible;
+}
+
+Status ModbusBattery::read(BatteryMeasurement& measurement) {
+  Status status = Status::kOk;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    measurement = BatteryMeasurement{};
+    status = Status::kOk;
+    for (int i = 0; i < spans_.size() && status == Status::kOk; ++i) {
+      status = read_span_values(spans_[i], measurement);
+    }
+    if (status == Status::kOk || status == Status::kImplausible) return status;
+  }
+  return status;
+}
+
+Status ModbusBattery::read_span_values(const ReadSpan& span, BatteryMeasurement& measurement) {
+  std::uint16_t registers[kSpanRegistersMax] = {};
+  const Status status = read_registers(span, registers);
+  if (status != Status::kOk) return status;
+  for (const std::int8_t index : map_.measure) {
+    const RegisterPoint& point = map_.points[index];
+    const int offset = point.address - span.address;
+    if (point.read_function != span.function || offset < 0 || offset >= span.count) continue;
+    std::int64_t value = 0;
+    if (!decode(point, registers + offset, value)) return Status::kImplausible;
+    store(index, value, measurement);
+  }
+  return Status::kOk;
+}
+
+void ModbusBattery::store(int point, std::int64_t value, BatteryMeasurement& measurement) const {
+  const std::int32_t narrow = to_int32(value);
+  if (point == soc_) measurement.soc_e4 = narrow;
+  if (point == power_) measurement.power_w = narrow;
+  if (point == capacity_) measurement.capacity_wh = narrow;
+  if (point == charge_limit_) measurement.charge_w_max = narrow;
+  if (point == discharge_limit_) measurement.discharge_w_max = narrow;
+  if (point == temperature_min_) measurement.temperature_min_deci_c = narrow;
+  if (point == temperature_max_) measurement.temperature_max_deci_c = narrow;
+  if (point == map_.off_grid.point) measurement.off_grid = value == map_.off_grid.value;
+  if (point == map_.dead_man_expired.point) {
+    measurement.dispatch_active = value != map_.dead_man_expired.value;
+  }
+  for (const std::int8_t alarm : map_.alarms) {
+    if (point == alarm && value != 0) measurement.alarm = true;
+  }
+}
+
+Status ModbusBattery::order(const PowerOrder& order) {
+  return run_command(command_of(order.power_w), order);
+}
+
+Status ModbusBattery::release() { return run_command(Command::kRelease, PowerOrder{}); }
+
+Status ModbusBattery::run_command(Command command, const PowerOrder& order) {
+  Status status = Status::kOk;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    status = run_command_once(command, order);
+    if (status == Status::kOk || status == Status::kNotExpressible) return status;
+  }
+  // Half of a sequence may have been taken: rather the battery's own mode than a mixture.
+  if (command != Command::kRelease && map_.sequence(command).writes.size() > 1) {
+    static_cast<void>(run_command_once(Command::kRelease, PowerOrder{}));
+  }
+  return status;
+}
+
+Status ModbusBattery::run_command_once(Command command, const PowerOrder& order) {
+  const CommandSequence& sequence = map_.sequence(command);
+  for (const BlockWrite& write : sequence.writes) {
+    RegisterBlock block;
+    Status status = encode_block(map_, write, order, block);
+    if (status == Status::kOk) status = write_block(write, block);
+    if (status != Status::kOk) return status;
+  }
+  return sequence.read_back ? verify_command(sequence, order) : Status::kOk;
+}
+
+/// Everything that the sequence wrote, compared in one read: the writes of a command lie side by
+/// side.
+Status ModbusBattery::verify_command(const CommandSequence& sequence, const PowerOrder& order) {
+  int begin = UINT16_MAX;
+  int end = 0;
+  RegisterBlock blocks[decltype(sequence.writes)::capacity()];
+  for (int i = 0; i < sequence.writes.size(); ++i) {
+    const Status status = encode_block(map_, sequence.writes[i], order, blocks[i]);
+    if (status != Status::kOk) return status;
+    begin = std::min<int>(begin, sequence.writes[i].address);
+    end = std::max(end, sequence.writes[i].address + blocks[i].size());
+  }
+  if (end - begin > kSpanRegistersMax) return Status::kTooLarge;
+  std::uint16_t registers[kSpanRegistersMax] = {};
+  const ReadSpan span{.address = static_cast<std::uint16_t>(begin),
+                      .count = static_cast<std::uint16_t>(end - begin)};
+  const Status status = read_registers(span, registers);
+  if (status != Status::kOk) return status;
+  for (int i = 0; i < sequence.writes.size(); ++i) {
+    const int offset = sequence.writes[i].address - begin;
+    if (!std::equal(blocks[i].begin(), blocks[i].end(), registers + offset)) {
+      return Status::kNotApplied;
+    }
+  }
+  return Status::kOk;
+}
+
+Status ModbusBattery::check_identity(int& failed_check) {
+  for (failed_check = 0; failed_check < map_.identity.size(); ++failed_check) {
+    const IdentityCheck& check = map_.identity[failed_check];
+    std::int64_t value = 0;
+    Status status = read_point(check.point, value);
+    if (status != Status::kOk && status != Status::kImplausible) {
+      status = read_point(check.point, value);
+    }
+    if (status != Status::kOk) return status;
+    if (value < check.value_min || value > check.value_max) return Status::kImplausible;
+  }
+  return Status::kOk;
+}
+
+}  // namespace bess

@@ -1,0 +1,45 @@
+// The controller's modes and every transition between them: a pure function, tested as a table.
+//
+//   start    nothing was ordered yet; waits for battery, price and clock     -> running, stopping
+//   running  orders follow student and guard                                 -> holding, stopping
+//   holding  a stop reason is present: 0 W is held for a while               -> running, safe,
+//   stopping safe     released: the battery is in its own mode, the loop keeps trying -> running,
+//   stopping stopping the process ends: 0 W, then release                             (left by
+//   exiting)
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace bess {
+
+enum class Mode : std::uint8_t { kStart, kRunning, kHolding, kSafe, kStopping };
+
+constexpr std::string_view mode_name(Mode mode) {
+  constexpr std::string_view kNames[] = {"start", "running", "holding", "safe", "stopping"};
+  return kNames[static_cast<int>(mode)];
+}
+
+struct ModeInputs {
+  bool stop_requested;
+  bool stop_reason;   ///< the guard forbids driving the battery
+  bool hold_elapsed;  ///< 0 W has been held for the configured time
+};
+
+constexpr Mode next_mode(Mode mode, const ModeInputs& in) {
+  if (in.stop_requested || mode == Mode::kStopping) return Mode::kStopping;
+  if (!in.stop_reason) return Mode::kRunning;
+  switch (mode) {
+    case Mode::kRunning:
+      return Mode::kHolding;
+    case Mode::kHolding:
+      return in.hold_elapsed ? Mode::kSafe : Mode::kHolding;
+    case Mode::kStart:
+    case Mode::kSafe:
+    case Mode::kStopping:
+      break;
+  }
+  return mode;
+}
+
+}  // namespace bess

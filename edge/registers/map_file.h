@@ -1,0 +1,17 @@
+// Loads a register map from its TOML file (format: edge/maps/alphaess.toml and edge/README.md) and
+// proves that it is consistent: names known, blocks contiguous, power limits expressible.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "edge/registers/register_map.h"
+
+namespace bess {
+
+/// `variant` selects one way of commanding; empty = the map's first. False with one line in
+/// `error`.
+bool load_register_map(const std::string& path, std::string_view variant, RegisterMap& map,
+                       std::string& error);
+
+}  // namespace bess

@@ -1,0 +1,143 @@
+#include "edge/startup.h"
+
+#include <cstdio>
+#include <cstdlib>
+
+#include "edge/policy.h"
+#include "edge/registers/codec.h"
+#include "shared/utc_text.h"
+
+namespace bess {
+namespace {
+
+/// "127.0.0.1:502 unit 85", where the battery is looked for.
+void print_place(std::FILE* out, const EdgeConfig& config) {
+  const int unit = config.link.unit >= 0 ? config.link.unit : config.map.unit;
+  if (config.link.rtu) {
+    std::fprintf(out, "%s unit %d", config.link.device.c_str(), unit);
+  } else {
+    std::fprintf(out, "%s:%d unit %d", config.link.host.c_str(), config.link.port, unit);
+  }
+}
+
+void complain(const EdgeConfig& config, std::string_view what) {
+  std::fprintf(stderr, "bess-edge: battery at ");
+  print_place(stderr, config);
+  std::fprintf(stderr, ": %.*s\n", static_cast<int>(what.size()), what.data());
+}
+
+/// Reads the identity checks of the map and the capacity; complains once when they do not fit.
+Status identify(const EdgeConfig& config, ModbusBattery& battery, bool complain_about_link) {
+  int failed_check = 0;
+  Status status = battery.check_identity(failed_check);
+  if (status == Status::kImplausible) {
+    complain(config, config.map.identity[failed_check].hint.view());
+    return status;
+  }
+  BatteryMeasurement measurement;
+  if (status == Status::kOk) status = battery.read(measurement);
+  if (status != Status::kOk) {
+    if (complain_about_link || status == Status::kImplausible)
+      complain(config, status_text(status));
+    return status;
+  }
+  const std::int64_t difference_wh = std::abs(measurement.capacity_wh - config.capacity_wh);
+  const bool has_capacity = find_point(config.map, "capacity") >= 0;
+  if (has_capacity &&
+      difference_wh * 100 > std::int64_t{config.capacity_tolerance_percent} * config.capacity_wh) {
+    char text[128];
+    std::snprintf(text, sizeof text,
+                  "reports %d Wh, but [battery] capacity_wh = %d: mend the one "
+                  "that is wrong",
+                  measurement.capacity_wh, config.capacity_wh);
+    complain(config, text);
+    return Status::kImplausible;
+  }
+  return Status::kOk;
+}
+
+void print_registers(const EdgeConfig& config, const char* name, const PowerOrder& order,
+                     Command command) {
+  std::printf("%-10s", name);
+  for (const BlockWrite& write : config.map.sequence(command).writes) {
+    RegisterBlock block;
+    if (encode_block(config.map, write, order, block) != Status::kOk) continue;
+    std::printf(" 0x%04X:[", write.address);
+    for (int i = 0; i < block.size(); ++i) std::printf(i == 0 ? "%u" : " %u", block[i]);
+    std::printf("]");
+  }
+  std::printf("\n");
+}
+
+void print_orders(const EdgeConfig& config) {
+  const GuardSettings& guard = config.control.guard;
+  PowerOrder order{.soc_min_e4 = guard.soc_min_e4,
+                   .soc_max_e4 = guard.soc_max_e4,
+                   .duration_s = config.control.order_duration_s};
+  order.power_w = guard.power_w;
+  print_registers(config, "charge", order, Command::kCharge);
+  order.power_w = 0;
+  print_registers(config, "idle", order, Command::kIdle);
+  order.power_w = -guard.power_w;
+  print_registers(config, "discharge", order, Command::kDischarge);
+  print_registers(config, "release", order, Command::kRelease);
+}
+
+bool report_price(const EdgeConfig& config, PriceFeed& prices) {
+  PriceRow row;
+  const Status status = prices.fetch_once(row);
+  if (status != Status::kOk) {
+    std::fprintf(stderr, "bess-edge: price from %s: %s\n", config.price.url.c_str(),
+                 status_text(status).data());
+    return false;
+  }
+  std::printf("price      %.2f EUR/MWh of minute %s\n", row.price_centi_eur_per_mwh / 100.0,
+              utc_text(row.minute_utc_s).c_str());
+  return true;
+}
+
+}  // namespace
+
+bool check_student() {
+  const int failures = count_student_self_check_failures();
+  if (failures == 0) return true;
+  std::fprintf(stderr,
+               "bess-edge: the built-in student fails %d of its %d self-checks on this machine; "
+               "build bess-edge for it again\n",
+               failures, student_self_check_count());
+  return false;
+}
+
+bool reach_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& clock) {
+  const std::int64_t deadline_ns =
+      clock.monotonic_ns() + config.start_timeout_s * kNanosecondsPerSecond;
+  while (!clock.stop_requested()) {
+    const bool last = clock.monotonic_ns() >= deadline_ns || config.start_without_battery;
+    const Status status = identify(config, battery, last);
+    if (status == Status::kOk) return true;
+    if (status == Status::kImplausible) return false;  // the wrong device stays the wrong device
+    if (last) return config.start_without_battery;
+    sleep_until_monotonic(clock.monotonic_ns() + kNanosecondsPerSecond / 5);
+  }
+  return true;
+}
+
+bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& prices) {
+  std::printf("student    %s (%d self-checks passed)\n", student_provenance(),
+              student_self_check_count());
+  std::printf("map        %s, variant %s; control = %s\n", config.map.name.c_str(),
+              config.map.variant.c_str(), config.control.control ? "true" : "false (read-only)");
+  print_orders(config);
+  std::fflush(stdout);
+  const bool battery_ok = identify(config, battery, true) == Status::kOk;
+  BatteryMeasurement m;
+  if (battery_ok && battery.read(m) == Status::kOk) {
+    std::printf("battery    ");
+    print_place(stdout, config);
+    std::printf(": SoC %.1f %%, %d W, %d Wh, dispatch %s\n", m.soc_e4 / 100.0, m.power_w,
+                m.capacity_wh, m.dispatch_active ? "active" : "off");
+  }
+  return report_price(config, prices) && battery_ok;
+}
+
+}  // namespace bess

@@ -1,0 +1,21 @@
+// What happens before the loop: reaching and identifying the battery, and the report of --check.
+// One line per finding, for a person; nothing here writes to the battery.
+#pragma once
+
+#include "edge/edge_clock.h"
+#include "edge/edge_config.h"
+
+namespace bess {
+
+/// Tries until `start_timeout_s` is over. True when the battery is there and is the right one, or
+/// when the configuration allows to start without it; otherwise one line on stderr says what to
+/// mend.
+bool reach_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& clock);
+
+/// Prints settings, encoded orders, a battery reading and the newest price; true when all is well.
+bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& prices);
+
+/// True when this machine computes the built-in student as the exporter did.
+bool check_student();
+
+}  // namespace bess

@@ -1,0 +1,50 @@
+// Outcome of anything that touches the outside world (bus, prices, files). It is returned, never
+// thrown, and handled at the tick: the answer to a bad status is a mode, not an exception.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace bess {
+
+enum class [[nodiscard]] Status : std::uint8_t{
+    kOk,
+    kNotConnected,    ///< nobody listens, or the connection was closed
+    kTimeout,         ///< no answer, or no complete answer, in time
+    kBusException,    ///< the battery answered with a Modbus exception
+    kBadReply,        ///< an answer that does not belong to the question
+    kImplausible,     ///< a value outside the range that its register map or the market allows
+    kNotApplied,      ///< acknowledged, but the read-back shows other values
+    kNotExpressible,  ///< the register map cannot express the order
+    kHttpError,       ///< the price server answered, but not with 200
+    kMalformed,       ///< the price server's answer is not what the configuration describes
+    kNoRow,           ///< a good answer without any usable price
+    kTooLarge,        ///< more bytes than the fixed buffer holds
+};
+
+constexpr std::string_view status_name(Status status) {
+  constexpr std::string_view kNames[] = {
+      "ok",          "not_connected",   "timeout",    "bus_exception", "bad_reply", "implausible",
+      "not_applied", "not_expressible", "http_error", "malformed",     "no_row",    "too_large"};
+  return kNames[static_cast<int>(status)];
+}
+
+/// What it means and what mends it, for the one line that a user reads.
+constexpr std::string_view status_text(Status status) {
+  constexpr std::string_view kTexts[] = {
+      "ok",
+      "no connection (are host and port right, is it running, does it serve one client only?)",
+      "no answer in time (is the unit id right?)",
+      "answered with a Modbus exception (does the register map fit this model?)",
+      "answered with something that does not belong to the question",
+      "delivered a value outside its plausible range",
+      "acknowledged an order but did not keep it",
+      "the register map cannot express this order",
+      "the price server answered with an HTTP error",
+      "the price server's answer is not the JSON that [price] describes",
+      "the price server's answer holds no usable price",
+      "the answer is larger than the buffer"};
+  return kTexts[static_cast<int>(status)];
+}
+
+}  // namespace bess

@@ -1,0 +1,272 @@
+// The real control loop against the battery model and a fake clock: whole days in milliseconds,
+// with faults from one named seed, and invariants that hold whatever bus, market and clock do.
+#include "edge/control_loop.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+#include <vector>
+
+#include "tools/battery_sim/simulated_battery.h"
+
+namespace bess {
+namespace {
+
+constexpr std::int64_t kDayStartS = 1'679'695'200;  // 2023-03-25T22:00:00Z, into the spring change
+constexpr BatteryParameters kHouse{.power_w_max = 4'000, .capacity_wh = 8'000};
+
+struct FakeClock {
+  std::int64_t now_ns = kDayStartS * kNanosecondsPerSecond;
+  bool stop = false;
+  bool synchronised = true;
+
+  [[nodiscard]] std::int64_t now_utc_ns() const { return now_ns; }
+  [[nodiscard]] std::int64_t monotonic_ns() const { return now_ns; }
+  [[nodiscard]] std::int64_t monotonic_ns_at(std::int64_t utc_ns) const { return utc_ns; }
+  bool sleep_until_utc_ns(std::int64_t utc_ns) {
+    now_ns = std::max(now_ns, utc_ns);
+    return !stop;
+  }
+  [[nodiscard]] bool stop_requested() const { return stop; }
+  [[nodiscard]] bool is_synchronised() const { return synchronised; }
+};
+
+/// The physics of the simulator behind the loop's battery interface, with switchable faults.
+struct FakeBattery {
+  explicit FakeBattery(FakeClock& c, double soc) : clock(c), physics(kHouse, soc, c.now_ns) {}
+
+  Status read(BatteryMeasurement& m) {
+    physics.advance(clock.now_ns);
+    if (!link) return Status::kTimeout;
+    m = BatteryMeasurement{};
+    m.soc_e4 = static_cast<std::int32_t>(std::lround(physics.soc_frac() * 1e3)) * 10;
+    m.power_w = static_cast<std::int32_t>(physics.power_w());
+    m.capacity_wh = 8'000;
+    m.alarm = alarm;
+    m.dispatch_active = physics.dispatch_active();
+    return Status::kOk;
+  }
+  Status order(const PowerOrder& o) {
+    physics.advance(clock.now_ns);
+    orders.push_back(o);
+    if (!link) return Status::kTimeout;
+    const std::int32_t limit_e4 = o.power_w < 0 ? o.soc_min_e4 : o.soc_max_e4;
+    physics.start_dispatch(o.power_w, limit_e4 / 1e4, o.duration_s);
+    return Status::kOk;
+  }
+  Status release() {
+    physics.advance(clock.now_ns);
+    if (!link) return Status::kTimeout;
+    ++releases;
+    physics.stop_dispatch();
+    return Status::kOk;
+  }
+
+  FakeClock& clock;
+  SimulatedBattery physics;
+  bool link = true;
+  bool alarm = false;
+  int releases = 0;
+  std::vector<PowerOrder> orders;
+};
+
+/// Publishes `price(minute)` for every minute unless the outage swallows it.
+struct FakePrices {
+  explicit FakePrices(FakeClock& c) : clock(c) {}
+
+  void request(std::int64_t minute_utc_s, std::int64_t, std::int64_t) { wanted = minute_utc_s; }
+  bool wait(std::int64_t until_ns) {
+    if (!outage) {
+      report = {.has_row = true,
+                .minute_utc_s = wanted,
+                .price_centi_eur_per_mwh = price(wanted),
+                .received_monotonic_ns = clock.now_ns,
+                .status = Status::kOk};
+      return true;
+    }
+    clock.now_ns = std::max(clock.now_ns, until_ns);
+    report.status = Status::kTimeout;
+    return false;
+  }
+  [[nodiscard]] PriceReport latest() const { return report; }
+
+  FakeClock& clock;
+  std::int64_t wanted = 0;
+  bool outage = false;
+  PriceReport report;
+  std::function<std::int32_t(std::int64_t)> price = [](std::int64_t minute_utc_s) {
+    const double hours = static_cast<double>(minute_utc_s % 86'400) / 3'600;
+    return static_cast<std::int32_t>(std::lround(10'000 + 20'000 * std::sin(hours)));
+  };
+};
+
+using Loop = ControlLoop<FakeBattery, FakePrices, FakeClock>;
+
+ControlSettings in_control() { return {.control = true, .guard = {}}; }
+
+struct Plant {
+  explicit Plant(double soc = 0.5, ControlSettings settings = in_control())
+      : battery(clock, soc), prices(clock), loop(settings, battery, prices, clock) {}
+  CycleRecord cycle() {
+    CycleRecord record;
+    EXPECT_TRUE(loop.run_cycle(record));
+    return record;
+  }
+
+  FakeClock clock;
+  FakeBattery battery;
+  FakePrices prices;
+  Loop loop;
+};
+
+TEST(ClosedLoop, ADayEndsWhereTheOrdersLead) {
+  set_market_time_zone();
+  Plant plant;
+  double soc = 0.5;
+  for (int i = 0; i < kStepsPerDay; ++i) {
+    const CycleRecord record = plant.cycle();
+    EXPECT_EQ(record.mode, Mode::kRunning);
+    EXPECT_EQ(record.price_age_s, 0);
+    EXPECT_EQ(record.missed_ticks, 0);
+    soc = battery_step(kHouse, soc, record.ordered_power_w, kHoursPerStep).soc_frac;
+  }
+  plant.battery.physics.advance((plant.clock.now_ns / 120'000'000'000 + 1) * 120'000'000'000);
+  EXPECT_NEAR(plant.battery.physics.soc_frac(), soc, 1e-9);
+  EXPECT_EQ(plant.battery.orders.size(), std::size_t{kStepsPerDay});
+}
+
+TEST(ClosedLoop, PriceOutageHoldsZeroThenReleasesAndComesBack) {
+  Plant plant;
+  plant.prices.price = [](std::int64_t) { return -20'000; };
+  EXPECT_EQ(plant.cycle().ordered_power_w, 4'000);
+  plant.prices.outage = true;
+  std::vector<Mode> modes;
+  std::vector<std::int32_t> powers;
+  for (int i = 0; i < 270; ++i) {  // nine hours, as in January 2024
+    const CycleRecord record = plant.cycle();
+    modes.push_back(record.mode);
+    powers.push_back(record.ordered_power_w);
+  }
+  // The row of the last good minute is 2, then 4 minutes old: still usable; then the safe state.
+  EXPECT_EQ(powers[1], 4'000);
+  EXPECT_EQ(modes[2], Mode::kHolding);
+  EXPECT_EQ(powers[2], 0);
+  EXPECT_EQ(modes[4], Mode::kHolding);  // 240 s held
+  EXPECT_EQ(modes[5], Mode::kSafe);     // 360 s: released
+  EXPECT_EQ(modes.back(), Mode::kSafe);
+  EXPECT_EQ(plant.battery.releases, 1);  // once, not every cycle
+  EXPECT_FALSE(plant.battery.physics.dispatch_active());
+  plant.prices.outage = false;
+  const CycleRecord record = plant.cycle();
+  EXPECT_EQ(record.mode, Mode::kRunning);
+  EXPECT_EQ(record.ordered_power_w, 4'000);
+}
+
+TEST(ClosedLoop, ReadOnlyNeverWrites) {
+  Plant plant(0.5, ControlSettings{});
+  for (int i = 0; i < 100; ++i) EXPECT_FALSE(plant.cycle().written);
+  CycleRecord record;
+  EXPECT_EQ(plant.loop.stop(record), Status::kOk);
+  EXPECT_TRUE(plant.battery.orders.empty());
+  EXPECT_EQ(plant.battery.releases, 0);
+}
+
+TEST(ClosedLoop, StopOrdersZeroAndReleases) {
+  Plant plant;
+  plant.prices.price = [](std::int64_t) { return -20'000; };
+  plant.cycle();
+  CycleRecord record;
+  EXPECT_EQ(plant.loop.stop(record), Status::kOk);
+  EXPECT_EQ(plant.battery.orders.back().power_w, 0);
+  EXPECT_EQ(plant.battery.releases, 1);
+  EXPECT_EQ(record.mode, Mode::kStopping);
+  EXPECT_EQ(record.reason, Reason::kStopRequested);
+}
+
+TEST(ClosedLoop, StopWithoutLinkSaysSo) {
+  Plant plant;
+  plant.cycle();
+  plant.battery.link = false;
+  CycleRecord record;
+  EXPECT_EQ(plant.loop.stop(record), Status::kTimeout);
+}
+
+TEST(ClosedLoop, NothingIsOrderedBeforeAllIsKnown) {
+  Plant plant;
+  plant.prices.outage = true;
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(plant.cycle().mode, Mode::kStart);
+  plant.clock.synchronised = false;
+  plant.prices.outage = false;
+  EXPECT_EQ(plant.cycle().reason, Reason::kClock);
+  EXPECT_TRUE(plant.battery.orders.empty());
+  plant.clock.synchronised = true;
+  EXPECT_EQ(plant.cycle().mode, Mode::kRunning);
+}
+
+TEST(ClosedLoop, CountsTheTicksThatAnOverrunSkipped) {
+  Plant plant;
+  plant.cycle();
+  plant.clock.now_ns += 500 * kNanosecondsPerSecond;
+  EXPECT_EQ(plant.cycle().missed_ticks, 4);
+}
+
+/// Toggles every fault at random; `chance` per cycle.
+void disturb(Plant& plant, std::mt19937_64& random) {
+  const auto toggle = [&](bool& fault, double on, double off) {
+    const double u = std::uniform_real_distribution<>(0, 1)(random);
+    fault = fault ? u >= off : u < on;
+  };
+  bool link_down = !plant.battery.link;
+  bool unsynchronised = !plant.clock.synchronised;
+  toggle(link_down, 0.02, 0.2);
+  toggle(unsynchronised, 0.005, 0.3);
+  toggle(plant.battery.alarm, 0.01, 0.3);
+  toggle(plant.prices.outage, 0.03, 0.15);
+  plant.battery.link = !link_down;
+  plant.clock.synchronised = !unsynchronised;
+}
+
+void expect_invariants(const Plant& plant, const CycleRecord& record, double soc_start) {
+  const double soc = plant.battery.physics.soc_frac();
+  EXPECT_LE(soc, std::max(kHouse.soc_max_frac, soc_start) + 1e-12);
+  EXPECT_GE(soc, std::min(kHouse.soc_min_frac, soc_start) - 1e-12);
+  EXPECT_LE(std::abs(record.ordered_power_w), 4'000);
+  if (is_stop_reason(record.reason)) {
+    EXPECT_EQ(record.ordered_power_w, 0);
+  }
+  if (record.price_age_s > 240) {
+    EXPECT_EQ(record.ordered_power_w, 0);
+  }
+  if (record.mode == Mode::kSafe && record.written) {
+    EXPECT_FALSE(plant.battery.physics.dispatch_active());
+  }
+}
+
+TEST(ClosedLoop, InvariantsHoldThroughRandomFaults) {
+  constexpr std::uint64_t kSeed = 20'240'122;
+  std::mt19937_64 random(kSeed);
+  for (int day = 0; day < 60; ++day) {
+    const double soc_start = std::uniform_real_distribution<>(0.05, 1.0)(random);
+    Plant plant(soc_start);
+    plant.prices.price = [&](std::int64_t) {
+      return std::uniform_int_distribution<std::int32_t>(-80'000, 180'000)(random);
+    };
+    int cycles_without_link = 0;
+    for (int i = 0; i < kStepsPerDay; ++i) {
+      disturb(plant, random);
+      const CycleRecord record = plant.cycle();
+      expect_invariants(plant, record, soc_start);
+      cycles_without_link = plant.battery.link ? 0 : cycles_without_link + 1;
+      // The dead-man timer: without a link nothing is exchanged after 300 s.
+      if (cycles_without_link > 4) {
+        EXPECT_FALSE(plant.battery.physics.dispatch_active());
+      }
+      if (HasFailure()) FAIL() << "seed " << kSeed << " day " << day << " cycle " << i;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,114 @@
+// The operator's configuration: the documented example loads, and every mistake is one clear line.
+#include "edge/edge_config.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/temporary_folder.h"
+
+namespace bess {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+/// A valid configuration; a test adds or replaces a piece of it.
+std::string valid_text() {
+  return "control = true\n"
+         "[battery]\n"
+         "map = \"" BESS_SOURCE_DIR
+         "/edge/maps/alphaess.toml\"\n"
+         "power_w = 4000\n"
+         "[price]\n"
+         "url = \"http://127.0.0.1:1/records\"\n"
+         "[guard]\n"
+         "soc_min = 0.2\n"
+         "[simulation]\n"
+         "time_scale = 900\n"
+         "utc_start = \"2023-03-26T00:00:00Z\"\n"
+         "anchor_monotonic_ns = 5\n";
+}
+
+TEST(EdgeConfig, TheDocumentedExampleIsValidAndReadOnly) {
+  EdgeConfig config;
+  std::string error;
+  ASSERT_TRUE(load_edge_config(BESS_SOURCE_DIR "/edge/bess-edge.toml", config, error)) << error;
+  EXPECT_FALSE(config.control.control);
+  EXPECT_TRUE(config.clock.is_real_time());
+  EXPECT_EQ(config.control.guard.low_price_centi_eur_per_mwh, -50'000);
+  EXPECT_EQ(config.control.guard.high_price_centi_eur_per_mwh, 150'000);
+  EXPECT_EQ(config.control.order_duration_s, 300);
+  EXPECT_EQ(config.map.unit, 85);
+}
+
+TEST(EdgeConfig, ReadsEveryUnit) {
+  const TemporaryFolder folder;
+  EdgeConfig config;
+  std::string error;
+  ASSERT_TRUE(load_edge_config(folder.write("edge.toml", valid_text()), config, error)) << error;
+  EXPECT_TRUE(config.control.control);
+  EXPECT_EQ(config.control.guard.soc_min_e4, 2'000);
+  EXPECT_EQ(config.clock.scale, 900);
+  EXPECT_EQ(config.clock.anchor_utc_s, 1'679'788'800);
+  EXPECT_EQ(config.clock.anchor_monotonic_ns, 5);
+}
+
+struct Mistake {
+  std::string before, after;
+  int line;
+  std::string message;
+};
+
+TEST(EdgeConfig, EveryMistakeIsOneClearLineWithItsPlace) {
+  const TemporaryFolder folder;
+  const Mistake mistakes[] = {
+      {"control = true", "controll = true", 1, "controll is not a known key"},
+      {"control = true", "control = 1", 1, "control must be true or false"},
+      {"power_w = 4000", "power = 4000", 4, "power is not a known key"},
+      {"power_w = 4000", "power_w = 4000.5", 4, "must be a whole number"},
+      {"power_w = 4000", "power_w = 40000", 4, "more than the map alphaess can express"},
+      {"power_w = 4000", "power_w = -1", 4, "must lie between"},
+      {"power_w = 4000", "port = 70000", 4, "port must lie between 1 and 65535"},
+      {"power_w = 4000", "host = \"battery.local\"", 4, "numeric IPv4"},
+      {"power_w = 4000", "transport = \"udp\"", 4, "\"tcp\", \"rtu\""},
+      {"power_w = 4000", "variant = \"blok\"", 0, "does not exist (there are: block"},
+      {"http://", "ftp://", 6, "must start with http:// or https://"},
+      {"url =", "uri =", 5, "url is missing"},
+      {"soc_min = 0.2", "soc_min = 20", 8, "must lie between 0 and 1"},
+      {"soc_min = 0.2", "soc_min = \"0.2\"", 8, "must be a number"},
+      {"soc_min = 0.2", "soc_min = 1.0", 8, "must be below soc_max"},
+      {"soc_min = 0.2", "low_price_eur_per_mwh = 2000", 8, "must be below high_price"},
+      {"2023-03-26T00:00:00Z", "2023-03-26 00:00", 11, "utc_start must be a UTC instant"},
+      {"time_scale = 900", "time_scale = 0", 10, "must lie between"},
+      {"[guard]", "[gard]", 7, "gard is not a known key"},
+      {"[guard]", "[guard", 7, "not valid TOML"},
+  };
+  for (const Mistake& mistake : mistakes) {
+    std::string text = valid_text();
+    const std::size_t at = text.find(mistake.before);
+    ASSERT_NE(at, std::string::npos) << mistake.before;
+    text.replace(at, mistake.before.size(), mistake.after);
+    const std::string path = folder.write("edge.toml", text);
+    EdgeConfig config;
+    std::string error;
+    EXPECT_FALSE(load_edge_config(path, config, error)) << mistake.after;
+    EXPECT_THAT(error, HasSubstr(mistake.message)) << mistake.after;
+    EXPECT_EQ(error.find('\n'), std::string::npos) << error;
+    if (mistake.line > 0) {
+      EXPECT_THAT(error, StartsWith(path + ":" + std::to_string(mistake.line) + ":"));
+    }
+  }
+}
+
+TEST(EdgeConfig, MissingFileAndFolder) {
+  EdgeConfig config;
+  std::string error;
+  EXPECT_FALSE(load_edge_config("/nonexistent.toml", config, error));
+  EXPECT_THAT(error, HasSubstr("cannot open"));
+  error.clear();
+  EXPECT_FALSE(load_edge_config("/tmp", config, error));
+  EXPECT_THAT(error, HasSubstr("cannot read"));
+}
+
+}  // namespace
+}  // namespace bess

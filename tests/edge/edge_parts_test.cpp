@@ -1,0 +1,103 @@
+// The small parts of the edge: built-in student, time texts, log lines, containers.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "edge/control_loop.h"
+#include "edge/event_log.h"
+#include "edge/policy.h"
+#include "shared/fixed_text.h"
+#include "shared/static_vector.h"
+#include "shared/utc_text.h"
+
+namespace bess {
+namespace {
+
+TEST(BuiltInStudent, ComputesEverySelfCheckOfItsHeader) {
+  EXPECT_GT(student_self_check_count(), 0);
+  EXPECT_EQ(count_student_self_check_failures(), 0);
+}
+
+TEST(Ticks, LieOnTheTwoMinuteGridStrictlyAhead) {
+  EXPECT_EQ(next_tick_utc_s(0), 120);
+  EXPECT_EQ(next_tick_utc_s(119), 120);
+  EXPECT_EQ(next_tick_utc_s(120), 240);
+}
+
+TEST(UtcText, RoundTripAndOffsets) {
+  std::int64_t utc_s = 0;
+  ASSERT_TRUE(parse_utc_text("2023-03-26T01:02:03Z", utc_s));
+  EXPECT_EQ(utc_text(utc_s), "2023-03-26T01:02:03Z");
+  std::int64_t same = 0;
+  for (const char* text :
+       {"2023-03-26T03:02:03+02:00", "2023-03-25T23:32:03-01:30", "2023-03-26T01:02:03.456Z"}) {
+    ASSERT_TRUE(parse_utc_text(text, same)) << text;
+    EXPECT_EQ(same, utc_s) << text;
+  }
+  ASSERT_TRUE(parse_utc_text("2024-02-29T00:00Z", same));
+}
+
+TEST(UtcText, RefusesWhatIsAmbiguousOrImpossible) {
+  std::int64_t utc_s = 0;
+  for (const char* text :
+       {"", "2023", "2023-03-26", "2023-03-26T01:02:03", "2023-03-26 01:02:03Z",
+        "2023-13-01T00:00:00Z", "2023-02-29T00:00:00Z", "2023-03-26T24:00:00Z",
+        "2023-03-26T01:60:00Z", "2023-03-26T01:02:03+0200", "2023-03-26T01:02:03+99:00",
+        "2023-03-26T01:02:03Zx", "2023-03-26T01:02:03.Z", "-023-03-26T01:02:03Z"}) {
+    EXPECT_FALSE(parse_utc_text(text, utc_s)) << text;
+  }
+}
+
+TEST(EventLog, CsvLineHasAsManyFieldsAsItsHeader) {
+  CycleRecord record;
+  record.utc_s = 1'679'788'800;
+  record.price.has_row = true;
+  record.price.minute_utc_s = 1'679'788'740;
+  char line[kLogLineBytes];
+  const std::string csv(line, format_csv_line(record, line));
+  const std::string header = csv_header();
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), ','), std::count(header.begin(), header.end(), ','));
+  EXPECT_TRUE(csv.starts_with("2023-03-26T00:00:00Z,0,start,2023-03-25T23:59:00Z,")) << csv;
+}
+
+TEST(EventLog, LongestLineFits) {
+  CycleRecord record;
+  record.utc_s = 4'102'444'800;
+  record.cycle = INT64_MAX;
+  record.mode = Mode::kStopping;
+  record.measurement = {.soc_e4 = INT32_MIN, .power_w = INT32_MIN};
+  record.price = {.has_row = true,
+                  .minute_utc_s = 4'102'444'800,
+                  .price_centi_eur_per_mwh = INT32_MIN,
+                  .fetch_us = INT32_MIN,
+                  .status = Status::kNotConnected};
+  record.price_age_s = record.ordered_power_w = record.decision_us = INT32_MIN;
+  record.write_us = record.total_us = record.missed_ticks = INT32_MIN;
+  record.reason = Reason::kStopRequested;
+  record.battery_status = Status::kNotExpressible;
+  char line[kLogLineBytes];
+  EXPECT_LT(format_log_line(record, line), kLogLineBytes - 1);
+  EXPECT_LT(format_csv_line(record, line), kLogLineBytes - 1);
+}
+
+TEST(StaticVector, RefusesWhatDoesNotFit) {
+  StaticVector<int, 2> items;
+  EXPECT_TRUE(items.try_push_back(1));
+  EXPECT_TRUE(items.try_push_back(2));
+  EXPECT_FALSE(items.try_push_back(3));
+  EXPECT_EQ(items.size(), 2);
+  EXPECT_DEATH(items.push_back(3), "CHECK failed");
+  EXPECT_DEATH(static_cast<void>(items[2]), "CHECK failed");
+}
+
+TEST(FixedText, CutsAndSaysSo) {
+  FixedText<3> text;
+  EXPECT_TRUE(text.assign("abc"));
+  EXPECT_FALSE(text.assign("abcd"));
+  EXPECT_EQ(text, "abc");
+  EXPECT_STREQ(text.c_str(), "abc");
+}
+
+}  // namespace
+}  // namespace bess

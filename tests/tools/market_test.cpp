@@ -1,0 +1,96 @@
+// The simulated market: what is published when, in the shape of Elia's API, and its file reader.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "edge/price_feed.h"
+#include "shared/scaled_clock.h"
+#include "shared/utc_text.h"
+#include "tools/market_sim/market_view.h"
+#include "tools/market_sim/minute_file.h"
+#include "tools/sim/sim_error.h"
+
+namespace bess {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr const char* kFile =
+    "# provenance\n"
+    "minute_utc,indicative_eur_mwh,settled_eur_mwh\n"
+    "2023-03-26T00:13:00Z,10.5,20\n"
+    "2023-03-26T00:14:00Z,,20\n"
+    "2023-03-26T00:15:00Z,-3.25,30\n";
+
+std::int64_t utc_ns(std::string_view text) {
+  std::int64_t utc_s = 0;
+  EXPECT_TRUE(parse_utc_text(text, utc_s)) << text;
+  return utc_s * kNanosecondsPerSecond;
+}
+
+TEST(MinuteFile, ReadsPricesNullsAndComments) {
+  const auto prices = parse_minute_prices(kFile, "f");
+  ASSERT_EQ(prices.size(), 3U);
+  EXPECT_EQ(prices[0].indicative_eur_per_mwh, 10.5);
+  EXPECT_TRUE(std::isnan(prices[1].indicative_eur_per_mwh));
+  EXPECT_EQ(prices[2].settled_eur_per_mwh, 30);
+}
+
+TEST(MinuteFile, NamesTheLineOfEveryMistake) {
+  const std::string header = "minute_utc,indicative_eur_mwh,settled_eur_mwh\n";
+  const std::pair<std::string, const char*> mistakes[] = {
+      {"", "holds no minutes"},
+      {header, "holds no minutes"},
+      {"time,price\n", "f:1: the header must be"},
+      {header + "yesterday,1,2\n", "f:2: \"yesterday\" is not a UTC minute"},
+      {header + "2023-01-01T00:00:30Z,1,2\n", "is not a UTC minute"},
+      {header + "2023-01-01T00:00:00Z,abc,2\n", "f:2: \"abc\" is not a price"},
+      {header + "2023-01-01T00:00:00Z,1,inf\n", "\"inf\" is not a price"},
+      {header + "2023-01-01T00:00:00Z,1,2,3\n", "more than three columns"},
+      {header + "2023-01-01T00:01:00Z,1,2\n2023-01-01T00:00:00Z,1,2\n", "f:3: minutes must ascend"},
+  };
+  for (const auto& [text, message] : mistakes) {
+    try {
+      static_cast<void>(parse_minute_prices(text, "f"));
+      ADD_FAILURE() << message;
+    } catch (const SimError& error) {
+      EXPECT_THAT(error.what(), HasSubstr(message));
+    }
+  }
+}
+
+TEST(MarketView, RowIsVisibleAtTheEndOfItsMinutePlusLatency) {
+  const MarketView view(parse_minute_prices(kFile, "f"), 2.0);
+  const RecordsQuery query{.limit = 1};
+  EXPECT_THAT(view.records(query, utc_ns("2023-03-26T00:14:01Z")), HasSubstr("\"total_count\": 0"));
+  EXPECT_THAT(view.records(query, utc_ns("2023-03-26T00:14:02Z")),
+              HasSubstr("\"datetime\":\"2023-03-26T00:13:00+00:00\""));
+  const std::string later = view.records({.limit = 2}, utc_ns("2023-03-26T00:16:02Z"));
+  EXPECT_LT(later.find("00:15:00+00:00"), later.find("00:14:00+00:00"));  // newest first
+  EXPECT_THAT(later, HasSubstr("\"imbalanceprice\":null"));
+  EXPECT_THAT(later, HasSubstr("\"imbalanceprice\":-3.250"));
+}
+
+TEST(MarketView, SettledQuarterHourIsVisibleAfterItsEnd) {
+  const MarketView view(parse_minute_prices(kFile, "f"), 0);
+  const RecordsQuery query{.dataset = Dataset::kQuarterHours};
+  EXPECT_THAT(view.records(query, utc_ns("2023-03-26T00:14:59Z")), HasSubstr("\"total_count\": 0"));
+  const std::string json = view.records(query, utc_ns("2023-03-26T00:15:00Z"));
+  EXPECT_THAT(json, HasSubstr("\"datetime\":\"2023-03-26T00:00:00+00:00\""));
+  EXPECT_THAT(json, HasSubstr("\"imbalanceprice\":20.000"));
+}
+
+TEST(MarketView, TheEdgeUnderstandsWhatItServes) {
+  const MarketView view(parse_minute_prices(kFile, "f"), 0);
+  const std::int64_t now_ns = utc_ns("2023-03-26T00:15:00Z");
+  PriceRow row;
+  ASSERT_EQ(parse_newest_price(view.records({.limit = 20}, now_ns), PriceFeedSettings{},
+                               now_ns / kNanosecondsPerSecond, row),
+            Status::kOk);
+  EXPECT_EQ(row.price_centi_eur_per_mwh, 1'050);  // minute 14 is null
+  EXPECT_EQ(row.minute_utc_s * kNanosecondsPerSecond, utc_ns("2023-03-26T00:13:00Z"));
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,147 @@
+// The simulated battery: exact integration, limits, expiry, and the AlphaESS registers around it.
+#include "tools/battery_sim/simulated_battery.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "edge/registers/codec.h"
+#include "edge/registers/map_file.h"
+#include "shared/scaled_clock.h"
+#include "tools/battery_sim/register_image.h"
+
+namespace bess {
+namespace {
+
+constexpr std::int64_t kStartS = 1'679'788'800;
+constexpr std::int64_t kStartNs = kStartS * kNanosecondsPerSecond;
+constexpr BatteryParameters kHouse{.power_w_max = 4'000, .capacity_wh = 8'000};
+
+constexpr std::int64_t after_s(double seconds) {
+  return kStartNs + static_cast<std::int64_t>(seconds * 1e9);
+}
+
+TEST(SimulatedBattery, IntegratesTheSameInOneStepAndInMany) {
+  SimulatedBattery coarse(kHouse, 0.5, kStartNs);
+  SimulatedBattery fine(kHouse, 0.5, kStartNs);
+  coarse.start_dispatch(4'000, 1.0, 100'000);
+  fine.start_dispatch(4'000, 1.0, 100'000);
+  coarse.advance(after_s(1'800));
+  for (int i = 1; i <= 18'000; ++i) fine.advance(after_s(i * 0.1));
+  EXPECT_NEAR(coarse.soc_frac(), 0.5 + 4'000 * std::sqrt(0.9) * 0.5 / 8'000, 1e-12);
+  EXPECT_NEAR(fine.soc_frac(), coarse.soc_frac(), 1e-9);
+}
+
+TEST(SimulatedBattery, OnlyWhatFitsIsExchangedAtTheBounds) {
+  SimulatedBattery battery(kHouse, 0.95, kStartNs);
+  battery.start_dispatch(4'000, 1.0, 100'000);
+  battery.advance(after_s(7'200));
+  EXPECT_DOUBLE_EQ(battery.soc_frac(), 1.0);
+  EXPECT_EQ(battery.power_w(), 0);
+  double energy_wh = 0;
+  for (const MinuteRecord& m : battery.record()) energy_wh += m.energy_wh;
+  EXPECT_NEAR(energy_wh, 0.05 * 8'000 / std::sqrt(0.9), 1e-9);
+}
+
+TEST(SimulatedBattery, DispatchExpiresExactlyAndThenRests) {
+  SimulatedBattery battery(kHouse, 0.5, kStartNs);
+  battery.start_dispatch(-4'000, 0.1, 300);
+  battery.advance(after_s(299.999));
+  EXPECT_TRUE(battery.dispatch_active());
+  EXPECT_EQ(battery.power_w(), -4'000);
+  battery.advance(after_s(3'600));
+  EXPECT_FALSE(battery.dispatch_active());
+  EXPECT_EQ(battery.power_w(), 0);
+  EXPECT_NEAR(battery.soc_frac(), 0.5 - 4'000 / std::sqrt(0.9) / 12 / 8'000, 1e-12);
+}
+
+TEST(SimulatedBattery, SocLimitIsACeilingOrAFloor) {
+  SimulatedBattery battery(kHouse, 0.5, kStartNs);
+  battery.start_dispatch(4'000, 0.6, 100'000);
+  battery.advance(after_s(7'200));
+  EXPECT_DOUBLE_EQ(battery.soc_frac(), 0.6);
+  battery.start_dispatch(-4'000, 0.3, 100'000);
+  battery.advance(after_s(20'000));
+  EXPECT_DOUBLE_EQ(battery.soc_frac(), 0.3);
+}
+
+TEST(SimulatedBattery, RecordHasOneRowAMinuteAndAllTheEnergy) {
+  SimulatedBattery battery(kHouse, 0.5, after_s(30));
+  battery.start_dispatch(1'200, 1.0, 100'000);
+  battery.advance(after_s(150));
+  const std::vector<MinuteRecord> rows = battery.record();
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_EQ(rows[0].minute_utc_s, kStartS);
+  EXPECT_EQ(rows[2].minute_utc_s, kStartS + 120);
+  EXPECT_NEAR(rows[0].energy_wh, 10, 1e-9);  // half a minute
+  EXPECT_NEAR(rows[1].energy_wh, 20, 1e-9);
+  EXPECT_NEAR(rows[2].energy_wh, 10, 1e-9);  // under way
+  EXPECT_EQ(rows[1].commanded_power_w, 1'200);
+}
+
+/// Registers of a battery, written as the edge writes them.
+class RegisterImageTest : public ::testing::TestWithParam<const char*> {
+ protected:
+  RegisterImageTest() {
+    std::string error;
+    EXPECT_TRUE(
+        load_register_map(BESS_SOURCE_DIR "/edge/maps/alphaess.toml", GetParam(), map_, error))
+        << error;
+    image_.emplace(map_, battery_, registers_);
+  }
+
+  void write(Command command, const PowerOrder& order) {
+    for (const BlockWrite& write : map_.sequence(command).writes) {
+      RegisterBlock block;
+      ASSERT_EQ(encode_block(map_, write, order, block), Status::kOk);
+      image_->refresh(now_ns_);
+      for (int i = 0; i < block.size(); ++i) registers_[write.address + i] = block[i];
+      image_->apply_write(write.address, block.size());
+    }
+  }
+  std::int64_t read(const char* point) {
+    image_->refresh(now_ns_);
+    const RegisterPoint& p = map_.points[find_point(map_, point)];
+    std::int64_t value = 0;
+    EXPECT_TRUE(decode(p, &registers_[p.address], value)) << point;
+    return value;
+  }
+
+  RegisterMap map_;
+  SimulatedBattery battery_{kHouse, 0.5, kStartNs};
+  std::array<std::uint16_t, RegisterImage::kRegisterCount> registers_{};
+  std::optional<RegisterImage> image_;
+  std::int64_t now_ns_ = kStartNs;
+};
+
+TEST_P(RegisterImageTest, ObeysEveryCommandInThisVariant) {
+  PowerOrder order{.power_w = 4'000, .soc_min_e4 = 1'000, .soc_max_e4 = 10'000, .duration_s = 300};
+  write(Command::kCharge, order);
+  EXPECT_EQ(read("battery_power"), 4'000);
+  EXPECT_EQ(read("dispatch_start"), 1);
+  now_ns_ = after_s(120);
+  order.power_w = -3'000;
+  write(Command::kDischarge, order);
+  EXPECT_EQ(read("battery_power"), -3'000);
+  EXPECT_EQ(read("soc"), 5'160);  // 51.58 %, the register counts 0.1 %
+  order.power_w = 0;
+  write(Command::kIdle, order);
+  EXPECT_EQ(read("battery_power"), 0);
+  EXPECT_EQ(read("dispatch_start"), 1);
+  now_ns_ = after_s(419);
+  EXPECT_EQ(read("dispatch_start"), 1);
+  now_ns_ = after_s(420);
+  EXPECT_EQ(read("dispatch_start"), 0);  // expiry is visible in the start register
+  order.power_w = 4'000;
+  write(Command::kCharge, order);
+  write(Command::kRelease, {});
+  EXPECT_EQ(read("battery_power"), 0);
+  EXPECT_EQ(read("dispatch_start"), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Variants, RegisterImageTest,
+                         ::testing::Values("block", "five_writes", "ten_and_one"));
+
+}  // namespace
+}  // namespace bess

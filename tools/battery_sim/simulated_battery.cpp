@@ -1,0 +1,77 @@
+#include "tools/battery_sim/simulated_battery.h"
+
+#include <algorithm>
+
+#include "shared/scaled_clock.h"
+
+namespace bess {
+namespace {
+
+constexpr std::int64_t kMinuteNs = 60 * kNanosecondsPerSecond;
+constexpr double kNanosecondsPerHour = 3.6e12;
+
+}  // namespace
+
+SimulatedBattery::SimulatedBattery(const BatteryParameters& parameters, double soc_frac,
+                                   std::int64_t utc_ns)
+    : parameters_(parameters), soc_frac_(soc_frac), now_ns_(utc_ns) {}
+
+void SimulatedBattery::advance(std::int64_t utc_ns) {
+  while (now_ns_ < utc_ns) {
+    std::int64_t end_ns = std::min(utc_ns, (now_ns_ / kMinuteNs + 1) * kMinuteNs);
+    if (dispatch_active_) end_ns = std::min(end_ns, dispatch_end_ns_);
+    integrate_segment(end_ns);
+    if (dispatch_active_ && now_ns_ >= dispatch_end_ns_) dispatch_active_ = false;
+  }
+}
+
+void SimulatedBattery::integrate_segment(std::int64_t end_ns) {
+  const double hours = static_cast<double>(end_ns - now_ns_) / kNanosecondsPerHour;
+  if (hours > 0) {
+    const BatteryStep step = battery_step(limited(), soc_frac_, commanded_power_w(), hours);
+    minute_energy_wh_ += step.power_w * hours;
+    soc_frac_ = step.soc_frac;
+  }
+  now_ns_ = end_ns;
+  if (now_ns_ % kMinuteNs == 0 && hours > 0) {
+    minutes_.push_back(current_minute());
+    minutes_.back().minute_utc_s -= 60;
+    minute_energy_wh_ = 0;
+  }
+}
+
+BatteryParameters SimulatedBattery::limited() const {
+  BatteryParameters p = parameters_;
+  if (!dispatch_active_) return p;
+  if (power_w_ > 0) p.soc_max_frac = std::min(p.soc_max_frac, soc_limit_frac_);
+  if (power_w_ < 0) p.soc_min_frac = std::max(p.soc_min_frac, soc_limit_frac_);
+  return p;
+}
+
+void SimulatedBattery::start_dispatch(double power_w, double soc_limit_frac,
+                                      std::int64_t duration_s) {
+  dispatch_active_ = duration_s > 0;
+  power_w_ = power_w;
+  soc_limit_frac_ = soc_limit_frac;
+  dispatch_end_ns_ = now_ns_ + duration_s * kNanosecondsPerSecond;
+}
+
+double SimulatedBattery::power_w() const {
+  constexpr double kOneSecondHours = 1.0 / 3'600.0;
+  return battery_step(limited(), soc_frac_, commanded_power_w(), kOneSecondHours).power_w;
+}
+
+MinuteRecord SimulatedBattery::current_minute() const {
+  return {.minute_utc_s = now_ns_ / kMinuteNs * 60,
+          .energy_wh = minute_energy_wh_,
+          .soc_frac = soc_frac_,
+          .commanded_power_w = commanded_power_w()};
+}
+
+std::vector<MinuteRecord> SimulatedBattery::record() const {
+  std::vector<MinuteRecord> all = minutes_;
+  if (now_ns_ % kMinuteNs != 0) all.push_back(current_minute());
+  return all;
+}
+
+}  // namespace bess

@@ -1,0 +1,59 @@
+// Physics and dispatch of the simulated battery, without any bus: event-driven and exact. Between
+// two events (new order, expiry, minute boundary) the power is constant, so one battery_step per
+// segment integrates without error, whatever the time scale.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "shared/battery_model.h"
+
+namespace bess {
+
+/// What the record file holds for one minute.
+struct MinuteRecord {
+  std::int64_t minute_utc_s;
+  double energy_wh;          ///< grid side, charge positive
+  double soc_frac;           ///< at the end of the minute
+  double commanded_power_w;  ///< at the end of the minute; 0 without a dispatch
+};
+
+class SimulatedBattery {
+ public:
+  SimulatedBattery(const BatteryParameters& parameters, double soc_frac, std::int64_t utc_ns);
+
+  /// Integrates up to `utc_ns`; an instant in the past changes nothing.
+  void advance(std::int64_t utc_ns);
+
+  /// From now on `power_w` until the SoC limit (ceiling when charging, floor when discharging) or
+  /// until `duration_s` is over; then the battery's own mode, modelled as 0 W. Call `advance`
+  /// first.
+  void start_dispatch(double power_w, double soc_limit_frac, std::int64_t duration_s);
+  void stop_dispatch() { dispatch_active_ = false; }
+
+  [[nodiscard]] bool dispatch_active() const { return dispatch_active_; }
+  [[nodiscard]] double soc_frac() const { return soc_frac_; }
+  [[nodiscard]] double power_w() const;  ///< flowing now
+  [[nodiscard]] const BatteryParameters& parameters() const { return parameters_; }
+
+  /// Completed minutes, and the one under way as the last.
+  [[nodiscard]] std::vector<MinuteRecord> record() const;
+
+ private:
+  [[nodiscard]] BatteryParameters limited() const;
+  [[nodiscard]] double commanded_power_w() const { return dispatch_active_ ? power_w_ : 0.0; }
+  [[nodiscard]] MinuteRecord current_minute() const;
+  void integrate_segment(std::int64_t end_ns);
+
+  BatteryParameters parameters_;
+  double soc_frac_;
+  std::int64_t now_ns_;
+  bool dispatch_active_ = false;
+  double power_w_ = 0;
+  double soc_limit_frac_ = 1;
+  std::int64_t dispatch_end_ns_ = 0;
+  double minute_energy_wh_ = 0;
+  std::vector<MinuteRecord> minutes_;
+};
+
+}  // namespace bess

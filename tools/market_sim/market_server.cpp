@@ -1,0 +1,100 @@
+#include "tools/market_sim/market_server.h"
+
+#include <httplib.h>
+
+#include <charconv>
+
+#include "tools/sim/sim_error.h"
+
+namespace bess {
+namespace {
+
+constexpr const char* kJson = "application/json";
+constexpr std::int64_t kStaleNs = 600 * kNanosecondsPerSecond;
+
+/// The API's own limits: limit 1..100, offset + limit at most 10,000.
+bool parse_number(const httplib::Request& request, const char* name, int min, int max, int& value) {
+  if (!request.has_param(name)) return true;
+  const std::string text = request.get_param_value(name);
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc{} && end == text.data() + text.size() && value >= min && value <= max;
+}
+
+bool parse_query(const httplib::Request& request, RecordsQuery& query, std::string& problem) {
+  const std::string order = request.get_param_value("order_by");
+  query.newest_first = order == "datetime desc" || order == "-datetime";
+  if (!query.newest_first && !order.empty() && order != "datetime" && order != "datetime asc") {
+    problem = "order_by: unknown field or direction";
+  } else if (!parse_number(request, "limit", 1, 100, query.limit)) {
+    problem = "Invalid value for limit API parameter: must be between 1 and 100";
+  } else if (!parse_number(request, "offset", 0, 10'000 - query.limit, query.offset)) {
+    problem = "Invalid value for offset API parameter: offset + limit must be at most 10000";
+  }
+  return problem.empty();
+}
+
+}  // namespace
+
+MarketServer::MarketServer(const MarketServerSettings& settings, const MarketView& view,
+                           const ScaledClock& clock)
+    : settings_(settings), view_(view), clock_(clock), server_(new httplib::Server) {
+  // Without this override the library sets SO_REUSEPORT and two servers would share a port
+  // unnoticed.
+  server_->set_socket_options([](socket_t socket) {
+    const int yes = 1;
+    setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  });
+  server_->set_tcp_nodelay(true);
+  server_->set_keep_alive_max_count(1'000'000'000);
+  server_->set_keep_alive_timeout(600);
+  server_->new_task_queue = [] { return new httplib::ThreadPool(4); };
+  const std::string root = "/api/explore/v2.1/catalog/datasets/";
+  server_->Get(root + "ods161/records", [this](const auto& request, auto& response) {
+    answer(Dataset::kMinutes, request, response);
+  });
+  server_->Get(root + "ods162/records", [this](const auto& request, auto& response) {
+    answer(Dataset::kQuarterHours, request, response);
+  });
+  if (settings.port == 0) {
+    port_ = server_->bind_to_any_port(settings.host);
+  } else if (server_->bind_to_port(settings.host, settings.port)) {
+    port_ = settings.port;
+  }
+  if (port_ <= 0) {
+    sim_fail(
+        "cannot listen on {}:{}: the port is in use or not allowed; choose another with --port",
+        settings.host, settings.port);
+  }
+}
+
+MarketServer::~MarketServer() = default;
+
+void MarketServer::run() { server_->listen_after_bind(); }
+
+void MarketServer::stop() { server_->stop(); }
+
+void MarketServer::answer(Dataset dataset, const httplib::Request& request,
+                          httplib::Response& response) {
+  const bool faulty =
+      settings_.fault != MarketFault::kNone && ++requests_ % settings_.fault_every == 0;
+  const MarketFault fault = faulty ? settings_.fault : MarketFault::kNone;
+  if (fault == MarketFault::kHttp500) {
+    response.status = 500;
+    return response.set_content("{\"message\": \"simulated fault\"}", kJson);
+  }
+  if (fault == MarketFault::kGarbage) return response.set_content("{\"results\": [{\"dat", kJson);
+  RecordsQuery query{.dataset = dataset, .hide_newest_price = fault == MarketFault::kNull};
+  std::string problem;
+  if (!parse_query(request, query, problem)) {
+    response.status = 400;
+    return response.set_content(
+        fmt::format("{{\"error_code\": \"InvalidRESTParameterError\", \"message\": \"{}\"}}",
+                    problem),
+        kJson);
+  }
+  std::int64_t now_ns = clock_.now_utc_ns();
+  if (fault == MarketFault::kStale) now_ns -= kStaleNs;
+  response.set_content(view_.records(query, now_ns), kJson);
+}
+
+}  // namespace bess

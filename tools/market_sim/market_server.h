@@ -1,0 +1,58 @@
+// The HTTP side of the simulated market: Elia's paths, query parameters and error answers, and
+// faults.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "shared/scaled_clock.h"
+#include "tools/market_sim/market_view.h"
+
+namespace httplib {
+class Server;
+struct Request;
+struct Response;
+}  // namespace httplib
+
+namespace bess {
+
+enum class MarketFault : std::uint8_t {
+  kNone,
+  kNull,     ///< the newest row's price is null
+  kHttp500,  ///< internal server error
+  kStale,    ///< the answer is ten minutes old
+  kGarbage,  ///< not JSON
+};
+
+struct MarketServerSettings {
+  std::string host = "127.0.0.1";
+  std::int32_t port = 8080;  ///< 0 = any free one
+  MarketFault fault = MarketFault::kNone;
+  std::int32_t fault_every = 10;  ///< every Nth request
+};
+
+class MarketServer {
+ public:
+  /// Binds. Throws SimError when the port is in use.
+  MarketServer(const MarketServerSettings& settings, const MarketView& view,
+               const ScaledClock& clock);
+  ~MarketServer();
+
+  [[nodiscard]] int port() const { return port_; }
+  void run();   ///< serves until `stop`
+  void stop();  ///< from another thread
+
+ private:
+  void answer(Dataset dataset, const httplib::Request& request, httplib::Response& response);
+
+  MarketServerSettings settings_;
+  const MarketView& view_;
+  ScaledClock clock_;
+  std::unique_ptr<httplib::Server> server_;
+  int port_ = 0;
+  std::atomic<std::int64_t> requests_ = 0;
+};
+
+}  // namespace bess

@@ -1,0 +1,84 @@
+#include "tools/market_sim/market_view.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "shared/local_time.h"
+#include "shared/scaled_clock.h"
+
+namespace bess {
+namespace {
+
+constexpr std::int64_t kQuarterHourS = 900;
+constexpr std::int64_t kDayS = 86'400;
+
+std::string offset_time(std::int64_t utc_s) {
+  const CivilTime t = civil_from_utc(utc_s);
+  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}+00:00", t.year, t.month, t.day, t.hour,
+                     t.minute, t.second);
+}
+
+std::string price_text(double price) {
+  return std::isfinite(price) ? fmt::format("{:.3f}", price) : "null";
+}
+
+}  // namespace
+
+/// Index range of the minutes that ended up to now, at most 24 hours back. O(log n).
+std::pair<std::size_t, std::size_t> MarketView::window(std::int64_t now_utc_ns) const {
+  const std::int64_t published_s = (now_utc_ns - latency_ns_) / kNanosecondsPerSecond - 60;
+  const auto before = [](const MinutePrice& price, std::int64_t utc_s) {
+    return price.minute_utc_s < utc_s;
+  };
+  const auto begin =
+      std::lower_bound(prices_.begin(), prices_.end(), published_s + 1 - kDayS, before);
+  const auto end = std::lower_bound(begin, prices_.end(), published_s + 1, before);
+  return {static_cast<std::size_t>(begin - prices_.begin()),
+          static_cast<std::size_t>(end - prices_.begin())};
+}
+
+std::vector<MarketView::Row> MarketView::visible_minutes(std::int64_t now_utc_ns) const {
+  const auto [begin, end] = window(now_utc_ns);
+  std::vector<Row> rows;
+  rows.reserve(end - begin);
+  for (std::size_t i = begin; i < end; ++i) {
+    rows.push_back({prices_[i].minute_utc_s, prices_[i].indicative_eur_per_mwh});
+  }
+  return rows;
+}
+
+std::vector<MarketView::Row> MarketView::visible_quarter_hours(std::int64_t now_utc_ns) const {
+  std::vector<Row> rows;
+  const auto [begin, end] = window(now_utc_ns);
+  for (std::size_t i = begin; i < end; ++i) {
+    const MinutePrice& minute = prices_[i];
+    if (minute.minute_utc_s % kQuarterHourS != kQuarterHourS - 60) continue;  // its last minute
+    rows.push_back({minute.minute_utc_s - (kQuarterHourS - 60), minute.settled_eur_per_mwh});
+  }
+  return rows;
+}
+
+std::string MarketView::records(const RecordsQuery& query, std::int64_t now_utc_ns) const {
+  const bool minutes = query.dataset == Dataset::kMinutes;
+  std::vector<Row> rows = minutes ? visible_minutes(now_utc_ns) : visible_quarter_hours(now_utc_ns);
+  if (query.hide_newest_price && !rows.empty()) rows.back().price = std::nan("");
+  if (query.newest_first) std::reverse(rows.begin(), rows.end());
+  const std::size_t first = std::min(rows.size(), static_cast<std::size_t>(query.offset));
+  const std::size_t last = std::min(rows.size(), first + static_cast<std::size_t>(query.limit));
+  std::string json = fmt::format("{{\"total_count\": {}, \"results\": [", rows.size());
+  for (std::size_t i = first; i < last; ++i) {
+    json += fmt::format("{}{{\"datetime\":\"{}\",\"resolutioncode\":\"{}\"", i == first ? "" : ",",
+                        offset_time(rows[i].utc_s), minutes ? "PT1M" : "PT15M");
+    if (minutes) {
+      const std::int64_t quarter_hour = rows[i].utc_s / kQuarterHourS * kQuarterHourS;
+      json += fmt::format(",\"quarterhour\":\"{}\"", offset_time(quarter_hour));
+    }
+    json += fmt::format(",\"qualitystatus\":\"NotValidated\",\"imbalanceprice\":{}}}",
+                        price_text(rows[i].price));
+  }
+  return json + "]}";
+}
+
+}  // namespace bess

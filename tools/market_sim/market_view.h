@@ -1,0 +1,48 @@
+// What the market has published at an instant, as the JSON of Elia's API v2.1 (`/records`).
+// Row m of the minute series is computed at the END of minute m and readable `latency_s` later; the
+// settled price of a quarter-hour is readable as long after its end.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "tools/market_sim/minute_file.h"
+
+namespace bess {
+
+enum class Dataset : std::uint8_t { kMinutes /* ods161 */, kQuarterHours /* ods162 */ };
+
+struct RecordsQuery {
+  Dataset dataset = Dataset::kMinutes;
+  bool newest_first = true;
+  int limit = 10;
+  int offset = 0;
+  bool hide_newest_price = false;  ///< fault: the newest row's price is null
+};
+
+class MarketView {
+ public:
+  MarketView(std::vector<MinutePrice> prices, double latency_s)
+      : prices_(std::move(prices)), latency_ns_(static_cast<std::int64_t>(latency_s * 1e9)) {}
+
+  /// The answer to `/records` at an instant: rows of the last 24 hours, as the near-real-time sets
+  /// hold.
+  [[nodiscard]] std::string records(const RecordsQuery& query, std::int64_t now_utc_ns) const;
+  [[nodiscard]] std::int64_t first_utc_s() const { return prices_.front().minute_utc_s; }
+  [[nodiscard]] std::int64_t last_utc_s() const { return prices_.back().minute_utc_s; }
+
+ private:
+  struct Row {
+    std::int64_t utc_s;
+    double price;
+  };
+  [[nodiscard]] std::vector<Row> visible_minutes(std::int64_t now_utc_ns) const;
+  [[nodiscard]] std::vector<Row> visible_quarter_hours(std::int64_t now_utc_ns) const;
+  [[nodiscard]] std::pair<std::size_t, std::size_t> window(std::int64_t now_utc_ns) const;
+
+  std::vector<MinutePrice> prices_;
+  std::int64_t latency_ns_;
+};
+
+}  // namespace bess

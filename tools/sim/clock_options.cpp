@@ -1,0 +1,32 @@
+#include "tools/sim/clock_options.h"
+
+#include "shared/utc_text.h"
+#include "tools/sim/sim_error.h"
+
+namespace bess {
+
+void ClockOptions::add_to(CLI::App& app) {
+  app.add_option("--utc-start", utc_start,
+                 "UTC at the anchor, e.g. 2023-03-26T00:00:00Z; default: real time");
+  app.add_option("--time-scale", time_scale, "Simulated seconds per second (900: a day in 96 s)")
+      ->check(CLI::Range(1, 100'000));
+  app.add_option("--anchor-monotonic-ns", anchor_monotonic_ns,
+                 "CLOCK_MONOTONIC at which the clock shows --utc-start; default: now. Give all "
+                 "processes the same, from: bess-sim clock");
+}
+
+ScaledClock ClockOptions::clock() const {
+  if (utc_start.empty()) {
+    if (time_scale != 1) sim_fail("--time-scale needs --utc-start");
+    return {};
+  }
+  ScaledClock clock{.scale = time_scale};
+  if (!parse_utc_text(utc_start, clock.anchor_utc_s)) {
+    sim_fail("--utc-start {}: not a UTC instant such as 2023-03-26T00:00:00Z", utc_start);
+  }
+  clock.anchor_monotonic_ns =
+      anchor_monotonic_ns != 0 ? anchor_monotonic_ns : clock_ns(CLOCK_MONOTONIC);
+  return clock;
+}
+
+}  // namespace bess

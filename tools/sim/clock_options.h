@@ -1,0 +1,24 @@
+// The options that put several processes on the same simulated clock (shared/scaled_clock.h).
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <cstdint>
+#include <string>
+
+#include "shared/scaled_clock.h"
+
+namespace bess {
+
+struct ClockOptions {
+  std::string utc_start;
+  std::int32_t time_scale = 1;
+  std::int64_t anchor_monotonic_ns = 0;
+
+  /// Declares --utc-start, --time-scale and --anchor-monotonic-ns.
+  void add_to(CLI::App& app);
+  /// Throws SimError when they do not make sense. Without any of them: real time.
+  [[nodiscard]] ScaledClock clock() const;
+};
+
+}  // namespace bess

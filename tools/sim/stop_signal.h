@@ -1,0 +1,38 @@
+// SIGTERM and SIGINT as a file descriptor: the servers end their loops instead of dying half-way.
+#pragma once
+
+#include <pthread.h>
+#include <signal.h>
+#include <sys/signalfd.h>
+#include <unistd.h>
+
+namespace bess {
+
+class StopSignal {
+ public:
+  /// Construct before any thread is started, so that all of them leave the signals to this object.
+  StopSignal() {
+    sigset_t set;
+    sigemptyset(&set);
+    sigaddset(&set, SIGTERM);
+    sigaddset(&set, SIGINT);
+    pthread_sigmask(SIG_BLOCK, &set, nullptr);
+    fd_ = signalfd(-1, &set, SFD_CLOEXEC);
+  }
+  StopSignal(const StopSignal&) = delete;
+  StopSignal& operator=(const StopSignal&) = delete;
+  ~StopSignal() { close(fd_); }
+
+  /// Readable once a stop was requested.
+  [[nodiscard]] int fd() const { return fd_; }
+  /// Blocks until a stop is requested.
+  void wait() const {
+    signalfd_siginfo info;
+    while (read(fd_, &info, sizeof info) != sizeof info) continue;
+  }
+
+ private:
+  int fd_;
+};
+
+}  // namespace bess
