@@ -9,6 +9,8 @@ void add_prices_commands(CLI::App& app) {
   CLI::App* prices = app.add_subcommand("prices", "Get, build or describe minute price files");
   prices->require_subcommand(1);
   add_prices_simulate(*prices);
+  add_prices_reconstruct(*prices);
+  add_prices_import(*prices);
 }
 
 }  // namespace bess

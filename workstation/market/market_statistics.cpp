@@ -39,18 +39,6 @@ std::vector<double> sorted_published(std::span<const double> values) {
   return sorted;
 }
 
-std::vector<Gap> gaps_in(std::span<const double> values, std::int64_t start_utc_s,
-                         std::int64_t step_s) {
-  std::vector<Gap> gaps;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (is_published(values[i])) continue;
-    const std::int64_t utc_s = start_utc_s + step_s * static_cast<std::int64_t>(i);
-    if (gaps.empty() || gaps.back().until_utc_s != utc_s) gaps.push_back({utc_s, utc_s});
-    gaps.back().until_utc_s = utc_s + step_s;
-  }
-  return gaps;
-}
-
 /// Days of 92 or 100 quarter-hours inside [from, until).
 std::vector<ClockChange> clock_changes_between(std::int64_t from_utc_s, std::int64_t until_utc_s) {
   std::vector<ClockChange> changes;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "shared/units_and_limits.h"
+#include "workstation/market/gaps.h"
 #include "workstation/market/minute_series.h"
 #include "workstation/market/quarter_hour.h"
 
@@ -30,11 +31,6 @@ struct Convergence {
   double median_error = 0, mean_error = 0;  ///< absolute, EUR/MWh
 };
 using ConvergenceByMinute = std::array<Convergence, kMinutesPerQuarterHour>;
-
-struct Gap {
-  std::int64_t from_utc_s;
-  std::int64_t until_utc_s;  ///< exclusive
-};
 
 /// A local day of 23 or 25 hours that the file covers from midnight to midnight.
 struct ClockChange {
