@@ -21,8 +21,7 @@ void run(const Options& options) {
   write_minute_file(options.out, market.series,
                     fmt::format("Source: Elia open data (CC BY 4.0), imported by bess-train {}\n{}",
                                 BESS_VERSION, description));
-  fmt::print("{}{}: {} minutes written. Source: Elia open data (CC BY 4.0)\n", description,
-             options.out, market.series.size());
+  fmt::print("{}written to {}. Source: Elia open data (CC BY 4.0)\n", description, options.out);
 }
 
 }  // namespace
