@@ -11,6 +11,7 @@ void add_prices_commands(CLI::App& app) {
   add_prices_simulate(*prices);
   add_prices_reconstruct(*prices);
   add_prices_import(*prices);
+  add_prices_fetch(*prices);
   add_prices_stats(*prices);
 }
 

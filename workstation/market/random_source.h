@@ -13,8 +13,6 @@ class RandomSource {
 
   /// Uniform in [0, 1), 53 bits.
   double uniform() { return static_cast<double>(engine_() >> 11) * 0x1.0p-53; }
-  /// Uniform integer in [low, high].
-  int integer(int low, int high) { return low + static_cast<int>(uniform() * (high - low + 1)); }
   /// Standard normal (Marsaglia and Bray 1964, polar method).
   double normal();
 
