@@ -36,7 +36,7 @@ void run(const Options& options) {
        .sleep = [](double seconds) {
          std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
        }});
-  fmt::print("written to {}. {}\n", options.out, kEliaAttribution);
+  fmt::print("{}written to {}. {}\n", fetched.description, options.out, kEliaAttribution);
 }
 
 }  // namespace

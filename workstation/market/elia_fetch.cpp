@@ -89,7 +89,7 @@ HttpOutcome get_rows(const std::string& url, const FetchWindow& window, Download
   HttpOutcome outcome = http_get(url);
   if (outcome.kind != Kind::kDone) return outcome;
   try {
-    download.rows = rows_in_window(outcome.body, url, window);
+    download.rows = rows_in_window(outcome.body, window.dataset, window);
     download.text = std::move(outcome.body);
     return outcome;
   } catch (const UserError& error) {
@@ -158,7 +158,7 @@ std::string provenance_of(const FetchRequest& request, const std::vector<FetchWi
 
 fs::path fetch_cache_folder(const FetchRequest& request) { return request.out.string() + ".fetch"; }
 
-JoinedMarket fetch_prices(const FetchRequest& request) {
+FetchedPrices fetch_prices(const FetchRequest& request) {
   const std::vector<FetchWindow> windows = plan_fetch(request.span, request.now_utc_s);
   MarketRows rows;
   {
@@ -173,14 +173,14 @@ JoinedMarket fetch_prices(const FetchRequest& request) {
     fail("{}: holds no prices from {} to {}; choose other days", request.base_url,
          format_local_date(request.span.from), format_local_date(request.span.to));
   }
-  const JoinedMarket market = join_market(std::move(rows), request.base_url);
-  const std::string description =
-      describe_join(market) + describe_coverage(request, windows, market.series);
-  write_minute_file(request.out, market.series, provenance_of(request, windows) + description);
+  FetchedPrices fetched{join_market(std::move(rows), request.base_url), {}};
+  fetched.description =
+      describe_join(fetched.market) + describe_coverage(request, windows, fetched.market.series);
+  write_minute_file(request.out, fetched.market.series,
+                    provenance_of(request, windows) + fetched.description);
   std::error_code error;
   fs::remove_all(fetch_cache_folder(request), error);  // a leftover is only wasted space
-  fmt::print("{}", description);
-  return market;
+  return fetched;
 }
 
 }  // namespace bess

@@ -36,8 +36,13 @@ struct FetchRequest {
 /// Folder of the finished windows.
 std::filesystem::path fetch_cache_folder(const FetchRequest& request);
 
+struct FetchedPrices {
+  JoinedMarket market;
+  std::string description;  ///< what was joined and what is missing, for the user
+};
+
 /// Downloads, joins, writes `out` with its provenance, removes the cache. Returns what it wrote.
 /// Throws UserError; then finished windows stay for the next run.
-JoinedMarket fetch_prices(const FetchRequest& request);
+FetchedPrices fetch_prices(const FetchRequest& request);
 
 }  // namespace bess

@@ -36,8 +36,8 @@ std::int64_t minutes_in(const std::vector<Gap>& gaps) {
 
 std::string describe_gaps(std::string_view what, std::vector<Gap> gaps) {
   if (gaps.empty()) return fmt::format("{}: no gaps\n", what);
-  std::string text =
-      fmt::format("{}: {} gaps, {} minutes missing\n", what, gaps.size(), minutes_in(gaps));
+  std::string text = fmt::format("{}: {} gap{}, {} minutes missing\n", what, gaps.size(),
+                                 gaps.size() == 1 ? "" : "s", minutes_in(gaps));
   std::stable_sort(gaps.begin(), gaps.end(),
                    [](const Gap& a, const Gap& b) { return minutes_of(a) > minutes_of(b); });
   for (std::size_t i = 0; i < std::min(kGapsListed, gaps.size()); ++i) {

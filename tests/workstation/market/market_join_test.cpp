@@ -61,7 +61,7 @@ TEST(MarketJoin, StrayDatesAndEmptinessAreRefused) {
 TEST(MarketJoin, GapsAreReported) {
   const MarketRows rows{{{0, 1}, {180, 1}}, {settled(0, 40), settled(2700, 40)}};
   const std::string text = describe_join(join_market(rows, "test"));
-  EXPECT_THAT(text, HasSubstr("settled price: 1 gaps, 30 minutes missing"));
+  EXPECT_THAT(text, HasSubstr("settled price: 1 gap, 30 minutes missing"));
   EXPECT_THAT(text, HasSubstr("1970-01-01T00:01:00Z to 1970-01-01T00:03:00Z: 2 minutes"));
 }
 

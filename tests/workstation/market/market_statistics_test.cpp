@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
 
 #include "tests/workstation/market/market_test_support.h"
@@ -64,7 +65,7 @@ TEST(Statistics, TextAndJson) {
   series.indicative.assign(45, 90.0);
   series.indicative[20] = kNotPublished;
   const MarketStatistics result = statistics_of_minutes(series);
-  EXPECT_THAT(format_statistics_text(result), HasSubstr("indicative price: 1 gaps, 1 minutes"));
+  EXPECT_THAT(format_statistics_text(result), HasSubstr("indicative price: 1 gap, 1 minutes"));
   const std::string json = format_statistics_json(result);
   EXPECT_THAT(json, HasSubstr("\"median\":100"));
   EXPECT_THAT(json, HasSubstr("\"autocorrelation\":{\"1\":null"));  // a constant has none
