@@ -27,7 +27,7 @@ std::string checked_base_url(std::string url) {
 }
 
 void run(const Options& options) {
-  fetch_prices(
+  const FetchedPrices fetched = fetch_prices(
       {.span = {parse_local_date(options.from, "--from"), parse_local_date(options.to, "--to")},
        .out = options.out,
        .base_url = checked_base_url(options.base_url),
