@@ -1,6 +1,7 @@
 // bess-train prices import: downloaded CSV and JSON to one minute file.
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 
 #include "workstation/cli/prices.h"
@@ -15,13 +16,22 @@ struct Options {
   std::string out;
 };
 
+std::string file_names(const std::vector<std::string>& paths) {
+  std::string names;
+  for (const std::string& path : paths) {
+    names += (names.empty() ? "" : ", ") + std::filesystem::path(path).filename().string();
+  }
+  return names;
+}
+
 void run(const Options& options) {
   const JoinedMarket market = join_market(read_market_files(options.files), options.files.front());
   const std::string description = describe_join(market);
-  write_minute_file(options.out, market.series,
-                    fmt::format("Source: Elia open data (CC BY 4.0), imported by bess-train {}\n{}",
-                                BESS_VERSION, description));
-  fmt::print("{}written to {}. Source: Elia open data (CC BY 4.0)\n", description, options.out);
+  write_minute_file(
+      options.out, market.series,
+      fmt::format("Imported by bess-train {} from {}\nElia open data: source Elia, CC BY 4.0\n{}",
+                  BESS_VERSION, file_names(options.files), description));
+  fmt::print("{}written to {}. Elia open data: source Elia, CC BY 4.0\n", description, options.out);
 }
 
 }  // namespace
@@ -29,11 +39,11 @@ void run(const Options& options) {
 void add_prices_import(CLI::App& prices) {
   auto options = std::make_shared<Options>();
   CLI::App* command = prices.add_subcommand(
-      "import",
-      "Join downloaded minute and quarter-hour files (Elia CSV or JSON) to a minute file");
+      "import", "Join downloaded minute and quarter-hour files to a minute file");
   command
       ->add_option("files", options->files,
-                   "Downloads of ods046, ods047, ods133, ods134, ods161, ods162; plain or .gz")
+                   "Downloads of ods046, ods047, ods133, ods134, ods161, ods162, or ENTSO-E A85 "
+                   "(XML); plain or .gz")
       ->required();
   command->add_option("--out", options->out, "Minute file to write (.csv or .csv.gz)")->required();
   command->footer(

@@ -12,6 +12,7 @@ MarketRows read_market_files(const std::vector<std::string>& paths) {
     all.minutes.insert(all.minutes.end(), rows.minutes.begin(), rows.minutes.end());
     all.quarter_hours.insert(all.quarter_hours.end(), rows.quarter_hours.begin(),
                              rows.quarter_hours.end());
+    all.dual_priced += rows.dual_priced;
   }
   return all;
 }

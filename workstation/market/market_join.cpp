@@ -100,6 +100,7 @@ JoinedMarket join_market(MarketRows rows, std::string_view name) {
       market.report);
   const std::vector<QuarterHour> quarter_hours =
       sorted_quarter_hours(std::move(rows.quarter_hours), market.report);
+  market.report.dual_priced = rows.dual_priced;
   market.report.minutes = minutes.size();
   market.report.quarter_hours = quarter_hours.size();
   const auto [from_utc_s, until_utc_s] = span_of(minutes, quarter_hours);
@@ -128,6 +129,12 @@ std::string describe_join(const JoinedMarket& market) {
         "{} duplicate rows dropped, {} of them with another price (the last one "
         "read was kept)\n",
         report.duplicates, report.duplicates_changed);
+  }
+  if (report.dual_priced > 0) {
+    text += fmt::format(
+        "{} quarter-hours have different prices for long and short: left without a "
+        "settled price\n",
+        report.dual_priced);
   }
   if (report.settled_from_minutes) {
     text +=

@@ -15,6 +15,7 @@ struct JoinReport {
   std::size_t minutes = 0, quarter_hours = 0;  ///< after dropping duplicates
   std::size_t duplicates = 0;
   std::size_t duplicates_changed = 0;  ///< with another price: the row read last is kept
+  std::size_t dual_priced = 0;         ///< quarter-hours with two different prices: left out
   bool settled_from_minutes = false;   ///< no quarter-hours were given: minute 14 stands for them
 };
 

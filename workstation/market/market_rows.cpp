@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "workstation/io/user_error.h"
+#include "workstation/market/entsoe_xml.h"
 #include "workstation/market/minute_series.h"
 
 namespace bess {
@@ -123,6 +124,7 @@ MarketRows parse_market_text(std::string_view text, std::string_view name) {
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   if (first == std::string_view::npos) fail("{}: the file is empty; download it again", name);
+  if (looks_like_xml(text)) return parse_entsoe_xml(text, name);
   const bool json = text[first] == '{' || text[first] == '[';
   return json ? parse_market_json(text, name) : parse_market_csv(text, name);
 }

@@ -24,6 +24,7 @@ struct MinuteRow {
 struct MarketRows {
   std::vector<MinuteRow> minutes;
   std::vector<QuarterHour> quarter_hours;
+  std::size_t dual_priced = 0;  ///< quarter-hours that lost their price because it was not one
 };
 
 enum class MarketField {
@@ -65,7 +66,7 @@ MarketRows parse_market_csv(std::string_view text, std::string_view name);
 /// Reads JSON: a bare array of records (exports), {"results": [...]} or version 1's {"records":
 /// [...]}.
 MarketRows parse_market_json(std::string_view text, std::string_view name);
-/// Either, told apart by the first character.
+/// Any of them or ENTSO-E's XML, told apart by the first character.
 MarketRows parse_market_text(std::string_view text, std::string_view name);
 
 }  // namespace bess

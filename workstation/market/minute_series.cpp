@@ -91,9 +91,10 @@ void append_row(MinuteSeries& series, const Row& row, std::string_view name,
   const std::int64_t index = (row.utc_s - series.start_utc_s) / 60;
   const auto size = static_cast<std::int64_t>(series.size());
   if (index < size) {
-    fail("{}:{}: row out of order: {} does not come after {}; sort the file by time and drop "
-         "duplicates",
-         name, line_number, format_utc(row.utc_s), format_utc(series.utc_s(series.size() - 1)));
+    fail(
+        "{}:{}: row out of order: {} does not come after {}; sort the file by time and drop "
+        "duplicates",
+        name, line_number, format_utc(row.utc_s), format_utc(series.utc_s(series.size() - 1)));
   }
   if (index >= kMinutesMax) {
     fail("{}:{}: {} is more than 40 years after the first row; mend the date", name, line_number,
@@ -146,9 +147,10 @@ MinuteSeries parse_minute_csv(std::string_view text, std::string_view name) {
     if (line.empty() || line[0] == '#') continue;
     if (!header_seen) {
       if (line != kHeader) {
-        fail("{}:{}: not a minute file: the header must be \"{}\"; convert downloads with "
-             "'bess-train prices import'",
-             name, line_number, kHeader);
+        fail(
+            "{}:{}: not a minute file: the header must be \"{}\"; convert downloads with "
+            "'bess-train prices import'",
+            name, line_number, kHeader);
       }
       header_seen = true;
       continue;

@@ -1,8 +1,8 @@
-// The one exchange format between markets and everything that learns or evaluates: a dense series of
-// minutes with the indicative price (what could be seen) and the settled price (what is paid).
-// File: CSV or .csv.gz, header `minute_utc,indicative_eur_mwh,settled_eur_mwh`, UTC with Z, strictly
-// ascending; empty indicative = not published, empty settled = not settled. Lines starting with # are
-// provenance comments.
+// The one exchange format between markets and everything that learns or evaluates: a dense series
+// of minutes with the indicative price (what could be seen) and the settled price (what is paid).
+// File: CSV or .csv.gz, header `minute_utc,indicative_eur_mwh,settled_eur_mwh`, UTC with Z,
+// strictly ascending; empty indicative = not published, empty settled = not settled. Lines starting
+// with # are provenance comments.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,9 @@
 namespace bess {
 
 struct MinuteSeries {
-  std::int64_t start_utc_s = 0;     ///< first minute, a multiple of 60
-  std::vector<double> indicative;   ///< [minute] EUR/MWh, NaN = not published
-  std::vector<double> settled;      ///< [minute] EUR/MWh of the minute's quarter-hour, NaN = unknown
+  std::int64_t start_utc_s = 0;    ///< first minute, a multiple of 60
+  std::vector<double> indicative;  ///< [minute] EUR/MWh, NaN = not published
+  std::vector<double> settled;     ///< [minute] EUR/MWh of the minute's quarter-hour, NaN = unknown
 
   [[nodiscard]] std::size_t size() const { return settled.size(); }
   [[nodiscard]] std::int64_t utc_s(std::size_t minute) const {
@@ -28,8 +28,8 @@ struct MinuteSeries {
 MinuteSeries parse_minute_csv(std::string_view text, std::string_view name);
 MinuteSeries read_minute_file(const std::filesystem::path& path);
 
-/// CSV text of a series, prices with two decimals; minutes without any price are left out. `provenance`
-/// becomes # comment lines at the head (one per line of the string, may be empty).
+/// CSV text of a series, prices with two decimals; minutes without any price are left out.
+/// `provenance` becomes # comment lines at the head (one per line of the string, may be empty).
 std::string format_minute_csv(const MinuteSeries& series, std::string_view provenance);
 void write_minute_file(const std::filesystem::path& path, const MinuteSeries& series,
                        std::string_view provenance);
