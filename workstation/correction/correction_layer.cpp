@@ -21,7 +21,8 @@ CorrectionLayer::CorrectionLayer(const CorrectionOptions& options, int prices, i
       v_(u_.size()),
       shifted_(u_.size()) {}
 
-/// Bounds on x = difference + ramp. The ramp differs inside a row, so the row's strictest cell counts.
+/// Bounds on x = difference + ramp. The ramp differs inside a row, so the row's strictest cell
+/// counts.
 RowBounds CorrectionLayer::bounds_of(const LatticeAxes& axes, double lower, double upper) const {
   const auto& price = axes.price_eur_per_mwh;
   RowBounds bounds;
@@ -31,9 +32,9 @@ RowBounds CorrectionLayer::bounds_of(const LatticeAxes& axes, double lower, doub
       price.end() - std::ranges::lower_bound(price, options_.high_price_eur_per_mwh));
   const double low_ramp =
       bounds.lower_rows > 0 ? options_.price_slope * axes.mapped_price[bounds.lower_rows - 1] : 0;
-  const double high_ramp = bounds.upper_rows > 0
-                               ? options_.price_slope * axes.mapped_price[prices_ - bounds.upper_rows]
-                               : 0;
+  const double high_ramp =
+      bounds.upper_rows > 0 ? options_.price_slope * axes.mapped_price[prices_ - bounds.upper_rows]
+                            : 0;
   bounds.lower = lower + low_ramp + options_.soc_slope * axes.soc.back();
   bounds.upper = upper + high_ramp + options_.soc_slope * axes.soc.front();
   // Opposite ends must not cross: a lower bound below the upper one would let rows in between rise.

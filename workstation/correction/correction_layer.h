@@ -1,8 +1,9 @@
-// The differentiable optimisation layer [Paper, Eq. 11]: maps the student's logits on one context lattice
-// (all prices x SoCs for one T_qh, qh, mo) to the nearest logits that satisfy the properties.
+// The differentiable optimisation layer [Paper, Eq. 11]: maps the student's logits on one context
+// lattice (all prices x SoCs for one T_qh, qh, mo) to the nearest logits that satisfy the
+// properties.
 //
-// Logit differences u = z_charge - z_idle and v = z_idle - z_discharge are projected separately, the mean
-// of the logits passes through [SPEC 5]:
+// Logit differences u = z_charge - z_idle and v = z_idle - z_discharge are projected separately,
+// the mean of the logits passes through [SPEC 5]:
 //   monotone (3):     u, v fall by at least a slope margin per step of price and of SoC
 //   price <= low (1): u >= m and v >= 0          price >= high (2): v <= -m and u <= 0
 // The slope margin is what survives rounding in the integer student. It is a change of variables:
@@ -25,7 +26,8 @@ struct CorrectionOptions {
   double soc_slope = 0.4;             ///< logits over the whole SoC range
 };
 
-/// Axes of one lattice, ascending: prices in EUR/MWh with their network input, SoC as network input 0..1.
+/// Axes of one lattice, ascending: prices in EUR/MWh with their network input, SoC as network input
+/// 0..1.
 struct LatticeAxes {
   std::vector<int> price_eur_per_mwh;
   std::vector<double> mapped_price;

@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "workstation/correction/policy_loss.h"
-#include "workstation/io/user_error.h"
 #include "workstation/io/progress.h"
+#include "workstation/io/user_error.h"
 
 namespace bess {
 namespace {
@@ -52,8 +52,8 @@ Matrix visited_inputs(const Teacher& teacher, const MarketSteps& market,
   std::size_t longest = 0;
   for (int pass = 0; pass < kVisitedPasses; ++pass) {
     for (const MarketDay& day : training) {
-      const double soc = battery.soc_min_frac +
-                         random.uniform() * (battery.soc_max_frac - battery.soc_min_frac);
+      const double soc =
+          battery.soc_min_frac + random.uniform() * (battery.soc_max_frac - battery.soc_min_frac);
       episodes.push_back({market.of(day), soc});
       longest = std::max(longest, day.step_count);
     }
@@ -128,8 +128,7 @@ void Distiller::draw_axes(const LatticeState* centre, LatticeAxes& axes) {
   });
   std::vector<int> socs{0, kSocCount - 1};
   if (centre != nullptr) socs.push_back(centre->soc_index);
-  fill_distinct(socs, options_.lattice_socs,
-                [&] { return clamped(draw_soc(), 0, kSocCount - 1); });
+  fill_distinct(socs, options_.lattice_socs, [&] { return clamped(draw_soc(), 0, kSocCount - 1); });
   axes.mapped_price.clear();
   for (const int price : axes.price_eur_per_mwh) {
     axes.mapped_price.push_back(double{teacher_.price_map(price)});
@@ -176,8 +175,7 @@ void Distiller::lattice_inputs(const Lattice& lattice, Matrix& x) const {
 
 /// log mu for the worker's inputs: softmax of the teacher's values over the temperature.
 Eigen::MatrixXd Distiller::teacher_logits(Worker& worker) const {
-  const double inverse_temperature =
-      1 / (options_.temperature_eur_per_h * double{kRewardScale});
+  const double inverse_temperature = 1 / (options_.temperature_eur_per_h * double{kRewardScale});
   const Matrix values = teacher_.action_values(worker.x, worker.teacher_tile);
   return log_softmax(values.cast<double>() * inverse_temperature);
 }
@@ -297,10 +295,10 @@ void Distiller::run(int epochs, const std::vector<LatticeState>& counterexamples
       mean.correction += losses.correction / steps;
       mean.visited += losses.visited / steps;
     }
-    curve_.push_back({static_cast<int>(curve_.size()) + 1, mean.teacher, mean.correction,
-                      mean.visited});
-    progress.update(epoch + 1, fmt::format("teacher KL {:.4f}  correction KL {:.2e}",
-                                           mean.visited, mean.correction));
+    curve_.push_back(
+        {static_cast<int>(curve_.size()) + 1, mean.teacher, mean.correction, mean.visited});
+    progress.update(epoch + 1, fmt::format("teacher KL {:.4f}  correction KL {:.2e}", mean.visited,
+                                           mean.correction));
   }
 }
 

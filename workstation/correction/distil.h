@@ -1,7 +1,7 @@
-// Distillation of the teacher into the 5-64-32-3 student through the correction layer [Paper, Eq. 11, 12].
-// An epoch is 64 context lattices of 32 prices x 16 SoCs, on which the layer corrects, and 32,768 states
-// that the teacher visits, which only follow the teacher; it is taken in small steps of Adam. The layer is
-// dropped afterwards: the student alone decides.
+// Distillation of the teacher into the 5-64-32-3 student through the correction layer [Paper, Eq.
+// 11, 12]. An epoch is 64 context lattices of 32 prices x 16 SoCs, on which the layer corrects, and
+// 32,768 states that the teacher visits, which only follow the teacher; it is taken in small steps
+// of Adam. The layer is dropped afterwards: the student alone decides.
 #pragma once
 
 #include <atomic>
@@ -18,18 +18,18 @@
 namespace bess {
 
 struct DistilOptions {
-  bool correct = true;         ///< false: plain distillation, for comparison
+  bool correct = true;  ///< false: plain distillation, for comparison
   CorrectionOptions correction;
-  double omega = 1e-4;         ///< the paper's trade-off: larger follows the teacher and violates more
+  double omega = 1e-4;  ///< the paper's trade-off: larger follows the teacher and violates more
   double temperature_eur_per_h = 100;  ///< of the teacher's softmax over action values
   int epochs = 600;
-  int steps_per_epoch = 16;    ///< Adam steps that share one epoch's states
+  int steps_per_epoch = 16;  ///< Adam steps that share one epoch's states
   int lattices_per_epoch = 64;
   int lattice_prices = 32;
   int lattice_socs = 16;
   int visited_per_epoch = 32'768;
-  double learning_rate = 1e-3; ///< falling to a tenth along a cosine
-  int repair_rounds = 12;      ///< proofs, each followed by counterexample training if it fails
+  double learning_rate = 1e-3;  ///< falling to a tenth along a cosine
+  int repair_rounds = 12;       ///< proofs, each followed by counterexample training if it fails
   int repair_epochs = 40;
   std::uint64_t seed = 1;
   int threads = 2;
@@ -54,8 +54,8 @@ class Distiller {
   /// Keeps references: `teacher` and `visited` must outlive it.
   Distiller(const Teacher& teacher, const Matrix& visited, const DistilOptions& options);
 
-  /// Trains for `epochs`. Half of the lattices are laid around `counterexamples` when there are any, and
-  /// slope margins are multiplied by `margin_scale`.
+  /// Trains for `epochs`. Half of the lattices are laid around `counterexamples` when there are
+  /// any, and slope margins are multiplied by `margin_scale`.
   void run(int epochs, const std::vector<LatticeState>& counterexamples, double margin_scale,
            const std::atomic<bool>& interrupted);
 

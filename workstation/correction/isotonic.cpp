@@ -26,8 +26,8 @@ IsotonicProjection::Rows IsotonicProjection::rows_of(const Block& block) const {
   return {first, last};
 }
 
-/// Dynamic program over rows: row i takes its cells left of t_i, and t does not grow with i. Returns the
-/// largest sum of y - theta over such a staircase and its thresholds in `cut`.
+/// Dynamic program over rows: row i takes its cells left of t_i, and t does not grow with i.
+/// Returns the largest sum of y - theta over such a staircase and its thresholds in `cut`.
 double IsotonicProjection::best_staircase(const Block& block, Rows rows, double theta,
                                           int forced_in_rows, int forced_out_rows,
                                           std::vector<int>& cut) {

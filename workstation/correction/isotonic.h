@@ -1,20 +1,20 @@
-// Exact projection onto matrices that do not increase along rows or columns, with bounds on the first and
-// last rows: the heart of property 3 with properties 1 and 2 [Paper, Eq. 11; SPEC 5].
+// Exact projection onto matrices that do not increase along rows or columns, with bounds on the
+// first and last rows: the heart of property 3 with properties 1 and 2 [Paper, Eq. 11; SPEC 5].
 //
 //   x = argmin sum_ij (x_ij - y_ij)^2
 //   s.t. x_ij >= x_i+1,j   x_ij >= x_i,j+1          rows: price ascending, columns: SoC ascending
 //        x_ij >= lower  for rows i < lower_rows     x_ij <= upper  for the last upper_rows rows
 //
-// Threshold decomposition of a separable convex problem: for any level theta the set {x > theta} is a
-// maximum-weight staircase for the weights y - theta, where bounded rows are forced in below their lower
-// bound and out above their upper bound, and the two sides can then be solved apart [Hochbaum 2001;
-// Stout 2013]. So: split at theta = lower and at theta = upper first, with rows forced; inside each part
-// the bound is the same for every cell, where clipping the unbounded solution IS the projection; and the
-// unbounded solution comes from splitting at the mean until no staircase gains. Clipping without the
-// forced splits is not the projection.
+// Threshold decomposition of a separable convex problem: for any level theta the set {x > theta} is
+// a maximum-weight staircase for the weights y - theta, where bounded rows are forced in below
+// their lower bound and out above their upper bound, and the two sides can then be solved apart
+// [Hochbaum 2001; Stout 2013]. So: split at theta = lower and at theta = upper first, with rows
+// forced; inside each part the bound is the same for every cell, where clipping the unbounded
+// solution IS the projection; and the unbounded solution comes from splitting at the mean until no
+// staircase gains. Clipping without the forced splits is not the projection.
 //
-// Adjoint: the solution is piecewise linear in y; on each level set the Jacobian averages, and it is zero
-// where the level set is clipped to a bound.
+// Adjoint: the solution is piecewise linear in y; on each level set the Jacobian averages, and it
+// is zero where the level set is clipped to a bound.
 #pragma once
 
 #include <span>
@@ -34,7 +34,8 @@ class IsotonicProjection {
  public:
   IsotonicProjection(int rows, int columns);
 
-  /// x = projection of y; both [rows x columns], row-major. Remembers the level sets for backward().
+  /// x = projection of y; both [rows x columns], row-major. Remembers the level sets for
+  /// backward().
   void project(std::span<const double> y, const RowBounds& bounds, std::span<double> x);
   /// dL/dy from dL/dx at the last projection; may alias.
   void backward(std::span<const double> gradient_x, std::span<double> gradient_y) const;
@@ -61,10 +62,10 @@ class IsotonicProjection {
   int columns_;
   std::span<const double> y_;
   std::span<double> x_;
-  std::vector<double> best_;   ///< [row][threshold 0..columns] best weight of rows up to this one
-  std::vector<int> argbest_;   ///< threshold of the row before that attains it
-  std::vector<int> level_set_;   ///< [cell]
-  std::vector<char> clipped_;    ///< [level set]
+  std::vector<double> best_;    ///< [row][threshold 0..columns] best weight of rows up to this one
+  std::vector<int> argbest_;    ///< threshold of the row before that attains it
+  std::vector<int> level_set_;  ///< [cell]
+  std::vector<char> clipped_;   ///< [level set]
 };
 
 }  // namespace bess

@@ -27,7 +27,8 @@ Range affine_range(const Eigen::MatrixXd& w, const Eigen::VectorXd& b, const Ran
 
 Range relu_range(const Range& x) { return {x.low.cwiseMax(0.0), x.high.cwiseMax(0.0)}; }
 
-/// Largest f with max|w| * 2^f inside int16 and every accumulator at scale 2^(f + input_bits) inside.
+/// Largest f with max|w| * 2^f inside int16 and every accumulator at scale 2^(f + input_bits)
+/// inside.
 int weight_bits(const Eigen::MatrixXd& w, const Eigen::VectorXd& b, const Range& x,
                 int input_bits) {
   const double accumulator =
@@ -70,14 +71,16 @@ std::int64_t layer_bound(const Affine<kInputs, kOutputs>& layer, std::int64_t in
   return bound;
 }
 
-/// Largest activation after a layer whose inputs are in 0..input_max, per output, exact in integers.
+/// Largest activation after a layer whose inputs are in 0..input_max, per output, exact in
+/// integers.
 template <int kInputs, int kOutputs>
 std::int64_t activation_bound(const Affine<kInputs, kOutputs>& layer, int shift,
                               std::int64_t input_max) {
   std::int64_t bound = 0;
   for (int o = 0; o < kOutputs; ++o) {
     std::int64_t sum = layer.bias[o];
-    for (int i = 0; i < kInputs; ++i) sum += std::max<std::int64_t>(0, layer.weight[i][o]) * input_max;
+    for (int i = 0; i < kInputs; ++i)
+      sum += std::max<std::int64_t>(0, layer.weight[i][o]) * input_max;
     bound = std::max(bound, sum);
   }
   return std::min<std::int64_t>(INT16_MAX, (bound >> shift) + 1);

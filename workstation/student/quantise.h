@@ -1,5 +1,6 @@
-// From the float student to the integer one: the largest power-of-two scale for each layer at which no
-// weight leaves int16, no accumulator can leave int32 and no activation saturates for ANY lattice input.
+// From the float student to the integer one: the largest power-of-two scale for each layer at which
+// no weight leaves int16, no accumulator can leave int32 and no activation saturates for ANY
+// lattice input.
 #pragma once
 
 #include "shared/nn/student_net.h"

@@ -47,8 +47,8 @@ class FieldReader {
     if (!cJSON_IsString(item)) fail("{}: \"{}\" is not a text", name_, key);
     return item->valuestring;
   }
-  template <typename T>
-  void integers(const char* key, std::span<T> out) const {
+  template <typename T, std::size_t kExtent>
+  void integers(const char* key, std::span<T, kExtent> out) const {
     const cJSON* array = field(key);
     if (!cJSON_IsArray(array) || cJSON_GetArraySize(array) != static_cast<int>(out.size())) {
       fail("{}: \"{}\" is not an array of {} integers", name_, key, out.size());
@@ -56,8 +56,8 @@ class FieldReader {
     const cJSON* item = array->child;
     for (T& value : out) {
       const double x = cJSON_IsNumber(item) ? item->valuedouble : 0.5;
-      value = static_cast<T>(clamp_to<double>(x, std::numeric_limits<T>::min(),
-                                              std::numeric_limits<T>::max()));
+      value = static_cast<T>(
+          clamp_to<double>(x, std::numeric_limits<T>::min(), std::numeric_limits<T>::max()));
       if (static_cast<double>(value) != x) {
         fail("{}: \"{}\" holds something else than integers of {} bits", name_, key, 8 * sizeof(T));
       }
@@ -78,7 +78,8 @@ class FieldReader {
 void check_net(const StudentNet& net, const std::string& name) {
   constexpr int kShiftMax = 30;
   for (const int shift : {net.relu1.shift, net.relu2.shift}) {
-    if (shift < 0 || shift > kShiftMax) fail("{}: shift {} is not in 0..{}", name, shift, kShiftMax);
+    if (shift < 0 || shift > kShiftMax)
+      fail("{}: shift {} is not in 0..{}", name, shift, kShiftMax);
   }
   for (int i = 0; i < kPriceCount; ++i) {
     if (net.price_map[i] < 0 || net.price_map[i] > kInputOne ||

@@ -20,8 +20,8 @@ struct StudentFile {
 /// Written beside and renamed.
 void save_student(const std::filesystem::path& path, const StudentFile& student);
 
-/// Throws UserError naming the file and what is wrong: not JSON, another architecture, a number out of
-/// range, a hash that differs, weights whose accumulators could overflow.
+/// Throws UserError naming the file and what is wrong: not JSON, another architecture, a number out
+/// of range, a hash that differs, weights whose accumulators could overflow.
 StudentFile load_student(const std::filesystem::path& path);
 StudentFile parse_student(const std::string& text, const std::string& name);
 

@@ -12,8 +12,8 @@ class StudentPolicy final : public Policy {
  public:
   explicit StudentPolicy(const StudentNet& net) : net_(net) {}
   [[nodiscard]] Action decide(const MarketStep& step, std::size_t, double soc_frac) const override {
-    const auto price_centi = static_cast<std::int32_t>(
-        std::lround(step.observed_eur_per_mwh * kCentiPerEur));
+    const auto price_centi =
+        static_cast<std::int32_t>(std::lround(step.observed_eur_per_mwh * kCentiPerEur));
     const auto soc_e4 = static_cast<std::int32_t>(std::lround(soc_frac * kSocFullE4));
     return net_.decide({.t_qh = step.t_qh,
                         .qh = step.quarter_hour,

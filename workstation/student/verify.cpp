@@ -9,7 +9,8 @@
 namespace bess {
 namespace {
 
-/// Boxes of at most this many states are evaluated one by one: a bound costs as much as a few states.
+/// Boxes of at most this many states are evaluated one by one: a bound costs as much as a few
+/// states.
 constexpr int kSmallBox = 6;
 
 struct Box {
@@ -79,8 +80,9 @@ class BoxBounds {
   }
 
  private:
-  /// Whether `candidate` beats both others for all hidden activations inside the bounds: the smallest
-  /// possible difference of logits decides, ties going to the lower action as in argmax_action.
+  /// Whether `candidate` beats both others for all hidden activations inside the bounds: the
+  /// smallest possible difference of logits decides, ties going to the lower action as in
+  /// argmax_action.
   [[nodiscard]] bool wins(Action candidate, const std::int16_t (&low)[kStudentHidden2],
                           const std::int16_t (&high)[kStudentHidden2]) const {
     const int c = static_cast<int>(candidate);
@@ -193,8 +195,8 @@ class GridChecker {
   void check(const LatticeState& context, const std::vector<std::int8_t>& grid) {
     context_ = context;
     kept_in_context_ = 0;
-    const int low = std::clamp(options_.low_price_eur_per_mwh - kLatticePriceMinEurPerMwh, -1,
-                               kPriceCount - 1);
+    const int low =
+        std::clamp(options_.low_price_eur_per_mwh - kLatticePriceMinEurPerMwh, -1, kPriceCount - 1);
     const int high =
         std::clamp(options_.high_price_eur_per_mwh - kLatticePriceMinEurPerMwh, 0, kPriceCount);
     constexpr auto kCharge = static_cast<std::int8_t>(Action::kCharge);

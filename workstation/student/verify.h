@@ -1,13 +1,17 @@
 // The proof: the integer student's action on EVERY lattice state [SPEC 6], 6,950,033,280 of them.
 //
-// For each of the 17,280 contexts (T_qh, qh, mo) the action grid over SoC x price is filled, then checked:
+// For each of the 17,280 contexts (T_qh, qh, mo) the action grid over SoC x price is filled, then
+// checked:
 //   property 1   states with price <= low whose action is not charge
 //   property 2   states with price >= high whose action is not discharge
-//   property 3   neighbour pairs (price + 1, or SoC + 1) where the action increases; the order of any two
-//                comparable states follows from neighbours, so none violates if and only if no pair does
-// Filling is exhaustive, or by sound bounds: interval arithmetic through the very integers of the net,
-// whose every operation is monotone, shows that a box of states has one action; a box it cannot decide is
-// halved, down to states that are evaluated by the code that the edge runs. Both give the same counts.
+//   property 3   neighbour pairs (price + 1, or SoC + 1) where the action increases; the order of
+//   any two
+//                comparable states follows from neighbours, so none violates if and only if no pair
+//                does
+// Filling is exhaustive, or by sound bounds: interval arithmetic through the very integers of the
+// net, whose every operation is monotone, shows that a box of states has one action; a box it
+// cannot decide is halved, down to states that are evaluated by the code that the edge runs. Both
+// give the same counts.
 #pragma once
 
 #include <atomic>
@@ -21,8 +25,8 @@ namespace bess {
 struct VerifyOptions {
   int low_price_eur_per_mwh = kLatticePriceMinEurPerMwh;
   int high_price_eur_per_mwh = kLatticePriceMaxEurPerMwh;
-  bool exhaustive = false;     ///< evaluate every state, no bounds
-  int context_stride = 1;      ///< check every n-th context only (a quick look, not a proof)
+  bool exhaustive = false;  ///< evaluate every state, no bounds
+  int context_stride = 1;   ///< check every n-th context only (a quick look, not a proof)
   std::size_t counterexamples_max = 4096;
   int threads = 2;
 };
@@ -43,7 +47,8 @@ struct Certificate {
 
 Certificate verify_student(const StudentNet& net, const VerifyOptions& options);
 
-/// Actions of one context, [SoC][price], as Action's integers. Returns how many states were evaluated.
+/// Actions of one context, [SoC][price], as Action's integers. Returns how many states were
+/// evaluated.
 std::int64_t fill_action_grid(const StudentNet& net, int t_qh, int quarter_hour, int month,
                               bool exhaustive, std::vector<std::int8_t>& grid);
 
