@@ -30,6 +30,7 @@ Target within_factor(const char* name, double real, double factor) {
 }
 
 constexpr std::array<int, 5> kMinutesCompared{0, 2, 4, 7, 10};
+constexpr double kLateMinuteErrorMax = 2.5;  ///< from minute 12 on; the two days have 2.1 and 0.8
 /// Median absolute error to the settled price: 6 September 2024, 8 April 2025.
 constexpr std::array<std::array<double, 2>, 5> kMinuteErrors{
     {{80.8, 32.0}, {41.9, 8.3}, {21.7, 9.4}, {17.0, 7.5}, {4.3, 2.0}}};
@@ -39,7 +40,7 @@ SimulationPeriod year_2023() {
 }
 
 void expect_in(const Target& target, double simulated, const std::string& seed) {
-  fmt::print("{:28} real {:9.4f}  allowed {:9.4f} to {:9.4f}  simulated {:9.4f}\n", target.name,
+  fmt::print("{:34} real {:9.4f}  allowed {:9.4f} to {:9.4f}  simulated {:9.4f}\n", target.name,
              target.real, target.low, target.high, simulated);
   EXPECT_GE(simulated, target.low) << target.name << ", seed " << seed;
   EXPECT_LE(simulated, target.high) << target.name << ", seed " << seed;
@@ -61,13 +62,14 @@ void compare_prices(const PriceStatistics& price, const std::string& seed) {
 void compare_convergence(const ConvergenceByMinute& convergence, const std::string& seed) {
   for (std::size_t i = 0; i < kMinutesCompared.size(); ++i) {
     const auto [larger, smaller] = kMinuteErrors[i];
-    const std::string name = fmt::format("median error, minute {}", kMinutesCompared[i]);
+    const std::string name = fmt::format("median error, minute {} (mean day)", kMinutesCompared[i]);
     expect_in({name.c_str(), (larger + smaller) / 2, 0.7 * smaller, 1.3 * larger},
               convergence[static_cast<std::size_t>(kMinutesCompared[i])].median_error, seed);
   }
   for (const std::size_t minute : {12u, 13u, 14u}) {
-    const std::string name = fmt::format("median error, minute {}", minute);
-    expect_in({name.c_str(), 0, 0, 2.5}, convergence[minute].median_error, seed);
+    fmt::print("median error, minute {}: allowed up to {}, simulated {:.4f}\n", minute,
+               kLateMinuteErrorMax, convergence[minute].median_error);
+    EXPECT_LE(convergence[minute].median_error, kLateMinuteErrorMax) << "seed " << seed;
   }
 }
 
