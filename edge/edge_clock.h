@@ -1,6 +1,6 @@
 // The control thread's time: UTC (possibly scaled), absolute deadlines, and the request to stop.
-// SIGTERM and SIGINT are blocked in every thread and taken synchronously while waiting, so no
-// signal is lost between a test and a sleep and no handler runs in the middle of an order.
+// SIGTERM, SIGINT and SIGHUP are blocked in every thread and taken synchronously while waiting, so
+// no signal is lost between a test and a sleep and no handler runs in the middle of an order.
 #pragma once
 
 #include <pthread.h>
@@ -20,6 +20,7 @@ class EdgeClock {
     sigemptyset(&stop_signals_);
     sigaddset(&stop_signals_, SIGTERM);
     sigaddset(&stop_signals_, SIGINT);
+    sigaddset(&stop_signals_, SIGHUP);
     pthread_sigmask(SIG_BLOCK, &stop_signals_, nullptr);
   }
 

@@ -6,6 +6,7 @@
 //   battery ------> ModbusBattery ----------+         |
 //                                                     +-> EventLog
 //   exit 0 clean stop   1 settings, battery or price server are bad   2 the command line is bad
+#include <signal.h>
 #include <sys/prctl.h>
 
 #include <cerrno>
@@ -68,6 +69,7 @@ int main(int argc, char** argv) {
   if (!check_student()) return 1;
 
   set_market_time_zone();
+  signal(SIGPIPE, SIG_IGN);           // whoever reads the log may go away, the battery must not
   prctl(PR_SET_TIMERSLACK, 1'000UL);  // ns; the default 50 us would be seen at high time scales
   static EdgeClock clock(config.clock, config.require_synchronised_clock);
   static ModbusBattery battery(config.link, config.map, config.clock);
