@@ -9,6 +9,7 @@
 #include <time.h>
 
 #include "shared/scaled_clock.h"
+#include "shared/units_and_limits.h"
 
 namespace bess {
 
@@ -40,6 +41,13 @@ class EdgeClock {
       take_stop_signal(left_ns < kNanosecondsPerSecond ? left_ns : kNanosecondsPerSecond);
     }
     return false;
+  }
+
+  /// Simulated time begins at its anchor: the first tick is then the same in every run.
+  bool wait_for_simulated_start() {
+    if (clock_.is_real_time()) return true;
+    const std::int64_t before_first_tick_s = clock_.anchor_utc_s - kSecondsPerStep + 1;
+    return sleep_until_utc_ns(before_first_tick_s * kNanosecondsPerSecond);
   }
 
   bool stop_requested() {

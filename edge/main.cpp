@@ -35,7 +35,8 @@ void release_after_failed_check(const char*, const char*, int) {
 
 /// Runs until a stop is requested or `cycles` are done; the last order keeps its whole step.
 int run_loop(Loop& loop, std::int64_t cycles, bess::EdgeClock& clock, bess::EventLog& log) {
-  bess::CycleRecord record;
+  bess::CycleRecord record{};
+  clock.wait_for_simulated_start();
   for (std::int64_t i = 0; i != cycles && loop.run_cycle(record); ++i) log.write(record);
   clock.sleep_until_utc_ns((record.utc_s + bess::kSecondsPerStep) * bess::kNanosecondsPerSecond);
   const bess::Status status = loop.stop(record);
@@ -83,6 +84,7 @@ int main(int argc, char** argv) {
     return 1;
   }
   if (!reach_battery(config, battery, clock)) return 1;
+  greet_price_server(config, prices);
   log.note(config.control.control ? "started: in control" : "started: read-only");
   if (config.control.control) {
     battery_of_check_handler = &battery;

@@ -113,6 +113,14 @@ bool reach_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& 
   return true;
 }
 
+void greet_price_server(const EdgeConfig& config, PriceFeed& prices) {
+  PriceRow row;
+  const Status status = prices.fetch_once(row);
+  if (status == Status::kOk) return;
+  std::fprintf(stderr, "bess-edge: note: price from %s: %s; waiting in safe state\n",
+               config.price.url.c_str(), status_text(status).data());
+}
+
 bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& prices) {
   std::printf("student    %s (%d self-checks passed)\n", student_provenance(),
               student_self_check_count());
