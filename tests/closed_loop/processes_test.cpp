@@ -222,9 +222,9 @@ TEST_F(Processes, BadStartsEndWithOneClearLine) {
 }
 
 TEST_F(Processes, TheWrongBatteryIsRefusedBeforeAnythingIsWritten) {
-  battery_ = start_simulator({"battery", "--port", "0", "--capacity-wh", "12000", "--record",
-                              folder_.file("battery.csv")},
-                             battery_port_);
+  battery_ = start_simulator(
+      {"battery", "--port", "0", "--capacity-wh", "12000", "--record", folder_.file("battery.csv")},
+      battery_port_);
   market_port_ = 1;
   ChildProcess edge({BESS_EDGE_PROGRAM, "--config", write_config()});
   EXPECT_THAT(edge.read_all(), HasSubstr("capacity reads 12000, not 6000 to 10000"));
