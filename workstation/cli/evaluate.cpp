@@ -1,6 +1,7 @@
 // bess-train evaluate: what a policy would have earned.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "workstation/cli/commands.h"
@@ -19,6 +20,7 @@ struct Options {
   std::string prices;
   std::vector<std::string> policies;
   std::string split = "test";
+  std::string date;
   bool carry_soc = false;
   bool json = false;
   std::string days_out;
@@ -65,14 +67,37 @@ void print_line(const std::string& policy, const Evaluation& e, double foresight
              e.switches_per_day(), 100 * e.profit_eur_per_day_per_mwh() / foresight_profit);
 }
 
+double price_range(const MarketSteps& market, const MarketDay& day) {
+  const auto [low, high] =
+      std::ranges::minmax(market.of(day), {}, &MarketStep::observed_eur_per_mwh);
+  return high.observed_eur_per_mwh - low.observed_eur_per_mwh;
+}
+
+/// The one day that --date names, out of those of the split.
+MarketDay select_day(const MarketSteps& market, const std::vector<MarketDay>& days,
+                     const std::string& date) {
+  const auto found =
+      date == "widest"
+          ? std::ranges::max_element(
+                days, {}, [&](const MarketDay& day) { return price_range(market, day); })
+          : std::ranges::find_if(days, [&](const MarketDay& day) { return day.date() == date; });
+  if (found == days.end()) {
+    fail("--date {}: no complete day of that date in the split; use YYYY-MM-DD or widest, and "
+         "perhaps --split all",
+         date);
+  }
+  return *found;
+}
+
 void run(const Options& options) {
   const RunConfig config = options.common.resolve();
   const MarketSteps market = make_market_steps(read_minute_file(options.prices), config.market);
-  const std::vector<MarketDay> days = market.days_of(parse_split(options.split));
+  std::vector<MarketDay> days = market.days_of(parse_split(options.split));
   if (days.empty()) {
     fail("{}: no complete day in the {} split; add prices or use --split all", options.prices,
          options.split);
   }
+  if (!options.date.empty()) days = {select_day(market, days, options.date)};
   const EvaluationOptions evaluation{config.battery, config.initial_soc_frac, options.carry_soc};
   ForesightPolicy foresight(config.battery);
   const double foresight_profit =
@@ -114,6 +139,8 @@ void add_evaluate_command(CLI::App& app) {
   command->add_option("--split", options->split, "Local days 1-20, 21-25, 26-end, or all")
       ->check(CLI::IsMember({"train", "val", "test", "all"}))
       ->capture_default_str();
+  command->add_option("--date", options->date,
+                      "Only this day of the split: YYYY-MM-DD, or widest (largest price range)");
   options->common.add_market(*command);
   options->common.add_config(*command);
   command->add_flag("--carry-soc", options->carry_soc, "Chain the days instead of resetting SoC");
@@ -124,7 +151,9 @@ void add_evaluate_command(CLI::App& app) {
       "Examples:\n"
       "  bess-train evaluate --prices market.csv.gz --policy rbc tabular foresight\n"
       "  bess-train evaluate --prices market.csv.gz --policy runs/a/student.json --split all "
-      "--carry-soc --json");
+      "--carry-soc --json\n"
+      "  bess-train evaluate --prices market.csv.gz --policy compiled --date widest --steps-out "
+      "day.csv");
   command->callback([options] { run(*options); });
 }
 
