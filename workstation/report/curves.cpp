@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 
@@ -12,7 +13,7 @@ namespace {
 
 constexpr std::string_view kTrainingHeader =
     "step,loss,validation_eur_per_day_per_mwh,edge_mass_frac";
-constexpr std::string_view kDistilHeader = "epoch,teacher_kl,correction_kl,visited_kl";
+constexpr std::string_view kDistilHeader = "epoch,teacher_loss,correction_loss,visited_loss";
 
 /// Rows of four numbers under a known header.
 std::vector<std::array<double, 4>> parse_rows(std::string_view text, std::string_view header,
@@ -74,6 +75,19 @@ std::vector<DistilPoint> parse_distil_curve_csv(std::string_view text, std::stri
     curve.push_back({static_cast<int>(row[0]), row[1], row[2], row[3]});
   }
   return curve;
+}
+
+std::vector<double> centred_mean(const std::vector<double>& values, int reach) {
+  std::vector<double> smoothed;
+  const int count = static_cast<int>(values.size());
+  for (int i = 0; i < count; ++i) {
+    const int first = std::max(0, i - reach);
+    const int last = std::min(count - 1, i + reach);
+    double sum = 0;
+    for (int k = first; k <= last; ++k) sum += values[static_cast<std::size_t>(k)];
+    smoothed.push_back(sum / (last - first + 1));
+  }
+  return smoothed;
 }
 
 }  // namespace bess

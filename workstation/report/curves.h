@@ -1,4 +1,4 @@
-// Learning curves as CSV, out and back in.
+// Learning and distillation curves as CSV, out and back in, and the smoothing that their figures show.
 #pragma once
 
 #include <string>
@@ -12,6 +12,9 @@ namespace bess {
 
 std::string training_curve_csv(const std::vector<CurvePoint>& curve);
 std::string distil_curve_csv(const std::vector<DistilPoint>& curve);
+
+/// Mean over each point and up to `reach` neighbours on either side.
+std::vector<double> centred_mean(const std::vector<double>& values, int reach);
 
 /// Read back what the writers wrote; throw UserError naming `name` and the line otherwise.
 std::vector<CurvePoint> parse_training_curve_csv(std::string_view text, std::string_view name);
