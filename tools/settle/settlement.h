@@ -30,7 +30,7 @@ struct Latency {
 
 struct Settlement {
   Account battery;  ///< from the battery's record
-  Account edge;     ///< from the edge's log: each order through the battery model from the SoC it read
+  Account edge;  ///< from the edge's log: each order through the battery model from the SoC it read
   std::size_t cycles = 0;
   std::size_t cycles_running = 0;
   Latency decision, write, total;

@@ -56,9 +56,10 @@ void run(const Options& options) {
       correct_and_prove(teacher, visited, config.distil, interruption());
   if (interruption()) throw Interrupted{};
   if (!options.plain && student.certificate.violations() != 0) {
-    fail("{} violations are left after {} rounds, nothing was written; raise [correction] "
-         "price_slope and soc_slope or [distil] repair_rounds",
-         student.certificate.violations(), student.violations_by_round.size());
+    fail(
+        "{} violations are left after {} rounds, nothing was written; raise [correction] "
+        "price_slope and soc_slope or [distil] repair_rounds",
+        student.certificate.violations(), student.violations_by_round.size());
   }
   save_student(options.out, student_file(student, config.distil, teacher.provenance));
   if (!options.curve_out.empty()) write_file(options.curve_out, distil_curve_csv(student.curve));

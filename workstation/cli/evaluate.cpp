@@ -27,8 +27,8 @@ struct Options {
   std::string steps_out;
 };
 
-std::string evaluation_json(const std::string& policy, const Options& options,
-                            const Evaluation& e, double foresight_profit) {
+std::string evaluation_json(const std::string& policy, const Options& options, const Evaluation& e,
+                            double foresight_profit) {
   const double profit = e.profit_eur_per_day_per_mwh();
   return fmt::format(
       R"({{"policy": {}, "split": "{}", "days": {}, "profit_eur_per_day_per_mwh": {:.4f}, )"
@@ -61,8 +61,8 @@ void write_steps(const std::string& path, const std::vector<StepRecord>& records
 
 void print_line(const std::string& policy, const Evaluation& e, double foresight_profit,
                 const PairedDifference& difference) {
-  fmt::print("{:24} {:9.1f} ±{:6.1f} {:+9.1f} ±{:6.1f} {:9.1f} {:7.2f} {:9.1f} {:7.1f} %\n",
-             policy, e.profit_eur_per_day_per_mwh(), e.standard_error(), difference.mean,
+  fmt::print("{:24} {:9.1f} ±{:6.1f} {:+9.1f} ±{:6.1f} {:9.1f} {:7.2f} {:9.1f} {:7.1f} %\n", policy,
+             e.profit_eur_per_day_per_mwh(), e.standard_error(), difference.mean,
              difference.standard_error, e.worst_day_eur_per_mwh(), e.cycles_per_day(),
              e.switches_per_day(), 100 * e.profit_eur_per_day_per_mwh() / foresight_profit);
 }
@@ -78,13 +78,14 @@ MarketDay select_day(const MarketSteps& market, const std::vector<MarketDay>& da
                      const std::string& date) {
   const auto found =
       date == "widest"
-          ? std::ranges::max_element(
-                days, {}, [&](const MarketDay& day) { return price_range(market, day); })
+          ? std::ranges::max_element(days, {},
+                                     [&](const MarketDay& day) { return price_range(market, day); })
           : std::ranges::find_if(days, [&](const MarketDay& day) { return day.date() == date; });
   if (found == days.end()) {
-    fail("--date {}: no complete day of that date in the split; use YYYY-MM-DD or widest, and "
-         "perhaps --split all",
-         date);
+    fail(
+        "--date {}: no complete day of that date in the split; use YYYY-MM-DD or widest, and "
+        "perhaps --split all",
+        date);
   }
   return *found;
 }

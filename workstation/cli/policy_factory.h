@@ -11,7 +11,8 @@ namespace bess {
 
 /// The names that --policy takes, for help and messages.
 inline constexpr const char* kPolicyHelp =
-    "rbc (thresholds 11/179), rbc-quartile (training days' quartiles), tabular, foresight, compiled "
+    "rbc (thresholds 11/179), rbc-quartile (training days' quartiles), tabular, foresight, "
+    "compiled "
     "(the array in this program), or a teacher's or student's file";
 
 /// A policy with whatever it is made of. Throws UserError for an unknown name or an unreadable file.

@@ -7,6 +7,7 @@
 
 #include "workstation/cli/run_config.h"
 #include "workstation/cli/run_folder.h"
+#include "workstation/report/curves.h"
 #include "workstation/report/report.h"
 #include "workstation/student/student_file.h"
 

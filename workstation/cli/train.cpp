@@ -40,9 +40,8 @@ void run(const Options& options) {
     fmt::print(R"({{"teacher": {}, "method": "{}", "steps": {}, "best_step": {}, )"
                R"("validation_eur_per_day_per_mwh": {:.4f}, "seconds": {:.2f}}})"
                "\n",
-               json_quote(options.out), method_name(config.train.method),
-               result.curve.back().step, result.best_step,
-               result.best_validation_eur_per_day_per_mwh, result.seconds);
+               json_quote(options.out), method_name(config.train.method), result.curve.back().step,
+               result.best_step, result.best_validation_eur_per_day_per_mwh, result.seconds);
   } else {
     fmt::print("{}: {}, best at step {} of {}: {:.1f} EUR/day/MWh on validation days, {:.0f} s\n",
                options.out, method_name(config.train.method), result.best_step,
@@ -57,9 +56,8 @@ void run(const Options& options) {
 std::string training_provenance(const std::string& prices, const TrainOptions& options,
                                 const TrainResult& result) {
   return fmt::format("bess-train {} {} on {}, seed {}, best at step {} of {}", BESS_VERSION,
-                     method_name(options.method),
-                     std::filesystem::path(prices).filename().string(), options.seed,
-                     result.best_step, options.steps);
+                     method_name(options.method), std::filesystem::path(prices).filename().string(),
+                     options.seed, result.best_step, options.steps);
 }
 
 void warn_narrow_support(const TrainOptions& options, const TrainResult& result) {

@@ -27,22 +27,23 @@ void print_json(const std::string& name, const StudentFile& student, bool exhaus
       R"("seconds": {:.3f}}})"
       "\n",
       json_quote(name), student_weights_hash(student.net),
-      exhaustive ? "exhaustive" : "bounds and enumeration", c.states_checked,
-      c.states_evaluated, c.violations_property_1, c.violations_property_2,
-      c.violations_property_3, student.low_price_eur_per_mwh, student.high_price_eur_per_mwh,
-      c.seconds);
+      exhaustive ? "exhaustive" : "bounds and enumeration", c.states_checked, c.states_evaluated,
+      c.violations_property_1, c.violations_property_2, c.violations_property_3,
+      student.low_price_eur_per_mwh, student.high_price_eur_per_mwh, c.seconds);
 }
 
 void print_text(const std::string& name, const StudentFile& student, const Certificate& c) {
   fmt::print("{} (weights {:08x})\n", name, student_weights_hash(student.net));
   fmt::print("  {} states checked, {} of them evaluated one by one, {:.1f} s\n", c.states_checked,
              c.states_evaluated, c.seconds);
-  fmt::print("  property 1, charge at or below {} EUR/MWh:    {} violations{}\n",
-             student.low_price_eur_per_mwh, c.violations_property_1,
-             student.low_price_eur_per_mwh < kLatticePriceMinEurPerMwh ? " (the guard's alone)" : "");
-  fmt::print("  property 2, discharge at or above {} EUR/MWh: {} violations{}\n",
-             student.high_price_eur_per_mwh, c.violations_property_2,
-             student.high_price_eur_per_mwh > kLatticePriceMaxEurPerMwh ? " (the guard's alone)" : "");
+  fmt::print(
+      "  property 1, charge at or below {} EUR/MWh:    {} violations{}\n",
+      student.low_price_eur_per_mwh, c.violations_property_1,
+      student.low_price_eur_per_mwh < kLatticePriceMinEurPerMwh ? " (the guard's alone)" : "");
+  fmt::print(
+      "  property 2, discharge at or above {} EUR/MWh: {} violations{}\n",
+      student.high_price_eur_per_mwh, c.violations_property_2,
+      student.high_price_eur_per_mwh > kLatticePriceMaxEurPerMwh ? " (the guard's alone)" : "");
   fmt::print("  property 3, monotone in price and SoC:          {} violations\n",
              c.violations_property_3);
   fmt::print("{}\n", c.violations() == 0 ? "PROVED" : "NOT PROVED");
