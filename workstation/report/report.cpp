@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
+#include <optional>
 
 #include "workstation/io/file.h"
 #include "workstation/io/user_error.h"
@@ -34,9 +36,36 @@ std::vector<NamedPolicyMap> policy_maps(const ReportInputs& in, const PolicyCont
   return maps;
 }
 
-bool month_is_trained(const MarketSteps& market, int month) {
+/// Where the uncorrected student's counterexamples are most frequent; none without any.
+std::optional<PolicyContext> worst_context(const ReportInputs& in) {
+  if (in.uncorrected_certificate == nullptr) return std::nullopt;
+  std::map<PolicyContext, int> count;
+  for (const LatticeState& s : in.uncorrected_certificate->counterexamples) {
+    ++count[{.month = s.month, .quarter_hour = s.qh, .t_qh = s.t_qh}];
+  }
+  const auto worst = std::ranges::max_element(count, {}, [](const auto& c) { return c.second; });
+  return worst == count.end() ? std::nullopt : std::optional(worst->first);
+}
+
+std::string month_note(const MarketSteps& market, int month) {
   const auto trained = market.days_of(Split::kTrain);
-  return std::ranges::find(trained, month, &MarketDay::month) != trained.end();
+  const bool seen = std::ranges::find(trained, month, &MarketDay::month) != trained.end();
+  return seen ? "" : "No training day lies in this month: it is extrapolated. ";
+}
+
+void add_policy_map(const ReportInputs& in, const PolicyContext& context, const std::string& note,
+                    std::vector<Figure>& figures) {
+  const std::vector<NamedPolicyMap> maps = policy_maps(in, context);
+  if (maps.empty()) return;
+  figures.push_back(
+      policy_map_figure(context, maps, in.battery, note + month_note(in.market, context.month)));
+}
+
+void add_policy_maps(const ReportInputs& in, std::vector<Figure>& figures) {
+  for (const PolicyContext& context : in.maps) add_policy_map(in, context, "", figures);
+  const std::optional<PolicyContext> worst = worst_context(in);
+  if (!worst || std::ranges::find(in.maps, *worst) != in.maps.end()) return;
+  add_policy_map(in, *worst, "The time at which the uncorrected student erred most. ", figures);
 }
 
 struct ShownPolicy {
@@ -67,12 +96,7 @@ std::vector<Figure> figures_of(const ReportInputs& in) {
   if (const MarketDay* day = widest_test_day(in.market)) {
     figures.push_back(widest_day_figure(in, *day));
   }
-  for (const PolicyContext& context : in.maps) {
-    const std::vector<NamedPolicyMap> maps = policy_maps(in, context);
-    if (maps.empty()) continue;
-    figures.push_back(
-        policy_map_figure(context, maps, in.battery, month_is_trained(in.market, context.month)));
-  }
+  add_policy_maps(in, figures);
   if (!in.training_curve.empty()) {
     figures.push_back(learning_figure(in.training_curve, rule_validation_profit(in)));
   }
