@@ -93,7 +93,8 @@ std::string caption_of(const PolicyContext& context, const std::vector<NamedPoli
   std::string text = note;
   text += fmt::format(
       "What to do at {} local time in {}, for every price and charge. The dearer the energy or the "
-      "fuller the battery, the less a policy may charge; dots and lines mark neighbouring states that "
+      "fuller the battery, the less a policy may charge; dots and lines mark neighbouring states "
+      "that "
       "break this order",
       clock_text(context), kMonthNames[context.month - 1]);
   for (std::size_t i = 0; i < maps.size(); ++i) {

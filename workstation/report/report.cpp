@@ -105,7 +105,7 @@ std::vector<Figure> figures_of(const ReportInputs& in) {
   return figures;
 }
 
-/// The policy that earned most, the foresight bound aside; null when there is none to name.
+/// The policy with the highest mean, the foresight bound aside; null when there is none to name.
 const ComparisonRow* best_of(const std::vector<ComparisonRow>& rows) {
   const ComparisonRow* best = nullptr;
   for (const ComparisonRow& row : rows) {
@@ -131,8 +131,8 @@ std::string lead(const std::vector<ComparisonRow>& rows) {
   const ComparisonRow* best = best_of(rows);
   if (best == nullptr) return {};
   std::string text = fmt::format(
-      "Over {} test days the {} earned most: {:.1f} EUR per day per MWh "
-      "of battery capacity",
+      "Over {} test days \u201c{}\u201d has the highest mean profit: {:.1f} EUR per day per MWh of "
+      "battery capacity",
       best->days, best->name, best->profit);
   if (best->difference) text += "; " + difference_text(*best->difference, rows.front().name);
   if (best->foresight_share) {
@@ -142,6 +142,15 @@ std::string lead(const std::vector<ComparisonRow>& rows) {
   return text + ".";
 }
 
+/// 6,950,033,280
+std::string grouped(std::int64_t count) {
+  std::string digits = fmt::format("{}", count);
+  for (auto at = static_cast<std::ptrdiff_t>(digits.size()) - 3; at > 0; at -= 3) {
+    digits.insert(static_cast<std::size_t>(at), ",");
+  }
+  return digits;
+}
+
 std::string proof_sentence(const Certificate& c) {
   if (c.violations() != 0) {
     return fmt::format(
@@ -149,8 +158,8 @@ std::string proof_sentence(const Certificate& c) {
         "exported.",
         c.violations());
   }
-  return fmt::format("The corrected student was proved on {} states without one violation.",
-                     c.states_checked);
+  return fmt::format("The corrected student was checked on {} lattice states: not one violation.",
+                     grouped(c.states_checked));
 }
 
 std::string dash_or(bool present, const std::string& text) { return present ? text : "\u2013"; }
@@ -181,10 +190,10 @@ std::string comparison_table(const std::string& caption, const std::vector<Compa
 
 std::vector<std::string> proof_cells(const std::string& name, const Certificate& c) {
   return {name,
-          fmt::format("{}", c.states_checked),
-          fmt::format("{}", c.violations_property_1),
-          fmt::format("{}", c.violations_property_2),
-          fmt::format("{}", c.violations_property_3),
+          grouped(c.states_checked),
+          grouped(c.violations_property_1),
+          grouped(c.violations_property_2),
+          grouped(c.violations_property_3),
           fmt::format("{:.1f}", c.seconds)};
 }
 

@@ -72,6 +72,11 @@ TEST(Comparison, CsvHasOneLinePerPolicyAndWay) {
   EXPECT_NE(csv.find("\nstudent,carried,3,"), std::string::npos);
 }
 
+TEST(Comparison, CsvQuotesNamesThatNeedIt) {
+  const std::string csv = comparison_csv({{"student, \"new\"", evaluation_of({800}), {}}});
+  EXPECT_NE(csv.find("\n\"student, \"\"new\"\"\",reset,1,100.0000,"), std::string::npos) << csv;
+}
+
 TEST(Curves, CsvAndSmoothing) {
   EXPECT_EQ(training_curve_csv({{250, 3.5, 400.25, 0.001}}),
             "step,loss,validation_eur_per_day_per_mwh,edge_mass_frac\n250,3.5,400.2500,0.001\n");

@@ -95,7 +95,7 @@ TEST(Report, TableNumbersAreThoseOfTheEvaluations) {
         teacher.worst_day_eur_per_mwh(), teacher.cycles_per_day(), teacher.switches_per_day());
     EXPECT_NE(html.find(cells), std::string::npos) << cells;
   }
-  EXPECT_NE(html.find("<td>6950033280</td><td>0</td><td>0</td><td>42</td><td>9.5</td>"),
+  EXPECT_NE(html.find("<td>6,950,033,280</td><td>0</td><td>0</td><td>42</td><td>9.5</td>"),
             std::string::npos);
 }
 
