@@ -25,11 +25,11 @@ struct TrainOptions {
   double learning_rate_end = 5e-5;
   double gamma = 0.999;
   double tau = 0.3;  ///< target <- tau * online + (1 - tau) * target, each step
-  int atoms = 51;
+  int atoms = 101;
   bool shape_rewards = true;  ///< centre (continuing only) and value the stored energy
   ContextJitter jitter;       ///< counterfactual source only
-  double value_min_eur_per_h = -1.5e5;
-  double value_max_eur_per_h = 1.5e5;
+  double value_min_eur_per_h = -3e5;
+  double value_max_eur_per_h = 3e5;
   long replay_capacity = 1'000'000;
   double epsilon_start = 1.0;  ///< falls linearly to epsilon_end over the first half of the steps
   double epsilon_end = 0.05;
