@@ -27,7 +27,7 @@ table{border-collapse:collapse;font-variant-numeric:tabular-nums;font-size:.92re
 caption{text-align:left;font-weight:600;padding:.3rem 0}
 th,td{padding:.32rem .45rem;text-align:right;white-space:nowrap;border-bottom:1px solid var(--grid)}
 th:first-child,td:first-child{text-align:left;padding-left:0}
-thead th{color:var(--muted);font-weight:600;vertical-align:bottom;border-bottom-color:var(--muted)}
+thead th{white-space:normal;color:var(--muted);font-weight:600;vertical-align:bottom;border-bottom-color:var(--muted)}
 tbody th{font-weight:400}
 pre{font-size:.8rem;white-space:pre-wrap;overflow-wrap:anywhere;color:var(--muted)}
 @media print{main{max-width:none;padding:0}figure,table,.block{break-inside:avoid}

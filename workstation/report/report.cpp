@@ -144,11 +144,13 @@ std::string lead(const std::vector<ComparisonRow>& rows) {
 
 /// 6,950,033,280
 std::string grouped(std::int64_t count) {
-  std::string digits = fmt::format("{}", count);
-  for (auto at = static_cast<std::ptrdiff_t>(digits.size()) - 3; at > 0; at -= 3) {
-    digits.insert(static_cast<std::size_t>(at), ",");
+  const std::string digits = fmt::format("{}", count);
+  std::string text;
+  for (std::size_t i = 0; i < digits.size(); ++i) {
+    if (i > 0 && (digits.size() - i) % 3 == 0) text += ',';
+    text += digits[i];
   }
-  return digits;
+  return text;
 }
 
 std::string proof_sentence(const Certificate& c) {
@@ -156,7 +158,7 @@ std::string proof_sentence(const Certificate& c) {
     return fmt::format(
         "The corrected student still breaks its constraints {} times; it may not be "
         "exported.",
-        c.violations());
+        grouped(c.violations()));
   }
   return fmt::format("The corrected student was checked on {} lattice states: not one violation.",
                      grouped(c.states_checked));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "workstation/io/user_error.h"
 #include "workstation/report/curves.h"
 
 namespace bess {
@@ -79,11 +80,33 @@ TEST(Comparison, CsvQuotesNamesThatNeedIt) {
 
 TEST(Curves, CsvAndSmoothing) {
   EXPECT_EQ(training_curve_csv({{250, 3.5, 400.25, 0.001}}),
-            "step,loss,validation_eur_per_day_per_mwh,edge_mass_frac\n250,3.5,400.2500,0.001\n");
+            "step,loss,validation_eur_per_day_per_mwh,edge_mass_frac\n250,3.5,400.2500,0.001000\n");
   EXPECT_EQ(distil_curve_csv({{1, 0.5, 0.25, 0.125}}),
             "epoch,teacher_loss,correction_loss,visited_loss\n1,0.5,0.25,0.125\n");
   EXPECT_EQ(centred_mean({0, 3, 6}, 1), (std::vector<double>{1.5, 3, 4.5}));
   EXPECT_TRUE(centred_mean({}, 2).empty());
+}
+
+TEST(Curves, ReadBackIsWhatWasWritten) {
+  const std::string training = training_curve_csv({{250, 3.5, 400.25, 0.001}, {500, 3, -20, 0}});
+  EXPECT_EQ(training_curve_csv(parse_training_curve_csv(training, "a")), training);
+  const std::string distil = distil_curve_csv({{1, 0.5, 1e-7, 0.125}, {2, 0.25, 0, 0.1}});
+  EXPECT_EQ(distil_curve_csv(parse_distil_curve_csv(distil, "b")), distil);
+}
+
+TEST(Curves, DamagedFilesAreNamedWithTheLine) {
+  const auto message_of = [](const std::string& text) -> std::string {
+    try {
+      (void)parse_distil_curve_csv(text, "curve.csv");
+    } catch (const UserError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string header = distil_curve_csv({});
+  EXPECT_NE(message_of("step\n").find("curve.csv:1:"), std::string::npos);
+  EXPECT_NE(message_of(header + "1,2,3\n").find("curve.csv:2:"), std::string::npos);
+  EXPECT_NE(message_of(header + "1,2,3,4\n1,2,x,4\n").find("curve.csv:3:"), std::string::npos);
 }
 
 }  // namespace
