@@ -30,7 +30,7 @@ th:first-child,td:first-child{text-align:left;padding-left:0}
 thead th{white-space:normal;color:var(--muted);font-weight:600;vertical-align:bottom;border-bottom-color:var(--muted)}
 tbody th{font-weight:400}
 pre{font-size:.8rem;white-space:pre-wrap;overflow-wrap:anywhere;color:var(--muted)}
-@media print{main{max-width:none;padding:0}figure,table,.block{break-inside:avoid}
+@media print{main{max-width:none;padding:0}figure,table,.block{break-inside:avoid}h2{break-after:avoid}
  .wide{overflow:visible}svg{min-width:0}body{font-size:11pt}}
 )";
 
