@@ -62,11 +62,19 @@ std::string table_block(const std::string& title, const std::vector<ComparisonRo
   return text;
 }
 
+/// A field of CSV, quoted where it must be.
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
 std::string csv_line(const ComparisonRow& row, std::string_view soc) {
   const auto& d = row.difference;
   return fmt::format(
-      "{},{},{},{:.4f},{:.4f},{},{},{:.4f},{:.4f},{:.4f},{}\n", row.name, soc, row.days, row.profit,
-      row.standard_error, d ? fmt::format("{:.4f}", d->mean) : "",
+      "{},{},{},{:.4f},{:.4f},{},{},{:.4f},{:.4f},{:.4f},{}\n", csv_field(row.name), soc, row.days,
+      row.profit, row.standard_error, d ? fmt::format("{:.4f}", d->mean) : "",
       d ? fmt::format("{:.4f}", d->standard_error) : "", row.worst_day, row.cycles_per_day,
       row.switches_per_day, row.foresight_share ? fmt::format("{:.6f}", *row.foresight_share) : "");
 }

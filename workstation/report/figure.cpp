@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "workstation/io/gnuplot.h"
@@ -19,7 +21,7 @@ std::string style() {
       "set encoding utf8\nset minussign\n"
       "set border 3 lw 1 lc {0}\nset tics nomirror out scale 0.5 textcolor {0}\n"
       "set title textcolor {0}\nset xlabel textcolor {0}\nset ylabel textcolor {0}\n"
-      "set key textcolor {0} noenhanced\nset grid lt 1 lw 1 lc {1}\nset format '%g'\n"
+      "unset key\nset grid lt 1 lw 1 lc {1}\nset format '%g'\n"
       "set style fill solid noborder\n",
       rgb(kInk), rgb(kGridLine));
 }
@@ -115,6 +117,48 @@ std::string inline_svg(std::string_view svg, const Figure& figure) {
       "<desc id=\"{2}-alt\">{4}</desc>{5}</svg>\n",
       figure.width_px, figure.height_px, figure.name, html_escaped(figure.title),
       html_escaped(figure.alt), body);
+}
+
+KeyRow key_row(const Figure& figure, double left_px, const std::vector<KeyEntry>& entries) {
+  constexpr double kSwatchPx = 24, kGapPx = 8, kCharacterPx = 8.1, kBetweenPx = 26;
+  constexpr double kHalfHeightPx = 6, kFromTopPx = 17;
+  constexpr int kFirstTag = 100;
+  KeyRow row;
+  double x_px = left_px;
+  int tag = kFirstTag;
+  const double y = 1 - kFromTopPx / figure.height_px;
+  const double half_height = kHalfHeightPx / figure.height_px;
+  for (const KeyEntry& entry : entries) {
+    const double left = x_px / figure.width_px, right = (x_px + kSwatchPx) / figure.width_px;
+    if (entry.kind == KeyEntry::Kind::kArea) {
+      row.set += fmt::format(
+          "set object {} rectangle from screen {},{} to screen {},{} fc {} fs transparent solid {} "
+          "noborder front\n",
+          tag, left, y - half_height, right, y + half_height, rgb(entry.colour), entry.density);
+      row.unset += fmt::format("unset object {}\n", tag);
+    } else {
+      row.set +=
+          fmt::format("set arrow {} from screen {},{} to screen {},{} nohead front lw {} lc {}\n",
+                      tag, left, y, right, y, entry.width, rgb(entry.colour));
+      row.unset += fmt::format("unset arrow {}\n", tag);
+    }
+    row.set += fmt::format("set label {} {} at screen {},{} left front textcolor {}\n", tag,
+                           gnuplot_quoted(entry.text),
+                           (x_px + kSwatchPx + kGapPx) / figure.width_px, y, rgb(kInk));
+    row.unset += fmt::format("unset label {}\n", tag);
+    x_px += kSwatchPx + kGapPx + kCharacterPx * static_cast<double>(entry.text.size()) + kBetweenPx;
+    ++tag;
+  }
+  return row;
+}
+
+double tic_distance(double range, int count) {
+  const double rough = std::max(range, 1e-9) / count;
+  const double power = std::pow(10, std::floor(std::log10(rough)));
+  for (const double factor : {1.0, 2.0, 5.0}) {
+    if (rough <= factor * power) return factor * power;
+  }
+  return 10 * power;
 }
 
 std::string data_block(std::string_view name, const std::vector<std::string>& rows) {

@@ -28,6 +28,26 @@ void draw_figure(const Figure& figure, const std::filesystem::path& folder);
 /// and description for screen readers.
 std::string inline_svg(std::string_view svg, const Figure& figure);
 
+/// One entry of a figure's key.
+struct KeyEntry {
+  enum class Kind { kArea, kLine };
+  std::string text;
+  Colour colour;
+  Kind kind = Kind::kArea;
+  double width = 2;    ///< of a line
+  double density = 1;  ///< of an area, 0..1
+};
+/// The key as one row at the top of the picture: gnuplot's own cannot span several panels. `set`
+/// comes before the first panel, `unset` after it.
+struct KeyRow {
+  std::string set;
+  std::string unset;
+};
+KeyRow key_row(const Figure& figure, double left_px, const std::vector<KeyEntry>& entries);
+
+/// 1, 2 or 5 times a power of ten: the distance of about `count` tics over `range`.
+double tic_distance(double range, int count);
+
 /// gnuplot's `$name << EOD` with one line per row.
 std::string data_block(std::string_view name, const std::vector<std::string>& rows);
 /// `rgb '#0072b2'`

@@ -61,20 +61,22 @@ std::vector<std::string> band_rows(const DayStory& story, Action action, bool fl
   return rows;
 }
 
+constexpr double kFlowingDensity = 0.34;  ///< of a band's tint
+constexpr double kAtBoundDensity = 0.10;
+
 /// Tinted over the whole height of a panel.
-std::string bands(double low, double high, bool with_key) {
+std::string bands(double low, double high) {
   std::string text;
-  const auto add = [&](const char* data, const Colour& colour, double density, const char* title) {
+  const auto add = [&](const char* data, const Colour& colour, double density) {
     text += fmt::format(
-        "${} using 1:({}):1:2:({}):({}) with boxxyerror fs transparent solid {} noborder fc {} "
-        "{}, ",
-        data, low, low, high, density, rgb(colour),
-        with_key && *title != 0 ? fmt::format("title '{}'", title) : "notitle");
+        "${0} using 1:({1}):1:2:({1}):({2}) with boxxyerror fs transparent solid {3} noborder fc "
+        "{4}, ",
+        data, low, high, density, rgb(colour));
   };
-  add("charge", kCharge, 0.42, "charging");
-  add("discharge", kDischarge, 0.42, "discharging");
-  add("charge_full", kCharge, 0.12, "");
-  add("discharge_empty", kDischarge, 0.12, "");
+  add("charge", kCharge, kFlowingDensity);
+  add("discharge", kDischarge, kFlowingDensity);
+  add("charge_full", kCharge, kAtBoundDensity);
+  add("discharge_empty", kDischarge, kAtBoundDensity);
   return text;
 }
 
@@ -97,24 +99,23 @@ std::string price_panel(const DayStory& story) {
   return fmt::format(
              "set tmargin at screen 0.915\nset bmargin at screen 0.40\nset yrange [{0}:{1}]\n"
              "set ylabel 'price, EUR/MWh'\n"
-             "set key at screen 0.10,0.99 left top horizontal maxrows 1 Left reverse samplen 1.5\n"
              "plot {2}",
-             range.low, range.high, bands(range.low, range.high, true)) +
+             range.low, range.high, bands(range.low, range.high)) +
          fmt::format(
-             "$day using 1:2 with steps lw 1.2 lc {} title 'price observed', "
-             "$day using 1:3 with steps lw 2 lc {} title 'price paid'\n",
+             "$day using 1:2 with steps lw 1.2 lc {}, "
+             "$day using 1:3 with steps lw 2 lc {}\n",
              rgb(kMuted), rgb(kInk));
 }
 
 std::string soc_panel(const DayStory& story) {
   return fmt::format(
-      "unset key\nset tmargin at screen 0.345\nset bmargin at screen 0.125\nset yrange [0:105]\n"
+      "set tmargin at screen 0.345\nset bmargin at screen 0.125\nset yrange [0:105]\n"
       "set ytics 0,25,100\nset ylabel 'charge, %'\n"
       "set xlabel 'local time'\n{}"
-      "set arrow 1 from graph 0, first {} to graph 1, first {} nohead front dt (2,4) lw 1 lc {}\n"
-      "plot {}$day using 1:4 with lines lw 2.5 lc {} notitle\n",
+      "set arrow 1 from graph 0, first {} to graph 1, first {} nohead front dt (4,6) lw 1.2 lc {}\n"
+      "plot {}$day using 1:4 with lines lw 2.5 lc {}\n",
       time_tics(story, true), 100 * story.battery.soc_min_frac, 100 * story.battery.soc_min_frac,
-      rgb(kInk), bands(0, 105, false), rgb(kInk));
+      rgb(kInk), bands(0, 105), rgb(kInk));
 }
 
 double day_profit_eur_per_mwh(const DayStory& story) {
@@ -146,6 +147,12 @@ Figure day_figure(const DayStory& story) {
       "coloured bands, and the state of charge below.",
       story.date);
   figure.caption = caption_of(story);
+  const KeyRow key =
+      key_row(figure, 88,
+              {{"charging", kCharge, KeyEntry::Kind::kArea, 0, kFlowingDensity},
+               {"discharging", kDischarge, KeyEntry::Kind::kArea, 0, kFlowingDensity},
+               {"price observed", kMuted, KeyEntry::Kind::kLine, 1.2},
+               {"price paid", kInk, KeyEntry::Kind::kLine, 2}});
   figure.commands = data_block("day", step_rows(story)) +
                     data_block("charge", band_rows(story, Action::kCharge, true)) +
                     data_block("discharge", band_rows(story, Action::kDischarge, true)) +
@@ -155,8 +162,8 @@ Figure day_figure(const DayStory& story) {
                         "set multiplot\nset lmargin at screen 0.10\n"
                         "set rmargin at screen 0.97\nset xrange [0:{:.4f}]\n",
                         end_hours_of(story)) +
-                    time_tics(story, false) + price_panel(story) + soc_panel(story) +
-                    "unset multiplot\n";
+                    time_tics(story, false) + key.set + price_panel(story) + key.unset +
+                    soc_panel(story) + "unset multiplot\n";
   return figure;
 }
 

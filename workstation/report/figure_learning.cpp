@@ -41,35 +41,48 @@ Range profit_range(const std::vector<CurvePoint>& curve, double rule) {
   return {all.low - room, all.high + room};
 }
 
+double loss_tic(const std::vector<CurvePoint>& curve) {
+  const auto [low, high] = std::ranges::minmax_element(curve, {}, &CurvePoint::loss);
+  return tic_distance(high->loss - low->loss, 3);
+}
+
+std::string rule_line(double rule) {
+  return fmt::format(
+      "set arrow 1 from graph 0, first {0} to graph 1, first {0} nohead dt (6,5) lw 1.5 lc {1}\n"
+      "set label 1 'rule-based {0:.1f}' at graph 0.99, first {0} right offset 0,0.6 textcolor "
+      "{1}\n",
+      rule, rgb(kDischarge));
+}
+
+std::string best_point(const CurvePoint& best, bool label_right) {
+  return fmt::format(
+      "set label 2 'best {0:.1f} at step {1}' at {1},{0} {2} offset {3},0.9 textcolor {4} point pt "
+      "7 ps 0.9 lc {4}\n",
+      best.validation_eur_per_day_per_mwh, best.step, label_right ? "left" : "right",
+      label_right ? "-1" : "1", rgb(kInk));
+}
+
 std::string profit_panel(const std::vector<CurvePoint>& curve, double rule) {
   const CurvePoint& best = best_of(curve);
   const Range range = profit_range(curve, rule);
-  const bool best_is_left = best.step * 2 < curve.back().step;
-  std::string text = fmt::format(
-      "set tmargin at screen 0.96\nset bmargin at screen 0.42\nset yrange [{}:{}]\n"
-      "set ylabel \"validation profit,\\nEUR/day/MWh\"\nset format x ''\n"
-      "set arrow 1 from graph 0, first {} to graph 1, first {} nohead dt (6,5) lw 1.5 lc {}\n"
-      "set label 1 'rule-based {:.1f}' at graph 0.99, first {} right offset 0,0.6 textcolor {}\n",
-      range.low, range.high, rule, rule, rgb(kDischarge), rule, rule, rgb(kDischarge));
-  text += fmt::format(
-      "set label 2 'best {:.1f} at step {}' at {},{} {} offset {},0.9 textcolor {} point pt 7 ps "
-      "0.9 lc {}\nset key bottom center horizontal samplen 2\n",
-      best.validation_eur_per_day_per_mwh, best.step, best.step,
-      best.validation_eur_per_day_per_mwh, best_is_left ? "left" : "right",
-      best_is_left ? "-1" : "1", rgb(kInk), rgb(kInk));
-  return text + fmt::format(
-                    "plot $curve using 1:2 with lines lw 1.5 lc {} title 'each look', "
-                    "$curve using 1:3 with lines lw 3 lc {} title 'mean of five looks'\n",
-                    rgb(kSoft), rgb(kCharge));
+  return fmt::format(
+             "set tmargin at screen 0.925\nset bmargin at screen 0.42\nset yrange [{}:{}]\n"
+             "set ylabel \"validation profit,\\nEUR/day/MWh\"\nset format x ''\nset ytics {}\n",
+             range.low, range.high, tic_distance(range.high - range.low, 6)) +
+         rule_line(rule) + best_point(best, best.step * 2 < curve.back().step) +
+         fmt::format(
+             "plot $curve using 1:2 with lines lw 1.5 lc {}, $curve using 1:3 with lines lw 3 lc "
+             "{}\n",
+             rgb(kSoft), rgb(kCharge));
 }
 
-std::string loss_panel() {
+std::string loss_panel(const std::vector<CurvePoint>& curve) {
   return fmt::format(
-      "unset arrow 1\nunset label 1\nunset label 2\nunset key\n"
-      "set tmargin at screen 0.36\nset bmargin at screen 0.14\nset yrange [*:*]\n"
-      "set format x '%g'\nset xlabel 'gradient steps'\nset ylabel 'loss'\nset ytics autofreq\n"
-      "plot $curve using 1:4 with lines lw 2 lc {} notitle\n",
-      rgb(kMuted));
+      "unset arrow 1\nunset label 1\nunset label 2\n"
+      "set tmargin at screen 0.36\nset bmargin at screen 0.14\nset yrange [*:*]\nset ytics {}\n"
+      "set format x '%g'\nset xlabel 'gradient steps'\nset ylabel 'loss'\n"
+      "plot $curve using 1:4 with lines lw 2 lc {}\n",
+      loss_tic(curve), rgb(kMuted));
 }
 
 /// Logarithmic axes have no zero: a loss of nothing is left out.
@@ -93,14 +106,18 @@ Figure learning_figure(const std::vector<CurvePoint>& curve, double rule) {
       "{:.1f} "
       "{} than the rule-based controller. Those weights are kept; the smoothed line is the mean "
       "over "
-      "up to two looks on either side.",
+      "up to two points on either side.",
       best.step, best.validation_eur_per_day_per_mwh, std::abs(gain), gain < 0 ? "less" : "more");
+  const KeyRow key = key_row(figure, 100,
+                             {{"each validation", kSoft, KeyEntry::Kind::kLine, 1.5},
+                              {"mean of five", kCharge, KeyEntry::Kind::kLine, 3}});
   figure.commands = data_block("curve", learning_rows(curve)) +
                     fmt::format(
                         "set multiplot\nset lmargin at screen 0.115\n"
-                        "set rmargin at screen 0.975\nset xrange [0:{}]\n",
+                        "set rmargin at screen 0.96\nset xrange [0:{}]\n",
                         curve.back().step) +
-                    profit_panel(curve, rule) + loss_panel() + "unset multiplot\n";
+                    key.set + profit_panel(curve, rule) + key.unset + loss_panel(curve) +
+                    "unset multiplot\n";
   return figure;
 }
 
@@ -121,16 +138,19 @@ Figure distillation_figure(const std::vector<DistilPoint>& curve) {
       "corrected student and teacher on the lattices ({:.3g}), and of student and its own "
       "correction ({:.3g}): the last one is what the correction layer still had to change.",
       curve.back().visited_loss, curve.back().teacher_loss, curve.back().correction_loss);
+  const KeyRow key =
+      key_row(figure, 100,
+              {{"corrected student to teacher", kSoft, KeyEntry::Kind::kLine, 2},
+               {"student to teacher", kCharge, KeyEntry::Kind::kLine, 2.5},
+               {"student to its correction", kDischarge, KeyEntry::Kind::kLine, 2.5}});
   figure.commands =
-      data_block("curve", rows) +
+      data_block("curve", rows) + key.set +
       fmt::format(
-          "set lmargin at screen 0.115\nset rmargin at screen 0.975\n"
-          "set logscale y\nset format y '10^{{%L}}'\nset xlabel 'epochs'\n"
-          "set ylabel 'KL divergence, nats'\nset key top right samplen 2\n"
-          "set ytics enhanced\n"
-          "plot $curve using 1:2 with lines lw 1.5 lc {} title 'corrected student and teacher', "
-          "$curve using 1:4 with lines lw 2.5 lc {} title 'student and teacher, visited states', "
-          "$curve using 1:3 with lines lw 2.5 lc {} title 'student and its correction'\n",
+          "set lmargin at screen 0.115\nset rmargin at screen 0.96\nset tmargin at screen 0.88\n"
+          "set logscale y\nset format y '1e%T'\nset ytics 100\nset xlabel 'epochs'\nset ylabel 'KL "
+          "divergence, nats'\n"
+          "plot $curve using 1:2 with lines lw 2 lc {}, $curve using 1:4 with lines lw 2.5 lc {}, "
+          "$curve using 1:3 with lines lw 2.5 lc {}\n",
           rgb(kSoft), rgb(kCharge), rgb(kDischarge));
   return figure;
 }

@@ -56,35 +56,32 @@ std::string panel(const NamedPolicyMap& map, std::size_t index) {
                      border_data(data("wrong"), borders);
   text += fmt::format("set title \"{}\\n{}\" offset 0,-0.4\n", map.name,
                       pairs_text(wrong_pairs(borders)));
-  if (index == 1) text += "unset key\nunset ylabel\nset format y ''\n";
-  const auto title = [index](const char* name) {  // one key for all panels
-    return index == 0 ? fmt::format("title '{}'", name) : "notitle";
-  };
-  text += fmt::format(
-      "plot $charge{0} using 1:2:3:4:5:6 with boxxyerror fc {1} {2}, "
-      "$discharge{0} using 1:2:3:4:5:6 with boxxyerror fc {3} {4}, ",
-      index, rgb(kCharge), title("charge"), rgb(kDischarge), title("discharge"));
-  if (index == 0) text += fmt::format("keyentry with boxes fc {} title 'idle', ", rgb(kIdle));
-  return text + fmt::format("$wrong{} using 1:2:3:4 with vectors nohead lw 3 lc {} {}\n", index,
-                            rgb(kMark), title("out of order"));
+  if (index == 1) text += "unset ylabel\nset format y ''\n";
+  return text + fmt::format(
+                    "plot $charge{0} using 1:2:3:4:5:6 with boxxyerror fc {1}, "
+                    "$discharge{0} using 1:2:3:4:5:6 with boxxyerror fc {2}, "
+                    "$wrong{0} using 1:2:3:4 with vectors nohead lw 3 lc {3}, "
+                    "$wrong{0} using ($1+$3/2):($2+$4/2) with points pt 7 ps 0.35 lc {3}\n",
+                    index, rgb(kCharge), rgb(kDischarge), rgb(kMark));
 }
 
 std::string frame(std::size_t panels, const BatteryParameters& battery) {
-  const double right = panels == 1 ? 0.55 : panels == 2 ? 0.82 : 0.975;
+  const double right = panels == 1 ? 0.55 : panels == 2 ? 0.82 : 0.97;
   return fmt::format(
-      "set multiplot layout 1,{} margins screen 0.085,{},0.165,0.76 spacing screen 0.035,0\n"
-      "set xrange [{}:{}]\nset yrange [0:100]\nset xtics 500\nset ytics 20\nunset grid\n"
+      "set multiplot layout 1,{} margins screen 0.085,{},0.165,0.77 spacing screen 0.05,0\n"
+      "set xrange [{}:{}]\nset yrange [0:100]\nset xtics 500 font ',13'\nset ytics 20\nunset grid\n"
       "set xlabel 'indicative price, EUR/MWh'\nset ylabel 'state of charge, %'\n"
-      "set key at screen 0.085,0.99 left top horizontal maxrows 1 Left reverse samplen 1.5\n"
       "set object 1 rectangle from graph 0,0 to graph 1,1 fc {} fs solid noborder behind\n"
-      "set arrow 1 from graph 0, first {} to graph 1, first {} nohead front dt (2,4) lw 1 lc {}\n",
+      "set arrow 1 from graph 0, first {} to graph 1, first {} nohead front dt (4,6) lw 1.2 lc "
+      "{}\n",
       panels, right, kLatticePriceMinEurPerMwh, kLatticePriceMaxEurPerMwh, rgb(kIdle),
       100 * battery.soc_min_frac, 100 * battery.soc_min_frac, rgb(kInk));
 }
 
+int minute_of(const PolicyContext& context) { return context.quarter_hour % 4 * 15 + context.t_qh; }
+
 std::string clock_text(const PolicyContext& context) {
-  return fmt::format("{:02}:{:02}", context.quarter_hour / 4,
-                     context.quarter_hour % 4 * 15 + context.t_qh);
+  return fmt::format("{:02}:{:02}", context.quarter_hour / 4, minute_of(context));
 }
 
 constexpr const char* kMonthNames[] = {"January",   "February", "March",    "April",
@@ -92,10 +89,12 @@ constexpr const char* kMonthNames[] = {"January",   "February", "March",    "Apr
                                        "September", "October",  "November", "December"};
 
 std::string caption_of(const PolicyContext& context, const std::vector<NamedPolicyMap>& maps,
-                       const BatteryParameters& battery, bool month_in_training_days) {
-  std::string text = fmt::format(
+                       const BatteryParameters& battery, const std::string& note) {
+  std::string text = note;
+  text += fmt::format(
       "What to do at {} local time in {}, for every price and charge. The dearer the energy or the "
-      "fuller the battery, the less a policy may charge; black lines mark neighbouring states that "
+      "fuller the battery, the less a policy may charge; dots and lines mark neighbouring states "
+      "that "
       "break this order",
       clock_text(context), kMonthNames[context.month - 1]);
   for (std::size_t i = 0; i < maps.size(); ++i) {
@@ -104,18 +103,16 @@ std::string caption_of(const PolicyContext& context, const std::vector<NamedPoli
   }
   text += fmt::format("{}. Below the dotted line at {:.0f} % lies charge that the battery keeps.",
                       maps.empty() ? "" : ")", 100 * battery.soc_min_frac);
-  if (!month_in_training_days) {
-    text += " No training day lies in this month: the maps show what was made of the others.";
-  }
   return text;
 }
 
 }  // namespace
 
 Figure policy_map_figure(const PolicyContext& context, const std::vector<NamedPolicyMap>& maps,
-                         const BatteryParameters& battery, bool month_in_training_days) {
+                         const BatteryParameters& battery, const std::string& note) {
   Figure figure;
-  figure.name = fmt::format("policy_map_month_{:02}", context.month);
+  figure.name = fmt::format("policy_map_{:02}_{:02}{:02}", context.month, context.quarter_hour / 4,
+                            minute_of(context));
   figure.title =
       fmt::format("The policy in {} at {}", kMonthNames[context.month - 1], clock_text(context));
   figure.width_px = 960;
@@ -124,9 +121,16 @@ Figure policy_map_figure(const PolicyContext& context, const std::vector<NamedPo
       "Maps of {} policies, price from -500 to 1500 EUR/MWh across and state of charge from 0 to "
       "100 % upwards: charge at low prices, discharge at high prices, idle between.",
       maps.size());
-  figure.caption = caption_of(context, maps, battery, month_in_training_days);
-  figure.commands = frame(maps.size(), battery);
-  for (std::size_t i = 0; i < maps.size(); ++i) figure.commands += panel(maps[i], i);
+  figure.caption = caption_of(context, maps, battery, note);
+  const KeyRow key = key_row(figure, 80,
+                             {{"charge", kCharge},
+                              {"idle", kIdle},
+                              {"discharge", kDischarge},
+                              {"out of order", kMark, KeyEntry::Kind::kLine, 3}});
+  figure.commands = key.set + frame(maps.size(), battery);
+  for (std::size_t i = 0; i < maps.size(); ++i) {
+    figure.commands += panel(maps[i], i) + (i == 0 ? key.unset : "");
+  }
   figure.commands += "unset multiplot\n";
   return figure;
 }

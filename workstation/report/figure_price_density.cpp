@@ -121,16 +121,19 @@ Figure price_density_figure(const MarketSteps& market, const ReportThresholds& t
       "days as a line, thresholds as dashed lines.",
       shown.low, shown.high);
   figure.caption = caption_of(train, test, thresholds, shown);
+  const KeyRow key = key_row(figure, 84,
+                             {{"training days", kSoft, KeyEntry::Kind::kArea, 0, 0.7},
+                              {"test days", kInk, KeyEntry::Kind::kLine, 2}});
   figure.commands =
       histogram("train", train, shown) + histogram("test", test, shown) +
-      threshold_lines(thresholds, shown) +
+      threshold_lines(thresholds, shown) + key.set +
       fmt::format(
-          "set lmargin at screen 0.095\nset rmargin at screen 0.975\nset xrange [{}:{}]\n"
-          "set yrange [0:*<60]\nset offsets graph 0,0,0.22,0\n"
+          "set lmargin at screen 0.095\nset rmargin at screen 0.96\nset tmargin at screen 0.89\n"
+          "set xrange [{}:{}]\nset yrange [0:*]\nset offsets graph 0,0,0.22,0\n"
           "set xlabel 'observed (indicative) price, EUR/MWh'\n"
-          "set ylabel '% of decisions per {:g} EUR/MWh'\nset key at graph 0.99,0.75 samplen 2\n"
-          "plot $train using 1:2 with fillsteps fc {} fs solid 0.7 title 'training days', "
-          "$test using 1:2 with steps lw 2 lc {} title 'test days'\n",
+          "set ylabel '% of decisions per {:g} EUR/MWh'\n"
+          "plot $train using 1:2 with fillsteps fc {} fs solid 0.7, "
+          "$test using 1:2 with steps lw 2 lc {}\n",
           shown.low, shown.high, kBinEurPerMwh, rgb(kSoft), rgb(kInk));
   return figure;
 }

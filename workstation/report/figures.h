@@ -27,10 +27,9 @@ Figure learning_figure(const std::vector<CurvePoint>& curve,
 /// The three losses over epochs; `curve` not empty.
 Figure distillation_figure(const std::vector<DistilPoint>& curve);
 
-/// One to three policies side by side over price and SoC, and whether the training days
-/// hold that month.
+/// One to three policies side by side over price and SoC; `note` opens the caption.
 Figure policy_map_figure(const PolicyContext& context, const std::vector<NamedPolicyMap>& maps,
-                         const BatteryParameters& battery, bool month_in_training_days);
+                         const BatteryParameters& battery, const std::string& note);
 
 /// Distribution of observed prices on training and on test days.
 Figure price_density_figure(const MarketSteps& market, const ReportThresholds& thresholds);

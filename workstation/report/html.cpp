@@ -11,25 +11,26 @@ constexpr std::string_view kStyle = R"(
 *{box-sizing:border-box}
 body{margin:0;background:var(--paper);color:var(--ink);
  font:16px/1.55 system-ui,-apple-system,"Segoe UI",Roboto,Helvetica,Arial,sans-serif}
-main{max-width:58rem;margin:0 auto;padding:1.5rem 1rem 4rem}
+main{max-width:60rem;margin:0 auto;padding:1.5rem 1rem 4rem}
 h1{font-size:1.7rem;line-height:1.2;margin:0 0 .6rem}
 h2{font-size:1.2rem;margin:2.6rem 0 .5rem}
 p{max-width:44rem;margin:.5rem 0}
 .lead{font-size:1.08rem}
 figure{margin:2.6rem 0}
 figure h2{margin:0 0 .6rem}
+figcaption{margin-top:.6rem}
 figcaption,.note{color:var(--muted);font-size:.92rem;max-width:44rem}
 .wide{overflow-x:auto;-webkit-overflow-scrolling:touch}
 svg{display:block;width:100%;min-width:36rem;height:auto}
 svg text{font-family:system-ui,-apple-system,"Segoe UI",Roboto,Helvetica,Arial,sans-serif}
 table{border-collapse:collapse;font-variant-numeric:tabular-nums;font-size:.92rem;margin:1rem 0}
 caption{text-align:left;font-weight:600;padding:.3rem 0}
-th,td{padding:.32rem .7rem;text-align:right;white-space:nowrap;border-bottom:1px solid var(--grid)}
+th,td{padding:.32rem .45rem;text-align:right;white-space:nowrap;border-bottom:1px solid var(--grid)}
 th:first-child,td:first-child{text-align:left;padding-left:0}
-thead th{color:var(--muted);font-weight:600;vertical-align:bottom;border-bottom-color:var(--muted)}
+thead th{white-space:normal;color:var(--muted);font-weight:600;vertical-align:bottom;border-bottom-color:var(--muted)}
 tbody th{font-weight:400}
 pre{font-size:.8rem;white-space:pre-wrap;overflow-wrap:anywhere;color:var(--muted)}
-@media print{main{max-width:none;padding:0}figure,table,.block{break-inside:avoid}
+@media print{main{max-width:none;padding:0}figure,table,.block{break-inside:avoid}h2{break-after:avoid}
  .wide{overflow:visible}svg{min-width:0}body{font-size:11pt}}
 )";
 

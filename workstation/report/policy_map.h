@@ -2,6 +2,7 @@
 // and where that map breaks the order of property 3 [Paper, Eq. 11].
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -16,6 +17,7 @@ struct PolicyContext {
   int month;         ///< 1..12
   int quarter_hour;  ///< local, 0..95
   int t_qh;          ///< minute of the quarter-hour, 0..14
+  friend auto operator<=>(const PolicyContext&, const PolicyContext&) = default;
 };
 
 /// Action's integers, [SoC index][price index], kSocCount x kPriceCount.

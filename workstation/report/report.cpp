@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
+#include <optional>
 
 #include "workstation/io/file.h"
 #include "workstation/io/user_error.h"
@@ -34,9 +36,36 @@ std::vector<NamedPolicyMap> policy_maps(const ReportInputs& in, const PolicyCont
   return maps;
 }
 
-bool month_is_trained(const MarketSteps& market, int month) {
+/// Where the uncorrected student's counterexamples are most frequent; none without any.
+std::optional<PolicyContext> worst_context(const ReportInputs& in) {
+  if (in.uncorrected_certificate == nullptr) return std::nullopt;
+  std::map<PolicyContext, int> count;
+  for (const LatticeState& s : in.uncorrected_certificate->counterexamples) {
+    ++count[{.month = s.month, .quarter_hour = s.qh, .t_qh = s.t_qh}];
+  }
+  const auto worst = std::ranges::max_element(count, {}, [](const auto& c) { return c.second; });
+  return worst == count.end() ? std::nullopt : std::optional(worst->first);
+}
+
+std::string month_note(const MarketSteps& market, int month) {
   const auto trained = market.days_of(Split::kTrain);
-  return std::ranges::find(trained, month, &MarketDay::month) != trained.end();
+  const bool seen = std::ranges::find(trained, month, &MarketDay::month) != trained.end();
+  return seen ? "" : "No training day lies in this month: it is extrapolated. ";
+}
+
+void add_policy_map(const ReportInputs& in, const PolicyContext& context, const std::string& note,
+                    std::vector<Figure>& figures) {
+  const std::vector<NamedPolicyMap> maps = policy_maps(in, context);
+  if (maps.empty()) return;
+  figures.push_back(
+      policy_map_figure(context, maps, in.battery, note + month_note(in.market, context.month)));
+}
+
+void add_policy_maps(const ReportInputs& in, std::vector<Figure>& figures) {
+  for (const PolicyContext& context : in.maps) add_policy_map(in, context, "", figures);
+  const std::optional<PolicyContext> worst = worst_context(in);
+  if (!worst || std::ranges::find(in.maps, *worst) != in.maps.end()) return;
+  add_policy_map(in, *worst, "The time at which the uncorrected student erred most. ", figures);
 }
 
 struct ShownPolicy {
@@ -67,12 +96,7 @@ std::vector<Figure> figures_of(const ReportInputs& in) {
   if (const MarketDay* day = widest_test_day(in.market)) {
     figures.push_back(widest_day_figure(in, *day));
   }
-  for (const PolicyContext& context : in.maps) {
-    const std::vector<NamedPolicyMap> maps = policy_maps(in, context);
-    if (maps.empty()) continue;
-    figures.push_back(
-        policy_map_figure(context, maps, in.battery, month_is_trained(in.market, context.month)));
-  }
+  add_policy_maps(in, figures);
   if (!in.training_curve.empty()) {
     figures.push_back(learning_figure(in.training_curve, rule_validation_profit(in)));
   }
@@ -81,7 +105,7 @@ std::vector<Figure> figures_of(const ReportInputs& in) {
   return figures;
 }
 
-/// The policy that earned most, the foresight bound aside; null when there is none to name.
+/// The policy with the highest mean, the foresight bound aside; null when there is none to name.
 const ComparisonRow* best_of(const std::vector<ComparisonRow>& rows) {
   const ComparisonRow* best = nullptr;
   for (const ComparisonRow& row : rows) {
@@ -107,8 +131,8 @@ std::string lead(const std::vector<ComparisonRow>& rows) {
   const ComparisonRow* best = best_of(rows);
   if (best == nullptr) return {};
   std::string text = fmt::format(
-      "Over {} test days the {} earned most: {:.1f} EUR per day per MWh "
-      "of battery capacity",
+      "Over {} test days \u201c{}\u201d has the highest mean profit: {:.1f} EUR per day per MWh of "
+      "battery capacity",
       best->days, best->name, best->profit);
   if (best->difference) text += "; " + difference_text(*best->difference, rows.front().name);
   if (best->foresight_share) {
@@ -118,15 +142,26 @@ std::string lead(const std::vector<ComparisonRow>& rows) {
   return text + ".";
 }
 
+/// 6,950,033,280
+std::string grouped(std::int64_t count) {
+  const std::string digits = fmt::format("{}", count);
+  std::string text;
+  for (std::size_t i = 0; i < digits.size(); ++i) {
+    if (i > 0 && (digits.size() - i) % 3 == 0) text += ',';
+    text += digits[i];
+  }
+  return text;
+}
+
 std::string proof_sentence(const Certificate& c) {
   if (c.violations() != 0) {
     return fmt::format(
         "The corrected student still breaks its constraints {} times; it may not be "
         "exported.",
-        c.violations());
+        grouped(c.violations()));
   }
-  return fmt::format("The corrected student was proved on {} states without one violation.",
-                     c.states_checked);
+  return fmt::format("The corrected student was checked on {} lattice states: not one violation.",
+                     grouped(c.states_checked));
 }
 
 std::string dash_or(bool present, const std::string& text) { return present ? text : "\u2013"; }
@@ -157,10 +192,10 @@ std::string comparison_table(const std::string& caption, const std::vector<Compa
 
 std::vector<std::string> proof_cells(const std::string& name, const Certificate& c) {
   return {name,
-          fmt::format("{}", c.states_checked),
-          fmt::format("{}", c.violations_property_1),
-          fmt::format("{}", c.violations_property_2),
-          fmt::format("{}", c.violations_property_3),
+          grouped(c.states_checked),
+          grouped(c.violations_property_1),
+          grouped(c.violations_property_2),
+          grouped(c.violations_property_3),
           fmt::format("{:.1f}", c.seconds)};
 }
 

@@ -17,19 +17,19 @@ namespace bess {
 
 struct ReportInputs {
   const MarketSteps& market;  ///< delay and settlement as trained
-  BatteryParameters battery;
-  std::vector<NamedEvaluation> evaluations;  ///< on the test days; the first is rule-based
-  std::vector<CurvePoint> training_curve{};  ///< may be empty
-  std::vector<DistilPoint> distil_curve{};   ///< may be empty
+  BatteryParameters battery = {};
+  std::vector<NamedEvaluation> evaluations = {};  ///< on the test days; the first is rule-based
+  std::vector<CurvePoint> training_curve = {};    ///< may be empty
+  std::vector<DistilPoint> distil_curve = {};     ///< may be empty
   const Teacher* teacher = nullptr;  ///< each pointer may be null: what it shows is left out
   const StudentNet* uncorrected = nullptr;
   const Certificate* uncorrected_certificate = nullptr;
   const StudentNet* corrected = nullptr;
   const Certificate* corrected_certificate = nullptr;
-  ReportThresholds thresholds{};
+  ReportThresholds thresholds = {};
   std::vector<PolicyContext> maps = {{.month = 1, .quarter_hour = 48, .t_qh = 7},
                                      {.month = 9, .quarter_hour = 48, .t_qh = 7}};
-  std::string provenance{};  ///< lines, shown as they are
+  std::string provenance = {};  ///< lines, shown as they are
 };
 
 /// Writes the SVG figures and report.html into `folder`, which is created; each file appears
