@@ -1,6 +1,6 @@
 // The control thread's time: UTC (possibly scaled), absolute deadlines, and the request to stop.
-// SIGTERM and SIGINT are blocked in every thread and taken synchronously while waiting, so no
-// signal is lost between a test and a sleep and no handler runs in the middle of an order.
+// SIGTERM, SIGINT and SIGHUP are blocked in every thread and taken synchronously while waiting, so
+// no signal is lost between a test and a sleep and no handler runs in the middle of an order.
 #pragma once
 
 #include <pthread.h>
@@ -9,6 +9,7 @@
 #include <time.h>
 
 #include "shared/scaled_clock.h"
+#include "shared/units_and_limits.h"
 
 namespace bess {
 
@@ -20,6 +21,7 @@ class EdgeClock {
     sigemptyset(&stop_signals_);
     sigaddset(&stop_signals_, SIGTERM);
     sigaddset(&stop_signals_, SIGINT);
+    sigaddset(&stop_signals_, SIGHUP);
     pthread_sigmask(SIG_BLOCK, &stop_signals_, nullptr);
   }
 
@@ -39,6 +41,13 @@ class EdgeClock {
       take_stop_signal(left_ns < kNanosecondsPerSecond ? left_ns : kNanosecondsPerSecond);
     }
     return false;
+  }
+
+  /// Simulated time begins at its anchor: the first tick is then the same in every run.
+  bool wait_for_simulated_start() {
+    if (clock_.is_real_time()) return true;
+    const std::int64_t before_first_tick_s = clock_.anchor_utc_s - kSecondsPerStep + 1;
+    return sleep_until_utc_ns(before_first_tick_s * kNanosecondsPerSecond);
   }
 
   bool stop_requested() {

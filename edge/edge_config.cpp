@@ -21,6 +21,18 @@ bool is_numeric_ipv4(const char* host) {
   return inet_pton(AF_INET, host, &address) == 1;
 }
 
+/// The battery must report the configured capacity, else the address leads to another one.
+void expect_capacity(EdgeConfig& config) {
+  const std::int64_t capacity_wh = config.capacity_wh;
+  const std::int64_t tolerance_wh = capacity_wh * config.capacity_tolerance_percent / 100;
+  for (IdentityCheck& check : config.map.identity) {
+    if (config.map.points[check.point].name != "capacity") continue;
+    check.value_min = capacity_wh - tolerance_wh;
+    check.value_max = capacity_wh + tolerance_wh;
+    check.hint = "is [battery] capacity_wh right, or is this another battery?";
+  }
+}
+
 void read_battery(TomlTable table, EdgeConfig& config) {
   FixedText<255> map_file("maps/alphaess.toml");
   RegisterName variant;
@@ -50,7 +62,8 @@ void read_battery(TomlTable table, EdgeConfig& config) {
   if (!table.ok()) return;
   const auto folder = std::filesystem::path(table.file()).parent_path();
   const std::string map_path = (folder / map_file.c_str()).string();
-  load_register_map(map_path, variant.view(), config.map, table.error());
+  if (load_register_map(map_path, variant.view(), config.map, table.error()))
+    expect_capacity(config);
 }
 
 /// A power that the map cannot express, or an order that outlives its timer, must stop the start.

@@ -6,6 +6,7 @@
 //   battery ------> ModbusBattery ----------+         |
 //                                                     +-> EventLog
 //   exit 0 clean stop   1 settings, battery or price server are bad   2 the command line is bad
+#include <signal.h>
 #include <sys/prctl.h>
 
 #include <cerrno>
@@ -34,7 +35,8 @@ void release_after_failed_check(const char*, const char*, int) {
 
 /// Runs until a stop is requested or `cycles` are done; the last order keeps its whole step.
 int run_loop(Loop& loop, std::int64_t cycles, bess::EdgeClock& clock, bess::EventLog& log) {
-  bess::CycleRecord record;
+  bess::CycleRecord record{};
+  clock.wait_for_simulated_start();
   for (std::int64_t i = 0; i != cycles && loop.run_cycle(record); ++i) log.write(record);
   clock.sleep_until_utc_ns((record.utc_s + bess::kSecondsPerStep) * bess::kNanosecondsPerSecond);
   const bess::Status status = loop.stop(record);
@@ -68,6 +70,7 @@ int main(int argc, char** argv) {
   if (!check_student()) return 1;
 
   set_market_time_zone();
+  signal(SIGPIPE, SIG_IGN);           // whoever reads the log may go away, the battery must not
   prctl(PR_SET_TIMERSLACK, 1'000UL);  // ns; the default 50 us would be seen at high time scales
   static EdgeClock clock(config.clock, config.require_synchronised_clock);
   static ModbusBattery battery(config.link, config.map, config.clock);
@@ -81,6 +84,7 @@ int main(int argc, char** argv) {
     return 1;
   }
   if (!reach_battery(config, battery, clock)) return 1;
+  greet_price_server(config, prices);
   log.note(config.control.control ? "started: in control" : "started: read-only");
   if (config.control.control) {
     battery_of_check_handler = &battery;

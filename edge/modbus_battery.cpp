@@ -174,6 +174,9 @@ Status ModbusBattery::read_point(int point, std::int64_t& value) {
 
 Status ModbusBattery::read(BatteryMeasurement& measurement) {
   Status status = Status::kOk;
+  IdentityFailure failure;
+  if (!identified_) status = check_identity(failure);
+  if (status != Status::kOk) return status;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     measurement = BatteryMeasurement{};
     status = Status::kOk;
@@ -275,17 +278,18 @@ Status ModbusBattery::verify_command(const CommandSequence& sequence, const Powe
   return Status::kOk;
 }
 
-Status ModbusBattery::check_identity(int& failed_check) {
-  for (failed_check = 0; failed_check < map_.identity.size(); ++failed_check) {
-    const IdentityCheck& check = map_.identity[failed_check];
-    std::int64_t value = 0;
-    Status status = read_point(check.point, value);
+Status ModbusBattery::check_identity(IdentityFailure& failure) {
+  for (failure.check = 0; failure.check < map_.identity.size(); ++failure.check) {
+    const IdentityCheck& check = map_.identity[failure.check];
+    Status status = read_point(check.point, failure.value);
     if (status != Status::kOk && status != Status::kImplausible) {
-      status = read_point(check.point, value);
+      status = read_point(check.point, failure.value);  // a dropped connection is mended once
     }
     if (status != Status::kOk) return status;
-    if (value < check.value_min || value > check.value_max) return Status::kImplausible;
+    const bool fits = failure.value >= check.value_min && failure.value <= check.value_max;
+    if (!fits) return Status::kImplausible;
   }
+  identified_ = true;
   return Status::kOk;
 }
 

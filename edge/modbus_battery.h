@@ -29,6 +29,11 @@ struct BatteryLinkSettings {
   std::int32_t response_timeout_ms = -1;  ///< wall time; -1 = the map's
 };
 
+struct IdentityFailure {
+  int check = 0;  ///< index into RegisterMap::identity
+  std::int64_t value = 0;
+};
+
 class ModbusBattery {
  public:
   /// `map` must outlive this object.
@@ -43,8 +48,9 @@ class ModbusBattery {
   Status order(const PowerOrder& order);
   /// Gives the battery back to its own mode and reads that back.
   Status release();
-  /// Reads the map's identity checks; on kImplausible `failed_check` is the index of the check.
-  Status check_identity(int& failed_check);
+  /// Reads the map's identity checks; on kImplausible `failure` says which one and what was read.
+  /// `read` fails until this has succeeded once, so nothing is ever ordered of an unknown device.
+  Status check_identity(IdentityFailure& failure);
 
   void close();
 
@@ -77,6 +83,7 @@ class ModbusBattery {
   std::int32_t response_timeout_ms_;
   _modbus* context_ = nullptr;
   bool connected_ = false;
+  bool identified_ = false;
   std::int64_t next_request_ns_ = 0;  ///< CLOCK_MONOTONIC; keeps the device's minimum gap
   StaticVector<ReadSpan, 16> spans_;
 

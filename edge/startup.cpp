@@ -1,7 +1,6 @@
 #include "edge/startup.h"
 
 #include <cstdio>
-#include <cstdlib>
 
 #include "edge/policy.h"
 #include "edge/registers/codec.h"
@@ -26,34 +25,26 @@ void complain(const EdgeConfig& config, std::string_view what) {
   std::fprintf(stderr, ": %.*s\n", static_cast<int>(what.size()), what.data());
 }
 
-/// Reads the identity checks of the map and the capacity; complains once when they do not fit.
+/// Proves that this is the configured battery; one line when it is not.
 Status identify(const EdgeConfig& config, ModbusBattery& battery, bool complain_about_link) {
-  int failed_check = 0;
-  Status status = battery.check_identity(failed_check);
+  IdentityFailure failure;
+  Status status = battery.check_identity(failure);
   if (status == Status::kImplausible) {
-    complain(config, config.map.identity[failed_check].hint.view());
+    const IdentityCheck& check = config.map.identity[failure.check];
+    char text[256];
+    std::snprintf(text, sizeof text, "%s reads %lld, not %lld to %lld: %s",
+                  config.map.points[check.point].name.c_str(),
+                  static_cast<long long>(failure.value), static_cast<long long>(check.value_min),
+                  static_cast<long long>(check.value_max), check.hint.c_str());
+    complain(config, text);
     return status;
   }
   BatteryMeasurement measurement;
   if (status == Status::kOk) status = battery.read(measurement);
-  if (status != Status::kOk) {
-    if (complain_about_link || status == Status::kImplausible)
-      complain(config, status_text(status));
-    return status;
+  if (status == Status::kImplausible || (status != Status::kOk && complain_about_link)) {
+    complain(config, status_text(status));
   }
-  const std::int64_t difference_wh = std::abs(measurement.capacity_wh - config.capacity_wh);
-  const bool has_capacity = find_point(config.map, "capacity") >= 0;
-  if (has_capacity &&
-      difference_wh * 100 > std::int64_t{config.capacity_tolerance_percent} * config.capacity_wh) {
-    char text[128];
-    std::snprintf(text, sizeof text,
-                  "reports %d Wh, but [battery] capacity_wh = %d: mend the one "
-                  "that is wrong",
-                  measurement.capacity_wh, config.capacity_wh);
-    complain(config, text);
-    return Status::kImplausible;
-  }
-  return Status::kOk;
+  return status;
 }
 
 void print_registers(const EdgeConfig& config, const char* name, const PowerOrder& order,
@@ -120,6 +111,14 @@ bool reach_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& 
     sleep_until_monotonic(clock.monotonic_ns() + kNanosecondsPerSecond / 5);
   }
   return true;
+}
+
+void greet_price_server(const EdgeConfig& config, PriceFeed& prices) {
+  PriceRow row;
+  const Status status = prices.fetch_once(row);
+  if (status == Status::kOk) return;
+  std::fprintf(stderr, "bess-edge: note: price from %s: %s; waiting in safe state\n",
+               config.price.url.c_str(), status_text(status).data());
 }
 
 bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& prices) {

@@ -12,6 +12,10 @@ namespace bess {
 /// mend.
 bool reach_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& clock);
 
+/// Fetches once: opens the connection before the first tick, and says it when there is no price
+/// yet.
+void greet_price_server(const EdgeConfig& config, PriceFeed& prices);
+
 /// Prints settings, encoded orders, a battery reading and the newest price; true when all is well.
 bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& prices);
 

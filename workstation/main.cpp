@@ -3,11 +3,24 @@
 //   exit 0 done   1 the input or its content is bad   2 the command line is bad   3 interrupted
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <string>
 
 #include "shared/local_time.h"
 #include "workstation/cli/commands.h"
+
+namespace {
+
+/// CLI11 would only say that a subcommand is missing, not that this one does not exist.
+bool is_subcommand_or_option(const CLI::App& app, const std::string& word) {
+  if (word.starts_with('-')) return true;
+  const auto subcommands = app.get_subcommands([](const CLI::App*) { return true; });
+  return std::ranges::any_of(subcommands, [&](const CLI::App* s) { return s->get_name() == word; });
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   bess::set_market_time_zone();
@@ -16,6 +29,10 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.set_version_flag("--version", BESS_VERSION);
   bess::add_commands(app);
+  if (argc > 1 && !is_subcommand_or_option(app, argv[1])) {
+    std::fprintf(stderr, "bess-train: unknown subcommand \"%s\" (see bess-train --help)\n", argv[1]);
+    return 2;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -221,6 +221,16 @@ TEST_F(Processes, BadStartsEndWithOneClearLine) {
   }
 }
 
+TEST_F(Processes, TheWrongBatteryIsRefusedBeforeAnythingIsWritten) {
+  battery_ = start_simulator(
+      {"battery", "--port", "0", "--capacity-wh", "12000", "--record", folder_.file("battery.csv")},
+      battery_port_);
+  market_port_ = 1;
+  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", write_config()});
+  EXPECT_THAT(edge.read_all(), HasSubstr("capacity reads 12000, not 6000 to 10000"));
+  EXPECT_EQ(edge.wait(), 1);
+}
+
 /// An independent master sees the registers that the edge's commands stand for.
 TEST_F(Processes, MbpollReadsWhatTheMapSays) {
   if (access("/usr/bin/mbpoll", X_OK) != 0) GTEST_SKIP() << "mbpoll is not installed";

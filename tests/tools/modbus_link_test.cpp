@@ -195,11 +195,16 @@ TEST(ModbusLink, OrderBeyondTheMapIsRefusedWithoutAWrite) {
 TEST(ModbusLink, IdentityOfTheSimulatedBatteryFits) {
   LoopbackBattery loopback("block");
   ModbusBattery battery(loopback.link(), loopback.map, loopback.clock);
-  int failed_check = -1;
-  EXPECT_EQ(battery.check_identity(failed_check), Status::kOk);
+  IdentityFailure failure;
+  EXPECT_EQ(battery.check_identity(failure), Status::kOk);
   loopback.map.identity[1].value_min = 9'000;  // a battery of at least 9 kWh was expected
-  EXPECT_EQ(battery.check_identity(failed_check), Status::kImplausible);
-  EXPECT_EQ(failed_check, 1);
+  EXPECT_EQ(battery.check_identity(failure), Status::kImplausible);
+  EXPECT_EQ(failure.check, 1);
+  EXPECT_EQ(failure.value, 8'000);
+  ModbusBattery stranger(loopback.link(), loopback.map, loopback.clock);
+  battery.close();
+  BatteryMeasurement m;
+  EXPECT_EQ(stranger.read(m), Status::kImplausible);  // never read, hence never driven
 }
 
 TEST(BatteryServer, PortInUseIsOneClearLine) {

@@ -32,13 +32,19 @@ struct BatteryServer::Request {
   }
 };
 
+void BatteryServer::FreeContext::operator()(_modbus* context) const { modbus_free(context); }
+
+void BatteryServer::FreeMapping::operator()(_modbus_mapping_t* mapping) const {
+  modbus_mapping_free(mapping);
+}
+
 BatteryServer::BatteryServer(const BatteryServerSettings& settings, const RegisterMap& map,
                              SimulatedBattery& battery, const ScaledClock& clock)
     : settings_(settings), map_(map), battery_(battery), clock_(clock) {
-  context_ = modbus_new_tcp(settings.host.c_str(), settings.port);
-  mapping_ = modbus_mapping_new(0, 0, RegisterImage::kRegisterCount, 0);
+  context_.reset(modbus_new_tcp(settings.host.c_str(), settings.port));
+  mapping_.reset(modbus_mapping_new(0, 0, RegisterImage::kRegisterCount, 0));
   if (context_ == nullptr || mapping_ == nullptr) sim_fail("no memory for libmodbus");
-  listen_fd_ = modbus_tcp_listen(context_, 4);
+  listen_fd_ = modbus_tcp_listen(context_.get(), 4);
   if (listen_fd_ < 0) {
     const int error = errno;
     sim_fail("cannot listen on {}:{}: {}", settings.host, settings.port,
@@ -49,16 +55,13 @@ BatteryServer::BatteryServer(const BatteryServerSettings& settings, const Regist
   socklen_t size = sizeof address;
   getsockname(listen_fd_, reinterpret_cast<sockaddr*>(&address), &size);
   port_ = ntohs(address.sin_port);
-  image_ = new RegisterImage(map_, battery_,
-                             {mapping_->tab_registers, std::size_t{RegisterImage::kRegisterCount}});
+  const std::span registers(mapping_->tab_registers, std::size_t{RegisterImage::kRegisterCount});
+  image_ = std::make_unique<RegisterImage>(map_, battery_, registers);
 }
 
 BatteryServer::~BatteryServer() {
   close_client();
   if (listen_fd_ >= 0) close(listen_fd_);
-  delete image_;
-  modbus_mapping_free(mapping_);
-  modbus_free(context_);
 }
 
 void BatteryServer::run(int stop_fd) {
@@ -77,7 +80,7 @@ void BatteryServer::run(int stop_fd) {
 
 void BatteryServer::accept_client() {
   if (client_fd_ < 0) {
-    client_fd_ = modbus_tcp_accept(context_, &listen_fd_);
+    client_fd_ = modbus_tcp_accept(context_.get(), &listen_fd_);
     return;
   }
   const int second = accept(listen_fd_, nullptr, nullptr);
@@ -87,12 +90,12 @@ void BatteryServer::accept_client() {
 void BatteryServer::close_client() {
   if (client_fd_ >= 0) close(client_fd_);
   client_fd_ = -1;
-  modbus_set_socket(context_, -1);
+  modbus_set_socket(context_.get(), -1);
 }
 
 void BatteryServer::serve_request() {
   Request request{};
-  request.size = modbus_receive(context_, request.bytes);
+  request.size = modbus_receive(context_.get(), request.bytes);
   if (request.size < 0) return close_client();
   if (request.size == 0 || request.unit() != map_.unit)
     return;  // another unit: silence, as on a bus
@@ -113,7 +116,7 @@ bool BatteryServer::is_faulty(const Request& request) {
 
 void BatteryServer::answer(const Request& request) {
   image_->refresh(clock_.now_utc_ns());
-  const int sent = modbus_reply(context_, request.bytes, request.size, mapping_);
+  const int sent = modbus_reply(context_.get(), request.bytes, request.size, mapping_.get());
   if (sent < 0) return close_client();
   const bool in_range =
       request.address() + request.write_count() <= int{RegisterImage::kRegisterCount};
@@ -129,7 +132,7 @@ void BatteryServer::misbehave(const Request& request) {
       std::this_thread::sleep_for(std::chrono::milliseconds(settings_.late_ms));
       return answer(request);
     case BatteryFault::kException:
-      modbus_reply_exception(context_, request.bytes, MODBUS_EXCEPTION_SLAVE_OR_SERVER_BUSY);
+      modbus_reply_exception(context_.get(), request.bytes, MODBUS_EXCEPTION_SLAVE_OR_SERVER_BUSY);
       return;
     case BatteryFault::kDrop:
       return close_client();
@@ -139,7 +142,7 @@ void BatteryServer::misbehave(const Request& request) {
   image_->refresh(clock_.now_utc_ns());
   const std::vector<std::uint16_t> before(mapping_->tab_registers,
                                           mapping_->tab_registers + RegisterImage::kRegisterCount);
-  if (modbus_reply(context_, request.bytes, request.size, mapping_) < 0) close_client();
+  if (modbus_reply(context_.get(), request.bytes, request.size, mapping_.get()) < 0) close_client();
   std::copy(before.begin(), before.end(), mapping_->tab_registers);
 }
 

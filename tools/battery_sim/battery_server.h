@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 
 #include "edge/registers/register_map.h"
 #include "shared/scaled_clock.h"
+#include "tools/battery_sim/register_image.h"
 #include "tools/battery_sim/simulated_battery.h"
 
 struct _modbus;
@@ -47,6 +49,12 @@ class BatteryServer {
 
  private:
   struct Request;
+  struct FreeContext {
+    void operator()(_modbus* context) const;
+  };
+  struct FreeMapping {
+    void operator()(_modbus_mapping_t* mapping) const;
+  };
   void accept_client();
   void close_client();
   void serve_request();
@@ -58,9 +66,9 @@ class BatteryServer {
   const RegisterMap& map_;
   SimulatedBattery& battery_;
   ScaledClock clock_;
-  class RegisterImage* image_ = nullptr;
-  _modbus* context_ = nullptr;
-  _modbus_mapping_t* mapping_ = nullptr;
+  std::unique_ptr<_modbus, FreeContext> context_;
+  std::unique_ptr<_modbus_mapping_t, FreeMapping> mapping_;
+  std::unique_ptr<RegisterImage> image_;
   int listen_fd_ = -1;
   int client_fd_ = -1;
   int port_ = 0;

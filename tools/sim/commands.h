@@ -8,5 +8,6 @@ namespace bess {
 
 void add_battery_command(CLI::App& app);
 void add_market_command(CLI::App& app);
+void add_settle_command(CLI::App& app);
 
 }  // namespace bess

@@ -1,4 +1,5 @@
-// bess-sim: the other two ends of the edge, a Modbus battery and a price server, in scaled time.
+// bess-sim: the other two ends of the edge, a Modbus battery and a price server, in scaled time, and the
+// settlement of what they exchanged.
 //   exit 0 stopped   1 the input is bad or a port is in use   2 the command line is bad
 #include <CLI/CLI.hpp>
 
@@ -31,6 +32,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", BESS_VERSION);
   bess::add_battery_command(app);
   bess::add_market_command(app);
+  bess::add_settle_command(app);
   add_clock_command(app);
   const auto is_named = [&](const CLI::App* command) { return command->get_name() == argv[1]; };
   if (argc > 1 && argv[1][0] != '-' && app.get_subcommands(is_named).empty()) {

@@ -2,6 +2,16 @@
 
 namespace bess {
 
-void add_commands(CLI::App& app) { add_prices_commands(app); }
+void add_commands(CLI::App& app) {
+  add_run_command(app);
+  add_prices_commands(app);
+  add_train_command(app);
+  add_distil_command(app);
+  add_verify_command(app);
+  add_evaluate_command(app);
+  add_export_command(app);
+  add_report_command(app);
+  add_config_command(app);
+}
 
 }  // namespace bess

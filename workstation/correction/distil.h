@@ -22,7 +22,7 @@ struct DistilOptions {
   CorrectionOptions correction;
   double omega = 1e-4;  ///< the paper's trade-off: larger follows the teacher and violates more
   double temperature_eur_per_h = 100;  ///< of the teacher's softmax over action values
-  int epochs = 600;
+  int epochs = 300;
   int steps_per_epoch = 16;  ///< Adam steps that share one epoch's states
   int lattices_per_epoch = 64;
   int lattice_prices = 32;

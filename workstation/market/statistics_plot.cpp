@@ -1,12 +1,10 @@
 #include "workstation/market/statistics_plot.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cstdio>
-#include <cstdlib>
 #include <map>
 
+#include "workstation/io/gnuplot.h"
 #include "workstation/io/user_error.h"
 
 namespace bess {
@@ -50,22 +48,15 @@ std::string convergence_data(const ConvergenceByMinute& convergence) {
   return data;
 }
 
-bool command_succeeds(const char* command) { return std::system(command) == 0; }
-
-/// gnuplot writes beside the final name, so that a failure leaves nothing behind.
-fs::path beside(const fs::path& path) {
-  return path.parent_path() /
-         fmt::format(".{}.{}{}", path.stem().string(), getpid(), path.extension().string());
-}
-
 }  // namespace
 
 std::string gnuplot_script(const fs::path& output, const MarketStatistics& statistics,
                            std::span<const double> settled) {
   const std::string convergence =
       statistics.convergence ? convergence_data(*statistics.convergence) : std::string();
-  std::string script = fmt::format("set terminal {}\nset output '{}'\n$prices << EOD\n{}EOD\n",
-                                   terminal_for(output), output.string(), histogram_data(settled));
+  std::string script =
+      fmt::format("set terminal {}\nset output {}\n$prices << EOD\n{}EOD\n", terminal_for(output),
+                  gnuplot_quoted(output.string()), histogram_data(settled));
   if (!convergence.empty()) script += fmt::format("$errors << EOD\n{}EOD\n", convergence);
   script += fmt::format(
       "set multiplot layout {},1\nset grid\nset key top right\nset style fill solid 0.6\n"
@@ -86,22 +77,8 @@ std::string gnuplot_script(const fs::path& output, const MarketStatistics& stati
 
 void plot_statistics(const fs::path& path, const MarketStatistics& statistics,
                      std::span<const double> settled) {
-  const fs::path temporary = beside(path);
-  const std::string script = gnuplot_script(temporary, statistics, settled);
-  if (!command_succeeds("command -v gnuplot > /dev/null 2>&1")) {
-    fail("{}: drawing needs gnuplot, which is not installed; apt-get install gnuplot-nox",
-         path.string());
-  }
-  std::FILE* gnuplot = popen("gnuplot > /dev/null 2>&1", "w");
-  if (gnuplot == nullptr) fail("{}: gnuplot cannot be started", path.string());
-  const bool sent = std::fwrite(script.data(), 1, script.size(), gnuplot) == script.size();
-  const bool drawn = pclose(gnuplot) == 0 && sent && fs::exists(temporary);
-  std::error_code error;
-  if (drawn) fs::rename(temporary, path, error);
-  if (!drawn || error) {
-    fs::remove(temporary, error);
-    fail("{}: gnuplot could not draw; is the folder there and writable?", path.string());
-  }
+  draw_with_gnuplot(
+      path, [&](const fs::path& output) { return gnuplot_script(output, statistics, settled); });
 }
 
 }  // namespace bess

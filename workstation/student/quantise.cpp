@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "workstation/correction/distil.h"
 #include "workstation/io/user_error.h"
@@ -60,30 +61,32 @@ void quantise_layer(const Eigen::MatrixXd& w, const Eigen::VectorXd& b, int bits
   }
 }
 
+/// Largest magnitude of the layer's sums, given the largest value of each (non-negative) input.
 template <int kInputs, int kOutputs>
-std::int64_t layer_bound(const Affine<kInputs, kOutputs>& layer, std::int64_t input_max) {
+std::int64_t sum_bound(const Affine<kInputs, kOutputs>& layer,
+                       const std::vector<std::int64_t>& input_max) {
   std::int64_t bound = 0;
   for (int o = 0; o < kOutputs; ++o) {
     std::int64_t sum = std::abs(std::int64_t{layer.bias[o]});
-    for (int i = 0; i < kInputs; ++i) sum += std::abs(layer.weight[i][o] * input_max);
+    for (int i = 0; i < kInputs; ++i) sum += std::abs(layer.weight[i][o] * input_max[i]);
     bound = std::max(bound, sum);
   }
   return bound;
 }
 
-/// Largest activation after a layer whose inputs are in 0..input_max, per output, exact in
-/// integers.
+/// Largest value of each activation after the layer, exact in integers.
 template <int kInputs, int kOutputs>
-std::int64_t activation_bound(const Affine<kInputs, kOutputs>& layer, int shift,
-                              std::int64_t input_max) {
-  std::int64_t bound = 0;
+std::vector<std::int64_t> activation_bound(const Affine<kInputs, kOutputs>& layer, int shift,
+                                           const std::vector<std::int64_t>& input_max) {
+  std::vector<std::int64_t> bound(kOutputs);
   for (int o = 0; o < kOutputs; ++o) {
     std::int64_t sum = layer.bias[o];
-    for (int i = 0; i < kInputs; ++i)
-      sum += std::max<std::int64_t>(0, layer.weight[i][o]) * input_max;
-    bound = std::max(bound, sum);
+    for (int i = 0; i < kInputs; ++i) {
+      sum += std::max<std::int64_t>(0, layer.weight[i][o]) * input_max[i];
+    }
+    bound[o] = std::clamp<std::int64_t>((sum >> shift) + 1, 0, INT16_MAX);
   }
-  return std::min<std::int64_t>(INT16_MAX, (bound >> shift) + 1);
+  return bound;
 }
 
 }  // namespace
@@ -116,12 +119,13 @@ StudentNet quantise_student(const Parameters& student, const PriceMap& price_map
 }
 
 std::int64_t accumulator_bound(const StudentNet& net) {
-  const std::int64_t hidden1 = activation_bound(net.layer1, net.relu1.shift, kInputOne);
-  const std::int64_t hidden2 = activation_bound(net.layer2, net.relu2.shift, hidden1);
+  const std::vector<std::int64_t> input(kStudentInputs, kInputOne);
+  const auto hidden1 = activation_bound(net.layer1, net.relu1.shift, input);
+  const auto hidden2 = activation_bound(net.layer2, net.relu2.shift, hidden1);
   const auto rounding = [](int shift) { return shift > 0 ? std::int64_t{1} << (shift - 1) : 0; };
-  return std::max({layer_bound(net.layer1, kInputOne) + rounding(net.relu1.shift),
-                   layer_bound(net.layer2, hidden1) + rounding(net.relu2.shift),
-                   layer_bound(net.layer3, hidden2)});
+  return std::max({sum_bound(net.layer1, input) + rounding(net.relu1.shift),
+                   sum_bound(net.layer2, hidden1) + rounding(net.relu2.shift),
+                   sum_bound(net.layer3, hidden2)});
 }
 
 }  // namespace bess

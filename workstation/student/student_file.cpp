@@ -147,4 +147,11 @@ StudentFile compiled_student() {
           BESS_STUDENT_PROVENANCE};
 }
 
+Certificate prove(const StudentFile& student, int threads, bool exhaustive) {
+  return verify_student(student.net, {.low_price_eur_per_mwh = student.low_price_eur_per_mwh,
+                                      .high_price_eur_per_mwh = student.high_price_eur_per_mwh,
+                                      .exhaustive = exhaustive,
+                                      .threads = threads});
+}
+
 }  // namespace bess

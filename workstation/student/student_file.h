@@ -28,4 +28,7 @@ StudentFile parse_student(const std::string& text, const std::string& name);
 /// The array that this program was compiled with (edge/generated/student_weights.h).
 StudentFile compiled_student();
 
+/// The certificate of a student against its own thresholds.
+Certificate prove(const StudentFile& student, int threads, bool exhaustive = false);
+
 }  // namespace bess

@@ -1,0 +1,113 @@
+#include "workstation/report/comparison.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "workstation/io/user_error.h"
+#include "workstation/report/curves.h"
+
+namespace bess {
+namespace {
+
+Evaluation evaluation_of(const std::vector<double>& profits_eur) {
+  Evaluation evaluation;
+  evaluation.capacity_mwh = 8;
+  for (const double profit : profits_eur) evaluation.days.push_back({"", profit, 1.5, 40, 0.5});
+  return evaluation;
+}
+
+std::vector<NamedEvaluation> three_policies() {
+  return {{"rule", evaluation_of({800, 1600, 2400}), evaluation_of({700, 1500, 2300})},
+          {"student", evaluation_of({1600, 2400, 4000}), evaluation_of({1600, 2400, 4000})},
+          {"foresight", evaluation_of({3200, 4000, 8800}), {}}};
+}
+
+TEST(Comparison, RowsAreThoseOfTheEvaluations) {
+  const auto policies = three_policies();
+  const auto rows = comparison_rows(policies, &NamedEvaluation::day_reset);
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_DOUBLE_EQ(rows[0].profit, 200);
+  EXPECT_FALSE(rows[0].difference.has_value());
+  EXPECT_DOUBLE_EQ(rows[1].profit, policies[1].day_reset.profit_eur_per_day_per_mwh());
+  EXPECT_DOUBLE_EQ(rows[1].standard_error, policies[1].day_reset.standard_error());
+  const PairedDifference d = paired_difference(policies[1].day_reset, policies[0].day_reset);
+  ASSERT_TRUE(rows[1].difference.has_value());
+  EXPECT_DOUBLE_EQ(rows[1].difference->mean, d.mean);
+  EXPECT_DOUBLE_EQ(rows[1].difference->standard_error, d.standard_error);
+  EXPECT_DOUBLE_EQ(rows[1].worst_day, 200);
+  ASSERT_TRUE(rows[1].foresight_share.has_value());
+  EXPECT_NEAR(*rows[1].foresight_share, 0.5, 1e-12);
+}
+
+TEST(Comparison, WithoutForesightThereIsNoShare) {
+  const auto rows = comparison_rows(three_policies(), &NamedEvaluation::carried_over);
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_FALSE(rows[1].foresight_share.has_value());
+}
+
+TEST(Comparison, TerminalColumnsAlign) {
+  const std::string table = format_comparison_table(three_policies());
+  std::size_t line_at = table.find('\n') + 1, width = 0;
+  for (int line = 0; line < 4; ++line) {
+    const std::size_t end = table.find('\n', line_at);
+    if (line == 0) width = end - line_at;
+    EXPECT_EQ(end - line_at, width) << table;
+    line_at = end + 1;
+  }
+  EXPECT_NE(table.find("+133.3"), std::string::npos) << table;
+  EXPECT_NE(table.find("SoC carried over"), std::string::npos);
+}
+
+TEST(Comparison, NothingToCompareIsNoTable) {
+  EXPECT_EQ(format_comparison_table({}), "");
+  EXPECT_EQ(format_comparison_table({{"empty", {}, {}}}), "");
+}
+
+TEST(Comparison, CsvHasOneLinePerPolicyAndWay) {
+  const std::string csv = comparison_csv(three_policies());
+  EXPECT_EQ(std::ranges::count(csv, '\n'), 6);
+  EXPECT_NE(csv.find("\nrule,reset,3,200.0000,57.7350,,,100.0000,1.5000,40.0000,"),
+            std::string::npos)
+      << csv;
+  EXPECT_NE(csv.find("\nstudent,carried,3,"), std::string::npos);
+}
+
+TEST(Comparison, CsvQuotesNamesThatNeedIt) {
+  const std::string csv = comparison_csv({{"student, \"new\"", evaluation_of({800}), {}}});
+  EXPECT_NE(csv.find("\n\"student, \"\"new\"\"\",reset,1,100.0000,"), std::string::npos) << csv;
+}
+
+TEST(Curves, CsvAndSmoothing) {
+  EXPECT_EQ(training_curve_csv({{250, 3.5, 400.25, 0.001}}),
+            "step,loss,validation_eur_per_day_per_mwh,edge_mass_frac\n250,3.5,400.2500,0.001000\n");
+  EXPECT_EQ(distil_curve_csv({{1, 0.5, 0.25, 0.125}}),
+            "epoch,teacher_loss,correction_loss,visited_loss\n1,0.5,0.25,0.125\n");
+  EXPECT_EQ(centred_mean({0, 3, 6}, 1), (std::vector<double>{1.5, 3, 4.5}));
+  EXPECT_TRUE(centred_mean({}, 2).empty());
+}
+
+TEST(Curves, ReadBackIsWhatWasWritten) {
+  const std::string training = training_curve_csv({{250, 3.5, 400.25, 0.001}, {500, 3, -20, 0}});
+  EXPECT_EQ(training_curve_csv(parse_training_curve_csv(training, "a")), training);
+  const std::string distil = distil_curve_csv({{1, 0.5, 1e-7, 0.125}, {2, 0.25, 0, 0.1}});
+  EXPECT_EQ(distil_curve_csv(parse_distil_curve_csv(distil, "b")), distil);
+}
+
+TEST(Curves, DamagedFilesAreNamedWithTheLine) {
+  const auto message_of = [](const std::string& text) -> std::string {
+    try {
+      (void)parse_distil_curve_csv(text, "curve.csv");
+    } catch (const UserError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string header = distil_curve_csv({});
+  EXPECT_NE(message_of("step\n").find("curve.csv:1:"), std::string::npos);
+  EXPECT_NE(message_of(header + "1,2,3\n").find("curve.csv:2:"), std::string::npos);
+  EXPECT_NE(message_of(header + "1,2,3,4\n1,2,x,4\n").find("curve.csv:3:"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,45 @@
+#include "workstation/report/figure.h"
+
+#include <gtest/gtest.h>
+
+#include "workstation/report/html.h"
+
+namespace bess {
+namespace {
+
+Figure figure_named(const std::string& name) {
+  Figure figure;
+  figure.name = name;
+  figure.title = "A < B";
+  figure.alt = "two points";
+  return figure;
+}
+
+constexpr const char* kSvg =
+    "<?xml version=\"1.0\"?>\n<svg><title>x</title>\n<desc>Produced by</desc>\n"
+    "<g fill=\"none\" color=\"black\">\n</g>\n"
+    "<circle id='gpDot' fill='rgb( 31,  41,  51)'/><use xlink:href='#gpDot'/>\n</svg>\n";
+
+TEST(Figure, InlinedSvgStandsBesideOthers) {
+  const std::string svg = inline_svg(kSvg, figure_named("prices"));
+  EXPECT_NE(svg.find("id='prices-gpDot' fill='var(--ink)'"), std::string::npos) << svg;
+  EXPECT_NE(svg.find("href='#prices-gpDot'"), std::string::npos) << svg;
+  EXPECT_NE(svg.find("A &lt; B</title>"), std::string::npos) << svg;
+  EXPECT_EQ(svg.find("<?xml"), std::string::npos);
+  EXPECT_EQ(svg.find("<g "), std::string::npos) << "an empty group is left";
+}
+
+TEST(Figure, TicDistancesAreRound) {
+  EXPECT_DOUBLE_EQ(tic_distance(0.83, 3), 0.5);
+  EXPECT_DOUBLE_EQ(tic_distance(140, 6), 50);
+  EXPECT_DOUBLE_EQ(tic_distance(1000, 10), 100);
+  EXPECT_GT(tic_distance(0, 3), 0);
+}
+
+TEST(Html, TextIsEscaped) {
+  EXPECT_EQ(html_escaped("<a href=\"x\">Tom & 'J'"),
+            "&lt;a href=&quot;x&quot;&gt;Tom &amp; &#39;J&#39;");
+}
+
+}  // namespace
+}  // namespace bess

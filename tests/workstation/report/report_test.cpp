@@ -1,0 +1,152 @@
+#include "workstation/report/report.h"
+
+#include <fmt/format.h>
+#include <stdlib.h>
+
+#include "report_test_support.h"
+#include "tests/support/temporary_folder.h"
+#include "workstation/io/file.h"
+#include "workstation/io/user_error.h"
+
+namespace bess {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Everything that ReportInputs points to.
+struct FinishedRun {
+  Teacher teacher = untrained_teacher();
+  StudentNet student = untrained_student();
+  Certificate certificate = failed_certificate();
+
+  static Certificate failed_certificate() {
+    Certificate certificate;
+    certificate.states_checked = 6'950'033'280;
+    certificate.violations_property_3 = 42;
+    certificate.counterexamples = {{3, 20, 2, 100, 50}};
+    certificate.seconds = 9.5;
+    return certificate;
+  }
+
+  [[nodiscard]] ReportInputs inputs() const {
+    RuleBasedPolicy rule(kPaperRuleLowEurPerMwh, kPaperRuleHighEurPerMwh);
+    TeacherPolicy taught(teacher);
+    ReportInputs in{.market = small_market()};
+    in.evaluations = {named_evaluation("rule-based", rule), named_evaluation("teacher", taught)};
+    in.training_curve = {{250, 3.5, 100, 0}, {500, 3.0, 140, 0}, {750, 2.9, 120, 0}};
+    in.distil_curve = {{1, 1.0, 0.1, 0.9}, {2, 0.5, 0.01, 0.4}, {3, 0.3, 0, 0.2}};
+    in.teacher = &teacher;
+    in.uncorrected = &student;
+    in.corrected = &student;
+    in.uncorrected_certificate = &certificate;
+    in.corrected_certificate = &certificate;
+    in.provenance = "seed 1 <untrained> & small";
+    return in;
+  }
+};
+
+std::string html_of(const ReportInputs& inputs, const fs::path& folder) {
+  write_report(inputs, folder);
+  return read_file(folder / "report.html");
+}
+
+int count_of(const std::string& text, const std::string& part) {
+  int count = 0;
+  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+TEST(Report, HoldsEveryFigureAndNothingFromOutside) {
+  const TemporaryFolder folder;
+  const FinishedRun run;
+  const std::string html = html_of(run.inputs(), folder.file("run"));
+  const std::vector<std::string> names{"learning_curve",
+                                       "distillation_curve",
+                                       "policy_map_01_1207",
+                                       "policy_map_09_1207",
+                                       "policy_map_02_0503",
+                                       "price_density",
+                                       "test_day"};
+  for (const std::string& name : names) {
+    EXPECT_TRUE(fs::exists(folder.file("run/" + name + ".svg"))) << name;
+    EXPECT_EQ(count_of(html, "aria-labelledby=\"" + name + "-title"), 1) << name;
+  }
+  EXPECT_EQ(count_of(html, "<svg "), static_cast<int>(names.size()));
+  EXPECT_EQ(first_unbalanced_tag(html), "");
+  EXPECT_EQ(count_of(html, "src="), 0);
+  EXPECT_EQ(count_of(html, "url("), 0);
+  EXPECT_EQ(count_of(html, "http"), count_of(html, "xmlns=\"http://www.w3.org/2000/svg\""));
+  EXPECT_NE(html.find("seed 1 &lt;untrained&gt; &amp; small"), std::string::npos);
+  EXPECT_NE(html.find("may not be exported"), std::string::npos);
+}
+
+TEST(Report, TableNumbersAreThoseOfTheEvaluations) {
+  const TemporaryFolder folder;
+  const FinishedRun run;
+  const ReportInputs in = run.inputs();
+  const std::string html = html_of(in, folder.file("run"));
+  for (const auto field : {&NamedEvaluation::day_reset, &NamedEvaluation::carried_over}) {
+    const Evaluation& teacher = in.evaluations[1].*field;
+    const PairedDifference d = paired_difference(teacher, in.evaluations[0].*field);
+    const std::string cells = fmt::format(
+        "teacher</th><td>{:.1f}</td><td>{:.1f}</td><td>{:+.1f}</td><td>{:.1f}</td><td>{:.1f}</td>"
+        "<td>{:.2f}</td><td>{:.1f}</td>",
+        teacher.profit_eur_per_day_per_mwh(), teacher.standard_error(), d.mean, d.standard_error,
+        teacher.worst_day_eur_per_mwh(), teacher.cycles_per_day(), teacher.switches_per_day());
+    EXPECT_NE(html.find(cells), std::string::npos) << cells;
+  }
+  EXPECT_NE(html.find("<td>6,950,033,280</td><td>0</td><td>0</td><td>42</td><td>9.5</td>"),
+            std::string::npos);
+}
+
+TEST(Report, SameInputsSameBytes) {
+  const TemporaryFolder folder;
+  const FinishedRun run;
+  EXPECT_EQ(html_of(run.inputs(), folder.file("a")), html_of(run.inputs(), folder.file("b")));
+  for (const auto& entry : fs::directory_iterator(folder.file("a"))) {
+    const std::string name = entry.path().filename().string();
+    EXPECT_EQ(read_file(entry.path()), read_file(folder.file("b/" + name))) << name;
+  }
+}
+
+TEST(Report, OnlyAMarketIsEnough) {
+  const TemporaryFolder folder;
+  const std::string html = html_of({.market = small_market()}, folder.file("run"));
+  EXPECT_EQ(first_unbalanced_tag(html), "");
+  EXPECT_EQ(count_of(html, "<svg "), 2);  // the day and the prices
+}
+
+TEST(Report, MissingGnuplotNamesTheMend) {
+  const TemporaryFolder folder;
+  const std::string path = getenv("PATH");
+  setenv("PATH", folder.file("nothing").c_str(), 1);
+  std::string message;
+  try {
+    write_report({.market = small_market()}, folder.file("run"));
+  } catch (const UserError& error) {
+    message = error.what();
+  }
+  setenv("PATH", path.c_str(), 1);
+  EXPECT_NE(message.find("apt-get install gnuplot-nox"), std::string::npos) << message;
+  EXPECT_TRUE(fs::is_empty(folder.file("run")));
+}
+
+TEST(Report, TheDayShownHasTheWidestPaidPrices) {
+  const MarketDay* widest = widest_test_day(small_market());
+  ASSERT_NE(widest, nullptr);
+  EXPECT_EQ(widest->split, Split::kTest);
+  const auto range = [](const MarketDay& day) {
+    double low = 1e9, high = -1e9;
+    for (const MarketStep& step : small_market().of(day)) {
+      low = std::min(low, step.paid_eur_per_mwh);
+      high = std::max(high, step.paid_eur_per_mwh);
+    }
+    return high - low;
+  };
+  for (const MarketDay& day : small_market().days_of(Split::kTest)) {
+    EXPECT_LE(range(day), range(*widest)) << day.date();
+  }
+}
+
+}  // namespace
+}  // namespace bess

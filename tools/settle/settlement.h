@@ -1,0 +1,44 @@
+// What a closed-loop run earned, counted twice: from the battery's own record of energy, minute by minute,
+// and from the edge's log of what it read and ordered. The two never share a number, so their difference
+// is the error of the whole loop: latency, rounding of SoC, and orders that were not carried out.
+#pragma once
+
+#include <vector>
+
+#include "shared/battery_model.h"
+#include "tools/market_sim/minute_file.h"
+#include "tools/settle/csv_table.h"
+
+namespace bess {
+
+/// Sums over one side of the comparison. Energy is grid side.
+struct Account {
+  double charged_wh = 0;
+  double discharged_wh = 0;
+  double profit_eur = 0;
+  double soc_end_frac = 0;
+
+  void add(double energy_wh, double settled_eur_per_mwh);
+};
+
+/// Wall time of the edge's cycles, microseconds.
+struct Latency {
+  double median_us = 0;
+  double p99_us = 0;
+  double max_us = 0;
+};
+
+struct Settlement {
+  Account battery;  ///< from the battery's record
+  Account edge;  ///< from the edge's log: each order through the battery model from the SoC it read
+  std::size_t cycles = 0;
+  std::size_t cycles_running = 0;
+  Latency decision, write, total;
+};
+
+/// Only minutes from the edge's first to the end of its last cycle count. Throws SimError when a minute has
+/// no settled price.
+Settlement settle(const CsvTable& battery_record, const CsvTable& edge_log,
+                  const std::vector<MinutePrice>& prices, const BatteryParameters& battery);
+
+}  // namespace bess

@@ -1,0 +1,78 @@
+#include "workstation/cli/common_options.h"
+
+#include <fmt/format.h>
+
+#include <csignal>
+#include <thread>
+
+#include "workstation/io/user_error.h"
+
+namespace bess {
+namespace {
+constexpr int kThreadsMax = 256;
+}
+
+void CommonOptions::add_config(CLI::App& command) {
+  command.add_option("--config", config_path, "TOML file; 'bess-train config' prints all keys");
+}
+
+void CommonOptions::add_seed_and_threads(CLI::App& command) {
+  command.add_option("--seed", seed, "Seed of every random draw (default 1)");
+  command.add_option("--threads", threads, "Default: all cores")->check(CLI::Range(1, kThreadsMax));
+}
+
+void CommonOptions::add_market(CLI::App& command) {
+  command.add_option("--delay", delay_min, "Observation delay in minutes, 0 to 5 (default 1)")
+      ->check(CLI::Range(0, 5));
+  command.add_option("--settlement", settlement, "minute (default) or step")
+      ->check(CLI::IsMember({"minute", "step"}));
+  command.add_option("--initial-soc", initial_soc_frac, "0..1, default 0.5");
+}
+
+RunConfig CommonOptions::resolve() const {
+  RunConfig config = load_run_config(config_path);
+  config.set_seed(seed.value_or(1));
+  const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  config.set_threads(threads.value_or(cores));
+  if (delay_min) config.market.observation_delay_min = *delay_min;
+  if (settlement) config.market.settlement = parse_settlement(*settlement);
+  if (initial_soc_frac) {
+    const BatteryParameters& battery = config.battery;
+    if (!(*initial_soc_frac >= battery.soc_min_frac && *initial_soc_frac <= battery.soc_max_frac)) {
+      fail("--initial-soc {}: use {:g} to {:g}, the battery's SoC window", *initial_soc_frac,
+           battery.soc_min_frac, battery.soc_max_frac);
+    }
+    config.initial_soc_frac = *initial_soc_frac;
+  }
+  return config;
+}
+
+std::atomic<bool>& interruption() {
+  static std::atomic<bool> interrupted{false};
+  static_assert(std::atomic<bool>::is_always_lock_free);
+  return interrupted;
+}
+
+void watch_interruption() {
+  interruption();  // constructed before a signal can come
+  const auto raise_flag = [](int) { interruption() = true; };
+  std::signal(SIGINT, raise_flag);
+  std::signal(SIGTERM, raise_flag);
+}
+
+std::string json_quote(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') {
+      out += '\\';
+      out += c;
+    } else if (static_cast<unsigned char>(c) < 0x20) {
+      out += fmt::format("\\u{:04x}", static_cast<int>(c));
+    } else {
+      out += c;
+    }
+  }
+  return out + '"';
+}
+
+}  // namespace bess

@@ -1,0 +1,37 @@
+// Options that several subcommands share, and what they resolve to: one place for their names and ranges.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <atomic>
+#include <optional>
+#include <string>
+
+#include "workstation/cli/run_config.h"
+
+namespace bess {
+
+struct CommonOptions {
+  std::string config_path;
+  std::optional<std::uint64_t> seed;
+  std::optional<int> threads;
+  std::optional<int> delay_min;
+  std::optional<std::string> settlement;
+  std::optional<double> initial_soc_frac;
+
+  void add_config(CLI::App& command);
+  void add_seed_and_threads(CLI::App& command);
+  void add_market(CLI::App& command);
+
+  /// The configuration file with the command line's options on top.
+  [[nodiscard]] RunConfig resolve() const;
+};
+
+/// Raised by Ctrl-C and SIGTERM once watched: long loops look at it, save what they have and return.
+std::atomic<bool>& interruption();
+void watch_interruption();
+
+/// Quotes a text as JSON.
+std::string json_quote(std::string_view text);
+
+}  // namespace bess

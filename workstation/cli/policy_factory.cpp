@@ -1,0 +1,71 @@
+#include "workstation/cli/policy_factory.h"
+
+#include <algorithm>
+
+#include "workstation/env/foresight.h"
+#include "workstation/env/tabular.h"
+#include "workstation/io/user_error.h"
+#include "workstation/student/student_file.h"
+#include "workstation/student/student_policy.h"
+
+namespace bess {
+namespace {
+
+/// Keeps a model alive as long as the policy that reads it.
+template <typename Model, typename ModelPolicy, typename View>
+std::shared_ptr<Policy> owning(Model model, View view) {
+  struct Holder {
+    Model model;
+    ModelPolicy policy;
+    Holder(Model m, View v) : model(std::move(m)), policy(v(model)) {}
+  };
+  auto holder = std::make_shared<Holder>(std::move(model), view);
+  return {holder, &holder->policy};
+}
+
+std::shared_ptr<Policy> student_policy(StudentFile student) {
+  return owning<StudentFile, StudentPolicy>(
+      std::move(student), [](const StudentFile& file) -> const StudentNet& { return file.net; });
+}
+
+std::shared_ptr<Policy> model_policy(const std::string& path) {
+  if (!std::filesystem::exists(path)) {
+    fail("--policy {}: neither a file nor one of: {}", path, kPolicyHelp);
+  }
+  if (is_teacher_file(path)) {
+    return owning<Teacher, TeacherPolicy>(load_teacher(path),
+                                          [](const Teacher& t) -> const Teacher& { return t; });
+  }
+  return student_policy(load_student(path));
+}
+
+}  // namespace
+
+std::pair<double, double> training_quartiles(const MarketSteps& market) {
+  std::vector<double> prices;
+  for (const MarketDay& day : market.days_of(Split::kTrain)) {
+    for (const MarketStep& step : market.of(day)) prices.push_back(step.paid_eur_per_mwh);
+  }
+  if (prices.empty()) fail("no training days (local days 1 to 20) in these prices; add some");
+  std::ranges::sort(prices);
+  return {prices[prices.size() / 4], prices[prices.size() * 3 / 4]};
+}
+
+std::shared_ptr<Policy> make_policy(const std::string& name, const MarketSteps& market,
+                                    const BatteryParameters& battery) {
+  if (name == "rbc") {
+    return std::make_shared<RuleBasedPolicy>(kPaperRuleLowEurPerMwh, kPaperRuleHighEurPerMwh);
+  }
+  if (name == "rbc-quartile") {
+    const auto [low, high] = training_quartiles(market);
+    return std::make_shared<RuleBasedPolicy>(low, high);
+  }
+  if (name == "tabular") {
+    return std::make_shared<TabularPolicy>(market, market.days_of(Split::kTrain), battery);
+  }
+  if (name == "foresight") return std::make_shared<ForesightPolicy>(battery);
+  if (name == "compiled") return student_policy(compiled_student());
+  return model_policy(name);
+}
+
+}  // namespace bess

@@ -1,0 +1,25 @@
+// From what the user typed after --policy to something that decides.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "workstation/cli/run_config.h"
+#include "workstation/env/policy.h"
+
+namespace bess {
+
+/// The names that --policy takes, for help and messages.
+inline constexpr const char* kPolicyHelp =
+    "rbc (thresholds 11/179), rbc-quartile (training days' quartiles), tabular, foresight, "
+    "compiled "
+    "(the array in this program), or a teacher's or student's file";
+
+/// A policy with whatever it is made of. Throws UserError for an unknown name or an unreadable file.
+std::shared_ptr<Policy> make_policy(const std::string& name, const MarketSteps& market,
+                                    const BatteryParameters& battery);
+
+/// Quartiles of the training days' settled prices: the rule without look-ahead.
+std::pair<double, double> training_quartiles(const MarketSteps& market);
+
+}  // namespace bess

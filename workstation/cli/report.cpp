@@ -1,0 +1,67 @@
+// bess-train report: figures and tables of a run, made again from its folder.
+#include <cJSON.h>
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "workstation/cli/commands.h"
+#include "workstation/cli/common_options.h"
+#include "workstation/cli/run_report.h"
+#include "workstation/io/file.h"
+#include "workstation/io/user_error.h"
+
+namespace bess {
+namespace {
+
+std::string prices_of_run(const RunFolder& folder) {
+  const std::string text = read_file(folder.manifest());
+  const std::unique_ptr<cJSON, decltype(&cJSON_Delete)> json(
+      cJSON_ParseWithLength(text.data(), text.size()), cJSON_Delete);
+  const cJSON* prices = cJSON_GetObjectItemCaseSensitive(json.get(), "prices");
+  if (!cJSON_IsString(prices)) {
+    fail("{}: not a run's manifest: \"prices\" is missing; make the run again",
+         folder.manifest().string());
+  }
+  return prices->valuestring;
+}
+
+void run(const std::string& path, const std::string& prices) {
+  const RunFolder folder{path};
+  CommonOptions common;
+  common.config_path = folder.config().string();
+  const RunConfig config = common.resolve();
+  const std::string prices_path = prices.empty() ? prices_of_run(folder) : prices;
+  MarketSteps market = make_market_steps(read_minute_file(prices_path), config.market);
+  Teacher teacher = load_teacher(folder.teacher());
+  StudentFile plain = load_student(folder.plain_student());
+  StudentFile corrected = load_student(folder.student());
+  Certificate plain_proof = prove(plain, config.train.threads);
+  Certificate corrected_proof = prove(corrected, config.train.threads);
+  const RunResults results{
+      config,
+      std::move(market),
+      std::move(teacher),
+      std::move(plain),
+      std::move(plain_proof),
+      std::move(corrected),
+      std::move(corrected_proof),
+      parse_training_curve_csv(read_file(folder.training_curve()),
+                               folder.training_curve().string()),
+      parse_distil_curve_csv(read_file(folder.distil_curve()), folder.distil_curve().string())};
+  fmt::print("{}\n{}/report.html\n", write_run_report(results, folder), path);
+}
+
+}  // namespace
+
+void add_report_command(CLI::App& app) {
+  auto path = std::make_shared<std::string>();
+  auto prices = std::make_shared<std::string>();
+  CLI::App* command =
+      app.add_subcommand("report", "Make a run's figures, tables and report.html again");
+  command->add_option("--run", *path, "Run folder")->required();
+  command->add_option("--prices", *prices, "Minute file, if it moved since the run");
+  command->footer("Examples:\n  bess-train report --run runs/first");
+  command->callback([path, prices] { run(*path, *prices); });
+}
+
+}  // namespace bess

@@ -1,0 +1,152 @@
+// bess-train run: the whole chain into one folder, from prices to the weight header and the report.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "workstation/cli/commands.h"
+#include "workstation/cli/common_options.h"
+#include "workstation/cli/run_folder.h"
+#include "workstation/cli/run_report.h"
+#include "workstation/correction/correct_and_prove.h"
+#include "workstation/io/file.h"
+#include "workstation/io/user_error.h"
+#include "workstation/market/quarter_hours_to_minutes.h"
+#include "workstation/market/simulated_market.h"
+#include "workstation/student/export.h"
+
+namespace bess {
+namespace {
+
+/// The built-in market: one local year, so that every month is seen.
+constexpr CivilTime kBuiltInStart{2023, 1, 1, 0, 0, 0};
+constexpr int kBuiltInDays = 365;
+constexpr std::uint64_t kBuiltInSeed = 1;
+
+struct Options {
+  CommonOptions common;
+  std::string prices;
+  std::string out;
+};
+
+void announce(int stage, const std::string& text) {
+  fmt::print("[{}/6] {}\n", stage, text);
+  std::fflush(stdout);
+}
+
+MinuteSeries built_in_market(const RunFolder& folder) {
+  constexpr std::int64_t kBrusselsWinterOffset_s = 3600;
+  const std::int64_t start = utc_from_civil(kBuiltInStart) - kBrusselsWinterOffset_s;
+  const SimulationPeriod period{start, start + std::int64_t{kBuiltInDays} * kMinutesPerDay * 60};
+  const MinuteSeries series =
+      minutes_on_quarter_hours(simulate_quarter_hours(period, kBuiltInSeed), kBuiltInSeed);
+  write_minute_file(folder.simulated_prices(), series,
+                    fmt::format("Simulated, not real: built-in market, seed {}", kBuiltInSeed));
+  return series;
+}
+
+/// Everything is trained and proved before the folder gets a student or a header.
+RunResults learn(const RunConfig& config, MarketSteps market, const std::string& prices_name) {
+  announce(2, fmt::format("train the {} teacher", method_name(config.train.method)));
+  TrainResult trained = train_teacher(market, config.battery, config.train, interruption());
+  if (interruption()) throw Interrupted{};
+  warn_narrow_support(config.train, trained);
+  trained.teacher.provenance = training_provenance(prices_name, config.train, trained);
+  fmt::print("      best at step {}: {:.1f} EUR/day/MWh on validation days, {:.0f} s\n",
+             trained.best_step, trained.best_validation_eur_per_day_per_mwh, trained.seconds);
+
+  announce(3, "distil without correction, for comparison");
+  const Matrix visited =
+      visited_inputs(trained.teacher, market, config.battery, config.distil.seed);
+  DistilOptions plain_options = config.distil;
+  plain_options.correct = false;
+  const CorrectedStudent plain =
+      correct_and_prove(trained.teacher, visited, plain_options, interruption());
+  if (interruption()) throw Interrupted{};
+  fmt::print("      {} violations over the lattice\n", plain.certificate.violations());
+
+  announce(4, "correct while distilling, and prove");
+  const CorrectedStudent corrected =
+      correct_and_prove(trained.teacher, visited, config.distil, interruption());
+  if (interruption()) throw Interrupted{};
+  if (corrected.certificate.violations() != 0) {
+    fail(
+        "{} violations are left after {} rounds; raise [correction] price_slope and soc_slope or "
+        "[distil] repair_rounds",
+        corrected.certificate.violations(), corrected.violations_by_round.size());
+  }
+  fmt::print("      no violation over {} states, {} round{}\n",
+             corrected.certificate.states_checked, corrected.violations_by_round.size(),
+             corrected.violations_by_round.size() == 1 ? "" : "s");
+  const std::string provenance = trained.teacher.provenance;
+  return {config,
+          std::move(market),
+          std::move(trained.teacher),
+          student_file(plain, plain_options, provenance),
+          plain.certificate,
+          student_file(corrected, config.distil, provenance),
+          corrected.certificate,
+          std::move(trained.curve),
+          corrected.curve};
+}
+
+std::string manifest(const RunResults& run, const std::string& prices) {
+  return fmt::format(
+      "{{\n\"version\": \"{}\",\n\"prices\": {},\n\"seed\": {},\n\"threads\": {},\n"
+      "\"provenance\": {},\n\"weights_hash\": \"{:08x}\",\n\"states_checked\": {},\n"
+      "\"violations_plain\": {},\n\"violations_corrected\": {}\n}}\n",
+      BESS_VERSION, json_quote(prices), run.config.train.seed, run.config.train.threads,
+      json_quote(run.corrected.provenance), student_weights_hash(run.corrected.net),
+      run.corrected_certificate.states_checked, run.plain_certificate.violations(),
+      run.corrected_certificate.violations());
+}
+
+void run(const Options& options) {
+  const RunFolder folder{options.out};
+  const RunConfig config = options.common.resolve();
+  watch_interruption();
+  const bool built_in = options.prices.empty();
+  const std::string prices =
+      built_in ? folder.simulated_prices().string()
+               : std::filesystem::absolute(options.prices).lexically_normal().string();
+  announce(1, built_in ? "draw the built-in market" : "read " + options.prices);
+  MarketSteps market = make_market_steps(
+      built_in ? built_in_market(folder) : read_minute_file(options.prices), config.market);
+  write_file(folder.config(), format_run_config(config));
+  const RunResults results =
+      learn(config, std::move(market), built_in ? "built-in market" : options.prices);
+
+  announce(5, "export");
+  save_teacher(folder.teacher(), results.teacher);
+  save_student(folder.plain_student(), results.plain);
+  save_student(folder.student(), results.corrected);
+  write_file(folder.training_curve(), training_curve_csv(results.training_curve));
+  write_file(folder.distil_curve(), distil_curve_csv(results.distil_curve));
+  write_file(folder.header(), format_weight_header(results.corrected));
+  write_file(folder.manifest(), manifest(results, prices));
+
+  announce(6, "evaluate on test days and report");
+  const std::string table = write_run_report(results, folder);
+  fmt::print("\n{}\n{}: report.html, student_weights.h and everything else of this run\n", table,
+             folder.path.string());
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "run", "The whole chain into one folder: train, correct, prove, export, evaluate, report");
+  command->add_option("--prices", options->prices,
+                      "Minute file; without it a built-in simulated year");
+  command->add_option("--out", options->out, "Run folder")->required();
+  options->common.add_market(*command);
+  options->common.add_config(*command);
+  options->common.add_seed_and_threads(*command);
+  command->footer(
+      "Examples:\n"
+      "  bess-train run --out runs/first\n"
+      "  bess-train run --prices market.csv.gz --config my.toml --seed 7 --out runs/second");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace bess

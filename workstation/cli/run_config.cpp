@@ -1,0 +1,241 @@
+#include "workstation/cli/run_config.h"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <functional>
+#include <vector>
+
+#include "workstation/io/file.h"
+#include "workstation/io/user_error.h"
+
+namespace bess {
+namespace {
+
+/// Where a value came from, for messages.
+struct Place {
+  const std::string& file;
+  const toml::node& node;
+  std::string key;
+
+  [[noreturn]] void complain(const std::string& what) const {
+    fail("{}:{}: {}: {}", file, node.source().begin.line, key, what);
+  }
+};
+
+struct Key {
+  std::string section;
+  std::string name;
+  std::string comment;
+  std::function<void(const Place&)> set;
+  std::function<std::string()> get;
+};
+
+/// The list of keys, bound to the fields of one configuration.
+class KeyList {
+ public:
+  explicit KeyList(RunConfig& config) { list(config); }
+  [[nodiscard]] const std::vector<Key>& keys() const { return keys_; }
+
+ private:
+  void section(std::string name) { section_ = std::move(name); }
+
+  void number(const char* name, double& field, double low, double high, const char* comment) {
+    keys_.push_back({section_, name, fmt::format("{} ({:g} .. {:g})", comment, low, high),
+                     [&field, low, high](const Place& place) {
+                       const auto value = place.node.value<double>();
+                       if (!value) place.complain("expected a number");
+                       if (!(*value >= low && *value <= high)) {
+                         place.complain(fmt::format("{:g} is out of range: use {:g} to {:g}",
+                                                    *value, low, high));
+                       }
+                       field = *value;
+                     },
+                     [&field] { return fmt::format("{}", field); }});
+  }
+  template <typename Integer>
+  void integer(const char* name, Integer& field, std::int64_t low, std::int64_t high,
+               const char* comment) {
+    keys_.push_back({section_, name, fmt::format("{} ({} .. {})", comment, low, high),
+                     [&field, low, high](const Place& place) {
+                       if (!place.node.is_integer()) place.complain("expected a whole number");
+                       const std::int64_t value = *place.node.value<std::int64_t>();
+                       if (value < low || value > high) {
+                         place.complain(
+                             fmt::format("{} is out of range: use {} to {}", value, low, high));
+                       }
+                       field = static_cast<Integer>(value);
+                     },
+                     [&field] { return fmt::format("{}", field); }});
+  }
+  void boolean(const char* name, bool& field, const char* comment) {
+    keys_.push_back({section_, name, comment,
+                     [&field](const Place& place) {
+                       if (!place.node.is_boolean()) place.complain("expected true or false");
+                       field = *place.node.value<bool>();
+                     },
+                     [&field] { return std::string(field ? "true" : "false"); }});
+  }
+  template <typename Enum>
+  void choice(const char* name, Enum& field, std::vector<std::string> choices,
+              const char* comment) {
+    keys_.push_back(
+        {section_, name, fmt::format("{} ({})", comment, fmt::join(choices, " | ")),
+         [&field, choices](const Place& place) {
+           const auto value = place.node.value<std::string>();
+           const auto found = std::ranges::find(choices, value.value_or(""));
+           if (found == choices.end()) {
+             place.complain(fmt::format("use one of \"{}\"", fmt::join(choices, "\", \"")));
+           }
+           field = static_cast<Enum>(found - choices.begin());
+         },
+         [&field, choices] { return '"' + choices[static_cast<std::size_t>(field)] + '"'; }});
+  }
+
+  void list(RunConfig& c);
+
+  std::string section_;
+  std::vector<Key> keys_;
+};
+
+void KeyList::list(RunConfig& c) {
+  section("market");
+  integer("observation_delay_min", c.market.observation_delay_min, 0, 5,
+          "newest row visible at minute t is t - delay; 0 is the paper's ideal");
+  choice("settlement", c.market.settlement, {"minute", "step"},
+         "pay each minute at its own quarter-hour, or the step at the one it starts in");
+
+  section("battery");
+  number("power_w", c.battery.power_w_max, 1, 1e9, "both directions, grid side");
+  number("capacity_wh", c.battery.capacity_wh, 1, 1e10, "usable and not usable");
+  number("charge_efficiency", c.battery.charge_efficiency, 0.5, 1, "grid to battery");
+  number("discharge_efficiency", c.battery.discharge_efficiency, 0.5, 1, "battery to grid");
+  number("soc_min", c.battery.soc_min_frac, 0, 0.95, "lower end of the SoC window");
+  number("soc_max", c.battery.soc_max_frac, 0.05, 1, "upper end of the SoC window");
+  number("initial_soc", c.initial_soc_frac, 0, 1, "at the start of each evaluated day");
+
+  section("train");
+  choice("method", c.train.method, {"c51", "dqn"}, "distributional or plain Q-learning");
+  choice("source", c.train.source, {"counterfactual", "replay"},
+         "experience: one price move serves every SoC and action, or epsilon-greedy days");
+  choice("horizon", c.train.horizon, {"continuing", "day"}, "midnight is a truncation, or the end");
+  integer("steps", c.train.steps, 1, 10'000'000, "gradient steps");
+  integer("batch_size", c.train.batch_size, 1, 1 << 20, "transitions a step");
+  number("learning_rate", c.train.learning_rate, 1e-7, 1, "of Adam, at the start");
+  number("learning_rate_end", c.train.learning_rate_end, 0, 1, "at the end of a cosine");
+  number("gamma", c.train.gamma, 0, 0.999999, "discount a step");
+  number("tau", c.train.tau, 1e-6, 1, "target <- tau * online + (1 - tau) * target, each step");
+  integer("atoms", c.train.atoms, 2, 1001, "of the value distribution");
+  number("value_min_eur_per_h", c.train.value_min_eur_per_h, -1e9, 1e9, "lowest atom");
+  number("value_max_eur_per_h", c.train.value_max_eur_per_h, -1e9, 1e9, "highest atom");
+  boolean("shape_rewards", c.train.shape_rewards,
+          "centre rewards and value stored energy: changes no decision, learns far quicker");
+  number("jitter_quarter_hours", c.train.jitter.quarter_hours, 0, 96,
+         "standard deviation of a random shift of qh: keeps days from being learnt by heart");
+  number("jitter_months", c.train.jitter.months, 0, 12, "the same for the month");
+  integer("replay_capacity", c.train.replay_capacity, 1, 100'000'000, "transitions in the ring");
+  number("epsilon_start", c.train.epsilon_start, 0, 1, "share of random actions at the start");
+  number("epsilon_end", c.train.epsilon_end, 0, 1, "and from half of the steps on");
+  number("average_decay", c.train.average_decay, 0, 0.999999,
+         "of the averaged weights that are validated and kept");
+  integer("validate_every", c.train.validate_every, 1, 1'000'000, "gradient steps");
+
+  section("distil");
+  number("omega", c.distil.omega, 1e-8, 1, "the paper's trade-off: larger follows the teacher");
+  number("temperature_eur_per_h", c.distil.temperature_eur_per_h, 1e-3, 1e6,
+         "of the teacher's softmax over action values");
+  integer("epochs", c.distil.epochs, 1, 1'000'000, "of 64 lattices and 32,768 visited states");
+  integer("steps_per_epoch", c.distil.steps_per_epoch, 1, 64, "Adam steps that share an epoch");
+  number("learning_rate", c.distil.learning_rate, 1e-7, 1, "of Adam, falling to a tenth");
+  integer("repair_rounds", c.distil.repair_rounds, 0, 1000,
+          "proofs that may fail before giving up; each trains on its counterexamples");
+  integer("repair_epochs", c.distil.repair_epochs, 1, 1'000'000, "of each repair");
+
+  section("correction");
+  integer("low_price_eur_per_mwh", c.distil.correction.low_price_eur_per_mwh, -15'000, 15'000,
+          "property 1: charge at or below; binds the student from -500 up");
+  integer("high_price_eur_per_mwh", c.distil.correction.high_price_eur_per_mwh, -15'000, 15'000,
+          "property 2: discharge at or above; binds the student up to 1500");
+  number("logit_margin", c.distil.correction.logit_margin, 0.01, 100, "at the thresholds");
+  number("price_slope", c.distil.correction.price_slope, 0, 100,
+         "logits over the price range by which the order must fall at least");
+  number("soc_slope", c.distil.correction.soc_slope, 0, 100, "the same over the SoC range");
+}
+
+void check_relations(const RunConfig& config, const std::string& name) {
+  if (config.battery.soc_min_frac >= config.battery.soc_max_frac) {
+    fail("{}: [battery] soc_min must be below soc_max", name);
+  }
+  if (config.initial_soc_frac < config.battery.soc_min_frac ||
+      config.initial_soc_frac > config.battery.soc_max_frac) {
+    fail("{}: [battery] initial_soc {:g} is outside soc_min {:g} .. soc_max {:g}", name,
+         config.initial_soc_frac, config.battery.soc_min_frac, config.battery.soc_max_frac);
+  }
+  if (config.train.value_min_eur_per_h >= config.train.value_max_eur_per_h) {
+    fail("{}: [train] value_min_eur_per_h must be below value_max_eur_per_h", name);
+  }
+  const auto& correction = config.distil.correction;
+  if (correction.low_price_eur_per_mwh >= correction.high_price_eur_per_mwh) {
+    fail("{}: [correction] low_price_eur_per_mwh must be below high_price_eur_per_mwh", name);
+  }
+}
+
+void apply_table(const toml::table& root, const std::vector<Key>& keys, const std::string& name) {
+  for (const auto& [section, node] : root) {
+    const toml::table* table = node.as_table();
+    const std::string section_name(section.str());
+    const bool known =
+        std::ranges::any_of(keys, [&](const Key& k) { return k.section == section_name; });
+    if (table == nullptr || !known) {
+      fail("{}:{}: unknown section or key \"{}\"; 'bess-train config' lists all", name,
+           node.source().begin.line, section_name);
+    }
+    for (const auto& [key, value] : *table) {
+      const std::string key_name(key.str());
+      const auto found = std::ranges::find_if(
+          keys, [&](const Key& k) { return k.section == section_name && k.name == key_name; });
+      if (found == keys.end()) {
+        fail("{}:{}: unknown key \"{}\" in [{}]; 'bess-train config' lists all", name,
+             value.source().begin.line, key_name, section_name);
+      }
+      found->set({name, value, fmt::format("[{}] {}", section_name, key_name)});
+    }
+  }
+}
+
+}  // namespace
+
+RunConfig parse_run_config(std::string_view text, const std::string& name) {
+  RunConfig config;
+  const KeyList list(config);
+  try {
+    apply_table(toml::parse(text, name), list.keys(), name);
+  } catch (const toml::parse_error& error) {
+    fail("{}:{}: not valid TOML: {}", name, error.source().begin.line, error.description());
+  }
+  check_relations(config, name);
+  return config;
+}
+
+RunConfig load_run_config(const std::filesystem::path& path) {
+  if (path.empty()) return {};
+  return parse_run_config(read_file(path), path.string());
+}
+
+std::string format_run_config(const RunConfig& config) {
+  RunConfig copy = config;
+  const KeyList list(copy);
+  std::string text;
+  std::string section;
+  for (const Key& key : list.keys()) {
+    if (key.section != section) {
+      section = key.section;
+      text += fmt::format("{}[{}]\n", text.empty() ? "" : "\n", section);
+    }
+    text += fmt::format("{} = {}  # {}\n", key.name, key.get(), key.comment);
+  }
+  return text;
+}
+
+}  // namespace bess

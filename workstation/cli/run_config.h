@@ -1,0 +1,36 @@
+// Everything that can be set about learning and evaluating, with its defaults, ranges and meaning
+// in one list (run_config.cpp). Read from TOML; an unknown key, a wrong type or a value out of
+// range names the file, the line and the mend. `bess-train config` prints the list as a commented
+// file.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "shared/battery_model.h"
+#include "workstation/correction/distil.h"
+#include "workstation/env/market_steps.h"
+#include "workstation/rl/train.h"
+
+namespace bess {
+
+struct RunConfig {
+  MarketOptions market;
+  BatteryParameters battery;
+  TrainOptions train;
+  DistilOptions distil;
+  double initial_soc_frac = 0.5;
+
+  /// One seed and one number of threads serve training, distillation and proof.
+  void set_seed(std::uint64_t seed) { train.seed = distil.seed = seed; }
+  void set_threads(int threads) { train.threads = distil.threads = threads; }
+};
+
+/// Defaults overlaid with the file's keys; an empty path gives the defaults.
+RunConfig load_run_config(const std::filesystem::path& path);
+RunConfig parse_run_config(std::string_view text, const std::string& name);
+
+/// The configuration as a commented TOML file that reads back to the same values.
+std::string format_run_config(const RunConfig& config);
+
+}  // namespace bess

@@ -1,0 +1,78 @@
+#include "workstation/cli/run_report.h"
+
+#include <fmt/format.h>
+
+#include "workstation/cli/policy_factory.h"
+#include "workstation/env/evaluate.h"
+#include "workstation/io/file.h"
+#include "workstation/io/user_error.h"
+#include "workstation/student/student_policy.h"
+
+namespace bess {
+namespace {
+
+NamedEvaluation evaluate_both(const std::string& name, Policy& policy, const RunResults& run) {
+  EvaluationOptions options{run.config.battery, run.config.initial_soc_frac, false};
+  const std::vector<MarketDay> days = run.market.days_of(Split::kTest);
+  if (days.empty()) fail("no test days (local days 26 to the end) in these prices; add some");
+  NamedEvaluation named;
+  named.name = name;
+  named.day_reset = evaluate(run.market, days, policy, options);
+  options.carry_soc = true;
+  named.carried_over = evaluate(run.market, days, policy, options);
+  return named;
+}
+
+}  // namespace
+
+std::vector<NamedEvaluation> evaluate_run(const RunResults& run) {
+  std::vector<NamedEvaluation> all;
+  const auto baseline = [&](const char* name) {
+    const auto policy = make_policy(name, run.market, run.config.battery);
+    all.push_back(evaluate_both(name, *policy, run));
+  };
+  for (const char* name : {"rbc", "rbc-quartile", "tabular"}) baseline(name);
+  TeacherPolicy teacher(run.teacher);
+  all.push_back(
+      evaluate_both(fmt::format("{} teacher", method_name(run.teacher.method)), teacher, run));
+  StudentPolicy plain(run.plain.net);
+  all.push_back(evaluate_both("plain student", plain, run));
+  StudentPolicy corrected(run.corrected.net);
+  all.push_back(evaluate_both("corrected student", corrected, run));
+  baseline("foresight");
+  return all;
+}
+
+std::string write_run_report(const RunResults& run, const RunFolder& folder) {
+  const std::vector<NamedEvaluation> evaluations = evaluate_run(run);
+  write_file(folder.table(), comparison_csv(evaluations));
+  const ReportInputs inputs{
+      .market = run.market,
+      .battery = run.config.battery,
+      .evaluations = evaluations,
+      .training_curve = run.training_curve,
+      .distil_curve = run.distil_curve,
+      .teacher = &run.teacher,
+      .uncorrected = &run.plain.net,
+      .uncorrected_certificate = &run.plain_certificate,
+      .corrected = &run.corrected.net,
+      .corrected_certificate = &run.corrected_certificate,
+      .thresholds = {.student_low = run.corrected.low_price_eur_per_mwh,
+                     .student_high = run.corrected.high_price_eur_per_mwh},
+      .provenance = run.corrected.provenance,
+  };
+  write_report(inputs, folder.path);
+  const auto violations = [](const Certificate& c) {
+    return fmt::format("{} / {} / {}", c.violations_property_1, c.violations_property_2,
+                       c.violations_property_3);
+  };
+  return format_comparison_table(evaluations) +
+         fmt::format(
+             "\nviolations of properties 1 / 2 / 3 over {} lattice states\n"
+             "  before correction (plain student)    {}\n"
+             "  after correction (corrected student) {}\n",
+             run.corrected_certificate.states_checked, violations(run.plain_certificate),
+             violations(run.corrected_certificate));
+}
+
+}  // namespace bess

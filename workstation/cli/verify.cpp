@@ -1,0 +1,88 @@
+// bess-train verify: the certificate of an integer student over the whole lattice.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "workstation/cli/commands.h"
+#include "workstation/cli/common_options.h"
+#include "workstation/io/user_error.h"
+#include "workstation/student/student_file.h"
+
+namespace bess {
+namespace {
+
+struct Options {
+  CommonOptions common;
+  std::string student;
+  bool exhaustive = false;
+  bool json = false;
+};
+
+void print_json(const std::string& name, const StudentFile& student, bool exhaustive,
+                const Certificate& c) {
+  fmt::print(
+      R"({{"student": {}, "weights_hash": "{:08x}", "method": "{}", "states_checked": {}, )"
+      R"("states_evaluated": {}, "violations_property_1": {}, "violations_property_2": {}, )"
+      R"("violations_property_3": {}, "low_price_eur_per_mwh": {}, "high_price_eur_per_mwh": {}, )"
+      R"("seconds": {:.3f}}})"
+      "\n",
+      json_quote(name), student_weights_hash(student.net),
+      exhaustive ? "exhaustive" : "bounds and enumeration", c.states_checked, c.states_evaluated,
+      c.violations_property_1, c.violations_property_2, c.violations_property_3,
+      student.low_price_eur_per_mwh, student.high_price_eur_per_mwh, c.seconds);
+}
+
+void print_text(const std::string& name, const StudentFile& student, const Certificate& c) {
+  fmt::print("{} (weights {:08x})\n", name, student_weights_hash(student.net));
+  fmt::print("  {} states checked, {} of them evaluated one by one, {:.1f} s\n", c.states_checked,
+             c.states_evaluated, c.seconds);
+  fmt::print(
+      "  property 1, charge at or below {} EUR/MWh:    {} violations{}\n",
+      student.low_price_eur_per_mwh, c.violations_property_1,
+      student.low_price_eur_per_mwh < kLatticePriceMinEurPerMwh ? " (the guard's alone)" : "");
+  fmt::print(
+      "  property 2, discharge at or above {} EUR/MWh: {} violations{}\n",
+      student.high_price_eur_per_mwh, c.violations_property_2,
+      student.high_price_eur_per_mwh > kLatticePriceMaxEurPerMwh ? " (the guard's alone)" : "");
+  fmt::print("  property 3, monotone in price and SoC:          {} violations\n",
+             c.violations_property_3);
+  fmt::print("{}\n", c.violations() == 0 ? "PROVED" : "NOT PROVED");
+}
+
+void run(const Options& options) {
+  const bool compiled = options.student.empty();
+  const StudentFile student = compiled ? compiled_student() : load_student(options.student);
+  const std::string name = compiled ? "compiled array" : options.student;
+  const Certificate certificate =
+      prove(student, options.common.resolve().train.threads, options.exhaustive);
+  if (options.json) {
+    print_json(name, student, options.exhaustive, certificate);
+  } else {
+    print_text(name, student, certificate);
+  }
+  if (certificate.violations() != 0) {
+    fail("{}: {} violations; distil it again before it is exported", name,
+         certificate.violations());
+  }
+}
+
+}  // namespace
+
+void add_verify_command(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "verify", "Prove an integer student over every input it can see (exit 1 if it fails)");
+  command->add_option("--student", options->student,
+                      "Student file; without it the array compiled into this program");
+  command->add_flag("--exhaustive", options->exhaustive,
+                    "Evaluate every state instead of proving boxes by bounds (minutes)");
+  command->add_flag("--json", options->json, "One JSON object");
+  options->common.add_seed_and_threads(*command);
+  command->footer(
+      "Examples:\n"
+      "  bess-train verify\n"
+      "  bess-train verify --student runs/a/student.json --json");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace bess

@@ -1,0 +1,127 @@
+#include "workstation/report/comparison.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace bess {
+namespace {
+
+const Evaluation* foresight_of(const std::vector<NamedEvaluation>& evaluations,
+                               EvaluationField field) {
+  const auto found = std::ranges::find(evaluations, kForesightName, &NamedEvaluation::name);
+  if (found == evaluations.end() || ((*found).*field).days.empty()) return nullptr;
+  return &((*found).*field);
+}
+
+ComparisonRow make_row(const std::string& name, const Evaluation& evaluation,
+                       const Evaluation& first, const Evaluation* foresight) {
+  ComparisonRow row{.name = name,
+                    .days = evaluation.days.size(),
+                    .profit = evaluation.profit_eur_per_day_per_mwh(),
+                    .standard_error = evaluation.standard_error(),
+                    .difference = std::nullopt,
+                    .worst_day = evaluation.worst_day_eur_per_mwh(),
+                    .cycles_per_day = evaluation.cycles_per_day(),
+                    .switches_per_day = evaluation.switches_per_day(),
+                    .foresight_share = std::nullopt};
+  if (&evaluation != &first && !first.days.empty()) {
+    row.difference = paired_difference(evaluation, first);
+  }
+  const double bound = foresight == nullptr ? 0 : foresight->profit_eur_per_day_per_mwh();
+  if (bound > 0) row.foresight_share = row.profit / bound;
+  return row;
+}
+
+std::string or_dash(const std::optional<double>& value, int decimals) {
+  return value ? fmt::format("{:.{}f}", *value, decimals) : "-";
+}
+
+std::string table_line(const ComparisonRow& row, std::size_t name_width) {
+  const auto& difference = row.difference;
+  const std::string gain = difference ? fmt::format("{:+.1f}", difference->mean) : "-";
+  const std::string gain_error =
+      difference ? fmt::format("{:.1f}", difference->standard_error) : "-";
+  const std::optional<double> percent =
+      row.foresight_share ? std::optional(100 * *row.foresight_share) : std::nullopt;
+  return fmt::format(
+      "{:<{}}  {:>8.1f} {:>6.1f}  {:>8} {:>6}  {:>9.1f}  {:>6.2f}  {:>8.1f}  {:>9}\n", row.name,
+      name_width, row.profit, row.standard_error, gain, gain_error, row.worst_day,
+      row.cycles_per_day, row.switches_per_day, or_dash(percent, 1));
+}
+
+std::string table_block(const std::string& title, const std::vector<ComparisonRow>& rows) {
+  std::size_t name_width = std::string("policy").size();
+  for (const ComparisonRow& row : rows) name_width = std::max(name_width, row.name.size());
+  std::string text =
+      fmt::format("{}, {} days; EUR per day per MWh of capacity\n", title, rows.front().days);
+  text += fmt::format("{:<{}}  {:>8} {:>6}  {:>8} {:>6}  {:>9}  {:>6}  {:>8}  {:>9}\n", "policy",
+                      name_width, "profit", "s.e.", "gain", "s.e.", "worst day", "cycles",
+                      "switches", "foresight");
+  for (const ComparisonRow& row : rows) text += table_line(row, name_width);
+  return text;
+}
+
+/// A field of CSV, quoted where it must be.
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string csv_line(const ComparisonRow& row, std::string_view soc) {
+  const auto& d = row.difference;
+  return fmt::format(
+      "{},{},{},{:.4f},{:.4f},{},{},{:.4f},{:.4f},{:.4f},{}\n", csv_field(row.name), soc, row.days,
+      row.profit, row.standard_error, d ? fmt::format("{:.4f}", d->mean) : "",
+      d ? fmt::format("{:.4f}", d->standard_error) : "", row.worst_day, row.cycles_per_day,
+      row.switches_per_day, row.foresight_share ? fmt::format("{:.6f}", *row.foresight_share) : "");
+}
+
+}  // namespace
+
+std::vector<ComparisonRow> comparison_rows(const std::vector<NamedEvaluation>& evaluations,
+                                           EvaluationField field) {
+  std::vector<ComparisonRow> rows;
+  if (evaluations.empty()) return rows;
+  const Evaluation* foresight = foresight_of(evaluations, field);
+  const Evaluation& first = evaluations.front().*field;
+  for (const NamedEvaluation& named : evaluations) {
+    if ((named.*field).days.empty()) continue;
+    rows.push_back(make_row(named.name, named.*field, first, foresight));
+  }
+  return rows;
+}
+
+std::string format_comparison_table(const std::vector<NamedEvaluation>& evaluations) {
+  const auto reset = comparison_rows(evaluations, &NamedEvaluation::day_reset);
+  const auto carried = comparison_rows(evaluations, &NamedEvaluation::carried_over);
+  std::string text;
+  if (!reset.empty()) text += table_block("Each day starts at the same SoC", reset);
+  if (!reset.empty() && !carried.empty()) text += "\n";
+  if (!carried.empty()) text += table_block("SoC carried over from day to day", carried);
+  if (evaluations.size() > 1 && !text.empty()) {
+    text += fmt::format(
+        "\ngain: day-by-day difference to {}; s.e.: standard error of the mean over days;\n"
+        "cycles, switches: per day; foresight: % of the perfect-foresight profit\n",
+        evaluations.front().name);
+  }
+  return text;
+}
+
+std::string comparison_csv(const std::vector<NamedEvaluation>& evaluations) {
+  std::string text =
+      "policy,soc,days,profit_eur_per_day_per_mwh,standard_error,gain_eur_per_day_per_mwh,"
+      "gain_standard_error,worst_day_eur_per_mwh,cycles_per_day,switches_per_day,"
+      "foresight_share\n";
+  for (const auto& row : comparison_rows(evaluations, &NamedEvaluation::day_reset)) {
+    text += csv_line(row, "reset");
+  }
+  for (const auto& row : comparison_rows(evaluations, &NamedEvaluation::carried_over)) {
+    text += csv_line(row, "carried");
+  }
+  return text;
+}
+
+}  // namespace bess

@@ -1,0 +1,93 @@
+#include "workstation/report/curves.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+
+#include "workstation/io/user_error.h"
+
+namespace bess {
+namespace {
+
+constexpr std::string_view kTrainingHeader =
+    "step,loss,validation_eur_per_day_per_mwh,edge_mass_frac";
+constexpr std::string_view kDistilHeader = "epoch,teacher_loss,correction_loss,visited_loss";
+
+/// Rows of four numbers under a known header.
+std::vector<std::array<double, 4>> parse_rows(std::string_view text, std::string_view header,
+                                              std::string_view name) {
+  std::vector<std::array<double, 4>> rows;
+  for (std::size_t line = 1; !text.empty(); ++line) {
+    const std::size_t end = text.find('\n');
+    const std::string_view row = text.substr(0, end);
+    text.remove_prefix(end == text.npos ? text.size() : end + 1);
+    if (line == 1) {
+      if (row != header) fail("{}:1: not a curve: the header must be \"{}\"", name, header);
+      continue;
+    }
+    std::array<double, 4> values{};
+    const char* at = row.data();
+    const char* const last = row.data() + row.size();
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const auto [next, error] = std::from_chars(at, last, values[i]);
+      const bool ended = i + 1 == values.size() ? next == last : next < last && *next == ',';
+      if (error != std::errc{} || !ended) fail("{}:{}: not four numbers", name, line);
+      at = next + 1;
+    }
+    rows.push_back(values);
+  }
+  return rows;
+}
+
+}  // namespace
+
+std::string training_curve_csv(const std::vector<CurvePoint>& curve) {
+  std::string text = fmt::format("{}\n", kTrainingHeader);
+  for (const CurvePoint& p : curve) {
+    text += fmt::format("{},{:.6g},{:.4f},{:.6f}\n", p.step, p.loss,
+                        p.validation_eur_per_day_per_mwh, p.edge_mass_frac);
+  }
+  return text;
+}
+
+std::string distil_curve_csv(const std::vector<DistilPoint>& curve) {
+  std::string text = fmt::format("{}\n", kDistilHeader);
+  for (const DistilPoint& p : curve) {
+    text += fmt::format("{},{:.6g},{:.6g},{:.6g}\n", p.epoch, p.teacher_loss, p.correction_loss,
+                        p.visited_loss);
+  }
+  return text;
+}
+
+std::vector<CurvePoint> parse_training_curve_csv(std::string_view text, std::string_view name) {
+  std::vector<CurvePoint> curve;
+  for (const auto& row : parse_rows(text, kTrainingHeader, name)) {
+    curve.push_back({static_cast<long>(row[0]), row[1], row[2], row[3]});
+  }
+  return curve;
+}
+
+std::vector<DistilPoint> parse_distil_curve_csv(std::string_view text, std::string_view name) {
+  std::vector<DistilPoint> curve;
+  for (const auto& row : parse_rows(text, kDistilHeader, name)) {
+    curve.push_back({static_cast<int>(row[0]), row[1], row[2], row[3]});
+  }
+  return curve;
+}
+
+std::vector<double> centred_mean(const std::vector<double>& values, int reach) {
+  std::vector<double> smoothed;
+  const int count = static_cast<int>(values.size());
+  for (int i = 0; i < count; ++i) {
+    const int first = std::max(0, i - reach);
+    const int last = std::min(count - 1, i + reach);
+    double sum = 0;
+    for (int k = first; k <= last; ++k) sum += values[static_cast<std::size_t>(k)];
+    smoothed.push_back(sum / (last - first + 1));
+  }
+  return smoothed;
+}
+
+}  // namespace bess

@@ -1,0 +1,158 @@
+// Learning curve of the teacher and losses of the distillation.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "workstation/report/curves.h"
+#include "workstation/report/figures.h"
+
+namespace bess {
+namespace {
+
+constexpr int kSmoothingReach = 2;
+
+const CurvePoint& best_of(const std::vector<CurvePoint>& curve) {
+  return *std::ranges::max_element(curve, {}, &CurvePoint::validation_eur_per_day_per_mwh);
+}
+
+std::vector<std::string> learning_rows(const std::vector<CurvePoint>& curve) {
+  std::vector<double> profit;
+  for (const CurvePoint& p : curve) profit.push_back(p.validation_eur_per_day_per_mwh);
+  const std::vector<double> smooth = centred_mean(profit, kSmoothingReach);
+  std::vector<std::string> rows;
+  for (std::size_t i = 0; i < curve.size(); ++i) {
+    rows.push_back(
+        fmt::format("{} {:.3f} {:.3f} {:.6g}", curve[i].step, profit[i], smooth[i], curve[i].loss));
+  }
+  return rows;
+}
+
+struct Range {
+  double low, high;
+};
+
+/// All validation profits and the rule-based line, with room for their labels.
+Range profit_range(const std::vector<CurvePoint>& curve, double rule) {
+  const auto [low, high] =
+      std::ranges::minmax_element(curve, {}, &CurvePoint::validation_eur_per_day_per_mwh);
+  const Range all{std::min(rule, low->validation_eur_per_day_per_mwh),
+                  std::max(rule, high->validation_eur_per_day_per_mwh)};
+  const double room = 0.14 * std::max(all.high - all.low, 1.0);
+  return {all.low - room, all.high + room};
+}
+
+double loss_tic(const std::vector<CurvePoint>& curve) {
+  const auto [low, high] = std::ranges::minmax_element(curve, {}, &CurvePoint::loss);
+  return tic_distance(high->loss - low->loss, 3);
+}
+
+std::string rule_line(double rule) {
+  return fmt::format(
+      "set arrow 1 from graph 0, first {0} to graph 1, first {0} nohead dt (6,5) lw 1.5 lc {1}\n"
+      "set label 1 'rule-based {0:.1f}' at graph 0.99, first {0} right offset 0,0.6 textcolor "
+      "{1}\n",
+      rule, rgb(kDischarge));
+}
+
+std::string best_point(const CurvePoint& best, bool label_right) {
+  return fmt::format(
+      "set label 2 'best {0:.1f} at step {1}' at {1},{0} {2} offset {3},0.9 textcolor {4} point pt "
+      "7 ps 0.9 lc {4}\n",
+      best.validation_eur_per_day_per_mwh, best.step, label_right ? "left" : "right",
+      label_right ? "-1" : "1", rgb(kInk));
+}
+
+std::string profit_panel(const std::vector<CurvePoint>& curve, double rule) {
+  const CurvePoint& best = best_of(curve);
+  const Range range = profit_range(curve, rule);
+  return fmt::format(
+             "set tmargin at screen 0.925\nset bmargin at screen 0.42\nset yrange [{}:{}]\n"
+             "set ylabel \"validation profit,\\nEUR/day/MWh\"\nset format x ''\nset ytics {}\n",
+             range.low, range.high, tic_distance(range.high - range.low, 6)) +
+         rule_line(rule) + best_point(best, best.step * 2 < curve.back().step) +
+         fmt::format(
+             "plot $curve using 1:2 with lines lw 1.5 lc {}, $curve using 1:3 with lines lw 3 lc "
+             "{}\n",
+             rgb(kSoft), rgb(kCharge));
+}
+
+std::string loss_panel(const std::vector<CurvePoint>& curve) {
+  return fmt::format(
+      "unset arrow 1\nunset label 1\nunset label 2\n"
+      "set tmargin at screen 0.36\nset bmargin at screen 0.14\nset yrange [*:*]\nset ytics {}\n"
+      "set format x '%g'\nset xlabel 'gradient steps'\nset ylabel 'loss'\n"
+      "plot $curve using 1:4 with lines lw 2 lc {}\n",
+      loss_tic(curve), rgb(kMuted));
+}
+
+/// Logarithmic axes have no zero: a loss of nothing is left out.
+std::string logarithmic(double loss) { return loss > 0 ? fmt::format("{:.6g}", loss) : "NaN"; }
+
+}  // namespace
+
+Figure learning_figure(const std::vector<CurvePoint>& curve, double rule) {
+  const CurvePoint& best = best_of(curve);
+  const double gain = best.validation_eur_per_day_per_mwh - rule;
+  Figure figure;
+  figure.name = "learning_curve";
+  figure.title = "How the teacher learned";
+  figure.height_px = 520;
+  figure.alt = fmt::format(
+      "Line chart: validation profit over {} gradient steps, raw and smoothed, with the rule-based "
+      "controller as a dashed line; below it the training loss.",
+      curve.back().step);
+  figure.caption = fmt::format(
+      "On the validation days the teacher earned most at step {}: {:.1f} EUR per day per MWh, "
+      "{:.1f} "
+      "{} than the rule-based controller. Those weights are kept; the smoothed line is the mean "
+      "over "
+      "up to two points on either side.",
+      best.step, best.validation_eur_per_day_per_mwh, std::abs(gain), gain < 0 ? "less" : "more");
+  const KeyRow key = key_row(figure, 100,
+                             {{"each validation", kSoft, KeyEntry::Kind::kLine, 1.5},
+                              {"mean of five", kCharge, KeyEntry::Kind::kLine, 3}});
+  figure.commands = data_block("curve", learning_rows(curve)) +
+                    fmt::format(
+                        "set multiplot\nset lmargin at screen 0.115\n"
+                        "set rmargin at screen 0.96\nset xrange [0:{}]\n",
+                        curve.back().step) +
+                    key.set + profit_panel(curve, rule) + key.unset + loss_panel(curve) +
+                    "unset multiplot\n";
+  return figure;
+}
+
+Figure distillation_figure(const std::vector<DistilPoint>& curve) {
+  std::vector<std::string> rows;
+  for (const DistilPoint& p : curve) {
+    rows.push_back(fmt::format("{} {} {} {}", p.epoch, logarithmic(p.teacher_loss),
+                               logarithmic(p.correction_loss), logarithmic(p.visited_loss)));
+  }
+  Figure figure;
+  figure.name = "distillation_curve";
+  figure.title = "How the student learned";
+  figure.height_px = 360;
+  figure.alt =
+      "Line chart with a logarithmic axis: three Kullback-Leibler divergences over epochs.";
+  figure.caption = fmt::format(
+      "Divergence of student and teacher where the teacher goes ({:.3g} nats at the end), of "
+      "corrected student and teacher on the lattices ({:.3g}), and of student and its own "
+      "correction ({:.3g}): the last one is what the correction layer still had to change.",
+      curve.back().visited_loss, curve.back().teacher_loss, curve.back().correction_loss);
+  const KeyRow key =
+      key_row(figure, 100,
+              {{"corrected student to teacher", kSoft, KeyEntry::Kind::kLine, 2},
+               {"student to teacher", kCharge, KeyEntry::Kind::kLine, 2.5},
+               {"student to its correction", kDischarge, KeyEntry::Kind::kLine, 2.5}});
+  figure.commands =
+      data_block("curve", rows) + key.set +
+      fmt::format(
+          "set lmargin at screen 0.115\nset rmargin at screen 0.96\nset tmargin at screen 0.88\n"
+          "set logscale y\nset format y '1e%T'\nset ytics 100\nset xlabel 'epochs'\nset ylabel 'KL "
+          "divergence, nats'\n"
+          "plot $curve using 1:2 with lines lw 2 lc {}, $curve using 1:4 with lines lw 2.5 lc {}, "
+          "$curve using 1:3 with lines lw 2.5 lc {}\n",
+          rgb(kSoft), rgb(kCharge), rgb(kDischarge));
+  return figure;
+}
+
+}  // namespace bess

@@ -1,0 +1,141 @@
+// How the observed prices of training and test days are distributed.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "workstation/market/market_statistics.h"
+#include "workstation/report/figures.h"
+
+namespace bess {
+namespace {
+
+constexpr double kBinEurPerMwh = 20;
+constexpr double kShownTail = 0.005;  ///< left out on either side
+
+std::vector<double> sorted_observed(const MarketSteps& market, Split split) {
+  std::vector<double> prices;
+  for (const MarketDay& day : market.days_of(split)) {
+    for (const MarketStep& step : market.of(day)) prices.push_back(step.observed_eur_per_mwh);
+  }
+  std::ranges::sort(prices);
+  return prices;
+}
+
+struct Shown {
+  double low, high;  ///< multiples of the bin
+};
+
+Shown shown_range(const std::vector<double>& train, const std::vector<double>& test) {
+  Shown shown{0, 0};
+  for (const auto* prices : {&train, &test}) {
+    if (prices->empty()) continue;
+    shown.low = std::min(shown.low, quantile_of_sorted(*prices, kShownTail));
+    shown.high = std::max(shown.high, quantile_of_sorted(*prices, 1 - kShownTail));
+  }
+  return {std::floor(shown.low / kBinEurPerMwh) * kBinEurPerMwh,
+          std::ceil(shown.high / kBinEurPerMwh) * kBinEurPerMwh + kBinEurPerMwh};
+}
+
+/// "left edge, % of decisions in the bin", for steps.
+std::string histogram(const std::string& name, const std::vector<double>& sorted,
+                      const Shown& shown) {
+  std::vector<std::string> rows;
+  for (double edge = shown.low; edge <= shown.high; edge += kBinEurPerMwh) {
+    const auto count = std::ranges::lower_bound(sorted, edge + kBinEurPerMwh) -
+                       std::ranges::lower_bound(sorted, edge);
+    const auto total = static_cast<double>(std::max<std::size_t>(1, sorted.size()));
+    rows.push_back(fmt::format("{} {:.4f}", edge, 100.0 * static_cast<double>(count) / total));
+  }
+  return data_block(name, rows);
+}
+
+double share_below(const std::vector<double>& sorted, double price) {
+  if (sorted.empty()) return 0;
+  return static_cast<double>(std::ranges::lower_bound(sorted, price) - sorted.begin()) /
+         static_cast<double>(sorted.size());
+}
+
+struct Line {
+  double price;
+  std::string text;
+  bool charges;   ///< acts to the left of the line
+  double height;  ///< of its text, graph units
+};
+
+std::string threshold_line(const Line& line, int tag) {
+  const Colour& colour = line.charges ? kCharge : kDischarge;
+  return fmt::format(
+      "set arrow {0} from first {1}, graph 0 to first {1}, graph 1 nohead front dt (6,5) lw 1.5 lc "
+      "{2}\nset label {0} {3} at first {1}, graph {4} {5} offset {6},0 front textcolor {2}\n",
+      tag, line.price, rgb(colour), "'" + line.text + "'", line.height,
+      line.charges ? "right" : "left", line.charges ? "-0.7" : "0.7");
+}
+
+std::string threshold_lines(const ReportThresholds& t, const Shown& shown) {
+  const Line lines[] = {
+      {t.rule_low, fmt::format("rule-based charges below {:g}", t.rule_low), true, 0.95},
+      {t.rule_high, fmt::format("rule-based discharges above {:g}", t.rule_high), false, 0.95},
+      {static_cast<double>(t.student_low), fmt::format("must charge up to {}", t.student_low), true,
+       0.84},
+      {static_cast<double>(t.student_high), fmt::format("must discharge from {}", t.student_high),
+       false, 0.84}};
+  std::string text;
+  int tag = 1;
+  for (const Line& line : lines) {
+    if (line.price > shown.low && line.price < shown.high) text += threshold_line(line, tag);
+    ++tag;
+  }
+  return text;
+}
+
+std::string caption_of(const std::vector<double>& train, const std::vector<double>& test,
+                       const ReportThresholds& t, const Shown& shown) {
+  if (train.empty() || test.empty()) return "One of the two splits has no days.";
+  const auto percent = [](double share) { return 100 * share; };
+  return fmt::format(
+      "Half of the prices lie between {:.0f} and {:.0f} EUR/MWh on training days and between "
+      "{:.0f} "
+      "and {:.0f} on test days; {:.1f} % and {:.1f} % are negative. {:.1f} % of the test prices "
+      "lie "
+      "outside the range shown. The student must charge up to {} and discharge from {} EUR/MWh.",
+      quantile_of_sorted(train, 0.25), quantile_of_sorted(train, 0.75),
+      quantile_of_sorted(test, 0.25), quantile_of_sorted(test, 0.75),
+      percent(share_below(train, 0)), percent(share_below(test, 0)),
+      percent(share_below(test, shown.low) + 1 - share_below(test, shown.high)), t.student_low,
+      t.student_high);
+}
+
+}  // namespace
+
+Figure price_density_figure(const MarketSteps& market, const ReportThresholds& thresholds) {
+  const std::vector<double> train = sorted_observed(market, Split::kTrain);
+  const std::vector<double> test = sorted_observed(market, Split::kTest);
+  const Shown shown = shown_range(train, test);
+  Figure figure;
+  figure.name = "price_density";
+  figure.title = "Prices of training and test days";
+  figure.height_px = 400;
+  figure.alt = fmt::format(
+      "Histogram of observed prices from {:.0f} to {:.0f} EUR/MWh, training days as an area, test "
+      "days as a line, thresholds as dashed lines.",
+      shown.low, shown.high);
+  figure.caption = caption_of(train, test, thresholds, shown);
+  const KeyRow key = key_row(figure, 84,
+                             {{"training days", kSoft, KeyEntry::Kind::kArea, 0, 0.7},
+                              {"test days", kInk, KeyEntry::Kind::kLine, 2}});
+  figure.commands =
+      histogram("train", train, shown) + histogram("test", test, shown) +
+      threshold_lines(thresholds, shown) + key.set +
+      fmt::format(
+          "set lmargin at screen 0.095\nset rmargin at screen 0.96\nset tmargin at screen 0.89\n"
+          "set xrange [{}:{}]\nset yrange [0:*]\nset offsets graph 0,0,0.22,0\n"
+          "set xlabel 'observed (indicative) price, EUR/MWh'\n"
+          "set ylabel '% of decisions per {:g} EUR/MWh'\n"
+          "plot $train using 1:2 with fillsteps fc {} fs solid 0.7, "
+          "$test using 1:2 with steps lw 2 lc {}\n",
+          shown.low, shown.high, kBinEurPerMwh, rgb(kSoft), rgb(kInk));
+  return figure;
+}
+
+}  // namespace bess

@@ -1,0 +1,51 @@
+// The report's figures, each a pure function from results to a Figure.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "workstation/correction/distil.h"
+#include "workstation/env/evaluate.h"
+#include "workstation/report/figure.h"
+#include "workstation/report/policy_map.h"
+#include "workstation/rl/train.h"
+
+namespace bess {
+
+/// Prices at which somebody acts by rule, EUR/MWh.
+struct ReportThresholds {
+  double rule_low = kPaperRuleLowEurPerMwh;
+  double rule_high = kPaperRuleHighEurPerMwh;
+  int student_low = kLatticePriceMinEurPerMwh;
+  int student_high = kLatticePriceMaxEurPerMwh;
+};
+
+/// Validation profit and loss over gradient steps; `curve` not empty.
+Figure learning_figure(const std::vector<CurvePoint>& curve,
+                       double rule_validation_eur_per_day_per_mwh);
+
+/// The three losses over epochs; `curve` not empty.
+Figure distillation_figure(const std::vector<DistilPoint>& curve);
+
+/// One to three policies side by side over price and SoC; `note` opens the caption.
+Figure policy_map_figure(const PolicyContext& context, const std::vector<NamedPolicyMap>& maps,
+                         const BatteryParameters& battery, const std::string& note);
+
+/// Distribution of observed prices on training and on test days.
+Figure price_density_figure(const MarketSteps& market, const ReportThresholds& thresholds);
+
+/// What one policy did on one day.
+struct DayStory {
+  std::string date;
+  std::string policy;
+  std::span<const MarketStep> steps;
+  std::span<const StepRecord> records;  ///< same steps
+  BatteryParameters battery;
+};
+Figure day_figure(const DayStory& story);
+
+/// The test day with the largest difference between its highest and lowest paid price; null when
+/// there is no test day.
+const MarketDay* widest_test_day(const MarketSteps& market);
+
+}  // namespace bess

@@ -1,0 +1,24 @@
+// The page around the figures: text into HTML, the style sheet, the tables.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace bess {
+
+/// & < > " ' become entities.
+std::string html_escaped(std::string_view text);
+
+/// A table whose first column names the row and whose other columns are numbers.
+struct HtmlTable {
+  std::string caption;
+  std::vector<std::string> header;
+  std::vector<std::vector<std::string>> rows;
+};
+std::string format_table(const HtmlTable& table);
+
+/// A complete document: light and dark, phone and print, nothing fetched from outside.
+std::string format_page(std::string_view title, std::string_view body);
+
+}  // namespace bess

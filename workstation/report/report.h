@@ -1,0 +1,39 @@
+// The report of a run: figures and one HTML page that holds them all, from results that the caller
+// already has. Only what a figure needs and nobody kept is computed here: the rule-based
+// validation profit, the teacher's map, and the records of one test day.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "workstation/correction/distil.h"
+#include "workstation/report/comparison.h"
+#include "workstation/report/figures.h"
+#include "workstation/rl/train.h"
+#include "workstation/student/verify.h"
+
+namespace bess {
+
+struct ReportInputs {
+  const MarketSteps& market;  ///< delay and settlement as trained
+  BatteryParameters battery = {};
+  std::vector<NamedEvaluation> evaluations = {};  ///< on the test days; the first is rule-based
+  std::vector<CurvePoint> training_curve = {};    ///< may be empty
+  std::vector<DistilPoint> distil_curve = {};     ///< may be empty
+  const Teacher* teacher = nullptr;  ///< each pointer may be null: what it shows is left out
+  const StudentNet* uncorrected = nullptr;
+  const Certificate* uncorrected_certificate = nullptr;
+  const StudentNet* corrected = nullptr;
+  const Certificate* corrected_certificate = nullptr;
+  ReportThresholds thresholds = {};
+  std::vector<PolicyContext> maps = {{.month = 1, .quarter_hour = 48, .t_qh = 7},
+                                     {.month = 9, .quarter_hour = 48, .t_qh = 7}};
+  std::string provenance = {};  ///< lines, shown as they are
+};
+
+/// Writes the SVG figures and report.html into `folder`, which is created; each file appears
+/// complete or not at all. Throws UserError without gnuplot or room to write.
+void write_report(const ReportInputs& inputs, const std::filesystem::path& folder);
+
+}  // namespace bess
