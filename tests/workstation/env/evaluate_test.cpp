@@ -125,6 +125,19 @@ TEST(Foresight, AtPriceZeroThereIsNothingToEarn) {
   EXPECT_EQ(result.days[0].profit_eur, 0);
 }
 
+TEST(Foresight, CarriedOverItPlansAcrossMidnight) {
+  MinuteSeries series = flat_series("2023-01-31T22:58:00Z", 2 + 2 * kDay, 0);
+  for (std::size_t m = 2 + kDay; m < series.size(); ++m) series.settled[m] = 100;
+  const MarketSteps market = make_market_steps(series, {});
+  ASSERT_EQ(market.days.size(), 2u);
+  ForesightPolicy policy({});
+  EvaluationOptions options;
+  options.carry_soc = true;
+  const Evaluation result = evaluate(market, market.days, policy, options);
+  EXPECT_NEAR(result.days[0].profit_eur, 0, 1e-9);
+  EXPECT_NEAR(result.days[1].profit_eur, 0.9 * 8 * std::sqrt(0.9) * 100, 1e-2);
+}
+
 // At a constant negative price the best plan burns energy in the losses, as fast as the power
 // allows: with E_c bought and E_d given back, E_c + E_d = P * 24 h and the store ends full,
 // eta E_c - E_d / eta = 0.5 C. What a bound must never show is more than that.
