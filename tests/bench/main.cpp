@@ -1,0 +1,43 @@
+// bess-bench [NAME...]: runs the benchmarks of these names, or all. --list prints the names.
+// "ratio" says how many times better than the peer ours is: above 1 is ours.
+#include <algorithm>
+#include <cstdio>
+#include <string>
+
+#include "shared/local_time.h"
+#include "tests/bench/json_line_reporter.h"
+#include "tests/bench/registry.h"
+
+namespace {
+
+int usage(const char* what, const std::string& name) {
+  std::fprintf(stderr, "bess-bench: %s \"%s\" (bess-bench --list prints the names)\n", what,
+               name.c_str());
+  return 2;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  bess::set_market_time_zone();
+  bess::register_market_benchmarks();
+  bess::register_learning_benchmarks();
+  bess::register_student_benchmarks();
+  bess::register_correction_benchmarks();
+  const std::vector<std::string>& names = bess::benchmark_names();
+  std::string filter;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (word == "--list") {
+      for (const std::string& name : names) std::printf("%s\n", name.c_str());
+      return 0;
+    }
+    if (word.starts_with("-")) return usage("unknown option", word);
+    if (std::ranges::find(names, word) == names.end()) return usage("unknown benchmark", word);
+    filter += (filter.empty() ? "^(" : "|") + word;
+  }
+  if (!filter.empty()) filter += ")(@|/|$)";
+  bess::JsonLineReporter reporter;
+  benchmark::RunSpecifiedBenchmarks(&reporter, filter.empty() ? "." : filter);
+  return 0;
+}
