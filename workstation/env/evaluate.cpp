@@ -39,14 +39,17 @@ class Runner {
     last_action_ = Action::kIdle;
   }
 
+  /// Announces the steps that follow each other without a reset of the SoC.
+  void begin(std::span<const MarketStep> ahead) {
+    policy_.begin(ahead);
+    index_ = 0;
+  }
+
   DayResult run(const MarketDay& day) {
     DayResult result{day.date(), 0, 0, 0, 0};
     double energy_mwh = 0;
-    const std::span<const MarketStep> steps = market_.of(day);
-    policy_.begin(steps);
-    for (std::size_t i = 0; i < steps.size(); ++i) {
-      const MarketStep& step = steps[i];
-      const Action action = policy_.decide(step, i, soc_frac_);
+    for (const MarketStep& step : market_.of(day)) {
+      const Action action = policy_.decide(step, index_++, soc_frac_);
       const BatteryStep moved =
           battery_step(options_.battery, soc_frac_,
                        power_sign(action) * options_.battery.power_w_max, kHoursPerStep);
@@ -72,6 +75,7 @@ class Runner {
   Policy& policy_;
   const EvaluationOptions& options_;
   std::vector<StepRecord>* records_;
+  std::size_t index_ = 0;  ///< of the step, from the last begin()
   double soc_frac_ = 0.5;
   Action last_action_ = Action::kIdle;
 };
@@ -105,8 +109,18 @@ Evaluation evaluate(const MarketSteps& market, const std::vector<MarketDay>& day
   Evaluation evaluation;
   evaluation.capacity_mwh = options.battery.capacity_wh / kWattsPerMegawatt;
   Runner runner(market, policy, options, records);
+  std::vector<MarketStep> chained;  // carried over: foresight plans across the chained days
   for (const MarketDay& day : days) {
-    if (!options.carry_soc || evaluation.days.empty()) runner.reset_soc();
+    const auto steps = market.of(day);
+    if (options.carry_soc) chained.insert(chained.end(), steps.begin(), steps.end());
+  }
+  runner.reset_soc();
+  runner.begin(chained);
+  for (const MarketDay& day : days) {
+    if (!options.carry_soc) {
+      runner.reset_soc();
+      runner.begin(market.of(day));
+    }
     evaluation.days.push_back(runner.run(day));
   }
   return evaluation;
