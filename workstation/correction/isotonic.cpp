@@ -111,6 +111,12 @@ void IsotonicProjection::solve(Block whole) {
     }
     Block above, below;
     split(block, cut, above, below);
+    const Rows rows_above = rows_of(above);
+    const Rows rows_below = rows_of(below);
+    if (rows_above.first == rows_above.last || rows_below.first == rows_below.last) {
+      finish_level_set(block, rows, mean);  // a gain of the whole block is rounding of a long sum
+      continue;
+    }
     open.push_back(std::move(above));
     open.push_back(std::move(below));
   }

@@ -93,12 +93,13 @@ std::string self_checks(const StudentNet& net) {
       all.size(), kStudentInputs, kActionCount, states, answers);
 }
 
-/// A C string literal: no byte of the provenance can end it or start an escape.
+/// A C string literal: no byte of the provenance can end it or start an escape or a trigraph.
 std::string quoted(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c >= ' ' && c <= '~' ? c : '?';
+    const char shown = c >= ' ' && c <= '~' ? c : '?';
+    if (shown == '"' || shown == '\\' || shown == '?') out += '\\';
+    out += shown;
   }
   return out + '"';
 }

@@ -45,6 +45,11 @@ int weight_bits(const Eigen::MatrixXd& w, const Eigen::VectorXd& b, const Range&
 /// Largest scale at which the activation's upper bound stays inside int16.
 int activation_bits(const Range& x) {
   const double highest = std::max(x.high.maxCoeff(), 1e-6);
+  if (highest > INT16_MAX) {
+    fail(
+        "the student's activations are too large for int16; distil again with a smaller learning "
+        "rate");
+  }
   return std::clamp(static_cast<int>(std::floor(std::log2(INT16_MAX / highest))), 0, 20);
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
 #include <memory>
 #include <span>
 
@@ -41,6 +42,15 @@ class FieldReader {
     const cJSON* item = field(key);
     if (!cJSON_IsNumber(item)) fail("{}: \"{}\" is not a number", name_, key);
     return item->valuedouble;
+  }
+  /// A threshold: whole EUR/MWh, as plausible as any price.
+  [[nodiscard]] int price(const char* key) const {
+    constexpr int kPriceMax = kPlausiblePriceMaxCentiEurPerMwh / kCentiPerEur;
+    const double value = number(key);
+    if (!(value >= -kPriceMax && value <= kPriceMax) || value != std::trunc(value)) {
+      fail("{}: \"{}\" is not a whole number in {}..{}", name_, key, -kPriceMax, kPriceMax);
+    }
+    return static_cast<int>(value);
   }
   [[nodiscard]] std::string text(const char* key) const {
     const cJSON* item = field(key);
@@ -136,8 +146,11 @@ StudentFile parse_student(const std::string& text, const std::string& name) {
   if (in.number("weights_hash") != student_weights_hash(student.net)) {
     fail("{}: damaged: the weights do not match their hash; copy it again or distil again", name);
   }
-  student.low_price_eur_per_mwh = static_cast<int>(in.number("low_price_eur_per_mwh"));
-  student.high_price_eur_per_mwh = static_cast<int>(in.number("high_price_eur_per_mwh"));
+  student.low_price_eur_per_mwh = in.price("low_price_eur_per_mwh");
+  student.high_price_eur_per_mwh = in.price("high_price_eur_per_mwh");
+  if (student.low_price_eur_per_mwh >= student.high_price_eur_per_mwh) {
+    fail("{}: \"low_price_eur_per_mwh\" is not below \"high_price_eur_per_mwh\"", name);
+  }
   student.provenance = in.text("provenance");
   return student;
 }
