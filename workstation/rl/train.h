@@ -34,7 +34,7 @@ struct TrainOptions {
   double epsilon_start = 1.0;  ///< falls linearly to epsilon_end over the first half of the steps
   double epsilon_end = 0.05;
   double average_decay = 0.995;  ///< of the averaged weights that are validated and kept; 0 = none
-  long validate_every = 250;    ///< gradient steps
+  long validate_every = 250;     ///< gradient steps
   std::uint64_t seed = 1;
   int threads = 2;
 };
@@ -55,7 +55,8 @@ struct TrainResult {
 };
 
 /// Trains on the training days of `market` and selects on its validation days. `interrupted` ends
-/// it early with what is best so far. Throws UserError for options out of range or missing days.
+/// it early with what is best so far. Throws UserError for missing days; ranges of the options are
+/// checked where they are read (cli/run_config.cpp).
 TrainResult train_teacher(const MarketSteps& market, const BatteryParameters& battery,
                           const TrainOptions& options, const std::atomic<bool>& interrupted);
 
