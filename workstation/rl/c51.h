@@ -29,7 +29,7 @@ struct Support {
 void project_distribution(const Support& support, const float* probability, float reward,
                           float discount, float* projected);
 
-/// Softmax of each column in place; `sums` is scratch.
+/// Softmax of each column in place.
 void softmax_columns(Matrix& z);
 
 /// Means of the value distributions, [actions x samples], from logits [actions*atoms x samples].

@@ -55,7 +55,8 @@ struct TrainResult {
 };
 
 /// Trains on the training days of `market` and selects on its validation days. `interrupted` ends
-/// it early with what is best so far. Throws UserError for options out of range or missing days.
+/// it early with what is best so far. Throws UserError for missing days; ranges of the options are
+/// checked where they are read (cli/run_config.cpp).
 TrainResult train_teacher(const MarketSteps& market, const BatteryParameters& battery,
                           const TrainOptions& options, const std::atomic<bool>& interrupted);
 
