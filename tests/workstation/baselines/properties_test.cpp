@@ -54,7 +54,7 @@ void expect_conserved(const std::vector<StepRecord>& records, const Evaluation& 
 TEST(Properties, EnergyAndMoneyAreConservedForAnyBattery) {
   const MarketSteps market = make_market_steps(small_series(), {});
   Random random(1);
-  for (int n = 0; n < 12; ++n) {
+  for (int n = 0; n < 6; ++n) {
     const BatteryParameters battery = random_battery(random);
     const EvaluationOptions options{battery, battery.soc_max_frac, true};
     for (const char* name : {"rbc:60:140", "tabular", "mpc", "foresight"}) {
