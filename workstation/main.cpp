@@ -13,11 +13,19 @@
 
 namespace {
 
-/// CLI11 would only say that a subcommand is missing, not that this one does not exist.
-bool is_subcommand_or_option(const CLI::App& app, const std::string& word) {
-  if (word.starts_with('-')) return true;
-  const auto subcommands = app.get_subcommands([](const CLI::App*) { return true; });
-  return std::ranges::any_of(subcommands, [&](const CLI::App* s) { return s->get_name() == word; });
+/// The first word that names no subcommand where one is due, or an empty text. CLI11 would only say that a
+/// subcommand is missing.
+std::string unknown_subcommand(const CLI::App& app, int argc, char** argv) {
+  const CLI::App* command = &app;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const auto subcommands = command->get_subcommands([](const CLI::App*) { return true; });
+    if (subcommands.empty() || word.starts_with('-')) break;
+    const auto found = std::ranges::find(subcommands, word, &CLI::App::get_name);
+    if (found == subcommands.end()) return word;
+    command = *found;
+  }
+  return "";
 }
 
 }  // namespace
@@ -29,8 +37,9 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.set_version_flag("--version", BESS_VERSION);
   bess::add_commands(app);
-  if (argc > 1 && !is_subcommand_or_option(app, argv[1])) {
-    std::fprintf(stderr, "bess-train: unknown subcommand \"%s\" (see bess-train --help)\n", argv[1]);
+  if (const std::string word = unknown_subcommand(app, argc, argv); !word.empty()) {
+    std::fprintf(stderr, "bess-train: unknown subcommand \"%s\" (see bess-train --help)\n",
+                 word.c_str());
     return 2;
   }
   try {

@@ -48,6 +48,7 @@ void run(const Options& options) {
   if (options.omega) config.distil.omega = *options.omega;
   if (options.epochs) config.distil.epochs = *options.epochs;
   config.distil.correct = !options.plain;
+  require_writable(options.out);
   const Teacher teacher = load_teacher(options.teacher);
   const MarketSteps market = make_market_steps(read_minute_file(options.prices), config.market);
   watch_interruption();

@@ -108,6 +108,7 @@ void run(const Options& options) {
   const std::string prices =
       built_in ? folder.simulated_prices().string()
                : std::filesystem::absolute(options.prices).lexically_normal().string();
+  require_writable(folder.header());
   announce(1, built_in ? "draw the built-in market" : "read " + options.prices);
   MarketSteps market = make_market_steps(
       built_in ? built_in_market(folder) : read_minute_file(options.prices), config.market);

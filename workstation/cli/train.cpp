@@ -28,6 +28,7 @@ void run(const Options& options) {
   RunConfig config = options.common.resolve();
   if (options.method) config.train.method = parse_method(*options.method);
   if (options.steps) config.train.steps = *options.steps;
+  require_writable(options.out);
   const MarketSteps market = make_market_steps(read_minute_file(options.prices), config.market);
   watch_interruption();
   TrainResult result = train_teacher(market, config.battery, config.train, interruption());

@@ -123,27 +123,21 @@ void IsotonicProjection::project(std::span<const double> y, const RowBounds& bou
   clipped_.clear();
   std::vector<int> cut;
   Block rest{std::vector<int>(rows_, 0), std::vector<int>(rows_, columns_), -kInfinity, kInfinity};
-  Block above;
-  if (bounds.lower_rows > 0) {
-    best_staircase(rest, {0, rows_}, bounds.lower, bounds.lower_rows, bounds.upper_rows, cut);
-    Block below;
+  // Solves what lies above the bound and keeps what lies below it.
+  const auto split_off = [&](double bound, int forced_in_rows) {
+    const Rows rows = rows_of(rest);
+    if (rows.first == rows.last) return;
+    best_staircase(rest, rows, bound, forced_in_rows, bounds.upper_rows, cut);
+    Block above, below;
     split(rest, cut, above, below);
-    above.clip_low = bounds.lower;
-    below.clip_high = bounds.lower;
-    solve(above);
-    rest = below;
-  }
-  const Rows rows = rows_of(rest);
-  if (bounds.upper_rows > 0 && rows.first < rows.last) {
-    best_staircase(rest, rows, bounds.upper, 0, bounds.upper_rows, cut);
-    Block below;
-    split(rest, cut, above, below);
-    above.clip_low = bounds.upper;
-    below.clip_high = bounds.upper;
-    solve(above);
-    rest = below;
-  }
-  solve(rest);
+    above.clip_low = bound;
+    below.clip_high = bound;
+    solve(std::move(above));
+    rest = std::move(below);
+  };
+  if (bounds.lower_rows > 0) split_off(bounds.lower, bounds.lower_rows);
+  if (bounds.upper_rows > 0) split_off(bounds.upper, 0);
+  solve(std::move(rest));
 }
 
 void IsotonicProjection::backward(std::span<const double> gradient_x,

@@ -77,6 +77,13 @@ class TemporaryFile {
   bool committed_ = false;
 };
 
+void create_parent(const fs::path& path) {
+  if (!path.has_parent_path()) return;
+  std::error_code error;
+  fs::create_directories(path.parent_path(), error);
+  if (error) fail("{}: cannot create: {}", path.parent_path().string(), error.message());
+}
+
 }  // namespace
 
 std::string read_file(const fs::path& path) {
@@ -102,12 +109,14 @@ std::string read_file(const fs::path& path) {
   return contents;
 }
 
+void require_writable(const fs::path& path) {
+  create_parent(path);
+  if (fs::is_directory(path)) fail("{}: is a folder, not a file", path.string());
+  const TemporaryFile probe(path);  // made and removed again
+}
+
 void write_file(const fs::path& path, std::string_view contents) {
-  if (path.has_parent_path()) {
-    std::error_code error;
-    fs::create_directories(path.parent_path(), error);
-    if (error) fail("{}: cannot create: {}", path.parent_path().string(), error.message());
-  }
+  create_parent(path);
   TemporaryFile file(path);
   if (is_gzip_name(path)) {
     file.write(gzip(contents));

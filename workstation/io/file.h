@@ -16,4 +16,7 @@ std::string read_file(const std::filesystem::path& path);
 /// partial file.
 void write_file(const std::filesystem::path& path, std::string_view contents);
 
+/// Throws UserError unless a file can be made at `path`, creating its folder: asked before hours of work.
+void require_writable(const std::filesystem::path& path);
+
 }  // namespace bess

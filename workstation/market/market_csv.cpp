@@ -2,19 +2,12 @@
 // column order.
 #include <string>
 
+#include "workstation/io/text.h"
 #include "workstation/io/user_error.h"
 #include "workstation/market/market_rows.h"
 
 namespace bess {
 namespace {
-
-std::string_view take_line(std::string_view& rest) {
-  const std::size_t end = rest.find('\n');
-  std::string_view line = rest.substr(0, end);
-  rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
-  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-  return line;
-}
 
 /// Next field of a line; quotes keep a separator inside. False when the line is used up.
 bool take_field(std::string_view& rest, bool& more, char separator, std::string_view& field) {

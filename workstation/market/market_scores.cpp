@@ -45,7 +45,7 @@ ScoreProcess::ScoreProcess(const ScoreParameters& parameters)
              UnitAutoregression(parameters.autoregressions[1].correlation),
              UnitAutoregression(parameters.autoregressions[2].correlation)} {}
 
-double ScoreProcess::next(const MarketCalendar& calendar, RandomSource& random) {
+double ScoreProcess::next(const MarketCalendar& calendar, Random& random) {
   double noise = 0;
   for (std::size_t i = 0; i < parts_.size(); ++i) {
     noise += std::sqrt(parameters_.autoregressions[i].share) * parts_[i].next(random);

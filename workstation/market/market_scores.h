@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "workstation/market/market_parameters.h"
-#include "workstation/market/random_source.h"
+#include "workstation/market/unit_autoregression.h"
 
 namespace bess {
 
@@ -24,7 +24,7 @@ class ScoreProcess {
  public:
   explicit ScoreProcess(const ScoreParameters& parameters);
   /// Score of the next quarter-hour.
-  double next(const MarketCalendar& calendar, RandomSource& random);
+  double next(const MarketCalendar& calendar, Random& random);
 
  private:
   const ScoreParameters& parameters_;

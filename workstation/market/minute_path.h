@@ -17,7 +17,7 @@
 
 #include "shared/units_and_limits.h"
 #include "workstation/market/quarter_hour.h"
-#include "workstation/market/random_source.h"
+#include "workstation/market/unit_autoregression.h"
 
 namespace bess {
 
@@ -43,7 +43,7 @@ class MinutePathGenerator {
   Path staircase(double previous, double final, double direction);
   Sides final_sides(const QuarterHour& quarter_hour) const;
 
-  RandomSource random_;
+  Random random_;
   UnitAutoregression deviation_;
   Sides previous_sides_;
   double previous_imbalance_mw_ = 0;

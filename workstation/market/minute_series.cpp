@@ -9,6 +9,7 @@
 
 #include "shared/local_time.h"
 #include "workstation/io/file.h"
+#include "workstation/io/text.h"
 #include "workstation/io/user_error.h"
 
 namespace bess {
@@ -41,14 +42,6 @@ bool parse_offset(std::string_view text, int& offset_s) {
   if (hours > 14 || minutes > 59) return false;
   offset_s = (text[0] == '-' ? -1 : 1) * (hours * 3600 + minutes * 60);
   return true;
-}
-
-std::string_view take_line(std::string_view& rest) {
-  const std::size_t end = rest.find('\n');
-  std::string_view line = rest.substr(0, end);
-  rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
-  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-  return line;
 }
 
 /// A price field: empty = missing; anything else must be one finite number.

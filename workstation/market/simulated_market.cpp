@@ -62,7 +62,7 @@ class YearSimulator {
   void set_marginal_prices(std::vector<QuarterHour>& year, Scores& scores) const;
   void settle(std::vector<QuarterHour>& year);
 
-  RandomSource random_;
+  Random random_;
   ScoreProcess imbalance_{kImbalanceScore};
   ScoreProcess incremental_{kIncrementalScore};
   ScoreProcess decremental_{kDecrementalScore};

@@ -6,6 +6,7 @@
 #include <array>
 #include <charconv>
 
+#include "workstation/io/text.h"
 #include "workstation/io/user_error.h"
 
 namespace bess {
@@ -20,9 +21,7 @@ std::vector<std::array<double, 4>> parse_rows(std::string_view text, std::string
                                               std::string_view name) {
   std::vector<std::array<double, 4>> rows;
   for (std::size_t line = 1; !text.empty(); ++line) {
-    const std::size_t end = text.find('\n');
-    const std::string_view row = text.substr(0, end);
-    text.remove_prefix(end == text.npos ? text.size() : end + 1);
+    const std::string_view row = take_line(text);
     if (line == 1) {
       if (row != header) fail("{}:1: not a curve: the header must be \"{}\"", name, header);
       continue;

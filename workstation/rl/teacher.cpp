@@ -1,6 +1,7 @@
 #include "workstation/rl/teacher.h"
 
 #include <bit>
+#include <cmath>
 #include <cstring>
 
 #include "shared/crc32.h"
@@ -16,6 +17,7 @@ constexpr std::uint32_t kVersion = 1;
 constexpr int kTeacherHidden1 = 256;
 constexpr int kTeacherHidden2 = 128;
 constexpr std::uint32_t kProvenanceMax = 4096;
+constexpr int kAtomsMax = 10'000;
 static_assert(std::endian::native == std::endian::little);
 
 class Writer {
@@ -60,6 +62,20 @@ std::uint32_t crc_of(std::string_view bytes) {
   return crc.value();
 }
 
+bool is_possible(const Support& support) {
+  return std::isfinite(support.v_min) && std::isfinite(support.v_max) &&
+         support.v_min < support.v_max && support.count >= 2 && support.count <= kAtomsMax;
+}
+
+PriceMap take_price_map(Reader& in, std::string_view name) {
+  const auto table = in.take<std::array<std::int16_t, kPriceCount>>();
+  try {
+    return PriceMap(table);
+  } catch (const UserError& error) {
+    fail("{}: {}", name, error.what());
+  }
+}
+
 }  // namespace
 
 Method parse_method(std::string_view name) {
@@ -97,8 +113,10 @@ void save_teacher(const std::filesystem::path& path, const Teacher& teacher) {
   out.put(teacher.support);
   out.put(teacher.shape);
   out.put(teacher.price_map.table());
-  out.put(static_cast<std::uint32_t>(teacher.provenance.size()));
-  out.put_bytes(teacher.provenance.data(), teacher.provenance.size());
+  const std::string_view provenance =
+      std::string_view(teacher.provenance).substr(0, kProvenanceMax);
+  out.put(static_cast<std::uint32_t>(provenance.size()));
+  out.put_bytes(provenance.data(), provenance.size());
   out.put_bytes(teacher.parameters.data(), sizeof(float) * teacher.parameters.size());
   out.put(crc_of(out.bytes()));
   write_file(path, out.bytes());
@@ -125,13 +143,18 @@ Teacher load_teacher(const std::filesystem::path& path) {
   if (tail.take<std::uint32_t>() != crc_of(body)) {
     fail("{}: teacher file is damaged (checksum differs); copy it again or train again", name);
   }
-  const auto method = static_cast<Method>(in.take<std::uint32_t>());
+  const auto method_number = in.take<std::uint32_t>();
   const auto support = in.take<Support>();
+  // The checksum is right, so this was written by another program; say so before using any of it.
+  if (method_number > static_cast<std::uint32_t>(Method::kDqn) || !is_possible(support)) {
+    fail("{}: teacher file with an impossible method or value range; train again", name);
+  }
+  const auto method = static_cast<Method>(method_number);
   const auto shape = in.take<MlpShape>();
   if (!(shape == teacher_shape(method, support))) {
     fail("{}: teacher of another network shape; train again", name);
   }
-  const PriceMap price_map(in.take<std::array<std::int16_t, kPriceCount>>());
+  const PriceMap price_map = take_price_map(in, name);
   std::string provenance(std::min(in.take<std::uint32_t>(), kProvenanceMax), '\0');
   in.take_bytes(provenance.data(), provenance.size());
   Parameters parameters(shape.parameter_count());

@@ -34,7 +34,7 @@ struct TrainOptions {
   double epsilon_start = 1.0;  ///< falls linearly to epsilon_end over the first half of the steps
   double epsilon_end = 0.05;
   double average_decay = 0.995;  ///< of the averaged weights that are validated and kept; 0 = none
-  long validate_every = 250;    ///< gradient steps
+  long validate_every = 250;     ///< gradient steps
   std::uint64_t seed = 1;
   int threads = 2;
 };

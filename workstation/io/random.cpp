@@ -1,10 +1,10 @@
-#include "workstation/market/random_source.h"
+#include "workstation/io/random.h"
 
 #include <cmath>
 
 namespace bess {
 
-double RandomSource::normal() {
+double Random::normal() {
   if (has_spare_) {
     has_spare_ = false;
     return spare_;
@@ -21,14 +21,6 @@ double RandomSource::normal() {
   spare_ = v * scale;
   has_spare_ = true;
   return u * scale;
-}
-
-double UnitAutoregression::next(RandomSource& random) {
-  const double shock = random.normal();
-  value_ = started_ ? correlation_ * value_ + std::sqrt(1 - correlation_ * correlation_) * shock
-                    : shock;  // starts in the stationary distribution: no warm-up days
-  started_ = true;
-  return value_;
 }
 
 }  // namespace bess

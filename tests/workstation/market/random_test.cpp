@@ -1,22 +1,22 @@
-#include "workstation/market/random_source.h"
+#include "workstation/market/unit_autoregression.h"
 
 #include <gtest/gtest.h>
 
 namespace bess {
 namespace {
 
-TEST(RandomSource, FirstNumbersAreFixedForEveryMachine) {
+TEST(Random, FirstNumbersAreFixedForEveryMachine) {
   // mt19937_64 with seed 5489: its 10,000th output is fixed by the C++ standard ([rand.predef]).
   std::mt19937_64 engine;
   engine.discard(9999);
   EXPECT_EQ(engine(), 9981545732273789042ull);
-  RandomSource random(5489);
+  Random random(5489);
   EXPECT_DOUBLE_EQ(random.uniform(),
                    static_cast<double>(14514284786278117030ull >> 11) * 0x1.0p-53);
 }
 
-TEST(RandomSource, NormalHasMeanZeroAndDeviationOne) {
-  RandomSource random(3);
+TEST(Random, NormalHasMeanZeroAndDeviationOne) {
+  Random random(3);
   constexpr int kCount = 200'000;
   double sum = 0, squares = 0, beyond_two = 0;
   for (int i = 0; i < kCount; ++i) {
@@ -30,8 +30,8 @@ TEST(RandomSource, NormalHasMeanZeroAndDeviationOne) {
   EXPECT_NEAR(beyond_two / kCount, 0.02275, 0.002);
 }
 
-TEST(RandomSource, AutoregressionKeepsVarianceAndCorrelation) {
-  RandomSource random(4);
+TEST(Random, AutoregressionKeepsVarianceAndCorrelation) {
+  Random random(4);
   UnitAutoregression process(0.8);
   constexpr int kCount = 200'000;
   double squares = 0, products = 0, before = process.next(random);

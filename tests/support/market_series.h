@@ -1,0 +1,53 @@
+// Minute series for tests: flat, drawn from a seed, or the benchmark file where it is there.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "shared/units_and_limits.h"
+#include "workstation/io/random.h"
+#include "workstation/market/minute_series.h"
+
+namespace bess {
+
+inline std::int64_t utc_of(std::string_view text) {
+  std::int64_t utc_s = 0;
+  EXPECT_TRUE(parse_utc(text, utc_s)) << text;
+  return utc_s;
+}
+
+inline MinuteSeries flat_series(std::string_view start_utc, int minutes, double price) {
+  MinuteSeries series;
+  series.start_utc_s = utc_of(start_utc);
+  series.indicative.assign(static_cast<std::size_t>(minutes), price);
+  series.settled = series.indicative;
+  return series;
+}
+
+/// Settled prices are an autoregression over quarter-hours, indicative ones approach them within
+/// the quarter-hour. Some prices are negative.
+inline MinuteSeries random_series(std::string_view start_utc, int minutes, std::uint64_t seed) {
+  MinuteSeries series = flat_series(start_utc, minutes, 0);
+  Random random(seed);
+  double settled = 100;
+  for (std::size_t m = 0; m < series.size(); ++m) {
+    const std::size_t t_qh = m % kMinutesPerQuarterHour;
+    if (t_qh == 0) settled = 100 + 0.7 * (settled - 100) + 90 * random.normal();
+    series.settled[m] = settled;
+    const double left = 1 - static_cast<double>(t_qh + 1) / kMinutesPerQuarterHour;
+    series.indicative[m] = settled + 60 * left * random.normal();
+  }
+  return series;
+}
+
+inline std::filesystem::path shared_data(const std::string& name) {
+  return std::filesystem::path(BESS_SOURCE_DIR) / "../shared/data" / name;
+}
+
+}  // namespace bess
+
+#define BESS_SKIP_WITHOUT_DATA(name)                                            \
+  if (!std::filesystem::exists(bess::shared_data(name))) {                      \
+    GTEST_SKIP() << "needs ../shared/data/" << (name) << ", which is not here"; \
+  }

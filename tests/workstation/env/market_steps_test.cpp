@@ -1,0 +1,194 @@
+// The market as a controller meets it: delay, age, no look-ahead, settlement, splits and the two
+// days of the year that are longer or shorter.
+#include "workstation/env/market_steps.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/support/market_series.h"
+#include "workstation/env/policy.h"
+#include "workstation/env/tabular.h"
+#include "workstation/io/user_error.h"
+
+namespace bess {
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+constexpr int kDay = kMinutesPerDay;
+
+/// The indicative price of a minute is its index, so what was observed says which row it was.
+MinuteSeries numbered_series(std::string_view start_utc, int minutes) {
+  MinuteSeries series = flat_series(start_utc, minutes, 50);
+  for (std::size_t m = 0; m < series.size(); ++m) series.indicative[m] = static_cast<double>(m);
+  return series;
+}
+
+std::size_t minute_of(const MinuteSeries& series, const MarketStep& step) {
+  return static_cast<std::size_t>((step.utc_s - series.start_utc_s) / 60);
+}
+
+TEST(MarketSteps, NewestVisibleRowIsTheDecisionMinuteMinusTheDelay) {
+  for (const char* start : {"2023-01-31T23:00:00Z", "2023-01-31T23:01:00Z"}) {
+    const MinuteSeries series = numbered_series(start, 2 * kDay);
+    for (int delay = 0; delay <= 5; ++delay) {
+      const MarketSteps market = make_market_steps(series, {.observation_delay_min = delay});
+      for (const MarketStep& step : market.steps) {
+        ASSERT_EQ(step.utc_s % kSecondsPerStep, 0);
+        ASSERT_EQ(step.observed_eur_per_mwh, static_cast<double>(minute_of(series, step)) - delay);
+        ASSERT_EQ(step.observed_age_min, delay);
+      }
+    }
+  }
+}
+
+TEST(MarketSteps, UnpublishedMinutesLeaveTheLastKnownPriceAndItsAge) {
+  MinuteSeries series = numbered_series("2023-01-31T23:00:00Z", kDay);
+  for (std::size_t m = 101; m < 108; ++m) series.indicative[m] = kMissing;
+  const MarketSteps market = make_market_steps(series, {});
+  const struct {
+    std::size_t minute;
+    double observed;
+    int age_min;
+  } cases[] = {{100, 99, 1}, {102, 100, 2}, {104, 100, 4}, {108, 100, 8}, {110, 109, 1}};
+  for (const auto& c : cases) {
+    const MarketStep& step = market.steps[c.minute / 2 - 1];  // minute 0 has seen nothing yet
+    ASSERT_EQ(minute_of(series, step), c.minute);
+    EXPECT_EQ(step.observed_eur_per_mwh, c.observed) << c.minute;
+    EXPECT_EQ(step.observed_age_min, c.age_min) << c.minute;
+  }
+}
+
+/// Everything a causal controller may know of a step.
+bool same_knowledge(const MarketStep& a, const MarketStep& b) {
+  return a.utc_s == b.utc_s && a.observed_eur_per_mwh == b.observed_eur_per_mwh &&
+         a.observed_age_min == b.observed_age_min && a.t_qh == b.t_qh &&
+         a.quarter_hour == b.quarter_hour && a.month == b.month;
+}
+
+TEST(MarketSteps, RowsLaterThanTheDelayChangeNoDecision) {
+  const MinuteSeries series = random_series("2023-01-31T23:00:00Z", 4 * kDay, 3);
+  Random random(4);
+  for (int delay = 0; delay <= 5; ++delay) {
+    const MarketOptions options{.observation_delay_min = delay};
+    const MarketSteps market = make_market_steps(series, options);
+    TabularPolicy tabular(market, market.days_of(Split::kTrain), {});
+    const RuleBasedPolicy rule(kPaperRuleLowEurPerMwh, kPaperRuleHighEurPerMwh);
+    for (int trial = 0; trial < 3; ++trial) {
+      const std::size_t now = 1'000 + 2 * random.index(2'000);
+      MinuteSeries changed = series;
+      for (std::size_t m = now - static_cast<std::size_t>(delay) + 1; m < series.size(); ++m) {
+        changed.indicative[m] = random.uniform() < 0.1 ? kMissing : 1'000 * random.normal();
+      }
+      const MarketSteps other = make_market_steps(changed, options);
+      std::size_t compared = 0;
+      for (std::size_t s = 0; s < market.steps.size(); ++s) {
+        if (minute_of(series, market.steps[s]) > now) break;
+        ASSERT_TRUE(same_knowledge(market.steps[s], other.steps[s])) << "delay " << delay;
+        const double soc = 0.1 + 0.9 * random.uniform();
+        ASSERT_EQ(tabular.decide(market.steps[s], s, soc), tabular.decide(other.steps[s], s, soc));
+        ASSERT_EQ(rule.decide(market.steps[s], s, soc), rule.decide(other.steps[s], s, soc));
+        ++compared;
+      }
+      EXPECT_GE(compared, now / 2 - 3);
+      // The row that is just visible does matter, or this test would prove nothing.
+      changed.indicative[now - static_cast<std::size_t>(delay)] += 1'000;
+      const MarketSteps seen = make_market_steps(changed, options);
+      ASSERT_FALSE(same_knowledge(market.steps[compared - 1], seen.steps[compared - 1]));
+    }
+  }
+}
+
+TEST(MarketSteps, AStepAcrossTwoQuarterHoursIsPaidAsTheSettlementSays) {
+  MinuteSeries series = flat_series("2023-01-31T23:00:00Z", kDay, 0);
+  for (std::size_t m = 0; m < series.size(); ++m) {
+    series.settled[m] = static_cast<double>(m / kMinutesPerQuarterHour);
+  }
+  const MarketSteps by_minute = make_market_steps(series, {.settlement = Settlement::kMinute});
+  const MarketSteps by_step = make_market_steps(series, {.settlement = Settlement::kStep});
+  for (std::size_t s = 0; s < by_minute.steps.size(); ++s) {
+    const std::size_t minute = minute_of(series, by_minute.steps[s]);
+    const auto quarter_hour = static_cast<double>(minute / kMinutesPerQuarterHour);
+    const bool crosses = minute % kMinutesPerQuarterHour == 14;
+    ASSERT_EQ(by_step.steps[s].paid_eur_per_mwh, quarter_hour);
+    ASSERT_EQ(by_minute.steps[s].paid_eur_per_mwh, quarter_hour + (crosses ? 0.5 : 0));
+  }
+}
+
+TEST(MarketSteps, ShortAndLongDaysAreWhole) {
+  const struct {
+    const char* start_utc;
+    int minutes;
+    std::size_t steps;
+    int quarter_hours_seen;
+  } cases[] = {{"2023-03-25T23:00:00Z", 23 * 60, 690, 92},
+               {"2023-10-28T22:00:00Z", 25 * 60, 750, 96},
+               {"2023-06-09T22:00:00Z", 24 * 60, 720, 96}};
+  for (const auto& c : cases) {
+    // A day before it, so that its first step has seen a row.
+    MinuteSeries series = numbered_series(c.start_utc, kDay + c.minutes);
+    series.start_utc_s -= std::int64_t{60} * kDay;
+    const MarketSteps market = make_market_steps(series, {});
+    ASSERT_FALSE(market.days.empty());
+    const MarketDay& day = market.days.back();
+    EXPECT_EQ(day.step_count, c.steps) << c.start_utc;
+    std::vector<bool> seen(kQhCount, false);
+    for (const MarketStep& step : market.of(day)) {
+      seen[static_cast<std::size_t>(step.quarter_hour)] = true;
+      ASSERT_TRUE(step.t_qh >= 0 && step.t_qh < kTqhCount);
+      const int minute_of_day = step.quarter_hour * kMinutesPerQuarterHour + step.t_qh;
+      ASSERT_EQ(step.half_hour_phase, minute_of_day % 30 / 2);
+    }
+    EXPECT_EQ(std::ranges::count(seen, true), c.quarter_hours_seen) << c.start_utc;
+  }
+}
+
+TEST(MarketSteps, DaysAreSplitByLocalDayOfMonth) {
+  const MarketSteps market =
+      make_market_steps(flat_series("2023-01-31T23:00:00Z", 28 * kDay, 1), {});
+  ASSERT_EQ(market.days.size(), 28u);
+  EXPECT_EQ(market.days[0].date(), "2023-02-01");
+  for (const MarketDay& day : market.days) {
+    const Split expected = day.day <= 20   ? Split::kTrain
+                           : day.day <= 25 ? Split::kValidation
+                                           : Split::kTest;
+    EXPECT_EQ(day.split, expected) << day.date();
+  }
+  EXPECT_EQ(market.days_of(Split::kTrain).size(), 20u);
+  EXPECT_EQ(market.days_of(Split::kValidation).size(), 5u);
+  EXPECT_EQ(market.days_of(Split::kTest).size(), 3u);
+  EXPECT_EQ(market.days_of(Split::kAll).size(), 28u);
+}
+
+TEST(MarketSteps, DaysUnder690StepsAreDropped) {
+  const struct {
+    int missing_steps;
+    std::size_t days;
+  } cases[] = {{0, 2}, {30, 2}, {31, 1}, {720, 1}};
+  for (const auto& c : cases) {
+    MinuteSeries series = flat_series("2023-01-31T22:58:00Z", 2 + 2 * kDay, 1);
+    for (int m = 0; m < 2 * c.missing_steps; ++m) {
+      series.settled[static_cast<std::size_t>(2 + kDay + m)] = kMissing;
+    }
+    const MarketSteps market = make_market_steps(series, {});
+    EXPECT_EQ(market.days.size(), c.days) << c.missing_steps;
+    EXPECT_EQ(market.of(market.days.back()).size(), market.days.back().step_count);
+    for (const MarketDay& day : market.days) EXPECT_GE(day.step_count, kCompleteDaySteps);
+  }
+}
+
+TEST(MarketSteps, OptionsOutOfRangeAndPricesWithoutADayAreErrors) {
+  const MinuteSeries day = flat_series("2023-01-31T23:00:00Z", kDay, 1);
+  EXPECT_THROW(make_market_steps(day, {.observation_delay_min = -1}), UserError);
+  EXPECT_THROW(make_market_steps(day, {.observation_delay_min = 6}), UserError);
+  EXPECT_THROW(make_market_steps(flat_series("2023-01-31T23:00:00Z", 600, 1), {}), UserError);
+  EXPECT_THROW(parse_split("training"), UserError);
+  EXPECT_THROW(parse_settlement("hour"), UserError);
+  EXPECT_EQ(parse_split("val"), Split::kValidation);
+  EXPECT_EQ(parse_settlement("step"), Settlement::kStep);
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,88 @@
+#include "workstation/rl/dqn.h"
+
+#include "reference_net.h"
+#include "workstation/rl/learner.h"
+
+namespace bess {
+namespace {
+
+struct Case {
+  const char* name;
+  double gamma;
+  BatchRecipe recipe;
+};
+
+void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+
+class DqnGradient : public testing::TestWithParam<Case> {};
+
+TEST_P(DqnGradient, OfTheRealShapeIsTheReference) {
+  const Case& c = GetParam();
+  Learner learner(Method::kDqn, {-1, 1, 2}, c.gamma, 1, 2);
+  learner.online() = random_parameters(learner.shape(), 51, 2);
+  learner.target() = random_parameters(learner.shape(), 52, 2);
+  const ReferenceNet online(learner.shape(), to_doubles(learner.online()));
+  const ReferenceNet target(learner.shape(), to_doubles(learner.target()));
+  Random random(53);
+  const auto transitions = random_transitions(c.recipe, {}, online, target, random);
+  const ReferenceLoss expected = reference_dqn(c.gamma, online, target, transitions);
+  const Learner::StepResult result = learner.compute_gradient(minibatch_of(transitions));
+  EXPECT_LT(std::abs(result.loss / expected.loss - 1), 1e-6) << result.loss;
+  EXPECT_LT(relative_l2(learner.gradient(), expected.gradient), 1e-5);
+  EXPECT_EQ(result.edge_mass_frac, 0);
+}
+
+TEST_P(DqnGradient, OfASmallShapeInTilesIsTheReference) {
+  const Case& c = GetParam();
+  constexpr Eigen::Index kTile = 7;
+  const MlpShape shape{5, 7, 6, kActionCount};
+  const Parameters online_parameters = random_parameters(shape, 54, 2);
+  const Parameters target_parameters = random_parameters(shape, 55, 2);
+  const ReferenceNet online(shape, to_doubles(online_parameters));
+  const ReferenceNet target(shape, to_doubles(target_parameters));
+  Random random(56);
+  const auto transitions = random_transitions(c.recipe, {}, online, target, random);
+  const ReferenceLoss expected = reference_dqn(c.gamma, online, target, transitions);
+  const MiniBatch batch = minibatch_of(transitions);
+  Parameters gradient = Parameters::Zero(shape.parameter_count());
+  MutableMlp view(shape, gradient.data());
+  DqnTile tile;
+  double loss = 0;
+  for (int action = 0; action < kActionCount; ++action) {
+    const Eigen::Index end = batch.group_end[action];
+    for (Eigen::Index at = batch.group_begin(action); at < end; at += kTile) {
+      loss +=
+          dqn_tile_gradient(static_cast<float>(c.gamma), ConstMlp(shape, online_parameters.data()),
+                            ConstMlp(shape, target_parameters.data()), batch, action, at,
+                            std::min(kTile, end - at), tile, view);
+    }
+  }
+  EXPECT_LT(std::abs(loss / static_cast<double>(transitions.size()) / expected.loss - 1), 1e-6);
+  EXPECT_LT(relative_l2(gradient, expected.gradient), 1e-5);
+}
+
+INSTANTIATE_TEST_SUITE_P(Batches, DqnGradient,
+                         testing::Values(Case{"even", 0.999, {{200, 200, 200}, 2}},
+                                         Case{"uneven", 0.99, {{700, 2, 50}, 2}},
+                                         Case{"no_discharge", 0.9, {{0, 60, 20}, 10}},
+                                         Case{"only_idle", 0.5, {{0, 31, 0}, 1}},
+                                         Case{"all_terminal", 0.9, {{10, 10, 10}, 1, 1.1}}),
+                         [](const auto& instance) { return instance.param.name; });
+
+TEST(DqnReference, GradientIsTheDifferenceQuotientOfItsLoss) {
+  const MlpShape shape{5, 7, 6, kActionCount};
+  const ReferenceNet online(shape, to_doubles(random_parameters(shape, 57, 2)));
+  const ReferenceNet target(shape, to_doubles(random_parameters(shape, 58, 2)));
+  Random random(59);
+  const auto batch = random_transitions({{5, 4, 3}, 2}, {}, online, target, random);
+  const Doubles differences = finite_differences(shape, online.parameters, [&](const auto& net) {
+    return reference_dqn(0.9, net, target, batch).loss;
+  });
+  const Doubles gradient = reference_dqn(0.9, online, target, batch).gradient;
+  for (std::size_t i = 0; i < gradient.size(); ++i) {
+    EXPECT_NEAR(gradient[i], differences[i], 1e-7) << i;
+  }
+}
+
+}  // namespace
+}  // namespace bess
