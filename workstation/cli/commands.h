@@ -20,6 +20,7 @@ void add_train_command(CLI::App& app);
 void add_distil_command(CLI::App& app);
 void add_verify_command(CLI::App& app);
 void add_evaluate_command(CLI::App& app);
+void add_delays_command(CLI::App& app);
 void add_export_command(CLI::App& app);
 void add_report_command(CLI::App& app);
 void add_run_command(CLI::App& app);

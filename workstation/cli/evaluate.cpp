@@ -3,14 +3,15 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
 #include "workstation/cli/policy_factory.h"
 #include "workstation/env/evaluate.h"
-#include "workstation/env/foresight.h"
 #include "workstation/io/file.h"
 #include "workstation/io/user_error.h"
+#include "workstation/report/comparison.h"
 
 namespace bess {
 namespace {
@@ -21,50 +22,85 @@ struct Options {
   std::vector<std::string> policies;
   std::string split = "test";
   std::string date;
+  std::optional<int> fit_delay_min;
   bool carry_soc = false;
   bool json = false;
+  std::string csv;
   std::string days_out;
   std::string steps_out;
+
+  /// Both ways of counting unless one is asked for: a single policy's line is about one of them.
+  [[nodiscard]] bool wants_reset() const { return !carry_soc; }
+  [[nodiscard]] bool wants_carried() const { return carry_soc || policies.size() > 1; }
 };
 
-std::string evaluation_json(const std::string& policy, const Options& options, const Evaluation& e,
-                            double foresight_profit) {
+constexpr std::string_view kSocModes[] = {"reset", "carried"};
+
+/// Per-day and per-step records of every policy and way of counting, as CSV.
+struct Records {
+  std::string days = "date,profit_eur,cycles,switches,soc_end,policy,soc_mode\n";
+  std::string steps =
+      "utc,observed_eur_mwh,paid_eur_mwh,soc,action,power_w,profit_eur,policy,soc_mode\n";
+
+  void add(const std::string& policy, std::string_view mode, const Evaluation& e,
+           const std::vector<StepRecord>& records) {
+    const std::string tail = fmt::format("{},{}", csv_quote(policy), mode);
+    for (const DayResult& d : e.days) {
+      days += fmt::format("{},{:.4f},{:.4f},{},{:.5f},{}\n", d.date, d.profit_eur, d.cycles,
+                          d.switches, d.soc_end_frac, tail);
+    }
+    for (const StepRecord& r : records) {
+      steps += fmt::format("{},{:.2f},{:.2f},{:.6f},{},{:.3f},{:.6f},{}\n", format_utc(r.utc_s),
+                           r.observed_eur_per_mwh, r.paid_eur_per_mwh, r.soc_frac,
+                           action_name(r.action), r.power_w, r.profit_eur, tail);
+    }
+  }
+
+ private:
+  static std::string csv_quote(const std::string& text) {
+    if (text.find_first_of(",\"\n") == std::string::npos) return text;
+    std::string out = "\"";
+    for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
+    return out + '"';
+  }
+};
+
+std::string metrics_json(const Evaluation& e, double foresight_profit) {
   const double profit = e.profit_eur_per_day_per_mwh();
   return fmt::format(
-      R"({{"policy": {}, "split": "{}", "days": {}, "profit_eur_per_day_per_mwh": {:.4f}, )"
-      R"("standard_error": {:.4f}, "cycles_per_day": {:.4f}, "worst_day_eur_per_mwh": {:.4f}, )"
-      R"("share_of_foresight": {:.5f}, "switches_per_day": {:.3f}, "soc_end_mean": {:.5f}, )"
-      R"("carry_soc": {}}})",
-      json_quote(policy), options.split, e.days.size(), profit, e.standard_error(),
-      e.cycles_per_day(), e.worst_day_eur_per_mwh(), profit / foresight_profit,
-      e.switches_per_day(), e.soc_end_mean(), options.carry_soc);
+      R"("days": {}, "profit_eur_per_day_per_mwh": {:.4f}, "standard_error": {:.4f}, )"
+      R"("cycles_per_day": {:.4f}, "worst_day_eur_per_mwh": {:.4f}, )"
+      R"("share_of_foresight": {}, "switches_per_day": {:.3f}, "soc_end_mean": {:.5f})",
+      e.days.size(), profit, e.standard_error(), e.cycles_per_day(), e.worst_day_eur_per_mwh(),
+      foresight_profit > 0 ? fmt::format("{:.5f}", profit / foresight_profit) : "null",
+      e.switches_per_day(), e.soc_end_mean());
 }
 
-void write_days(const std::string& path, const Evaluation& e) {
-  std::string text = "date,profit_eur,cycles,switches,soc_end\n";
-  for (const DayResult& d : e.days) {
-    text += fmt::format("{},{:.4f},{:.4f},{},{:.5f}\n", d.date, d.profit_eur, d.cycles, d.switches,
-                        d.soc_end_frac);
+std::string difference_json(const Evaluation& e, const Evaluation& first) {
+  const PairedDifference difference = paired_difference(e, first);
+  return fmt::format(R"("difference_to_first": {:.4f}, "difference_standard_error": {:.4f})",
+                     difference.mean, difference.standard_error);
+}
+
+/// One line. With several policies: also the paired difference to the first and, nested, the same
+/// with the SoC carried over.
+std::string evaluation_json(const NamedEvaluation& named, const NamedEvaluation& first,
+                            const NamedEvaluation& foresight, const Options& options) {
+  const EvaluationField field =
+      options.carry_soc ? &NamedEvaluation::carried_over : &NamedEvaluation::day_reset;
+  const bool several = options.policies.size() > 1;
+  std::string line = fmt::format(
+      R"({{"policy": {}, "split": "{}", {}, "carry_soc": {})", json_quote(named.name),
+      options.split, metrics_json(named.*field, (foresight.*field).profit_eur_per_day_per_mwh()),
+      options.carry_soc);
+  if (several) line += ", " + difference_json(named.*field, first.*field);
+  if (several && !options.carry_soc) {
+    line += fmt::format(
+        R"(, "carried_over": {{{}, {}}})",
+        metrics_json(named.carried_over, foresight.carried_over.profit_eur_per_day_per_mwh()),
+        difference_json(named.carried_over, first.carried_over));
   }
-  write_file(path, text);
-}
-
-void write_steps(const std::string& path, const std::vector<StepRecord>& records) {
-  std::string text = "utc,observed_eur_mwh,paid_eur_mwh,soc,action,power_w,profit_eur\n";
-  for (const StepRecord& r : records) {
-    text += fmt::format("{},{:.2f},{:.2f},{:.6f},{},{:.3f},{:.6f}\n", format_utc(r.utc_s),
-                        r.observed_eur_per_mwh, r.paid_eur_per_mwh, r.soc_frac,
-                        action_name(r.action), r.power_w, r.profit_eur);
-  }
-  write_file(path, text);
-}
-
-void print_line(const std::string& policy, const Evaluation& e, double foresight_profit,
-                const PairedDifference& difference) {
-  fmt::print("{:24} {:9.1f} ±{:6.1f} {:+9.1f} ±{:6.1f} {:9.1f} {:7.2f} {:9.1f} {:7.1f} %\n", policy,
-             e.profit_eur_per_day_per_mwh(), e.standard_error(), difference.mean,
-             difference.standard_error, e.worst_day_eur_per_mwh(), e.cycles_per_day(),
-             e.switches_per_day(), 100 * e.profit_eur_per_day_per_mwh() / foresight_profit);
+  return line + "}\n";
 }
 
 double price_range(const MarketSteps& market, const MarketDay& day) {
@@ -90,42 +126,60 @@ MarketDay select_day(const MarketSteps& market, const std::vector<MarketDay>& da
   return *found;
 }
 
+/// The market as the fitted policies knew it: their training days at --fit-delay.
+MarketSteps fitting_market(const MinuteSeries& series, const RunConfig& config,
+                           const Options& options) {
+  MarketOptions market = config.market;
+  market.observation_delay_min = options.fit_delay_min.value_or(market.observation_delay_min);
+  return make_market_steps(series, market);
+}
+
+/// In the ways of counting that are wanted; every step goes to `records` when it is given.
+NamedEvaluation evaluate_policy(const std::string& name, const MarketSteps& market,
+                                const MarketSteps& fitting, const std::vector<MarketDay>& days,
+                                const RunConfig& config, const Options& options, Records* records) {
+  const std::shared_ptr<Policy> policy = make_policy(name, fitting, config.battery);
+  NamedEvaluation named{name, {}, {}};
+  const bool wants_steps = records != nullptr && !options.steps_out.empty();
+  for (const bool carry_soc : {false, true}) {
+    if (!(carry_soc ? options.wants_carried() : options.wants_reset())) continue;
+    std::vector<StepRecord> steps;
+    Evaluation& evaluation = carry_soc ? named.carried_over : named.day_reset;
+    evaluation =
+        evaluate(market, days, *policy, {config.battery, config.initial_soc_frac, carry_soc},
+                 wants_steps ? &steps : nullptr);
+    if (records != nullptr) records->add(name, kSocModes[carry_soc ? 1 : 0], evaluation, steps);
+  }
+  return named;
+}
+
 void run(const Options& options) {
   const RunConfig config = options.common.resolve();
-  const MarketSteps market = make_market_steps(read_minute_file(options.prices), config.market);
+  const MinuteSeries series = read_minute_file(options.prices);
+  const MarketSteps market = make_market_steps(series, config.market);
   std::vector<MarketDay> days = market.days_of(parse_split(options.split));
   if (days.empty()) {
     fail("{}: no complete day in the {} split; add prices or use --split all", options.prices,
          options.split);
   }
   if (!options.date.empty()) days = {select_day(market, days, options.date)};
-  const EvaluationOptions evaluation{config.battery, config.initial_soc_frac, options.carry_soc};
-  ForesightPolicy foresight(config.battery);
-  const double foresight_profit =
-      evaluate(market, days, foresight, evaluation).profit_eur_per_day_per_mwh();
-  std::vector<Evaluation> results;
+  const NamedEvaluation foresight =
+      evaluate_policy(kForesightName, market, market, days, config, options, nullptr);
+  const MarketSteps fitting = fitting_market(series, config, options);
+  std::vector<NamedEvaluation> results;
+  Records records;
   for (const std::string& name : options.policies) {
-    const std::shared_ptr<Policy> policy = make_policy(name, market, config.battery);
-    std::vector<StepRecord> records;
-    results.push_back(evaluate(market, days, *policy, evaluation,
-                               options.steps_out.empty() ? nullptr : &records));
-    if (!options.steps_out.empty()) write_steps(options.steps_out, records);
-    if (!options.days_out.empty()) write_days(options.days_out, results.back());
+    results.push_back(evaluate_policy(name, market, fitting, days, config, options, &records));
   }
+  if (!options.days_out.empty()) write_file(options.days_out, records.days);
+  if (!options.steps_out.empty()) write_file(options.steps_out, records.steps);
+  if (!options.csv.empty()) write_file(options.csv, comparison_csv(results, &foresight));
   if (!options.json) {
-    fmt::print("{} {} days, EUR/day/MWh{}\n", days.size(), options.split,
-               options.carry_soc ? ", SoC carried over" : "");
-    fmt::print("{:24} {:>17} {:>17} {:>9} {:>7} {:>9} {:>9}\n", "policy", "profit ± s.e.",
-               "minus first", "worst day", "cycles", "switches", "foresight");
+    fmt::print("{} split: {}", options.split, format_comparison_table(results, &foresight));
+    return;
   }
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    if (options.json) {
-      fmt::print("{}\n",
-                 evaluation_json(options.policies[i], options, results[i], foresight_profit));
-    } else {
-      print_line(options.policies[i], results[i], foresight_profit,
-                 paired_difference(results[i], results[0]));
-    }
+  for (const NamedEvaluation& named : results) {
+    fmt::print("{}", evaluation_json(named, results.front(), foresight, options));
   }
 }
 
@@ -144,13 +198,24 @@ void add_evaluate_command(CLI::App& app) {
                       "Only this day of the split: YYYY-MM-DD, or widest (largest price range)");
   options->common.add_market(*command);
   options->common.add_config(*command);
-  command->add_flag("--carry-soc", options->carry_soc, "Chain the days instead of resetting SoC");
+  command->add_flag(
+      "--carry-soc", options->carry_soc,
+      "Chain the days instead of resetting SoC (several policies: both, unless given)");
   command->add_flag("--json", options->json, "One JSON object a line and policy");
-  command->add_option("--days-out", options->days_out, "CSV of the last policy's days");
-  command->add_option("--steps-out", options->steps_out, "CSV of the last policy's steps");
+  command->add_option("--csv", options->csv, "Write the comparison as CSV");
+  command
+      ->add_option("--fit-delay", options->fit_delay_min,
+                   "Delay at which rbc-quartile, rbc-tuned, tabular and mpc are fitted (default: "
+                   "--delay)")
+      ->check(CLI::Range(0, 5));
+  command->add_option("--days-out", options->days_out, "CSV of every policy's days");
+  command->add_option("--steps-out", options->steps_out, "CSV of every policy's steps");
   command->footer(
       "Examples:\n"
-      "  bess-train evaluate --prices market.csv.gz --policy rbc tabular foresight\n"
+      "  bess-train evaluate --prices market.csv.gz --policy rbc rbc-tuned tabular mpc foresight "
+      "--csv table.csv\n"
+      "  bess-train evaluate --prices market.csv.gz --policy rbc:0:150 rbc-tuned --fit-delay 1 "
+      "--delay 3\n"
       "  bess-train evaluate --prices market.csv.gz --policy runs/a/student.json --split all "
       "--carry-soc --json\n"
       "  bess-train evaluate --prices market.csv.gz --policy compiled --date widest --steps-out "

@@ -1,15 +1,21 @@
 #include "workstation/cli/policy_factory.h"
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 
 #include "workstation/env/foresight.h"
+#include "workstation/env/rolling_horizon.h"
 #include "workstation/env/tabular.h"
+#include "workstation/env/tuned_rule.h"
 #include "workstation/io/user_error.h"
 #include "workstation/student/student_file.h"
 #include "workstation/student/student_policy.h"
 
 namespace bess {
 namespace {
+
+constexpr std::string_view kGivenRule = "rbc:";
 
 /// Keeps a model alive as long as the policy that reads it.
 template <typename Model, typename ModelPolicy, typename View>
@@ -39,6 +45,23 @@ std::shared_ptr<Policy> model_policy(const std::string& path) {
   return student_policy(load_student(path));
 }
 
+/// "rbc:LOW:HIGH", EUR/MWh.
+std::shared_ptr<Policy> given_rule(const std::string& name) {
+  double low = 0;
+  double high = 0;
+  const char* at = name.data() + kGivenRule.size();
+  const char* const end = name.data() + name.size();
+  auto read = std::from_chars(at, end, low);
+  const bool low_ok = read.ec == std::errc() && read.ptr != end && *read.ptr == ':';
+  if (low_ok) read = std::from_chars(read.ptr + 1, end, high);
+  if (!low_ok || read.ec != std::errc() || read.ptr != end || !std::isfinite(low) ||
+      !std::isfinite(high) || low > high) {
+    fail("--policy {}: use rbc:LOW:HIGH with two prices in EUR/MWh, LOW not above HIGH: rbc:11:179",
+         name);
+  }
+  return std::make_shared<RuleBasedPolicy>(low, high);
+}
+
 }  // namespace
 
 std::pair<double, double> training_quartiles(const MarketSteps& market) {
@@ -62,6 +85,14 @@ std::shared_ptr<Policy> make_policy(const std::string& name, const MarketSteps& 
   }
   if (name == "tabular") {
     return std::make_shared<TabularPolicy>(market, market.days_of(Split::kTrain), battery);
+  }
+  if (name.starts_with(kGivenRule)) return given_rule(name);
+  if (name == "rbc-tuned") {
+    const RuleThresholds t = tune_rule(market, market.days_of(Split::kTrain), battery);
+    return std::make_shared<RuleBasedPolicy>(t.low_eur_per_mwh, t.high_eur_per_mwh);
+  }
+  if (name == "mpc") {
+    return std::make_shared<RollingHorizonPolicy>(market, market.days_of(Split::kTrain), battery);
   }
   if (name == "foresight") return std::make_shared<ForesightPolicy>(battery);
   if (name == "compiled") return student_policy(compiled_student());

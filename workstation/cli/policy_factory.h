@@ -11,11 +11,12 @@ namespace bess {
 
 /// The names that --policy takes, for help and messages.
 inline constexpr const char* kPolicyHelp =
-    "rbc (thresholds 11/179), rbc-quartile (training days' quartiles), tabular, foresight, "
-    "compiled "
-    "(the array in this program), or a teacher's or student's file";
+    "rbc (thresholds 11/179), rbc:LOW:HIGH, rbc-quartile (training days' quartiles), rbc-tuned "
+    "(thresholds that earn most on the training days), tabular, mpc (rolling horizon on a naive "
+    "forecast), foresight, compiled (the array in this program), or a teacher's or student's file";
 
-/// A policy with whatever it is made of. Throws UserError for an unknown name or an unreadable file.
+/// A policy with whatever it is made of; the baselines that are fitted are fitted on the training
+/// days of `market`, which may differ in its delay from the market they run on. Throws UserError for an unknown name or an unreadable file.
 std::shared_ptr<Policy> make_policy(const std::string& name, const MarketSteps& market,
                                     const BatteryParameters& battery);
 

@@ -113,6 +113,10 @@ void KeyList::list(RunConfig& c) {
   number("discharge_efficiency", c.battery.discharge_efficiency, 0.5, 1, "battery to grid");
   number("soc_min", c.battery.soc_min_frac, 0, 0.95, "lower end of the SoC window");
   number("soc_max", c.battery.soc_max_frac, 0.05, 1, "upper end of the SoC window");
+  number("wear_eur_per_mwh", c.battery.wear_eur_per_mwh, 0, 1000,
+         "cost of throughput, charged and discharged; every profit and reward is net of it");
+  number("cycles_per_day_max", c.battery.cycles_per_day_max, 0, 1000,
+         "equivalent full cycles a local day, then no further order that day; 0 is no limit");
   number("initial_soc", c.initial_soc_frac, 0, 1, "at the start of each evaluated day");
 
   section("train");

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "shared/units_and_limits.h"
+#include "workstation/env/bellman_sweep.h"
 
 namespace bess {
 namespace {
@@ -30,55 +32,77 @@ double standard_error_of(const std::vector<double>& values) {
 
 class Runner {
  public:
-  Runner(const MarketSteps& market, Policy& policy, const EvaluationOptions& options,
-         std::vector<StepRecord>* records)
-      : market_(market), policy_(policy), options_(options), records_(records) {}
+  Runner(Policy& policy, const EvaluationOptions& options)
+      : policy_(policy), options_(options), soc_frac_(options.initial_soc_frac) {}
 
   void reset_soc() {
     soc_frac_ = options_.initial_soc_frac;
     last_action_ = Action::kIdle;
   }
 
-  /// Announces the steps that follow each other without a reset of the SoC.
-  void begin(std::span<const MarketStep> ahead) {
-    policy_.begin(ahead);
-    index_ = 0;
-  }
-
-  DayResult run(const MarketDay& day) {
-    DayResult result{day.date(), 0, 0, 0, 0};
+  /// Runs steps of one day; `index` is that of the first since the policy's begin().
+  DayResult run(const std::string& date, std::span<const MarketStep> steps, std::size_t index,
+                std::vector<StepRecord>* records) {
+    const BatteryParameters& battery = options_.battery;
+    const double two_capacities_mwh = 2 * battery.capacity_wh / kWattsPerMegawatt;
+    const double energy_mwh_max = battery.cycles_per_day_max > 0
+                                      ? battery.cycles_per_day_max * two_capacities_mwh
+                                      : std::numeric_limits<double>::infinity();
+    DayResult result{date, 0, 0, 0, 0};
     double energy_mwh = 0;
-    for (const MarketStep& step : market_.of(day)) {
-      const Action action = policy_.decide(step, index_++, soc_frac_);
+    for (const MarketStep& step : steps) {
+      Action action = policy_.decide(step, index++, soc_frac_);
+      if (energy_mwh >= energy_mwh_max) action = Action::kIdle;
       const BatteryStep moved =
-          battery_step(options_.battery, soc_frac_,
-                       power_sign(action) * options_.battery.power_w_max, kHoursPerStep);
+          battery_step(battery, soc_frac_, power_sign(action) * battery.power_w_max, kHoursPerStep);
       const double mwh = moved.power_w / kWattsPerMegawatt * kHoursPerStep;
-      const double profit_eur = -mwh * step.paid_eur_per_mwh;
+      const double profit_eur = -exchange_cost_eur(battery, mwh, step.paid_eur_per_mwh);
       result.profit_eur += profit_eur;
       energy_mwh += std::fabs(mwh);
       result.switches += action != last_action_ ? 1 : 0;
-      if (records_ != nullptr) {
-        records_->push_back({step.utc_s, step.observed_eur_per_mwh, step.paid_eur_per_mwh,
-                             soc_frac_, action, moved.power_w, profit_eur});
+      if (records != nullptr) {
+        records->push_back({step.utc_s, step.observed_eur_per_mwh, step.paid_eur_per_mwh, soc_frac_,
+                            action, moved.power_w, profit_eur});
       }
       last_action_ = action;
       soc_frac_ = moved.soc_frac;
     }
-    result.cycles = energy_mwh / (2 * options_.battery.capacity_wh / kWattsPerMegawatt);
+    result.cycles = energy_mwh / two_capacities_mwh;
     result.soc_end_frac = soc_frac_;
     return result;
   }
 
  private:
-  const MarketSteps& market_;
   Policy& policy_;
   const EvaluationOptions& options_;
-  std::vector<StepRecord>* records_;
-  std::size_t index_ = 0;  ///< of the step, from the last begin()
-  double soc_frac_ = 0.5;
+  double soc_frac_;
   Action last_action_ = Action::kIdle;
 };
+
+/// The carried-over bound: one plan and one run over the whole series, of which `days` count.
+std::vector<DayResult> run_whole_series(const MarketSteps& market,
+                                        const std::vector<MarketDay>& days, Policy& policy,
+                                        const EvaluationOptions& options,
+                                        std::vector<StepRecord>* records) {
+  const std::size_t first = market.days.front().first_step;
+  const std::span<const MarketStep> series{
+      market.steps.data() + first,
+      market.days.back().first_step + market.days.back().step_count - first};
+  policy.begin(series);
+  Runner runner(policy, options);
+  std::vector<DayResult> results;
+  std::size_t done = 0;
+  for (const MarketDay& day : market.days) {
+    const std::size_t at = day.first_step - first;
+    runner.run("", series.subspan(done, at - done), done, nullptr);  // days left out
+    const bool counts =
+        std::ranges::find(days, day.first_step, &MarketDay::first_step) != days.end();
+    DayResult result = runner.run(day.date(), market.of(day), at, counts ? records : nullptr);
+    if (counts) results.push_back(std::move(result));
+    done = at + day.step_count;
+  }
+  return results;
+}
 
 }  // namespace
 
@@ -108,20 +132,15 @@ Evaluation evaluate(const MarketSteps& market, const std::vector<MarketDay>& day
                     const EvaluationOptions& options, std::vector<StepRecord>* records) {
   Evaluation evaluation;
   evaluation.capacity_mwh = options.battery.capacity_wh / kWattsPerMegawatt;
-  Runner runner(market, policy, options, records);
-  std::vector<MarketStep> chained;  // carried over: foresight plans across the chained days
-  for (const MarketDay& day : days) {
-    const auto steps = market.of(day);
-    if (options.carry_soc) chained.insert(chained.end(), steps.begin(), steps.end());
+  if (options.carry_soc && policy.sees_future()) {
+    evaluation.days = run_whole_series(market, days, policy, options, records);
+    return evaluation;
   }
-  runner.reset_soc();
-  runner.begin(chained);
+  Runner runner(policy, options);
   for (const MarketDay& day : days) {
-    if (!options.carry_soc) {
-      runner.reset_soc();
-      runner.begin(market.of(day));
-    }
-    evaluation.days.push_back(runner.run(day));
+    if (!options.carry_soc) runner.reset_soc();
+    policy.begin(market.of(day));
+    evaluation.days.push_back(runner.run(day.date(), market.of(day), 0, records));
   }
   return evaluation;
 }

@@ -1,45 +1,44 @@
 #include "workstation/env/foresight.h"
 
-#include "workstation/env/soc_grid.h"
-
 namespace bess {
 namespace {
-constexpr int kSocPoints = 901;
-}
+constexpr std::size_t kSocPoints = 1801;
+constexpr std::size_t kBlockSteps = 750;  // the longest local day, so that a day is one block
+}  // namespace
 
-ForesightPolicy::ForesightPolicy(const BatteryParameters& battery) : battery_(battery) {}
+ForesightPolicy::ForesightPolicy(const BatteryParameters& battery)
+    : battery_(battery), grid_(battery, kSocPoints), sweep_(battery, grid_) {}
 
-void ForesightPolicy::begin(std::span<const MarketStep> day) {
-  const SocGrid grid(battery_, kSocPoints);
-  const std::vector<GridMove> moves = tabulate_moves(battery_, grid);
-  value_.assign((day.size() + 1) * kSocPoints, 0.0F);
-  for (std::size_t t = day.size(); t-- > 0;) {
-    const auto price = static_cast<float>(day[t].paid_eur_per_mwh);
-    const float* next = &value_[(t + 1) * kSocPoints];
-    float* now = &value_[t * kSocPoints];
-    for (int i = 0; i < kSocPoints; ++i) {
-      float best = next[i];  // idle
-      for (const Action action : {Action::kDischarge, Action::kCharge}) {
-        const GridMove& move = moves[static_cast<std::size_t>(action) * kSocPoints + i];
-        best = std::max(best, interpolate(next, move.next) - price * move.energy_mwh);
-      }
-      now[i] = best;
+void ForesightPolicy::begin(std::span<const MarketStep> ahead) {
+  paid_.clear();
+  for (const MarketStep& step : ahead) paid_.push_back(static_cast<float>(step.paid_eur_per_mwh));
+  const std::size_t blocks = (paid_.size() + kBlockSteps - 1) / kBlockSteps;
+  border_.assign((blocks + 1) * kSocPoints, 0.0F);
+  value_.resize((kBlockSteps + 1) * kSocPoints);
+  for (std::size_t block = blocks; block-- > 0;) {
+    solve_block(block);
+    // Only differences between SoCs decide; taken relative to the empty battery they stay small, so
+    // that a float tells them apart even a year ahead.
+    for (std::size_t i = 0; i < kSocPoints; ++i) {
+      border_[block * kSocPoints + i] = value_[i] - value_[0];
     }
   }
 }
 
-Action ForesightPolicy::decide(const MarketStep& step, std::size_t index, double soc_frac) const {
-  const SocGrid grid(battery_, kSocPoints);
-  const float* next = &value_[(index + 1) * kSocPoints];
-  float worth[kActionCount];
-  for (int a = 0; a < kActionCount; ++a) {
-    const BatteryStep moved =
-        battery_step(battery_, soc_frac, power_sign(static_cast<Action>(a)) * battery_.power_w_max,
-                     kHoursPerStep);
-    const double paid_eur = moved.power_w / 1e6 * kHoursPerStep * step.paid_eur_per_mwh;
-    worth[a] = interpolate(next, grid.position(moved.soc_frac)) - static_cast<float>(paid_eur);
+void ForesightPolicy::solve_block(std::size_t block) const {
+  const std::size_t first = block * kBlockSteps;
+  const std::size_t count = std::min(kBlockSteps, paid_.size() - first);
+  std::copy_n(&border_[(block + 1) * kSocPoints], kSocPoints, &value_[count * kSocPoints]);
+  for (std::size_t t = count; t-- > 0;) {
+    sweep_.run(&value_[(t + 1) * kSocPoints], paid_[first + t], &value_[t * kSocPoints]);
   }
-  return argmax_action(worth);
+  solved_block_ = block;
+}
+
+Action ForesightPolicy::decide(const MarketStep& step, std::size_t index, double soc_frac) const {
+  if (index / kBlockSteps != solved_block_) solve_block(index / kBlockSteps);
+  const float* next = &value_[(index % kBlockSteps + 1) * kSocPoints];
+  return best_action(battery_, grid_, next, step.paid_eur_per_mwh, soc_frac);
 }
 
 }  // namespace bess

@@ -1,11 +1,16 @@
 // Perfect foresight: the most that any controller with these three actions could have earned, by
 // dynamic programming over the settled prices. A bound to compare with, never a policy: it reads
-// the future. 901 SoC points with linear interpolation (181 are too coarse) [SPEC 8].
+// the future. 1801 SoC points with linear interpolation: 181 are too coarse, 901 [SPEC 8] lose
+// another 0.1 EUR/day/MWh.
+// It plans all the steps it is given, their end free. Values of the SoC are kept at block borders
+// only and a block is solved again when it is entered: a year takes a few megabytes instead of two
+// gigabytes, for twice the time.
 #pragma once
 
 #include <vector>
 
 #include "shared/battery_model.h"
+#include "workstation/env/bellman_sweep.h"
 #include "workstation/env/policy.h"
 
 namespace bess {
@@ -13,13 +18,21 @@ namespace bess {
 class ForesightPolicy final : public Policy {
  public:
   explicit ForesightPolicy(const BatteryParameters& battery);
-  void begin(std::span<const MarketStep> day) override;  ///< plans this day; its end is free
+  void begin(std::span<const MarketStep> ahead) override;
+  [[nodiscard]] bool sees_future() const override { return true; }
   [[nodiscard]] Action decide(const MarketStep& step, std::size_t index,
                               double soc_frac) const override;
 
  private:
+  void solve_block(std::size_t block) const;
+
   BatteryParameters battery_;
-  std::vector<float> value_;  ///< [step + 1][SoC point] EUR still to earn
+  SocGrid grid_;
+  BellmanSweep sweep_;
+  std::vector<float> paid_;    ///< [step] EUR/MWh
+  std::vector<float> border_;  ///< [block + 1][SoC point] EUR still to earn, up to a constant
+  mutable std::size_t solved_block_ = 0;
+  mutable std::vector<float> value_;  ///< [step of the block + 1][SoC point]
 };
 
 }  // namespace bess

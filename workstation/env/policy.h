@@ -21,6 +21,9 @@ class Policy {
   /// Called before each run of consecutive steps. Only perfect foresight looks at `ahead`; it is a
   /// bound, not a policy.
   virtual void begin(std::span<const MarketStep> ahead) { (void)ahead; }
+  /// True of the bound alone: when the SoC is carried over, evaluate() then plans and runs the whole
+  /// series (evaluate.h).
+  [[nodiscard]] virtual bool sees_future() const { return false; }
   /// Decides one step. `index` counts from the last begin().
   [[nodiscard]] virtual Action decide(const MarketStep& step, std::size_t index,
                                       double soc_frac) const = 0;

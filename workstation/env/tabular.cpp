@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 
 #include <algorithm>
+#include <cmath>
 
 #include "workstation/env/soc_grid.h"
 #include "workstation/io/user_error.h"
@@ -73,6 +74,7 @@ void TabularPolicy::count_market(const MarketSteps& market, const std::vector<Ma
 void TabularPolicy::iterate_values() {
   const SocGrid grid(battery_, kSocPoints);
   const std::vector<GridMove> moves = tabulate_moves(battery_, grid);
+  const auto wear = static_cast<float>(battery_.wear_eur_per_mwh);
   std::vector<Values> value(kPhases, Values::Zero(kBins, kSocPoints));
   greedy_.assign(kPhases * kBins * kSocPoints, Action::kIdle);
   for (int sweep = 0; sweep < kSweepsMax; ++sweep) {
@@ -85,7 +87,8 @@ void TabularPolicy::iterate_values() {
           float worth[kActionCount];
           for (int a = 0; a < kActionCount; ++a) {
             const GridMove& move = moves[a * kSocPoints + i];
-            worth[a] = interpolate(expected.row(b).data(), move.next) - price * move.energy_mwh;
+            worth[a] = interpolate(expected.row(b).data(), move.next) - price * move.energy_mwh -
+                       wear * std::fabs(move.energy_mwh);
           }
           const Action best = argmax_action(worth);
           value[phase](b, i) = worth[static_cast<int>(best)];

@@ -8,10 +8,10 @@ namespace bess {
 namespace {
 
 const Evaluation* foresight_of(const std::vector<NamedEvaluation>& evaluations,
-                               EvaluationField field) {
+                               EvaluationField field, const NamedEvaluation* given) {
   const auto found = std::ranges::find(evaluations, kForesightName, &NamedEvaluation::name);
-  if (found == evaluations.end() || ((*found).*field).days.empty()) return nullptr;
-  return &((*found).*field);
+  const NamedEvaluation* bound = found == evaluations.end() ? given : &*found;
+  return bound == nullptr || (bound->*field).days.empty() ? nullptr : &(bound->*field);
 }
 
 ComparisonRow make_row(const std::string& name, const Evaluation& evaluation,
@@ -82,10 +82,10 @@ std::string csv_line(const ComparisonRow& row, std::string_view soc) {
 }  // namespace
 
 std::vector<ComparisonRow> comparison_rows(const std::vector<NamedEvaluation>& evaluations,
-                                           EvaluationField field) {
+                                           EvaluationField field, const NamedEvaluation* given) {
   std::vector<ComparisonRow> rows;
   if (evaluations.empty()) return rows;
-  const Evaluation* foresight = foresight_of(evaluations, field);
+  const Evaluation* foresight = foresight_of(evaluations, field, given);
   const Evaluation& first = evaluations.front().*field;
   for (const NamedEvaluation& named : evaluations) {
     if ((named.*field).days.empty()) continue;
@@ -94,9 +94,10 @@ std::vector<ComparisonRow> comparison_rows(const std::vector<NamedEvaluation>& e
   return rows;
 }
 
-std::string format_comparison_table(const std::vector<NamedEvaluation>& evaluations) {
-  const auto reset = comparison_rows(evaluations, &NamedEvaluation::day_reset);
-  const auto carried = comparison_rows(evaluations, &NamedEvaluation::carried_over);
+std::string format_comparison_table(const std::vector<NamedEvaluation>& evaluations,
+                                    const NamedEvaluation* foresight) {
+  const auto reset = comparison_rows(evaluations, &NamedEvaluation::day_reset, foresight);
+  const auto carried = comparison_rows(evaluations, &NamedEvaluation::carried_over, foresight);
   std::string text;
   if (!reset.empty()) text += table_block("Each day starts at the same SoC", reset);
   if (!reset.empty() && !carried.empty()) text += "\n";
@@ -110,15 +111,16 @@ std::string format_comparison_table(const std::vector<NamedEvaluation>& evaluati
   return text;
 }
 
-std::string comparison_csv(const std::vector<NamedEvaluation>& evaluations) {
+std::string comparison_csv(const std::vector<NamedEvaluation>& evaluations,
+                           const NamedEvaluation* foresight) {
   std::string text =
       "policy,soc,days,profit_eur_per_day_per_mwh,standard_error,gain_eur_per_day_per_mwh,"
       "gain_standard_error,worst_day_eur_per_mwh,cycles_per_day,switches_per_day,"
       "foresight_share\n";
-  for (const auto& row : comparison_rows(evaluations, &NamedEvaluation::day_reset)) {
+  for (const auto& row : comparison_rows(evaluations, &NamedEvaluation::day_reset, foresight)) {
     text += csv_line(row, "reset");
   }
-  for (const auto& row : comparison_rows(evaluations, &NamedEvaluation::carried_over)) {
+  for (const auto& row : comparison_rows(evaluations, &NamedEvaluation::carried_over, foresight)) {
     text += csv_line(row, "carried");
   }
   return text;

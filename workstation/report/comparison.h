@@ -36,14 +36,18 @@ struct ComparisonRow {
 /// Which of the two evaluations a table is about.
 using EvaluationField = Evaluation NamedEvaluation::*;
 
-/// One row per policy that has this evaluation, in order.
+/// One row per policy that has this evaluation, in order. Shares are of the policy named foresight
+/// or, when it is not among them, of `foresight`.
 std::vector<ComparisonRow> comparison_rows(const std::vector<NamedEvaluation>& evaluations,
-                                           EvaluationField field);
+                                           EvaluationField field,
+                                           const NamedEvaluation* foresight = nullptr);
 
 /// Aligned columns for the terminal: a block per way of counting, the missing one left out.
-std::string format_comparison_table(const std::vector<NamedEvaluation>& evaluations);
+std::string format_comparison_table(const std::vector<NamedEvaluation>& evaluations,
+                                    const NamedEvaluation* foresight = nullptr);
 
 /// Header `policy,soc,days,...`; soc is "reset" or "carried"; an empty field is "not applicable".
-std::string comparison_csv(const std::vector<NamedEvaluation>& evaluations);
+std::string comparison_csv(const std::vector<NamedEvaluation>& evaluations,
+                           const NamedEvaluation* foresight = nullptr);
 
 }  // namespace bess

@@ -1,6 +1,7 @@
 #include "workstation/rl/experience.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "workstation/io/user_error.h"
 
@@ -59,7 +60,9 @@ double TrainingMarket::make_transition(std::size_t index, double soc_frac, Actio
   // r = -p * price in EUR/h for a battery of the paper's 4 MW: scaled by P, so that the same
   // support and learning rate serve every size [SPEC 3, 4].
   const auto power_frac = static_cast<float>(moved.power_w / battery_.power_w_max);
-  out.reward = -power_frac * kPaperPowerMw * step.paid_eur_per_mwh * kRewardScale - reward_centre_;
+  const auto wear = static_cast<float>(battery_.wear_eur_per_mwh);
+  const float paid_eur_per_h = power_frac * step.paid_eur_per_mwh + std::fabs(power_frac) * wear;
+  out.reward = -paid_eur_per_h * kPaperPowerMw * kRewardScale - reward_centre_;
   const double next_potential = step.terminal ? 0.0 : shaping_.gamma * moved.soc_frac;
   out.reward += static_cast<float>(potential_ * (next_potential - soc_frac));
   out.action = static_cast<std::int32_t>(action);

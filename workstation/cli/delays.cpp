@@ -1,0 +1,113 @@
+// bess-train delays: what it costs to see prices late, and what it costs to have been fitted for
+// another delay than the one that is met. For each policy a square table: fitted at delay 0..3 (rows)
+// and run at delay 0..3 (columns).
+#include <fmt/format.h>
+
+#include <array>
+#include <memory>
+
+#include "workstation/cli/commands.h"
+#include "workstation/cli/common_options.h"
+#include "workstation/cli/policy_factory.h"
+#include "workstation/env/evaluate.h"
+#include "workstation/io/user_error.h"
+
+namespace bess {
+namespace {
+
+constexpr int kDelays = 4;  // 0 to 3 minutes
+
+struct Options {
+  CommonOptions common;
+  std::string prices;
+  std::vector<std::string> policies = {"rbc-tuned", "tabular", "mpc"};
+  std::string split = "test";
+  bool carry_soc = false;
+  bool json = false;
+};
+
+/// [fitted at][run at] EUR per day per MWh
+using Table = std::array<std::array<double, kDelays>, kDelays>;
+using Markets = std::vector<MarketSteps>;
+
+Table delay_table(const std::string& name, const Markets& markets, const RunConfig& config,
+                  const Options& options) {
+  Table table{};
+  for (int fit = 0; fit < kDelays; ++fit) {
+    const std::shared_ptr<Policy> policy = make_policy(name, markets[fit], config.battery);
+    for (int run = 0; run < kDelays; ++run) {
+      const auto days = markets[run].days_of(parse_split(options.split));
+      if (days.empty()) {
+        fail("{}: no complete day in the {} split; add prices or use --split all", options.prices,
+             options.split);
+      }
+      table[fit][run] = evaluate(markets[run], days, *policy,
+                                 {config.battery, config.initial_soc_frac, options.carry_soc})
+                            .profit_eur_per_day_per_mwh();
+    }
+  }
+  return table;
+}
+
+void print_table(const std::string& name, const Table& table) {
+  fmt::print("{}\n{:>16}{:>9}{:>9}{:>9}{:>9}\n", name, "run at delay", "0", "1", "2", "3");
+  for (int fit = 0; fit < kDelays; ++fit) {
+    fmt::print("{:>14} {}", fit == 0 ? "fitted at" : "", fit);
+    for (const double profit : table[fit]) fmt::print("{:9.1f}", profit);
+    fmt::print("\n");
+  }
+}
+
+void print_json(const std::string& name, const Table& table, const Options& options) {
+  for (int fit = 0; fit < kDelays; ++fit) {
+    for (int run = 0; run < kDelays; ++run) {
+      fmt::print(R"({{"policy": {}, "split": "{}", "carry_soc": {}, "fit_delay_min": {}, )"
+                 R"("run_delay_min": {}, "profit_eur_per_day_per_mwh": {:.4f}}})"
+                 "\n",
+                 json_quote(name), options.split, options.carry_soc, fit, run, table[fit][run]);
+    }
+  }
+}
+
+void run(const Options& options) {
+  RunConfig config = options.common.resolve();
+  const MinuteSeries series = read_minute_file(options.prices);
+  Markets markets;
+  for (int delay = 0; delay < kDelays; ++delay) {
+    config.market.observation_delay_min = delay;
+    markets.push_back(make_market_steps(series, config.market));
+  }
+  if (!options.json) {
+    fmt::print("{} split, EUR per day per MWh of capacity, {}; delays in minutes\n", options.split,
+               options.carry_soc ? "SoC carried over" : "each day starts at the same SoC");
+  }
+  for (const std::string& name : options.policies) {
+    const Table table = delay_table(name, markets, config, options);
+    options.json ? print_json(name, table, options) : print_table(name, table);
+  }
+}
+
+}  // namespace
+
+void add_delays_command(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("delays", "The cost of seeing prices late: fitted at 0-3 min, run at 0-3");
+  command->add_option("--prices", options->prices, "Minute file (.csv or .csv.gz)")->required();
+  command->add_option("--policy", options->policies, std::string("One or more of ") + kPolicyHelp)
+      ->capture_default_str();
+  command->add_option("--split", options->split, "Local days 1-20, 21-25, 26-end, or all")
+      ->check(CLI::IsMember({"train", "val", "test", "all"}))
+      ->capture_default_str();
+  options->common.add_config(*command);
+  command->add_flag("--carry-soc", options->carry_soc, "Chain the days instead of resetting SoC");
+  command->add_flag("--json", options->json, "One JSON object a line, policy and pair of delays");
+  command->footer(
+      "Examples:\n"
+      "  bess-train delays --prices market.csv.gz\n"
+      "  bess-train delays --prices market.csv.gz --policy rbc mpc student.json --carry-soc "
+      "--json");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace bess
