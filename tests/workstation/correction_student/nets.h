@@ -1,6 +1,7 @@
 // Nets for the tests: seeded, hand-made with known answers, and adversarial.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -41,6 +42,14 @@ struct LinearNet {
   int charge_below = 4000;
   int discharge_from = 12'000;
 
+  /// What the net must answer, without the net.
+  [[nodiscard]] Action action(const LatticeState& s) const {
+    const int price = 8 * (s.price_eur_per_mwh - kLatticePriceMinEurPerMwh);
+    const int soc = 81 * s.soc_index;
+    const int h = std::clamp(price_weight * price + soc_weight * soc + offset, 0, 32'767);
+    const int value[kActionCount] = {h - discharge_from, 0, charge_below - h};
+    return argmax_action(value);
+  }
   [[nodiscard]] StudentNet net() const {
     StudentNet n{};
     const auto table = even_price_table();
