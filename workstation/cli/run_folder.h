@@ -21,6 +21,7 @@ struct RunFolder {
   [[nodiscard]] std::filesystem::path distil_curve() const { return path / "distil_curve.csv"; }
   [[nodiscard]] std::filesystem::path header() const { return path / "student_weights.h"; }
   [[nodiscard]] std::filesystem::path table() const { return path / "evaluation.csv"; }
+  [[nodiscard]] std::filesystem::path summary() const { return path / "summary.txt"; }
 };
 
 }  // namespace bess

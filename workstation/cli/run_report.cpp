@@ -31,7 +31,7 @@ std::vector<NamedEvaluation> evaluate_run(const RunResults& run) {
     const auto policy = make_policy(name, run.market, run.config.battery);
     all.push_back(evaluate_both(name, *policy, run));
   };
-  for (const char* name : {"rbc", "rbc-quartile", "tabular"}) baseline(name);
+  for (const char* name : {"rbc", "rbc-quartile", "rbc-tuned", "tabular", "mpc"}) baseline(name);
   TeacherPolicy teacher(run.teacher);
   all.push_back(
       evaluate_both(fmt::format("{} teacher", method_name(run.teacher.method)), teacher, run));
@@ -66,13 +66,16 @@ std::string write_run_report(const RunResults& run, const RunFolder& folder) {
     return fmt::format("{} / {} / {}", c.violations_property_1, c.violations_property_2,
                        c.violations_property_3);
   };
-  return format_comparison_table(evaluations) +
-         fmt::format(
-             "\nviolations of properties 1 / 2 / 3 over {} lattice states\n"
-             "  before correction (plain student)    {}\n"
-             "  after correction (corrected student) {}\n",
-             run.corrected_certificate.states_checked, violations(run.plain_certificate),
-             violations(run.corrected_certificate));
+  const std::string summary =
+      format_comparison_table(evaluations) +
+      fmt::format(
+          "\nviolations of properties 1 / 2 / 3 over {} lattice states\n"
+          "  before correction (plain student)    {}\n"
+          "  after correction (corrected student) {}\n",
+          run.corrected_certificate.states_checked, violations(run.plain_certificate),
+          violations(run.corrected_certificate));
+  write_file(folder.summary(), summary);
+  return summary;
 }
 
 }  // namespace bess
