@@ -127,8 +127,11 @@ StudentFile load_student(const std::filesystem::path& path) {
 }
 
 StudentFile parse_student(const std::string& text, const std::string& name) {
-  const Json json(cJSON_ParseWithLength(text.data(), text.size()), cJSON_Delete);
-  if (!cJSON_IsObject(json.get())) {
+  const char* end = nullptr;
+  const Json json(cJSON_ParseWithLengthOpts(text.data(), text.size(), &end, 0), cJSON_Delete);
+  const bool whole = json != nullptr &&
+                     std::string_view(end).find_first_not_of(" \t\r\n") == std::string_view::npos;
+  if (!whole || !cJSON_IsObject(json.get())) {
     fail("{}: not a student file (JSON); make one with 'bess-train distil'", name);
   }
   const FieldReader in(json.get(), name);

@@ -1,0 +1,5 @@
+# The second compiler and the sanitizers together, for what runs beside the battery; built in a minute.
+# Use: cmake -C toolchains/clang-asan-edge.cmake -S . -B build-edge-clang
+include(${CMAKE_CURRENT_LIST_DIR}/clang.cmake)
+set(BESS_SANITIZE "address,undefined" CACHE STRING "")
+set(BESS_WORKSTATION OFF CACHE BOOL "")
