@@ -10,6 +10,7 @@
 #include "workstation/correction/correct_and_prove.h"
 #include "workstation/io/file.h"
 #include "workstation/io/user_error.h"
+#include "workstation/market/local_date.h"
 #include "workstation/market/quarter_hours_to_minutes.h"
 #include "workstation/market/simulated_market.h"
 #include "workstation/student/export.h"
@@ -18,7 +19,7 @@ namespace bess {
 namespace {
 
 /// The built-in market: one local year, so that every month is seen.
-constexpr CivilTime kBuiltInStart{2023, 1, 1, 0, 0, 0};
+constexpr LocalDate kBuiltInStart{2023, 1, 1};
 constexpr int kBuiltInDays = 365;
 constexpr std::uint64_t kBuiltInSeed = 1;
 
@@ -34,9 +35,8 @@ void announce(int stage, const std::string& text) {
 }
 
 MinuteSeries built_in_market(const RunFolder& folder) {
-  constexpr std::int64_t kBrusselsWinterOffset_s = 3600;
-  const std::int64_t start = utc_from_civil(kBuiltInStart) - kBrusselsWinterOffset_s;
-  const SimulationPeriod period{start, start + std::int64_t{kBuiltInDays} * kMinutesPerDay * 60};
+  const SimulationPeriod period{local_midnight_utc_s(kBuiltInStart),
+                                local_midnight_utc_s(add_days(kBuiltInStart, kBuiltInDays))};
   const MinuteSeries series =
       minutes_on_quarter_hours(simulate_quarter_hours(period, kBuiltInSeed), kBuiltInSeed);
   write_minute_file(folder.simulated_prices(), series,
