@@ -6,7 +6,10 @@
 #include <memory>
 #include <thread>
 
+#include "workstation/cli/commands.h"
+#include "workstation/cli/common_options.h"
 #include "workstation/cli/prices.h"
+#include "workstation/io/file.h"
 #include "workstation/io/user_error.h"
 #include "workstation/market/elia_fetch.h"
 
@@ -26,17 +29,30 @@ std::string checked_base_url(std::string url) {
   return url;
 }
 
+void sleep_unless(double seconds, const std::atomic<bool>& interrupted) {
+  using Clock = std::chrono::steady_clock;
+  const auto end = Clock::now() + std::chrono::duration<double>(seconds);
+  while (!interrupted && Clock::now() < end) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+}
+
 void run(const Options& options) {
-  const FetchedPrices fetched = fetch_prices(
+  watch_interruption();
+  require_writable(options.out);
+  const std::optional<FetchedPrices> fetched = fetch_prices(
       {.span = {parse_local_date(options.from, "--from"), parse_local_date(options.to, "--to")},
        .out = options.out,
        .base_url = checked_base_url(options.base_url),
        .now_utc_s = std::time(nullptr),
        .retry = {},
-       .sleep = [](double seconds) {
-         std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
-       }});
-  fmt::print("{}written to {}. {}\n", fetched.description, options.out, kEliaAttribution);
+       .sleep = sleep_unless},
+      interruption());
+  if (!fetched) {
+    fmt::print(stderr, "finished windows are kept: run the same command again to go on\n");
+    throw Interrupted{};
+  }
+  fmt::print("{}written to {}. {}\n", fetched->description, options.out, kEliaAttribution);
 }
 
 }  // namespace

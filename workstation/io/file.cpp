@@ -1,11 +1,13 @@
 #include "workstation/io/file.h"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <unistd.h>
 #include <zlib.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 
 #include "workstation/io/user_error.h"
@@ -35,11 +37,28 @@ std::string gzip(std::string_view contents) {
   return out;
 }
 
+/// Removes what a killed process left beside `target`: `target.part.PID` of a PID that runs no more.
+void remove_stale_parts(const fs::path& target) {
+  const std::string prefix = target.filename().string() + ".part.";
+  std::error_code error;
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : ".";
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(prefix)) continue;
+    pid_t pid = 0;
+    const char* end = name.data() + name.size();
+    const auto [stop, bad] = std::from_chars(name.data() + prefix.size(), end, pid);
+    const bool gone = bad == std::errc{} && stop == end && kill(pid, 0) != 0 && errno == ESRCH;
+    if (gone) fs::remove(entry.path(), error);
+  }
+}
+
 /// A temporary file that disappears unless it is committed under its final name.
 class TemporaryFile {
  public:
   explicit TemporaryFile(const fs::path& target)
       : target_(target), path_(target.string() + ".part." + std::to_string(getpid())) {
+    remove_stale_parts(target);
     fd_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
     if (fd_ < 0) fail("{}: cannot write here: {}", target_.string(), std::strerror(errno));
   }

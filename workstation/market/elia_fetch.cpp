@@ -85,8 +85,9 @@ struct Download {
 };
 
 /// An answer that cannot be read is tried again like a cut connection.
-HttpOutcome get_rows(const std::string& url, const FetchWindow& window, Download& download) {
-  HttpOutcome outcome = http_get(url);
+HttpOutcome get_rows(const std::string& url, const FetchWindow& window,
+                     const std::atomic<bool>& interrupted, Download& download) {
+  HttpOutcome outcome = http_get(url, interrupted);
   if (outcome.kind != Kind::kDone) return outcome;
   try {
     download.rows = rows_in_window(outcome.body, window.dataset, window);
@@ -97,17 +98,21 @@ HttpOutcome get_rows(const std::string& url, const FetchWindow& window, Download
   }
 }
 
-Download download_window(const FetchRequest& request, const FetchWindow& window) {
+/// Nothing when interrupted.
+std::optional<Download> download_window(const FetchRequest& request, const FetchWindow& window,
+                                        const std::atomic<bool>& interrupted) {
   const std::string url = window_url(request.base_url, window);
   Download download;
-  for (int attempts = 1;; ++attempts) {
-    const HttpOutcome outcome = get_rows(url, window, download);
+  for (int attempts = 1; !interrupted; ++attempts) {
+    const HttpOutcome outcome = get_rows(url, window, interrupted, download);
     if (outcome.kind == Kind::kDone) return download;
+    if (outcome.kind == Kind::kInterrupted) break;
     const double wait_s = next_wait_s(request.retry, attempts, outcome, url);
     fmt::print(stderr, "{}: {}; next attempt in {:.0f} s\n", window.dataset, outcome.reason,
                wait_s);
-    request.sleep(wait_s);
+    request.sleep(wait_s, interrupted);
   }
+  return std::nullopt;
 }
 
 /// Rows of a window that an earlier run finished; a damaged copy counts as none.
@@ -120,12 +125,15 @@ std::optional<MarketRows> cached_rows(const fs::path& path, const FetchWindow& w
   }
 }
 
-MarketRows fetch_window(const FetchRequest& request, const FetchWindow& window) {
+/// Nothing when interrupted.
+std::optional<MarketRows> fetch_window(const FetchRequest& request, const FetchWindow& window,
+                                       const std::atomic<bool>& interrupted) {
   const fs::path cached = window_path(request, window);
-  if (std::optional<MarketRows> rows = cached_rows(cached, window)) return *std::move(rows);
-  Download download = download_window(request, window);
-  if (!window.settles_later) write_file(cached, download.text);
-  return std::move(download.rows);
+  if (std::optional<MarketRows> rows = cached_rows(cached, window)) return rows;
+  std::optional<Download> download = download_window(request, window, interrupted);
+  if (!download) return std::nullopt;
+  if (!window.settles_later) write_file(cached, download->text);
+  return std::move(download->rows);
 }
 
 std::string describe_coverage(const FetchRequest& request, const std::vector<FetchWindow>& windows,
@@ -158,14 +166,17 @@ std::string provenance_of(const FetchRequest& request, const std::vector<FetchWi
 
 fs::path fetch_cache_folder(const FetchRequest& request) { return request.out.string() + ".fetch"; }
 
-FetchedPrices fetch_prices(const FetchRequest& request) {
+std::optional<FetchedPrices> fetch_prices(const FetchRequest& request,
+                                          const std::atomic<bool>& interrupted) {
   const std::vector<FetchWindow> windows = plan_fetch(request.span, request.now_utc_s);
   MarketRows rows;
   {
     Progress progress("fetch", "windows", static_cast<double>(windows.size()));
     for (std::size_t i = 0; i < windows.size(); ++i) {
       progress.update(static_cast<double>(i), windows[i].dataset);
-      append(rows, fetch_window(request, windows[i]));
+      const std::optional<MarketRows> window_rows = fetch_window(request, windows[i], interrupted);
+      if (!window_rows) return std::nullopt;
+      append(rows, *window_rows);
     }
     progress.update(static_cast<double>(windows.size()));
   }

@@ -3,9 +3,11 @@
 // where it stopped; a file under its final name is always complete.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "workstation/market/fetch_plan.h"
@@ -30,7 +32,8 @@ struct FetchRequest {
   std::string base_url = kEliaBaseUrl;  ///< the API root that ends in /api/explore/v2.1
   std::int64_t now_utc_s;
   RetryPolicy retry;
-  std::function<void(double seconds)> sleep;  ///< between attempts
+  /// Between attempts; returns early when interrupted.
+  std::function<void(double seconds, const std::atomic<bool>& interrupted)> sleep;
 };
 
 /// Folder of the finished windows.
@@ -41,8 +44,10 @@ struct FetchedPrices {
   std::string description;  ///< what was joined and what is missing, for the user
 };
 
-/// Downloads, joins, writes `out` with its provenance, removes the cache. Returns what it wrote.
-/// Throws UserError; then finished windows stay for the next run.
-FetchedPrices fetch_prices(const FetchRequest& request);
+/// Downloads, joins, writes `out` with its provenance, removes the cache. Returns what it wrote, or
+/// nothing when interrupted before all windows were in. Throws UserError. Either way finished
+/// windows stay for the next run.
+std::optional<FetchedPrices> fetch_prices(const FetchRequest& request,
+                                          const std::atomic<bool>& interrupted);
 
 }  // namespace bess

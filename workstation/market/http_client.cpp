@@ -55,6 +55,11 @@ std::size_t take_header(char* data, std::size_t size, std::size_t count, void* u
   return size * count;
 }
 
+/// libcurl calls it at least once a second, also while it waits.
+int stop_when_interrupted(void* user, curl_off_t, curl_off_t, curl_off_t, curl_off_t) {
+  return *static_cast<const std::atomic<bool>*>(user) ? 1 : 0;
+}
+
 double now_s() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
@@ -74,6 +79,8 @@ Kind kind_of_transport_error(CURLcode code) {
     case CURLE_HTTP2_STREAM:
     case CURLE_BAD_CONTENT_ENCODING:
       return Kind::kTransient;
+    case CURLE_ABORTED_BY_CALLBACK:
+      return Kind::kInterrupted;
     default:  // certificate, address, ...
       return Kind::kRefused;
   }
@@ -134,7 +141,7 @@ std::optional<double> wait_seconds(const std::string& header_value, double now_u
   return std::max(0.0, static_cast<double>(utc_s) - now_utc_s);
 }
 
-HttpOutcome http_get(const std::string& url) {
+HttpOutcome http_get(const std::string& url, const std::atomic<bool>& interrupted) {
   const Handle curl = new_handle();
   Received received;
   char error_text[CURL_ERROR_SIZE] = "";
@@ -155,6 +162,9 @@ HttpOutcome http_get(const std::string& url) {
   curl_easy_setopt(curl.get(), CURLOPT_WRITEDATA, &received);
   curl_easy_setopt(curl.get(), CURLOPT_HEADERFUNCTION, take_header);
   curl_easy_setopt(curl.get(), CURLOPT_HEADERDATA, &received);
+  curl_easy_setopt(curl.get(), CURLOPT_NOPROGRESS, 0L);
+  curl_easy_setopt(curl.get(), CURLOPT_XFERINFOFUNCTION, stop_when_interrupted);
+  curl_easy_setopt(curl.get(), CURLOPT_XFERINFODATA, &interrupted);
   const CURLcode code = curl_easy_perform(curl.get());
   if (code != CURLE_OK) {
     const std::string reason = error_text[0] != '\0' ? error_text : curl_easy_strerror(code);

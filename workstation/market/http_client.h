@@ -2,6 +2,7 @@
 // sorted into what a caller does about it.
 #pragma once
 
+#include <atomic>
 #include <optional>
 #include <string>
 
@@ -14,6 +15,7 @@ struct HttpOutcome {
     kTransient,    ///< 5xx, time-out, cut connection: worth another try
     kUnreachable,  ///< no such host, nobody listens: worth few tries
     kRefused,      ///< anything that another try cannot mend
+    kInterrupted,  ///< the user stopped it
   };
   Kind kind;
   std::string body;              ///< of kDone
@@ -21,7 +23,8 @@ struct HttpOutcome {
   std::optional<double> wait_s;  ///< what the server asked for
 };
 
-HttpOutcome http_get(const std::string& url);
+/// Returns soon after `interrupted` is raised.
+HttpOutcome http_get(const std::string& url, const std::atomic<bool>& interrupted);
 
 /// Percent-encoding of a query value.
 std::string url_encoded(const std::string& text);

@@ -2,14 +2,10 @@
 #include "workstation/market/elia_fetch.h"
 
 #include <gmock/gmock.h>
-#include <httplib.h>
 
 #include <atomic>
-#include <chrono>
-#include <map>
-#include <mutex>
-#include <thread>
 
+#include "tests/workstation/market/fake_elia.h"
 #include "tests/workstation/market/market_test_support.h"
 #include "workstation/io/file.h"
 #include "workstation/market/local_date.h"
@@ -20,87 +16,23 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// Serves one minute row and one settled quarter-hour for each local midnight in the asked window.
-class FakeElia {
- public:
-  using Fault = std::function<bool(const std::string& dataset, int request, httplib::Response&)>;
-
-  explicit FakeElia(Fault fault = {}) : fault_(std::move(fault)) {
-    server_.Get(R"(/api/explore/v2\.1/catalog/datasets/(ods\d+)/exports/csv)",
-                [this](const httplib::Request& request, httplib::Response& response) {
-                  answer(request, response);
-                });
-    port_ = server_.bind_to_any_port("127.0.0.1");
-    thread_ = std::thread([this] { server_.listen_after_bind(); });
-    while (!server_.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  ~FakeElia() {
-    server_.stop();
-    thread_.join();
-  }
-  FakeElia(const FakeElia&) = delete;
-  FakeElia& operator=(const FakeElia&) = delete;
-
-  [[nodiscard]] std::string base_url() const {
-    return "http://127.0.0.1:" + std::to_string(port_) + "/api/explore/v2.1";
-  }
-  /// Requests seen so far, by dataset.
-  std::map<std::string, int> requests() {
-    const std::lock_guard lock(mutex_);
-    return requests_;
-  }
-
- private:
-  void answer(const httplib::Request& request, httplib::Response& response) {
-    const std::string dataset = request.matches[1];
-    int number = 0;
-    {
-      const std::lock_guard lock(mutex_);
-      number = ++requests_[dataset];
-    }
-    if (fault_ && fault_(dataset, number, response)) return;
-    response.set_content(rows(dataset, request.get_param_value("where")),
-                         "text/csv; charset=utf-8");
-  }
-
-  static std::string rows(const std::string& dataset, const std::string& where) {
-    std::int64_t from_utc_s = 0;
-    std::int64_t until_utc_s = 0;
-    EXPECT_TRUE(parse_utc(where.substr(where.find(">= \"") + 4, 25), from_utc_s)) << where;
-    EXPECT_TRUE(parse_utc(where.substr(where.find("< \"") + 3, 25), until_utc_s)) << where;
-    const bool minutes = dataset == "ods046" || dataset == "ods133" || dataset == "ods161";
-    std::string text =
-        "\xEF\xBB\xBF"
-        "datetime;resolutioncode;qualitystatus;imbalanceprice\n";
-    // newest first, and one row too many: the window's end is exclusive
-    for (std::int64_t utc_s = until_utc_s; utc_s >= from_utc_s; utc_s -= 3600) {
-      const LocalDate date = local_date_of(utc_s);
-      if (local_midnight_utc_s(date) != utc_s) continue;
-      text += format_utc(utc_s).substr(0, 19) + "+00:00;" + (minutes ? "PT1M" : "PT15M") +
-              ";DataIssue;" + std::to_string(date.day) + (minutes ? ".5" : "") + "\n";
-    }
-    return text;
-  }
-
-  Fault fault_;
-  httplib::Server server_;
-  int port_ = 0;
-  std::thread thread_;
-  std::mutex mutex_;
-  std::map<std::string, int> requests_;
-};
-
 constexpr std::int64_t kNow_s = 1'750'000'000;  // 15 June 2025
 
 class EliaFetch : public testing::Test {
  protected:
   FetchRequest request(const FakeElia& elia, const FetchSpan& span) {
-    return {.span = span,
-            .out = folder_ / "prices.csv",
-            .base_url = elia.base_url(),
-            .now_utc_s = kNow_s,
-            .retry = {},
-            .sleep = [this](double seconds) { waits_.push_back(seconds); }};
+    return {
+        .span = span,
+        .out = folder_ / "prices.csv",
+        .base_url = elia.base_url(),
+        .now_utc_s = kNow_s,
+        .retry = {},
+        .sleep = [this](double seconds, const std::atomic<bool>&) { waits_.push_back(seconds); }};
+  }
+
+  static JoinedMarket fetched(const FetchRequest& wanted) {
+    const std::atomic<bool> interrupted{false};
+    return fetch_prices(wanted, interrupted).value().market;
   }
 
   ScratchFolder folder_;
@@ -110,7 +42,7 @@ class EliaFetch : public testing::Test {
 TEST_F(EliaFetch, JoinsDatasetsAcrossTheChangeOfMay2024) {
   FakeElia elia;
   const FetchRequest wanted = request(elia, {{2024, 4, 30}, {2024, 6, 2}});
-  const JoinedMarket market = fetch_prices(wanted).market;
+  const JoinedMarket market = fetched(wanted);
   EXPECT_EQ(market.report.minutes, 34u);  // one a day
   EXPECT_EQ(market.report.quarter_hours, 34u);
   EXPECT_EQ(market.report.duplicates, 0u);
@@ -129,7 +61,7 @@ TEST_F(EliaFetch, JoinsDatasetsAcrossTheChangeOfMay2024) {
 
 TEST_F(EliaFetch, TodayComesFromTheNearRealTimeDatasets) {
   FakeElia elia;
-  fetch_prices(request(elia, {{2025, 6, 14}, {2025, 6, 15}}));
+  fetched(request(elia, {{2025, 6, 14}, {2025, 6, 15}}));
   EXPECT_THAT(elia.requests(), ElementsAre(std::pair("ods133", 1), std::pair("ods134", 1),
                                            std::pair("ods161", 1), std::pair("ods162", 1)));
 }
@@ -141,7 +73,7 @@ TEST_F(EliaFetch, WaitsAsToldWhenTheQuotaIsUsedUp) {
     response.set_header(number == 1 ? "Retry-After" : "X-RateLimit-Reset", number == 1 ? "7" : "9");
     return true;
   });
-  fetch_prices(request(elia, {{2023, 1, 1}, {2023, 1, 1}}));
+  fetched(request(elia, {{2023, 1, 1}, {2023, 1, 1}}));
   EXPECT_THAT(waits_, ElementsAre(7, 9));
 }
 
@@ -159,7 +91,7 @@ TEST_F(EliaFetch, BacksOffFromServerErrorsCutAnswersAndNonsense) {
     }
     return true;
   });
-  const JoinedMarket market = fetch_prices(request(elia, {{2023, 1, 1}, {2023, 1, 1}})).market;
+  const JoinedMarket market = fetched(request(elia, {{2023, 1, 1}, {2023, 1, 1}}));
   EXPECT_THAT(waits_, ElementsAre(1, 2, 4));
   EXPECT_EQ(market.report.minutes, 1u);
 }
@@ -172,12 +104,12 @@ TEST_F(EliaFetch, GivesUpInTheEndAndGoesOnWhereItStopped) {
     return true;
   });
   const FetchRequest wanted = request(elia, {{2023, 1, 30}, {2023, 2, 3}});
-  EXPECT_THAT(user_error_of([&] { fetch_prices(wanted); }), HasSubstr("502"));
+  EXPECT_THAT(user_error_of([&] { fetched(wanted); }), HasSubstr("502"));
   EXPECT_FALSE(std::filesystem::exists(wanted.out));
   EXPECT_THAT(elia.requests(), ElementsAre(std::pair("ods046", 2), std::pair("ods047", 1 + 6)));
   EXPECT_THAT(waits_, ElementsAre(1, 2, 4, 8, 16));
   broken = false;
-  const JoinedMarket market = fetch_prices(wanted).market;
+  const JoinedMarket market = fetched(wanted);
   EXPECT_EQ(market.report.minutes, 5u);
   EXPECT_EQ(market.report.quarter_hours, 5u);
   EXPECT_THAT(elia.requests(), ElementsAre(std::pair("ods046", 2), std::pair("ods047", 8)));
@@ -192,13 +124,13 @@ TEST_F(EliaFetch, ADamagedCopyIsFetchedAgain) {
     return true;
   });
   const FetchRequest wanted = request(elia, {{2023, 1, 1}, {2023, 1, 1}});
-  EXPECT_THAT(user_error_of([&] { fetch_prices(wanted); }), HasSubstr("404"));
+  EXPECT_THAT(user_error_of([&] { fetched(wanted); }), HasSubstr("404"));
   EXPECT_TRUE(waits_.empty());  // another try cannot mend a 404
   for (const auto& entry : std::filesystem::directory_iterator(fetch_cache_folder(wanted))) {
     std::filesystem::resize_file(entry.path(), std::filesystem::file_size(entry.path()) / 2);
   }
   broken = false;
-  EXPECT_EQ(fetch_prices(wanted).market.report.minutes, 1u);
+  EXPECT_EQ(fetched(wanted).report.minutes, 1u);
   EXPECT_THAT(elia.requests(), ElementsAre(std::pair("ods046", 2), std::pair("ods047", 2)));
 }
 
@@ -209,7 +141,7 @@ TEST_F(EliaFetch, ALongQuotaEndsTheRunWithAnExplanation) {
     return true;
   });
   EXPECT_THAT(user_error_of([&] {
-                fetch_prices(request(elia, {{2023, 1, 1}, {2023, 1, 1}}));
+                fetched(request(elia, {{2023, 1, 1}, {2023, 1, 1}}));
               }),
               HasSubstr("wait 120 minutes"));
 }
@@ -220,7 +152,7 @@ TEST_F(EliaFetch, AServerThatIsNotThereIsNotAskedForLong) {
     const FakeElia gone;
     wanted = request(gone, {{2023, 1, 1}, {2023, 1, 1}});
   }
-  EXPECT_THAT(user_error_of([&] { fetch_prices(wanted); }), HasSubstr("check --base-url"));
+  EXPECT_THAT(user_error_of([&] { fetched(wanted); }), HasSubstr("check --base-url"));
   EXPECT_THAT(waits_, ElementsAre(1, 2));
 }
 
@@ -230,7 +162,7 @@ TEST_F(EliaFetch, AnEmptySpanIsSaidSo) {
     return true;
   });
   const FetchRequest wanted = request(elia, {{2023, 1, 1}, {2023, 1, 1}});
-  EXPECT_THAT(user_error_of([&] { fetch_prices(wanted); }), HasSubstr("holds no prices"));
+  EXPECT_THAT(user_error_of([&] { fetched(wanted); }), HasSubstr("holds no prices"));
   EXPECT_FALSE(std::filesystem::exists(wanted.out));
 }
 
@@ -246,9 +178,9 @@ TEST_F(EliaFetch, ReplaysTheRealDownloads) {
     }
     return true;
   });
-  EXPECT_EQ(fetch_prices(request(elia, {{2023, 4, 25}, {2023, 5, 10}})).market.report.quarter_hours,
+  EXPECT_EQ(fetched(request(elia, {{2023, 4, 25}, {2023, 5, 10}})).report.quarter_hours,
             16u * 96u);  // the server ignores the window, the client does not
-  const JoinedMarket september = fetch_prices(request(elia, {{2024, 9, 6}, {2024, 9, 6}})).market;
+  const JoinedMarket september = fetched(request(elia, {{2024, 9, 6}, {2024, 9, 6}}));
   EXPECT_EQ(september.report.minutes, 1137u);
   EXPECT_TRUE(september.report.settled_from_minutes);
 }
