@@ -29,6 +29,7 @@ bool parse_row(const cJSON* item, const PriceFeedSettings& settings, std::int64_
   const cJSON* price = cJSON_GetObjectItemCaseSensitive(item, settings.price_field.c_str());
   if (!cJSON_IsString(time) || !cJSON_IsNumber(price)) return false;  // null: not published yet
   if (!parse_utc_text(time->valuestring, row.minute_utc_s)) return false;
+  if (row.minute_utc_s % 60 != 0) return false;  // not the start of a minute
   if (row.minute_utc_s + 60 > now_utc_s + kClockToleranceS) return false;  // cannot exist yet
   const double centi = price->valuedouble * kCentiPerEur;
   if (!std::isfinite(centi) || std::fabs(centi) > kPlausiblePriceMaxCentiEurPerMwh) return false;

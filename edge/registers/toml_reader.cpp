@@ -1,9 +1,12 @@
 #include "edge/registers/toml_reader.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+
+#include "shared/toml_text.h"
 
 namespace bess {
 namespace {
@@ -12,6 +15,14 @@ std::string number_text(double value) {
   char buffer[32];
   std::snprintf(buffer, sizeof buffer, "%.10g", value);
   return buffer;
+}
+
+/// A user's text may hold line ends; a message is one line.
+std::string in_one_line(std::string_view message) {
+  std::string text(message);
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }, '?');
+  return text;
 }
 
 std::string range_text(double min, double max) {
@@ -31,7 +42,7 @@ const toml::node* TomlTable::node(std::string_view key) {
 
 void TomlTable::fail_at(const toml::node& node, std::string_view message) {
   if (!error_.empty()) return;
-  error_ = file_ + ":" + std::to_string(node.source().begin.line) + ": " + std::string(message);
+  error_ = file_ + ":" + std::to_string(node.source().begin.line) + ": " + in_one_line(message);
 }
 
 void TomlTable::fail(std::string_view key, std::string_view message) {
@@ -41,7 +52,7 @@ void TomlTable::fail(std::string_view key, std::string_view message) {
   const std::string text =
       where_ + (where_.empty() ? "" : " ") + std::string(key) + " " + std::string(message);
   if (at != nullptr) return fail_at(*at, text);
-  error_ = file_ + ": " + text;
+  error_ = file_ + ": " + in_one_line(text);
 }
 
 void TomlTable::require(std::string_view key) {
@@ -154,10 +165,15 @@ bool parse_toml_file(const std::string& path, toml::table& document, std::string
     error = path + ": cannot read (is it a folder?)";
     return false;
   }
+  if (const int line = line_of_bare_non_ascii(text); line > 0) {
+    error = path + ":" + std::to_string(line) +
+            ": not valid TOML: a character other than ASCII outside quotes and comments";
+    return false;
+  }
   toml::parse_result result = toml::parse(text, path);
   if (result.failed()) {
     error = path + ":" + std::to_string(result.error().source().begin.line) +
-            ": not valid TOML: " + std::string(result.error().description());
+            ": not valid TOML: " + in_one_line(result.error().description());
     return false;
   }
   document = std::move(result).table();

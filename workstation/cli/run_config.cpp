@@ -7,6 +7,7 @@
 #include <functional>
 #include <vector>
 
+#include "shared/toml_text.h"
 #include "workstation/io/file.h"
 #include "workstation/io/user_error.h"
 
@@ -52,7 +53,7 @@ class KeyList {
                        }
                        field = *value;
                      },
-                     [&field] { return fmt::format("{}", field); }});
+                     [&field] { return fmt::format("{}", field + 0.0); }});  // + 0.0: never -0
   }
   template <typename Integer>
   void integer(const char* name, Integer& field, std::int64_t low, std::int64_t high,
@@ -213,6 +214,10 @@ void apply_table(const toml::table& root, const std::vector<Key>& keys, const st
 RunConfig parse_run_config(std::string_view text, const std::string& name) {
   RunConfig config;
   const KeyList list(config);
+  if (const int line = line_of_bare_non_ascii(text); line > 0) {
+    fail("{}:{}: not valid TOML: a character other than ASCII outside quotes and comments", name,
+         line);
+  }
   try {
     apply_table(toml::parse(text, name), list.keys(), name);
   } catch (const toml::parse_error& error) {

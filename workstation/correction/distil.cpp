@@ -25,7 +25,7 @@ int clamped(int value, int low, int high) { return std::clamp(value, low, high);
 template <typename Draw>
 void fill_distinct(std::vector<int>& axis, int count, Draw draw) {
   std::ranges::sort(axis);
-  axis.erase(std::ranges::unique(axis).begin(), axis.end());
+  axis.erase(std::unique(axis.begin(), axis.end()), axis.end());
   while (static_cast<int>(axis.size()) < count) {
     const int value = draw();
     const auto at = std::ranges::lower_bound(axis, value);

@@ -24,7 +24,7 @@ struct JoinedMarket {
   JoinReport report;
 };
 
-/// Throws UserError when there are no rows. `name` is used in messages.
+/// Throws UserError when there are no rows, or none with a price. `name` is used in messages.
 JoinedMarket join_market(MarketRows rows, std::string_view name);
 
 /// Ascending, one per time. Of duplicates the last one read wins, but never a row without a price

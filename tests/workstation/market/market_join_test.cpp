@@ -56,6 +56,9 @@ TEST(MarketJoin, StrayDatesAndEmptinessAreRefused) {
   EXPECT_THAT(user_error_of([] { (void)join_market({}, "f.csv"); }), HasSubstr("holds no rows"));
   const MarketRows rows{{{0, 1}, {4'000'000'020, 1}}, {}};
   EXPECT_THAT(user_error_of([&] { (void)join_market(rows, "f.csv"); }), HasSubstr("40 years"));
+  const MarketRows unpriced{{{0, kNotPublished}}, {settled(0, kNotPublished)}};
+  EXPECT_THAT(user_error_of([&] { (void)join_market(unpriced, "f.csv"); }),
+              HasSubstr("no price in any"));
 }
 
 TEST(MarketJoin, GapsAreReported) {

@@ -1,0 +1,41 @@
+// TOML wants ASCII outside quotes and comments. toml++ 3.3 does not check: one accented letter there
+// is undefined behaviour (is_non_ascii_horizontal_whitespace reaches an "unreachable" point). Both
+// sides look before they parse.
+#pragma once
+
+#include <algorithm>
+#include <string_view>
+
+namespace bess {
+
+/// Line, counted from 1, of the first character other than ASCII outside quotes and comments; 0 when
+/// there is none.
+constexpr int line_of_bare_non_ascii(std::string_view toml) {
+  int line = 1;
+  if (toml.starts_with("\xEF\xBB\xBF")) toml.remove_prefix(3);  // a byte order mark is allowed
+  const auto skip = [&](std::size_t bytes) {
+    line += static_cast<int>(std::ranges::count(toml.substr(0, bytes), '\n'));
+    toml.remove_prefix(std::min(bytes, toml.size()));
+  };
+  while (!toml.empty()) {
+    const char c = toml.front();
+    if (static_cast<unsigned char>(c) >= 0x80) return line;
+    if (c == '#') {
+      skip(std::min(toml.find('\n'), toml.size()));
+    } else if (c == '"' || c == '\'') {
+      const std::string_view triple = c == '"' ? "\"\"\"" : "'''";
+      const std::string_view quote = toml.starts_with(triple) ? triple : triple.substr(0, 1);
+      skip(quote.size());
+      while (!toml.empty() && !toml.starts_with(quote)) {
+        if (quote.size() == 1 && toml.front() == '\n') break;  // unclosed: the parser's business
+        skip(c == '"' && toml.front() == '\\' ? 2 : 1);
+      }
+      if (toml.starts_with(quote)) skip(quote.size());
+    } else {
+      skip(1);
+    }
+  }
+  return 0;
+}
+
+}  // namespace bess

@@ -1,0 +1,31 @@
+// What every reader of market files promises of the rows it accepts.
+#pragma once
+
+#include <string_view>
+
+#include "shared/local_time.h"
+#include "tests/fuzz/fuzz_target.h"
+#include "workstation/io/user_error.h"
+#include "workstation/market/market_join.h"
+
+namespace bess {
+
+/// Reads, joins, writes and reads back; a UserError is a fair answer up to the join.
+template <typename Parse>
+void check_market_reader(Parse parse, std::string_view text) {
+  static const bool time_zone_set = (set_market_time_zone(), true);
+  (void)time_zone_set;
+  MinuteSeries series;
+  try {
+    series = join_market(parse(text, "fuzz"), "fuzz").series;
+  } catch (const UserError&) {
+    return;
+  }
+  must(series.start_utc_s % 60 == 0, "a series starts on a whole minute");
+  must(series.indicative.size() == series.settled.size(), "both prices for each minute");
+  const std::string written = format_minute_csv(series, "");
+  must(format_minute_csv(parse_minute_csv(written, "written"), "") == written,
+       "what is written reads back to the same");
+}
+
+}  // namespace bess

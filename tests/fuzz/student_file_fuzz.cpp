@@ -1,0 +1,20 @@
+// Student files: whatever is accepted evaluates without overflow on any state.
+#include "tests/fuzz/fuzz_target.h"
+#include "tests/support/integer_nets.h"
+#include "workstation/io/user_error.h"
+#include "workstation/student/student_file.h"
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace bess;
+  try {
+    const StudentFile student = parse_student(std::string(text_of(data, size)), "fuzz");
+    Random random(1);
+    for (int i = 0; i < 16; ++i) {
+      const Action action = student.net.decide(random_lattice_state(random));
+      must(action == Action::kDischarge || action == Action::kIdle || action == Action::kCharge,
+           "an action");
+    }
+  } catch (const UserError&) {
+  }
+  return 0;
+}
