@@ -55,6 +55,18 @@ std::vector<ClockChange> clock_changes_between(std::int64_t from_utc_s, std::int
   return changes;
 }
 
+/// How often two neighbours lie on different sides of zero.
+struct FlipCount {
+  std::size_t pairs = 0, flips = 0;
+  void add(bool before, bool after) {
+    ++pairs;
+    if (before != after) ++flips;
+  }
+  [[nodiscard]] double rate() const {
+    return pairs > 0 ? static_cast<double>(flips) / static_cast<double>(pairs) : 0;
+  }
+};
+
 }  // namespace
 
 double quantile_of_sorted(std::span<const double> sorted, double probability) {
@@ -82,6 +94,12 @@ PriceStatistics price_statistics(std::span<const double> settled) {
     result.autocorrelation[i] =
         autocorrelation_at(settled, static_cast<std::size_t>(kAutocorrelationLags[i]));
   }
+  FlipCount flips;
+  for (std::size_t q = 1; q < settled.size(); ++q) {
+    if (!is_published(settled[q - 1]) || !is_published(settled[q])) continue;
+    flips.add(settled[q - 1] < 0, settled[q] < 0);
+  }
+  result.sign_flip_rate = flips.rate();
   return result;
 }
 
@@ -116,9 +134,8 @@ ConvergenceByMinute convergence_by_minute(const MinuteSeries& series) {
   return result;
 }
 
-double sign_flip_rate(const std::vector<QuarterHour>& quarter_hours) {
-  std::size_t pairs = 0;
-  std::size_t flips = 0;
+double imbalance_sign_flip_rate(const std::vector<QuarterHour>& quarter_hours) {
+  FlipCount count;
   for (std::size_t i = 1; i < quarter_hours.size(); ++i) {
     const QuarterHour& before = quarter_hours[i - 1];
     const QuarterHour& after = quarter_hours[i];
@@ -126,10 +143,9 @@ double sign_flip_rate(const std::vector<QuarterHour>& quarter_hours) {
         !is_published(before.system_imbalance_mw) || !is_published(after.system_imbalance_mw)) {
       continue;
     }
-    ++pairs;
-    if (is_short(before.system_imbalance_mw) != is_short(after.system_imbalance_mw)) ++flips;
+    count.add(is_short(before.system_imbalance_mw), is_short(after.system_imbalance_mw));
   }
-  return pairs > 0 ? static_cast<double>(flips) / static_cast<double>(pairs) : kNotPublished;
+  return count.pairs > 0 ? count.rate() : kNotPublished;
 }
 
 MarketStatistics statistics_of_minutes(const MinuteSeries& series) {
@@ -156,7 +172,7 @@ MarketStatistics statistics_of_quarter_hours(const std::vector<QuarterHour>& qua
                                      kSecondsPerQuarterHour)] = quarter_hour.price_eur_per_mwh;
   }
   result.price = price_statistics(settled);
-  const double flips = sign_flip_rate(quarter_hours);
+  const double flips = imbalance_sign_flip_rate(quarter_hours);
   if (is_published(flips)) result.imbalance_sign_flip_rate = flips;
   result.settled_gaps = gaps_in(settled, result.from_utc_s, kSecondsPerQuarterHour);
   result.clock_changes = clock_changes_between(result.from_utc_s, result.until_utc_s);

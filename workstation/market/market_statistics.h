@@ -23,6 +23,7 @@ struct PriceStatistics {
   double mean = 0, minimum = 0, quartile_1 = 0, median = 0, quartile_3 = 0, maximum = 0;
   double share_below_minus_200 = 0, share_below_0 = 0, share_above_1000 = 0;
   std::array<double, kAutocorrelationLags.size()> autocorrelation{};  ///< by kAutocorrelationLags
+  double sign_flip_rate = 0;  ///< share of neighbours between which the price changes its sign
 };
 
 /// How far the indicative price of one minute of the quarter-hour is from the settled one.
@@ -54,7 +55,7 @@ PriceStatistics price_statistics(std::span<const double> settled);
 std::vector<double> settled_by_quarter_hour(const MinuteSeries& series);
 ConvergenceByMinute convergence_by_minute(const MinuteSeries& series);
 /// Share of neighbouring quarter-hours between which the imbalance changes sides.
-double sign_flip_rate(const std::vector<QuarterHour>& quarter_hours);
+double imbalance_sign_flip_rate(const std::vector<QuarterHour>& quarter_hours);
 
 MarketStatistics statistics_of_minutes(const MinuteSeries& series);
 /// `quarter_hours` ascending, not empty.

@@ -134,6 +134,7 @@ MinuteSeries parse_minute_csv(std::string_view text, std::string_view name) {
   MinuteSeries series;
   std::size_t line_number = 0;
   bool header_seen = false;
+  bool has_price = false;
   while (!text.empty()) {
     const std::string_view line = take_line(text);
     ++line_number;
@@ -148,9 +149,12 @@ MinuteSeries parse_minute_csv(std::string_view text, std::string_view name) {
       header_seen = true;
       continue;
     }
-    append_row(series, parse_row(line, name, line_number), name, line_number);
+    const Row row = parse_row(line, name, line_number);
+    append_row(series, row, name, line_number);
+    has_price = has_price || !std::isnan(row.indicative) || !std::isnan(row.settled);
   }
   if (series.settled.empty()) fail("{}: holds no minutes", name);
+  if (!has_price) fail("{}: holds minutes but no price in any of them", name);
   return series;
 }
 

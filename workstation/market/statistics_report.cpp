@@ -22,7 +22,8 @@ std::string format_price_text(const PriceStatistics& price) {
   for (std::size_t i = 0; i < kAutocorrelationLags.size(); ++i) {
     text += fmt::format("  lag {}: {:.2f}", kAutocorrelationLags[i], price.autocorrelation[i]);
   }
-  return text + "\n";
+  return text + fmt::format("\n  changes sign between {:.1f} % of quarter-hours\n",
+                            100 * price.sign_flip_rate);
 }
 
 std::string format_convergence_text(const ConvergenceByMinute& convergence) {
@@ -62,6 +63,7 @@ void add_price_json(cJSON* root, const PriceStatistics& price) {
   add_number(root, "share_below_minus_200", price.share_below_minus_200);
   add_number(root, "share_below_0", price.share_below_0);
   add_number(root, "share_above_1000", price.share_above_1000);
+  add_number(root, "sign_flip_rate", price.sign_flip_rate);
   cJSON* lags = cJSON_AddObjectToObject(root, "autocorrelation");
   for (std::size_t i = 0; i < kAutocorrelationLags.size(); ++i) {
     add_number(lags, std::to_string(kAutocorrelationLags[i]).c_str(), price.autocorrelation[i]);

@@ -29,6 +29,7 @@ TEST(Statistics, QuartilesAndShares) {
   EXPECT_DOUBLE_EQ(result.mean, 192);
   EXPECT_DOUBLE_EQ(result.share_below_minus_200, 0.2);
   EXPECT_DOUBLE_EQ(result.share_above_1000, 0.2);
+  EXPECT_DOUBLE_EQ(result.sign_flip_rate, 1.0 / 3);  // of the three pairs without a gap
 }
 
 TEST(Statistics, AutocorrelationOfADailyWave) {
@@ -43,7 +44,8 @@ TEST(Statistics, SignFlipsSkipGaps) {
   const auto row = [](std::int64_t utc_s, double imbalance_mw) {
     return QuarterHour{.utc_s = utc_s, .price_eur_per_mwh = 1, .system_imbalance_mw = imbalance_mw};
   };
-  EXPECT_DOUBLE_EQ(sign_flip_rate({row(0, -1), row(900, 1), row(1800, 2), row(9000, -1)}), 0.5);
+  EXPECT_DOUBLE_EQ(imbalance_sign_flip_rate({row(0, -1), row(900, 1), row(1800, 2), row(9000, -1)}),
+                   0.5);
 }
 
 TEST(Statistics, ClockChangesOfAYear) {

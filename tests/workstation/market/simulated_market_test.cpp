@@ -81,8 +81,8 @@ TEST_P(SimulatedMarket, LooksLikeTheRealOne) {
   const std::string seed = std::to_string(GetParam());
   fmt::print("seed {}\n", seed);
   compare_prices(price_statistics(settled_by_quarter_hour(series)), seed);
-  expect_in(within("sign flips of the imbalance", 0.288, 0.05), sign_flip_rate(quarter_hours),
-            seed);
+  expect_in(within("sign flips of the imbalance", 0.288, 0.05),
+            imbalance_sign_flip_rate(quarter_hours), seed);
   compare_convergence(convergence_by_minute(series), seed);
 }
 
