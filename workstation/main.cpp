@@ -4,12 +4,15 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
 #include <string>
 
 #include "shared/local_time.h"
 #include "workstation/cli/commands.h"
+#include "workstation/cli/common_options.h"
 
 namespace {
 
@@ -42,8 +45,14 @@ int main(int argc, char** argv) {
                  word.c_str());
     return 2;
   }
+  bess::end_when_interrupted();
   try {
     app.parse(argc, argv);
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+      std::fprintf(stderr, "bess-train: cannot write to the standard output: %s\n",
+                   std::strerror(errno));
+      return 1;
+    }
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     std::fprintf(stderr, "bess-train: %s (see bess-train --help)\n", error.what());

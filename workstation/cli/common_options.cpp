@@ -1,6 +1,7 @@
 #include "workstation/cli/common_options.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <thread>
@@ -17,7 +18,8 @@ void CommonOptions::add_config(CLI::App& command) {
 }
 
 void CommonOptions::add_seed_and_threads(CLI::App& command) {
-  command.add_option("--seed", seed, "Seed of every random draw (default 1)");
+  command.add_option("--seed", seed, "Seed of every random draw (default 1)")
+      ->check(CLI::NonNegativeNumber);
   command.add_option("--threads", threads, "Default: all cores")->check(CLI::Range(1, kThreadsMax));
 }
 
@@ -51,6 +53,16 @@ std::atomic<bool>& interruption() {
   static std::atomic<bool> interrupted{false};
   static_assert(std::atomic<bool>::is_always_lock_free);
   return interrupted;
+}
+
+void end_when_interrupted() {
+  const auto end = [](int) {
+    constexpr std::string_view kMessage = "\nbess-train: interrupted\n";
+    [[maybe_unused]] const auto written = write(STDERR_FILENO, kMessage.data(), kMessage.size());
+    _exit(3);
+  };
+  std::signal(SIGINT, end);
+  std::signal(SIGTERM, end);
 }
 
 void watch_interruption() {

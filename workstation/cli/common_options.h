@@ -27,9 +27,12 @@ struct CommonOptions {
   [[nodiscard]] RunConfig resolve() const;
 };
 
-/// Raised by Ctrl-C and SIGTERM once watched: long loops look at it, save what they have and return.
-std::atomic<bool>& interruption();
+/// Ctrl-C and SIGTERM end the program at once, with exit code 3: nothing half-written lies under a
+/// final name. For commands that have nothing to save.
+void end_when_interrupted();
+/// From here on they only raise the flag: long loops look at it, save what they have and return.
 void watch_interruption();
+std::atomic<bool>& interruption();
 
 /// Quotes a text as JSON.
 std::string json_quote(std::string_view text);

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -46,11 +47,11 @@ struct Records {
            const std::vector<StepRecord>& records) {
     const std::string tail = fmt::format("{},{}", csv_quote(policy), mode);
     for (const DayResult& d : e.days) {
-      days += fmt::format("{},{:.4f},{:.4f},{},{:.5f},{}\n", d.date, d.profit_eur, d.cycles,
+      days += fmt::format("{},{:.8g},{:.4f},{},{:.5f},{}\n", d.date, d.profit_eur, d.cycles,
                           d.switches, d.soc_end_frac, tail);
     }
     for (const StepRecord& r : records) {
-      steps += fmt::format("{},{:.2f},{:.2f},{:.6f},{},{:.3f},{:.6f},{}\n", format_utc(r.utc_s),
+      steps += fmt::format("{},{:.10g},{:.10g},{:.6f},{},{:.3f},{:.8g},{}\n", format_utc(r.utc_s),
                            r.observed_eur_per_mwh, r.paid_eur_per_mwh, r.soc_frac,
                            action_name(r.action), r.power_w, r.profit_eur, tail);
     }
@@ -65,21 +66,27 @@ struct Records {
   }
 };
 
+/// JSON has no NaN: what one day cannot tell is null.
+std::string number_json(double value) {
+  return std::isnan(value) ? "null" : fmt::format("{:.4f}", value);
+}
+
 std::string metrics_json(const Evaluation& e, double foresight_profit) {
   const double profit = e.profit_eur_per_day_per_mwh();
   return fmt::format(
-      R"("days": {}, "profit_eur_per_day_per_mwh": {:.4f}, "standard_error": {:.4f}, )"
+      R"("days": {}, "profit_eur_per_day_per_mwh": {:.4f}, "standard_error": {}, )"
       R"("cycles_per_day": {:.4f}, "worst_day_eur_per_mwh": {:.4f}, )"
       R"("share_of_foresight": {}, "switches_per_day": {:.3f}, "soc_end_mean": {:.5f})",
-      e.days.size(), profit, e.standard_error(), e.cycles_per_day(), e.worst_day_eur_per_mwh(),
+      e.days.size(), profit, number_json(e.standard_error()), e.cycles_per_day(),
+      e.worst_day_eur_per_mwh(),
       foresight_profit > 0 ? fmt::format("{:.5f}", profit / foresight_profit) : "null",
       e.switches_per_day(), e.soc_end_mean());
 }
 
 std::string difference_json(const Evaluation& e, const Evaluation& first) {
   const PairedDifference difference = paired_difference(e, first);
-  return fmt::format(R"("difference_to_first": {:.4f}, "difference_standard_error": {:.4f})",
-                     difference.mean, difference.standard_error);
+  return fmt::format(R"("difference_to_first": {:.4f}, "difference_standard_error": {})",
+                     difference.mean, number_json(difference.standard_error));
 }
 
 /// One line. With several policies: also the paired difference to the first and, nested, the same
@@ -93,6 +100,9 @@ std::string evaluation_json(const NamedEvaluation& named, const NamedEvaluation&
       R"({{"policy": {}, "split": "{}", {}, "carry_soc": {})", json_quote(named.name),
       options.split, metrics_json(named.*field, (foresight.*field).profit_eur_per_day_per_mwh()),
       options.carry_soc);
+  if (!named.description.empty()) {
+    line += fmt::format(R"(, "description": {})", json_quote(named.description));
+  }
   if (several) line += ", " + difference_json(named.*field, first.*field);
   if (several && !options.carry_soc) {
     line += fmt::format(
@@ -126,6 +136,17 @@ MarketDay select_day(const MarketSteps& market, const std::vector<MarketDay>& da
   return *found;
 }
 
+/// Leaves one day of what was run over all days of the split, so that a carried-over SoC is carried
+/// into it.
+void keep_day(const MarketDay& day, const MarketSteps& market, Evaluation& evaluation,
+              std::vector<StepRecord>& steps) {
+  std::erase_if(evaluation.days, [&](const DayResult& d) { return d.date != day.date(); });
+  const auto of_day = market.of(day);
+  std::erase_if(steps, [&](const StepRecord& r) {
+    return r.utc_s < of_day.front().utc_s || r.utc_s > of_day.back().utc_s;
+  });
+}
+
 /// The market as the fitted policies knew it: their training days at --fit-delay.
 MarketSteps fitting_market(const MinuteSeries& series, const RunConfig& config,
                            const Options& options) {
@@ -134,42 +155,60 @@ MarketSteps fitting_market(const MinuteSeries& series, const RunConfig& config,
   return make_market_steps(series, market);
 }
 
+/// What every policy is evaluated on.
+struct Trial {
+  const MarketSteps& market;
+  const MarketSteps& fitting;
+  std::vector<MarketDay> days;
+  std::optional<MarketDay> only_day;
+  const RunConfig& config;
+  const Options& options;
+};
+
 /// In the ways of counting that are wanted; every step goes to `records` when it is given.
-NamedEvaluation evaluate_policy(const std::string& name, const MarketSteps& market,
-                                const MarketSteps& fitting, const std::vector<MarketDay>& days,
-                                const RunConfig& config, const Options& options, Records* records) {
-  const std::shared_ptr<Policy> policy = make_policy(name, fitting, config.battery);
-  NamedEvaluation named{name, {}, {}};
+NamedEvaluation evaluate_policy(const std::string& name, const Trial& trial, Records* records) {
+  const Options& options = trial.options;
+  const RunConfig& config = trial.config;
+  const std::shared_ptr<Policy> policy = make_policy(name, trial.fitting, config.battery);
+  NamedEvaluation named{name, {}, {}, policy->description()};
   const bool wants_steps = records != nullptr && !options.steps_out.empty();
   for (const bool carry_soc : {false, true}) {
     if (!(carry_soc ? options.wants_carried() : options.wants_reset())) continue;
     std::vector<StepRecord> steps;
     Evaluation& evaluation = carry_soc ? named.carried_over : named.day_reset;
-    evaluation =
-        evaluate(market, days, *policy, {config.battery, config.initial_soc_frac, carry_soc},
-                 wants_steps ? &steps : nullptr);
+    evaluation = evaluate(trial.market, trial.days, *policy,
+                          {config.battery, config.initial_soc_frac, carry_soc},
+                          wants_steps ? &steps : nullptr);
+    if (trial.only_day) keep_day(*trial.only_day, trial.market, evaluation, steps);
     if (records != nullptr) records->add(name, kSocModes[carry_soc ? 1 : 0], evaluation, steps);
   }
   return named;
 }
 
+/// Asked before the work, so that a wrong name costs nothing.
+void require_outputs_writable(const Options& options) {
+  for (const std::string& path : {options.csv, options.days_out, options.steps_out}) {
+    if (!path.empty()) require_writable(path);
+  }
+}
+
 void run(const Options& options) {
+  require_outputs_writable(options);
   const RunConfig config = options.common.resolve();
   const MinuteSeries series = read_minute_file(options.prices);
   const MarketSteps market = make_market_steps(series, config.market);
-  std::vector<MarketDay> days = market.days_of(parse_split(options.split));
-  if (days.empty()) {
+  const MarketSteps fitting = fitting_market(series, config, options);
+  Trial trial{market, fitting, market.days_of(parse_split(options.split)), {}, config, options};
+  if (trial.days.empty()) {
     fail("{}: no complete day in the {} split; add prices or use --split all", options.prices,
          options.split);
   }
-  if (!options.date.empty()) days = {select_day(market, days, options.date)};
-  const NamedEvaluation foresight =
-      evaluate_policy(kForesightName, market, market, days, config, options, nullptr);
-  const MarketSteps fitting = fitting_market(series, config, options);
+  if (!options.date.empty()) trial.only_day = select_day(market, trial.days, options.date);
+  const NamedEvaluation foresight = evaluate_policy(kForesightName, trial, nullptr);
   std::vector<NamedEvaluation> results;
   Records records;
   for (const std::string& name : options.policies) {
-    results.push_back(evaluate_policy(name, market, fitting, days, config, options, &records));
+    results.push_back(evaluate_policy(name, trial, &records));
   }
   if (!options.days_out.empty()) write_file(options.days_out, records.days);
   if (!options.steps_out.empty()) write_file(options.steps_out, records.steps);

@@ -4,8 +4,10 @@
 #include <charconv>
 #include <cmath>
 
+#include "workstation/env/evaluate.h"
 #include "workstation/env/foresight.h"
 #include "workstation/env/rolling_horizon.h"
+#include "workstation/env/shadow_price.h"
 #include "workstation/env/tabular.h"
 #include "workstation/env/tuned_rule.h"
 #include "workstation/io/user_error.h"
@@ -62,6 +64,28 @@ std::shared_ptr<Policy> given_rule(const std::string& name) {
   return std::make_shared<RuleBasedPolicy>(low, high);
 }
 
+/// Fits a planner on the training days. A limit on daily cycles is kept on their mean by a shadow
+/// price on throughput; the evaluation enforces it each day.
+template <typename Planner>
+std::shared_ptr<Policy> fit_planner(const MarketSteps& market, const BatteryParameters& battery) {
+  const std::vector<MarketDay> days = market.days_of(Split::kTrain);
+  BatteryParameters shadowed = battery;
+  shadowed.cycles_per_day_max = 0;
+  if (battery.cycles_per_day_max > 0) {
+    ShadowPrice price;
+    for (int trial = 0; trial <= kShadowPriceBisections; ++trial) {
+      shadowed.wear_eur_per_mwh = battery.wear_eur_per_mwh + price.trial();
+      Planner planner(market, days, shadowed);
+      const double start_frac = 0.5 * (battery.soc_min_frac + battery.soc_max_frac);
+      const Evaluation run = evaluate(market, days, planner, {shadowed, start_frac, true});
+      price.learn(run.cycles_per_day() <= battery.cycles_per_day_max);
+      if (price.found() == 0) break;
+    }
+    shadowed.wear_eur_per_mwh = battery.wear_eur_per_mwh + price.found();
+  }
+  return std::make_shared<Planner>(market, days, shadowed);
+}
+
 }  // namespace
 
 std::pair<double, double> training_quartiles(const MarketSteps& market) {
@@ -84,7 +108,7 @@ std::shared_ptr<Policy> make_policy(const std::string& name, const MarketSteps& 
     return std::make_shared<RuleBasedPolicy>(low, high);
   }
   if (name == "tabular") {
-    return std::make_shared<TabularPolicy>(market, market.days_of(Split::kTrain), battery);
+    return fit_planner<TabularPolicy>(market, battery);
   }
   if (name.starts_with(kGivenRule)) return given_rule(name);
   if (name == "rbc-tuned") {
@@ -92,7 +116,7 @@ std::shared_ptr<Policy> make_policy(const std::string& name, const MarketSteps& 
     return std::make_shared<RuleBasedPolicy>(t.low_eur_per_mwh, t.high_eur_per_mwh);
   }
   if (name == "mpc") {
-    return std::make_shared<RollingHorizonPolicy>(market, market.days_of(Split::kTrain), battery);
+    return fit_planner<RollingHorizonPolicy>(market, battery);
   }
   if (name == "foresight") return std::make_shared<ForesightPolicy>(battery);
   if (name == "compiled") return student_policy(compiled_student());

@@ -46,9 +46,10 @@ BellmanSweep::Direction BellmanSweep::make_direction(const BatteryParameters& ba
   return d;
 }
 
-void BellmanSweep::improve(const Direction& d, const float* next, float price, float* now) const {
+void BellmanSweep::improve(const Direction& d, const float* next, float price, float wear,
+                           float* now) const {
   const auto cost = [&](float energy_mwh) {
-    return energy_mwh * price + std::fabs(energy_mwh) * wear_eur_per_mwh_;
+    return energy_mwh * price + std::fabs(energy_mwh) * wear;
   };
   const auto improve_bounded = [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
@@ -64,9 +65,13 @@ void BellmanSweep::improve(const Direction& d, const float* next, float price, f
   improve_bounded(d.end_unbounded, grid_.count);
 }
 
-void BellmanSweep::run(const float* next, float price_eur_per_mwh, float* now) const {
+void BellmanSweep::run(const float* next, float price_eur_per_mwh, float* now,
+                       float shadow_eur_per_mwh) const {
   std::copy(next, next + grid_.count, now);  // idle
-  for (const Direction& direction : directions_) improve(direction, next, price_eur_per_mwh, now);
+  const float wear = wear_eur_per_mwh_ + shadow_eur_per_mwh;
+  for (const Direction& direction : directions_) {
+    improve(direction, next, price_eur_per_mwh, wear, now);
+  }
 }
 
 Action best_action(const BatteryParameters& battery, const SocGrid& grid, const float* next,

@@ -18,7 +18,9 @@ class BellmanSweep {
   BellmanSweep(const BatteryParameters& battery, const SocGrid& grid);
 
   /// `next` and `now` hold one value (EUR) for each point of the grid and must not overlap.
-  void run(const float* next, float price_eur_per_mwh, float* now) const;
+  /// `shadow_eur_per_mwh` is counted like wear.
+  void run(const float* next, float price_eur_per_mwh, float* now,
+           float shadow_eur_per_mwh = 0) const;
 
  private:
   /// Charging or discharging at full power.
@@ -31,7 +33,8 @@ class BellmanSweep {
     std::vector<GridMove> moves;  ///< [point]
   };
   [[nodiscard]] Direction make_direction(const BatteryParameters& battery, Action action) const;
-  void improve(const Direction& direction, const float* next, float price, float* now) const;
+  void improve(const Direction& direction, const float* next, float price, float wear,
+               float* now) const;
 
   SocGrid grid_;
   float wear_eur_per_mwh_;

@@ -22,7 +22,7 @@ double mean_over_days(const std::vector<DayResult>& days, Field field) {
 
 double standard_error_of(const std::vector<double>& values) {
   const auto n = static_cast<double>(values.size());
-  if (values.size() < 2) return 0;
+  if (values.size() < 2) return std::numeric_limits<double>::quiet_NaN();  // one day tells nothing
   double mean = 0;
   for (const double v : values) mean += v / n;
   double squares = 0;
@@ -39,6 +39,8 @@ class Runner {
     soc_frac_ = options_.initial_soc_frac;
     last_action_ = Action::kIdle;
   }
+
+  [[nodiscard]] double soc_frac() const { return soc_frac_; }
 
   /// Runs steps of one day; `index` is that of the first since the policy's begin().
   DayResult run(const std::string& date, std::span<const MarketStep> steps, std::size_t index,
@@ -88,7 +90,7 @@ std::vector<DayResult> run_whole_series(const MarketSteps& market,
   const std::span<const MarketStep> series{
       market.steps.data() + first,
       market.days.back().first_step + market.days.back().step_count - first};
-  policy.begin(series);
+  policy.begin(series, options.initial_soc_frac);
   Runner runner(policy, options);
   std::vector<DayResult> results;
   std::size_t done = 0;
@@ -139,7 +141,7 @@ Evaluation evaluate(const MarketSteps& market, const std::vector<MarketDay>& day
   Runner runner(policy, options);
   for (const MarketDay& day : days) {
     if (!options.carry_soc) runner.reset_soc();
-    policy.begin(market.of(day));
+    policy.begin(market.of(day), runner.soc_frac());
     evaluation.days.push_back(runner.run(day.date(), market.of(day), 0, records));
   }
   return evaluation;

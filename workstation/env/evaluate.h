@@ -39,7 +39,8 @@ struct Evaluation {
   double capacity_mwh = 0;
 
   [[nodiscard]] double profit_eur_per_day_per_mwh() const;
-  [[nodiscard]] double standard_error() const;  ///< of the mean over days, same unit
+  [[nodiscard]] double standard_error()
+      const;  ///< of the mean over days, same unit; NaN for one day
   [[nodiscard]] double worst_day_eur_per_mwh() const;
   [[nodiscard]] double cycles_per_day() const;
   [[nodiscard]] double switches_per_day() const;

@@ -70,6 +70,28 @@ std::vector<MarketDay> MarketSteps::days_of(Split split) const {
   return selected;
 }
 
+namespace {
+
+/// Why there is not one day of decisions.
+[[noreturn]] void fail_without_days(const MinuteSeries& series) {
+  const auto none_in = [](const std::vector<double>& prices) {
+    return std::ranges::all_of(prices, [](double price) { return std::isnan(price); });
+  };
+  if (none_in(series.indicative)) {
+    fail(
+        "the prices hold no indicative price, so there is nothing to decide on; 'bess-train prices "
+        "reconstruct' draws them from quarter-hours");
+  }
+  if (none_in(series.settled)) {
+    fail(
+        "the prices hold no settled price, so nothing can be paid; import quarter-hours with them");
+  }
+  fail("the prices hold no complete local day (at least {} of 720 decisions); add more days",
+       kCompleteDaySteps);
+}
+
+}  // namespace
+
 MarketSteps make_market_steps(const MinuteSeries& series, const MarketOptions& options) {
   if (options.observation_delay_min < 0 ||
       options.observation_delay_min > kObservationDelayMaxMin) {
@@ -104,10 +126,7 @@ MarketSteps make_market_steps(const MinuteSeries& series, const MarketOptions& o
          .half_hour_phase = static_cast<std::int8_t>(local.minute_of_day % 30 / kMinutesPerStep)});
   }
   std::erase_if(market.days, [](const MarketDay& d) { return d.step_count < kCompleteDaySteps; });
-  if (market.days.empty()) {
-    fail("the prices hold no complete local day (at least {} of 720 decisions); add more days",
-         kCompleteDaySteps);
-  }
+  if (market.days.empty()) fail_without_days(series);
   return market;
 }
 

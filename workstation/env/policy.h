@@ -2,6 +2,8 @@
 // SoC.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <memory>
 #include <span>
 #include <string>
@@ -18,12 +20,17 @@ class Policy {
   Policy& operator=(const Policy&) = delete;
   virtual ~Policy() = default;
 
-  /// Called before each run of consecutive steps. Only perfect foresight looks at `ahead`; it is a
-  /// bound, not a policy.
-  virtual void begin(std::span<const MarketStep> ahead) { (void)ahead; }
+  /// Called before each run of consecutive steps that starts at `soc_frac`. Only perfect foresight
+  /// looks at `ahead`; it is a bound, not a policy.
+  virtual void begin(std::span<const MarketStep> ahead, double soc_frac) {
+    (void)ahead;
+    (void)soc_frac;
+  }
   /// True of the bound alone: when the SoC is carried over, evaluate() then plans and runs the whole
   /// series (evaluate.h).
   [[nodiscard]] virtual bool sees_future() const { return false; }
+  /// What was chosen in fitting it, for people; empty when there is nothing to say in a line.
+  [[nodiscard]] virtual std::string description() const { return {}; }
   /// Decides one step. `index` counts from the last begin().
   [[nodiscard]] virtual Action decide(const MarketStep& step, std::size_t index,
                                       double soc_frac) const = 0;
@@ -37,6 +44,9 @@ class RuleBasedPolicy final : public Policy {
   [[nodiscard]] Action decide(const MarketStep& step, std::size_t, double) const override {
     if (step.observed_eur_per_mwh < low_) return Action::kCharge;
     return step.observed_eur_per_mwh > high_ ? Action::kDischarge : Action::kIdle;
+  }
+  [[nodiscard]] std::string description() const override {
+    return fmt::format("charge below {:g}, discharge above {:g} EUR/MWh", low_, high_);
   }
 
  private:

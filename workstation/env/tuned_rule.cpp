@@ -37,12 +37,13 @@ class TrainingProfit {
     return {quantile(u[0]), quantile(u[0] + (1 - u[0]) * u[1])};
   }
 
-  static double objective(const std::vector<double>& u, std::vector<double>&, void* self) {
-    const auto& profit = *static_cast<const TrainingProfit*>(self);
-    const RuleThresholds t = profit.thresholds(u);
+  [[nodiscard]] double at(const std::vector<double>& u) const {
+    const RuleThresholds t = thresholds(u);
     RuleBasedPolicy rule(t.low_eur_per_mwh, t.high_eur_per_mwh);
-    return evaluate(profit.market_, profit.days_, rule, profit.options_)
-        .profit_eur_per_day_per_mwh();
+    return evaluate(market_, days_, rule, options_).profit_eur_per_day_per_mwh();
+  }
+  static double objective(const std::vector<double>& u, std::vector<double>&, void* self) {
+    return static_cast<const TrainingProfit*>(self)->at(u);
   }
 
  private:
@@ -83,6 +84,10 @@ RuleThresholds tune_rule(const MarketSteps& market, const std::vector<MarketDay>
   std::vector<double> u = {0.25, 0.67};  // the quartiles, roughly
   maximise(nlopt::GN_DIRECT_L, kGlobalEvaluations, profit, u);
   maximise(nlopt::LN_SBPLX, kLocalEvaluations, profit, u);
+  // The corner "never trade" wins when wear costs more than any spread; the search only nears it.
+  for (const std::vector<double>& corner : {std::vector{0.0, 1.0}, std::vector{0.25, 2.0 / 3}}) {
+    if (profit.at(corner) > profit.at(u)) u = corner;
+  }
   return profit.thresholds(u);
 }
 

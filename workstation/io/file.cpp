@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <zlib.h>
 
@@ -53,14 +54,35 @@ void remove_stale_parts(const fs::path& target) {
   }
 }
 
-/// A temporary file that disappears unless it is committed under its final name.
+/// A device or a pipe is written to, never replaced.
+bool is_special(const fs::path& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+}
+
+/// What a symbolic link leads to: the link itself stays.
+fs::path resolved(const fs::path& path) {
+  std::error_code error;
+  if (!fs::is_symlink(fs::symlink_status(path, error))) return path;
+  const fs::path target = fs::weakly_canonical(path, error);
+  return error ? path : target;
+}
+
+/// A temporary file that disappears unless it is committed under its final name. It takes the
+/// permissions of the file that it replaces. A device or a pipe has no temporary file.
 class TemporaryFile {
  public:
-  explicit TemporaryFile(const fs::path& target)
-      : target_(target), path_(target.string() + ".part." + std::to_string(getpid())) {
-    remove_stale_parts(target);
-    fd_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  explicit TemporaryFile(const fs::path& name)
+      : target_(resolved(name)),
+        path_(is_special(target_) ? target_.string()
+                                  : target_.string() + ".part." + std::to_string(getpid())),
+        committed_(is_special(target_)) {
+    if (!committed_) remove_stale_parts(target_);
+    fd_ = open(path_.c_str(), O_WRONLY | (committed_ ? 0 : O_CREAT | O_TRUNC) | O_CLOEXEC, 0644);
     if (fd_ < 0) fail("{}: cannot write here: {}", target_.string(), std::strerror(errno));
+    struct stat before {};
+    if (!committed_ && stat(target_.c_str(), &before) == 0) fchmod(fd_, before.st_mode & 07777);
   }
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
@@ -78,10 +100,12 @@ class TemporaryFile {
     }
   }
   void commit() {
-    if (fsync(fd_) != 0 && errno != EINVAL) give_up();
+    if (!committed_ && fsync(fd_) != 0 && errno != EINVAL) give_up();
     const int status = close(fd_);
     fd_ = -1;
-    if (status != 0 || rename(path_.c_str(), target_.c_str()) != 0) give_up();
+    if (status != 0) give_up();
+    if (committed_) return;
+    if (rename(path_.c_str(), target_.c_str()) != 0) give_up();
     committed_ = true;
   }
 
@@ -92,8 +116,8 @@ class TemporaryFile {
 
   fs::path target_;
   std::string path_;
+  bool committed_;  ///< what lies under the final name stays
   int fd_ = -1;
-  bool committed_ = false;
 };
 
 void create_parent(const fs::path& path) {
@@ -131,6 +155,7 @@ std::string read_file(const fs::path& path) {
 void require_writable(const fs::path& path) {
   create_parent(path);
   if (fs::is_directory(path)) fail("{}: is a folder, not a file", path.string());
+  if (is_special(path)) return;     // opening a pipe would wait for its reader
   const TemporaryFile probe(path);  // made and removed again
 }
 

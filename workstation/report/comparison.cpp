@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace bess {
 namespace {
@@ -37,24 +38,28 @@ std::string or_dash(const std::optional<double>& value, int decimals) {
   return value ? fmt::format("{:.{}f}", *value, decimals) : "-";
 }
 
+/// A figure, or `missing` where it cannot be known.
+std::string figure(double value, int decimals, std::string_view missing) {
+  return std::isnan(value) ? std::string(missing) : fmt::format("{:.{}f}", value, decimals);
+}
+
 std::string table_line(const ComparisonRow& row, std::size_t name_width) {
   const auto& difference = row.difference;
   const std::string gain = difference ? fmt::format("{:+.1f}", difference->mean) : "-";
-  const std::string gain_error =
-      difference ? fmt::format("{:.1f}", difference->standard_error) : "-";
+  const std::string gain_error = difference ? figure(difference->standard_error, 1, "-") : "-";
   const std::optional<double> percent =
       row.foresight_share ? std::optional(100 * *row.foresight_share) : std::nullopt;
-  return fmt::format(
-      "{:<{}}  {:>8.1f} {:>6.1f}  {:>8} {:>6}  {:>9.1f}  {:>6.2f}  {:>8.1f}  {:>9}\n", row.name,
-      name_width, row.profit, row.standard_error, gain, gain_error, row.worst_day,
-      row.cycles_per_day, row.switches_per_day, or_dash(percent, 1));
+  return fmt::format("{:<{}}  {:>8.1f} {:>6}  {:>8} {:>6}  {:>9.1f}  {:>6.2f}  {:>8.1f}  {:>9}\n",
+                     row.name, name_width, row.profit, figure(row.standard_error, 1, "-"), gain,
+                     gain_error, row.worst_day, row.cycles_per_day, row.switches_per_day,
+                     or_dash(percent, 1));
 }
 
 std::string table_block(const std::string& title, const std::vector<ComparisonRow>& rows) {
   std::size_t name_width = std::string("policy").size();
   for (const ComparisonRow& row : rows) name_width = std::max(name_width, row.name.size());
-  std::string text =
-      fmt::format("{}, {} days; EUR per day per MWh of capacity\n", title, rows.front().days);
+  std::string text = fmt::format("{}, {} day{}; EUR per day per MWh of capacity\n", title,
+                                 rows.front().days, rows.front().days == 1 ? "" : "s");
   text += fmt::format("{:<{}}  {:>8} {:>6}  {:>8} {:>6}  {:>9}  {:>6}  {:>8}  {:>9}\n", "policy",
                       name_width, "profit", "s.e.", "gain", "s.e.", "worst day", "cycles",
                       "switches", "foresight");
@@ -73,9 +78,9 @@ std::string csv_field(const std::string& text) {
 std::string csv_line(const ComparisonRow& row, std::string_view soc) {
   const auto& d = row.difference;
   return fmt::format(
-      "{},{},{},{:.4f},{:.4f},{},{},{:.4f},{:.4f},{:.4f},{}\n", csv_field(row.name), soc, row.days,
-      row.profit, row.standard_error, d ? fmt::format("{:.4f}", d->mean) : "",
-      d ? fmt::format("{:.4f}", d->standard_error) : "", row.worst_day, row.cycles_per_day,
+      "{},{},{},{:.4f},{},{},{},{:.4f},{:.4f},{:.4f},{}\n", csv_field(row.name), soc, row.days,
+      row.profit, figure(row.standard_error, 4, ""), d ? fmt::format("{:.4f}", d->mean) : "",
+      d ? figure(d->standard_error, 4, "") : "", row.worst_day, row.cycles_per_day,
       row.switches_per_day, row.foresight_share ? fmt::format("{:.6f}", *row.foresight_share) : "");
 }
 
@@ -107,6 +112,9 @@ std::string format_comparison_table(const std::vector<NamedEvaluation>& evaluati
         "\ngain: day-by-day difference to {}; s.e.: standard error of the mean over days;\n"
         "cycles, switches: per day; foresight: % of the perfect-foresight profit\n",
         evaluations.front().name);
+  }
+  for (const NamedEvaluation& named : evaluations) {
+    if (!named.description.empty()) text += fmt::format("{}: {}\n", named.name, named.description);
   }
   return text;
 }

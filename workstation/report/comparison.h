@@ -15,6 +15,7 @@ struct NamedEvaluation {
   std::string name;
   Evaluation day_reset;
   Evaluation carried_over;
+  std::string description{};  ///< what was chosen in fitting it; may be empty
 };
 
 /// The name by which the perfect-foresight bound is recognised.

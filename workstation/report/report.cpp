@@ -116,6 +116,10 @@ const ComparisonRow* best_of(const std::vector<ComparisonRow>& rows) {
 
 /// Claims a difference only beyond two standard errors.
 std::string difference_text(const PairedDifference& difference, const std::string& first) {
+  if (std::isnan(difference.standard_error)) {
+    return fmt::format("that is {:+.1f} against {}, on one day: no difference is shown",
+                       difference.mean, first);
+  }
   if (std::abs(difference.mean) < 2 * difference.standard_error) {
     return fmt::format(
         "that is {:+.1f} against {}, within two standard errors ({:.1f} each): no "
@@ -166,13 +170,17 @@ std::string proof_sentence(const Certificate& c) {
 
 std::string dash_or(bool present, const std::string& text) { return present ? text : "\u2013"; }
 
+std::string error_text(double standard_error) {
+  return dash_or(!std::isnan(standard_error), fmt::format("{:.1f}", standard_error));
+}
+
 std::vector<std::string> comparison_cells(const ComparisonRow& row) {
   const PairedDifference d = row.difference.value_or(PairedDifference{0, 0});
   return {row.name,
           fmt::format("{:.1f}", row.profit),
-          fmt::format("{:.1f}", row.standard_error),
+          error_text(row.standard_error),
           dash_or(row.difference.has_value(), fmt::format("{:+.1f}", d.mean)),
-          dash_or(row.difference.has_value(), fmt::format("{:.1f}", d.standard_error)),
+          dash_or(row.difference.has_value(), error_text(d.standard_error)),
           fmt::format("{:.1f}", row.worst_day),
           fmt::format("{:.2f}", row.cycles_per_day),
           fmt::format("{:.1f}", row.switches_per_day),

@@ -58,11 +58,11 @@ std::vector<std::string> json_keys(const std::string& line) {
 TEST_F(EvaluateCli, OnePolicyKeepsItsJsonFields) {
   const auto text = lines(output("evaluate", "--policy rbc --json"));
   ASSERT_EQ(text.size(), 1U);
-  EXPECT_THAT(
-      json_keys(text[0]),
-      testing::ElementsAre("policy", "split", "days", "profit_eur_per_day_per_mwh",
-                           "standard_error", "cycles_per_day", "worst_day_eur_per_mwh",
-                           "share_of_foresight", "switches_per_day", "soc_end_mean", "carry_soc"));
+  EXPECT_THAT(json_keys(text[0]),
+              testing::ElementsAre("policy", "split", "days", "profit_eur_per_day_per_mwh",
+                                   "standard_error", "cycles_per_day", "worst_day_eur_per_mwh",
+                                   "share_of_foresight", "switches_per_day", "soc_end_mean",
+                                   "carry_soc", "description"));
   EXPECT_THAT(text[0], HasSubstr("\"carry_soc\": false"));
   EXPECT_THAT(output("evaluate", "--policy rbc --json --carry-soc"),
               HasSubstr("\"carry_soc\": true"));
@@ -112,6 +112,28 @@ TEST_F(EvaluateCli, DelaysAgreesWithEvaluate) {
       one.substr(one.find("\"profit"), one.find(", \"standard") - one.find("\"profit"));
   EXPECT_THAT(table[2], HasSubstr("\"fit_delay_min\": 0, \"run_delay_min\": 2"));
   EXPECT_THAT(table[2], HasSubstr(figure));
+}
+
+TEST_F(EvaluateCli, OneDayOfTheSplitKeepsTheSocThatWasCarriedIntoIt) {
+  const auto split_days = folder_.file("split.csv");
+  const auto one_day = folder_.file("day.csv");
+  output("evaluate", "--policy rbc tabular --days-out " + split_days);
+  const std::string whole = read_file(split_days);
+  const std::string last_line = whole.substr(whole.rfind('\n', whole.size() - 2) + 1);
+  const std::string date = last_line.substr(0, last_line.find(','));
+  const std::string table =
+      output("evaluate", "--policy rbc tabular --date " + date + " --days-out " + one_day);
+  EXPECT_THAT(read_file(one_day), HasSubstr(last_line));
+  EXPECT_EQ(lines(read_file(one_day)).size(), 1U + 2U * 2U);  // policies times ways of counting
+  EXPECT_THAT(table, HasSubstr("1 day;"));
+  EXPECT_THAT(output("evaluate", "--policy rbc --json --date " + date),
+              HasSubstr(R"("standard_error": null)"));  // one day tells nothing of the spread
+}
+
+TEST_F(EvaluateCli, FittedThresholdsAreTold) {
+  EXPECT_THAT(output("evaluate", "--policy rbc-quartile"), HasSubstr("rbc-quartile: charge below"));
+  EXPECT_THAT(output("evaluate", "--policy rbc --json"),
+              HasSubstr("charge below 11, discharge above 179 EUR/MWh"));
 }
 
 }  // namespace

@@ -119,7 +119,7 @@ class PeekingPolicy final : public Policy {
 /// Reads the observed price of the next step.
 class NextPricePolicy final : public Policy {
  public:
-  void begin(std::span<const MarketStep> ahead) override { ahead_ = ahead; }
+  void begin(std::span<const MarketStep> ahead, double) override { ahead_ = ahead; }
   [[nodiscard]] Action decide(const MarketStep&, std::size_t index, double) const override {
     const std::size_t next = std::min(index + 1, ahead_.size() - 1);
     return ahead_[next].observed_eur_per_mwh < 100 ? Action::kCharge : Action::kDischarge;

@@ -74,6 +74,38 @@ TEST(CycleLimit, NoOrderAfterItIsReachedUntilMidnight) {
   }
 }
 
+TEST(CycleLimit, PlannersSaveTheirCyclesForTheBestHours) {
+  const MarketSteps market = make_market_steps(small_series(), {});
+  BatteryParameters battery;
+  battery.cycles_per_day_max = 0.5;
+  const auto days = market.days_of(Split::kTest);
+  const auto profit = [&](Policy& policy) {
+    return evaluate(market, days, policy, {battery, 0.5, false}).profit_eur_per_day_per_mwh();
+  };
+  const double foresight = profit(*make_policy("foresight", market, battery));
+  for (const char* name : {"rbc:60:140", "rbc-tuned", "tabular", "mpc"}) {
+    EXPECT_LT(profit(*make_policy(name, market, battery)), foresight) << name;
+  }
+  // Fitted without knowing of the limit they run into it before the evening.
+  BatteryParameters unlimited = battery;
+  unlimited.cycles_per_day_max = 0;
+  for (const char* name : {"mpc", "foresight"}) {
+    EXPECT_GT(profit(*make_policy(name, market, battery)),
+              profit(*make_policy(name, market, unlimited)))
+        << name;
+  }
+}
+
+TEST(TunedRule, DoesNothingWhereNoSpreadPaysForTheWear) {
+  const MarketSteps market = make_market_steps(small_series(), {});
+  BatteryParameters battery;
+  battery.wear_eur_per_mwh = 1000;
+  const auto tuned = make_policy("rbc-tuned", market, battery);
+  const Evaluation e =
+      evaluate(market, market.days_of(Split::kTrain), *tuned, {battery, 0.5, true});
+  EXPECT_EQ(e.profit_eur_per_day_per_mwh(), 0);
+}
+
 TEST(CycleLimit, AndWearAreKeysWithRanges) {
   const RunConfig config =
       parse_run_config("[battery]\nwear_eur_per_mwh = 7.5\ncycles_per_day_max = 2\n", "a.toml");
