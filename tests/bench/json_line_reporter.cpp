@@ -3,11 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "tests/bench/registry.h"
 
 namespace bess {
 namespace {
+
+constexpr const char* kRate = "items_per_second";
 
 double median(std::vector<double> values) {
   std::ranges::sort(values);
@@ -24,20 +27,30 @@ std::vector<std::string>& benchmark_names() {
   return names;
 }
 
+void JsonLineReporter::add(const std::string& name, double value, const std::string& unit) {
+  if (!results_.contains(name)) order_.push_back(name);
+  results_[name].values.push_back(value);
+  results_[name].unit = unit;
+}
+
 void JsonLineReporter::ReportRuns(const std::vector<Run>& runs) {
   for (const Run& run : runs) {
     if (run.error_occurred || run.run_type == Run::RT_Aggregate) continue;
     const std::string name = plain_name(run.benchmark_name());
-    if (!results_.contains(name)) order_.push_back(name);
-    Result& result = results_[name];
+    const std::string time_unit = benchmark::GetTimeUnitString(run.time_unit);
     // A benchmark that counts items is about their rate; any other about its time.
-    const auto rate = run.counters.find("items_per_second");
+    const auto rate = run.counters.find(kRate);
     if (rate != run.counters.end()) {
-      result.values.push_back(rate->second / 1e6);
-      result.unit = "million/s";
+      add(name, rate->second / 1e6, "million/s");
     } else {
-      result.values.push_back(run.GetAdjustedRealTime());
-      result.unit = benchmark::GetTimeUnitString(run.time_unit);
+      add(name, run.GetAdjustedRealTime(), time_unit);
+    }
+    for (const auto& [counter, value] : run.counters) {
+      if (counter.starts_with("@")) {
+        add(name + counter, value, time_unit);
+      } else if (counter != kRate) {
+        results_[name].counters[counter].push_back(value);
+      }
     }
   }
 }
@@ -48,14 +61,21 @@ void JsonLineReporter::Finalize() {
     const double value = median(results_[name].values);
     fmt::print(R"({{"name": "{}", "value": {:.6g}, "unit": "{}")", name, value,
                results_[name].unit);
+    for (const auto& [counter, values] : results_[name].counters) {
+      fmt::print(R"(, "{}": {:.4g})", counter, median(values));
+    }
     const auto peer = std::ranges::find_if(
         order_, [&](const std::string& other) { return other.starts_with(name + "@"); });
     if (peer != order_.end()) {
       const double peer_value = median(results_[*peer].values);
       const bool rate = results_[name].unit == "million/s";
-      fmt::print(R"(, "peer": "{}", "peer_value": {:.6g}, "ratio": {:.4g})",
-                 peer->substr(name.size() + 1), peer_value,
-                 rate ? value / peer_value : peer_value / value);
+      if (std::isnan(peer_value)) {
+        fmt::print(R"(, "peer": null)");
+      } else {
+        fmt::print(R"(, "peer": "{}", "peer_value": {:.6g}, "ratio": {:.4g})",
+                   peer->substr(name.size() + 1), peer_value,
+                   rate ? value / peer_value : peer_value / value);
+      }
     }
     fmt::print("}}\n");
   }

@@ -1,5 +1,6 @@
-// Prints one JSON object a line and benchmark: name, value, unit, and peer and ratio where a peer was
-// measured beside it in the same run. A peer of benchmark "x" is registered as "x@peer-name".
+// Prints one JSON object a line and benchmark: name, value, unit, its counters, and peer and ratio where
+// a peer was measured beside it in the same run; all are medians over the repetitions. A peer of
+// benchmark "x" is registered as "x@peer-name", or is the counter "@peer-name" of x.
 #pragma once
 
 #include <benchmark/benchmark.h>
@@ -20,7 +21,9 @@ class JsonLineReporter final : public benchmark::BenchmarkReporter {
   struct Result {
     std::vector<double> values;  ///< one a repetition
     std::string unit;
+    std::map<std::string, std::vector<double>> counters;
   };
+  void add(const std::string& name, double value, const std::string& unit);
   std::vector<std::string> order_;
   std::map<std::string, Result> results_;
 };

@@ -1,5 +1,5 @@
 // The benchmarks by name: each file registers its own; a peer is registered beside the benchmark it is
-// measured against, and runs in the same process.
+// measured against and runs after it, or reports its time from within, when the two take turns.
 #pragma once
 
 #include <benchmark/benchmark.h>
@@ -19,12 +19,19 @@ std::vector<std::string>& benchmark_names();
 
 /// Registers `body(state)` under `name`, `repetitions` times.
 template <typename Body>
-void add_benchmark(const std::string& name, benchmark::TimeUnit unit, int repetitions, Body body) {
+benchmark::internal::Benchmark* add_benchmark(const std::string& name, benchmark::TimeUnit unit,
+                                              int repetitions, Body body) {
   if (name.find('@') == std::string::npos) benchmark_names().push_back(name);
-  benchmark::RegisterBenchmark(name.c_str(), body)
+  return benchmark::RegisterBenchmark(name.c_str(), body)
       ->Unit(unit)
       ->UseRealTime()
       ->Repetitions(repetitions);
+}
+
+/// For a peer that takes turns with the benchmark: its time in this repetition, in the benchmark's
+/// unit; NaN where the peer is missing.
+inline void report_peer(benchmark::State& state, const std::string& peer, double time) {
+  state.counters["@" + peer] = time;
 }
 
 }  // namespace bess

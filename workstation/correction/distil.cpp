@@ -7,6 +7,7 @@
 #include "workstation/correction/policy_loss.h"
 #include "workstation/io/progress.h"
 #include "workstation/io/user_error.h"
+#include "workstation/rl/transition.h"
 
 namespace bess {
 namespace {

@@ -1,25 +1,6 @@
 #include "workstation/rl/c51.h"
 
-#include <algorithm>
-#include <cmath>
-
 namespace bess {
-
-void project_distribution(const Support& support, const float* probability, float reward,
-                          float discount, float* projected) {
-  const float inverse_step = 1 / support.step();
-  std::fill_n(projected, support.count, 0.0F);
-  for (int j = 0; j < support.count; ++j) {
-    const float moved =
-        std::clamp(reward + discount * support.atom(j), support.v_min, support.v_max);
-    const float b = std::clamp((moved - support.v_min) * inverse_step, 0.0F,
-                               static_cast<float>(support.count - 1));
-    const int lower = std::min(static_cast<int>(b), support.count - 2);
-    const float upper_share = b - static_cast<float>(lower);
-    projected[lower] += probability[j] * (1 - upper_share);
-    projected[lower + 1] += probability[j] * upper_share;
-  }
-}
 
 void softmax_columns(Matrix& z) {
   z.rowwise() -= z.colwise().maxCoeff().eval();
@@ -37,54 +18,58 @@ Matrix mean_values(const Support& support, const MatrixRef& logits) {
 namespace {
 
 /// Projected distribution of each sample's greedy next action -> tile.m.
-void project_targets(const Support& support, float gamma, const MiniBatch& batch,
-                     Eigen::Index first, C51Tile& tile) {
-  const Eigen::Index count = tile.z_next.cols();
-  tile.z_next.resize(support.count, count * kActionCount);  // same memory, one column per action
-  softmax_columns(tile.z_next);
-  const Eigen::RowVectorXf means = support.atoms().transpose() * tile.z_next;
-  tile.m.resize(support.count, count);
-  for (Eigen::Index n = 0; n < count; ++n) {
-    const auto sample = static_cast<std::size_t>(first + n);
-    const Action best = argmax_action(means.data() + n * kActionCount);
-    const float* probability = tile.z_next.col(n * kActionCount + static_cast<int>(best)).data();
-    const float discount = batch.terminal[sample] != 0 ? 0.0F : gamma;
-    project_distribution(support, probability, batch.reward[first + n], discount,
-                         tile.m.col(n).data());
-    tile.edge_mass += tile.m(0, n) + tile.m(support.count - 1, n);
+void project_targets(const GradientStep& step, const TileRange& range, C51Tile& tile) {
+  forward_hidden(step.kernels, step.target,
+                 step.batch.next_state.middleCols(range.first, range.count), tile.net);
+  forward_head(step.kernels, step.target, 0, tile.net, tile.z_next);
+  const int count = tile.support.count;
+  tile.m.resize(count, range.count);
+  for (Eigen::Index n = 0; n < range.count; ++n) {
+    float mean[kActionCount];
+    float sum[kActionCount];
+    for (int a = 0; a < kActionCount; ++a) {
+      float* p = tile.next.distribution(a);
+      sum[a] = step.kernels.exponentials(tile.z_next.sample(n) + a * count, count, p).sum;
+      mean[a] = tile.atoms.dot(Eigen::Map<const Eigen::VectorXf>(p, tile.atoms.size())) / sum[a];
+    }
+    const auto best = static_cast<int>(argmax_action(mean));
+    const bool terminal = step.batch.terminal[static_cast<std::size_t>(range.first + n)] != 0;
+    float* m = tile.m.sample(n);
+    tile.next.project(best, 1 / sum[best], step.batch.reward[range.first + n],
+                      terminal ? 0.0F : step.gamma, m);
+    tile.edge_mass += m[0] + m[count - 1];
   }
+}
+
+/// Cross-entropy of tile.m and the online logits tile.z, summed; tile.z becomes its gradient.
+double cross_entropy(const GradientStep& step, C51Tile& tile, Eigen::Index samples) {
+  const float weight = 1 / static_cast<float>(step.batch.size());
+  double loss = 0;
+  tile.sums.resize(samples);
+  for (Eigen::Index n = 0; n < samples; ++n) {
+    auto z = tile.z.all().col(n);
+    const auto m = tile.m.all().col(n);
+    // log p = z - max z - log sum, so the loss needs no logarithm of a small probability.
+    const float weighted = m.dot(z);
+    const SoftmaxSums sums = step.kernels.exponentials(z.data(), tile.support.count, z.data());
+    loss += sums.largest - weighted;
+    tile.sums[n] = sums.sum;
+    z = z * (weight / sums.sum) - m * weight;
+  }
+  return loss + static_cast<double>(tile.sums.log().sum());
 }
 
 }  // namespace
 
-double c51_tile_gradient(const Support& support, float gamma, const ConstMlp& online,
-                         const ConstMlp& target, const MiniBatch& batch, int action,
-                         Eigen::Index first, Eigen::Index count, C51Tile& tile,
-                         MutableMlp& gradient) {
-  forward_hidden(target, batch.next_state.middleCols(first, count), tile.target);
-  forward_head(target, tile.target, tile.z_next);
-  project_targets(support, gamma, batch, first, tile);
-
-  const auto x = batch.state.middleCols(first, count);
-  const auto w3 = online.w3.middleRows(action * support.count, support.count);
-  forward_hidden(online, x, tile.online);
-  tile.z.noalias() = w3 * tile.online.h2;
-  tile.z.colwise() += online.b3.segment(action * support.count, support.count);
-  tile.z.rowwise() -= tile.z.colwise().maxCoeff().eval();
-  // log p = z - log sum exp z, so the loss needs no logarithm of a small probability.
-  const double weighted = (tile.m.array() * tile.z.array()).sum();
-  tile.z = tile.z.array().exp();
-  const Eigen::RowVectorXf sums = tile.z.colwise().sum();
-  const Eigen::RowVectorXf masses = tile.m.colwise().sum();
-  const double loss = (masses.array() * sums.array().log()).cast<double>().sum() - weighted;
-  tile.z.array().rowwise() *= (masses.array() / sums.array()).eval();
-  tile.z = (tile.z - tile.m) / static_cast<float>(batch.size());
-
-  gradient.w3.middleRows(action * support.count, support.count).noalias() +=
-      tile.z * tile.online.h2.transpose();
-  gradient.b3.segment(action * support.count, support.count) += tile.z.rowwise().sum();
-  tile.online.dh2.noalias() = w3.transpose() * tile.z;
-  backward_hidden(online, x, tile.online, gradient);
+double c51_tile_gradient(const GradientStep& step, const TileRange& range, C51Tile& tile,
+                         PackedGradient& gradient) {
+  project_targets(step, range, tile);
+  const auto x = step.batch.state.middleCols(range.first, range.count);
+  forward_hidden(step.kernels, step.online, x, tile.net);
+  forward_head(step.kernels, step.online, range.action, tile.net, tile.z);
+  const double loss = cross_entropy(step, tile, range.count);
+  backward(step.kernels, step.online, range.action, x, tile.z.rows(tile.support.count), tile.net,
+           gradient);
   return loss;
 }
 

@@ -1,7 +1,7 @@
-// One gradient step of the teacher: the minibatch is cut into tiles, each thread sums the gradients
-// of its own tiles into its own buffer, the buffers are added in order, Adam moves the weights and
-// the target follows. Static split: the same seed, threads and build give the same weights to the
-// bit.
+// One gradient step of the teacher: each thread takes an equal run of the minibatch's samples, cuts it
+// into tiles and sums their gradients into its own buffer; the buffers are added in order, Adam moves
+// the weights and the target follows. Static split: the same seed, threads and build give the same
+// weights to the bit.
 #pragma once
 
 #include <vector>
@@ -16,7 +16,9 @@ namespace bess {
 
 class Learner {
  public:
-  Learner(Method method, const Support& support, double gamma, std::uint64_t seed, int threads);
+  /// `kernels`: packet_kernels(), or their twin plain_kernels().
+  Learner(Method method, const Support& support, double gamma, std::uint64_t seed, int threads,
+          const TileKernels& kernels = packet_kernels());
 
   struct StepResult {
     double loss;            ///< mean over the minibatch
@@ -30,24 +32,29 @@ class Learner {
   [[nodiscard]] const MlpShape& shape() const { return shape_; }
   [[nodiscard]] Parameters& online() { return online_; }
   [[nodiscard]] Parameters& target() { return target_; }
-  [[nodiscard]] const Parameters& gradient() const { return workers_[0].gradient; }
+  [[nodiscard]] const Parameters& gradient() const { return gradient_; }
   [[nodiscard]] ThreadTeam& team() { return team_; }
 
  private:
   struct Worker {
-    Parameters gradient;
+    explicit Worker(const Support& support) : c51(support) {}
+    PackedGradient gradient;
     C51Tile c51;
     DqnTile dqn;
     double loss = 0;
   };
+  void pack_weights();
   void run_tiles(const MiniBatch& batch, int worker_index);
 
   Method method_;
-  Support support_;
   float gamma_;
+  const TileKernels& kernels_;
   MlpShape shape_;
   Parameters online_;
   Parameters target_;
+  PackedMlp packed_online_;
+  PackedMlp packed_target_;
+  Parameters gradient_;
   Adam adam_;
   ThreadTeam team_;
   std::vector<Worker> workers_;

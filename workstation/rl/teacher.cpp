@@ -7,6 +7,7 @@
 #include "shared/crc32.h"
 #include "workstation/io/file.h"
 #include "workstation/io/user_error.h"
+#include "workstation/rl/c51.h"
 
 namespace bess {
 namespace {

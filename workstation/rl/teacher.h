@@ -9,7 +9,8 @@
 
 #include "workstation/env/policy.h"
 #include "workstation/nn/mlp.h"
-#include "workstation/rl/c51.h"
+#include "workstation/rl/support.h"
+#include "workstation/rl/network_input.h"
 #include "workstation/rl/price_map.h"
 
 namespace bess {

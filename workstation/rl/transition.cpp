@@ -1,5 +1,7 @@
 #include "workstation/rl/transition.h"
 
+#include <algorithm>
+
 namespace bess {
 
 void fill_minibatch(const std::vector<const Transition*>& transitions, MiniBatch& batch) {
@@ -8,19 +10,23 @@ void fill_minibatch(const std::vector<const Transition*>& transitions, MiniBatch
   batch.next_state.resize(kNetworkInputs, count);
   batch.reward.resize(count);
   batch.terminal.resize(transitions.size());
-  Eigen::Index at = 0;
+  // Counting sort. The first pass also fetches the records: from a ring of a million each is a cache
+  // miss, and as the pass depends on nothing else, many are under way at once.
+  Eigen::Index taken[kActionCount] = {};
+  for (const Transition* t : transitions) ++taken[t->action];
+  Eigen::Index next[kActionCount];
+  Eigen::Index end = 0;
   for (int action = 0; action < kActionCount; ++action) {
-    for (const Transition* t : transitions) {
-      if (t->action != action) continue;
-      for (int i = 0; i < kNetworkInputs; ++i) {
-        batch.state(i, at) = t->state[i];
-        batch.next_state(i, at) = t->next_state[i];
-      }
-      batch.reward[at] = t->reward;
-      batch.terminal[static_cast<std::size_t>(at)] = t->terminal;
-      ++at;
-    }
-    batch.group_end[action] = at;
+    next[action] = end;
+    end += taken[action];
+    batch.group_end[action] = end;
+  }
+  for (const Transition* t : transitions) {
+    const Eigen::Index at = next[t->action]++;
+    std::copy_n(t->state, kNetworkInputs, batch.state.col(at).data());
+    std::copy_n(t->next_state, kNetworkInputs, batch.next_state.col(at).data());
+    batch.reward[at] = t->reward;
+    batch.terminal[static_cast<std::size_t>(at)] = t->terminal;
   }
 }
 

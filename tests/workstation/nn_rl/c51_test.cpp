@@ -1,6 +1,7 @@
 #include "workstation/rl/c51.h"
 
 #include "reference_net.h"
+#include "tile_sums.h"
 #include "workstation/rl/learner.h"
 
 namespace bess {
@@ -19,12 +20,23 @@ struct ProjectionCase {
 
 void PrintTo(const ProjectionCase& c, std::ostream* out) { *out << c.name; }
 
+/// Projects, and sees that nothing lands in the padding.
+std::vector<float> project(const Support& support, const std::vector<float>& p, float reward,
+                           float discount) {
+  CategoricalProjection projection(support, 2);
+  std::vector<float> m(static_cast<std::size_t>(padded_to_panels(support.count)), -1.0F);
+  std::ranges::copy(p, projection.distribution(1));
+  projection.project(1, 1, reward, discount, m.data());
+  for (std::size_t i = p.size(); i < m.size(); ++i) EXPECT_EQ(m[i], 0) << i;
+  m.resize(p.size());
+  return m;
+}
+
 class Projection : public testing::TestWithParam<ProjectionCase> {};
 
 TEST_P(Projection, GivesTheMassByHand) {
   const ProjectionCase& c = GetParam();
-  std::vector<float> projected(c.probability.size(), -1.0F);
-  project_distribution(c.support, c.probability.data(), c.reward, c.discount, projected.data());
+  const auto projected = project(c.support, c.probability, c.reward, c.discount);
   for (std::size_t i = 0; i < projected.size(); ++i) {
     EXPECT_NEAR(projected[i], c.expected[i], 1e-6) << "atom " << i;
   }
@@ -65,8 +77,7 @@ TEST(ProjectionOfRandomOnes, KeepsMassAndIsTheReference) {
       for (float& value : p) value /= sum;
       const auto reward = static_cast<float>(random.normal() * support.v_max);
       const auto discount = static_cast<float>(draw % 5 == 0 ? 0.0 : random.uniform());
-      std::vector<float> projected(count);
-      project_distribution(support, p.data(), reward, discount, projected.data());
+      const auto projected = project(support, p, reward, discount);
       EXPECT_NEAR(std::accumulate(projected.begin(), projected.end(), 0.0), 1, 2e-6);
       const Doubles expected =
           reference_projection(support, Doubles(p.begin(), p.end()), reward, discount);
@@ -89,8 +100,7 @@ TEST(ProjectionOfRandomOnes, KeepsTheMeanInsideTheSupport) {
     const float discount = 0.5F;  // the moved atoms fill the middle half, clipping does not happen
     const float middle = 0.5F * (support.v_min + support.v_max);
     const float reward = 0.5F * middle + static_cast<float>(0.2 * range * random.uniform());
-    std::vector<float> projected(count);
-    project_distribution(support, p.data(), reward, discount, projected.data());
+    const auto projected = project(support, p, reward, discount);
     double before = 0;
     double after = 0;
     for (int i = 0; i < support.count; ++i) {
@@ -99,6 +109,17 @@ TEST(ProjectionOfRandomOnes, KeepsTheMeanInsideTheSupport) {
     }
     EXPECT_NEAR(after, reward + discount * before, 2e-6 * range) << support.count << " atoms";
   }
+}
+
+TEST(ProjectionOfRandomOnes, ScalesItsInput) {
+  const Support support{-1, 1, 3};
+  CategoricalProjection projection(support, 1);
+  std::ranges::copy(std::vector{1.0F, 2.0F, 1.0F}, projection.distribution(0));
+  std::vector<float> m(static_cast<std::size_t>(padded_to_panels(3)));
+  projection.project(0, 0.25F, 0.5F, 1, m.data());
+  EXPECT_FLOAT_EQ(m[0], 0.125F);
+  EXPECT_FLOAT_EQ(m[1], 0.375F);
+  EXPECT_FLOAT_EQ(m[2], 0.5F);
 }
 
 // ---- Softmax and means ----------------------------------------------------------------------
@@ -199,23 +220,19 @@ TEST_P(C51Gradient, OfASmallShapeInTilesIsAlgorithm1) {
   expect_case_is_met(expected, transitions);
 
   const MiniBatch batch = minibatch_of(transitions);
-  Parameters gradient = Parameters::Zero(shape.parameter_count());
-  MutableMlp view(shape, gradient.data());
-  const ConstMlp online_view(shape, online_parameters.data());
-  const ConstMlp target_view(shape, target_parameters.data());
-  C51Tile tile;
-  double loss = 0;
-  for (int action = 0; action < kActionCount; ++action) {
-    const Eigen::Index end = batch.group_end[action];
-    for (Eigen::Index at = batch.group_begin(action); at < end; at += kTile) {
-      loss += c51_tile_gradient(c.support, static_cast<float>(c.gamma), online_view, target_view,
-                                batch, action, at, std::min(kTile, end - at), tile, view);
-    }
+  const PackedPair nets(shape, online_parameters, target_parameters);
+  for (const TileKernels* kernels : {&packet_kernels(), &plain_kernels()}) {
+    SCOPED_TRACE(kernels->name);
+    const auto step = nets.step(*kernels, batch, c.gamma);
+    C51Tile tile(c.support);
+    const auto [loss, gradient] = sum_of_tiles(
+        shape, batch, kTile,
+        [&](const auto& range, auto& sum) { return c51_tile_gradient(step, range, tile, sum); });
+    const auto samples = static_cast<double>(transitions.size());
+    EXPECT_LT(std::abs(loss / samples / expected.loss - 1), 1e-6) << loss / samples;
+    EXPECT_LT(relative_l2(gradient, expected.gradient), 1e-5);
+    EXPECT_NEAR(tile.edge_mass / samples, expected.edge_mass, 1e-5);
   }
-  const auto samples = static_cast<double>(transitions.size());
-  EXPECT_LT(std::abs(loss / samples / expected.loss - 1), 1e-6) << loss / samples;
-  EXPECT_LT(relative_l2(gradient, expected.gradient), 1e-5);
-  EXPECT_NEAR(tile.edge_mass / samples, expected.edge_mass, 1e-5);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -254,12 +271,12 @@ TEST(C51Loss, IsZeroWhereTheNetworkAlreadyIsRight) {
   std::vector<Transition> transitions(4, Transition{});
   for (Transition& t : transitions) t.action = static_cast<std::int32_t>(Action::kIdle);
   const MiniBatch batch = minibatch_of(transitions);
-  Parameters gradient = Parameters::Zero(shape.parameter_count());
-  MutableMlp view(shape, gradient.data());
-  C51Tile tile;
-  const ConstMlp net(shape, zero.data());
-  const double loss =
-      c51_tile_gradient(support, 1, net, net, batch, 1, 0, batch.size(), tile, view);
+  const PackedPair nets(shape, zero, zero);
+  const auto step = nets.step(packet_kernels(), batch, 1);
+  C51Tile tile(support);
+  const auto [loss, gradient] = sum_of_tiles(shape, batch, 4, [&](const auto& range, auto& sum) {
+    return c51_tile_gradient(step, range, tile, sum);
+  });
   EXPECT_NEAR(loss, 4 * std::log(3.0), 1e-5);
   EXPECT_LT(gradient.cwiseAbs().maxCoeff(), 1e-7F);
 }

@@ -1,6 +1,7 @@
 #include "workstation/rl/dqn.h"
 
 #include "reference_net.h"
+#include "tile_sums.h"
 #include "workstation/rl/learner.h"
 
 namespace bess {
@@ -44,21 +45,17 @@ TEST_P(DqnGradient, OfASmallShapeInTilesIsTheReference) {
   const auto transitions = random_transitions(c.recipe, {}, online, target, random);
   const ReferenceLoss expected = reference_dqn(c.gamma, online, target, transitions);
   const MiniBatch batch = minibatch_of(transitions);
-  Parameters gradient = Parameters::Zero(shape.parameter_count());
-  MutableMlp view(shape, gradient.data());
-  DqnTile tile;
-  double loss = 0;
-  for (int action = 0; action < kActionCount; ++action) {
-    const Eigen::Index end = batch.group_end[action];
-    for (Eigen::Index at = batch.group_begin(action); at < end; at += kTile) {
-      loss +=
-          dqn_tile_gradient(static_cast<float>(c.gamma), ConstMlp(shape, online_parameters.data()),
-                            ConstMlp(shape, target_parameters.data()), batch, action, at,
-                            std::min(kTile, end - at), tile, view);
-    }
+  const PackedPair nets(shape, online_parameters, target_parameters);
+  for (const TileKernels* kernels : {&packet_kernels(), &plain_kernels()}) {
+    SCOPED_TRACE(kernels->name);
+    const auto step = nets.step(*kernels, batch, c.gamma);
+    DqnTile tile;
+    const auto [loss, gradient] = sum_of_tiles(
+        shape, batch, kTile,
+        [&](const auto& range, auto& sum) { return dqn_tile_gradient(step, range, tile, sum); });
+    EXPECT_LT(std::abs(loss / static_cast<double>(transitions.size()) / expected.loss - 1), 1e-6);
+    EXPECT_LT(relative_l2(gradient, expected.gradient), 1e-5);
   }
-  EXPECT_LT(std::abs(loss / static_cast<double>(transitions.size()) / expected.loss - 1), 1e-6);
-  EXPECT_LT(relative_l2(gradient, expected.gradient), 1e-5);
 }
 
 INSTANTIATE_TEST_SUITE_P(Batches, DqnGradient,

@@ -59,6 +59,15 @@ TEST_P(LearnerOf, ThreadsChangeOnlyTheRounding) {
   EXPECT_LT((single - twin).norm(), 0.02F * (single - start).norm());
 }
 
+TEST_P(LearnerOf, TheTwinOfTheKernelsGivesTheSame) {
+  const MiniBatch batch = batch_of(4);
+  Learner packets(GetParam(), kSupport, kGamma, 9, 2);
+  Learner plain(GetParam(), kSupport, kGamma, 9, 2, plain_kernels());
+  const double loss = plain.compute_gradient(batch).loss;
+  EXPECT_NEAR(packets.compute_gradient(batch).loss, loss, 1e-6 * loss);
+  EXPECT_LT(relative_l2(packets.gradient(), to_doubles(plain.gradient())), 2e-6);
+}
+
 TEST_P(LearnerOf, StepIsGradientAdamAndBlend) {
   const MiniBatch batch = batch_of(2);
   Learner learner(GetParam(), kSupport, kGamma, 9, 2);

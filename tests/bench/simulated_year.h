@@ -1,0 +1,11 @@
+// A year of the simulated market, made once for all benchmarks.
+#pragma once
+
+#include "workstation/env/market_steps.h"
+
+namespace bess {
+
+const MinuteSeries& year_of_minutes();
+const MarketSteps& year_of_steps();
+
+}  // namespace bess
