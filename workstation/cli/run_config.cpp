@@ -134,8 +134,13 @@ void KeyList::list(RunConfig& c) {
   integer("atoms", c.train.atoms, 2, 1001, "of the value distribution");
   number("value_min_eur_per_h", c.train.value_min_eur_per_h, -1e9, 1e9, "lowest atom");
   number("value_max_eur_per_h", c.train.value_max_eur_per_h, -1e9, 1e9, "highest atom");
-  boolean("shape_rewards", c.train.shape_rewards,
-          "centre rewards and value stored energy: changes no decision, learns far quicker");
+  number("mean_weight", c.train.mean_weight, 0, 1000,
+         "c51: of the squared error of the mean beside the cross-entropy; 0 is plain C51");
+  choice("potential", c.train.potential, {"none", "price", "plan"},
+         "shapes rewards without changing what is best: nothing, energy at the mean price, or a "
+         "plan's value");
+  boolean("centre_rewards", c.train.centre_rewards,
+          "subtract the mean reward (continuing horizon): values lie around zero");
   number("jitter_quarter_hours", c.train.jitter.quarter_hours, 0, 96,
          "standard deviation of a random shift of qh: keeps days from being learnt by heart");
   number("jitter_months", c.train.jitter.months, 0, 12, "the same for the month");

@@ -8,7 +8,7 @@
 namespace bess {
 namespace {
 
-constexpr int kSocPoints = 121;
+constexpr int kSocPoints = RollingHorizonPolicy::kSocPoints;
 constexpr int kDeviations = 33;
 constexpr int kHorizonQuarterHours = 96;
 constexpr double kDeviationMaxEurPerMwh = 1500;
@@ -30,6 +30,11 @@ double deviation_position(double deviation) {
 /// Steps that start in a quarter-hour: minutes 0 to 14 of the first of a half-hour, 1 to 13 of the
 /// second.
 int steps_of(int quarter_hour) { return quarter_hour % 2 == 0 ? 8 : 7; }
+
+/// Of this quarter-hour, this one included.
+int steps_left(const MarketStep& step) {
+  return (RollingHorizonPolicy::kQuarterHourMinutes + 1 - step.t_qh) / 2;
+}
 
 std::size_t row_of(int quarter_hour, int deviation) {
   return (static_cast<std::size_t>(quarter_hour) * kDeviations +
@@ -152,18 +157,28 @@ void RollingHorizonPolicy::tabulate_values() {
   }
 }
 
-Action RollingHorizonPolicy::decide(const MarketStep& step, std::size_t, double soc_frac) const {
-  const double deviation = deviation_now(step);
-  const double price = usual_eur_per_mwh_[step.quarter_hour] + deviation;
-  std::array<float, kSocPoints> next;
-  std::array<float, kSocPoints> now;
+RollingHorizonPolicy::Values RollingHorizonPolicy::plan_rest(const MarketStep& step,
+                                                             double deviation, int steps) const {
+  const auto price = static_cast<float>(usual_eur_per_mwh_[step.quarter_hour] + deviation);
+  Values next;
+  Values now;
   value_from(value_, (step.quarter_hour + 1) % kQuarterHours, persistence_ * deviation,
              next.data());
-  const int steps_left = (kQuarterHourMinutes + 1 - step.t_qh) / 2;  // this one included
-  for (int s = 1; s < steps_left; ++s) {
-    sweep_.run(next.data(), static_cast<float>(price), now.data());
+  for (int s = 0; s < steps; ++s) {
+    sweep_.run(next.data(), price, now.data());
     std::swap(next, now);
   }
+  return next;
+}
+
+RollingHorizonPolicy::Values RollingHorizonPolicy::values(const MarketStep& step) const {
+  return plan_rest(step, deviation_now(step), steps_left(step));
+}
+
+Action RollingHorizonPolicy::decide(const MarketStep& step, std::size_t, double soc_frac) const {
+  const double deviation = deviation_now(step);
+  const Values next = plan_rest(step, deviation, steps_left(step) - 1);
+  const double price = usual_eur_per_mwh_[step.quarter_hour] + deviation;
   return best_action(battery_, grid_, next.data(), price, soc_frac);
 }
 

@@ -29,6 +29,12 @@ class RollingHorizonPolicy final : public Policy {
   [[nodiscard]] Action decide(const MarketStep& step, std::size_t index,
                               double soc_frac) const override;
 
+  /// What the plan expects to earn in the next 24 hours from this step on, EUR, at `kSocPoints` even
+  /// points of the SoC window.
+  static constexpr int kSocPoints = 121;
+  using Values = std::array<float, kSocPoints>;
+  [[nodiscard]] Values values(const MarketStep& step) const;
+
   static constexpr int kQuarterHours = 96;
   static constexpr int kQuarterHourMinutes = 15;
 
@@ -44,6 +50,8 @@ class RollingHorizonPolicy final : public Policy {
   void fit_persistence(const MarketSteps& market, const std::vector<MarketDay>& days);
   void fit_shrinkage(const MarketSteps& market, const std::vector<MarketDay>& days);
   void tabulate_values();
+  /// Value by SoC when `steps` more steps of this quarter-hour are to come.
+  [[nodiscard]] Values plan_rest(const MarketStep& step, double deviation, int steps) const;
   /// Value by SoC of the horizon that starts with quarter-hour `quarter_hour` at `deviation`.
   void value_from(const std::vector<float>& table, int quarter_hour, double deviation,
                   float* value) const;

@@ -41,8 +41,9 @@ void project_targets(const GradientStep& step, const TileRange& range, C51Tile& 
   }
 }
 
-/// Cross-entropy of tile.m and the online logits tile.z, summed; tile.z becomes its gradient.
-double cross_entropy(const GradientStep& step, C51Tile& tile, Eigen::Index samples) {
+/// Loss between tile.m and the online logits tile.z, summed; tile.z becomes its gradient
+///   p_i - m_i + w (E_p[z] - E_m[z]) p_i (z_i - E_p[z]).
+double distribution_loss(const GradientStep& step, C51Tile& tile, Eigen::Index samples) {
   const float weight = 1 / static_cast<float>(step.batch.size());
   double loss = 0;
   tile.sums.resize(samples);
@@ -54,7 +55,14 @@ double cross_entropy(const GradientStep& step, C51Tile& tile, Eigen::Index sampl
     const SoftmaxSums sums = step.kernels.exponentials(z.data(), tile.support.count, z.data());
     loss += sums.largest - weighted;
     tile.sums[n] = sums.sum;
-    z = z * (weight / sums.sum) - m * weight;
+    z *= weight / sums.sum;
+    if (step.mean_weight > 0) {
+      const float mean = tile.atoms.dot(z) / weight;
+      const float error = mean - tile.atoms.dot(m);
+      loss += 0.5 * double{step.mean_weight} * double{error} * double{error};
+      z.array() *= 1 + step.mean_weight * error * (tile.atoms.array() - mean);
+    }
+    z -= m * weight;
   }
   return loss + static_cast<double>(tile.sums.log().sum());
 }
@@ -67,7 +75,7 @@ double c51_tile_gradient(const GradientStep& step, const TileRange& range, C51Ti
   const auto x = step.batch.state.middleCols(range.first, range.count);
   forward_hidden(step.kernels, step.online, x, tile.net);
   forward_head(step.kernels, step.online, range.action, tile.net, tile.z);
-  const double loss = cross_entropy(step, tile, range.count);
+  const double loss = distribution_loss(step, tile, range.count);
   backward(step.kernels, step.online, range.action, x, tile.z.rows(tile.support.count), tile.net,
            gradient);
   return loss;

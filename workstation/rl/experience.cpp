@@ -8,8 +8,10 @@
 namespace bess {
 namespace {
 
-double full_battery_hours(const BatteryParameters& battery) {
-  return battery.capacity_wh / battery.power_w_max;
+/// EUR over a step -> scaled EUR/h of the paper's 4 MW battery, in which rewards are learned.
+float scale_of_eur(const BatteryParameters& battery) {
+  return static_cast<float>(double{kPaperPowerMw} * 1e6 / battery.power_w_max / kHoursPerStep *
+                            double{kRewardScale});
 }
 
 /// Moves a normalised input by `shift` and keeps it in its range.
@@ -23,10 +25,9 @@ TrainingMarket::TrainingMarket(const MarketSteps& market, const PriceMap& price_
                                const BatteryParameters& battery, Horizon horizon,
                                const RewardShaping& shaping)
     : battery_(battery),
-      shaping_(shaping),
-      reward_centre_(static_cast<float>(shaping.reward_centre_eur_per_h) * kRewardScale),
-      potential_(shaping.stored_energy_eur_per_mwh * full_battery_hours(battery) *
-                 double{kPaperPowerMw} / kHoursPerStep * double{kRewardScale}) {
+      potential_grid_(battery, shaping.potential.soc_points),
+      gamma_(static_cast<float>(shaping.gamma)),
+      reward_centre_(static_cast<float>(shaping.reward_centre_eur_per_h) * kRewardScale) {
   const std::vector<MarketDay> training = market.days_of(Split::kTrain);
   if (training.empty()) fail("no training days (local days 1 to 20) in these prices; add some");
   for (std::size_t d = 0; d < training.size(); ++d) {
@@ -44,10 +45,31 @@ TrainingMarket::TrainingMarket(const MarketSteps& market, const PriceMap& price_
       if (!follows && !terminal) continue;
       const NetworkContext here = network_context(steps[i], price_map);
       steps_.push_back({here, follows ? network_context(*next, price_map) : here,
-                        static_cast<float>(steps[i].paid_eur_per_mwh), terminal});
+                        static_cast<float>(steps[i].paid_eur_per_mwh), terminal,
+                        add_potential(shaping.potential, steps[i]),
+                        add_potential(shaping.potential, follows ? *next : steps[i])});
     }
     days_.push_back({first, steps_.size() - first});
   }
+}
+
+/// A step is mostly the one that the last row was made for: the successor of the step before it.
+std::uint32_t TrainingMarket::add_potential(const Potential& potential, const MarketStep& step) {
+  const auto points = static_cast<std::size_t>(potential.soc_points);
+  if (step.utc_s != potential_utc_s_) {
+    potential_.resize(potential_.size() + points);
+    float* row = potential_.data() + potential_.size() - points;
+    potential.fill(step, row);
+    for (std::size_t i = 0; i < points; ++i) row[i] *= scale_of_eur(battery_);
+    potential_utc_s_ = step.utc_s;
+  }
+  return static_cast<std::uint32_t>(potential_.size() / points - 1);
+}
+
+float TrainingMarket::potential_at(std::uint32_t row, double soc_frac) const {
+  const float* phi =
+      &potential_[std::size_t{row} * static_cast<std::size_t>(potential_grid_.count)];
+  return interpolate(phi, potential_grid_.position(soc_frac));
 }
 
 double TrainingMarket::make_transition(std::size_t index, double soc_frac, Action action,
@@ -63,8 +85,8 @@ double TrainingMarket::make_transition(std::size_t index, double soc_frac, Actio
   const auto wear = static_cast<float>(battery_.wear_eur_per_mwh);
   const float paid_eur_per_h = power_frac * step.paid_eur_per_mwh + std::fabs(power_frac) * wear;
   out.reward = -paid_eur_per_h * kPaperPowerMw * kRewardScale - reward_centre_;
-  const double next_potential = step.terminal ? 0.0 : shaping_.gamma * moved.soc_frac;
-  out.reward += static_cast<float>(potential_ * (next_potential - soc_frac));
+  if (!step.terminal) out.reward += gamma_ * potential_at(step.next_potential, moved.soc_frac);
+  out.reward -= potential_at(step.potential, soc_frac);
   out.action = static_cast<std::int32_t>(action);
   out.terminal = step.terminal ? 1 : 0;
   return moved.soc_frac;

@@ -10,7 +10,9 @@
 
 #include "shared/battery_model.h"
 #include "workstation/env/market_steps.h"
+#include "workstation/env/soc_grid.h"
 #include "workstation/io/random.h"
+#include "workstation/rl/potential.h"
 #include "workstation/rl/transition.h"
 
 namespace bess {
@@ -25,10 +27,8 @@ struct RewardShaping {
   /// Subtracted from every reward. With a continuing horizon all values move by the same constant
   /// [Naik et al. 2024, reward centring], and the level of ~2e5 need not be climbed first.
   double reward_centre_eur_per_h = 0;
-  /// Potential Phi(s) = worth of the stored energy at this price: r + gamma Phi(s') - Phi(s)
-  /// [Ng, Harada, Russell 1999]. What is left to learn is timing, not that energy has a price.
-  double stored_energy_eur_per_mwh = 0;
   double gamma = 0.999;
+  Potential potential{};
 };
 
 /// Standard deviations of a random shift of the calendar inputs, the same for a state and its
@@ -71,11 +71,17 @@ class TrainingMarket {
     NetworkContext next;
     float paid_eur_per_mwh;
     bool terminal;
+    std::uint32_t potential, next_potential;  ///< rows of potential_
   };
+  std::uint32_t add_potential(const Potential& potential, const MarketStep& step);
+  [[nodiscard]] float potential_at(std::uint32_t row, double soc_frac) const;
+
   BatteryParameters battery_;
-  RewardShaping shaping_;
+  SocGrid potential_grid_;
+  std::vector<float> potential_;       ///< [row][SoC point], scaled
+  std::int64_t potential_utc_s_ = -1;  ///< step of the last row
+  float gamma_;
   float reward_centre_;  ///< scaled
-  double potential_;     ///< scaled worth of a full battery
   std::vector<Step> steps_;
   std::vector<Day> days_;
 };

@@ -12,6 +12,7 @@ struct GradientStep {
   const PackedMlp& target;  ///< head in one group
   const MiniBatch& batch;
   float gamma;
+  float mean_weight = 0;  ///< C51 only
 };
 
 /// Samples first .. first+count-1 of the minibatch, all of one action.

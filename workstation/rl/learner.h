@@ -16,9 +16,10 @@ namespace bess {
 
 class Learner {
  public:
-  /// `kernels`: packet_kernels(), or their twin plain_kernels().
+  /// `mean_weight`: see c51_tile_gradient. `kernels`: packet_kernels(), or their twin
+  /// plain_kernels().
   Learner(Method method, const Support& support, double gamma, std::uint64_t seed, int threads,
-          const TileKernels& kernels = packet_kernels());
+          double mean_weight = 0, const TileKernels& kernels = packet_kernels());
 
   struct StepResult {
     double loss;            ///< mean over the minibatch
@@ -48,6 +49,7 @@ class Learner {
 
   Method method_;
   float gamma_;
+  float mean_weight_;
   const TileKernels& kernels_;
   MlpShape shape_;
   Parameters online_;

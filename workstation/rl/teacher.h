@@ -9,9 +9,9 @@
 
 #include "workstation/env/policy.h"
 #include "workstation/nn/mlp.h"
-#include "workstation/rl/support.h"
 #include "workstation/rl/network_input.h"
 #include "workstation/rl/price_map.h"
+#include "workstation/rl/support.h"
 
 namespace bess {
 

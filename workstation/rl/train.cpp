@@ -73,23 +73,17 @@ double tabular_reward_eur_per_h(const MarketSteps& market, const std::vector<Mar
   return evaluation.profit_eur_per_day_per_mwh() * capacity_hours * double{kPaperPowerMw} / 24;
 }
 
-double mean_paid_price(const MarketSteps& market, const std::vector<MarketDay>& days) {
-  double sum = 0;
-  double count = 0;
-  for (const MarketDay& day : days) {
-    for (const MarketStep& step : market.of(day)) sum += step.paid_eur_per_mwh;
-    count += static_cast<double>(day.step_count);
-  }
-  return sum / count;
-}
-
+/// Shaped rewards r + gamma Phi(s') - Phi(s) drift by -(1 - gamma) mean Phi: that goes with the
+/// centre, so that values lie around zero.
 RewardShaping fit_shaping(const MarketSteps& market, const BatteryParameters& battery,
                           const TrainOptions& options) {
-  if (!options.shape_rewards) return {.gamma = options.gamma};
-  const std::vector<MarketDay> training = market.days_of(Split::kTrain);
-  const bool continuing = options.horizon == Horizon::kContinuing;
-  return {continuing ? tabular_reward_eur_per_h(market, training, battery) : 0.0,
-          mean_paid_price(market, training), options.gamma};
+  RewardShaping shaping{0, options.gamma, fit_potential(options.potential, market, battery)};
+  if (!options.centre_rewards || options.horizon != Horizon::kContinuing) return shaping;
+  const double eur_per_h_of_eur = double{kPaperPowerMw} * 1e6 / battery.power_w_max / kHoursPerStep;
+  shaping.reward_centre_eur_per_h =
+      tabular_reward_eur_per_h(market, market.days_of(Split::kTrain), battery) -
+      (1 - options.gamma) * mean_of(shaping.potential, market) * eur_per_h_of_eur;
+  return shaping;
 }
 
 double cosine_rate(const TrainOptions& options, long step) {
@@ -106,6 +100,9 @@ TrainResult train_teacher(const MarketSteps& market, const BatteryParameters& ba
   const std::vector<MarketDay> validation = market.days_of(Split::kValidation);
   if (validation.empty())
     fail("no validation days (local days 21 to 25) in these prices; add some");
+  if (market.days_of(Split::kTrain).empty()) {
+    fail("no training days (local days 1 to 20) in these prices; add some");
+  }
   const PriceMap price_map = PriceMap::fit(observed_training_prices(market));
   const TrainingMarket training(market, price_map, battery, options.horizon,
                                 fit_shaping(market, battery, options));
@@ -113,7 +110,7 @@ TrainResult train_teacher(const MarketSteps& market, const BatteryParameters& ba
                         static_cast<float>(options.value_max_eur_per_h) * kRewardScale,
                         options.atoms};
   Learner learner(options.method, support, options.gamma, derive_seed(options.seed, kSeedWeights),
-                  options.threads);
+                  options.threads, options.mean_weight);
   Experience experience(training, options);
   Teacher current{options.method, support, learner.shape(), price_map, learner.online(), ""};
   TrainResult result{current, {}, -1e300, 0, 0};

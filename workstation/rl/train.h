@@ -20,16 +20,18 @@ struct TrainOptions {
   Source source = Source::kCounterfactual;
   Horizon horizon = Horizon::kContinuing;
   long steps = 4'000;           ///< gradient steps
+  double mean_weight = 10;      ///< C51: of the squared error of the mean beside the cross-entropy
   long batch_size = 4'096;      ///< transitions a step
   double learning_rate = 1e-3;  ///< of Adam, falling to `learning_rate_end` along a cosine
   double learning_rate_end = 5e-5;
   double gamma = 0.999;
   double tau = 0.2;  ///< target <- tau * online + (1 - tau) * target, each step
-  int atoms = 101;
-  bool shape_rewards = true;  ///< centre (continuing only) and value the stored energy
-  ContextJitter jitter;       ///< counterfactual source only
-  double value_min_eur_per_h = -3e5;
-  double value_max_eur_per_h = 3e5;
+  int atoms = 51;
+  PotentialKind potential = PotentialKind::kPlan;  ///< of reward shaping
+  bool centre_rewards = true;                      ///< continuing horizon only
+  ContextJitter jitter;                            ///< counterfactual source only
+  double value_min_eur_per_h = -1e5;
+  double value_max_eur_per_h = 1e5;
   long replay_capacity = 1'000'000;
   double epsilon_start = 1.0;  ///< falls linearly to epsilon_end over the first half of the steps
   double epsilon_end = 0.05;

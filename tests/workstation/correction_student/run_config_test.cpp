@@ -27,7 +27,7 @@ TEST(RunConfig, ChangedValuesRoundTrip) {
   config.initial_soc_frac = 0.3;
   config.train.method = Method::kDqn;
   config.train.source = Source::kReplay;
-  config.train.shape_rewards = false;
+  config.train.centre_rewards = false;
   config.train.learning_rate = 3.1e-5;
   config.train.steps = 123'456;
   config.train.value_min_eur_per_h = -1e9;
@@ -41,7 +41,7 @@ TEST(RunConfig, ChangedValuesRoundTrip) {
   EXPECT_EQ(again.battery.soc_min_frac, config.battery.soc_min_frac);
   EXPECT_EQ(again.train.method, Method::kDqn);
   EXPECT_EQ(again.train.source, Source::kReplay);
-  EXPECT_EQ(again.train.shape_rewards, false);
+  EXPECT_EQ(again.train.centre_rewards, false);
   EXPECT_EQ(again.train.steps, 123'456);
   EXPECT_EQ(again.distil.omega, 2.5e-7);
   EXPECT_EQ(again.distil.correction.high_price_eur_per_mwh, 640);
@@ -86,8 +86,8 @@ TEST(RunConfig, MistakesNamePlaceAndMend) {
       {"[train.steps]\na = 1\n", ":1: ", "[train] steps: expected a whole number"},
       {"[train]\ngamma = \"x\"\n", ":2: ", "[train] gamma: expected a number"},
       {"[train]\ngamma = true\n", ":2: ", "[train] gamma: expected a number"},
-      {"[train]\nshape_rewards = 1\n", ":2: ", "[train] shape_rewards: expected true or false"},
-      {"[train]\nshape_rewards = \"true\"\n", ":2: ", "expected true or false"},
+      {"[train]\ncentre_rewards = 1\n", ":2: ", "[train] centre_rewards: expected true or false"},
+      {"[train]\ncentre_rewards = \"true\"\n", ":2: ", "expected true or false"},
       {"[train]\nsteps = 0\n", ":2: ", "[train] steps: 0 is out of range: use 1 to 10000000"},
       {"[train]\nsteps = 9223372036854775807\n", ":2: ", "out of range: use 1 to"},
       {"[train]\nsteps = 9223372036854775808\n", ":2:", "not valid TOML"},

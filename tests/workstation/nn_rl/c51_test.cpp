@@ -172,6 +172,7 @@ struct GradientCase {
   double gamma;
   BatchRecipe recipe;
   bool clips;  ///< the batch reaches both ends of the support
+  double mean_weight = 0;
 };
 
 void PrintTo(const GradientCase& c, std::ostream* out) { *out << c.name; }
@@ -190,14 +191,15 @@ class C51Gradient : public testing::TestWithParam<GradientCase> {
 
 TEST_P(C51Gradient, OfTheRealShapeIsAlgorithm1) {
   const GradientCase& c = GetParam();
-  Learner learner(Method::kC51, c.support, c.gamma, 1, 2);
+  Learner learner(Method::kC51, c.support, c.gamma, 1, 2, c.mean_weight);
   learner.online() = random_parameters(learner.shape(), 41, 3);
   learner.target() = random_parameters(learner.shape(), 42, 3);
   const ReferenceNet online(learner.shape(), to_doubles(learner.online()));
   const ReferenceNet target(learner.shape(), to_doubles(learner.target()));
   Random random(43);
   const auto transitions = random_transitions(c.recipe, c.support, online, target, random);
-  const ReferenceLoss expected = reference_c51(c.support, c.gamma, online, target, transitions);
+  const ReferenceLoss expected =
+      reference_c51(c.support, c.gamma, online, target, transitions, c.mean_weight);
   expect_case_is_met(expected, transitions);
 
   const Learner::StepResult result = learner.compute_gradient(minibatch_of(transitions));
@@ -216,14 +218,16 @@ TEST_P(C51Gradient, OfASmallShapeInTilesIsAlgorithm1) {
   const ReferenceNet target(shape, to_doubles(target_parameters));
   Random random(46);
   const auto transitions = random_transitions(c.recipe, c.support, online, target, random);
-  const ReferenceLoss expected = reference_c51(c.support, c.gamma, online, target, transitions);
+  const ReferenceLoss expected =
+      reference_c51(c.support, c.gamma, online, target, transitions, c.mean_weight);
   expect_case_is_met(expected, transitions);
 
   const MiniBatch batch = minibatch_of(transitions);
   const PackedPair nets(shape, online_parameters, target_parameters);
   for (const TileKernels* kernels : {&packet_kernels(), &plain_kernels()}) {
     SCOPED_TRACE(kernels->name);
-    const auto step = nets.step(*kernels, batch, c.gamma);
+    auto step = nets.step(*kernels, batch, c.gamma);
+    step.mean_weight = static_cast<float>(c.mean_weight);
     C51Tile tile(c.support);
     const auto [loss, gradient] = sum_of_tiles(
         shape, batch, kTile,
@@ -240,6 +244,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         GradientCase{"paper_support", {-30, 30, 51}, 0.999, {{300, 300, 300}, 12}, true},
         GradientCase{"default_atoms", {-30, 30, 101}, 0.999, {{90, 80, 60}, 12}, true},
+        GradientCase{"mean_as_well", {-10, 10, 51}, 0.999, {{120, 100, 90}, 8}, true, 10},
         GradientCase{"uneven_groups", {-15, 15, 21}, 0.99, {{700, 3, 60}, 6}, true},
         GradientCase{"no_idle", {-15, 15, 21}, 0.95, {{40, 0, 130}, 6}, true},
         GradientCase{"only_charge", {-15, 15, 11}, 0.9, {{0, 0, 33}, 30}, true},

@@ -49,10 +49,19 @@ TEST_P(TransitionByHand, RewardAndSoc) {
   EXPECT_NEAR(t.next_state[3], scaled_soc(c.soc_after), 1e-6);
 }
 
+/// Potential: what is stored, at this price. 50 * 8 MWh * 30 / h = 12,000 EUR/h when full.
+Potential stored_at(double price_eur_per_mwh, double capacity_mwh = 8) {
+  const auto full = static_cast<float>(price_eur_per_mwh * capacity_mwh);
+  return {.soc_points = 2, .fill = [full](const MarketStep&, float* phi) {
+            phi[0] = 0.1F * full;
+            phi[1] = full;
+          }};
+}
+
 const RewardShaping kNone{};
-const RewardShaping kCentre{1000, 0, 0.9};
-const RewardShaping kStored{0, 50, 0.9};  // potential: 50 * 8 MWh * 30 / h = 12,000 EUR/h when full
-const RewardShaping kBoth{1000, 50, 0.9};
+const RewardShaping kCentre{1000, 0.9, {}};
+const RewardShaping kStored{0, 0.9, stored_at(50)};
+const RewardShaping kBoth{1000, 0.9, stored_at(50)};
 constexpr Horizon kOn = Horizon::kContinuing;
 constexpr Horizon kEnd = Horizon::kDay;
 
@@ -84,7 +93,8 @@ TEST(Transitions, RewardsAreThoseOfThePaperWhateverTheSize) {
   BatteryParameters small;
   small.power_w_max = 25e3;
   small.capacity_wh = 100e3;  // four hours
-  const TrainingMarket market(one_day(kOn), straight_price_map(), small, kOn, {0, 50, 1});
+  const TrainingMarket market(one_day(kOn), straight_price_map(), small, kOn,
+                              {0, 1, stored_at(50, 0.1)});
   Transition t{};
   const double soc = market.make_transition(0, 0.5, Action::kCharge, t);
   EXPECT_NEAR(soc, 0.5 + 0.0158113883 / 2, kSocTolerance);
@@ -94,7 +104,7 @@ TEST(Transitions, RewardsAreThoseOfThePaperWhateverTheSize) {
 TEST(Transitions, AgreeWithTheBatteryOnRandomSteps) {
   const MarketSteps steps = uneven_market();
   const BatteryParameters battery;
-  const RewardShaping shaping{700, 80, 0.999};
+  const RewardShaping shaping{700, 0.999, stored_at(80)};
   const TrainingMarket market(steps, straight_price_map(), battery, kOn, shaping);
   Random random(71);
   for (int draw = 0; draw < 3000; ++draw) {

@@ -62,7 +62,7 @@ TEST_P(LearnerOf, ThreadsChangeOnlyTheRounding) {
 TEST_P(LearnerOf, TheTwinOfTheKernelsGivesTheSame) {
   const MiniBatch batch = batch_of(4);
   Learner packets(GetParam(), kSupport, kGamma, 9, 2);
-  Learner plain(GetParam(), kSupport, kGamma, 9, 2, plain_kernels());
+  Learner plain(GetParam(), kSupport, kGamma, 9, 2, 0, plain_kernels());
   const double loss = plain.compute_gradient(batch).loss;
   EXPECT_NEAR(packets.compute_gradient(batch).loss, loss, 1e-6 * loss);
   EXPECT_LT(relative_l2(packets.gradient(), to_doubles(plain.gradient())), 2e-6);

@@ -158,8 +158,8 @@ inline Doubles reference_projection(const Support& support, const Doubles& p, do
 }
 
 inline ReferenceLoss reference_c51(const Support& support, double gamma, const ReferenceNet& online,
-                                   const ReferenceNet& target,
-                                   const std::vector<Transition>& batch) {
+                                   const ReferenceNet& target, const std::vector<Transition>& batch,
+                                   double mean_weight = 0) {
   const auto count = static_cast<std::size_t>(support.count);
   const auto samples = static_cast<double>(batch.size());
   ReferenceLoss result;
@@ -173,10 +173,18 @@ inline ReferenceLoss reference_c51(const Support& support, double gamma, const R
     const ReferenceNet::Pass pass = online.forward(inputs_of(t.state));
     const std::size_t at = static_cast<std::size_t>(t.action) * count;
     const Doubles p = reference_softmax(pass.z, at, count);
+    double mean = 0;
+    double error = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      mean += p[i] * support.atom(static_cast<int>(i));
+      error += (p[i] - m[i]) * support.atom(static_cast<int>(i));
+    }
+    result.loss += 0.5 * mean_weight * error * error / samples;
     Doubles dz(pass.z.size(), 0.0);
     for (std::size_t i = 0; i < count; ++i) {
+      const double apart = support.atom(static_cast<int>(i)) - mean;
       result.loss -= m[i] * std::log(p[i]) / samples;
-      dz[at + i] = (p[i] - m[i]) / samples;
+      dz[at + i] = (p[i] - m[i] + mean_weight * error * p[i] * apart) / samples;
     }
     online.backward(pass, dz, result.gradient);
   }

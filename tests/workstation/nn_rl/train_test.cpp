@@ -145,9 +145,9 @@ TEST(Train, DaysThatLackAreNamedWithTheMend) {
                {"validation and test", {2023, 1, 24}, 5, "training days"}};
   const std::atomic<bool> interrupted = false;
   for (const auto& c : cases) {
-    for (const bool shape : {true, false}) {
+    for (const PotentialKind potential : {PotentialKind::kPlan, PotentialKind::kNone}) {
       TrainOptions options = small_options();
-      options.shape_rewards = shape;
+      options.potential = potential;
       const MarketSteps market = simulated_market(c.first, c.days);
       const std::string message =
           user_error_of([&] { (void)train_teacher(market, {}, options, interrupted); });

@@ -1,0 +1,71 @@
+#include "workstation/rl/potential.h"
+
+#include <memory>
+#include <vector>
+
+#include "workstation/env/rolling_horizon.h"
+
+namespace bess {
+namespace {
+
+constexpr int kPlanStride = 2;  // every other point of the plan's grid is enough
+
+Potential price_potential(const MarketSteps& market, const BatteryParameters& battery) {
+  double sum_eur_per_mwh = 0;
+  double count = 0;
+  for (const MarketDay& day : market.days_of(Split::kTrain)) {
+    for (const MarketStep& step : market.of(day)) sum_eur_per_mwh += step.paid_eur_per_mwh;
+    count += static_cast<double>(day.step_count);
+  }
+  const double window_mwh =
+      (battery.soc_max_frac - battery.soc_min_frac) * battery.capacity_wh / 1e6;
+  const auto full_eur = static_cast<float>(sum_eur_per_mwh / count * window_mwh);
+  return {.soc_points = 2, .fill = [full_eur](const MarketStep&, float* phi) {
+            phi[0] = 0;
+            phi[1] = full_eur;
+          }};
+}
+
+Potential plan_potential(const MarketSteps& market, const BatteryParameters& battery) {
+  const auto plan =
+      std::make_shared<RollingHorizonPolicy>(market, market.days_of(Split::kTrain), battery);
+  return {.soc_points = (RollingHorizonPolicy::kSocPoints - 1) / kPlanStride + 1,
+          .fill = [plan](const MarketStep& step, float* phi) {
+            const RollingHorizonPolicy::Values values = plan->values(step);
+            for (int i = 0; i < RollingHorizonPolicy::kSocPoints; i += kPlanStride) {
+              *phi++ = values[static_cast<std::size_t>(i)];
+            }
+          }};
+}
+
+}  // namespace
+
+Potential fit_potential(PotentialKind kind, const MarketSteps& market,
+                        const BatteryParameters& battery) {
+  switch (kind) {
+    case PotentialKind::kPrice:
+      return price_potential(market, battery);
+    case PotentialKind::kPlan:
+      return plan_potential(market, battery);
+    case PotentialKind::kNone:
+      break;
+  }
+  return {};
+}
+
+double mean_of(const Potential& potential, const MarketSteps& market) {
+  std::vector<float> phi(static_cast<std::size_t>(potential.soc_points));
+  const std::size_t middle = phi.size() / 2;
+  double sum = 0;
+  double count = 0;
+  for (const MarketDay& day : market.days_of(Split::kTrain)) {
+    for (const MarketStep& step : market.of(day)) {
+      potential.fill(step, phi.data());
+      sum += phi.size() % 2 == 1 ? phi[middle] : 0.5F * (phi[middle - 1] + phi[middle]);
+      count += 1;
+    }
+  }
+  return sum / count;
+}
+
+}  // namespace bess

@@ -1,0 +1,38 @@
+// Potential of a state, for shaping rewards [Ng, Harada, Russell 1999]:
+//   r' = r + gamma Phi(s') - Phi(s)
+// changes no decision, whatever Phi is, and what is left to learn is what Phi does not know: with a
+// plan's value function the network learns to correct the plan, not that energy has a price. (On the
+// yardstick the step from `price` to `plan` brought both methods from under the tabular baseline to
+// 4 % above it on validation days.)
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "shared/battery_model.h"
+#include "workstation/env/market_steps.h"
+
+namespace bess {
+
+enum class PotentialKind : std::uint8_t {
+  kNone,
+  kPrice,  ///< stored energy at the training days' mean price
+  kPlan,   ///< value of a rolling-horizon plan on a naive forecast (env/rolling_horizon.h)
+};
+
+struct Potential {
+  int soc_points = 2;
+  /// Writes Phi, EUR, at `soc_points` even points of the SoC window. Sees what a policy sees.
+  std::function<void(const MarketStep&, float* phi_eur)> fill = [](const MarketStep&, float* phi) {
+    phi[0] = phi[1] = 0;
+  };
+};
+
+/// Fits to the training days of `market`, of which there must be some.
+Potential fit_potential(PotentialKind kind, const MarketSteps& market,
+                        const BatteryParameters& battery);
+
+/// Mean of Phi over the training steps at the middle of the SoC window, EUR.
+double mean_of(const Potential& potential, const MarketSteps& market);
+
+}  // namespace bess
