@@ -12,6 +12,7 @@
 #include "workstation/io/file.h"
 #include "workstation/io/user_error.h"
 #include "workstation/market/elia_fetch.h"
+#include "workstation/market/market_files.h"
 
 namespace bess {
 namespace {
@@ -52,7 +53,8 @@ void run(const Options& options) {
     fmt::print(stderr, "finished windows are kept: run the same command again to go on\n");
     throw Interrupted{};
   }
-  fmt::print("{}written to {}. {}\n", fetched->description, options.out, kEliaAttribution);
+  fmt::print("{}written to {}. {}\n", fetched->description, options.out,
+             attribution_of({MarketSource::kElia}));
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 // bess-train prices import: downloaded CSV and JSON to one minute file.
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <memory>
 
 #include "workstation/cli/prices.h"
@@ -16,22 +15,15 @@ struct Options {
   std::string out;
 };
 
-std::string file_names(const std::vector<std::string>& paths) {
-  std::string names;
-  for (const std::string& path : paths) {
-    names += (names.empty() ? "" : ", ") + std::filesystem::path(path).filename().string();
-  }
-  return names;
-}
-
 void run(const Options& options) {
-  const JoinedMarket market = join_market(read_market_files(options.files), options.files.front());
+  MarketRows rows = read_market_files(options.files);
+  const std::string attribution = attribution_of(rows.sources);
+  const JoinedMarket market = join_market(std::move(rows), options.files.front());
   const std::string description = describe_join(market);
-  write_minute_file(
-      options.out, market.series,
-      fmt::format("Imported by bess-train {} from {}\nElia open data: source Elia, CC BY 4.0\n{}",
-                  BESS_VERSION, file_names(options.files), description));
-  fmt::print("{}written to {}. Elia open data: source Elia, CC BY 4.0\n", description, options.out);
+  write_minute_file(options.out, market.series,
+                    fmt::format("Imported by bess-train {} from {}\n{}\n{}", BESS_VERSION,
+                                file_names(options.files), attribution, description));
+  fmt::print("{}written to {}. {}\n", description, options.out, attribution);
 }
 
 }  // namespace
@@ -47,7 +39,8 @@ void add_prices_import(CLI::App& prices) {
       ->required();
   command->add_option("--out", options->out, "Minute file to write (.csv or .csv.gz)")->required();
   command->footer(
-      "Later files win where two have the same minute.\n"
+      "Later files win where two have the same minute. ENTSO-E sends a ZIP archive: unzip it "
+      "first.\n"
       "Examples:\n"
       "  bess-train prices import ods133.csv ods134.csv --out prices.csv.gz\n"
       "  bess-train prices import today/*.json --out today.csv");

@@ -7,6 +7,7 @@
 #include "workstation/io/user_error.h"
 #include "workstation/market/local_date.h"
 #include "workstation/market/minute_series.h"
+#include "workstation/market/plain_text.h"
 #include "workstation/market/quarter_hours_to_minutes.h"
 #include "workstation/market/simulated_market.h"
 
@@ -32,7 +33,8 @@ void run(const Options& options) {
                   "{}\nParameters fitted to Elia open data (CC BY 4.0): ods047 2023-01-01 to "
                   "2023-05-23, ods045, ods161",
                   BESS_VERSION, options.days, options.seed, format_local_date(start)));
-  fmt::print("{}: {} simulated days from {}, seed {}, {} minutes\n", options.out, options.days,
+  fmt::print("{}: {} from {}, seed {}, {} minutes\n", options.out,
+             counted(static_cast<std::size_t>(options.days), "simulated day"),
              format_local_date(start), options.seed, series.size());
 }
 
@@ -45,7 +47,9 @@ void add_prices_simulate(CLI::App& prices) {
   command->add_option("--days", options->days, "Local days")
       ->check(CLI::Range(1, 7320))
       ->capture_default_str();
-  command->add_option("--seed", options->seed, "Same seed, same market")->capture_default_str();
+  command->add_option("--seed", options->seed, "Same seed, same market")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   command->add_option("--start", options->start, "First local day, YYYY-MM-DD")
       ->capture_default_str();
   command->add_option("--out", options->out, "Minute file to write (.csv or .csv.gz)")->required();

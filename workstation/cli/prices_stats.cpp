@@ -43,17 +43,19 @@ Described describe_download(std::string_view text, const std::string& name) {
 }
 
 void run(const Options& options) {
+  if (!options.plot.empty()) require_drawable(options.plot);
   const std::string text = read_file(options.file);
   const Described described = is_minute_file(text)
                                   ? describe_minutes(parse_minute_csv(text, options.file))
                                   : describe_download(text, options.file);
-  if (!options.plot.empty()) {
-    plot_statistics(options.plot, described.statistics, described.settled);
-  }
   if (options.json) {
     fmt::print("{}\n", format_statistics_json(described.statistics));
   } else {
     fmt::print("{}", format_statistics_text(described.statistics));
+  }
+  std::fflush(stdout);  // a picture that fails must not take the figures with it
+  if (!options.plot.empty()) {
+    plot_statistics(options.plot, described.statistics, described.settled);
   }
 }
 

@@ -16,8 +16,6 @@
 namespace bess {
 
 inline constexpr const char* kEliaBaseUrl = "https://opendata.elia.be/api/explore/v2.1";
-inline constexpr const char* kEliaAttribution =
-    "Source: Elia, opendata.elia.be, CC BY 4.0 (https://creativecommons.org/licenses/by/4.0/)";
 
 struct RetryPolicy {
   int attempts_max = 6;

@@ -10,6 +10,7 @@
 
 #include "workstation/io/user_error.h"
 #include "workstation/market/minute_series.h"
+#include "workstation/market/plain_text.h"
 
 namespace bess {
 namespace {
@@ -76,6 +77,8 @@ class DocumentReader {
   void close(const Tag& tag);
   void finish_period();
   void set_prices(std::int64_t first_utc_s, const Point& point);
+  [[noreturn]] void refuse_acknowledgement(std::string_view rest) const;
+  void require_unit(std::string_view unit, std::string_view wanted) const;
   [[nodiscard]] std::int64_t time_of(std::string_view text) const;
   template <typename Number>
   [[nodiscard]] Number number_of(std::string_view text) const;
@@ -89,11 +92,18 @@ class DocumentReader {
   std::map<std::int64_t, Prices> prices_;
 };
 
+/// Everything here reckons in EUR/MWh.
+void DocumentReader::require_unit(std::string_view unit, std::string_view wanted) const {
+  if (unit == wanted) return;
+  fail("{}: prices in or per \"{}\" where {} is needed; use an area that publishes EUR per MWH",
+       name_, one_line(unit, 20), wanted);
+}
+
 std::int64_t DocumentReader::time_of(std::string_view text) const {
   std::int64_t utc_s = 0;
   if (!parse_utc(text, utc_s) || utc_s % kSecondsPerQuarterHour != 0) {
     fail("{}: \"{}\" is not the UTC start of a quarter-hour; download the file again", name_,
-         text.substr(0, 40));
+         one_line(text, 40));
   }
   return utc_s;
 }
@@ -104,7 +114,7 @@ Number DocumentReader::number_of(std::string_view text) const {
   const char* text_end = text.data() + text.size();
   const auto [end, error] = std::from_chars(text.data(), text_end, value);
   if (error != std::errc{} || end != text_end || !std::isfinite(static_cast<double>(value))) {
-    fail("{}: \"{}\" is not a number; download the file again", name_, text.substr(0, 40));
+    fail("{}: \"{}\" is not a number; download the file again", name_, one_line(text, 40));
   }
   return value;
 }
@@ -120,9 +130,11 @@ void DocumentReader::open(const Tag& tag) {
     resolution_s_ = tag.text == "PT15M" ? 900 : tag.text == "PT30M" ? 1800 : 3600;
     if (resolution_s_ == 3600 && tag.text != "PT60M" && tag.text != "PT1H") {
       fail("{}: resolution \"{}\" is not known; PT15M, PT30M and PT60M are", name_,
-           tag.text.substr(0, 20));
+           one_line(tag.text, 20));
     }
   }
+  if (tag.name == "currency_Unit.name") require_unit(tag.text, "EUR");
+  if (tag.name == "price_Measure_Unit.name") require_unit(tag.text, "MWH");
   if (tag.name == "Point") point_ = {};
   if (tag.name == "position") point_.position = number_of<std::int64_t>(tag.text);
   if (tag.name == "imbalance_Price.amount") point_.amount = number_of<double>(tag.text);
@@ -174,6 +186,16 @@ void DocumentReader::finish_period() {
   }
 }
 
+/// What ENTSO-E answers instead of data: the rest of the document holds its reason.
+void DocumentReader::refuse_acknowledgement(std::string_view rest) const {
+  Tag tag{};
+  std::string reason;
+  while (take_tag(rest, tag)) {
+    if (tag.name == "text" && !tag.closing) reason += std::string(tag.text) + " ";
+  }
+  fail("{}: ENTSO-E sent no prices but a reason: \"{}\"", name_, one_line(reason, 200));
+}
+
 void DocumentReader::read(std::string_view text) {
   Tag tag{};
   while (take_tag(text, tag)) {
@@ -182,8 +204,9 @@ void DocumentReader::read(std::string_view text) {
     } else {
       open(tag);
     }
+    if (tag.name == "Acknowledgement_MarketDocument") refuse_acknowledgement(text);
     if (!is_document_) {
-      fail("{}: not an ENTSO-E balancing document (A85) but \"{}\"", name_, tag.name.substr(0, 60));
+      fail("{}: not an ENTSO-E balancing document (A85) but \"{}\"", name_, one_line(tag.name, 60));
     }
   }
   if (prices_.empty()) {
@@ -193,11 +216,14 @@ void DocumentReader::read(std::string_view text) {
 
 MarketRows DocumentReader::rows() const {
   MarketRows rows;
+  rows.sources = {MarketSource::kEntsoe};
   for (const auto& [utc_s, prices] : prices_) {
     QuarterHour quarter_hour;
     quarter_hour.utc_s = utc_s;
     quarter_hour.price_eur_per_mwh = prices.single();
-    if (!is_published(quarter_hour.price_eur_per_mwh)) ++rows.dual_priced;
+    if (!is_published(quarter_hour.price_eur_per_mwh)) {
+      rows.dual_priced_quarter_hours.insert(utc_s);
+    }
     rows.quarter_hours.push_back(quarter_hour);
   }
   return rows;

@@ -16,7 +16,7 @@ namespace bess {
 bool looks_like_xml(std::string_view text);
 
 /// Quarter-hours in order of time. Those whose two prices differ keep no price and are counted in
-/// `dual_priced`. `name` is used in messages. Throws UserError.
+/// `dual_priced_quarter_hours`. `name` is used in messages. Throws UserError.
 MarketRows parse_entsoe_xml(std::string_view text, std::string_view name);
 
 }  // namespace bess

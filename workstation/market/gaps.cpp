@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "workstation/market/minute_series.h"
+#include "workstation/market/plain_text.h"
 #include "workstation/market/quarter_hour.h"
 
 namespace bess {
@@ -36,16 +37,17 @@ std::int64_t minutes_in(const std::vector<Gap>& gaps) {
 
 std::string describe_gaps(std::string_view what, std::vector<Gap> gaps) {
   if (gaps.empty()) return fmt::format("{}: no gaps\n", what);
-  std::string text = fmt::format("{}: {} gap{}, {} minutes missing\n", what, gaps.size(),
-                                 gaps.size() == 1 ? "" : "s", minutes_in(gaps));
+  std::string text = fmt::format("{}: {}, {} missing\n", what, counted(gaps.size(), "gap"),
+                                 counted(static_cast<std::size_t>(minutes_in(gaps)), "minute"));
   std::stable_sort(gaps.begin(), gaps.end(),
                    [](const Gap& a, const Gap& b) { return minutes_of(a) > minutes_of(b); });
   for (std::size_t i = 0; i < std::min(kGapsListed, gaps.size()); ++i) {
-    text += fmt::format("  {} to {}: {} minutes\n", format_utc(gaps[i].from_utc_s),
-                        format_utc(gaps[i].until_utc_s), minutes_of(gaps[i]));
+    text += fmt::format("  {} to {}: {}\n", format_utc(gaps[i].from_utc_s),
+                        format_utc(gaps[i].until_utc_s),
+                        counted(static_cast<std::size_t>(minutes_of(gaps[i])), "minute"));
   }
   if (gaps.size() > kGapsListed) {
-    text += fmt::format("  and {} shorter ones\n", gaps.size() - kGapsListed);
+    text += fmt::format("  and {}\n", counted(gaps.size() - kGapsListed, "shorter one"));
   }
   return text;
 }

@@ -11,6 +11,7 @@
 
 #include "workstation/io/user_error.h"
 #include "workstation/market/minute_series.h"
+#include "workstation/market/plain_text.h"
 
 namespace bess {
 namespace {
@@ -20,6 +21,7 @@ using Kind = HttpOutcome::Kind;
 constexpr long kConnectTimeout_s = 20;
 constexpr long kSilenceTimeout_s = 60;  // an export of a month is prepared for some seconds
 constexpr std::size_t kBodyMax = std::size_t{512} << 20;
+constexpr std::size_t kReasonMax = 200;  // of a server's own words in a message
 
 struct Received {
   std::string body;
@@ -43,6 +45,12 @@ std::string trimmed(std::string_view text) {
 std::size_t take_header(char* data, std::size_t size, std::size_t count, void* user) {
   auto& received = *static_cast<Received*>(user);
   const std::string_view line(data, size * count);
+  // Each redirect and a proxy's CONNECT has headers of its own, which say nothing of the answer.
+  if (line.starts_with("HTTP/")) {
+    received.retry_after.clear();
+    received.rate_limit_reset.clear();
+    received.has_length = false;
+  }
   const std::size_t colon = line.find(':');
   if (colon == std::string_view::npos) return size * count;
   std::string name(line.substr(0, colon));
@@ -96,9 +104,9 @@ HttpOutcome outcome_of_status(long status, Received received) {
   }
   const std::string& told =
       received.retry_after.empty() ? received.rate_limit_reset : received.retry_after;
+  const std::string body = one_line(received.body, kReasonMax);
   const std::string reason =
-      fmt::format("the server answered {}{}", status,
-                  received.body.empty() ? "" : ": " + trimmed(received.body.substr(0, 200)));
+      fmt::format("the server answered {}{}{}", status, body.empty() ? "" : ": ", body);
   if (status == 429 || status == 503) {
     return {Kind::kBusy, {}, reason, wait_seconds(told, now_s())};
   }
@@ -118,6 +126,10 @@ Handle new_handle() {
 }
 
 }  // namespace
+
+const char* redirect_protocols(const std::string& url) {
+  return url.starts_with("https://") ? "https" : "http,https";
+}
 
 std::string url_encoded(const std::string& text) {
   const Handle curl = new_handle();
@@ -147,6 +159,7 @@ HttpOutcome http_get(const std::string& url, const std::atomic<bool>& interrupte
   char error_text[CURL_ERROR_SIZE] = "";
   curl_easy_setopt(curl.get(), CURLOPT_URL, url.c_str());
   curl_easy_setopt(curl.get(), CURLOPT_PROTOCOLS_STR, "http,https");
+  curl_easy_setopt(curl.get(), CURLOPT_REDIR_PROTOCOLS_STR, redirect_protocols(url));
   curl_easy_setopt(curl.get(), CURLOPT_FOLLOWLOCATION, 1L);
   curl_easy_setopt(curl.get(), CURLOPT_MAXREDIRS, 5L);
   curl_easy_setopt(curl.get(), CURLOPT_SSL_VERIFYPEER, 1L);
@@ -167,7 +180,8 @@ HttpOutcome http_get(const std::string& url, const std::atomic<bool>& interrupte
   curl_easy_setopt(curl.get(), CURLOPT_XFERINFODATA, &interrupted);
   const CURLcode code = curl_easy_perform(curl.get());
   if (code != CURLE_OK) {
-    const std::string reason = error_text[0] != '\0' ? error_text : curl_easy_strerror(code);
+    const std::string reason =
+        one_line(error_text[0] != '\0' ? error_text : curl_easy_strerror(code), kReasonMax);
     return {kind_of_transport_error(code), {}, reason, {}};
   }
   long status = 0;

@@ -26,6 +26,9 @@ struct HttpOutcome {
 /// Returns soon after `interrupted` is raised.
 HttpOutcome http_get(const std::string& url, const std::atomic<bool>& interrupted);
 
+/// Where a redirect may lead: never from https to plain http.
+const char* redirect_protocols(const std::string& url);
+
 /// Percent-encoding of a query value.
 std::string url_encoded(const std::string& text);
 

@@ -40,7 +40,8 @@ Columns parse_header(std::string_view line, std::string_view name) {
   while (take_field(line, more, columns.separator, label)) {
     const std::optional<MarketField> field = market_field_of(label);
     has_time |= field == MarketField::kTime;
-    has_price |= field == MarketField::kPrice;
+    has_price |= field == MarketField::kPrice || field == MarketField::kPositivePrice ||
+                 field == MarketField::kNegativePrice;
     columns.fields.push_back(field);
   }
   if (!has_time || !has_price) {

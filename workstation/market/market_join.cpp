@@ -8,6 +8,7 @@
 #include "shared/units_and_limits.h"
 #include "workstation/io/user_error.h"
 #include "workstation/market/gaps.h"
+#include "workstation/market/plain_text.h"
 
 namespace bess {
 namespace {
@@ -100,7 +101,8 @@ JoinedMarket join_market(MarketRows rows, std::string_view name) {
       market.report);
   const std::vector<QuarterHour> quarter_hours =
       sorted_quarter_hours(std::move(rows.quarter_hours), market.report);
-  market.report.dual_priced = rows.dual_priced;
+  market.report.dual_priced_minutes = rows.dual_priced_minutes.size();
+  market.report.dual_priced_quarter_hours = rows.dual_priced_quarter_hours.size();
   market.report.minutes = minutes.size();
   market.report.quarter_hours = quarter_hours.size();
   const auto [from_utc_s, until_utc_s] = span_of(minutes, quarter_hours);
@@ -125,23 +127,27 @@ JoinedMarket join_market(MarketRows rows, std::string_view name) {
   return market;
 }
 
+std::string describe_dual_priced(const JoinReport& report) {
+  const auto line = [](std::size_t count, std::string_view noun, std::string_view price) {
+    if (count == 0) return std::string();
+    return fmt::format("{} with different prices for long and short: left without {} price\n",
+                       counted(count, noun), price);
+  };
+  return line(report.dual_priced_quarter_hours, "quarter-hour", "a settled") +
+         line(report.dual_priced_minutes, "minute", "an indicative");
+}
+
 std::string describe_join(const JoinedMarket& market) {
   const JoinReport& report = market.report;
-  std::string text = fmt::format("{} minutes and {} quarter-hours from {} to {}\n", report.minutes,
-                                 report.quarter_hours, format_utc(market.series.start_utc_s),
+  std::string text = fmt::format("{} and {} from {} to {}\n", counted(report.minutes, "minute"),
+                                 counted(report.quarter_hours, "quarter-hour"),
+                                 format_utc(market.series.start_utc_s),
                                  format_utc(market.series.utc_s(market.series.size())));
   if (report.duplicates > 0) {
-    text += fmt::format(
-        "{} duplicate rows dropped, {} of them with another price (the last one "
-        "read was kept)\n",
-        report.duplicates, report.duplicates_changed);
+    text += fmt::format("{} dropped, {} of them with another price (the last one read was kept)\n",
+                        counted(report.duplicates, "duplicate row"), report.duplicates_changed);
   }
-  if (report.dual_priced > 0) {
-    text += fmt::format(
-        "{} quarter-hours have different prices for long and short: left without a "
-        "settled price\n",
-        report.dual_priced);
-  }
+  text += describe_dual_priced(report);
   if (report.settled_from_minutes) {
     text +=
         "no quarter-hour file was given: the settled price is the indicative one of minute 14, "

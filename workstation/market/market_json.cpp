@@ -7,6 +7,7 @@
 
 #include "workstation/io/user_error.h"
 #include "workstation/market/market_rows.h"
+#include "workstation/market/plain_text.h"
 
 namespace bess {
 namespace {
@@ -40,7 +41,7 @@ void parse_record(const cJSON* record, std::string_view place, MarketRows& rows)
       builder.set_number(*field, item->valuedouble);
     } else if (!cJSON_IsNull(item)) {
       fail("{}: \"{}\" has a value of the wrong kind; download the file again", place,
-           std::string_view(item->string).substr(0, 40));
+           one_line(item->string, 40));
     }
   }
   builder.finish(rows);

@@ -9,15 +9,15 @@
 #include "workstation/io/user_error.h"
 #include "workstation/market/entsoe_xml.h"
 #include "workstation/market/minute_series.h"
+#include "workstation/market/plain_text.h"
 
 namespace bess {
 namespace {
 
 using enum MarketField;
 
-/// Names without case and punctuation. The two directions' prices of the old datasets are equal in
-/// every row seen (13,650 of 13,650 in ods047), so one of them is enough.
-constexpr std::array<std::pair<std::string_view, MarketField>, 16> kFieldNames{{
+/// Names without case and punctuation.
+constexpr std::array<std::pair<std::string_view, MarketField>, 17> kFieldNames{{
     {"datetime", kTime},
     {"datetimeutc", kTime},
     {"resolutioncode", kResolution},
@@ -32,7 +32,8 @@ constexpr std::array<std::pair<std::string_view, MarketField>, 16> kFieldNames{{
     {"marginaldecrementalprice", kMarginalDecremental},
     {"mdpeurmwh", kMarginalDecremental},
     {"imbalanceprice", kPrice},
-    {"positiveimbalanceprice", kPrice},
+    {"positiveimbalanceprice", kPositivePrice},
+    {"negativeimbalanceprice", kNegativePrice},
     {"priceeurmwh", kPrice},
 }};
 
@@ -46,6 +47,8 @@ std::string plain_name(std::string_view label) {
   }
   return name;
 }
+
+constexpr std::size_t kQuotedMax = 40;
 
 bool is_absent(std::string_view text) {
   return text.empty() || text == "null" || text == "NaN" || text == "nan";
@@ -73,7 +76,7 @@ void MarketRowBuilder::set_text(MarketField field, std::string_view text) {
       fail(
           "{}: \"{}\" is not a time with its UTC offset, e.g. 2023-01-31T00:15:00+01:00; export "
           "the file again with time zone UTC",
-          place_, text.substr(0, 40));
+          place_, one_line(text, kQuotedMax));
     }
     utc_s_ = utc_s;
   } else {
@@ -81,7 +84,8 @@ void MarketRowBuilder::set_text(MarketField field, std::string_view text) {
     const char* text_end = text.data() + text.size();
     const auto [end, error] = std::from_chars(text.data(), text_end, value);
     if (error != std::errc{} || end != text_end || !std::isfinite(value)) {
-      fail("{}: \"{}\" is not a number; mend the row or delete it", place_, text.substr(0, 40));
+      fail("{}: \"{}\" is not a number; mend the row or delete it", place_,
+           one_line(text, kQuotedMax));
     }
     set_number(field, value);
   }
@@ -94,6 +98,19 @@ void MarketRowBuilder::set_number(MarketField field, double value) {
   if (field == kMarginalIncremental) values_.marginal_incremental_eur_per_mwh = value;
   if (field == kMarginalDecremental) values_.marginal_decremental_eur_per_mwh = value;
   if (field == kPrice) values_.price_eur_per_mwh = value;
+  if (field == kPositivePrice) positive_eur_per_mwh_ = value;
+  if (field == kNegativePrice) negative_eur_per_mwh_ = value;
+}
+
+bool MarketRowBuilder::is_dual_priced() const {
+  return !is_published(values_.price_eur_per_mwh) && is_published(positive_eur_per_mwh_) &&
+         is_published(negative_eur_per_mwh_) && positive_eur_per_mwh_ != negative_eur_per_mwh_;
+}
+
+double MarketRowBuilder::single_price() const {
+  if (is_published(values_.price_eur_per_mwh)) return values_.price_eur_per_mwh;
+  if (is_dual_priced()) return kNotPublished;
+  return is_published(positive_eur_per_mwh_) ? positive_eur_per_mwh_ : negative_eur_per_mwh_;
 }
 
 bool MarketRowBuilder::is_minute() const {
@@ -101,7 +118,7 @@ bool MarketRowBuilder::is_minute() const {
   if (resolution_ == "PT15M") return false;
   if (resolution_.empty()) return has_quarter_hour_;  // tidy files carry no code
   fail("{}: resolution \"{}\" is neither PT1M nor PT15M; use the imbalance price datasets", place_,
-       resolution_.substr(0, 20));
+       one_line(resolution_, 20));
 }
 
 void MarketRowBuilder::finish(MarketRows& rows) const {
@@ -112,16 +129,33 @@ void MarketRowBuilder::finish(MarketRows& rows) const {
          minute ? "minute" : "quarter-hour");
   }
   if (minute) {
-    rows.minutes.push_back({*utc_s_, values_.price_eur_per_mwh});
+    rows.minutes.push_back({*utc_s_, single_price()});
   } else {
     rows.quarter_hours.push_back(values_);
     rows.quarter_hours.back().utc_s = *utc_s_;
+    rows.quarter_hours.back().price_eur_per_mwh = single_price();
   }
+  if (is_dual_priced()) {
+    (minute ? rows.dual_priced_minutes : rows.dual_priced_quarter_hours).insert(*utc_s_);
+  }
+  // Every dataset of Elia's has the resolution code, no tidy file does.
+  rows.sources.insert(resolution_.empty() ? MarketSource::kUnknown : MarketSource::kElia);
+}
+
+void append_rows(MarketRows& all, const MarketRows& rows) {
+  all.minutes.insert(all.minutes.end(), rows.minutes.begin(), rows.minutes.end());
+  all.quarter_hours.insert(all.quarter_hours.end(), rows.quarter_hours.begin(),
+                           rows.quarter_hours.end());
+  const auto unite = [](auto& all_values, const auto& values) {
+    all_values.insert(values.begin(), values.end());
+  };
+  unite(all.dual_priced_minutes, rows.dual_priced_minutes);
+  unite(all.dual_priced_quarter_hours, rows.dual_priced_quarter_hours);
+  unite(all.sources, rows.sources);
 }
 
 MarketRows parse_market_text(std::string_view text, std::string_view name) {
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  text = plain_text(text, name);
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   if (first == std::string_view::npos) fail("{}: the file is empty; download it again", name);
   if (looks_like_xml(text)) return parse_entsoe_xml(text, name);

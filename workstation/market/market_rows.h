@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <vector>
 
@@ -20,12 +21,22 @@ struct MinuteRow {
   double indicative_eur_per_mwh;  ///< NaN = the TSO published the row without a price
 };
 
+enum class MarketSource {
+  kElia,
+  kEntsoe,
+  kUnknown,  ///< tidy files do not say where they come from
+};
+
 /// In the order of the files; duplicates and disorder are the business of join_market().
 struct MarketRows {
   std::vector<MinuteRow> minutes;
   std::vector<QuarterHour> quarter_hours;
-  std::size_t dual_priced = 0;  ///< quarter-hours that lost their price because it was not one
+  /// Times of the rows that lost their price because it was not one.
+  std::set<std::int64_t> dual_priced_minutes{}, dual_priced_quarter_hours{};
+  std::set<MarketSource> sources{};
 };
+
+void append_rows(MarketRows& all, const MarketRows& rows);
 
 enum class MarketField {
   kTime,
@@ -36,6 +47,8 @@ enum class MarketField {
   kMarginalIncremental,
   kMarginalDecremental,
   kPrice,
+  kPositivePrice,  ///< of a long party; the datasets until May 2024 have the two instead of one
+  kNegativePrice,  ///< of a short party
 };
 
 /// Field of a column label or JSON key; nothing for those that are not needed.
@@ -53,9 +66,12 @@ class MarketRowBuilder {
 
  private:
   [[nodiscard]] bool is_minute() const;
+  [[nodiscard]] bool is_dual_priced() const;
+  [[nodiscard]] double single_price() const;
 
   std::string_view place_;
   QuarterHour values_;
+  double positive_eur_per_mwh_ = kNotPublished, negative_eur_per_mwh_ = kNotPublished;
   std::optional<std::int64_t> utc_s_;
   std::string_view resolution_;
   bool has_quarter_hour_ = false;

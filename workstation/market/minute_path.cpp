@@ -5,6 +5,7 @@
 
 #include "workstation/market/imbalance_price.h"
 #include "workstation/market/market_parameters.h"
+#include "workstation/market/price_rounding.h"
 
 namespace bess {
 
@@ -68,8 +69,10 @@ MinutePrices MinutePathGenerator::next(const QuarterHour& quarter_hour) {
   const auto price_of = [&](int m, double previous_mw) {
     return imbalance_price_eur_per_mwh({imbalance[m], previous_mw, incremental[m], decremental[m]});
   };
-  // What the formula leaves unexplained at the end: rounding in 2023, dead band and alpha' later.
-  const double unexplained = settled - price_of(kMinutesPerQuarterHour - 1, previous_imbalance_mw_);
+  // What the formula leaves unexplained at the end: dead band and alpha' since 2024. Less than a
+  // cent's rounding is none.
+  const double by_formula = price_of(kMinutesPerQuarterHour - 1, previous_imbalance_mw_);
+  const double unexplained = in_cents(by_formula) == settled ? 0 : settled - by_formula;
   MinutePrices prices{};
   for (int m = 0; m < kMinutesPerQuarterHour; ++m) {
     prices[m] = price_of(m, m == 0 ? 0 : previous_imbalance_mw_);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <cmath>
@@ -11,6 +12,7 @@
 #include "workstation/io/file.h"
 #include "workstation/io/text.h"
 #include "workstation/io/user_error.h"
+#include "workstation/market/plain_text.h"
 
 namespace bess {
 namespace {
@@ -44,6 +46,13 @@ bool parse_offset(std::string_view text, int& offset_s) {
   return true;
 }
 
+/// Passes over ".123" where it stands.
+std::size_t after_fraction(std::string_view text, std::size_t at) {
+  if (at >= text.size() || text[at] != '.') return at;
+  const std::size_t end = std::min(text.find_first_not_of("0123456789", at + 1), text.size());
+  return end > at + 1 ? end : at;
+}
+
 /// A price field: empty = missing; anything else must be one finite number.
 bool parse_price(std::string_view field, double& value) {
   if (field.empty()) {
@@ -63,7 +72,7 @@ struct Row {
 Row parse_row(std::string_view line, std::string_view name, std::size_t line_number) {
   const auto bad = [&](std::string_view what) -> void {
     fail("{}:{}: {}: \"{}\"; expected e.g. 2023-01-01T00:00:00Z,10.71,-11.28", name, line_number,
-         what, line.substr(0, 80));
+         what, one_line(line, 80));
   };
   const std::size_t comma1 = line.find(',');
   const std::size_t comma2 = comma1 == line.npos ? line.npos : line.find(',', comma1 + 1);
@@ -114,7 +123,7 @@ bool parse_utc(std::string_view text, std::int64_t& utc_s) {
   std::size_t at = 16;
   if (at < text.size() && text[at] == ':') {
     if (!parse_digits(text, at + 1, 2, t.second)) return false;
-    at += 3;
+    at = after_fraction(text, at + 3);
   }
   int offset_s = 0;
   if (at >= text.size() || !parse_offset(text.substr(at), offset_s)) return false;
@@ -131,6 +140,7 @@ std::string format_utc(std::int64_t utc_s) {
 }
 
 MinuteSeries parse_minute_csv(std::string_view text, std::string_view name) {
+  text = plain_text(text, name);
   MinuteSeries series;
   std::size_t line_number = 0;
   bool header_seen = false;
@@ -167,7 +177,7 @@ std::string format_minute_csv(const MinuteSeries& series, std::string_view prove
   while (!provenance.empty()) fmt::format_to(fmt::appender(out), "# {}\n", take_line(provenance));
   fmt::format_to(fmt::appender(out), "{}\n", kHeader);
   const auto append_price = [&out](double price) {
-    if (!std::isnan(price)) fmt::format_to(fmt::appender(out), "{:.2f}", price);
+    if (!std::isnan(price)) fmt::format_to(fmt::appender(out), "{}", price);
   };
   for (std::size_t m = 0; m < series.size(); ++m) {
     if (std::isnan(series.indicative[m]) && std::isnan(series.settled[m])) continue;

@@ -28,7 +28,7 @@ struct MinuteSeries {
 MinuteSeries parse_minute_csv(std::string_view text, std::string_view name);
 MinuteSeries read_minute_file(const std::filesystem::path& path);
 
-/// CSV text of a series, prices with two decimals; minutes without any price are left out.
+/// CSV text of a series, each price in the shortest form that reads back to it; minutes without any price are left out.
 /// `provenance` becomes # comment lines at the head (one per line of the string, may be empty).
 std::string format_minute_csv(const MinuteSeries& series, std::string_view provenance);
 void write_minute_file(const std::filesystem::path& path, const MinuteSeries& series,
@@ -36,7 +36,8 @@ void write_minute_file(const std::filesystem::path& path, const MinuteSeries& se
 
 /// "2023-01-01T00:00:00Z".
 std::string format_utc(std::int64_t utc_s);
-/// Accepts YYYY-MM-DDTHH:MM[:SS] followed by Z or +hh:mm; false when malformed or out of range.
+/// Accepts YYYY-MM-DDTHH:MM[:SS] followed by Z or +hh:mm; a fraction of the second is
+/// passed over. False when malformed or out of range.
 bool parse_utc(std::string_view text, std::int64_t& utc_s);
 
 }  // namespace bess

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "workstation/market/minute_path.h"
+#include "workstation/market/price_rounding.h"
 
 namespace bess {
 namespace {
@@ -54,7 +55,8 @@ MinuteSeries minutes_on_quarter_hours(const std::vector<QuarterHour>& quarter_ho
     std::fill_n(series.settled.begin() + first, kMinutesPerQuarterHour,
                 quarter_hour.price_eur_per_mwh);
     if (!is_published(quarter_hour.system_imbalance_mw)) continue;
-    const MinutePrices prices = generator.next(quarter_hour);
+    MinutePrices prices = generator.next(quarter_hour);
+    std::transform(prices.begin(), prices.end() - 1, prices.begin(), in_cents);
     std::copy(prices.begin(), prices.end(), series.indicative.begin() + first);
   }
   return series;

@@ -5,6 +5,7 @@
 
 #include "workstation/market/imbalance_price.h"
 #include "workstation/market/market_scores.h"
+#include "workstation/market/price_rounding.h"
 
 namespace bess {
 namespace {
@@ -118,7 +119,7 @@ void YearSimulator::settle(std::vector<QuarterHour>& year) {
                                quarter_hour.marginal_incremental_eur_per_mwh,
                                quarter_hour.marginal_decremental_eur_per_mwh};
     quarter_hour.alpha_eur_per_mwh = alpha_eur_per_mwh(state);
-    quarter_hour.price_eur_per_mwh = imbalance_price_eur_per_mwh(state);
+    quarter_hour.price_eur_per_mwh = in_cents(imbalance_price_eur_per_mwh(state));
     last_imbalance_mw_ = quarter_hour.system_imbalance_mw;
   }
 }

@@ -1,5 +1,5 @@
 // A simulated imbalance market of Belgium's 2023 kind: quarter-hours with system imbalance,
-// marginal prices and the settled price by the exact formula. What it is made of:
+// marginal prices and the settled price by the exact formula, in whole cents. What it is made of:
 // market_parameters.h.
 #pragma once
 

@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "workstation/io/file.h"
 #include "workstation/io/gnuplot.h"
 #include "workstation/io/user_error.h"
 
@@ -75,8 +76,18 @@ std::string gnuplot_script(const fs::path& output, const MarketStatistics& stati
   return script + "unset multiplot\n";
 }
 
+void require_drawable(const fs::path& path) {
+  (void)terminal_for(path);
+  require_writable(path);
+}
+
 void plot_statistics(const fs::path& path, const MarketStatistics& statistics,
                      std::span<const double> settled) {
+  require_drawable(path);
+  if (histogram_data(settled).empty()) {
+    fail("{}: nothing to draw: no settled price from {} to {} EUR/MWh", path.string(),
+         kShownMinEurPerMwh, kShownMaxEurPerMwh);
+  }
   draw_with_gnuplot(
       path, [&](const fs::path& output) { return gnuplot_script(output, statistics, settled); });
 }

@@ -6,11 +6,14 @@
 #include <cmath>
 #include <memory>
 
+#include "workstation/market/plain_text.h"
+
 namespace bess {
 namespace {
 
 std::string format_price_text(const PriceStatistics& price) {
-  std::string text = fmt::format("settled price, EUR/MWh, {} quarter-hours\n", price.count);
+  std::string text =
+      fmt::format("settled price, EUR/MWh, {}\n", counted(price.count, "quarter-hour"));
   if (price.count == 0) return text;
   text += fmt::format(
       "  mean {:.2f}  minimum {:.2f}  quartiles {:.2f} / {:.2f} / {:.2f}  maximum {:.2f}\n",
@@ -20,7 +23,9 @@ std::string format_price_text(const PriceStatistics& price) {
                       100 * price.share_above_1000);
   text += "  autocorrelation";
   for (std::size_t i = 0; i < kAutocorrelationLags.size(); ++i) {
-    text += fmt::format("  lag {}: {:.2f}", kAutocorrelationLags[i], price.autocorrelation[i]);
+    const double value = price.autocorrelation[i];
+    text += fmt::format("  lag {}: {}", kAutocorrelationLags[i],
+                        std::isfinite(value) ? fmt::format("{:.2f}", value) : "-");
   }
   return text + fmt::format("\n  changes sign between {:.1f} % of quarter-hours\n",
                             100 * price.sign_flip_rate);

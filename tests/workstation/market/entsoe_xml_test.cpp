@@ -47,7 +47,8 @@ TEST(EntsoeXml, SinglePriceInBothCategories) {
   EXPECT_EQ(rows.quarter_hours[0].utc_s, 1'672'531'200);
   EXPECT_EQ(rows.quarter_hours[0].price_eur_per_mwh, -11.28);
   EXPECT_EQ(rows.quarter_hours[2].utc_s, 1'672'531'200 + 2700);  // position 3 is a gap
-  EXPECT_EQ(rows.dual_priced, 0u);
+  EXPECT_TRUE(rows.dual_priced_quarter_hours.empty());
+  EXPECT_THAT(rows.sources, testing::ElementsAre(MarketSource::kEntsoe));
 }
 
 TEST(EntsoeXml, CurveTypeA03RepeatsThePointBefore) {
@@ -67,7 +68,7 @@ TEST(EntsoeXml, TwoPricesAreNotOne) {
       parse_market_text(document(point(1, "3", "A04") + point(1, "9", "A05")), "a85.xml");
   ASSERT_EQ(rows.quarter_hours.size(), 1u);
   EXPECT_TRUE(std::isnan(rows.quarter_hours[0].price_eur_per_mwh));
-  EXPECT_EQ(rows.dual_priced, 1u);
+  EXPECT_EQ(rows.dual_priced_quarter_hours.size(), 1u);
 }
 
 TEST(EntsoeXml, BadDocumentsAreOneClearLine) {
@@ -75,13 +76,40 @@ TEST(EntsoeXml, BadDocumentsAreOneClearLine) {
     return user_error_of([&] { (void)parse_market_text(text, "f.xml"); });
   };
   const std::string good = document(point(1, "3", "A04"));
-  EXPECT_THAT(error_of("<html><body>x</body></html>"), HasSubstr("not an ENTSO-E"));
+  EXPECT_THAT(error_of("<html><body>x</body></html>"), HasSubstr("f.xml: a web page, not data"));
+  EXPECT_THAT(error_of("<Publication_MarketDocument/><a>"), HasSubstr("not an ENTSO-E"));
   EXPECT_THAT(error_of(good.substr(0, good.size() - 40)), HasSubstr("cut short"));
   EXPECT_THAT(error_of(document(point(1, "x", "A04"))), HasSubstr("\"x\" is not a number"));
   EXPECT_THAT(error_of(document(point(5, "3", "A04"))), HasSubstr("outside its period"));
   EXPECT_THAT(error_of(document(point(0, "3", "A04"))), HasSubstr("start at 1"));
   EXPECT_THAT(error_of(document(point(1, "3", "A04"), "A01", "P1Y")), HasSubstr("\"P1Y\""));
   EXPECT_THAT(error_of(document("")), HasSubstr("no imbalance prices"));
+}
+
+TEST(EntsoeXml, OtherUnitsAreRefused) {
+  const auto with = [](const std::string& currency, const std::string& energy) {
+    std::string text = document(point(1, "3", "A04"));
+    return text.insert(text.find("<Period>"),
+                       "<currency_Unit.name>" + currency + "</currency_Unit.name>" +
+                           "<price_Measure_Unit.name>" + energy + "</price_Measure_Unit.name>");
+  };
+  const auto error_of = [](const std::string& text) {
+    return user_error_of([&] { (void)parse_market_text(text, "f.xml"); });
+  };
+  EXPECT_THAT(prices(with("EUR", "MWH")), testing::ElementsAre(3));
+  EXPECT_THAT(error_of(with("BGN", "MWH")), HasSubstr("\"BGN\" where EUR"));
+  EXPECT_THAT(error_of(with("EUR", "KWH")), HasSubstr("\"KWH\" where MWH"));
+}
+
+TEST(EntsoeXml, AnAcknowledgementTellsItsReason) {
+  EXPECT_THAT(user_error_of([] {
+                (void)parse_market_text(
+                    "<?xml version=\"1.0\"?><Acknowledgement_MarketDocument xmlns=\"x\"><Reason>"
+                    "<code>999</code><text>No matching\n data found</text></Reason>"
+                    "</Acknowledgement_MarketDocument>",
+                    "f.xml");
+              }),
+              HasSubstr("f.xml: ENTSO-E sent no prices but a reason: \"No matching data found\""));
 }
 
 TEST(EntsoeXml, MinutesAreDrawnWithoutAPublishedImbalance) {

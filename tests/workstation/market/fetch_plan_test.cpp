@@ -32,10 +32,18 @@ TEST(FetchPlan, CutsByMonthAndChangesDatasetsOn22May2024) {
 
 TEST(FetchPlan, TodayHasItsOwnDatasetsAndTomorrowNone) {
   EXPECT_THAT(described({{2025, 6, 14}, {2025, 7, 31}}),
-              testing::ElementsAre("ods133 2025-06-13T22 2025-06-14T22",
-                                   "ods134 2025-06-13T22 2025-06-14T22",
+              testing::ElementsAre("ods133 2025-06-13T22 2025-06-14T22 later",
+                                   "ods134 2025-06-13T22 2025-06-14T22 later",
                                    "ods161 2025-06-14T22 2025-06-15T22 later",
                                    "ods162 2025-06-14T22 2025-06-15T22 later"));
+}
+
+TEST(FetchPlan, DaysThatMayStillBeFillingAreAWindowOfTheirOwn) {
+  EXPECT_THAT(described({{2025, 6, 1}, {2025, 6, 14}}),
+              testing::ElementsAre("ods133 2025-05-31T22 2025-06-12T22",
+                                   "ods134 2025-05-31T22 2025-06-12T22",
+                                   "ods133 2025-06-12T22 2025-06-14T22 later",
+                                   "ods134 2025-06-12T22 2025-06-14T22 later"));
 }
 
 TEST(FetchPlan, AYearIsTwelveWindowsOfEachKind) {
@@ -62,6 +70,11 @@ TEST(WaitSeconds, EveryFormServersUse) {
   EXPECT_EQ(wait_seconds("-5", kNow_s), 0);
   EXPECT_EQ(wait_seconds("soon", kNow_s), std::nullopt);
   EXPECT_EQ(wait_seconds("", kNow_s), std::nullopt);
+}
+
+TEST(Redirects, NeverLeadFromHttpsToHttp) {
+  EXPECT_STREQ(redirect_protocols("https://opendata.elia.be/api"), "https");
+  EXPECT_STREQ(redirect_protocols("http://127.0.0.1:8080/api"), "http,https");
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 
 #include "tests/workstation/market/market_test_support.h"
 #include "workstation/io/file.h"
+#include "workstation/market/market_files.h"
+#include "workstation/market/plain_text.h"
 
 namespace bess {
 namespace {
@@ -71,11 +73,90 @@ TEST(MarketCsv, TidyCommaFilesAndQuotes) {
   ASSERT_EQ(minutes.minutes.size(), 1u);
 }
 
+TEST(MarketCsv, TwoDifferentPricesAreNotOne) {
+  const MarketRows rows = parse_market_text(
+      "datetime;resolutioncode;positiveimbalanceprice;negativeimbalanceprice\n"
+      "2023-01-01T00:00:00Z;PT15M;10;60\n"
+      "2023-01-01T00:15:00Z;PT15M;10;10\n"
+      "2023-01-01T00:30:00Z;PT15M;;20\n"
+      "2023-01-01T00:45:00Z;PT15M;30;\n"
+      "2023-01-01T01:00:00Z;PT15M;;\n"
+      "2023-01-01T00:00:00Z;PT1M;1;2\n",
+      "ods047.csv");
+  ASSERT_EQ(rows.quarter_hours.size(), 5u);
+  EXPECT_TRUE(std::isnan(rows.quarter_hours[0].price_eur_per_mwh));
+  EXPECT_EQ(rows.quarter_hours[1].price_eur_per_mwh, 10);
+  EXPECT_EQ(rows.quarter_hours[2].price_eur_per_mwh, 20);
+  EXPECT_EQ(rows.quarter_hours[3].price_eur_per_mwh, 30);
+  EXPECT_TRUE(std::isnan(rows.quarter_hours[4].price_eur_per_mwh));
+  EXPECT_TRUE(std::isnan(rows.minutes.at(0).indicative_eur_per_mwh));
+  EXPECT_THAT(rows.dual_priced_quarter_hours, testing::ElementsAre(1'672'531'200));
+  EXPECT_THAT(rows.dual_priced_minutes, testing::ElementsAre(1'672'531'200));
+  const std::string text = describe_join(join_market(rows, "test"));
+  EXPECT_THAT(text, HasSubstr("1 quarter-hour with different prices for long and short"));
+  EXPECT_THAT(text, HasSubstr("1 minute with different prices for long and short"));
+}
+
+TEST(MarketJson, TwoDifferentPricesAreNotOne) {
+  const MarketRows rows =
+      parse_market_text(R"([{"datetime":"2023-01-01T00:00:00Z","resolutioncode":"PT15M",)"
+                        R"("positiveimbalanceprice":10,"negativeimbalanceprice":60},)"
+                        R"({"datetime":"2023-01-01T00:15:00Z","resolutioncode":"PT15M",)"
+                        R"("positiveimbalanceprice":null,"negativeimbalanceprice":60}])",
+                        "ods047.json");
+  ASSERT_EQ(rows.quarter_hours.size(), 2u);
+  EXPECT_TRUE(std::isnan(rows.quarter_hours[0].price_eur_per_mwh));
+  EXPECT_EQ(rows.quarter_hours[1].price_eur_per_mwh, 60);
+  EXPECT_EQ(rows.dual_priced_quarter_hours.size(), 1u);
+}
+
+TEST(MarketText, SaysWhoseDataItIs) {
+  EXPECT_THAT(parse_market_text("datetime;resolutioncode;imbalanceprice\n"
+                                "2025-01-01T00:00:00Z;PT15M;1\n",
+                                "elia.csv")
+                  .sources,
+              testing::ElementsAre(MarketSource::kElia));
+  EXPECT_THAT(
+      parse_market_text("datetime_utc,price_eur_mwh\n2025-01-01T00:00:00Z,1\n", "tidy.csv").sources,
+      testing::ElementsAre(MarketSource::kUnknown));
+  EXPECT_THAT(attribution_of({MarketSource::kEntsoe}),
+              testing::AllOf(HasSubstr("ENTSO-E"), testing::Not(HasSubstr("Elia"))));
+  EXPECT_THAT(attribution_of({MarketSource::kElia, MarketSource::kUnknown}),
+              testing::AllOf(HasSubstr("Elia, opendata.elia.be, CC BY 4.0"),
+                             HasSubstr("does not name its source")));
+}
+
+TEST(MarketText, WhatIsNoTextIsNamed) {
+  using namespace std::string_view_literals;
+  const auto error_of = [](std::string_view text) {
+    return user_error_of([&] { (void)parse_market_text(text, "f"); });
+  };
+  EXPECT_EQ(error_of("PK\x03\x04\x14\0\0"sv), "f: a ZIP archive: unzip it first");
+  EXPECT_EQ(error_of("\xFF\xFE"
+                     "d\0a\0"sv),
+            "f: UTF-16 text: save it as UTF-8");
+  EXPECT_THAT(error_of("d\0a\0t\0e\0"sv), HasSubstr("UTF-16 text? save it as UTF-8"));
+  EXPECT_EQ(error_of(" \n<!DOCTYPE HTML><html>"),
+            "f: a web page, not data (maintenance or a proxy's log-in?)");
+}
+
+TEST(PlainText, MessagesStayOnOneLineAndQuiet) {
+  EXPECT_EQ(one_line("bad\x1b[31m where\r\n\n second \xC2\x9B line\n", 200),
+            "bad [31m where second line");
+  EXPECT_EQ(one_line("abcdef", 3), "abc");
+  EXPECT_EQ(one_line("ab\xC3\xA9", 3), "ab");  // no half characters
+  const std::string text = user_error_of([] {
+    (void)parse_market_text("datetime;imbalanceprice\n2025-01-01T00:00:00Z;\x1b[31m\n", "f");
+  });
+  EXPECT_THAT(text, testing::Not(HasSubstr("\x1b")));
+}
+
 TEST(MarketCsv, AlphaPrimeIsNotAlpha) {
   EXPECT_EQ(market_field_of("Alpha"), MarketField::kAlpha);
   EXPECT_EQ(market_field_of("Alpha'"), std::nullopt);
   EXPECT_EQ(market_field_of("alpha_prime"), std::nullopt);
   EXPECT_EQ(market_field_of("Imbalance Price"), MarketField::kPrice);
+  EXPECT_EQ(market_field_of("Negative imbalance price"), MarketField::kNegativePrice);
 }
 
 TEST(MarketJson, RecordsExportsAndVersion1) {

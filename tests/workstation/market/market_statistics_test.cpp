@@ -67,7 +67,9 @@ TEST(Statistics, TextAndJson) {
   series.indicative.assign(45, 90.0);
   series.indicative[20] = kNotPublished;
   const MarketStatistics result = statistics_of_minutes(series);
-  EXPECT_THAT(format_statistics_text(result), HasSubstr("indicative price: 1 gap, 1 minutes"));
+  EXPECT_THAT(format_statistics_text(result),
+              HasSubstr("indicative price: 1 gap, 1 minute missing"));
+  EXPECT_THAT(format_statistics_text(result), HasSubstr("lag 96: -"));  // not "nan"
   const std::string json = format_statistics_json(result);
   EXPECT_THAT(json, HasSubstr("\"median\":100"));
   EXPECT_THAT(json, HasSubstr("\"autocorrelation\":{\"1\":null"));  // a constant has none
@@ -85,20 +87,26 @@ TEST(Statistics, PictureIsWrittenOrTheReasonIsGiven) {
   const MarketStatistics statistics = statistics_of_minutes(series);
   EXPECT_THAT(user_error_of([&] { plot_statistics(folder / "p.gif", statistics, settled); }),
               HasSubstr("a picture is .svg or .png"));
+  EXPECT_THAT(user_error_of([&] {
+                plot_statistics(folder / "p.svg", statistics, std::vector{kNotPublished, 5000.0});
+              }),
+              HasSubstr("nothing to draw: no settled price from -600 to 1000"));
+  EXPECT_THAT(user_error_of([&] { require_drawable(folder / "p.pdf"); }),
+              HasSubstr((folder / "p.pdf").string()));
   if (std::system("command -v gnuplot > /dev/null 2>&1") != 0) {
     GTEST_SKIP() << "gnuplot is not installed";
   }
   plot_statistics(folder / "p.svg", statistics, settled);
   EXPECT_THAT(read_file(folder / "p.svg"), HasSubstr("<svg"));
-  EXPECT_THAT(user_error_of([&] { plot_statistics(folder / "none/p.svg", statistics, settled); }),
-              HasSubstr("gnuplot could not draw"));
+  plot_statistics(folder / "none/p.svg", statistics, settled);  // makes its folder
+  EXPECT_THAT(read_file(folder / "none/p.svg"), HasSubstr("<svg"));
 }
 
 TEST(Statistics, RealQuarterHoursOf2023) {
   const std::string sample = "elia_quarter_hour_2023-01_2023-05.csv.gz";
   BESS_SKIP_WITHOUT(sample);
-  const MarketStatistics result =
-      statistics_of_quarter_hours(read_quarter_hour_files({real_sample(sample).string()}));
+  const MarketStatistics result = statistics_of_quarter_hours(
+      read_quarter_hour_files({real_sample(sample).string()}).quarter_hours);
   EXPECT_EQ(result.price.count, 13'650u);
   EXPECT_NEAR(result.price.quartile_1, 34.84, 0.01);
   EXPECT_NEAR(result.price.median, 137.45, 0.01);

@@ -12,6 +12,7 @@
 #include "workstation/market/imbalance_price.h"
 #include "workstation/market/local_date.h"
 #include "workstation/market/market_statistics.h"
+#include "workstation/market/price_rounding.h"
 #include "workstation/market/quarter_hours_to_minutes.h"
 
 namespace bess {
@@ -94,11 +95,10 @@ TEST(SimulatedMarketYear, ObeysTheFormulaInEveryQuarterHour) {
   for (std::size_t i = 1; i < quarter_hours.size(); ++i) {
     const QuarterHour& row = quarter_hours[i];
     ASSERT_EQ(row.utc_s - quarter_hours[i - 1].utc_s, 900);
-    ASSERT_DOUBLE_EQ(
-        row.price_eur_per_mwh,
-        imbalance_price_eur_per_mwh(
-            {row.system_imbalance_mw, quarter_hours[i - 1].system_imbalance_mw,
-             row.marginal_incremental_eur_per_mwh, row.marginal_decremental_eur_per_mwh}));
+    ASSERT_EQ(row.price_eur_per_mwh,
+              in_cents(imbalance_price_eur_per_mwh(
+                  {row.system_imbalance_mw, quarter_hours[i - 1].system_imbalance_mw,
+                   row.marginal_incremental_eur_per_mwh, row.marginal_decremental_eur_per_mwh})));
   }
 }
 
