@@ -19,6 +19,7 @@ struct Options {
   std::string teacher;
   std::string out;
   std::string curve_out;
+  std::string risk = "mean";
   std::optional<double> omega;
   std::optional<int> epochs;
   bool plain = false;
@@ -49,7 +50,7 @@ void run(const Options& options) {
   if (options.epochs) config.distil.epochs = *options.epochs;
   config.distil.correct = !options.plain;
   require_writable(options.out);
-  const Teacher teacher = load_teacher(options.teacher);
+  const Teacher teacher = load_teacher(options.teacher, parse_risk(options.risk));
   const MarketSteps market = make_market_steps(read_minute_file(options.prices), config.market);
   watch_interruption();
   const Matrix visited = visited_inputs(teacher, market, config.battery, config.distil.seed);
@@ -62,7 +63,8 @@ void run(const Options& options) {
         "price_slope and soc_slope or [distil] repair_rounds",
         student.certificate.violations(), student.violations_by_round.size());
   }
-  save_student(options.out, student_file(student, config.distil, teacher.provenance));
+  const std::string risk = teacher.risk.is_mean() ? "" : ", risk " + options.risk;
+  save_student(options.out, student_file(student, config.distil, teacher.provenance + risk));
   if (!options.curve_out.empty()) write_file(options.curve_out, distil_curve_csv(student.curve));
   print_result(options, student);
 }
@@ -85,6 +87,11 @@ void add_distil_command(CLI::App& app) {
   command->add_option("--prices", options->prices, "Minute file (.csv or .csv.gz)")->required();
   command->add_option("--teacher", options->teacher, "Teacher file")->required();
   command->add_option("--out", options->out, "Student file to write")->required();
+  command
+      ->add_option("--risk", options->risk,
+                   "What of the teacher is distilled: mean, or cvar:ALPHA, the mean of the worst "
+                   "share ALPHA")
+      ->capture_default_str();
   command->add_option("--omega", options->omega, "Larger follows the teacher more closely");
   command->add_option("--epochs", options->epochs, "Before the first proof")
       ->check(CLI::PositiveNumber);

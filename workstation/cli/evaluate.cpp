@@ -24,6 +24,7 @@ struct Options {
   std::string split = "test";
   std::string date;
   std::optional<int> fit_delay_min;
+  std::string risk = "mean";
   bool carry_soc = false;
   bool json = false;
   std::string csv;
@@ -169,7 +170,8 @@ struct Trial {
 NamedEvaluation evaluate_policy(const std::string& name, const Trial& trial, Records* records) {
   const Options& options = trial.options;
   const RunConfig& config = trial.config;
-  const std::shared_ptr<Policy> policy = make_policy(name, trial.fitting, config.battery);
+  const std::shared_ptr<Policy> policy =
+      make_policy(name, trial.fitting, config.battery, parse_risk(options.risk));
   NamedEvaluation named{name, {}, {}, policy->description()};
   const bool wants_steps = records != nullptr && !options.steps_out.empty();
   for (const bool carry_soc : {false, true}) {
@@ -247,6 +249,10 @@ void add_evaluate_command(CLI::App& app) {
                    "Delay at which rbc-quartile, rbc-tuned, tabular and mpc are fitted (default: "
                    "--delay)")
       ->check(CLI::Range(0, 5));
+  command
+      ->add_option("--risk", options->risk,
+                   "A c51 teacher's choice: mean, or cvar:ALPHA, the mean of the worst share ALPHA")
+      ->capture_default_str();
   command->add_option("--days-out", options->days_out, "CSV of every policy's days");
   command->add_option("--steps-out", options->steps_out, "CSV of every policy's steps");
   command->footer(
@@ -258,7 +264,8 @@ void add_evaluate_command(CLI::App& app) {
       "  bess-train evaluate --prices market.csv.gz --policy runs/a/student.json --split all "
       "--carry-soc --json\n"
       "  bess-train evaluate --prices market.csv.gz --policy compiled --date widest --steps-out "
-      "day.csv");
+      "day.csv\n"
+      "  bess-train evaluate --prices market.csv.gz --policy teacher.bin --risk cvar:0.1");
   command->callback([options] { run(*options); });
 }
 

@@ -36,12 +36,12 @@ std::shared_ptr<Policy> student_policy(StudentFile student) {
       std::move(student), [](const StudentFile& file) -> const StudentNet& { return file.net; });
 }
 
-std::shared_ptr<Policy> model_policy(const std::string& path) {
+std::shared_ptr<Policy> model_policy(const std::string& path, const Risk& risk) {
   if (!std::filesystem::exists(path)) {
     fail("--policy {}: neither a file nor one of: {}", path, kPolicyHelp);
   }
   if (is_teacher_file(path)) {
-    return owning<Teacher, TeacherPolicy>(load_teacher(path),
+    return owning<Teacher, TeacherPolicy>(load_teacher(path, risk),
                                           [](const Teacher& t) -> const Teacher& { return t; });
   }
   return student_policy(load_student(path));
@@ -99,7 +99,7 @@ std::pair<double, double> training_quartiles(const MarketSteps& market) {
 }
 
 std::shared_ptr<Policy> make_policy(const std::string& name, const MarketSteps& market,
-                                    const BatteryParameters& battery) {
+                                    const BatteryParameters& battery, const Risk& risk) {
   if (name == "rbc") {
     return std::make_shared<RuleBasedPolicy>(kPaperRuleLowEurPerMwh, kPaperRuleHighEurPerMwh);
   }
@@ -120,7 +120,7 @@ std::shared_ptr<Policy> make_policy(const std::string& name, const MarketSteps& 
   }
   if (name == "foresight") return std::make_shared<ForesightPolicy>(battery);
   if (name == "compiled") return student_policy(compiled_student());
-  return model_policy(name);
+  return model_policy(name, risk);
 }
 
 }  // namespace bess

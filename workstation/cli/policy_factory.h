@@ -6,6 +6,7 @@
 
 #include "workstation/cli/run_config.h"
 #include "workstation/env/policy.h"
+#include "workstation/rl/risk.h"
 
 namespace bess {
 
@@ -18,7 +19,7 @@ inline constexpr const char* kPolicyHelp =
 /// A policy with whatever it is made of; the baselines that are fitted are fitted on the training
 /// days of `market`, which may differ in its delay from the market they run on. Throws UserError for an unknown name or an unreadable file.
 std::shared_ptr<Policy> make_policy(const std::string& name, const MarketSteps& market,
-                                    const BatteryParameters& battery);
+                                    const BatteryParameters& battery, const Risk& risk = {});
 
 /// Quartiles of the training days' settled prices: the rule without look-ahead.
 std::pair<double, double> training_quartiles(const MarketSteps& market);

@@ -97,7 +97,8 @@ Matrix Teacher::action_values(const MatrixRef& x, MlpTile& tile) const {
   Matrix z;
   forward_hidden(mlp, x, tile);
   forward_head(mlp, tile, z);
-  return method == Method::kC51 ? mean_values(support, z) : z;
+  if (method == Method::kDqn) return z;
+  return risk.is_mean() ? mean_values(support, z) : risk_values(support, z, risk);
 }
 
 Action TeacherPolicy::decide(const MarketStep& step, std::size_t, double soc_frac) const {
@@ -162,6 +163,18 @@ Teacher load_teacher(const std::filesystem::path& path) {
   in.take_bytes(parameters.data(), sizeof(float) * parameters.size());
   if (!in.empty()) fail("{}: teacher file has trailing bytes; train again", name);
   return {method, support, shape, price_map, std::move(parameters), std::move(provenance)};
+}
+
+Teacher load_teacher(const std::filesystem::path& path, const Risk& risk) {
+  Teacher teacher = load_teacher(path);
+  if (teacher.method == Method::kDqn && !risk.is_mean()) {
+    fail(
+        "{}: a dqn teacher knows means only, not how returns are distributed; train a c51 one for "
+        "--risk",
+        path.string());
+  }
+  teacher.risk = risk;
+  return teacher;
 }
 
 }  // namespace bess

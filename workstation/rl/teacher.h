@@ -11,6 +11,7 @@
 #include "workstation/nn/mlp.h"
 #include "workstation/rl/network_input.h"
 #include "workstation/rl/price_map.h"
+#include "workstation/rl/risk.h"
 #include "workstation/rl/support.h"
 
 namespace bess {
@@ -26,8 +27,10 @@ struct Teacher {
   PriceMap price_map;
   Parameters parameters;
   std::string provenance;  ///< one line: prices, seed, steps
+  Risk risk{};             ///< how decisions are made; not part of the file
 
-  /// Expected action values [3 x samples] in units of 1e4 EUR/h for inputs [5 x samples].
+  /// Action values, means unless `risk` says otherwise, [3 x samples] in units of 1e4 EUR/h for
+  /// inputs [5 x samples].
   [[nodiscard]] Matrix action_values(const MatrixRef& x, MlpTile& tile) const;
 };
 
@@ -40,8 +43,11 @@ void save_teacher(const std::filesystem::path& path, const Teacher& teacher);
 Teacher load_teacher(const std::filesystem::path& path);
 /// True when the file starts like a teacher's.
 bool is_teacher_file(const std::filesystem::path& path);
+/// load_teacher() that decides by `risk`. Throws UserError when that is not the mean and the teacher
+/// knows nothing else.
+Teacher load_teacher(const std::filesystem::path& path, const Risk& risk);
 
-/// Greedy by expected value, ties to the lowest action.
+/// Greedy by action value, ties to the lowest action.
 class TeacherPolicy final : public Policy {
  public:
   explicit TeacherPolicy(const Teacher& teacher) : teacher_(teacher), x_(kNetworkInputs, 1) {}
