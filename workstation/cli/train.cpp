@@ -3,16 +3,23 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
 #include <memory>
 
+#include "shared/crc32.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
+#include "workstation/env/evaluate.h"
 #include "workstation/io/file.h"
 #include "workstation/io/user_error.h"
 #include "workstation/report/curves.h"
 
 namespace bess {
 namespace {
+
+namespace fs = std::filesystem;
 
 struct Options {
   CommonOptions common;
@@ -21,35 +28,164 @@ struct Options {
   std::string curve_out;
   std::optional<std::string> method;
   std::optional<long> steps;
+  int seeds = 1;
+  bool resume = false;
   bool json = false;
 };
+
+/// What one seed led to. Money in EUR per day per MWh.
+struct SeedResult {
+  std::uint64_t seed;
+  TrainResult training;
+  Evaluation test, test_carried;
+};
+
+struct MeanAndSpread {
+  double mean = 0, deviation = 0;
+};
+
+MeanAndSpread mean_and_spread(const std::vector<double>& values) {
+  MeanAndSpread result;
+  const auto n = static_cast<double>(values.size());
+  for (const double value : values) result.mean += value / n;
+  for (const double value : values) {
+    result.deviation += (value - result.mean) * (value - result.mean) / (n - 1);
+  }
+  result.deviation = std::sqrt(result.deviation);
+  return result;
+}
+
+fs::path checkpoint_path(const fs::path& out) { return out.string() + ".checkpoint"; }
+fs::path seed_path(const fs::path& out, std::uint64_t seed) {
+  fs::path path = out;
+  return path.replace_extension(fmt::format(".seed{}{}", seed, out.extension().string()));
+}
+
+/// All that the weights depend on; a checkpoint is good for one of these only.
+std::string identity_of(const RunConfig& config, const MinuteSeries& series) {
+  Crc32 prices;
+  prices.add_bytes(series.indicative.data(), sizeof(double) * series.size());
+  prices.add_bytes(series.settled.data(), sizeof(double) * series.size());
+  return fmt::format("bess-train {} seed {} threads {} prices {:08x} from {}\n{}", BESS_VERSION,
+                     config.train.seed, config.train.threads, prices.value(), series.start_utc_s,
+                     format_run_config(config));
+}
+
+std::string result_json(const std::string& out, Method method, const TrainResult& result) {
+  return fmt::format(R"({{"teacher": {}, "method": "{}", "steps": {}, "best_step": {}, )"
+                     R"("validation_eur_per_day_per_mwh": {:.4f}, "seconds": {:.2f}}})"
+                     "\n",
+                     json_quote(out), method_name(method), result.curve.back().step,
+                     result.best_step, result.best_validation_eur_per_day_per_mwh, result.seconds);
+}
+
+/// Trains with the configuration's seed, keeping a checkpoint beside `out` until the end.
+TrainResult train_one(const fs::path& out, const Options& options, const RunConfig& config,
+                      const MinuteSeries& series, const MarketSteps& market) {
+  const CheckpointOptions checkpoint{checkpoint_path(out), options.resume,
+                                     identity_of(config, series)};
+  TrainResult result =
+      train_teacher(market, config.battery, config.train, interruption(), checkpoint);
+  result.teacher.provenance = training_provenance(options.prices, config.train, result);
+  if (!result.curve.empty()) {
+    save_teacher(out, result.teacher);
+    if (!options.curve_out.empty()) write_file(options.curve_out, training_curve_csv(result.curve));
+  }
+  if (interruption()) {
+    fmt::print(stderr, "{} holds the run: the same command with --resume goes on\n",
+               checkpoint.path.string());
+    throw Interrupted{};
+  }
+  std::error_code error;
+  fs::remove(checkpoint.path, error);  // a leftover is only wasted space
+  warn_narrow_support(config.train, result);
+  return result;
+}
+
+void print_seeds(const std::vector<SeedResult>& results, const Options& options, Method method) {
+  const auto column = [&](auto figure) {
+    std::vector<double> values;
+    for (const SeedResult& r : results) values.push_back(figure(r));
+    return values;
+  };
+  const std::vector<double> validation =
+      column([](const SeedResult& r) { return r.training.best_validation_eur_per_day_per_mwh; });
+  const std::vector<double> test =
+      column([](const SeedResult& r) { return r.test.profit_eur_per_day_per_mwh(); });
+  const std::vector<double> carried =
+      column([](const SeedResult& r) { return r.test_carried.profit_eur_per_day_per_mwh(); });
+  if (options.json) {
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      fmt::print(R"({{"method": "{}", "seed": {}, "best_step": {}, )"
+                 R"("validation_eur_per_day_per_mwh": {:.4f}, "test_eur_per_day_per_mwh": {:.4f}, )"
+                 R"("test_carried_eur_per_day_per_mwh": {:.4f}, "seconds": {:.2f}}})"
+                 "\n",
+                 method_name(method), results[i].seed, results[i].training.best_step, validation[i],
+                 test[i], carried[i], results[i].training.seconds);
+    }
+    return;
+  }
+  fmt::print("{}, {} seeds; EUR per day per MWh of capacity\n", method_name(method),
+             results.size());
+  fmt::print("{:>9} {:>10} {:>11} {:>8} {:>13} {:>8}\n", "seed", "best step", "validation", "test",
+             "test carried", "seconds");
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    fmt::print("{:>9} {:>10} {:>11.1f} {:>8.1f} {:>13.1f} {:>8.0f}\n", results[i].seed,
+               results[i].training.best_step, validation[i], test[i], carried[i],
+               results[i].training.seconds);
+  }
+  const MeanAndSpread v = mean_and_spread(validation);
+  const MeanAndSpread t = mean_and_spread(test);
+  const MeanAndSpread c = mean_and_spread(carried);
+  fmt::print("{:>9} {:>10} {:>11.1f} {:>8.1f} {:>13.1f}\n", "mean", "", v.mean, t.mean, c.mean);
+  fmt::print("{:>9} {:>10} {:>11.1f} {:>8.1f} {:>13.1f}\n", "deviation", "", v.deviation,
+             t.deviation, c.deviation);
+}
+
+/// Several seeds: every teacher under its seed's name, the best on the validation days under `out`.
+void run_seeds(const Options& options, RunConfig config, const MinuteSeries& series,
+               const MarketSteps& market) {
+  const std::vector<MarketDay> test_days = market.days_of(Split::kTest);
+  std::vector<SeedResult> results;
+  for (int i = 0; i < options.seeds; ++i) {
+    if (i > 0) config.set_seed(config.train.seed + 1);
+    const fs::path out = seed_path(options.out, config.train.seed);
+    SeedResult result{config.train.seed, train_one(out, options, config, series, market), {}, {}};
+    TeacherPolicy policy(result.training.teacher);
+    result.test =
+        evaluate(market, test_days, policy, {config.battery, config.initial_soc_frac, false});
+    result.test_carried =
+        evaluate(market, test_days, policy, {config.battery, config.initial_soc_frac, true});
+    results.push_back(std::move(result));
+  }
+  const auto best = std::ranges::max_element(results, {}, [](const SeedResult& r) {
+    return r.training.best_validation_eur_per_day_per_mwh;
+  });
+  save_teacher(options.out, best->training.teacher);
+  print_seeds(results, options, config.train.method);
+  if (!options.json) {
+    fmt::print("{}: seed {}, the best on the validation days\n", options.out, best->seed);
+  }
+}
 
 void run(const Options& options) {
   RunConfig config = options.common.resolve();
   if (options.method) config.train.method = parse_method(*options.method);
   if (options.steps) config.train.steps = *options.steps;
   require_writable(options.out);
-  const MarketSteps market = make_market_steps(read_minute_file(options.prices), config.market);
+  const MinuteSeries series = read_minute_file(options.prices);
+  const MarketSteps market = make_market_steps(series, config.market);
   watch_interruption();
-  TrainResult result = train_teacher(market, config.battery, config.train, interruption());
-  if (result.curve.empty()) throw Interrupted{};  // nothing was validated yet, nothing to save
-  result.teacher.provenance = training_provenance(options.prices, config.train, result);
-  save_teacher(options.out, result.teacher);
-  if (!options.curve_out.empty()) write_file(options.curve_out, training_curve_csv(result.curve));
-  warn_narrow_support(config.train, result);
+  if (options.seeds > 1) return run_seeds(options, config, series, market);
+  const TrainResult result = train_one(options.out, options, config, series, market);
   if (options.json) {
-    fmt::print(R"({{"teacher": {}, "method": "{}", "steps": {}, "best_step": {}, )"
-               R"("validation_eur_per_day_per_mwh": {:.4f}, "seconds": {:.2f}}})"
-               "\n",
-               json_quote(options.out), method_name(config.train.method), result.curve.back().step,
-               result.best_step, result.best_validation_eur_per_day_per_mwh, result.seconds);
+    fmt::print("{}", result_json(options.out, config.train.method, result));
   } else {
     fmt::print("{}: {}, best at step {} of {}: {:.1f} EUR/day/MWh on validation days, {:.0f} s\n",
                options.out, method_name(config.train.method), result.best_step,
                result.curve.back().step, result.best_validation_eur_per_day_per_mwh,
                result.seconds);
   }
-  if (interruption()) throw Interrupted{};
 }
 
 }  // namespace
@@ -79,15 +215,25 @@ void add_train_command(CLI::App& app) {
       ->check(CLI::IsMember({"c51", "dqn"}));
   command->add_option("--steps", options->steps, "Gradient steps")->check(CLI::PositiveNumber);
   command->add_option("--curve-out", options->curve_out, "CSV of the learning curve");
-  command->add_flag("--json", options->json, "One JSON object");
+  command
+      ->add_option("--seeds", options->seeds,
+                   "Train this many, from --seed on; OUT is the best on the validation days, the "
+                   "others lie beside it")
+      ->check(CLI::Range(1, 1000));
+  command->add_flag("--resume", options->resume, "Go on from OUT.checkpoint, to the same weights")
+      ->excludes("--seeds");
+  command->add_flag("--json", options->json, "One JSON object; with --seeds one a line and seed");
   options->common.add_market(*command);
   options->common.add_config(*command);
   options->common.add_seed_and_threads(*command);
   command->footer(
-      "Ctrl-C saves the best so far and exits with 3.\n"
+      "Ctrl-C saves the best so far and a checkpoint, and exits with 3; --resume goes on from it.\n"
       "Examples:\n"
       "  bess-train train --prices market.csv.gz --out teacher.bin\n"
-      "  bess-train train --prices market.csv.gz --method dqn --seed 7 --out dqn.bin");
+      "  bess-train train --prices market.csv.gz --method dqn --seed 7 --out dqn.bin\n"
+      "  bess-train train --prices market.csv.gz --seeds 3 --out best.bin\n"
+      "  bess-train train --prices market.csv.gz --config workstation/config/paper.toml --out "
+      "paper.bin");
   command->callback([options] { run(*options); });
 }
 

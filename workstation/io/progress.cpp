@@ -12,10 +12,11 @@ constexpr std::chrono::milliseconds kTerminalInterval{250};
 constexpr std::chrono::milliseconds kLogInterval{10'000};
 }  // namespace
 
-Progress::Progress(std::string title, std::string unit, double total)
+Progress::Progress(std::string title, std::string unit, double total, double done_before)
     : title_(std::move(title)),
       unit_(std::move(unit)),
       total_(total),
+      done_before_(done_before),
       terminal_(isatty(STDERR_FILENO) == 1),
       next_(start_ + kQuietStart) {}
 
@@ -33,7 +34,7 @@ void Progress::update(double done, std::string_view note) {
 
 void Progress::print(double done, std::string_view note, bool last) {
   const double elapsed_s = std::chrono::duration<double>(Clock::now() - start_).count();
-  const double rate = elapsed_s > 0 ? done / elapsed_s : 0;
+  const double rate = elapsed_s > 0 ? (done - done_before_) / elapsed_s : 0;
   const double eta_s = rate > 0 ? (total_ - done) / rate : 0;
   const std::string time =
       last ? fmt::format("{:.0f} s", elapsed_s) : fmt::format("ETA {:.0f} s", eta_s);

@@ -11,8 +11,9 @@ namespace bess {
 
 class Progress {
  public:
-  /// `unit` is the plural noun that the rate counts, e.g. "steps".
-  Progress(std::string title, std::string unit, double total);
+  /// `unit` is the plural noun that the rate counts, e.g. "steps"; `done_before` were done by an
+  /// earlier run and do not count in it.
+  Progress(std::string title, std::string unit, double total, double done_before = 0);
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
   ~Progress();
@@ -27,6 +28,7 @@ class Progress {
   std::string title_;
   std::string unit_;
   double total_;
+  double done_before_;
   double done_ = 0;
   std::string note_;
   bool terminal_;

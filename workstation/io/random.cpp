@@ -1,6 +1,8 @@
 #include "workstation/io/random.h"
 
+#include <bit>
 #include <cmath>
+#include <sstream>
 
 namespace bess {
 
@@ -21,6 +23,20 @@ double Random::normal() {
   spare_ = v * scale;
   has_spare_ = true;
   return u * scale;
+}
+
+std::string Random::state() const {
+  std::ostringstream text;
+  text << engine_ << ' ' << std::bit_cast<std::uint64_t>(spare_) << ' ' << has_spare_;
+  return text.str();
+}
+
+bool Random::restore(const std::string& state) {
+  std::istringstream text(state);
+  std::uint64_t spare = 0;
+  text >> engine_ >> spare >> has_spare_;
+  spare_ = std::bit_cast<double>(spare);
+  return !text.fail();
 }
 
 }  // namespace bess

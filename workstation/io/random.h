@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <random>
+#include <string>
 
 namespace bess {
 
@@ -18,6 +19,10 @@ class Random {
   std::size_t index(std::size_t count) {
     return static_cast<std::size_t>((static_cast<Wide>(engine_()) * count) >> 64);
   }
+  /// Everything that the next numbers depend on, as text; and back. False when the text is not that.
+  [[nodiscard]] std::string state() const;
+  [[nodiscard]] bool restore(const std::string& state);
+
   /// Standard normal (Marsaglia and Bray 1964, polar method).
   double normal();
 

@@ -9,6 +9,8 @@
 
 #include <cstdint>
 
+#include "workstation/io/binary_file.h"
+
 namespace bess {
 
 using Matrix = Eigen::MatrixXf;
@@ -64,6 +66,14 @@ struct MlpTile {
 /// in
 /// +-1 with the kinks spread over the inputs' unit cube. Drawn from the named seed.
 Parameters initial_parameters(const MlpShape& shape, std::uint64_t seed);
+
+/// Parameters into and out of a file; the size is the reader's to know.
+inline void put_parameters(BinaryWriter& out, const Parameters& parameters) {
+  out.put_bytes(parameters.data(), sizeof(float) * static_cast<std::size_t>(parameters.size()));
+}
+inline void take_parameters(BinaryReader& in, Parameters& parameters) {
+  in.take_bytes(parameters.data(), sizeof(float) * static_cast<std::size_t>(parameters.size()));
+}
 
 /// h1 = relu(W1 x + b1), h2 = relu(W2 h1 + b2). x is [inputs x samples].
 void forward_hidden(const ConstMlp& mlp, const MatrixRef& x, MlpTile& tile);

@@ -86,4 +86,14 @@ Learner::StepResult Learner::step(const MiniBatch& batch, double learning_rate, 
   return result;
 }
 
+void Learner::save(BinaryWriter& out) const {
+  out.put(static_cast<std::int64_t>(adam_.step));
+  for (const Parameters* p : {&online_, &target_, &adam_.m, &adam_.v}) put_parameters(out, *p);
+}
+
+void Learner::restore(BinaryReader& in) {
+  adam_.step = in.take<std::int64_t>();
+  for (Parameters* p : {&online_, &target_, &adam_.m, &adam_.v}) take_parameters(in, *p);
+}
+
 }  // namespace bess

@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "workstation/io/binary_file.h"
 #include "workstation/nn/adam.h"
 #include "workstation/nn/thread_team.h"
 #include "workstation/rl/c51.h"
@@ -35,6 +36,10 @@ class Learner {
   [[nodiscard]] Parameters& target() { return target_; }
   [[nodiscard]] const Parameters& gradient() const { return gradient_; }
   [[nodiscard]] ThreadTeam& team() { return team_; }
+
+  /// Weights, target and Adam's moments: what the next step depends on.
+  void save(BinaryWriter& out) const;
+  void restore(BinaryReader& in);
 
  private:
   struct Worker {

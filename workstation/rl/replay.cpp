@@ -51,4 +51,18 @@ void Replay::draw(std::size_t count, Random& random, std::vector<const Transitio
   for (const Transition*& transition : out) transition = &ring_[random.index(ring_.size())];
 }
 
+void Replay::save(BinaryWriter& out) const {
+  out.put(static_cast<std::uint64_t>(next_));
+  out.put_list(ring_);
+}
+
+void Replay::restore(BinaryReader& in) {
+  next_ = in.take<std::uint64_t>();
+  ring_ = in.take_list<Transition>();
+  const bool full = ring_.size() == capacity_;
+  if (ring_.size() > capacity_ || (full ? next_ >= capacity_ : next_ != 0)) {
+    in.damaged("holds a replay ring of another size");
+  }
+}
+
 }  // namespace bess

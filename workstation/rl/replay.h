@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "workstation/io/binary_file.h"
 #include "workstation/rl/experience.h"
 #include "workstation/rl/teacher.h"
 
@@ -22,6 +23,10 @@ class Replay {
   void draw(std::size_t count, Random& random, std::vector<const Transition*>& out) const;
 
   [[nodiscard]] std::size_t size() const { return ring_.size(); }
+
+  void save(BinaryWriter& out) const;
+  /// Throws UserError when the ring in the file does not fit this one.
+  void restore(BinaryReader& in);
 
  private:
   void store(const Transition& transition);

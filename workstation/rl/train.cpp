@@ -44,6 +44,19 @@ class Experience {
     return batch_;
   }
 
+  void save(BinaryWriter& out) const {
+    for (const Random* random : {&experience_random_, &minibatch_random_}) {
+      out.put_text(random->state());
+    }
+    replay_.save(out);
+  }
+  void restore(BinaryReader& in) {
+    for (Random* random : {&experience_random_, &minibatch_random_}) {
+      if (!random->restore(in.take_text())) in.damaged("holds no state of the random numbers");
+    }
+    replay_.restore(in);
+  }
+
  private:
   [[nodiscard]] double epsilon(long step) const {
     const double progress =
@@ -92,65 +105,149 @@ double cosine_rate(const TrainOptions& options, long step) {
   return options.learning_rate_end + blend * (options.learning_rate - options.learning_rate_end);
 }
 
+constexpr std::string_view kCheckpointMagic = "BESSCKPT";
+constexpr std::uint32_t kCheckpointVersion = 1;
+
+/// One run of training, from the first step or from a checkpoint.
+class Training {
+ public:
+  Training(const MarketSteps& market, const BatteryParameters& battery, const TrainOptions& options)
+      : market_(market),
+        battery_(battery),
+        options_(options),
+        validation_(market.days_of(Split::kValidation)),
+        price_map_(PriceMap::fit(observed_training_prices(market))),
+        training_(market, price_map_, battery, options.horizon,
+                  fit_shaping(market, battery, options)),
+        support_{static_cast<float>(options.value_min_eur_per_h) * kRewardScale,
+                 static_cast<float>(options.value_max_eur_per_h) * kRewardScale, options.atoms},
+        learner_(options.method, support_, options.gamma, derive_seed(options.seed, kSeedWeights),
+                 options.threads, options.mean_weight),
+        experience_(training_, options),
+        current_{options.method, support_, learner_.shape(), price_map_, learner_.online(), "", {}},
+        average_(learner_.online()),
+        result_{current_, {}, -1e300, 0, 0} {}
+
+  void run(const std::atomic<bool>& interrupted, const CheckpointOptions& checkpoint) {
+    const auto start = std::chrono::steady_clock::now();
+    if (checkpoint.resume) restore(checkpoint);
+    Progress progress(fmt::format("train {}", method_name(options_.method)), "steps",
+                      static_cast<double>(options_.steps), static_cast<double>(step_));
+    while (step_ < options_.steps && !interrupted) {
+      const double loss = learn();
+      progress.update(
+          static_cast<double>(step_),
+          fmt::format(
+              "loss {:.4f}  validation {:.1f} EUR/day/MWh", loss,
+              result_.curve.empty() ? 0.0 : result_.curve.back().validation_eur_per_day_per_mwh));
+      if (step_ % options_.validate_every != 0 && step_ != options_.steps) continue;
+      validate();
+      if (!checkpoint.path.empty()) save(checkpoint);
+    }
+    if (interrupted && !checkpoint.path.empty()) save(checkpoint);
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+    result_.seconds += taken.count();
+  }
+  TrainResult take_result() { return std::move(result_); }
+
+ private:
+  /// One gradient step; returns its loss.
+  double learn() {
+    if (options_.source == Source::kReplay) current_.parameters = learner_.online();
+    const MiniBatch& batch = experience_.next(step_, current_);
+    const auto learned = learner_.step(batch, cosine_rate(options_, step_), options_.tau);
+    average_ += static_cast<float>(1 - options_.average_decay) * (learner_.online() - average_);
+    sums_.loss += learned.loss;
+    sums_.edge_mass_frac += learned.edge_mass_frac;
+    ++summed_;
+    ++step_;
+    return learned.loss;
+  }
+
+  /// Adds a point to the curve and keeps the averaged weights when they earn more than any before.
+  void validate() {
+    current_.parameters = average_;
+    TeacherPolicy policy(current_);
+    EvaluationOptions evaluation;
+    evaluation.battery = battery_;
+    const double profit =
+        evaluate(market_, validation_, policy, evaluation).profit_eur_per_day_per_mwh();
+    const auto n = static_cast<double>(summed_);
+    result_.curve.push_back({step_, sums_.loss / n, profit, sums_.edge_mass_frac / n});
+    sums_ = {0, 0};
+    summed_ = 0;
+    if (profit <= result_.best_validation_eur_per_day_per_mwh) return;
+    result_.best_validation_eur_per_day_per_mwh = profit;
+    result_.best_step = step_;
+    result_.teacher.parameters = average_;
+  }
+
+  void save(const CheckpointOptions& checkpoint) const {
+    BinaryWriter out(kCheckpointMagic, kCheckpointVersion);
+    out.put_text(checkpoint.identity);
+    out.put(static_cast<std::int64_t>(step_));
+    out.put(static_cast<std::int64_t>(summed_));
+    out.put(sums_);
+    learner_.save(out);
+    put_parameters(out, average_);
+    put_parameters(out, result_.teacher.parameters);
+    out.put(result_.best_validation_eur_per_day_per_mwh);
+    out.put(static_cast<std::int64_t>(result_.best_step));
+    out.put_list(result_.curve);
+    experience_.save(out);
+    out.save(checkpoint.path);
+  }
+
+  void restore(const CheckpointOptions& checkpoint) {
+    BinaryReader in(checkpoint.path, kCheckpointMagic, kCheckpointVersion, "checkpoint",
+                    "train anew, without --resume");
+    if (in.take_text() != checkpoint.identity) {
+      in.damaged("is of another run: its configuration, prices or seed differ");
+    }
+    step_ = in.take<std::int64_t>();
+    summed_ = in.take<std::int64_t>();
+    sums_ = in.take<Learner::StepResult>();
+    learner_.restore(in);
+    take_parameters(in, average_);
+    take_parameters(in, result_.teacher.parameters);
+    result_.best_validation_eur_per_day_per_mwh = in.take<double>();
+    result_.best_step = in.take<std::int64_t>();
+    result_.curve = in.take_list<CurvePoint>();
+    experience_.restore(in);
+    in.finish();
+  }
+
+  const MarketSteps& market_;
+  const BatteryParameters& battery_;
+  const TrainOptions& options_;
+  std::vector<MarketDay> validation_;
+  PriceMap price_map_;
+  TrainingMarket training_;
+  Support support_;
+  Learner learner_;
+  Experience experience_;
+  Teacher current_;     ///< whose weights act and are validated
+  Parameters average_;  ///< of the online weights
+  TrainResult result_;
+  Learner::StepResult sums_{0, 0};  ///< since the last validation
+  long summed_ = 0;
+  long step_ = 0;
+};
+
 }  // namespace
 
 TrainResult train_teacher(const MarketSteps& market, const BatteryParameters& battery,
-                          const TrainOptions& options, const std::atomic<bool>& interrupted) {
-  const auto start = std::chrono::steady_clock::now();
-  const std::vector<MarketDay> validation = market.days_of(Split::kValidation);
-  if (validation.empty())
+                          const TrainOptions& options, const std::atomic<bool>& interrupted,
+                          const CheckpointOptions& checkpoint) {
+  if (market.days_of(Split::kValidation).empty()) {
     fail("no validation days (local days 21 to 25) in these prices; add some");
+  }
   if (market.days_of(Split::kTrain).empty()) {
     fail("no training days (local days 1 to 20) in these prices; add some");
   }
-  const PriceMap price_map = PriceMap::fit(observed_training_prices(market));
-  const TrainingMarket training(market, price_map, battery, options.horizon,
-                                fit_shaping(market, battery, options));
-  const Support support{static_cast<float>(options.value_min_eur_per_h) * kRewardScale,
-                        static_cast<float>(options.value_max_eur_per_h) * kRewardScale,
-                        options.atoms};
-  Learner learner(options.method, support, options.gamma, derive_seed(options.seed, kSeedWeights),
-                  options.threads, options.mean_weight);
-  Experience experience(training, options);
-  Teacher current{options.method, support, learner.shape(), price_map, learner.online(), ""};
-  TrainResult result{current, {}, -1e300, 0, 0};
-  Parameters average = learner.online();
-  Progress progress(fmt::format("train {}", method_name(options.method)), "steps",
-                    static_cast<double>(options.steps));
-  Learner::StepResult sums{0, 0};
-  long summed = 0;
-  for (long step = 0; step < options.steps && !interrupted; ++step) {
-    if (options.source == Source::kReplay) current.parameters = learner.online();
-    const MiniBatch& batch = experience.next(step, current);
-    const auto learned = learner.step(batch, cosine_rate(options, step), options.tau);
-    average += static_cast<float>(1 - options.average_decay) * (learner.online() - average);
-    sums.loss += learned.loss;
-    sums.edge_mass_frac += learned.edge_mass_frac;
-    ++summed;
-    progress.update(
-        static_cast<double>(step + 1),
-        fmt::format(
-            "loss {:.4f}  validation {:.1f} EUR/day/MWh", learned.loss,
-            result.curve.empty() ? 0.0 : result.curve.back().validation_eur_per_day_per_mwh));
-    if ((step + 1) % options.validate_every != 0 && step + 1 != options.steps) continue;
-    current.parameters = average;
-    TeacherPolicy policy(current);
-    EvaluationOptions evaluation;
-    evaluation.battery = battery;
-    const double profit =
-        evaluate(market, validation, policy, evaluation).profit_eur_per_day_per_mwh();
-    const auto n = static_cast<double>(summed);
-    result.curve.push_back({step + 1, sums.loss / n, profit, sums.edge_mass_frac / n});
-    sums = {0, 0};
-    summed = 0;
-    if (profit > result.best_validation_eur_per_day_per_mwh) {
-      result.best_validation_eur_per_day_per_mwh = profit;
-      result.best_step = step + 1;
-      result.teacher.parameters = average;
-    }
-  }
-  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return result;
+  Training training(market, battery, options);
+  training.run(interrupted, checkpoint);
+  return training.take_result();
 }
 
 }  // namespace bess

@@ -5,7 +5,9 @@
 #pragma once
 
 #include <atomic>
-#include <functional>
+#include <filesystem>
+#include <string>
+#include <vector>
 
 #include "workstation/env/evaluate.h"
 #include "workstation/rl/experience.h"
@@ -19,13 +21,13 @@ struct TrainOptions {
   Method method = Method::kC51;
   Source source = Source::kCounterfactual;
   Horizon horizon = Horizon::kContinuing;
-  long steps = 4'000;           ///< gradient steps
-  double mean_weight = 10;      ///< C51: of the squared error of the mean beside the cross-entropy
+  long steps = 8'000;           ///< gradient steps
+  double mean_weight = 30;      ///< C51: of the squared error of the mean beside the cross-entropy
   long batch_size = 4'096;      ///< transitions a step
   double learning_rate = 1e-3;  ///< of Adam, falling to `learning_rate_end` along a cosine
   double learning_rate_end = 5e-5;
   double gamma = 0.999;
-  double tau = 0.2;  ///< target <- tau * online + (1 - tau) * target, each step
+  double tau = 0.05;  ///< target <- tau * online + (1 - tau) * target, each step
   int atoms = 51;
   PotentialKind potential = PotentialKind::kPlan;  ///< of reward shaping
   bool centre_rewards = true;                      ///< continuing horizon only
@@ -35,7 +37,7 @@ struct TrainOptions {
   long replay_capacity = 1'000'000;
   double epsilon_start = 1.0;  ///< falls linearly to epsilon_end over the first half of the steps
   double epsilon_end = 0.05;
-  double average_decay = 0.995;  ///< of the averaged weights that are validated and kept; 0 = none
+  double average_decay = 0.998;  ///< of the averaged weights that are validated and kept; 0 = none
   long validate_every = 250;     ///< gradient steps
   std::uint64_t seed = 1;
   int threads = 2;
@@ -56,10 +58,20 @@ struct TrainResult {
   double seconds;
 };
 
+/// Where a run can be taken up again after an interruption. A checkpoint is written beside and renamed
+/// at every validation and at an interruption; continuing from one gives the same weights, to the
+/// bit, as never having stopped.
+struct CheckpointOptions {
+  std::filesystem::path path;  ///< empty: none is kept
+  bool resume = false;         ///< continue from `path`; an error when it is not there
+  std::string identity;        ///< configuration and prices: a checkpoint of others is refused
+};
+
 /// Trains on the training days of `market` and selects on its validation days. `interrupted` ends
 /// it early with what is best so far. Throws UserError for missing days; ranges of the options are
 /// checked where they are read (cli/run_config.cpp).
 TrainResult train_teacher(const MarketSteps& market, const BatteryParameters& battery,
-                          const TrainOptions& options, const std::atomic<bool>& interrupted);
+                          const TrainOptions& options, const std::atomic<bool>& interrupted,
+                          const CheckpointOptions& checkpoint = {});
 
 }  // namespace bess

@@ -4,6 +4,9 @@
 #include <thread>
 
 #include "market_by_hand.h"
+#include "tests/support/temporary_folder.h"
+#include "workstation/io/file.h"
+#include "workstation/io/random.h"
 
 namespace bess {
 namespace {
@@ -84,6 +87,29 @@ TEST_P(TrainTeacher, BestEarnsOnTheValidationDaysWhatIsReported) {
                    result.best_validation_eur_per_day_per_mwh);
 }
 
+TEST_P(TrainTeacher, ResumedItGivesTheSameWeightsToTheBit) {
+  const TemporaryFolder folder;
+  TrainOptions options = options_of(GetParam());
+  const TrainResult whole = train(options);
+  const CheckpointOptions first{folder.file("a.checkpoint"), false, "this run"};
+  std::atomic<bool> interrupted = false;
+  std::jthread interrupter([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(30));
+    interrupted = true;
+  });
+  (void)train_teacher(small_market(), {}, options, interrupted, first);
+  interrupter.join();
+  interrupted = false;
+  const CheckpointOptions second{first.path, true, "this run"};
+  const TrainResult resumed = train_teacher(small_market(), {}, options, interrupted, second);
+  EXPECT_EQ(resumed.teacher.parameters, whole.teacher.parameters);
+  EXPECT_EQ(resumed.best_step, whole.best_step);
+  ASSERT_EQ(resumed.curve.size(), whole.curve.size());
+  for (std::size_t i = 0; i < whole.curve.size(); ++i) {
+    EXPECT_EQ(resumed.curve[i].loss, whole.curve[i].loss);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Ways, TrainTeacher,
     testing::Values(Case{"c51", Method::kC51, Source::kCounterfactual, Horizon::kContinuing, 300},
@@ -155,6 +181,37 @@ TEST(Train, DaysThatLackAreNamedWithTheMend) {
       EXPECT_NE(message.find("add some"), std::string::npos) << c.name << ": " << message;
     }
   }
+}
+
+TEST(Checkpoint, DamagedOrOfAnotherRunIsRefused) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("a.checkpoint");
+  const std::atomic<bool> interrupted = false;
+  TrainOptions options = small_options();
+  options.steps = 30;
+  const auto refusal = [&](const std::string& identity) {
+    return user_error_of([&] {
+      (void)train_teacher(small_market(), {}, options, interrupted, {path, true, identity});
+    });
+  };
+  EXPECT_NE(refusal("this run").find("cannot open"), std::string::npos);
+  (void)train_teacher(small_market(), {}, options, interrupted, {path, false, "this run"});
+  EXPECT_EQ(refusal("this run"), "");
+  EXPECT_NE(refusal("another run").find("is of another run"), std::string::npos);
+  const std::string sound = read_file(path);
+  const auto expect_refused = [&](const std::string& bytes, const std::string& what) {
+    write_file(path, bytes);
+    const std::string message = refusal("this run");
+    EXPECT_NE(message.find(path), std::string::npos) << what << ": \"" << message << '"';
+  };
+  Random random(93);
+  for (int part = 0; part < 20; ++part) {
+    expect_refused(sound.substr(0, sound.size() * static_cast<std::size_t>(part) / 20), "cut");
+    std::string flipped = sound;
+    flipped[random.index(flipped.size())] ^= 0x10;
+    expect_refused(flipped, "flipped");
+  }
+  expect_refused(sound + "x", "appended");
 }
 
 }  // namespace
