@@ -13,26 +13,27 @@ namespace bess {
 namespace {
 
 constexpr std::string_view kTrainingHeader =
-    "step,loss,validation_eur_per_day_per_mwh,edge_mass_frac";
+    "step,loss,validation_eur_per_day_per_mwh,validation_smoothed,edge_mass_frac";
 constexpr std::string_view kDistilHeader = "epoch,teacher_loss,correction_loss,visited_loss";
 
-/// Rows of four numbers under a known header.
-std::vector<std::array<double, 4>> parse_rows(std::string_view text, std::string_view header,
-                                              std::string_view name) {
-  std::vector<std::array<double, 4>> rows;
+/// Rows of `kColumns` numbers under a known header.
+template <std::size_t kColumns>
+std::vector<std::array<double, kColumns>> parse_rows(std::string_view text, std::string_view header,
+                                                     std::string_view name) {
+  std::vector<std::array<double, kColumns>> rows;
   for (std::size_t line = 1; !text.empty(); ++line) {
     const std::string_view row = take_line(text);
     if (line == 1) {
       if (row != header) fail("{}:1: not a curve: the header must be \"{}\"", name, header);
       continue;
     }
-    std::array<double, 4> values{};
+    std::array<double, kColumns> values{};
     const char* at = row.data();
     const char* const last = row.data() + row.size();
     for (std::size_t i = 0; i < values.size(); ++i) {
       const auto [next, error] = std::from_chars(at, last, values[i]);
       const bool ended = i + 1 == values.size() ? next == last : next < last && *next == ',';
-      if (error != std::errc{} || !ended) fail("{}:{}: not four numbers", name, line);
+      if (error != std::errc{} || !ended) fail("{}:{}: not {} numbers", name, line, kColumns);
       at = next + 1;
     }
     rows.push_back(values);
@@ -43,10 +44,14 @@ std::vector<std::array<double, 4>> parse_rows(std::string_view text, std::string
 }  // namespace
 
 std::string training_curve_csv(const std::vector<CurvePoint>& curve) {
+  std::vector<double> profit;
+  for (const CurvePoint& p : curve) profit.push_back(p.validation_eur_per_day_per_mwh);
+  const std::vector<double> smoothed = centred_mean(profit, kSmoothingReach);
   std::string text = fmt::format("{}\n", kTrainingHeader);
-  for (const CurvePoint& p : curve) {
-    text += fmt::format("{},{:.6g},{:.4f},{:.6f}\n", p.step, p.loss,
-                        p.validation_eur_per_day_per_mwh, p.edge_mass_frac);
+  for (std::size_t i = 0; i < curve.size(); ++i) {
+    const CurvePoint& p = curve[i];
+    text += fmt::format("{},{:.6g},{:.4f},{:.4f},{:.6f}\n", p.step, p.loss, profit[i], smoothed[i],
+                        p.edge_mass_frac);
   }
   return text;
 }
@@ -62,15 +67,15 @@ std::string distil_curve_csv(const std::vector<DistilPoint>& curve) {
 
 std::vector<CurvePoint> parse_training_curve_csv(std::string_view text, std::string_view name) {
   std::vector<CurvePoint> curve;
-  for (const auto& row : parse_rows(text, kTrainingHeader, name)) {
-    curve.push_back({static_cast<long>(row[0]), row[1], row[2], row[3]});
+  for (const auto& row : parse_rows<5>(text, kTrainingHeader, name)) {
+    curve.push_back({static_cast<long>(row[0]), row[1], row[2], row[4]});
   }
   return curve;
 }
 
 std::vector<DistilPoint> parse_distil_curve_csv(std::string_view text, std::string_view name) {
   std::vector<DistilPoint> curve;
-  for (const auto& row : parse_rows(text, kDistilHeader, name)) {
+  for (const auto& row : parse_rows<4>(text, kDistilHeader, name)) {
     curve.push_back({static_cast<int>(row[0]), row[1], row[2], row[3]});
   }
   return curve;

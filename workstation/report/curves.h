@@ -10,6 +10,9 @@
 
 namespace bess {
 
+/// Neighbours on either side of a validation profit that its smoothed value is the mean of.
+inline constexpr int kSmoothingReach = 2;
+
 std::string training_curve_csv(const std::vector<CurvePoint>& curve);
 std::string distil_curve_csv(const std::vector<DistilPoint>& curve);
 

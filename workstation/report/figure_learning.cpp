@@ -9,8 +9,6 @@
 namespace bess {
 namespace {
 
-constexpr int kSmoothingReach = 2;
-
 const CurvePoint& best_of(const std::vector<CurvePoint>& curve) {
   return *std::ranges::max_element(curve, {}, &CurvePoint::validation_eur_per_day_per_mwh);
 }

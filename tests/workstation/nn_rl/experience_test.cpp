@@ -1,4 +1,5 @@
 #include "workstation/rl/experience.h"
+#include "workstation/env/rolling_horizon.h"
 
 #include <set>
 
@@ -123,6 +124,52 @@ TEST(Transitions, AgreeWithTheBatteryOnRandomSteps) {
         -moved.power_w / 1e6 * paid - 700 + 80 * 8 * 30 * (0.999 * moved.soc_frac - soc);
     ASSERT_NEAR(t.reward, eur_per_h / 1e4, 2e-6);
   }
+}
+
+// ---- Potentials ------------------------------------------------------------------------------
+
+TEST(Potentials, OfAPlanIsWhatThePlanExpectsToEarn) {
+  const MarketSteps market = simulated_market({2023, 1, 1}, 24);
+  const BatteryParameters battery;
+  const RollingHorizonPolicy plan(market, market.days_of(Split::kTrain), battery);
+  const Potential potential = fit_potential(PotentialKind::kPlan, market, battery);
+  std::vector<float> phi(static_cast<std::size_t>(potential.soc_points));
+  for (std::size_t at = 0; at < market.steps.size(); at += 997) {
+    potential.fill(market.steps[at], phi.data());
+    const auto values = plan.values(market.steps[at]);
+    EXPECT_EQ(phi.front(), values.front());
+    EXPECT_EQ(phi.back(), values.back());
+    EXPECT_TRUE(std::ranges::is_sorted(phi)) << "at these prices energy has a worth";
+  }
+}
+
+/// Whatever the potential, what a round trip earns in the end is the same: it telescopes.
+TEST(Potentials, ShapedRewardsDifferByThePotentialOfTheEndsOnly) {
+  const MarketSteps market = simulated_market({2023, 1, 1}, 24);
+  const BatteryParameters battery;
+  const auto rewards_of = [&](PotentialKind kind, std::vector<float>& first_row) {
+    RewardShaping shaping{0, 1, fit_potential(kind, market, battery)};
+    first_row.resize(static_cast<std::size_t>(shaping.potential.soc_points));
+    shaping.potential.fill(market.steps[0], first_row.data());
+    const TrainingMarket training(market, straight_price_map(), battery, kOn, shaping);
+    double sum = 0;
+    double soc = 1;
+    for (std::size_t index = 0; index < 200; ++index) {
+      Transition t{};
+      soc = training.make_transition(index, soc, static_cast<Action>(index % kActionCount), t);
+      sum += double{t.reward};
+    }
+    std::vector<float> last_row(first_row.size());
+    shaping.potential.fill(market.steps[200], last_row.data());
+    const SocGrid grid(battery, shaping.potential.soc_points);
+    const double scale = 30 * 1e-4;  // EUR a step -> 1e4 EUR/h
+    return sum -
+           scale * double{interpolate(last_row.data(), grid.position(soc)) - first_row.back()};
+  };
+  std::vector<float> row;
+  const double plain = rewards_of(PotentialKind::kNone, row);
+  EXPECT_NEAR(rewards_of(PotentialKind::kPrice, row), plain, 1e-3);
+  EXPECT_NEAR(rewards_of(PotentialKind::kPlan, row), plain, 1e-3);
 }
 
 // ---- Which transitions there are ------------------------------------------------------------

@@ -80,7 +80,8 @@ TEST(Comparison, CsvQuotesNamesThatNeedIt) {
 
 TEST(Curves, CsvAndSmoothing) {
   EXPECT_EQ(training_curve_csv({{250, 3.5, 400.25, 0.001}}),
-            "step,loss,validation_eur_per_day_per_mwh,edge_mass_frac\n250,3.5,400.2500,0.001000\n");
+            "step,loss,validation_eur_per_day_per_mwh,validation_smoothed,edge_mass_frac\n"
+            "250,3.5,400.2500,400.2500,0.001000\n");
   EXPECT_EQ(distil_curve_csv({{1, 0.5, 0.25, 0.125}}),
             "epoch,teacher_loss,correction_loss,visited_loss\n1,0.5,0.25,0.125\n");
   EXPECT_EQ(centred_mean({0, 3, 6}, 1), (std::vector<double>{1.5, 3, 4.5}));
