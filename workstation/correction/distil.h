@@ -22,13 +22,13 @@ struct DistilOptions {
   CorrectionOptions correction;
   double omega = 1e-4;  ///< the paper's trade-off: larger follows the teacher and violates more
   double temperature_eur_per_h = 100;  ///< of the teacher's softmax over action values
-  int epochs = 300;
+  int epochs = 600;
   int steps_per_epoch = 16;  ///< Adam steps that share one epoch's states
   int lattices_per_epoch = 64;
   int lattice_prices = 32;
   int lattice_socs = 16;
   int visited_per_epoch = 32'768;
-  double learning_rate = 1e-3;  ///< falling to a tenth along a cosine
+  double learning_rate = 2e-3;  ///< falling to a tenth along a cosine
   int repair_rounds = 12;       ///< proofs, each followed by counterexample training if it fails
   int repair_epochs = 40;
   std::uint64_t seed = 1;
