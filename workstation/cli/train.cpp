@@ -89,7 +89,11 @@ TrainResult train_one(const fs::path& out, const Options& options, const RunConf
   result.teacher.provenance = training_provenance(options.prices, config.train, result);
   if (!result.curve.empty()) {
     save_teacher(out, result.teacher);
-    if (!options.curve_out.empty()) write_file(options.curve_out, training_curve_csv(result.curve));
+    if (!options.curve_out.empty()) {
+      const fs::path curve = options.seeds > 1 ? seed_path(options.curve_out, config.train.seed)
+                                               : fs::path(options.curve_out);
+      write_file(curve, training_curve_csv(result.curve));
+    }
   }
   if (interruption()) {
     fmt::print(stderr, "{} holds the run: the same command with --resume goes on\n",
@@ -214,7 +218,7 @@ void add_train_command(CLI::App& app) {
   command->add_option("--method", options->method, "c51 (default) or dqn")
       ->check(CLI::IsMember({"c51", "dqn"}));
   command->add_option("--steps", options->steps, "Gradient steps")->check(CLI::PositiveNumber);
-  command->add_option("--curve-out", options->curve_out, "CSV of the learning curve");
+  command->add_option("--curve-out", options->curve_out, "CSV of the learning curve, one a seed");
   command
       ->add_option("--seeds", options->seeds,
                    "Train this many, from --seed on; OUT is the best on the validation days, the "
