@@ -15,9 +15,9 @@ namespace {
 
 constexpr const char* kScript = BESS_SOURCE_DIR "/tests/bench/c51_torch.py";
 
-/// What makes PyTorch on Debian fastest: without the three malloc settings it takes 10 % longer on
-/// one thread; with libopenblas0-openmp BLAS and PyTorch share one pool, with the pthread build two
-/// pools spin against each other.
+/// What makes PyTorch on Debian fastest: the malloc settings keep its memory between steps; with
+/// libopenblas0-openmp BLAS and PyTorch share one pool, with the pthread build two pools spin against
+/// each other.
 std::vector<std::string> command(int threads) {
   const std::string count = std::to_string(threads);
   return {"env",
