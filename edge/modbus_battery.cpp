@@ -1,45 +1,11 @@
 #include "edge/modbus_battery.h"
 
-#include <modbus/modbus.h>
-#include <sys/socket.h>
-
 #include <algorithm>
-#include <cerrno>
-
-#include "shared/check.h"
 
 namespace bess {
 namespace {
 
 constexpr int kAttempts = 2;  // a dropped connection is mended once within the cycle
-
-Status status_of_errno(int error) {
-  switch (error) {
-    case ETIMEDOUT:
-    case EINPROGRESS:  // what libmodbus 3.1.6 leaves when connecting times out
-      return Status::kTimeout;
-    case EMBXILFUN:
-    case EMBXILADD:
-    case EMBXILVAL:
-    case EMBXSFAIL:
-    case EMBXACK:
-    case EMBXSBUSY:
-    case EMBXNACK:
-    case EMBXMEMPAR:
-    case EMBXGPATH:
-    case EMBXGTAR:
-      return Status::kBusException;
-    case EMBBADCRC:
-    case EMBBADDATA:
-    case EMBBADEXC:
-    case EMBUNKEXC:
-    case EMBMDATA:
-    case EMBBADSLAVE:
-      return Status::kBadReply;
-    default:
-      return Status::kNotConnected;
-  }
-}
 
 std::int32_t to_int32(std::int64_t value) {
   return static_cast<std::int32_t>(std::clamp<std::int64_t>(value, INT32_MIN, INT32_MAX));
@@ -49,11 +15,11 @@ std::int32_t to_int32(std::int64_t value) {
 
 ModbusBattery::ModbusBattery(const BatteryLinkSettings& link, const RegisterMap& map,
                              const ScaledClock& clock)
-    : link_(link),
+    : link_(link,
+            {.response_timeout_ms = map.response_timeout_ms, .minimum_gap_ms = map.minimum_gap_ms},
+            clock),
       map_(map),
-      clock_(clock),
-      response_timeout_ms_(link.response_timeout_ms > 0 ? link.response_timeout_ms
-                                                        : map.response_timeout_ms),
+      unit_(link.unit >= 0 ? link.unit : map.unit),
       soc_(find_point(map, "soc")),
       power_(find_point(map, "battery_power")),
       capacity_(find_point(map, "capacity")),
@@ -61,26 +27,7 @@ ModbusBattery::ModbusBattery(const BatteryLinkSettings& link, const RegisterMap&
       discharge_limit_(find_point(map, "discharge_power_max")),
       temperature_min_(find_point(map, "temperature_min")),
       temperature_max_(find_point(map, "temperature_max")) {
-  context_ = link_.rtu ? modbus_new_rtu(link_.device.c_str(), link_.baud, 'N', 8, 1)
-                       : modbus_new_tcp(link_.host.c_str(), link_.port);
-  BESS_CHECK(context_ != nullptr);
-  const auto seconds = static_cast<std::uint32_t>(response_timeout_ms_ / 1'000);
-  const auto microseconds = static_cast<std::uint32_t>(response_timeout_ms_ % 1'000 * 1'000);
-  modbus_set_error_recovery(context_, MODBUS_ERROR_RECOVERY_NONE);
-  modbus_set_response_timeout(context_, seconds, microseconds);
-  modbus_set_byte_timeout(context_, seconds, microseconds);
-  modbus_set_slave(context_, link_.unit >= 0 ? link_.unit : map_.unit);
   plan_reads();
-}
-
-ModbusBattery::~ModbusBattery() {
-  close();
-  modbus_free(context_);
-}
-
-void ModbusBattery::close() {
-  if (connected_) modbus_close(context_);
-  connected_ = false;
 }
 
 /// Merges the measured points into as few requests as the map allows.
@@ -94,7 +41,7 @@ void ModbusBattery::plan_reads() {
     const RegisterPoint& point = map_.points[index];
     const int end = point.address + point.register_count();
     if (!spans_.empty()) {
-      ReadSpan& last = spans_[spans_.size() - 1];
+      RegisterSpan& last = spans_[spans_.size() - 1];
       const int gap = point.address - (last.address + last.count);
       if (gap <= map_.read_gap_registers_max && end - last.address <= read_max &&
           last.function == point.read_function) {
@@ -102,72 +49,21 @@ void ModbusBattery::plan_reads() {
         continue;
       }
     }
-    spans_.push_back({.address = point.address,
+    spans_.push_back({.unit = unit_,
+                      .address = point.address,
                       .count = static_cast<std::uint16_t>(point.register_count()),
                       .function = point.read_function});
   }
 }
 
-Status ModbusBattery::connect() {
-  if (connected_) return Status::kOk;
-  if (modbus_connect(context_) != 0) {
-    const Status status = status_of_errno(errno);
-    modbus_close(context_);  // a failed connect may leave a socket behind
-    return status;
-  }
-  connected_ = true;
-  return Status::kOk;
-}
-
-/// The device's minimum gap runs in simulated time, like everything that the battery itself times.
-void ModbusBattery::wait_for_gap() {
-  while (clock_ns(CLOCK_MONOTONIC) < next_request_ns_) sleep_until_monotonic(next_request_ns_);
-}
-
-Status ModbusBattery::finish_request(bool succeeded) {
-  const int error = errno;
-  next_request_ns_ =
-      clock_ns(CLOCK_MONOTONIC) + clock_.wall_ns(std::int64_t{map_.minimum_gap_ms} * 1'000'000);
-  if (succeeded) return Status::kOk;
-  const Status status = status_of_errno(error);
-  recover();
-  return status;
-}
-
-void ModbusBattery::recover() {
-  if (!link_.rtu) return close();
-  // RTU has no transaction id: a late reply must have come and gone before the next question.
-  const std::int64_t quiet_ns = std::int64_t{std::max(response_timeout_ms_, 1'000)} * 1'000'000;
-  const std::int64_t until_ns = clock_ns(CLOCK_MONOTONIC) + quiet_ns;
-  while (clock_ns(CLOCK_MONOTONIC) < until_ns) sleep_until_monotonic(until_ns);
-  if (modbus_flush(context_) < 0) close();
-}
-
-Status ModbusBattery::read_registers(const ReadSpan& span, std::uint16_t* registers) {
-  if (const Status status = connect(); status != Status::kOk) return status;
-  wait_for_gap();
-  const int got = span.function == 4
-                      ? modbus_read_input_registers(context_, span.address, span.count, registers)
-                      : modbus_read_registers(context_, span.address, span.count, registers);
-  return finish_request(got == span.count);
-}
-
-Status ModbusBattery::write_block(const BlockWrite& write, const RegisterBlock& block) {
-  if (const Status status = connect(); status != Status::kOk) return status;
-  wait_for_gap();
-  const int sent = write.function == 6 ? modbus_write_register(context_, write.address, block[0])
-                                       : modbus_write_registers(context_, write.address,
-                                                                block.size(), block.data());
-  return finish_request(sent == block.size());
-}
-
 Status ModbusBattery::read_point(int point, std::int64_t& value) {
   const RegisterPoint& p = map_.points[point];
   std::uint16_t registers[2] = {};
-  const ReadSpan span{.address = p.address,
-                      .count = static_cast<std::uint16_t>(p.register_count()),
-                      .function = p.read_function};
-  const Status status = read_registers(span, registers);
+  const RegisterSpan span{.unit = unit_,
+                          .address = p.address,
+                          .count = static_cast<std::uint16_t>(p.register_count()),
+                          .function = p.read_function};
+  const Status status = link_.read(span, registers);
   if (status != Status::kOk) return status;
   return decode(p, registers, value) ? Status::kOk : Status::kImplausible;
 }
@@ -188,9 +84,9 @@ Status ModbusBattery::read(BatteryMeasurement& measurement) {
   return status;
 }
 
-Status ModbusBattery::read_span_values(const ReadSpan& span, BatteryMeasurement& measurement) {
+Status ModbusBattery::read_span_values(const RegisterSpan& span, BatteryMeasurement& measurement) {
   std::uint16_t registers[kSpanRegistersMax] = {};
-  const Status status = read_registers(span, registers);
+  const Status status = link_.read(span, registers);
   if (status != Status::kOk) return status;
   for (const std::int8_t index : map_.measure) {
     const RegisterPoint& point = map_.points[index];
@@ -245,7 +141,9 @@ Status ModbusBattery::run_command_once(Command command, const PowerOrder& order)
   for (const BlockWrite& write : sequence.writes) {
     RegisterBlock block;
     Status status = encode_block(map_, write, order, block);
-    if (status == Status::kOk) status = write_block(write, block);
+    if (status == Status::kOk) {
+      status = link_.write(unit_, write.function, write.address, block.data(), block.size());
+    }
     if (status != Status::kOk) return status;
   }
   return sequence.read_back ? verify_command(sequence, order) : Status::kOk;
@@ -265,9 +163,10 @@ Status ModbusBattery::verify_command(const CommandSequence& sequence, const Powe
   }
   if (end - begin > kSpanRegistersMax) return Status::kTooLarge;
   std::uint16_t registers[kSpanRegistersMax] = {};
-  const ReadSpan span{.address = static_cast<std::uint16_t>(begin),
-                      .count = static_cast<std::uint16_t>(end - begin)};
-  const Status status = read_registers(span, registers);
+  const RegisterSpan span{.unit = unit_,
+                          .address = static_cast<std::uint16_t>(begin),
+                          .count = static_cast<std::uint16_t>(end - begin)};
+  const Status status = link_.read(span, registers);
   if (status != Status::kOk) return status;
   for (int i = 0; i < sequence.writes.size(); ++i) {
     const int offset = sequence.writes[i].address - begin;
