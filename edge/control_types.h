@@ -23,7 +23,20 @@ struct BatteryMeasurement {
   std::int32_t temperature_max_deci_c = 200;
   bool alarm = false;
   bool off_grid = false;
-  bool dispatch_active = false;  ///< the device still follows our last order
+  bool dispatch_active = false;  ///< the device follows an order that was written to it
+  bool has_order_power = false;  ///< the map can read back the power of the order in force
+  std::int32_t order_power_w = 0;
+};
+
+/// Totals since start, and what the flash-backed registers have had today.
+struct BatteryCounters {
+  std::int64_t requests = 0;
+  std::int64_t failed_requests = 0;
+  std::int64_t reconnects = 0;
+  std::int64_t register_writes = 0;   ///< write requests that reached the device
+  std::int64_t unchanged_orders = 0;  ///< orders that were in force already and cost no write
+  std::int64_t flash_day = 0;         ///< UTC day (since 1970) that the next field counts
+  std::int32_t flash_writes_today = 0;
 };
 
 /// The newest usable price row and how it came in.
@@ -34,6 +47,7 @@ struct PriceReport {
   std::int64_t received_monotonic_ns = 0;
   std::int32_t fetch_us = 0;       ///< wall time of the request that brought it
   Status status = Status::kNoRow;  ///< of the last request
+  bool large_step = false;         ///< the row lies further from its predecessor than configured
 };
 
 /// Why the guard ordered something else than the student. Order is precedence: lower numbers win.
@@ -90,6 +104,7 @@ struct CycleRecord {
   std::int32_t write_us = 0;      ///< order written and read back
   std::int32_t total_us = 0;      ///< from the price row's arrival to the order read back
   std::int32_t missed_ticks = 0;  ///< ticks skipped since start because a cycle overran
+  BatteryCounters counters{};
 };
 
 }  // namespace bess

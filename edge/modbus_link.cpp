@@ -19,13 +19,14 @@ Status status_of_errno(int error) {
     case EMBXILADD:
     case EMBXILVAL:
     case EMBXSFAIL:
-    case EMBXACK:
-    case EMBXSBUSY:
     case EMBXNACK:
     case EMBXMEMPAR:
     case EMBXGPATH:
     case EMBXGTAR:
       return Status::kBusException;
+    case EMBXACK:
+    case EMBXSBUSY:
+      return Status::kBusBusy;
     case EMBBADCRC:
     case EMBBADDATA:
     case EMBBADEXC:

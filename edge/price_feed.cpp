@@ -38,9 +38,22 @@ bool parse_row(const cJSON* item, const PriceFeedSettings& settings, std::int64_
 }
 
 Status status_of_curl(CURLcode code) {
-  if (code == CURLE_OPERATION_TIMEDOUT) return Status::kTimeout;
-  if (code == CURLE_WRITE_ERROR) return Status::kTooLarge;
-  return Status::kNotConnected;
+  switch (code) {
+    case CURLE_OPERATION_TIMEDOUT:
+      return Status::kTimeout;
+    case CURLE_WRITE_ERROR:
+      return Status::kTooLarge;
+    case CURLE_COULDNT_RESOLVE_HOST:
+      return Status::kNameUnresolved;
+    case CURLE_SSL_CONNECT_ERROR:
+    case CURLE_SSL_CACERT_BADFILE:
+    case CURLE_PEER_FAILED_VERIFICATION:
+      return Status::kTlsRefused;
+    case CURLE_OUT_OF_MEMORY:
+      return Status::kNoMemory;
+    default:
+      return Status::kNotConnected;
+  }
 }
 
 }  // namespace

@@ -11,21 +11,30 @@ enum class [[nodiscard]] Status : std::uint8_t{
     kOk,
     kNotConnected,    ///< nobody listens, or the connection was closed
     kTimeout,         ///< no answer, or no complete answer, in time
-    kBusException,    ///< the battery answered with a Modbus exception
+    kBusException,    ///< the battery answered with a Modbus exception that a retry does not mend
+    kBusBusy,         ///< the battery answered that it is busy (exception 5 or 6): worth a retry
+    kNotPermitted,    ///< the battery answered that this client may not do this
     kBadReply,        ///< an answer that does not belong to the question
     kImplausible,     ///< a value outside the range that its register map or the market allows
     kNotApplied,      ///< acknowledged, but the read-back shows other values
     kNotExpressible,  ///< the register map cannot express the order
+    kWriteBudget,     ///< registers in flash memory have had their writes of the day
+    kNameUnresolved,  ///< the price server's name has no address, or no name server answers
+    kTlsRefused,      ///< no trusted TLS connection to the price server
     kHttpError,       ///< the price server answered, but not with 200
     kMalformed,       ///< the price server's answer is not what the configuration describes
     kNoRow,           ///< a good answer without any usable price
     kTooLarge,        ///< more bytes than the fixed buffer holds
+    kNoMemory,        ///< the static arena is exhausted
 };
 
 constexpr std::string_view status_name(Status status) {
   constexpr std::string_view kNames[] = {
-      "ok",          "not_connected",   "timeout",    "bus_exception", "bad_reply", "implausible",
-      "not_applied", "not_expressible", "http_error", "malformed",     "no_row",    "too_large"};
+      "ok",          "not_connected",   "timeout",      "bus_exception",
+      "bus_busy",    "not_permitted",   "bad_reply",    "implausible",
+      "not_applied", "not_expressible", "write_budget", "name_unresolved",
+      "tls_refused", "http_error",      "malformed",    "no_row",
+      "too_large",   "no_memory"};
   return kNames[static_cast<int>(status)];
 }
 
@@ -36,14 +45,20 @@ constexpr std::string_view status_text(Status status) {
       "no connection (are host and port right, is it running, does it serve one client only?)",
       "no answer in time (is the unit id right?)",
       "answered with a Modbus exception (does the register map fit this model?)",
+      "answered that it is busy",
+      "answered that this client may not do this (is external control enabled on the device?)",
       "answered with something that does not belong to the question",
       "delivered a value outside its plausible range",
       "acknowledged an order but did not keep it",
       "the register map cannot express this order",
+      "registers in flash memory have had their writes of the day (see the map's write budget)",
+      "the price server's name cannot be resolved (is the name server reachable?)",
+      "no trusted TLS connection to the price server (are ca_file and the clock right?)",
       "the price server answered with an HTTP error",
       "the price server's answer is not the JSON that [price] describes",
       "the price server's answer holds no usable price",
-      "the answer is larger than the buffer"};
+      "the answer is larger than the buffer",
+      "the static arena is exhausted"};
   return kTexts[static_cast<int>(status)];
 }
 
