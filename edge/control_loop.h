@@ -3,20 +3,24 @@
 // Modbus and HTTP, against the battery model in tests, and in simulated time; nothing is virtual,
 // nothing allocates.
 //
-//   Battery      Status read(BatteryMeasurement&);  Status order(const PowerOrder&);  Status
-//   release(); PriceSource  void request(minute_utc_s, deadline_monotonic_ns);
-//                bool wait(until_monotonic_ns);  PriceReport latest();
+//   Battery      Status read(BatteryMeasurement&), order(const PowerOrder&), refresh(), release();
+//                int32 refresh_interval_s();  BatteryCounters counters()
+//   PriceSource  void request(minute_utc_s, start_monotonic_ns, deadline_monotonic_ns);
+//                bool wait(until_monotonic_ns);  PriceReport latest()
 //   Clock        now_utc_ns(), monotonic_ns(), monotonic_ns_at(utc_ns), sleep_until_utc_ns(utc_ns),
 //                stop_requested(), is_synchronised()
 //
 // Order of a cycle around its tick t (a multiple of 2 minutes UTC):
 //   t - read_lead_s  battery measurements        t  the row of minute t-1 is requested
 //   row in, or price_wait_s over                 decision, order written and read back
+// Between cycles the battery's watchdog is fed as often as its register map asks.
 #pragma once
 
 #include <cstdint>
 
 #include "edge/control_types.h"
+#include "edge/cycle_budget.h"
+#include "edge/follow_monitor.h"
 #include "edge/policy.h"
 #include "edge/registers/codec.h"
 #include "edge/safety_guard.h"
@@ -33,6 +37,13 @@ struct ControlSettings {
   std::int32_t hold_s = 300;            ///< 0 W held after a stop reason before releasing
   std::int32_t price_wait_s = 20;
   std::int32_t read_lead_s = 3;
+  std::int32_t order_deadline_s = 60;  ///< an order in force later than this after its tick is late
+  std::int32_t cycles_per_day_max_e4 = 0;  ///< in 1e-4 full cycles; 0 = no budget
+};
+
+/// What an earlier run of the program left behind, by its own log.
+struct TakeOver {
+  DayThroughput throughput{};
 };
 
 constexpr std::int64_t next_tick_utc_s(std::int64_t now_utc_s) {
@@ -47,7 +58,10 @@ class ControlLoop {
         battery_(battery),
         prices_(prices),
         clock_(clock),
-        guard_(settings.guard) {}
+        guard_(settings.guard),
+        cycle_budget_(settings.cycles_per_day_max_e4) {}
+
+  void take_over(const TakeOver& before) { cycle_budget_.restore(before.throughput); }
 
   /// Runs the cycle of the next tick; false when the process was asked to stop before it.
   bool run_cycle(CycleRecord& record) {
@@ -63,7 +77,8 @@ class ControlLoop {
     if (clock_.stop_requested()) return false;
     decide(record);
     act(record);
-    record.missed_ticks = missed_ticks_;
+    count_deadline_miss(record);
+    fill_totals(record);
     return true;
   }
 
@@ -75,8 +90,8 @@ class ControlLoop {
                          .cycle = cycle_,
                          .mode = mode_,
                          .reason = Reason::kStopRequested,
-                         .battery_status = Status::kOk,
-                         .missed_ticks = missed_ticks_};
+                         .battery_status = Status::kOk};
+    fill_totals(record);
     if (!settings_.control || !has_ordered_) return Status::kOk;
     write_order(0, record);
     const Status zero_status = record.battery_status;
@@ -84,12 +99,31 @@ class ControlLoop {
     if (record.battery_status == Status::kOk) record.battery_status = zero_status;
     const Status status = record.battery_status;
     if (status == Status::kOk) read_battery(record);  // the SoC that is left, for the log
+    fill_totals(record);
     return status;
   }
 
  private:
+  /// Sleeps, and feeds the battery's watchdog meanwhile; false when asked to stop.
   bool sleep_until_s(std::int64_t utc_s) {
-    return clock_.sleep_until_utc_ns(utc_s * kNanosecondsPerSecond);
+    const std::int64_t until_ns = utc_s * kNanosecondsPerSecond;
+    while (refresh_due_utc_ns() < until_ns) {
+      if (!clock_.sleep_until_utc_ns(refresh_due_utc_ns())) return false;
+      refresh();
+    }
+    return clock_.sleep_until_utc_ns(until_ns);
+  }
+
+  std::int64_t refresh_due_utc_ns() const {
+    const std::int32_t interval_s = battery_.refresh_interval_s();
+    if (!settings_.control || !has_ordered_ || interval_s <= 0) return INT64_MAX;
+    return fed_utc_ns_ + interval_s * kNanosecondsPerSecond;
+  }
+
+  void refresh() {
+    // A failure shows in the counters, and the next order finds out what is wrong.
+    static_cast<void>(battery_.refresh());
+    fed_utc_ns_ = clock_.now_utc_ns();
   }
 
   void count_missed_ticks(std::int64_t tick_utc_s) {
@@ -103,7 +137,29 @@ class ControlLoop {
   void read_battery(CycleRecord& record) {
     record.battery_status = battery_.read(record.measurement);
     record.has_measurement = record.battery_status == Status::kOk;
-    if (!record.has_measurement) record.measurement = BatteryMeasurement{};
+    if (!record.has_measurement) {
+      record.measurement = BatteryMeasurement{};
+      cycle_budget_.forget_soc();
+      return;
+    }
+    find_order_in_force(record.measurement);
+    const bool is_driven = has_ordered_ && order_power_w_ != 0;
+    cycle_budget_.update(local_day_of(local_minute_of(record.utc_s)), record.measurement.soc_e4,
+                         is_driven);
+    if (settings_.control && has_ordered_) {
+      follow_.observe(order_power_w_, record.measurement.power_w);
+    }
+  }
+
+  /// After a restart the battery may still follow the order of the run before: it goes on until the
+  /// first decision, and from now on it is this run's to hold and to release.
+  void find_order_in_force(const BatteryMeasurement& measurement) {
+    if (looked_for_order_) return;
+    looked_for_order_ = true;
+    order_found_ = settings_.control && measurement.dispatch_active;
+    if (!order_found_) return;
+    has_ordered_ = true;
+    if (measurement.has_order_power) order_power_w_ = measurement.order_power_w;
   }
 
   std::int64_t price_deadline_ns(std::int64_t tick_utc_s) const {
@@ -123,6 +179,7 @@ class ControlLoop {
     while (!clock_.stop_requested()) {
       const std::int64_t now_ns = clock_.monotonic_ns();
       if (now_ns >= deadline_ns) break;
+      if (clock_.now_utc_ns() >= refresh_due_utc_ns()) refresh();
       const std::int64_t slice_ns = now_ns + kSliceNs;
       if (prices_.wait(slice_ns < deadline_ns ? slice_ns : deadline_ns)) break;
     }
@@ -143,10 +200,13 @@ class ControlLoop {
       record.has_student_action = true;
     }
     const GuardDecision decision =
-        guard_.decide({.now_utc_s = record.utc_s,
+        guard_.decide({.now_utc_s = decision_utc_s(record.utc_s),
                        .clock_ok = clock_.is_synchronised(),
                        .link_ok = record.has_measurement,
                        .measurement = record.measurement,
+                       .wrong_direction = follow_.has_tripped(),
+                       .cycle_budget_spent = cycle_budget_.is_spent(),
+                       .previous_power_w = order_power_w_,
                        .has_price = record.price.has_row,
                        .price_minute_utc_s = record.price.minute_utc_s,
                        .price_centi_eur_per_mwh = record.price.price_centi_eur_per_mwh,
@@ -157,18 +217,30 @@ class ControlLoop {
     record.decision_us = elapsed_us(start_ns);
   }
 
+  /// The tick, unless more than the wait for the price has passed since: a process that was
+  /// suspended, or a clock that jumped, must not act on what was new before.
+  std::int64_t decision_utc_s(std::int64_t tick_utc_s) const {
+    const std::int64_t now_utc_s = clock_.now_utc_ns() / kNanosecondsPerSecond;
+    const std::int64_t latest_utc_s = now_utc_s - settings_.price_wait_s;
+    return latest_utc_s > tick_utc_s ? latest_utc_s : tick_utc_s;
+  }
+
   void advance_mode(CycleRecord& record) {
     const bool hold_elapsed = record.utc_s - hold_start_utc_s_ >= settings_.hold_s;
     const Mode before = mode_;
     mode_ = next_mode(mode_, {.stop_requested = clock_.stop_requested(),
                               .stop_reason = is_stop_reason(record.reason),
-                              .hold_elapsed = hold_elapsed});
+                              .hold_elapsed = hold_elapsed,
+                              .order_found = order_found_});
     if (mode_ == Mode::kHolding && before != Mode::kHolding) hold_start_utc_s_ = record.utc_s;
     record.mode = mode_;
   }
 
   void act(CycleRecord& record) {
-    if (!settings_.control) return;
+    if (!settings_.control) {
+      order_power_w_ = record.ordered_power_w;  // what would be in force: the ramp goes from there
+      return;
+    }
     const std::int64_t start_ns = clock_.monotonic_ns();
     switch (mode_) {
       case Mode::kRunning:
@@ -193,6 +265,8 @@ class ControlLoop {
 
   void write_order(std::int32_t power_w, CycleRecord& record) {
     has_ordered_ = true;  // even when it fails: the battery may have understood
+    order_power_w_ = power_w;
+    fed_utc_ns_ = clock_.now_utc_ns();
     record.ordered_power_w = power_w;
     record.battery_status = battery_.order({.power_w = power_w,
                                             .soc_min_e4 = settings_.guard.soc_min_e4,
@@ -203,9 +277,26 @@ class ControlLoop {
 
   void write_release(CycleRecord& record) {
     record.ordered_power_w = 0;
+    order_power_w_ = 0;
     record.battery_status = battery_.release();
     record.written = record.battery_status == Status::kOk;
     if (record.written) has_ordered_ = false;
+  }
+
+  /// Late is an order that was needed and not in force `order_deadline_s` after its tick.
+  void count_deadline_miss(const CycleRecord& record) {
+    const bool needed = settings_.control && (mode_ == Mode::kRunning || mode_ == Mode::kHolding);
+    const std::int64_t deadline_s = record.utc_s + settings_.order_deadline_s;
+    const bool in_time = clock_.now_utc_ns() <= deadline_s * kNanosecondsPerSecond;
+    if (needed && !(record.written && in_time)) ++deadline_misses_;
+  }
+
+  void fill_totals(CycleRecord& record) const {
+    record.missed_ticks = missed_ticks_;
+    record.deadline_misses = deadline_misses_;
+    record.idle_cycles = follow_.idle_cycles();
+    record.throughput = cycle_budget_.today();
+    record.counters = battery_.counters();
   }
 
   std::int32_t elapsed_us(std::int64_t start_ns) {
@@ -217,13 +308,20 @@ class ControlLoop {
   PriceSource& prices_;
   Clock& clock_;
   SafetyGuard guard_;
+  CycleBudget cycle_budget_;
+  FollowMonitor follow_;
   Mode mode_ = Mode::kStart;
   std::int64_t cycle_ = 0;
   std::int64_t last_tick_utc_s_ = 0;
   std::int64_t hold_start_utc_s_ = 0;
   std::int64_t request_ns_ = 0;  ///< when this cycle asked for its price
   std::int32_t missed_ticks_ = 0;
-  bool has_ordered_ = false;  ///< an order may be in force at the battery
+  std::int32_t deadline_misses_ = 0;
+  std::int64_t fed_utc_ns_ = 0;     ///< when the battery last got an order or a refresh
+  bool has_ordered_ = false;        ///< an order may be in force at the battery
+  std::int32_t order_power_w_ = 0;  ///< of that order
+  bool looked_for_order_ = false;   ///< the first reading tells what an earlier run left in force
+  bool order_found_ = false;
 };
 
 }  // namespace bess

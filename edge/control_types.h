@@ -7,6 +7,7 @@
 
 #include <cstdint>
 
+#include "edge/cycle_budget.h"
 #include "edge/mode.h"
 #include "shared/action.h"
 #include "shared/status.h"
@@ -58,13 +59,16 @@ enum class Reason : std::uint8_t {
   kAlarm,
   kTemperature,
   kOffGrid,
+  kWrongDirection,
   kNoPrice,
   kPriceAge,
   kPriceQuarterHour,
   kLastStopReason = kPriceQuarterHour,  ///< up to here: the battery must not be driven
   kSocFull,
   kSocEmpty,
+  kCycleBudget,
   kPowerLimit,
+  kRamp,
   kPriceLow,
   kPriceHigh,
   kStudent  ///< no intervention
@@ -73,10 +77,10 @@ enum class Reason : std::uint8_t {
 constexpr bool is_stop_reason(Reason reason) { return reason <= Reason::kLastStopReason; }
 
 constexpr std::string_view reason_name(Reason reason) {
-  constexpr std::string_view kNames[] = {"stop_requested", "clock",      "link",      "alarm",
-                                         "temperature",    "off_grid",   "no_price",  "price_age",
-                                         "price_qh",       "soc_full",   "soc_empty", "power_limit",
-                                         "price_low",      "price_high", "student"};
+  constexpr std::string_view kNames[] = {
+      "stop_requested",  "clock",       "link",      "alarm",     "temperature", "off_grid",
+      "wrong_direction", "no_price",    "price_age", "price_qh",  "soc_full",    "soc_empty",
+      "cycle_budget",    "power_limit", "ramp",      "price_low", "price_high",  "student"};
   return kNames[static_cast<int>(reason)];
 }
 
@@ -101,9 +105,12 @@ struct CycleRecord {
   Status battery_status = Status::kNotConnected;  ///< of the worst battery call of this cycle
   bool written = false;                           ///< an order or a release was sent and read back
   std::int32_t decision_us = 0;
-  std::int32_t write_us = 0;      ///< order written and read back
-  std::int32_t total_us = 0;      ///< from the price row's arrival to the order read back
-  std::int32_t missed_ticks = 0;  ///< ticks skipped since start because a cycle overran
+  std::int32_t write_us = 0;         ///< order written and read back
+  std::int32_t total_us = 0;         ///< from the price row's arrival to the order read back
+  std::int32_t missed_ticks = 0;     ///< ticks skipped since start because a cycle overran
+  std::int32_t deadline_misses = 0;  ///< cycles since start whose order was not in force in time
+  std::int32_t idle_cycles = 0;      ///< orders in a row that the battery did not answer with power
+  DayThroughput throughput{};
   BatteryCounters counters{};
 };
 

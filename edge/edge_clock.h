@@ -55,6 +55,13 @@ class EdgeClock {
     return stop_requested_;
   }
 
+  /// The stop was asked for by SIGHUP: the process ends and leaves its order in force, because a
+  /// new one takes over at once.
+  [[nodiscard]] bool hand_over_requested() {
+    take_stop_signal(0);  // a SIGTERM that came with it wins
+    return hand_over_requested_;
+  }
+
   /// Simulated time is always right; real time must be disciplined by NTP, or every order is a
   /// guess.
   [[nodiscard]] bool is_synchronised() const {
@@ -67,13 +74,17 @@ class EdgeClock {
   void take_stop_signal(std::int64_t wait_ns) {
     const timespec timeout{.tv_sec = static_cast<time_t>(wait_ns / kNanosecondsPerSecond),
                            .tv_nsec = static_cast<long>(wait_ns % kNanosecondsPerSecond)};
-    if (sigtimedwait(&stop_signals_, nullptr, &timeout) > 0) stop_requested_ = true;
+    const int signal = sigtimedwait(&stop_signals_, nullptr, &timeout);
+    if (signal <= 0) return;
+    hand_over_requested_ = signal == SIGHUP && (hand_over_requested_ || !stop_requested_);
+    stop_requested_ = true;
   }
 
   ScaledClock clock_;
   bool require_synchronised_;
   sigset_t stop_signals_{};
   bool stop_requested_ = false;
+  bool hand_over_requested_ = false;
 };
 
 }  // namespace bess

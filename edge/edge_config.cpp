@@ -106,6 +106,9 @@ void read_guard(TomlTable table, EdgeConfig& config) {
   table.scaled("temperature_min_c", guard.temperature_min_deci_c, 10, -50, 100);
   table.scaled("temperature_max_c", guard.temperature_max_deci_c, 10, -50, 100);
   table.integer("hold_s", config.control.hold_s, 0, 3'600);
+  table.integer("ramp_w_max", guard.ramp_w_max, 0, 100'000'000);
+  table.scaled("cycles_per_day_max", config.control.cycles_per_day_max_e4, 10'000, 0, 100);
+  table.integer("order_deadline_s", config.control.order_deadline_s, 1, kSecondsPerStep);
   table.boolean("require_synchronised_clock", config.require_synchronised_clock);
   table.finish();
   if (guard.low_price_centi_eur_per_mwh >= guard.high_price_centi_eur_per_mwh) {

@@ -35,6 +35,11 @@ class ModbusBattery {
   /// `read` fails until this has succeeded once, so nothing is ever ordered of an unknown device.
   Status check_identity(IdentityFailure& failure);
 
+  /// How often `refresh` must be called while an order is in force; 0 = each cycle's order is enough.
+  [[nodiscard]] std::int32_t refresh_interval_s() const { return 0; }
+  Status refresh() { return Status::kOk; }
+  [[nodiscard]] BatteryCounters counters() const { return {}; }
+
   /// Gives the one connection free; the next request opens it again.
   void close() { link_.close(); }
 

@@ -1,11 +1,10 @@
 // The controller's modes and every transition between them: a pure function, tested as a table.
 //
-//   start    nothing was ordered yet; waits for battery, price and clock     -> running, stopping
-//   running  orders follow student and guard                                 -> holding, stopping
-//   holding  a stop reason is present: 0 W is held for a while               -> running, safe,
-//   stopping safe     released: the battery is in its own mode, the loop keeps trying -> running,
-//   stopping stopping the process ends: 0 W, then release                             (left by
-//   exiting)
+//   start     nothing was ordered yet; waits for battery, price and clock   -> running, holding
+//   running   orders follow student and guard                               -> holding
+//   holding   a stop reason is present: 0 W is held for a while             -> running, safe
+//   safe      released: the battery is in its own mode, the loop goes on    -> running
+//   stopping  the process ends: 0 W, then release                           (reached from all)
 #pragma once
 
 #include <cstdint>
@@ -24,6 +23,7 @@ struct ModeInputs {
   bool stop_requested;
   bool stop_reason;   ///< the guard forbids driving the battery
   bool hold_elapsed;  ///< 0 W has been held for the configured time
+  bool order_found;   ///< at start the battery was found following an order, of an earlier run
 };
 
 constexpr Mode next_mode(Mode mode, const ModeInputs& in) {
@@ -35,6 +35,7 @@ constexpr Mode next_mode(Mode mode, const ModeInputs& in) {
     case Mode::kHolding:
       return in.hold_elapsed ? Mode::kSafe : Mode::kHolding;
     case Mode::kStart:
+      return in.order_found ? Mode::kHolding : Mode::kStart;
     case Mode::kSafe:
     case Mode::kStopping:
       break;

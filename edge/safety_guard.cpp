@@ -22,7 +22,8 @@ GuardDecision SafetyGuard::decide(const GuardInputs& in) {
     return decision;
   }
   decision = apply_thresholds(in);
-  apply_limits(in.measurement, decision);
+  apply_ramp(in.previous_power_w, decision);
+  apply_limits(in, decision);
   return decision;
 }
 
@@ -39,6 +40,8 @@ bool SafetyGuard::find_stop_reason(const GuardInputs& in, Reason& reason) const 
     reason = Reason::kTemperature;
   } else if (m.off_grid) {
     reason = Reason::kOffGrid;
+  } else if (in.wrong_direction) {
+    reason = Reason::kWrongDirection;
   } else {
     return find_price_stop_reason(in, reason);
   }
@@ -83,13 +86,23 @@ void SafetyGuard::update_soc_latches(std::int32_t soc_e4) {
   if (soc_e4 > settings_.soc_min_e4 + settings_.soc_hysteresis_e4) empty_ = false;
 }
 
-void SafetyGuard::apply_limits(const BatteryMeasurement& measurement,
-                               GuardDecision& decision) const {
+void SafetyGuard::apply_ramp(std::int32_t previous_power_w, GuardDecision& decision) const {
+  if (settings_.ramp_w_max == 0) return;
+  const std::int32_t ramped =
+      clamp_to<std::int32_t>(decision.power_w, previous_power_w - settings_.ramp_w_max,
+                             previous_power_w + settings_.ramp_w_max);
+  if (ramped != decision.power_w) decision = {.power_w = ramped, .reason = Reason::kRamp};
+}
+
+void SafetyGuard::apply_limits(const GuardInputs& in, GuardDecision& decision) const {
   if (decision.power_w > 0 && full_) decision = {.power_w = 0, .reason = Reason::kSocFull};
   if (decision.power_w < 0 && empty_) decision = {.power_w = 0, .reason = Reason::kSocEmpty};
+  if (decision.power_w != 0 && in.cycle_budget_spent) {
+    decision = {.power_w = 0, .reason = Reason::kCycleBudget};
+  }
   const std::int32_t limited = clamp_to<std::int32_t>(
-      decision.power_w, -clamp_to<std::int32_t>(measurement.discharge_w_max, 0, INT32_MAX),
-      clamp_to<std::int32_t>(measurement.charge_w_max, 0, INT32_MAX));
+      decision.power_w, -clamp_to<std::int32_t>(in.measurement.discharge_w_max, 0, INT32_MAX),
+      clamp_to<std::int32_t>(in.measurement.charge_w_max, 0, INT32_MAX));
   if (limited != decision.power_w) decision = {.power_w = limited, .reason = Reason::kPowerLimit};
 }
 

@@ -14,7 +14,7 @@
 namespace bess {
 namespace {
 
-constexpr std::int64_t kDayStartS = 1'679'695'200;  // 2023-03-25T22:00:00Z, into the spring change
+constexpr std::int64_t kDayStartS = 1'679'781'600;  // 2023-03-25T22:00:00Z, into the spring change
 constexpr BatteryParameters kHouse{.power_w_max = 4'000, .capacity_wh = 8'000};
 
 struct FakeClock {
@@ -46,6 +46,10 @@ struct FakeBattery {
     m.capacity_wh = 8'000;
     m.alarm = alarm;
     m.dispatch_active = physics.dispatch_active();
+    m.has_order_power = true;
+    m.order_power_w = static_cast<std::int32_t>(physics.commanded_power_w());
+    if (inverted) m.power_w = -m.power_w;
+    clock.now_ns += read_takes_ns;
     return Status::kOk;
   }
   Status order(const PowerOrder& o) {
@@ -55,6 +59,14 @@ struct FakeBattery {
     const std::int32_t limit_e4 = o.power_w < 0 ? o.soc_min_e4 : o.soc_max_e4;
     physics.start_dispatch(o.power_w, limit_e4 / 1e4, o.duration_s);
     return Status::kOk;
+  }
+  [[nodiscard]] std::int32_t refresh_interval_s() const { return refresh_s; }
+  Status refresh() {
+    refreshed_ns.push_back(clock.now_ns);
+    return link ? Status::kOk : Status::kTimeout;
+  }
+  [[nodiscard]] BatteryCounters counters() const {
+    return {.requests = static_cast<std::int64_t>(orders.size())};
   }
   Status release() {
     physics.advance(clock.now_ns);
@@ -68,6 +80,10 @@ struct FakeBattery {
   SimulatedBattery physics;
   bool link = true;
   bool alarm = false;
+  bool inverted = false;  ///< its meter shows the wrong sign
+  std::int64_t read_takes_ns = 0;
+  std::int32_t refresh_s = 0;
+  std::vector<std::int64_t> refreshed_ns;
   int releases = 0;
   std::vector<PowerOrder> orders;
 };
@@ -210,6 +226,155 @@ TEST(ClosedLoop, CountsTheTicksThatAnOverrunSkipped) {
   plant.cycle();
   plant.clock.now_ns += 500 * kNanosecondsPerSecond;
   EXPECT_EQ(plant.cycle().missed_ticks, 4);
+}
+
+TEST(ClosedLoop, ARestartTakesOverWhatTheBatteryIsDoing) {
+  Plant plant;
+  plant.prices.price = [](std::int64_t) { return -60'000; };
+  plant.battery.physics.start_dispatch(4'000, 1.0, 300);  // the order of the run before
+  const CycleRecord record = plant.cycle();
+  EXPECT_EQ(record.measurement.order_power_w, 4'000);
+  EXPECT_EQ(record.mode, Mode::kRunning);
+  EXPECT_EQ(plant.battery.orders.size(), 1U);
+  EXPECT_EQ(plant.battery.orders[0].power_w, 4'000);  // no step in power in between
+}
+
+TEST(ClosedLoop, ARestartWithoutAPriceHoldsZeroAndReleasesTheOldOrder) {
+  Plant plant;
+  plant.prices.outage = true;
+  plant.battery.physics.start_dispatch(-4'000, 0.1, 3'600);
+  EXPECT_EQ(plant.cycle().mode, Mode::kHolding);
+  EXPECT_EQ(plant.battery.orders.back().power_w, 0);
+  for (int i = 0; i < 4; ++i) plant.cycle();
+  EXPECT_EQ(plant.battery.releases, 1);
+}
+
+TEST(ClosedLoop, AStopAfterARestartReleasesTheOldOrderToo) {
+  Plant plant;
+  plant.prices.outage = true;
+  plant.battery.physics.start_dispatch(-4'000, 0.1, 3'600);
+  plant.cycle();
+  CycleRecord record;
+  EXPECT_EQ(plant.loop.stop(record), Status::kOk);
+  EXPECT_FALSE(plant.battery.physics.dispatch_active());
+}
+
+TEST(ClosedLoop, TheWatchdogIsFedAsOftenAsTheMapAsks) {
+  Plant plant;
+  plant.battery.refresh_s = 30;
+  plant.cycle();
+  EXPECT_TRUE(plant.battery.refreshed_ns.empty());  // nothing was in force before the first order
+  plant.cycle();
+  ASSERT_GE(plant.battery.refreshed_ns.size(), 3U);
+  const std::int64_t first_ns = plant.battery.refreshed_ns[0];
+  EXPECT_EQ(plant.battery.refreshed_ns[1] - first_ns, 30 * kNanosecondsPerSecond);
+  EXPECT_EQ(plant.battery.refreshed_ns[2] - first_ns, 60 * kNanosecondsPerSecond);
+}
+
+TEST(ClosedLoop, NothingIsFedWithoutAnOrderOrInReadOnly) {
+  ControlSettings settings = in_control();
+  settings.control = false;
+  Plant reader(0.5, settings);
+  Plant safe;
+  reader.battery.refresh_s = safe.battery.refresh_s = 30;
+  safe.prices.outage = true;
+  for (int i = 0; i < 5; ++i) {
+    reader.cycle();
+    safe.cycle();
+  }
+  EXPECT_TRUE(reader.battery.refreshed_ns.empty());
+  EXPECT_TRUE(safe.battery.refreshed_ns.empty());
+}
+
+TEST(ClosedLoop, TheCycleBudgetOfADayStopsAtItAndOpensAgainAtLocalMidnight) {
+  set_market_time_zone();
+  ControlSettings settings = in_control();
+  settings.cycles_per_day_max_e4 = 5'000;  // half a cycle: 100 % of charge moved
+  Plant plant(0.5, settings);
+  plant.prices.price = [&](std::int64_t minute_utc_s) {
+    return minute_utc_s / 7'200 % 2 == 0 ? -60'000 : 160'000;  // two hours each way
+  };
+  std::int32_t moved_e4_max = 0;
+  bool spent = false, reopened = false;
+  for (int i = 0; i < 2 * kStepsPerDay; ++i) {
+    const CycleRecord record = plant.cycle();
+    moved_e4_max = std::max(moved_e4_max, record.throughput.soc_moved_e4);
+    if (record.reason == Reason::kCycleBudget) {
+      EXPECT_EQ(record.ordered_power_w, 0);
+      spent = true;
+    }
+    reopened = reopened || (spent && record.ordered_power_w != 0);
+  }
+  EXPECT_TRUE(spent);
+  EXPECT_TRUE(reopened);
+  EXPECT_GE(moved_e4_max, 10'000);
+  EXPECT_LE(moved_e4_max, 10'000 + 350);  // one 2-minute step of 4 kW at the most
+}
+
+TEST(ClosedLoop, ARestartKeepsTheCyclesOfTheDay) {
+  set_market_time_zone();
+  ControlSettings settings = in_control();
+  settings.cycles_per_day_max_e4 = 5'000;
+  Plant plant(0.5, settings);
+  plant.loop.take_over({.throughput = {.local_day = 20'230'325, .soc_moved_e4 = 10'000}});
+  plant.prices.price = [](std::int64_t) { return -60'000; };
+  EXPECT_EQ(plant.cycle().reason, Reason::kCycleBudget);
+}
+
+TEST(ClosedLoop, ABatteryThatGoesTheOtherWayIsLeftAlone) {
+  Plant plant;
+  plant.battery.inverted = true;
+  plant.prices.price = [](std::int64_t) { return -60'000; };
+  std::vector<CycleRecord> records;
+  for (int i = 0; i < 8; ++i) records.push_back(plant.cycle());
+  EXPECT_EQ(records[2].mode, Mode::kRunning);
+  EXPECT_EQ(records[3].reason, Reason::kWrongDirection);  // three answers the wrong way
+  EXPECT_EQ(records[3].ordered_power_w, 0);
+  EXPECT_EQ(records.back().mode, Mode::kSafe);
+  EXPECT_EQ(plant.battery.releases, 1);
+}
+
+TEST(ClosedLoop, ABatteryThatDoesNothingIsCounted) {
+  Plant plant(1.0);
+  plant.battery.physics =
+      SimulatedBattery({.power_w_max = 1, .capacity_wh = 8'000}, 0.5, plant.clock.now_ns);
+  plant.prices.price = [](std::int64_t) { return -60'000; };
+  for (int i = 0; i < 5; ++i) plant.cycle();
+  EXPECT_EQ(plant.cycle().idle_cycles, 5);
+}
+
+TEST(ClosedLoop, TheRampBoundsTheChangeOfEveryOrder) {
+  ControlSettings settings = in_control();
+  settings.guard.ramp_w_max = 1'500;
+  Plant plant(0.5, settings);
+  plant.prices.price = [](std::int64_t) { return -60'000; };
+  for (const std::int32_t expected_w : {1'500, 3'000, 4'000, 4'000}) {
+    EXPECT_EQ(plant.cycle().ordered_power_w, expected_w);
+  }
+  plant.battery.alarm = true;
+  EXPECT_EQ(plant.cycle().ordered_power_w, 0);  // a stop reason does not wait for the ramp
+}
+
+TEST(ClosedLoop, AProcessThatWasSuspendedDoesNotActOnAnOldPrice) {
+  Plant plant;
+  plant.prices.price = [&](std::int64_t) {
+    plant.clock.now_ns += 600 * kNanosecondsPerSecond;  // between the price and the decision
+    return -60'000;
+  };
+  const CycleRecord record = plant.cycle();
+  EXPECT_EQ(record.reason, Reason::kPriceAge);
+  EXPECT_TRUE(plant.battery.orders.empty());
+}
+
+TEST(ClosedLoop, CountsOrdersThatComeTooLateOrNotAtAll) {
+  Plant plant;
+  EXPECT_EQ(plant.cycle().deadline_misses, 0);
+  plant.battery.read_takes_ns = 70 * kNanosecondsPerSecond;
+  EXPECT_EQ(plant.cycle().deadline_misses, 1);
+  plant.battery.read_takes_ns = 0;
+  EXPECT_EQ(plant.cycle().deadline_misses, 1);
+  plant.battery.link = false;
+  EXPECT_EQ(plant.cycle().deadline_misses, 2);
 }
 
 /// Toggles every fault at random; `chance` per cycle.

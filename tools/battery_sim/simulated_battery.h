@@ -34,6 +34,8 @@ class SimulatedBattery {
   [[nodiscard]] bool dispatch_active() const { return dispatch_active_; }
   [[nodiscard]] double soc_frac() const { return soc_frac_; }
   [[nodiscard]] double power_w() const;  ///< flowing now
+  /// Of the order in force; 0 without one.
+  [[nodiscard]] double commanded_power_w() const { return dispatch_active_ ? power_w_ : 0.0; }
   [[nodiscard]] const BatteryParameters& parameters() const { return parameters_; }
 
   /// Completed minutes, and the one under way as the last.
@@ -41,7 +43,6 @@ class SimulatedBattery {
 
  private:
   [[nodiscard]] BatteryParameters limited() const;
-  [[nodiscard]] double commanded_power_w() const { return dispatch_active_ ? power_w_ : 0.0; }
   [[nodiscard]] MinuteRecord current_minute() const;
   void integrate_segment(std::int64_t end_ns);
 
