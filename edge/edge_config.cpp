@@ -62,6 +62,7 @@ void read_battery(TomlTable table, EdgeConfig& config) {
   if (!table.ok()) return;
   const auto folder = std::filesystem::path(table.file()).parent_path();
   const std::string map_path = (folder / map_file.c_str()).string();
+  if (!config.map_path.assign(map_path)) table.fail("map", "is too long");
   if (load_register_map(map_path, variant.view(), config.map, table.error()))
     expect_capacity(config);
 }
@@ -131,6 +132,17 @@ void read_log(TomlTable table, EdgeConfig& config) {
   if (!config.log_csv.assign((folder / csv.c_str()).string())) table.fail("csv", "is too long");
 }
 
+void read_state(TomlTable table, EdgeConfig& config) {
+  FixedText<511> folder;
+  table.text("folder", folder);
+  table.finish();
+  if (folder.empty()) return;
+  const auto beside = std::filesystem::path(table.file()).parent_path();
+  if (!config.state_folder.assign((beside / folder.c_str()).string())) {
+    table.fail("folder", "is too long");
+  }
+}
+
 void read_simulation(TomlTable table, ScaledClock& clock) {
   FixedText<31> utc_start;
   std::int32_t scale = 1;
@@ -160,6 +172,7 @@ bool load_edge_config(const std::string& path, EdgeConfig& config, std::string& 
   check_battery_against_map(section(root, "battery"), config);
   read_price(section(root, "price"), config.price);
   read_guard(section(root, "guard"), config);
+  read_state(section(root, "state"), config);
   read_log(section(root, "log"), config);
   read_simulation(section(root, "simulation"), config.clock);
   root.finish();

@@ -20,6 +20,8 @@ struct EdgeConfig {
   PriceFeedSettings price;
   RegisterMap map;
   ScaledClock clock;
+  FixedText<511> map_path;
+  FixedText<511> state_folder = "/var/lib/bess";  ///< what must outlive a restart
   FixedText<511> log_csv;
   std::int32_t capacity_wh = 8'000;  ///< what the battery must report, within the tolerance
   std::int32_t capacity_tolerance_percent = 25;

@@ -4,119 +4,13 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <functional>
 #include <random>
 #include <vector>
 
-#include "tools/battery_sim/simulated_battery.h"
+#include "tests/support/fake_plant.h"
 
 namespace bess {
 namespace {
-
-constexpr std::int64_t kDayStartS = 1'679'781'600;  // 2023-03-25T22:00:00Z, into the spring change
-constexpr BatteryParameters kHouse{.power_w_max = 4'000, .capacity_wh = 8'000};
-
-struct FakeClock {
-  std::int64_t now_ns = kDayStartS * kNanosecondsPerSecond;
-  bool stop = false;
-  bool synchronised = true;
-
-  [[nodiscard]] std::int64_t now_utc_ns() const { return now_ns; }
-  [[nodiscard]] std::int64_t monotonic_ns() const { return now_ns; }
-  [[nodiscard]] std::int64_t monotonic_ns_at(std::int64_t utc_ns) const { return utc_ns; }
-  bool sleep_until_utc_ns(std::int64_t utc_ns) {
-    now_ns = std::max(now_ns, utc_ns);
-    return !stop;
-  }
-  [[nodiscard]] bool stop_requested() const { return stop; }
-  [[nodiscard]] bool is_synchronised() const { return synchronised; }
-};
-
-/// The physics of the simulator behind the loop's battery interface, with switchable faults.
-struct FakeBattery {
-  explicit FakeBattery(FakeClock& c, double soc) : clock(c), physics(kHouse, soc, c.now_ns) {}
-
-  Status read(BatteryMeasurement& m) {
-    physics.advance(clock.now_ns);
-    if (!link) return Status::kTimeout;
-    m = BatteryMeasurement{};
-    m.soc_e4 = static_cast<std::int32_t>(std::lround(physics.soc_frac() * 1e3)) * 10;
-    m.power_w = static_cast<std::int32_t>(physics.power_w());
-    m.capacity_wh = 8'000;
-    m.alarm = alarm;
-    m.dispatch_active = physics.dispatch_active();
-    m.has_order_power = true;
-    m.order_power_w = static_cast<std::int32_t>(physics.commanded_power_w());
-    if (inverted) m.power_w = -m.power_w;
-    clock.now_ns += read_takes_ns;
-    return Status::kOk;
-  }
-  Status order(const PowerOrder& o) {
-    physics.advance(clock.now_ns);
-    orders.push_back(o);
-    if (!link) return Status::kTimeout;
-    const std::int32_t limit_e4 = o.power_w < 0 ? o.soc_min_e4 : o.soc_max_e4;
-    physics.start_dispatch(o.power_w, limit_e4 / 1e4, o.duration_s);
-    return Status::kOk;
-  }
-  [[nodiscard]] std::int32_t refresh_interval_s() const { return refresh_s; }
-  Status refresh() {
-    refreshed_ns.push_back(clock.now_ns);
-    return link ? Status::kOk : Status::kTimeout;
-  }
-  [[nodiscard]] BatteryCounters counters() const {
-    return {.requests = static_cast<std::int64_t>(orders.size())};
-  }
-  Status release() {
-    physics.advance(clock.now_ns);
-    if (!link) return Status::kTimeout;
-    ++releases;
-    physics.stop_dispatch();
-    return Status::kOk;
-  }
-
-  FakeClock& clock;
-  SimulatedBattery physics;
-  bool link = true;
-  bool alarm = false;
-  bool inverted = false;  ///< its meter shows the wrong sign
-  std::int64_t read_takes_ns = 0;
-  std::int32_t refresh_s = 0;
-  std::vector<std::int64_t> refreshed_ns;
-  int releases = 0;
-  std::vector<PowerOrder> orders;
-};
-
-/// Publishes `price(minute)` for every minute unless the outage swallows it.
-struct FakePrices {
-  explicit FakePrices(FakeClock& c) : clock(c) {}
-
-  void request(std::int64_t minute_utc_s, std::int64_t, std::int64_t) { wanted = minute_utc_s; }
-  bool wait(std::int64_t until_ns) {
-    if (!outage) {
-      report = {.has_row = true,
-                .minute_utc_s = wanted,
-                .price_centi_eur_per_mwh = price(wanted),
-                .received_monotonic_ns = clock.now_ns,
-                .status = Status::kOk};
-      return true;
-    }
-    clock.now_ns = std::max(clock.now_ns, until_ns);
-    report.status = Status::kTimeout;
-    return false;
-  }
-  [[nodiscard]] PriceReport latest() const { return report; }
-
-  FakeClock& clock;
-  std::int64_t wanted = 0;
-  bool outage = false;
-  PriceReport report;
-  std::function<std::int32_t(std::int64_t)> price = [](std::int64_t minute_utc_s) {
-    const double hours = static_cast<double>(minute_utc_s % 86'400) / 3'600;
-    return static_cast<std::int32_t>(std::lround(10'000 + 20'000 * std::sin(hours)));
-  };
-};
 
 using Loop = ControlLoop<FakeBattery, FakePrices, FakeClock>;
 
