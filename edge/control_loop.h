@@ -34,6 +34,7 @@ struct ControlSettings {
   bool control = false;  ///< false: everything but writing
   GuardSettings guard;
   std::int32_t order_duration_s = 300;  ///< of the device's dead-man timer
+  bool has_dead_man = false;            ///< the device ends an order that is not renewed
   std::int32_t hold_s = 300;            ///< 0 W held after a stop reason before releasing
   std::int32_t price_wait_s = 20;
   std::int32_t read_lead_s = 3;
@@ -85,13 +86,7 @@ class ControlLoop {
   /// Safe state: 0 W, then release. Called once on every way out; harmless when nothing was
   /// ordered.
   Status stop(CycleRecord& record) {
-    mode_ = Mode::kStopping;
-    record = CycleRecord{.utc_s = clock_.now_utc_ns() / kNanosecondsPerSecond,
-                         .cycle = cycle_,
-                         .mode = mode_,
-                         .reason = Reason::kStopRequested,
-                         .battery_status = Status::kOk};
-    fill_totals(record);
+    record = final_record(Reason::kStopRequested);
     if (!settings_.control || !has_ordered_) return Status::kOk;
     write_order(0, record);
     const Status zero_status = record.battery_status;
@@ -103,7 +98,27 @@ class ControlLoop {
     return status;
   }
 
+  /// Ends without touching the battery, for the next run to take over; its dead-man timer ends the
+  /// order if none comes. False when it has none, or no order is in force: then stop.
+  bool hand_over(CycleRecord& record) {
+    if (!settings_.has_dead_man || !has_ordered_) return false;
+    record = final_record(Reason::kHandOver);
+    record.ordered_power_w = order_power_w_;
+    return true;
+  }
+
  private:
+  CycleRecord final_record(Reason reason) {
+    mode_ = Mode::kStopping;
+    CycleRecord record{.utc_s = clock_.now_utc_ns() / kNanosecondsPerSecond,
+                       .cycle = cycle_,
+                       .mode = mode_,
+                       .reason = reason,
+                       .battery_status = Status::kOk};
+    fill_totals(record);
+    return record;
+  }
+
   /// Sleeps, and feeds the battery's watchdog meanwhile; false when asked to stop.
   bool sleep_until_s(std::int64_t utc_s) {
     const std::int64_t until_ns = utc_s * kNanosecondsPerSecond;

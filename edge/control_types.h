@@ -54,6 +54,7 @@ struct PriceReport {
 /// Why the guard ordered something else than the student. Order is precedence: lower numbers win.
 enum class Reason : std::uint8_t {
   kStopRequested,
+  kHandOver,
   kClock,
   kLink,
   kAlarm,
@@ -78,9 +79,10 @@ constexpr bool is_stop_reason(Reason reason) { return reason <= Reason::kLastSto
 
 constexpr std::string_view reason_name(Reason reason) {
   constexpr std::string_view kNames[] = {
-      "stop_requested",  "clock",       "link",      "alarm",     "temperature", "off_grid",
-      "wrong_direction", "no_price",    "price_age", "price_qh",  "soc_full",    "soc_empty",
-      "cycle_budget",    "power_limit", "ramp",      "price_low", "price_high",  "student"};
+      "stop_requested", "hand_over", "clock",           "link",         "alarm",
+      "temperature",    "off_grid",  "wrong_direction", "no_price",     "price_age",
+      "price_qh",       "soc_full",  "soc_empty",       "cycle_budget", "power_limit",
+      "ramp",           "price_low", "price_high",      "student"};
   return kNames[static_cast<int>(reason)];
 }
 

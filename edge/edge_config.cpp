@@ -179,6 +179,7 @@ bool load_edge_config(const std::string& path, EdgeConfig& config, std::string& 
   config.control.price_wait_s = config.price.wait_s;
   if (config.map.dead_man_duration_s > 0) {
     config.control.order_duration_s = config.map.dead_man_duration_s;
+    config.control.has_dead_man = true;
   }
   return error.empty();
 }

@@ -153,6 +153,29 @@ TEST(ClosedLoop, AStopAfterARestartReleasesTheOldOrderToo) {
   EXPECT_FALSE(plant.battery.physics.dispatch_active());
 }
 
+TEST(ClosedLoop, AHandOverLeavesTheOrderToTheNextRun) {
+  ControlSettings settings = in_control();
+  settings.has_dead_man = true;
+  Plant plant(0.5, settings);
+  plant.prices.price = [](std::int64_t) { return -60'000; };
+  CycleRecord record;
+  EXPECT_FALSE(plant.loop.hand_over(record));  // nothing is in force yet
+  plant.cycle();
+  EXPECT_TRUE(plant.loop.hand_over(record));
+  EXPECT_EQ(record.reason, Reason::kHandOver);
+  EXPECT_EQ(record.ordered_power_w, 4'000);
+  EXPECT_EQ(plant.battery.orders.size(), 1U);
+  EXPECT_EQ(plant.battery.releases, 0);
+  EXPECT_TRUE(plant.battery.physics.dispatch_active());
+}
+
+TEST(ClosedLoop, NothingIsHandedOverToABatteryWithoutADeadMan) {
+  Plant plant;
+  plant.cycle();
+  CycleRecord record;
+  EXPECT_FALSE(plant.loop.hand_over(record));
+}
+
 TEST(ClosedLoop, TheWatchdogIsFedAsOftenAsTheMapAsks) {
   Plant plant;
   plant.battery.refresh_s = 30;
