@@ -8,6 +8,9 @@
 
 namespace bess {
 
+inline constexpr std::string_view kBareNonAsciiMessage =
+    "not valid TOML: a character other than ASCII outside quotes and comments";
+
 /// Line, counted from 1, of the first character other than ASCII outside quotes and comments; 0 when
 /// there is none.
 constexpr int line_of_bare_non_ascii(std::string_view toml) {

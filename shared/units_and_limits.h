@@ -29,6 +29,8 @@ inline constexpr std::int64_t kLatticeStateCount =
     std::int64_t{kContextCount} * kSocCount * kPriceCount;
 static_assert(kPriceCount == 2001 && kLatticeStateCount == 6'950'033'280);
 
+inline constexpr double kWattsPerMegawatt = 1e6;  ///< prices are per MWh, powers are in W
+
 // --- Prices as the edge counts them: integer hundredths of EUR/MWh [SPEC 7] --------------------
 inline constexpr std::int32_t kCentiPerEur = 100;
 /// Prices outside +-15,000 EUR/MWh are refused as implausible.

@@ -166,8 +166,7 @@ bool parse_toml_file(const std::string& path, toml::table& document, std::string
     return false;
   }
   if (const int line = line_of_bare_non_ascii(text); line > 0) {
-    error = path + ":" + std::to_string(line) +
-            ": not valid TOML: a character other than ASCII outside quotes and comments";
+    error = path + ":" + std::to_string(line) + ": " + std::string(kBareNonAsciiMessage);
     return false;
   }
   toml::parse_result result = toml::parse(text, path);

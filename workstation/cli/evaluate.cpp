@@ -11,6 +11,7 @@
 #include "workstation/cli/policy_factory.h"
 #include "workstation/env/evaluate.h"
 #include "workstation/io/file.h"
+#include "workstation/io/text.h"
 #include "workstation/io/user_error.h"
 #include "workstation/report/comparison.h"
 
@@ -46,7 +47,7 @@ struct Records {
 
   void add(const std::string& policy, std::string_view mode, const Evaluation& e,
            const std::vector<StepRecord>& records) {
-    const std::string tail = fmt::format("{},{}", csv_quote(policy), mode);
+    const std::string tail = fmt::format("{},{}", csv_field(policy), mode);
     for (const DayResult& d : e.days) {
       days += fmt::format("{},{:.8g},{:.4f},{},{:.5f},{}\n", d.date, d.profit_eur, d.cycles,
                           d.switches, d.soc_end_frac, tail);
@@ -56,14 +57,6 @@ struct Records {
                            r.observed_eur_per_mwh, r.paid_eur_per_mwh, r.soc_frac,
                            action_name(r.action), r.power_w, r.profit_eur, tail);
     }
-  }
-
- private:
-  static std::string csv_quote(const std::string& text) {
-    if (text.find_first_of(",\"\n") == std::string::npos) return text;
-    std::string out = "\"";
-    for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
-    return out + '"';
   }
 };
 
@@ -164,6 +157,7 @@ struct Trial {
   std::optional<MarketDay> only_day;
   const RunConfig& config;
   const Options& options;
+  Risk risk;
 };
 
 /// In the ways of counting that are wanted; every step goes to `records` when it is given.
@@ -171,7 +165,7 @@ NamedEvaluation evaluate_policy(const std::string& name, const Trial& trial, Rec
   const Options& options = trial.options;
   const RunConfig& config = trial.config;
   const std::shared_ptr<Policy> policy =
-      make_policy(name, trial.fitting, config.battery, parse_risk(options.risk));
+      make_policy(name, trial.fitting, config.battery, trial.risk);
   NamedEvaluation named{name, {}, {}, policy->description()};
   const bool wants_steps = records != nullptr && !options.steps_out.empty();
   for (const bool carry_soc : {false, true}) {
@@ -200,7 +194,13 @@ void run(const Options& options) {
   const MinuteSeries series = read_minute_file(options.prices);
   const MarketSteps market = make_market_steps(series, config.market);
   const MarketSteps fitting = fitting_market(series, config, options);
-  Trial trial{market, fitting, market.days_of(parse_split(options.split)), {}, config, options};
+  Trial trial{market,
+              fitting,
+              market.days_of(parse_split(options.split)),
+              {},
+              config,
+              options,
+              parse_risk(options.risk)};
   if (trial.days.empty()) {
     fail("{}: no complete day in the {} split; add prices or use --split all", options.prices,
          options.split);

@@ -93,7 +93,7 @@ std::pair<double, double> training_quartiles(const MarketSteps& market) {
   for (const MarketDay& day : market.days_of(Split::kTrain)) {
     for (const MarketStep& step : market.of(day)) prices.push_back(step.paid_eur_per_mwh);
   }
-  if (prices.empty()) fail("no training days (local days 1 to 20) in these prices; add some");
+  require_training_days(prices.size());
   std::ranges::sort(prices);
   return {prices[prices.size() / 4], prices[prices.size() * 3 / 4]};
 }

@@ -220,8 +220,7 @@ RunConfig parse_run_config(std::string_view text, const std::string& name) {
   RunConfig config;
   const KeyList list(config);
   if (const int line = line_of_bare_non_ascii(text); line > 0) {
-    fail("{}:{}: not valid TOML: a character other than ASCII outside quotes and comments", name,
-         line);
+    fail("{}:{}: {}", name, line, kBareNonAsciiMessage);
   }
   try {
     apply_table(toml::parse(text, name), list.keys(), name);

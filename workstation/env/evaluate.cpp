@@ -11,8 +11,6 @@
 namespace bess {
 namespace {
 
-constexpr double kWattsPerMegawatt = 1e6;
-
 template <typename Field>
 double mean_over_days(const std::vector<DayResult>& days, Field field) {
   double sum = 0;

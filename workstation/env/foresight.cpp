@@ -2,13 +2,13 @@
 
 #include <cmath>
 
+#include "shared/units_and_limits.h"
 #include "workstation/env/shadow_price.h"
 
 namespace bess {
 namespace {
 constexpr std::size_t kSocPoints = 1801;
-constexpr std::size_t kBlockSteps = 750;  // the longest local day, so that a day is one block
-constexpr double kWattsPerMegawatt = 1e6;
+constexpr std::size_t kBlockSteps = 750;     // the longest local day, so that a day is one block
 constexpr int kClockChangeQuarterHours = 4;  // local time falls back by an hour once a year
 
 /// One past the last step of each local day: the quarter-hour of day falls at midnight only.

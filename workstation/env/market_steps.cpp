@@ -70,19 +70,20 @@ std::vector<MarketDay> MarketSteps::days_of(Split split) const {
   return selected;
 }
 
+void require_training_days(std::size_t count) {
+  if (count == 0) fail("no training days (local days 1 to 20) in these prices; add some");
+}
+
 namespace {
 
 /// Why there is not one day of decisions.
 [[noreturn]] void fail_without_days(const MinuteSeries& series) {
-  const auto none_in = [](const std::vector<double>& prices) {
-    return std::ranges::all_of(prices, [](double price) { return std::isnan(price); });
-  };
-  if (none_in(series.indicative)) {
+  if (has_no_price(series.indicative)) {
     fail(
         "the prices hold no indicative price, so there is nothing to decide on; 'bess-train prices "
         "reconstruct' draws them from quarter-hours");
   }
-  if (none_in(series.settled)) {
+  if (has_no_price(series.settled)) {
     fail(
         "the prices hold no settled price, so nothing can be paid; import quarter-hours with them");
   }

@@ -66,6 +66,9 @@ struct MarketSteps {
 /// A day with fewer tradable steps than this is left out (a 23-hour day has exactly 690).
 inline constexpr std::size_t kCompleteDaySteps = 690;
 
+/// Throws UserError when there is nothing to fit on: `count` training days, or prices on them.
+void require_training_days(std::size_t count);
+
 /// Throws UserError when the options are out of range or no complete day remains.
 MarketSteps make_market_steps(const MinuteSeries& series, const MarketOptions& options);
 

@@ -52,7 +52,7 @@ RollingHorizonPolicy::RollingHorizonPolicy(const MarketSteps& market,
                                            const std::vector<MarketDay>& days,
                                            const BatteryParameters& battery)
     : battery_(battery), grid_(battery, kSocPoints), sweep_(battery, grid_) {
-  if (days.empty()) fail("no training days (local days 1 to 20) in these prices; add some");
+  require_training_days(days.size());
   fit_usual_prices(market, days);
   fit_persistence(market, days);
   fit_shrinkage(market, days);

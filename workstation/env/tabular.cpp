@@ -27,7 +27,7 @@ using Values = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMa
 TabularPolicy::TabularPolicy(const MarketSteps& market, const std::vector<MarketDay>& days,
                              const BatteryParameters& battery)
     : battery_(battery) {
-  if (days.empty()) fail("no training days (local days 1 to 20) in these prices; add some");
+  require_training_days(days.size());
   count_market(market, days);
   iterate_values();
 }

@@ -79,7 +79,7 @@ void maximise(nlopt::algorithm algorithm, int evaluations, TrainingProfit& profi
 
 RuleThresholds tune_rule(const MarketSteps& market, const std::vector<MarketDay>& days,
                          const BatteryParameters& battery) {
-  if (days.empty()) fail("no training days (local days 1 to 20) in these prices; add some");
+  require_training_days(days.size());
   TrainingProfit profit(market, days, battery);
   std::vector<double> u = {0.25, 0.67};  // the quartiles, roughly
   maximise(nlopt::GN_DIRECT_L, kGlobalEvaluations, profit, u);

@@ -69,26 +69,30 @@ fs::path resolved(const fs::path& path) {
   return error ? path : target;
 }
 
-/// A temporary file that disappears unless it is committed under its final name. It takes the
-/// permissions of the file that it replaces. A device or a pipe has no temporary file.
+/// What will be found under a name once it is committed: a temporary file beside it, which takes the
+/// permissions of the file that it replaces and disappears unless it is committed; or the device or
+/// pipe of that name itself, which is written to at once.
 class TemporaryFile {
  public:
-  explicit TemporaryFile(const fs::path& name)
-      : target_(resolved(name)),
-        path_(is_special(target_) ? target_.string()
-                                  : target_.string() + ".part." + std::to_string(getpid())),
-        committed_(is_special(target_)) {
-    if (!committed_) remove_stale_parts(target_);
-    fd_ = open(path_.c_str(), O_WRONLY | (committed_ ? 0 : O_CREAT | O_TRUNC) | O_CLOEXEC, 0644);
+  explicit TemporaryFile(const fs::path& name) : target_(resolved(name)) {
+    if (is_special(target_)) {
+      fd_ = open(target_.c_str(), O_WRONLY | O_CLOEXEC);
+    } else {
+      remove_stale_parts(target_);
+      beside_ = target_.string() + ".part." + std::to_string(getpid());
+      fd_ = open(beside_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+    }
     if (fd_ < 0) fail("{}: cannot write here: {}", target_.string(), std::strerror(errno));
     struct stat before {};
-    if (!committed_ && stat(target_.c_str(), &before) == 0) fchmod(fd_, before.st_mode & 07777);
+    if (!beside_.empty() && stat(target_.c_str(), &before) == 0) {
+      fchmod(fd_, before.st_mode & 07777);
+    }
   }
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
   ~TemporaryFile() {
     if (fd_ >= 0) close(fd_);
-    if (!committed_) unlink(path_.c_str());
+    if (!beside_.empty()) unlink(beside_.c_str());
   }
 
   void write(std::string_view contents) {
@@ -100,13 +104,13 @@ class TemporaryFile {
     }
   }
   void commit() {
-    if (!committed_ && fsync(fd_) != 0 && errno != EINVAL) give_up();
+    const bool is_file = !beside_.empty();  // a pipe cannot be synced
+    if (is_file && fsync(fd_) != 0 && errno != EINVAL) give_up();
     const int status = close(fd_);
     fd_ = -1;
     if (status != 0) give_up();
-    if (committed_) return;
-    if (rename(path_.c_str(), target_.c_str()) != 0) give_up();
-    committed_ = true;
+    if (is_file && rename(beside_.c_str(), target_.c_str()) != 0) give_up();
+    beside_.clear();
   }
 
  private:
@@ -115,8 +119,7 @@ class TemporaryFile {
   }
 
   fs::path target_;
-  std::string path_;
-  bool committed_;  ///< what lies under the final name stays
+  std::string beside_;  ///< the temporary file; empty for a device, and once committed
   int fd_ = -1;
 };
 

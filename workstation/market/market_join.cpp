@@ -118,10 +118,7 @@ JoinedMarket join_market(MarketRows rows, std::string_view name) {
   }
   market.report.settled_from_minutes = quarter_hours.empty();
   if (quarter_hours.empty()) settle_from_minute_14(series);
-  const auto all_missing = [](const std::vector<double>& prices) {
-    return std::ranges::all_of(prices, [](double price) { return std::isnan(price); });
-  };
-  if (all_missing(series.indicative) && all_missing(series.settled)) {
+  if (has_no_price(series.indicative) && has_no_price(series.settled)) {
     fail("{}: holds rows but no price in any of them; choose other days", name);
   }
   return market;

@@ -139,6 +139,10 @@ std::string format_utc(std::int64_t utc_s) {
                      t.minute, t.second);
 }
 
+bool has_no_price(std::span<const double> prices) {
+  return std::ranges::all_of(prices, [](double price) { return std::isnan(price); });
+}
+
 MinuteSeries parse_minute_csv(std::string_view text, std::string_view name) {
   text = plain_text(text, name);
   MinuteSeries series;

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,6 +24,9 @@ struct MinuteSeries {
     return start_utc_s + 60 * static_cast<std::int64_t>(minute);
   }
 };
+
+/// True when not one minute of a series' column has a price.
+bool has_no_price(std::span<const double> prices);
 
 /// Parses a minute file's text; `name` is used in messages. Throws UserError naming the line.
 MinuteSeries parse_minute_csv(std::string_view text, std::string_view name);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "workstation/io/text.h"
+
 namespace bess {
 namespace {
 
@@ -65,14 +67,6 @@ std::string table_block(const std::string& title, const std::vector<ComparisonRo
                       "switches", "foresight");
   for (const ComparisonRow& row : rows) text += table_line(row, name_width);
   return text;
-}
-
-/// A field of CSV, quoted where it must be.
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
 }
 
 std::string csv_line(const ComparisonRow& row, std::string_view soc) {

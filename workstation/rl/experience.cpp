@@ -29,7 +29,7 @@ TrainingMarket::TrainingMarket(const MarketSteps& market, const PriceMap& price_
       gamma_(static_cast<float>(shaping.gamma)),
       reward_centre_(static_cast<float>(shaping.reward_centre_eur_per_h) * kRewardScale) {
   const std::vector<MarketDay> training = market.days_of(Split::kTrain);
-  if (training.empty()) fail("no training days (local days 1 to 20) in these prices; add some");
+  require_training_days(training.size());
   for (std::size_t d = 0; d < training.size(); ++d) {
     const std::size_t first = steps_.size();
     const auto steps = market.of(training[d]);

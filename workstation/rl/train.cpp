@@ -242,9 +242,7 @@ TrainResult train_teacher(const MarketSteps& market, const BatteryParameters& ba
   if (market.days_of(Split::kValidation).empty()) {
     fail("no validation days (local days 21 to 25) in these prices; add some");
   }
-  if (market.days_of(Split::kTrain).empty()) {
-    fail("no training days (local days 1 to 20) in these prices; add some");
-  }
+  require_training_days(market.days_of(Split::kTrain).size());
   Training training(market, battery, options);
   training.run(interrupted, checkpoint);
   return training.take_result();
