@@ -37,6 +37,10 @@ TEST(MinuteFile, ReadsPricesNullsAndComments) {
   EXPECT_EQ(prices[2].settled_eur_per_mwh, 30);
 }
 
+TEST(MinuteFile, PassesOverAByteOrderMark) {
+  EXPECT_EQ(parse_minute_prices("\xEF\xBB\xBF" + std::string(kFile), "f").size(), 3U);
+}
+
 TEST(MinuteFile, NamesTheLineOfEveryMistake) {
   const std::string header = "minute_utc,indicative_eur_mwh,settled_eur_mwh\n";
   const std::pair<std::string, const char*> mistakes[] = {

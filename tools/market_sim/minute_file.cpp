@@ -79,6 +79,8 @@ MinutePrice parse_line(std::string_view line, const std::string& name, int numbe
 std::vector<MinutePrice> parse_minute_prices(std::string_view text, const std::string& name) {
   std::vector<MinutePrice> prices;
   bool has_header = false;
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // spreadsheets put one there
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   for (int number = 1; !text.empty(); ++number) {
     std::string_view line = take_field(text, '\n');
     if (line.ends_with('\r')) line.remove_suffix(1);

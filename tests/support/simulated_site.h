@@ -1,0 +1,132 @@
+// bess-sim battery and bess-sim market on free ports, in scaled time, and the configuration with
+// which bess-edge drives the one on the prices of the other. Needs BESS_SIM_PROGRAM.
+#pragma once
+
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "shared/scaled_clock.h"
+#include "shared/utc_text.h"
+#include "tests/support/child_process.h"
+#include "tests/support/temporary_folder.h"
+
+namespace bess {
+
+using CsvRow = std::map<std::string, std::string>;
+
+inline std::vector<std::string> split_csv_line(const std::string& line) {
+  std::vector<std::string> fields;
+  std::stringstream rest(line);
+  for (std::string field; std::getline(rest, field, ',');) fields.push_back(field);
+  return fields;
+}
+
+inline std::vector<CsvRow> read_csv(const std::string& path) {
+  std::ifstream file(path);
+  std::string line;
+  std::getline(file, line);
+  const std::vector<std::string> names = split_csv_line(line);
+  std::vector<CsvRow> rows;
+  while (std::getline(file, line)) {
+    const std::vector<std::string> fields = split_csv_line(line);
+    CsvRow row;
+    for (std::size_t i = 0; i < names.size() && i < fields.size(); ++i) row[names[i]] = fields[i];
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+class SimulatedSite {
+ public:
+  static constexpr std::int64_t kStartS = 1'679'788'800;  ///< 2023-03-26T00:00:00Z
+
+  /// Simulated time starts half a second from now.
+  explicit SimulatedSite(std::int32_t time_scale) : time_scale_(time_scale) { start_clock(); }
+
+  /// Sets the simulated clock back to its start, for simulators that are started anew.
+  void start_clock() { anchor_ns_ = clock_ns(CLOCK_MONOTONIC) + kNanosecondsPerSecond / 2; }
+  [[nodiscard]] std::int64_t anchor_ns() const { return anchor_ns_; }
+
+  /// Prices that make the battery charge, rest and discharge, from an hour before the start on.
+  static std::string minute_prices(int minutes) {
+    std::ostringstream text;
+    text << "minute_utc,indicative_eur_mwh,settled_eur_mwh\n";
+    for (int minute = -60; minute < minutes; ++minute) {
+      const double price = 100 + 400 * std::sin(minute / 7.0);
+      text << utc_text(kStartS + 60 * minute).view() << ',' << price << ',' << price << '\n';
+    }
+    return text.str();
+  }
+
+  void start_battery(const std::vector<std::string>& options = {}) {
+    battery = start_simulator({"battery", "--port", "0", "--record", folder.file("battery.csv")},
+                              options, battery_port);
+  }
+  void start_market(const std::vector<std::string>& options = {},
+                    const std::string& prices = minute_prices(150)) {
+    market =
+        start_simulator({"market", "--port", "0", "--prices", folder.write("minutes.csv", prices)},
+                        options, market_port);
+  }
+
+  /// `battery_keys` and `rest` are lines of TOML; the former go into [battery].
+  [[nodiscard]] std::string write_config(
+      const std::string& battery_keys = "map = \"" BESS_SOURCE_DIR "/edge/maps/alphaess.toml\"\n",
+      const std::string& rest = "") const {
+    std::ostringstream text;
+    text
+        << "control = true\n[battery]\n"
+        << battery_keys << "port = " << battery_port
+        << "\nresponse_timeout_ms = 100\nstart_timeout_s = 1\n[price]\nurl = \"http://127.0.0.1:"
+        << market_port
+        << "/api/explore/v2.1/catalog/datasets/ods161/records?order_by=datetime%20desc&limit=20\"\n"
+        << "[state]\nfolder = \"state\"\n[log]\ncsv = \"edge.csv\"\n[simulation]\ntime_scale = "
+        << time_scale_ << "\nutc_start = \"" << utc_text(kStartS).view()
+        << "\"\nanchor_monotonic_ns = " << anchor_ns_ << "\n"
+        << rest;
+    return folder.write("edge.toml", text.str());
+  }
+
+  /// Ends a program as an operator would; its exit code.
+  static int stop(ChildProcess& child) {
+    child.signal(SIGTERM);
+    return child.wait();
+  }
+
+  TemporaryFolder folder;
+  int battery_port = 0;
+  int market_port = 0;
+  std::unique_ptr<ChildProcess> battery;
+  std::unique_ptr<ChildProcess> market;
+
+ private:
+  std::unique_ptr<ChildProcess> start_simulator(std::vector<std::string> arguments,
+                                                const std::vector<std::string>& options,
+                                                int& port) const {
+    arguments.insert(arguments.begin(), BESS_SIM_PROGRAM);
+    for (const std::string& option :
+         {std::string("--utc-start"), std::string(utc_text(kStartS).view()),
+          std::string("--time-scale"), std::to_string(time_scale_),
+          std::string("--anchor-monotonic-ns"), std::to_string(anchor_ns_)}) {
+      arguments.push_back(option);
+    }
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    auto child = std::make_unique<ChildProcess>(arguments);
+    const std::string line = child->read_line();  // "... listening on HOST:PORT, ..."
+    const std::size_t colon = line.find(':', line.find("127.0.0.1"));
+    port = colon == std::string::npos ? 0 : std::atoi(line.c_str() + colon + 1);
+    if (port == 0) throw std::runtime_error("a simulator did not start: " + line);
+    return child;
+  }
+
+  std::int32_t time_scale_;
+  std::int64_t anchor_ns_ = 0;
+};
+
+}  // namespace bess
