@@ -1,7 +1,7 @@
 // The price answer: real shapes, nulls, disorder, the future, nonsense.
 #include <gtest/gtest.h>
 
-#include "edge/price_feed.h"
+#include "edge/price_json.h"
 #include "shared/utc_text.h"
 
 namespace bess {
@@ -16,7 +16,7 @@ std::int64_t utc(std::string_view text) {
 const std::int64_t kNow = utc("2025-08-17T00:38:00Z");
 
 Status parse(std::string_view json, PriceRow& row) {
-  return parse_newest_price(json, PriceFeedSettings{}, kNow, row);
+  return parse_newest_price(json, PriceFields{}, kNow, row);
 }
 
 TEST(PriceJson, TakesTheNewestOfTheApiAnswerInAnyOrder) {
@@ -88,13 +88,13 @@ TEST(PriceJson, GarbageIsMalformedAndEmptyIsNoRow) {
 }
 
 TEST(PriceJson, FieldNamesAreConfigurable) {
-  PriceFeedSettings settings;
-  settings.rows_field = "rows";
-  settings.time_field = "t";
-  settings.price_field = "p";
+  PriceFields fields;
+  fields.rows = "rows";
+  fields.time = "t";
+  fields.price = "p";
   PriceRow row;
   EXPECT_EQ(
-      parse_newest_price(R"({"rows":[{"t":"2025-08-17T00:36:00Z","p":2}]})", settings, kNow, row),
+      parse_newest_price(R"({"rows":[{"t":"2025-08-17T00:36:00Z","p":2}]})", fields, kNow, row),
       Status::kOk);
   EXPECT_EQ(row.price_centi_eur_per_mwh, 200);
 }
