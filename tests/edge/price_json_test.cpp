@@ -99,5 +99,34 @@ TEST(PriceJson, FieldNamesAreConfigurable) {
   EXPECT_EQ(row.price_centi_eur_per_mwh, 200);
 }
 
+TEST(PriceJson, ADotLeadsIntoInnerObjects) {
+  const PriceFields fields{.rows = "data.rows", .time = "at.utc", .price = "price.value"};
+  PriceRow row;
+  EXPECT_EQ(parse_newest_price(
+                R"({"data":{"rows":[{"at":{"utc":"2025-08-17T00:36:00Z"},"price":{"value":3}}]}})",
+                fields, kNow, row),
+            Status::kOk);
+  EXPECT_EQ(row.price_centi_eur_per_mwh, 300);
+  EXPECT_EQ(parse_newest_price(R"({"data":[]})", fields, kNow, row), Status::kMalformed);
+  EXPECT_EQ(parse_newest_price(R"([{"at":"x","price":3}])", fields, kNow, row), Status::kNoRow);
+}
+
+TEST(PriceJson, TimesMayBeSecondsOrMilliseconds) {
+  const std::int64_t minute_utc_s = utc("2025-08-17T00:36:00Z");
+  const auto parse_time = [](const std::string& time, PriceRow& row) {
+    return parse("[{\"datetime\":" + time + ",\"imbalanceprice\":1}]", row);
+  };
+  for (const std::string& time :
+       {std::to_string(minute_utc_s), std::to_string(minute_utc_s) + "000"}) {
+    PriceRow row;
+    EXPECT_EQ(parse_time(time, row), Status::kOk) << time;
+    EXPECT_EQ(row.minute_utc_s, minute_utc_s) << time;
+  }
+  for (const char* time : {"-60", "1e300", "-1e300", "1e15", "1755391561", "true"}) {
+    PriceRow row;
+    EXPECT_EQ(parse_time(time, row), Status::kNoRow) << time;
+  }
+}
+
 }  // namespace
 }  // namespace bess
