@@ -1,9 +1,11 @@
 #include "edge/edge_config.h"
 
 #include <arpa/inet.h>
+#include <unistd.h>
 
 #include <filesystem>
 
+#include "edge/http_secrets.h"
 #include "edge/registers/codec.h"
 #include "edge/registers/map_file.h"
 #include "edge/registers/toml_reader.h"
@@ -80,20 +82,35 @@ void check_battery_against_map(TomlTable table, EdgeConfig& config) {
 }
 
 void read_price(TomlTable table, PriceFeedSettings& price) {
+  FixedText<255> header_file;
   table.require("url");
-  table.text("url", price.url);
-  table.text("ca_file", price.ca_file);
-  table.text("rows_field", price.rows_field);
-  table.text("time_field", price.time_field);
-  table.text("price_field", price.price_field);
-  table.integer("timeout_ms", price.timeout_ms, 10, 60'000);
+  table.text("url", price.http.url);
+  table.text("ca_file", price.http.ca_file);
+  table.text("header_file", header_file);
+  table.text("rows_field", price.fields.rows);
+  table.text("time_field", price.fields.time);
+  table.text("price_field", price.fields.price);
+  table.integer("timeout_ms", price.http.timeout_ms, 10, 60'000);
+  table.integer("resolve_every_s", price.http.resolve_every_s, 1, 86'400);
   table.integer("requests_per_cycle", price.requests_per_cycle, 1, 4);
   table.integer("wait_s", price.wait_s, 1, 60);
+  table.scaled("step_flag_eur_per_mwh", price.step_flag_centi_eur_per_mwh, 100, 0, 20'000);
   table.finish();
-  const std::string_view url = price.url.view();
-  if (table.ok() && !url.starts_with("http://") && !url.starts_with("https://")) {
+  if (!table.ok()) return;
+  const std::string_view url = price.http.url.view();
+  if (!url.starts_with("http://") && !url.starts_with("https://")) {
     table.fail("url", "must start with http:// or https://");
   }
+  const auto folder = std::filesystem::path(table.file()).parent_path();
+  const std::string ca_file = (folder / price.http.ca_file.c_str()).string();
+  if (!price.http.ca_file.assign(ca_file)) table.fail("ca_file", "is too long a path");
+  if (url.starts_with("https://") && access(price.http.ca_file.c_str(), R_OK) != 0) {
+    table.fail("ca_file", "= " + ca_file +
+                              " cannot be read: install the package ca-certificates, "
+                              "or name your own file");
+  }
+  if (header_file.empty() || !table.ok()) return;
+  load_http_headers((folder / header_file.c_str()).c_str(), price.http.headers, table.error());
 }
 
 void read_guard(TomlTable table, EdgeConfig& config) {

@@ -17,6 +17,7 @@
 #include "edge/edge_clock.h"
 #include "edge/edge_config.h"
 #include "edge/event_log.h"
+#include "edge/heap_seal.h"
 #include "edge/startup.h"
 #include "shared/check.h"
 
@@ -36,6 +37,7 @@ void release_after_failed_check(const char*, const char*, int) {
 /// Runs until a stop is requested or `cycles` are done; the last order keeps its whole step.
 int run_loop(Loop& loop, std::int64_t cycles, bess::EdgeClock& clock, bess::EventLog& log) {
   bess::CycleRecord record{};
+  const bess::HeapSeal seal;  // from here on this thread calls no allocator
   clock.wait_for_simulated_start();
   for (std::int64_t i = 0; i != cycles && loop.run_cycle(record); ++i) log.write(record);
   clock.sleep_until_utc_ns((record.utc_s + bess::kSecondsPerStep) * bess::kNanosecondsPerSecond);
@@ -67,7 +69,7 @@ int main(int argc, char** argv) {
     return 1;
   }
   if (command_line.dry_run) config.control.control = false;
-  if (!check_student()) return 1;
+  if (!check_student() || !prepare_memory()) return 1;
 
   set_market_time_zone();
   signal(SIGPIPE, SIG_IGN);           // whoever reads the log may go away, the battery must not

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "edge/http_secrets.h"
 #include "edge/policy.h"
 #include "edge/registers/codec.h"
 #include "shared/utc_text.h"
@@ -78,8 +79,9 @@ bool report_price(const EdgeConfig& config, PriceFeed& prices) {
   PriceRow row;
   const Status status = prices.fetch_once(row);
   if (status != Status::kOk) {
-    std::fprintf(stderr, "bess-edge: price from %s: %s\n", config.price.url.c_str(),
-                 status_text(status).data());
+    std::fprintf(stderr, "bess-edge: price from %s: %s\n",
+                 loggable_url(config.price.http.url.view()).c_str(),
+                 price_status_text(status).data());
     return false;
   }
   std::printf("price      %.2f EUR/MWh of minute %s\n", row.price_centi_eur_per_mwh / 100.0,
@@ -118,7 +120,8 @@ void greet_price_server(const EdgeConfig& config, PriceFeed& prices) {
   const Status status = prices.fetch_once(row);
   if (status == Status::kOk) return;
   std::fprintf(stderr, "bess-edge: note: price from %s: %s; waiting in safe state\n",
-               config.price.url.c_str(), status_text(status).data());
+               loggable_url(config.price.http.url.view()).c_str(),
+               price_status_text(status).data());
 }
 
 bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& prices) {

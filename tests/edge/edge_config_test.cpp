@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "tests/support/temporary_folder.h"
 
@@ -74,6 +75,11 @@ TEST(EdgeConfig, EveryMistakeIsOneClearLineWithItsPlace) {
       {"power_w = 4000", "variant = \"blok\"", 0, "does not exist (there are: block"},
       {"http://", "ftp://", 6, "must start with http:// or https://"},
       {"url =", "uri =", 5, "url is missing"},
+      {"[price]\nurl = \"http:", "[price]\nca_file = \"none.pem\"\nurl = \"https:", 6,
+       "none.pem cannot be read"},
+      {"[price]", "[price]\nheader_file = \"none\"", 0, "none: cannot open the header file"},
+      {"[price]", "[price]\nresolve_every_s = 0", 6, "must lie between 1 and 86400"},
+      {"[price]", "[price]\nstep_flag_eur_per_mwh = -1", 6, "must lie between"},
       {"soc_min = 0.2", "soc_min = 20", 8, "must lie between 0 and 1"},
       {"soc_min = 0.2", "soc_min = \"0.2\"", 8, "must be a number"},
       {"soc_min = 0.2", "soc_min = 1.0", 8, "must be below soc_max"},
@@ -98,6 +104,25 @@ TEST(EdgeConfig, EveryMistakeIsOneClearLineWithItsPlace) {
       EXPECT_THAT(error, StartsWith(path + ":" + std::to_string(mistake.line) + ":"));
     }
   }
+}
+
+TEST(EdgeConfig, ReadsTheKeysOfAnotherPriceServer) {
+  const TemporaryFolder folder;
+  const std::string headers = folder.write("headers", "X-Api-Key: k\n");
+  ASSERT_EQ(chmod(headers.c_str(), 0600), 0);
+  std::string text = valid_text();
+  text.replace(
+      text.find("[price]"), 7,
+      "[price]\nheader_file = \"headers\"\nca_file = \"headers\"\nrows_field = \"data.rows\"\n"
+      "resolve_every_s = 30\nstep_flag_eur_per_mwh = 1000.5");
+  EdgeConfig config;
+  std::string error;
+  ASSERT_TRUE(load_edge_config(folder.write("edge.toml", text), config, error)) << error;
+  EXPECT_EQ(config.price.http.headers, "X-Api-Key: k");
+  EXPECT_EQ(config.price.http.ca_file, headers);  // relative to the configuration
+  EXPECT_EQ(config.price.http.resolve_every_s, 30);
+  EXPECT_EQ(config.price.fields.rows, "data.rows");
+  EXPECT_EQ(config.price.step_flag_centi_eur_per_mwh, 100'050);
 }
 
 TEST(EdgeConfig, MissingFileAndFolder) {

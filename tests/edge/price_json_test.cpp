@@ -1,7 +1,7 @@
 // The price answer: real shapes, nulls, disorder, the future, nonsense.
 #include <gtest/gtest.h>
 
-#include "edge/price_feed.h"
+#include "edge/price_json.h"
 #include "shared/utc_text.h"
 
 namespace bess {
@@ -16,7 +16,7 @@ std::int64_t utc(std::string_view text) {
 const std::int64_t kNow = utc("2025-08-17T00:38:00Z");
 
 Status parse(std::string_view json, PriceRow& row) {
-  return parse_newest_price(json, PriceFeedSettings{}, kNow, row);
+  return parse_newest_price(json, PriceFields{}, kNow, row);
 }
 
 TEST(PriceJson, TakesTheNewestOfTheApiAnswerInAnyOrder) {
@@ -88,15 +88,44 @@ TEST(PriceJson, GarbageIsMalformedAndEmptyIsNoRow) {
 }
 
 TEST(PriceJson, FieldNamesAreConfigurable) {
-  PriceFeedSettings settings;
-  settings.rows_field = "rows";
-  settings.time_field = "t";
-  settings.price_field = "p";
+  PriceFields fields;
+  fields.rows = "rows";
+  fields.time = "t";
+  fields.price = "p";
   PriceRow row;
   EXPECT_EQ(
-      parse_newest_price(R"({"rows":[{"t":"2025-08-17T00:36:00Z","p":2}]})", settings, kNow, row),
+      parse_newest_price(R"({"rows":[{"t":"2025-08-17T00:36:00Z","p":2}]})", fields, kNow, row),
       Status::kOk);
   EXPECT_EQ(row.price_centi_eur_per_mwh, 200);
+}
+
+TEST(PriceJson, ADotLeadsIntoInnerObjects) {
+  const PriceFields fields{.rows = "data.rows", .time = "at.utc", .price = "price.value"};
+  PriceRow row;
+  EXPECT_EQ(parse_newest_price(
+                R"({"data":{"rows":[{"at":{"utc":"2025-08-17T00:36:00Z"},"price":{"value":3}}]}})",
+                fields, kNow, row),
+            Status::kOk);
+  EXPECT_EQ(row.price_centi_eur_per_mwh, 300);
+  EXPECT_EQ(parse_newest_price(R"({"data":[]})", fields, kNow, row), Status::kMalformed);
+  EXPECT_EQ(parse_newest_price(R"([{"at":"x","price":3}])", fields, kNow, row), Status::kNoRow);
+}
+
+TEST(PriceJson, TimesMayBeSecondsOrMilliseconds) {
+  const std::int64_t minute_utc_s = utc("2025-08-17T00:36:00Z");
+  const auto parse_time = [](const std::string& time, PriceRow& row) {
+    return parse("[{\"datetime\":" + time + ",\"imbalanceprice\":1}]", row);
+  };
+  for (const std::string& time :
+       {std::to_string(minute_utc_s), std::to_string(minute_utc_s) + "000"}) {
+    PriceRow row;
+    EXPECT_EQ(parse_time(time, row), Status::kOk) << time;
+    EXPECT_EQ(row.minute_utc_s, minute_utc_s) << time;
+  }
+  for (const char* time : {"-60", "1e300", "-1e300", "1e15", "1755391561", "true"}) {
+    PriceRow row;
+    EXPECT_EQ(parse_time(time, row), Status::kNoRow) << time;
+  }
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "edge/price_feed.h"
+#include "edge/price_json.h"
 #include "shared/scaled_clock.h"
 #include "shared/utc_text.h"
 #include "tools/market_sim/market_view.h"
@@ -89,7 +89,7 @@ TEST(MarketView, TheEdgeUnderstandsWhatItServes) {
   const MarketView view(parse_minute_prices(kFile, "f"), 0);
   const std::int64_t now_ns = utc_ns("2023-03-26T00:15:00Z");
   PriceRow row;
-  ASSERT_EQ(parse_newest_price(view.records({.limit = 20}, now_ns), PriceFeedSettings{},
+  ASSERT_EQ(parse_newest_price(view.records({.limit = 20}, now_ns), PriceFields{},
                                now_ns / kNanosecondsPerSecond, row),
             Status::kOk);
   EXPECT_EQ(row.price_centi_eur_per_mwh, 1'050);  // minute 14 is null

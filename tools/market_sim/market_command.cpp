@@ -34,7 +34,8 @@ void run_market(const MarketOptions& options) {
   MarketServer server(options.server, view, clock);
   const std::int64_t now_utc_s = clock.now_utc_ns() / kNanosecondsPerSecond;
   check_coverage(view, now_utc_s);
-  std::printf("bess-sim market: listening on http://%s:%d, %s at time scale %d\n",
+  std::printf("bess-sim market: listening on %s://%s:%d, %s at time scale %d\n",
+              options.server.tls_certificate.empty() ? "http" : "https",
               options.server.host.c_str(), server.port(), utc_text(now_utc_s).c_str(), clock.scale);
   std::fflush(stdout);
   std::thread serving([&server] { server.run(); });
@@ -70,13 +71,20 @@ void add_market_command(CLI::App& app) {
   const std::map<std::string, MarketFault> faults = {{"null", MarketFault::kNull},
                                                      {"http-500", MarketFault::kHttp500},
                                                      {"stale", MarketFault::kStale},
-                                                     {"garbage", MarketFault::kGarbage}};
+                                                     {"garbage", MarketFault::kGarbage},
+                                                     {"all", MarketFault::kAll}};
   command->add_option("--fault", options->server.fault, "Misbehave now and then")
       ->transform(CLI::Transformer(faults, CLI::ignore_case))
-      ->type_name("null|http-500|stale|garbage");
+      ->type_name("null|http-500|stale|garbage|all");
   command->add_option("--fault-every", options->server.fault_every, "At every Nth request")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
+  auto* certificate = command->add_option("--tls-cert", options->server.tls_certificate,
+                                          "PEM certificate: serves HTTPS");
+  command->add_option("--tls-key", options->server.tls_key, "Its PEM key")->needs(certificate);
+  certificate->needs("--tls-key");
+  command->add_flag("--close-each", options->server.close_each,
+                    "Close the connection after each answer");
   command->callback([options] { run_market(*options); });
 }
 

@@ -33,11 +33,22 @@ bool parse_query(const httplib::Request& request, RecordsQuery& query, std::stri
   return problem.empty();
 }
 
+std::unique_ptr<httplib::Server> make_server(const MarketServerSettings& settings) {
+  if (settings.tls_certificate.empty()) return std::make_unique<httplib::Server>();
+  auto server = std::make_unique<httplib::SSLServer>(settings.tls_certificate.c_str(),
+                                                     settings.tls_key.c_str());
+  if (!server->is_valid()) {
+    sim_fail("--tls-cert {} --tls-key {}: not a PEM certificate and its key",
+             settings.tls_certificate, settings.tls_key);
+  }
+  return server;
+}
+
 }  // namespace
 
 MarketServer::MarketServer(const MarketServerSettings& settings, const MarketView& view,
                            const ScaledClock& clock)
-    : settings_(settings), view_(view), clock_(clock), server_(new httplib::Server) {
+    : settings_(settings), view_(view), clock_(clock), server_(make_server(settings)) {
   // Without this override the library sets SO_REUSEPORT and two servers would share a port
   // unnoticed.
   server_->set_socket_options([](socket_t socket) {
@@ -45,7 +56,7 @@ MarketServer::MarketServer(const MarketServerSettings& settings, const MarketVie
     setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
   });
   server_->set_tcp_nodelay(true);
-  server_->set_keep_alive_max_count(1'000'000'000);
+  server_->set_keep_alive_max_count(settings.close_each ? 1 : 1'000'000'000);
   server_->set_keep_alive_timeout(600);
   server_->new_task_queue = [] { return new httplib::ThreadPool(4); };
   const std::string root = "/api/explore/v2.1/catalog/datasets/";
@@ -73,11 +84,19 @@ void MarketServer::run() { server_->listen_after_bind(); }
 
 void MarketServer::stop() { server_->stop(); }
 
+MarketFault MarketServer::next_fault() {
+  if (settings_.fault == MarketFault::kNone) return MarketFault::kNone;
+  const std::int64_t request = ++requests_;
+  if (request % settings_.fault_every != 0) return MarketFault::kNone;
+  if (settings_.fault != MarketFault::kAll) return settings_.fault;
+  constexpr MarketFault kTurns[] = {MarketFault::kNull, MarketFault::kHttp500, MarketFault::kStale,
+                                    MarketFault::kGarbage};
+  return kTurns[request / settings_.fault_every % std::ssize(kTurns)];
+}
+
 void MarketServer::answer(Dataset dataset, const httplib::Request& request,
                           httplib::Response& response) {
-  const bool faulty =
-      settings_.fault != MarketFault::kNone && ++requests_ % settings_.fault_every == 0;
-  const MarketFault fault = faulty ? settings_.fault : MarketFault::kNone;
+  const MarketFault fault = next_fault();
   if (fault == MarketFault::kHttp500) {
     response.status = 500;
     return response.set_content("{\"message\": \"simulated fault\"}", kJson);

@@ -24,6 +24,7 @@ enum class MarketFault : std::uint8_t {
   kHttp500,  ///< internal server error
   kStale,    ///< the answer is ten minutes old
   kGarbage,  ///< not JSON
+  kAll,      ///< each of them in turn
 };
 
 struct MarketServerSettings {
@@ -31,11 +32,14 @@ struct MarketServerSettings {
   std::int32_t port = 8080;  ///< 0 = any free one
   MarketFault fault = MarketFault::kNone;
   std::int32_t fault_every = 10;  ///< every Nth request
+  std::string tls_certificate;    ///< PEM files; empty = plain HTTP
+  std::string tls_key;
+  bool close_each = false;  ///< one request a connection: a handshake for every price
 };
 
 class MarketServer {
  public:
-  /// Binds. Throws SimError when the port is in use.
+  /// Binds. Throws SimError when the port is in use or the certificate is bad.
   MarketServer(const MarketServerSettings& settings, const MarketView& view,
                const ScaledClock& clock);
   ~MarketServer();
@@ -45,6 +49,7 @@ class MarketServer {
   void stop();  ///< from another thread
 
  private:
+  [[nodiscard]] MarketFault next_fault();
   void answer(Dataset dataset, const httplib::Request& request, httplib::Response& response);
 
   MarketServerSettings settings_;

@@ -1,0 +1,32 @@
+// A price server's JSON, reduced to the newest usable minute row. The only edge file pair that knows
+// cJSON. Prices leave here as integer hundredths of EUR/MWh. Between http_client and price_feed.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "shared/fixed_text.h"
+#include "shared/status.h"
+
+namespace bess {
+
+/// Where the rows are and what their fields are called; a dot leads into an inner object.
+struct PriceFields {
+  FixedText<63> rows = "results";
+  FixedText<63> time = "datetime";
+  FixedText<63> price = "imbalanceprice";
+};
+
+struct PriceRow {
+  std::int64_t minute_utc_s = 0;
+  std::int32_t price_centi_eur_per_mwh = 0;
+};
+
+/// Newest usable row of an answer: a list at `fields.rows`, or a bare list, in any order.
+/// Its time is text with an offset (2023-03-26T01:02:00+00:00) or a number of seconds or
+/// milliseconds since 1970. Rows without price, later than now, or beyond +-15,000 EUR/MWh are
+/// passed over.
+Status parse_newest_price(std::string_view json, const PriceFields& fields, std::int64_t now_utc_s,
+                          PriceRow& row);
+
+}  // namespace bess

@@ -1,0 +1,266 @@
+// The real bess-edge for many cycles under BESS_SECCOMP=kill, in scaled time, with everything around it
+// failing: the Modbus connection is cut in every cycle, every price request is a TLS handshake, the name
+// is looked up again all the time, the price server answers nonsense now and then, and both ends die and
+// come back. Afterwards the process must not have grown by anything.
+//   BESS_SOAK_CYCLES   length of the long run; tools/soak sets it
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <netdb.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "shared/scaled_clock.h"
+#include "shared/utc_text.h"
+#include "tests/support/child_process.h"
+#include "tests/support/dropping_proxy.h"
+#include "tests/support/temporary_folder.h"
+#include "tests/support/throwaway_ca.h"
+
+namespace bess {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+constexpr std::int32_t kScale = 2'000;           // a cycle is 60 ms
+constexpr std::int64_t kStartS = 1'679'788'800;  // 2023-03-26T00:00:00Z
+constexpr int kWarmCycles = 100;
+
+int long_run_cycles() {
+  const char* wish = std::getenv("BESS_SOAK_CYCLES");
+  return wish != nullptr ? std::max(std::atoi(wish), 2 * kWarmCycles) : 300;
+}
+
+/// Prices for three times the cycles: a busy machine skips ticks.
+std::string minute_file_text(int cycles) {
+  std::ostringstream text;
+  text << "minute_utc,indicative_eur_mwh,settled_eur_mwh\n";
+  for (int minute = -60; minute < 6 * cycles; ++minute) {
+    const double price = 100 + 600 * std::sin(minute / 7.0);
+    text << utc_text(kStartS + 60 * minute).view() << ',' << price << ',' << price << '\n';
+  }
+  return text.str();
+}
+
+/// A name of this machine that the resolver knows, so that names are really looked up.
+std::string resolvable_name() {
+  char name[256] = "";
+  gethostname(name, sizeof name - 1);
+  addrinfo hints{};
+  hints.ai_family = AF_INET;
+  addrinfo* found = nullptr;
+  bool is_loopback = false;
+  if (getaddrinfo(name, nullptr, &hints, &found) == 0) {
+    const auto* address = reinterpret_cast<const sockaddr_in*>(found->ai_addr);
+    is_loopback = ntohl(address->sin_addr.s_addr) >> 24 == 127;
+    freeaddrinfo(found);
+  }
+  return is_loopback ? name : "localhost";
+}
+
+/// What /proc says about a process.
+struct Footprint {
+  long resident_kib = 0;
+  int open_files = 0;
+  int threads = 0;
+  int seccomp = 0;  ///< 2 = a filter is in force
+  bool has_heap = false;
+};
+
+Footprint footprint_of(pid_t pid) {
+  Footprint now;
+  const fs::path folder = "/proc/" + std::to_string(pid);
+  std::ifstream status(folder / "status");
+  for (std::string line; std::getline(status, line);) {
+    if (line.starts_with("VmRSS:")) now.resident_kib = std::atol(line.c_str() + 6);
+    if (line.starts_with("Seccomp:")) now.seccomp = std::atoi(line.c_str() + 8);
+    if (line.starts_with("Threads:")) now.threads = std::atoi(line.c_str() + 8);
+  }
+  std::error_code ignored;
+  now.open_files = static_cast<int>(
+      std::distance(fs::directory_iterator(folder / "fd", ignored), fs::directory_iterator()));
+  std::ifstream maps(folder / "maps");
+  for (std::string line; std::getline(maps, line);) {
+    now.has_heap = now.has_heap || line.find("[heap]") != std::string::npos;
+  }
+  return now;
+}
+
+/// "name=123" somewhere in a line; -1 when it is not there.
+long long value_of(const std::string& line, const std::string& name) {
+  const std::size_t at = line.find(" " + name + "=");
+  return at == std::string::npos ? -1 : std::atoll(line.c_str() + at + name.size() + 2);
+}
+
+struct RunResult {
+  int exit_code = -1;
+  int cycles = 0;
+  int connections = 0;
+  Footprint warm, end;
+  std::map<std::string, int> price_statuses, modes;
+  std::string arena;  ///< the line that bess-edge writes about its arena
+  std::string complaints;
+};
+
+class Soak : public ::testing::Test {
+ protected:
+  std::unique_ptr<ChildProcess> start_simulator(std::vector<std::string> arguments, int& port) {
+    arguments.insert(arguments.begin(), BESS_SIM_PROGRAM);
+    for (const std::string& option :
+         {std::string("--port"), std::to_string(port), std::string("--utc-start"),
+          std::string("2023-03-26T00:00:00Z"), std::string("--time-scale"), std::to_string(kScale),
+          std::string("--anchor-monotonic-ns"), std::to_string(anchor_ns_)}) {
+      arguments.push_back(option);
+    }
+    auto child = std::make_unique<ChildProcess>(arguments);
+    const std::string line = child->read_line();
+    const std::size_t place = line.find("127.0.0.1:");
+    EXPECT_NE(place, std::string::npos) << line;
+    if (place != std::string::npos) port = std::atoi(line.c_str() + place + 10);
+    return child;
+  }
+  void start_battery() {
+    battery_ =
+        start_simulator({"battery", "--fault", "drop", "--fault-every", "23"}, battery_port_);
+  }
+  void start_market() {
+    market_ = start_simulator(
+        {"market", "--prices", folder_.file("minutes.csv"), "--tls-cert", ca_.certificate(),
+         "--tls-key", ca_.key(), "--close-each", "--fault", "all", "--fault-every", "5"},
+        market_port_);
+  }
+  std::string write_config(int battery_port) const {
+    std::ostringstream text;
+    text
+        << "control = true\n[battery]\nmap = \"" BESS_SOURCE_DIR "/edge/maps/alphaess.toml\"\n"
+        << "port = " << battery_port << "\nresponse_timeout_ms = 200\n[price]\nurl = \"https://"
+        << name_ << ":" << market_port_
+        << "/api/explore/v2.1/catalog/datasets/ods161/records?order_by=datetime%20desc&limit=20\"\n"
+        << "ca_file = \"" << bundle_ << "\"\ntimeout_ms = 500\nwait_s = 40\nresolve_every_s = 1\n"
+        << "[log]\ncsv = \"edge.csv\"\n[simulation]\ntime_scale = " << kScale
+        << "\nutc_start = \"2023-03-26T00:00:00Z\"\nanchor_monotonic_ns = " << anchor_ns_ << "\n";
+    return folder_.write("edge.toml", text.str());
+  }
+  /// The test's authority among those of a real system: what they cost in the arena counts.
+  std::string write_bundle() const {
+    std::ifstream system("/etc/ssl/certs/ca-certificates.crt");
+    std::ifstream own(ca_.ca());
+    std::ostringstream text;
+    text << system.rdbuf() << own.rdbuf();
+    return folder_.write("bundle.pem", text.str());
+  }
+  RunResult run(int cycles);
+  void follow(ChildProcess& edge, DroppingProxy& proxy, int cycles, RunResult& result);
+  void let_ends_die(int cycle, int cycles);
+
+  TemporaryFolder folder_;
+  std::string name_ = resolvable_name();
+  ThrowawayCa ca_{"DNS:" + name_};
+  std::string bundle_ = write_bundle();
+  std::int64_t anchor_ns_ = 0;
+  int battery_port_ = 0;
+  int market_port_ = 0;
+  std::unique_ptr<ChildProcess> battery_, market_;
+};
+
+/// The price server dies for a while in the second quarter, the battery in the third.
+void Soak::let_ends_die(int cycle, int cycles) {
+  const int quarter = cycles / 4;
+  if (cycle == quarter) market_.reset();
+  if (cycle == quarter + 20) start_market();
+  if (cycle == 2 * quarter) battery_.reset();
+  if (cycle == 2 * quarter + 20) start_battery();
+}
+
+void Soak::follow(ChildProcess& edge, DroppingProxy& proxy, int cycles, RunResult& result) {
+  for (std::string line = edge.read_line(); !line.empty(); line = edge.read_line()) {
+    if (line.find(" arena used=") != std::string::npos) result.arena = line;
+    if (line.starts_with("CHECK")) result.complaints += line + "\n";
+    if (!line.starts_with("utc=") || line.find("mode=stopping") != std::string::npos) continue;
+    ++result.cycles;
+    const auto field = [&](const std::string& name) {
+      const std::size_t at = line.find(" " + name + "=") + name.size() + 2;
+      return line.substr(at, line.find(' ', at) - at);
+    };
+    ++result.price_statuses[field("prices")];
+    ++result.modes[field("mode")];
+    proxy.drop();
+    let_ends_die(result.cycles, cycles);
+    if (result.cycles == kWarmCycles) result.warm = footprint_of(edge.pid());
+    if (result.cycles == cycles - 1) result.end = footprint_of(edge.pid());
+  }
+}
+
+RunResult Soak::run(int cycles) {
+  RunResult result;
+  folder_.write("minutes.csv", minute_file_text(cycles)).size();
+  anchor_ns_ = clock_ns(CLOCK_MONOTONIC) + kNanosecondsPerSecond / 2;
+  battery_port_ = market_port_ = 0;
+  start_battery();
+  start_market();
+  DroppingProxy proxy(static_cast<std::uint16_t>(battery_port_));
+  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", write_config(proxy.port()), "--cycles",
+                     std::to_string(cycles)});
+  follow(edge, proxy, cycles, result);
+  result.exit_code = edge.wait();
+  result.connections = proxy.connections();
+  battery_.reset();
+  market_.reset();
+  return result;
+}
+
+void print(const char* name, const RunResult& result) {
+  std::printf("%s: %d cycles, %d Modbus connections, %ld KiB resident, %d open files, %d threads\n",
+              name, result.cycles, result.connections, result.end.resident_kib,
+              result.end.open_files, result.end.threads);
+  std::printf("  %s\n  modes", result.arena.c_str());
+  for (const auto& [mode, count] : result.modes) std::printf(" %s=%d", mode.c_str(), count);
+  std::printf(", prices");
+  for (const auto& [status, count] : result.price_statuses) {
+    std::printf(" %s=%d", status.c_str(), count);
+  }
+  std::printf("\n");
+}
+
+void expect_clean(const RunResult& result, int cycles) {
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_EQ(result.complaints, "");
+  EXPECT_EQ(result.cycles, cycles);
+  EXPECT_GE(result.connections, cycles * 9 / 10);  // cut in every cycle in which there was one
+  EXPECT_GT(result.modes.at("running"), cycles / 2);
+  EXPECT_EQ(result.warm.has_heap, false);
+  EXPECT_EQ(result.end.has_heap, false);
+  EXPECT_GT(result.end.resident_kib, 0);
+  EXPECT_LT(result.end.resident_kib, 64 * 1'024);
+  EXPECT_LE(result.end.resident_kib, result.warm.resident_kib + 64);
+  EXPECT_EQ(result.end.threads, 2);
+  EXPECT_EQ(result.end.seccomp, 2);
+  EXPECT_EQ(value_of(result.arena, "control_thread_calls"), 0);
+  EXPECT_EQ(value_of(result.arena, "failures"), 0);
+  EXPECT_EQ(value_of(result.arena, "heap_segment"), 0);
+  EXPECT_GT(value_of(result.arena, "calls"), 1'000LL * cycles);  // TLS handshakes were made
+}
+
+TEST_F(Soak, NothingGrowsAndNothingIsAskedOfTheKernel) {
+  setenv("BESS_SECCOMP", "kill", 1);
+  const RunResult warm = run(kWarmCycles);
+  print("warm", warm);
+  const int cycles = long_run_cycles();
+  const RunResult soak = run(cycles);
+  print("soak", soak);
+  expect_clean(soak, cycles);
+  EXPECT_LE(soak.end.open_files, soak.warm.open_files + 2);  // sockets of the moment
+  const long long warm_bytes = value_of(warm.arena, "used");
+  EXPECT_GT(warm_bytes, 100'000);
+  EXPECT_NEAR(static_cast<double>(value_of(soak.arena, "used")), static_cast<double>(warm_bytes),
+              4'096);
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,84 @@
+#include "tests/support/fake_resolver.h"
+
+#include <arpa/inet.h>
+#include <netdb.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <map>
+#include <mutex>
+#include <thread>
+
+namespace bess::fake_resolver {
+namespace {
+
+std::mutex mutex;
+std::map<std::string, std::vector<std::string>> names;
+std::map<std::string, int> counts;
+int delay_ms = 0;
+
+struct Entry {
+  addrinfo info;
+  sockaddr_storage address;
+};
+
+addrinfo* make_entry(const std::string& numeric, addrinfo* next) {
+  auto* entry = static_cast<Entry*>(std::calloc(1, sizeof(Entry)));
+  auto* v4 = reinterpret_cast<sockaddr_in*>(&entry->address);
+  auto* v6 = reinterpret_cast<sockaddr_in6*>(&entry->address);
+  const bool is_v4 = inet_pton(AF_INET, numeric.c_str(), &v4->sin_addr) == 1;
+  if (!is_v4) inet_pton(AF_INET6, numeric.c_str(), &v6->sin6_addr);
+  entry->address.ss_family = is_v4 ? AF_INET : AF_INET6;
+  entry->info.ai_family = entry->address.ss_family;
+  entry->info.ai_socktype = SOCK_STREAM;
+  entry->info.ai_addrlen = is_v4 ? sizeof *v4 : sizeof *v6;
+  entry->info.ai_addr = reinterpret_cast<sockaddr*>(&entry->address);
+  entry->info.ai_next = next;
+  return &entry->info;
+}
+
+int look_up(const char* name, addrinfo** found) {
+  int wait_ms = 0;
+  std::vector<std::string> addresses;
+  {
+    const std::lock_guard lock(mutex);
+    ++counts[name];
+    addresses = names[name];
+    wait_ms = delay_ms;
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(wait_ms));
+  *found = nullptr;
+  for (auto it = addresses.rbegin(); it != addresses.rend(); ++it) *found = make_entry(*it, *found);
+  return *found == nullptr ? EAI_AGAIN : 0;
+}
+
+}  // namespace
+
+void set(const std::string& name, const std::vector<std::string>& addresses) {
+  const std::lock_guard lock(mutex);
+  names[name] = addresses;
+}
+
+void set_delay_ms(int delay) {
+  const std::lock_guard lock(mutex);
+  delay_ms = delay;
+}
+
+int lookups(const std::string& name) {
+  const std::lock_guard lock(mutex);
+  return counts[name];
+}
+
+}  // namespace bess::fake_resolver
+
+extern "C" int getaddrinfo(const char* name, const char*, const addrinfo*, addrinfo** found) {
+  return bess::fake_resolver::look_up(name == nullptr ? "" : name, found);
+}
+
+extern "C" void freeaddrinfo(addrinfo* found) {
+  while (found != nullptr) {
+    addrinfo* next = found->ai_next;
+    std::free(found);  // the entry's first member
+    found = next;
+  }
+}
