@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <iterator>
 
 #include "edge/mode.h"
 #include "shared/action.h"
@@ -70,6 +71,8 @@ enum class Reason : std::uint8_t {
   kStudent  ///< no intervention
 };
 
+inline constexpr int kReasonCount = static_cast<int>(Reason::kStudent) + 1;
+
 constexpr bool is_stop_reason(Reason reason) { return reason <= Reason::kLastStopReason; }
 
 constexpr std::string_view reason_name(Reason reason) {
@@ -77,6 +80,7 @@ constexpr std::string_view reason_name(Reason reason) {
                                          "temperature",    "off_grid",   "no_price",  "price_age",
                                          "price_qh",       "soc_full",   "soc_empty", "power_limit",
                                          "price_low",      "price_high", "student"};
+  static_assert(std::size(kNames) == kReasonCount);
   return kNames[static_cast<int>(reason)];
 }
 

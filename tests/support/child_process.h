@@ -53,6 +53,7 @@ class ChildProcess {
     for (int c = fgetc(output_); c != EOF; c = fgetc(output_)) text += static_cast<char>(c);
     return text;
   }
+  [[nodiscard]] pid_t pid() const { return pid_; }
   void signal(int number) const { kill(pid_, number); }
   /// Exit code, or 128 + signal.
   int wait() {
