@@ -59,8 +59,9 @@ void edge_cycle(benchmark::State& state, const CycleSetup& setup) {
   const std::string map = site.folder.write("map.toml", map_with_wall_gap(setup));
   site.start_battery({"--map", map});
   site.start_market({}, SimulatedSite::minute_prices(2 * setup.cycles + 10));
-  const std::string config = site.write_config("map = \"" + map + "\"\nvariant = \"" +
-                                               setup.variant + "\"\nread_lead_s = 60\n");
+  const std::string config =
+      site.commission({.battery_keys = "map = \"" + map + "\"\nvariant = \"" + setup.variant +
+                                       "\"\nread_lead_s = 60\n"});
   for (auto _ : state) {
     ChildProcess edge(
         {BESS_EDGE_PROGRAM, "--config", config, "--cycles", std::to_string(setup.cycles)});
