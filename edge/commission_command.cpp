@@ -36,7 +36,6 @@ int run_commission_command(const CommandLine& command_line, const EdgeConfig& co
   const CommissionSettings settings = settings_of(config);
   if (!command_line.yes) return ask_for_yes(config, settings);
   if (!reach_battery(config, battery, clock)) return 1;
-  clock.wait_for_simulated_start();
   std::printf("commission %s: resting %d s, then %d W for %d s ...\n",
               battery_place(config).c_str(), settings.rest_s, settings.power_w, settings.drive_s);
   std::fflush(stdout);
