@@ -1,4 +1,4 @@
-// The options of bess-edge, parsed by hand: the edge carries no option library.
+// The sub-commands of bess-edge and their options, parsed by hand: the edge carries no option library.
 #pragma once
 
 #include <cstdint>
@@ -6,14 +6,26 @@
 
 namespace bess {
 
+/// `run` is what bess-edge does without a sub-command; --check makes it `check`.
+enum class SubCommand : std::uint8_t { kRun, kCheck, kCommission, kStatus, kLog };
+
 struct CommandLine {
+  SubCommand command = SubCommand::kRun;
   std::string config_path;
   bool dry_run = false;
-  bool check = false;
+  bool yes = false;
   std::int64_t cycles = -1;  ///< -1 = until stopped
+  bool json = false;
+  bool prometheus = false;
+  bool follow = false;
+  bool csv = false;
+  std::int64_t last = -1;                ///< -1 = all
+  std::int64_t since_utc_s = INT64_MIN;  ///< INT64_MIN = all
 };
 
-enum class CommandLineResult { kRun, kExitOk, kExitUsage };
+enum class CommandLineResult { kGo, kExitOk, kExitUsage };
+
+inline constexpr const char* kDefaultConfigPath = "/etc/bess/edge.toml";
 
 /// Prints help, version or one line about what is wrong itself.
 CommandLineResult parse_command_line(int argc, char** argv, CommandLine& command_line);

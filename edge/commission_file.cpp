@@ -18,7 +18,7 @@ namespace bess {
 namespace {
 
 std::string path_of(const EdgeConfig& config) {
-  return std::string(config.state_folder.view()) + "/commissioned.toml";
+  return std::string(config.state.folder.view()) + "/commissioned.toml";
 }
 
 /// Of the map file's bytes: an edited map is another map.
@@ -41,7 +41,7 @@ std::string file_text(const EdgeConfig& config, const CommissionResult& result,
        << "map = \"" << config.map.name.view() << "\"\n"
        << "variant = \"" << config.map.variant.view() << "\"\n"
        << "map_crc32 = \"" << map_checksum(config) << "\"\n"
-       << "battery = \"" << battery_place(config) << "\"\n"
+       << "battery = \"" << battery_place(config).view() << "\"\n"
        << "ordered_power_w = " << result.ordered_power_w << "\n"
        << "measured_power_w = " << result.measured_power_w << "\n"
        << "utc = \"" << utc_text(utc_s).view() << "\"\n";
@@ -75,18 +75,10 @@ bool expect_same(TomlTable& table, std::string_view key, const std::string& conf
 
 }  // namespace
 
-std::string battery_place(const EdgeConfig& config) {
-  const int unit = config.link.unit >= 0 ? config.link.unit : config.map.unit;
-  const std::string where = config.link.rtu ? std::string(config.link.device.view())
-                                            : std::string(config.link.host.view()) + ":" +
-                                                  std::to_string(config.link.port);
-  return where + " unit " + std::to_string(unit);
-}
-
 bool write_commission_file(const EdgeConfig& config, const CommissionResult& result,
                            std::int64_t utc_s, std::string& error) {
   const std::string path = path_of(config);
-  mkdir(config.state_folder.c_str(), 0755);  // when it fails, the open below says why
+  mkdir(config.state.folder.c_str(), 0755);  // when it fails, the open below says why
   if (write_beside_and_rename(path, file_text(config, result, utc_s))) return true;
   error = path + ": cannot write here: " + std::strerror(errno) +
           "; mend the folder's permissions, or [state] folder, and repeat";
@@ -107,7 +99,7 @@ bool is_commissioned(const EdgeConfig& config, std::string& error) {
   const bool same = expect_same(table, "map", std::string(config.map.name.view())) &&
                     expect_same(table, "variant", std::string(config.map.variant.view())) &&
                     expect_same(table, "map_crc32", map_checksum(config)) &&
-                    expect_same(table, "battery", battery_place(config));
+                    expect_same(table, "battery", battery_place(config).c_str());
   if (!same) error += "; check the sign again: bess-edge commission --config FILE --yes";
   return same;
 }

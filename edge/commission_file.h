@@ -9,9 +9,6 @@
 
 namespace bess {
 
-/// "127.0.0.1:502 unit 85", or the serial device: where the configuration looks for the battery.
-std::string battery_place(const EdgeConfig& config);
-
 /// Written beside and renamed. False with one line in `error`.
 bool write_commission_file(const EdgeConfig& config, const CommissionResult& result,
                            std::int64_t utc_s, std::string& error);

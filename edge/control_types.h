@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <iterator>
 
 #include "edge/cycle_budget.h"
 #include "edge/mode.h"
@@ -75,6 +76,8 @@ enum class Reason : std::uint8_t {
   kStudent  ///< no intervention
 };
 
+inline constexpr int kReasonCount = static_cast<int>(Reason::kStudent) + 1;
+
 constexpr bool is_stop_reason(Reason reason) { return reason <= Reason::kLastStopReason; }
 
 constexpr std::string_view reason_name(Reason reason) {
@@ -83,6 +86,7 @@ constexpr std::string_view reason_name(Reason reason) {
       "temperature",    "off_grid",  "wrong_direction", "no_price",     "price_age",
       "price_qh",       "soc_full",  "soc_empty",       "cycle_budget", "power_limit",
       "ramp",           "price_low", "price_high",      "student"};
+  static_assert(std::size(kNames) == kReasonCount);
   return kNames[static_cast<int>(reason)];
 }
 

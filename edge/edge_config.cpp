@@ -3,6 +3,7 @@
 #include <arpa/inet.h>
 #include <unistd.h>
 
+#include <cstdio>
 #include <filesystem>
 
 #include "edge/http_secrets.h"
@@ -140,24 +141,46 @@ void read_guard(TomlTable table, EdgeConfig& config) {
   }
 }
 
-void read_log(TomlTable table, EdgeConfig& config) {
-  FixedText<511> csv;
-  table.text("csv", csv);
-  table.finish();
-  if (csv.empty()) return;
-  const auto folder = std::filesystem::path(table.file()).parent_path();
-  if (!config.log_csv.assign((folder / csv.c_str()).string())) table.fail("csv", "is too long");
+template <int kCapacity>
+void keep_path(TomlTable& table, std::string_view key, const std::string& path,
+               FixedText<kCapacity>& kept) {
+  if (!kept.assign(path)) table.fail(key, "is too long");
+}
+
+/// Paths are relative to the configuration file's folder; an absolute one stays as it is.
+std::string resolved(const TomlTable& table, std::string_view path) {
+  return (std::filesystem::path(table.file()).parent_path() / path).string();
 }
 
 void read_state(TomlTable table, EdgeConfig& config) {
-  FixedText<511> folder;
+  FixedText<255> folder("state");
+  const bool has_run_lock = std::filesystem::is_directory("/run/lock");
+  config.state.lock_folder = has_run_lock ? "/run/lock" : "/tmp";
   table.text("folder", folder);
+  table.text("lock_folder", config.state.lock_folder);
   table.finish();
-  if (folder.empty()) return;
-  const auto beside = std::filesystem::path(table.file()).parent_path();
-  if (!config.state_folder.assign((beside / folder.c_str()).string())) {
-    table.fail("folder", "is too long");
+  const std::string path = resolved(table, folder.view());
+  keep_path(table, "folder", path, config.state.folder);
+  keep_path(table, "folder", path + "/decisions.ring", config.log.ring);
+  keep_path(table, "folder", path + "/status.json", config.log.status);
+  keep_path(table, "folder", path + "/metrics.prom", config.log.metrics);
+}
+
+void read_metrics(TomlTable table, EdgeConfig& config) {
+  FixedText<255> prometheus;
+  table.text("prometheus", prometheus);
+  table.finish();
+  if (!prometheus.empty()) {
+    keep_path(table, "prometheus", resolved(table, prometheus.view()), config.log.metrics);
   }
+}
+
+void read_log(TomlTable table, EdgeConfig& config) {
+  FixedText<255> csv;
+  table.text("csv", csv);
+  table.integer("days", config.log.ring_days, 1, 3'660);
+  table.finish();
+  if (!csv.empty()) keep_path(table, "csv", resolved(table, csv.view()), config.log.csv);
 }
 
 void read_simulation(TomlTable table, ScaledClock& clock) {
@@ -191,6 +214,7 @@ bool load_edge_config(const std::string& path, EdgeConfig& config, std::string& 
   read_guard(section(root, "guard"), config);
   read_state(section(root, "state"), config);
   read_log(section(root, "log"), config);
+  read_metrics(section(root, "metrics"), config);
   read_simulation(section(root, "simulation"), config.clock);
   root.finish();
   config.control.price_wait_s = config.price.wait_s;
@@ -199,6 +223,18 @@ bool load_edge_config(const std::string& path, EdgeConfig& config, std::string& 
     config.control.has_dead_man = true;
   }
   return error.empty();
+}
+
+FixedText<159> battery_place(const EdgeConfig& config) {
+  const int unit = config.link.unit >= 0 ? config.link.unit : config.map.unit;
+  char place[160];
+  if (config.link.rtu) {
+    std::snprintf(place, sizeof place, "%s unit %d", config.link.device.c_str(), unit);
+  } else {
+    std::snprintf(place, sizeof place, "%s:%d unit %d", config.link.host.c_str(), config.link.port,
+                  unit);
+  }
+  return FixedText<159>(place);
 }
 
 }  // namespace bess

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "edge/control_loop.h"
+#include "edge/event_log.h"
 #include "edge/modbus_battery.h"
 #include "edge/price_feed.h"
 #include "edge/registers/register_map.h"
@@ -14,6 +15,12 @@
 
 namespace bess {
 
+/// Where the controller keeps what outlives it, and where it locks battery and state.
+struct StateSettings {
+  FixedText<511> folder;
+  FixedText<255> lock_folder;
+};
+
 struct EdgeConfig {
   ControlSettings control;
   BatteryLinkSettings link;
@@ -21,8 +28,8 @@ struct EdgeConfig {
   RegisterMap map;
   ScaledClock clock;
   FixedText<511> map_path;
-  FixedText<511> state_folder = "/var/lib/bess";  ///< what must outlive a restart
-  FixedText<511> log_csv;
+  StateSettings state;
+  EventLogSettings log;
   std::int32_t capacity_wh = 8'000;  ///< what the battery must report, within the tolerance
   std::int32_t capacity_tolerance_percent = 25;
   std::int32_t start_timeout_s = 10;   ///< wall time to reach the battery at start
@@ -33,5 +40,8 @@ struct EdgeConfig {
 /// Reads the file and the register map it names. False with one line ("file:line: what, and the
 /// mend").
 bool load_edge_config(const std::string& path, EdgeConfig& config, std::string& error);
+
+/// "127.0.0.1:502 unit 85" or "/dev/ttyUSB0 unit 85": where the battery is looked for.
+FixedText<159> battery_place(const EdgeConfig& config);
 
 }  // namespace bess

@@ -1,19 +1,30 @@
-// The decision log: one key=value line a cycle on stdout (for the journal) and one CSV line in a
-// file. Lines are built in a stack buffer and written with write(2): no stdio buffers, no heap.
+// The log of the controller. The control thread hands over one record a cycle and never waits; a log
+// thread of its own, on a static stack, writes it everywhere:
+//   CycleRecord -> queue -> log thread -> stdout (journal), ring log, CSV, status JSON, Prometheus text
+// A disk may stand still for seconds: 64 records, two hours, fit into the queue; what does not fit is
+// dropped and counted. After `open` neither thread allocates here.
 #pragma once
 
-#include <cstddef>
+#include <atomic>
+#include <cstdint>
 
 #include "edge/control_types.h"
+#include "edge/handover_queue.h"
+#include "edge/ring_log.h"
+#include "edge/run_status.h"
+#include "edge/static_thread.h"
+#include "edge/whole_file.h"
+#include "shared/fixed_text.h"
 
 namespace bess {
 
-inline constexpr std::size_t kLogLineBytes = 512;
-
-/// Texts of one record; return the length, without the line end.
-std::size_t format_log_line(const CycleRecord& record, char (&line)[kLogLineBytes]);
-std::size_t format_csv_line(const CycleRecord& record, char (&line)[kLogLineBytes]);
-const char* csv_header();
+struct EventLogSettings {
+  FixedText<511> ring;
+  FixedText<511> status;
+  FixedText<511> metrics;
+  FixedText<511> csv;           ///< empty = none
+  std::int64_t ring_days = 35;  ///< of 720 records
+};
 
 class EventLog {
  public:
@@ -22,14 +33,41 @@ class EventLog {
   EventLog& operator=(const EventLog&) = delete;
   ~EventLog();
 
-  /// Opens the CSV file for appending; an empty path means stdout only. False with errno set.
-  bool open(const char* csv_path);
+  /// Opens the files, publishes a first status and starts the log thread. False with one line.
+  bool open(const EventLogSettings& settings, const RunIdentity& identity, FileMessage& error);
+  /// The newest record of earlier runs, for counters that a restart must take over; false = none.
+  /// Only before the first `write`.
+  bool newest(CycleRecord& record) const { return ring_.newest(record); }
+
+  /// From the control thread; never waits.
   void write(const CycleRecord& record);
-  /// One line of free text on stdout, e.g. at start and stop.
-  void note(const char* text);
+  /// Waits until everything handed over is written, or until the limit: for the end of the process.
+  bool drain(std::int64_t wall_ns_max) const;
 
  private:
+  static constexpr std::size_t kQueueRecords = 64;
+  // Largest use measured 11 kB (status and metrics text are members); sanitizers need more.
+  static constexpr std::size_t kStackBytes = 256 * 1024;
+
+  bool open_csv(const char* path, FileMessage& error);
+  void run();
+  void keep(const CycleRecord& record);
+  void publish_metrics();
+  void publish_status();
+
+  EventLogSettings settings_;
+  RunIdentity identity_;
+  RunTotals totals_;
+  RingLog ring_;
   int csv_fd_ = -1;
+  HandoverQueue<CycleRecord, kQueueRecords> queue_;
+  std::int64_t handed_over_ = 0;
+  std::atomic<std::int64_t> kept_{0};
+  std::atomic<std::int64_t> dropped_{0};
+  std::atomic<bool> ending_{false};
+  char status_text_[kStatusBytes];
+  char metrics_text_[kMetricsBytes];
+  StaticThread<kStackBytes> thread_;
 };
 
 }  // namespace bess

@@ -23,8 +23,6 @@ constexpr bool kIsSealed = false;
 constexpr bool kIsSealed = true;
 #endif
 
-constexpr std::size_t kControlStackBytes = 256 * 1024;  ///< measured use: see README.md
-
 /// One line on stderr by write(2): stdio would allocate its buffer.
 template <typename... Values>
 void put_line(const char* format, Values... values) {

@@ -8,7 +8,12 @@
 // Sanitizer builds allocate in their own ways: there nothing is sealed, and a note says so.
 #pragma once
 
+#include <cstddef>
+
 namespace bess {
+
+/// Of the control thread's stack, touched before the loop so that no page fault comes later.
+inline constexpr std::size_t kControlStackBytes = 256 * 1024;
 
 /// Once, on the control thread, before any other thread. False with one line on stderr when the
 /// process is not built as it must be.

@@ -8,14 +8,17 @@
 #pragma once
 
 #include <cstdint>
+#include <iterator>
 #include <string_view>
 
 namespace bess {
 
 enum class Mode : std::uint8_t { kStart, kRunning, kHolding, kSafe, kStopping };
+inline constexpr int kModeCount = static_cast<int>(Mode::kStopping) + 1;
 
 constexpr std::string_view mode_name(Mode mode) {
   constexpr std::string_view kNames[] = {"start", "running", "holding", "safe", "stopping"};
+  static_assert(std::size(kNames) == kModeCount);
   return kNames[static_cast<int>(mode)];
 }
 

@@ -48,7 +48,7 @@ class PriceFeed {
   Status fetch_once(PriceRow& row);
 
  private:
-  static constexpr std::size_t kStackBytes = 512 * 1024;  ///< measured use: see README.md
+  static constexpr std::size_t kStackBytes = 512 * 1024;  ///< measured: 16 KiB; JSON may nest
 
   struct Job {
     std::int64_t minute_utc_s = 0;

@@ -1,8 +1,13 @@
 #include "edge/startup.h"
 
+#include <signal.h>
+#include <sys/prctl.h>
+#include <unistd.h>
+
 #include <cstdio>
 
 #include "edge/http_secrets.h"
+#include "edge/journal.h"
 #include "edge/policy.h"
 #include "edge/registers/codec.h"
 #include "shared/utc_text.h"
@@ -10,20 +15,9 @@
 namespace bess {
 namespace {
 
-/// "127.0.0.1:502 unit 85", where the battery is looked for.
-void print_place(std::FILE* out, const EdgeConfig& config) {
-  const int unit = config.link.unit >= 0 ? config.link.unit : config.map.unit;
-  if (config.link.rtu) {
-    std::fprintf(out, "%s unit %d", config.link.device.c_str(), unit);
-  } else {
-    std::fprintf(out, "%s:%d unit %d", config.link.host.c_str(), config.link.port, unit);
-  }
-}
-
 void complain(const EdgeConfig& config, std::string_view what) {
-  std::fprintf(stderr, "bess-edge: battery at ");
-  print_place(stderr, config);
-  std::fprintf(stderr, ": %.*s\n", static_cast<int>(what.size()), what.data());
+  report(JournalLevel::kError, "battery at %s: %.*s", battery_place(config).c_str(),
+         static_cast<int>(what.size()), what.data());
 }
 
 /// Proves that this is the configured battery; one line when it is not.
@@ -79,9 +73,8 @@ bool report_price(const EdgeConfig& config, PriceFeed& prices) {
   PriceRow row;
   const Status status = prices.fetch_once(row);
   if (status != Status::kOk) {
-    std::fprintf(stderr, "bess-edge: price from %s: %s\n",
-                 loggable_url(config.price.http.url.view()).c_str(),
-                 price_status_text(status).data());
+    report(JournalLevel::kError, "price from %s: %s",
+           loggable_url(config.price.http.url.view()).c_str(), price_status_text(status).data());
     return false;
   }
   std::printf("price      %.2f EUR/MWh of minute %s\n", row.price_centi_eur_per_mwh / 100.0,
@@ -94,10 +87,10 @@ bool report_price(const EdgeConfig& config, PriceFeed& prices) {
 bool check_student() {
   const int failures = count_student_self_check_failures();
   if (failures == 0) return true;
-  std::fprintf(stderr,
-               "bess-edge: the built-in student fails %d of its %d self-checks on this machine; "
-               "build bess-edge for it again\n",
-               failures, student_self_check_count());
+  report(JournalLevel::kError,
+         "the built-in student fails %d of its %d self-checks on this machine; build bess-edge for "
+         "it again",
+         failures, student_self_check_count());
   return false;
 }
 
@@ -119,9 +112,8 @@ void greet_price_server(const EdgeConfig& config, PriceFeed& prices) {
   PriceRow row;
   const Status status = prices.fetch_once(row);
   if (status == Status::kOk) return;
-  std::fprintf(stderr, "bess-edge: note: price from %s: %s; waiting in safe state\n",
-               loggable_url(config.price.http.url.view()).c_str(),
-               price_status_text(status).data());
+  report(JournalLevel::kWarning, "note: price from %s: %s; waiting in safe state",
+         loggable_url(config.price.http.url.view()).c_str(), price_status_text(status).data());
 }
 
 bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& prices) {
@@ -134,12 +126,32 @@ bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& p
   const bool battery_ok = identify(config, battery, true) == Status::kOk;
   BatteryMeasurement m;
   if (battery_ok && battery.read(m) == Status::kOk) {
-    std::printf("battery    ");
-    print_place(stdout, config);
-    std::printf(": SoC %.1f %%, %d W, %d Wh, dispatch %s\n", m.soc_e4 / 100.0, m.power_w,
-                m.capacity_wh, m.dispatch_active ? "active" : "off");
+    std::printf("battery    %s: SoC %.1f %%, %d W, %d Wh, dispatch %s\n",
+                battery_place(config).c_str(), m.soc_e4 / 100.0, m.power_w, m.capacity_wh,
+                m.dispatch_active ? "active" : "off");
   }
   return report_price(config, prices) && battery_ok;
+}
+
+void prepare_process() {
+  set_market_time_zone();
+  signal(SIGPIPE, SIG_IGN);           // whoever reads the log may go away, the battery must not
+  prctl(PR_SET_TIMERSLACK, 1'000UL);  // ns; the default 50 us would be seen at high time scales
+}
+
+RunIdentity identity_of_run(const EdgeConfig& config) {
+  RunIdentity identity;
+  identity.version = BESS_VERSION;
+  identity.student_hash = student_hash();
+  identity.student_provenance = student_provenance();
+  identity.map = config.map.name.view();
+  identity.variant = config.map.variant.view();
+  identity.battery = battery_place(config);
+  identity.control = config.control.control;
+  identity.pid = getpid();
+  identity.start_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
+  identity.cadence_ms = kSecondsPerStep * 1'000 / config.clock.scale;
+  return identity;
 }
 
 }  // namespace bess

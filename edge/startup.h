@@ -4,8 +4,12 @@
 
 #include "edge/edge_clock.h"
 #include "edge/edge_config.h"
+#include "edge/run_status.h"
 
 namespace bess {
+
+/// Time zone, signals and timers of the process; before any thread is started.
+void prepare_process();
 
 /// Tries until `start_timeout_s` is over. True when the battery is there and is the right one, or
 /// when the configuration allows to start without it; otherwise one line on stderr says what to
@@ -18,6 +22,9 @@ void greet_price_server(const EdgeConfig& config, PriceFeed& prices);
 
 /// Prints settings, encoded orders, a battery reading and the newest price; true when all is well.
 bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& prices);
+
+/// Who this process is, for the status that it publishes.
+RunIdentity identity_of_run(const EdgeConfig& config);
 
 /// True when this machine computes the built-in student as the exporter did.
 bool check_student();

@@ -1,6 +1,5 @@
 // A thread on a stack inside its owner: starting it maps no memory. Its lowest page is a guard, so an
-// overflow ends the process instead of writing over the neighbour. For price_feed, which lives as long as
-// the process.
+// overflow ends the process instead of writing over the neighbour. For threads that live as long as the process.
 #pragma once
 
 #include <pthread.h>
@@ -32,6 +31,7 @@ class StaticThread {
     pthread_attr_destroy(&attributes);
     is_running_ = true;
   }
+  [[nodiscard]] bool is_running() const { return is_running_; }
   void join() {
     pthread_join(thread_, nullptr);
     mprotect(memory_, kGuardBytes, PROT_READ | PROT_WRITE);

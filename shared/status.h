@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <iterator>
 #include <string_view>
 
 namespace bess {
@@ -28,6 +29,8 @@ enum class [[nodiscard]] Status : std::uint8_t{
     kNoMemory,        ///< the static arena is exhausted
 };
 
+inline constexpr int kStatusCount = static_cast<int>(Status::kNoMemory) + 1;
+
 constexpr std::string_view status_name(Status status) {
   constexpr std::string_view kNames[] = {
       "ok",          "not_connected",   "timeout",      "bus_exception",
@@ -35,6 +38,7 @@ constexpr std::string_view status_name(Status status) {
       "not_applied", "not_expressible", "write_budget", "name_unresolved",
       "tls_refused", "http_error",      "malformed",    "no_row",
       "too_large",   "no_memory"};
+  static_assert(std::size(kNames) == kStatusCount);
   return kNames[static_cast<int>(status)];
 }
 
@@ -59,6 +63,7 @@ constexpr std::string_view status_text(Status status) {
       "the price server's answer holds no usable price",
       "the answer is larger than the buffer",
       "the static arena is exhausted"};
+  static_assert(std::size(kTexts) == kStatusCount);
   return kTexts[static_cast<int>(status)];
 }
 

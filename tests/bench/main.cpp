@@ -24,6 +24,7 @@ int main(int argc, char** argv) {
   bess::register_learning_benchmarks();
   bess::register_student_benchmarks();
   bess::register_correction_benchmarks();
+  bess::register_edge_benchmarks();
   const std::vector<std::string>& names = bess::benchmark_names();
   std::string filter;
   for (int i = 1; i < argc; ++i) {

@@ -13,6 +13,7 @@ void register_market_benchmarks();
 void register_learning_benchmarks();
 void register_student_benchmarks();
 void register_correction_benchmarks();
+void register_edge_benchmarks();
 
 /// Names registered so far, peers left out.
 std::vector<std::string>& benchmark_names();

@@ -28,7 +28,7 @@ class Processes : public ::testing::Test {
 
 TEST_F(Processes, TheBatterysOwnRecordAgreesWithTheEdgesLog) {
   start_simulators();
-  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", site_.write_config(), "--cycles", "45"});
+  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", site_.commission(), "--cycles", "45"});
   EXPECT_THAT(edge.read_all(), HasSubstr("stopped: battery released"));
   EXPECT_EQ(edge.wait(), 0);
   EXPECT_EQ(SimulatedSite::stop(*site_.battery), 0);
@@ -60,7 +60,7 @@ TEST_F(Processes, TheBatterysOwnRecordAgreesWithTheEdgesLog) {
 
 TEST_F(Processes, SigtermOrdersZeroReleasesAndExitsWithZero) {
   start_simulators();
-  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", site_.write_config()});
+  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", site_.commission()});
   EXPECT_EQ(edge.read_line(), "started: in control");
   for (int i = 0; i < 3; ++i) EXPECT_THAT(edge.read_line(), HasSubstr("mode="));
   edge.signal(SIGTERM);
@@ -72,9 +72,109 @@ TEST_F(Processes, SigtermOrdersZeroReleasesAndExitsWithZero) {
   EXPECT_EQ(record.back().at("commanded_power_w"), "0");
 }
 
+/// A second controller, with a state folder of its own: the battery's lock stands between them, for
+/// one that only reads as well, because the battery serves one connection.
+TEST_F(Processes, TwoControllersCannotShareABattery) {
+  start_simulators();
+  const std::string mine = site_.commission();
+  const std::string other = site_.commission({.state = "other"});
+  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", mine});
+  EXPECT_EQ(edge.read_line(), "started: in control");
+  const std::string in_use = "unit 85 is in use by another bess-edge (process ";
+  const std::vector<std::string> ways[] = {{BESS_EDGE_PROGRAM, "--config", other},
+                                           {BESS_EDGE_PROGRAM, "--config", other, "--check"},
+                                           {BESS_EDGE_PROGRAM, "--config", other, "--dry-run"}};
+  for (const std::vector<std::string>& way : ways) {
+    ChildProcess second(way);
+    const std::string text = second.read_all();
+    EXPECT_EQ(second.wait(), 1) << way.back();
+    EXPECT_THAT(text, HasSubstr(in_use + std::to_string(edge.pid()))) << way.back();
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
+  }
+  edge.read_line();  // undisturbed
+  EXPECT_THAT(edge.read_line(), HasSubstr("mode=running"));
+  edge.signal(SIGKILL);
+  edge.wait();
+  ChildProcess successor({BESS_EDGE_PROGRAM, "--config", other, "--cycles", "1"});
+  EXPECT_THAT(successor.read_all(), HasSubstr("stopped: battery released"));
+  EXPECT_EQ(successor.wait(), 0);
+}
+
+/// Two batteries, one state folder: the logs would overwrite each other.
+TEST_F(Processes, TwoControllersCannotShareAStateFolder) {
+  start_simulators();
+  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", site_.commission()});
+  EXPECT_EQ(edge.read_line(), "started: in control");
+  const auto first_battery = std::move(site_.battery);
+  site_.start_battery();
+  ChildProcess second({BESS_EDGE_PROGRAM, "--config", site_.write_config()});
+  EXPECT_THAT(second.read_all(), HasSubstr("/state is in use by another bess-edge (process " +
+                                           std::to_string(edge.pid())));
+  EXPECT_EQ(second.wait(), 1);
+}
+
+TEST_F(Processes, StatusAndLogShowWhatTheRunningControllerDoes) {
+  start_simulators();
+  const std::string config = site_.commission();
+  const auto run = [&](std::vector<std::string> arguments, int expected_exit_code) {
+    arguments.insert(arguments.begin(), BESS_EDGE_PROGRAM);
+    arguments.insert(arguments.end(), {"--config", config});
+    ChildProcess child(arguments);
+    std::string text = child.read_all();
+    EXPECT_EQ(child.wait(), expected_exit_code) << text;
+    return text;
+  };
+  EXPECT_THAT(run({"status"}, 3), HasSubstr("health     not running"));
+  EXPECT_THAT(run({"log"}, 1), HasSubstr("decisions.ring: cannot open the log: No such file"));
+  EXPECT_THAT(run({"status", "--prometheus"}, 1), HasSubstr("no metrics here"));
+  {
+    ChildProcess edge({BESS_EDGE_PROGRAM, "--config", config});
+    EXPECT_EQ(edge.read_line(), "started: in control");
+    for (int i = 0; i < 15; ++i) edge.read_line();
+    // A loaded machine may be late with a cycle of 133 ms: ok and degraded are both honest here.
+    ChildProcess status({BESS_EDGE_PROGRAM, "status", "--config", config});
+    const std::string text = status.read_all();
+    EXPECT_LE(status.wait(), 1) << text;
+    EXPECT_THAT(text, HasSubstr("in control, process " + std::to_string(edge.pid())));
+    EXPECT_THAT(text, HasSubstr("state      running at 2023-03-26T0"));
+    EXPECT_THAT(text, HasSubstr("alphaess, variant block"));
+    EXPECT_THAT(text, HasSubstr("EUR/MWh"));
+    ChildProcess json({BESS_EDGE_PROGRAM, "status", "--json", "--config", config});
+    EXPECT_THAT(json.read_all(), HasSubstr("\"health\":"));
+    ChildProcess metrics({BESS_EDGE_PROGRAM, "status", "--prometheus", "--config", config});
+    EXPECT_THAT(metrics.read_all(), HasSubstr("bess_state{state=\"running\"} 1\n"));
+    EXPECT_EQ(SimulatedSite::stop(edge), 0);
+  }
+  EXPECT_THAT(run({"status"}, 3), HasSubstr("state      stopping at "));
+  // The ring and the CSV that the controller wrote besides are the same log, line by line.
+  std::ifstream csv(site_.folder.file("edge.csv"));
+  EXPECT_EQ(run({"log", "--csv"}, 0), std::string(std::istreambuf_iterator<char>(csv), {}));
+  const std::string last = run({"log", "--last", "2"}, 0);
+  EXPECT_EQ(std::count(last.begin(), last.end(), '\n'), 2) << last;
+  EXPECT_THAT(last, HasSubstr("mode=stopping"));
+  const std::string since = run({"log", "--since", "2023-03-26T00:20:00Z"}, 0);
+  EXPECT_THAT(since, ::testing::StartsWith("utc=2023-03-26T00:20:00Z "));
+}
+
+TEST_F(Processes, EachCommandHasItsHelp) {
+  struct Help {
+    std::vector<std::string> arguments;
+    const char* says;
+  };
+  const Help helps[] = {{{BESS_EDGE_PROGRAM, "--help"}, "bess-edge --config /etc/bess/edge.toml"},
+                        {{BESS_EDGE_PROGRAM, "status", "--help"}, "3 not running"},
+                        {{BESS_EDGE_PROGRAM, "log", "-h"}, "--since UTC"},
+                        {{BESS_EDGE_PROGRAM, "--version"}, ", student "}};
+  for (const Help& help : helps) {
+    ChildProcess child(help.arguments);
+    EXPECT_THAT(child.read_all(), HasSubstr(help.says));
+    EXPECT_EQ(child.wait(), 0);
+  }
+}
+
 TEST_F(Processes, AKilledEdgeIsEndedByTheBatterysDeadManTimer) {
   start_simulators();
-  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", site_.write_config()});
+  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", site_.commission()});
   for (int i = 0; i < 4; ++i) edge.read_line();
   edge.signal(SIGKILL);
   EXPECT_EQ(edge.wait(), 128 + SIGKILL);
@@ -88,7 +188,7 @@ TEST_F(Processes, MarketFaultsDoNotStopTheLoop) {
     site_.start_clock();
     start_simulators({"--fault", fault, "--fault-every", "3"});
     std::filesystem::remove(site_.folder.file("edge.csv"));
-    ChildProcess edge({BESS_EDGE_PROGRAM, "--config", site_.write_config(), "--cycles", "10"});
+    ChildProcess edge({BESS_EDGE_PROGRAM, "--config", site_.commission(), "--cycles", "10"});
     edge.read_all();
     EXPECT_EQ(edge.wait(), 0) << fault;
     int running = 0;
@@ -127,7 +227,12 @@ TEST_F(Processes, BadStartsEndWithOneClearLine) {
       {{BESS_EDGE_PROGRAM, "--config", "/nonexistent"}, 1, "cannot open"},
       {{BESS_EDGE_PROGRAM, "--confg", config}, 2, "unknown option --confg"},
       {{BESS_EDGE_PROGRAM, "--config", config, "--cycles", "x"}, 2, "needs a whole number"},
-      {{BESS_EDGE_PROGRAM}, 2, "--config FILE is required"},
+      {{BESS_EDGE_PROGRAM, "stat"}, 2, "unknown command stat"},
+      {{BESS_EDGE_PROGRAM, "status", "--csv"}, 2, "unknown option --csv"},
+      {{BESS_EDGE_PROGRAM, "status", "--json", "--prometheus"}, 2, "exclude each other"},
+      {{BESS_EDGE_PROGRAM, "log", "--last"}, 2, "a value is missing after --last"},
+      {{BESS_EDGE_PROGRAM, "log", "--since", "today"}, 2, "needs an instant such as"},
+      {{BESS_EDGE_PROGRAM, "log", "--config", "/nonexistent"}, 1, "cannot open"},
       {{BESS_SIM_PROGRAM, "batery"}, 2, "unknown subcommand batery"},
       {{BESS_SIM_PROGRAM, "market", "--prices", "/nonexistent"}, 1, "cannot open"},
       {{BESS_SIM_PROGRAM, "battery", "--soc", "2"}, 2, "--soc"},
@@ -138,6 +243,51 @@ TEST_F(Processes, BadStartsEndWithOneClearLine) {
     EXPECT_EQ(child.wait(), start.exit_code) << text;
     EXPECT_THAT(text, HasSubstr(start.message));
     EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
+  }
+}
+
+TEST_F(Processes, WithoutAConfigurationTheInstalledOneIsMeant) {
+  if (access("/etc/bess/edge.toml", R_OK) == 0) GTEST_SKIP() << "bess-edge is installed here";
+  for (const char* command : {"status", "log", "run"}) {
+    ChildProcess child({BESS_EDGE_PROGRAM, command});
+    EXPECT_THAT(child.read_all(),
+                HasSubstr("--config FILE is required, there is no /etc/bess/edge.toml"));
+    EXPECT_EQ(child.wait(), 2);
+  }
+}
+
+TEST_F(Processes, ABatteryWhoseSignWasNeverCheckedIsNotControlled) {
+  start_simulators();
+  const std::string config = site_.write_config();
+  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", config});
+  EXPECT_THAT(edge.read_all(), HasSubstr("run once: bess-edge commission --config FILE --yes"));
+  EXPECT_EQ(edge.wait(), 1);
+  ChildProcess hesitant({BESS_EDGE_PROGRAM, "commission", "--config", config});
+  EXPECT_THAT(hesitant.read_all(), HasSubstr("charge or discharge 500 W for 30 s"));
+  EXPECT_EQ(hesitant.wait(), 2);
+  ChildProcess reader({BESS_EDGE_PROGRAM, "--config", config, "--dry-run", "--cycles", "1"});
+  EXPECT_THAT(reader.read_all(), HasSubstr("started: read-only"));
+  EXPECT_EQ(reader.wait(), 0);
+  EXPECT_EQ(SimulatedSite::stop(*site_.battery), 0);
+  for (const CsvRow& row : read_csv(site_.folder.file("battery.csv"))) {
+    EXPECT_EQ(row.at("commanded_power_w"), "0");
+  }
+}
+
+/// As for an upgrade: SIGHUP, and a new process goes on where the old one was.
+TEST_F(Processes, AHandOverKeepsThePowerAndARestartGoesOn) {
+  start_simulators();
+  const std::string config = site_.commission();
+  ChildProcess before({BESS_EDGE_PROGRAM, "--config", config});
+  for (int i = 0; i < 12; ++i) before.read_line();
+  before.signal(SIGHUP);
+  EXPECT_THAT(before.read_all(), HasSubstr("stopped: handed over, the order stays in force"));
+  EXPECT_EQ(before.wait(), 0);
+  ChildProcess after({BESS_EDGE_PROGRAM, "--config", config, "--cycles", "3"});
+  EXPECT_THAT(after.read_all(), HasSubstr("stopped: battery released"));
+  EXPECT_EQ(after.wait(), 0);
+  for (const CsvRow& row : read_csv(site_.folder.file("edge.csv"))) {
+    EXPECT_NE(row.at("mode"), "holding") << row.at("utc");
   }
 }
 

@@ -17,7 +17,7 @@ class CommissionFile : public ::testing::Test {
     config_.map.name = "simulator";
     config_.map.variant = "block";
     config_.map_path.assign(folder_.write("map.toml", "# version 1\n"));
-    config_.state_folder.assign(folder_.file("state"));
+    config_.state.folder.assign(folder_.file("state"));
     EXPECT_TRUE(write_commission_file(
         config_,
         {.verdict = CommissionVerdict::kPassed, .ordered_power_w = 500, .measured_power_w = 493},
@@ -59,7 +59,7 @@ TEST_F(CommissionFile, AnEditedMapMustBeCheckedAgain) {
 }
 
 TEST_F(CommissionFile, NoneAtAllSaysWhatToRun) {
-  config_.state_folder.assign(folder_.file("elsewhere"));
+  config_.state.folder.assign(folder_.file("elsewhere"));
   EXPECT_THAT(complaint(), HasSubstr("bess-edge commission --config FILE --yes"));
 }
 
@@ -70,7 +70,7 @@ TEST_F(CommissionFile, ATornFileIsNoProof) {
 }
 
 TEST_F(CommissionFile, AFolderThatCannotBeWrittenIsNamed) {
-  config_.state_folder.assign("/proc/bess");
+  config_.state.folder.assign("/proc/bess");
   EXPECT_FALSE(write_commission_file(config_, {}, 0, error_));
   EXPECT_THAT(error_, HasSubstr("/proc/bess/commissioned.toml: cannot write here"));
 }

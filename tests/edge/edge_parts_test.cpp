@@ -5,7 +5,7 @@
 #include <string>
 
 #include "edge/control_loop.h"
-#include "edge/event_log.h"
+#include "edge/log_text.h"
 #include "edge/policy.h"
 #include "shared/fixed_text.h"
 #include "shared/static_vector.h"
@@ -49,7 +49,7 @@ TEST(UtcText, RefusesWhatIsAmbiguousOrImpossible) {
   }
 }
 
-TEST(EventLog, CsvLineHasAsManyFieldsAsItsHeader) {
+TEST(LogText, CsvLineHasAsManyFieldsAsItsHeader) {
   CycleRecord record;
   record.utc_s = 1'679'788'800;
   record.price.has_row = true;
@@ -61,7 +61,7 @@ TEST(EventLog, CsvLineHasAsManyFieldsAsItsHeader) {
   EXPECT_TRUE(csv.starts_with("2023-03-26T00:00:00Z,0,start,2023-03-25T23:59:00Z,")) << csv;
 }
 
-TEST(EventLog, LongestLineFits) {
+TEST(LogText, LongestLineFits) {
   CycleRecord record;
   record.utc_s = 4'102'444'800;
   record.cycle = INT64_MAX;

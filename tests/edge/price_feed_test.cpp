@@ -73,6 +73,8 @@ TEST_F(PriceFeedTest, KeepsTheNewestRowEverAccepted) {
     std::string rows;
     Status status;
   };
+  std::string many = "0";
+  while (many.size() < 65'000) many += ",0";
   const Change nothing[] = {
       {"duplicate", row(kNowS - 120, "10.5"), Status::kOk},
       {"older", row(kNowS - 180, "77"), Status::kOk},
@@ -81,6 +83,8 @@ TEST_F(PriceFeedTest, KeepsTheNewestRowEverAccepted) {
       {"implausible", row(kNowS - 60, "15001"), Status::kNoRow},
       {"empty", "", Status::kNoRow},
       {"broken", "{", Status::kMalformed},
+      {"nested", std::string(60'000, '['), Status::kMalformed},  // on the thread's own stack
+      {"many rows", many, Status::kNoRow},                       // the arena holds all of them
   };
   for (const Change& change : nothing) {
     const PriceReport report = fetch(change.rows);
@@ -180,6 +184,9 @@ struct ObedientBattery {
     power_w = order.power_w;
     return Status::kOk;
   }
+  [[nodiscard]] std::int32_t refresh_interval_s() const { return 0; }
+  Status refresh() { return Status::kOk; }
+  [[nodiscard]] BatteryCounters counters() const { return {}; }
   Status release() {
     power_w = 0;
     return Status::kOk;

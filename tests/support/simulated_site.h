@@ -1,5 +1,6 @@
 // bess-sim battery and bess-sim market on free ports, in scaled time, and the configuration with
-// which bess-edge drives the one on the prices of the other. Needs BESS_SIM_PROGRAM.
+// which bess-edge drives the one on the prices of the other. Needs BESS_SIM_PROGRAM
+// and BESS_EDGE_PROGRAM.
 #pragma once
 
 #include <cmath>
@@ -50,23 +51,38 @@ class SimulatedSite {
                         options, market_port);
   }
 
-  /// `battery_keys` and `rest` are lines of TOML; the former go into [battery].
-  [[nodiscard]] std::string write_config(
-      const std::string& battery_keys = "map = \"" BESS_SOURCE_DIR "/edge/maps/alphaess.toml\"\n",
-      const std::string& rest = "") const {
+  struct ConfigOptions {
+    /// Lines of TOML for [battery].
+    std::string battery_keys = "map = \"" BESS_SOURCE_DIR "/edge/maps/alphaess.toml\"\n";
+    std::string state = "state";  ///< folder; the file is named after it
+  };
+
+  /// All configurations of a site lock in one place.
+  [[nodiscard]] std::string write_config(const ConfigOptions& options) const {
     std::ostringstream text;
     text
         << "control = true\n[battery]\n"
-        << battery_keys << "port = " << battery_port
+        << options.battery_keys << "port = " << battery_port
         << "\nresponse_timeout_ms = 100\nstart_timeout_s = 1\n[price]\nurl = \"http://127.0.0.1:"
         << market_port
         << "/api/explore/v2.1/catalog/datasets/ods161/records?order_by=datetime%20desc&limit=20\"\n"
-        << "[state]\nfolder = \"state\"\n[log]\ncsv = \"edge.csv\"\n[simulation]\ntime_scale = "
-        << time_scale_ << "\nutc_start = \"" << utc_text(kStartS).view()
-        << "\"\nanchor_monotonic_ns = " << anchor_ns_ << "\n"
-        << rest;
-    return folder.write("edge.toml", text.str());
+        << "[state]\nfolder = \"" << options.state << "\"\nlock_folder = \"" << folder.file("")
+        << "\"\n[log]\ncsv = \"edge.csv\"\n[simulation]\ntime_scale = " << time_scale_
+        << "\nutc_start = \"" << utc_text(kStartS).view()
+        << "\"\nanchor_monotonic_ns = " << anchor_ns_ << "\n";
+    return folder.write(options.state + ".toml", text.str());
   }
+  [[nodiscard]] std::string write_config() const { return write_config(ConfigOptions{}); }
+
+  /// The configuration after the sign check that control needs.
+  [[nodiscard]] std::string commission(const ConfigOptions& options) const {
+    const std::string config = write_config(options);
+    ChildProcess check({BESS_EDGE_PROGRAM, "commission", "--config", config, "--yes"});
+    const std::string text = check.read_all();
+    if (check.wait() != 0) throw std::runtime_error("the sign check failed: " + text);
+    return config;
+  }
+  [[nodiscard]] std::string commission() const { return commission(ConfigOptions{}); }
 
   /// Ends a program as an operator would; its exit code.
   static int stop(ChildProcess& child) {

@@ -1,0 +1,36 @@
+// Is the controller well? A pure function of the published status, for `bess-edge status`: two signals
+// (the process is alive; the last cycle was good) become one word and the reasons for it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace bess {
+
+struct HealthInputs {
+  bool is_running = false;      ///< a process holds the lock
+  bool is_of_this_run = false;  ///< the status was written by that process
+  std::int64_t age_ms = 0;      ///< of the status
+  std::int64_t cadence_ms = 120'000;
+  std::int64_t cycles = 0;
+  std::string_view mode;
+  std::string_view reason;
+  std::string_view battery_status;
+  std::string_view price_status;
+  bool disk_is_slow = false;
+  bool disk_is_failing = false;
+};
+
+enum class HealthLevel { kOk = 0, kDegraded = 1, kNotRunning = 3 };  ///< also the exit codes
+
+struct Health {
+  HealthLevel level = HealthLevel::kOk;
+  std::vector<std::string> reasons;  ///< one each; empty when ok
+};
+
+Health assess_health(const HealthInputs& in);
+std::string_view health_name(HealthLevel level);
+
+}  // namespace bess
