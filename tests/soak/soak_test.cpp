@@ -238,7 +238,7 @@ void expect_clean(const RunResult& result, int cycles) {
   EXPECT_EQ(result.end.has_heap, false);
   EXPECT_GT(result.end.resident_kib, 0);
   EXPECT_LT(result.end.resident_kib, 64 * 1'024);
-  EXPECT_LE(result.end.resident_kib, result.warm.resident_kib + 64);
+  EXPECT_LE(result.end.resident_kib, result.warm.resident_kib + 1'024);
   EXPECT_EQ(result.end.threads, 2);
   EXPECT_EQ(result.end.seccomp, 2);
   EXPECT_EQ(value_of(result.arena, "control_thread_calls"), 0);
