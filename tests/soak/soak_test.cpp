@@ -3,6 +3,7 @@
 // is looked up again all the time, the price server answers nonsense now and then, and both ends die and
 // come back. Afterwards the process must not have grown by anything.
 //   BESS_SOAK_CYCLES   length of the long run; tools/soak sets it
+//   BESS_SOAK_SCALE    simulated seconds per second; less for a slow machine
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <netdb.h>
@@ -28,14 +29,15 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-constexpr std::int32_t kScale = 2'000;           // a cycle is 60 ms
 constexpr std::int64_t kStartS = 1'679'788'800;  // 2023-03-26T00:00:00Z
 constexpr int kWarmCycles = 100;
 
-int long_run_cycles() {
-  const char* wish = std::getenv("BESS_SOAK_CYCLES");
-  return wish != nullptr ? std::max(std::atoi(wish), 2 * kWarmCycles) : 300;
+int wish(const char* name, int otherwise) {
+  const char* text = std::getenv(name);
+  return text != nullptr ? std::atoi(text) : otherwise;
 }
+
+int long_run_cycles() { return std::max(wish("BESS_SOAK_CYCLES", 300), 2 * kWarmCycles); }
 
 /// Prices for three times the cycles: a busy machine skips ticks.
 std::string minute_file_text(int cycles) {
@@ -114,7 +116,7 @@ class Soak : public ::testing::Test {
     arguments.insert(arguments.begin(), BESS_SIM_PROGRAM);
     for (const std::string& option :
          {std::string("--port"), std::to_string(port), std::string("--utc-start"),
-          std::string("2023-03-26T00:00:00Z"), std::string("--time-scale"), std::to_string(kScale),
+          std::string("2023-03-26T00:00:00Z"), std::string("--time-scale"), std::to_string(scale_),
           std::string("--anchor-monotonic-ns"), std::to_string(anchor_ns_)}) {
       arguments.push_back(option);
     }
@@ -143,7 +145,7 @@ class Soak : public ::testing::Test {
         << name_ << ":" << market_port_
         << "/api/explore/v2.1/catalog/datasets/ods161/records?order_by=datetime%20desc&limit=20\"\n"
         << "ca_file = \"" << bundle_ << "\"\ntimeout_ms = 500\nwait_s = 40\nresolve_every_s = 1\n"
-        << "[log]\ncsv = \"edge.csv\"\n[simulation]\ntime_scale = " << kScale
+        << "[log]\ncsv = \"edge.csv\"\n[simulation]\ntime_scale = " << scale_
         << "\nutc_start = \"2023-03-26T00:00:00Z\"\nanchor_monotonic_ns = " << anchor_ns_ << "\n";
     return folder_.write("edge.toml", text.str());
   }
@@ -160,6 +162,7 @@ class Soak : public ::testing::Test {
   void let_ends_die(int cycle, int cycles);
 
   TemporaryFolder folder_;
+  const int scale_ = wish("BESS_SOAK_SCALE", 2'000);  // a cycle is 60 ms
   std::string name_ = resolvable_name();
   ThrowawayCa ca_{"DNS:" + name_};
   std::string bundle_ = write_bundle();
