@@ -157,7 +157,8 @@ class Soak : public ::testing::Test {
     text << system.rdbuf() << own.rdbuf();
     return folder_.write("bundle.pem", text.str());
   }
-  RunResult run(int cycles);
+  enum class Market { kThereAtStart, kComesLater };
+  RunResult run(int cycles, Market market);
   void follow(ChildProcess& edge, DroppingProxy& proxy, int cycles, RunResult& result);
   void let_ends_die(int cycle, int cycles);
 
@@ -170,10 +171,13 @@ class Soak : public ::testing::Test {
   int battery_port_ = 0;
   int market_port_ = 0;
   std::unique_ptr<ChildProcess> battery_, market_;
+  int market_start_cycle_ = 0;
 };
 
 /// The price server dies for a while in the second quarter, the battery in the third.
 void Soak::let_ends_die(int cycle, int cycles) {
+  if (cycle == market_start_cycle_) start_market();
+  if (cycles < kWarmCycles) return;
   const int quarter = cycles / 4;
   if (cycle == quarter) market_.reset();
   if (cycle == quarter + 20) start_market();
@@ -200,13 +204,17 @@ void Soak::follow(ChildProcess& edge, DroppingProxy& proxy, int cycles, RunResul
   }
 }
 
-RunResult Soak::run(int cycles) {
+RunResult Soak::run(int cycles, Market market) {
   RunResult result;
   folder_.write("minutes.csv", minute_file_text(cycles)).size();
   anchor_ns_ = clock_ns(CLOCK_MONOTONIC) + kNanosecondsPerSecond / 2;
   battery_port_ = market_port_ = 0;
   start_battery();
   start_market();
+  if (market == Market::kComesLater) {
+    market_.reset();  // its port is known now
+    market_start_cycle_ = 10;
+  }
   DroppingProxy proxy(static_cast<std::uint16_t>(battery_port_));
   ChildProcess edge({BESS_EDGE_PROGRAM, "--config", write_config(proxy.port()), "--cycles",
                      std::to_string(cycles)});
@@ -252,10 +260,10 @@ void expect_clean(const RunResult& result, int cycles) {
 
 TEST_F(Soak, NothingGrowsAndNothingIsAskedOfTheKernel) {
   setenv("BESS_SECCOMP", "kill", 1);
-  const RunResult warm = run(kWarmCycles);
+  const RunResult warm = run(kWarmCycles, Market::kThereAtStart);
   print("warm", warm);
   const int cycles = long_run_cycles();
-  const RunResult soak = run(cycles);
+  const RunResult soak = run(cycles, Market::kThereAtStart);
   print("soak", soak);
   expect_clean(soak, cycles);
   EXPECT_LE(soak.end.open_files, soak.warm.open_files + 2);  // sockets of the moment
@@ -263,6 +271,18 @@ TEST_F(Soak, NothingGrowsAndNothingIsAskedOfTheKernel) {
   EXPECT_GT(warm_bytes, 100'000);
   EXPECT_NEAR(static_cast<double>(value_of(soak.arena, "used")), static_cast<double>(warm_bytes),
               4'096);
+}
+
+/// Whatever TLS loads at first use must be there when the first handshake comes after the seal.
+TEST_F(Soak, TheFirstHandshakeMayComeAfterTheSeal) {
+  setenv("BESS_SECCOMP", "kill", 1);
+  const RunResult late = run(30, Market::kComesLater);
+  print("late", late);
+  EXPECT_EQ(late.exit_code, 0);
+  EXPECT_EQ(late.cycles, 30);
+  EXPECT_GE(late.modes.at("start"), 9);
+  EXPECT_GE(late.modes.at("running"), 1);
+  EXPECT_EQ(value_of(late.arena, "heap_segment"), 0);
 }
 
 }  // namespace
