@@ -117,7 +117,7 @@ TEST(MallocFamily, AnExhaustedArenaServesAgainOnceSomethingIsFreed) {
 }
 
 void* churn(void* seed) {
-  std::mt19937_64 random(reinterpret_cast<std::uintptr_t>(seed));
+  std::mt19937 random(reinterpret_cast<std::uintptr_t>(seed));
   unsigned char* slots[32] = {};
   std::size_t sizes[32] = {};
   for (int step = 0; step < 20'000; ++step) {
