@@ -104,8 +104,7 @@ class EveryFault : public ::testing::TestWithParam<BatteryFault> {};
 
 TEST_P(EveryFault, EndsInARightAnswerOrAnErrorAndRecovers) {
   BatteryServerSettings settings;
-  settings.fault = GetParam();
-  settings.fault_every = 4;
+  settings.faults = {.faults = {GetParam()}, .every = 4};
   settings.late_ms = 90;  // after the driver's 60 ms have run out
   LoopbackBattery loopback("block", settings);
   ModbusBattery battery(loopback.link(), loopback.map, loopback.clock);
@@ -135,8 +134,7 @@ INSTANTIATE_TEST_SUITE_P(Faults, EveryFault,
 
 TEST(ModbusLink, AcknowledgedButNotAppliedIsSeen) {
   BatteryServerSettings settings;
-  settings.fault = BatteryFault::kAckWithoutEffect;
-  settings.fault_every = 1;
+  settings.faults = {.faults = {BatteryFault::kAckWithoutEffect}, .every = 1};
   LoopbackBattery loopback("block", settings);
   ModbusBattery battery(loopback.link(), loopback.map, loopback.clock);
   EXPECT_EQ(battery.order(kCharge), Status::kNotApplied);
@@ -144,8 +142,7 @@ TEST(ModbusLink, AcknowledgedButNotAppliedIsSeen) {
 
 TEST(ModbusLink, BusyForEverIsReportedAsBusy) {
   BatteryServerSettings settings;
-  settings.fault = BatteryFault::kException;
-  settings.fault_every = 1;
+  settings.faults = {.faults = {BatteryFault::kException}, .every = 1};
   LoopbackBattery loopback("block", settings);
   ModbusBattery battery(loopback.link(), loopback.map, loopback.clock);
   BatteryMeasurement m;
