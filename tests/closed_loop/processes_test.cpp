@@ -74,9 +74,12 @@ class Processes : public ::testing::Test {
     EXPECT_GT(port, 0) << line;
     return child;
   }
-  void start_simulators(const std::vector<std::string>& market_faults = {}) {
-    battery_ = start_simulator({"battery", "--port", "0", "--record", folder_.file("battery.csv")},
-                               battery_port_);
+  void start_simulators(const std::vector<std::string>& market_faults = {},
+                        const std::vector<std::string>& battery_faults = {}) {
+    std::vector<std::string> battery = {"battery", "--port", "0", "--record",
+                                        folder_.file("battery.csv")};
+    battery.insert(battery.end(), battery_faults.begin(), battery_faults.end());
+    battery_ = start_simulator(battery, battery_port_);
     std::vector<std::string> market = {"market", "--port", "0", "--prices",
                                        folder_.write("minutes.csv", minute_file_text())};
     market.insert(market.end(), market_faults.begin(), market_faults.end());
@@ -179,6 +182,38 @@ TEST_F(Processes, MarketFaultsDoNotStopTheLoop) {
     stop(*battery_);
     stop(*market_);
   }
+}
+
+/// Whatever the bus does, what the log calls written is what the battery was commanded.
+TEST_F(Processes, BusFaultsCostCyclesButNeverGiveAWrongOrder) {
+  start_simulators({}, {"--fault", "exception", "drop", "reset", "wrong-unit", "wrong-transaction",
+                        "wrong-protocol", "wrong-address", "wrong-value", "fewer-registers",
+                        "garbage", "duplicate", "refuse", "ack-without-effect",
+                        "--fault-probability", "0.15", "--fault-seed", "4"});
+  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", write_config(), "--cycles", "40"});
+  edge.read_all();
+  EXPECT_EQ(edge.wait(), 0);
+  EXPECT_EQ(stop(*battery_), 0);
+  std::map<std::int64_t, std::string> commanded;  // at the end of each minute
+  const auto instant = [](const std::string& text) {
+    std::int64_t utc_s = 0;
+    EXPECT_TRUE(parse_utc_text(text, utc_s)) << text;
+    return utc_s;
+  };
+  for (const CsvRow& row : read_csv(folder_.file("battery.csv"))) {
+    commanded[instant(row.at("minute_utc"))] = row.at("commanded_power_w");
+  }
+  int written = 0;
+  int troubled = 0;
+  for (const CsvRow& row : read_csv(folder_.file("edge.csv"))) {
+    if (row.at("battery_status") != "ok") ++troubled;
+    if (row.at("mode") == "stopping" || row.at("written") != "1") continue;
+    ++written;
+    const std::int64_t last_minute_s = instant(row.at("utc")) + 60;  // of this order
+    EXPECT_EQ(commanded[last_minute_s], row.at("ordered_power_w")) << row.at("utc");
+  }
+  EXPECT_GE(written, 20);
+  EXPECT_GE(troubled, 1);
 }
 
 TEST_F(Processes, CheckReportsAndReadsButWritesNothing) {
