@@ -12,6 +12,7 @@
 #include "shared/scaled_clock.h"
 #include "shared/utc_text.h"
 #include "tests/support/child_process.h"
+#include "tests/support/pty_bridge.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bess {
@@ -85,11 +86,16 @@ class Processes : public ::testing::Test {
     market.insert(market.end(), market_faults.begin(), market_faults.end());
     market_ = start_simulator(market, market_port_);
   }
-  std::string write_config() const {
+  std::string write_config(const std::string& serial_device = "") const {
     std::ostringstream text;
+    text << "control = true\n[battery]\nmap = \"" BESS_SOURCE_DIR "/edge/maps/alphaess.toml\"\n";
+    if (serial_device.empty()) {
+      text << "port = " << battery_port_ << "\n";
+    } else {
+      text << "transport = \"rtu\"\nbaud = 115200\ndevice = \"" << serial_device << "\"\n";
+    }
     text
-        << "control = true\n[battery]\nmap = \"" BESS_SOURCE_DIR "/edge/maps/alphaess.toml\"\n"
-        << "port = " << battery_port_ << "\nresponse_timeout_ms = 100\nstart_timeout_s = 1\n"
+        << "response_timeout_ms = 100\nstart_timeout_s = 1\n"
         << "[price]\nurl = \"http://127.0.0.1:" << market_port_
         << "/api/explore/v2.1/catalog/datasets/ods161/records?order_by=datetime%20desc&limit=20\"\n"
         << "[log]\ncsv = \"edge.csv\"\n[simulation]\ntime_scale = " << kScale
@@ -182,6 +188,26 @@ TEST_F(Processes, MarketFaultsDoNotStopTheLoop) {
     stop(*battery_);
     stop(*market_);
   }
+}
+
+TEST_F(Processes, TheSameOverASerialLine) {
+  start_simulators();
+  const PtyBridge line;
+  std::vector<std::string> arguments = {BESS_SIM_PROGRAM, "battery", "--serial",
+                                        line.device(0),   "--baud",  "115200"};
+  for (const std::string& option : clock_options()) arguments.push_back(option);
+  ChildProcess battery(arguments);
+  EXPECT_THAT(battery.read_line(), HasSubstr("listening on " + line.device(0)));
+  ChildProcess edge(
+      {BESS_EDGE_PROGRAM, "--config", write_config(line.device(1)), "--cycles", "15"});
+  EXPECT_THAT(edge.read_all(), HasSubstr("stopped: battery released"));
+  EXPECT_EQ(edge.wait(), 0);
+  int written = 0;
+  for (const CsvRow& row : read_csv(folder_.file("edge.csv"))) {
+    if (row.at("written") == "1") ++written;
+  }
+  EXPECT_GE(written, 14);
+  EXPECT_EQ(stop(battery), 0);
 }
 
 /// Whatever the bus does, what the log calls written is what the battery was commanded.
