@@ -40,13 +40,16 @@ void read_battery(TomlTable table, EdgeConfig& config) {
   FixedText<255> map_file("maps/alphaess.toml");
   RegisterName variant;
   int transport = 0;
+  int parity = 0;
   table.text("map", map_file);
   table.text("variant", variant);
   table.choice("transport", transport, {"tcp", "rtu"});
   table.text("host", config.link.host);
   table.integer("port", config.link.port, 1, 65'535);
   table.text("device", config.link.device);
-  table.integer("baud", config.link.baud, 1'200, 256'000);
+  table.integer("baud", config.link.baud, 1'200, 230'400);
+  table.choice("parity", parity, {"none", "even", "odd"});
+  table.integer("stop_bits", config.link.stop_bits, 1, 2);
   table.integer("unit", config.link.unit, 0, 255);
   table.integer("response_timeout_ms", config.link.response_timeout_ms, 10, 30'000);
   table.integer("power_w", config.control.guard.power_w, 1, 100'000'000);
@@ -56,7 +59,11 @@ void read_battery(TomlTable table, EdgeConfig& config) {
   table.boolean("start_without_battery", config.start_without_battery);
   table.integer("read_lead_s", config.control.read_lead_s, 0, 60);
   config.link.rtu = transport == 1;
+  config.link.parity = static_cast<Parity>(parity);
   table.finish();
+  if (!is_serial_speed(config.link.baud)) {
+    table.fail("baud", "must be a speed of serial lines such as 9600, 19200 or 115200");
+  }
   if (!config.link.rtu && !is_numeric_ipv4(config.link.host.c_str())) {
     table.fail("host",
                "must be a numeric IPv4 address such as \"192.168.1.20\": a name would "

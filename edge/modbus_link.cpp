@@ -1,127 +1,172 @@
 #include "edge/modbus_link.h"
 
-#include <modbus/modbus.h>
-
 #include <algorithm>
-#include <cerrno>
-
-#include "shared/check.h"
 
 namespace bess {
 namespace {
 
-Status status_of_errno(int error) {
-  switch (error) {
-    case ETIMEDOUT:
-    case EINPROGRESS:  // what libmodbus 3.1.6 leaves when connecting times out
-      return Status::kTimeout;
-    case EMBXILFUN:
-    case EMBXILADD:
-    case EMBXILVAL:
-    case EMBXSFAIL:
-    case EMBXNACK:
-    case EMBXMEMPAR:
-    case EMBXGPATH:
-    case EMBXGTAR:
-      return Status::kBusException;
-    case EMBXACK:
-    case EMBXSBUSY:
-      return Status::kBusBusy;
-    case EMBBADCRC:
-    case EMBBADDATA:
-    case EMBBADEXC:
-    case EMBUNKEXC:
-    case EMBMDATA:
-    case EMBBADSLAVE:
-      return Status::kBadReply;
-    default:
-      return Status::kNotConnected;
-  }
+constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
+
+std::int64_t milliseconds(std::int32_t ms) { return ms * kNanosecondsPerMillisecond; }
+
+std::int64_t now() { return clock_ns(CLOCK_MONOTONIC); }
+
+void sleep_until(std::int64_t monotonic_ns) {
+  while (now() < monotonic_ns) sleep_until_monotonic(monotonic_ns);
+}
+
+LinkTiming with_timeout(LinkTiming timing, const BatteryLinkSettings& settings) {
+  if (settings.response_timeout_ms > 0) timing.response_timeout_ms = settings.response_timeout_ms;
+  return timing;
+}
+
+/// What the device or the network times runs in simulated time, what the bus itself takes does not.
+LinkPauses pauses_of(const LinkTiming& timing, const ScaledClock& clock) {
+  return {.back_off_first_ns = clock.wall_ns(kBackOffFirstS * kNanosecondsPerSecond),
+          .back_off_max_ns = clock.wall_ns(kBackOffMaxS * kNanosecondsPerSecond),
+          .connect_delay_ns = clock.wall_ns(milliseconds(timing.connect_delay_ms)),
+          .gap_ns = clock.wall_ns(milliseconds(timing.minimum_gap_ms)),
+          .quiet_ns = std::max(milliseconds(timing.response_timeout_ms),
+                               clock.wall_ns(milliseconds(timing.quiet_ms)))};
+}
+
+std::int64_t late_reply_ns_max(const LinkTiming& timing, const ScaledClock& clock) {
+  return std::max(5 * milliseconds(timing.response_timeout_ms),
+                  clock.wall_ns(milliseconds(timing.late_reply_ms_max)));
 }
 
 }  // namespace
 
 ModbusLink::ModbusLink(const BatteryLinkSettings& settings, const LinkTiming& timing,
                        const ScaledClock& clock)
-    : rtu_(settings.rtu), timing_(timing), clock_(clock) {
-  context_ = rtu_ ? modbus_new_rtu(settings.device.c_str(), settings.baud, 'N', 8, 1)
-                  : modbus_new_tcp(settings.host.c_str(), settings.port);
-  BESS_CHECK(context_ != nullptr);
-  if (settings.response_timeout_ms > 0) timing_.response_timeout_ms = settings.response_timeout_ms;
-  const auto seconds = static_cast<std::uint32_t>(timing_.response_timeout_ms / 1'000);
-  const auto microseconds = static_cast<std::uint32_t>(timing_.response_timeout_ms % 1'000 * 1'000);
-  modbus_set_error_recovery(context_, MODBUS_ERROR_RECOVERY_NONE);
-  modbus_set_response_timeout(context_, seconds, microseconds);
-  modbus_set_byte_timeout(context_, seconds, microseconds);
-}
-
-ModbusLink::~ModbusLink() {
-  close();
-  modbus_free(context_);
-}
-
-void ModbusLink::close() {
-  if (connected_) modbus_close(context_);
-  connected_ = false;
-}
-
-Status ModbusLink::connect() {
-  if (connected_) return Status::kOk;
-  if (modbus_connect(context_) != 0) {
-    const Status status = status_of_errno(errno);
-    modbus_close(context_);  // a failed connect may leave a socket behind
-    return status;
-  }
-  connected_ = true;
-  return Status::kOk;
-}
-
-/// The device's minimum gap runs in simulated time, like everything that the battery itself times.
-void ModbusLink::wait_for_gap() const {
-  while (clock_ns(CLOCK_MONOTONIC) < next_request_ns_) sleep_until_monotonic(next_request_ns_);
-}
-
-Status ModbusLink::begin_request(std::int32_t unit) {
-  if (const Status status = connect(); status != Status::kOk) return status;
-  modbus_set_slave(context_, unit);
-  wait_for_gap();
-  return Status::kOk;
-}
-
-Status ModbusLink::finish_request(bool succeeded) {
-  const int error = errno;
-  next_request_ns_ =
-      clock_ns(CLOCK_MONOTONIC) + clock_.wall_ns(std::int64_t{timing_.minimum_gap_ms} * 1'000'000);
-  if (succeeded) return Status::kOk;
-  const Status status = status_of_errno(error);
-  recover();
-  return status;
-}
-
-void ModbusLink::recover() {
-  if (!rtu_) return close();
-  // RTU has no transaction id: a late reply must have come and gone before the next question.
-  const std::int64_t quiet_ns =
-      std::int64_t{std::max(timing_.response_timeout_ms, 1'000)} * 1'000'000;
-  const std::int64_t until_ns = clock_ns(CLOCK_MONOTONIC) + quiet_ns;
-  while (clock_ns(CLOCK_MONOTONIC) < until_ns) sleep_until_monotonic(until_ns);
-  if (modbus_flush(context_) < 0) close();
-}
+    : rtu_(settings.rtu),
+      framing_(settings.rtu ? Framing::kRtu : Framing::kTcp),
+      baud_(settings.baud),
+      timing_(with_timeout(timing, settings)),
+      wire_(settings, timing_.response_timeout_ms),
+      state_(pauses_of(timing_, clock)),
+      unanswered_(late_reply_ns_max(timing_, clock)) {}
 
 Status ModbusLink::read(const RegisterSpan& span, std::uint16_t* registers) {
-  if (const Status status = begin_request(span.unit); status != Status::kOk) return status;
-  const int got = span.function == 4
-                      ? modbus_read_input_registers(context_, span.address, span.count, registers)
-                      : modbus_read_registers(context_, span.address, span.count, registers);
-  return finish_request(got == span.count);
+  return request(
+      {.unit = span.unit, .function = span.function, .address = span.address, .count = span.count},
+      registers);
 }
 
 Status ModbusLink::write(std::int32_t unit, std::uint8_t function, std::uint16_t address,
                          const std::uint16_t* registers, int count) {
-  if (const Status status = begin_request(unit); status != Status::kOk) return status;
-  const int sent = function == 6 ? modbus_write_register(context_, address, registers[0])
-                                 : modbus_write_registers(context_, address, count, registers);
-  return finish_request(sent == count);
+  return request({.unit = unit,
+                  .function = function,
+                  .address = address,
+                  .count = function == 6 ? 1 : count,
+                  .values = registers},
+                 nullptr);
+}
+
+void ModbusLink::close() {
+  wire_.close();
+  state_.on_lost(now());
+}
+
+Status ModbusLink::request(ModbusRequest request, std::uint16_t* registers) {
+  last_exception_ = 0;
+  if (!request.is_valid()) return Status::kNotExpressible;
+  ++counters_.requests;
+  Status status = make_ready(request);
+  if (status == Status::kOk) {
+    request.transaction = ++transaction_;
+    status = ask(request, registers);
+    finish(request, status);
+  }
+  if (status != Status::kOk) ++counters_.failed_requests;
+  return status;
+}
+
+/// Connected, rested, and nothing under way that could be taken for the reply to this request.
+Status ModbusLink::make_ready(const ModbusRequest& request) {
+  if (state_.state(now()) == LinkState::kConnected && wire_.is_spoilt()) close();
+  switch (state_.state(now())) {
+    case LinkState::kBackingOff:
+      return connect_status_;
+    case LinkState::kDisconnected:
+      if (connect() != Status::kOk) return connect_status_;
+      break;
+    case LinkState::kDraining:
+      sleep_until(state_.ready_ns());
+      state_.on_drained();
+      break;
+    case LinkState::kConnected:
+      break;
+  }
+  sleep_until(state_.ready_ns());
+  if (!rtu_) return Status::kOk;
+  if (!request.is_write()) sleep_until(unanswered_.earliest_ns(request));
+  unanswered_.forget_old(now());
+  wire_.discard_input();
+  return Status::kOk;
+}
+
+Status ModbusLink::connect() {
+  connect_status_ = wire_.open();
+  if (connect_status_ != Status::kOk) {
+    state_.on_connect_failed(now());
+    return connect_status_;
+  }
+  if (was_connected_) ++counters_.reconnects;
+  was_connected_ = true;
+  state_.on_connected(now());
+  return Status::kOk;
+}
+
+Status ModbusLink::ask(const ModbusRequest& request, std::uint16_t* registers) {
+  ModbusFrame frame;
+  build_request(framing_, request, frame);
+  sent_ns_ = now();
+  if (const Status status = wire_.send(frame); status != Status::kOk) return status;
+  if (request.is_write()) ++counters_.register_writes;
+  const std::int64_t deadline_ns = sent_ns_ + milliseconds(timing_.response_timeout_ms) +
+                                   line_time_ns(frame.size + reply_bytes_max(framing_, request));
+  ModbusFrame reply;
+  if (const Status status = receive_reply(request, deadline_ns, reply); status != Status::kOk) {
+    return status;
+  }
+  const ReplyCheck check = check_reply(framing_, request, reply, registers);
+  last_exception_ = check.exception;
+  return check.status;
+}
+
+Status ModbusLink::receive_reply(const ModbusRequest& request, std::int64_t deadline_ns,
+                                 ModbusFrame& reply) {
+  int missing = missing_bytes(framing_, request, reply);
+  while (missing > 0) {
+    const Status status = wire_.receive(missing, deadline_ns, reply);
+    if (status != Status::kOk) return status;
+    missing = missing_bytes(framing_, request, reply);
+  }
+  return missing == 0 ? Status::kOk : Status::kBadReply;
+}
+
+void ModbusLink::finish(const ModbusRequest& request, Status status) {
+  const bool answered = status == Status::kOk || last_exception_ != 0;
+  if (rtu_) {
+    // An exception looks the same for every count: while old replies may come, it proves nothing.
+    if (status == Status::kOk) unanswered_.on_answered(request, sent_ns_);
+    if (!answered || (last_exception_ != 0 && !unanswered_.empty())) {
+      unanswered_.add(request, sent_ns_);
+    }
+  }
+  if (answered) return state_.on_answered(now());
+  recover(status);
+}
+
+void ModbusLink::recover(Status status) {
+  if (rtu_ && status != Status::kNotConnected) return state_.on_no_answer(now());
+  close();
+}
+
+/// Time that so many bytes take on a serial line: 11 bits each with parity or a second stop bit.
+std::int64_t ModbusLink::line_time_ns(int bytes) const {
+  return rtu_ ? bytes * 11 * kNanosecondsPerSecond / baud_ : 0;
 }
 
 }  // namespace bess

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 
+#include "tests/support/pty_bridge.h"
 #include "tests/support/simulated_site.h"
 
 namespace bess {
@@ -25,8 +26,9 @@ std::string line_after_notes(ChildProcess& child) {
 /// Starts the two simulators; the edge is started by each test.
 class Processes : public ::testing::Test {
  protected:
-  void start_simulators(const std::vector<std::string>& market_faults = {}) {
-    site_.start_battery();
+  void start_simulators(const std::vector<std::string>& market_faults = {},
+                        const std::vector<std::string>& battery_faults = {}) {
+    site_.start_battery(battery_faults);
     site_.start_market(market_faults);
   }
 
@@ -208,6 +210,73 @@ TEST_F(Processes, MarketFaultsDoNotStopTheLoop) {
   }
 }
 
+TEST_F(Processes, TheSameOverASerialLine) {
+  const PtyBridge line;
+  site_.start_serial_battery(line.device(0));
+  site_.start_market();
+  const std::string config =
+      site_.commission({.battery_keys = SimulatedSite::alphaess_map() +
+                                        "transport = \"rtu\"\nbaud = 115200\ndevice = \"" +
+                                        line.device(1) + "\"\n"});
+  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", config, "--cycles", "15"});
+  EXPECT_THAT(edge.read_all(), HasSubstr("stopped: battery released"));
+  EXPECT_EQ(edge.wait(), 0);
+  int written = 0;
+  for (const CsvRow& row : read_csv(site_.folder.file("edge.csv"))) {
+    if (row.at("written") == "1") ++written;
+  }
+  EXPECT_GE(written, 14);
+  EXPECT_EQ(SimulatedSite::stop(*site_.battery), 0);
+}
+
+/// Whatever the bus does, what the log calls written is what the battery was commanded.
+TEST_F(Processes, BusFaultsCostCyclesButNeverGiveAWrongOrder) {
+  start_simulators({}, {"--fault",
+                        "exception",
+                        "drop",
+                        "reset",
+                        "wrong-unit",
+                        "wrong-transaction",
+                        "wrong-protocol",
+                        "wrong-address",
+                        "wrong-value",
+                        "fewer-registers",
+                        "garbage",
+                        "duplicate",
+                        "refuse",
+                        "ack-without-effect",
+                        "--fault-probability",
+                        "0.15",
+                        "--fault-seed",
+                        "4",
+                        "--fault-from-s",
+                        "400"});
+  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", site_.commission(), "--cycles", "40"});
+  edge.read_all();
+  EXPECT_EQ(edge.wait(), 0);
+  EXPECT_EQ(SimulatedSite::stop(*site_.battery), 0);
+  std::map<std::int64_t, std::string> commanded;  // at the end of each minute
+  const auto instant = [](const std::string& text) {
+    std::int64_t utc_s = 0;
+    EXPECT_TRUE(parse_utc_text(text, utc_s)) << text;
+    return utc_s;
+  };
+  for (const CsvRow& row : read_csv(site_.folder.file("battery.csv"))) {
+    commanded[instant(row.at("minute_utc"))] = row.at("commanded_power_w");
+  }
+  int written = 0;
+  int troubled = 0;
+  for (const CsvRow& row : read_csv(site_.folder.file("edge.csv"))) {
+    if (row.at("battery_status") != "ok") ++troubled;
+    if (row.at("mode") == "stopping" || row.at("written") != "1") continue;
+    ++written;
+    const std::int64_t last_minute_s = instant(row.at("utc")) + 60;  // of this order
+    EXPECT_EQ(commanded[last_minute_s], row.at("ordered_power_w")) << row.at("utc");
+  }
+  EXPECT_GE(written, 20);
+  EXPECT_GE(troubled, 1);
+}
+
 TEST_F(Processes, CheckReportsAndReadsButWritesNothing) {
   start_simulators();
   sleep_until_monotonic(site_.anchor_ns());
@@ -243,6 +312,9 @@ TEST_F(Processes, BadStartsEndWithOneClearLine) {
       {{BESS_SIM_PROGRAM, "batery"}, 2, "unknown subcommand batery"},
       {{BESS_SIM_PROGRAM, "market", "--prices", "/nonexistent"}, 1, "cannot open"},
       {{BESS_SIM_PROGRAM, "battery", "--soc", "2"}, 2, "--soc"},
+      {{BESS_SIM_PROGRAM, "battery", "--fault", "crc"}, 2, "--fault"},
+      {{BESS_SIM_PROGRAM, "battery", "--fault", "bad-crc"}, 1, "bad-crc: only on a serial line"},
+      {{BESS_SIM_PROGRAM, "battery", "--serial", "/nonexistent"}, 1, "cannot open this serial"},
   };
   for (const Start& start : starts) {
     ChildProcess child(start.arguments);

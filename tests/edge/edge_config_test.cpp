@@ -54,6 +54,22 @@ TEST(EdgeConfig, ReadsEveryUnit) {
   EXPECT_EQ(config.clock.anchor_monotonic_ns, 5);
 }
 
+TEST(EdgeConfig, ReadsTheSerialLinesSettings) {
+  const TemporaryFolder folder;
+  std::string text = valid_text();
+  text.insert(text.find("power_w"),
+              "transport = \"rtu\"\ndevice = \"/dev/ttyS1\"\nbaud = 19200\n"
+              "parity = \"even\"\nstop_bits = 2\n");
+  EdgeConfig config;
+  std::string error;
+  ASSERT_TRUE(load_edge_config(folder.write("edge.toml", text), config, error)) << error;
+  EXPECT_TRUE(config.link.rtu);
+  EXPECT_EQ(config.link.device.view(), "/dev/ttyS1");
+  EXPECT_EQ(config.link.baud, 19'200);
+  EXPECT_EQ(config.link.parity, Parity::kEven);
+  EXPECT_EQ(config.link.stop_bits, 2);
+}
+
 struct Mistake {
   std::string before, after;
   int line;
@@ -72,6 +88,9 @@ TEST(EdgeConfig, EveryMistakeIsOneClearLineWithItsPlace) {
       {"power_w = 4000", "port = 70000", 4, "port must lie between 1 and 65535"},
       {"power_w = 4000", "host = \"battery.local\"", 4, "numeric IPv4"},
       {"power_w = 4000", "transport = \"udp\"", 4, "\"tcp\", \"rtu\""},
+      {"power_w = 4000", "baud = 14400", 4, "must be a speed of serial lines such as 9600"},
+      {"power_w = 4000", "parity = \"mark\"", 4, "\"none\", \"even\", \"odd\""},
+      {"power_w = 4000", "stop_bits = 3", 4, "must lie between 1 and 2"},
       {"power_w = 4000", "variant = \"blok\"", 0, "does not exist (there are: block"},
       {"http://", "ftp://", 6, "must start with http:// or https://"},
       {"url =", "uri =", 5, "url is missing"},

@@ -42,19 +42,30 @@ class SimulatedSite {
 
   void start_battery(const std::vector<std::string>& options = {}) {
     battery = start_simulator({"battery", "--port", "0", "--record", folder.file("battery.csv")},
-                              options, battery_port);
+                              options);
+    battery_port = port_of(battery->read_line());
+  }
+  void start_serial_battery(const std::string& device) {
+    battery = start_simulator({"battery", "--serial", device, "--baud", "115200"}, {});
+    const std::string line = battery->read_line();
+    if (line.find("listening on " + device) == std::string::npos) {
+      throw std::runtime_error("a simulator did not start: " + line);
+    }
   }
   void start_market(const std::vector<std::string>& options = {},
                     const std::string& prices = minute_prices(150)) {
-    market =
-        start_simulator({"market", "--port", "0", "--prices", folder.write("minutes.csv", prices)},
-                        options, market_port);
+    market = start_simulator(
+        {"market", "--port", "0", "--prices", folder.write("minutes.csv", prices)}, options);
+    market_port = port_of(market->read_line());
+  }
+
+  static std::string alphaess_map() {
+    return "map = \"" BESS_SOURCE_DIR "/edge/maps/alphaess.toml\"\n";
   }
 
   struct ConfigOptions {
-    /// Lines of TOML for [battery].
-    std::string battery_keys = "map = \"" BESS_SOURCE_DIR "/edge/maps/alphaess.toml\"\n";
-    std::string state = "state";  ///< folder; the file is named after it
+    std::string battery_keys = alphaess_map();  ///< lines of TOML for [battery]
+    std::string state = "state";                ///< folder; the file is named after it
   };
 
   /// All configurations of a site lock in one place.
@@ -91,15 +102,14 @@ class SimulatedSite {
   }
 
   TemporaryFolder folder;
-  int battery_port = 0;
-  int market_port = 0;
+  int battery_port = 1;  ///< nobody listens there before a simulator does
+  int market_port = 1;
   std::unique_ptr<ChildProcess> battery;
   std::unique_ptr<ChildProcess> market;
 
  private:
   std::unique_ptr<ChildProcess> start_simulator(std::vector<std::string> arguments,
-                                                const std::vector<std::string>& options,
-                                                int& port) const {
+                                                const std::vector<std::string>& options) const {
     arguments.insert(arguments.begin(), BESS_SIM_PROGRAM);
     for (const std::string& option :
          {std::string("--utc-start"), std::string(utc_text(kStartS).view()),
@@ -108,12 +118,15 @@ class SimulatedSite {
       arguments.push_back(option);
     }
     arguments.insert(arguments.end(), options.begin(), options.end());
-    auto child = std::make_unique<ChildProcess>(arguments);
-    const std::string line = child->read_line();  // "... listening on HOST:PORT, ..."
+    return std::make_unique<ChildProcess>(arguments);
+  }
+
+  /// Of "... listening on HOST:PORT, ...".
+  static int port_of(const std::string& line) {
     const std::size_t colon = line.find(':', line.find("127.0.0.1"));
-    port = colon == std::string::npos ? 0 : std::atoi(line.c_str() + colon + 1);
+    const int port = colon == std::string::npos ? 0 : std::atoi(line.c_str() + colon + 1);
     if (port == 0) throw std::runtime_error("a simulator did not start: " + line);
-    return child;
+    return port;
   }
 
   std::int32_t time_scale_;

@@ -7,6 +7,7 @@
 
 #include "edge/registers/map_file.h"
 #include "shared/utc_text.h"
+#include "tools/battery_sim/battery_faults.h"
 #include "tools/battery_sim/battery_record.h"
 #include "tools/battery_sim/battery_server.h"
 #include "tools/sim/clock_options.h"
@@ -21,6 +22,7 @@ struct BatteryOptions {
   BatteryServerSettings server;
   ClockOptions clock;
   std::string map_path = BESS_MAP_DIR "/alphaess.toml";
+  std::vector<std::string> fault_names;
   std::string record_path;
   double soc_frac = 0.5;
   BatteryParameters battery{.power_w_max = 4'000, .capacity_wh = 8'000};
@@ -35,8 +37,28 @@ void check_record_folder(const std::string& path) {
   if (access(folder.c_str(), W_OK) != 0) sim_fail("{}: cannot write in this folder", path);
 }
 
+const BatteryFaultInfo* find_fault(const std::string& name) {
+  for (const BatteryFaultInfo& fault : battery_faults()) {
+    if (name == fault.name) return &fault;
+  }
+  return nullptr;
+}
+
+/// A fault that this bus does not have would be waited for in vain.
+void take_faults(const std::vector<std::string>& names, BatteryServerSettings& server) {
+  const bool rtu = !server.serial_device.empty();
+  for (const std::string& name : names) {
+    const BatteryFaultInfo& info = *find_fault(name);
+    if (!(rtu ? info.rtu : info.tcp)) {
+      sim_fail("--fault {}: only {} a serial line", name, rtu ? "without" : "on");
+    }
+    server.faults.faults.push_back(info.fault);
+  }
+}
+
 void run_battery(BatteryOptions& options) {
   const StopSignal stop;
+  take_faults(options.fault_names, options.server);
   const ScaledClock clock = options.clock.clock();
   check_record_folder(options.record_path);
   static RegisterMap map;
@@ -51,70 +73,122 @@ void run_battery(BatteryOptions& options) {
   }
   SimulatedBattery simulated(battery, options.soc_frac, clock.now_utc_ns());
   BatteryServer server(options.server, map, simulated, clock);
-  std::printf("bess-sim battery: listening on %s:%d, unit %d, %s at time scale %d\n",
-              options.server.host.c_str(), server.port(), map.unit,
-              utc_text(clock.now_utc_ns() / kNanosecondsPerSecond).c_str(), clock.scale);
+  const std::string place = options.server.serial_device.empty()
+                                ? fmt::format("{}:{}", options.server.host, server.port())
+                                : options.server.serial_device;
+  std::printf("bess-sim battery: listening on %s, unit %d, %s at time scale %d\n", place.c_str(),
+              map.unit, utc_text(clock.now_utc_ns() / kNanosecondsPerSecond).c_str(), clock.scale);
   std::fflush(stdout);
   server.run(stop.fd());
   if (!options.record_path.empty()) write_battery_record(options.record_path, simulated);
   std::printf("bess-sim battery: stopped at SoC %.2f %%\n", 100 * simulated.soc_frac());
 }
 
+std::string footer() {
+  std::string text =
+      "Examples:\n"
+      "  bess-sim battery --port 1502 --soc 0.5\n"
+      "  bess-sim battery --serial /dev/ttyUSB0 --baud 9600\n"
+      "  bess-sim battery --port 1502 --utc-start 2023-03-26T00:00:00Z --time-scale 900 "
+      "--anchor-monotonic-ns $(bess-sim clock) --record battery.csv\n"
+      "  bess-sim battery --port 1502 --fault drop --fault-every 7\n"
+      "  bess-sim battery --port 1502 --fault late wrong-unit drip --fault-probability 0.1 "
+      "--fault-seed 3 --fault-from-s 600 --fault-to-s 3600\n"
+      "A serial line on one machine: socat pty,raw,echo=0,link=a pty,raw,echo=0,link=b, then "
+      "--serial a here and device = \"b\" at the edge.\n"
+      "Faults:\n";
+  for (const BatteryFaultInfo& fault : battery_faults()) {
+    text += fmt::format("  {:<20} {}\n", fault.name, fault.text);
+  }
+  return text;
+}
+
+void add_bus_options(CLI::App& command, BatteryServerSettings& server) {
+  command.add_option("--host", server.host, "Numeric address to listen on")->capture_default_str();
+  command.add_option("--port", server.port, "TCP port, 0 = any free one")
+      ->check(CLI::Range(0, 65'535))
+      ->capture_default_str();
+  command.add_option("--clients-max", server.clients_max, "More are refused, like the real device")
+      ->check(CLI::Range(1, 32))
+      ->capture_default_str();
+  command.add_option("--serial", server.serial_device, "Serve RTU on this serial line instead");
+  command.add_option("--baud", server.baud, "Of the serial line")->capture_default_str();
+  static const std::map<std::string, char> kParities = {{"none", 'N'}, {"even", 'E'}, {"odd", 'O'}};
+  command.add_option("--parity", server.parity, "none, even or odd")
+      ->transform(CLI::CheckedTransformer(kParities))
+      ->type_name("TEXT");
+  command.add_option("--stop-bits", server.stop_bits, "1 or 2")->check(CLI::Range(1, 2));
+  command.add_option("--response-delay-ms", server.response_delay_ms, "Before every answer")
+      ->check(CLI::Range(0, 60'000));
+}
+
+void add_fault_options(CLI::App& command, BatteryOptions& options) {
+  BatteryServerSettings& server = options.server;
+  FaultSchedule& faults = server.faults;
+  const auto known = [](const std::string& name) -> std::string {
+    if (find_fault(name) != nullptr) return "";
+    return "there is no fault " + name;
+  };
+  command
+      .add_option("--fault", options.fault_names,
+                  "Misbehave now and then; of several, one at random each time (see below)")
+      ->check(CLI::Validator(known, ""))
+      ->type_name("NAME");
+  command.add_option("--fault-every", faults.every, "At every Nth chance")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  command.add_option("--fault-probability", faults.probability, "At each chance, instead of every")
+      ->check(CLI::Range(0.0, 1.0));
+  command.add_option("--fault-seed", faults.seed, "Of what is random")->capture_default_str();
+  command.add_option("--fault-from-s", faults.from_s, "Simulated seconds after the start")
+      ->check(CLI::NonNegativeNumber);
+  command.add_option("--fault-to-s", faults.to_s, "And until when")->check(CLI::NonNegativeNumber);
+  command.add_option("--late-ms", server.late_ms, "Delay of late and byte-gap")
+      ->check(CLI::Range(1, 60'000))
+      ->capture_default_str();
+  command.add_option("--drip-ms", server.drip_ms, "Between the bytes of drip")
+      ->check(CLI::Range(1, 60'000))
+      ->capture_default_str();
+  command.add_option("--exception-code", server.exception_code, "1, 2, 3, 4, 6 or a vendor's")
+      ->check(CLI::Range(1, 255))
+      ->capture_default_str();
+}
+
+void add_plant_options(CLI::App& command, BatteryOptions& options) {
+  command.add_option("--map", options.map_path, "Register map (TOML)");
+  command.add_option("--soc", options.soc_frac, "State of charge at start, 0..1")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  command.add_option("--power-w", options.battery.power_w_max, "Rated power")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command.add_option("--capacity-wh", options.battery.capacity_wh, "Capacity")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command.add_option("--soc-min", options.battery.soc_min_frac, "The battery's own floor")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  command.add_option("--soc-max", options.battery.soc_max_frac, "The battery's own ceiling")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  command.add_option("--efficiency", options.round_trip_efficiency, "Round trip")
+      ->check(CLI::Range(0.01, 1.0))
+      ->capture_default_str();
+  command.add_option("--record", options.record_path,
+                     "CSV of energy and SoC per simulated minute, written at exit");
+}
+
 }  // namespace
 
 void add_battery_command(CLI::App& app) {
   auto options = std::make_shared<BatteryOptions>();
-  CLI::App* command = app.add_subcommand("battery", "A Modbus TCP battery (AlphaESS registers)");
-  command->footer(
-      "Examples:\n"
-      "  bess-sim battery --port 1502 --soc 0.5\n"
-      "  bess-sim battery --port 1502 --utc-start 2023-03-26T00:00:00Z --time-scale 900 "
-      "--anchor-monotonic-ns $(bess-sim clock) --record battery.csv\n"
-      "  bess-sim battery --port 1502 --fault drop --fault-every 7");
-  BatteryServerSettings& server = options->server;
-  command->add_option("--host", server.host, "Numeric address to listen on")->capture_default_str();
-  command->add_option("--port", server.port, "TCP port, 0 = any free one")
-      ->check(CLI::Range(0, 65'535))
-      ->capture_default_str();
+  CLI::App* command =
+      app.add_subcommand("battery", "A Modbus battery, TCP or RTU (AlphaESS registers)");
+  command->footer(footer());
+  add_bus_options(*command, options->server);
   options->clock.add_to(*command);
-  command->add_option("--map", options->map_path, "Register map (TOML)");
-  command->add_option("--soc", options->soc_frac, "State of charge at start, 0..1")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
-  command->add_option("--power-w", options->battery.power_w_max, "Rated power")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  command->add_option("--capacity-wh", options->battery.capacity_wh, "Capacity")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  command->add_option("--soc-min", options->battery.soc_min_frac, "The battery's own floor")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
-  command->add_option("--soc-max", options->battery.soc_max_frac, "The battery's own ceiling")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
-  command->add_option("--efficiency", options->round_trip_efficiency, "Round trip")
-      ->check(CLI::Range(0.01, 1.0))
-      ->capture_default_str();
-  command->add_option("--record", options->record_path,
-                      "CSV of energy and SoC per simulated minute, written at exit");
-  command->add_option("--response-delay-ms", server.response_delay_ms, "Before every answer")
-      ->check(CLI::Range(0, 60'000));
-  const std::map<std::string, BatteryFault> faults = {
-      {"silence", BatteryFault::kSilence},
-      {"late", BatteryFault::kLate},
-      {"exception", BatteryFault::kException},
-      {"drop", BatteryFault::kDrop},
-      {"ack-without-effect", BatteryFault::kAckWithoutEffect}};
-  command->add_option("--fault", server.fault, "Misbehave now and then")
-      ->transform(CLI::Transformer(faults, CLI::ignore_case))
-      ->type_name("silence|late|exception|drop|ack-without-effect");
-  command->add_option("--fault-every", server.fault_every, "At every Nth request (or write)")
-      ->check(CLI::Range(1, 1'000'000))
-      ->capture_default_str();
-  command->add_option("--late-ms", server.late_ms, "Delay of --fault late")
-      ->check(CLI::Range(1, 60'000))
-      ->capture_default_str();
+  add_plant_options(*command, *options);
+  add_fault_options(*command, *options);
   command->callback([options] { run_battery(*options); });
 }
 

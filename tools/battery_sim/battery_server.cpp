@@ -1,53 +1,79 @@
 #include "tools/battery_sim/battery_server.h"
 
 #include <arpa/inet.h>
-#include <modbus/modbus.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <cstring>
-#include <thread>
-#include <vector>
 
-#include "tools/battery_sim/register_image.h"
+#include "edge/registers/codec.h"
 #include "tools/sim/sim_error.h"
 
 namespace bess {
+namespace {
 
-/// One Modbus TCP request: 7 bytes of MBAP header (the last is the unit), then function and
-/// address.
-struct BatteryServer::Request {
-  std::uint8_t bytes[MODBUS_TCP_MAX_ADU_LENGTH];
-  int size;
+constexpr int kTcpHeaderBytes = 6;
+constexpr int kAddressPage = 0x1000;
 
-  [[nodiscard]] int unit() const { return bytes[6]; }
-  [[nodiscard]] int function() const { return bytes[7]; }
-  [[nodiscard]] int address() const { return bytes[8] << 8 | bytes[9]; }
-  [[nodiscard]] bool is_write() const { return function() == 6 || function() == 16; }
-  [[nodiscard]] int write_count() const {
-    return function() == 16 ? bytes[10] << 8 | bytes[11] : 1;
-  }
-};
-
-void BatteryServer::FreeContext::operator()(_modbus* context) const { modbus_free(context); }
-
-void BatteryServer::FreeMapping::operator()(_modbus_mapping_t* mapping) const {
-  modbus_mapping_free(mapping);
+/// Addresses are served up to the end of the last point's page: beyond is "illegal data address".
+int served_addresses(const RegisterMap& map) {
+  int end = 0;
+  for (const RegisterPoint& p : map.points) end = std::max(end, p.address + p.register_count());
+  return std::min((end + kAddressPage - 1) / kAddressPage * kAddressPage, 0x1'0000);
 }
+
+bool has_input_registers(const RegisterMap& map) {
+  return std::any_of(map.points.begin(), map.points.end(),
+                     [](const RegisterPoint& p) { return p.read_function == 4; });
+}
+
+}  // namespace
 
 BatteryServer::BatteryServer(const BatteryServerSettings& settings, const RegisterMap& map,
                              SimulatedBattery& battery, const ScaledClock& clock)
-    : settings_(settings), map_(map), battery_(battery), clock_(clock) {
-  context_.reset(modbus_new_tcp(settings.host.c_str(), settings.port));
-  mapping_.reset(modbus_mapping_new(0, 0, RegisterImage::kRegisterCount, 0));
-  if (context_ == nullptr || mapping_ == nullptr) sim_fail("no memory for libmodbus");
+    : settings_(settings),
+      rtu_(!settings.serial_device.empty()),
+      map_(map),
+      battery_(battery),
+      clock_(clock),
+      start_ns_(clock.now_utc_ns()),
+      plan_(settings.faults, rtu_) {
+  context_.reset(rtu_ ? modbus_new_rtu(settings.serial_device.c_str(), settings.baud,
+                                       settings.parity, 8, settings.stop_bits)
+                      : modbus_new_tcp(settings.host.c_str(), settings.port));
+  if (context_ == nullptr) sim_fail("no memory for libmodbus");
+  make_registers();
+  reply_ = std::make_unique<BusReply>(context_.get(), rtu_);
+  if (rtu_) {
+    open_serial();
+  } else {
+    listen_tcp();
+  }
+}
+
+BatteryServer::~BatteryServer() {
+  for (const Client& client : clients_) close(client.fd);
+  if (listen_fd_ >= 0) close(listen_fd_);
+}
+
+/// One memory for both tables: the maps give holding and input registers addresses of their own.
+void BatteryServer::make_registers() {
+  registers_.resize(static_cast<std::size_t>(served_addresses(map_)));
+  mapping_.nb_registers = static_cast<int>(registers_.size());
+  mapping_.tab_registers = registers_.data();
+  mapping_.nb_input_registers = has_input_registers(map_) ? mapping_.nb_registers : 0;
+  mapping_.tab_input_registers = registers_.data();
+  image_ = std::make_unique<RegisterImage>(map_, battery_, registers_);
+}
+
+void BatteryServer::listen_tcp() {
   listen_fd_ = modbus_tcp_listen(context_.get(), 4);
   if (listen_fd_ < 0) {
     const int error = errno;
-    sim_fail("cannot listen on {}:{}: {}", settings.host, settings.port,
+    sim_fail("cannot listen on {}:{}: {}", settings_.host, settings_.port,
              error == EADDRINUSE ? "the port is in use; choose another with --port"
                                  : std::strerror(error));
   }
@@ -55,95 +81,165 @@ BatteryServer::BatteryServer(const BatteryServerSettings& settings, const Regist
   socklen_t size = sizeof address;
   getsockname(listen_fd_, reinterpret_cast<sockaddr*>(&address), &size);
   port_ = ntohs(address.sin_port);
-  const std::span registers(mapping_->tab_registers, std::size_t{RegisterImage::kRegisterCount});
-  image_ = std::make_unique<RegisterImage>(map_, battery_, registers);
 }
 
-BatteryServer::~BatteryServer() {
-  close_client();
-  if (listen_fd_ >= 0) close(listen_fd_);
+void BatteryServer::open_serial() {
+  modbus_set_slave(context_.get(), map_.unit);  // requests to other units are not even seen
+  if (modbus_connect(context_.get()) != 0) {
+    sim_fail("{}: cannot open this serial line: {}", settings_.serial_device, std::strerror(errno));
+  }
+  clients_.push_back({.fd = modbus_get_socket(context_.get())});
 }
 
 void BatteryServer::run(int stop_fd) {
+  stop_fd_ = stop_fd;
   while (true) {
-    pollfd events[3] = {{.fd = stop_fd, .events = POLLIN, .revents = 0},
-                        {.fd = listen_fd_, .events = POLLIN, .revents = 0},
-                        {.fd = client_fd_, .events = POLLIN, .revents = 0}};
-    if (poll(events, 3, -1) < 0 && errno != EINTR) return;
+    std::vector<pollfd> events = {{.fd = stop_fd, .events = POLLIN, .revents = 0},
+                                  {.fd = listen_fd_, .events = POLLIN, .revents = 0}};
+    for (const Client& c : clients_) events.push_back({.fd = c.fd, .events = POLLIN, .revents = 0});
+    if (poll(events.data(), events.size(), -1) < 0 && errno != EINTR) return;
     if (events[0].revents != 0) break;
-    // The client first: a master that closed and came back must not be refused as the second one.
-    if (events[2].revents != 0) serve_request();
+    // Clients first: a master that closed and came back must not be refused as the second one.
+    for (std::size_t i = 0; i + 2 < events.size(); ++i) {
+      if (events[i + 2].revents != 0) serve(clients_[i]);
+    }
+    std::erase_if(clients_, [](const Client& client) { return client.fd < 0; });
     if (events[1].revents != 0) accept_client();
   }
   battery_.advance(clock_.now_utc_ns());
 }
 
 void BatteryServer::accept_client() {
-  if (client_fd_ < 0) {
-    client_fd_ = modbus_tcp_accept(context_.get(), &listen_fd_);
+  Client client{.fd = accept4(listen_fd_, nullptr, nullptr, SOCK_CLOEXEC)};
+  if (client.fd < 0) return;
+  const bool full = static_cast<int>(clients_.size()) >= settings_.clients_max;
+  const BatteryFault fault = plan_.draw(FaultChance::kConnect, elapsed_s());
+  if (full || fault == BatteryFault::kRefuse) return close_client(client, false);
+  clients_.push_back(client);
+}
+
+void BatteryServer::close_client(Client& client, bool reset) {
+  const linger at_once{.l_onoff = 1, .l_linger = 0};  // closing then sends RST
+  if (reset) setsockopt(client.fd, SOL_SOCKET, SO_LINGER, &at_once, sizeof at_once);
+  close(client.fd);
+  client.fd = -1;
+}
+
+void BatteryServer::serve(Client& client) {
+  BusRequest request{};
+  request.header = rtu_ ? 0 : kTcpHeaderBytes;
+  modbus_set_socket(context_.get(), client.fd);
+  request.size = modbus_receive(context_.get(), request.bytes);
+  if (request.size < 0) {
+    if (!rtu_) return close_client(client, false);
+    if (errno == EIO || errno == EBADF || errno == ECONNRESET) {
+      sim_fail("{}: the serial line is gone", settings_.serial_device);
+    }
+    modbus_flush(context_.get());
     return;
   }
-  const int second = accept(listen_fd_, nullptr, nullptr);
-  if (second >= 0) close(second);  // one client only, like the real device
+  // Another unit, or a connection that has gone dead: silence, as on a bus.
+  if (request.size == 0 || request.unit() != map_.unit || client.half_open) return;
+  if (wait(settings_.response_delay_ms)) answer(client, request);
 }
 
-void BatteryServer::close_client() {
-  if (client_fd_ >= 0) close(client_fd_);
-  client_fd_ = -1;
-  modbus_set_socket(context_.get(), -1);
+void BatteryServer::answer(Client& client, const BusRequest& request) {
+  battery_.throttle(plan_.lasts(BatteryFault::kThrottle, elapsed_s()));
+  const FaultChance chance = request.is_write() ? FaultChance::kWrite : FaultChance::kRead;
+  const BatteryFault fault = plan_.draw(chance, elapsed_s());
+  if (fault != BatteryFault::kFrozen) image_->refresh(clock_.now_utc_ns());
+  answer_with_fault(client, request, fault);
 }
 
-void BatteryServer::serve_request() {
-  Request request{};
-  request.size = modbus_receive(context_.get(), request.bytes);
-  if (request.size < 0) return close_client();
-  if (request.size == 0 || request.unit() != map_.unit)
-    return;  // another unit: silence, as on a bus
-  const std::int32_t delay_ms = settings_.response_delay_ms;
-  if (delay_ms > 0) std::this_thread::sleep_for(std::chrono::milliseconds(delay_ms));
-  if (is_faulty(request)) {
-    misbehave(request);
-  } else {
-    answer(request);
-  }
-}
-
-bool BatteryServer::is_faulty(const Request& request) {
-  if (settings_.fault == BatteryFault::kNone) return false;
-  if (settings_.fault == BatteryFault::kAckWithoutEffect && !request.is_write()) return false;
-  return ++fault_candidates_ % settings_.fault_every == 0;
-}
-
-void BatteryServer::answer(const Request& request) {
-  image_->refresh(clock_.now_utc_ns());
-  const int sent = modbus_reply(context_.get(), request.bytes, request.size, mapping_.get());
-  if (sent < 0) return close_client();
-  const bool in_range =
-      request.address() + request.write_count() <= int{RegisterImage::kRegisterCount};
-  if (request.is_write() && in_range) image_->apply_write(request.address(), request.write_count());
-}
-
-void BatteryServer::misbehave(const Request& request) {
-  switch (settings_.fault) {
-    case BatteryFault::kNone:
+void BatteryServer::answer_with_fault(Client& client, const BusRequest& request,
+                                      BatteryFault fault) {
+  switch (fault) {
     case BatteryFault::kSilence:
       return;
-    case BatteryFault::kLate:
-      std::this_thread::sleep_for(std::chrono::milliseconds(settings_.late_ms));
-      return answer(request);
-    case BatteryFault::kException:
-      modbus_reply_exception(context_.get(), request.bytes, MODBUS_EXCEPTION_SLAVE_OR_SERVER_BUSY);
+    case BatteryFault::kHalfOpen:
+      client.half_open = true;
       return;
     case BatteryFault::kDrop:
-      return close_client();
-    case BatteryFault::kAckWithoutEffect:
+    case BatteryFault::kReset:
+      return close_client(client, fault == BatteryFault::kReset);
+    case BatteryFault::kException:
+      return send(client, reply_->exception(request, settings_.exception_code));
+    case BatteryFault::kLate:
+      if (!wait(settings_.late_ms)) return;
+      image_->refresh(clock_.now_utc_ns());
+      break;
+    default:
+      change_values(fault);
       break;
   }
-  image_->refresh(clock_.now_utc_ns());
-  const std::vector<std::uint16_t> before(mapping_->tab_registers,
-                                          mapping_->tab_registers + RegisterImage::kRegisterCount);
-  if (modbus_reply(context_.get(), request.bytes, request.size, mapping_.get()) < 0) close_client();
-  std::copy(before.begin(), before.end(), mapping_->tab_registers);
+  const Bytes right = right_answer(request, fault == BatteryFault::kAckWithoutEffect);
+  const Bytes bytes = reply_->spoil(request, right, fault, plan_.random());
+  if (fault == BatteryFault::kDrip) return drip(client, bytes);
+  if (fault != BatteryFault::kByteGap) return send(client, bytes);
+  const auto middle = bytes.begin() + static_cast<std::ptrdiff_t>(bytes.size() / 2);
+  send(client, {bytes.begin(), middle});
+  if (wait(settings_.late_ms)) send(client, {middle, bytes.end()});
+}
+
+/// What a healthy battery answers, and what a write does to it.
+Bytes BatteryServer::right_answer(const BusRequest& request, bool keep_registers) {
+  std::vector<std::uint16_t> before;
+  if (keep_registers) before = registers_;
+  const Bytes bytes = reply_->answer(request, mapping_);
+  if (keep_registers) {
+    std::copy(before.begin(), before.end(), registers_.begin());  // image_ holds a view
+  } else if (request.is_write() &&
+             request.address() + request.write_count() <= mapping_.nb_registers) {
+    image_->apply_write(request.address(), request.write_count());
+  }
+  return bytes;
+}
+
+void BatteryServer::change_values(BatteryFault fault) {
+  const auto change = [this](const char* name, auto&& changed) {
+    const int index = find_point(map_, name);
+    if (index < 0) return;
+    const RegisterPoint& point = map_.points[index];
+    std::int64_t value = 0;
+    RegisterBlock block;
+    static_cast<void>(decode(point, &registers_[point.address], value));
+    if (encode(point, changed(value), Rounding::kNearest, block) != Status::kOk) return;
+    std::copy(block.begin(), block.end(), registers_.begin() + point.address);
+  };
+  if (fault == BatteryFault::kWrongSign) {
+    change("battery_power", [](std::int64_t power_w) { return -power_w; });
+  }
+  if (fault == BatteryFault::kSocJump) {
+    change("soc", [](std::int64_t soc_e4) { return (soc_e4 + 5'000) % 10'000; });
+  }
+  if (fault == BatteryFault::kEarlyExpiry) {
+    battery_.stop_dispatch();
+    image_->refresh(clock_.now_utc_ns());
+  }
+}
+
+void BatteryServer::send(Client& client, const Bytes& bytes) {
+  if (client.fd < 0 || bytes.empty()) return;
+  const ssize_t sent = rtu_ ? write(client.fd, bytes.data(), bytes.size())
+                            : ::send(client.fd, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+  if (sent < 0 && !rtu_) close_client(client, false);
+}
+
+void BatteryServer::drip(Client& client, const Bytes& bytes) {
+  for (const std::uint8_t byte : bytes) {
+    if (!wait(settings_.drip_ms)) return;
+    send(client, {byte});
+  }
+}
+
+/// False when the simulator is to stop.
+bool BatteryServer::wait(std::int32_t ms) const {
+  pollfd stop{.fd = stop_fd_, .events = POLLIN, .revents = 0};
+  return ms <= 0 || poll(&stop, 1, ms) == 0;
+}
+
+double BatteryServer::elapsed_s() const {
+  return static_cast<double>(clock_.now_utc_ns() - start_ns_) / 1e9;
 }
 
 }  // namespace bess

@@ -1,42 +1,41 @@
-// The Modbus TCP side of the simulated battery: libmodbus frames, one client at a time like the
-// real device, and faults on demand.
+// The bus side of the simulated battery, TCP or a serial line: takes requests, lets the registers
+// answer, and misbehaves by schedule. One client at a time like the real device, unless told otherwise.
 #pragma once
+
+#include <modbus/modbus.h>
 
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "edge/registers/register_map.h"
 #include "shared/scaled_clock.h"
+#include "tools/battery_sim/battery_faults.h"
+#include "tools/battery_sim/bus_reply.h"
 #include "tools/battery_sim/register_image.h"
 #include "tools/battery_sim/simulated_battery.h"
 
-struct _modbus;
-struct _modbus_mapping_t;
-
 namespace bess {
-
-enum class BatteryFault : std::uint8_t {
-  kNone,
-  kSilence,           ///< no answer
-  kLate,              ///< the answer comes after `late_ms`
-  kException,         ///< exception 6, busy
-  kDrop,              ///< the connection is closed instead of answering
-  kAckWithoutEffect,  ///< a write is acknowledged and forgotten
-};
 
 struct BatteryServerSettings {
   std::string host = "127.0.0.1";
   std::int32_t port = 1502;  ///< 0 = any free one
+  std::int32_t clients_max = 1;
+  std::string serial_device;  ///< not empty: RTU instead of TCP
+  std::int32_t baud = 9'600;
+  char parity = 'N';
+  std::int32_t stop_bits = 1;
   std::int32_t response_delay_ms = 0;
-  BatteryFault fault = BatteryFault::kNone;
-  std::int32_t fault_every = 10;  ///< every Nth request (write, for kAckWithoutEffect)
+  FaultSchedule faults;
   std::int32_t late_ms = 1'500;
+  std::int32_t drip_ms = 100;
+  std::int32_t exception_code = 6;
 };
 
 class BatteryServer {
  public:
-  /// Binds and listens. Throws SimError when the port is in use.
+  /// Binds and listens, or opens the line. Throws SimError when the port is in use.
   BatteryServer(const BatteryServerSettings& settings, const RegisterMap& map,
                 SimulatedBattery& battery, const ScaledClock& clock);
   BatteryServer(const BatteryServer&) = delete;
@@ -44,35 +43,48 @@ class BatteryServer {
   ~BatteryServer();
 
   [[nodiscard]] int port() const { return port_; }
-  /// Serves until `stop_fd` becomes readable.
+  /// Serves until `stop_fd` becomes readable. Throws SimError when the serial line disappears.
   void run(int stop_fd);
 
  private:
-  struct Request;
   struct FreeContext {
-    void operator()(_modbus* context) const;
+    void operator()(modbus_t* context) const { modbus_free(context); }
   };
-  struct FreeMapping {
-    void operator()(_modbus_mapping_t* mapping) const;
+  struct Client {
+    int fd;
+    bool half_open = false;
   };
+  void listen_tcp();
+  void open_serial();
+  void make_registers();
   void accept_client();
-  void close_client();
-  void serve_request();
-  [[nodiscard]] bool is_faulty(const Request& request);
-  void answer(const Request& request);
-  void misbehave(const Request& request);
+  void serve(Client& client);
+  void answer(Client& client, const BusRequest& request);
+  void answer_with_fault(Client& client, const BusRequest& request, BatteryFault fault);
+  Bytes right_answer(const BusRequest& request, bool keep_registers);
+  void change_values(BatteryFault fault);
+  void send(Client& client, const Bytes& bytes);
+  void drip(Client& client, const Bytes& bytes);
+  void close_client(Client& client, bool reset);
+  [[nodiscard]] bool wait(std::int32_t ms) const;
+  [[nodiscard]] double elapsed_s() const;
 
   BatteryServerSettings settings_;
+  bool rtu_;
   const RegisterMap& map_;
   SimulatedBattery& battery_;
   ScaledClock clock_;
-  std::unique_ptr<_modbus, FreeContext> context_;
-  std::unique_ptr<_modbus_mapping_t, FreeMapping> mapping_;
+  std::int64_t start_ns_;
+  std::unique_ptr<modbus_t, FreeContext> context_;
+  std::vector<std::uint16_t> registers_;
+  modbus_mapping_t mapping_{};
   std::unique_ptr<RegisterImage> image_;
+  std::unique_ptr<BusReply> reply_;
+  FaultPlan plan_;
+  std::vector<Client> clients_;
   int listen_fd_ = -1;
-  int client_fd_ = -1;
+  int stop_fd_ = -1;
   int port_ = 0;
-  std::int64_t fault_candidates_ = 0;
 };
 
 }  // namespace bess

@@ -13,7 +13,7 @@ namespace bess {
 
 class RegisterImage {
  public:
-  static constexpr int kRegisterCount = 0x1000;
+  static constexpr int kRegisterCount = 0x1'0000;
 
   /// `registers` are the holding registers that the bus serves. Throws SimError when the map lacks
   /// the dispatch points that this simulator acts.

@@ -9,6 +9,8 @@ namespace {
 
 constexpr std::int64_t kMinuteNs = 60 * kNanosecondsPerSecond;
 constexpr double kNanosecondsPerHour = 3.6e12;
+constexpr double kThrottledFraction = 0.25;
+constexpr double kThrottledSocFrac = 0.05;  ///< this close to a limit
 
 }  // namespace
 
@@ -20,6 +22,7 @@ void SimulatedBattery::advance(std::int64_t utc_ns) {
   while (now_ns_ < utc_ns) {
     std::int64_t end_ns = std::min(utc_ns, (now_ns_ / kMinuteNs + 1) * kMinuteNs);
     if (dispatch_active_) end_ns = std::min(end_ns, dispatch_end_ns_);
+    if (throttled_) end_ns = std::min(end_ns, now_ns_ + kNanosecondsPerSecond);
     integrate_segment(end_ns);
     if (dispatch_active_ && now_ns_ >= dispatch_end_ns_) dispatch_active_ = false;
   }
@@ -45,6 +48,8 @@ BatteryParameters SimulatedBattery::limited() const {
   if (!dispatch_active_) return p;
   if (power_w_ > 0) p.soc_max_frac = std::min(p.soc_max_frac, soc_limit_frac_);
   if (power_w_ < 0) p.soc_min_frac = std::max(p.soc_min_frac, soc_limit_frac_);
+  const double room_frac = power_w_ > 0 ? p.soc_max_frac - soc_frac_ : soc_frac_ - p.soc_min_frac;
+  if (throttled_ && room_frac < kThrottledSocFrac) p.power_w_max *= kThrottledFraction;
   return p;
 }
 

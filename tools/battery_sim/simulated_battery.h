@@ -31,6 +31,9 @@ class SimulatedBattery {
   void start_dispatch(double power_w, double soc_limit_frac, std::int64_t duration_s);
   void stop_dispatch() { dispatch_active_ = false; }
 
+  /// From now on only a quarter of the power flows close to a limit, as many batteries do.
+  void throttle(bool on) { throttled_ = on; }
+
   [[nodiscard]] bool dispatch_active() const { return dispatch_active_; }
   [[nodiscard]] double soc_frac() const { return soc_frac_; }
   [[nodiscard]] double power_w() const;  ///< flowing now
@@ -50,6 +53,7 @@ class SimulatedBattery {
   double soc_frac_;
   std::int64_t now_ns_;
   bool dispatch_active_ = false;
+  bool throttled_ = false;
   double power_w_ = 0;
   double soc_limit_frac_ = 1;
   std::int64_t dispatch_end_ns_ = 0;

@@ -1,0 +1,78 @@
+#include "tools/battery_sim/battery_faults.h"
+
+#include <algorithm>
+
+namespace bess {
+namespace {
+
+constexpr unsigned kConnect = static_cast<unsigned>(FaultChance::kConnect);
+constexpr unsigned kRead = static_cast<unsigned>(FaultChance::kRead);
+constexpr unsigned kWrite = static_cast<unsigned>(FaultChance::kWrite);
+constexpr unsigned kAny = kRead | kWrite;
+constexpr unsigned kLasting = 0;  ///< struck by nothing: in force as long as the schedule's span
+
+constexpr BatteryFaultInfo kFaults[] = {
+    {BatteryFault::kSilence, "silence", "no answer", kAny},
+    {BatteryFault::kLate, "late", "the answer comes --late-ms later", kAny},
+    {BatteryFault::kException, "exception", "exception --exception-code", kAny},
+    {BatteryFault::kDrop, "drop", "closes the connection instead of answering", kAny, true, false},
+    {BatteryFault::kReset, "reset", "resets the connection (RST)", kAny, true, false},
+    {BatteryFault::kHalfOpen, "half-open", "never answers on this connection again", kAny, true,
+     false},
+    {BatteryFault::kRefuse, "refuse", "closes a new connection at once", kConnect, true, false},
+    {BatteryFault::kTruncated, "truncated", "only the first half of the answer", kAny},
+    {BatteryFault::kDrip, "drip", "the answer byte by byte, --drip-ms apart", kAny},
+    {BatteryFault::kByteGap, "byte-gap", "pauses --late-ms within the answer", kAny},
+    {BatteryFault::kGarbage, "garbage", "random bytes instead of the answer", kAny},
+    {BatteryFault::kDuplicate, "duplicate", "TCP: the answer twice", kAny, true, false},
+    {BatteryFault::kWrongTransaction, "wrong-transaction", "TCP: another transaction id", kAny,
+     true, false},
+    {BatteryFault::kWrongProtocol, "wrong-protocol", "TCP: protocol id 1", kAny, true, false},
+    {BatteryFault::kWrongUnit, "wrong-unit", "another unit id", kAny},
+    {BatteryFault::kWrongFunction, "wrong-function", "another function code", kAny},
+    {BatteryFault::kWrongAddress, "wrong-address", "a write's echo has another address", kWrite},
+    {BatteryFault::kWrongValue, "wrong-value", "a write's echo has another value or count", kWrite},
+    {BatteryFault::kFewerRegisters, "fewer-registers", "one register less than asked", kRead},
+    {BatteryFault::kBadCrc, "bad-crc", "RTU: a wrong checksum", kAny, false, true},
+    {BatteryFault::kAckWithoutEffect, "ack-without-effect", "acknowledges a write, forgets it",
+     kWrite},
+    {BatteryFault::kFrozen, "frozen", "answers with the values of the last good answer", kRead},
+    {BatteryFault::kWrongSign, "wrong-sign", "battery_power with the other sign", kRead},
+    {BatteryFault::kSocJump, "soc-jump", "the state of charge is off by half the scale", kRead},
+    {BatteryFault::kEarlyExpiry, "early-expiry", "the order in force ends at once", kRead},
+    {BatteryFault::kThrottle, "throttle",
+     "a quarter of the power within 5 % of a limit, all the time from --fault-from-s", kLasting},
+};
+
+}  // namespace
+
+std::span<const BatteryFaultInfo> battery_faults() { return kFaults; }
+
+FaultPlan::FaultPlan(const FaultSchedule& schedule, bool rtu)
+    : schedule_(schedule), random_(schedule.seed) {
+  for (const BatteryFault fault : schedule.faults) {
+    for (const BatteryFaultInfo& info : kFaults) {
+      if (info.fault == fault && (rtu ? info.rtu : info.tcp)) possible_.push_back(info);
+    }
+  }
+}
+
+BatteryFault FaultPlan::draw(FaultChance chance, double at_s) {
+  std::vector<BatteryFault> now;
+  for (const BatteryFaultInfo& info : possible_) {
+    if ((info.chances & static_cast<unsigned>(chance)) != 0) now.push_back(info.fault);
+  }
+  if (now.empty() || !in_span(at_s)) return BatteryFault::kNone;
+  const bool strikes = schedule_.probability > 0
+                           ? std::uniform_real_distribution<>(0, 1)(random_) < schedule_.probability
+                           : ++chances_ % schedule_.every == 0;
+  if (!strikes) return BatteryFault::kNone;
+  return now[std::uniform_int_distribution<std::size_t>(0, now.size() - 1)(random_)];
+}
+
+bool FaultPlan::lasts(BatteryFault fault, double at_s) const {
+  return in_span(at_s) && std::any_of(possible_.begin(), possible_.end(),
+                                      [&](const auto& info) { return info.fault == fault; });
+}
+
+}  // namespace bess

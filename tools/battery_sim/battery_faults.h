@@ -1,0 +1,89 @@
+// What the simulated battery can do wrong, and when: the faults by name, each with what it does, and a
+// schedule that draws them (every Nth chance, or with a probability from a seed, within a span of
+// simulated time). How a fault looks on the bus: bus_reply; what it does to values: battery_server.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <random>
+#include <span>
+#include <vector>
+
+namespace bess {
+
+enum class BatteryFault : std::uint8_t {
+  kNone,
+  kSilence,
+  kLate,
+  kException,
+  kDrop,
+  kReset,
+  kHalfOpen,
+  kRefuse,
+  kTruncated,
+  kDrip,
+  kByteGap,
+  kGarbage,
+  kDuplicate,
+  kWrongTransaction,
+  kWrongProtocol,
+  kWrongUnit,
+  kWrongFunction,
+  kWrongAddress,
+  kWrongValue,
+  kFewerRegisters,
+  kBadCrc,
+  kAckWithoutEffect,
+  kFrozen,
+  kWrongSign,
+  kSocJump,
+  kEarlyExpiry,
+  kThrottle,
+};
+
+/// A moment at which a fault may strike.
+enum class FaultChance : std::uint8_t { kConnect = 1, kRead = 2, kWrite = 4 };
+
+struct BatteryFaultInfo {
+  BatteryFault fault;
+  const char* name;
+  const char* text;
+  unsigned chances;  ///< FaultChance bits
+  bool tcp = true;
+  bool rtu = true;
+};
+
+/// Every fault but kNone, in the order of the enumeration.
+std::span<const BatteryFaultInfo> battery_faults();
+
+struct FaultSchedule {
+  std::vector<BatteryFault> faults;  ///< one of them at each strike
+  std::int32_t every = 10;           ///< at every Nth chance
+  double probability = 0;            ///< above 0: at each chance with this, instead of `every`
+  std::uint64_t seed = 1;
+  double from_s = 0;  ///< simulated seconds since the simulator's start
+  double to_s = std::numeric_limits<double>::infinity();
+};
+
+class FaultPlan {
+ public:
+  FaultPlan(const FaultSchedule& schedule, bool rtu);
+
+  /// The fault that strikes now, or kNone. `at_s` counts from the start.
+  BatteryFault draw(FaultChance chance, double at_s);
+  /// A fault that lasts (kThrottle) is in force.
+  [[nodiscard]] bool lasts(BatteryFault fault, double at_s) const;
+  std::mt19937_64& random() { return random_; }
+
+ private:
+  [[nodiscard]] bool in_span(double at_s) const {
+    return at_s >= schedule_.from_s && at_s < schedule_.to_s;
+  }
+
+  FaultSchedule schedule_;
+  std::vector<BatteryFaultInfo> possible_;
+  std::mt19937_64 random_;
+  std::int64_t chances_ = 0;
+};
+
+}  // namespace bess
