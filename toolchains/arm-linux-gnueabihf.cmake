@@ -4,5 +4,7 @@ set(CMAKE_SYSTEM_PROCESSOR armv7l)
 set(BESS_TRIPLE arm-linux-gnueabihf)
 set(BESS_DEBIAN_ARCH armhf)
 set(BESS_QEMU qemu-arm-static)
-set(BESS_CPU_FLAGS "") # what Debian's compiler takes: ARMv7-A with VFPv3-D16
+# Processor: what Debian's compiler takes, ARMv7-A with VFPv3-D16. Times and file positions of 64 bits;
+# Debian's cpp-httplib has times of 32, so that bess-sim cannot be built along.
+set(BESS_TARGET_FLAGS "-D_FILE_OFFSET_BITS=64 -D_TIME_BITS=64")
 include(${CMAKE_CURRENT_LIST_DIR}/debian-cross.cmake)

@@ -2,12 +2,12 @@
 #   BESS_TRIPLE          aarch64-linux-gnu, of the compiler and of the library folders
 #   BESS_DEBIAN_ARCH     arm64, of the sysroot that tools/sysroot makes
 #   BESS_QEMU            the emulator that runs the tests on this machine
-#   BESS_CPU_FLAGS       the oldest processor that the programs must run on
+#   BESS_TARGET_FLAGS    above all the oldest processor that the programs must run on
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_C_COMPILER ${BESS_TRIPLE}-gcc)
 set(CMAKE_CXX_COMPILER ${BESS_TRIPLE}-g++)
-set(CMAKE_C_FLAGS_INIT "${BESS_CPU_FLAGS}")
-set(CMAKE_CXX_FLAGS_INIT "${BESS_CPU_FLAGS}")
+set(CMAKE_C_FLAGS_INIT "${BESS_TARGET_FLAGS}")
+set(CMAKE_CXX_FLAGS_INIT "${BESS_TARGET_FLAGS}")
 
 set(BESS_SYSROOT "${CMAKE_CURRENT_LIST_DIR}/../build-sysroot-${BESS_DEBIAN_ARCH}" CACHE PATH
     "Made by tools/sysroot")
@@ -42,4 +42,3 @@ else()
 endif()
 
 set(BESS_WORKSTATION OFF CACHE BOOL "")
-set(BESS_SIMULATORS ON CACHE BOOL "")

@@ -273,7 +273,7 @@ TEST_F(Ring, SurvivesKillsAtRandomInstants) {
     if (found.empty()) continue;
     ASSERT_GE(static_cast<std::uint64_t>(found.back()), newest_before);
     newest_before = static_cast<std::uint64_t>(found.back());
-    ASSERT_GE(found.size(), std::min<std::size_t>(newest_before, 15));
+    ASSERT_GE(found.size(), std::min<std::uint64_t>(newest_before, 15));
   }
   EXPECT_GT(newest_before, 0U);
 }

@@ -15,7 +15,7 @@ constexpr int kTcpHeaderBytes = 6;
 constexpr int kCrcBytes = 2;
 
 Bytes random_bytes(std::mt19937_64& random) {
-  Bytes bytes(1 + random() % 40);
+  Bytes bytes(static_cast<std::size_t>(1 + random() % 40));
   for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random());
   return bytes;
 }

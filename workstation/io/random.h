@@ -17,7 +17,7 @@ class Random {
   double uniform() { return static_cast<double>(engine_() >> 11) * 0x1.0p-53; }
   /// Uniform in 0 .. count-1 (bias below 2^-32 for the counts used here). Precondition: count > 0.
   std::size_t index(std::size_t count) {
-    return static_cast<std::size_t>((static_cast<Wide>(engine_()) * count) >> 64);
+    return static_cast<std::size_t>(high_product(engine_(), count));
   }
   /// Everything that the next numbers depend on, as text; and back. False when the text is not that.
   [[nodiscard]] std::string state() const;
@@ -27,7 +27,20 @@ class Random {
   double normal();
 
  private:
-  __extension__ using Wide = unsigned __int128;
+  /// The upper 64 of the 128 bits of a product.
+  static constexpr std::uint64_t high_product(std::uint64_t a, std::uint64_t b) {
+#ifdef __SIZEOF_INT128__
+    __extension__ using Wide = unsigned __int128;
+    return static_cast<std::uint64_t>((static_cast<Wide>(a) * b) >> 64);
+#else  // 32-bit ARM, where tests draw from it
+    constexpr std::uint64_t kLow = 0xffffffffU;
+    const std::uint64_t low = (a & kLow) * (b & kLow);
+    const std::uint64_t cross = (a >> 32) * (b & kLow) + (low >> 32);
+    const std::uint64_t middle = (a & kLow) * (b >> 32) + (cross & kLow);
+    return (a >> 32) * (b >> 32) + (cross >> 32) + (middle >> 32);
+#endif
+  }
+
   std::mt19937_64 engine_;
   double spare_ = 0;
   bool has_spare_ = false;
