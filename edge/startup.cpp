@@ -8,6 +8,7 @@
 
 #include "edge/journal.h"
 #include "edge/policy.h"
+#include "edge/public_url.h"
 #include "edge/registers/codec.h"
 #include "shared/utc_text.h"
 
@@ -72,7 +73,7 @@ bool report_price(const EdgeConfig& config, PriceFeed& prices) {
   PriceRow row;
   const Status status = prices.fetch_once(row);
   if (status != Status::kOk) {
-    report(JournalLevel::kError, "price from %s: %s", config.price.url.c_str(),
+    report(JournalLevel::kError, "price from %s: %s", public_url(config.price.url.view()).c_str(),
            status_text(status).data());
     return false;
   }
@@ -112,7 +113,7 @@ void greet_price_server(const EdgeConfig& config, PriceFeed& prices) {
   const Status status = prices.fetch_once(row);
   if (status == Status::kOk) return;
   report(JournalLevel::kWarning, "note: price from %s: %s; waiting in safe state",
-         config.price.url.c_str(), status_text(status).data());
+         public_url(config.price.url.view()).c_str(), status_text(status).data());
 }
 
 bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& prices) {

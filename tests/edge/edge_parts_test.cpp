@@ -7,6 +7,7 @@
 #include "edge/control_loop.h"
 #include "edge/log_text.h"
 #include "edge/policy.h"
+#include "edge/public_url.h"
 #include "shared/fixed_text.h"
 #include "shared/static_vector.h"
 #include "shared/utc_text.h"
@@ -79,6 +80,19 @@ TEST(LogText, LongestLineFits) {
   char line[kLogLineBytes];
   EXPECT_LT(format_log_line(record, line), kLogLineBytes - 1);
   EXPECT_LT(format_csv_line(record, line), kLogLineBytes - 1);
+}
+
+TEST(PublicUrl, ShowsNoSecrets) {
+  const struct {
+    const char *url, *shown;
+  } cases[] = {
+      {"https://host/path?apikey=secret", "https://host/path"},
+      {"https://user:secret@host:8443/path", "https://host:8443/path"},
+      {"https://user:se@cret@host/a@b?x#y", "https://host/a@b"},
+      {"http://host", "http://host"},
+      {"host/path?token=secret", "host/path"},
+  };
+  for (const auto& c : cases) EXPECT_EQ(public_url(c.url), c.shown);
 }
 
 TEST(StaticVector, RefusesWhatDoesNotFit) {
