@@ -157,7 +157,8 @@ void RunTotals::count(const CycleRecord& record) {
   ++cycles_by_reason[static_cast<std::size_t>(record.reason)];
   if (record.written) ++written_orders;
   if (record.battery_status != Status::kOk) ++battery_failures;
-  if (record.price.status != Status::kOk) ++price_failures;
+  const bool has_asked = record.mode != Mode::kStopping;  // the last record asks for no price
+  if (has_asked && record.price.status != Status::kOk) ++price_failures;
 }
 
 void format_status_json(const RunIdentity& identity, const RunTotals& totals,

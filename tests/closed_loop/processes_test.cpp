@@ -231,6 +231,12 @@ TEST_F(Processes, StatusAndLogShowWhatTheRunningControllerDoes) {
     EXPECT_EQ(stop(edge), 0);
   }
   EXPECT_THAT(run({"status"}, 3), HasSubstr("state      stopping at "));
+  ChildProcess follower({BESS_EDGE_PROGRAM, "status", "--follow", "--config", config});
+  for (int views = 0; views < 2;) {
+    const std::string line = follower.read_line();
+    ASSERT_FALSE(line.empty());
+    if (line == "health     not running") ++views;
+  }
   // The ring and the CSV that the controller wrote besides are the same log, line by line.
   std::ifstream csv(folder_.file("edge.csv"));
   EXPECT_EQ(run({"log", "--csv"}, 0), std::string(std::istreambuf_iterator<char>(csv), {}));
