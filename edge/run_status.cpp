@@ -136,7 +136,7 @@ void add_run(const RunTotals& t, TextBuffer& text) {
   const CycleRecord& r = t.last;
   add_value(text, "bess_cycle_duration_seconds", "gauge",
             "From the begin of the decision to the order read back, last cycle.",
-            (r.decision_us + r.write_us) / 1e6);
+            1e-6 * r.decision_us + 1e-6 * r.write_us);
   add_value(text, "bess_last_cycle_timestamp_seconds", "gauge", "Tick of the last cycle, UTC.",
             static_cast<double>(r.utc_s));
   add_value(text, "bess_cycles_total", "counter", "Cycles since the start.",
@@ -157,7 +157,8 @@ void RunTotals::count(const CycleRecord& record) {
   ++cycles_by_reason[static_cast<std::size_t>(record.reason)];
   if (record.written) ++written_orders;
   if (record.battery_status != Status::kOk) ++battery_failures;
-  if (record.price.status != Status::kOk) ++price_failures;
+  const bool has_asked = record.mode != Mode::kStopping;  // the last record asks for no price
+  if (has_asked && record.price.status != Status::kOk) ++price_failures;
 }
 
 void format_status_json(const RunIdentity& identity, const RunTotals& totals,
