@@ -92,15 +92,15 @@ void forbid_system_calls() {
 bool prepare_memory() {
   if (!kIsSealed) return true;
   if (!arena_serves_malloc()) {
-    put_line(
-        "bess-edge: malloc does not draw from the static arena: build bess-edge with "
-        "malloc_family.cpp and default visibility\n");
+    put_line("%s",
+             "bess-edge: malloc does not draw from the static arena: build bess-edge with "
+             "malloc_family.cpp and default visibility\n");
     return false;
   }
   if (has_heap_segment()) {
-    put_line(
-        "bess-edge: the process has a heap segment: something called brk at start-up; unset "
-        "LD_PRELOAD\n");
+    put_line("%s",
+             "bess-edge: the process has a heap segment: something called brk at start-up; unset "
+             "LD_PRELOAD\n");
     return false;
   }
   return true;
@@ -108,7 +108,7 @@ bool prepare_memory() {
 
 HeapSeal::HeapSeal() {
   if (!kIsSealed) {
-    put_line("bess-edge: note: a sanitizer build, nothing is sealed\n");
+    put_line("%s", "bess-edge: note: a sanitizer build, nothing is sealed\n");
     return;
   }
   prefault_stack();

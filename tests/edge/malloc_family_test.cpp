@@ -4,12 +4,14 @@
 #include <malloc.h>
 #include <pthread.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 #include <random>
 #include <vector>
 
+#include "edge/heap_seal.h"
 #include "edge/static_arena.h"
 #include "shared/check.h"
 
@@ -115,7 +117,7 @@ TEST(MallocFamily, AnExhaustedArenaServesAgainOnceSomethingIsFreed) {
 }
 
 void* churn(void* seed) {
-  std::mt19937_64 random(reinterpret_cast<std::uintptr_t>(seed));
+  std::mt19937 random(reinterpret_cast<std::uintptr_t>(seed));
   unsigned char* slots[32] = {};
   std::size_t sizes[32] = {};
   for (int step = 0; step < 20'000; ++step) {
@@ -171,6 +173,24 @@ TEST(MallocFamily, AForbiddenCallEndsTheProcessAndOnlyOnItsThread) {
   pthread_join(other, nullptr);
   kept = malloc(1);  // this thread's permission is its own
   free(kept);
+}
+
+TEST(MallocFamily, ThisProgramPassesTheCheckAtStart) { EXPECT_TRUE(prepare_memory()); }
+
+TEST(MallocFamily, TheSealForbidsAndItsEndPermits) {
+  EXPECT_DEATH(
+      {
+        const HeapSeal seal;
+        kept = malloc(1);
+      },
+      "CHECK failed: no allocation on the sealed");
+  EXPECT_EXIT(
+      {
+        { const HeapSeal seal; }
+        kept = malloc(1);
+        _exit(arena_owns(kept) ? 7 : 1);
+      },
+      ::testing::ExitedWithCode(7), "arena used=.* control_thread_calls=0 heap_segment=0");
 }
 
 /// What a broken promise calls first may allocate: the release of the battery must not be stopped.
