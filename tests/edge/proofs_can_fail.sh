@@ -20,7 +20,7 @@ if found=$(sh "$folder/no_float.sh" "$objdump" guilty_object "$guilty"); then
   exit 1
 fi
 case $("$objdump" -f "$guilty") in
-  *x86-64*) for name in mulsd addss cvttsd2si comisd; do expect "$name" "$found"; done ;;
+  *x86-64* | *x86_64*) for name in mulsd addss cvttsd2si comisd; do expect "$name" "$found"; done ;;
   *aarch64*) for name in fmul fadd fcvtzs fcmp; do expect "$name" "$found"; done ;;
   *) for name in vmul vadd vcvt vcmp; do expect "$name" "$found"; done ;;
 esac
