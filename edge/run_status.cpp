@@ -59,6 +59,8 @@ void add_totals(const RunTotals& t, TextBuffer& json) {
   json.add(
       "  \"totals\": {\n    \"cycles\": %lld, \"missed_ticks\": %d, \"written_orders\": %lld,\n",
       as_long(t.cycles), t.last.missed_ticks, as_long(t.written_orders));
+  json.add("    \"deadline_misses\": %d, \"unanswered_orders\": %d, \"soc_moved_e4_today\": %d,\n",
+           t.last.deadline_misses, t.last.idle_cycles, t.last.throughput.soc_moved_e4);
   json.add("    \"battery_failures\": %lld, \"price_failures\": %lld,\n",
            as_long(t.battery_failures), as_long(t.price_failures));
   json.add("    \"records_dropped\": %lld, \"disk_failures\": %lld,\n", as_long(t.records_dropped),
@@ -143,6 +145,13 @@ void add_run(const RunTotals& t, TextBuffer& text) {
             static_cast<double>(t.cycles));
   add_value(text, "bess_missed_ticks_total", "counter", "Ticks skipped because a cycle overran.",
             r.missed_ticks);
+  add_value(text, "bess_deadline_misses_total", "counter",
+            "Cycles whose order was not in force in time.", r.deadline_misses);
+  add_value(text, "bess_unanswered_orders", "gauge",
+            "Orders in a row that the battery did not answer with power.", r.idle_cycles);
+  add_value(text, "bess_full_cycles_today", "gauge",
+            "Full cycles that orders have moved on this local day.",
+            r.throughput.soc_moved_e4 / 20'000.0);
   add_value(text, "bess_log_records_dropped_total", "counter",
             "Records lost because the disk was too slow.", static_cast<double>(t.records_dropped));
   add_value(text, "bess_log_failures_total", "counter", "Records that a log file refused.",

@@ -127,9 +127,6 @@ TEST_F(Log, AMetricsFolderThatVanishesIsAFailureOfThatFileOnly) {
   EXPECT_THAT(status, HasSubstr("\"disk_is_failing\": true"));
 }
 
-/// The README's table of memory counts on it: stack 256 KiB, queue, texts.
-TEST(LogMemory, IsBounded) { EXPECT_LE(sizeof(EventLog), 300U * 1024U); }
-
 TEST_F(Log, WhatCannotBeOpenedStopsTheStartWithOneLine) {
   EventLogSettings s = settings();
   s.metrics = "/nonexistent/bess.prom";
