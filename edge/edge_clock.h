@@ -67,7 +67,8 @@ class EdgeClock {
   [[nodiscard]] bool is_synchronised() const {
     if (!require_synchronised_ || !clock_.is_real_time()) return true;
     timex state{};
-    return adjtimex(&state) != TIME_ERROR && (state.status & STA_UNSYNC) == 0;
+    const int clock_state = adjtimex(&state);  // -1: a sandbox forbids to ask, so it is not known
+    return clock_state >= 0 && clock_state != TIME_ERROR && (state.status & STA_UNSYNC) == 0;
   }
 
  private:

@@ -3,6 +3,9 @@
 namespace bess {
 namespace {
 
+/// A full, empty or cold battery rests for a while; one that never answers does not listen.
+constexpr std::int64_t kUnansweredOrdersMax = 5;
+
 std::string seconds(std::int64_t ms) { return std::to_string(ms / 1'000) + " s"; }
 
 /// The convention of the field: warn at twice the cadence, critical at four times.
@@ -21,6 +24,10 @@ void check_cycle(const HealthInputs& in, std::vector<std::string>& reasons) {
   }
   if (in.battery_status != "ok") {
     reasons.push_back("WARN: battery: " + std::string(in.battery_status));
+  }
+  if (in.unanswered_orders > kUnansweredOrdersMax) {
+    reasons.push_back("WARN: no power flows after " + std::to_string(in.unanswered_orders) +
+                      " orders: is the battery full, empty or cold, or does it not listen?");
   }
   if (in.price_status != "ok") {
     reasons.push_back("WARN: prices: " + std::string(in.price_status));

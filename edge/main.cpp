@@ -4,7 +4,6 @@
 //                                           +-> ControlLoop -> student -> SafetyGuard -> ModbusBattery
 //   battery ------> ModbusBattery ----------+         |
 //                                                     +-> EventLog (own thread), ServiceNotify
-//   exit 0 clean stop   1 settings, battery or price server are bad   2 the command line is bad
 #include "edge/command_line.h"
 #include "edge/commission_command.h"
 #include "edge/commission_file.h"
@@ -31,8 +30,8 @@ void release_after_failed_check(const char*, const char*, int) {
   static_cast<void>(battery_of_check_handler->release());
 }
 
-int fail(std::string_view message) {
-  report(JournalLevel::kError, "%.*s", static_cast<int>(message.size()), message.data());
+int fail(const char* message) {
+  report(JournalLevel::kError, "%s", message);
   return 1;
 }
 
@@ -40,7 +39,7 @@ int run_controller(const CommandLine& command_line, const EdgeConfig& config) {
   if (!check_student() || !prepare_memory()) return 1;
   FileMessage error;
   static RunLocks locks;
-  if (!lock_battery(config, locks, error)) return fail(error.view());
+  if (!lock_battery(config, locks, error)) return fail(error.c_str());
   prepare_process();
   static EdgeClock clock(config.clock, config.require_synchronised_clock);
   static ModbusBattery battery(config.link, config.map, config.clock);
@@ -54,15 +53,15 @@ int run_controller(const CommandLine& command_line, const EdgeConfig& config) {
   static ServiceNotify notify;
   notify.extend_start(config.start_timeout_s + 60);
   static EventLog log;
-  if (!lock_state(config, locks, error)) return fail(error.view());
-  if (!log.open(config.log, identity_of_run(config), error)) return fail(error.view());
+  if (!lock_state(config, locks, error)) return fail(error.c_str());
+  if (!log.open(config.log, identity_of_run(config), error)) return fail(error.c_str());
   if (!reach_battery(config, battery, clock)) return 1;
   std::string refusal;
-  if (config.control.control && !is_commissioned(config, refusal)) return fail(refusal);
+  if (config.control.control && !is_commissioned(config, refusal)) return fail(refusal.c_str());
   greet_price_server(config, prices);
-  const bool control = config.control.control;
-  write_journal_line(JournalLevel::kNotice, control ? "started: in control" : "started: read-only");
-  if (control) {
+  write_journal_line(JournalLevel::kNotice,
+                     config.control.control ? "started: in control" : "started: read-only");
+  if (config.control.control) {
     battery_of_check_handler = &battery;
     check_handler() = release_after_failed_check;
   }
@@ -84,7 +83,7 @@ int main(int argc, char** argv) {
   if (result != CommandLineResult::kGo) return result == CommandLineResult::kExitOk ? 0 : 2;
   static EdgeConfig config;
   std::string error;
-  if (!load_edge_config(command_line.config_path, config, error)) return fail(error);
+  if (!load_edge_config(command_line.config_path, config, error)) return fail(error.c_str());
   if (command_line.command == SubCommand::kStatus) return run_status_command(command_line, config);
   if (command_line.command == SubCommand::kLog) return run_log_command(command_line, config);
   if (command_line.dry_run) config.control.control = false;

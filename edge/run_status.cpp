@@ -59,6 +59,8 @@ void add_totals(const RunTotals& t, TextBuffer& json) {
   json.add(
       "  \"totals\": {\n    \"cycles\": %lld, \"missed_ticks\": %d, \"written_orders\": %lld,\n",
       as_long(t.cycles), t.last.missed_ticks, as_long(t.written_orders));
+  json.add("    \"deadline_misses\": %d, \"unanswered_orders\": %d, \"soc_moved_e4_today\": %d,\n",
+           t.last.deadline_misses, t.last.idle_cycles, t.last.throughput.soc_moved_e4);
   json.add("    \"battery_failures\": %lld, \"price_failures\": %lld,\n",
            as_long(t.battery_failures), as_long(t.price_failures));
   json.add("    \"records_dropped\": %lld, \"disk_failures\": %lld,\n", as_long(t.records_dropped),
@@ -136,13 +138,20 @@ void add_run(const RunTotals& t, TextBuffer& text) {
   const CycleRecord& r = t.last;
   add_value(text, "bess_cycle_duration_seconds", "gauge",
             "From the begin of the decision to the order read back, last cycle.",
-            (r.decision_us + r.write_us) / 1e6);
+            1e-6 * r.decision_us + 1e-6 * r.write_us);
   add_value(text, "bess_last_cycle_timestamp_seconds", "gauge", "Tick of the last cycle, UTC.",
             static_cast<double>(r.utc_s));
   add_value(text, "bess_cycles_total", "counter", "Cycles since the start.",
             static_cast<double>(t.cycles));
   add_value(text, "bess_missed_ticks_total", "counter", "Ticks skipped because a cycle overran.",
             r.missed_ticks);
+  add_value(text, "bess_deadline_misses_total", "counter",
+            "Cycles whose order was not in force in time.", r.deadline_misses);
+  add_value(text, "bess_unanswered_orders", "gauge",
+            "Orders in a row that the battery did not answer with power.", r.idle_cycles);
+  add_value(text, "bess_full_cycles_today", "gauge",
+            "Full cycles that orders have moved on this local day.",
+            r.throughput.soc_moved_e4 / 20'000.0);
   add_value(text, "bess_log_records_dropped_total", "counter",
             "Records lost because the disk was too slow.", static_cast<double>(t.records_dropped));
   add_value(text, "bess_log_failures_total", "counter", "Records that a log file refused.",
@@ -157,7 +166,8 @@ void RunTotals::count(const CycleRecord& record) {
   ++cycles_by_reason[static_cast<std::size_t>(record.reason)];
   if (record.written) ++written_orders;
   if (record.battery_status != Status::kOk) ++battery_failures;
-  if (record.price.status != Status::kOk) ++price_failures;
+  const bool has_asked = record.mode != Mode::kStopping;  // the last record asks for no price
+  if (has_asked && record.price.status != Status::kOk) ++price_failures;
 }
 
 void format_status_json(const RunIdentity& identity, const RunTotals& totals,

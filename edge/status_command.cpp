@@ -75,6 +75,7 @@ Health health_of(const EdgeConfig& config, const cJSON* status) {
   in.reason = text_of(status, "last", "reason");
   in.battery_status = text_of(status, "last", "battery_status");
   in.price_status = text_of(status, "last", "price_status");
+  in.unanswered_orders = whole(status, "totals", "unanswered_orders");
   in.disk_is_slow = is_true(status, "totals", "disk_is_slow");
   in.disk_is_failing = is_true(status, "totals", "disk_is_failing");
   return assess_health(in);
@@ -110,9 +111,11 @@ void print_counters(const cJSON* s) {
   const auto total = [s](const char* name) {
     return static_cast<long long>(whole(s, "totals", name));
   };
-  std::printf("cycles     %lld, missed ticks %lld, orders written %lld, log records dropped %lld\n",
-              total("cycles"), total("missed_ticks"), total("written_orders"),
-              total("records_dropped"));
+  std::printf(
+      "cycles     %lld, missed ticks %lld, late orders %lld, orders written %lld, log records "
+      "dropped %lld\n",
+      total("cycles"), total("missed_ticks"), total("deadline_misses"), total("written_orders"),
+      total("records_dropped"));
   std::printf("failures   battery %lld, prices %lld, disk %lld\n", total("battery_failures"),
               total("price_failures"), total("disk_failures"));
   std::printf("modbus     %lld requests, %lld failed, %lld reconnects, %lld register writes\n",

@@ -5,6 +5,9 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <filesystem>
+
+#include "edge/run_locks.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bess {
@@ -70,6 +73,63 @@ TEST(EdgeConfig, ReadsTheSerialLinesSettings) {
   EXPECT_EQ(config.link.stop_bits, 2);
 }
 
+TEST(EdgeConfig, StateLogAndMetricsPathsAreRelativeToTheFile) {
+  const TemporaryFolder folder;
+  EdgeConfig config;
+  std::string error;
+  ASSERT_TRUE(load_edge_config(folder.write("edge.toml", valid_text()), config, error)) << error;
+  EXPECT_EQ(config.state.folder, folder.file("state"));
+  EXPECT_EQ(config.log.ring, folder.file("state/decisions.ring"));
+  EXPECT_EQ(config.log.status, folder.file("state/status.json"));
+  EXPECT_EQ(config.log.metrics, folder.file("state/metrics.prom"));
+  EXPECT_TRUE(config.log.csv.empty());
+  EXPECT_EQ(config.log.ring_days, 35);
+  EXPECT_TRUE(config.state.lock_folder == "/run/lock" || config.state.lock_folder == "/tmp");
+
+  const std::string text = valid_text() +
+                           "[state]\nfolder = \"/var/lib/bess\"\nlock_folder = \"/run\"\n"
+                           "[log]\ndays = 365\ncsv = \"edge.csv\"\n"
+                           "[metrics]\nprometheus = \"/tmp/bess.prom\"\n";
+  EdgeConfig other;
+  ASSERT_TRUE(load_edge_config(folder.write("other.toml", text), other, error)) << error;
+  EXPECT_EQ(other.log.ring, "/var/lib/bess/decisions.ring");
+  EXPECT_EQ(other.state.lock_folder, "/run");
+  EXPECT_EQ(other.log.csv, folder.file("edge.csv"));
+  EXPECT_EQ(other.log.metrics, "/tmp/bess.prom");
+  EXPECT_EQ(other.log.ring_days, 365);
+}
+
+/// A relative path on the command line must not be put before the state's files twice.
+TEST(EdgeConfig, ARelativeConfigurationKeepsItsStateBesideIt) {
+  const TemporaryFolder folder;
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::create_directory(folder.file("etc"));
+  static_cast<void>(folder.write("etc/edge.toml", valid_text()));
+  std::filesystem::current_path(folder.file(""));
+  EdgeConfig config;
+  std::string error;
+  EXPECT_TRUE(load_edge_config("etc/edge.toml", config, error)) << error;
+  std::filesystem::current_path(before);
+  EXPECT_EQ(config.log.ring, "etc/state/decisions.ring");
+}
+
+/// Every way to write one battery's place must lead to one lock; every other battery to another.
+TEST(EdgeConfig, TheBatterysLockIsNamedByItsPlace) {
+  const TemporaryFolder folder;
+  EdgeConfig config;
+  config.state.lock_folder = "/locks";
+  config.map.unit = 85;
+  EXPECT_EQ(battery_lock_path(config), "/locks/bess-127.0.0.1_502_unit_85.lock");
+  config.link.unit = 1;
+  EXPECT_EQ(battery_lock_path(config), "/locks/bess-127.0.0.1_502_unit_1.lock");
+  config.link.rtu = true;
+  config.link.device = folder.write("ttyUSB0", "").c_str();
+  const FixedText<639> direct = battery_lock_path(config);
+  std::filesystem::create_symlink(folder.file("ttyUSB0"), folder.file("by-id"));
+  config.link.device = folder.file("by-id").c_str();
+  EXPECT_EQ(battery_lock_path(config), direct.view());
+}
+
 struct Mistake {
   std::string before, after;
   int line;
@@ -105,6 +165,8 @@ TEST(EdgeConfig, EveryMistakeIsOneClearLineWithItsPlace) {
       {"soc_min = 0.2", "low_price_eur_per_mwh = 2000", 8, "must be below high_price"},
       {"2023-03-26T00:00:00Z", "2023-03-26 00:00", 11, "utc_start must be a UTC instant"},
       {"time_scale = 900", "time_scale = 0", 10, "must lie between"},
+      {"[guard]", "[log]\ndays = 0\n[guard]", 8, "days must lie between 1 and 3660"},
+      {"[guard]", "[state]\nfoldr = \"x\"\n[guard]", 8, "foldr is not a known key"},
       {"[guard]", "[gard]", 7, "gard is not a known key"},
       {"[guard]", "[guard", 7, "not valid TOML"},
   };

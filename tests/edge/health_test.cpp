@@ -41,6 +41,8 @@ TEST(Health, EveryTroubleHasItsReason) {
       {[](HealthInputs& in) { in.mode = "safe"; }, HealthLevel::kDegraded, "mode is safe"},
       {[](HealthInputs& in) { in.battery_status = "timeout"; }, HealthLevel::kDegraded, "timeout"},
       {[](HealthInputs& in) { in.price_status = "no_row"; }, HealthLevel::kDegraded, "no_row"},
+      {[](HealthInputs& in) { in.unanswered_orders = 6; }, HealthLevel::kDegraded,
+       "after 6 orders"},
       {[](HealthInputs& in) { in.disk_is_slow = true; }, HealthLevel::kDegraded, "too slow"},
       {[](HealthInputs& in) { in.disk_is_failing = true; }, HealthLevel::kDegraded, "disk full"},
   };

@@ -147,6 +147,8 @@ TEST(RunTotals, CountFailuresAndReasons) {
   EXPECT_EQ(totals.battery_failures, 2);
   EXPECT_EQ(totals.price_failures, 2);
   EXPECT_EQ(totals.cycles_by_reason[static_cast<std::size_t>(Reason::kLink)], 2);
+  bad.mode = Mode::kStopping;  // ends the run without asking for a price
+  EXPECT_EQ(totals_after({bad}).price_failures, 0);
 }
 
 TEST(StatusJson, HoldsWhatItWasToldAndEscapesForeignText) {

@@ -8,6 +8,7 @@
 #include <sys/resource.h>
 #include <sys/select.h>
 #include <sys/socket.h>
+#include <termios.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -147,6 +148,25 @@ TEST(ModbusConnection, ASerialAdapterThatIsPulledAndComesBack) {
   EXPECT_EQ(link.read(kSoc, &soc), Status::kOk);
   EXPECT_EQ(soc, 500);
   EXPECT_EQ(link.counters().reconnects, 1);
+}
+
+/// A pseudo terminal has no parity bit to set, but keeps which kind it would be.
+TEST(ModbusConnection, TheSerialLineIsSetAsConfigured) {
+  LoopbackBattery battery("block", {}, Transport::kRtu);
+  BatteryLinkSettings settings = battery.link(2'000);
+  settings.baud = 19'200;
+  settings.parity = Parity::kOdd;
+  settings.stop_bits = 2;
+  ModbusLink link(settings, {}, battery.clock);
+  std::uint16_t soc = 0;
+  EXPECT_EQ(link.read(kSoc, &soc), Status::kOk);
+  const int line = open(settings.device.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC);
+  termios state{};
+  ASSERT_EQ(tcgetattr(line, &state), 0);
+  ::close(line);
+  EXPECT_EQ(cfgetospeed(&state), speed_t{B19200});
+  EXPECT_NE(state.c_cflag & PARODD, 0U);
+  EXPECT_NE(state.c_cflag & CSTOPB, 0U);
 }
 
 /// libmodbus' select() would write beyond its set and destroy the stack.

@@ -63,6 +63,19 @@ std::string trouble_name(const ::testing::TestParamInfo<Trouble>& info) {
   return name;
 }
 
+/// How long a link that is troubled at random may take to come through on a busy machine.
+class Patience {
+ public:
+  /// False when it is over; else a moment later.
+  [[nodiscard]] bool lasts() const {
+    sleep_until_monotonic(clock_ns(CLOCK_MONOTONIC) + kNanosecondsPerSecond / 1'000);
+    return clock_ns(CLOCK_MONOTONIC) < end_ns_;
+  }
+
+ private:
+  std::int64_t end_ns_ = clock_ns(CLOCK_MONOTONIC) + 30 * kNanosecondsPerSecond;
+};
+
 class EveryFault : public ::testing::TestWithParam<Trouble> {};
 
 /// Free registers of the simulated battery, and what each may hold: one value, or, after a write that
@@ -117,13 +130,15 @@ TEST_P(EveryFault, ALinkNeverReturnsAnotherRegistersValue) {
   ModbusLink link(loopback.link(kResponseTimeoutMs), {}, loopback.clock);
   Scratch scratch;
   std::mt19937 random(11);
+  const Patience patience;
   int good = 0;
-  for (int i = 0; i < 30; ++i) {
-    if (exchange(link, scratch, random, static_cast<std::uint16_t>(1'000 + 10 * i))) ++good;
+  int all = 0;
+  for (; all < 30 || (good < 5 && patience.lasts()); ++all) {
+    if (exchange(link, scratch, random, static_cast<std::uint16_t>(1'000 + 10 * all))) ++good;
   }
-  EXPECT_GE(good, 5);  // and comes back by itself
-  EXPECT_EQ(link.counters().requests, 30);
-  EXPECT_EQ(link.counters().failed_requests, 30 - good);
+  EXPECT_GE(good, 5);  // it always comes back
+  EXPECT_EQ(link.counters().requests, all);
+  EXPECT_EQ(link.counters().failed_requests, all - good);
 }
 
 void expect_truth(const BatteryMeasurement& m, const std::set<std::int32_t>& in_force) {
@@ -146,8 +161,9 @@ void order_in_trouble(const Trouble& trouble, const char* variant) {
   std::set<std::int32_t> in_force = {0};
   PowerOrder order{.soc_min_e4 = 1'000, .duration_s = 86'400};
   Status ordered = Status::kNotConnected;
-  for (int i = 0; i < 60 && (i < 6 || ordered != Status::kOk); ++i) {
-    order.power_w = i % 2 == 0 ? 100 + i : -100 - i;
+  const Patience patience;
+  for (int i = 0; i < 6 || (ordered != Status::kOk && patience.lasts()); ++i) {
+    order.power_w = i % 2 == 0 ? 100 + i % 3'000 : -100 - i % 3'000;
     ordered = battery.order(order);
     if (ordered == Status::kOk) {
       in_force = {order.power_w};
@@ -159,7 +175,7 @@ void order_in_trouble(const Trouble& trouble, const char* variant) {
     expect_truth(m, in_force);
     EXPECT_TRUE(m.dispatch_active || ordered != Status::kOk);
   }
-  ASSERT_EQ(ordered, Status::kOk);  // within 60 tries
+  ASSERT_EQ(ordered, Status::kOk);  // it always comes back
   const SimulatedBattery& truth = loopback.stop();
   EXPECT_TRUE(truth.dispatch_active());
   EXPECT_EQ(truth.power_w(), order.power_w);
@@ -205,10 +221,11 @@ TEST(ModbusFaults, EachIsToldByItsStatus) {
     for (const Transport transport : {Transport::kTcp, Transport::kRtu}) {
       const Status expected = transport == Transport::kTcp ? verdict.tcp : verdict.rtu;
       if (expected == kNone) continue;
+      const std::int32_t timeout_ms = expected == Status::kTimeout ? kResponseTimeoutMs : 5'000;
       // Both kinds of echo; of a read only the first, a late answer may be the second's.
       for (const int function : verdict.write ? std::vector{6, 16} : std::vector{3}) {
         LoopbackBattery loopback("block", troubled({transport, verdict.fault, 100}, 1), transport);
-        ModbusLink link(loopback.link(kResponseTimeoutMs), {}, loopback.clock);
+        ModbusLink link(loopback.link(timeout_ms), {}, loopback.clock);
         std::uint16_t registers[2] = {};
         const Status status =
             verdict.write

@@ -227,7 +227,7 @@ void BatteryServer::send(Client& client, const Bytes& bytes) {
 
 void BatteryServer::drip(Client& client, const Bytes& bytes) {
   for (const std::uint8_t byte : bytes) {
-    if (!wait(settings_.drip_ms)) return;
+    if (client.fd < 0 || !wait(settings_.drip_ms)) return;
     send(client, {byte});
   }
 }

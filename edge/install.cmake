@@ -1,0 +1,35 @@
+# cmake --install BUILD --component edge: program, maps, unit, user, documented configuration. The
+# configuration and the unit are installed with the paths of this installation in them.
+include(GNUInstallDirs)
+
+# install_with_paths(FILE FOLDER NAME FROM TO...): installs FILE as NAME, each FROM replaced; FROM must occur.
+function(install_with_paths file folder name)
+  file(READ ${file} text)
+  set(pairs ${ARGN})
+  while(pairs)
+    list(POP_FRONT pairs from to)
+    string(FIND "${text}" "${from}" place)
+    if(place EQUAL -1)
+      message(FATAL_ERROR "${file}: \"${from}\" is not in it any more; mend edge/install.cmake")
+    endif()
+    string(REPLACE "${from}" "${to}" text "${text}")
+  endwhile()
+  file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/installed/${name} "${text}")
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+  install(FILES ${CMAKE_CURRENT_BINARY_DIR}/installed/${name} DESTINATION ${folder} COMPONENT edge)
+endfunction()
+
+install(TARGETS bess-edge DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT edge)
+install(DIRECTORY maps DESTINATION ${CMAKE_INSTALL_DATADIR}/bess COMPONENT edge
+        FILES_MATCHING PATTERN "*.toml")
+install(FILES README.md systemd/bess-edge-serial.conf DESTINATION ${CMAKE_INSTALL_DOCDIR}
+        COMPONENT edge)
+install(FILES systemd/bess.sysusers DESTINATION lib/sysusers.d RENAME bess.conf COMPONENT edge)
+# Absolute: bess-edge looks in /etc whatever the prefix. An example, so that no edited file is lost.
+install_with_paths(${CMAKE_CURRENT_SOURCE_DIR}/bess-edge.toml /etc/bess edge.toml.example
+  "map = \"maps/" "map = \"${CMAKE_INSTALL_FULL_DATADIR}/bess/maps/"
+  "folder = \"state\"  " "folder = \"/var/lib/bess\"  ")
+install_with_paths(${CMAKE_CURRENT_SOURCE_DIR}/systemd/bess-edge.service lib/systemd/system
+  bess-edge.service
+  "/usr/bin/bess-edge" "${CMAKE_INSTALL_FULL_BINDIR}/bess-edge"
+  "/usr/share/doc/bess" "${CMAKE_INSTALL_FULL_DOCDIR}")
