@@ -1,7 +1,8 @@
 #!/bin/sh
-# install.sh CMAKE BUILD FOLDER: installs the edge below FOLDER and checks that the pieces name each other:
-# the unit starts the installed program, the example configuration loads the installed map.
+# install.sh CMAKE BUILD FOLDER [EMULATOR...]: installs the edge below FOLDER and checks that the pieces name each
+# other: the unit starts the installed program, the example configuration loads the installed map.
 cmake=$1 build=$2 folder=$3
+shift 3
 fail() { echo "$*"; exit 1; }
 rm -rf "$folder"
 DESTDIR=$folder "$cmake" --install "$build" --component edge >/dev/null || fail "cmake --install failed"
@@ -15,5 +16,5 @@ map=$(sed -n 's/^map = "\(.*\)".*/\1/p' "$config")
 grep -q '^folder = "/var/lib/bess"' "$config" || fail "$config keeps its state in the wrong place"
 # The installed program reads the installed configuration, with the map where DESTDIR put it.
 sed "s|^map = \"|&$folder|; s|/var/lib/bess|$folder/none|" "$config" >"$folder/edge.toml"
-said=$("$folder$program" status --config "$folder/edge.toml")
+said=$("$@" "$folder$program" status --config "$folder/edge.toml")
 [ $? -eq 3 ] || fail "status of a controller that does not run: $said"
