@@ -1,0 +1,365 @@
+// The battery as the controller sees it, driven through a register map: measure, order, keep the
+// watchdog fed, release. Costs as few writes as possible: an order that is in force already is not
+// written again until the watchdog is due. A template over link and time (see battery_bus.h).
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+#include "edge/battery_bus.h"
+#include "edge/command_runner.h"
+#include "edge/control_types.h"
+#include "edge/registers/codec.h"
+#include "shared/units_and_limits.h"
+
+namespace bess {
+
+struct IdentityFailure {
+  int check = 0;  ///< index into RegisterMap::identity
+  std::int64_t value = 0;
+};
+
+template <typename Link, typename Time>
+class BatteryDriver {
+ public:
+  /// `map` must outlive this object; `unit` replaces its unit id when not negative.
+  template <typename... LinkArguments>
+  BatteryDriver(const RegisterMap& map, const Time& time, std::int32_t unit,
+                LinkArguments&&... link)
+      : map_(map),
+        bus_(map, time, unit, std::forward<LinkArguments>(link)...),
+        runner_(map, bus_),
+        soc_(find_point(map, "soc")),
+        power_(find_point(map, "battery_power")),
+        capacity_(find_point(map, "capacity")),
+        charge_limit_(find_point(map, "charge_power_max")),
+        discharge_limit_(find_point(map, "discharge_power_max")),
+        temperature_min_(find_point(map, "temperature_min")),
+        temperature_max_(find_point(map, "temperature_max")) {}
+  BatteryDriver(const BatteryDriver&) = delete;
+  BatteryDriver& operator=(const BatteryDriver&) = delete;
+
+  /// Connects if needed and reads everything that the map measures.
+  Status read(BatteryMeasurement& measurement) {
+    measurement = BatteryMeasurement{};
+    if (const Status status = identify(); status != Status::kOk) return status;
+    if (const Status status = read_registers(); status != Status::kOk) return status;
+    if (const Status status = translate(measurement); status != Status::kOk) return status;
+    note_order_in_force(measurement);
+    return Status::kOk;
+  }
+
+  /// Brings an order into force and reads it back. Costs nothing while it is in force already.
+  Status order(const PowerOrder& order) {
+    if (const Status status = prepare(); status != Status::kOk) return status;
+    const Command command = command_of(order.power_w);
+    if (in_force_ && command == command_ && runner_.is_written(map_.sequence(command), order)) {
+      if (is_due()) return feed();
+      ++unchanged_orders_;
+      return Status::kOk;
+    }
+    if (order.power_w > map_.charge_w_max || order.power_w < -map_.discharge_w_max) {
+      return Status::kNotExpressible;
+    }
+    // Nothing is written before it is known that all of it may be.
+    Status status = runner_.check(map_.sequence(command), order);
+    if (status == Status::kOk && !enabled_) status = enable(order);
+    if (status != Status::kOk) return status;
+    status = runner_.run(map_.sequence(command), order);
+    if (status == Status::kOk) {
+      take_into_force(command, order);
+    } else {
+      roll_back(status, command, order);
+    }
+    return status;
+  }
+
+  /// Between orders, at least every `refresh_interval_s`: feeds the watchdog when it is due.
+  Status refresh() {
+    if (!in_force_ || !is_due()) return Status::kOk;
+    return feed();
+  }
+
+  /// 0: one order per cycle is enough to keep the watchdog fed.
+  [[nodiscard]] std::int32_t refresh_interval_s() const {
+    const bool often =
+        map_.watchdog.kind != Watchdog::Kind::kNone && map_.watchdog.refresh_s < kSecondsPerStep;
+    return often ? map_.watchdog.refresh_s : 0;
+  }
+
+  /// Gives the battery back to its own mode and reads that back. Never refused for the budget.
+  Status release() {
+    if (const Status status = prepare(); status != Status::kOk) return status;
+    const Status status = runner_.run(map_.sequence(Command::kRelease), PowerOrder{});
+    lose_order();
+    if (status == Status::kOk) runner_.saved().forget();
+    return status;
+  }
+
+  /// Reads the map's identity checks; on kImplausible `failure` says which one and what was read.
+  /// Nothing is read or ordered before this has succeeded once: an unknown device stays untouched.
+  Status check_identity(IdentityFailure& failure) {
+    failure = IdentityFailure{};
+    Status status = retried([this] { return bus_.locate_models(); });
+    for (; status == Status::kOk && failure.check < map_.identity.size(); ++failure.check) {
+      status = check_point(map_.identity[failure.check], failure.value);
+      if (status != Status::kOk) return status;
+    }
+    identified_ = identified_ || status == Status::kOk;
+    return status;
+  }
+
+  [[nodiscard]] BatteryCounters counters() const {
+    const LinkCounters link = bus_.link().counters();
+    BatteryCounters counters{.requests = link.requests,
+                             .failed_requests = link.failed_requests,
+                             .reconnects = link.reconnects,
+                             .register_writes = link.register_writes,
+                             .unchanged_orders = unchanged_orders_,
+                             .flash_day = bus_.time().utc_day()};
+    counters.flash_writes_today = runner_.budget().writes_on(counters.flash_day);
+    return counters;
+  }
+
+  /// At start, with what the log remembers: the budget of a day survives a restart.
+  void restore_flash_writes(std::int64_t day, std::int32_t writes) {
+    runner_.budget().restore(day, writes);
+  }
+
+  /// Gives the one connection free; the next request opens it again.
+  void close() { bus_.link().close(); }
+  [[nodiscard]] Link& link() { return bus_.link(); }
+
+ private:
+  static constexpr std::int64_t kLiveAgeNs = 180 * kNanosecondsPerSecond;
+
+  template <typename Request>
+  static Status retried(Request request) {
+    Status status = Status::kOk;
+    for (int attempt = 0; attempt < kBusAttempts; ++attempt) {
+      status = request();
+      if (!is_worth_a_retry(status)) break;
+    }
+    return status;
+  }
+
+  Status identify() {
+    if (identified_) return Status::kOk;
+    IdentityFailure failure;
+    return check_identity(failure);
+  }
+
+  Status read_registers() {
+    return retried([this] { return bus_.read_due(); });
+  }
+
+  /// Scale factors, ratings and limits that go into an order must not be old.
+  Status prepare() {
+    if (const Status status = identify(); status != Status::kOk) return status;
+    const std::int64_t read_ns = bus_.last_read_ns();
+    if (read_ns != 0 && bus_.time().now_ns() - read_ns < kLiveAgeNs) return Status::kOk;
+    return read_registers();
+  }
+
+  Status check_point(const IdentityCheck& check, std::int64_t& value) {
+    const RegisterPoint& point = map_.points[check.point];
+    std::uint16_t registers[kTextRegistersMax] = {};
+    const Status status = retried([&] { return bus_.read_point(check.point, registers); });
+    if (status != Status::kOk) return status;
+    if (point.type == RegisterType::kText) {
+      const bool same = decode_text(point, registers).view().starts_with(check.text.view());
+      return same ? Status::kOk : Status::kImplausible;
+    }
+    LivePoints now = bus_.live();
+    now.keep(map_, check.point, registers);
+    if (point.scale_from >= 0 || point.percent_of >= 0) {
+      if (const Status read = read_registers(); read != Status::kOk) return read;
+      now = bus_.live();
+      now.keep(map_, check.point, registers);
+    }
+    const bool plausible = live_value(map_, now, check.point, value) && value >= check.value_min &&
+                           value <= check.value_max;
+    return plausible ? Status::kOk : Status::kImplausible;
+  }
+
+  Status translate(BatteryMeasurement& m) {
+    for (const std::int8_t point : map_.required) {
+      std::int64_t value = 0;
+      if (!live_value(map_, bus_.live(), point, value)) return Status::kImplausible;
+      store(point, value, m);
+    }
+    for (const Condition& alarm : map_.alarms) {
+      if (is_true(alarm)) m.alarm = true;
+    }
+    m.off_grid = map_.off_grid.point >= 0 && is_true(map_.off_grid);
+    return is_alive() ? Status::kOk : Status::kImplausible;
+  }
+
+  [[nodiscard]] bool is_true(const Condition& condition) const {
+    std::int64_t value = 0;
+    return live_value(map_, bus_.live(), condition.point, value) && condition.holds(value);
+  }
+
+  void store(int point, std::int64_t wide, BatteryMeasurement& m) const {
+    const auto value =
+        static_cast<std::int32_t>(std::clamp<std::int64_t>(wide, INT32_MIN, INT32_MAX));
+    if (point == soc_) m.soc_e4 = value;
+    if (point == power_) m.power_w = value;
+    if (point == capacity_) m.capacity_wh = value;
+    if (point == charge_limit_) m.charge_w_max = value;
+    if (point == discharge_limit_) m.discharge_w_max = value;
+    if (point == temperature_min_) m.temperature_min_deci_c = value;
+    if (point == temperature_max_) m.temperature_max_deci_c = value;
+  }
+
+  /// A device whose counter stands still shows frozen values as if they were new.
+  bool is_alive() {
+    if (map_.alive.point < 0) return true;
+    std::int64_t counter = 0;
+    if (!live_value(map_, bus_.live(), map_.alive.point, counter)) return false;
+    const std::int64_t now_ns = bus_.time().now_ns();
+    if (alive_ns_ == 0 || counter != alive_counter_) alive_ns_ = now_ns;
+    alive_counter_ = counter;
+    return now_ns - alive_ns_ <= map_.alive.max_age_s * kNanosecondsPerSecond;
+  }
+
+  /// What order the device follows, whoever gave it: a restart takes over from here.
+  void note_order_in_force(BatteryMeasurement& m) {
+    const bool fed = in_force_ && (map_.watchdog.kind == Watchdog::Kind::kNone ||
+                                   bus_.time().now_ns() - fed_ns_ <
+                                       map_.dead_man_duration_s * kNanosecondsPerSecond);
+    const bool visible = !map_.active.empty() && map_.watchdog.expiry_visible;
+    m.dispatch_active = visible ? live_active(map_, bus_.live()) : fed;
+    std::int64_t power_w = 0;
+    m.has_order_power = m.dispatch_active && live_order_power(map_, bus_.live(), power_w);
+    if (m.has_order_power) {
+      m.order_power_w =
+          static_cast<std::int32_t>(std::clamp<std::int64_t>(power_w, INT32_MIN, INT32_MAX));
+    }
+    active_ = m.dispatch_active;
+    if (in_force_ && (!m.dispatch_active || is_overwritten())) lose_order();
+    std::int64_t left_s = 0;
+    const int remaining = map_.watchdog.remaining;
+    runs_out_ = in_force_ && remaining >= 0 && live_value(map_, bus_.live(), remaining, left_s) &&
+                left_s < map_.watchdog.refresh_s;
+  }
+
+  /// Somebody else wrote: a register of the order that must keep its value has another one.
+  [[nodiscard]] bool is_overwritten() const {
+    for (const BlockWrite& write : map_.sequence(command_).writes) {
+      if (write.read_back != ReadBack::kExact) continue;
+      for (const WriteValue& value : write.values) {
+        if (differs(value.point)) return true;
+      }
+    }
+    return false;
+  }
+
+  [[nodiscard]] bool differs(std::int8_t point) const {
+    const bool measured =
+        std::find(map_.measure.begin(), map_.measure.end(), point) != map_.measure.end();
+    const LivePoints& written = runner_.written();
+    return measured && point != map_.watchdog.remaining && written.known[point] &&
+           map_.points[point].read_function == 3 &&
+           !std::equal(written.raw[point], written.raw[point] + kPointRegistersMax,
+                       bus_.live().raw[point]);
+  }
+
+  /// Feeding at half the interval: nothing is lost when one feeding comes late.
+  [[nodiscard]] bool is_due() const {
+    if (map_.watchdog.kind == Watchdog::Kind::kNone) return false;
+    const std::int64_t half_ns = map_.watchdog.refresh_s * kNanosecondsPerSecond / 2;
+    return runs_out_ || bus_.time().now_ns() - fed_ns_ >= half_ns;
+  }
+
+  Status feed() {
+    const CommandSequence& refresh = map_.sequence(Command::kRefresh);
+    const bool own = !refresh.writes.empty();
+    Status status = runner_.check(own ? refresh : map_.sequence(command_), order_);
+    if (status == Status::kOk) {
+      status = runner_.run(own ? refresh : map_.sequence(command_), order_);
+    }
+    if (status == Status::kOk) {
+      fed_ns_ = bus_.time().now_ns();
+      runs_out_ = false;
+    } else {
+      lose_order();  // the next order writes everything again
+    }
+    return status;
+  }
+
+  /// Once before the first order: conditions, what must be restored later, external control.
+  Status enable(const PowerOrder& order) {
+    for (const Condition& condition : map_.precondition) {
+      bool holds = false;
+      const Status status = retried([&] { return runner_.test(condition, holds); });
+      if (status != Status::kOk) return status;
+      if (!holds) return Status::kNotPermitted;
+    }
+    Status status = retried([this] { return save_registers(); });
+    const CommandSequence& sequence = map_.sequence(Command::kEnable);
+    if (status == Status::kOk) status = runner_.check(sequence, order);
+    if (status != Status::kOk) return status;
+    status = runner_.run(sequence, order);
+    enabled_ = status == Status::kOk;
+    if (!enabled_) roll_back(status, Command::kEnable, order);
+    return status;
+  }
+
+  /// An order that is in force without us is an earlier process's: then the registers hold what
+  /// that process wrote, and the map's fallback is what is restored.
+  Status save_registers() {
+    StaticVector<std::int8_t, kPointsMax> unsaved;
+    for (const SavedPoint& saved : map_.saved) {
+      if (!runner_.saved().known[saved.point]) unsaved.push_back(saved.point);
+    }
+    if (unsaved.empty() || live_active(map_, bus_.live())) return Status::kOk;
+    return runner_.read_written(unsaved, runner_.saved());
+  }
+
+  /// Half of a command may have been taken: rather the battery's own mode than a mixture.
+  void roll_back(Status reason, Command command, const PowerOrder& order) {
+    const bool sent = reason != Status::kNotExpressible && reason != Status::kImplausible;
+    const bool several = map_.sequence(command).writes.size() > 1 || enabled_;
+    lose_order();
+    if (!sent || !(several || reason == Status::kNotApplied)) return;
+    const CommandSequence& own = map_.sequence(Command::kRollback);
+    const CommandSequence& undo = own.writes.empty() ? map_.sequence(Command::kRelease) : own;
+    static_cast<void>(runner_.run(undo, order));  // the link may be gone: the watchdog ends it
+  }
+
+  void take_into_force(Command command, const PowerOrder& order) {
+    in_force_ = true;
+    command_ = command;
+    order_ = order;
+    fed_ns_ = bus_.time().now_ns();
+    runs_out_ = false;
+  }
+
+  void lose_order() {
+    in_force_ = false;
+    enabled_ = false;
+    runner_.forget();
+  }
+
+  const RegisterMap& map_;
+  BatteryBus<Link, Time> bus_;
+  CommandRunner<Link, Time> runner_;
+  bool identified_ = false;
+  bool enabled_ = false;
+  bool in_force_ = false;  ///< the order below was read back and nothing has ended it since
+  bool active_ = false;
+  bool runs_out_ = false;  ///< the device's timer shows less than one refresh interval
+  Command command_ = Command::kIdle;
+  PowerOrder order_;
+  std::int64_t fed_ns_ = 0;
+  std::int64_t alive_ns_ = 0;
+  std::int64_t alive_counter_ = 0;
+  std::int64_t unchanged_orders_ = 0;
+
+  // Points with a meaning for the controller, by name; -1 = not in this map.
+  int soc_, power_, capacity_, charge_limit_, discharge_limit_, temperature_min_, temperature_max_;
+};
+
+}  // namespace bess
