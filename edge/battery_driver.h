@@ -31,7 +31,6 @@ class BatteryDriver {
         bus_(map, time, unit, std::forward<LinkArguments>(link)...),
         runner_(map, bus_),
         soc_(find_point(map, "soc")),
-        power_(find_point(map, "battery_power")),
         capacity_(find_point(map, "capacity")),
         charge_limit_(find_point(map, "charge_power_max")),
         discharge_limit_(find_point(map, "discharge_power_max")),
@@ -134,6 +133,10 @@ class BatteryDriver {
  private:
   static constexpr std::int64_t kLiveAgeNs = 180 * kNanosecondsPerSecond;
 
+  static std::int32_t to_int32(std::int64_t value) {
+    return static_cast<std::int32_t>(std::clamp<std::int64_t>(value, INT32_MIN, INT32_MAX));
+  }
+
   template <typename Request>
   static Status retried(Request request) {
     Status status = Status::kOk;
@@ -189,6 +192,9 @@ class BatteryDriver {
       if (!live_value(map_, bus_.live(), point, value)) return Status::kImplausible;
       store(point, value, m);
     }
+    std::int64_t power_w = 0;
+    if (!live_power(map_, map_.measured_power, bus_.live(), power_w)) return Status::kImplausible;
+    m.power_w = to_int32(power_w);
     for (const Condition& alarm : map_.alarms) {
       if (is_true(alarm)) m.alarm = true;
     }
@@ -202,10 +208,8 @@ class BatteryDriver {
   }
 
   void store(int point, std::int64_t wide, BatteryMeasurement& m) const {
-    const auto value =
-        static_cast<std::int32_t>(std::clamp<std::int64_t>(wide, INT32_MIN, INT32_MAX));
+    const std::int32_t value = to_int32(wide);
     if (point == soc_) m.soc_e4 = value;
-    if (point == power_) m.power_w = value;
     if (point == capacity_) m.capacity_wh = value;
     if (point == charge_limit_) m.charge_w_max = value;
     if (point == discharge_limit_) m.discharge_w_max = value;
@@ -230,14 +234,11 @@ class BatteryDriver {
                                    bus_.time().now_ns() - fed_ns_ <
                                        map_.dead_man_duration_s * kNanosecondsPerSecond);
     const bool visible = !map_.active.empty() && map_.watchdog.expiry_visible;
-    m.dispatch_active = visible ? live_active(map_, bus_.live()) : fed;
+    m.dispatch_active = visible ? live_all(map_, map_.active, bus_.live()) : fed;
     std::int64_t power_w = 0;
-    m.has_order_power = m.dispatch_active && live_order_power(map_, bus_.live(), power_w);
-    if (m.has_order_power) {
-      m.order_power_w =
-          static_cast<std::int32_t>(std::clamp<std::int64_t>(power_w, INT32_MIN, INT32_MAX));
-    }
-    active_ = m.dispatch_active;
+    m.has_order_power =
+        m.dispatch_active && live_power(map_, map_.order_power, bus_.live(), power_w);
+    if (m.has_order_power) m.order_power_w = to_int32(power_w);
     if (in_force_ && (!m.dispatch_active || is_overwritten())) lose_order();
     std::int64_t left_s = 0;
     const int remaining = map_.watchdog.remaining;
@@ -314,8 +315,16 @@ class BatteryDriver {
     for (const SavedPoint& saved : map_.saved) {
       if (!runner_.saved().known[saved.point]) unsaved.push_back(saved.point);
     }
-    if (unsaved.empty() || live_active(map_, bus_.live())) return Status::kOk;
-    return runner_.read_written(unsaved, runner_.saved());
+    if (unsaved.empty() || live_all(map_, map_.active, bus_.live())) return Status::kOk;
+    const Status status = runner_.read_written(unsaved, runner_.saved());
+    for (const std::int8_t point : unsaved) {
+      Scaling scaling;
+      std::int64_t value = 0;  // "not implemented" must not be written back
+      const bool good = live_scaling(map_, bus_.live(), point, scaling) &&
+                        decode(map_.points[point], runner_.saved().raw[point], value, scaling);
+      if (!good) runner_.saved().known[point] = false;
+    }
+    return status;
   }
 
   /// Half of a command may have been taken: rather the battery's own mode than a mixture.
@@ -349,7 +358,6 @@ class BatteryDriver {
   bool identified_ = false;
   bool enabled_ = false;
   bool in_force_ = false;  ///< the order below was read back and nothing has ended it since
-  bool active_ = false;
   bool runs_out_ = false;  ///< the device's timer shows less than one refresh interval
   Command command_ = Command::kIdle;
   PowerOrder order_;
@@ -359,7 +367,7 @@ class BatteryDriver {
   std::int64_t unchanged_orders_ = 0;
 
   // Points with a meaning for the controller, by name; -1 = not in this map.
-  int soc_, power_, capacity_, charge_limit_, discharge_limit_, temperature_min_, temperature_max_;
+  int soc_, capacity_, charge_limit_, discharge_limit_, temperature_min_, temperature_max_;
 };
 
 }  // namespace bess

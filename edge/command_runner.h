@@ -59,6 +59,7 @@ class CommandRunner {
 
   Status run(const CommandSequence& sequence, const PowerOrder& order) {
     Status status = Status::kOk;
+    if (sequence.writes.empty()) return status;
     for (int attempt = 0; attempt < kBusAttempts; ++attempt) {
       status = run_once(sequence, order);
       if (!is_worth_a_retry(status)) break;

@@ -27,13 +27,14 @@ bool live_value(const RegisterMap& map, const LivePoints& live, int point, std::
   return decode(map.points[point], live.raw[point], value, scaling);
 }
 
-bool live_order_power(const RegisterMap& map, const LivePoints& live, std::int64_t& power_w) {
-  for (const OrderPowerCase& c : map.order_power) {
+bool live_power(const RegisterMap& map, const StaticVector<PowerCase, 4>& cases,
+                const LivePoints& live, std::int64_t& power_w) {
+  for (const PowerCase& c : cases) {
     std::int64_t value = 0;
     if (c.when.point >= 0 && !live_value(map, live, c.when.point, value)) return false;
     if (c.when.point >= 0 && !c.when.holds(value)) continue;
     power_w = 0;
-    for (const OrderPowerCase::Term& term : c.terms) {
+    for (const PowerCase::Term& term : c.terms) {
       if (!live_value(map, live, term.point, value)) return false;
       power_w += term.sign * value;
     }
@@ -42,12 +43,13 @@ bool live_order_power(const RegisterMap& map, const LivePoints& live, std::int64
   return false;
 }
 
-bool live_active(const RegisterMap& map, const LivePoints& live) {
-  for (const Condition& condition : map.active) {
+bool live_all(const RegisterMap& map, const StaticVector<Condition, 4>& conditions,
+              const LivePoints& live) {
+  for (const Condition& condition : conditions) {
     std::int64_t value = 0;
     if (!live_value(map, live, condition.point, value) || !condition.holds(value)) return false;
   }
-  return !map.active.empty();
+  return !conditions.empty();
 }
 
 namespace {

@@ -22,12 +22,14 @@ struct LivePoints {
 [[nodiscard]] bool live_value(const RegisterMap& map, const LivePoints& live, int point,
                               std::int64_t& value);
 
-/// Power of the order that the registers hold; false when the map or the registers cannot tell.
-[[nodiscard]] bool live_order_power(const RegisterMap& map, const LivePoints& live,
-                                    std::int64_t& power_w);
+/// The first case that holds: `cases` is the map's measured_power or order_power. False when there is
+/// none, or when a register that it needs is unknown or implausible.
+[[nodiscard]] bool live_power(const RegisterMap& map, const StaticVector<PowerCase, 4>& cases,
+                              const LivePoints& live, std::int64_t& power_w);
 
-/// Whether every one of the map's `active` conditions holds; false as well when there is none.
-[[nodiscard]] bool live_active(const RegisterMap& map, const LivePoints& live);
+/// Whether every condition holds; false as well when there is none.
+[[nodiscard]] bool live_all(const RegisterMap& map, const StaticVector<Condition, 4>& conditions,
+                            const LivePoints& live);
 
 /// The scale factors and ratings that a map allows at one end of their ranges, for the proof at load
 /// and for printing orders before a device has been read.

@@ -12,10 +12,26 @@ bool contains(const auto& list, std::int8_t point) {
   return std::find(list.begin(), list.end(), point) != list.end();
 }
 
+/// A point named battery_power is the measured power unless the map says otherwise.
+void complete_power(RegisterMap& map) {
+  const int point = find_point(map, "battery_power");
+  if (!map.measured_power.empty() || point < 0) return;
+  PowerCase always;
+  always.terms.push_back({.point = static_cast<std::int8_t>(point)});
+  map.measured_power.push_back(always);
+}
+
 /// Everything that state and commands look at is read every cycle, whether listed or not.
 void measure_also(RegisterMap& map, std::int8_t point) {
   if (point < 0 || contains(map.measure, point)) return;
   map.measure.push_back(point);  // fits: there is room for every point once
+}
+
+void measure_power(RegisterMap& map, const StaticVector<PowerCase, 4>& cases) {
+  for (const PowerCase& c : cases) {
+    measure_also(map, c.when.point);
+    for (const PowerCase::Term& term : c.terms) measure_also(map, term.point);
+  }
 }
 
 /// What the map lists, alarms and off-grid decide about safety: one implausible value of them
@@ -24,13 +40,11 @@ void complete_measure(RegisterMap& map) {
   for (const Condition& c : map.alarms) measure_also(map, c.point);
   measure_also(map, map.off_grid.point);
   measure_also(map, map.alive.point);
+  measure_power(map, map.measured_power);
   map.required = map.measure;
   for (const Condition& c : map.active) measure_also(map, c.point);
   measure_also(map, map.watchdog.remaining);
-  for (const OrderPowerCase& c : map.order_power) {
-    measure_also(map, c.when.point);
-    for (const OrderPowerCase::Term& term : c.terms) measure_also(map, term.point);
-  }
+  measure_power(map, map.order_power);
   for (const RegisterPoint& p : map.points) {
     measure_also(map, p.scale_from);
     measure_also(map, p.percent_of);
@@ -79,13 +93,14 @@ void check_watchdog(TomlTable& root, const RegisterMap& map) {
 }
 
 void check_roles(TomlTable& root, const RegisterMap& map) {
-  for (const std::string_view name : {"soc", "battery_power"}) {
-    const int point = find_point(map, name);
-    if (point < 0) {
-      root.fail("point", quoted(name) + " is missing: the controller needs it");
-    } else if (!contains(map.measure, static_cast<std::int8_t>(point))) {
-      root.fail("state", "measure must hold " + quoted(name) + ": the controller needs it");
-    }
+  const int soc = find_point(map, "soc");
+  if (soc < 0 || !contains(map.required, static_cast<std::int8_t>(soc))) {
+    root.fail("state", "measure must hold a point \"soc\": the controller needs it");
+  }
+  if (map.measured_power.empty()) {
+    root.fail("point",
+              "\"battery_power\" is missing: the controller needs it (or measured_power in "
+              "[state])");
   }
   for (const std::int8_t point : map.measure) {
     if (map.points[point].type != RegisterType::kText) continue;
@@ -154,6 +169,7 @@ void prove_power_range(TomlTable& root, const RegisterMap& map) {
 
 void check_map(TomlTable& root, RegisterMap& map) {
   if (!root.ok()) return;
+  complete_power(map);
   complete_measure(map);
   for (const auto check :
        {check_roles, check_watchdog, check_saved, check_models, check_reserve, prove_power_range}) {

@@ -69,6 +69,8 @@ void read_map_policies(TomlTable& root, RegisterMap& map) {
 
 void read_map_simulator(TomlTable& root, RegisterMap& map) {
   TomlTable table = map_child(root, "simulator");
+  read_conditions(table, "active", map, map.simulator.active);
+  read_power_cases(table, "order_power", map, map.simulator.order_power);
   read_assignments(table, "initial", map, map.simulator.initial);
   read_assignments(table, "at_expiry", map, map.simulator.at_expiry);
   for_each_text(table, "apply_on", [&](std::string_view name, const toml::node& at) {

@@ -82,6 +82,9 @@ MapPhrase split_phrase(std::string_view text);
 /// Index of a point; -1, with the error set, when there is none.
 std::int8_t require_point(TomlTable& table, const toml::node& at, std::string_view name,
                           const RegisterMap& map);
+/// "point", or a list of { when = "condition", power = "point" or a list of points to add up }.
+void read_power_cases(TomlTable& table, std::string_view key, const RegisterMap& map,
+                      StaticVector<PowerCase, 4>& cases);
 /// A number, or one of the point's names for values or bits.
 bool parse_value(const RegisterMap& map, int point, std::string_view text, std::int64_t& value);
 /// "point = value", "point != value", "point has bit", or "point" alone for "point != 0".

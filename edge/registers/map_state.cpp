@@ -13,8 +13,8 @@ void read_measured(TomlTable& table, RegisterMap& map) {
 
 /// "point" or "-point".
 bool read_term(TomlTable& table, const toml::node& at, std::string_view text,
-               const RegisterMap& map, OrderPowerCase& out) {
-  OrderPowerCase::Term term;
+               const RegisterMap& map, PowerCase& out) {
+  PowerCase::Term term;
   if (text.starts_with('-')) {
     term.sign = -1;
     text.remove_prefix(1);
@@ -26,8 +26,8 @@ bool read_term(TomlTable& table, const toml::node& at, std::string_view text,
   return false;
 }
 
-void read_order_power_case(TomlTable& table, RegisterMap& map) {
-  OrderPowerCase out;
+void read_power_case(TomlTable& table, const RegisterMap& map, StaticVector<PowerCase, 4>& cases) {
+  PowerCase out;
   FixedText<63> when;
   table.require("power");
   table.text("when", when);
@@ -37,20 +37,7 @@ void read_order_power_case(TomlTable& table, RegisterMap& map) {
   for_each_text(table, "power", [&](std::string_view text, const toml::node& at) {
     read_term(table, at, text, map, out);
   });
-  if (table.ok() && !map.order_power.try_push_back(out)) table.fail("power", "is a case too many");
-}
-
-/// order_power = "point", or a list of { when = "...", power = "point" } of which the first that
-/// holds counts.
-void read_order_power(TomlTable& table, RegisterMap& map) {
-  const toml::node* node = table.node("order_power");
-  if (node == nullptr) return;
-  if (const auto* text = node->as_string()) {
-    OrderPowerCase always;
-    if (read_term(table, *node, text->get(), map, always)) map.order_power.push_back(always);
-    return;
-  }
-  for_each_table(table, "order_power", [&](TomlTable& item) { read_order_power_case(item, map); });
+  if (table.ok() && !cases.try_push_back(out)) table.fail("power", "is a case too many");
 }
 
 void read_alive(TomlTable& state, RegisterMap& map) {
@@ -90,6 +77,18 @@ void read_identity_check(TomlTable& table, RegisterMap& map) {
 }
 
 }  // namespace
+
+void read_power_cases(TomlTable& table, std::string_view key, const RegisterMap& map,
+                      StaticVector<PowerCase, 4>& cases) {
+  const toml::node* node = table.node(key);
+  if (node == nullptr) return;
+  if (const auto* text = node->as_string()) {
+    PowerCase always;
+    if (read_term(table, *node, text->get(), map, always)) cases.push_back(always);
+    return;
+  }
+  for_each_table(table, key, [&](TomlTable& item) { read_power_case(item, map, cases); });
+}
 
 void read_map_limits(TomlTable& root, RegisterMap& map) {
   TomlTable power = map_child(root, "power");
@@ -134,7 +133,8 @@ void read_map_state(TomlTable& root, RegisterMap& map) {
   for_each_text(state, "off_grid", [&](std::string_view text, const toml::node& at) {
     parse_condition(state, at, text, map, map.off_grid);
   });
-  read_order_power(state, map);
+  read_power_cases(state, "measured_power", map, map.measured_power);
+  read_power_cases(state, "order_power", map, map.order_power);
   read_alive(state, map);
   state.finish();
 }

@@ -34,8 +34,9 @@ struct IdentityCheck {
   FixedText<95> hint;
 };
 
-/// The power of the order in force = sum of the terms, when the condition holds.
-struct OrderPowerCase {
+/// A power = sum of the terms, when the condition holds: of the order in force, or as measured by a
+/// device that has one register for each direction. No term: 0 W.
+struct PowerCase {
   struct Term {
     std::int8_t point = -1;
     std::int8_t sign = 1;
@@ -58,6 +59,8 @@ struct SimulatorHints {
     Source source = Source::kConstant;
     std::int64_t constant = 0;
   };
+  StaticVector<Condition, 4> active;       ///< instead of the map's, where those cannot be read
+  StaticVector<PowerCase, 4> order_power;  ///< likewise
   StaticVector<Assignment, 16> initial;
   StaticVector<Assignment, 6> at_expiry;  ///< how the device shows that its watchdog has run out
   StaticVector<std::int8_t, 4> apply_on;  ///< while an order runs, only writing these changes it
@@ -98,7 +101,8 @@ struct RegisterMap {
   StaticVector<Condition, 8> alarms;               ///< any of them is an alarm
   Condition off_grid;
   AliveCounter alive;
-  StaticVector<OrderPowerCase, 4> order_power;
+  StaticVector<PowerCase, 4> measured_power;  ///< the first case that holds counts
+  StaticVector<PowerCase, 4> order_power;
   StaticVector<IdentityCheck, 8> identity;
   StaticVector<Condition, 4> precondition;  ///< must hold before the first order
   StaticVector<SavedPoint, 6> saved;

@@ -32,7 +32,13 @@ int first_model_address(const RegisterMap& map) {
 
 RegisterImage::RegisterImage(const RegisterMap& map, SimulatedBattery& battery,
                              std::span<std::uint16_t> holding, std::span<std::uint16_t> input)
-    : map_(map), battery_(battery), holding_(holding), input_(input) {
+    : map_(map),
+      battery_(battery),
+      holding_(holding),
+      input_(input),
+      active_(map.simulator.active.empty() ? map.active : map.simulator.active),
+      order_power_(map.simulator.order_power.empty() ? map.order_power
+                                                     : map.simulator.order_power) {
   const int end = address_end(map);
   if (end > kRegisterCount || std::ssize(holding) < end || std::ssize(input) < end) {
     sim_fail("map {}: {} registers are not enough, it needs {}", map.name.view(), holding.size(),
@@ -108,7 +114,7 @@ void RegisterImage::refresh(std::int64_t utc_ns) {
   is_running_ = battery_.dispatch_active();
   const BatteryParameters& p = battery_.parameters();
   set("soc", battery_.soc_frac() * 1e4);
-  set("battery_power", battery_.power_w());
+  show_power(std::llround(battery_.power_w()));
   set("capacity", p.capacity_wh);
   set("charge_power_max", p.power_w_max);
   set("discharge_power_max", p.power_w_max);
@@ -123,13 +129,33 @@ void RegisterImage::refresh(std::int64_t utc_ns) {
   }
 }
 
+/// One register with a sign, one for each direction, or a size whose sign stands in a state.
+void RegisterImage::show_power(std::int64_t power_w) {
+  for (const PowerCase& c : map_.measured_power) {
+    for (const PowerCase::Term& term : c.terms) {
+      const bool signed_register = c.terms.size() == 1 && c.when.point < 0;
+      const std::int64_t value = term.sign * power_w;
+      set(term.point, signed_register ? value : std::max<std::int64_t>(value, 0));
+    }
+  }
+  for (const PowerCase& c : map_.measured_power) {
+    if (c.when.point < 0 || c.terms.empty() || c.terms[0].sign * power_w <= 0) continue;
+    set(c.terms[0].point, std::abs(power_w));
+    set(c.when.point, c.when.value);
+    return;
+  }
+  for (const PowerCase& c : map_.measured_power) {
+    if (c.when.point >= 0) set(c.when.point, 0);
+  }
+}
+
 void RegisterImage::show_expiry() {
   for (const Assignment& assignment : map_.simulator.at_expiry) assign(assignment);
 }
 
 void RegisterImage::apply_write(int address, int count) {
   const LivePoints registers = snapshot();
-  if (!live_active(map_, registers)) {
+  if (!active_.empty() && !live_all(map_, active_, registers)) {
     battery_.stop_dispatch();
     is_running_ = false;
     return;
@@ -147,7 +173,7 @@ bool RegisterImage::is_order_ignored(int address, int count) const {
 
 void RegisterImage::start(const LivePoints& registers) {
   std::int64_t power_w = 0;
-  if (!live_order_power(map_, registers, power_w)) power_w = 0;
+  if (!live_power(map_, order_power_, registers, power_w)) power_w = 0;
   const std::int64_t seconds = duration_s();
   battery_.start_dispatch(static_cast<double>(power_w), soc_limit_frac(power_w), seconds);
   end_utc_s_ = utc_s_ + seconds;

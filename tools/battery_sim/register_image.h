@@ -42,6 +42,7 @@ class RegisterImage {
   [[nodiscard]] std::int64_t value(int point) const;
   void set(int point, std::int64_t value);
   void set(std::string_view name, double value);
+  void show_power(std::int64_t power_w);
   void assign(const Assignment& assignment);
   [[nodiscard]] bool covers(int address, int count, int point) const;
   [[nodiscard]] bool is_order_ignored(int address, int count) const;
@@ -53,6 +54,8 @@ class RegisterImage {
   const RegisterMap& map_;
   SimulatedBattery& battery_;
   std::span<std::uint16_t> holding_, input_;
+  const StaticVector<Condition, 4>& active_;
+  const StaticVector<PowerCase, 4>& order_power_;
   int model_start_[decltype(RegisterMap::models)::capacity()] = {};
   int timer_ = -1;  ///< point that an order's duration is written to; -1 = fixed by the device
   bool timer_counts_minutes_ = false;
