@@ -1,6 +1,7 @@
 #include "tools/battery_sim/register_image.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "edge/registers/codec.h"
@@ -139,13 +140,13 @@ void RegisterImage::show_power(std::int64_t power_w) {
     }
   }
   for (const PowerCase& c : map_.measured_power) {
+    if (c.when.point >= 0) set(c.when.point, 0);
+  }
+  for (const PowerCase& c : map_.measured_power) {
     if (c.when.point < 0 || c.terms.empty() || c.terms[0].sign * power_w <= 0) continue;
     set(c.terms[0].point, std::abs(power_w));
     set(c.when.point, c.when.value);
     return;
-  }
-  for (const PowerCase& c : map_.measured_power) {
-    if (c.when.point >= 0) set(c.when.point, 0);
   }
 }
 
@@ -226,6 +227,12 @@ void RegisterImage::set(int point, std::int64_t value) {
   if (!live_scaling(map_, snapshot(), point, scaling)) return;
   if (encode(p, value, Rounding::kNearest, block, scaling) != Status::kOk) return;
   const std::span<std::uint16_t> registers = p.read_function == 4 ? input_ : holding_;
+  if (p.mask != 0 && p.register_count() == 1) {  // other points share this register
+    const auto others = registers[address_of(point)] & ~p.mask;
+    const auto own = static_cast<std::uint64_t>(value) << std::countr_zero(p.mask);
+    registers[address_of(point)] = static_cast<std::uint16_t>(others | (own & p.mask));
+    return;
+  }
   for (int i = 0; i < block.size(); ++i) registers[address_of(point) + i] = block[i];
 }
 
