@@ -65,6 +65,7 @@ class LinkStateMachine {
   void on_drained() { state_ = LinkState::kConnected; }
   /// The connection is gone or was given up; the device's gap holds for the next one too.
   void on_lost(std::int64_t now_ns) {
+    if (state_ == LinkState::kBackingOff) return;  // there was none: the pause goes on
     state_ = LinkState::kDisconnected;
     ready_ns_ = now_ns + pauses_.gap_ns;
   }

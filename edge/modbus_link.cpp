@@ -1,5 +1,7 @@
 #include "edge/modbus_link.h"
 
+#include <algorithm>
+
 namespace bess {
 namespace {
 
@@ -24,7 +26,13 @@ LinkPauses pauses_of(const LinkTiming& timing, const ScaledClock& clock) {
           .back_off_max_ns = clock.wall_ns(kBackOffMaxS * kNanosecondsPerSecond),
           .connect_delay_ns = clock.wall_ns(milliseconds(timing.connect_delay_ms)),
           .gap_ns = clock.wall_ns(milliseconds(timing.minimum_gap_ms)),
-          .quiet_ns = milliseconds(timing.quiet_ms)};
+          .quiet_ns = std::max(milliseconds(timing.response_timeout_ms),
+                               clock.wall_ns(milliseconds(timing.quiet_ms)))};
+}
+
+std::int64_t late_reply_ns_max(const LinkTiming& timing, const ScaledClock& clock) {
+  return std::max(5 * milliseconds(timing.response_timeout_ms),
+                  clock.wall_ns(milliseconds(timing.late_reply_ms_max)));
 }
 
 }  // namespace
@@ -37,7 +45,7 @@ ModbusLink::ModbusLink(const BatteryLinkSettings& settings, const LinkTiming& ti
       timing_(with_timeout(timing, settings)),
       wire_(settings, timing_.response_timeout_ms),
       state_(pauses_of(timing_, clock)),
-      unanswered_(milliseconds(timing_.late_reply_ms_max)) {}
+      unanswered_(late_reply_ns_max(timing_, clock)) {}
 
 Status ModbusLink::read(const RegisterSpan& span, std::uint16_t* registers) {
   return request(

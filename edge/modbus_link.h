@@ -27,8 +27,9 @@ struct LinkTiming {
   std::int32_t response_timeout_ms = 1'000;  ///< wall time, also of connecting
   std::int32_t minimum_gap_ms = 0;           ///< from the end of a request to the next, in `clock`
   std::int32_t connect_delay_ms = 0;         ///< from connecting to the first request, in `clock`
-  std::int32_t quiet_ms = 1'000;  ///< RTU, wall time: after a failed request, before the next
-  std::int32_t late_reply_ms_max = 10'000;  ///< RTU, wall time: no reply comes later than this
+  // RTU, in `clock`, and at least 1 and 5 response time-outs:
+  std::int32_t quiet_ms = 1'000;            ///< after a failed request, before the next
+  std::int32_t late_reply_ms_max = 10'000;  ///< no reply comes later than this
 };
 
 /// Contiguous registers of one unit that one request reads.

@@ -12,6 +12,7 @@
 #include "shared/scaled_clock.h"
 #include "shared/utc_text.h"
 #include "tests/support/child_process.h"
+#include "tests/support/pty_bridge.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bess {
@@ -74,19 +75,27 @@ class Processes : public ::testing::Test {
     EXPECT_GT(port, 0) << line;
     return child;
   }
-  void start_simulators(const std::vector<std::string>& market_faults = {}) {
-    battery_ = start_simulator({"battery", "--port", "0", "--record", folder_.file("battery.csv")},
-                               battery_port_);
+  void start_simulators(const std::vector<std::string>& market_faults = {},
+                        const std::vector<std::string>& battery_faults = {}) {
+    std::vector<std::string> battery = {"battery", "--port", "0", "--record",
+                                        folder_.file("battery.csv")};
+    battery.insert(battery.end(), battery_faults.begin(), battery_faults.end());
+    battery_ = start_simulator(battery, battery_port_);
     std::vector<std::string> market = {"market", "--port", "0", "--prices",
                                        folder_.write("minutes.csv", minute_file_text())};
     market.insert(market.end(), market_faults.begin(), market_faults.end());
     market_ = start_simulator(market, market_port_);
   }
-  std::string write_config() const {
+  std::string write_config(const std::string& serial_device = "") const {
     std::ostringstream text;
+    text << "control = true\n[battery]\nmap = \"" BESS_SOURCE_DIR "/edge/maps/alphaess.toml\"\n";
+    if (serial_device.empty()) {
+      text << "port = " << battery_port_ << "\n";
+    } else {
+      text << "transport = \"rtu\"\nbaud = 115200\ndevice = \"" << serial_device << "\"\n";
+    }
     text
-        << "control = true\n[battery]\nmap = \"" BESS_SOURCE_DIR "/edge/maps/alphaess.toml\"\n"
-        << "port = " << battery_port_ << "\nresponse_timeout_ms = 100\nstart_timeout_s = 1\n"
+        << "response_timeout_ms = 100\nstart_timeout_s = 1\n"
         << "[price]\nurl = \"http://127.0.0.1:" << market_port_
         << "/api/explore/v2.1/catalog/datasets/ods161/records?order_by=datetime%20desc&limit=20\"\n"
         << "[log]\ncsv = \"edge.csv\"\n[simulation]\ntime_scale = " << kScale
@@ -181,6 +190,58 @@ TEST_F(Processes, MarketFaultsDoNotStopTheLoop) {
   }
 }
 
+TEST_F(Processes, TheSameOverASerialLine) {
+  start_simulators();
+  const PtyBridge line;
+  std::vector<std::string> arguments = {BESS_SIM_PROGRAM, "battery", "--serial",
+                                        line.device(0),   "--baud",  "115200"};
+  for (const std::string& option : clock_options()) arguments.push_back(option);
+  ChildProcess battery(arguments);
+  EXPECT_THAT(battery.read_line(), HasSubstr("listening on " + line.device(0)));
+  ChildProcess edge(
+      {BESS_EDGE_PROGRAM, "--config", write_config(line.device(1)), "--cycles", "15"});
+  EXPECT_THAT(edge.read_all(), HasSubstr("stopped: battery released"));
+  EXPECT_EQ(edge.wait(), 0);
+  int written = 0;
+  for (const CsvRow& row : read_csv(folder_.file("edge.csv"))) {
+    if (row.at("written") == "1") ++written;
+  }
+  EXPECT_GE(written, 14);
+  EXPECT_EQ(stop(battery), 0);
+}
+
+/// Whatever the bus does, what the log calls written is what the battery was commanded.
+TEST_F(Processes, BusFaultsCostCyclesButNeverGiveAWrongOrder) {
+  start_simulators({}, {"--fault", "exception", "drop", "reset", "wrong-unit", "wrong-transaction",
+                        "wrong-protocol", "wrong-address", "wrong-value", "fewer-registers",
+                        "garbage", "duplicate", "refuse", "ack-without-effect",
+                        "--fault-probability", "0.15", "--fault-seed", "4"});
+  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", write_config(), "--cycles", "40"});
+  edge.read_all();
+  EXPECT_EQ(edge.wait(), 0);
+  EXPECT_EQ(stop(*battery_), 0);
+  std::map<std::int64_t, std::string> commanded;  // at the end of each minute
+  const auto instant = [](const std::string& text) {
+    std::int64_t utc_s = 0;
+    EXPECT_TRUE(parse_utc_text(text, utc_s)) << text;
+    return utc_s;
+  };
+  for (const CsvRow& row : read_csv(folder_.file("battery.csv"))) {
+    commanded[instant(row.at("minute_utc"))] = row.at("commanded_power_w");
+  }
+  int written = 0;
+  int troubled = 0;
+  for (const CsvRow& row : read_csv(folder_.file("edge.csv"))) {
+    if (row.at("battery_status") != "ok") ++troubled;
+    if (row.at("mode") == "stopping" || row.at("written") != "1") continue;
+    ++written;
+    const std::int64_t last_minute_s = instant(row.at("utc")) + 60;  // of this order
+    EXPECT_EQ(commanded[last_minute_s], row.at("ordered_power_w")) << row.at("utc");
+  }
+  EXPECT_GE(written, 20);
+  EXPECT_GE(troubled, 1);
+}
+
 TEST_F(Processes, CheckReportsAndReadsButWritesNothing) {
   start_simulators();
   sleep_until_monotonic(anchor_ns_);
@@ -211,6 +272,9 @@ TEST_F(Processes, BadStartsEndWithOneClearLine) {
       {{BESS_SIM_PROGRAM, "batery"}, 2, "unknown subcommand batery"},
       {{BESS_SIM_PROGRAM, "market", "--prices", "/nonexistent"}, 1, "cannot open"},
       {{BESS_SIM_PROGRAM, "battery", "--soc", "2"}, 2, "--soc"},
+      {{BESS_SIM_PROGRAM, "battery", "--fault", "crc"}, 2, "--fault"},
+      {{BESS_SIM_PROGRAM, "battery", "--fault", "bad-crc"}, 1, "bad-crc: only on a serial line"},
+      {{BESS_SIM_PROGRAM, "battery", "--serial", "/nonexistent"}, 1, "cannot open this serial"},
   };
   for (const Start& start : starts) {
     ChildProcess child(start.arguments);

@@ -1,68 +1,19 @@
-// The edge's Modbus driver against the simulated battery over real libmodbus on loopback: every
-// command, and every fault ends in a right answer or an error, never in a wrong value.
+// The edge's Modbus driver against the simulated battery, which speaks libmodbus, on loopback: every
+// command, and how trouble is told apart. Faults: modbus_faults_test.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <chrono>
-#include <optional>
 #include <thread>
 
 #include "edge/modbus_battery.h"
-#include "edge/registers/map_file.h"
-#include "tools/battery_sim/battery_server.h"
+#include "tests/tools/loopback_battery.h"
 #include "tools/sim/sim_error.h"
 
 namespace bess {
 namespace {
 
-constexpr std::int32_t kScale = 1'000;  // the map's gap of 400 ms takes 0.4 ms
 constexpr PowerOrder kCharge{
     .power_w = 4'000, .soc_min_e4 = 1'000, .soc_max_e4 = 10'000, .duration_s = 300};
-
-RegisterMap load(const char* variant) {
-  RegisterMap map;
-  std::string error;
-  EXPECT_TRUE(load_register_map(BESS_SOURCE_DIR "/edge/maps/alphaess.toml", variant, map, error))
-      << error;
-  return map;
-}
-
-/// A battery on a free port with its own thread, and the edge's driver for it.
-class LoopbackBattery {
- public:
-  explicit LoopbackBattery(const char* variant, BatteryServerSettings settings = {})
-      : map(load(variant)), battery_({.power_w_max = 4'000, .capacity_wh = 8'000}, 0.5, 0) {
-    clock.scale = kScale;
-    clock.anchor_utc_s = 1'679'788'800;
-    clock.anchor_monotonic_ns = clock_ns(CLOCK_MONOTONIC);
-    battery_ =
-        SimulatedBattery({.power_w_max = 4'000, .capacity_wh = 8'000}, 0.5, clock.now_utc_ns());
-    settings.port = 0;
-    server_.emplace(settings, map, battery_, clock);
-    EXPECT_EQ(pipe(stop_), 0);
-    thread_ = std::thread([this] { server_->run(stop_[0]); });
-  }
-  ~LoopbackBattery() {
-    close(stop_[1]);
-    thread_.join();
-    close(stop_[0]);
-  }
-  [[nodiscard]] BatteryLinkSettings link() const {
-    BatteryLinkSettings settings;
-    settings.port = server_->port();
-    settings.response_timeout_ms = 60;
-    return settings;
-  }
-
-  RegisterMap map;
-  ScaledClock clock;
-
- private:
-  SimulatedBattery battery_;
-  std::optional<BatteryServer> server_;
-  int stop_[2];
-  std::thread thread_;
-};
 
 class EveryVariant : public ::testing::TestWithParam<const char*> {};
 
@@ -100,38 +51,6 @@ TEST(ModbusLink, DeadManEndsAnOrderThatIsNotRefreshed) {
   EXPECT_EQ(m.power_w, 0);
 }
 
-class EveryFault : public ::testing::TestWithParam<BatteryFault> {};
-
-TEST_P(EveryFault, EndsInARightAnswerOrAnErrorAndRecovers) {
-  BatteryServerSettings settings;
-  settings.faults = {.faults = {GetParam()}, .every = 4};
-  settings.late_ms = 90;  // after the driver's 60 ms have run out
-  LoopbackBattery loopback("block", settings);
-  ModbusBattery battery(loopback.link(), loopback.map, loopback.clock);
-  int good = 0;
-  for (int i = 0; i < 12; ++i) {
-    PowerOrder order = kCharge;
-    order.power_w = i % 2 == 0 ? 1'000 : -1'000;
-    order.duration_s = 86'400;
-    const Status ordered = battery.order(order);
-    BatteryMeasurement m;
-    const Status read = battery.read(m);
-    if (read != Status::kOk) continue;
-    EXPECT_EQ(m.capacity_wh, 8'000);
-    EXPECT_NEAR(m.soc_e4, 5'000, 400);
-    if (ordered == Status::kOk) {
-      EXPECT_EQ(m.power_w, order.power_w);
-      ++good;
-    }
-  }
-  EXPECT_GE(good, 6);  // one retry mends a single fault
-}
-
-INSTANTIATE_TEST_SUITE_P(Faults, EveryFault,
-                         ::testing::Values(BatteryFault::kSilence, BatteryFault::kLate,
-                                           BatteryFault::kException, BatteryFault::kDrop,
-                                           BatteryFault::kAckWithoutEffect));
-
 TEST(ModbusLink, AcknowledgedButNotAppliedIsSeen) {
   BatteryServerSettings settings;
   settings.faults = {.faults = {BatteryFault::kAckWithoutEffect}, .every = 1};
@@ -159,8 +78,8 @@ TEST(ModbusLink, NobodyThereAndWrongUnitAreToldApart) {
     BatteryMeasurement m;
     EXPECT_EQ(wrong_unit.read(m), Status::kTimeout);
   }
-  const RegisterMap map = load("block");
-  ModbusBattery nobody(link, map, ScaledClock{.scale = kScale});
+  const RegisterMap map = load_alphaess("block");
+  ModbusBattery nobody(link, map, ScaledClock{.scale = LoopbackBattery::kScale});
   BatteryMeasurement m;
   EXPECT_EQ(nobody.read(m), Status::kNotConnected);
 }

@@ -22,6 +22,7 @@ struct BatteryOptions {
   BatteryServerSettings server;
   ClockOptions clock;
   std::string map_path = BESS_MAP_DIR "/alphaess.toml";
+  std::vector<std::string> fault_names;
   std::string record_path;
   double soc_frac = 0.5;
   BatteryParameters battery{.power_w_max = 4'000, .capacity_wh = 8'000};
@@ -36,21 +37,28 @@ void check_record_folder(const std::string& path) {
   if (access(folder.c_str(), W_OK) != 0) sim_fail("{}: cannot write in this folder", path);
 }
 
+const BatteryFaultInfo* find_fault(const std::string& name) {
+  for (const BatteryFaultInfo& fault : battery_faults()) {
+    if (name == fault.name) return &fault;
+  }
+  return nullptr;
+}
+
 /// A fault that this bus does not have would be waited for in vain.
-void check_faults(const BatteryServerSettings& server) {
+void take_faults(const std::vector<std::string>& names, BatteryServerSettings& server) {
   const bool rtu = !server.serial_device.empty();
-  for (const BatteryFault fault : server.faults.faults) {
-    for (const BatteryFaultInfo& info : battery_faults()) {
-      if (info.fault == fault && !(rtu ? info.rtu : info.tcp)) {
-        sim_fail("--fault {}: only {} a serial line", info.name, rtu ? "without" : "on");
-      }
+  for (const std::string& name : names) {
+    const BatteryFaultInfo& info = *find_fault(name);
+    if (!(rtu ? info.rtu : info.tcp)) {
+      sim_fail("--fault {}: only {} a serial line", name, rtu ? "without" : "on");
     }
+    server.faults.faults.push_back(info.fault);
   }
 }
 
 void run_battery(BatteryOptions& options) {
   const StopSignal stop;
-  check_faults(options.server);
+  take_faults(options.fault_names, options.server);
   const ScaledClock clock = options.clock.clock();
   check_record_folder(options.record_path);
   static RegisterMap map;
@@ -114,14 +122,17 @@ void add_bus_options(CLI::App& command, BatteryServerSettings& server) {
       ->check(CLI::Range(0, 60'000));
 }
 
-void add_fault_options(CLI::App& command, BatteryServerSettings& server) {
-  std::map<std::string, BatteryFault> names;
-  for (const BatteryFaultInfo& info : battery_faults()) names[info.name] = info.fault;
+void add_fault_options(CLI::App& command, BatteryOptions& options) {
+  BatteryServerSettings& server = options.server;
   FaultSchedule& faults = server.faults;
+  const auto known = [](const std::string& name) -> std::string {
+    if (find_fault(name) != nullptr) return "";
+    return "there is no fault " + name;
+  };
   command
-      .add_option("--fault", faults.faults,
+      .add_option("--fault", options.fault_names,
                   "Misbehave now and then; of several, one at random each time (see below)")
-      ->transform(CLI::CheckedTransformer(names).description(""))
+      ->check(CLI::Validator(known, ""))
       ->type_name("NAME");
   command.add_option("--fault-every", faults.every, "At every Nth chance")
       ->check(CLI::Range(1, 1'000'000))
@@ -177,7 +188,7 @@ void add_battery_command(CLI::App& app) {
   add_bus_options(*command, options->server);
   options->clock.add_to(*command);
   add_plant_options(*command, *options);
-  add_fault_options(*command, options->server);
+  add_fault_options(*command, *options);
   command->callback([options] { run_battery(*options); });
 }
 

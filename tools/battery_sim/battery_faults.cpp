@@ -24,7 +24,7 @@ constexpr BatteryFaultInfo kFaults[] = {
     {BatteryFault::kDrip, "drip", "the answer byte by byte, --drip-ms apart", kAny},
     {BatteryFault::kByteGap, "byte-gap", "pauses --late-ms within the answer", kAny},
     {BatteryFault::kGarbage, "garbage", "random bytes instead of the answer", kAny},
-    {BatteryFault::kDuplicate, "duplicate", "the answer twice", kAny},
+    {BatteryFault::kDuplicate, "duplicate", "TCP: the answer twice", kAny, true, false},
     {BatteryFault::kWrongTransaction, "wrong-transaction", "TCP: another transaction id", kAny,
      true, false},
     {BatteryFault::kWrongProtocol, "wrong-protocol", "TCP: protocol id 1", kAny, true, false},

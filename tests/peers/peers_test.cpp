@@ -1,0 +1,220 @@
+// The real bess-edge against an independent battery (pymodbus), watched by an independent master (mbpoll):
+// the dispatch block of AlphaESS, register by register, for charge, idle, discharge and release, over TCP and
+// over a serial line (socat), written as one block and as five writes. The expected registers are worked
+// out by hand from the vendor's manual:
+//   0x0880 start | 32000 + W, below it charging (2) | 32000 + var (2) | mode 2 = SoC control |
+//   SoC limit, 0.4 % each: ceiling 100 % = 250, floor 10 % = 25 | seconds (2) | 255 | PV 0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "shared/scaled_clock.h"
+#include "shared/utc_text.h"
+#include "tests/support/child_process.h"
+#include "tests/support/temporary_folder.h"
+
+namespace bess {
+namespace {
+
+using ::testing::ElementsAreArray;
+using ::testing::HasSubstr;
+
+constexpr std::int64_t kStartS = 1'679'788'800;  // 2023-03-26T00:00:00Z
+constexpr const char* kStart = "2023-03-26T00:00:00Z";
+constexpr int kScale = 60;  // a cycle takes 2 s: time to kill the edge between two orders
+constexpr const char* kPython = "/usr/bin/python3";
+constexpr const char* kMbpoll = "/usr/bin/mbpoll";
+constexpr const char* kSocat = "/usr/bin/socat";
+
+struct Setup {
+  bool rtu;
+  const char* variant;
+};
+
+/// What the market and the battery look like, and what must then stand in 0x0880..0x088A.
+struct Situation {
+  const char* name;
+  int price_eur_per_mwh;
+  int soc_permille;
+  std::vector<int> dispatch;
+};
+
+const Situation kCharge{"charge", -600, 435, {1, 0, 28'000, 0, 32'000, 2, 250, 0, 300, 255, 0}};
+const Situation kDischarge{
+    "discharge", 1'600, 435, {1, 0, 36'000, 0, 32'000, 2, 25, 0, 300, 255, 0}};
+/// Very cheap, but full.
+const Situation kIdle{"idle", -600, 1'000, {1, 0, 32'000, 0, 32'000, 2, 250, 0, 300, 255, 0}};
+
+/// The writes by which one order arrives.
+std::vector<std::string> writes_of(const std::vector<int>& d, const std::string& variant) {
+  const auto line = [&](int first, int count) {
+    std::string text = std::string("write ").append(std::to_string(0x0880 + first));
+    for (int i = first; i < first + count; ++i) {
+      text.append(" ").append(std::to_string(d[static_cast<std::size_t>(i)]));
+    }
+    return text;
+  };
+  if (variant == "block") return {line(0, 11)};
+  return {line(0, 1), line(1, 2), line(7, 2), line(6, 1), line(5, 1)};
+}
+
+class Peers : public ::testing::TestWithParam<Setup> {
+ protected:
+  void SetUp() override {
+    for (const char* program : {kPython, kMbpoll, kSocat}) {
+      if (access(program, X_OK) != 0) GTEST_SKIP() << program << " is not installed";
+    }
+    ChildProcess probe({kPython, "-c", "import pymodbus, serial_asyncio"});
+    if (probe.wait() != 0) GTEST_SKIP() << "pymodbus or serial_asyncio is not installed";
+    if (GetParam().rtu) start_line();
+  }
+
+  void start_line() {
+    const auto end = [&](const char* name) { return "pty,raw,echo=0,link=" + folder_.file(name); };
+    line_ = std::make_unique<ChildProcess>(
+        std::vector<std::string>{kSocat, end("battery_end"), end("edge_end")});
+    for (int i = 0; i < 500 && access(folder_.file("edge_end").c_str(), F_OK) != 0; ++i) {
+      sleep_until_monotonic(clock_ns(CLOCK_MONOTONIC) + kNanosecondsPerSecond / 100);
+    }
+  }
+  void start_battery(int soc_permille) {
+    std::vector<std::string> arguments = {kPython, BESS_SOURCE_DIR "/tests/peers/alphaess_peer.py",
+                                          "--soc", std::to_string(soc_permille)};
+    if (GetParam().rtu) {
+      arguments.insert(arguments.end(), {"--serial", folder_.file("battery_end")});
+    }
+    battery_ = std::make_unique<ChildProcess>(arguments);
+    const std::string ready = battery_->read_line();
+    ASSERT_THAT(ready, HasSubstr("listening on"));
+    battery_port_ = ready.substr(ready.find_last_of(':') + 1);
+  }
+  void start_market(int price) {
+    std::ostringstream text;
+    text << "minute_utc,indicative_eur_mwh,settled_eur_mwh\n";
+    for (int minute = -10; minute < 60; ++minute) {
+      text << utc_text(kStartS + 60 * minute).view() << ',' << price << ',' << price << '\n';
+    }
+    market_ = std::make_unique<ChildProcess>(std::vector<std::string>{
+        BESS_SIM_PROGRAM, "market", "--port", "0", "--prices",
+        folder_.write("minutes.csv", text.str()), "--utc-start", kStart, "--time-scale",
+        std::to_string(kScale), "--anchor-monotonic-ns", std::to_string(anchor_ns_)});
+    const std::string ready = market_->read_line();
+    const std::size_t colon = ready.find(':', ready.find("127.0.0.1"));
+    ASSERT_NE(colon, std::string::npos) << ready;
+    market_port_ = std::to_string(std::atoi(ready.c_str() + colon + 1));
+  }
+  std::string edge_config() const {
+    std::ostringstream text;
+    text << "control = true\n[battery]\nmap = \"" BESS_SOURCE_DIR "/edge/maps/alphaess.toml\"\n"
+         << "variant = \"" << GetParam().variant << "\"\nresponse_timeout_ms = 2000\n";
+    if (GetParam().rtu) {
+      text << "transport = \"rtu\"\ndevice = \"" << folder_.file("edge_end") << "\"\n";
+    } else {
+      text << "port = " << battery_port_ << "\n";
+    }
+    text << "[price]\nurl = \"http://127.0.0.1:" << market_port_
+         << "/api/explore/v2.1/catalog/datasets/ods161/records?order_by=datetime%20desc&limit=5\"\n"
+         << "[simulation]\ntime_scale = " << kScale << "\nutc_start = \"" << kStart
+         << "\"\nanchor_monotonic_ns = " << anchor_ns_ << "\n";
+    return folder_.write("edge.toml", text.str());
+  }
+  /// Runs the edge in a situation up to its first order; then it ends by this signal.
+  void run_edge(const Situation& situation, int signal) {
+    anchor_ns_ = clock_ns(CLOCK_MONOTONIC) + 2 * kNanosecondsPerSecond;
+    start_battery(situation.soc_permille);
+    start_market(situation.price_eur_per_mwh);
+    if (HasFatalFailure()) return;
+    ChildProcess edge({BESS_EDGE_PROGRAM, "--config", edge_config()});
+    std::string line;
+    do line = edge.read_line();
+    while (!line.empty() && line.find(" written=1") == std::string::npos);
+    ASSERT_THAT(line, HasSubstr("mode=running"));
+    edge.signal(signal);
+    edge.read_all();
+    ASSERT_EQ(edge.wait(), signal == SIGKILL ? 128 + SIGKILL : 0);
+  }
+
+  /// What mbpoll reads in the dispatch block: it asks for all, each value is printed with its address.
+  std::vector<int> read_dispatch() {
+    std::vector<std::string> arguments = {kMbpoll, "-a", "85", "-0", "-r", "2176", "-c",
+                                          "11",    "-t", "4",  "-1", "-o", "5"};
+    if (GetParam().rtu) {
+      arguments.insert(arguments.end(),
+                       {"-m", "rtu", "-b", "9600", "-P", "none", folder_.file("edge_end")});
+    } else {
+      arguments.insert(arguments.end(), {"-m", "tcp", "-p", battery_port_, "127.0.0.1"});
+    }
+    ChildProcess mbpoll(arguments);
+    const std::string text = mbpoll.read_all();
+    std::vector<int> registers;
+    for (int address = 2'176; address < 2'187; ++address) {
+      const std::string key = std::string("[").append(std::to_string(address)).append("]:");
+      const std::size_t at = text.find(key);
+      EXPECT_NE(at, std::string::npos) << text;
+      // A value above 32767 is printed with its signed reading in brackets behind it.
+      if (at != std::string::npos) registers.push_back(std::atoi(text.c_str() + at + key.size()));
+    }
+    return registers;
+  }
+  /// All writes that the battery has had, in their order.
+  std::vector<std::string> take_writes() {
+    battery_->signal(SIGTERM);
+    std::vector<std::string> writes;
+    std::istringstream text(battery_->read_all());
+    for (std::string line; std::getline(text, line);) {
+      if (line.rfind("write ", 0) == 0) writes.push_back(line);
+    }
+    battery_.reset();
+    market_.reset();
+    return writes;
+  }
+
+  TemporaryFolder folder_;
+  std::int64_t anchor_ns_ = 0;
+  std::string battery_port_, market_port_;
+  std::unique_ptr<ChildProcess> line_, battery_, market_;
+};
+
+TEST_P(Peers, EachOrderStandsInTheDispatchBlockRegisterByRegister) {
+  for (const Situation& situation : {kCharge, kIdle, kDischarge}) {
+    SCOPED_TRACE(situation.name);
+    run_edge(situation, SIGKILL);  // the order stays in force
+    ASSERT_FALSE(HasFatalFailure());
+    EXPECT_THAT(read_dispatch(), ElementsAreArray(situation.dispatch));
+    EXPECT_THAT(take_writes(), ElementsAreArray(writes_of(situation.dispatch, GetParam().variant)));
+  }
+}
+
+TEST_P(Peers, AStoppedEdgeLeavesTheBlockReleased) {
+  run_edge(kCharge, SIGTERM);
+  ASSERT_FALSE(HasFatalFailure());
+  const bool block = std::string(GetParam().variant) == "block";
+  const std::vector<int> released =
+      block ? std::vector{0, 0, 32'000, 0, 32'000, 0, 0, 0, 90, 255, 0}
+            : std::vector{0, 0, 32'000, 0, 32'000, 2, 250, 0, 300, 255, 0};
+  EXPECT_THAT(read_dispatch(), ElementsAreArray(released));
+  std::vector<std::string> expected = writes_of(kCharge.dispatch, GetParam().variant);
+  for (const std::string& write : writes_of(kIdle.dispatch, GetParam().variant)) {
+    expected.push_back(write);  // 0 W first
+  }
+  if (block) {
+    expected.push_back(writes_of(released, "block")[0]);
+  } else {
+    expected.push_back("write 2177 0 32000");
+    expected.push_back("write 2176 0");
+  }
+  EXPECT_THAT(take_writes(), ElementsAreArray(expected));
+}
+
+std::string setup_name(const ::testing::TestParamInfo<Setup>& info) {
+  return std::string(info.param.rtu ? "rtu_" : "tcp_") + info.param.variant;
+}
+
+INSTANTIATE_TEST_SUITE_P(Bus, Peers,
+                         ::testing::Values(Setup{false, "block"}, Setup{false, "five_writes"},
+                                           Setup{true, "block"}, Setup{true, "five_writes"}),
+                         setup_name);
+
+}  // namespace
+}  // namespace bess
