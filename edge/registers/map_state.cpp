@@ -1,4 +1,6 @@
 // [power], [watchdog], [state] and [[identity]].
+#include <algorithm>
+
 #include "edge/registers/map_reader.h"
 
 namespace bess {
@@ -7,7 +9,11 @@ namespace {
 void read_measured(TomlTable& table, RegisterMap& map) {
   for_each_text(table, "measure", [&](std::string_view name, const toml::node& at) {
     const std::int8_t point = require_point(table, at, name, map);
-    if (point >= 0 && !map.measure.try_push_back(point)) table.fail("measure", "is too long");
+    if (point < 0) return;
+    if (std::find(map.measure.begin(), map.measure.end(), point) != map.measure.end()) {
+      return table.fail_at(at, "measure holds " + quoted(name) + " twice");
+    }
+    map.measure.push_back(point);  // fits: there is room for every point once
   });
 }
 

@@ -253,6 +253,7 @@ TEST_F(MapFormat, EveryMistakeHasItsMend) {
       {"active = [\"enable = 1\"]", "active = [\"enable = maybe\"]", "neither a number nor a name"},
       {"active = [\"enable = 1\"]", "active = [\"unable = 1\"]", "no [[point]] is named"},
       {"measure = [\"soc\", ", "measure = [", "must hold a point \"soc\""},
+      {"measure = [\"soc\", ", "measure = [\"soc\", \"soc\", ", "holds \"soc\" twice"},
       {"name = \"battery_power\"", "name = \"battery power\"", "must be one word"},
       {"\"enable = on\", \"power", "\"enable\", \"power", "a step must say"},
       {"\"enable = on\", \"power", "{ delay_ms = 3 }, \"power", "must follow a write"},
