@@ -10,6 +10,7 @@
 #include "edge/battery_bus.h"
 #include "edge/command_runner.h"
 #include "edge/control_types.h"
+#include "edge/measurement_reader.h"
 #include "edge/registers/codec.h"
 #include "shared/units_and_limits.h"
 
@@ -30,12 +31,7 @@ class BatteryDriver {
       : map_(map),
         bus_(map, time, unit, std::forward<LinkArguments>(link)...),
         runner_(map, bus_),
-        soc_(find_point(map, "soc")),
-        capacity_(find_point(map, "capacity")),
-        charge_limit_(find_point(map, "charge_power_max")),
-        discharge_limit_(find_point(map, "discharge_power_max")),
-        temperature_min_(find_point(map, "temperature_min")),
-        temperature_max_(find_point(map, "temperature_max")) {}
+        reader_(map) {}
   BatteryDriver(const BatteryDriver&) = delete;
   BatteryDriver& operator=(const BatteryDriver&) = delete;
 
@@ -44,7 +40,8 @@ class BatteryDriver {
     measurement = BatteryMeasurement{};
     if (const Status status = identify(); status != Status::kOk) return status;
     if (const Status status = read_registers(); status != Status::kOk) return status;
-    if (const Status status = translate(measurement); status != Status::kOk) return status;
+    const Status status = reader_.translate(bus_.live(), bus_.time().now_ns(), measurement);
+    if (status != Status::kOk) return status;
     note_order_in_force(measurement);
     return Status::kOk;
   }
@@ -133,10 +130,6 @@ class BatteryDriver {
  private:
   static constexpr std::int64_t kLiveAgeNs = 180 * kNanosecondsPerSecond;
 
-  static std::int32_t to_int32(std::int64_t value) {
-    return static_cast<std::int32_t>(std::clamp<std::int64_t>(value, INT32_MIN, INT32_MAX));
-  }
-
   template <typename Request>
   static Status retried(Request request) {
     Status status = Status::kOk;
@@ -186,48 +179,6 @@ class BatteryDriver {
     return plausible ? Status::kOk : Status::kImplausible;
   }
 
-  Status translate(BatteryMeasurement& m) {
-    for (const std::int8_t point : map_.required) {
-      std::int64_t value = 0;
-      if (!live_value(map_, bus_.live(), point, value)) return Status::kImplausible;
-      store(point, value, m);
-    }
-    std::int64_t power_w = 0;
-    if (!live_power(map_, map_.measured_power, bus_.live(), power_w)) return Status::kImplausible;
-    m.power_w = to_int32(power_w);
-    for (const Condition& alarm : map_.alarms) {
-      if (is_true(alarm)) m.alarm = true;
-    }
-    m.off_grid = map_.off_grid.point >= 0 && is_true(map_.off_grid);
-    return is_alive() ? Status::kOk : Status::kImplausible;
-  }
-
-  [[nodiscard]] bool is_true(const Condition& condition) const {
-    std::int64_t value = 0;
-    return live_value(map_, bus_.live(), condition.point, value) && condition.holds(value);
-  }
-
-  void store(int point, std::int64_t wide, BatteryMeasurement& m) const {
-    const std::int32_t value = to_int32(wide);
-    if (point == soc_) m.soc_e4 = value;
-    if (point == capacity_) m.capacity_wh = value;
-    if (point == charge_limit_) m.charge_w_max = value;
-    if (point == discharge_limit_) m.discharge_w_max = value;
-    if (point == temperature_min_) m.temperature_min_deci_c = value;
-    if (point == temperature_max_) m.temperature_max_deci_c = value;
-  }
-
-  /// A device whose counter stands still shows frozen values as if they were new.
-  bool is_alive() {
-    if (map_.alive.point < 0) return true;
-    std::int64_t counter = 0;
-    if (!live_value(map_, bus_.live(), map_.alive.point, counter)) return false;
-    const std::int64_t now_ns = bus_.time().now_ns();
-    if (alive_ns_ == 0 || counter != alive_counter_) alive_ns_ = now_ns;
-    alive_counter_ = counter;
-    return now_ns - alive_ns_ <= map_.alive.max_age_s * kNanosecondsPerSecond;
-  }
-
   /// What order the device follows, whoever gave it: a restart takes over from here.
   void note_order_in_force(BatteryMeasurement& m) {
     const bool fed = in_force_ && (map_.watchdog.kind == Watchdog::Kind::kNone ||
@@ -238,7 +189,7 @@ class BatteryDriver {
     std::int64_t power_w = 0;
     m.has_order_power =
         m.dispatch_active && live_power(map_, map_.order_power, bus_.live(), power_w);
-    if (m.has_order_power) m.order_power_w = to_int32(power_w);
+    if (m.has_order_power) m.order_power_w = clamp_to_int32(power_w);
     if (in_force_ && (!m.dispatch_active || is_overwritten())) lose_order();
     std::int64_t left_s = 0;
     const int remaining = map_.watchdog.remaining;
@@ -355,6 +306,7 @@ class BatteryDriver {
   const RegisterMap& map_;
   BatteryBus<Link, Time> bus_;
   CommandRunner<Link, Time> runner_;
+  MeasurementReader reader_;
   bool identified_ = false;
   bool enabled_ = false;
   bool in_force_ = false;  ///< the order below was read back and nothing has ended it since
@@ -362,12 +314,7 @@ class BatteryDriver {
   Command command_ = Command::kIdle;
   PowerOrder order_;
   std::int64_t fed_ns_ = 0;
-  std::int64_t alive_ns_ = 0;
-  std::int64_t alive_counter_ = 0;
   std::int64_t unchanged_orders_ = 0;
-
-  // Points with a meaning for the controller, by name; -1 = not in this map.
-  int soc_, capacity_, charge_limit_, discharge_limit_, temperature_min_, temperature_max_;
 };
 
 }  // namespace bess

@@ -7,7 +7,7 @@ found=$(
   for archive in "$control" "$registers" "$edge_io"; do
     "$nm" -A -C -u "$archive"
   done |
-    grep -E ':(safety_guard|policy|point_codec|live_points|codec|read_plan|modbus_frame|modbus_wire|modbus_link|modbus_battery|event_log)\.cpp\.o:' |
+    grep -E ':(safety_guard|policy|point_codec|live_points|codec|read_plan|measurement_reader|modbus_frame|modbus_wire|modbus_link|modbus_battery|event_log)\.cpp\.o:' |
     grep -E ' (operator (new|delete)|malloc|calloc|realloc|free|aligned_alloc|posix_memalign|strdup)(\(|\[|$)'
 )
 if [ -n "$found" ]; then
