@@ -123,6 +123,20 @@ class BatteryDriver {
     runner_.budget().restore(day, writes);
   }
 
+  /// What a write of a command would be, without asking or telling the device anything.
+  /// kNotConnected while its scale or place is only known to a device that has not been read yet.
+  Status preview(const BlockWrite& write, const PowerOrder& order, std::uint16_t& address,
+                 RegisterBlock& block) const {
+    const bool was_read = bus_.last_read_ns() != 0;
+    for (const WriteValue& value : write.values) {
+      const RegisterPoint& p = map_.points[value.point];
+      const bool needs_device = p.model >= 0 || p.scale_from >= 0 || p.percent_of >= 0;
+      if (needs_device && !was_read) return Status::kNotConnected;
+    }
+    address = bus_.placed(write.values[0].point, 3).place.address;
+    return encode_block(map_, write, order, block, {.live = was_read ? &bus_.live() : nullptr});
+  }
+
   /// Gives the one connection free; the next request opens it again.
   void close() { bus_.link().close(); }
   [[nodiscard]] Link& link() { return bus_.link(); }

@@ -384,6 +384,23 @@ TEST(SunSpec704, LocalControlAndFrozenHeartbeatAreSeen) {
   EXPECT_TRUE(t.measured.alarm);
 }
 
+TEST(SunSpec704, APreviewKnowsPlacesAndScalesOnceTheDeviceWasRead) {
+  MapUnderTest t(shipped_map("sunspec_704"));
+  const PowerOrder order{.power_w = 4'000, .duration_s = 300};
+  const BlockWrite& write = t.map.sequence(Command::kCharge).writes[0];
+  std::uint16_t address = 0;
+  RegisterBlock block;
+  EXPECT_EQ(t.driver->preview(write, order, address, block), Status::kNotConnected);
+  fill_models(t.device, 40'000, 704, 65, 802);
+  t.device.set(40'070 + 67 + 3, {8'000});
+  t.device.set(40'070 + 55, {1});  // set-point in 10 W
+  ASSERT_EQ(t.read(), Status::kOk);
+  ASSERT_EQ(t.driver->preview(write, order, address, block), Status::kOk);
+  EXPECT_EQ(address, 40'093);
+  EXPECT_THAT(std::vector<int>(block.begin(), block.end()), ElementsAre(1, 0xFFFF, 65'136));
+  EXPECT_THAT(t.device.writes, IsEmpty());
+}
+
 TEST(SunSpec704, WithoutItsModelsItIsAnotherDevice) {
   MapUnderTest t(shipped_map("sunspec_704"));
   EXPECT_EQ(t.read(), Status::kImplausible);
