@@ -31,7 +31,11 @@ class BatteryDriver {
       : map_(map),
         bus_(map, time, unit, std::forward<LinkArguments>(link)...),
         runner_(map, bus_),
-        reader_(map) {}
+        reader_(map),
+        scales_elsewhere_(
+            std::any_of(map.points.begin(), map.points.end(), [](const RegisterPoint& p) {
+              return p.scale_from >= 0 || p.percent_of >= 0 || p.clamp_to >= 0;
+            })) {}
   BatteryDriver(const BatteryDriver&) = delete;
   BatteryDriver& operator=(const BatteryDriver&) = delete;
 
@@ -84,9 +88,11 @@ class BatteryDriver {
     return often ? map_.watchdog.refresh_s : 0;
   }
 
-  /// Gives the battery back to its own mode and reads that back. Never refused for the budget.
+  /// Gives the battery back to its own mode and reads that back. Never refused for the budget, nor
+  /// because measurements fail: scale factors that were read once will do.
   Status release() {
-    if (const Status status = prepare(); status != Status::kOk) return status;
+    if (const Status status = identify(); status != Status::kOk) return status;
+    static_cast<void>(prepare());
     const Status status = runner_.run(map_.sequence(Command::kRelease), PowerOrder{});
     lose_order();
     if (status == Status::kOk) runner_.saved().forget();
@@ -164,12 +170,14 @@ class BatteryDriver {
     return retried([this] { return bus_.read_due(); });
   }
 
-  /// Scale factors, ratings and limits that go into an order must not be old.
+  /// Scale factors, ratings and limits that go into an order must not be old. A map without them can
+  /// order (0 W above all) even while the measurements fail.
   Status prepare() {
     if (const Status status = identify(); status != Status::kOk) return status;
+    const bool needs_live = scales_elsewhere_ || (!enabled_ && !map_.saved.empty());
     const std::int64_t read_ns = bus_.last_read_ns();
-    if (read_ns != 0 && bus_.time().now_ns() - read_ns < kLiveAgeNs) return Status::kOk;
-    return read_registers();
+    const bool fresh = read_ns != 0 && bus_.time().now_ns() - read_ns < kLiveAgeNs;
+    return fresh || !needs_live ? Status::kOk : read_registers();
   }
 
   Status check_point(const IdentityCheck& check, std::int64_t& value) {
@@ -321,6 +329,7 @@ class BatteryDriver {
   BatteryBus<Link, Time> bus_;
   CommandRunner<Link, Time> runner_;
   MeasurementReader reader_;
+  bool scales_elsewhere_;  ///< what is written depends on what is read
   bool identified_ = false;
   bool enabled_ = false;
   bool in_force_ = false;  ///< the order below was read back and nothing has ended it since

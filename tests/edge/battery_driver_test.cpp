@@ -333,6 +333,29 @@ TEST_F(DriverTest, ImplausibleValuesAreNeverUsedAndSlowOnesAreNotReadAgain) {
   EXPECT_EQ(t.driver->release(), Status::kOk);  // giving back is possible all the same
 }
 
+TEST_F(DriverTest, FailingMeasurementsDoNotKeepFromHoldingAndReleasing) {
+  MapUnderTest& t = with();
+  ASSERT_EQ(t.order(1'000), Status::kOk);
+  t.device.unreadable_address = 0;
+  t.device.pass_s(1'000);
+  EXPECT_EQ(t.read(), Status::kTimeout);
+  EXPECT_EQ(t.order(0), Status::kOk);
+  EXPECT_EQ(t.device.holding[11], 0);
+  EXPECT_EQ(t.driver->release(), Status::kOk);
+  EXPECT_EQ(t.device.holding[10], 0);
+}
+
+TEST_F(DriverTest, OldLimitsDoNotGoIntoAnOrderButIntoARelease) {
+  MapUnderTest& t = with({{"name = \"power\"", "name = \"power\"\nclamp_to = \"battery_power\""}});
+  t.device.set(1, {500});
+  ASSERT_EQ(t.order(1'000), Status::kOk);
+  EXPECT_EQ(t.device.holding[11], 500);
+  t.device.unreadable_address = 0;
+  t.device.pass_s(1'000);
+  EXPECT_EQ(t.order(2'000), Status::kTimeout);
+  EXPECT_EQ(t.driver->release(), Status::kOk);
+}
+
 TEST_F(DriverTest, ReadingNeverWrites) {
   MapUnderTest& t = with();
   IdentityFailure failure;

@@ -34,6 +34,7 @@ struct RegisterDevice {
   std::int64_t day = 20'000;
   bool ignores_writes = false;  ///< acknowledges, does nothing
   int exception = 0;            ///< answer to every request; -1 = no answer at all
+  int unreadable_address = -1;  ///< a read that covers it is not answered
   int failing_writes = 0;       ///< that many of the next writes are not answered
   std::function<void()> before_request = [] {};
   std::function<void(int address, int count)> after_write = [](int, int) {};
@@ -57,6 +58,8 @@ class DeviceLink {
     ++counters_.requests;
     device_.before_request();
     if (const Status status = fault(); status != Status::kOk) return status;
+    const int offset = device_.unreadable_address - span.address;
+    if (offset >= 0 && offset < span.count) return Status::kTimeout;
     const auto& table = span.function == 4 ? device_.input : device_.holding;
     std::copy_n(table.begin() + span.address, span.count, registers);
     return Status::kOk;
