@@ -26,6 +26,16 @@ constexpr bool is_worth_a_retry(Status status) {
          status == Status::kBusBusy || status == Status::kBadReply || status == Status::kNotApplied;
 }
 
+template <typename Request>
+Status retried(Request request) {
+  Status status = Status::kOk;
+  for (int attempt = 0; attempt < kBusAttempts; ++attempt) {
+    status = request();
+    if (!is_worth_a_retry(status)) break;
+  }
+  return status;
+}
+
 template <typename Link, typename Time>
 class BatteryBus {
  public:

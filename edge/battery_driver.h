@@ -10,16 +10,12 @@
 #include "edge/battery_bus.h"
 #include "edge/command_runner.h"
 #include "edge/control_types.h"
+#include "edge/identity_check.h"
 #include "edge/measurement_reader.h"
 #include "edge/registers/codec.h"
 #include "shared/units_and_limits.h"
 
 namespace bess {
-
-struct IdentityFailure {
-  int check = 0;  ///< index into RegisterMap::identity
-  std::int64_t value = 0;
-};
 
 template <typename Link, typename Time>
 class BatteryDriver {
@@ -102,12 +98,7 @@ class BatteryDriver {
   /// Reads the map's identity checks; on kImplausible `failure` says which one and what was read.
   /// Nothing is read or ordered before this has succeeded once: an unknown device stays untouched.
   Status check_identity(IdentityFailure& failure) {
-    failure = IdentityFailure{};
-    Status status = retried([this] { return bus_.locate_models(); });
-    for (; status == Status::kOk && failure.check < map_.identity.size(); ++failure.check) {
-      status = check_point(map_.identity[failure.check], failure.value);
-      if (status != Status::kOk) return status;
-    }
+    const Status status = check_identity_of(map_, bus_, failure);
     identified_ = identified_ || status == Status::kOk;
     return status;
   }
@@ -150,16 +141,6 @@ class BatteryDriver {
  private:
   static constexpr std::int64_t kLiveAgeNs = 180 * kNanosecondsPerSecond;
 
-  template <typename Request>
-  static Status retried(Request request) {
-    Status status = Status::kOk;
-    for (int attempt = 0; attempt < kBusAttempts; ++attempt) {
-      status = request();
-      if (!is_worth_a_retry(status)) break;
-    }
-    return status;
-  }
-
   Status identify() {
     if (identified_) return Status::kOk;
     IdentityFailure failure;
@@ -170,35 +151,14 @@ class BatteryDriver {
     return retried([this] { return bus_.read_due(); });
   }
 
-  /// Scale factors, ratings and limits that go into an order must not be old. A map without them can
-  /// order (0 W above all) even while the measurements fail.
+  /// Scale factors, ratings and limits that go into an order must not be old. A map without them
+  /// can order (0 W above all) even while the measurements fail.
   Status prepare() {
     if (const Status status = identify(); status != Status::kOk) return status;
     const bool needs_live = scales_elsewhere_ || (!enabled_ && !map_.saved.empty());
     const std::int64_t read_ns = bus_.last_read_ns();
     const bool fresh = read_ns != 0 && bus_.time().now_ns() - read_ns < kLiveAgeNs;
     return fresh || !needs_live ? Status::kOk : read_registers();
-  }
-
-  Status check_point(const IdentityCheck& check, std::int64_t& value) {
-    const RegisterPoint& point = map_.points[check.point];
-    std::uint16_t registers[kTextRegistersMax] = {};
-    const Status status = retried([&] { return bus_.read_point(check.point, registers); });
-    if (status != Status::kOk) return status;
-    if (point.type == RegisterType::kText) {
-      const bool same = decode_text(point, registers).view().starts_with(check.text.view());
-      return same ? Status::kOk : Status::kImplausible;
-    }
-    LivePoints now = bus_.live();
-    now.keep(map_, check.point, registers);
-    if (point.scale_from >= 0 || point.percent_of >= 0) {
-      if (const Status read = read_registers(); read != Status::kOk) return read;
-      now = bus_.live();
-      now.keep(map_, check.point, registers);
-    }
-    const bool plausible = live_value(map_, now, check.point, value) && value >= check.value_min &&
-                           value <= check.value_max;
-    return plausible ? Status::kOk : Status::kImplausible;
   }
 
   /// What order the device follows, whoever gave it: a restart takes over from here.

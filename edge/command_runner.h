@@ -58,13 +58,8 @@ class CommandRunner {
   }
 
   Status run(const CommandSequence& sequence, const PowerOrder& order) {
-    Status status = Status::kOk;
-    if (sequence.writes.empty()) return status;
-    for (int attempt = 0; attempt < kBusAttempts; ++attempt) {
-      status = run_once(sequence, order);
-      if (!is_worth_a_retry(status)) break;
-    }
-    return status;
+    if (sequence.writes.empty()) return Status::kOk;
+    return retried([&] { return run_once(sequence, order); });
   }
 
  private:

@@ -187,7 +187,7 @@ void add_plant_options(CLI::App& command, BatteryOptions& options) {
 void add_battery_command(CLI::App& app) {
   auto options = std::make_shared<BatteryOptions>();
   CLI::App* command =
-      app.add_subcommand("battery", "A Modbus battery, TCP or RTU (AlphaESS registers)");
+      app.add_subcommand("battery", "A Modbus battery, TCP or RTU: any register map");
   command->footer(footer());
   add_bus_options(*command, options->server);
   options->clock.add_to(*command);
