@@ -22,6 +22,8 @@ struct CommissionSettings {
   std::int32_t rest_s = 10;    ///< for the battery to come to 0 W
   std::int32_t drive_s = 30;   ///< for the battery to follow
   std::int32_t noise_w = 150;  ///< a resting battery and its meter may show this much
+  std::int32_t tolerance_percent =
+      50;  ///< of the order, by which the power that flows may fall short
   std::int32_t soc_min_e4 = 1'000;
   std::int32_t soc_max_e4 = 10'000;
   std::int32_t order_duration_s = 300;  ///< of the device's dead-man timer
@@ -60,9 +62,9 @@ struct CommissionResult {
 };
 
 template <typename Battery, typename Clock>
-class Commissioning {
+class SignCheck {
  public:
-  Commissioning(const CommissionSettings& settings, Battery& battery, Clock& clock)
+  SignCheck(const CommissionSettings& settings, Battery& battery, Clock& clock)
       : settings_(settings), battery_(battery), clock_(clock) {}
 
   CommissionResult run() {
@@ -131,7 +133,7 @@ class Commissioning {
     const bool same_sign = (result.measured_power_w > 0) == (result.ordered_power_w > 0);
     const std::int32_t magnitude_w =
         result.measured_power_w < 0 ? -result.measured_power_w : result.measured_power_w;
-    if (magnitude_w < settings_.power_w / 2) {
+    if (magnitude_w < settings_.power_w * (100 - settings_.tolerance_percent) / 100) {
       result.verdict = CommissionVerdict::kDoesNotFollow;
     } else {
       result.verdict = same_sign ? CommissionVerdict::kPassed : CommissionVerdict::kWrongSign;

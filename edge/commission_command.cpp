@@ -14,7 +14,11 @@ namespace {
 CommissionSettings settings_of(const EdgeConfig& config) {
   const GuardSettings& guard = config.control.guard;
   CommissionSettings settings;
-  settings.power_w = std::min(settings.power_w, guard.power_w);
+  const Commissioning& test = config.map.commissioning;
+  settings.power_w = std::min(test.power_w, guard.power_w);
+  settings.rest_s = test.settle_s;
+  settings.drive_s = test.duration_s;
+  settings.tolerance_percent = test.tolerance_percent;
   settings.soc_min_e4 = guard.soc_min_e4;
   settings.soc_max_e4 = guard.soc_max_e4;
   settings.order_duration_s = config.control.order_duration_s;
@@ -40,7 +44,7 @@ int run_commission_command(const CommandLine& command_line, const EdgeConfig& co
               battery_place(config).c_str(), settings.rest_s, settings.power_w, settings.drive_s);
   std::fflush(stdout);
   const CommissionResult result =
-      Commissioning<ModbusBattery, EdgeClock>(settings, battery, clock).run();
+      SignCheck<ModbusBattery, EdgeClock>(settings, battery, clock).run();
   if (result.verdict != CommissionVerdict::kPassed) {
     const bool is_link = result.verdict == CommissionVerdict::kNoLink;
     report(JournalLevel::kError, "commission %s: ordered %d W, measured %d W: %s%s%s",

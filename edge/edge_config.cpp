@@ -36,6 +36,18 @@ void expect_capacity(EdgeConfig& config) {
   }
 }
 
+/// What the operator does not say about the link is as the device's maker ships it.
+void complete_link(TomlTable& table, EdgeConfig& config) {
+  if (!table.has("port")) config.link.port = config.map.port;
+  if (!table.has("baud")) config.link.baud = config.map.baud;
+  if (!table.has("parity")) config.link.parity = config.map.parity;
+  if (!table.has("stop_bits")) config.link.stop_bits = config.map.stop_bits;
+  TomlTable units(table.table("units"), table.file(), "[battery] units", table.error());
+  for (UnitGroup& group : config.map.unit_groups)
+    units.integer(group.name.view(), group.unit, 0, 255);
+  units.finish();
+}
+
 void read_battery(TomlTable table, EdgeConfig& config) {
   FixedText<255> map_file("maps/alphaess.toml");
   RegisterName variant;
@@ -58,6 +70,7 @@ void read_battery(TomlTable table, EdgeConfig& config) {
   table.integer("start_timeout_s", config.start_timeout_s, 0, 3'600);
   table.boolean("start_without_battery", config.start_without_battery);
   table.integer("read_lead_s", config.control.read_lead_s, 0, 60);
+  static_cast<void>(table.table("units"));
   config.link.rtu = transport == 1;
   config.link.parity = static_cast<Parity>(parity);
   table.finish();
@@ -73,8 +86,9 @@ void read_battery(TomlTable table, EdgeConfig& config) {
   const auto folder = std::filesystem::path(table.file()).parent_path();
   const std::string map_path = (folder / map_file.c_str()).string();
   if (!config.map_path.assign(map_path)) table.fail("map", "is too long");
-  if (load_register_map(map_path, variant.view(), config.map, table.error()))
-    expect_capacity(config);
+  if (!load_register_map(map_path, variant.view(), config.map, table.error())) return;
+  complete_link(table, config);
+  expect_capacity(config);
 }
 
 /// A power that the map cannot express, or an order that outlives its timer, must stop the start.

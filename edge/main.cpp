@@ -67,7 +67,10 @@ int run_controller(const CommandLine& command_line, const EdgeConfig& config) {
   }
   static Loop loop(config.control, battery, prices, clock);
   CycleRecord before;
-  if (log.newest(before)) loop.take_over({.throughput = before.throughput});
+  if (log.newest(before)) {
+    loop.take_over({.throughput = before.throughput});
+    battery.restore_flash_writes(before.counters.flash_day, before.counters.flash_writes_today);
+  }
   notify.ready();
   run_supervised(loop, command_line.cycles, clock, log, notify);
   return 0;

@@ -9,13 +9,12 @@
 
 #include "edge/modbus_frame.h"
 #include "shared/fixed_text.h"
+#include "shared/parity.h"
 #include "shared/status.h"
 
 struct _modbus;
 
 namespace bess {
-
-enum class Parity : std::uint8_t { kNone, kEven, kOdd };
 
 /// Where the battery is, by the operator's configuration.
 struct BatteryLinkSettings {

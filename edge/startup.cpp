@@ -42,31 +42,38 @@ Status identify(const EdgeConfig& config, ModbusBattery& battery, bool complain_
   return status;
 }
 
-void print_registers(const EdgeConfig& config, const char* name, const PowerOrder& order,
-                     Command command) {
+/// What a command would write, by the battery's own scale factors and limits if it was reached.
+void print_registers(const EdgeConfig& config, const ModbusBattery& battery, const char* name,
+                     const PowerOrder& order, Command command) {
   std::printf("%-10s", name);
   for (const BlockWrite& write : config.map.sequence(command).writes) {
     RegisterBlock block;
-    if (encode_block(config.map, write, order, block) != Status::kOk) continue;
-    std::printf(" 0x%04X:[", write.address);
+    std::uint16_t address = 0;
+    const Status status = battery.preview(write, order, address, block);
+    if (status != Status::kOk) {
+      std::printf(" (%s)", status == Status::kNotConnected ? "known once the battery is read"
+                                                           : status_name(status).data());
+      break;
+    }
+    std::printf(" 0x%04X:[", address);
     for (int i = 0; i < block.size(); ++i) std::printf(i == 0 ? "%u" : " %u", block[i]);
     std::printf("]");
   }
   std::printf("\n");
 }
 
-void print_orders(const EdgeConfig& config) {
+void print_orders(const EdgeConfig& config, const ModbusBattery& battery) {
   const GuardSettings& guard = config.control.guard;
   PowerOrder order{.soc_min_e4 = guard.soc_min_e4,
                    .soc_max_e4 = guard.soc_max_e4,
                    .duration_s = config.control.order_duration_s};
   order.power_w = guard.power_w;
-  print_registers(config, "charge", order, Command::kCharge);
+  print_registers(config, battery, "charge", order, Command::kCharge);
   order.power_w = 0;
-  print_registers(config, "idle", order, Command::kIdle);
+  print_registers(config, battery, "idle", order, Command::kIdle);
   order.power_w = -guard.power_w;
-  print_registers(config, "discharge", order, Command::kDischarge);
-  print_registers(config, "release", order, Command::kRelease);
+  print_registers(config, battery, "discharge", order, Command::kDischarge);
+  print_registers(config, battery, "release", order, Command::kRelease);
 }
 
 bool report_price(const EdgeConfig& config, PriceFeed& prices) {
@@ -121,9 +128,9 @@ bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& p
               student_self_check_count());
   std::printf("map        %s, variant %s; control = %s\n", config.map.name.c_str(),
               config.map.variant.c_str(), config.control.control ? "true" : "false (read-only)");
-  print_orders(config);
   std::fflush(stdout);
   const bool battery_ok = identify(config, battery, true) == Status::kOk;
+  print_orders(config, battery);
   BatteryMeasurement m;
   if (battery_ok && battery.read(m) == Status::kOk) {
     std::printf("battery    %s: SoC %.1f %%, %d W, %d Wh, dispatch %s\n",

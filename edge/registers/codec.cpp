@@ -1,99 +1,116 @@
 #include "edge/registers/codec.h"
 
+#include <algorithm>
+#include <cstdlib>
+
 namespace bess {
 namespace {
 
-struct RawRange {
-  std::int64_t min, max;
-};
-
-constexpr RawRange raw_range(RegisterType type) {
-  switch (type) {
-    case RegisterType::kU16:
-      return {0, UINT16_MAX};
-    case RegisterType::kS16:
-      return {INT16_MIN, INT16_MAX};
-    case RegisterType::kU32:
-      return {0, UINT32_MAX};
-    case RegisterType::kS32:
-      return {INT32_MIN, INT32_MAX};
-  }
-  return {0, 0};
-}
-
-std::int64_t floor_divide(std::int64_t numerator, std::int64_t denominator) {
-  const std::int64_t quotient = numerator / denominator;
-  return quotient - (numerator % denominator < 0 ? 1 : 0);
-}
-
-std::int64_t divide(std::int64_t numerator, std::int64_t denominator, Rounding rounding) {
-  switch (rounding) {
-    case Rounding::kDown:
-      return floor_divide(numerator, denominator);
-    case Rounding::kUp:
-      return -floor_divide(-numerator, denominator);
-    case Rounding::kNearest:
-      break;
-  }
-  return floor_divide(numerator + denominator / 2, denominator);
-}
-
-std::int64_t raw_of(const RegisterPoint& point, const std::uint16_t* raw) {
-  if (point.register_count() == 1) {
-    return point.type == RegisterType::kS16 ? static_cast<std::int16_t>(raw[0]) : raw[0];
-  }
-  const bool high_first = point.word_order == WordOrder::kHighFirst;
-  const std::uint32_t high = raw[high_first ? 0 : 1];
-  const std::uint32_t low = raw[high_first ? 1 : 0];
-  const std::uint32_t bits = high << 16 | low;
-  return point.type == RegisterType::kS32 ? std::int64_t{static_cast<std::int32_t>(bits)}
-                                          : std::int64_t{bits};
+std::int64_t divide_up(std::int64_t numerator, std::int64_t denominator) {
+  return (numerator + denominator - 1) / denominator;
 }
 
 /// A SoC limit is a ceiling for a charging battery and a floor for a discharging one.
-std::int64_t value_of(const WriteValue& value, const PowerOrder& order, Rounding& rounding) {
-  rounding = Rounding::kNearest;
-  switch (value.argument) {
-    case Argument::kConstant:
-      return value.constant;
+std::int64_t argument_of(Argument argument, const PowerOrder& order, std::int64_t heartbeat) {
+  const std::int64_t power_w = order.power_w;
+  switch (argument) {
     case Argument::kPower:
-      return order.power_w;
+      return power_w;
+    case Argument::kChargePower:
+      return std::max<std::int64_t>(power_w, 0);
+    case Argument::kDischargePower:
+      return std::max<std::int64_t>(-power_w, 0);
+    case Argument::kAbsolutePower:
+      return std::abs(power_w);
+    case Argument::kPowerSign:
+      return (power_w > 0) - (power_w < 0);
+    case Argument::kSocLimit:
+      return power_w < 0 ? order.soc_min_e4 : order.soc_max_e4;
+    case Argument::kSocMin:
+      return order.soc_min_e4;
+    case Argument::kSocMax:
+      return order.soc_max_e4;
     case Argument::kDuration:
       return order.duration_s;
-    case Argument::kSocLimit:
+    case Argument::kDurationMinutes:
+      return divide_up(order.duration_s, 60);
+    case Argument::kHeartbeat:
+      return heartbeat;
+    case Argument::kConstant:
+    case Argument::kRating:
+    case Argument::kSaved:
       break;
   }
-  const bool floor = order.power_w < 0;
-  rounding = floor ? Rounding::kUp : Rounding::kDown;
-  return floor ? order.soc_min_e4 : order.soc_max_e4;
+  return 0;
+}
+
+Rounding rounding_of(const RegisterPoint& point, Argument argument, const PowerOrder& order) {
+  if (point.rounding != Rounding::kAuto) return point.rounding;
+  const bool floor =
+      argument == Argument::kSocMin || (argument == Argument::kSocLimit && order.power_w < 0);
+  const bool ceiling = argument == Argument::kSocMax || argument == Argument::kSocLimit;
+  if (floor) return Rounding::kUp;
+  return ceiling ? Rounding::kDown : Rounding::kNearest;
+}
+
+std::int64_t fallback_of(const RegisterMap& map, int point) {
+  for (const SavedPoint& saved : map.saved) {
+    if (saved.point == point) return saved.fallback;
+  }
+  return 0;
+}
+
+/// The register's own words, untranslated: what was found is what is put back.
+Status append_saved(const RegisterMap& map, int point, const LivePoints& saved,
+                    RegisterBlock& out) {
+  for (int i = 0; i < map.points[point].register_count(); ++i) {
+    if (!out.try_push_back(saved.raw[point][i])) return Status::kTooLarge;
+  }
+  return Status::kOk;
+}
+
+/// A heartbeat runs round within the range of its point.
+std::int64_t wrapped(const RegisterPoint& point, std::int64_t counter) {
+  return point.value_min + counter % (point.value_max - point.value_min + 1);
+}
+
+Status clamp_to_live(const RegisterMap& map, const RegisterPoint& point, const LivePoints& live,
+                     std::int64_t& value) {
+  std::int64_t limit = 0;
+  if (!live_value(map, live, point.clamp_to, limit)) return Status::kImplausible;
+  limit = std::abs(limit);
+  value = std::clamp(value, -limit, limit);
+  return Status::kOk;
+}
+
+Status encode_value(const RegisterMap& map, const WriteValue& write, const PowerOrder& order,
+                    const WriteContext& context, const LivePoints& live, RegisterBlock& out) {
+  const RegisterPoint& point = map.points[write.point];
+  if (write.argument == Argument::kSaved && context.saved != nullptr &&
+      context.saved->known[write.point]) {
+    return append_saved(map, write.point, *context.saved, out);
+  }
+  Scaling scaling;
+  if (!live_scaling(map, live, write.point, scaling)) return Status::kImplausible;
+  std::int64_t value = write.constant;
+  if (write.argument == Argument::kSaved) {
+    value = fallback_of(map, write.point);
+  } else if (write.argument == Argument::kRating) {
+    value = write.sign * scaling.rating;
+  } else if (write.argument != Argument::kConstant) {
+    value = argument_of(write.argument, order, context.heartbeat);
+    if (write.argument == Argument::kHeartbeat) value = wrapped(point, value);
+    value = write.sign * value / write.divisor;
+  }
+  if (point.clamp_to >= 0 && context.clamp && context.live != nullptr) {
+    if (const Status status = clamp_to_live(map, point, live, value); status != Status::kOk) {
+      return status;
+    }
+  }
+  return encode(point, value, rounding_of(point, write.argument, order), out, scaling);
 }
 
 }  // namespace
-
-bool decode(const RegisterPoint& point, const std::uint16_t* raw, std::int64_t& value) {
-  const std::int64_t scaled =
-      point.sign * (raw_of(point, raw) - point.offset) * std::int64_t{point.scale};
-  value = divide(scaled, point.scale_divisor, Rounding::kNearest);
-  return value >= point.value_min && value <= point.value_max;
-}
-
-Status encode(const RegisterPoint& point, std::int64_t value, Rounding rounding,
-              RegisterBlock& out) {
-  const RawRange range = raw_range(point.type);
-  const std::int64_t raw =
-      point.offset + divide(point.sign * value * point.scale_divisor, point.scale, rounding);
-  if (raw < range.min || raw > range.max) return Status::kNotExpressible;
-  const auto bits = static_cast<std::uint32_t>(raw);
-  const auto high = static_cast<std::uint16_t>(bits >> 16);
-  const auto low = static_cast<std::uint16_t>(bits & 0xFFFFu);
-  if (point.register_count() == 1) {
-    return out.try_push_back(low) ? Status::kOk : Status::kTooLarge;
-  }
-  const bool high_first = point.word_order == WordOrder::kHighFirst;
-  const bool fits =
-      out.try_push_back(high_first ? high : low) && out.try_push_back(high_first ? low : high);
-  return fits ? Status::kOk : Status::kTooLarge;
-}
 
 Command command_of(std::int32_t power_w) {
   if (power_w > 0) return Command::kCharge;
@@ -101,12 +118,13 @@ Command command_of(std::int32_t power_w) {
 }
 
 Status encode_block(const RegisterMap& map, const BlockWrite& write, const PowerOrder& order,
-                    RegisterBlock& out) {
+                    RegisterBlock& out, const WriteContext& context) {
   out.clear();
+  LivePoints assumed;
+  if (context.live == nullptr) assumed = assumed_live_points(map, false);
+  const LivePoints& live = context.live == nullptr ? assumed : *context.live;
   for (const WriteValue& value : write.values) {
-    Rounding rounding = Rounding::kNearest;
-    const std::int64_t wanted = value_of(value, order, rounding);
-    const Status status = encode(map.points[value.point], wanted, rounding, out);
+    const Status status = encode_value(map, value, order, context, live, out);
     if (status != Status::kOk) return status;
   }
   return Status::kOk;
@@ -116,10 +134,18 @@ Status check_expressible(const RegisterMap& map, const PowerOrder& order) {
   if (order.power_w > map.charge_w_max || order.power_w < -map.discharge_w_max) {
     return Status::kNotExpressible;
   }
-  for (const BlockWrite& write : map.sequence(command_of(order.power_w)).writes) {
-    RegisterBlock block;
-    const Status status = encode_block(map, write, order, block);
-    if (status != Status::kOk) return status;
+  const Command commands[] = {command_of(order.power_w), Command::kEnable, Command::kRefresh,
+                              Command::kRollback, Command::kRelease};
+  for (const bool high : {false, true}) {
+    const LivePoints live = assumed_live_points(map, high);
+    for (const Command command : commands) {
+      for (const BlockWrite& write : map.sequence(command).writes) {
+        RegisterBlock block;
+        const Status status =
+            encode_block(map, write, order, block, {.live = &live, .clamp = false});
+        if (status != Status::kOk) return status;
+      }
+    }
   }
   return Status::kOk;
 }

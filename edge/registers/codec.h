@@ -1,16 +1,15 @@
-// Raw registers <-> engineering units, and an order -> the registers to write. Pure integer
-// functions: what cannot be expressed is refused, nothing wraps.
+// An order -> the registers to write. Pure integer functions over the map: what cannot be expressed
+// is refused, nothing wraps.
 #pragma once
 
 #include <cstdint>
 
+#include "edge/registers/live_points.h"
+#include "edge/registers/point_codec.h"
 #include "edge/registers/register_map.h"
 #include "shared/status.h"
 
 namespace bess {
-
-inline constexpr int kBlockRegistersMax = 24;
-using RegisterBlock = StaticVector<std::uint16_t, kBlockRegistersMax>;
 
 /// What the edge wants of the battery, in the project's own units.
 struct PowerOrder {
@@ -20,23 +19,20 @@ struct PowerOrder {
   std::int32_t duration_s = 0;  ///< of the device's dead-man timer
 };
 
-/// How a value between two raw counts is rounded: a ceiling goes down, a floor goes up.
-enum class Rounding : std::uint8_t { kNearest, kDown, kUp };
-
-/// Value of the registers at `raw`; false when it lies outside the point's plausible range.
-[[nodiscard]] bool decode(const RegisterPoint& point, const std::uint16_t* raw,
-                          std::int64_t& value);
-
-/// Appends the registers of `value` to `out`. kNotExpressible when the type cannot hold it.
-Status encode(const RegisterPoint& point, std::int64_t value, Rounding rounding,
-              RegisterBlock& out);
+/// What a write needs beside the order.
+struct WriteContext {
+  const LivePoints* live = nullptr;  ///< null: the map's assumed scale factors, no live limits
+  bool clamp = true;  ///< cut to live limits; not in proofs: what fits uncut fits cut
+  const LivePoints* saved = nullptr;  ///< null or unknown there: the map's fallback
+  std::int64_t heartbeat = 0;
+};
 
 /// charge, idle or discharge, by the sign of the power.
 Command command_of(std::int32_t power_w);
 
 /// Registers of one block write for an order.
 Status encode_block(const RegisterMap& map, const BlockWrite& write, const PowerOrder& order,
-                    RegisterBlock& out);
+                    RegisterBlock& out, const WriteContext& context = {});
 
 /// kOk when every command of the map can express an order of this power.
 Status check_expressible(const RegisterMap& map, const PowerOrder& order);

@@ -1,5 +1,5 @@
-// Loads a register map from its TOML file (format: edge/maps/alphaess.toml and edge/README.md) and
-// proves that it is consistent: names known, blocks contiguous, power limits expressible.
+// Loads a register map from its TOML file (format: edge/maps/README.md) and proves that it is
+// consistent: names known, blocks contiguous, watchdog fed, power limits expressible.
 #pragma once
 
 #include <string>
@@ -9,8 +9,7 @@
 
 namespace bess {
 
-/// `variant` selects one way of commanding; empty = the map's first. False with one line in
-/// `error`.
+/// `variant` selects one of the file's variants; empty = its first. False with one line in `error`.
 bool load_register_map(const std::string& path, std::string_view variant, RegisterMap& map,
                        std::string& error);
 

@@ -1,71 +1,28 @@
-// A battery's Modbus register map as fixed-size data: named points, commands as ordered lists of
-// atomic block writes, timing and dead-man. Loaded once from edge/maps/*.toml (map_file.h), then
-// constant: the edge drives the battery with it and the battery simulator answers with it.
-//
-// One point translates between raw registers and whole engineering units:
-//   value = sign * (raw - offset) * scale / scale_divisor        (power: W, charge positive; SoC:
-//   1e-4)
-// Units are integers, so that neither the edge nor the simulator needs floating point here.
+// A battery's Modbus register map as fixed-size data: link, named points, state, commands, watchdog.
+// Loaded once from edge/maps/*.toml (map_file.h; format: edge/maps/README.md), then constant: the
+// edge drives the battery with it and the battery simulator answers with it.
 #pragma once
 
 #include <cstdint>
 
-#include "shared/fixed_text.h"
-#include "shared/static_vector.h"
+#include "edge/registers/battery_command.h"
+#include "edge/registers/register_point.h"
+#include "shared/parity.h"
 
 namespace bess {
 
-using RegisterName = FixedText<31>;
-
-enum class RegisterType : std::uint8_t { kU16, kS16, kU32, kS32 };
-enum class WordOrder : std::uint8_t { kHighFirst, kLowFirst };
-
-struct RegisterPoint {
+/// Registers that answer under another unit id than the rest.
+struct UnitGroup {
   RegisterName name;
-  FixedText<15> unit;
-  std::uint16_t address = 0;  ///< PDU address, 0-based
-  std::uint8_t read_function = 3;
-  RegisterType type = RegisterType::kU16;
-  WordOrder word_order = WordOrder::kHighFirst;
-  std::int32_t scale = 1;
-  std::int32_t scale_divisor = 1;
-  std::int32_t offset = 0;
-  std::int32_t sign = 1;       ///< -1 flips the device's sign to ours (charge positive)
-  std::int64_t value_min = 0;  ///< plausible range in engineering units, checked at every read
-  std::int64_t value_max = 0;
-
-  [[nodiscard]] constexpr int register_count() const {
-    return type == RegisterType::kU32 || type == RegisterType::kS32 ? 2 : 1;
-  }
+  std::int32_t unit = 1;
 };
 
-enum class Argument : std::uint8_t { kConstant, kPower, kSocLimit, kDuration };
-
-struct WriteValue {
-  std::int8_t point = -1;  ///< index into RegisterMap::points
-  Argument argument = Argument::kConstant;
-  std::int64_t constant = 0;  ///< engineering units
-};
-
-/// Contiguous points that go out in one request: the device sees all of them or none.
-struct BlockWrite {
-  StaticVector<WriteValue, 12> values;
-  std::uint16_t address = 0;
-  std::uint8_t function = 16;
-};
-
-enum class Command : std::uint8_t { kCharge, kIdle, kDischarge, kRelease };
-inline constexpr int kCommandCount = 4;
-
-struct CommandSequence {
-  StaticVector<BlockWrite, 6> writes;
-  bool read_back = true;  ///< after the last write, everything written must read back as written
-};
-
-/// True when `point` reads `value`.
-struct Condition {
-  std::int8_t point = -1;  ///< -1 = this map cannot tell
+/// A word for a value, or for a bit mask.
+struct NamedValue {
+  std::int8_t point = -1;
+  bool is_bit = false;
   std::int64_t value = 0;
+  FixedText<23> name;
 };
 
 /// A point that proves, before anything is written, that this map belongs to this device.
@@ -73,14 +30,56 @@ struct IdentityCheck {
   std::int8_t point = -1;
   std::int64_t value_min = 0;
   std::int64_t value_max = 0;
+  FixedText<31> text;  ///< of a text point: what it must begin with
   FixedText<95> hint;
+};
+
+/// A power = sum of the terms, when the condition holds: of the order in force, or as measured by a
+/// device that has one register for each direction. No term: 0 W.
+struct PowerCase {
+  struct Term {
+    std::int8_t point = -1;
+    std::int8_t sign = 1;
+  };
+  Condition when;  ///< point -1: always
+  StaticVector<Term, 3> terms;
+};
+
+/// A counter of the device that must move; standing still means frozen values.
+struct AliveCounter {
+  std::int8_t point = -1;
+  std::int32_t max_age_s = 0;
+};
+
+/// What a simulator must know beyond the map to act this device.
+struct SimulatorHints {
+  struct Assignment {
+    enum class Source : std::uint8_t { kConstant, kPowerMax, kCapacity };
+    std::int8_t point = -1;
+    Source source = Source::kConstant;
+    std::int64_t constant = 0;
+  };
+  StaticVector<Condition, 4> active;       ///< instead of the map's, where those cannot be read
+  StaticVector<PowerCase, 4> order_power;  ///< likewise
+  StaticVector<Assignment, 16> initial;
+  StaticVector<Assignment, 6> at_expiry;  ///< how the device shows that its watchdog has run out
+  StaticVector<std::int8_t, 4> apply_on;  ///< while an order runs, only writing these changes it
 };
 
 struct RegisterMap {
   RegisterName name;
   RegisterName variant;
   std::int32_t unit = 1;
-  std::int32_t minimum_gap_ms = 0;  ///< from the end of one request to the start of the next
+  StaticVector<UnitGroup, 4> unit_groups;
+  StaticVector<std::uint16_t, 6> models;       ///< SunSpec model ids that points refer to
+  StaticVector<std::uint16_t, 4> model_bases;  ///< where the "SunS" marker may lie
+
+  std::int32_t port = 502;
+  std::int32_t baud = 9'600;
+  Parity parity = Parity::kNone;
+  std::int32_t stop_bits = 1;
+  std::int32_t connect_delay_ms = 0;  ///< from the connection to the first request
+  std::int32_t minimum_gap_ms = 0;    ///< from the end of one request to the start of the next
   std::int32_t response_timeout_ms = 1000;
   std::int32_t read_gap_registers_max = 0;  ///< unused registers that one read may span
   std::int32_t registers_per_read_max = 60;
@@ -88,18 +87,33 @@ struct RegisterMap {
 
   std::int32_t charge_w_max = 0;  ///< what the registers can express, not what a battery can do
   std::int32_t discharge_w_max = 0;
-  std::int32_t dead_man_duration_s = 0;  ///< 0 = the device has no timer
-  Condition dead_man_expired;            ///< how expiry is seen
-  Condition off_grid;
+  std::int32_t dead_man_duration_s = 0;  ///< of the watchdog; 0 = the device has none
+  Watchdog watchdog;
+  WritePolicy writes;
+  ExceptionCodes exceptions;
+  Commissioning commissioning;
 
-  StaticVector<RegisterPoint, 32> points;
-  StaticVector<std::int8_t, 16> measure;  ///< points read every cycle
-  StaticVector<std::int8_t, 4> alarms;    ///< points of which any bit is an alarm
-  StaticVector<IdentityCheck, 6> identity;
+  StaticVector<RegisterPoint, kPointsMax> points;
+  StaticVector<NamedValue, 96> names;
+  StaticVector<std::int8_t, kPointsMax> measure;   ///< points read every cycle
+  StaticVector<std::int8_t, kPointsMax> required;  ///< of these, those that must be plausible
+  StaticVector<Condition, 4> active;               ///< all hold while the device follows an order
+  StaticVector<Condition, 8> alarms;               ///< any of them is an alarm
+  Condition off_grid;
+  AliveCounter alive;
+  StaticVector<PowerCase, 4> measured_power;  ///< the first case that holds counts
+  StaticVector<PowerCase, 4> order_power;
+  StaticVector<IdentityCheck, 8> identity;
+  StaticVector<Condition, 4> precondition;  ///< must hold before the first order
+  StaticVector<SavedPoint, 6> saved;
   CommandSequence command[kCommandCount];
+  SimulatorHints simulator;
 
   [[nodiscard]] const CommandSequence& sequence(Command c) const {
     return command[static_cast<int>(c)];
+  }
+  [[nodiscard]] std::int32_t unit_of(const RegisterPoint& point) const {
+    return point.unit_group < 0 ? unit : unit_groups[point.unit_group].unit;
   }
 };
 
@@ -109,6 +123,14 @@ constexpr int find_point(const RegisterMap& map, std::string_view name) {
     if (map.points[i].name == name) return i;
   }
   return -1;
+}
+
+/// The map's word for a point's value; empty when it has none.
+constexpr std::string_view name_of_value(const RegisterMap& map, int point, std::int64_t value) {
+  for (const NamedValue& named : map.names) {
+    if (named.point == point && !named.is_bit && named.value == value) return named.name.view();
+  }
+  return {};
 }
 
 }  // namespace bess

@@ -42,7 +42,9 @@ const toml::node* TomlTable::node(std::string_view key) {
 
 void TomlTable::fail_at(const toml::node& node, std::string_view message) {
   if (!error_.empty()) return;
-  error_ = file_ + ":" + std::to_string(node.source().begin.line) + ": " + in_one_line(message);
+  const auto& path = node.source().path;  // of an included file, when the node came from there
+  error_ = in_one_line(path != nullptr ? *path : file_) + ":" +
+           std::to_string(node.source().begin.line) + ": " + in_one_line(message);
 }
 
 void TomlTable::fail(std::string_view key, std::string_view message) {

@@ -12,7 +12,7 @@ namespace {
 struct Site {
   explicit Site(double soc = 0.3) : battery(clock, soc) {}
   CommissionResult commission(const CommissionSettings& settings = {}) {
-    return Commissioning<FakeBattery, FakeClock>(settings, battery, clock).run();
+    return SignCheck<FakeBattery, FakeClock>(settings, battery, clock).run();
   }
   void expect_refused(CommissionVerdict verdict) {
     EXPECT_EQ(commission().verdict, verdict) << commission_text(verdict);

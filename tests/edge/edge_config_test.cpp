@@ -57,6 +57,22 @@ TEST(EdgeConfig, ReadsEveryUnit) {
   EXPECT_EQ(config.clock.anchor_monotonic_ns, 5);
 }
 
+TEST(EdgeConfig, UnitGroupsOfTheMapAreTheOperatorsToSet) {
+  const TemporaryFolder folder;
+  std::string text = valid_text();
+  text.replace(text.find("alphaess"), 8, "victron_ess3");
+  text.insert(text.find("power_w"), "units = { vebus = 246 }\n");
+  EdgeConfig config;
+  std::string error;
+  ASSERT_TRUE(load_edge_config(folder.write("edge.toml", text), config, error)) << error;
+  EXPECT_EQ(config.map.unit_groups[0].unit, 246);
+  EXPECT_EQ(config.map.unit, 100);
+  EXPECT_EQ(config.link.port, 502);
+  text.replace(text.find("vebus"), 5, "vecan");
+  EXPECT_FALSE(load_edge_config(folder.write("edge.toml", text), config, error));
+  EXPECT_THAT(error, HasSubstr("vecan is not a known key here (known: vebus)"));
+}
+
 TEST(EdgeConfig, ReadsTheSerialLinesSettings) {
   const TemporaryFolder folder;
   std::string text = valid_text();

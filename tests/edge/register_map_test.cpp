@@ -129,6 +129,7 @@ TEST(Codec, EncodeInvertsDecodeForEveryTypeAndWordOrder) {
         point.sign = sign;
         point.scale = 10;
         point.offset = 500;
+        point.registers = type == RegisterType::kU32 || type == RegisterType::kS32 ? 2 : 1;
         point.value_min = INT64_MIN;
         point.value_max = INT64_MAX;
         for (const std::int64_t value : {-3'000, -10, 0, 10, 4'990}) {
@@ -147,6 +148,8 @@ TEST(Codec, EncodeInvertsDecodeForEveryTypeAndWordOrder) {
 TEST(Codec, LowFirstSwapsTheWords) {
   RegisterPoint point;
   point.type = RegisterType::kU32;
+  point.registers = 2;
+  point.value_max = UINT32_MAX;
   RegisterBlock block;
   ASSERT_EQ(encode(point, 0x0001'0002, Rounding::kNearest, block), Status::kOk);
   EXPECT_THAT(std::vector<int>(block.begin(), block.end()), ElementsAre(1, 2));
@@ -169,9 +172,10 @@ TEST(MapFile, EveryMistakeIsOneClearLine) {
       {"minimum_gap_ms = 400", "minimum_gap = 400", "minimum_gap is not a known key"},
       {"unit = 85", "unit = \"85\"", "unit must be a whole number"},
       {"unit = 85", "unit = 300", "unit must lie between 0 and 255"},
-      {"type = \"s16\"", "type = \"f32\"", "type must be one of"},
-      {"[1, \"power\", 0, 2,", "[1, \"watts\", 0, 2,", "a value must be a number"},
-      {"\"dispatch_mode\",\n", "\"dispatch_flow\",\n", "does not follow the point before it"},
+      {"type = \"s16\"", "type = \"s15\"", "type must be one of"},
+      {"dispatch_power = power", "dispatch_power = watts", "\"watts\" is no number"},
+      {"\"dispatch_mode = soc_control\", \"dispatch_soc", "\"dispatch_soc",
+       "does not follow the point before it"},
       {"measure = [\"soc\"", "measure = [\"sco\"", "no [[point]] is named \"sco\""},
       {"charge_w_max = 32000", "charge_w_max = 40000", "cannot express"},
       {"name = \"temperature_min\"", "name = \"soc\"", "is used twice"},

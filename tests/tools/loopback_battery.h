@@ -34,8 +34,12 @@ class LoopbackBattery {
   explicit LoopbackBattery(const char* variant, BatteryServerSettings settings = {},
                            Transport transport = Transport::kTcp,
                            const BatteryParameters& parameters = kHouse)
-      : map(load_alphaess(variant)), battery_(parameters, 0.5, 0) {
-    clock.scale = kScale;
+      : LoopbackBattery(load_alphaess(variant), settings, transport, parameters, kScale) {}
+
+  LoopbackBattery(const RegisterMap& register_map, BatteryServerSettings settings,
+                  Transport transport, const BatteryParameters& parameters, std::int32_t time_scale)
+      : map(register_map), battery_(parameters, 0.5, 0) {
+    clock.scale = time_scale;
     clock.anchor_utc_s = 1'679'788'800;
     clock.anchor_monotonic_ns = clock_ns(CLOCK_MONOTONIC);
     battery_ = SimulatedBattery(parameters, 0.5, clock.now_utc_ns());

@@ -88,7 +88,7 @@ class RegisterImageTest : public ::testing::TestWithParam<const char*> {
     EXPECT_TRUE(
         load_register_map(BESS_SOURCE_DIR "/edge/maps/alphaess.toml", GetParam(), map_, error))
         << error;
-    image_.emplace(map_, battery_, registers_);
+    image_.emplace(map_, battery_, registers_, registers_);
   }
 
   void write(Command command, const PowerOrder& order) {

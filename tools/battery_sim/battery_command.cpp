@@ -23,6 +23,7 @@ struct BatteryOptions {
   ClockOptions clock;
   std::string map_path = BESS_MAP_DIR "/alphaess.toml";
   std::vector<std::string> fault_names;
+  std::string map_variant;
   std::string record_path;
   double soc_frac = 0.5;
   BatteryParameters battery{.power_w_max = 4'000, .capacity_wh = 8'000};
@@ -63,7 +64,9 @@ void run_battery(BatteryOptions& options) {
   check_record_folder(options.record_path);
   static RegisterMap map;
   std::string error;
-  if (!load_register_map(options.map_path, "", map, error)) throw SimError(error);
+  if (!load_register_map(options.map_path, options.map_variant, map, error)) {
+    throw SimError(error);
+  }
   BatteryParameters& battery = options.battery;
   battery.charge_efficiency = battery.discharge_efficiency =
       std::sqrt(options.round_trip_efficiency);
@@ -155,7 +158,8 @@ void add_fault_options(CLI::App& command, BatteryOptions& options) {
 }
 
 void add_plant_options(CLI::App& command, BatteryOptions& options) {
-  command.add_option("--map", options.map_path, "Register map (TOML)");
+  command.add_option("--map", options.map_path, "Register map (TOML): the device to act");
+  command.add_option("--variant", options.map_variant, "Of the map; default: its first");
   command.add_option("--soc", options.soc_frac, "State of charge at start, 0..1")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
@@ -183,7 +187,7 @@ void add_plant_options(CLI::App& command, BatteryOptions& options) {
 void add_battery_command(CLI::App& app) {
   auto options = std::make_shared<BatteryOptions>();
   CLI::App* command =
-      app.add_subcommand("battery", "A Modbus battery, TCP or RTU (AlphaESS registers)");
+      app.add_subcommand("battery", "A Modbus battery, TCP or RTU: any register map");
   command->footer(footer());
   add_bus_options(*command, options->server);
   options->clock.add_to(*command);

@@ -20,14 +20,18 @@ constexpr int kAddressPage = 0x1000;
 
 /// Addresses are served up to the end of the last point's page: beyond is "illegal data address".
 int served_addresses(const RegisterMap& map) {
-  int end = 0;
-  for (const RegisterPoint& p : map.points) end = std::max(end, p.address + p.register_count());
+  const int end = RegisterImage::address_end(map);
   return std::min((end + kAddressPage - 1) / kAddressPage * kAddressPage, 0x1'0000);
 }
 
 bool has_input_registers(const RegisterMap& map) {
   return std::any_of(map.points.begin(), map.points.end(),
                      [](const RegisterPoint& p) { return p.read_function == 4; });
+}
+
+bool serves_unit(const RegisterMap& map, int unit) {
+  return unit == map.unit || std::any_of(map.unit_groups.begin(), map.unit_groups.end(),
+                                         [unit](const UnitGroup& g) { return g.unit == unit; });
 }
 
 }  // namespace
@@ -66,7 +70,7 @@ void BatteryServer::make_registers() {
   mapping_.tab_registers = registers_.data();
   mapping_.nb_input_registers = has_input_registers(map_) ? mapping_.nb_registers : 0;
   mapping_.tab_input_registers = registers_.data();
-  image_ = std::make_unique<RegisterImage>(map_, battery_, registers_);
+  image_ = std::make_unique<RegisterImage>(map_, battery_, registers_, registers_);
 }
 
 void BatteryServer::listen_tcp() {
@@ -139,7 +143,7 @@ void BatteryServer::serve(Client& client) {
     return;
   }
   // Another unit, or a connection that has gone dead: silence, as on a bus.
-  if (request.size == 0 || request.unit() != map_.unit || client.half_open) return;
+  if (request.size == 0 || !serves_unit(map_, request.unit()) || client.half_open) return;
   if (wait(settings_.response_delay_ms)) answer(client, request);
 }
 
@@ -202,9 +206,10 @@ void BatteryServer::change_values(BatteryFault fault) {
     const RegisterPoint& point = map_.points[index];
     std::int64_t value = 0;
     RegisterBlock block;
-    static_cast<void>(decode(point, &registers_[point.address], value));
+    const int address = image_->address_of(index);
+    static_cast<void>(decode(point, &registers_[address], value));
     if (encode(point, changed(value), Rounding::kNearest, block) != Status::kOk) return;
-    std::copy(block.begin(), block.end(), registers_.begin() + point.address);
+    std::copy(block.begin(), block.end(), registers_.begin() + address);
   };
   if (fault == BatteryFault::kWrongSign) {
     change("battery_power", [](std::int64_t power_w) { return -power_w; });

@@ -1,94 +1,256 @@
 #include "tools/battery_sim/register_image.h"
 
+#include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "edge/registers/codec.h"
+#include "shared/scaled_clock.h"
 #include "tools/sim/sim_error.h"
 
 namespace bess {
 namespace {
 
-constexpr std::int64_t kModeSocControl = 2;
-constexpr std::int64_t kRoomTemperatureDeciC = 200;
-constexpr std::int64_t kDefaultDispatchTimeS = 90;  // what the vendor's stop block writes back
+constexpr double kRoomTemperatureDeciC = 200;
+constexpr std::int64_t kForEverS = 100LL * 365 * 86'400;
+constexpr int kCommonModelRegisters = 66;
 
-int required_point(const RegisterMap& map, std::string_view name) {
-  const int point = find_point(map, name);
-  if (point < 0) sim_fail("map {}: point \"{}\" is missing", map.name.view(), name);
-  if (map.points[point].address + map.points[point].register_count() >
-      RegisterImage::kRegisterCount) {
-    sim_fail("map {}: point \"{}\" lies above address {}", map.name.view(), name,
-             RegisterImage::kRegisterCount);
+/// What a model's header says: registers after id and length.
+int model_registers(const RegisterMap& map, int model) {
+  int registers = 0;
+  for (const RegisterPoint& p : map.points) {
+    if (p.model == model) registers = std::max(registers, p.address + p.register_count() - 2);
   }
-  return point;
+  return registers;
+}
+
+/// Where the first of the map's models lies: behind "SunS" and the common model.
+int first_model_address(const RegisterMap& map) {
+  return map.model_bases[0] + 2 + 2 + kCommonModelRegisters;
 }
 
 }  // namespace
 
 RegisterImage::RegisterImage(const RegisterMap& map, SimulatedBattery& battery,
-                             std::span<std::uint16_t> registers)
+                             std::span<std::uint16_t> holding, std::span<std::uint16_t> input)
     : map_(map),
       battery_(battery),
-      registers_(registers),
-      start_(required_point(map, "dispatch_start")),
-      power_(required_point(map, "dispatch_power")),
-      mode_(required_point(map, "dispatch_mode")),
-      soc_limit_(required_point(map, "dispatch_soc")),
-      time_(required_point(map, "dispatch_time")) {
-  for (const RegisterPoint& point : map.points) required_point(map, point.name.view());
-  set(power_, 0);
-  set(find_point(map_, "dispatch_reactive_power"), 0);
-  set(time_, kDefaultDispatchTimeS);
+      holding_(holding),
+      input_(input),
+      active_(map.simulator.active.empty() ? map.active : map.simulator.active),
+      order_power_(map.simulator.order_power.empty() ? map.order_power
+                                                     : map.simulator.order_power) {
+  const int end = address_end(map);
+  if (end > kRegisterCount || std::ssize(holding) < end || std::ssize(input) < end) {
+    sim_fail("map {}: {} registers are not enough, it needs {}", map.name.view(), holding.size(),
+             end);
+  }
+  lay_out_models();
+  find_arguments();
+  // Scale factors first: what is encoded with them comes after.
+  for (const RegisterPoint& p : map_.points) {
+    if (p.scale_from >= 0) set(p.scale_from, map_.points[p.scale_from].value_min);
+  }
+  for (const Assignment& assignment : map_.simulator.initial) assign(assignment);
+  for (const IdentityCheck& check : map_.identity) {
+    const RegisterPoint& p = map_.points[check.point];
+    for (std::size_t i = 0; p.type == RegisterType::kText && i < check.text.view().size(); ++i) {
+      const auto character = static_cast<std::uint8_t>(check.text.view()[i]);
+      holding_[address_of(check.point) + i / 2] |=
+          static_cast<std::uint16_t>(i % 2 == 0 ? character << 8 : character);
+    }
+  }
+}
+
+int RegisterImage::address_end(const RegisterMap& map) {
+  int end = 0;
+  for (const RegisterPoint& p : map.points) {
+    if (p.model < 0) end = std::max(end, p.address + p.register_count());
+  }
+  if (map.models.empty()) return end;
+  int chain_end = first_model_address(map);
+  for (int m = 0; m < map.models.size(); ++m) chain_end += 2 + model_registers(map, m);
+  return std::max(end, chain_end + 2);
+}
+
+/// "SunS", the common model, the map's models in their order, the end mark.
+void RegisterImage::lay_out_models() {
+  if (map_.models.empty()) return;
+  const int base = map_.model_bases[0];
+  const std::uint16_t head[] = {0x5375, 0x6E53, 1, kCommonModelRegisters};
+  std::copy(std::begin(head), std::end(head), holding_.begin() + base);
+  int address = first_model_address(map_);
+  for (int m = 0; m < map_.models.size(); ++m) {
+    model_start_[m] = address;
+    holding_[address] = map_.models[m];
+    holding_[address + 1] = static_cast<std::uint16_t>(model_registers(map_, m));
+    address += 2 + holding_[address + 1];
+  }
+  holding_[address] = 0xFFFF;
+  holding_[address + 1] = 0;
+}
+
+/// Which points an order's duration and limits are written to.
+void RegisterImage::find_arguments() {
+  for (const CommandSequence& sequence : map_.command) {
+    for (const BlockWrite& write : sequence.writes) {
+      for (const WriteValue& value : write.values) {
+        if (value.argument == Argument::kDuration) timer_ = value.point;
+        if (value.argument == Argument::kDurationMinutes) {
+          timer_ = value.point;
+          timer_counts_minutes_ = true;
+        }
+        if (value.argument == Argument::kSocLimit) soc_limit_ = value.point;
+        if (value.argument == Argument::kSocMin) soc_min_ = value.point;
+        if (value.argument == Argument::kSocMax) soc_max_ = value.point;
+      }
+    }
+  }
 }
 
 void RegisterImage::refresh(std::int64_t utc_ns) {
   battery_.advance(utc_ns);
+  utc_s_ = utc_ns / kNanosecondsPerSecond;
+  if (is_running_ && !battery_.dispatch_active()) show_expiry();
+  is_running_ = battery_.dispatch_active();
   const BatteryParameters& p = battery_.parameters();
-  set(find_point(map_, "soc"), std::llround(battery_.soc_frac() * 1e4));
-  set(find_point(map_, "battery_power"), std::llround(battery_.power_w()));
-  set(find_point(map_, "capacity"), std::llround(p.capacity_wh));
-  set(find_point(map_, "charge_power_max"), std::llround(p.power_w_max));
-  set(find_point(map_, "discharge_power_max"), std::llround(p.power_w_max));
-  set(find_point(map_, "temperature_min"), kRoomTemperatureDeciC);
-  set(find_point(map_, "temperature_max"), kRoomTemperatureDeciC);
-  set(find_point(map_, "work_mode"), 1);
-  if (!battery_.dispatch_active()) set(start_, 0);  // expiry is seen here
-  was_started_ = battery_.dispatch_active();
+  set("soc", battery_.soc_frac() * 1e4);
+  show_power(std::llround(battery_.power_w()));
+  set("capacity", p.capacity_wh);
+  set("charge_power_max", p.power_w_max);
+  set("discharge_power_max", p.power_w_max);
+  set("temperature_min", kRoomTemperatureDeciC);
+  set("temperature_max", kRoomTemperatureDeciC);
+  if (map_.alive.point >= 0) {
+    const RegisterPoint& alive = map_.points[map_.alive.point];
+    set(map_.alive.point, alive.value_min + utc_s_ % (alive.value_max - alive.value_min + 1));
+  }
+  if (map_.watchdog.remaining >= 0) {
+    set(map_.watchdog.remaining, is_running_ ? std::max<std::int64_t>(end_utc_s_ - utc_s_, 0) : 0);
+  }
+}
+
+/// One register with a sign, one for each direction, or a size whose sign stands in a state.
+void RegisterImage::show_power(std::int64_t power_w) {
+  for (const PowerCase& c : map_.measured_power) {
+    for (const PowerCase::Term& term : c.terms) {
+      const bool signed_register = c.terms.size() == 1 && c.when.point < 0;
+      const std::int64_t value = term.sign * power_w;
+      set(term.point, signed_register ? value : std::max<std::int64_t>(value, 0));
+    }
+  }
+  for (const PowerCase& c : map_.measured_power) {
+    if (c.when.point >= 0) set(c.when.point, 0);
+  }
+  for (const PowerCase& c : map_.measured_power) {
+    if (c.when.point < 0 || c.terms.empty() || c.terms[0].sign * power_w <= 0) continue;
+    set(c.terms[0].point, std::abs(power_w));
+    set(c.when.point, c.when.value);
+    return;
+  }
+}
+
+void RegisterImage::show_expiry() {
+  for (const Assignment& assignment : map_.simulator.at_expiry) assign(assignment);
 }
 
 void RegisterImage::apply_write(int address, int count) {
-  if (value(start_) != 1) {
+  const LivePoints registers = snapshot();
+  if (!active_.empty() && !live_all(map_, active_, registers)) {
     battery_.stop_dispatch();
+    is_running_ = false;
     return;
   }
-  // Parameters wait in their registers until the mode is written or the dispatch is switched on.
-  if (was_started_ && !covers(address, count, mode_)) return;
-  if (value(mode_) != kModeSocControl && covers(address, count, mode_)) {
-    battery_.stop_dispatch();
-    return;
+  if (is_running_ && is_order_ignored(address, count)) return;
+  start(registers);
+}
+
+bool RegisterImage::is_order_ignored(int address, int count) const {
+  const auto& apply_on = map_.simulator.apply_on;
+  return !apply_on.empty() && std::none_of(apply_on.begin(), apply_on.end(), [&](std::int8_t p) {
+    return covers(address, count, p);
+  });
+}
+
+void RegisterImage::start(const LivePoints& registers) {
+  std::int64_t power_w = 0;
+  if (!live_power(map_, order_power_, registers, power_w)) power_w = 0;
+  const std::int64_t seconds = duration_s();
+  battery_.start_dispatch(static_cast<double>(power_w), soc_limit_frac(power_w), seconds);
+  end_utc_s_ = utc_s_ + seconds;
+  is_running_ = battery_.dispatch_active();
+}
+
+std::int64_t RegisterImage::duration_s() const {
+  using enum Watchdog::Kind;
+  if (map_.watchdog.kind == kNone) return kForEverS;
+  if (timer_ < 0) return map_.dead_man_duration_s;
+  const std::int64_t written = value(timer_) * (timer_counts_minutes_ ? 60 : 1);
+  return map_.watchdog.kind == kRevertTimer && written == 0 ? kForEverS : written;
+}
+
+double RegisterImage::soc_limit_frac(std::int64_t power_w) const {
+  const int own = power_w < 0 ? soc_min_ : soc_max_;
+  const int point = soc_limit_ >= 0 ? soc_limit_ : own;
+  if (point < 0) return power_w < 0 ? 0.0 : 1.0;
+  return static_cast<double>(value(point)) / 1e4;
+}
+
+int RegisterImage::address_of(int point) const {
+  const RegisterPoint& p = map_.points[point];
+  return p.address + (p.model < 0 ? 0 : model_start_[p.model]);
+}
+
+LivePoints RegisterImage::snapshot() const {
+  LivePoints live;
+  for (int i = 0; i < map_.points.size(); ++i) {
+    const RegisterPoint& p = map_.points[i];
+    live.keep(map_, i, &(p.read_function == 4 ? input_ : holding_)[address_of(i)]);
   }
-  battery_.start_dispatch(static_cast<double>(value(power_)),
-                          static_cast<double>(value(soc_limit_)) / 1e4, value(time_));
+  return live;
 }
 
 std::int64_t RegisterImage::value(int point) const {
   std::int64_t result = 0;
-  const RegisterPoint& p = map_.points[point];
-  static_cast<void>(decode(p, &registers_[p.address], result));
-  return result;
+  return live_value(map_, snapshot(), point, result) ? result : 0;
+}
+
+void RegisterImage::set(std::string_view name, double value) {
+  const int point = find_point(map_, name);
+  if (point >= 0) set(point, std::llround(value));
 }
 
 void RegisterImage::set(int point, std::int64_t value) {
-  if (point < 0) return;  // this map does not know it
   const RegisterPoint& p = map_.points[point];
+  Scaling scaling;
   RegisterBlock block;
-  if (encode(p, value, Rounding::kNearest, block) != Status::kOk) return;
-  for (int i = 0; i < block.size(); ++i) registers_[p.address + i] = block[i];
+  if (!live_scaling(map_, snapshot(), point, scaling)) return;
+  if (encode(p, value, Rounding::kNearest, block, scaling) != Status::kOk) return;
+  const std::span<std::uint16_t> registers = p.read_function == 4 ? input_ : holding_;
+  if (p.mask != 0 && p.register_count() == 1) {  // other points share this register
+    const auto others = registers[address_of(point)] & ~p.mask;
+    const auto own = static_cast<std::uint64_t>(value) << std::countr_zero(p.mask);
+    registers[address_of(point)] = static_cast<std::uint16_t>(others | (own & p.mask));
+    return;
+  }
+  for (int i = 0; i < block.size(); ++i) registers[address_of(point) + i] = block[i];
+}
+
+void RegisterImage::assign(const Assignment& assignment) {
+  const BatteryParameters& p = battery_.parameters();
+  switch (assignment.source) {
+    case Assignment::Source::kConstant:
+      return set(assignment.point, assignment.constant);
+    case Assignment::Source::kPowerMax:
+      return set(assignment.point, std::llround(p.power_w_max));
+    case Assignment::Source::kCapacity:
+      return set(assignment.point, std::llround(p.capacity_wh));
+  }
 }
 
 bool RegisterImage::covers(int address, int count, int point) const {
-  const RegisterPoint& p = map_.points[point];
-  return address <= p.address && p.address + p.register_count() <= address + count;
+  const int begin = address_of(point);
+  return address <= begin && begin + map_.points[point].register_count() <= address + count;
 }
 
 }  // namespace bess

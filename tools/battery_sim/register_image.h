@@ -1,11 +1,13 @@
-// The registers of an AlphaESS battery as its master sees them: measurements are rendered from the
-// physics at every request, writes to the dispatch block become orders. Addresses, types and signs
-// come from the same map file that the edge uses.
+// The registers of a battery as its master sees them, for any register map: measurements are
+// rendered from the physics at every request, and writes become orders by what the map itself says
+// about them (active, order_power, watchdog, [simulator]). Addresses, types and signs come from the
+// same file that the edge uses; SunSpec models are laid out as a chain at the first base.
 #pragma once
 
 #include <cstdint>
 #include <span>
 
+#include "edge/registers/live_points.h"
 #include "edge/registers/register_map.h"
 #include "tools/battery_sim/simulated_battery.h"
 
@@ -15,26 +17,52 @@ class RegisterImage {
  public:
   static constexpr int kRegisterCount = 0x1'0000;
 
-  /// `registers` are the holding registers that the bus serves. Throws SimError when the map lacks
-  /// the dispatch points that this simulator acts.
-  RegisterImage(const RegisterMap& map, SimulatedBattery& battery,
-                std::span<std::uint16_t> registers);
+  /// One past the last address that this map uses, its SunSpec models laid out.
+  static int address_end(const RegisterMap& map);
+
+  /// The registers that the bus serves, at least `address_end` of each kind; both may be the same
+  /// memory when the map gives the two kinds addresses of their own.
+  RegisterImage(const RegisterMap& map, SimulatedBattery& battery, std::span<std::uint16_t> holding,
+                std::span<std::uint16_t> input);
 
   /// Brings the battery to `utc_ns` and renders what it measures.
   void refresh(std::int64_t utc_ns);
-  /// Acts on a write that has just changed registers; call `refresh` before the write.
+  /// Acts on a write that has just changed holding registers; call `refresh` before the write.
   void apply_write(int address, int count);
 
+  /// Where a point lies in this image.
+  [[nodiscard]] int address_of(int point) const;
+
  private:
+  using Assignment = SimulatorHints::Assignment;
+
+  void lay_out_models();
+  void find_arguments();
+  [[nodiscard]] LivePoints snapshot() const;
   [[nodiscard]] std::int64_t value(int point) const;
   void set(int point, std::int64_t value);
+  void set(std::string_view name, double value);
+  void show_power(std::int64_t power_w);
+  void assign(const Assignment& assignment);
   [[nodiscard]] bool covers(int address, int count, int point) const;
+  [[nodiscard]] bool is_order_ignored(int address, int count) const;
+  [[nodiscard]] std::int64_t duration_s() const;
+  [[nodiscard]] double soc_limit_frac(std::int64_t power_w) const;
+  void start(const LivePoints& registers);
+  void show_expiry();
 
   const RegisterMap& map_;
   SimulatedBattery& battery_;
-  std::span<std::uint16_t> registers_;
-  int start_, power_, mode_, soc_limit_, time_;
-  bool was_started_ = false;
+  std::span<std::uint16_t> holding_, input_;
+  const StaticVector<Condition, 4>& active_;
+  const StaticVector<PowerCase, 4>& order_power_;
+  int model_start_[decltype(RegisterMap::models)::capacity()] = {};
+  int timer_ = -1;  ///< point that an order's duration is written to; -1 = fixed by the device
+  bool timer_counts_minutes_ = false;
+  int soc_limit_ = -1, soc_min_ = -1, soc_max_ = -1;
+  bool is_running_ = false;  ///< an order, at the last refresh or write
+  std::int64_t utc_s_ = 0;
+  std::int64_t end_utc_s_ = 0;  ///< of the order under way
 };
 
 }  // namespace bess

@@ -1,0 +1,180 @@
+// The checks that need the whole map: roles present, references resolved, watchdog really fed by
+// the commands, and the proof that the stated power range goes into the registers.
+#include <algorithm>
+
+#include "edge/registers/codec.h"
+#include "edge/registers/map_reader.h"
+
+namespace bess {
+namespace {
+
+bool contains(const auto& list, std::int8_t point) {
+  return std::find(list.begin(), list.end(), point) != list.end();
+}
+
+/// A point named battery_power is the measured power unless the map says otherwise.
+void complete_power(RegisterMap& map) {
+  const int point = find_point(map, "battery_power");
+  if (!map.measured_power.empty() || point < 0) return;
+  PowerCase always;
+  always.terms.push_back({.point = static_cast<std::int8_t>(point)});
+  map.measured_power.push_back(always);
+}
+
+/// Everything that state and commands look at is read every cycle, whether listed or not.
+void measure_also(RegisterMap& map, std::int8_t point) {
+  if (point < 0 || contains(map.measure, point)) return;
+  map.measure.push_back(point);  // fits: there is room for every point once
+}
+
+void measure_power(RegisterMap& map, const StaticVector<PowerCase, 4>& cases) {
+  for (const PowerCase& c : cases) {
+    measure_also(map, c.when.point);
+    for (const PowerCase::Term& term : c.terms) measure_also(map, term.point);
+  }
+}
+
+/// What the map lists, alarms and off-grid decide about safety: one implausible value of them
+/// spoils the measurement. The rest only tells what order is in force.
+void complete_measure(RegisterMap& map) {
+  for (const Condition& c : map.alarms) measure_also(map, c.point);
+  measure_also(map, map.off_grid.point);
+  measure_also(map, map.alive.point);
+  measure_power(map, map.measured_power);
+  map.required = map.measure;
+  for (const Condition& c : map.active) measure_also(map, c.point);
+  measure_also(map, map.watchdog.remaining);
+  measure_power(map, map.order_power);
+  for (const RegisterPoint& p : map.points) {
+    measure_also(map, p.scale_from);
+    measure_also(map, p.percent_of);
+    measure_also(map, p.clamp_to);
+  }
+}
+
+bool writes_argument(const RegisterMap& map, Command command, Argument wanted) {
+  for (const BlockWrite& write : map.sequence(command).writes) {
+    for (const WriteValue& value : write.values) {
+      if (value.argument == wanted) return true;
+    }
+  }
+  return false;
+}
+
+bool is_fed_by(const RegisterMap& map, Command command) {
+  using enum Watchdog::Kind;
+  const bool duration = writes_argument(map, command, Argument::kDuration) ||
+                        writes_argument(map, command, Argument::kDurationMinutes);
+  switch (map.watchdog.kind) {
+    case kDuration:
+    case kRevertTimer:
+      return duration;
+    case kHeartbeat:
+      return writes_argument(map, command, Argument::kHeartbeat);
+    case kNone:
+    case kRewrite:
+      break;
+  }
+  return true;
+}
+
+/// A watchdog that no command feeds would end every order, or never end one.
+void check_watchdog(TomlTable& root, const RegisterMap& map) {
+  for (const Command command : {Command::kCharge, Command::kIdle, Command::kDischarge}) {
+    if (is_fed_by(map, command) || is_fed_by(map, Command::kEnable)) continue;
+    root.fail("watchdog",
+              "is not fed: charge, idle and discharge (or enable) must write "
+              "\"duration\", \"duration_minutes\" or \"heartbeat\"");
+  }
+  const bool refreshes = !map.sequence(Command::kRefresh).writes.empty();
+  if (refreshes && !is_fed_by(map, Command::kRefresh)) {
+    root.fail("command", "refresh must feed the watchdog: write its duration or heartbeat");
+  }
+}
+
+void check_roles(TomlTable& root, const RegisterMap& map) {
+  const int soc = find_point(map, "soc");
+  if (soc < 0 || !contains(map.required, static_cast<std::int8_t>(soc))) {
+    root.fail("state", "measure must hold a point \"soc\": the controller needs it");
+  }
+  if (map.measured_power.empty()) {
+    root.fail("point",
+              "\"battery_power\" is missing: the controller needs it (or measured_power in "
+              "[state])");
+  }
+  for (const std::int8_t point : map.measure) {
+    if (map.points[point].type != RegisterType::kText) continue;
+    root.fail("state", "measures " + quoted(map.points[point].name.view()) +
+                           ", which is a text: use it in [[identity]] only");
+  }
+}
+
+/// "saved" without a fallback would restore 0; a saved point that nobody restores is a mistake.
+void check_saved(TomlTable& root, const RegisterMap& map) {
+  for (const CommandSequence& sequence : map.command) {
+    for (const BlockWrite& write : sequence.writes) {
+      for (const WriteValue& value : write.values) {
+        const bool listed =
+            std::any_of(map.saved.begin(), map.saved.end(),
+                        [&](const SavedPoint& saved) { return saved.point == value.point; });
+        if (value.argument != Argument::kSaved || listed) continue;
+        root.fail("command", "restores " + quoted(map.points[value.point].name.view()) +
+                                 ", which is not in its list save");
+      }
+    }
+  }
+  for (const SavedPoint& saved : map.saved) {
+    if (map.points[saved.point].register_count() <= kPointRegistersMax) continue;
+    root.fail("command", "cannot save a text");
+  }
+}
+
+void check_models(TomlTable& root, const RegisterMap& map) {
+  for (int i = 0; i < map.points.size(); ++i) {
+    const RegisterPoint& p = map.points[i];
+    const std::int64_t end = std::int64_t{p.address} + p.register_count();
+    if (end > 65'536) root.fail("point", quoted(p.name.view()) + " lies beyond address 65535");
+  }
+}
+
+/// Flash that has a budget must still be able to release when the budget is used up.
+void check_reserve(TomlTable& root, const RegisterMap& map) {
+  int worn = 0;
+  for (const RegisterPoint& p : map.points) worn += p.eeprom ? 1 : 0;
+  int release = 0;
+  for (const BlockWrite& write : map.sequence(Command::kRelease).writes) {
+    release += write.eeprom ? 1 : 0;
+  }
+  if (worn > 0 && map.writes.eeprom_writes_per_day == 0) {
+    root.fail("writes", "eeprom_writes_per_day is missing: some points have storage = \"eeprom\"");
+  }
+  if (map.writes.eeprom_writes_per_day > 0 && map.writes.reserve < release) {
+    root.fail("writes", "reserve must be at least " + std::to_string(release) +
+                            ": that many writes a release takes");
+  }
+}
+
+/// Nothing may wrap later: both ends of the stated power range are encoded once here.
+void prove_power_range(TomlTable& root, const RegisterMap& map) {
+  for (const std::int32_t power_w : {map.charge_w_max, -map.discharge_w_max, 0}) {
+    const PowerOrder order{.power_w = power_w, .duration_s = map.dead_man_duration_s};
+    if (check_expressible(map, order) != Status::kOk) {
+      root.fail("power",
+                "states " + std::to_string(power_w) + " W, which the registers cannot express");
+    }
+  }
+}
+
+}  // namespace
+
+void check_map(TomlTable& root, RegisterMap& map) {
+  if (!root.ok()) return;
+  complete_power(map);
+  complete_measure(map);
+  for (const auto check :
+       {check_roles, check_watchdog, check_saved, check_models, check_reserve, prove_power_range}) {
+    if (root.ok()) check(root, map);
+  }
+}
+
+}  // namespace bess

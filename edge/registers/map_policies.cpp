@@ -1,0 +1,85 @@
+// [writes], [exceptions], [commissioning] and [simulator].
+#include "edge/registers/map_reader.h"
+
+namespace bess {
+namespace {
+
+template <int kCapacity>
+void read_codes(TomlTable& table, std::string_view key,
+                StaticVector<std::uint8_t, kCapacity>& out) {
+  const toml::array* list = table.array(key);
+  if (list == nullptr) return;
+  out.clear();
+  for (const toml::node& item : *list) {
+    const auto* number = item.as_integer();
+    if (number == nullptr || number->get() < 1 || number->get() > 255) {
+      return table.fail_at(item, std::string(key) + " must hold exception codes, 1 to 255");
+    }
+    if (!out.try_push_back(static_cast<std::uint8_t>(number->get()))) {
+      return table.fail(key, "holds more than 6 codes");
+    }
+  }
+}
+
+void read_assignments(TomlTable& table, std::string_view key, const RegisterMap& map, auto& out) {
+  using Assignment = SimulatorHints::Assignment;
+  for_each_text(table, key, [&](std::string_view text, const toml::node& at) {
+    const MapPhrase phrase = split_phrase(text);
+    Assignment assignment{.point = require_point(table, at, phrase.left, map)};
+    if (assignment.point < 0) return;
+    if (phrase.op == "=" && phrase.right == "power_max") {
+      assignment.source = Assignment::Source::kPowerMax;
+    } else if (phrase.op == "=" && phrase.right == "capacity") {
+      assignment.source = Assignment::Source::kCapacity;
+    } else if (phrase.op != "=" ||
+               !parse_value(map, assignment.point, phrase.right, assignment.constant)) {
+      return table.fail_at(at, "must be \"point = number, name, power_max or capacity\"");
+    }
+    if (!out.try_push_back(assignment)) table.fail(key, "is too long");
+  });
+}
+
+}  // namespace
+
+void read_map_policies(TomlTable& root, RegisterMap& map) {
+  TomlTable writes = map_child(root, "writes");
+  writes.integer("eeprom_writes_per_day", map.writes.eeprom_writes_per_day, 1, 100'000);
+  writes.integer("reserve", map.writes.reserve, 0, 1'000);
+  writes.integer("read_back_delay_ms", map.writes.read_back_delay_ms, 0, 10'000);
+  if (map.writes.reserve > 0 && map.writes.reserve >= map.writes.eeprom_writes_per_day) {
+    writes.fail("reserve", "must be below eeprom_writes_per_day");
+  }
+  writes.finish();
+  TomlTable exceptions = map_child(root, "exceptions");
+  map.exceptions.retry.push_back(5);  // acknowledge: still working on it
+  map.exceptions.retry.push_back(6);  // busy
+  read_codes(exceptions, "retry", map.exceptions.retry);
+  read_codes(exceptions, "not_permitted", map.exceptions.not_permitted);
+  exceptions.finish();
+  TomlTable test = map_child(root, "commissioning");
+  test.integer("power_w", map.commissioning.power_w, 1, 1'000'000);
+  test.integer("duration_s", map.commissioning.duration_s, 5, 600);
+  test.integer("settle_s", map.commissioning.settle_s, 1, 300);
+  test.integer("tolerance_percent", map.commissioning.tolerance_percent, 1, 100);
+  if (map.commissioning.settle_s >= map.commissioning.duration_s) {
+    test.fail("settle_s", "must be below duration_s");
+  }
+  test.finish();
+}
+
+void read_map_simulator(TomlTable& root, RegisterMap& map) {
+  TomlTable table = map_child(root, "simulator");
+  read_conditions(table, "active", map, map.simulator.active);
+  read_power_cases(table, "order_power", map, map.simulator.order_power);
+  read_assignments(table, "initial", map, map.simulator.initial);
+  read_assignments(table, "at_expiry", map, map.simulator.at_expiry);
+  for_each_text(table, "apply_on", [&](std::string_view name, const toml::node& at) {
+    const std::int8_t point = require_point(table, at, name, map);
+    if (point >= 0 && !map.simulator.apply_on.try_push_back(point)) {
+      table.fail("apply_on", "is too long");
+    }
+  });
+  table.finish();
+}
+
+}  // namespace bess

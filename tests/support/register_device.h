@@ -1,0 +1,135 @@
+// A device of registers in memory, and the link and the time with which the battery driver reaches
+// it without sockets: every write is recorded, faults are set by hand, time is moved by hand.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "edge/battery_driver.h"
+#include "edge/modbus_link.h"
+#include "edge/registers/map_file.h"
+
+namespace bess {
+
+struct WriteRecord {
+  int unit, function, address;
+  std::vector<int> values;
+  friend bool operator==(const WriteRecord&, const WriteRecord&) = default;
+  friend void PrintTo(const WriteRecord& w, std::ostream* out) {
+    *out << "unit " << w.unit << " function " << w.function << " address " << w.address << ":";
+    for (const int value : w.values) *out << " " << value;
+  }
+};
+
+struct RegisterDevice {
+  std::vector<std::uint16_t> holding = std::vector<std::uint16_t>(0x1'0000);
+  std::vector<std::uint16_t> input = std::vector<std::uint16_t>(0x1'0000);
+  std::vector<WriteRecord> writes;  ///< everything that was asked for, obeyed or not
+  int reads = 0;
+  std::int64_t now_ns = 1;  ///< the device's time, moved by hand
+  std::int64_t day = 20'000;
+  bool ignores_writes = false;  ///< acknowledges, does nothing
+  int exception = 0;            ///< answer to every request; -1 = no answer at all
+  int unreadable_address = -1;  ///< a read that covers it is not answered
+  int failing_writes = 0;       ///< that many of the next writes are not answered
+  std::function<void()> before_request = [] {};
+  std::function<void(int address, int count)> after_write = [](int, int) {};
+
+  void set(int address, const std::vector<int>& values) {
+    for (const int value : values) holding[address++] = static_cast<std::uint16_t>(value);
+  }
+  void set_input(int address, const std::vector<int>& values) {
+    for (const int value : values) input[address++] = static_cast<std::uint16_t>(value);
+  }
+  void pass_s(double seconds) { now_ns += static_cast<std::int64_t>(seconds * 1e9); }
+  std::vector<WriteRecord> take_writes() { return std::exchange(writes, {}); }
+};
+
+class DeviceLink {
+ public:
+  explicit DeviceLink(RegisterDevice& device) : device_(device) {}
+
+  Status read(const RegisterSpan& span, std::uint16_t* registers) {
+    ++device_.reads;
+    ++counters_.requests;
+    device_.before_request();
+    if (const Status status = fault(); status != Status::kOk) return status;
+    const int offset = device_.unreadable_address - span.address;
+    if (offset >= 0 && offset < span.count) return Status::kTimeout;
+    const auto& table = span.function == 4 ? device_.input : device_.holding;
+    std::copy_n(table.begin() + span.address, span.count, registers);
+    return Status::kOk;
+  }
+  Status write(std::int32_t unit, std::uint8_t function, std::uint16_t address,
+               const std::uint16_t* registers, int count) {
+    ++counters_.requests;
+    ++counters_.register_writes;
+    device_.before_request();
+    device_.writes.push_back({unit, function, address, {registers, registers + count}});
+    if (device_.failing_writes > 0) {
+      --device_.failing_writes;
+      return Status::kTimeout;
+    }
+    if (const Status status = fault(); status != Status::kOk) return status;
+    if (device_.ignores_writes) return Status::kOk;
+    std::copy_n(registers, count, device_.holding.begin() + address);
+    device_.after_write(address, count);
+    return Status::kOk;
+  }
+  void close() {}
+  [[nodiscard]] int last_exception() const { return device_.exception > 0 ? device_.exception : 0; }
+  [[nodiscard]] const LinkCounters& counters() const { return counters_; }
+
+ private:
+  Status fault() const {
+    if (device_.exception < 0) return Status::kTimeout;
+    return device_.exception > 0 ? Status::kBusException : Status::kOk;
+  }
+
+  RegisterDevice& device_;
+  LinkCounters counters_;
+};
+
+class DeviceClock {
+ public:
+  explicit DeviceClock(RegisterDevice& device) : device_(&device) {}
+  [[nodiscard]] std::int64_t now_ns() const { return device_->now_ns; }
+  void sleep_ms(std::int32_t ms) const { device_->now_ns += std::int64_t{ms} * 1'000'000; }
+  [[nodiscard]] std::int64_t utc_day() const { return device_->day; }
+
+ private:
+  RegisterDevice* device_;
+};
+
+using DeviceDriver = BatteryDriver<DeviceLink, DeviceClock>;
+
+inline std::string shipped_map(const std::string& name) {
+  return std::string(BESS_SOURCE_DIR) + "/edge/maps/" + name + ".toml";
+}
+
+/// A map of edge/maps with a device for it; the test fills the registers.
+struct MapUnderTest {
+  RegisterMap map;
+  RegisterDevice device;
+  std::unique_ptr<DeviceDriver> driver;
+  BatteryMeasurement measured;
+
+  explicit MapUnderTest(const std::string& path, const std::string& variant = "") {
+    std::string error;
+    EXPECT_TRUE(load_register_map(path, variant, map, error)) << error;
+    driver = std::make_unique<DeviceDriver>(map, DeviceClock(device), -1, device);
+  }
+  Status order(std::int32_t power_w) {
+    return driver->order({.power_w = power_w,
+                          .soc_min_e4 = 1'000,
+                          .soc_max_e4 = 9'000,
+                          .duration_s = map.dead_man_duration_s});
+  }
+  Status read() { return driver->read(measured); }
+};
+
+}  // namespace bess
