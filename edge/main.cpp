@@ -4,16 +4,16 @@
 //                                           +-> ControlLoop -> student -> SafetyGuard -> ModbusBattery
 //   battery ------> ModbusBattery ----------+         |
 //                                                     +-> EventLog (own thread), ServiceNotify
-#include "edge/command_line.h"
-#include "edge/commission_command.h"
-#include "edge/commission_file.h"
-#include "edge/heap_seal.h"
-#include "edge/journal.h"
-#include "edge/log_command.h"
-#include "edge/run_locks.h"
-#include "edge/startup.h"
-#include "edge/status_command.h"
-#include "edge/supervised_loop.h"
+#include "edge/log/journal.h"
+#include "edge/memory/heap_seal.h"
+#include "edge/program/command_line.h"
+#include "edge/program/commission_command.h"
+#include "edge/program/commission_file.h"
+#include "edge/program/log_command.h"
+#include "edge/program/run_locks.h"
+#include "edge/program/startup.h"
+#include "edge/program/status_command.h"
+#include "edge/program/supervised_loop.h"
 #include "shared/check.h"
 
 namespace bess {

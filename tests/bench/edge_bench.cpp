@@ -6,7 +6,7 @@
 #include <limits>
 #include <sstream>
 
-#include "edge/modbus_battery.h"
+#include "edge/battery/modbus_battery.h"
 #include "edge/registers/map_file.h"
 #include "tests/bench/registry.h"
 #include "tests/support/simulated_site.h"

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <string>
 
-#include "edge/control_loop.h"
-#include "edge/log_text.h"
-#include "edge/policy.h"
+#include "edge/control/control_loop.h"
+#include "edge/control/policy.h"
+#include "edge/log/log_text.h"
 #include "shared/fixed_text.h"
 #include "shared/static_vector.h"
 #include "shared/utc_text.h"

@@ -13,7 +13,7 @@
 #include <thread>
 #include <vector>
 
-#include "edge/modbus_link.h"
+#include "edge/battery/modbus_link.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace bess {

@@ -1,6 +1,6 @@
 // Register maps: whatever is accepted keeps its promises about the power it can express, and the
 // driver can run it against a device that answers anything.
-#include "edge/battery_driver.h"
+#include "edge/battery/battery_driver.h"
 #include "edge/registers/codec.h"
 #include "edge/registers/map_file.h"
 #include "tests/fuzz/fuzz_target.h"

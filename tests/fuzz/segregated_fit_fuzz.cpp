@@ -1,5 +1,5 @@
 // The bounded-time allocator, driven by bytes: four of them are one operation on one of 64 slots.
-#include "edge/segregated_fit.h"
+#include "edge/memory/segregated_fit.h"
 
 #include <cstring>
 #include <memory>

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "edge/edge_config.h"
-#include "edge/policy.h"
-#include "edge/safety_guard.h"
+#include "edge/control/policy.h"
+#include "edge/control/safety_guard.h"
+#include "edge/program/edge_config.h"
 #include "shared/local_time.h"
 #include "shared/utc_text.h"
 #include "tests/support/csv_rows.h"

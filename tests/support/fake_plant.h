@@ -8,7 +8,7 @@
 #include <functional>
 #include <vector>
 
-#include "edge/control_types.h"
+#include "edge/control/control_types.h"
 #include "edge/registers/codec.h"
 #include "shared/scaled_clock.h"
 #include "tools/battery_sim/simulated_battery.h"

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "edge/battery_driver.h"
-#include "edge/modbus_link.h"
+#include "edge/battery/battery_driver.h"
+#include "edge/battery/modbus_link.h"
 #include "edge/registers/map_file.h"
 
 namespace bess {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "edge/modbus_battery.h"
+#include "edge/battery/modbus_battery.h"
 #include "tests/tools/loopback_battery.h"
 
 namespace bess {

@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "edge/modbus_link.h"
+#include "edge/battery/modbus_link.h"
 #include "edge/registers/map_file.h"
 #include "tests/support/pty_bridge.h"
 #include "tools/battery_sim/battery_server.h"

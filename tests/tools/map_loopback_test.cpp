@@ -2,7 +2,7 @@
 // and the simulated device, orders read back and obeyed, the device released.
 #include <gtest/gtest.h>
 
-#include "edge/modbus_battery.h"
+#include "edge/battery/modbus_battery.h"
 #include "tests/tools/loopback_battery.h"
 
 namespace bess {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "edge/price_json.h"
+#include "edge/prices/price_json.h"
 #include "shared/scaled_clock.h"
 #include "shared/utc_text.h"
 #include "tools/market_sim/market_view.h"

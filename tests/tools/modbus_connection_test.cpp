@@ -15,7 +15,7 @@
 #include <thread>
 #include <vector>
 
-#include "edge/modbus_link.h"
+#include "edge/battery/modbus_link.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/tools/loopback_battery.h"
 

@@ -7,7 +7,7 @@
 #include <random>
 #include <set>
 
-#include "edge/modbus_battery.h"
+#include "edge/battery/modbus_battery.h"
 #include "tests/tools/loopback_battery.h"
 
 namespace bess {

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <thread>
 
-#include "edge/modbus_battery.h"
+#include "edge/battery/modbus_battery.h"
 #include "tests/tools/loopback_battery.h"
 #include "tools/sim/sim_error.h"
 

@@ -11,7 +11,7 @@
 #include <chrono>
 #include <thread>
 
-#include "edge/modbus_battery.h"
+#include "edge/battery/modbus_battery.h"
 #include "edge/registers/codec.h"
 #include "edge/registers/map_file.h"
 

@@ -1,0 +1,303 @@
+// The battery as the controller sees it, driven through a register map: measure, order, keep the
+// watchdog fed, release. Costs as few writes as possible: an order that is in force already is not
+// written again until the watchdog is due. A template over link and time (see battery_bus.h).
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+#include "edge/battery/battery_bus.h"
+#include "edge/battery/command_runner.h"
+#include "edge/battery/identity_check.h"
+#include "edge/battery/measurement_reader.h"
+#include "edge/control/control_types.h"
+#include "edge/registers/codec.h"
+#include "shared/units_and_limits.h"
+
+namespace bess {
+
+template <typename Link, typename Time>
+class BatteryDriver {
+ public:
+  /// `map` must outlive this object; `unit` replaces its unit id when not negative.
+  template <typename... LinkArguments>
+  BatteryDriver(const RegisterMap& map, const Time& time, std::int32_t unit,
+                LinkArguments&&... link)
+      : map_(map),
+        bus_(map, time, unit, std::forward<LinkArguments>(link)...),
+        runner_(map, bus_),
+        reader_(map),
+        scales_elsewhere_(
+            std::any_of(map.points.begin(), map.points.end(), [](const RegisterPoint& p) {
+              return p.scale_from >= 0 || p.percent_of >= 0 || p.clamp_to >= 0;
+            })) {}
+  BatteryDriver(const BatteryDriver&) = delete;
+  BatteryDriver& operator=(const BatteryDriver&) = delete;
+
+  /// Connects if needed and reads everything that the map measures.
+  Status read(BatteryMeasurement& measurement) {
+    measurement = BatteryMeasurement{};
+    if (const Status status = identify(); status != Status::kOk) return status;
+    if (const Status status = read_registers(); status != Status::kOk) return status;
+    const Status status = reader_.translate(bus_.live(), bus_.time().now_ns(), measurement);
+    if (status != Status::kOk) return status;
+    note_order_in_force(measurement);
+    return Status::kOk;
+  }
+
+  /// Brings an order into force and reads it back. Costs nothing while it is in force already.
+  Status order(const PowerOrder& order) {
+    if (const Status status = prepare(); status != Status::kOk) return status;
+    const Command command = command_of(order.power_w);
+    if (in_force_ && command == command_ && runner_.is_written(map_.sequence(command), order)) {
+      if (is_due()) return feed();
+      ++unchanged_orders_;
+      return Status::kOk;
+    }
+    if (order.power_w > map_.charge_w_max || order.power_w < -map_.discharge_w_max) {
+      return Status::kNotExpressible;
+    }
+    // Nothing is written before it is known that all of it may be.
+    Status status = runner_.check(map_.sequence(command), order);
+    if (status == Status::kOk && !enabled_) status = enable(order);
+    if (status != Status::kOk) return status;
+    status = runner_.run(map_.sequence(command), order);
+    if (status == Status::kOk) {
+      take_into_force(command, order);
+    } else {
+      roll_back(status, command, order);
+    }
+    return status;
+  }
+
+  /// Between orders, at least every `refresh_interval_s`: feeds the watchdog when it is due.
+  Status refresh() {
+    if (!in_force_ || !is_due()) return Status::kOk;
+    return feed();
+  }
+
+  /// 0: one order per cycle is enough to keep the watchdog fed.
+  [[nodiscard]] std::int32_t refresh_interval_s() const {
+    const bool often =
+        map_.watchdog.kind != Watchdog::Kind::kNone && map_.watchdog.refresh_s < kSecondsPerStep;
+    return often ? map_.watchdog.refresh_s : 0;
+  }
+
+  /// Gives the battery back to its own mode and reads that back. Never refused for the budget, nor
+  /// because measurements fail: scale factors that were read once will do.
+  Status release() {
+    if (const Status status = identify(); status != Status::kOk) return status;
+    static_cast<void>(prepare());
+    const Status status = runner_.run(map_.sequence(Command::kRelease), PowerOrder{});
+    lose_order();
+    if (status == Status::kOk) runner_.saved().forget();
+    return status;
+  }
+
+  /// Reads the map's identity checks; on kImplausible `failure` says which one and what was read.
+  /// Nothing is read or ordered before this has succeeded once: an unknown device stays untouched.
+  Status check_identity(IdentityFailure& failure) {
+    const Status status = check_identity_of(map_, bus_, failure);
+    identified_ = identified_ || status == Status::kOk;
+    return status;
+  }
+
+  [[nodiscard]] BatteryCounters counters() const {
+    const LinkCounters link = bus_.link().counters();
+    BatteryCounters counters{.requests = link.requests,
+                             .failed_requests = link.failed_requests,
+                             .reconnects = link.reconnects,
+                             .register_writes = link.register_writes,
+                             .unchanged_orders = unchanged_orders_,
+                             .flash_day = bus_.time().utc_day()};
+    counters.flash_writes_today = runner_.budget().writes_on(counters.flash_day);
+    return counters;
+  }
+
+  /// At start, with what the log remembers: the budget of a day survives a restart.
+  void restore_flash_writes(std::int64_t day, std::int32_t writes) {
+    runner_.budget().restore(day, writes);
+  }
+
+  /// What a write of a command would be, without asking or telling the device anything.
+  /// kNotConnected while its scale or place is only known to a device that has not been read yet.
+  Status preview(const BlockWrite& write, const PowerOrder& order, std::uint16_t& address,
+                 RegisterBlock& block) const {
+    const bool was_read = bus_.last_read_ns() != 0;
+    for (const WriteValue& value : write.values) {
+      const RegisterPoint& p = map_.points[value.point];
+      const bool needs_device = p.model >= 0 || p.scale_from >= 0 || p.percent_of >= 0;
+      if (needs_device && !was_read) return Status::kNotConnected;
+    }
+    address = bus_.placed(write.values[0].point, 3).place.address;
+    return encode_block(map_, write, order, block, {.live = was_read ? &bus_.live() : nullptr});
+  }
+
+  /// Gives the one connection free; the next request opens it again.
+  void close() { bus_.link().close(); }
+  [[nodiscard]] Link& link() { return bus_.link(); }
+
+ private:
+  static constexpr std::int64_t kLiveAgeNs = 180 * kNanosecondsPerSecond;
+
+  Status identify() {
+    if (identified_) return Status::kOk;
+    IdentityFailure failure;
+    return check_identity(failure);
+  }
+
+  Status read_registers() {
+    return retried([this] { return bus_.read_due(); });
+  }
+
+  /// Scale factors, ratings and limits that go into an order must not be old. A map without them
+  /// can order (0 W above all) even while the measurements fail.
+  Status prepare() {
+    if (const Status status = identify(); status != Status::kOk) return status;
+    const bool needs_live = scales_elsewhere_ || (!enabled_ && !map_.saved.empty());
+    const std::int64_t read_ns = bus_.last_read_ns();
+    const bool fresh = read_ns != 0 && bus_.time().now_ns() - read_ns < kLiveAgeNs;
+    return fresh || !needs_live ? Status::kOk : read_registers();
+  }
+
+  /// What order the device follows, whoever gave it: a restart takes over from here.
+  void note_order_in_force(BatteryMeasurement& m) {
+    const bool fed = in_force_ && (map_.watchdog.kind == Watchdog::Kind::kNone ||
+                                   bus_.time().now_ns() - fed_ns_ <
+                                       map_.dead_man_duration_s * kNanosecondsPerSecond);
+    const bool visible = !map_.active.empty() && map_.watchdog.expiry_visible;
+    m.dispatch_active = visible ? live_all(map_, map_.active, bus_.live()) : fed;
+    std::int64_t power_w = 0;
+    m.has_order_power =
+        m.dispatch_active && live_power(map_, map_.order_power, bus_.live(), power_w);
+    if (m.has_order_power) m.order_power_w = clamp_to_int32(power_w);
+    if (in_force_ && (!m.dispatch_active || is_overwritten())) lose_order();
+    std::int64_t left_s = 0;
+    const int remaining = map_.watchdog.remaining;
+    runs_out_ = in_force_ && remaining >= 0 && live_value(map_, bus_.live(), remaining, left_s) &&
+                left_s < map_.watchdog.refresh_s;
+  }
+
+  /// Somebody else wrote: a register of the order that must keep its value has another one.
+  [[nodiscard]] bool is_overwritten() const {
+    for (const BlockWrite& write : map_.sequence(command_).writes) {
+      if (write.read_back != ReadBack::kExact) continue;
+      for (const WriteValue& value : write.values) {
+        if (differs(value.point)) return true;
+      }
+    }
+    return false;
+  }
+
+  [[nodiscard]] bool differs(std::int8_t point) const {
+    const bool measured =
+        std::find(map_.measure.begin(), map_.measure.end(), point) != map_.measure.end();
+    const LivePoints& written = runner_.written();
+    return measured && point != map_.watchdog.remaining && written.known[point] &&
+           map_.points[point].read_function == 3 &&
+           !std::equal(written.raw[point], written.raw[point] + kPointRegistersMax,
+                       bus_.live().raw[point]);
+  }
+
+  /// Feeding at half the interval: nothing is lost when one feeding comes late.
+  [[nodiscard]] bool is_due() const {
+    if (map_.watchdog.kind == Watchdog::Kind::kNone) return false;
+    const std::int64_t half_ns = map_.watchdog.refresh_s * kNanosecondsPerSecond / 2;
+    return runs_out_ || bus_.time().now_ns() - fed_ns_ >= half_ns;
+  }
+
+  Status feed() {
+    const CommandSequence& refresh = map_.sequence(Command::kRefresh);
+    const bool own = !refresh.writes.empty();
+    Status status = runner_.check(own ? refresh : map_.sequence(command_), order_);
+    if (status == Status::kOk) {
+      status = runner_.run(own ? refresh : map_.sequence(command_), order_);
+    }
+    if (status == Status::kOk) {
+      fed_ns_ = bus_.time().now_ns();
+      runs_out_ = false;
+    } else {
+      lose_order();  // the next order writes everything again
+    }
+    return status;
+  }
+
+  /// Once before the first order: conditions, what must be restored later, external control.
+  Status enable(const PowerOrder& order) {
+    for (const Condition& condition : map_.precondition) {
+      bool holds = false;
+      const Status status = retried([&] { return runner_.test(condition, holds); });
+      if (status != Status::kOk) return status;
+      if (!holds) return Status::kNotPermitted;
+    }
+    Status status = retried([this] { return save_registers(); });
+    const CommandSequence& sequence = map_.sequence(Command::kEnable);
+    if (status == Status::kOk) status = runner_.check(sequence, order);
+    if (status != Status::kOk) return status;
+    status = runner_.run(sequence, order);
+    enabled_ = status == Status::kOk;
+    if (!enabled_) roll_back(status, Command::kEnable, order);
+    return status;
+  }
+
+  /// An order that is in force without us is an earlier process's: then the registers hold what
+  /// that process wrote, and the map's fallback is what is restored.
+  Status save_registers() {
+    StaticVector<std::int8_t, kPointsMax> unsaved;
+    for (const SavedPoint& saved : map_.saved) {
+      if (!runner_.saved().known[saved.point]) unsaved.push_back(saved.point);
+    }
+    if (unsaved.empty() || live_all(map_, map_.active, bus_.live())) return Status::kOk;
+    const Status status = runner_.read_written(unsaved, runner_.saved());
+    for (const std::int8_t point : unsaved) {
+      Scaling scaling;
+      std::int64_t value = 0;  // "not implemented" must not be written back
+      const bool good = live_scaling(map_, bus_.live(), point, scaling) &&
+                        decode(map_.points[point], runner_.saved().raw[point], value, scaling);
+      if (!good) runner_.saved().known[point] = false;
+    }
+    return status;
+  }
+
+  /// Half of a command may have been taken: rather the battery's own mode than a mixture.
+  void roll_back(Status reason, Command command, const PowerOrder& order) {
+    const bool sent = reason != Status::kNotExpressible && reason != Status::kImplausible;
+    const bool several = map_.sequence(command).writes.size() > 1 || enabled_;
+    lose_order();
+    if (!sent || !(several || reason == Status::kNotApplied)) return;
+    const CommandSequence& own = map_.sequence(Command::kRollback);
+    const CommandSequence& undo = own.writes.empty() ? map_.sequence(Command::kRelease) : own;
+    static_cast<void>(runner_.run(undo, order));  // the link may be gone: the watchdog ends it
+  }
+
+  void take_into_force(Command command, const PowerOrder& order) {
+    in_force_ = true;
+    command_ = command;
+    order_ = order;
+    fed_ns_ = bus_.time().now_ns();
+    runs_out_ = false;
+  }
+
+  void lose_order() {
+    in_force_ = false;
+    enabled_ = false;
+    runner_.forget();
+  }
+
+  const RegisterMap& map_;
+  BatteryBus<Link, Time> bus_;
+  CommandRunner<Link, Time> runner_;
+  MeasurementReader reader_;
+  bool scales_elsewhere_;  ///< what is written depends on what is read
+  bool identified_ = false;
+  bool enabled_ = false;
+  bool in_force_ = false;  ///< the order below was read back and nothing has ended it since
+  bool runs_out_ = false;  ///< the device's timer shows less than one refresh interval
+  Command command_ = Command::kIdle;
+  PowerOrder order_;
+  std::int64_t fed_ns_ = 0;
+  std::int64_t unchanged_orders_ = 0;
+};
+
+}  // namespace bess

@@ -1,0 +1,243 @@
+// Runs one command of a register map: its writes in order, pauses and waits, then the read-back by
+// the map's rule. Remembers what is known to stand in the device's registers, so that flash is
+// only written when something changes, and counts what it costs.
+#pragma once
+
+#include <cstdint>
+#include <cstdlib>
+
+#include "edge/battery/battery_bus.h"
+#include "edge/battery/flash_budget.h"
+#include "edge/registers/codec.h"
+
+namespace bess {
+
+template <typename Link, typename Time>
+class CommandRunner {
+ public:
+  CommandRunner(const RegisterMap& map, BatteryBus<Link, Time>& bus)
+      : map_(map), bus_(bus), budget_(map.writes) {}
+
+  [[nodiscard]] FlashBudget& budget() { return budget_; }
+  [[nodiscard]] const FlashBudget& budget() const { return budget_; }
+  [[nodiscard]] const LivePoints& written() const { return written_; }
+  [[nodiscard]] LivePoints& saved() { return saved_; }
+  void forget() { written_.forget(); }
+
+  /// kOk, or why the map, its live values or the flash budget do not allow this command.
+  Status check(const CommandSequence& sequence, const PowerOrder& order) {
+    int worn = 0;
+    for (const BlockWrite& write : sequence.writes) {
+      RegisterBlock block;
+      Status status = encode(write, order, block);
+      if (status != Status::kOk) return status;
+      if (!write.eeprom) continue;
+      bool same = false;
+      status = is_in_device(write, block, same);
+      if (status != Status::kOk) return status;
+      if (!same && is_too_soon(write)) return Status::kWriteBudget;
+      worn += same ? 0 : 1;
+    }
+    return budget_.allows(bus_.time().utc_day(), worn) ? Status::kOk : Status::kWriteBudget;
+  }
+
+  /// Whether the registers are known to hold what the command would write, its heartbeat apart.
+  [[nodiscard]] bool is_written(const CommandSequence& sequence, const PowerOrder& order) {
+    for (int i = 0; i < sequence.writes.size(); ++i) {
+      RegisterBlock block;
+      if (encode(sequence.writes[i], order, block) != Status::kOk) return false;
+      int offset = 0;
+      for (const WriteValue& value : sequence.writes[i].values) {
+        const bool counts =
+            value.argument != Argument::kHeartbeat && !is_written_later(sequence, i, value.point);
+        if (counts && !holds(written_, value.point, block, offset)) return false;
+        offset += map_.points[value.point].register_count();
+      }
+    }
+    return true;
+  }
+
+  Status run(const CommandSequence& sequence, const PowerOrder& order) {
+    if (sequence.writes.empty()) return Status::kOk;
+    return retried([&] { return run_once(sequence, order); });
+  }
+
+ private:
+  Status encode(const BlockWrite& write, const PowerOrder& order, RegisterBlock& block) const {
+    return encode_block(map_, write, order, block,
+                        {.live = &bus_.live(), .saved = &saved_, .heartbeat = heartbeat_});
+  }
+
+  Status run_once(const CommandSequence& sequence, const PowerOrder& order) {
+    ++heartbeat_;
+    for (const BlockWrite& write : sequence.writes) {
+      RegisterBlock block;
+      Status status = encode(write, order, block);
+      bool same = false;
+      if (status == Status::kOk && write.eeprom) status = is_in_device(write, block, same);
+      if (status == Status::kOk && !same) status = send(write, block);
+      if (status == Status::kOk) status = pause_after(write);
+      if (status != Status::kOk) return status;
+    }
+    return read_back(sequence, order);
+  }
+
+  Status send(const BlockWrite& write, const RegisterBlock& block) {
+    if (write.eeprom) budget_.count(bus_.time().utc_day());
+    const Status status = bus_.write(write, block);
+    int offset = 0;
+    for (const WriteValue& value : write.values) {
+      // Not known before it is read back, unless the map says that it cannot be.
+      written_.known[value.point] = false;
+      if (status == Status::kOk && write.read_back == ReadBack::kNone) {
+        written_.keep(map_, value.point, block.data() + offset);
+      }
+      written_ns_[value.point] = bus_.time().now_ns();
+      offset += map_.points[value.point].register_count();
+    }
+    return status;
+  }
+
+  Status pause_after(const BlockWrite& write) {
+    if (write.delay_after_ms > 0) bus_.time().sleep_ms(write.delay_after_ms);
+    if (write.wait_after.point < 0) return Status::kOk;
+    constexpr std::int32_t kPollMs = 200;
+    const std::int64_t end_ns =
+        bus_.time().now_ns() + std::int64_t{write.wait_timeout_ms} * 1'000'000;
+    while (true) {
+      bool holds_now = false;
+      const Status status = test(write.wait_after, holds_now);
+      if (status != Status::kOk || holds_now) return status;
+      if (bus_.time().now_ns() >= end_ns) return Status::kNotApplied;
+      bus_.time().sleep_ms(kPollMs);
+    }
+  }
+
+ public:
+  /// Asks the device whether a condition holds.
+  Status test(const Condition& condition, bool& holds_now) {
+    LivePoints now = bus_.live();
+    PlacedPoints points;
+    const std::int8_t point = condition.point;
+    points.push_back(bus_.placed(point, map_.points[point].read_function));
+    const Status status = bus_.read_placed(points, now);
+    std::int64_t value = 0;
+    holds_now =
+        status == Status::kOk && live_value(map_, now, point, value) && condition.holds(value);
+    return status;
+  }
+
+  /// Reads registers by function 3, as they are written, into `out`.
+  Status read_written(const StaticVector<std::int8_t, kPointsMax>& list, LivePoints& out) {
+    PlacedPoints points;
+    for (const std::int8_t point : list) points.push_back(bus_.placed(point, 3));
+    return bus_.read_placed(points, out);
+  }
+
+ private:
+  /// Flash is compared before it is written; what is not known is read first.
+  Status is_in_device(const BlockWrite& write, const RegisterBlock& block, bool& same) {
+    StaticVector<std::int8_t, kPointsMax> unknown;
+    for (const WriteValue& value : write.values) {
+      if (!written_.known[value.point]) unknown.push_back(value.point);
+    }
+    if (!unknown.empty()) {
+      const Status status = read_written(unknown, written_);
+      if (status != Status::kOk) return status;
+    }
+    same = true;
+    int offset = 0;
+    for (const WriteValue& value : write.values) {
+      same = same && holds(written_, value.point, block, offset);
+      offset += map_.points[value.point].register_count();
+    }
+    return Status::kOk;
+  }
+
+  bool is_too_soon(const BlockWrite& write) const {
+    for (const WriteValue& value : write.values) {
+      const std::int64_t interval_ns =
+          map_.points[value.point].write_interval_s * kNanosecondsPerSecond;
+      if (written_ns_[value.point] != 0 &&
+          bus_.time().now_ns() - written_ns_[value.point] < interval_ns) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  bool holds(const LivePoints& registers, int point, const RegisterBlock& block, int offset) const {
+    if (!registers.known[point]) return false;
+    const int count = map_.points[point].register_count();
+    return std::equal(registers.raw[point], registers.raw[point] + count, block.data() + offset);
+  }
+
+  static bool is_written_later(const CommandSequence& sequence, int write, int point) {
+    for (int i = write + 1; i < sequence.writes.size(); ++i) {
+      for (const WriteValue& value : sequence.writes[i].values) {
+        if (value.point == point) return true;
+      }
+    }
+    return false;
+  }
+
+  /// Everything that the sequence left in the registers, compared in as few reads as possible.
+  Status read_back(const CommandSequence& sequence, const PowerOrder& order) {
+    StaticVector<std::int8_t, kPointsMax> wanted;
+    for (int i = 0; i < sequence.writes.size(); ++i) {
+      if (sequence.writes[i].read_back == ReadBack::kNone) continue;
+      for (const WriteValue& value : sequence.writes[i].values) {
+        if (!is_written_later(sequence, i, value.point)) wanted.push_back(value.point);
+      }
+    }
+    if (wanted.empty()) return Status::kOk;
+    if (map_.writes.read_back_delay_ms > 0) bus_.time().sleep_ms(map_.writes.read_back_delay_ms);
+    LivePoints now;
+    Status status = read_written(wanted, now);
+    for (int i = 0; i < sequence.writes.size() && status == Status::kOk; ++i) {
+      status = compare(sequence, i, order, now);
+    }
+    return status;
+  }
+
+  Status compare(const CommandSequence& sequence, int index, const PowerOrder& order,
+                 const LivePoints& now) {
+    const BlockWrite& write = sequence.writes[index];
+    RegisterBlock block;
+    if (write.read_back == ReadBack::kNone) return Status::kOk;
+    if (const Status status = encode(write, order, block); status != Status::kOk) return status;
+    int offset = 0;
+    for (const WriteValue& value : write.values) {
+      const bool last = !is_written_later(sequence, index, value.point);
+      if (last && !is_close(write, value.point, block, offset, now)) return Status::kNotApplied;
+      if (last) written_.keep(map_, value.point, block.data() + offset);
+      offset += map_.points[value.point].register_count();
+    }
+    return Status::kOk;
+  }
+
+  bool is_close(const BlockWrite& write, int point, const RegisterBlock& block, int offset,
+                const LivePoints& now) const {
+    if (holds(now, point, block, offset)) return true;
+    Scaling scaling;
+    std::int64_t wanted = 0;
+    std::int64_t got = 0;
+    if (write.read_back != ReadBack::kTolerance || !now.known[point] ||
+        !live_scaling(map_, bus_.live(), point, scaling)) {
+      return false;
+    }
+    return decode(map_.points[point], block.data() + offset, wanted, scaling) &&
+           decode(map_.points[point], now.raw[point], got, scaling) &&
+           std::abs(wanted - got) <= write.tolerance;
+  }
+
+  const RegisterMap& map_;
+  BatteryBus<Link, Time>& bus_;
+  FlashBudget budget_;
+  LivePoints written_;  ///< confirmed by read-back, or written where reading back is not possible
+  LivePoints saved_;    ///< registers as they were before the first order
+  std::int64_t written_ns_[kPointsMax] = {};
+  std::int64_t heartbeat_ = 0;
+};
+
+}  // namespace bess

@@ -1,0 +1,64 @@
+#include "edge/battery/measurement_reader.h"
+
+#include <algorithm>
+
+#include "shared/scaled_clock.h"
+
+namespace bess {
+
+std::int32_t clamp_to_int32(std::int64_t value) {
+  return static_cast<std::int32_t>(std::clamp<std::int64_t>(value, INT32_MIN, INT32_MAX));
+}
+
+MeasurementReader::MeasurementReader(const RegisterMap& map)
+    : map_(map),
+      soc_(find_point(map, "soc")),
+      capacity_(find_point(map, "capacity")),
+      charge_limit_(find_point(map, "charge_power_max")),
+      discharge_limit_(find_point(map, "discharge_power_max")),
+      temperature_min_(find_point(map, "temperature_min")),
+      temperature_max_(find_point(map, "temperature_max")) {}
+
+Status MeasurementReader::translate(const LivePoints& live, std::int64_t now_ns,
+                                    BatteryMeasurement& m) {
+  for (const std::int8_t point : map_.required) {
+    std::int64_t value = 0;
+    if (!live_value(map_, live, point, value)) return Status::kImplausible;
+    store(point, value, m);
+  }
+  std::int64_t power_w = 0;
+  if (!live_power(map_, map_.measured_power, live, power_w)) return Status::kImplausible;
+  m.power_w = clamp_to_int32(power_w);
+  for (const Condition& alarm : map_.alarms) {
+    if (is_true(live, alarm)) m.alarm = true;
+  }
+  m.off_grid = map_.off_grid.point >= 0 && is_true(live, map_.off_grid);
+  return is_alive(live, now_ns) ? Status::kOk : Status::kImplausible;
+}
+
+void MeasurementReader::store(int point, std::int64_t wide, BatteryMeasurement& m) const {
+  const std::int32_t value = clamp_to_int32(wide);
+  if (point == soc_) m.soc_e4 = value;
+  if (point == capacity_) m.capacity_wh = value;
+  if (point == charge_limit_) m.charge_w_max = value;
+  if (point == discharge_limit_) m.discharge_w_max = value;
+  if (point == temperature_min_) m.temperature_min_deci_c = value;
+  if (point == temperature_max_) m.temperature_max_deci_c = value;
+}
+
+bool MeasurementReader::is_true(const LivePoints& live, const Condition& condition) const {
+  std::int64_t value = 0;
+  return live_value(map_, live, condition.point, value) && condition.holds(value);
+}
+
+/// A device whose counter stands still shows frozen values as if they were new.
+bool MeasurementReader::is_alive(const LivePoints& live, std::int64_t now_ns) {
+  if (map_.alive.point < 0) return true;
+  std::int64_t counter = 0;
+  if (!live_value(map_, live, map_.alive.point, counter)) return false;
+  if (alive_ns_ == 0 || counter != alive_counter_) alive_ns_ = now_ns;
+  alive_counter_ = counter;
+  return now_ns - alive_ns_ <= map_.alive.max_age_s * kNanosecondsPerSecond;
+}
+
+}  // namespace bess

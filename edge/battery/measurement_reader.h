@@ -1,0 +1,36 @@
+// Registers as last read -> BatteryMeasurement: which points mean what to the controller, which of
+// them must be plausible, and whether the device still lives. Nothing implausible passes.
+#pragma once
+
+#include <cstdint>
+
+#include "edge/control/control_types.h"
+#include "edge/registers/live_points.h"
+#include "shared/status.h"
+
+namespace bess {
+
+std::int32_t clamp_to_int32(std::int64_t value);
+
+class MeasurementReader {
+ public:
+  /// `map` must outlive this object.
+  explicit MeasurementReader(const RegisterMap& map);
+
+  /// Fills what is measured; kImplausible when one required value is not plausible or the device's
+  /// counter stands still. `now_ns` is the device's time.
+  Status translate(const LivePoints& live, std::int64_t now_ns, BatteryMeasurement& m);
+
+ private:
+  void store(int point, std::int64_t value, BatteryMeasurement& m) const;
+  [[nodiscard]] bool is_true(const LivePoints& live, const Condition& condition) const;
+  bool is_alive(const LivePoints& live, std::int64_t now_ns);
+
+  const RegisterMap& map_;
+  // Points with a meaning for the controller, by name; -1 = not in this map.
+  int soc_, capacity_, charge_limit_, discharge_limit_, temperature_min_, temperature_max_;
+  std::int64_t alive_ns_ = 0;  ///< when the device's counter last moved
+  std::int64_t alive_counter_ = 0;
+};
+
+}  // namespace bess

@@ -1,0 +1,342 @@
+// One cycle of the controller: read the battery, wait for the newest price, decide, guard, order,
+// record. A template over battery, price source and clock, so that the very same code runs against
+// Modbus and HTTP, against the battery model in tests, and in simulated time; nothing is virtual,
+// nothing allocates.
+//
+//   Battery      Status read(BatteryMeasurement&), order(const PowerOrder&), refresh(), release();
+//                int32 refresh_interval_s();  BatteryCounters counters()
+//   PriceSource  void request(minute_utc_s, start_monotonic_ns, deadline_monotonic_ns);
+//                bool wait(until_monotonic_ns);  PriceReport latest()
+//   Clock        now_utc_ns(), monotonic_ns(), monotonic_ns_at(utc_ns), sleep_until_utc_ns(utc_ns),
+//                stop_requested(), is_synchronised()
+//
+// Order of a cycle around its tick t (a multiple of 2 minutes UTC):
+//   t - read_lead_s  battery measurements        t  the row of minute t-1 is requested
+//   row in, or price_wait_s over                 decision, order written and read back
+// Between cycles the battery's watchdog is fed as often as its register map asks.
+#pragma once
+
+#include <cstdint>
+
+#include "edge/control/control_types.h"
+#include "edge/control/cycle_budget.h"
+#include "edge/control/follow_monitor.h"
+#include "edge/control/policy.h"
+#include "edge/control/safety_guard.h"
+#include "edge/registers/codec.h"
+#include "shared/local_time.h"
+#include "shared/scaled_clock.h"
+#include "shared/units_and_limits.h"
+
+namespace bess {
+
+struct ControlSettings {
+  bool control = false;  ///< false: everything but writing
+  GuardSettings guard;
+  std::int32_t order_duration_s = 300;  ///< of the device's dead-man timer
+  bool has_dead_man = false;            ///< the device ends an order that is not renewed
+  std::int32_t hold_s = 300;            ///< 0 W held after a stop reason before releasing
+  std::int32_t price_wait_s = 20;
+  std::int32_t read_lead_s = 3;
+  std::int32_t order_deadline_s = 60;  ///< an order in force later than this after its tick is late
+  std::int32_t cycles_per_day_max_e4 = 0;  ///< in 1e-4 full cycles; 0 = no budget
+};
+
+/// What an earlier run of the program left behind, by its own log.
+struct TakeOver {
+  DayThroughput throughput{};
+};
+
+constexpr std::int64_t next_tick_utc_s(std::int64_t now_utc_s) {
+  return (now_utc_s / kSecondsPerStep + 1) * kSecondsPerStep;
+}
+
+template <typename Battery, typename PriceSource, typename Clock>
+class ControlLoop {
+ public:
+  ControlLoop(const ControlSettings& settings, Battery& battery, PriceSource& prices, Clock& clock)
+      : settings_(settings),
+        battery_(battery),
+        prices_(prices),
+        clock_(clock),
+        guard_(settings.guard),
+        cycle_budget_(settings.cycles_per_day_max_e4) {}
+
+  void take_over(const TakeOver& before) { cycle_budget_.restore(before.throughput); }
+
+  /// Runs the cycle of the next tick; false when the process was asked to stop before it.
+  bool run_cycle(CycleRecord& record) {
+    const std::int64_t now_utc_s = clock_.now_utc_ns() / kNanosecondsPerSecond;
+    const std::int64_t tick_utc_s = next_tick_utc_s(now_utc_s);
+    count_missed_ticks(tick_utc_s);
+    record = CycleRecord{.utc_s = tick_utc_s, .cycle = ++cycle_};
+    if (!sleep_until_s(tick_utc_s - settings_.read_lead_s)) return false;
+    request_price(tick_utc_s);  // before the battery is read: a slow bus must not cost the price
+    read_battery(record);
+    if (!sleep_until_s(tick_utc_s)) return false;
+    await_price(record);
+    if (clock_.stop_requested()) return false;
+    decide(record);
+    act(record);
+    count_deadline_miss(record);
+    fill_totals(record);
+    return true;
+  }
+
+  /// Safe state: 0 W, then release. Called once on every way out; harmless when nothing was
+  /// ordered.
+  Status stop(CycleRecord& record) {
+    record = final_record(Reason::kStopRequested);
+    if (!settings_.control || !has_ordered_) return Status::kOk;
+    write_order(0, record);
+    const Status zero_status = record.battery_status;
+    write_release(record);
+    if (record.battery_status == Status::kOk) record.battery_status = zero_status;
+    const Status status = record.battery_status;
+    if (status == Status::kOk) read_battery(record);  // the SoC that is left, for the log
+    fill_totals(record);
+    return status;
+  }
+
+  /// Ends without touching the battery, for the next run to take over; its dead-man timer ends the
+  /// order if none comes. False when it has none, or no order is in force: then stop.
+  bool hand_over(CycleRecord& record) {
+    if (!settings_.has_dead_man || !has_ordered_) return false;
+    record = final_record(Reason::kHandOver);
+    record.ordered_power_w = order_power_w_;
+    return true;
+  }
+
+ private:
+  CycleRecord final_record(Reason reason) {
+    mode_ = Mode::kStopping;
+    CycleRecord record{.utc_s = clock_.now_utc_ns() / kNanosecondsPerSecond,
+                       .cycle = cycle_,
+                       .mode = mode_,
+                       .reason = reason,
+                       .battery_status = Status::kOk};
+    fill_totals(record);
+    return record;
+  }
+
+  /// Sleeps, and feeds the battery's watchdog meanwhile; false when asked to stop.
+  bool sleep_until_s(std::int64_t utc_s) {
+    const std::int64_t until_ns = utc_s * kNanosecondsPerSecond;
+    while (refresh_due_utc_ns() < until_ns) {
+      if (!clock_.sleep_until_utc_ns(refresh_due_utc_ns())) return false;
+      refresh();
+    }
+    return clock_.sleep_until_utc_ns(until_ns);
+  }
+
+  std::int64_t refresh_due_utc_ns() const {
+    const std::int32_t interval_s = battery_.refresh_interval_s();
+    if (!settings_.control || !has_ordered_ || interval_s <= 0) return INT64_MAX;
+    return fed_utc_ns_ + interval_s * kNanosecondsPerSecond;
+  }
+
+  void refresh() {
+    // A failure shows in the counters, and the next order finds out what is wrong.
+    static_cast<void>(battery_.refresh());
+    fed_utc_ns_ = clock_.now_utc_ns();
+  }
+
+  void count_missed_ticks(std::int64_t tick_utc_s) {
+    if (last_tick_utc_s_ != 0 && tick_utc_s > last_tick_utc_s_ + kSecondsPerStep) {
+      missed_ticks_ +=
+          static_cast<std::int32_t>((tick_utc_s - last_tick_utc_s_) / kSecondsPerStep - 1);
+    }
+    last_tick_utc_s_ = tick_utc_s;
+  }
+
+  void read_battery(CycleRecord& record) {
+    record.battery_status = battery_.read(record.measurement);
+    record.has_measurement = record.battery_status == Status::kOk;
+    if (!record.has_measurement) {
+      record.measurement = BatteryMeasurement{};
+      cycle_budget_.forget_soc();
+      return;
+    }
+    find_order_in_force(record.measurement);
+    const bool is_driven = has_ordered_ && order_power_w_ != 0;
+    cycle_budget_.update(local_day_of(local_minute_of(record.utc_s)), record.measurement.soc_e4,
+                         is_driven);
+    if (settings_.control && has_ordered_) {
+      follow_.observe(order_power_w_, record.measurement.power_w);
+    }
+  }
+
+  /// After a restart the battery may still follow the order of the run before: it goes on until the
+  /// first decision, and from now on it is this run's to hold and to release.
+  void find_order_in_force(const BatteryMeasurement& measurement) {
+    if (looked_for_order_) return;
+    looked_for_order_ = true;
+    order_found_ = settings_.control && measurement.dispatch_active;
+    if (!order_found_) return;
+    has_ordered_ = true;
+    if (measurement.has_order_power) order_power_w_ = measurement.order_power_w;
+  }
+
+  std::int64_t price_deadline_ns(std::int64_t tick_utc_s) const {
+    return clock_.monotonic_ns_at((tick_utc_s + settings_.price_wait_s) * kNanosecondsPerSecond);
+  }
+
+  void request_price(std::int64_t tick_utc_s) {
+    request_ns_ = clock_.monotonic_ns();
+    prices_.request(tick_utc_s - 60, clock_.monotonic_ns_at(tick_utc_s * kNanosecondsPerSecond),
+                    price_deadline_ns(tick_utc_s));
+  }
+
+  /// Waits for the row of the minute before the tick, in slices so that a stop request is seen.
+  void await_price(CycleRecord& record) {
+    constexpr std::int64_t kSliceNs = kNanosecondsPerSecond / 10;
+    const std::int64_t deadline_ns = price_deadline_ns(record.utc_s);
+    while (!clock_.stop_requested()) {
+      const std::int64_t now_ns = clock_.monotonic_ns();
+      if (now_ns >= deadline_ns) break;
+      if (clock_.now_utc_ns() >= refresh_due_utc_ns()) refresh();
+      const std::int64_t slice_ns = now_ns + kSliceNs;
+      if (prices_.wait(slice_ns < deadline_ns ? slice_ns : deadline_ns)) break;
+    }
+    record.price = prices_.latest();
+    if (record.price.has_row) {
+      record.price_age_s =
+          static_cast<std::int32_t>(price_age_s(record.utc_s, record.price.minute_utc_s));
+    }
+  }
+
+  void decide(CycleRecord& record) {
+    const std::int64_t start_ns = clock_.monotonic_ns();
+    if (record.has_measurement && record.price.has_row) {
+      const LatticeState state =
+          make_lattice_state(local_minute_of(record.utc_s), record.measurement.soc_e4,
+                             record.price.price_centi_eur_per_mwh);
+      record.student_action = decide_with_student(state);
+      record.has_student_action = true;
+    }
+    const GuardDecision decision =
+        guard_.decide({.now_utc_s = decision_utc_s(record.utc_s),
+                       .clock_ok = clock_.is_synchronised(),
+                       .link_ok = record.has_measurement,
+                       .measurement = record.measurement,
+                       .wrong_direction = follow_.has_tripped(),
+                       .cycle_budget_spent = cycle_budget_.is_spent(),
+                       .previous_power_w = order_power_w_,
+                       .has_price = record.price.has_row,
+                       .price_minute_utc_s = record.price.minute_utc_s,
+                       .price_centi_eur_per_mwh = record.price.price_centi_eur_per_mwh,
+                       .student_action = record.student_action});
+    record.reason = decision.reason;
+    record.ordered_power_w = decision.power_w;
+    advance_mode(record);
+    record.decision_us = elapsed_us(start_ns);
+  }
+
+  /// The tick, unless more than the wait for the price has passed since: a process that was
+  /// suspended, or a clock that jumped, must not act on what was new before.
+  std::int64_t decision_utc_s(std::int64_t tick_utc_s) const {
+    const std::int64_t now_utc_s = clock_.now_utc_ns() / kNanosecondsPerSecond;
+    const std::int64_t latest_utc_s = now_utc_s - settings_.price_wait_s;
+    return latest_utc_s > tick_utc_s ? latest_utc_s : tick_utc_s;
+  }
+
+  void advance_mode(CycleRecord& record) {
+    const bool hold_elapsed = record.utc_s - hold_start_utc_s_ >= settings_.hold_s;
+    const Mode before = mode_;
+    mode_ = next_mode(mode_, {.stop_requested = clock_.stop_requested(),
+                              .stop_reason = is_stop_reason(record.reason),
+                              .hold_elapsed = hold_elapsed,
+                              .order_found = order_found_});
+    if (mode_ == Mode::kHolding && before != Mode::kHolding) hold_start_utc_s_ = record.utc_s;
+    record.mode = mode_;
+  }
+
+  void act(CycleRecord& record) {
+    if (!settings_.control) {
+      order_power_w_ = record.ordered_power_w;  // what would be in force: the ramp goes from there
+      return;
+    }
+    const std::int64_t start_ns = clock_.monotonic_ns();
+    switch (mode_) {
+      case Mode::kRunning:
+        write_order(record.ordered_power_w, record);
+        break;
+      case Mode::kHolding:
+        write_order(0, record);
+        break;
+      case Mode::kSafe:
+        if (has_ordered_) write_release(record);
+        break;
+      case Mode::kStart:
+      case Mode::kStopping:
+        break;
+    }
+    record.write_us = elapsed_us(start_ns);
+    const bool fresh = record.price.has_row && record.price.received_monotonic_ns >= request_ns_;
+    if (record.written && fresh) {
+      record.total_us = elapsed_us(record.price.received_monotonic_ns);
+    }
+  }
+
+  void write_order(std::int32_t power_w, CycleRecord& record) {
+    has_ordered_ = true;  // even when it fails: the battery may have understood
+    order_power_w_ = power_w;
+    fed_utc_ns_ = clock_.now_utc_ns();
+    record.ordered_power_w = power_w;
+    record.battery_status = battery_.order({.power_w = power_w,
+                                            .soc_min_e4 = settings_.guard.soc_min_e4,
+                                            .soc_max_e4 = settings_.guard.soc_max_e4,
+                                            .duration_s = settings_.order_duration_s});
+    record.written = record.battery_status == Status::kOk;
+  }
+
+  void write_release(CycleRecord& record) {
+    record.ordered_power_w = 0;
+    order_power_w_ = 0;
+    record.battery_status = battery_.release();
+    record.written = record.battery_status == Status::kOk;
+    if (record.written) has_ordered_ = false;
+  }
+
+  /// Late is an order that was needed and not in force `order_deadline_s` after its tick.
+  void count_deadline_miss(const CycleRecord& record) {
+    const bool needed = settings_.control && (mode_ == Mode::kRunning || mode_ == Mode::kHolding);
+    const std::int64_t deadline_s = record.utc_s + settings_.order_deadline_s;
+    const bool in_time = clock_.now_utc_ns() <= deadline_s * kNanosecondsPerSecond;
+    if (needed && !(record.written && in_time)) ++deadline_misses_;
+  }
+
+  void fill_totals(CycleRecord& record) const {
+    record.missed_ticks = missed_ticks_;
+    record.deadline_misses = deadline_misses_;
+    record.idle_cycles = follow_.idle_cycles();
+    record.throughput = cycle_budget_.today();
+    record.counters = battery_.counters();
+  }
+
+  std::int32_t elapsed_us(std::int64_t start_ns) {
+    return static_cast<std::int32_t>((clock_.monotonic_ns() - start_ns) / 1'000);
+  }
+
+  ControlSettings settings_;
+  Battery& battery_;
+  PriceSource& prices_;
+  Clock& clock_;
+  SafetyGuard guard_;
+  CycleBudget cycle_budget_;
+  FollowMonitor follow_;
+  Mode mode_ = Mode::kStart;
+  std::int64_t cycle_ = 0;
+  std::int64_t last_tick_utc_s_ = 0;
+  std::int64_t hold_start_utc_s_ = 0;
+  std::int64_t request_ns_ = 0;  ///< when this cycle asked for its price
+  std::int32_t missed_ticks_ = 0;
+  std::int32_t deadline_misses_ = 0;
+  std::int64_t fed_utc_ns_ = 0;     ///< when the battery last got an order or a refresh
+  bool has_ordered_ = false;        ///< an order may be in force at the battery
+  std::int32_t order_power_w_ = 0;  ///< of that order
+  bool looked_for_order_ = false;   ///< the first reading tells what an earlier run left in force
+  bool order_found_ = false;
+};
+
+}  // namespace bess

@@ -1,0 +1,123 @@
+// The fixed-size records that flow through one cycle of the controller, in their order:
+//   battery -> BatteryMeasurement, price source -> PriceReport, guard -> GuardDecision, loop ->
+//   CycleRecord.
+// Power is grid side and positive when the battery charges; prices are integer hundredths of
+// EUR/MWh.
+#pragma once
+
+#include <cstdint>
+#include <iterator>
+
+#include "edge/control/cycle_budget.h"
+#include "edge/control/mode.h"
+#include "shared/action.h"
+#include "shared/status.h"
+
+namespace bess {
+
+struct BatteryMeasurement {
+  std::int32_t soc_e4 = 0;
+  std::int32_t power_w = 0;
+  std::int32_t capacity_wh = 0;
+  std::int32_t charge_w_max = INT32_MAX;  ///< live limits of the device
+  std::int32_t discharge_w_max = INT32_MAX;
+  std::int32_t temperature_min_deci_c = 200;
+  std::int32_t temperature_max_deci_c = 200;
+  bool alarm = false;
+  bool off_grid = false;
+  bool dispatch_active = false;  ///< the device follows an order that was written to it
+  bool has_order_power = false;  ///< the map can read back the power of the order in force
+  std::int32_t order_power_w = 0;
+};
+
+/// Totals since start, and what the flash-backed registers have had today.
+struct BatteryCounters {
+  std::int64_t requests = 0;
+  std::int64_t failed_requests = 0;
+  std::int64_t reconnects = 0;
+  std::int64_t register_writes = 0;   ///< write requests that reached the device
+  std::int64_t unchanged_orders = 0;  ///< orders that were in force already and cost no write
+  std::int64_t flash_day = 0;         ///< UTC day (since 1970) that the next field counts
+  std::int32_t flash_writes_today = 0;
+};
+
+/// The newest usable price row and how it came in.
+struct PriceReport {
+  bool has_row = false;
+  std::int64_t minute_utc_s = 0;  ///< start of the minute at whose END the row was computed
+  std::int32_t price_centi_eur_per_mwh = 0;
+  std::int64_t received_monotonic_ns = 0;
+  std::int32_t fetch_us = 0;       ///< wall time of the request that brought it
+  Status status = Status::kNoRow;  ///< of the last request
+  bool large_step = false;         ///< the row lies further from its predecessor than configured
+};
+
+/// Why the guard ordered something else than the student. Order is precedence: lower numbers win.
+enum class Reason : std::uint8_t {
+  kStopRequested,
+  kHandOver,
+  kClock,
+  kLink,
+  kAlarm,
+  kTemperature,
+  kOffGrid,
+  kWrongDirection,
+  kNoPrice,
+  kPriceAge,
+  kPriceQuarterHour,
+  kLastStopReason = kPriceQuarterHour,  ///< up to here: the battery must not be driven
+  kSocFull,
+  kSocEmpty,
+  kCycleBudget,
+  kPowerLimit,
+  kRamp,
+  kPriceLow,
+  kPriceHigh,
+  kStudent  ///< no intervention
+};
+
+inline constexpr int kReasonCount = static_cast<int>(Reason::kStudent) + 1;
+
+constexpr bool is_stop_reason(Reason reason) { return reason <= Reason::kLastStopReason; }
+
+constexpr std::string_view reason_name(Reason reason) {
+  constexpr std::string_view kNames[] = {
+      "stop_requested", "hand_over", "clock",           "link",         "alarm",
+      "temperature",    "off_grid",  "wrong_direction", "no_price",     "price_age",
+      "price_qh",       "soc_full",  "soc_empty",       "cycle_budget", "power_limit",
+      "ramp",           "price_low", "price_high",      "student"};
+  static_assert(std::size(kNames) == kReasonCount);
+  return kNames[static_cast<int>(reason)];
+}
+
+struct GuardDecision {
+  std::int32_t power_w = 0;
+  Reason reason = Reason::kLink;
+};
+
+/// Everything about one cycle, for the log. Wall microseconds where the name ends in _us.
+struct CycleRecord {
+  std::int64_t utc_s = 0;
+  std::int64_t cycle = 0;
+  Mode mode = Mode::kStart;
+  bool has_measurement = false;
+  BatteryMeasurement measurement{};
+  PriceReport price{};
+  std::int32_t price_age_s = -1;  ///< since the end of the row's minute, at the tick; -1 = no price
+  bool has_student_action = false;
+  Action student_action = Action::kIdle;
+  std::int32_t ordered_power_w = 0;
+  Reason reason = Reason::kLink;
+  Status battery_status = Status::kNotConnected;  ///< of the worst battery call of this cycle
+  bool written = false;                           ///< an order or a release was sent and read back
+  std::int32_t decision_us = 0;
+  std::int32_t write_us = 0;         ///< order written and read back
+  std::int32_t total_us = 0;         ///< from the price row's arrival to the order read back
+  std::int32_t missed_ticks = 0;     ///< ticks skipped since start because a cycle overran
+  std::int32_t deadline_misses = 0;  ///< cycles since start whose order was not in force in time
+  std::int32_t idle_cycles = 0;      ///< orders in a row that the battery did not answer with power
+  DayThroughput throughput{};
+  BatteryCounters counters{};
+};
+
+}  // namespace bess

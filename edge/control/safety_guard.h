@@ -1,0 +1,64 @@
+// The guard between student and battery [SPEC 7]: pure integers, no memory but the SoC hysteresis.
+// Precedence: stop reasons (clock, link, alarm, temperature, off-grid, price) > SoC, cycle and power
+// limits > ramp > price thresholds > student. Every intervention carries its reason.
+#pragma once
+
+#include <cstdint>
+
+#include "edge/control/control_types.h"
+
+namespace bess {
+
+struct GuardSettings {
+  std::int32_t power_w = 4'000;  ///< rated power of the battery, both directions
+  std::int32_t low_price_centi_eur_per_mwh = -500 * 100;    ///< at or below: charge
+  std::int32_t high_price_centi_eur_per_mwh = 1'500 * 100;  ///< at or above: discharge
+  std::int32_t soc_min_e4 = 1'000;
+  std::int32_t soc_max_e4 = 10'000;
+  std::int32_t soc_hysteresis_e4 = 50;  ///< back inside by this much before the bound opens again
+  std::int32_t ramp_w_max = 0;          ///< largest change from one order to the next; 0 = any
+  std::int32_t price_age_s_max = 240;
+  std::int32_t temperature_min_deci_c = 0;
+  std::int32_t temperature_max_deci_c = 500;
+};
+
+struct GuardInputs {
+  std::int64_t now_utc_s = 0;
+  bool clock_ok = false;
+  bool link_ok = false;
+  BatteryMeasurement measurement;  ///< valid when link_ok
+  bool wrong_direction = false;    ///< the battery has gone against its orders
+  bool cycle_budget_spent = false;
+  std::int32_t previous_power_w = 0;  ///< of the order in force until now
+  bool has_price = false;
+  std::int64_t price_minute_utc_s = 0;
+  std::int32_t price_centi_eur_per_mwh = 0;
+  Action student_action = Action::kIdle;
+};
+
+/// Seconds since the row was computed, at the END of its minute.
+constexpr std::int64_t price_age_s(std::int64_t now_utc_s, std::int64_t price_minute_utc_s) {
+  return now_utc_s - (price_minute_utc_s + 60);
+}
+
+class SafetyGuard {
+ public:
+  explicit SafetyGuard(const GuardSettings& settings) : settings_(settings) {}
+
+  /// Power to order, and the reason when it is not the student's wish.
+  GuardDecision decide(const GuardInputs& in);
+
+ private:
+  [[nodiscard]] bool find_stop_reason(const GuardInputs& in, Reason& reason) const;
+  [[nodiscard]] bool find_price_stop_reason(const GuardInputs& in, Reason& reason) const;
+  GuardDecision apply_thresholds(const GuardInputs& in) const;
+  void update_soc_latches(std::int32_t soc_e4);
+  void apply_ramp(std::int32_t previous_power_w, GuardDecision& decision) const;
+  void apply_limits(const GuardInputs& in, GuardDecision& decision) const;
+
+  GuardSettings settings_;
+  bool full_ = false;   ///< charging is closed until SoC is below soc_max - hysteresis
+  bool empty_ = false;  ///< discharging is closed until SoC is above soc_min + hysteresis
+};
+
+}  // namespace bess

@@ -1,0 +1,71 @@
+#include "edge/log/health.h"
+
+namespace bess {
+namespace {
+
+/// A full, empty or cold battery rests for a while; one that never answers does not listen.
+constexpr std::int64_t kUnansweredOrdersMax = 5;
+
+std::string seconds(std::int64_t ms) { return std::to_string(ms / 1'000) + " s"; }
+
+/// The convention of the field: warn at twice the cadence, critical at four times.
+void check_age(const HealthInputs& in, std::vector<std::string>& reasons) {
+  if (in.age_ms <= 2 * in.cadence_ms) return;
+  const bool is_critical = in.age_ms > 4 * in.cadence_ms;
+  const std::string level = is_critical ? "CRITICAL" : "WARN";
+  reasons.push_back(level + ": the last cycle ended " + seconds(in.age_ms) +
+                    " ago, one is due every " + seconds(in.cadence_ms));
+}
+
+void check_cycle(const HealthInputs& in, std::vector<std::string>& reasons) {
+  if (in.mode != "running") {
+    reasons.push_back("WARN: mode is " + std::string(in.mode) + ", reason " +
+                      std::string(in.reason));
+  }
+  if (in.battery_status != "ok") {
+    reasons.push_back("WARN: battery: " + std::string(in.battery_status));
+  }
+  if (in.unanswered_orders > kUnansweredOrdersMax) {
+    reasons.push_back("WARN: no power flows after " + std::to_string(in.unanswered_orders) +
+                      " orders: is the battery full, empty or cold, or does it not listen?");
+  }
+  if (in.price_status != "ok") {
+    reasons.push_back("WARN: prices: " + std::string(in.price_status));
+  }
+}
+
+}  // namespace
+
+Health assess_health(const HealthInputs& in) {
+  if (!in.is_running) {
+    return {HealthLevel::kNotRunning, {"CRITICAL: no bess-edge runs with this configuration"}};
+  }
+  Health health;
+  if (!in.is_of_this_run || in.cycles == 0) {
+    health.reasons.emplace_back("WARN: started, no cycle has ended yet");
+  } else {
+    check_cycle(in, health.reasons);
+  }
+  if (in.is_of_this_run) check_age(in, health.reasons);
+  if (in.disk_is_slow)
+    health.reasons.emplace_back("WARN: records not logged, the disk is too slow");
+  if (in.disk_is_failing) {
+    health.reasons.emplace_back("WARN: the log cannot be written, is the disk full or read-only?");
+  }
+  if (!health.reasons.empty()) health.level = HealthLevel::kDegraded;
+  return health;
+}
+
+std::string_view health_name(HealthLevel level) {
+  switch (level) {
+    case HealthLevel::kOk:
+      return "ok";
+    case HealthLevel::kDegraded:
+      return "degraded";
+    case HealthLevel::kNotRunning:
+      break;
+  }
+  return "not running";
+}
+
+}  // namespace bess

@@ -1,0 +1,174 @@
+#include "edge/log/ring_log.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+#include "shared/crc32.h"
+
+namespace bess {
+namespace {
+
+constexpr std::int64_t kHeaderBytes = 4'096;
+constexpr char kMagic[8] = {'B', 'E', 'S', 'S', 'R', 'I', 'N', 'G'};
+constexpr std::uint32_t kVersion = 1;
+constexpr std::size_t kHeaderUsedBytes = 28;  // magic, version, record bytes, capacity, CRC
+
+void put(std::uint8_t* bytes, std::uint64_t value, int count) {
+  for (int i = 0; i < count; ++i) bytes[i] = static_cast<std::uint8_t>(value >> (8 * i));
+}
+
+std::uint64_t take(const std::uint8_t* bytes, int count) {
+  std::uint64_t value = 0;
+  for (int i = 0; i < count; ++i) value |= std::uint64_t{bytes[i]} << (8 * i);
+  return value;
+}
+
+void fill_header(std::uint8_t (&header)[kHeaderUsedBytes], std::int64_t capacity) {
+  std::memcpy(header, kMagic, sizeof kMagic);
+  put(header + 8, kVersion, 4);
+  put(header + 12, kRecordBytes, 4);
+  put(header + 16, static_cast<std::uint64_t>(capacity), 8);
+  Crc32 crc;
+  crc.add_bytes(header, 24);
+  put(header + 24, crc.value(), 4);
+}
+
+}  // namespace
+
+RingLog::~RingLog() { close_file(); }
+
+void RingLog::close_file() {
+  if (fd_ >= 0) close(fd_);
+  fd_ = -1;
+}
+
+std::int64_t RingLog::offset_of(std::uint64_t number) const {
+  return kHeaderBytes + static_cast<std::int64_t>(number % static_cast<std::uint64_t>(capacity_)) *
+                            static_cast<std::int64_t>(kRecordBytes);
+}
+
+bool RingLog::open(const char* path, std::int64_t capacity, FileMessage& error) {
+  fd_ = ::open(path, O_RDWR | O_CLOEXEC);
+  if (fd_ < 0 && errno != ENOENT) return fail_with_errno(path, "cannot open the log", error);
+  if (fd_ >= 0) {
+    const bool is_sound = read_header();
+    if (is_sound) find_newest();
+    if (is_sound && capacity_ == capacity) return true;
+    close_file();
+    FixedText<600> aside(path);
+    char name[640];
+    std::snprintf(name, sizeof name, "%s.old", aside.c_str());
+    if (rename(path, name) != 0) return fail_with_errno(path, "cannot set aside the log", error);
+  }
+  capacity_ = capacity;
+  return create(path, error);
+}
+
+bool RingLog::open_to_read(const char* path, FileMessage& error) {
+  fd_ = ::open(path, O_RDONLY | O_CLOEXEC);
+  if (fd_ < 0) return fail_with_errno(path, "cannot open the log", error);
+  if (!read_header()) {
+    errno = EILSEQ;
+    return fail_with_errno(path, "is not a decision log of this program", error);
+  }
+  find_newest();
+  return true;
+}
+
+/// The whole file exists on disk, with its header, before it gets its name.
+bool RingLog::create(const char* path, FileMessage& error) {
+  char beside[640];
+  std::snprintf(beside, sizeof beside, "%s.new", path);
+  fd_ = ::open(beside, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (fd_ < 0) return fail_with_errno(beside, "cannot make the log", error);
+  const std::int64_t size = kHeaderBytes + capacity_ * static_cast<std::int64_t>(kRecordBytes);
+  errno = posix_fallocate(fd_, 0, size);  // a full disk must show now, not in a month
+  const bool made = errno == 0 && write_header(fd_) && fsync(fd_) == 0 && rename(beside, path) == 0;
+  if (!made) {
+    fail_with_errno(path, "cannot make the log", error);
+    unlink(beside);
+    close_file();
+    return false;
+  }
+  sync_folder_of(path);
+  return true;
+}
+
+bool RingLog::write_header(int fd) const {
+  std::uint8_t header[kHeaderUsedBytes];
+  fill_header(header, capacity_);
+  return pwrite(fd, header, sizeof header, 0) == static_cast<ssize_t>(sizeof header);
+}
+
+bool RingLog::read_header() {
+  std::uint8_t header[kHeaderUsedBytes];
+  if (pread(fd_, header, sizeof header, 0) != static_cast<ssize_t>(sizeof header)) return false;
+  const auto capacity = static_cast<std::int64_t>(take(header + 16, 8));
+  std::uint8_t expected[kHeaderUsedBytes];
+  fill_header(expected, capacity);
+  if (capacity < 1 || std::memcmp(header, expected, sizeof header) != 0) return false;
+  struct stat info {};
+  const bool is_file = fstat(fd_, &info) == 0;
+  capacity_ = capacity;
+  return is_file &&
+         capacity <= (INT64_MAX - kHeaderBytes) / static_cast<std::int64_t>(kRecordBytes);
+}
+
+void RingLog::find_newest() {
+  constexpr std::size_t kChunkRecords = 64;
+  RecordBytes chunk[kChunkRecords];
+  CycleRecord record;
+  std::int64_t offset = kHeaderBytes;
+  for (std::int64_t slot = 0; slot < capacity_;) {
+    const ssize_t bytes = pread(fd_, chunk, sizeof chunk, offset);
+    const auto count = bytes > 0 ? static_cast<std::size_t>(bytes) / kRecordBytes : 0;
+    if (count == 0) return;  // shorter than it should be: what is there counts
+    for (std::size_t i = 0; i < count && slot < capacity_; ++i, ++slot) {
+      std::uint64_t number = 0;
+      const bool whole =
+          decode_record(chunk[i], record, number) &&
+          number % static_cast<std::uint64_t>(capacity_) == static_cast<std::uint64_t>(slot);
+      if (!whole || number <= newest_number_) continue;
+      newest_number_ = number;
+      newest_ = record;
+    }
+    offset += static_cast<std::int64_t>(count * kRecordBytes);
+  }
+}
+
+bool RingLog::append(const CycleRecord& record) {
+  RecordBytes bytes;
+  const std::uint64_t number = newest_number_ + 1;
+  encode_record(record, number, bytes);
+  const ssize_t written = pwrite(fd_, bytes.data(), bytes.size(), offset_of(number));
+  if (written != static_cast<ssize_t>(bytes.size()) || fdatasync(fd_) != 0) return false;
+  newest_number_ = number;
+  newest_ = record;
+  return true;
+}
+
+bool RingLog::newest(CycleRecord& record) const {
+  if (newest_number_ == 0) return false;
+  record = newest_;
+  return true;
+}
+
+std::uint64_t RingLog::oldest_number() const {
+  const auto capacity = static_cast<std::uint64_t>(capacity_);
+  return newest_number_ > capacity ? newest_number_ - capacity + 1 : 1;
+}
+
+bool RingLog::read(std::uint64_t number, CycleRecord& record) const {
+  RecordBytes bytes;
+  const ssize_t got = pread(fd_, bytes.data(), bytes.size(), offset_of(number));
+  std::uint64_t found = 0;
+  return got == static_cast<ssize_t>(bytes.size()) && decode_record(bytes, record, found) &&
+         found == number;
+}
+
+}  // namespace bess

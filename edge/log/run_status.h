@@ -1,0 +1,54 @@
+// How things are now, for other programs: who runs, what has happened since the start, the last cycle.
+// Formatted as JSON for `bess-edge status` and as a text for Prometheus (node exporter's textfile
+// collector). Filled and formatted by the log thread: bounded buffers, no heap.
+#pragma once
+
+#include <sys/types.h>
+
+#include <array>
+#include <cstdint>
+
+#include "edge/control/control_types.h"
+#include "edge/log/text_buffer.h"
+#include "shared/fixed_text.h"
+
+namespace bess {
+
+/// What does not change while the process runs.
+struct RunIdentity {
+  FixedText<31> version;
+  std::uint32_t student_hash = 0;
+  FixedText<255> student_provenance;
+  FixedText<31> map;
+  FixedText<31> variant;
+  FixedText<159> battery;  ///< "127.0.0.1:502 unit 85"
+  bool control = false;
+  pid_t pid = 0;
+  std::int64_t start_utc_s = 0;
+  std::int32_t cadence_ms = 120'000;  ///< wall time from one cycle to the next
+};
+
+/// What has happened since the start.
+struct RunTotals {
+  std::int64_t cycles = 0;
+  std::array<std::int64_t, kReasonCount> cycles_by_reason{};
+  std::int64_t written_orders = 0;
+  std::int64_t battery_failures = 0;  ///< cycles whose battery status was not ok
+  std::int64_t price_failures = 0;    ///< cycles whose last price request was not ok
+  std::int64_t records_dropped = 0;   ///< not logged, because the disk was too slow
+  std::int64_t disk_failures = 0;     ///< records that a log file refused
+  bool disk_is_slow = false;          ///< records were dropped since the last one kept
+  bool disk_is_failing = false;       ///< the last record could not be written everywhere
+  CycleRecord last{};
+
+  void count(const CycleRecord& record);
+};
+
+inline constexpr std::size_t kStatusBytes = 4'096;
+inline constexpr std::size_t kMetricsBytes = 8'192;
+
+void format_status_json(const RunIdentity& identity, const RunTotals& totals,
+                        std::int64_t written_monotonic_ns, TextBuffer& json);
+void format_prometheus(const RunIdentity& identity, const RunTotals& totals, TextBuffer& text);
+
+}  // namespace bess

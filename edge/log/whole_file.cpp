@@ -1,0 +1,55 @@
+#include "edge/log/whole_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+namespace bess {
+
+bool replace_file(const char* path, std::string_view text) {
+  char beside[640];
+  const int length = std::snprintf(beside, sizeof beside, "%s.new", path);
+  if (length < 0 || length >= static_cast<int>(sizeof beside)) {
+    errno = ENAMETOOLONG;
+    return false;
+  }
+  const int fd = open(beside, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (fd < 0) return false;
+  errno = ENOSPC;  // what a short write means
+  const bool written = write(fd, text.data(), text.size()) == static_cast<ssize_t>(text.size());
+  const int write_errno = errno;
+  close(fd);
+  if (written) return rename(beside, path) == 0;
+  unlink(beside);
+  errno = write_errno;
+  return false;
+}
+
+void sync_folder_of(const char* path) {
+  FixedText<639> folder(path);
+  const std::size_t slash = folder.view().rfind('/');
+  if (slash == std::string_view::npos) {
+    folder = ".";
+  } else {
+    folder = FixedText<639>(std::string_view(path, slash == 0 ? 1 : slash));
+  }
+  const int fd = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (fd < 0) return;
+  fsync(fd);
+  close(fd);
+}
+
+bool fail_with_errno(const char* path, std::string_view what, FileMessage& error) {
+  char reason_buffer[128];
+  const char* reason = strerror_r(errno, reason_buffer, sizeof reason_buffer);
+  char line[768];
+  std::snprintf(line, sizeof line, "%s: %.*s: %s", path, static_cast<int>(what.size()), what.data(),
+                reason);
+  static_cast<void>(error.assign(line));
+  return false;
+}
+
+}  // namespace bess

@@ -1,0 +1,104 @@
+#include "edge/program/command_help.h"
+
+namespace bess {
+namespace {
+
+constexpr const char* kRunHelp =
+    R"(bess-edge: drives a battery on the imbalance price, every two minutes
+
+  bess-edge [--config FILE] [--dry-run] [--cycles N]    run
+  bess-edge [--config FILE] --check                     what would be done; writes nothing
+  bess-edge commission [--config FILE] --yes            check the sign of a new battery, once
+  bess-edge status [--config FILE] ...                  how the running controller is
+  bess-edge log [--config FILE] ...                     what was decided, and why
+  bess-edge COMMAND --help                              more on one of them
+
+  --config FILE  settings in TOML; edge/bess-edge.toml documents every key; default /etc/bess/edge.toml
+  --check        check settings, map and student, print the registers that would be written, read the
+                 battery and the newest price once, write nothing, exit
+  --dry-run      run, but write nothing, whatever the file says (control = false does the same)
+  --cycles N     stop cleanly after N cycles
+  --help         this text
+  --version      version and the student that is built in
+
+Nothing is written to the battery unless the file says control = true and `bess-edge commission` has
+found its sign right. One controller to one battery:
+a second one is refused, also one that only reads, because many batteries serve one connection.
+SIGTERM or Ctrl-C: 0 W is ordered, the battery is released, exit 0. SIGHUP: exit 0 and leave the order
+in force for the next start, which takes over; the battery's own timer ends it if there is none.
+Exit codes: 0 done   1 settings, battery or price server are bad   2 the command line is bad
+
+  bess-edge --config /etc/bess/edge.toml --check
+  bess-edge --config /etc/bess/edge.toml --dry-run --cycles 5
+)";
+
+constexpr const char* kCommissionHelp =
+    R"(bess-edge commission: checks once that a battery goes the way it is told
+
+  bess-edge commission [--config FILE] --yes
+
+  --config FILE  the controller's settings; default /etc/bess/edge.toml
+  --yes          really order it: without it only what would be ordered is said
+
+The battery rests for 10 s, then charges 500 W for 30 s (discharges when it is more than half full), then
+is released. Its measured power must follow. The result is kept in the [state] folder and holds for this
+map, variant and address; bess-edge refuses to control a battery without it.
+Exit codes: 0 passed   1 refused: the line says why   2 the command line is bad, or --yes is missing
+
+  bess-edge commission --config /etc/bess/edge.toml --yes
+)";
+
+constexpr const char* kStatusHelp =
+    R"(bess-edge status: how the running controller is; touches neither battery nor controller
+
+  bess-edge status [--config FILE] [--json | --prometheus] [--follow]
+
+  --config FILE  the controller's settings; default /etc/bess/edge.toml
+  --json         one JSON object with "health"
+  --prometheus   the metrics as the node exporter's textfile collector takes them
+  --follow       again every two seconds, until Ctrl-C
+
+Health is ok, degraded (with the reasons) or not running. A status older than two cycles is a WARN,
+older than four CRITICAL.
+Exit codes: 0 ok   1 degraded, or the files cannot be read   2 the command line is bad   3 not running
+
+  bess-edge status
+  bess-edge status --json | jq .health
+  watch -n 60 bess-edge status --config /etc/bess/edge.toml
+)";
+
+constexpr const char* kLogHelp =
+    R"(bess-edge log: what was decided in each cycle, and why
+
+  bess-edge log [--config FILE] [--csv] [--last N] [--since UTC]
+
+  --config FILE  the controller's settings; default /etc/bess/edge.toml
+  --csv          comma-separated with a header; otherwise one key=value line a cycle
+  --last N       only the newest N cycles
+  --since UTC    only from this instant on, e.g. 2026-11-21T06:00:00Z
+
+Read from the ring in [state] folder, oldest first, while the controller runs or not.
+Exit codes: 0 done   1 the log cannot be read   2 the command line is bad
+
+  bess-edge log --last 10
+  bess-edge log --csv --since 2026-11-01T00:00:00Z > november.csv
+)";
+
+}  // namespace
+
+const char* help_of(SubCommand command) {
+  switch (command) {
+    case SubCommand::kCommission:
+      return kCommissionHelp;
+    case SubCommand::kStatus:
+      return kStatusHelp;
+    case SubCommand::kLog:
+      return kLogHelp;
+    case SubCommand::kRun:
+    case SubCommand::kCheck:
+      break;
+  }
+  return kRunHelp;
+}
+
+}  // namespace bess

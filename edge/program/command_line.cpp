@@ -1,0 +1,146 @@
+#include "edge/program/command_line.h"
+
+#include <unistd.h>
+
+#include <charconv>
+#include <cstdio>
+#include <string_view>
+#include <variant>
+
+#include "edge/control/policy.h"
+#include "edge/program/command_help.h"
+#include "shared/utc_text.h"
+
+namespace bess {
+namespace {
+
+CommandLineResult usage_error(std::string_view message, std::string_view argument) {
+  std::fprintf(stderr, "bess-edge: %.*s%.*s (see bess-edge --help)\n",
+               static_cast<int>(message.size()), message.data(), static_cast<int>(argument.size()),
+               argument.data());
+  return CommandLineResult::kExitUsage;
+}
+
+struct UtcInstant {
+  std::int64_t CommandLine::*utc_s;
+};
+
+/// What an option sets: a switch, a count above 0, a text, or an instant.
+using Target = std::variant<bool CommandLine::*, std::int64_t CommandLine::*,
+                            std::string CommandLine::*, UtcInstant, SubCommand>;
+
+struct Option {
+  SubCommand command;
+  std::string_view name;
+  Target target;
+};
+
+constexpr Option kOptions[] = {
+    {SubCommand::kRun, "--config", &CommandLine::config_path},
+    {SubCommand::kRun, "--check", SubCommand::kCheck},
+    {SubCommand::kRun, "--dry-run", &CommandLine::dry_run},
+    {SubCommand::kRun, "--cycles", &CommandLine::cycles},
+    {SubCommand::kCommission, "--config", &CommandLine::config_path},
+    {SubCommand::kCommission, "--yes", &CommandLine::yes},
+    {SubCommand::kStatus, "--config", &CommandLine::config_path},
+    {SubCommand::kStatus, "--json", &CommandLine::json},
+    {SubCommand::kStatus, "--prometheus", &CommandLine::prometheus},
+    {SubCommand::kStatus, "--follow", &CommandLine::follow},
+    {SubCommand::kLog, "--config", &CommandLine::config_path},
+    {SubCommand::kLog, "--csv", &CommandLine::csv},
+    {SubCommand::kLog, "--last", &CommandLine::last},
+    {SubCommand::kLog, "--since", UtcInstant{&CommandLine::since_utc_s}},
+};
+
+const Option* find_option(SubCommand command, std::string_view name) {
+  for (const Option& option : kOptions) {
+    if (option.command == command && option.name == name) return &option;
+  }
+  return nullptr;
+}
+
+bool parse_count(std::string_view text, std::int64_t& value) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc{} && end == text.data() + text.size() && value > 0;
+}
+
+/// Stores the option's value; false after printing what is wrong with it.
+bool store(const Option& option, std::string_view value, CommandLine& line) {
+  if (const auto* text = std::get_if<std::string CommandLine::*>(&option.target)) {
+    line.*(*text) = value;
+  } else if (const auto* count = std::get_if<std::int64_t CommandLine::*>(&option.target)) {
+    if (parse_count(value, line.*(*count))) return true;
+    usage_error(std::string(option.name) + " needs a whole number above 0, not ", value);
+    return false;
+  } else if (const auto* instant = std::get_if<UtcInstant>(&option.target)) {
+    if (parse_utc_text(value, line.*(instant->utc_s))) return true;
+    usage_error(std::string(option.name) + " needs an instant such as 2026-11-21T06:00:00Z, not ",
+                value);
+    return false;
+  }
+  return true;
+}
+
+/// True when the option is complete without a value.
+bool set_switch(const Option& option, CommandLine& line) {
+  if (const auto* flag = std::get_if<bool CommandLine::*>(&option.target)) {
+    return line.*(*flag) = true;
+  }
+  if (const auto* command = std::get_if<SubCommand>(&option.target)) {
+    line.command = *command;
+    return true;
+  }
+  return false;
+}
+
+bool print_general(std::string_view argument, SubCommand command) {
+  if (argument == "--help" || argument == "-h") {
+    std::fputs(help_of(command), stdout);
+    return true;
+  }
+  if (argument != "--version") return false;
+  std::printf("bess-edge %s, student %08x: %s\n", BESS_VERSION, student_hash(),
+              student_provenance());
+  return true;
+}
+
+CommandLineResult settle_config(CommandLine& line) {
+  if (!line.config_path.empty()) return CommandLineResult::kGo;
+  if (access(kDefaultConfigPath, R_OK) != 0) {
+    return usage_error("--config FILE is required, there is no ", kDefaultConfigPath);
+  }
+  line.config_path = kDefaultConfigPath;
+  return CommandLineResult::kGo;
+}
+
+}  // namespace
+
+CommandLineResult parse_command_line(int argc, char** argv, CommandLine& line) {
+  int i = 1;
+  if (i < argc && argv[i][0] != '-') {
+    const std::string_view name = argv[i++];
+    if (name == "status") {
+      line.command = SubCommand::kStatus;
+    } else if (name == "commission") {
+      line.command = SubCommand::kCommission;
+    } else if (name == "log") {
+      line.command = SubCommand::kLog;
+    } else if (name != "run") {
+      return usage_error("unknown command ", name);
+    }
+  }
+  const SubCommand command = line.command;  // --check is an option of run and changes line.command
+  for (; i < argc; ++i) {
+    if (print_general(argv[i], command)) return CommandLineResult::kExitOk;
+    const Option* const option = find_option(command, argv[i]);
+    if (option == nullptr) return usage_error("unknown option ", argv[i]);
+    if (set_switch(*option, line)) continue;
+    if (i + 1 == argc) return usage_error("a value is missing after ", argv[i]);
+    if (!store(*option, argv[++i], line)) return CommandLineResult::kExitUsage;
+  }
+  if (line.json && line.prometheus)
+    return usage_error("--json and --prometheus exclude each other", "");
+  return settle_config(line);
+}
+
+}  // namespace bess

@@ -1,0 +1,107 @@
+#include "edge/program/commission_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+#include "edge/registers/toml_reader.h"
+#include "shared/crc32.h"
+#include "shared/utc_text.h"
+
+namespace bess {
+namespace {
+
+std::string path_of(const EdgeConfig& config) {
+  return std::string(config.state.folder.view()) + "/commissioned.toml";
+}
+
+/// Of the map file's bytes: an edited map is another map.
+std::string map_checksum(const EdgeConfig& config) {
+  std::ifstream file(config.map_path.c_str(), std::ios::binary);
+  std::ostringstream bytes;
+  bytes << file.rdbuf();
+  const std::string text = bytes.str();
+  Crc32 crc;
+  crc.add_bytes(text.data(), text.size());
+  char hex[16];
+  std::snprintf(hex, sizeof hex, "%08x", crc.value());
+  return hex;
+}
+
+std::string file_text(const EdgeConfig& config, const CommissionResult& result,
+                      std::int64_t utc_s) {
+  std::ostringstream text;
+  text << "# Written by: bess-edge commission. Delete it to ask for a new sign check.\n"
+       << "map = \"" << config.map.name.view() << "\"\n"
+       << "variant = \"" << config.map.variant.view() << "\"\n"
+       << "map_crc32 = \"" << map_checksum(config) << "\"\n"
+       << "battery = \"" << battery_place(config).view() << "\"\n"
+       << "ordered_power_w = " << result.ordered_power_w << "\n"
+       << "measured_power_w = " << result.measured_power_w << "\n"
+       << "utc = \"" << utc_text(utc_s).view() << "\"\n";
+  return text.str();
+}
+
+bool write_beside_and_rename(const std::string& path, const std::string& text) {
+  const std::string beside = path + ".part";
+  const int fd = open(beside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (fd < 0) return false;
+  const bool written = write(fd, text.data(), text.size()) == static_cast<ssize_t>(text.size());
+  const bool synced = fsync(fd) == 0;
+  const bool closed = ::close(fd) == 0;
+  if (written && synced && closed && std::rename(beside.c_str(), path.c_str()) == 0) return true;
+  const int error = errno;
+  unlink(beside.c_str());
+  errno = error;
+  return false;
+}
+
+/// The file's keys, compared one by one; the first that differs is named.
+bool expect_same(TomlTable& table, std::string_view key, const std::string& configured) {
+  FixedText<255> found;
+  table.require(key);
+  table.text(key, found);
+  if (!table.ok() || found.view() == configured) return table.ok();
+  table.fail(key, "is \"" + std::string(found.view()) + "\", the configuration now has \"" +
+                      configured + "\"");
+  return false;
+}
+
+}  // namespace
+
+bool write_commission_file(const EdgeConfig& config, const CommissionResult& result,
+                           std::int64_t utc_s, std::string& error) {
+  const std::string path = path_of(config);
+  mkdir(config.state.folder.c_str(), 0755);  // when it fails, the open below says why
+  if (write_beside_and_rename(path, file_text(config, result, utc_s))) return true;
+  error = path + ": cannot write here: " + std::strerror(errno) +
+          "; mend the folder's permissions, or [state] folder, and repeat";
+  return false;
+}
+
+bool is_commissioned(const EdgeConfig& config, std::string& error) {
+  const std::string path = path_of(config);
+  if (access(path.c_str(), F_OK) != 0) {
+    error = path +
+            ": not there: the battery's sign has not been checked; run once: bess-edge commission "
+            "--config FILE --yes";
+    return false;
+  }
+  toml::table document;
+  if (!parse_toml_file(path, document, error)) return false;
+  TomlTable table(&document, path, "", error);
+  const bool same = expect_same(table, "map", std::string(config.map.name.view())) &&
+                    expect_same(table, "variant", std::string(config.map.variant.view())) &&
+                    expect_same(table, "map_crc32", map_checksum(config)) &&
+                    expect_same(table, "battery", battery_place(config).c_str());
+  if (!same) error += "; check the sign again: bess-edge commission --config FILE --yes";
+  return same;
+}
+
+}  // namespace bess

@@ -1,0 +1,261 @@
+#include "edge/program/edge_config.h"
+
+#include <arpa/inet.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+
+#include "edge/prices/http_secrets.h"
+#include "edge/registers/codec.h"
+#include "edge/registers/map_file.h"
+#include "edge/registers/toml_reader.h"
+#include "shared/utc_text.h"
+
+namespace bess {
+namespace {
+
+TomlTable section(TomlTable& root, std::string_view name) {
+  return {root.table(name), root.file(), std::string("[").append(name).append("]"), root.error()};
+}
+
+bool is_numeric_ipv4(const char* host) {
+  in_addr address{};
+  return inet_pton(AF_INET, host, &address) == 1;
+}
+
+/// The battery must report the configured capacity, else the address leads to another one.
+void expect_capacity(EdgeConfig& config) {
+  const std::int64_t capacity_wh = config.capacity_wh;
+  const std::int64_t tolerance_wh = capacity_wh * config.capacity_tolerance_percent / 100;
+  for (IdentityCheck& check : config.map.identity) {
+    if (config.map.points[check.point].name != "capacity") continue;
+    check.value_min = capacity_wh - tolerance_wh;
+    check.value_max = capacity_wh + tolerance_wh;
+    check.hint = "is [battery] capacity_wh right, or is this another battery?";
+  }
+}
+
+/// What the operator does not say about the link is as the device's maker ships it.
+void complete_link(TomlTable& table, EdgeConfig& config) {
+  if (!table.has("port")) config.link.port = config.map.port;
+  if (!table.has("baud")) config.link.baud = config.map.baud;
+  if (!table.has("parity")) config.link.parity = config.map.parity;
+  if (!table.has("stop_bits")) config.link.stop_bits = config.map.stop_bits;
+  TomlTable units(table.table("units"), table.file(), "[battery] units", table.error());
+  for (UnitGroup& group : config.map.unit_groups)
+    units.integer(group.name.view(), group.unit, 0, 255);
+  units.finish();
+}
+
+void read_battery(TomlTable table, EdgeConfig& config) {
+  FixedText<255> map_file("maps/alphaess.toml");
+  RegisterName variant;
+  int transport = 0;
+  int parity = 0;
+  table.text("map", map_file);
+  table.text("variant", variant);
+  table.choice("transport", transport, {"tcp", "rtu"});
+  table.text("host", config.link.host);
+  table.integer("port", config.link.port, 1, 65'535);
+  table.text("device", config.link.device);
+  table.integer("baud", config.link.baud, 1'200, 230'400);
+  table.choice("parity", parity, {"none", "even", "odd"});
+  table.integer("stop_bits", config.link.stop_bits, 1, 2);
+  table.integer("unit", config.link.unit, 0, 255);
+  table.integer("response_timeout_ms", config.link.response_timeout_ms, 10, 30'000);
+  table.integer("power_w", config.control.guard.power_w, 1, 100'000'000);
+  table.integer("capacity_wh", config.capacity_wh, 1, 1'000'000'000);
+  table.integer("capacity_tolerance_percent", config.capacity_tolerance_percent, 0, 100);
+  table.integer("start_timeout_s", config.start_timeout_s, 0, 3'600);
+  table.boolean("start_without_battery", config.start_without_battery);
+  table.integer("read_lead_s", config.control.read_lead_s, 0, 60);
+  static_cast<void>(table.table("units"));
+  config.link.rtu = transport == 1;
+  config.link.parity = static_cast<Parity>(parity);
+  table.finish();
+  if (!is_serial_speed(config.link.baud)) {
+    table.fail("baud", "must be a speed of serial lines such as 9600, 19200 or 115200");
+  }
+  if (!config.link.rtu && !is_numeric_ipv4(config.link.host.c_str())) {
+    table.fail("host",
+               "must be a numeric IPv4 address such as \"192.168.1.20\": a name would "
+               "depend on the resolver at every reconnect");
+  }
+  if (!table.ok()) return;
+  const auto folder = std::filesystem::path(table.file()).parent_path();
+  const std::string map_path = (folder / map_file.c_str()).string();
+  if (!config.map_path.assign(map_path)) table.fail("map", "is too long");
+  if (!load_register_map(map_path, variant.view(), config.map, table.error())) return;
+  complete_link(table, config);
+  expect_capacity(config);
+}
+
+/// A power that the map cannot express, or an order that outlives its timer, must stop the start.
+void check_battery_against_map(TomlTable table, EdgeConfig& config) {
+  if (!table.ok()) return;
+  const std::int32_t power_w = config.control.guard.power_w;
+  if (power_w > config.map.charge_w_max || power_w > config.map.discharge_w_max) {
+    table.fail("power_w", "= " + std::to_string(power_w) + " is more than the map " +
+                              std::string(config.map.name.view()) + " can express (charge " +
+                              std::to_string(config.map.charge_w_max) + " W, discharge " +
+                              std::to_string(config.map.discharge_w_max) + " W)");
+  }
+}
+
+void read_price(TomlTable table, PriceFeedSettings& price) {
+  FixedText<255> header_file;
+  table.require("url");
+  table.text("url", price.http.url);
+  table.text("ca_file", price.http.ca_file);
+  table.text("header_file", header_file);
+  table.text("rows_field", price.fields.rows);
+  table.text("time_field", price.fields.time);
+  table.text("price_field", price.fields.price);
+  table.integer("timeout_ms", price.http.timeout_ms, 10, 60'000);
+  table.integer("resolve_every_s", price.http.resolve_every_s, 1, 86'400);
+  table.integer("requests_per_cycle", price.requests_per_cycle, 1, 4);
+  table.integer("wait_s", price.wait_s, 1, 60);
+  table.scaled("step_flag_eur_per_mwh", price.step_flag_centi_eur_per_mwh, 100, 0, 20'000);
+  table.finish();
+  if (!table.ok()) return;
+  const std::string_view url = price.http.url.view();
+  if (!url.starts_with("http://") && !url.starts_with("https://")) {
+    table.fail("url", "must start with http:// or https://");
+  }
+  const auto folder = std::filesystem::path(table.file()).parent_path();
+  const std::string ca_file = (folder / price.http.ca_file.c_str()).string();
+  if (!price.http.ca_file.assign(ca_file)) table.fail("ca_file", "is too long a path");
+  if (url.starts_with("https://") && access(price.http.ca_file.c_str(), R_OK) != 0) {
+    table.fail("ca_file", "= " + ca_file +
+                              " cannot be read: install the package ca-certificates, "
+                              "or name your own file");
+  }
+  if (header_file.empty() || !table.ok()) return;
+  load_http_headers((folder / header_file.c_str()).c_str(), price.http.headers, table.error());
+}
+
+void read_guard(TomlTable table, EdgeConfig& config) {
+  GuardSettings& guard = config.control.guard;
+  table.scaled("low_price_eur_per_mwh", guard.low_price_centi_eur_per_mwh, 100, -15'000, 15'000);
+  table.scaled("high_price_eur_per_mwh", guard.high_price_centi_eur_per_mwh, 100, -15'000, 15'000);
+  table.scaled("soc_min", guard.soc_min_e4, 10'000, 0, 1);
+  table.scaled("soc_max", guard.soc_max_e4, 10'000, 0, 1);
+  table.scaled("soc_hysteresis", guard.soc_hysteresis_e4, 10'000, 0, 0.2);
+  table.integer("price_age_s_max", guard.price_age_s_max, 60, 1'800);
+  table.scaled("temperature_min_c", guard.temperature_min_deci_c, 10, -50, 100);
+  table.scaled("temperature_max_c", guard.temperature_max_deci_c, 10, -50, 100);
+  table.integer("hold_s", config.control.hold_s, 0, 3'600);
+  table.integer("ramp_w_max", guard.ramp_w_max, 0, 100'000'000);
+  table.scaled("cycles_per_day_max", config.control.cycles_per_day_max_e4, 10'000, 0, 100);
+  table.integer("order_deadline_s", config.control.order_deadline_s, 1, kSecondsPerStep);
+  table.boolean("require_synchronised_clock", config.require_synchronised_clock);
+  table.finish();
+  if (guard.low_price_centi_eur_per_mwh >= guard.high_price_centi_eur_per_mwh) {
+    table.fail("low_price_eur_per_mwh", "must be below high_price_eur_per_mwh");
+  }
+  if (guard.soc_min_e4 + 2 * guard.soc_hysteresis_e4 >= guard.soc_max_e4) {
+    table.fail("soc_min", "must be below soc_max by more than twice soc_hysteresis");
+  }
+  if (guard.temperature_min_deci_c >= guard.temperature_max_deci_c) {
+    table.fail("temperature_min_c", "must be below temperature_max_c");
+  }
+}
+
+template <int kCapacity>
+void keep_path(TomlTable& table, std::string_view key, const std::string& path,
+               FixedText<kCapacity>& kept) {
+  if (!kept.assign(path)) table.fail(key, "is too long");
+}
+
+/// Paths are relative to the configuration file's folder; an absolute one stays as it is.
+std::string resolved(const TomlTable& table, std::string_view path) {
+  return (std::filesystem::path(table.file()).parent_path() / path).string();
+}
+
+void read_state(TomlTable table, EdgeConfig& config) {
+  FixedText<255> folder("state");
+  const bool has_run_lock = std::filesystem::is_directory("/run/lock");
+  config.state.lock_folder = has_run_lock ? "/run/lock" : "/tmp";
+  table.text("folder", folder);
+  table.text("lock_folder", config.state.lock_folder);
+  table.finish();
+  const std::string path = resolved(table, folder.view());
+  keep_path(table, "folder", path, config.state.folder);
+  keep_path(table, "folder", path + "/decisions.ring", config.log.ring);
+  keep_path(table, "folder", path + "/status.json", config.log.status);
+  keep_path(table, "folder", path + "/metrics.prom", config.log.metrics);
+}
+
+void read_metrics(TomlTable table, EdgeConfig& config) {
+  FixedText<255> prometheus;
+  table.text("prometheus", prometheus);
+  table.finish();
+  if (!prometheus.empty()) {
+    keep_path(table, "prometheus", resolved(table, prometheus.view()), config.log.metrics);
+  }
+}
+
+void read_log(TomlTable table, EdgeConfig& config) {
+  FixedText<255> csv;
+  table.text("csv", csv);
+  table.integer("days", config.log.ring_days, 1, 3'660);
+  table.finish();
+  if (!csv.empty()) keep_path(table, "csv", resolved(table, csv.view()), config.log.csv);
+}
+
+void read_simulation(TomlTable table, ScaledClock& clock) {
+  FixedText<31> utc_start;
+  std::int32_t scale = 1;
+  std::int64_t anchor_ns = 0;
+  table.integer("time_scale", scale, 1, 100'000);
+  table.text("utc_start", utc_start);
+  table.integer("anchor_monotonic_ns", anchor_ns, 0, INT64_MAX);
+  table.finish();
+  if (table.native() == nullptr) return;
+  clock.scale = scale;
+  clock.anchor_monotonic_ns = anchor_ns != 0 ? anchor_ns : clock_ns(CLOCK_MONOTONIC);
+  table.require("utc_start");
+  if (table.ok() && !parse_utc_text(utc_start.view(), clock.anchor_utc_s)) {
+    table.fail("utc_start", "must be a UTC instant such as \"2023-03-26T00:00:00Z\"");
+  }
+}
+
+}  // namespace
+
+bool load_edge_config(const std::string& path, EdgeConfig& config, std::string& error) {
+  toml::table document;
+  if (!parse_toml_file(path, document, error)) return false;
+  TomlTable root(&document, path, "", error);
+  root.boolean("control", config.control.control);
+  root.require("price");
+  read_battery(section(root, "battery"), config);
+  check_battery_against_map(section(root, "battery"), config);
+  read_price(section(root, "price"), config.price);
+  read_guard(section(root, "guard"), config);
+  read_state(section(root, "state"), config);
+  read_log(section(root, "log"), config);
+  read_metrics(section(root, "metrics"), config);
+  read_simulation(section(root, "simulation"), config.clock);
+  root.finish();
+  config.control.price_wait_s = config.price.wait_s;
+  if (config.map.dead_man_duration_s > 0) {
+    config.control.order_duration_s = config.map.dead_man_duration_s;
+    config.control.has_dead_man = true;
+  }
+  return error.empty();
+}
+
+FixedText<159> battery_place(const EdgeConfig& config) {
+  const int unit = config.link.unit >= 0 ? config.link.unit : config.map.unit;
+  char place[160];
+  if (config.link.rtu) {
+    std::snprintf(place, sizeof place, "%s unit %d", config.link.device.c_str(), unit);
+  } else {
+    std::snprintf(place, sizeof place, "%s:%d unit %d", config.link.host.c_str(), config.link.port,
+                  unit);
+  }
+  return FixedText<159>(place);
+}
+
+}  // namespace bess

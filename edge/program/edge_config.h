@@ -1,0 +1,47 @@
+// The operator's settings, from a commented TOML file (bess-edge.toml is the documented example).
+// Everything ends in fixed-size structs before the loop starts.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "edge/battery/modbus_battery.h"
+#include "edge/control/control_loop.h"
+#include "edge/log/event_log.h"
+#include "edge/prices/price_feed.h"
+#include "edge/registers/register_map.h"
+#include "shared/fixed_text.h"
+#include "shared/scaled_clock.h"
+
+namespace bess {
+
+/// Where the controller keeps what outlives it, and where it locks battery and state.
+struct StateSettings {
+  FixedText<511> folder;
+  FixedText<255> lock_folder;
+};
+
+struct EdgeConfig {
+  ControlSettings control;
+  BatteryLinkSettings link;
+  PriceFeedSettings price;
+  RegisterMap map;
+  ScaledClock clock;
+  FixedText<511> map_path;
+  StateSettings state;
+  EventLogSettings log;
+  std::int32_t capacity_wh = 8'000;  ///< what the battery must report, within the tolerance
+  std::int32_t capacity_tolerance_percent = 25;
+  std::int32_t start_timeout_s = 10;   ///< wall time to reach the battery at start
+  bool start_without_battery = false;  ///< true: keep trying in safe mode instead of exiting
+  bool require_synchronised_clock = true;
+};
+
+/// Reads the file and the register map it names. False with one line ("file:line: what, and the
+/// mend").
+bool load_edge_config(const std::string& path, EdgeConfig& config, std::string& error);
+
+/// "127.0.0.1:502 unit 85" or "/dev/ttyUSB0 unit 85": where the battery is looked for.
+FixedText<159> battery_place(const EdgeConfig& config);
+
+}  // namespace bess

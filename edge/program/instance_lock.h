@@ -1,0 +1,34 @@
+// One controller to one battery, one to one state folder: an advisory lock (flock) on a file that
+// names the process holding it. The kernel gives the lock back when a process ends, however it ends;
+// a file that is left behind means nothing.
+#pragma once
+
+#include "edge/log/whole_file.h"
+#include "shared/fixed_text.h"
+
+namespace bess {
+
+class InstanceLock {
+ public:
+  InstanceLock() = default;
+  InstanceLock(const InstanceLock&) = delete;
+  InstanceLock& operator=(const InstanceLock&) = delete;
+  ~InstanceLock();
+
+  /// Tries for a second, because a predecessor may be on its way out and `holder_of` looks by locking.
+  /// False with one line; `what` names the locked thing in it.
+  bool take(const char* path, const char* what, FileMessage& error);
+
+ private:
+  bool try_once(const char* path, bool& is_held);
+  void leave_pid() const;
+
+  FixedText<639> path_;
+  int fd_ = -1;
+};
+
+/// Process that holds the lock, 0 = nobody, -1 = somebody whose number is unknown. Any program may
+/// ask.
+int holder_of(const char* path);
+
+}  // namespace bess

@@ -1,0 +1,57 @@
+#include "edge/program/run_locks.h"
+
+#include <limits.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+
+#include <cerrno>
+#include <cstdio>
+
+namespace bess {
+namespace {
+
+/// /dev/serial/by-id/... and /dev/ttyUSB0 may be one device: its real name counts. On a serial line
+/// two masters cannot even share the wire, so the unit does not matter there.
+FixedText<159> locked_thing(const EdgeConfig& config) {
+  if (!config.link.rtu) return battery_place(config);
+  char real[PATH_MAX];
+  const char* const found = realpath(config.link.device.c_str(), real);
+  return {found != nullptr ? found : config.link.device.c_str()};
+}
+
+}  // namespace
+
+FixedText<639> battery_lock_path(const EdgeConfig& config) {
+  FixedText<159> thing = locked_thing(config);
+  char name[160];
+  std::size_t size = 0;
+  for (const char c : thing.view()) name[size++] = c == '/' || c == ' ' || c == ':' ? '_' : c;
+  char path[640];
+  std::snprintf(path, sizeof path, "%s/bess-%.*s.lock", config.state.lock_folder.c_str(),
+                static_cast<int>(size), name);
+  return {path};
+}
+
+FixedText<639> state_lock_path(const EdgeConfig& config) {
+  char path[640];
+  std::snprintf(path, sizeof path, "%s/lock", config.state.folder.c_str());
+  return {path};
+}
+
+bool lock_battery(const EdgeConfig& config, RunLocks& locks, FileMessage& error) {
+  char what[200];
+  std::snprintf(what, sizeof what, "the battery at %s", battery_place(config).c_str());
+  return locks.battery.take(battery_lock_path(config).c_str(), what, error);
+}
+
+bool lock_state(const EdgeConfig& config, RunLocks& locks, FileMessage& error) {
+  const char* const folder = config.state.folder.c_str();
+  if (mkdir(folder, 0755) != 0 && errno != EEXIST) {
+    return fail_with_errno(folder, "cannot make the folder of [state] folder", error);
+  }
+  char what[560];
+  std::snprintf(what, sizeof what, "the state folder %s", folder);
+  return locks.state.take(state_lock_path(config).c_str(), what, error);
+}
+
+}  // namespace bess

@@ -1,0 +1,24 @@
+// What a controller must have for itself before it does anything: its battery and its state folder.
+#pragma once
+
+#include "edge/program/edge_config.h"
+#include "edge/program/instance_lock.h"
+
+namespace bess {
+
+/// Lock of the battery, the same for every configuration that leads to it.
+FixedText<639> battery_lock_path(const EdgeConfig& config);
+/// Lock of the state folder; held by the controller that writes the status there.
+FixedText<639> state_lock_path(const EdgeConfig& config);
+
+struct RunLocks {
+  InstanceLock battery;
+  InstanceLock state;
+};
+
+/// --check needs the battery alone. False with one line.
+bool lock_battery(const EdgeConfig& config, RunLocks& locks, FileMessage& error);
+/// Makes the state folder if it is missing.
+bool lock_state(const EdgeConfig& config, RunLocks& locks, FileMessage& error);
+
+}  // namespace bess

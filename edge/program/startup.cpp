@@ -1,0 +1,164 @@
+#include "edge/program/startup.h"
+
+#include <signal.h>
+#include <sys/prctl.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+#include "edge/control/policy.h"
+#include "edge/log/journal.h"
+#include "edge/prices/http_secrets.h"
+#include "edge/registers/codec.h"
+#include "shared/utc_text.h"
+
+namespace bess {
+namespace {
+
+void complain(const EdgeConfig& config, std::string_view what) {
+  report(JournalLevel::kError, "battery at %s: %.*s", battery_place(config).c_str(),
+         static_cast<int>(what.size()), what.data());
+}
+
+/// Proves that this is the configured battery; one line when it is not.
+Status identify(const EdgeConfig& config, ModbusBattery& battery, bool complain_about_link) {
+  IdentityFailure failure;
+  Status status = battery.check_identity(failure);
+  if (status == Status::kImplausible) {
+    const IdentityCheck& check = config.map.identity[failure.check];
+    char text[256];
+    std::snprintf(text, sizeof text, "%s reads %lld, not %lld to %lld: %s",
+                  config.map.points[check.point].name.c_str(),
+                  static_cast<long long>(failure.value), static_cast<long long>(check.value_min),
+                  static_cast<long long>(check.value_max), check.hint.c_str());
+    complain(config, text);
+    return status;
+  }
+  BatteryMeasurement measurement;
+  if (status == Status::kOk) status = battery.read(measurement);
+  if (status == Status::kImplausible || (status != Status::kOk && complain_about_link)) {
+    complain(config, status_text(status));
+  }
+  return status;
+}
+
+/// What a command would write, by the battery's own scale factors and limits if it was reached.
+void print_registers(const EdgeConfig& config, const ModbusBattery& battery, const char* name,
+                     const PowerOrder& order, Command command) {
+  std::printf("%-10s", name);
+  for (const BlockWrite& write : config.map.sequence(command).writes) {
+    RegisterBlock block;
+    std::uint16_t address = 0;
+    const Status status = battery.preview(write, order, address, block);
+    if (status != Status::kOk) {
+      std::printf(" (%s)", status == Status::kNotConnected ? "known once the battery is read"
+                                                           : status_name(status).data());
+      break;
+    }
+    std::printf(" 0x%04X:[", address);
+    for (int i = 0; i < block.size(); ++i) std::printf(i == 0 ? "%u" : " %u", block[i]);
+    std::printf("]");
+  }
+  std::printf("\n");
+}
+
+void print_orders(const EdgeConfig& config, const ModbusBattery& battery) {
+  const GuardSettings& guard = config.control.guard;
+  PowerOrder order{.soc_min_e4 = guard.soc_min_e4,
+                   .soc_max_e4 = guard.soc_max_e4,
+                   .duration_s = config.control.order_duration_s};
+  order.power_w = guard.power_w;
+  print_registers(config, battery, "charge", order, Command::kCharge);
+  order.power_w = 0;
+  print_registers(config, battery, "idle", order, Command::kIdle);
+  order.power_w = -guard.power_w;
+  print_registers(config, battery, "discharge", order, Command::kDischarge);
+  print_registers(config, battery, "release", order, Command::kRelease);
+}
+
+bool report_price(const EdgeConfig& config, PriceFeed& prices) {
+  PriceRow row;
+  const Status status = prices.fetch_once(row);
+  if (status != Status::kOk) {
+    report(JournalLevel::kError, "price from %s: %s",
+           loggable_url(config.price.http.url.view()).c_str(), price_status_text(status).data());
+    return false;
+  }
+  std::printf("price      %.2f EUR/MWh of minute %s\n", row.price_centi_eur_per_mwh / 100.0,
+              utc_text(row.minute_utc_s).c_str());
+  return true;
+}
+
+}  // namespace
+
+bool check_student() {
+  const int failures = count_student_self_check_failures();
+  if (failures == 0) return true;
+  report(JournalLevel::kError,
+         "the built-in student fails %d of its %d self-checks on this machine; build bess-edge for "
+         "it again",
+         failures, student_self_check_count());
+  return false;
+}
+
+bool reach_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& clock) {
+  const std::int64_t deadline_ns =
+      clock.monotonic_ns() + config.start_timeout_s * kNanosecondsPerSecond;
+  while (!clock.stop_requested()) {
+    const bool last = clock.monotonic_ns() >= deadline_ns || config.start_without_battery;
+    const Status status = identify(config, battery, last);
+    if (status == Status::kOk) return true;
+    if (status == Status::kImplausible) return false;  // the wrong device stays the wrong device
+    if (last) return config.start_without_battery;
+    sleep_until_monotonic(clock.monotonic_ns() + kNanosecondsPerSecond / 5);
+  }
+  return true;
+}
+
+void greet_price_server(const EdgeConfig& config, PriceFeed& prices) {
+  PriceRow row;
+  const Status status = prices.fetch_once(row);
+  if (status == Status::kOk) return;
+  report(JournalLevel::kWarning, "note: price from %s: %s; waiting in safe state",
+         loggable_url(config.price.http.url.view()).c_str(), price_status_text(status).data());
+}
+
+bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& prices) {
+  std::printf("student    %s (%d self-checks passed)\n", student_provenance(),
+              student_self_check_count());
+  std::printf("map        %s, variant %s; control = %s\n", config.map.name.c_str(),
+              config.map.variant.c_str(), config.control.control ? "true" : "false (read-only)");
+  std::fflush(stdout);
+  const bool battery_ok = identify(config, battery, true) == Status::kOk;
+  print_orders(config, battery);
+  BatteryMeasurement m;
+  if (battery_ok && battery.read(m) == Status::kOk) {
+    std::printf("battery    %s: SoC %.1f %%, %d W, %d Wh, dispatch %s\n",
+                battery_place(config).c_str(), m.soc_e4 / 100.0, m.power_w, m.capacity_wh,
+                m.dispatch_active ? "active" : "off");
+  }
+  return report_price(config, prices) && battery_ok;
+}
+
+void prepare_process() {
+  set_market_time_zone();
+  signal(SIGPIPE, SIG_IGN);           // whoever reads the log may go away, the battery must not
+  prctl(PR_SET_TIMERSLACK, 1'000UL);  // ns; the default 50 us would be seen at high time scales
+}
+
+RunIdentity identity_of_run(const EdgeConfig& config) {
+  RunIdentity identity;
+  identity.version = BESS_VERSION;
+  identity.student_hash = student_hash();
+  identity.student_provenance = student_provenance();
+  identity.map = config.map.name.view();
+  identity.variant = config.map.variant.view();
+  identity.battery = battery_place(config);
+  identity.control = config.control.control;
+  identity.pid = getpid();
+  identity.start_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
+  identity.cadence_ms = kSecondsPerStep * 1'000 / config.clock.scale;
+  return identity;
+}
+
+}  // namespace bess

@@ -1,0 +1,32 @@
+// What happens before the loop: reaching and identifying the battery, and the report of --check.
+// One line per finding, for a person; nothing here writes to the battery.
+#pragma once
+
+#include "edge/control/edge_clock.h"
+#include "edge/log/run_status.h"
+#include "edge/program/edge_config.h"
+
+namespace bess {
+
+/// Time zone, signals and timers of the process; before any thread is started.
+void prepare_process();
+
+/// Tries until `start_timeout_s` is over. True when the battery is there and is the right one, or
+/// when the configuration allows to start without it; otherwise one line on stderr says what to
+/// mend.
+bool reach_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& clock);
+
+/// Fetches once: opens the connection before the first tick, and says it when there is no price
+/// yet.
+void greet_price_server(const EdgeConfig& config, PriceFeed& prices);
+
+/// Prints settings, encoded orders, a battery reading and the newest price; true when all is well.
+bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& prices);
+
+/// Who this process is, for the status that it publishes.
+RunIdentity identity_of_run(const EdgeConfig& config);
+
+/// True when this machine computes the built-in student as the exporter did.
+bool check_student();
+
+}  // namespace bess

@@ -1,0 +1,394 @@
+// What the driver does with a map beyond writing it: nothing twice, the watchdog in time, flash within
+// its budget, back to the device's own mode when half a command was taken, no stale or implausible
+// value used.
+#include "edge/battery/battery_driver.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/register_device.h"
+#include "tests/support/temporary_folder.h"
+
+namespace bess {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+constexpr const char* kMap = R"(
+[map]
+name = "test"
+unit = 1
+[power]
+charge_w_max = 10000
+discharge_w_max = 10000
+[watchdog]
+kind = "duration"
+duration_s = 300
+refresh_s = 120
+[state]
+measure = ["soc", "battery_power"]
+active = ["enable = 1"]
+order_power = "power"
+[[point]]
+name = "soc"
+address = 0
+scale = 100
+min = 0
+max = 10000
+[[point]]
+name = "battery_power"
+address = 1
+type = "s16"
+min = -10000
+max = 10000
+[[point]]
+name = "enable"
+address = 10
+min = 0
+max = 1
+[[point]]
+name = "power"
+address = 11
+type = "s16"
+min = -10000
+max = 10000
+[[point]]
+name = "time"
+address = 12
+min = 0
+max = 3600
+[[point]]
+name = "mode"
+address = 20
+storage = "eeprom"
+min = 0
+max = 9
+[[point]]
+name = "status"
+address = 21
+names = { busy = 0, ready = 7 }
+min = 0
+max = 9
+[command]
+order = [["power = power", "time = duration"], "enable = 1"]
+release = ["enable = 0"]
+[writes]
+eeprom_writes_per_day = 5
+reserve = 1
+)";
+
+/// The map above with some texts replaced.
+class DriverTest : public ::testing::Test {
+ protected:
+  MapUnderTest& with(const std::vector<std::pair<std::string, std::string>>& changes = {}) {
+    std::string text = kMap;
+    for (const auto& [before, after] : changes) {
+      const std::size_t at = text.find(before);
+      EXPECT_NE(at, std::string::npos) << before;
+      text.replace(at, before.size(), after);
+    }
+    test_ = std::make_unique<MapUnderTest>(folder_.write("map.toml", text));
+    test_->device.set(0, {50, 0});
+    return *test_;
+  }
+
+  TemporaryFolder folder_;
+  std::unique_ptr<MapUnderTest> test_;
+};
+
+TEST_F(DriverTest, AnOrderInForceCostsNoWriteUntilItsWatchdogIsDue) {
+  MapUnderTest& t = with();
+  ASSERT_EQ(t.order(1'000), Status::kOk);
+  EXPECT_THAT(t.device.take_writes(), SizeIs(2));
+  t.device.pass_s(59);
+  ASSERT_EQ(t.order(1'000), Status::kOk);
+  EXPECT_THAT(t.device.take_writes(), IsEmpty());
+  EXPECT_EQ(t.driver->counters().unchanged_orders, 1);
+  t.device.pass_s(61);  // a cycle after the first
+  ASSERT_EQ(t.order(1'000), Status::kOk);
+  EXPECT_THAT(t.device.take_writes(), SizeIs(2));
+  ASSERT_EQ(t.order(1'001), Status::kOk);
+  EXPECT_THAT(t.device.take_writes(), SizeIs(2));
+  EXPECT_EQ(t.driver->counters().unchanged_orders, 1);
+  EXPECT_EQ(t.driver->counters().register_writes, 6);
+}
+
+TEST_F(DriverTest, RefreshFeedsOnlyWhenDueAndOnlyAnOrderInForce) {
+  MapUnderTest& t = with({{"duration_s = 300", "duration_s = 60"},
+                          {"refresh_s = 120", "refresh_s = 20"},
+                          {"release =", "refresh = [\"time = duration\"]\nrelease ="}});
+  EXPECT_EQ(t.driver->refresh_interval_s(), 20);
+  ASSERT_EQ(t.driver->refresh(), Status::kOk);
+  EXPECT_EQ(t.device.reads, 0);
+  ASSERT_EQ(t.order(1'000), Status::kOk);
+  t.device.take_writes();
+  t.device.pass_s(5);
+  ASSERT_EQ(t.driver->refresh(), Status::kOk);
+  EXPECT_THAT(t.device.writes, IsEmpty());
+  t.device.pass_s(15);
+  ASSERT_EQ(t.driver->refresh(), Status::kOk);
+  EXPECT_THAT(t.device.take_writes(), ElementsAre(WriteRecord{1, 16, 12, {60}}));
+  ASSERT_EQ(t.driver->release(), Status::kOk);
+  t.device.take_writes();
+  t.device.pass_s(60);
+  ASSERT_EQ(t.driver->refresh(), Status::kOk);
+  EXPECT_THAT(t.device.writes, IsEmpty());
+}
+
+TEST_F(DriverTest, AFailedRefreshIsTriedAgainByTheNextOrder) {
+  MapUnderTest& t = with();
+  ASSERT_EQ(t.order(1'000), Status::kOk);
+  t.device.pass_s(120);
+  t.device.exception = -1;
+  EXPECT_EQ(t.driver->refresh(), Status::kTimeout);
+  t.device.exception = 0;
+  t.device.take_writes();
+  ASSERT_EQ(t.order(1'000), Status::kOk);
+  EXPECT_THAT(t.device.take_writes(), SizeIs(2));
+}
+
+TEST_F(DriverTest, AnExpiredOrOverwrittenOrderIsWrittenAgain) {
+  MapUnderTest& t = with();
+  ASSERT_EQ(t.order(1'000), Status::kOk);
+  t.device.set(10, {0});  // the device shows that its timer has run out
+  ASSERT_EQ(t.read(), Status::kOk);
+  EXPECT_FALSE(t.measured.dispatch_active);
+  t.device.take_writes();
+  ASSERT_EQ(t.order(1'000), Status::kOk);
+  EXPECT_THAT(t.device.take_writes(), SizeIs(2));
+  t.device.set(11, {777});  // somebody else
+  ASSERT_EQ(t.read(), Status::kOk);
+  EXPECT_EQ(t.measured.order_power_w, 777);
+  ASSERT_EQ(t.order(1'000), Status::kOk);
+  EXPECT_THAT(t.device.take_writes(), SizeIs(2));
+}
+
+TEST_F(DriverTest, ARestartSeesWhatIsInForce) {
+  MapUnderTest& t = with();
+  t.device.set(10, {1, 0xF830, 300});
+  ASSERT_EQ(t.read(), Status::kOk);
+  EXPECT_TRUE(t.measured.dispatch_active);
+  EXPECT_TRUE(t.measured.has_order_power);
+  EXPECT_EQ(t.measured.order_power_w, -2'000);
+}
+
+TEST_F(DriverTest, AcknowledgedButNotDoneEndsInARollBack) {
+  MapUnderTest& t = with({{"release =", "rollback = [\"power = 0\"]\nrelease ="}});
+  ASSERT_EQ(t.read(), Status::kOk);
+  t.device.ignores_writes = true;
+  EXPECT_EQ(t.order(1'000), Status::kNotApplied);
+  const std::vector<WriteRecord> writes = t.device.take_writes();
+  ASSERT_GE(writes.size(), 5U);  // two attempts, then the rollback
+  EXPECT_EQ(writes[4], (WriteRecord{1, 16, 11, {0}}));
+}
+
+TEST_F(DriverTest, HalfACommandIsTakenBack) {
+  MapUnderTest& t = with();
+  ASSERT_EQ(t.read(), Status::kOk);
+  t.device.exception = 2;  // final: no second attempt
+  EXPECT_EQ(t.order(1'000), Status::kBusException);
+  EXPECT_THAT(t.device.take_writes(), SizeIs(2));  // the order's first, the release
+}
+
+TEST_F(DriverTest, ADroppedConnectionIsMendedWithinTheCycle) {
+  MapUnderTest& t = with();
+  ASSERT_EQ(t.read(), Status::kOk);
+  t.device.failing_writes = 1;
+  EXPECT_EQ(t.order(1'000), Status::kOk);
+  EXPECT_EQ(t.device.holding[10], 1);
+}
+
+TEST_F(DriverTest, ReadBackWithToleranceAndWithout) {
+  MapUnderTest& t = with({{"order = [[\"power = power\", \"time = duration\"],",
+                           "order = [{ write = \"power = power\", read_back = \"tolerance\", "
+                           "tolerance = 50 }, { write = \"time = duration\", read_back = "
+                           "\"none\" },"}});
+  t.device.after_write = [&](int address, int) {
+    if (address == 11) t.device.holding[11] -= 50;  // the device clamps
+    if (address == 12) t.device.holding[12] = 0;
+  };
+  EXPECT_EQ(t.order(1'000), Status::kOk);
+  t.device.after_write = [&](int address, int) {
+    if (address == 11) t.device.holding[11] -= 51;
+  };
+  EXPECT_EQ(t.order(2'000), Status::kNotApplied);
+}
+
+TEST_F(DriverTest, DelayAndWaitAreKept) {
+  MapUnderTest& t = with({{"\"time = duration\"], \"enable = 1\"]",
+                           "\"time = duration\"], { delay_ms = 300 }, \"enable = 1\", "
+                           "{ wait = \"status = ready\", timeout_ms = 1000 }]"}});
+  ASSERT_EQ(t.read(), Status::kOk);
+  const std::int64_t start_ns = t.device.now_ns;
+  t.device.before_request = [&] {
+    if (t.device.now_ns >= start_ns + 700'000'000) t.device.set(21, {7});
+  };
+  EXPECT_EQ(t.order(1'000), Status::kOk);
+  EXPECT_GE(t.device.now_ns - start_ns, 700'000'000);
+  t.device.before_request = [&] { t.device.set(21, {0}); };
+  EXPECT_EQ(t.order(2'000), Status::kNotApplied);
+}
+
+TEST_F(DriverTest, FlashIsWrittenOnlyWhenItChangesAndOnlyWithinTheBudget) {
+  MapUnderTest& t = with({{"order = [[",
+                           "idle = [\"enable = 1\", \"time = duration\"]\n"
+                           "discharge = [\"mode = 2\", \"time = duration\", "
+                           "\"enable = 1\"]\ncharge = [\"mode = 1\", "
+                           "\"time = duration\", \"enable = 1\"]\n#"},
+                          {"release = [", "release = [\"mode = 0\", "}});
+  t.device.set(20, {1});
+  ASSERT_EQ(t.order(1'000), Status::kOk);  // it holds 1 already: read, not written
+  EXPECT_EQ(t.driver->counters().flash_writes_today, 0);
+  for (const int power_w : {-1'000, 1'000, -1'000, 1'000}) {
+    ASSERT_EQ(t.order(power_w), Status::kOk);
+  }
+  EXPECT_EQ(t.driver->counters().flash_writes_today, 4);
+  t.device.take_writes();
+  EXPECT_EQ(t.order(-1'000), Status::kWriteBudget);
+  EXPECT_THAT(t.device.writes, IsEmpty());  // not even the half that costs nothing
+  ASSERT_EQ(t.order(1'000), Status::kOk);   // in force: costs nothing
+  ASSERT_EQ(t.driver->release(), Status::kOk);
+  EXPECT_EQ(t.driver->counters().flash_writes_today, 5);
+  ++t.device.day;
+  EXPECT_EQ(t.driver->counters().flash_writes_today, 0);
+  EXPECT_EQ(t.order(-1'000), Status::kOk);
+}
+
+TEST_F(DriverTest, TheBudgetOfADaySurvivesARestart) {
+  MapUnderTest& t = with({{"order = [[", "order = [\"mode = 1\", ["}});
+  t.driver->restore_flash_writes(t.device.day, 4);
+  EXPECT_EQ(t.order(1'000), Status::kWriteBudget);
+  t.driver->restore_flash_writes(t.device.day - 1, 4);
+  EXPECT_EQ(t.order(1'000), Status::kOk);
+}
+
+TEST_F(DriverTest, AWriteIntervalIsKept) {
+  MapUnderTest& t = with({{"storage = \"eeprom\"", "storage = \"eeprom\"\nwrite_interval_s = 600"},
+                          {"order = [[",
+                           "idle = [\"enable = 1\", \"time = duration\"]\n"
+                           "discharge = [\"mode = 2\", \"time = duration\", "
+                           "\"enable = 1\"]\ncharge = [\"mode = 1\", "
+                           "\"time = duration\", \"enable = 1\"]\n#"}});
+  ASSERT_EQ(t.order(1'000), Status::kOk);
+  EXPECT_EQ(t.order(-1'000), Status::kWriteBudget);
+  t.device.pass_s(601);
+  EXPECT_EQ(t.order(-1'000), Status::kOk);
+}
+
+TEST_F(DriverTest, EnableHappensOnceAndWhatItChangedIsRestored) {
+  MapUnderTest& t = with({{"release = [",
+                           "save = [\"mode = 5\"]\nenable = [\"mode = 9\"]\n"
+                           "precondition = [\"status = ready\"]\nrelease = [\"mode = saved\", "}});
+  t.device.set(20, {3, 0});
+  EXPECT_EQ(t.order(1'000), Status::kNotPermitted);
+  EXPECT_THAT(t.device.writes, IsEmpty());
+  t.device.set(21, {7});
+  ASSERT_EQ(t.order(1'000), Status::kOk);
+  ASSERT_EQ(t.order(2'000), Status::kOk);
+  EXPECT_EQ(t.device.holding[20], 9);
+  ASSERT_EQ(t.driver->release(), Status::kOk);
+  EXPECT_EQ(t.device.holding[20], 3);
+  // Found in force at start: the register holds what an earlier process wrote.
+  t.device.set(10, {1});
+  t.device.set(20, {9});
+  MapUnderTest& restarted = *test_;
+  DeviceDriver successor(restarted.map, DeviceClock(t.device), -1, t.device);
+  ASSERT_EQ(successor.order({.power_w = 500, .duration_s = 300}), Status::kOk);
+  ASSERT_EQ(successor.release(), Status::kOk);
+  EXPECT_EQ(t.device.holding[20], 5);
+}
+
+TEST_F(DriverTest, AShortenedTimerIsFedAtOnce) {
+  MapUnderTest& t =
+      with({{"refresh_s = 120", "refresh_s = 120\nremaining = \"status\""},
+            {"names = { busy = 0, ready = 7 }\nmin = 0\nmax = 9", "min = 0\nmax = 999"}});
+  t.device.set(21, {300});
+  ASSERT_EQ(t.order(1'000), Status::kOk);
+  t.device.take_writes();
+  ASSERT_EQ(t.read(), Status::kOk);
+  ASSERT_EQ(t.driver->refresh(), Status::kOk);
+  EXPECT_THAT(t.device.writes, IsEmpty());
+  t.device.set(21, {100});  // somebody wrote a shorter time
+  ASSERT_EQ(t.read(), Status::kOk);
+  ASSERT_EQ(t.driver->refresh(), Status::kOk);
+  EXPECT_THAT(t.device.take_writes(), SizeIs(2));
+}
+
+TEST_F(DriverTest, ImplausibleValuesAreNeverUsedAndSlowOnesAreNotReadAgain) {
+  MapUnderTest& t = with({{"scale = 100", "scale = 100\nmax_age_s = 600"}});
+  ASSERT_EQ(t.read(), Status::kOk);
+  EXPECT_EQ(t.measured.soc_e4, 5'000);
+  t.device.set(0, {60});
+  t.device.pass_s(599);
+  ASSERT_EQ(t.read(), Status::kOk);
+  EXPECT_EQ(t.measured.soc_e4, 5'000);
+  t.device.pass_s(2);
+  ASSERT_EQ(t.read(), Status::kOk);
+  EXPECT_EQ(t.measured.soc_e4, 6'000);
+  t.device.set(0, {101});
+  t.device.pass_s(601);
+  EXPECT_EQ(t.read(), Status::kImplausible);
+  EXPECT_EQ(t.driver->release(), Status::kOk);  // giving back is possible all the same
+}
+
+TEST_F(DriverTest, FailingMeasurementsDoNotKeepFromHoldingAndReleasing) {
+  MapUnderTest& t = with();
+  ASSERT_EQ(t.order(1'000), Status::kOk);
+  t.device.unreadable_address = 0;
+  t.device.pass_s(1'000);
+  EXPECT_EQ(t.read(), Status::kTimeout);
+  EXPECT_EQ(t.order(0), Status::kOk);
+  EXPECT_EQ(t.device.holding[11], 0);
+  EXPECT_EQ(t.driver->release(), Status::kOk);
+  EXPECT_EQ(t.device.holding[10], 0);
+}
+
+TEST_F(DriverTest, OldLimitsDoNotGoIntoAnOrderButIntoARelease) {
+  MapUnderTest& t = with({{"name = \"power\"", "name = \"power\"\nclamp_to = \"battery_power\""}});
+  t.device.set(1, {500});
+  ASSERT_EQ(t.order(1'000), Status::kOk);
+  EXPECT_EQ(t.device.holding[11], 500);
+  t.device.unreadable_address = 0;
+  t.device.pass_s(1'000);
+  EXPECT_EQ(t.order(2'000), Status::kTimeout);
+  EXPECT_EQ(t.driver->release(), Status::kOk);
+}
+
+TEST_F(DriverTest, ReadingNeverWrites) {
+  MapUnderTest& t = with();
+  IdentityFailure failure;
+  ASSERT_EQ(t.driver->check_identity(failure), Status::kOk);
+  for (int i = 0; i < 10; ++i) {
+    ASSERT_EQ(t.read(), Status::kOk);
+    ASSERT_EQ(t.driver->refresh(), Status::kOk);
+    t.device.pass_s(120);
+  }
+  EXPECT_THAT(t.device.writes, IsEmpty());
+}
+
+TEST_F(DriverTest, HeartbeatsDifferAndWrapWithinTheirRange) {
+  MapUnderTest& t = with({{"kind = \"duration\"", "kind = \"heartbeat\""},
+                          {"order = [[",
+                           "order = [{ write = \"mode = heartbeat\", read_back = "
+                           "\"none\" }, ["},
+                          {"storage = \"eeprom\"\n", ""}});
+  std::vector<int> beats;
+  for (int i = 0; i < 12; ++i) {
+    ASSERT_EQ(t.order(1'000), Status::kOk);
+    beats.push_back(t.device.holding[20]);
+    t.device.pass_s(120);
+  }
+  for (std::size_t i = 1; i < beats.size(); ++i) EXPECT_EQ(beats[i], (beats[i - 1] + 1) % 10);
+}
+
+TEST_F(DriverTest, PowerBeyondTheMapIsRefusedWithoutAWrite) {
+  MapUnderTest& t = with();
+  EXPECT_EQ(t.order(10'001), Status::kNotExpressible);
+  EXPECT_EQ(t.order(-10'001), Status::kNotExpressible);
+  EXPECT_THAT(t.device.writes, IsEmpty());
+}
+
+}  // namespace
+}  // namespace bess

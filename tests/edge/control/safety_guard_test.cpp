@@ -1,0 +1,165 @@
+// The guard: one case per reason, then the precedence between them.
+#include "edge/control/safety_guard.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace bess {
+namespace {
+
+constexpr std::int64_t kNow = 1'679'875'320;  // minute 2 of a quarter-hour
+static_assert(kNow % 900 == 120);
+
+GuardInputs healthy(Action action = Action::kCharge) {
+  GuardInputs in;
+  in.now_utc_s = kNow;
+  in.clock_ok = in.link_ok = in.has_price = true;
+  in.measurement.soc_e4 = 5'000;
+  in.price_minute_utc_s = kNow - 60;
+  in.price_centi_eur_per_mwh = 5'000;
+  in.student_action = action;
+  return in;
+}
+
+GuardDecision decide_once(const GuardInputs& in) { return SafetyGuard(GuardSettings{}).decide(in); }
+
+TEST(SafetyGuard, PassesTheStudentThroughWhenAllIsWell) {
+  for (const Action action : {Action::kDischarge, Action::kIdle, Action::kCharge}) {
+    const GuardDecision decision = decide_once(healthy(action));
+    EXPECT_EQ(decision.reason, Reason::kStudent);
+    EXPECT_EQ(decision.power_w, power_sign(action) * 4'000);
+  }
+}
+
+struct Case {
+  const char* name;
+  std::function<void(GuardInputs&)> spoil;
+  Reason reason;
+  std::int32_t power_w;
+};
+
+/// In order of precedence: a case further up must win over every case below it.
+std::vector<Case> cases() {
+  return {
+      {"clock", [](GuardInputs& in) { in.clock_ok = false; }, Reason::kClock, 0},
+      {"link", [](GuardInputs& in) { in.link_ok = false; }, Reason::kLink, 0},
+      {"alarm", [](GuardInputs& in) { in.measurement.alarm = true; }, Reason::kAlarm, 0},
+      {"hot", [](GuardInputs& in) { in.measurement.temperature_max_deci_c = 501; },
+       Reason::kTemperature, 0},
+      {"cold", [](GuardInputs& in) { in.measurement.temperature_min_deci_c = -1; },
+       Reason::kTemperature, 0},
+      {"off grid", [](GuardInputs& in) { in.measurement.off_grid = true; }, Reason::kOffGrid, 0},
+      {"wrong direction", [](GuardInputs& in) { in.wrong_direction = true; },
+       Reason::kWrongDirection, 0},
+      {"no price", [](GuardInputs& in) { in.has_price = false; }, Reason::kNoPrice, 0},
+      {"old price", [](GuardInputs& in) { in.price_minute_utc_s = kNow - 360; }, Reason::kPriceAge,
+       0},
+      {"soc full", [](GuardInputs& in) { in.measurement.soc_e4 = 10'000; }, Reason::kSocFull, 0},
+      {"cycle budget", [](GuardInputs& in) { in.cycle_budget_spent = true; }, Reason::kCycleBudget,
+       0},
+      {"power limit", [](GuardInputs& in) { in.measurement.charge_w_max = 1'500; },
+       Reason::kPowerLimit, 1'500},
+  };
+}
+
+TEST(SafetyGuard, EachReason) {
+  for (const Case& c : cases()) {
+    GuardInputs in = healthy(Action::kCharge);
+    c.spoil(in);
+    const GuardDecision decision = decide_once(in);
+    EXPECT_EQ(decision.reason, c.reason) << c.name;
+    EXPECT_EQ(decision.power_w, c.power_w) << c.name;
+  }
+}
+
+TEST(SafetyGuard, PrecedenceOfEveryPair) {
+  const std::vector<Case> all = cases();
+  for (std::size_t high = 0; high < all.size(); ++high) {
+    for (std::size_t low = high + 1; low < all.size(); ++low) {
+      GuardInputs in = healthy(Action::kCharge);
+      all[low].spoil(in);
+      all[high].spoil(in);
+      EXPECT_EQ(decide_once(in).reason, all[high].reason) << all[high].name << " " << all[low].name;
+    }
+  }
+}
+
+TEST(SafetyGuard, ThresholdsOverruleTheStudentButNotTheSocLimits) {
+  GuardInputs cheap = healthy(Action::kDischarge);
+  cheap.price_centi_eur_per_mwh = -50'000;
+  EXPECT_EQ(decide_once(cheap).power_w, 4'000);
+  EXPECT_EQ(decide_once(cheap).reason, Reason::kPriceLow);
+  cheap.measurement.soc_e4 = 10'000;
+  EXPECT_EQ(decide_once(cheap).power_w, 0);
+  EXPECT_EQ(decide_once(cheap).reason, Reason::kSocFull);
+
+  GuardInputs dear = healthy(Action::kIdle);
+  dear.price_centi_eur_per_mwh = 150'000;
+  EXPECT_EQ(decide_once(dear).power_w, -4'000);
+  EXPECT_EQ(decide_once(dear).reason, Reason::kPriceHigh);
+  dear.measurement.soc_e4 = 1'000;
+  EXPECT_EQ(decide_once(dear).power_w, 0);
+  EXPECT_EQ(decide_once(dear).reason, Reason::kSocEmpty);
+}
+
+TEST(SafetyGuard, ThresholdsAreExactToTheCent) {
+  GuardInputs in = healthy(Action::kIdle);
+  in.price_centi_eur_per_mwh = -49'999;
+  EXPECT_EQ(decide_once(in).reason, Reason::kStudent);
+  in.price_centi_eur_per_mwh = 149'999;
+  EXPECT_EQ(decide_once(in).reason, Reason::kStudent);
+}
+
+TEST(SafetyGuard, AgreementIsNotAnIntervention) {
+  GuardInputs in = healthy(Action::kCharge);
+  in.price_centi_eur_per_mwh = -60'000;
+  EXPECT_EQ(decide_once(in).reason, Reason::kStudent);
+  EXPECT_EQ(decide_once(in).power_w, 4'000);
+}
+
+TEST(SafetyGuard, SocHysteresisKeepsAReachedBoundClosed) {
+  SafetyGuard guard{GuardSettings{}};
+  GuardInputs in = healthy(Action::kCharge);
+  const auto power_at = [&](std::int32_t soc_e4) {
+    in.measurement.soc_e4 = soc_e4;
+    return guard.decide(in).power_w;
+  };
+  EXPECT_EQ(power_at(9'990), 4'000);
+  EXPECT_EQ(power_at(10'000), 0);
+  EXPECT_EQ(power_at(9'950), 0);      // not yet back inside by the hysteresis
+  EXPECT_EQ(power_at(9'949), 4'000);  // open again
+  in.student_action = Action::kDischarge;
+  EXPECT_EQ(power_at(1'000), 0);
+  EXPECT_EQ(power_at(1'050), 0);
+  EXPECT_EQ(power_at(1'051), -4'000);
+}
+
+TEST(SafetyGuard, PriceAgeAndQuarterHour) {
+  GuardInputs in = healthy();
+  in.price_minute_utc_s = kNow - 60 - 240;  // exactly four minutes after its end: still good
+  EXPECT_EQ(decide_once(in).reason, Reason::kStudent);
+  in.price_minute_utc_s -= 60;
+  EXPECT_EQ(decide_once(in).reason, Reason::kPriceAge);
+  in.price_minute_utc_s = kNow + 120;  // from the future
+  EXPECT_EQ(decide_once(in).reason, Reason::kPriceAge);
+
+  GuardSettings patient;
+  patient.price_age_s_max = 1'800;
+  in.price_minute_utc_s = kNow - 120 - 900;  // first minute of the preceding quarter-hour
+  EXPECT_EQ(SafetyGuard(patient).decide(in).reason, Reason::kStudent);
+  in.price_minute_utc_s -= 60;
+  EXPECT_EQ(SafetyGuard(patient).decide(in).reason, Reason::kPriceQuarterHour);
+}
+
+TEST(SafetyGuard, NegativeLiveLimitsMeanZero) {
+  GuardInputs in = healthy(Action::kDischarge);
+  in.measurement.discharge_w_max = -5;
+  EXPECT_EQ(decide_once(in).power_w, 0);
+  EXPECT_EQ(decide_once(in).reason, Reason::kPowerLimit);
+}
+
+}  // namespace
+}  // namespace bess

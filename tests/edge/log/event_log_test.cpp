@@ -1,0 +1,139 @@
+// The log thread: a record handed over arrives everywhere, a restart finds it, and a disk that stands
+// still costs records but never the control thread's time.
+#include "edge/log/event_log.h"
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <memory>
+
+#include "shared/scaled_clock.h"
+#include "tests/support/temporary_folder.h"
+
+namespace bess {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr std::int64_t kDrainNs = 30 * kNanosecondsPerSecond;
+
+CycleRecord record_of(std::int64_t cycle) {
+  CycleRecord record;
+  record.utc_s = 1'679'788'800 + 120 * cycle;
+  record.cycle = cycle;
+  record.counters.flash_day = 19'442;
+  record.counters.flash_writes_today = static_cast<std::int32_t>(cycle);
+  return record;
+}
+
+std::string text_of(const std::string& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+class Log : public ::testing::Test {
+ protected:
+  EventLogSettings settings() const {
+    EventLogSettings s;
+    s.ring = folder_.file("decisions.ring").c_str();
+    s.status = folder_.file("status.json").c_str();
+    s.metrics = folder_.file("metrics.prom").c_str();
+    s.csv = folder_.file("log.csv").c_str();
+    s.ring_days = 1;
+    return s;
+  }
+
+  const TemporaryFolder folder_;
+  FileMessage error_;
+};
+
+TEST_F(Log, ARecordArrivesEverywhereAndARestartTakesItOver) {
+  {
+    const auto log = std::make_unique<EventLog>();
+    CycleRecord newest;
+    ASSERT_TRUE(log->open(settings(), RunIdentity{}, error_)) << error_.c_str();
+    EXPECT_FALSE(log->newest(newest));
+    EXPECT_THAT(text_of(folder_.file("status.json")), HasSubstr("\"cycles\": 0"));
+    for (int cycle = 1; cycle <= 100; ++cycle) {
+      log->write(record_of(cycle));
+      ASSERT_TRUE(log->drain(kDrainNs));
+    }
+    EXPECT_THAT(text_of(folder_.file("status.json")), HasSubstr("\"cycles\": 100"));
+    EXPECT_THAT(text_of(folder_.file("metrics.prom")), HasSubstr("bess_cycles_total 100\n"));
+    const std::string csv = text_of(folder_.file("log.csv"));
+    EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 101);
+  }
+  const auto log = std::make_unique<EventLog>();
+  CycleRecord newest;
+  ASSERT_TRUE(log->open(settings(), RunIdentity{}, error_)) << error_.c_str();
+  ASSERT_TRUE(log->newest(newest));
+  EXPECT_EQ(newest.cycle, 100);
+  EXPECT_EQ(newest.counters.flash_day, 19'442);
+  EXPECT_EQ(newest.counters.flash_writes_today, 100);
+}
+
+/// The CSV is a pipe that nobody reads: the log thread stands still in write(2), as on a blocked card.
+TEST_F(Log, ADiskThatStandsStillNeverHoldsUpTheControlThread) {
+  EventLogSettings s = settings();
+  const std::string pipe_path = folder_.file("pipe");
+  s.csv = pipe_path.c_str();
+  ASSERT_EQ(mkfifo(pipe_path.c_str(), 0600), 0);
+  const int reader = open(pipe_path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
+  ASSERT_GE(reader, 0);
+  fcntl(reader, F_SETPIPE_SZ, 4'096);
+  const auto log = std::make_unique<EventLog>();
+  ASSERT_TRUE(log->open(s, RunIdentity{}, error_)) << error_.c_str();
+  constexpr int kRecords = 1'000;
+  for (int cycle = 1; cycle <= kRecords; ++cycle) log->write(record_of(cycle));
+  EXPECT_FALSE(
+      log->drain(kNanosecondsPerSecond / 100));  // it does stand still, and drain is bounded
+  char bytes[65'536];
+  for (bool drained = false; !drained; drained = log->drain(kNanosecondsPerSecond / 100)) {
+    while (read(reader, bytes, sizeof bytes) > 0) continue;
+  }
+  log->write(record_of(kRecords + 1));
+  ASSERT_TRUE(log->drain(kDrainNs));
+  const std::string status = text_of(folder_.file("status.json"));
+  EXPECT_THAT(status, HasSubstr("\"utc\": \"2023-03-27T09:22:00Z\", \"cycle\": 1001"));
+  EXPECT_THAT(status, HasSubstr("\"records_dropped\": 9"));  // 9xx: all but queue and pipe
+  EXPECT_THAT(status, HasSubstr("\"disk_failures\": 0"));
+  close(reader);
+}
+
+TEST_F(Log, AFullDiskStopsTheStart) {
+  EventLogSettings s = settings();
+  s.csv = "/dev/full";
+  const auto log = std::make_unique<EventLog>();
+  EXPECT_FALSE(log->open(s, RunIdentity{}, error_));
+  EXPECT_THAT(error_.c_str(), HasSubstr("/dev/full: cannot write the log here: No space left"));
+}
+
+TEST_F(Log, AMetricsFolderThatVanishesIsAFailureOfThatFileOnly) {
+  EventLogSettings s = settings();
+  std::filesystem::create_directory(folder_.file("metrics"));
+  s.metrics = folder_.file("metrics/bess.prom").c_str();
+  const auto log = std::make_unique<EventLog>();
+  ASSERT_TRUE(log->open(s, RunIdentity{}, error_)) << error_.c_str();
+  std::filesystem::remove_all(folder_.file("metrics"));
+  log->write(record_of(1));
+  ASSERT_TRUE(log->drain(kDrainNs));
+  const std::string status = text_of(folder_.file("status.json"));
+  EXPECT_THAT(status, HasSubstr("\"cycles\": 1"));
+  EXPECT_THAT(status, HasSubstr("\"disk_is_failing\": true"));
+}
+
+TEST_F(Log, WhatCannotBeOpenedStopsTheStartWithOneLine) {
+  EventLogSettings s = settings();
+  s.metrics = "/nonexistent/bess.prom";
+  const auto log = std::make_unique<EventLog>();
+  EXPECT_FALSE(log->open(s, RunIdentity{}, error_));
+  EXPECT_THAT(error_.c_str(), HasSubstr("/nonexistent/bess.prom: cannot write the metrics here"));
+}
+
+}  // namespace
+}  // namespace bess

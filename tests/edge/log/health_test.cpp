@@ -1,0 +1,69 @@
+// From the published status to ok, degraded or not running: a table.
+#include "edge/log/health.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace bess {
+namespace {
+
+using ::testing::HasSubstr;
+
+HealthInputs healthy() {
+  HealthInputs in;
+  in.is_running = in.is_of_this_run = true;
+  in.age_ms = 119'000;
+  in.cycles = 1;
+  in.mode = "running";
+  in.reason = "student";
+  in.battery_status = in.price_status = "ok";
+  return in;
+}
+
+TEST(Health, OkWhenNothingIsAmiss) {
+  const Health health = assess_health(healthy());
+  EXPECT_EQ(health.level, HealthLevel::kOk);
+  EXPECT_TRUE(health.reasons.empty());
+}
+
+TEST(Health, EveryTroubleHasItsReason) {
+  struct Case {
+    void (*spoil)(HealthInputs&);
+    HealthLevel level;
+    const char* reason;
+  };
+  const Case cases[] = {
+      {[](HealthInputs& in) { in.is_running = false; }, HealthLevel::kNotRunning, "no bess-edge"},
+      {[](HealthInputs& in) { in.is_of_this_run = false; }, HealthLevel::kDegraded, "no cycle has"},
+      {[](HealthInputs& in) { in.cycles = 0; }, HealthLevel::kDegraded, "no cycle has"},
+      {[](HealthInputs& in) { in.age_ms = 240'001; }, HealthLevel::kDegraded, "WARN: the last"},
+      {[](HealthInputs& in) { in.age_ms = 480'001; }, HealthLevel::kDegraded, "CRITICAL: the last"},
+      {[](HealthInputs& in) { in.mode = "safe"; }, HealthLevel::kDegraded, "mode is safe"},
+      {[](HealthInputs& in) { in.battery_status = "timeout"; }, HealthLevel::kDegraded, "timeout"},
+      {[](HealthInputs& in) { in.price_status = "no_row"; }, HealthLevel::kDegraded, "no_row"},
+      {[](HealthInputs& in) { in.unanswered_orders = 6; }, HealthLevel::kDegraded,
+       "after 6 orders"},
+      {[](HealthInputs& in) { in.disk_is_slow = true; }, HealthLevel::kDegraded, "too slow"},
+      {[](HealthInputs& in) { in.disk_is_failing = true; }, HealthLevel::kDegraded, "disk full"},
+  };
+  for (const Case& c : cases) {
+    HealthInputs in = healthy();
+    c.spoil(in);
+    const Health health = assess_health(in);
+    EXPECT_EQ(health.level, c.level) << c.reason;
+    ASSERT_EQ(health.reasons.size(), 1U) << c.reason;
+    EXPECT_THAT(health.reasons[0], HasSubstr(c.reason));
+  }
+}
+
+TEST(Health, StaleStartsBeyondTwoCadencesWhateverTheTimeScale) {
+  HealthInputs in = healthy();
+  in.cadence_ms = 133;
+  in.age_ms = 266;
+  EXPECT_EQ(assess_health(in).level, HealthLevel::kOk);
+  in.age_ms = 267;
+  EXPECT_EQ(assess_health(in).level, HealthLevel::kDegraded);
+}
+
+}  // namespace
+}  // namespace bess

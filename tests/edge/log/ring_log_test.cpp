@@ -1,0 +1,282 @@
+// The decision log on disk: nothing that was written whole is lost, nothing torn is believed, whatever
+// happens to the newest record and whenever the process dies.
+#include "edge/log/ring_log.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include "shared/crc32.h"
+#include "shared/scaled_clock.h"
+#include "tests/support/temporary_folder.h"
+
+namespace bess {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr std::int64_t kHeaderBytes = 4'096;
+
+/// Every field its own value, so that a swapped or forgotten one shows.
+CycleRecord full_record(std::int64_t cycle) {
+  CycleRecord r;
+  r.utc_s = 1'700'000'000 + 120 * cycle;
+  r.cycle = cycle;
+  r.mode = Mode::kHolding;
+  r.has_measurement = true;
+  r.measurement = {.soc_e4 = 1,
+                   .power_w = -2,
+                   .capacity_wh = 3,
+                   .charge_w_max = 4,
+                   .discharge_w_max = 5,
+                   .temperature_min_deci_c = -6,
+                   .temperature_max_deci_c = 7,
+                   .alarm = true,
+                   .off_grid = false,
+                   .dispatch_active = true,
+                   .has_order_power = true,
+                   .order_power_w = -8};
+  r.price = {.has_row = true,
+             .minute_utc_s = 9,
+             .price_centi_eur_per_mwh = -10,
+             .received_monotonic_ns = 11,
+             .fetch_us = 12,
+             .status = Status::kTlsRefused,
+             .large_step = true};
+  r.price_age_s = 13;
+  r.has_student_action = true;
+  r.student_action = Action::kCharge;
+  r.ordered_power_w = -14;
+  r.reason = Reason::kPriceQuarterHour;
+  r.battery_status = Status::kNotApplied;
+  r.written = true;
+  r.decision_us = 15;
+  r.write_us = 16;
+  r.total_us = 17;
+  r.missed_ticks = 18;
+  r.counters = {.requests = 19,
+                .failed_requests = 20,
+                .reconnects = 21,
+                .register_writes = 22,
+                .unchanged_orders = 23,
+                .flash_day = 24,
+                .flash_writes_today = 25};
+  return r;
+}
+
+RecordBytes bytes_of(const CycleRecord& record, std::uint64_t number) {
+  RecordBytes bytes;
+  encode_record(record, number, bytes);
+  return bytes;
+}
+
+std::string read_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void write_file(const std::string& path, const std::string& bytes) {
+  std::ofstream(path, std::ios::binary | std::ios::trunc) << bytes;
+}
+
+class Ring : public ::testing::Test {
+ protected:
+  void append(std::int64_t capacity, std::int64_t first_cycle, std::int64_t count) {
+    RingLog ring;
+    ASSERT_TRUE(ring.open(path_.c_str(), capacity, error_)) << error_.c_str();
+    for (std::int64_t i = 0; i < count; ++i) {
+      ASSERT_TRUE(ring.append(full_record(first_cycle + i)));
+    }
+  }
+  /// Cycles that a reader finds, in order.
+  std::vector<std::int64_t> cycles() {
+    RingLog ring;
+    std::vector<std::int64_t> found;
+    EXPECT_TRUE(ring.open_to_read(path_.c_str(), error_)) << error_.c_str();
+    CycleRecord record;
+    for (std::uint64_t n = ring.oldest_number(); n <= ring.newest_number(); ++n) {
+      if (ring.read(n, record)) found.push_back(record.cycle);
+    }
+    return found;
+  }
+
+  const TemporaryFolder folder_;
+  const std::string path_ = folder_.file("decisions.ring");
+  FileMessage error_;
+};
+
+TEST(RecordCodec, KeepsEveryField) {
+  const RecordBytes bytes = bytes_of(full_record(7), 42);
+  CycleRecord back;
+  std::uint64_t number = 0;
+  ASSERT_TRUE(decode_record(bytes, back, number));
+  EXPECT_EQ(number, 42U);
+  EXPECT_EQ(back.cycle, 7);
+  EXPECT_EQ(back.mode, Mode::kHolding);
+  EXPECT_EQ(back.measurement.order_power_w, -8);
+  EXPECT_EQ(back.price.status, Status::kTlsRefused);
+  EXPECT_EQ(back.reason, Reason::kPriceQuarterHour);
+  EXPECT_EQ(back.counters.flash_writes_today, 25);
+  EXPECT_EQ(bytes_of(back, 42), bytes);  // what was read writes the same bytes: no field is lost
+  EXPECT_NE(bytes_of(CycleRecord{}, 42), bytes);
+}
+
+TEST(RecordCodec, LayoutOnDiskIsFixed) {
+  // What an older program wrote must stay readable: these places may never change.
+  const RecordBytes bytes = bytes_of(full_record(7), 0x0102030405060708);
+  EXPECT_EQ(bytes[0], 8);
+  EXPECT_EQ(bytes[7], 1);
+  EXPECT_EQ(bytes[16], 7);     // cycle
+  EXPECT_EQ(bytes[24], 2);     // mode: holding
+  EXPECT_EQ(bytes[26], 1);     // soc_e4
+  EXPECT_EQ(bytes[30], 0xFE);  // power_w = -2
+  EXPECT_EQ(bytes[118], 19);   // counters begin
+  EXPECT_EQ(bytes[166], 25);   // flash_writes_today, the last field
+  for (std::size_t i = 170; i < kRecordBytes - 4; ++i) EXPECT_EQ(bytes[i], 0) << i;
+}
+
+TEST(RecordCodec, ZerosAndUnknownCodesAreNoRecord) {
+  CycleRecord record;
+  std::uint64_t number = 0;
+  EXPECT_FALSE(decode_record(RecordBytes{}, record, number));
+  RecordBytes bytes = bytes_of(full_record(7), 42);
+  bytes[24] = kModeCount;  // a mode of a later program, with a sound CRC
+  Crc32 crc;
+  crc.add_bytes(bytes.data(), kRecordBytes - 4);
+  for (std::size_t i = 0; i < 4; ++i) {
+    bytes[kRecordBytes - 4 + i] = static_cast<std::uint8_t>(crc.value() >> (8 * i));
+  }
+  EXPECT_FALSE(decode_record(bytes, record, number));
+}
+
+TEST_F(Ring, NewestSurvivesReopeningAndTheRingWraps) {
+  append(5, 1, 3);
+  RingLog ring;
+  CycleRecord newest;
+  ASSERT_TRUE(ring.open(path_.c_str(), 5, error_));
+  ASSERT_TRUE(ring.newest(newest));
+  EXPECT_EQ(newest.cycle, 3);
+  EXPECT_EQ(newest.counters.flash_writes_today, 25);
+  append(5, 4, 9);
+  EXPECT_EQ(cycles(), (std::vector<std::int64_t>{8, 9, 10, 11, 12}));
+  EXPECT_EQ(std::filesystem::file_size(path_), kHeaderBytes + 5 * kRecordBytes);
+}
+
+TEST_F(Ring, AnEmptyRingHasNoNewest) {
+  RingLog ring;
+  CycleRecord newest;
+  ASSERT_TRUE(ring.open(path_.c_str(), 5, error_));
+  EXPECT_FALSE(ring.newest(newest));
+  EXPECT_TRUE(cycles().empty());
+}
+
+TEST_F(Ring, EveryTornByteOfTheNewestRecordCostsThatRecordOnly) {
+  append(5, 1, 7);  // wrapped: 3 to 7, the newest in slot 2
+  const std::string whole = read_file(path_);
+  const std::size_t begin = kHeaderBytes + 2 * kRecordBytes;
+  for (std::size_t i = 0; i < kRecordBytes; ++i) {
+    std::string torn = whole;
+    torn[begin + i] = static_cast<char>(torn[begin + i] ^ 0x40);
+    write_file(path_, torn);
+    ASSERT_EQ(cycles(), (std::vector<std::int64_t>{3, 4, 5, 6})) << "byte " << i;
+    append(5, 8, 1);  // goes on in the torn slot
+    ASSERT_EQ(cycles(), (std::vector<std::int64_t>{3, 4, 5, 6, 8})) << "byte " << i;
+  }
+}
+
+/// Half of the new record, half of the old one, at every length: what a cut in the middle leaves.
+TEST_F(Ring, ARecordTornInTheMiddleIsSkipped) {
+  append(3, 1, 3);
+  const std::string before = read_file(path_);
+  append(3, 4, 1);  // number 4 overwrites number 1 in slot 1
+  const std::string after = read_file(path_);
+  const std::size_t begin = kHeaderBytes + kRecordBytes;
+  for (std::size_t length = 1; length < kRecordBytes; ++length) {
+    std::string torn = before;
+    torn.replace(begin, length, after, begin, length);
+    if (torn == before || torn == after) continue;
+    write_file(path_, torn);
+    ASSERT_EQ(cycles(), (std::vector<std::int64_t>{2, 3})) << length << " bytes written";
+  }
+}
+
+TEST_F(Ring, AFileCutAtEveryByteOfItsLastRecordStillOpens) {
+  append(3, 1, 2);  // slots 1 and 2: the newest is last in the file
+  const std::string whole = read_file(path_);
+  for (std::size_t missing = 1; missing <= kRecordBytes; ++missing) {
+    write_file(path_, whole.substr(0, whole.size() - missing));
+    ASSERT_EQ(cycles(), (std::vector<std::int64_t>{1})) << missing << " bytes missing";
+    append(3, 3, 1);
+    ASSERT_EQ(cycles(), (std::vector<std::int64_t>{1, 3})) << missing << " bytes missing";
+  }
+}
+
+TEST_F(Ring, AnotherCapacityOrABrokenHeaderSetsTheFileAsideAndTakesOver) {
+  append(5, 1, 4);
+  RingLog larger;
+  CycleRecord newest;
+  ASSERT_TRUE(larger.open(path_.c_str(), 9, error_)) << error_.c_str();
+  ASSERT_TRUE(larger.newest(newest));
+  EXPECT_EQ(newest.cycle, 4);
+  ASSERT_TRUE(larger.append(full_record(5)));
+  EXPECT_EQ(larger.newest_number(), 5U);
+  EXPECT_TRUE(std::filesystem::exists(path_ + ".old"));
+
+  std::string broken = read_file(path_);
+  broken[20] = 'x';  // capacity
+  write_file(path_, broken);
+  RingLog reader;
+  EXPECT_FALSE(reader.open_to_read(path_.c_str(), error_));
+  EXPECT_THAT(error_.c_str(), HasSubstr("is not a decision log"));
+  RingLog fresh;
+  ASSERT_TRUE(fresh.open(path_.c_str(), 9, error_)) << error_.c_str();
+  EXPECT_FALSE(fresh.newest(newest));
+}
+
+TEST_F(Ring, WhatCannotBeOpenedIsOneLine) {
+  RingLog ring;
+  EXPECT_FALSE(ring.open("/nonexistent/decisions.ring", 5, error_));
+  EXPECT_THAT(error_.c_str(), HasSubstr("/nonexistent/decisions.ring"));
+  RingLog reader;
+  EXPECT_FALSE(reader.open_to_read(folder_.file("none").c_str(), error_));
+  EXPECT_THAT(error_.c_str(), HasSubstr("No such file"));
+}
+
+/// A writer that is killed at random instants: the next one goes on without a gap or a repetition.
+TEST_F(Ring, SurvivesKillsAtRandomInstants) {
+  std::mt19937 random(20261121);
+  std::uint64_t newest_before = 0;
+  for (int round = 0; round < 30; ++round) {
+    const pid_t child = fork();
+    if (child == 0) {
+      RingLog ring;
+      FileMessage error;
+      if (!ring.open(path_.c_str(), 16, error)) _exit(1);
+      while (ring.append(full_record(static_cast<std::int64_t>(ring.newest_number()) + 1)))
+        continue;
+      _exit(2);
+    }
+    sleep_until_monotonic(clock_ns(CLOCK_MONOTONIC) + 2'000'000 + random() % 20'000'000);
+    kill(child, SIGKILL);
+    int status = 0;
+    waitpid(child, &status, 0);
+    ASSERT_TRUE(WIFSIGNALED(status)) << "round " << round;
+    if (!std::filesystem::exists(path_)) continue;  // killed before the file had its name
+    const std::vector<std::int64_t> found = cycles();
+    for (std::size_t i = 1; i < found.size(); ++i) ASSERT_EQ(found[i], found[i - 1] + 1);
+    if (found.empty()) continue;
+    ASSERT_GE(static_cast<std::uint64_t>(found.back()), newest_before);
+    newest_before = static_cast<std::uint64_t>(found.back());
+    ASSERT_GE(found.size(), std::min<std::uint64_t>(newest_before, 15));
+  }
+  EXPECT_GT(newest_before, 0U);
+}
+
+}  // namespace
+}  // namespace bess

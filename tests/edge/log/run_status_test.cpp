@@ -1,0 +1,199 @@
+// What the controller publishes: valid JSON with what `bess-edge status` reads, and a Prometheus text
+// that the rules of the exposition format and of its naming allow.
+#include "edge/log/run_status.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+
+namespace bess {
+namespace {
+
+using ::testing::HasSubstr;
+
+RunIdentity identity() {
+  RunIdentity id;
+  id.version = "1.2.3";
+  id.student_hash = 0xABCD;
+  id.student_provenance = "trained on \"prices\"\\today\n";
+  id.map = "alphaess";
+  id.variant = "block";
+  id.battery = "127.0.0.1:502 unit 85";
+  id.control = true;
+  id.pid = 4711;
+  id.start_utc_s = 1'679'788'800;
+  return id;
+}
+
+CycleRecord good_record() {
+  CycleRecord r;
+  r.utc_s = 1'679'788'920;
+  r.cycle = 1;
+  r.mode = Mode::kRunning;
+  r.has_measurement = true;
+  r.measurement.soc_e4 = 5'555;
+  r.measurement.power_w = -3'990;
+  r.price = {.has_row = true, .price_centi_eur_per_mwh = -12'345, .status = Status::kOk};
+  r.price_age_s = 60;
+  r.reason = Reason::kStudent;
+  r.battery_status = Status::kOk;
+  r.ordered_power_w = -4'000;
+  r.written = true;
+  r.decision_us = 5;
+  r.write_us = 400'000;
+  r.counters.requests = 10;
+  r.counters.failed_requests = 3;
+  return r;
+}
+
+RunTotals totals_after(std::initializer_list<CycleRecord> records) {
+  RunTotals totals;
+  for (const CycleRecord& record : records) totals.count(record);
+  return totals;
+}
+
+std::string prometheus_text(const RunTotals& totals) {
+  char storage[kMetricsBytes];
+  TextBuffer text(storage);
+  format_prometheus(identity(), totals, text);
+  EXPECT_FALSE(text.was_cut());
+  return std::string(text.view());
+}
+
+struct Family {
+  std::string type;
+  std::map<std::string, double> samples;  ///< by labels
+};
+
+/// Reads the text strictly, by the rules that promtool checks.
+std::map<std::string, Family> parse_prometheus(const std::string& text) {
+  std::map<std::string, Family> families;
+  EXPECT_TRUE(text.ends_with('\n'));
+  static const std::regex help("# HELP ([a-z_:][a-z0-9_:]*) (.+)");
+  static const std::regex type("# TYPE ([a-z_:][a-z0-9_:]*) (counter|gauge)");
+  static const std::regex sample(
+      R"(([a-z_:][a-z0-9_:]*)(\{([a-z_]+="[^"\\]*")(,[a-z_]+="[^"\\]*")*\})? (-?[0-9.e+-]+))");
+  std::string current;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    std::smatch m;
+    if (std::regex_match(line, m, help)) {
+      current = m[1];
+      EXPECT_FALSE(families.contains(current)) << "second HELP: " << line;
+      EXPECT_TRUE(line.ends_with('.')) << line;
+    } else if (std::regex_match(line, m, type)) {
+      EXPECT_EQ(m[1], current) << "TYPE follows its HELP";
+      families[current].type = m[2];
+    } else if (std::regex_match(line, m, sample)) {
+      EXPECT_EQ(m[1], current) << "samples of a family stay together";
+      EXPECT_TRUE(families[current].samples.emplace(m[2], std::stod(m[5])).second) << line;
+    } else {
+      ADD_FAILURE() << "not exposition format: " << line;
+    }
+  }
+  return families;
+}
+
+TEST(Prometheus, FollowsTheFormatAndTheNamingRules) {
+  CycleRecord guarded = good_record();
+  guarded.reason = Reason::kSocFull;
+  const auto families = parse_prometheus(prometheus_text(totals_after({good_record(), guarded})));
+  for (const auto& [name, family] : families) {
+    EXPECT_TRUE(name.starts_with("bess_")) << name;
+    EXPECT_EQ(family.type == "counter", name.ends_with("_total")) << name;
+    EXPECT_FALSE(family.samples.empty()) << name;
+  }
+  EXPECT_EQ(families.at("bess_soc_ratio").samples.at(""), 0.5555);
+  EXPECT_EQ(families.at("bess_power_watts").samples.at(""), -3'990);
+  EXPECT_EQ(families.at("bess_setpoint_watts").samples.at(""), -4'000);
+  EXPECT_EQ(families.at("bess_price_eur_per_mwh").samples.at(""), -123.45);
+  EXPECT_EQ(families.at("bess_price_age_seconds").samples.at(""), 60);
+  EXPECT_EQ(families.at("bess_modbus_requests_total").samples.at("{result=\"ok\"}"), 7);
+  EXPECT_EQ(families.at("bess_modbus_requests_total").samples.at("{result=\"failed\"}"), 3);
+  EXPECT_TRUE(families.contains("bess_register_writes_total"));
+  const auto& rules = families.at("bess_guard_interventions_total").samples;
+  EXPECT_EQ(rules.at("{rule=\"soc_full\"}"), 1);
+  EXPECT_FALSE(rules.contains("{rule=\"student\"}"));
+  EXPECT_EQ(families.at("bess_state").samples.at("{state=\"running\"}"), 1);
+  EXPECT_EQ(families.at("bess_state").samples.at("{state=\"safe\"}"), 0);
+  EXPECT_DOUBLE_EQ(families.at("bess_cycle_duration_seconds").samples.at(""), 0.400005);
+  EXPECT_EQ(families.at("bess_model_info").samples.begin()->second, 1);
+}
+
+TEST(Prometheus, WhatWasNotMeasuredIsAbsentNotZero) {
+  CycleRecord blind = good_record();
+  blind.has_measurement = false;
+  blind.price.has_row = false;
+  const auto families = parse_prometheus(prometheus_text(totals_after({blind})));
+  for (const char* name :
+       {"bess_soc_ratio", "bess_power_watts", "bess_price_eur_per_mwh", "bess_price_age_seconds"}) {
+    EXPECT_FALSE(families.contains(name)) << name;
+  }
+}
+
+TEST(RunTotals, CountFailuresAndReasons) {
+  CycleRecord bad = good_record();
+  bad.battery_status = Status::kTimeout;
+  bad.price.status = Status::kHttpError;
+  bad.reason = Reason::kLink;
+  bad.written = false;
+  const RunTotals totals = totals_after({good_record(), bad, bad});
+  EXPECT_EQ(totals.cycles, 3);
+  EXPECT_EQ(totals.written_orders, 1);
+  EXPECT_EQ(totals.battery_failures, 2);
+  EXPECT_EQ(totals.price_failures, 2);
+  EXPECT_EQ(totals.cycles_by_reason[static_cast<std::size_t>(Reason::kLink)], 2);
+  bad.mode = Mode::kStopping;  // ends the run without asking for a price
+  EXPECT_EQ(totals_after({bad}).price_failures, 0);
+}
+
+TEST(StatusJson, HoldsWhatItWasToldAndEscapesForeignText) {
+  char storage[kStatusBytes];
+  TextBuffer json(storage);
+  format_status_json(identity(), totals_after({good_record()}), 5'000'000'000, json);
+  EXPECT_FALSE(json.was_cut());
+  const std::string text(json.view());
+  EXPECT_THAT(text, HasSubstr("\"provenance\": \"trained on 'prices''today \""));
+  EXPECT_THAT(text, HasSubstr("\"written_monotonic_ms\": 5000"));
+  EXPECT_THAT(text, HasSubstr("\"soc_e4\": 5555"));
+  EXPECT_THAT(text, HasSubstr("\"pid\": 4711"));
+}
+
+/// The buffers are fixed: the longest texts and numbers must fit, or readers would get half a file.
+TEST(RunStatus, TheLargestValuesFit) {
+  RunIdentity id = identity();
+  id.student_provenance = FixedText<255>(std::string(255, 'x'));
+  id.battery = FixedText<159>(std::string(159, 'x'));
+  id.map = id.variant = FixedText<31>(std::string(31, 'x'));
+  id.pid = INT32_MIN;
+  id.cadence_ms = INT32_MIN;
+  RunTotals t;
+  t.last = good_record();
+  t.last.utc_s = t.last.price.minute_utc_s = 4'102'444'800;
+  t.last.measurement = {.soc_e4 = INT32_MIN, .power_w = INT32_MIN};
+  t.last.price.price_centi_eur_per_mwh = t.last.price.fetch_us = INT32_MIN;
+  t.last.price_age_s = t.last.ordered_power_w = t.last.decision_us = INT32_MIN;
+  t.last.write_us = t.last.total_us = t.last.missed_ticks = INT32_MIN;
+  t.last.counters = {INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT32_MIN};
+  t.last.counters.requests = 0;  // requests - failed_requests must not overflow
+  t.last.counters.failed_requests = INT64_MAX;
+  t.cycles = t.written_orders = t.battery_failures = t.price_failures = INT64_MIN;
+  t.records_dropped = t.disk_failures = INT64_MIN;
+  t.last.cycle = INT64_MIN;
+  t.cycles_by_reason.fill(INT64_MIN);
+  char status_storage[kStatusBytes];
+  TextBuffer json(status_storage);
+  format_status_json(id, t, INT64_MIN, json);
+  EXPECT_FALSE(json.was_cut());
+  char metrics_storage[kMetricsBytes];
+  TextBuffer metrics(metrics_storage);
+  format_prometheus(id, t, metrics);
+  EXPECT_FALSE(metrics.was_cut());
+}
+
+}  // namespace
+}  // namespace bess

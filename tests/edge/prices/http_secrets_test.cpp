@@ -1,0 +1,85 @@
+// Secrets of the price request: what the header file may hold, and what a log may show.
+#include "edge/prices/http_secrets.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include "tests/support/temporary_folder.h"
+
+namespace bess {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+TEST(LoggableUrl, HidesUsersAndSecretQueryValues) {
+  const struct {
+    const char* url;
+    const char* shown;
+  } table[] = {
+      {"https://a.example/records?limit=20&order_by=datetime%20desc",
+       "https://a.example/records?limit=20&order_by=datetime%20desc"},
+      {"https://user:pass@a.example:8443/x", "https://a.example:8443/x"},
+      {"https://user@a.example", "https://a.example"},
+      {"https://a.example/x?key=1&limit=2", "https://a.example/x?key=...&limit=2"},
+      {"https://a.example/x?limit=2&apikey=1", "https://a.example/x?limit=2&apikey=..."},
+      {"https://a.example/x?API_KEY=1", "https://a.example/x?API_KEY=..."},
+      {"https://a.example/x?securityToken=a-b&d=A85",
+       "https://a.example/x?securityToken=...&d=A85"},
+      {"https://a.example/x?a=1;token=2", "https://a.example/x?a=1;token=..."},
+      {"https://a.example/x?token=a=b", "https://a.example/x?token=..."},
+      {"https://a.example/u@v?q=a@b", "https://a.example/u@v?q=a@b"},
+      {"https://p@ss:w@a.example/", "https://a.example/"},
+      {"", ""},
+  };
+  for (const auto& row : table) EXPECT_EQ(loggable_url(row.url).view(), row.shown) << row.url;
+}
+
+struct HeaderFile {
+  const char* text;
+  mode_t mode;
+  const char* message;
+};
+
+TEST(HeaderFile, KeepsHeadersAndSkipsComments) {
+  const TemporaryFolder folder;
+  const std::string path = folder.write(
+      "headers", "# from the portal\n\nX-Api-Key: abc def\r\n  Authorization: Bearer x\n");
+  ASSERT_EQ(chmod(path.c_str(), 0640), 0);
+  FixedText<2047> headers;
+  std::string error;
+  ASSERT_TRUE(load_http_headers(path.c_str(), headers, error)) << error;
+  EXPECT_EQ(headers, "X-Api-Key: abc def\nAuthorization: Bearer x");
+}
+
+TEST(HeaderFile, MistakesAreOneLineWithoutTheContent) {
+  const TemporaryFolder folder;
+  const std::string long_text = "X: " + std::string(3'000, 's') + "\n";
+  const HeaderFile table[] = {
+      {"X-Api-Key: s3cret\n", 0644, "others may read this file of secrets: chmod o-rwx it"},
+      {"s3cret\n", 0600, ":1: is no header"},
+      {"A: b\n: s3cret\n", 0600, ":2: is no header"},
+      {"A b: s3cret\n", 0600, ":1: is no header"},
+      {"A: s3cret\x01\n", 0600, ":1: is no header"},
+      {long_text.c_str(), 0600, "is too long"},
+  };
+  for (const HeaderFile& row : table) {
+    const std::string path = folder.write("headers", row.text);
+    ASSERT_EQ(chmod(path.c_str(), row.mode), 0);
+    FixedText<2047> headers;
+    std::string error;
+    EXPECT_FALSE(load_http_headers(path.c_str(), headers, error));
+    EXPECT_THAT(error, HasSubstr(row.message));
+    EXPECT_THAT(error, Not(HasSubstr("s3cret")));
+    EXPECT_EQ(error.find('\n'), std::string::npos);
+  }
+  FixedText<2047> headers;
+  std::string error;
+  EXPECT_FALSE(load_http_headers(folder.file("none").c_str(), headers, error));
+  EXPECT_THAT(error, HasSubstr("cannot open the header file"));
+  EXPECT_FALSE(load_http_headers("/proc", headers, error));
+}
+
+}  // namespace
+}  // namespace bess

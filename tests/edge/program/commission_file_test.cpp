@@ -1,0 +1,79 @@
+// The stored sign check: what it is bound to, and what a newcomer reads when it does not fit.
+#include "edge/program/commission_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/temporary_folder.h"
+
+namespace bess {
+namespace {
+
+using ::testing::HasSubstr;
+
+class CommissionFile : public ::testing::Test {
+ protected:
+  CommissionFile() {
+    config_.map.name = "simulator";
+    config_.map.variant = "block";
+    config_.map_path.assign(folder_.write("map.toml", "# version 1\n"));
+    config_.state.folder.assign(folder_.file("state"));
+    EXPECT_TRUE(write_commission_file(
+        config_,
+        {.verdict = CommissionVerdict::kPassed, .ordered_power_w = 500, .measured_power_w = 493},
+        1'679'788'800, error_))
+        << error_;
+  }
+  std::string complaint() {
+    error_.clear();
+    EXPECT_FALSE(is_commissioned(config_, error_));
+    return error_;
+  }
+
+  TemporaryFolder folder_;
+  EdgeConfig config_;
+  std::string error_;
+};
+
+TEST_F(CommissionFile, FitsTheConfigurationThatItWasMadeWith) {
+  EXPECT_TRUE(is_commissioned(config_, error_)) << error_;
+}
+
+TEST_F(CommissionFile, AnotherAddressIsAnotherBattery) {
+  config_.link.host = "192.168.1.20";
+  EXPECT_THAT(complaint(), HasSubstr("commissioned.toml:5: battery is \"127.0.0.1:502 unit 1\""));
+  EXPECT_THAT(error_, HasSubstr("bess-edge commission --config FILE --yes"));
+}
+
+TEST_F(CommissionFile, AnotherVariantOrMapMustBeCheckedAgain) {
+  config_.map.variant = "five_writes";
+  EXPECT_THAT(complaint(), HasSubstr("variant"));
+  config_.map.variant = "block";
+  config_.map.name = "other";
+  EXPECT_THAT(complaint(), HasSubstr("map is \"simulator\""));
+}
+
+TEST_F(CommissionFile, AnEditedMapMustBeCheckedAgain) {
+  static_cast<void>(folder_.write("map.toml", "# version 2\n"));
+  EXPECT_THAT(complaint(), HasSubstr("map_crc32"));
+}
+
+TEST_F(CommissionFile, NoneAtAllSaysWhatToRun) {
+  config_.state.folder.assign(folder_.file("elsewhere"));
+  EXPECT_THAT(complaint(), HasSubstr("bess-edge commission --config FILE --yes"));
+}
+
+TEST_F(CommissionFile, ATornFileIsNoProof) {
+  static_cast<void>(
+      folder_.write("state/commissioned.toml", "map = \"simulator\"\nvariant = \"bl"));
+  EXPECT_THAT(complaint(), HasSubstr("commissioned.toml"));
+}
+
+TEST_F(CommissionFile, AFolderThatCannotBeWrittenIsNamed) {
+  config_.state.folder.assign("/proc/bess");
+  EXPECT_FALSE(write_commission_file(config_, {}, 0, error_));
+  EXPECT_THAT(error_, HasSubstr("/proc/bess/commissioned.toml: cannot write here"));
+}
+
+}  // namespace
+}  // namespace bess
