@@ -40,11 +40,15 @@ std::string map_with_wall_gap(const CycleSetup& setup) {
   return text.str();
 }
 
-/// One column of the log, of the cycles that wrote an order; ascending.
+/// One column of the log, ascending; of the cycles that wrote registers: an order that is in force
+/// already costs no write, and counts for nothing here.
 std::vector<double> sorted_column(const std::vector<CsvRow>& log, const std::string& name) {
   std::vector<double> values;
+  std::string writes_before = "0";
   for (const CsvRow& row : log) {
-    if (row.at("written") == "1" && row.at("mode") == "running") {
+    const bool has_written = row.at("register_writes") != writes_before;
+    writes_before = row.at("register_writes");
+    if (has_written && row.at("written") == "1" && row.at("mode") == "running") {
       values.push_back(std::stod(row.at(name)));
     }
   }
