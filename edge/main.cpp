@@ -4,6 +4,10 @@
 //                                           +-> ControlLoop -> student -> SafetyGuard -> ModbusBattery
 //   battery ------> ModbusBattery ----------+         |
 //                                                     +-> EventLog (own thread), ServiceNotify
+#include <pthread.h>
+
+#include <utility>
+
 #include "edge/log/journal.h"
 #include "edge/memory/heap_seal.h"
 #include "edge/program/command_line.h"
@@ -22,12 +26,16 @@ namespace {
 using Loop = ControlLoop<ModbusBattery, PriceFeed, EdgeClock>;
 
 ModbusBattery* battery_of_check_handler = nullptr;
+pthread_t control_thread;
 
-/// A broken promise of the program itself: 0 W and release before it ends.
+/// A broken promise of the program itself: 0 W and release before it ends. Not from another thread,
+/// which would talk into the control thread's requests: the dead-man timer ends the order then. Nor
+/// twice, should the release be what broke.
 void release_after_failed_check(const char*, const char*, int) {
-  if (battery_of_check_handler == nullptr) return;
-  static_cast<void>(battery_of_check_handler->order({.duration_s = 60}));
-  static_cast<void>(battery_of_check_handler->release());
+  ModbusBattery* const battery = std::exchange(battery_of_check_handler, nullptr);
+  if (battery == nullptr || pthread_equal(pthread_self(), control_thread) == 0) return;
+  static_cast<void>(battery->order({.duration_s = 60}));
+  static_cast<void>(battery->release());
 }
 
 int fail(const char* message) {
@@ -63,6 +71,7 @@ int run_controller(const CommandLine& command_line, const EdgeConfig& config) {
                      config.control.control ? "started: in control" : "started: read-only");
   if (config.control.control) {
     battery_of_check_handler = &battery;
+    control_thread = pthread_self();
     check_handler() = release_after_failed_check;
   }
   static Loop loop(config.control, battery, prices, clock);

@@ -83,19 +83,22 @@ class ControlLoop {
     return true;
   }
 
+  /// The last order keeps its whole step; returns early when a stop is requested.
+  void finish_step() { sleep_until_s(last_tick_utc_s_ + kSecondsPerStep); }
+
   /// Safe state: 0 W, then release. Called once on every way out; harmless when nothing was
   /// ordered.
-  Status stop(CycleRecord& record) {
+  void stop(CycleRecord& record) {
     record = final_record(Reason::kStopRequested);
-    if (!settings_.control || !has_ordered_) return Status::kOk;
+    if (!settings_.control || !has_ordered_) return;
     write_order(0, record);
     const Status zero_status = record.battery_status;
     write_release(record);
     if (record.battery_status == Status::kOk) record.battery_status = zero_status;
-    const Status status = record.battery_status;
-    if (status == Status::kOk) read_battery(record);  // the SoC that is left, for the log
+    const Status released = record.battery_status;
+    if (released == Status::kOk) read_battery(record);  // the SoC that is left, for the log
+    record.battery_status = released;
     fill_totals(record);
-    return status;
   }
 
   /// Ends without touching the battery, for the next run to take over; its dead-man timer ends the

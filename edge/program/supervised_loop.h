@@ -12,14 +12,15 @@
 
 namespace bess {
 
-inline void write_farewell(bool is_ok, bool is_handed_over) {
-  if (!is_ok) {
+inline void write_farewell(const CycleRecord& last) {
+  if (last.reason == Reason::kHandOver) {
+    write_journal_line(JournalLevel::kNotice, "stopped: handed over, the order stays in force");
+  } else if (last.battery_status != Status::kOk) {
     write_journal_line(JournalLevel::kWarning,
                        "stopped: release failed, the battery's own timer ends it");
   } else {
-    write_journal_line(JournalLevel::kNotice, is_handed_over
-                                                  ? "stopped: handed over, the order stays in force"
-                                                  : "stopped: battery released");
+    write_journal_line(JournalLevel::kNotice, last.written ? "stopped: battery released"
+                                                           : "stopped: no order was in force");
   }
 }
 
@@ -35,15 +36,14 @@ void run_supervised(Loop& loop, std::int64_t cycles, EdgeClock& clock, EventLog&
     log.write(record);
     notify.cycle_done(record);
   }
-  clock.sleep_until_utc_ns((record.utc_s + kSecondsPerStep) * kNanosecondsPerSecond);
+  loop.finish_step();
   notify.stopping();
-  const bool is_handed_over = clock.hand_over_requested() && loop.hand_over(record);
-  const Status status = is_handed_over ? Status::kOk : loop.stop(record);
+  if (!clock.hand_over_requested() || !loop.hand_over(record)) loop.stop(record);
   log.write(record);
   if (!log.drain(kDrainNsMax)) {
     report(JournalLevel::kWarning, "the disk is too slow: the last records are not logged");
   }
-  write_farewell(status == Status::kOk, is_handed_over);
+  write_farewell(record);
 }
 
 }  // namespace bess

@@ -78,7 +78,8 @@ TEST(ClosedLoop, ReadOnlyNeverWrites) {
   Plant plant(0.5, ControlSettings{});
   for (int i = 0; i < 100; ++i) EXPECT_FALSE(plant.cycle().written);
   CycleRecord record;
-  EXPECT_EQ(plant.loop.stop(record), Status::kOk);
+  plant.loop.stop(record);
+  EXPECT_EQ(record.battery_status, Status::kOk);
   EXPECT_TRUE(plant.battery.orders.empty());
   EXPECT_EQ(plant.battery.releases, 0);
 }
@@ -88,7 +89,8 @@ TEST(ClosedLoop, StopOrdersZeroAndReleases) {
   plant.prices.price = [](std::int64_t) { return -20'000; };
   plant.cycle();
   CycleRecord record;
-  EXPECT_EQ(plant.loop.stop(record), Status::kOk);
+  plant.loop.stop(record);
+  EXPECT_EQ(record.battery_status, Status::kOk);
   EXPECT_EQ(plant.battery.orders.back().power_w, 0);
   EXPECT_EQ(plant.battery.releases, 1);
   EXPECT_EQ(record.mode, Mode::kStopping);
@@ -100,7 +102,8 @@ TEST(ClosedLoop, StopWithoutLinkSaysSo) {
   plant.cycle();
   plant.battery.link = false;
   CycleRecord record;
-  EXPECT_EQ(plant.loop.stop(record), Status::kTimeout);
+  plant.loop.stop(record);
+  EXPECT_EQ(record.battery_status, Status::kTimeout);
 }
 
 TEST(ClosedLoop, NothingIsOrderedBeforeAllIsKnown) {
@@ -149,7 +152,8 @@ TEST(ClosedLoop, AStopAfterARestartReleasesTheOldOrderToo) {
   plant.battery.physics.start_dispatch(-4'000, 0.1, 3'600);
   plant.cycle();
   CycleRecord record;
-  EXPECT_EQ(plant.loop.stop(record), Status::kOk);
+  plant.loop.stop(record);
+  EXPECT_EQ(record.battery_status, Status::kOk);
   EXPECT_FALSE(plant.battery.physics.dispatch_active());
 }
 
