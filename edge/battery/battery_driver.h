@@ -48,7 +48,7 @@ class BatteryDriver {
 
   /// Brings an order into force and reads it back. Costs nothing while it is in force already.
   Status order(const PowerOrder& order) {
-    if (const Status status = prepare(); status != Status::kOk) return status;
+    if (const Status status = prepare(); status != Status::kOk) return refuse(status);
     const Command command = command_of(order.power_w);
     if (in_force_ && command == command_ && runner_.is_written(map_.sequence(command), order)) {
       if (is_due()) return feed();
@@ -56,12 +56,12 @@ class BatteryDriver {
       return Status::kOk;
     }
     if (order.power_w > map_.charge_w_max || order.power_w < -map_.discharge_w_max) {
-      return Status::kNotExpressible;
+      return refuse(Status::kNotExpressible);
     }
     // Nothing is written before it is known that all of it may be.
     Status status = runner_.check(map_.sequence(command), order);
     if (status == Status::kOk && !enabled_) status = enable(order);
-    if (status != Status::kOk) return status;
+    if (status != Status::kOk) return refuse(status);
     status = runner_.run(map_.sequence(command), order);
     if (status == Status::kOk) {
       take_into_force(command, order);
@@ -258,6 +258,15 @@ class BatteryDriver {
       if (!good) runner_.saved().known[point] = false;
     }
     return status;
+  }
+
+  /// The order before the refused one is no longer wanted either: `refresh` must not keep it in
+  /// force. Its timer ends it; where the device has none, it is taken back here.
+  Status refuse(Status reason) {
+    const bool stays = in_force_ && map_.watchdog.kind == Watchdog::Kind::kNone;
+    lose_order();
+    if (stays) static_cast<void>(runner_.run(map_.sequence(Command::kRelease), PowerOrder{}));
+    return reason;
   }
 
   /// Half of a command may have been taken: rather the battery's own mode than a mixture.
