@@ -161,9 +161,14 @@ class ControlLoop {
     const bool is_driven = has_ordered_ && order_power_w_ != 0;
     cycle_budget_.update(local_day_of(local_minute_of(record.utc_s)), record.measurement.soc_e4,
                          is_driven);
-    if (settings_.control && has_ordered_) {
-      follow_.observe(order_power_w_, record.measurement.power_w);
-    }
+    observe_answer(record.measurement);
+  }
+
+  /// Only the order that the battery really follows can be answered: one that it refused, or that
+  /// has run out, leaves it in its own mode, which goes any way.
+  void observe_answer(const BatteryMeasurement& m) {
+    if (!settings_.control || !has_ordered_ || !m.dispatch_active) return;
+    follow_.observe(m.has_order_power ? m.order_power_w : order_power_w_, m.power_w);
   }
 
   /// After a restart the battery may still follow the order of the run before: it goes on until the

@@ -275,6 +275,25 @@ TEST(ClosedLoop, TheRampBoundsTheChangeOfEveryOrder) {
 TEST(ClosedLoop, AProcessThatWasSuspendedDoesNotActOnAnOldPrice) {
   Plant plant;
   plant.prices.price = [&](std::int64_t) {
+TEST(ClosedLoop, WhatTheBatteryDoesWithoutAnOrderIsNoAnswerToOne) {
+  Plant plant;
+  plant.battery.refuses_orders = true;  // external control is switched off on the device
+  plant.battery.offset_w = -2'000;      // it feeds the house in its own mode
+  plant.prices.price = [](std::int64_t) { return -60'000; };
+  for (int i = 0; i < 8; ++i) EXPECT_EQ(plant.cycle().reason, Reason::kStudent);
+  plant.battery.refuses_orders = false;
+  plant.battery.offset_w = 0;
+  EXPECT_TRUE(plant.cycle().written);
+}
+
+TEST(ClosedLoop, ABatteryThatStillFollowsTheOrderBeforeIsNotAgainstTheNewOne) {
+  Plant plant;
+  plant.battery.physics.start_dispatch(-4'000, 0.1, 3'600);
+  plant.battery.refuses_orders = true;
+  plant.prices.price = [](std::int64_t) { return -60'000; };
+  for (int i = 0; i < 8; ++i) EXPECT_NE(plant.cycle().reason, Reason::kWrongDirection);
+}
+
     plant.clock.now_ns += 600 * kNanosecondsPerSecond;  // between the price and the decision
     return -60'000;
   };

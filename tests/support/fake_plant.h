@@ -60,6 +60,7 @@ struct FakeBattery {
     orders.push_back(o);
     if (!link) return Status::kTimeout;
     const std::int32_t limit_e4 = o.power_w < 0 ? o.soc_min_e4 : o.soc_max_e4;
+    if (refuses_orders) return Status::kNotPermitted;
     physics.start_dispatch(o.power_w, limit_e4 / 1e4, o.duration_s);
     return Status::kOk;
   }
@@ -86,6 +87,8 @@ struct FakeBattery {
   std::int32_t offset_w = 0;  ///< what its meter shows too much
   bool inverted = false;      ///< its meter shows the wrong sign
   std::int64_t read_takes_ns = 0;
+  bool refuses_orders = false;
+  int failing_releases = 0;  ///< that many of the next releases are not answered
   std::int32_t refresh_s = 0;
   std::vector<std::int64_t> refreshed_ns;
   int releases = 0;
