@@ -8,7 +8,7 @@
 //   PriceSource  void request(minute_utc_s, start_monotonic_ns, deadline_monotonic_ns);
 //                bool wait(until_monotonic_ns);  PriceReport latest()
 //   Clock        now_utc_ns(), monotonic_ns(), monotonic_ns_at(utc_ns), sleep_until_utc_ns(utc_ns),
-//                stop_requested(), is_synchronised()
+//                pause_ns(ns), stop_requested(), is_synchronised()
 //
 // Order of a cycle around its tick t (a multiple of 2 minutes UTC):
 //   t - read_lead_s  battery measurements        t  the row of minute t-1 is requested
@@ -84,19 +84,25 @@ class ControlLoop {
   }
 
   /// Safe state: 0 W, then release. Called once on every way out; harmless when nothing was
-  /// ordered.
+  /// ordered. Where no timer of the device would end the order, it is tried for longer than the
+  /// link pauses between two connects.
   Status stop(CycleRecord& record) {
     record = final_record(Reason::kStopRequested);
+    if (settings_.control && !looked_for_order_) read_battery(record);  // of the run before
     if (!settings_.control || !has_ordered_) return Status::kOk;
-    write_order(0, record);
-    const Status zero_status = record.battery_status;
-    write_release(record);
-    if (record.battery_status == Status::kOk) record.battery_status = zero_status;
-    const Status status = record.battery_status;
+    const std::int64_t last_ns = clock_.now_utc_ns() + kStopPatienceNs;
+    Status status = give_back(record);
+    while (has_ordered_ && !settings_.has_dead_man && clock_.now_utc_ns() < last_ns) {
+      clock_.pause_ns(kStopPauseNs);
+      status = give_back(record);
+    }
     if (status == Status::kOk) read_battery(record);  // the SoC that is left, for the log
     fill_totals(record);
     return status;
   }
+
+  /// False: what was ordered last stays in force until somebody ends it.
+  [[nodiscard]] bool order_ends_by_itself() const { return settings_.has_dead_man; }
 
   /// Ends without touching the battery, for the next run to take over; its dead-man timer ends the
   /// order if none comes. False when it has none, or no order is in force: then stop.
@@ -108,6 +114,17 @@ class ControlLoop {
   }
 
  private:
+  static constexpr std::int64_t kStopPatienceNs = 65 * kNanosecondsPerSecond;
+  static constexpr std::int64_t kStopPauseNs = 5 * kNanosecondsPerSecond;
+
+  Status give_back(CycleRecord& record) {
+    write_order(0, record);
+    const Status zero_status = record.battery_status;
+    write_release(record);
+    if (record.battery_status == Status::kOk) record.battery_status = zero_status;
+    return record.battery_status;
+  }
+
   CycleRecord final_record(Reason reason) {
     mode_ = Mode::kStopping;
     CycleRecord record{.utc_s = clock_.now_utc_ns() / kNanosecondsPerSecond,

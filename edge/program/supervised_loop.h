@@ -12,8 +12,12 @@
 
 namespace bess {
 
-inline void write_farewell(bool is_ok, bool is_handed_over) {
-  if (!is_ok) {
+inline void write_farewell(bool is_ok, bool is_handed_over, bool ends_by_itself) {
+  if (!is_ok && !ends_by_itself) {
+    write_journal_line(JournalLevel::kError,
+                       "stopped: release failed, and this battery has no timer: it may follow its "
+                       "last order for ever; start again, or set it back by hand");
+  } else if (!is_ok) {
     write_journal_line(JournalLevel::kWarning,
                        "stopped: release failed, the battery's own timer ends it");
   } else {
@@ -43,7 +47,7 @@ void run_supervised(Loop& loop, std::int64_t cycles, EdgeClock& clock, EventLog&
   if (!log.drain(kDrainNsMax)) {
     report(JournalLevel::kWarning, "the disk is too slow: the last records are not logged");
   }
-  write_farewell(status == Status::kOk, is_handed_over);
+  write_farewell(status == Status::kOk, is_handed_over, loop.order_ends_by_itself());
 }
 
 }  // namespace bess

@@ -153,6 +153,15 @@ TEST(ClosedLoop, AStopAfterARestartReleasesTheOldOrderToo) {
   EXPECT_FALSE(plant.battery.physics.dispatch_active());
 }
 
+TEST(ClosedLoop, AStopBeforeTheFirstCycleReleasesTheOldOrderToo) {
+  Plant plant;
+  plant.battery.physics.start_dispatch(-4'000, 0.1, 3'600);
+  CycleRecord record;
+  EXPECT_EQ(plant.loop.stop(record), Status::kOk);
+  EXPECT_EQ(plant.battery.releases, 1);
+  EXPECT_FALSE(plant.battery.physics.dispatch_active());
+}
+
 TEST(ClosedLoop, AHandOverLeavesTheOrderToTheNextRun) {
   ControlSettings settings = in_control();
   settings.has_dead_man = true;
@@ -174,6 +183,21 @@ TEST(ClosedLoop, NothingIsHandedOverToABatteryWithoutADeadMan) {
   plant.cycle();
   CycleRecord record;
   EXPECT_FALSE(plant.loop.hand_over(record));
+}
+
+TEST(ClosedLoop, AStopWithoutADeadManTriesAgainUntilTheBatteryIsReleased) {
+  Plant plant;
+  plant.cycle();
+  plant.battery.failing_releases = 3;
+  CycleRecord record;
+  EXPECT_EQ(plant.loop.stop(record), Status::kOk);
+  EXPECT_FALSE(plant.battery.physics.dispatch_active());
+  Plant unreachable;  // gives up in the end
+  unreachable.cycle();
+  unreachable.battery.link = false;
+  const std::int64_t start_ns = unreachable.clock.now_ns;
+  EXPECT_EQ(unreachable.loop.stop(record), Status::kTimeout);
+  EXPECT_LE(unreachable.clock.now_ns - start_ns, 90 * kNanosecondsPerSecond);
 }
 
 TEST(ClosedLoop, TheWatchdogIsFedAsOftenAsTheMapAsks) {
@@ -251,6 +275,25 @@ TEST(ClosedLoop, ABatteryThatGoesTheOtherWayIsLeftAlone) {
   EXPECT_EQ(plant.battery.releases, 1);
 }
 
+TEST(ClosedLoop, WhatTheBatteryDoesWithoutAnOrderIsNoAnswerToOne) {
+  Plant plant;
+  plant.battery.refuses_orders = true;  // external control is switched off on the device
+  plant.battery.offset_w = -2'000;      // it feeds the house in its own mode
+  plant.prices.price = [](std::int64_t) { return -60'000; };
+  for (int i = 0; i < 8; ++i) EXPECT_EQ(plant.cycle().reason, Reason::kStudent);
+  plant.battery.refuses_orders = false;
+  plant.battery.offset_w = 0;
+  EXPECT_TRUE(plant.cycle().written);
+}
+
+TEST(ClosedLoop, ABatteryThatStillFollowsTheOrderBeforeIsNotAgainstTheNewOne) {
+  Plant plant;
+  plant.battery.physics.start_dispatch(-4'000, 0.1, 3'600);
+  plant.battery.refuses_orders = true;
+  plant.prices.price = [](std::int64_t) { return -60'000; };
+  for (int i = 0; i < 8; ++i) EXPECT_NE(plant.cycle().reason, Reason::kWrongDirection);
+}
+
 TEST(ClosedLoop, ABatteryThatDoesNothingIsCounted) {
   Plant plant(1.0);
   plant.battery.physics =
@@ -275,25 +318,6 @@ TEST(ClosedLoop, TheRampBoundsTheChangeOfEveryOrder) {
 TEST(ClosedLoop, AProcessThatWasSuspendedDoesNotActOnAnOldPrice) {
   Plant plant;
   plant.prices.price = [&](std::int64_t) {
-TEST(ClosedLoop, WhatTheBatteryDoesWithoutAnOrderIsNoAnswerToOne) {
-  Plant plant;
-  plant.battery.refuses_orders = true;  // external control is switched off on the device
-  plant.battery.offset_w = -2'000;      // it feeds the house in its own mode
-  plant.prices.price = [](std::int64_t) { return -60'000; };
-  for (int i = 0; i < 8; ++i) EXPECT_EQ(plant.cycle().reason, Reason::kStudent);
-  plant.battery.refuses_orders = false;
-  plant.battery.offset_w = 0;
-  EXPECT_TRUE(plant.cycle().written);
-}
-
-TEST(ClosedLoop, ABatteryThatStillFollowsTheOrderBeforeIsNotAgainstTheNewOne) {
-  Plant plant;
-  plant.battery.physics.start_dispatch(-4'000, 0.1, 3'600);
-  plant.battery.refuses_orders = true;
-  plant.prices.price = [](std::int64_t) { return -60'000; };
-  for (int i = 0; i < 8; ++i) EXPECT_NE(plant.cycle().reason, Reason::kWrongDirection);
-}
-
     plant.clock.now_ns += 600 * kNanosecondsPerSecond;  // between the price and the decision
     return -60'000;
   };
