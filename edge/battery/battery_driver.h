@@ -92,6 +92,7 @@ class BatteryDriver {
     const Status status = runner_.run(map_.sequence(Command::kRelease), PowerOrder{});
     lose_order();
     if (status == Status::kOk) runner_.saved().forget();
+    was_ordered_ = was_ordered_ || status == Status::kOk;
     return status;
   }
 
@@ -167,10 +168,14 @@ class BatteryDriver {
                                    bus_.time().now_ns() - fed_ns_ <
                                        map_.dead_man_duration_s * kNanosecondsPerSecond);
     const bool visible = !map_.active.empty() && map_.watchdog.expiry_visible;
-    m.dispatch_active = visible ? live_all(map_, map_.active, bus_.live()) : fed;
+    const bool active = live_all(map_, map_.active, bus_.live());
+    // An order of a process that was killed: whether it has run out cannot be seen, but what it
+    // switched over stays until it is given back.
+    const bool left_behind = !visible && !was_ordered_ && active;
+    m.dispatch_active = visible ? active : fed || left_behind;
     std::int64_t power_w = 0;
-    m.has_order_power =
-        m.dispatch_active && live_power(map_, map_.order_power, bus_.live(), power_w);
+    m.has_order_power = m.dispatch_active && !left_behind &&
+                        live_power(map_, map_.order_power, bus_.live(), power_w);
     if (m.has_order_power) m.order_power_w = clamp_to_int32(power_w);
     if (in_force_ && (!m.dispatch_active || is_overwritten())) lose_order();
     std::int64_t left_s = 0;
@@ -281,7 +286,7 @@ class BatteryDriver {
   }
 
   void take_into_force(Command command, const PowerOrder& order) {
-    in_force_ = true;
+    in_force_ = was_ordered_ = true;
     command_ = command;
     order_ = order;
     fed_ns_ = bus_.time().now_ns();
@@ -300,6 +305,7 @@ class BatteryDriver {
   MeasurementReader reader_;
   bool scales_elsewhere_;  ///< what is written depends on what is read
   bool identified_ = false;
+  bool was_ordered_ = false;  ///< what the device holds is ours, or was given back by us
   bool enabled_ = false;
   bool in_force_ = false;  ///< the order below was read back and nothing has ended it since
   bool runs_out_ = false;  ///< the device's timer shows less than one refresh interval
