@@ -84,8 +84,8 @@ class BatteryDriver {
     return often ? map_.watchdog.refresh_s : 0;
   }
 
-  /// Gives the battery back to its own mode and reads that back. Never refused for the budget, nor
-  /// because measurements fail: scale factors that were read once will do.
+  /// Gives the battery back to its own mode and reads that back. Has a reserve of the budget to
+  /// itself, and is not refused because measurements fail: scale factors that were read once will do.
   Status release() {
     if (const Status status = identify(); status != Status::kOk) return status;
     static_cast<void>(prepare());

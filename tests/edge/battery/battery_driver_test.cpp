@@ -302,6 +302,25 @@ TEST_F(DriverTest, WithoutAWatchdogARefusedOrderTakesBackTheOneBefore) {
   EXPECT_EQ(t.device.holding[10], 0);
 }
 
+/// A register that cannot be set back is tried every cycle of the safe state, for months.
+TEST_F(DriverTest, ReleasesThatFailDoNotWearTheFlashBeyondItsDay) {
+  MapUnderTest& t = with({{"release = [", "release = [\"mode = 0\", \"enable = 0\"] #"}});
+  t.device.set(20, {1});
+  ASSERT_EQ(t.order(1'000), Status::kOk);
+  t.device.after_write = [&](int address, int) {
+    if (address == 20) t.device.set(20, {1});
+  };
+  for (int cycle = 0; cycle < 20; ++cycle) {
+    t.device.set(10, {1});
+    EXPECT_NE(t.driver->release(), Status::kOk);
+    EXPECT_EQ(t.device.holding[10], 0);  // what costs nothing is done all the same
+  }
+  EXPECT_EQ(t.driver->counters().flash_writes_today, 5);
+  ++t.device.day;
+  t.device.after_write = [](int, int) {};
+  EXPECT_EQ(t.driver->release(), Status::kOk);
+}
+
 TEST_F(DriverTest, AWriteIntervalIsKept) {
   MapUnderTest& t = with({{"storage = \"eeprom\"", "storage = \"eeprom\"\nwrite_interval_s = 600"},
                           {"order = [[",
