@@ -43,6 +43,12 @@ int fail(const char* message) {
   return 1;
 }
 
+void release_if_a_check_fails(ModbusBattery& battery) {
+  battery_of_check_handler = &battery;
+  control_thread = pthread_self();
+  check_handler() = release_after_failed_check;
+}
+
 int run_controller(const CommandLine& command_line, const EdgeConfig& config) {
   if (!check_student() || !prepare_memory()) return 1;
   FileMessage error;
@@ -52,6 +58,7 @@ int run_controller(const CommandLine& command_line, const EdgeConfig& config) {
   static EdgeClock clock(config.clock, config.require_synchronised_clock);
   static ModbusBattery battery(config.link, config.map, config.clock);
   if (command_line.command == SubCommand::kCommission) {
+    if (command_line.yes) release_if_a_check_fails(battery);
     return run_commission_command(command_line, config, battery, clock);
   }
   static PriceFeed prices(config.price, config.clock);
@@ -69,11 +76,7 @@ int run_controller(const CommandLine& command_line, const EdgeConfig& config) {
   greet_price_server(config, prices);
   write_journal_line(JournalLevel::kNotice,
                      config.control.control ? "started: in control" : "started: read-only");
-  if (config.control.control) {
-    battery_of_check_handler = &battery;
-    control_thread = pthread_self();
-    check_handler() = release_after_failed_check;
-  }
+  if (config.control.control) release_if_a_check_fails(battery);
   static Loop loop(config.control, battery, prices, clock);
   CycleRecord before;
   if (log.newest(before)) {

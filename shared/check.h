@@ -7,6 +7,7 @@
 
 #include <cstdlib>
 #include <cstring>
+#include <utility>
 
 namespace bess {
 
@@ -29,7 +30,9 @@ inline CheckHandler& check_handler() {
   put(" in ");
   put(file);
   put("\n");
-  if (check_handler() != nullptr) check_handler()(expression, file, line);
+  // Once: the handler drives the code that has just failed, and may fail again.
+  const CheckHandler handler = std::exchange(check_handler(), nullptr);
+  if (handler != nullptr) handler(expression, file, line);
   std::_Exit(70);
 }
 

@@ -48,7 +48,7 @@ class BatteryDriver {
 
   /// Brings an order into force and reads it back. Costs nothing while it is in force already.
   Status order(const PowerOrder& order) {
-    if (const Status status = prepare(); status != Status::kOk) return status;
+    if (const Status status = prepare(); status != Status::kOk) return refuse(status);
     const Command command = command_of(order.power_w);
     if (in_force_ && command == command_ && runner_.is_written(map_.sequence(command), order)) {
       if (is_due()) return feed();
@@ -56,12 +56,12 @@ class BatteryDriver {
       return Status::kOk;
     }
     if (order.power_w > map_.charge_w_max || order.power_w < -map_.discharge_w_max) {
-      return Status::kNotExpressible;
+      return refuse(Status::kNotExpressible);
     }
     // Nothing is written before it is known that all of it may be.
     Status status = runner_.check(map_.sequence(command), order);
     if (status == Status::kOk && !enabled_) status = enable(order);
-    if (status != Status::kOk) return status;
+    if (status != Status::kOk) return refuse(status);
     status = runner_.run(map_.sequence(command), order);
     if (status == Status::kOk) {
       take_into_force(command, order);
@@ -84,14 +84,15 @@ class BatteryDriver {
     return often ? map_.watchdog.refresh_s : 0;
   }
 
-  /// Gives the battery back to its own mode and reads that back. Never refused for the budget, nor
-  /// because measurements fail: scale factors that were read once will do.
+  /// Gives the battery back to its own mode and reads that back. Has a reserve of the budget to
+  /// itself, and is not refused because measurements fail: scale factors that were read once will do.
   Status release() {
     if (const Status status = identify(); status != Status::kOk) return status;
     static_cast<void>(prepare());
     const Status status = runner_.run(map_.sequence(Command::kRelease), PowerOrder{});
     lose_order();
     if (status == Status::kOk) runner_.saved().forget();
+    was_ordered_ = was_ordered_ || status == Status::kOk;
     return status;
   }
 
@@ -167,10 +168,14 @@ class BatteryDriver {
                                    bus_.time().now_ns() - fed_ns_ <
                                        map_.dead_man_duration_s * kNanosecondsPerSecond);
     const bool visible = !map_.active.empty() && map_.watchdog.expiry_visible;
-    m.dispatch_active = visible ? live_all(map_, map_.active, bus_.live()) : fed;
+    const bool active = live_all(map_, map_.active, bus_.live());
+    // An order of a process that was killed: whether it has run out cannot be seen, but what it
+    // switched over stays until it is given back.
+    const bool left_behind = !visible && !was_ordered_ && active;
+    m.dispatch_active = visible ? active : fed || left_behind;
     std::int64_t power_w = 0;
-    m.has_order_power =
-        m.dispatch_active && live_power(map_, map_.order_power, bus_.live(), power_w);
+    m.has_order_power = m.dispatch_active && !left_behind &&
+                        live_power(map_, map_.order_power, bus_.live(), power_w);
     if (m.has_order_power) m.order_power_w = clamp_to_int32(power_w);
     if (in_force_ && (!m.dispatch_active || is_overwritten())) lose_order();
     std::int64_t left_s = 0;
@@ -260,6 +265,15 @@ class BatteryDriver {
     return status;
   }
 
+  /// The order before the refused one is no longer wanted either: `refresh` must not keep it in
+  /// force. Its timer ends it; where the device has none, it is taken back here.
+  Status refuse(Status reason) {
+    const bool stays = in_force_ && map_.watchdog.kind == Watchdog::Kind::kNone;
+    lose_order();
+    if (stays) static_cast<void>(runner_.run(map_.sequence(Command::kRelease), PowerOrder{}));
+    return reason;
+  }
+
   /// Half of a command may have been taken: rather the battery's own mode than a mixture.
   void roll_back(Status reason, Command command, const PowerOrder& order) {
     const bool sent = reason != Status::kNotExpressible && reason != Status::kImplausible;
@@ -272,7 +286,7 @@ class BatteryDriver {
   }
 
   void take_into_force(Command command, const PowerOrder& order) {
-    in_force_ = true;
+    in_force_ = was_ordered_ = true;
     command_ = command;
     order_ = order;
     fed_ns_ = bus_.time().now_ns();
@@ -291,6 +305,7 @@ class BatteryDriver {
   MeasurementReader reader_;
   bool scales_elsewhere_;  ///< what is written depends on what is read
   bool identified_ = false;
+  bool was_ordered_ = false;  ///< what the device holds is ours, or was given back by us
   bool enabled_ = false;
   bool in_force_ = false;  ///< the order below was read back and nothing has ended it since
   bool runs_out_ = false;  ///< the device's timer shows less than one refresh interval

@@ -70,16 +70,22 @@ class CommandRunner {
 
   Status run_once(const CommandSequence& sequence, const PowerOrder& order) {
     ++heartbeat_;
+    Status withheld = Status::kOk;  // flash that may not be written does not keep from the rest
     for (const BlockWrite& write : sequence.writes) {
       RegisterBlock block;
       Status status = encode(write, order, block);
       bool same = false;
       if (status == Status::kOk && write.eeprom) status = is_in_device(write, block, same);
-      if (status == Status::kOk && !same) status = send(write, block);
+      if (status != Status::kOk) return status;
+      if (!same && write.eeprom && budget_.is_spent(bus_.time().utc_day())) {
+        withheld = Status::kWriteBudget;
+        continue;
+      }
+      if (!same) status = send(write, block);
       if (status == Status::kOk) status = pause_after(write);
       if (status != Status::kOk) return status;
     }
-    return read_back(sequence, order);
+    return withheld == Status::kOk ? read_back(sequence, order) : withheld;
   }
 
   Status send(const BlockWrite& write, const RegisterBlock& block) {

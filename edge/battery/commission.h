@@ -57,6 +57,7 @@ constexpr std::string_view commission_text(CommissionVerdict verdict) {
 struct CommissionResult {
   CommissionVerdict verdict = CommissionVerdict::kNoLink;
   Status status = Status::kOk;
+  Status release_status = Status::kOk;  ///< else the battery may still follow the order
   std::int32_t ordered_power_w = 0;
   std::int32_t measured_power_w = 0;  ///< with that order in force
 };
@@ -140,12 +141,20 @@ class SignCheck {
     }
   }
 
-  /// On every way out; a verdict that failed earlier says more than the release's.
+  /// On every way out, and tried until the link has had its chance to come back; a verdict that failed earlier says more than the release's.
   void release(CommissionResult& result) {
-    const Status status = battery_.release();
-    if (status == Status::kOk || result.verdict != CommissionVerdict::kPassed) return;
-    static_cast<void>(succeeded(status, result));
+    const std::int64_t last_ns = clock_.now_utc_ns() + kReleasePatienceNs;
+    result.release_status = battery_.release();
+    while (result.release_status != Status::kOk && clock_.now_utc_ns() < last_ns) {
+      clock_.pause_ns(5 * kNanosecondsPerSecond);
+      result.release_status = battery_.release();
+    }
+    if (result.verdict != CommissionVerdict::kPassed) return;
+    static_cast<void>(succeeded(result.release_status, result));
   }
+
+  /// Longer than the link pauses between two connects.
+  static constexpr std::int64_t kReleasePatienceNs = 65 * kNanosecondsPerSecond;
 
   CommissionSettings settings_;
   Battery& battery_;

@@ -17,11 +17,15 @@ class FlashBudget {
     day_ = day;
     writes_ = writes;
   }
-  /// Orders leave the reserve untouched: a release is always possible.
+  /// Orders leave the reserve untouched: one release is always possible.
   [[nodiscard]] bool allows(std::int64_t day, std::int32_t writes) const {
     if (policy_.eeprom_writes_per_day == 0 || writes == 0) return true;
     const std::int32_t used = day == day_ ? writes_ : 0;
     return used + writes <= policy_.eeprom_writes_per_day - policy_.reserve;
+  }
+  /// Even the reserve is used up: by releases that a device does not take, tried every cycle.
+  [[nodiscard]] bool is_spent(std::int64_t day) const {
+    return policy_.eeprom_writes_per_day > 0 && writes_on(day) >= policy_.eeprom_writes_per_day;
   }
   void count(std::int64_t day) {
     if (day != day_) writes_ = 0;

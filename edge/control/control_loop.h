@@ -8,7 +8,7 @@
 //   PriceSource  void request(minute_utc_s, start_monotonic_ns, deadline_monotonic_ns);
 //                bool wait(until_monotonic_ns);  PriceReport latest()
 //   Clock        now_utc_ns(), monotonic_ns(), monotonic_ns_at(utc_ns), sleep_until_utc_ns(utc_ns),
-//                stop_requested(), is_synchronised()
+//                pause_ns(ns), stop_requested(), is_synchronised()
 //
 // Order of a cycle around its tick t (a multiple of 2 minutes UTC):
 //   t - read_lead_s  battery measurements        t  the row of minute t-1 is requested
@@ -87,19 +87,28 @@ class ControlLoop {
   void finish_step() { sleep_until_s(last_tick_utc_s_ + kSecondsPerStep); }
 
   /// Safe state: 0 W, then release. Called once on every way out; harmless when nothing was
-  /// ordered.
+  /// ordered. Where no timer of the device would end the order, it is tried for longer than the
+  /// link pauses between two connects.
   void stop(CycleRecord& record) {
     record = final_record(Reason::kStopRequested);
+    if (settings_.control && !looked_for_order_) {
+      read_battery(record);  // of the run before
+      record.battery_status = Status::kOk;
+    }
     if (!settings_.control || !has_ordered_) return;
-    write_order(0, record);
-    const Status zero_status = record.battery_status;
-    write_release(record);
-    if (record.battery_status == Status::kOk) record.battery_status = zero_status;
-    const Status released = record.battery_status;
+    const std::int64_t last_ns = clock_.now_utc_ns() + kStopPatienceNs;
+    Status released = give_back(record);
+    while (has_ordered_ && !settings_.has_dead_man && clock_.now_utc_ns() < last_ns) {
+      clock_.pause_ns(kStopPauseNs);
+      released = give_back(record);
+    }
     if (released == Status::kOk) read_battery(record);  // the SoC that is left, for the log
     record.battery_status = released;
     fill_totals(record);
   }
+
+  /// False: what was ordered last stays in force until somebody ends it.
+  [[nodiscard]] bool order_ends_by_itself() const { return settings_.has_dead_man; }
 
   /// Ends without touching the battery, for the next run to take over; its dead-man timer ends the
   /// order if none comes. False when it has none, or no order is in force: then stop.
@@ -111,6 +120,17 @@ class ControlLoop {
   }
 
  private:
+  static constexpr std::int64_t kStopPatienceNs = 65 * kNanosecondsPerSecond;
+  static constexpr std::int64_t kStopPauseNs = 5 * kNanosecondsPerSecond;
+
+  Status give_back(CycleRecord& record) {
+    write_order(0, record);
+    const Status zero_status = record.battery_status;
+    write_release(record);
+    if (record.battery_status == Status::kOk) record.battery_status = zero_status;
+    return record.battery_status;
+  }
+
   CycleRecord final_record(Reason reason) {
     mode_ = Mode::kStopping;
     CycleRecord record{.utc_s = clock_.now_utc_ns() / kNanosecondsPerSecond,
@@ -164,9 +184,14 @@ class ControlLoop {
     const bool is_driven = has_ordered_ && order_power_w_ != 0;
     cycle_budget_.update(local_day_of(local_minute_of(record.utc_s)), record.measurement.soc_e4,
                          is_driven);
-    if (settings_.control && has_ordered_) {
-      follow_.observe(order_power_w_, record.measurement.power_w);
-    }
+    observe_answer(record.measurement);
+  }
+
+  /// Only the order that the battery really follows can be answered: one that it refused, or that
+  /// has run out, leaves it in its own mode, which goes any way.
+  void observe_answer(const BatteryMeasurement& m) {
+    if (!settings_.control || !has_ordered_ || !m.dispatch_active) return;
+    follow_.observe(m.has_order_power ? m.order_power_w : order_power_w_, m.power_w);
   }
 
   /// After a restart the battery may still follow the order of the run before: it goes on until the

@@ -43,6 +43,12 @@ class EdgeClock {
     return false;
   }
 
+  /// Waits although a stop was requested: between attempts to give the battery back.
+  void pause_ns(std::int64_t ns) const {
+    const std::int64_t end_ns = monotonic_ns() + clock_.wall_ns(ns);
+    while (monotonic_ns() < end_ns) sleep_until_monotonic(end_ns);
+  }
+
   /// Simulated time begins at its anchor: the first tick is then the same in every run.
   bool wait_for_simulated_start() {
     if (clock_.is_real_time()) return true;

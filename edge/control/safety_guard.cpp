@@ -88,9 +88,11 @@ void SafetyGuard::update_soc_latches(std::int32_t soc_e4) {
 
 void SafetyGuard::apply_ramp(std::int32_t previous_power_w, GuardDecision& decision) const {
   if (settings_.ramp_w_max == 0) return;
-  const std::int32_t ramped =
-      clamp_to<std::int32_t>(decision.power_w, previous_power_w - settings_.ramp_w_max,
-                             previous_power_w + settings_.ramp_w_max);
+  // An order that was found in force may be another controller's, of a larger power than ours.
+  const std::int32_t from_w =
+      clamp_to<std::int32_t>(previous_power_w, -settings_.power_w, settings_.power_w);
+  const std::int32_t ramped = clamp_to<std::int32_t>(
+      decision.power_w, from_w - settings_.ramp_w_max, from_w + settings_.ramp_w_max);
   if (ramped != decision.power_w) decision = {.power_w = ramped, .reason = Reason::kRamp};
 }
 

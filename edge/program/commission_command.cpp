@@ -33,6 +33,19 @@ int ask_for_yes(const EdgeConfig& config, const CommissionSettings& settings) {
   return 2;
 }
 
+void complain_about_release(const EdgeConfig& config, const CommissionResult& result) {
+  char timer[64] = "; it has no timer of its own: set it back by hand";
+  if (config.control.has_dead_man) {
+    std::snprintf(timer, sizeof timer, "; its own timer ends that after %d s",
+                  config.control.order_duration_s);
+  }
+  report(JournalLevel::kError,
+         "commission %s: the battery could not be released (%s) and may still follow an order of "
+         "%d W%s",
+         battery_place(config).c_str(), status_text(result.release_status).data(),
+         result.ordered_power_w, timer);
+}
+
 }  // namespace
 
 int run_commission_command(const CommandLine& command_line, const EdgeConfig& config,
@@ -45,6 +58,7 @@ int run_commission_command(const CommandLine& command_line, const EdgeConfig& co
   std::fflush(stdout);
   const CommissionResult result =
       SignCheck<ModbusBattery, EdgeClock>(settings, battery, clock).run();
+  if (result.release_status != Status::kOk) complain_about_release(config, result);
   if (result.verdict != CommissionVerdict::kPassed) {
     const bool is_link = result.verdict == CommissionVerdict::kNoLink;
     report(JournalLevel::kError, "commission %s: ordered %d W, measured %d W: %s%s%s",

@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -21,17 +22,38 @@ std::string path_of(const EdgeConfig& config) {
   return std::string(config.state.folder.view()) + "/commissioned.toml";
 }
 
-/// Of the map file's bytes: an edited map is another map.
-std::string map_checksum(const EdgeConfig& config) {
-  std::ifstream file(config.map_path.c_str(), std::ios::binary);
+void add_file(const std::string& path, Crc32& crc) {
+  std::ifstream file(path, std::ios::binary);
   std::ostringstream bytes;
   bytes << file.rdbuf();
   const std::string text = bytes.str();
-  Crc32 crc;
   crc.add_bytes(text.data(), text.size());
+}
+
+/// Of the bytes of the map file and of the one that it includes: an edited map is another map.
+std::string map_checksum(const EdgeConfig& config) {
+  const std::string path(config.map_path.view());
+  Crc32 crc;
+  add_file(path, crc);
+  toml::table document;
+  std::string error;
+  const toml::value<std::string>* included = nullptr;
+  if (parse_toml_file(path, document, error)) included = document.get_as<std::string>("include");
+  if (included != nullptr) {
+    add_file((std::filesystem::path(path).parent_path() / included->get()).string(), crc);
+  }
   char hex[16];
   std::snprintf(hex, sizeof hex, "%08x", crc.value());
   return hex;
+}
+
+/// Where it is, with the unit ids of the map's groups: another id is another inverter.
+std::string battery_text(const EdgeConfig& config) {
+  std::string text(battery_place(config).view());
+  for (const UnitGroup& group : config.map.unit_groups) {
+    text.append(", ").append(group.name.view()).append(" ").append(std::to_string(group.unit));
+  }
+  return text;
 }
 
 std::string file_text(const EdgeConfig& config, const CommissionResult& result,
@@ -41,7 +63,7 @@ std::string file_text(const EdgeConfig& config, const CommissionResult& result,
        << "map = \"" << config.map.name.view() << "\"\n"
        << "variant = \"" << config.map.variant.view() << "\"\n"
        << "map_crc32 = \"" << map_checksum(config) << "\"\n"
-       << "battery = \"" << battery_place(config).view() << "\"\n"
+       << "battery = \"" << battery_text(config) << "\"\n"
        << "ordered_power_w = " << result.ordered_power_w << "\n"
        << "measured_power_w = " << result.measured_power_w << "\n"
        << "utc = \"" << utc_text(utc_s).view() << "\"\n";
@@ -99,7 +121,7 @@ bool is_commissioned(const EdgeConfig& config, std::string& error) {
   const bool same = expect_same(table, "map", std::string(config.map.name.view())) &&
                     expect_same(table, "variant", std::string(config.map.variant.view())) &&
                     expect_same(table, "map_crc32", map_checksum(config)) &&
-                    expect_same(table, "battery", battery_place(config).c_str());
+                    expect_same(table, "battery", battery_text(config));
   if (!same) error += "; check the sign again: bess-edge commission --config FILE --yes";
   return same;
 }

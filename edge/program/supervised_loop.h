@@ -12,9 +12,13 @@
 
 namespace bess {
 
-inline void write_farewell(const CycleRecord& last) {
+inline void write_farewell(const CycleRecord& last, bool ends_by_itself) {
   if (last.reason == Reason::kHandOver) {
     write_journal_line(JournalLevel::kNotice, "stopped: handed over, the order stays in force");
+  } else if (last.battery_status != Status::kOk && !ends_by_itself) {
+    write_journal_line(JournalLevel::kError,
+                       "stopped: release failed, and this battery has no timer: it may follow its "
+                       "last order for ever; start again, or set it back by hand");
   } else if (last.battery_status != Status::kOk) {
     write_journal_line(JournalLevel::kWarning,
                        "stopped: release failed, the battery's own timer ends it");
@@ -43,7 +47,7 @@ void run_supervised(Loop& loop, std::int64_t cycles, EdgeClock& clock, EventLog&
   if (!log.drain(kDrainNsMax)) {
     report(JournalLevel::kWarning, "the disk is too slow: the last records are not logged");
   }
-  write_farewell(record);
+  write_farewell(record, loop.order_ends_by_itself());
 }
 
 }  // namespace bess

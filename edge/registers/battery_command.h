@@ -88,7 +88,7 @@ struct Watchdog {
 
 struct WritePolicy {
   std::int32_t eeprom_writes_per_day = 0;  ///< orders stop at this less the reserve; 0 = no limit
-  std::int32_t reserve = 0;                ///< kept for releases, which are never refused
+  std::int32_t reserve = 0;                ///< kept for releases; then no flash is written that day
   std::int32_t read_back_delay_ms = 0;     ///< a device that shows what it was told only later
 };
 

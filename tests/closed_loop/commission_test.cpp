@@ -91,6 +91,19 @@ TEST(Commission, AnInterruptReleases) {
   site.expect_refused(CommissionVerdict::kInterrupted);
 }
 
+TEST(Commission, TriesAgainToReleaseAndSaysWhenItCannot) {
+  Site site;
+  site.battery.failing_releases = 3;
+  CommissionResult result = site.commission();
+  EXPECT_EQ(result.verdict, CommissionVerdict::kPassed);
+  EXPECT_FALSE(site.battery.physics.dispatch_active());
+  site.battery.inverted = true;
+  site.battery.failing_releases = 1'000;
+  result = site.commission();
+  EXPECT_EQ(result.verdict, CommissionVerdict::kWrongSign);
+  EXPECT_EQ(result.release_status, Status::kTimeout);
+}
+
 TEST(Commission, FeedsTheWatchdogMeanwhile) {
   Site site;
   site.battery.refresh_s = 9;

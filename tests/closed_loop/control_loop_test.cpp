@@ -157,6 +157,16 @@ TEST(ClosedLoop, AStopAfterARestartReleasesTheOldOrderToo) {
   EXPECT_FALSE(plant.battery.physics.dispatch_active());
 }
 
+TEST(ClosedLoop, AStopBeforeTheFirstCycleReleasesTheOldOrderToo) {
+  Plant plant;
+  plant.battery.physics.start_dispatch(-4'000, 0.1, 3'600);
+  CycleRecord record;
+  plant.loop.stop(record);
+  EXPECT_EQ(record.battery_status, Status::kOk);
+  EXPECT_EQ(plant.battery.releases, 1);
+  EXPECT_FALSE(plant.battery.physics.dispatch_active());
+}
+
 TEST(ClosedLoop, AHandOverLeavesTheOrderToTheNextRun) {
   ControlSettings settings = in_control();
   settings.has_dead_man = true;
@@ -178,6 +188,23 @@ TEST(ClosedLoop, NothingIsHandedOverToABatteryWithoutADeadMan) {
   plant.cycle();
   CycleRecord record;
   EXPECT_FALSE(plant.loop.hand_over(record));
+}
+
+TEST(ClosedLoop, AStopWithoutADeadManTriesAgainUntilTheBatteryIsReleased) {
+  Plant plant;
+  plant.cycle();
+  plant.battery.failing_releases = 3;
+  CycleRecord record;
+  plant.loop.stop(record);
+  EXPECT_EQ(record.battery_status, Status::kOk);
+  EXPECT_FALSE(plant.battery.physics.dispatch_active());
+  Plant unreachable;  // gives up in the end
+  unreachable.cycle();
+  unreachable.battery.link = false;
+  const std::int64_t start_ns = unreachable.clock.now_ns;
+  unreachable.loop.stop(record);
+  EXPECT_EQ(record.battery_status, Status::kTimeout);
+  EXPECT_LE(unreachable.clock.now_ns - start_ns, 90 * kNanosecondsPerSecond);
 }
 
 TEST(ClosedLoop, TheWatchdogIsFedAsOftenAsTheMapAsks) {
@@ -253,6 +280,25 @@ TEST(ClosedLoop, ABatteryThatGoesTheOtherWayIsLeftAlone) {
   EXPECT_EQ(records[3].ordered_power_w, 0);
   EXPECT_EQ(records.back().mode, Mode::kSafe);
   EXPECT_EQ(plant.battery.releases, 1);
+}
+
+TEST(ClosedLoop, WhatTheBatteryDoesWithoutAnOrderIsNoAnswerToOne) {
+  Plant plant;
+  plant.battery.refuses_orders = true;  // external control is switched off on the device
+  plant.battery.offset_w = -2'000;      // it feeds the house in its own mode
+  plant.prices.price = [](std::int64_t) { return -60'000; };
+  for (int i = 0; i < 8; ++i) EXPECT_EQ(plant.cycle().reason, Reason::kStudent);
+  plant.battery.refuses_orders = false;
+  plant.battery.offset_w = 0;
+  EXPECT_TRUE(plant.cycle().written);
+}
+
+TEST(ClosedLoop, ABatteryThatStillFollowsTheOrderBeforeIsNotAgainstTheNewOne) {
+  Plant plant;
+  plant.battery.physics.start_dispatch(-4'000, 0.1, 3'600);
+  plant.battery.refuses_orders = true;
+  plant.prices.price = [](std::int64_t) { return -60'000; };
+  for (int i = 0; i < 8; ++i) EXPECT_NE(plant.cycle().reason, Reason::kWrongDirection);
 }
 
 TEST(ClosedLoop, ABatteryThatDoesNothingIsCounted) {

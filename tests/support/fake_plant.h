@@ -31,6 +31,7 @@ struct FakeClock {
     now_ns = std::max(now_ns, utc_ns);
     return !stop;
   }
+  void pause_ns(std::int64_t ns) { now_ns += ns; }
   [[nodiscard]] bool stop_requested() const { return stop; }
   [[nodiscard]] bool is_synchronised() const { return synchronised; }
 };
@@ -59,6 +60,7 @@ struct FakeBattery {
     physics.advance(clock.now_ns);
     orders.push_back(o);
     if (!link) return Status::kTimeout;
+    if (refuses_orders) return Status::kNotPermitted;
     const std::int32_t limit_e4 = o.power_w < 0 ? o.soc_min_e4 : o.soc_max_e4;
     physics.start_dispatch(o.power_w, limit_e4 / 1e4, o.duration_s);
     return Status::kOk;
@@ -73,7 +75,7 @@ struct FakeBattery {
   }
   Status release() {
     physics.advance(clock.now_ns);
-    if (!link) return Status::kTimeout;
+    if (!link || failing_releases-- > 0) return Status::kTimeout;
     ++releases;
     physics.stop_dispatch();
     return Status::kOk;
@@ -85,6 +87,8 @@ struct FakeBattery {
   bool alarm = false;
   std::int32_t offset_w = 0;  ///< what its meter shows too much
   bool inverted = false;      ///< its meter shows the wrong sign
+  bool refuses_orders = false;
+  int failing_releases = 0;  ///< that many of the next releases are not answered
   std::int64_t read_takes_ns = 0;
   std::int32_t refresh_s = 0;
   std::vector<std::int64_t> refreshed_ns;

@@ -264,6 +264,63 @@ TEST_F(DriverTest, TheBudgetOfADaySurvivesARestart) {
   EXPECT_EQ(t.order(1'000), Status::kOk);
 }
 
+TEST_F(DriverTest, ARefusedOrderEndsTheFeedingOfTheOneBefore) {
+  MapUnderTest& t = with({{"refresh_s = 120", "refresh_s = 30"},
+                          {"order = [[",
+                           "idle = [\"enable = 1\", \"time = duration\"]\n"
+                           "discharge = [\"mode = 2\", \"power = power\", \"time = duration\", "
+                           "\"enable = 1\"]\ncharge = [\"power = power\", "
+                           "\"time = duration\", \"enable = 1\"]\n#"}});
+  t.driver->restore_flash_writes(t.device.day, 4);
+  ASSERT_EQ(t.order(1'000), Status::kOk);
+  t.device.take_writes();
+  ASSERT_EQ(t.order(-1'000), Status::kWriteBudget);
+  t.device.pass_s(30);
+  EXPECT_EQ(t.driver->refresh(), Status::kOk);
+  EXPECT_THAT(t.device.writes, IsEmpty());  // charging goes on no longer than its timer
+}
+
+TEST_F(DriverTest, AnOrderThatCannotBeSentEndsTheFeedingOfTheOneBefore) {
+  MapUnderTest& t = with({{"refresh_s = 120", "refresh_s = 30"},
+                          {"name = \"power\"", "name = \"power\"\nclamp_to = \"battery_power\""}});
+  t.device.set(1, {1'000});
+  ASSERT_EQ(t.order(1'000), Status::kOk);
+  t.device.pass_s(181);  // the limits are too old, and the link is down
+  t.device.exception = -1;
+  ASSERT_EQ(t.order(0), Status::kTimeout);
+  t.device.exception = 0;  // it is back before the next cycle
+  t.device.take_writes();
+  EXPECT_EQ(t.driver->refresh(), Status::kOk);
+  EXPECT_THAT(t.device.writes, IsEmpty());
+}
+
+TEST_F(DriverTest, WithoutAWatchdogARefusedOrderTakesBackTheOneBefore) {
+  MapUnderTest& t =
+      with({{"kind = \"duration\"\nduration_s = 300\nrefresh_s = 120", "kind = \"none\""}});
+  ASSERT_EQ(t.order(1'000), Status::kOk);
+  ASSERT_EQ(t.order(10'001), Status::kNotExpressible);
+  EXPECT_EQ(t.device.holding[10], 0);
+}
+
+/// A register that cannot be set back is tried every cycle of the safe state, for months.
+TEST_F(DriverTest, ReleasesThatFailDoNotWearTheFlashBeyondItsDay) {
+  MapUnderTest& t = with({{"release = [", "release = [\"mode = 0\", \"enable = 0\"] #"}});
+  t.device.set(20, {1});
+  ASSERT_EQ(t.order(1'000), Status::kOk);
+  t.device.after_write = [&](int address, int) {
+    if (address == 20) t.device.set(20, {1});
+  };
+  for (int cycle = 0; cycle < 20; ++cycle) {
+    t.device.set(10, {1});
+    EXPECT_NE(t.driver->release(), Status::kOk);
+    EXPECT_EQ(t.device.holding[10], 0);  // what costs nothing is done all the same
+  }
+  EXPECT_EQ(t.driver->counters().flash_writes_today, 5);
+  ++t.device.day;
+  t.device.after_write = [](int, int) {};
+  EXPECT_EQ(t.driver->release(), Status::kOk);
+}
+
 TEST_F(DriverTest, AWriteIntervalIsKept) {
   MapUnderTest& t = with({{"storage = \"eeprom\"", "storage = \"eeprom\"\nwrite_interval_s = 600"},
                           {"order = [[",

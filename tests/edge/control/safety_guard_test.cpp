@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <functional>
 #include <string>
 #include <vector>
@@ -63,6 +64,17 @@ std::vector<Case> cases() {
       {"power limit", [](GuardInputs& in) { in.measurement.charge_w_max = 1'500; },
        Reason::kPowerLimit, 1'500},
   };
+}
+
+/// At a restart the order in force may be another controller's, or a register's nonsense.
+TEST(SafetyGuard, TheRampNeverAllowsMoreThanTheConfiguredPower) {
+  SafetyGuard guard({.ramp_w_max = 1'000});
+  GuardInputs in = healthy(Action::kCharge);
+  for (const std::int32_t previous_w : {10'000, INT32_MAX, INT32_MIN, -10'000}) {
+    in.previous_power_w = previous_w;
+    const GuardDecision decision = guard.decide(in);
+    EXPECT_LE(std::abs(decision.power_w), 4'000) << previous_w;
+  }
 }
 
 TEST(SafetyGuard, EachReason) {

@@ -206,6 +206,15 @@ TEST(MallocFamily, TheCheckHandlerMayStillAllocate) {
   EXPECT_DEATH(call(), "handler ran");
 }
 
+/// The handler drives the very code whose promise was broken: a second failure must end it.
+TEST(MallocFamily, AFailureInTheCheckHandlerEndsTheProcess) {
+  const auto call = [] {
+    check_handler() = [](const char*, const char*, int) { BESS_CHECK(kept == &kept); };
+    BESS_CHECK(kept == &kept);
+  };
+  EXPECT_EXIT(call(), ::testing::ExitedWithCode(70), "CHECK failed");
+}
+
 TEST(MallocFamily, StatisticsCountCallsAndBytes) {
   const ArenaStatistics before = arena_statistics();
   kept = malloc(100'000);

@@ -58,6 +58,23 @@ TEST_F(CommissionFile, AnEditedMapMustBeCheckedAgain) {
   EXPECT_THAT(complaint(), HasSubstr("map_crc32"));
 }
 
+TEST_F(CommissionFile, AnotherUnitOfAGroupMustBeCheckedAgain) {
+  config_.map.unit_groups.push_back({.name = "vebus", .unit = 228});
+  ASSERT_TRUE(write_commission_file(config_, {}, 1'679'788'800, error_)) << error_;
+  EXPECT_TRUE(is_commissioned(config_, error_)) << error_;
+  config_.map.unit_groups[0].unit = 246;
+  EXPECT_THAT(complaint(), HasSubstr("battery is \"127.0.0.1:502 unit 1, vebus 228\""));
+}
+
+TEST_F(CommissionFile, AnEditedIncludedMapMustBeCheckedAgain) {
+  static_cast<void>(folder_.write("base.toml", "# version 1\n"));
+  static_cast<void>(folder_.write("map.toml", "include = \"base.toml\"\n"));
+  ASSERT_TRUE(write_commission_file(config_, {}, 1'679'788'800, error_)) << error_;
+  EXPECT_TRUE(is_commissioned(config_, error_)) << error_;
+  static_cast<void>(folder_.write("base.toml", "# version 2\n"));
+  EXPECT_THAT(complaint(), HasSubstr("map_crc32"));
+}
+
 TEST_F(CommissionFile, NoneAtAllSaysWhatToRun) {
   config_.state.folder.assign(folder_.file("elsewhere"));
   EXPECT_THAT(complaint(), HasSubstr("bess-edge commission --config FILE --yes"));

@@ -216,6 +216,20 @@ TEST(VictronEss3, SixtySecondsWithoutARefreshIsNoOrderAnyMore) {
   EXPECT_THAT(t.device.take_writes(), ElementsAre(fc16(37, {1'000, 0, 0}, 228)));
 }
 
+/// Its set-point has lapsed, but the mode stays: passthru for ever, unless a successor releases it.
+TEST(VictronEss3, AModeThatAKilledProcessLeftIsSeenByTheNext) {
+  MapUnderTest t(shipped_map("victron_ess3"));
+  t.device.set(843, {62});
+  t.device.set(2'902, {3});
+  ASSERT_EQ(t.read(), Status::kOk);
+  EXPECT_TRUE(t.measured.dispatch_active);
+  EXPECT_FALSE(t.measured.has_order_power);  // whether it still holds is not known
+  ASSERT_EQ(t.driver->release(), Status::kOk);
+  EXPECT_EQ(t.device.holding[2'902], 1);
+  ASSERT_EQ(t.read(), Status::kOk);
+  EXPECT_FALSE(t.measured.dispatch_active);
+}
+
 TEST(VictronEss3, ThreePhasesShareThePower) {
   MapUnderTest t(shipped_map("victron_ess3"), "three_phase");
   t.device.set(2'902, {3});
@@ -288,6 +302,7 @@ TEST(Sma, SixOrderedWrites) {
   const auto write = [](int address, int value) { return fc16(address, {0, value}, 3); };
   t.device.set(30'845, {0, 55});
   t.device.set_input(31'393, {0, 1'200, 0, 0});
+  t.device.set(40'236, {0, 2'424});
   t.device.set(40'795, {0, 4'600});
   t.device.set(40'799, {0xFFFF, 0xFFFF});  // not implemented: must not be written back
   ASSERT_EQ(t.read(), Status::kOk);
@@ -309,6 +324,25 @@ TEST(Sma, SixOrderedWrites) {
   EXPECT_THAT(t.device.take_writes(),
               ElementsAre(write(40'236, 2'424), write(40'793, 0), write(40'795, 4'600),
                           write(40'797, 0), write(40'799, 4'200), write(40'801, 0)));
+}
+
+/// What a killed process ordered must not be taken for the limits to give back.
+TEST(Sma, ARestartDoesNotSaveTheOrderOfTheRunBefore) {
+  MapUnderTest t(shipped_map("sma"));
+  t.device.set(30'845, {0, 55});
+  t.device.set(40'236, {0, 2'424});
+  t.device.set(40'795, {0, 4'600});
+  t.device.set(40'799, {0, 4'600});
+  for (const std::int32_t power_w : {4'000, -4'000}) {
+    ASSERT_EQ(t.read(), Status::kOk);
+    ASSERT_EQ(t.order(power_w), Status::kOk);
+    DeviceDriver successor(t.map, DeviceClock(t.device), -1, t.device);
+    ASSERT_EQ(successor.read(t.measured), Status::kOk);
+    ASSERT_EQ(successor.order({.power_w = 0, .duration_s = 60}), Status::kOk);
+    ASSERT_EQ(successor.release(), Status::kOk);
+    EXPECT_EQ(t.device.holding[40'796], 4'200) << power_w;
+    EXPECT_EQ(t.device.holding[40'800], 4'200) << power_w;
+  }
 }
 
 TEST(Sma, NotImplementedIsNeverUsed) {
