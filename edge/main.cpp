@@ -4,6 +4,7 @@
 //                                           +-> ControlLoop -> student -> SafetyGuard -> ModbusBattery
 //   battery ------> ModbusBattery ----------+         |
 //                                                     +-> EventLog (own thread), ServiceNotify
+#include "edge/control/control_loop.h"
 #include "edge/log/journal.h"
 #include "edge/memory/heap_seal.h"
 #include "edge/program/command_line.h"
