@@ -1,6 +1,4 @@
 // [map], [unit_groups], [sunspec] and [[point]].
-#include <algorithm>
-
 #include "edge/registers/map_reader.h"
 
 namespace bess {

@@ -2,7 +2,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
 
 #include "edge/prices/price_json.h"
 #include "shared/scaled_clock.h"
