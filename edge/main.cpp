@@ -8,6 +8,7 @@
 
 #include <utility>
 
+#include "edge/control/control_loop.h"
 #include "edge/log/journal.h"
 #include "edge/memory/heap_seal.h"
 #include "edge/program/command_line.h"
@@ -29,7 +30,7 @@ ModbusBattery* battery_of_check_handler = nullptr;
 pthread_t control_thread;
 
 /// A broken promise of the program itself: 0 W and release before it ends. Not from another thread,
-/// which would talk into the control thread's requests: the dead-man timer ends the order then. Nor
+/// which would talk into the control thread's requests: the watchdog ends the order then. Nor
 /// twice, should the release be what broke.
 void release_after_failed_check(const char*, const char*, int) {
   ModbusBattery* const battery = std::exchange(battery_of_check_handler, nullptr);

@@ -1,6 +1,6 @@
-// TOML wants ASCII outside quotes and comments. toml++ 3.3 does not check: one accented letter there
-// is undefined behaviour (is_non_ascii_horizontal_whitespace reaches an "unreachable" point). Both
-// sides look before they parse.
+// TOML wants ASCII outside quotes and comments. toml++ 3.3 does not check: one accented letter
+// there is undefined behaviour (is_non_ascii_horizontal_whitespace reaches an "unreachable" point).
+// Both sides look before they parse.
 #pragma once
 
 #include <algorithm>
@@ -11,8 +11,8 @@ namespace bess {
 inline constexpr std::string_view kBareNonAsciiMessage =
     "not valid TOML: a character other than ASCII outside quotes and comments";
 
-/// Line, counted from 1, of the first character other than ASCII outside quotes and comments; 0 when
-/// there is none.
+/// Line, counted from 1, of the first character other than ASCII outside quotes and comments; 0
+/// when there is none.
 constexpr int line_of_bare_non_ascii(std::string_view toml) {
   int line = 1;
   if (toml.starts_with("\xEF\xBB\xBF")) toml.remove_prefix(3);  // a byte order mark is allowed

@@ -1,4 +1,5 @@
-# Thread sanitizer, for what has threads: edge and simulators. Use: cmake -C toolchains/tsan.cmake -S . -B build-tsan
+# Thread sanitizer, for what has threads: edge and simulators.
+# Use: cmake -C toolchains/tsan.cmake -S . -B build-tsan
 set(CMAKE_C_COMPILER clang CACHE STRING "")
 set(CMAKE_CXX_COMPILER clang++ CACHE STRING "")
 set(CMAKE_BUILD_TYPE RelWithDebInfo CACHE STRING "")

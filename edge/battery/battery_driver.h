@@ -166,7 +166,7 @@ class BatteryDriver {
   void note_order_in_force(BatteryMeasurement& m) {
     const bool fed = in_force_ && (map_.watchdog.kind == Watchdog::Kind::kNone ||
                                    bus_.time().now_ns() - fed_ns_ <
-                                       map_.dead_man_duration_s * kNanosecondsPerSecond);
+                                       map_.watchdog.duration_s * kNanosecondsPerSecond);
     const bool visible = !map_.active.empty() && map_.watchdog.expiry_visible;
     const bool active = live_all(map_, map_.active, bus_.live());
     // An order of a process that was killed: whether it has run out cannot be seen, but what it

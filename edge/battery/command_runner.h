@@ -62,6 +62,26 @@ class CommandRunner {
     return retried([&] { return run_once(sequence, order); });
   }
 
+  /// Asks the device whether a condition holds.
+  Status test(const Condition& condition, bool& holds_now) {
+    LivePoints now = bus_.live();
+    PlacedPoints points;
+    const std::int8_t point = condition.point;
+    points.push_back(bus_.placed(point, map_.points[point].read_function));
+    const Status status = bus_.read_placed(points, now);
+    std::int64_t value = 0;
+    holds_now =
+        status == Status::kOk && live_value(map_, now, point, value) && condition.holds(value);
+    return status;
+  }
+
+  /// Reads registers by function 3, as they are written, into `out`.
+  Status read_written(const StaticVector<std::int8_t, kPointsMax>& list, LivePoints& out) {
+    PlacedPoints points;
+    for (const std::int8_t point : list) points.push_back(bus_.placed(point, 3));
+    return bus_.read_placed(points, out);
+  }
+
  private:
   Status encode(const BlockWrite& write, const PowerOrder& order, RegisterBlock& block) const {
     return encode_block(map_, write, order, block,
@@ -119,28 +139,6 @@ class CommandRunner {
     }
   }
 
- public:
-  /// Asks the device whether a condition holds.
-  Status test(const Condition& condition, bool& holds_now) {
-    LivePoints now = bus_.live();
-    PlacedPoints points;
-    const std::int8_t point = condition.point;
-    points.push_back(bus_.placed(point, map_.points[point].read_function));
-    const Status status = bus_.read_placed(points, now);
-    std::int64_t value = 0;
-    holds_now =
-        status == Status::kOk && live_value(map_, now, point, value) && condition.holds(value);
-    return status;
-  }
-
-  /// Reads registers by function 3, as they are written, into `out`.
-  Status read_written(const StaticVector<std::int8_t, kPointsMax>& list, LivePoints& out) {
-    PlacedPoints points;
-    for (const std::int8_t point : list) points.push_back(bus_.placed(point, 3));
-    return bus_.read_placed(points, out);
-  }
-
- private:
   /// Flash is compared before it is written; what is not known is read first.
   Status is_in_device(const BlockWrite& write, const RegisterBlock& block, bool& same) {
     StaticVector<std::int8_t, kPointsMax> unknown;

@@ -1,6 +1,6 @@
-// The sign check that a new battery must pass before it may be controlled: a small order, and a look
-// at which way the power goes. A map's sign is documented both ways for some devices, and registers
-// that read back as written prove nothing about it.
+// The sign check that a new battery must pass before it may be controlled: a small order, and a
+// look at which way the power goes. A map's sign is documented both ways for some devices, and
+// registers that read back as written prove nothing about it.
 //
 //   read -> rest: 0 W ordered, power must be near 0 -> drive: a small order, power must follow ->
 //   release
@@ -19,14 +19,13 @@ namespace bess {
 
 struct CommissionSettings {
   std::int32_t power_w = 500;
-  std::int32_t rest_s = 10;    ///< for the battery to come to 0 W
-  std::int32_t drive_s = 30;   ///< for the battery to follow
-  std::int32_t noise_w = 150;  ///< a resting battery and its meter may show this much
-  std::int32_t tolerance_percent =
-      50;  ///< of the order, by which the power that flows may fall short
+  std::int32_t rest_s = 10;             ///< for the battery to come to 0 W
+  std::int32_t drive_s = 30;            ///< for the battery to follow
+  std::int32_t noise_w = 150;           ///< a resting battery and its meter may show this much
+  std::int32_t tolerance_percent = 50;  ///< by which the power that flows may miss the order
   std::int32_t soc_min_e4 = 1'000;
   std::int32_t soc_max_e4 = 10'000;
-  std::int32_t order_duration_s = 300;  ///< of the device's dead-man timer
+  std::int32_t order_duration_s = 300;  ///< until the device's watchdog ends it
 };
 
 enum class CommissionVerdict : std::uint8_t {
@@ -105,7 +104,10 @@ class SignCheck {
                            .soc_max_e4 = settings_.soc_max_e4,
                            .duration_s = settings_.order_duration_s};
     if (!succeeded(battery_.order(order), result)) return false;
-    if (!wait(seconds)) return fail(result, CommissionVerdict::kInterrupted), false;
+    if (!wait(seconds)) {
+      result.verdict = CommissionVerdict::kInterrupted;
+      return false;
+    }
     BatteryMeasurement measurement;
     if (!succeeded(battery_.read(measurement), result)) return false;
     result.measured_power_w = measurement.power_w;

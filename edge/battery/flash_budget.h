@@ -32,7 +32,6 @@ class FlashBudget {
     day_ = day;
     ++writes_;
   }
-  [[nodiscard]] std::int64_t day() const { return day_; }
   [[nodiscard]] std::int32_t writes_on(std::int64_t day) const { return day == day_ ? writes_ : 0; }
 
  private:

@@ -1,5 +1,6 @@
-// Is this the device that the register map describes? Its SunSpec models are looked for, then the map's
-// identity points are read. Before all of them fit, nothing is measured and nothing is written.
+// Is this the device that the register map describes? Its SunSpec models are looked for, then the
+// map's identity points are read. Before all of them fit, nothing is measured and nothing is
+// written.
 #pragma once
 
 #include <cstdint>

@@ -44,8 +44,8 @@ void build_request(Framing framing, const ModbusRequest& request, ModbusFrame& f
 /// Size of the longest reply that fits the request.
 int reply_bytes_max(Framing framing, const ModbusRequest& request);
 
-/// How many bytes to wait for before asking again: 0 = the reply is complete, -1 = whatever follows,
-/// this is no reply to the request. Never asks for more than a frame can hold.
+/// How many bytes to wait for before asking again: 0 = the reply is complete, -1 = whatever
+/// follows, this is no reply to the request. Never asks for more than a frame can hold.
 int missing_bytes(Framing framing, const ModbusRequest& request, const ModbusFrame& reply);
 
 struct ReplyCheck {

@@ -1,14 +1,15 @@
-// One Modbus connection, TCP or RTU: a request with a deadline, the device's minimum gap, and what is
-// done after an error. Between the parts that know one thing each:
+// One Modbus connection, TCP or RTU: a request with a deadline, the device's minimum gap, and what
+// is done after an error. Between the parts that know one thing each:
 //   link_state (what may happen now)    modbus_frame (bytes of a request, is this its reply)
 //   modbus_wire (socket or serial line) unanswered_requests (RTU: whose reply may still come)
 // After an error that is not an exception of the device:
 //   TCP: close; the next request connects again, so a late reply has no way to arrive
-//   RTU: wait until the line has been quiet, forget what came, and never ask what a late reply could
-//        be taken for the answer to
-// A request ends within connect time-out + connect delay + quiet + gap + response time-out (RTU: plus
-// the frames' time on the line; plus `late_reply_ms_max` where a late reply could be mistaken),
-// whatever the device sends, byte by byte or not at all. Nothing here allocates after the constructor.
+//   RTU: wait until the line has been quiet, forget what came, and never ask what a late reply
+//        could be taken for the answer to
+// A request ends within connect time-out + connect delay + quiet + gap + response time-out (RTU:
+// plus the frames' time on the line; plus `late_reply_ms_max` where a late reply could be
+// mistaken), whatever the device sends, byte by byte or not at all. Nothing here allocates after
+// the constructor.
 #pragma once
 
 #include <cstdint>
@@ -60,8 +61,8 @@ class ModbusLink {
                const std::uint16_t* registers, int count);
   void close();
 
-  /// The exception code of the last request, 0 when the device answered none: for register maps that
-  /// give a vendor's code a meaning of their own.
+  /// The exception code of the last request, 0 when the device answered none: for register maps
+  /// that give a vendor's code a meaning of their own.
   [[nodiscard]] int last_exception() const { return last_exception_; }
   [[nodiscard]] const LinkCounters& counters() const { return counters_; }
 

@@ -1,8 +1,8 @@
-// The bytes of one Modbus connection: libmodbus opens, configures and closes it (TCP socket or serial
-// line), and whole chunks are sent and received here with an absolute deadline, because libmodbus'
-// receive starts its time-out again for each group of bytes: a device that drips could hold it for
-// minutes. The only edge file pair that knows libmodbus. One context, created once; afterwards nothing
-// here allocates (modbus_new_* is the library's only malloc).
+// The bytes of one Modbus connection: libmodbus opens, configures and closes it (TCP socket or
+// serial line), and whole chunks are sent and received here with an absolute deadline, because
+// libmodbus' receive starts its time-out again for each group of bytes: a device that drips could
+// hold it for minutes. The only edge file pair that knows libmodbus. One context, created once;
+// afterwards nothing here allocates (modbus_new_* is the library's only malloc).
 #pragma once
 
 #include <cstdint>

@@ -1,9 +1,9 @@
-// RTU has no transaction id: the reply to an old request can be told from the reply to a new one only
-// by its shape (function and count). These are the requests that got no answer and may still get one.
-// A slave answers in order, so a good reply of another shape proves that the old ones have come and
-// gone. A read of the same shape at another address has to wait until no old answer can come any more;
-// at the same address an old answer is only that much older. (libmodbus alone returns the previous
-// question's registers here, as valid and for ever.)
+// RTU has no transaction id: the reply to an old request can be told from the reply to a new one
+// only by its shape (function and count). These are the requests that got no answer and may still
+// get one. A slave answers in order, so a good reply of another shape proves that the old ones have
+// come and gone. A read of the same shape at another address has to wait until no old answer can
+// come any more; at the same address an old answer is only that much older. (libmodbus alone
+// returns the previous question's registers here, as valid and for ever.)
 #pragma once
 
 #include <cstdint>

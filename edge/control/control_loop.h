@@ -18,6 +18,7 @@
 
 #include <cstdint>
 
+#include "edge/control/control_settings.h"
 #include "edge/control/control_types.h"
 #include "edge/control/cycle_budget.h"
 #include "edge/control/follow_monitor.h"
@@ -29,18 +30,6 @@
 #include "shared/units_and_limits.h"
 
 namespace bess {
-
-struct ControlSettings {
-  bool control = false;  ///< false: everything but writing
-  GuardSettings guard;
-  std::int32_t order_duration_s = 300;  ///< of the device's dead-man timer
-  bool has_dead_man = false;            ///< the device ends an order that is not renewed
-  std::int32_t hold_s = 300;            ///< 0 W held after a stop reason before releasing
-  std::int32_t price_wait_s = 20;
-  std::int32_t read_lead_s = 3;
-  std::int32_t order_deadline_s = 60;  ///< an order in force later than this after its tick is late
-  std::int32_t cycles_per_day_max_e4 = 0;  ///< in 1e-4 full cycles; 0 = no budget
-};
 
 /// What an earlier run of the program left behind, by its own log.
 struct TakeOver {
@@ -98,7 +87,7 @@ class ControlLoop {
     if (!settings_.control || !has_ordered_) return;
     const std::int64_t last_ns = clock_.now_utc_ns() + kStopPatienceNs;
     Status released = give_back(record);
-    while (has_ordered_ && !settings_.has_dead_man && clock_.now_utc_ns() < last_ns) {
+    while (has_ordered_ && !settings_.has_watchdog && clock_.now_utc_ns() < last_ns) {
       clock_.pause_ns(kStopPauseNs);
       released = give_back(record);
     }
@@ -108,12 +97,12 @@ class ControlLoop {
   }
 
   /// False: what was ordered last stays in force until somebody ends it.
-  [[nodiscard]] bool order_ends_by_itself() const { return settings_.has_dead_man; }
+  [[nodiscard]] bool order_ends_by_itself() const { return settings_.has_watchdog; }
 
-  /// Ends without touching the battery, for the next run to take over; its dead-man timer ends the
-  /// order if none comes. False when it has none, or no order is in force: then stop.
+  /// Ends without touching the battery, for the next run to take over; its watchdog ends the order
+  /// if none comes. False when it has none, or no order is in force: then stop.
   bool hand_over(CycleRecord& record) {
-    if (!settings_.has_dead_man || !has_ordered_) return false;
+    if (!settings_.has_watchdog || !has_ordered_) return false;
     record = final_record(Reason::kHandOver);
     record.ordered_power_w = order_power_w_;
     return true;
@@ -337,7 +326,7 @@ class ControlLoop {
   void fill_totals(CycleRecord& record) const {
     record.missed_ticks = missed_ticks_;
     record.deadline_misses = deadline_misses_;
-    record.idle_cycles = follow_.idle_cycles();
+    record.unanswered_orders = follow_.unanswered_orders();
     record.throughput = cycle_budget_.today();
     record.counters = battery_.counters();
   }

@@ -1,6 +1,6 @@
-// Does the battery do what it is told? Registers that read back as written prove only that they were
-// stored: some batteries acknowledge and do nothing, and a map with a wrong sign charges when it
-// should discharge. Pure integers, fed once a cycle with the order that was in force.
+// Does the battery do what it is told? Registers that read back as written prove only that they
+// were stored: some batteries acknowledge and do nothing, and a map with a wrong sign charges when
+// it should discharge. Pure integers, fed once a cycle with the order that was in force.
 #pragma once
 
 #include <cstdint>
@@ -19,14 +19,14 @@ class FollowMonitor {
     const bool opposes = is_driven && answers && (ordered_power_w > 0) != (measured_power_w > 0);
     opposing_cycles_ = opposes ? opposing_cycles_ + 1 : 0;
     if (opposing_cycles_ >= kCyclesToTrip) tripped_ = true;
-    idle_cycles_ = is_driven && !answers ? idle_cycles_ + 1 : 0;
+    unanswered_orders_ = is_driven && !answers ? unanswered_orders_ + 1 : 0;
   }
 
   /// The battery has gone the other way for kCyclesToTrip orders in a row. Stays until a restart:
   /// map, sign or wiring are wrong, and no later measurement can mend that.
   [[nodiscard]] constexpr bool has_tripped() const { return tripped_; }
   /// Orders in a row without any answer; a full, empty or cold battery does that too.
-  [[nodiscard]] constexpr std::int32_t idle_cycles() const { return idle_cycles_; }
+  [[nodiscard]] constexpr std::int32_t unanswered_orders() const { return unanswered_orders_; }
 
  private:
   static constexpr std::int32_t magnitude(std::int32_t power_w) {
@@ -39,7 +39,7 @@ class FollowMonitor {
   }
 
   std::int32_t opposing_cycles_ = 0;
-  std::int32_t idle_cycles_ = 0;
+  std::int32_t unanswered_orders_ = 0;
   bool tripped_ = false;
 };
 

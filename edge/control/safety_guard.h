@@ -1,6 +1,6 @@
 // The guard between student and battery [SPEC 7]: pure integers, no memory but the SoC hysteresis.
-// Precedence: stop reasons (clock, link, alarm, temperature, off-grid, price) > SoC, cycle and power
-// limits > ramp > price thresholds > student. Every intervention carries its reason.
+// Precedence: stop reasons (clock, link, alarm, temperature, off-grid, price) > SoC, cycle and
+// power limits > ramp > price thresholds > student. Every intervention carries its reason.
 #pragma once
 
 #include <cstdint>

@@ -1,8 +1,8 @@
-// The log of the controller. The control thread hands over one record a cycle and never waits; a log
-// thread of its own, on a static stack, writes it everywhere:
-//   CycleRecord -> queue -> log thread -> stdout (journal), ring log, CSV, status JSON, Prometheus text
-// A disk may stand still for seconds: 64 records, two hours, fit into the queue; what does not fit is
-// dropped and counted. After `open` neither thread allocates here.
+// The log of the controller. The control thread hands over one record a cycle and never waits; a
+// log thread of its own, on a static stack, writes it everywhere:
+//   CycleRecord -> queue -> log thread -> stdout (journal), ring log, CSV, status, metrics
+// A disk may stand still for seconds: 64 records, two hours, fit into the queue; what does not fit
+// is dropped and counted. After `open` neither thread allocates here.
 #pragma once
 
 #include <atomic>
@@ -46,8 +46,8 @@ class EventLog {
 
  private:
   static constexpr std::size_t kQueueRecords = 64;
-  // Measured on 21 November 2026 (x86-64, glibc 2.36) over 3,000 records: 9,768 bytes, with what the
-  // C library keeps there. Sanitizers need far more.
+  // Measured on 21 November 2026 (x86-64, glibc 2.36) over 3,000 records: 9,768 bytes, with what
+  // the C library keeps there. Sanitizers need far more.
   static constexpr std::size_t kStackBytes = 256 * 1024;
 
   bool open_csv(const char* path, FileMessage& error);

@@ -1,5 +1,5 @@
-// Is the controller well? A pure function of the published status, for `bess-edge status`: two signals
-// (the process is alive; the last cycle was good) become one word and the reasons for it.
+// Is the controller well? A pure function of the published status, for `bess-edge status`: two
+// signals (the process is alive; the last cycle was good) become one word and the reasons for it.
 #pragma once
 
 #include <cstdint>

@@ -43,7 +43,7 @@ const char* csv_header() {
          "battery_power_w,student_action,ordered_power_w,reason,battery_status,price_status,"
          "written,fetch_us,decision_us,write_us,total_us,missed_ticks,large_step,requests,"
          "failed_requests,reconnects,register_writes,unchanged_orders,flash_writes_today,"
-         "deadline_misses,idle_cycles,soc_moved_e4";
+         "deadline_misses,unanswered_orders,soc_moved_e4";
 }
 
 std::size_t format_csv_line(const CycleRecord& r, char (&line)[kLogLineBytes]) {
@@ -59,7 +59,7 @@ std::size_t format_csv_line(const CycleRecord& r, char (&line)[kLogLineBytes]) {
       status_name(r.price.status).data(), r.written, r.price.fetch_us, r.decision_us, r.write_us,
       r.total_us, r.missed_ticks, r.price.large_step, as_long(c.requests),
       as_long(c.failed_requests), as_long(c.reconnects), as_long(c.register_writes),
-      as_long(c.unchanged_orders), c.flash_writes_today, r.deadline_misses, r.idle_cycles,
+      as_long(c.unchanged_orders), c.flash_writes_today, r.deadline_misses, r.unanswered_orders,
       r.throughput.soc_moved_e4));
 }
 

@@ -145,7 +145,7 @@ void visit_fields(Archive& a, Record& r) {
   a.integer(r.missed_ticks);
   visit_counters(a, r.counters);
   a.integer(r.deadline_misses);
-  a.integer(r.idle_cycles);
+  a.integer(r.unanswered_orders);
   a.integer(r.throughput.local_day);
   a.integer(r.throughput.soc_moved_e4);
 }

@@ -1,5 +1,6 @@
-// The decision log on disk: a ring of fixed-size records in one file of constant size. Written by the
-// log thread of bess-edge, read by `bess-edge log` and `bess-edge status` while it is being written.
+// The decision log on disk: a ring of fixed-size records in one file of constant size. Written by
+// the log thread of bess-edge, read by `bess-edge log` and `bess-edge status` while it is being
+// written.
 //
 //   0     header: "BESSRING", version, bytes of a record, capacity, CRC-32; padded to 4096 bytes
 //   4096  capacity records of 256 bytes (record_codec.h); record number n lies in slot n % capacity

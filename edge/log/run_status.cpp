@@ -60,7 +60,7 @@ void add_totals(const RunTotals& t, TextBuffer& json) {
       "  \"totals\": {\n    \"cycles\": %lld, \"missed_ticks\": %d, \"written_orders\": %lld,\n",
       as_long(t.cycles), t.last.missed_ticks, as_long(t.written_orders));
   json.add("    \"deadline_misses\": %d, \"unanswered_orders\": %d, \"soc_moved_e4_today\": %d,\n",
-           t.last.deadline_misses, t.last.idle_cycles, t.last.throughput.soc_moved_e4);
+           t.last.deadline_misses, t.last.unanswered_orders, t.last.throughput.soc_moved_e4);
   json.add("    \"battery_failures\": %lld, \"price_failures\": %lld,\n",
            as_long(t.battery_failures), as_long(t.price_failures));
   json.add("    \"records_dropped\": %lld, \"disk_failures\": %lld,\n", as_long(t.records_dropped),
@@ -148,7 +148,7 @@ void add_run(const RunTotals& t, TextBuffer& text) {
   add_value(text, "bess_deadline_misses_total", "counter",
             "Cycles whose order was not in force in time.", r.deadline_misses);
   add_value(text, "bess_unanswered_orders", "gauge",
-            "Orders in a row that the battery did not answer with power.", r.idle_cycles);
+            "Orders in a row that the battery did not answer with power.", r.unanswered_orders);
   add_value(text, "bess_full_cycles_today", "gauge",
             "Full cycles that orders have moved on this local day.",
             r.throughput.soc_moved_e4 / 20'000.0);

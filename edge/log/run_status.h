@@ -1,6 +1,6 @@
-// How things are now, for other programs: who runs, what has happened since the start, the last cycle.
-// Formatted as JSON for `bess-edge status` and as a text for Prometheus (node exporter's textfile
-// collector). Filled and formatted by the log thread: bounded buffers, no heap.
+// How things are now, for other programs: who runs, what has happened since the start, the last
+// cycle. Formatted as JSON for `bess-edge status` and as a text for Prometheus (node exporter's
+// textfile collector). Filled and formatted by the log thread: bounded buffers, no heap.
 #pragma once
 
 #include <sys/types.h>

@@ -8,8 +8,11 @@
 #include <cstring>
 
 namespace bess {
+namespace {
 
-bool replace_file(const char* path, std::string_view text) {
+enum class Durability { kOrdinary, kOnDisk };
+
+bool replace(const char* path, std::string_view text, Durability durability) {
   char beside[640];
   const int length = std::snprintf(beside, sizeof beside, "%s.new", path);
   if (length < 0 || length >= static_cast<int>(sizeof beside)) {
@@ -19,13 +22,26 @@ bool replace_file(const char* path, std::string_view text) {
   const int fd = open(beside, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (fd < 0) return false;
   errno = ENOSPC;  // what a short write means
-  const bool written = write(fd, text.data(), text.size()) == static_cast<ssize_t>(text.size());
+  const bool written = write(fd, text.data(), text.size()) == static_cast<ssize_t>(text.size()) &&
+                       (durability == Durability::kOrdinary || fsync(fd) == 0);
   const int write_errno = errno;
   close(fd);
   if (written) return rename(beside, path) == 0;
   unlink(beside);
   errno = write_errno;
   return false;
+}
+
+}  // namespace
+
+bool replace_file(const char* path, std::string_view text) {
+  return replace(path, text, Durability::kOrdinary);
+}
+
+bool replace_file_durably(const char* path, std::string_view text) {
+  if (!replace(path, text, Durability::kOnDisk)) return false;
+  sync_folder_of(path);
+  return true;
 }
 
 void sync_folder_of(const char* path) {

@@ -1,5 +1,6 @@
-// Files that other programs read while bess-edge writes them: a new text replaces the old one at once
-// (written beside it, then renamed), so a reader never sees half of it. Nothing here allocates.
+// Files that other programs read while bess-edge writes them: a new text replaces the old one at
+// once (written beside it, then renamed), so a reader never sees half of it. Nothing here
+// allocates.
 #pragma once
 
 #include <string_view>
@@ -13,6 +14,9 @@ using FileMessage = FixedText<767>;
 /// False with errno set. Not forced to the disk: such a file says how things are now, and after a
 /// power cut it would be wrong anyway.
 bool replace_file(const char* path, std::string_view text);
+
+/// The same, and on the disk before it returns: for what must outlast a power cut.
+bool replace_file_durably(const char* path, std::string_view text);
 
 /// Makes a rename in this file's folder outlast a power cut.
 void sync_folder_of(const char* path);

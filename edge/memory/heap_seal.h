@@ -3,8 +3,8 @@
 //   HeapSeal         around the loop: memory locked, the control thread may not allocate, the kernel
 //                    refuses to give memory, threads or programs (seccomp)
 // The filter names only what is forbidden; sockets, files, clocks and futexes stay as they are.
-// BESS_SECCOMP=kill in the environment ends the process at a forbidden call, for tests; otherwise the
-// call fails with ENOMEM (memory) or EPERM (threads, programs) and whoever made it copes.
+// BESS_SECCOMP=kill in the environment ends the process at a forbidden call, for tests; otherwise
+// the call fails with ENOMEM (memory) or EPERM (threads, programs) and whoever made it copes.
 // Sanitizer builds allocate in their own ways: there nothing is sealed, and a note says so.
 #pragma once
 

@@ -1,7 +1,7 @@
 // malloc and its relatives on the static arena: strong symbols that the loader prefers over the C
 // library's, for every shared library too. Linked into bess-edge alone, as an object, never hidden
-// (hidden symbols would silently leave the C library's heap in use: heap_seal checks that at start),
-// and not in sanitizer builds, which bring their own.
+// (hidden symbols would silently leave the C library's heap in use: heap_seal checks that at
+// start), and not in sanitizer builds, which bring their own.
 #include <unistd.h>
 
 #include <bit>

@@ -1,5 +1,5 @@
-// The kernel's part of the seal: system calls that give memory, threads or programs are forbidden to
-// every thread of the process from now on. Raw BPF, for x86-64, aarch64 and armhf.
+// The kernel's part of the seal: system calls that give memory, threads or programs are forbidden
+// to every thread of the process from now on. Raw BPF, for x86-64, aarch64 and armhf.
 #pragma once
 
 namespace bess {

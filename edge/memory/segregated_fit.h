@@ -1,6 +1,6 @@
-// A bounded-time allocator over one buffer that its caller gives: two-level segregated fit. It never
-// asks anyone for more; what does not fit is refused. Below static_arena, which puts it behind
-// malloc.
+// A bounded-time allocator over one buffer that its caller gives: two-level segregated fit. It
+// never asks anyone for more; what does not fit is refused. Below static_arena, which puts it
+// behind malloc.
 //
 // Blocks lie side by side in the buffer, each with a header that leads to its left neighbour:
 //   | header | payload ... | header | payload ... | end mark |

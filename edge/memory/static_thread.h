@@ -1,5 +1,6 @@
-// A thread on a stack inside its owner: starting it maps no memory. Its lowest page is a guard, so an
-// overflow ends the process instead of writing over the neighbour. For threads that live as long as the process.
+// A thread on a stack inside its owner: starting it maps no memory. Its lowest page is a guard, so
+// an overflow ends the process instead of writing over the neighbour. For threads that live as long
+// as the process.
 #pragma once
 
 #include <pthread.h>

@@ -49,7 +49,8 @@ bool print_address(const addrinfo& found, char (&text)[INET6_ADDRSTRLEN + 2]) {
 }  // namespace
 
 void warm_up_resolver() {
-  // Two name servers that are silent then cost 8 s a lookup instead of 20 s. The operator's own wins.
+  // Two name servers that are silent then cost 8 s a lookup instead of 20 s. The operator's own
+  // wins.
   setenv("RES_OPTIONS", "timeout:2 attempts:2", 0);
   addrinfo* found = nullptr;
   if (getaddrinfo("warmup.invalid", nullptr, nullptr, &found) == 0) freeaddrinfo(found);

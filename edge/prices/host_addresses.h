@@ -1,6 +1,6 @@
-// The addresses of the host in a URL, asked of the system's resolver on the caller's thread and kept
-// while the resolver is down. libcurl gets them ready made (CURLOPT_RESOLVE): left to itself it
-// would start a thread for every name, after the seal. Part of http_client.
+// The addresses of the host in a URL, asked of the system's resolver on the caller's thread and
+// kept while the resolver is down. libcurl gets them ready made (CURLOPT_RESOLVE): left to itself
+// it would start a thread for every name, after the seal. Part of http_client.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// What of an HTTP request is secret: the header file, and parts of URLs. Nothing of it is ever logged.
-// Start-up only: read by edge_config, shown by startup.
+// What of an HTTP request is secret: the header file, and parts of URLs. Nothing of it is ever
+// logged. Start-up only: read by edge_config, shown by startup.
 #pragma once
 
 #include <string>

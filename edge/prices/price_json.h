@@ -1,5 +1,6 @@
-// A price server's JSON, reduced to the newest usable minute row. The only edge file pair that knows
-// cJSON. Prices leave here as integer hundredths of EUR/MWh. Between http_client and price_feed.
+// A price server's JSON, reduced to the newest usable minute row. The only edge file pair that
+// knows cJSON. Prices leave here as integer hundredths of EUR/MWh. Between http_client and
+// price_feed.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,5 @@
-// The sub-commands of bess-edge and their options, parsed by hand: the edge carries no option library.
+// The sub-commands of bess-edge and their options, parsed by hand: the edge carries no option
+// library.
 #pragma once
 
 #include <cstdint>

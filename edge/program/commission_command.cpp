@@ -35,7 +35,7 @@ int ask_for_yes(const EdgeConfig& config, const CommissionSettings& settings) {
 
 void complain_about_release(const EdgeConfig& config, const CommissionResult& result) {
   char timer[64] = "; it has no timer of its own: set it back by hand";
-  if (config.control.has_dead_man) {
+  if (config.control.has_watchdog) {
     std::snprintf(timer, sizeof timer, "; its own timer ends that after %d s",
                   config.control.order_duration_s);
   }

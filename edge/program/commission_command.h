@@ -1,8 +1,9 @@
 // bess-edge commission: runs the sign check on the real battery and stores its result.
 #pragma once
 
-#include "edge/control/edge_clock.h"
+#include "edge/battery/modbus_battery.h"
 #include "edge/program/command_line.h"
+#include "edge/program/edge_clock.h"
 #include "edge/program/edge_config.h"
 
 namespace bess {

@@ -1,6 +1,5 @@
 #include "edge/program/commission_file.h"
 
-#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -11,6 +10,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "edge/log/whole_file.h"
 #include "edge/registers/toml_reader.h"
 #include "shared/crc32.h"
 #include "shared/utc_text.h"
@@ -70,20 +70,6 @@ std::string file_text(const EdgeConfig& config, const CommissionResult& result,
   return text.str();
 }
 
-bool write_beside_and_rename(const std::string& path, const std::string& text) {
-  const std::string beside = path + ".part";
-  const int fd = open(beside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (fd < 0) return false;
-  const bool written = write(fd, text.data(), text.size()) == static_cast<ssize_t>(text.size());
-  const bool synced = fsync(fd) == 0;
-  const bool closed = ::close(fd) == 0;
-  if (written && synced && closed && std::rename(beside.c_str(), path.c_str()) == 0) return true;
-  const int error = errno;
-  unlink(beside.c_str());
-  errno = error;
-  return false;
-}
-
 /// The file's keys, compared one by one; the first that differs is named.
 bool expect_same(TomlTable& table, std::string_view key, const std::string& configured) {
   FixedText<255> found;
@@ -101,7 +87,7 @@ bool write_commission_file(const EdgeConfig& config, const CommissionResult& res
                            std::int64_t utc_s, std::string& error) {
   const std::string path = path_of(config);
   mkdir(config.state.folder.c_str(), 0755);  // when it fails, the open below says why
-  if (write_beside_and_rename(path, file_text(config, result, utc_s))) return true;
+  if (replace_file_durably(path.c_str(), file_text(config, result, utc_s))) return true;
   error = path + ": cannot write here: " + std::strerror(errno) +
           "; mend the folder's permissions, or [state] folder, and repeat";
   return false;

@@ -10,6 +10,7 @@
 #include "edge/registers/codec.h"
 #include "edge/registers/map_file.h"
 #include "edge/registers/toml_reader.h"
+#include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
 
 namespace bess {
@@ -22,6 +23,17 @@ TomlTable section(TomlTable& root, std::string_view name) {
 bool is_numeric_ipv4(const char* host) {
   in_addr address{};
   return inet_pton(AF_INET, host, &address) == 1;
+}
+
+void check_link(TomlTable& table, const BatteryLinkSettings& link) {
+  if (!is_serial_speed(link.baud)) {
+    table.fail("baud", "must be a speed of serial lines such as 9600, 19200 or 115200");
+  }
+  if (!link.rtu && !is_numeric_ipv4(link.host.c_str())) {
+    table.fail("host",
+               "must be a numeric IPv4 address such as \"192.168.1.20\": a name would "
+               "depend on the resolver at every reconnect");
+  }
 }
 
 /// The battery must report the configured capacity, else the address leads to another one.
@@ -74,14 +86,7 @@ void read_battery(TomlTable table, EdgeConfig& config) {
   config.link.rtu = transport == 1;
   config.link.parity = static_cast<Parity>(parity);
   table.finish();
-  if (!is_serial_speed(config.link.baud)) {
-    table.fail("baud", "must be a speed of serial lines such as 9600, 19200 or 115200");
-  }
-  if (!config.link.rtu && !is_numeric_ipv4(config.link.host.c_str())) {
-    table.fail("host",
-               "must be a numeric IPv4 address such as \"192.168.1.20\": a name would "
-               "depend on the resolver at every reconnect");
-  }
+  check_link(table, config.link);
   if (!table.ok()) return;
   const auto folder = std::filesystem::path(table.file()).parent_path();
   const std::string map_path = (folder / map_file.c_str()).string();
@@ -91,7 +96,7 @@ void read_battery(TomlTable table, EdgeConfig& config) {
   expect_capacity(config);
 }
 
-/// A power that the map cannot express, or an order that outlives its timer, must stop the start.
+/// A power that the map cannot express must stop the start.
 void check_battery_against_map(TomlTable table, EdgeConfig& config) {
   if (!table.ok()) return;
   const std::int32_t power_w = config.control.guard.power_w;
@@ -239,9 +244,9 @@ bool load_edge_config(const std::string& path, EdgeConfig& config, std::string& 
   read_simulation(section(root, "simulation"), config.clock);
   root.finish();
   config.control.price_wait_s = config.price.wait_s;
-  if (config.map.dead_man_duration_s > 0) {
-    config.control.order_duration_s = config.map.dead_man_duration_s;
-    config.control.has_dead_man = true;
+  if (config.map.watchdog.duration_s > 0) {
+    config.control.order_duration_s = config.map.watchdog.duration_s;
+    config.control.has_watchdog = true;
   }
   return error.empty();
 }

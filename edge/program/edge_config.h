@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <string>
 
-#include "edge/battery/modbus_battery.h"
-#include "edge/control/control_loop.h"
+#include "edge/battery/modbus_wire.h"
+#include "edge/control/control_settings.h"
 #include "edge/log/event_log.h"
 #include "edge/prices/price_feed.h"
 #include "edge/registers/register_map.h"

@@ -1,6 +1,6 @@
 // One controller to one battery, one to one state folder: an advisory lock (flock) on a file that
-// names the process holding it. The kernel gives the lock back when a process ends, however it ends;
-// a file that is left behind means nothing.
+// names the process holding it. The kernel gives the lock back when a process ends, however it
+// ends; a file that is left behind means nothing.
 #pragma once
 
 #include "edge/log/whole_file.h"
@@ -15,8 +15,8 @@ class InstanceLock {
   InstanceLock& operator=(const InstanceLock&) = delete;
   ~InstanceLock();
 
-  /// Tries for a second, because a predecessor may be on its way out and `holder_of` looks by locking.
-  /// False with one line; `what` names the locked thing in it.
+  /// Tries for a second, because a predecessor may be on its way out and `holder_of` looks by
+  /// locking. False with one line; `what` names the locked thing in it.
   bool take(const char* path, const char* what, FileMessage& error);
 
  private:

@@ -1,5 +1,5 @@
-// What systemd is told (sd_notify(3)): ready, alive, status line, stopping. One datagram to the socket
-// named in NOTIFY_SOCKET; without it every call does nothing. Never waits, never allocates.
+// What systemd is told (sd_notify(3)): ready, alive, status line, stopping. One datagram to the
+// socket named in NOTIFY_SOCKET; without it every call does nothing. Never waits, never allocates.
 #pragma once
 
 #include <sys/socket.h>

@@ -2,8 +2,10 @@
 // One line per finding, for a person; nothing here writes to the battery.
 #pragma once
 
-#include "edge/control/edge_clock.h"
+#include "edge/battery/modbus_battery.h"
 #include "edge/log/run_status.h"
+#include "edge/prices/price_feed.h"
+#include "edge/program/edge_clock.h"
 #include "edge/program/edge_config.h"
 
 namespace bess {

@@ -1,13 +1,13 @@
-// The control loop as a service: runs cycles until a stop is requested or enough are done, hands each
-// record to the log and tells systemd about it, then leaves by the safe state.
+// The control loop as a service: runs cycles until a stop is requested or enough are done, hands
+// each record to the log and tells systemd about it, then leaves by the safe state.
 #pragma once
 
 #include <cstdint>
 
-#include "edge/control/edge_clock.h"
 #include "edge/log/event_log.h"
 #include "edge/log/journal.h"
 #include "edge/memory/heap_seal.h"
+#include "edge/program/edge_clock.h"
 #include "edge/program/service_notify.h"
 
 namespace bess {

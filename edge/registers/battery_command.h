@@ -81,9 +81,10 @@ struct Watchdog {
     kRewrite       ///< the order itself must be written again
   };
   Kind kind = Kind::kNone;
-  std::int32_t refresh_s = 0;  ///< longest time between two feedings
-  std::int8_t remaining = -1;  ///< point with the seconds left
-  bool expiry_visible = true;  ///< RegisterMap::active turns false when it expires
+  std::int32_t duration_s = 0;  ///< from the last feeding to the end of the order; 0 = none
+  std::int32_t refresh_s = 0;   ///< longest time between two feedings
+  std::int8_t remaining = -1;   ///< point with the seconds left
+  bool expiry_visible = true;   ///< RegisterMap::active turns false when it expires
 };
 
 struct WritePolicy {

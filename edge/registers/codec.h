@@ -16,7 +16,7 @@ struct PowerOrder {
   std::int32_t power_w = 0;  ///< grid side, charge positive
   std::int32_t soc_min_e4 = 0;
   std::int32_t soc_max_e4 = 10'000;
-  std::int32_t duration_s = 0;  ///< of the device's dead-man timer
+  std::int32_t duration_s = 0;  ///< until the device's watchdog ends it
 };
 
 /// What a write needs beside the order.

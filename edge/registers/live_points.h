@@ -22,8 +22,8 @@ struct LivePoints {
 [[nodiscard]] bool live_value(const RegisterMap& map, const LivePoints& live, int point,
                               std::int64_t& value);
 
-/// The first case that holds: `cases` is the map's measured_power or order_power. False when there is
-/// none, or when a register that it needs is unknown or implausible.
+/// The first case that holds: `cases` is the map's measured_power or order_power. False when there
+/// is none, or when a register that it needs is unknown or implausible.
 [[nodiscard]] bool live_power(const RegisterMap& map, const StaticVector<PowerCase, 4>& cases,
                               const LivePoints& live, std::int64_t& power_w);
 
@@ -31,8 +31,8 @@ struct LivePoints {
 [[nodiscard]] bool live_all(const RegisterMap& map, const StaticVector<Condition, 4>& conditions,
                             const LivePoints& live);
 
-/// The scale factors and ratings that a map allows at one end of their ranges, for the proof at load
-/// and for printing orders before a device has been read.
+/// The scale factors and ratings that a map allows at one end of their ranges, for the proof at
+/// load and for printing orders before a device has been read.
 LivePoints assumed_live_points(const RegisterMap& map, bool high);
 
 }  // namespace bess

@@ -157,7 +157,7 @@ void check_reserve(TomlTable& root, const RegisterMap& map) {
 /// Nothing may wrap later: both ends of the stated power range are encoded once here.
 void prove_power_range(TomlTable& root, const RegisterMap& map) {
   for (const std::int32_t power_w : {map.charge_w_max, -map.discharge_w_max, 0}) {
-    const PowerOrder order{.power_w = power_w, .duration_s = map.dead_man_duration_s};
+    const PowerOrder order{.power_w = power_w, .duration_s = map.watchdog.duration_s};
     if (check_expressible(map, order) != Status::kOk) {
       root.fail("power",
                 "states " + std::to_string(power_w) + " W, which the registers cannot express");

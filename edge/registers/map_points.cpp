@@ -1,6 +1,4 @@
 // [map], [unit_groups], [sunspec] and [[point]].
-#include <algorithm>
-
 #include "edge/registers/map_reader.h"
 
 namespace bess {
@@ -177,11 +175,12 @@ void read_names(TomlTable& table, std::string_view key, bool bits, RegisterMap& 
 
 void read_point(TomlTable& table, const MapDefaults& defaults, RegisterMap& map) {
   RegisterPoint point;
+  FixedText<15> unit;  // for the reader of the map
   int storage = 0;
   table.require("name");
   table.require("address");
   table.text("name", point.name);
-  table.text("unit", point.unit);
+  table.text("unit", unit);
   read_place(table, defaults, map, point);
   read_type(table, defaults, point);
   read_scale(table, map, point);
@@ -210,7 +209,8 @@ void read_point(TomlTable& table, const MapDefaults& defaults, RegisterMap& map)
 void read_map_header(TomlTable& root, RegisterMap& map, MapDefaults& defaults) {
   TomlTable table = map_child(root, "map");
   for (const std::string_view key : {"name", "unit"}) table.require(key);
-  FixedText<255> description;
+  FixedText<255> description;  // it and one_client tell the reader of a map, not the program
+  bool one_client = false;
   int parity = 0;
   table.text("name", map.name);
   table.text("description", description);
@@ -224,7 +224,7 @@ void read_map_header(TomlTable& root, RegisterMap& map, MapDefaults& defaults) {
   table.integer("response_timeout_ms", map.response_timeout_ms, 10, 30'000);
   table.integer("read_gap_registers_max", map.read_gap_registers_max, 0, 60);
   table.integer("registers_per_read_max", map.registers_per_read_max, 4, 120);
-  table.boolean("one_client", map.one_client);
+  table.boolean("one_client", one_client);
   table.integer("read_function", defaults.read_function, 3, 4);
   table.integer("write_function", defaults.write_function, 6, 16);
   table.integer("address_base", defaults.address_base, 0, 1);

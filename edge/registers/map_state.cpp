@@ -116,7 +116,7 @@ void read_map_watchdog(TomlTable& root, RegisterMap& map) {
     table.require("duration_s");
     table.require("refresh_s");
   }
-  table.integer("duration_s", map.dead_man_duration_s, 2, 86'400);
+  table.integer("duration_s", map.watchdog.duration_s, 2, 86'400);
   table.integer("refresh_s", map.watchdog.refresh_s, 1, 43'200);
   table.boolean("expiry_visible", map.watchdog.expiry_visible);
   table.text("remaining", remaining);
@@ -125,7 +125,7 @@ void read_map_watchdog(TomlTable& root, RegisterMap& map) {
         require_point(table, *table.native()->get("remaining"), remaining.view(), map);
   }
   if (map.watchdog.kind != Watchdog::Kind::kNone &&
-      map.watchdog.refresh_s * 2 > map.dead_man_duration_s) {
+      map.watchdog.refresh_s * 2 > map.watchdog.duration_s) {
     table.fail("refresh_s", "must be at most half of duration_s: one feeding may be lost");
   }
   table.finish();

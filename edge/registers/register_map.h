@@ -1,6 +1,6 @@
-// A battery's Modbus register map as fixed-size data: link, named points, state, commands, watchdog.
-// Loaded once from edge/maps/*.toml (map_file.h; format: edge/maps/README.md), then constant: the
-// edge drives the battery with it and the battery simulator answers with it.
+// A battery's Modbus register map as fixed-size data: link, named points, state, commands,
+// watchdog. Loaded once from edge/maps/*.toml (map_file.h; format: edge/maps/README.md), then
+// constant: the edge drives the battery with it and the battery simulator answers with it.
 #pragma once
 
 #include <cstdint>
@@ -83,11 +83,9 @@ struct RegisterMap {
   std::int32_t response_timeout_ms = 1000;
   std::int32_t read_gap_registers_max = 0;  ///< unused registers that one read may span
   std::int32_t registers_per_read_max = 60;
-  bool one_client = false;
 
   std::int32_t charge_w_max = 0;  ///< what the registers can express, not what a battery can do
   std::int32_t discharge_w_max = 0;
-  std::int32_t dead_man_duration_s = 0;  ///< of the watchdog; 0 = the device has none
   Watchdog watchdog;
   WritePolicy writes;
   ExceptionCodes exceptions;
@@ -123,14 +121,6 @@ constexpr int find_point(const RegisterMap& map, std::string_view name) {
     if (map.points[i].name == name) return i;
   }
   return -1;
-}
-
-/// The map's word for a point's value; empty when it has none.
-constexpr std::string_view name_of_value(const RegisterMap& map, int point, std::int64_t value) {
-  for (const NamedValue& named : map.names) {
-    if (named.point == point && !named.is_bit && named.value == value) return named.name.view();
-  }
-  return {};
 }
 
 }  // namespace bess

@@ -29,7 +29,6 @@ enum class Rounding : std::uint8_t { kAuto, kNearest, kDown, kUp, kTowardsZero }
 
 struct RegisterPoint {
   RegisterName name;
-  FixedText<15> unit;
   std::uint16_t address = 0;    ///< PDU address, 0-based; with a model: offset from its start
   std::int8_t model = -1;       ///< index into RegisterMap::models; -1 = an absolute address
   std::int8_t unit_group = -1;  ///< index into RegisterMap::unit_groups; -1 = the map's unit id

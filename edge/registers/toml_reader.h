@@ -5,8 +5,8 @@
 
 #define TOML_EXCEPTIONS 0
 #define TOML_HEADER_ONLY 1
-// toml++ 3.3 asserts, and in release builds assumes, that a table header starts with a key: "[=]" in
-// a user's file breaks it. The branch after it reports the error well; so let it be reached.
+// toml++ 3.3 asserts, and in release builds assumes, that a table header starts with a key: "[=]"
+// in a user's file breaks it. The branch after it reports the error well; so let it be reached.
 #include <toml++/impl/preprocessor.h>
 #undef TOML_ASSERT_ASSUME
 #define TOML_ASSERT_ASSUME(expr) static_cast<void>(0)

@@ -1,6 +1,6 @@
-// The edge's cycle as an operator gets it: bess-edge itself between bess-sim battery and market, by its
-// own log. Simulated time runs faster than the wall, but a device's minimum gap between requests is
-// kept in wall time here, because it is what the cycle mostly consists of.
+// The edge's cycle as an operator gets it: bess-edge itself between bess-sim battery and market, by
+// its own log. Simulated time runs faster than the wall, but a device's minimum gap between
+// requests is kept in wall time here, because it is what the cycle mostly consists of.
 #include <algorithm>
 #include <fstream>
 #include <limits>

@@ -1,5 +1,5 @@
-// The sign check against the simulator's physics: what passes, what is refused, and that the battery
-// is free again on every way out.
+// The sign check against the simulator's physics: what passes, what is refused, and that the
+// battery is free again on every way out.
 #include "edge/battery/commission.h"
 
 #include <gtest/gtest.h>

@@ -169,7 +169,7 @@ TEST(ClosedLoop, AStopBeforeTheFirstCycleReleasesTheOldOrderToo) {
 
 TEST(ClosedLoop, AHandOverLeavesTheOrderToTheNextRun) {
   ControlSettings settings = in_control();
-  settings.has_dead_man = true;
+  settings.has_watchdog = true;
   Plant plant(0.5, settings);
   plant.prices.price = [](std::int64_t) { return -60'000; };
   CycleRecord record;
@@ -183,7 +183,7 @@ TEST(ClosedLoop, AHandOverLeavesTheOrderToTheNextRun) {
   EXPECT_TRUE(plant.battery.physics.dispatch_active());
 }
 
-TEST(ClosedLoop, NothingIsHandedOverToABatteryWithoutADeadMan) {
+TEST(ClosedLoop, NothingIsHandedOverToABatteryWithoutAWatchdog) {
   Plant plant;
   plant.cycle();
   CycleRecord record;
@@ -307,7 +307,7 @@ TEST(ClosedLoop, ABatteryThatDoesNothingIsCounted) {
       SimulatedBattery({.power_w_max = 1, .capacity_wh = 8'000}, 0.5, plant.clock.now_ns);
   plant.prices.price = [](std::int64_t) { return -60'000; };
   for (int i = 0; i < 5; ++i) plant.cycle();
-  EXPECT_EQ(plant.cycle().idle_cycles, 5);
+  EXPECT_EQ(plant.cycle().unanswered_orders, 5);
 }
 
 TEST(ClosedLoop, TheRampBoundsTheChangeOfEveryOrder) {
@@ -391,7 +391,7 @@ TEST(ClosedLoop, InvariantsHoldThroughRandomFaults) {
       const CycleRecord record = plant.cycle();
       expect_invariants(plant, record, soc_start);
       cycles_without_link = plant.battery.link ? 0 : cycles_without_link + 1;
-      // The dead-man timer: without a link nothing is exchanged after 300 s.
+      // The watchdog: without a link nothing is exchanged after 300 s.
       if (cycles_without_link > 4) {
         EXPECT_FALSE(plant.battery.physics.dispatch_active());
       }

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <random>
 
 #include "tests/support/image_device.h"
@@ -12,13 +11,7 @@
 namespace bess {
 namespace {
 
-struct MapCase {
-  const char* map;
-  const char* variant;
-  friend void PrintTo(const MapCase& c, std::ostream* out) { *out << c.map << " " << c.variant; }
-};
-
-class EveryMap : public ::testing::TestWithParam<MapCase> {
+class EveryMap : public ::testing::TestWithParam<MapVariant> {
  protected:
   EveryMap() : device_(GetParam().map, GetParam().variant), t_(device_.test) {}
 
@@ -93,7 +86,7 @@ TEST_P(EveryMap, ARestartTakesOverAndRestoresTheDevicesOwnMode) {
     EXPECT_TRUE(m.dispatch_active);
     EXPECT_NEAR(m.order_power_w, 2'000, 2);
   }
-  ASSERT_EQ(successor.order({.power_w = 2'000, .duration_s = t_.map.dead_man_duration_s}),
+  ASSERT_EQ(successor.order({.power_w = 2'000, .duration_s = t_.map.watchdog.duration_s}),
             Status::kOk);
   ASSERT_EQ(successor.read(m), Status::kOk);
   EXPECT_NEAR(m.power_w, 2'000, 2);  // no step
@@ -106,22 +99,7 @@ TEST_P(EveryMap, ARestartTakesOverAndRestoresTheDevicesOwnMode) {
   EXPECT_EQ(t_.measured.power_w, 0);
 }
 
-constexpr MapCase kCases[] = {{"alphaess", "block"},
-                              {"alphaess", "five_writes"},
-                              {"alphaess", "ten_and_one"},
-                              {"simulator", ""},
-                              {"sunspec_124", ""},
-                              {"sunspec_704", ""},
-                              {"fronius_gen24", ""},
-                              {"victron_ess3", "single_phase"},
-                              {"victron_ess3", "three_phase"},
-                              {"sungrow_sh", "external_ems"},
-                              {"sungrow_sh", "forced"},
-                              {"huawei_luna2000", ""},
-                              {"sma", "bms_mode"},
-                              {"sma", "setpoint"}};
-
-INSTANTIATE_TEST_SUITE_P(Maps, EveryMap, ::testing::ValuesIn(kCases));
+INSTANTIATE_TEST_SUITE_P(Maps, EveryMap, ::testing::ValuesIn(kShippedMapVariants));
 
 }  // namespace
 }  // namespace bess

@@ -219,7 +219,7 @@ TEST_F(Processes, EachCommandHasItsHelp) {
   }
 }
 
-TEST_F(Processes, AKilledEdgeIsEndedByTheBatterysDeadManTimer) {
+TEST_F(Processes, AKilledEdgesOrderIsEndedByTheBatterysWatchdog) {
   start_simulators();
   ChildProcess edge({BESS_EDGE_PROGRAM, "--config", site_.commission()});
   for (int i = 0; i < 4; ++i) edge.read_line();
@@ -253,7 +253,7 @@ TEST_F(Processes, TheSameOverASerialLine) {
   site_.start_serial_battery(line.device(0));
   site_.start_market();
   const std::string config =
-      site_.commission({.battery_keys = SimulatedSite::alphaess_map() +
+      site_.commission({.battery_keys = SimulatedSite::alphaess_keys() +
                                         "transport = \"rtu\"\nbaud = 115200\ndevice = \"" +
                                         line.device(1) + "\"\n"});
   ChildProcess edge({BESS_EDGE_PROGRAM, "--config", config, "--cycles", "15"});

@@ -1,5 +1,5 @@
-// What a fuzz target is: a function that may refuse an input in its reader's own way, and must not do
-// anything else: no crash, no other exception, no sanitizer's complaint, no broken promise.
+// What a fuzz target is: a function that may refuse an input in its reader's own way, and must not
+// do anything else: no crash, no other exception, no sanitizer's complaint, no broken promise.
 #pragma once
 
 #include <cstddef>

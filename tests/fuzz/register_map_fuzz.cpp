@@ -47,7 +47,7 @@ void drive(const RegisterMap& map, std::uint16_t answer) {
   BatteryMeasurement measurement;
   for (const std::int32_t power_w : {1, 0, -map.discharge_w_max}) {
     static_cast<void>(driver.read(measurement));
-    static_cast<void>(driver.order({.power_w = power_w, .duration_s = map.dead_man_duration_s}));
+    static_cast<void>(driver.order({.power_w = power_w, .duration_s = map.watchdog.duration_s}));
     static_cast<void>(driver.refresh());
   }
   static_cast<void>(driver.release());
@@ -68,7 +68,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (!ok) return 0;
   must(map.charge_w_max > 0 && map.discharge_w_max > 0, "an accepted map can express power");
   for (const std::int32_t power_w : {map.charge_w_max, 0, -map.discharge_w_max}) {
-    const PowerOrder order{.power_w = power_w, .duration_s = map.dead_man_duration_s};
+    const PowerOrder order{.power_w = power_w, .duration_s = map.watchdog.duration_s};
     must(check_expressible(map, order) == Status::kOk,
          "the power it states goes into its registers");
   }

@@ -1,5 +1,5 @@
-// Stands in for libFuzzer in everyday builds: runs a target on every seed and on seeded mutations of
-// it, so that each commit sees the readers survive some thousand damaged inputs.
+// Stands in for libFuzzer in everyday builds: runs a target on every seed and on seeded mutations
+// of it, so that each commit sees the readers survive some thousand damaged inputs.
 //   TARGET SEED...      files, or folders of them
 #include <cstdio>
 #include <filesystem>

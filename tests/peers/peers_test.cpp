@@ -1,7 +1,7 @@
-// The real bess-edge against an independent battery (pymodbus), watched by an independent master (mbpoll):
-// the dispatch block of AlphaESS, register by register, for charge, idle, discharge and release, over TCP and
-// over a serial line (socat), written as one block and as five writes. The expected registers are worked
-// out by hand from the vendor's manual:
+// The real bess-edge against an independent battery (pymodbus), watched by an independent master
+// (mbpoll): the dispatch block of AlphaESS, register by register, for charge, idle, discharge and
+// release, over TCP and over a serial line (socat), written as one block and as five writes. The
+// expected registers are worked out by hand from the vendor's manual:
 //   0x0880 start | 32000 + W, below it charging (2) | 32000 + var (2) | mode 2 = SoC control |
 //   SoC limit, 0.4 % each: ceiling 100 % = 250, floor 10 % = 25 | seconds (2) | 255 | PV 0
 #include <gmock/gmock.h>
@@ -9,10 +9,7 @@
 
 #include <sstream>
 
-#include "shared/scaled_clock.h"
-#include "shared/utc_text.h"
-#include "tests/support/child_process.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/simulated_site.h"
 
 namespace bess {
 namespace {
@@ -20,9 +17,7 @@ namespace {
 using ::testing::ElementsAreArray;
 using ::testing::HasSubstr;
 
-constexpr std::int64_t kStartS = 1'679'788'800;  // 2023-03-26T00:00:00Z
-constexpr const char* kStart = "2023-03-26T00:00:00Z";
-constexpr int kScale = 60;  // a cycle takes 2 s: time to kill the edge between two orders
+constexpr std::int32_t kScale = 60;  // a cycle takes 2 s: time to kill the edge between two orders
 constexpr const char* kPython = "/usr/bin/python3";
 constexpr const char* kMbpoll = "/usr/bin/mbpoll";
 constexpr const char* kSocat = "/usr/bin/socat";
@@ -71,10 +66,12 @@ class Peers : public ::testing::TestWithParam<Setup> {
   }
 
   void start_line() {
-    const auto end = [&](const char* name) { return "pty,raw,echo=0,link=" + folder_.file(name); };
+    const auto end = [&](const char* name) {
+      return "pty,raw,echo=0,link=" + site_.folder.file(name);
+    };
     line_ = std::make_unique<ChildProcess>(
         std::vector<std::string>{kSocat, end("battery_end"), end("edge_end")});
-    for (int i = 0; i < 500 && access(folder_.file("edge_end").c_str(), F_OK) != 0; ++i) {
+    for (int i = 0; i < 500 && access(site_.folder.file("edge_end").c_str(), F_OK) != 0; ++i) {
       sleep_until_monotonic(clock_ns(CLOCK_MONOTONIC) + kNanosecondsPerSecond / 100);
     }
   }
@@ -82,53 +79,29 @@ class Peers : public ::testing::TestWithParam<Setup> {
     std::vector<std::string> arguments = {kPython, BESS_SOURCE_DIR "/tests/peers/alphaess_peer.py",
                                           "--soc", std::to_string(soc_permille)};
     if (GetParam().rtu) {
-      arguments.insert(arguments.end(), {"--serial", folder_.file("battery_end")});
+      arguments.insert(arguments.end(), {"--serial", site_.folder.file("battery_end")});
     }
-    battery_ = std::make_unique<ChildProcess>(arguments);
-    const std::string ready = battery_->read_line();
+    site_.battery = std::make_unique<ChildProcess>(arguments);
+    const std::string ready = site_.battery->read_line();
     ASSERT_THAT(ready, HasSubstr("listening on"));
-    battery_port_ = ready.substr(ready.find_last_of(':') + 1);
+    if (!GetParam().rtu) site_.battery_port = std::stoi(ready.substr(ready.find_last_of(':') + 1));
   }
-  void start_market(int price) {
-    std::ostringstream text;
-    text << "minute_utc,indicative_eur_mwh,settled_eur_mwh\n";
-    for (int minute = -10; minute < 60; ++minute) {
-      text << utc_text(kStartS + 60 * minute).view() << ',' << price << ',' << price << '\n';
-    }
-    market_ = std::make_unique<ChildProcess>(std::vector<std::string>{
-        BESS_SIM_PROGRAM, "market", "--port", "0", "--prices",
-        folder_.write("minutes.csv", text.str()), "--utc-start", kStart, "--time-scale",
-        std::to_string(kScale), "--anchor-monotonic-ns", std::to_string(anchor_ns_)});
-    const std::string ready = market_->read_line();
-    const std::size_t colon = ready.find(':', ready.find("127.0.0.1"));
-    ASSERT_NE(colon, std::string::npos) << ready;
-    market_port_ = std::to_string(std::atoi(ready.c_str() + colon + 1));
-  }
-  std::string edge_config() const {
-    std::ostringstream text;
-    text << "control = true\n[battery]\nmap = \"" BESS_SOURCE_DIR "/edge/maps/alphaess.toml\"\n"
-         << "variant = \"" << GetParam().variant << "\"\nresponse_timeout_ms = 2000\n";
-    if (GetParam().rtu) {
-      text << "transport = \"rtu\"\ndevice = \"" << folder_.file("edge_end") << "\"\n";
-    } else {
-      text << "port = " << battery_port_ << "\n";
-    }
-    text << "[price]\nurl = \"http://127.0.0.1:" << market_port_
-         << "/api/explore/v2.1/catalog/datasets/ods161/records?order_by=datetime%20desc&limit=5\"\n"
-         << "[state]\nfolder = \"state\"\nlock_folder = \"" << folder_.file("") << "\"\n"
-         << "[simulation]\ntime_scale = " << kScale << "\nutc_start = \"" << kStart
-         << "\"\nanchor_monotonic_ns = " << anchor_ns_ << "\n";
-    return folder_.write("edge.toml", text.str());
+  std::string battery_keys() const {
+    const std::string keys =
+        SimulatedSite::alphaess_keys(2'000) + "variant = \"" + GetParam().variant + "\"\n";
+    if (!GetParam().rtu) return keys;
+    return keys + "transport = \"rtu\"\ndevice = \"" + site_.folder.file("edge_end") + "\"\n";
   }
   /// Runs the edge in a situation up to its first order; then it ends by this signal.
   void run_edge(const Situation& situation, int signal) {
-    anchor_ns_ = clock_ns(CLOCK_MONOTONIC) + 2 * kNanosecondsPerSecond;
+    site_.start_clock();
     start_battery(situation.soc_permille);
-    start_market(situation.price_eur_per_mwh);
     if (HasFatalFailure()) return;
-    const std::string config = edge_config();
-    ChildProcess sign_check({BESS_EDGE_PROGRAM, "commission", "--config", config, "--yes"});
-    ASSERT_THAT(sign_check.read_all(), HasSubstr("the sign is right"));
+    const SimulatedSite::PriceWave flat{
+        .mean_eur_per_mwh = static_cast<double>(situation.price_eur_per_mwh),
+        .amplitude_eur_per_mwh = 0};
+    site_.start_market({}, SimulatedSite::minute_prices(60, flat));
+    const std::string config = site_.commission({.battery_keys = battery_keys()});
     ChildProcess edge({BESS_EDGE_PROGRAM, "--config", config});
     std::string line;
     do line = edge.read_line();
@@ -139,15 +112,17 @@ class Peers : public ::testing::TestWithParam<Setup> {
     ASSERT_EQ(edge.wait(), signal == SIGKILL ? 128 + SIGKILL : 0);
   }
 
-  /// What mbpoll reads in the dispatch block: it asks for all, each value is printed with its address.
+  /// What mbpoll reads in the dispatch block: it asks for all, each value is printed with its
+  /// address.
   std::vector<int> read_dispatch() {
     std::vector<std::string> arguments = {kMbpoll, "-a", "85", "-0", "-r", "2176", "-c",
                                           "11",    "-t", "4",  "-1", "-o", "5"};
     if (GetParam().rtu) {
       arguments.insert(arguments.end(),
-                       {"-m", "rtu", "-b", "9600", "-P", "none", folder_.file("edge_end")});
+                       {"-m", "rtu", "-b", "9600", "-P", "none", site_.folder.file("edge_end")});
     } else {
-      arguments.insert(arguments.end(), {"-m", "tcp", "-p", battery_port_, "127.0.0.1"});
+      arguments.insert(arguments.end(),
+                       {"-m", "tcp", "-p", std::to_string(site_.battery_port), "127.0.0.1"});
     }
     ChildProcess mbpoll(arguments);
     const std::string text = mbpoll.read_all();
@@ -167,22 +142,20 @@ class Peers : public ::testing::TestWithParam<Setup> {
   }
   /// All writes that the battery has had since its sign check, in their order.
   std::vector<std::string> take_writes() {
-    battery_->signal(SIGTERM);
+    site_.battery->signal(SIGTERM);
     std::vector<std::string> writes;
-    std::istringstream text(battery_->read_all());
+    std::istringstream text(site_.battery->read_all());
     for (std::string line; std::getline(text, line);) {
       if (line.rfind("write ", 0) == 0) writes.push_back(line);
     }
-    battery_.reset();
-    market_.reset();
+    site_.battery.reset();
+    site_.market.reset();
     if (std::ssize(writes) < sign_check_writes()) return {};
     return {writes.begin() + sign_check_writes(), writes.end()};
   }
 
-  TemporaryFolder folder_;
-  std::int64_t anchor_ns_ = 0;
-  std::string battery_port_, market_port_;
-  std::unique_ptr<ChildProcess> line_, battery_, market_;
+  SimulatedSite site_{kScale};
+  std::unique_ptr<ChildProcess> line_;
 };
 
 TEST_P(Peers, EachOrderStandsInTheDispatchBlockRegisterByRegister) {

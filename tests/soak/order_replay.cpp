@@ -1,9 +1,9 @@
-// Decides every cycle of a log again, from the integers that it recorded, and compares the orders bit by bit:
-// what a Raspberry Pi ordered must be what this machine would have ordered.
+// Decides every cycle of a log again, from the integers that it recorded, and compares the orders
+// bit by bit: what a Raspberry Pi ordered must be what this machine would have ordered.
 //   order_replay EDGE.TOML EDGE.CSV
 //   exit 0 every order is the same   1 one differs, or the log is not a run in control   2 usage
-// A free run on each machine would not do: the battery's state of charge depends on when, to the millisecond,
-// an order arrives, so the inputs themselves would differ.
+// A free run on each machine would not do: the battery's state of charge depends on when, to the
+// millisecond, an order arrives, so the inputs themselves would differ.
 #include <cstdio>
 #include <map>
 #include <stdexcept>

@@ -1,35 +1,28 @@
-// The real bess-edge for many cycles under BESS_SECCOMP=kill, in scaled time, with everything around it
-// failing: the Modbus connection is cut in every cycle, every price request is a TLS handshake, the name
-// is looked up again all the time, the price server answers nonsense now and then, and both ends die and
-// come back. Afterwards the process must not have grown by anything.
+// The real bess-edge for many cycles under BESS_SECCOMP=kill, in scaled time, with everything
+// around it failing: the Modbus connection is cut in every cycle, every price request is a TLS
+// handshake, the name is looked up again all the time, the price server answers nonsense now and
+// then, and both ends die and come back. Afterwards the process must not have grown by anything.
 //   BESS_SOAK_CYCLES   length of the long run; tools/soak sets it
 //   BESS_SOAK_SCALE    simulated seconds per second; less for a slow machine
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <netdb.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <sstream>
 
-#include "shared/scaled_clock.h"
-#include "shared/utc_text.h"
-#include "tests/support/child_process.h"
 #include "tests/support/dropping_proxy.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/support/simulated_site.h"
 #include "tests/support/throwaway_ca.h"
 
 namespace bess {
 namespace {
 
 namespace fs = std::filesystem;
-using ::testing::HasSubstr;
 
-constexpr std::int64_t kStartS = 1'679'788'800;  // 2023-03-26T00:00:00Z
 constexpr int kWarmCycles = 100;
 
 int wish(const char* name, int otherwise) {
@@ -38,17 +31,6 @@ int wish(const char* name, int otherwise) {
 }
 
 int long_run_cycles() { return std::max(wish("BESS_SOAK_CYCLES", 300), 2 * kWarmCycles); }
-
-/// Prices for three times the cycles: a busy machine skips ticks.
-std::string minute_file_text(int cycles) {
-  std::ostringstream text;
-  text << "minute_utc,indicative_eur_mwh,settled_eur_mwh\n";
-  for (int minute = -60; minute < 6 * cycles; ++minute) {
-    const double price = 100 + 600 * std::sin(minute / 7.0);
-    text << utc_text(kStartS + 60 * minute).view() << ',' << price << ',' << price << '\n';
-  }
-  return text.str();
-}
 
 /// A name of this machine that the resolver knows, so that names are really looked up.
 std::string resolvable_name() {
@@ -112,42 +94,13 @@ struct RunResult {
 
 class Soak : public ::testing::Test {
  protected:
-  std::unique_ptr<ChildProcess> start_simulator(std::vector<std::string> arguments, int& port) {
-    arguments.insert(arguments.begin(), BESS_SIM_PROGRAM);
-    for (const std::string& option :
-         {std::string("--port"), std::to_string(port), std::string("--utc-start"),
-          std::string("2023-03-26T00:00:00Z"), std::string("--time-scale"), std::to_string(scale_),
-          std::string("--anchor-monotonic-ns"), std::to_string(anchor_ns_)}) {
-      arguments.push_back(option);
-    }
-    auto child = std::make_unique<ChildProcess>(arguments);
-    const std::string line = child->read_line();
-    const std::size_t place = line.find("127.0.0.1:");
-    EXPECT_NE(place, std::string::npos) << line;
-    if (place != std::string::npos) port = std::atoi(line.c_str() + place + 10);
-    return child;
+  void start_battery(int port) {
+    site_.start_battery({"--fault", "drop", "--fault-every", "23"}, port);
   }
-  void start_battery() {
-    battery_ =
-        start_simulator({"battery", "--fault", "drop", "--fault-every", "23"}, battery_port_);
-  }
-  void start_market() {
-    market_ = start_simulator(
-        {"market", "--prices", folder_.file("minutes.csv"), "--tls-cert", ca_.certificate(),
-         "--tls-key", ca_.key(), "--close-each", "--fault", "all", "--fault-every", "5"},
-        market_port_);
-  }
-  std::string write_config(int battery_port) const {
-    std::ostringstream text;
-    text
-        << "control = true\n[battery]\nmap = \"" BESS_SOURCE_DIR "/edge/maps/alphaess.toml\"\n"
-        << "port = " << battery_port << "\nresponse_timeout_ms = 200\n[price]\nurl = \"https://"
-        << name_ << ":" << market_port_
-        << "/api/explore/v2.1/catalog/datasets/ods161/records?order_by=datetime%20desc&limit=20\"\n"
-        << "ca_file = \"" << bundle_ << "\"\ntimeout_ms = 500\nwait_s = 40\nresolve_every_s = 1\n"
-        << "[log]\ncsv = \"edge.csv\"\n[simulation]\ntime_scale = " << scale_
-        << "\nutc_start = \"2023-03-26T00:00:00Z\"\nanchor_monotonic_ns = " << anchor_ns_ << "\n";
-    return folder_.write("edge.toml", text.str());
+  void start_market(int port) {
+    site_.start_market({"--tls-cert", ca_.certificate(), "--tls-key", ca_.key(), "--close-each",
+                        "--fault", "all", "--fault-every", "5"},
+                       prices_, port);
   }
   /// The test's authority among those of a real system: what they cost in the arena counts.
   std::string write_bundle() const {
@@ -155,34 +108,31 @@ class Soak : public ::testing::Test {
     std::ifstream own(ca_.ca());
     std::ostringstream text;
     text << system.rdbuf() << own.rdbuf();
-    return folder_.write("bundle.pem", text.str());
+    return site_.folder.write("bundle.pem", text.str());
   }
   enum class Market { kThereAtStart, kComesLater };
   RunResult run(int cycles, Market market);
   void follow(ChildProcess& edge, DroppingProxy& proxy, int cycles, RunResult& result);
   void let_ends_die(int cycle, int cycles);
 
-  TemporaryFolder folder_;
-  const int scale_ = wish("BESS_SOAK_SCALE", 2'000);  // a cycle is 60 ms
+  SimulatedSite site_{wish("BESS_SOAK_SCALE", 2'000)};  // a cycle is 60 ms
   std::string name_ = resolvable_name();
   ThrowawayCa ca_{"DNS:" + name_};
   std::string bundle_ = write_bundle();
-  std::int64_t anchor_ns_ = 0;
-  int battery_port_ = 0;
-  int market_port_ = 0;
-  std::unique_ptr<ChildProcess> battery_, market_;
+  std::string prices_;
+  int battery_port_ = 0;  ///< behind the proxy
   int market_start_cycle_ = 0;
 };
 
 /// The price server dies for a while in the second quarter, the battery in the third.
 void Soak::let_ends_die(int cycle, int cycles) {
-  if (cycle == market_start_cycle_) start_market();
+  if (cycle == market_start_cycle_) start_market(site_.market_port);
   if (cycles < kWarmCycles) return;
   const int quarter = cycles / 4;
-  if (cycle == quarter) market_.reset();
-  if (cycle == quarter + 20) start_market();
-  if (cycle == 2 * quarter) battery_.reset();
-  if (cycle == 2 * quarter + 20) start_battery();
+  if (cycle == quarter) site_.market.reset();
+  if (cycle == quarter + 20) start_market(site_.market_port);
+  if (cycle == 2 * quarter) site_.battery.reset();
+  if (cycle == 2 * quarter + 20) start_battery(battery_port_);
 }
 
 void Soak::follow(ChildProcess& edge, DroppingProxy& proxy, int cycles, RunResult& result) {
@@ -206,25 +156,29 @@ void Soak::follow(ChildProcess& edge, DroppingProxy& proxy, int cycles, RunResul
 
 RunResult Soak::run(int cycles, Market market) {
   RunResult result;
-  folder_.write("minutes.csv", minute_file_text(cycles)).size();
-  anchor_ns_ = clock_ns(CLOCK_MONOTONIC) + kNanosecondsPerSecond / 2;
-  battery_port_ = market_port_ = 0;
-  start_battery();
-  start_market();
+  // Prices for three times the cycles: a busy machine skips ticks.
+  prices_ = SimulatedSite::minute_prices(6 * cycles, {.amplitude_eur_per_mwh = 600});
+  site_.start_clock();
+  start_battery(0);
+  start_market(0);
   if (market == Market::kComesLater) {
-    market_.reset();  // its port is known now
+    site_.market.reset();  // its port is known now
     market_start_cycle_ = 10;
   }
+  battery_port_ = site_.battery_port;
   DroppingProxy proxy(static_cast<std::uint16_t>(battery_port_));
-  const std::string config = write_config(proxy.port());
-  ChildProcess sign_check({BESS_EDGE_PROGRAM, "commission", "--config", config, "--yes"});
-  EXPECT_THAT(sign_check.read_all(), HasSubstr("the sign is right"));
+  site_.battery_port = proxy.port();  // where the edge looks for it
+  const std::string config =
+      site_.commission({.battery_keys = SimulatedSite::alphaess_keys(200),
+                        .price_server = "https://" + name_,
+                        .price_keys = "ca_file = \"" + bundle_ +
+                                      "\"\ntimeout_ms = 500\nwait_s = 40\nresolve_every_s = 1\n"});
   ChildProcess edge({BESS_EDGE_PROGRAM, "--config", config, "--cycles", std::to_string(cycles)});
   follow(edge, proxy, cycles, result);
   result.exit_code = edge.wait();
   result.connections = proxy.connections();
-  battery_.reset();
-  market_.reset();
+  site_.battery.reset();
+  site_.market.reset();
   return result;
 }
 

@@ -1,14 +1,13 @@
 // A TCP proxy on loopback that can cut its one connection at any moment: a cable that is pulled.
 #pragma once
 
-#include <arpa/inet.h>
 #include <poll.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <cstdint>
 #include <thread>
+
+#include "tests/support/loopback_socket.h"
 
 namespace bess {
 
@@ -16,11 +15,8 @@ class DroppingProxy {
  public:
   /// `target_port` is on 127.0.0.1 and may come and go.
   explicit DroppingProxy(std::uint16_t target_port) : target_port_(target_port) {
-    listen_fd_ = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    sockaddr_in place = loopback(0);
-    socklen_t size = sizeof place;
-    bind(listen_fd_, reinterpret_cast<sockaddr*>(&place), size);
-    getsockname(listen_fd_, reinterpret_cast<sockaddr*>(&place), &size);
+    sockaddr_in place = loopback_address();
+    listen_fd_ = bind_socket(place);
     listen(listen_fd_, 16);
     port_ = ntohs(place.sin_port);
     thread_ = std::thread([this] { run(); });
@@ -39,20 +35,13 @@ class DroppingProxy {
   void drop() { drop_ = true; }
 
  private:
-  static sockaddr_in loopback(std::uint16_t port) {
-    sockaddr_in place{};
-    place.sin_family = AF_INET;
-    place.sin_port = htons(port);
-    place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    return place;
-  }
   void run() {
     while (!stopping_) {
       pollfd waiting{.fd = listen_fd_, .events = POLLIN, .revents = 0};
       if (poll(&waiting, 1, 20) <= 0) continue;
       const int client = accept4(listen_fd_, nullptr, nullptr, SOCK_CLOEXEC);
       const int target = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-      const sockaddr_in place = loopback(target_port_);
+      const sockaddr_in place = loopback_address(target_port_);
       ++connections_;
       drop_ = false;
       if (connect(target, reinterpret_cast<const sockaddr*>(&place), sizeof place) == 0) {

@@ -1,5 +1,6 @@
-// Stands in for the C library's name lookup in a test program (fake_resolver.cpp defines getaddrinfo, which
-// libcurl would call as well): the test says what a name means and how long the answer takes.
+// Stands in for the C library's name lookup in a test program (fake_resolver.cpp defines
+// getaddrinfo, which libcurl would call as well): the test says what a name means and how long the
+// answer takes.
 #pragma once
 
 #include <string>

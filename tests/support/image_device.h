@@ -2,7 +2,6 @@
 // in memory, in time that the test moves.
 #pragma once
 
-#include <memory>
 #include <string>
 
 #include "tests/support/register_device.h"

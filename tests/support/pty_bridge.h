@@ -1,5 +1,6 @@
-// Two pseudo terminals with everything that is written to one arriving at the other: the two ends of a
-// serial line, each with a device name. Destroying it hangs both ends up, as a pulled adapter does.
+// Two pseudo terminals with everything that is written to one arriving at the other: the two ends
+// of a serial line, each with a device name. Destroying it hangs both ends up, as a pulled adapter
+// does.
 #pragma once
 
 #include <fcntl.h>

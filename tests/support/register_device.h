@@ -11,7 +11,7 @@
 
 #include "edge/battery/battery_driver.h"
 #include "edge/battery/modbus_link.h"
-#include "edge/registers/map_file.h"
+#include "tests/support/shipped_maps.h"
 
 namespace bess {
 
@@ -24,6 +24,12 @@ struct WriteRecord {
     for (const int value : w.values) *out << " " << value;
   }
 };
+
+/// A write by function 16 or 6, as it is expected.
+inline WriteRecord fc16(int address, std::vector<int> values, int unit = 1) {
+  return {unit, 16, address, std::move(values)};
+}
+inline WriteRecord fc6(int address, int value) { return {1, 6, address, {value}}; }
 
 struct RegisterDevice {
   std::vector<std::uint16_t> holding = std::vector<std::uint16_t>(0x1'0000);
@@ -107,10 +113,6 @@ class DeviceClock {
 
 using DeviceDriver = BatteryDriver<DeviceLink, DeviceClock>;
 
-inline std::string shipped_map(const std::string& name) {
-  return std::string(BESS_SOURCE_DIR) + "/edge/maps/" + name + ".toml";
-}
-
 /// A map of edge/maps with a device for it; the test fills the registers.
 struct MapUnderTest {
   RegisterMap map;
@@ -127,7 +129,7 @@ struct MapUnderTest {
     return driver->order({.power_w = power_w,
                           .soc_min_e4 = 1'000,
                           .soc_max_e4 = 9'000,
-                          .duration_s = map.dead_man_duration_s});
+                          .duration_s = map.watchdog.duration_s});
   }
   Status read() { return driver->read(measured); }
 };

@@ -1,6 +1,6 @@
 // bess-sim battery and bess-sim market on free ports, in scaled time, and the configuration with
-// which bess-edge drives the one on the prices of the other. Needs BESS_SIM_PROGRAM
-// and BESS_EDGE_PROGRAM.
+// which bess-edge drives the one on the prices of the other. Where closed_loop/, soak/ and peers/
+// start the real programs. Needs BESS_SIM_PROGRAM and BESS_EDGE_PROGRAM.
 #pragma once
 
 #include <cmath>
@@ -29,20 +29,28 @@ class SimulatedSite {
   void start_clock() { anchor_ns_ = clock_ns(CLOCK_MONOTONIC) + kNanosecondsPerSecond / 2; }
   [[nodiscard]] std::int64_t anchor_ns() const { return anchor_ns_; }
 
+  struct PriceWave {
+    double mean_eur_per_mwh = 100;
+    double amplitude_eur_per_mwh = 400;
+  };
   /// Prices that make the battery charge, rest and discharge, from an hour before the start on.
-  static std::string minute_prices(int minutes) {
+  static std::string minute_prices(int minutes, const PriceWave& wave) {
     std::ostringstream text;
     text << "minute_utc,indicative_eur_mwh,settled_eur_mwh\n";
     for (int minute = -60; minute < minutes; ++minute) {
-      const double price = 100 + 400 * std::sin(minute / 7.0);
+      const double price =
+          wave.mean_eur_per_mwh + wave.amplitude_eur_per_mwh * std::sin(minute / 7.0);
       text << utc_text(kStartS + 60 * minute).view() << ',' << price << ',' << price << '\n';
     }
     return text.str();
   }
+  static std::string minute_prices(int minutes) { return minute_prices(minutes, PriceWave{}); }
 
-  void start_battery(const std::vector<std::string>& options = {}) {
-    battery = start_simulator({"battery", "--port", "0", "--record", folder.file("battery.csv")},
-                              options);
+  /// `port` 0: any free one. A simulator that comes back is given the port that it had.
+  void start_battery(const std::vector<std::string>& options = {}, int port = 0) {
+    battery = start_simulator(
+        {"battery", "--port", std::to_string(port), "--record", folder.file("battery.csv")},
+        options);
     battery_port = port_of(battery->read_line());
   }
   void start_serial_battery(const std::string& device) {
@@ -53,19 +61,24 @@ class SimulatedSite {
     }
   }
   void start_market(const std::vector<std::string>& options = {},
-                    const std::string& prices = minute_prices(150)) {
+                    const std::string& prices = minute_prices(150), int port = 0) {
     market = start_simulator(
-        {"market", "--port", "0", "--prices", folder.write("minutes.csv", prices)}, options);
+        {"market", "--port", std::to_string(port), "--prices", folder.write("minutes.csv", prices)},
+        options);
     market_port = port_of(market->read_line());
   }
 
-  static std::string alphaess_map() {
-    return "map = \"" BESS_SOURCE_DIR "/edge/maps/alphaess.toml\"\n";
+  /// Lines of TOML for [battery]: the device, and how long it may take to answer.
+  static std::string alphaess_keys(int response_timeout_ms = 100) {
+    return "map = \"" BESS_SOURCE_DIR "/edge/maps/alphaess.toml\"\nresponse_timeout_ms = " +
+           std::to_string(response_timeout_ms) + "\n";
   }
 
   struct ConfigOptions {
-    std::string battery_keys = alphaess_map();  ///< lines of TOML for [battery]
-    std::string state = "state";                ///< folder; the file is named after it
+    std::string battery_keys = alphaess_keys() + "start_timeout_s = 1\n";  ///< all but the port
+    std::string price_server = "http://127.0.0.1";                         ///< without its port
+    std::string price_keys = "";  ///< lines of TOML for [price], beside the URL
+    std::string state = "state";  ///< folder; the file is named after it
   };
 
   /// All configurations of a site lock in one place.
@@ -73,11 +86,11 @@ class SimulatedSite {
     std::ostringstream text;
     text
         << "control = true\n[battery]\n"
-        << options.battery_keys << "port = " << battery_port
-        << "\nresponse_timeout_ms = 100\nstart_timeout_s = 1\n[price]\nurl = \"http://127.0.0.1:"
-        << market_port
+        << options.battery_keys << "port = " << battery_port << "\n[price]\nurl = \""
+        << options.price_server << ":" << market_port
         << "/api/explore/v2.1/catalog/datasets/ods161/records?order_by=datetime%20desc&limit=20\"\n"
-        << "[state]\nfolder = \"" << options.state << "\"\nlock_folder = \"" << folder.file("")
+        << options.price_keys << "[state]\nfolder = \"" << options.state << "\"\nlock_folder = \""
+        << folder.file("")
         << "\"\n[log]\ncsv = \"edge.csv\"\n[simulation]\ntime_scale = " << time_scale_
         << "\nutc_start = \"" << utc_text(kStartS).view()
         << "\"\nanchor_monotonic_ns = " << anchor_ns_ << "\n";
@@ -90,7 +103,9 @@ class SimulatedSite {
     const std::string config = write_config(options);
     ChildProcess check({BESS_EDGE_PROGRAM, "commission", "--config", config, "--yes"});
     const std::string text = check.read_all();
-    if (check.wait() != 0) throw std::runtime_error("the sign check failed: " + text);
+    if (check.wait() != 0 || text.find("the sign is right") == std::string::npos) {
+      throw std::runtime_error("the sign check failed: " + text);
+    }
     return config;
   }
   [[nodiscard]] std::string commission() const { return commission(ConfigOptions{}); }

@@ -1,19 +1,17 @@
 // A server on loopback that says exactly what a test wants, byte by byte, in clear or over TLS.
 #pragma once
 
-#include <arpa/inet.h>
 #include <openssl/ssl.h>
 #include <poll.h>
 #include <signal.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <cstdint>
 #include <functional>
-#include <mutex>
 #include <string>
 #include <thread>
+
+#include "tests/support/loopback_socket.h"
 
 namespace bess {
 
@@ -61,17 +59,10 @@ class TestServer {
 
   TestServer(Handler handler, const Options& options) : handler_(std::move(handler)) {
     signal(SIGPIPE, SIG_IGN);  // OpenSSL writes to clients that have gone
-    sockaddr_in place{};
-    place.sin_family = AF_INET;
-    place.sin_port = htons(options.port);
-    inet_pton(AF_INET, options.address, &place.sin_addr);
-    listen_fd_ = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-    const int yes = 1;
-    setsockopt(listen_fd_, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
-    socklen_t size = sizeof place;
-    if (bind(listen_fd_, reinterpret_cast<sockaddr*>(&place), size) != 0) return;
+    sockaddr_in place = loopback_address(options.port, options.address);
+    listen_fd_ = bind_socket(place);
+    if (listen_fd_ < 0) return;
     listen(listen_fd_, 16);
-    getsockname(listen_fd_, reinterpret_cast<sockaddr*>(&place), &size);
     port_ = ntohs(place.sin_port);
     if (!options.certificate.empty()) {
       context_ = SSL_CTX_new(TLS_server_method());

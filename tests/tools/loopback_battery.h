@@ -1,5 +1,5 @@
-// A simulated battery on its own thread, over TCP on a free port or over a pair of pseudo terminals,
-// in scaled time, and the settings with which the edge reaches it.
+// A simulated battery on its own thread, over TCP on a free port or over a pair of pseudo
+// terminals, in scaled time, and the settings with which the edge reaches it.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -10,21 +10,13 @@
 #include <thread>
 
 #include "edge/battery/modbus_link.h"
-#include "edge/registers/map_file.h"
 #include "tests/support/pty_bridge.h"
+#include "tests/support/shipped_maps.h"
 #include "tools/battery_sim/battery_server.h"
 
 namespace bess {
 
 enum class Transport { kTcp, kRtu };
-
-inline RegisterMap load_alphaess(const char* variant) {
-  RegisterMap map;
-  std::string error;
-  EXPECT_TRUE(load_register_map(BESS_SOURCE_DIR "/edge/maps/alphaess.toml", variant, map, error))
-      << error;
-  return map;
-}
 
 class LoopbackBattery {
  public:
@@ -34,7 +26,8 @@ class LoopbackBattery {
   explicit LoopbackBattery(const char* variant, BatteryServerSettings settings = {},
                            Transport transport = Transport::kTcp,
                            const BatteryParameters& parameters = kHouse)
-      : LoopbackBattery(load_alphaess(variant), settings, transport, parameters, kScale) {}
+      : LoopbackBattery(load_shipped_map({"alphaess", variant}), settings, transport, parameters,
+                        kScale) {}
 
   LoopbackBattery(const RegisterMap& register_map, BatteryServerSettings settings,
                   Transport transport, const BatteryParameters& parameters, std::int32_t time_scale)

@@ -2,8 +2,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "edge/prices/price_json.h"
 #include "shared/scaled_clock.h"
 #include "shared/utc_text.h"

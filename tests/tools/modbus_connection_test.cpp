@@ -1,21 +1,18 @@
-// The connection's life: nobody there, a queue that is full, a server that closes when idle, a serial
-// adapter that is pulled and comes back, too many open files.
-#include <arpa/inet.h>
+// The connection's life: nobody there, a queue that is full, a server that closes when idle, a
+// serial adapter that is pulled and comes back, too many open files.
 #include <fcntl.h>
 #include <gtest/gtest.h>
-#include <netinet/in.h>
 #include <poll.h>
 #include <sys/resource.h>
 #include <sys/select.h>
-#include <sys/socket.h>
 #include <termios.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <thread>
 #include <vector>
 
 #include "edge/battery/modbus_link.h"
+#include "tests/support/loopback_socket.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/tools/loopback_battery.h"
 
@@ -27,12 +24,8 @@ constexpr RegisterSpan kSoc{.unit = 85, .address = 0x0102, .count = 1};
 /// A bare listening socket on a free port of loopback.
 class Listener {
  public:
-  explicit Listener(int backlog) : fd_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
-    address_.sin_family = AF_INET;
-    address_.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    EXPECT_EQ(bind(fd_, reinterpret_cast<sockaddr*>(&address_), sizeof address_), 0);
-    socklen_t size = sizeof address_;
-    getsockname(fd_, reinterpret_cast<sockaddr*>(&address_), &size);
+  explicit Listener(int backlog) : fd_(bind_socket(address_)) {
+    EXPECT_GE(fd_, 0);
     if (backlog >= 0) start(backlog);
   }
   ~Listener() { ::close(fd_); }
@@ -56,8 +49,8 @@ class Listener {
   }
 
  private:
+  sockaddr_in address_ = loopback_address();
   int fd_;
-  sockaddr_in address_{};
 };
 
 TEST(ModbusConnection, ADeadBatteryIsNotHammered) {

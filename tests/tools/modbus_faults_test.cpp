@@ -1,6 +1,7 @@
-// Every fault of the bus, over TCP and over a serial line, ends in a right answer or in an error, never in
-// a wrong value used: first the link alone with random reads and writes, then the battery driver with
-// orders. The faults come at random from a fixed seed, so that they meet every kind of request.
+// Every fault of the bus, over TCP and over a serial line, ends in a right answer or in an error,
+// never in a wrong value used: first the link alone with random reads and writes, then the battery
+// driver with orders. The faults come at random from a fixed seed, so that they meet every kind of
+// request.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -78,8 +79,8 @@ class Patience {
 
 class EveryFault : public ::testing::TestWithParam<Trouble> {};
 
-/// Free registers of the simulated battery, and what each may hold: one value, or, after a write that
-/// reported an error, the old one as well.
+/// Free registers of the simulated battery, and what each may hold: one value, or, after a write
+/// that reported an error, the old one as well.
 class Scratch {
  public:
   static constexpr int kFirst = 0x0300;

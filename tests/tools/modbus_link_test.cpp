@@ -1,5 +1,5 @@
-// The edge's Modbus driver against the simulated battery, which speaks libmodbus, on loopback: every
-// command, and how trouble is told apart. Faults: modbus_faults_test.
+// The edge's Modbus driver against the simulated battery, which speaks libmodbus, on loopback:
+// every command, and how trouble is told apart. Faults: modbus_faults_test.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -40,7 +40,7 @@ TEST_P(EveryVariant, OrdersAreObeyedReadBackAndReleased) {
 INSTANTIATE_TEST_SUITE_P(Variants, EveryVariant,
                          ::testing::Values("block", "five_writes", "ten_and_one"));
 
-TEST(ModbusLink, DeadManEndsAnOrderThatIsNotRefreshed) {
+TEST(ModbusLink, TheWatchdogEndsAnOrderThatIsNotRefreshed) {
   LoopbackBattery loopback("block");
   ModbusBattery battery(loopback.link(), loopback.map, loopback.clock);
   ASSERT_EQ(battery.order(kCharge), Status::kOk);
@@ -78,7 +78,7 @@ TEST(ModbusLink, NobodyThereAndWrongUnitAreToldApart) {
     BatteryMeasurement m;
     EXPECT_EQ(wrong_unit.read(m), Status::kTimeout);
   }
-  const RegisterMap map = load_alphaess("block");
+  const RegisterMap map = load_shipped_map({"alphaess", "block"});
   ModbusBattery nobody(link, map, ScaledClock{.scale = LoopbackBattery::kScale});
   BatteryMeasurement m;
   EXPECT_EQ(nobody.read(m), Status::kNotConnected);

@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "edge/registers/codec.h"
-#include "edge/registers/map_file.h"
 #include "shared/scaled_clock.h"
+#include "tests/support/shipped_maps.h"
 #include "tools/battery_sim/register_image.h"
 
 namespace bess {
@@ -83,13 +83,7 @@ TEST(SimulatedBattery, RecordHasOneRowAMinuteAndAllTheEnergy) {
 /// Registers of a battery, written as the edge writes them.
 class RegisterImageTest : public ::testing::TestWithParam<const char*> {
  protected:
-  RegisterImageTest() {
-    std::string error;
-    EXPECT_TRUE(
-        load_register_map(BESS_SOURCE_DIR "/edge/maps/alphaess.toml", GetParam(), map_, error))
-        << error;
-    image_.emplace(map_, battery_, registers_, registers_);
-  }
+  RegisterImageTest() { image_.emplace(map_, battery_, registers_, registers_); }
 
   void write(Command command, const PowerOrder& order) {
     for (const BlockWrite& write : map_.sequence(command).writes) {
@@ -108,7 +102,7 @@ class RegisterImageTest : public ::testing::TestWithParam<const char*> {
     return value;
   }
 
-  RegisterMap map_;
+  RegisterMap map_ = load_shipped_map({"alphaess", GetParam()});
   SimulatedBattery battery_{kHouse, 0.5, kStartNs};
   std::array<std::uint16_t, RegisterImage::kRegisterCount> registers_{};
   std::optional<RegisterImage> image_;

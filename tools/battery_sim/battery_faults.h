@@ -1,6 +1,7 @@
-// What the simulated battery can do wrong, and when: the faults by name, each with what it does, and a
-// schedule that draws them (every Nth chance, or with a probability from a seed, within a span of
-// simulated time). How a fault looks on the bus: bus_reply; what it does to values: battery_server.
+// What the simulated battery can do wrong, and when: the faults by name, each with what it does,
+// and a schedule that draws them (every Nth chance, or with a probability from a seed, within a
+// span of simulated time). How a fault looks on the bus: bus_reply; what it does to values:
+// battery_server.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
 // The bus side of the simulated battery, TCP or a serial line: takes requests, lets the registers
-// answer, and misbehaves by schedule. One client at a time like the real device, unless told otherwise.
+// answer, and misbehaves by schedule. One client at a time like the real device, unless told
+// otherwise.
 #pragma once
 
 #include <modbus/modbus.h>

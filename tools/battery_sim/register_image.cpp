@@ -184,7 +184,7 @@ void RegisterImage::start(const LivePoints& registers) {
 std::int64_t RegisterImage::duration_s() const {
   using enum Watchdog::Kind;
   if (map_.watchdog.kind == kNone) return kForEverS;
-  if (timer_ < 0) return map_.dead_man_duration_s;
+  if (timer_ < 0) return map_.watchdog.duration_s;
   const std::int64_t written = value(timer_) * (timer_counts_minutes_ ? 60 : 1);
   return map_.watchdog.kind == kRevertTimer && written == 0 ? kForEverS : written;
 }

@@ -1,6 +1,6 @@
-// What the driver does with a map beyond writing it: nothing twice, the watchdog in time, flash within
-// its budget, back to the device's own mode when half a command was taken, no stale or implausible
-// value used.
+// What the driver does with a map beyond writing it: nothing twice, the watchdog in time, flash
+// within its budget, back to the device's own mode when half a command was taken, no stale or
+// implausible value used.
 #include "edge/battery/battery_driver.h"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
-// Modbus frames: the bytes of a request against literals from the standard, and every way in which a
-// reply may differ from what was asked.
+// Modbus frames: the bytes of a request against literals from the standard, and every way in which
+// a reply may differ from what was asked.
 #include "edge/battery/modbus_frame.h"
 
 #include <gtest/gtest.h>

@@ -35,19 +35,19 @@ TEST(FollowMonitor, StaysTripped) {
 TEST(FollowMonitor, NoiseIsNoAnswer) {
   const FollowMonitor monitor = after(4'000, -399, 10);  // under a tenth of the order
   EXPECT_FALSE(monitor.has_tripped());
-  EXPECT_EQ(monitor.idle_cycles(), 10);
+  EXPECT_EQ(monitor.unanswered_orders(), 10);
 }
 
 TEST(FollowMonitor, IdleOrdersAreNeitherOpposedNorIgnored) {
   const FollowMonitor monitor = after(0, -3'000, 10);  // the house draws on the battery
   EXPECT_FALSE(monitor.has_tripped());
-  EXPECT_EQ(monitor.idle_cycles(), 0);
+  EXPECT_EQ(monitor.unanswered_orders(), 0);
 }
 
 TEST(FollowMonitor, AnAnswerEndsTheIdleCount) {
   FollowMonitor monitor = after(4'000, 0, 5);
   monitor.observe(4'000, 4'000);
-  EXPECT_EQ(monitor.idle_cycles(), 0);
+  EXPECT_EQ(monitor.unanswered_orders(), 0);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// The log thread: a record handed over arrives everywhere, a restart finds it, and a disk that stands
-// still costs records but never the control thread's time.
+// The log thread: a record handed over arrives everywhere, a restart finds it, and a disk that
+// stands still costs records but never the control thread's time.
 #include "edge/log/event_log.h"
 
 #include <fcntl.h>
@@ -77,7 +77,8 @@ TEST_F(Log, ARecordArrivesEverywhereAndARestartTakesItOver) {
   EXPECT_EQ(newest.counters.flash_writes_today, 100);
 }
 
-/// The CSV is a pipe that nobody reads: the log thread stands still in write(2), as on a blocked card.
+/// The CSV is a pipe that nobody reads: the log thread stands still in write(2), as on a blocked
+/// card.
 TEST_F(Log, ADiskThatStandsStillNeverHoldsUpTheControlThread) {
   EventLogSettings s = settings();
   const std::string pipe_path = folder_.file("pipe");

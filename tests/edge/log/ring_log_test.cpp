@@ -1,5 +1,5 @@
-// The decision log on disk: nothing that was written whole is lost, nothing torn is believed, whatever
-// happens to the newest record and whenever the process dies.
+// The decision log on disk: nothing that was written whole is lost, nothing torn is believed,
+// whatever happens to the newest record and whenever the process dies.
 #include "edge/log/ring_log.h"
 
 #include <gmock/gmock.h>

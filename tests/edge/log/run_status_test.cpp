@@ -1,5 +1,5 @@
-// What the controller publishes: valid JSON with what `bess-edge status` reads, and a Prometheus text
-// that the rules of the exposition format and of its naming allow.
+// What the controller publishes: valid JSON with what `bess-edge status` reads, and a Prometheus
+// text that the rules of the exposition format and of its naming allow.
 #include "edge/log/run_status.h"
 
 #include <gmock/gmock.h>
@@ -7,7 +7,6 @@
 
 #include <map>
 #include <regex>
-#include <set>
 #include <sstream>
 
 namespace bess {

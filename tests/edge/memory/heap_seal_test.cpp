@@ -1,5 +1,5 @@
-// The seal's parts, each in a child process of its own: what the kernel refuses afterwards, and what it
-// still allows.
+// The seal's parts, each in a child process of its own: what the kernel refuses afterwards, and
+// what it still allows.
 #include "edge/memory/heap_seal.h"
 
 #include <fcntl.h>

@@ -6,12 +6,13 @@
 #include <map>
 #include <string>
 
+#include "edge/battery/modbus_battery.h"
 #include "edge/control/control_loop.h"
-#include "edge/control/edge_clock.h"
 #include "edge/log/event_log.h"
 #include "edge/memory/heap_seal.h"
 #include "edge/memory/segregated_fit.h"
 #include "edge/memory/static_arena.h"
+#include "edge/program/edge_clock.h"
 #include "edge/program/edge_config.h"
 
 namespace bess {

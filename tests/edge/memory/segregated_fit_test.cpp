@@ -1,5 +1,5 @@
-// The bounded-time allocator against a model of what is in use: random operations from a named seed,
-// every payload's content kept, and one free block at the end.
+// The bounded-time allocator against a model of what is in use: random operations from a named
+// seed, every payload's content kept, and one free block at the end.
 #include "edge/memory/segregated_fit.h"
 
 #include <gtest/gtest.h>

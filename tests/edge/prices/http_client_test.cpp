@@ -1,5 +1,5 @@
-// The HTTP client against servers that misbehave in every way a network offers, over TLS and in clear.
-// This program runs on the static arena and on a fake resolver.
+// The HTTP client against servers that misbehave in every way a network offers, over TLS and in
+// clear. This program runs on the static arena and on a fake resolver.
 #include "edge/prices/http_client.h"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
-// The price feed's thread and report: what it keeps, what it flags, and that nothing outside can hold up
-// whoever waits for it.
+// The price feed's thread and report: what it keeps, what it flags, and that nothing outside can
+// hold up whoever waits for it.
 #include "edge/prices/price_feed.h"
 
 #include <gmock/gmock.h>

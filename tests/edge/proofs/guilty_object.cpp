@@ -1,5 +1,5 @@
-// Everything that the object proofs forbid, so that a test can show that they find it. Compiled, never run.
-#include <cmath>
+// Everything that the object proofs forbid, so that a test can show that they find it. Compiled,
+// never run.
 #include <cstdio>
 #include <cstdlib>
 #include <functional>

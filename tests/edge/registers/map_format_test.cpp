@@ -1,5 +1,6 @@
 // What the map format can say about a point and a file: types, word orders, scales, masks, missing
-// values, included files, variants; and that every mistake is one line with file, line and the mend.
+// values, included files, variants; and that every mistake is one line with file, line and the
+// mend.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -172,6 +173,14 @@ TEST_F(MapFormat, TwoFactsInOneRegister) {
   EXPECT_EQ(value, 2);
   ASSERT_TRUE(decode(low, &raw, value));
   EXPECT_EQ(value, 1);
+}
+
+/// The map's word for a point's value; empty when it has none.
+std::string_view name_of_value(const RegisterMap& map, int point, std::int64_t value) {
+  for (const NamedValue& named : map.names) {
+    if (named.point == point && !named.is_bit && named.value == value) return named.name.view();
+  }
+  return {};
 }
 
 TEST_F(MapFormat, NamesOfValuesAndBits) {

@@ -1,5 +1,5 @@
 // How the process is asked to stop, and which signal hands the battery over to the next run.
-#include "edge/control/edge_clock.h"
+#include "edge/program/edge_clock.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,35 @@
+#!/bin/sh
+# layers_can_fail.sh TREE FOLDER: shows that layers.sh finds what it forbids. A copy of TREE below FOLDER gets one
+# wrong line at a time, and the line must be named; without it the copy must pass.
+tree=$1 copy=$2
+proof=$tree/tests/edge/proofs/layers.sh
+rm -rf "$copy" && mkdir -p "$copy" && cp -R "$tree/edge" "$tree/shared" "$tree/tools" "$tree/workstation" "$copy" || exit 1
+sh "$proof" "$copy" || { echo "layers.sh complains about a right copy"; exit 1; }
+wrong() {  # wrong FILE LINE
+  cp "$copy/$1" "$copy/kept"
+  printf '%s\n' "$2" >>"$copy/$1"
+  place=$1:$(wc -l <"$copy/$1")
+  if found=$(sh "$proof" "$copy") || ! printf '%s\n' "$found" | grep -q "^$place:"; then
+    echo "layers.sh did not find $place: $2"
+    exit 1
+  fi
+  mv "$copy/kept" "$copy/$1"
+}
+wrong shared/features.h '#include "edge/registers/codec.h"'
+wrong edge/memory/static_arena.h '#include "edge/control/mode.h"'
+wrong edge/registers/codec.h '#include "edge/control/control_types.h"'
+wrong edge/control/mode.h '#include "edge/log/journal.h"'
+wrong edge/control/policy.cpp '#include <sys/socket.h>'
+wrong edge/battery/modbus_link.cpp '#include "edge/prices/price_feed.h"'
+wrong edge/battery/modbus_link.cpp '#include <modbus/modbus.h>'
+wrong edge/prices/price_feed.cpp '#include "edge/battery/modbus_link.h"'
+wrong edge/log/event_log.cpp '#include <curl/curl.h>'
+wrong edge/log/journal.cpp '#include "edge/program/edge_config.h"'
+wrong edge/program/log_command.cpp '#include <cjson/cJSON.h>'
+wrong edge/program/edge_config.cpp '#include <toml++/toml.h>'
+wrong edge/main.cpp '#include "tools/sim/main.h"'
+wrong workstation/cli/evaluate.cpp '#include "edge/control/policy.h"'
+wrong tools/battery_sim/bus_reply.cpp '#include "edge/battery/modbus_frame.h"'
+rm -rf "$copy/edge/log"
+! sh "$proof" "$copy" >/dev/null || { echo "layers.sh passed a tree without edge/log"; exit 1; }
+rm -rf "$copy"
