@@ -85,8 +85,7 @@ int run_controller(const CommandLine& command_line, const EdgeConfig& config) {
     battery.restore_flash_writes(before.counters.flash_day, before.counters.flash_writes_today);
   }
   notify.ready();
-  run_supervised(loop, command_line.cycles, clock, log, notify);
-  return 0;
+  return run_supervised(loop, command_line.cycles, clock, log, notify) ? 0 : 1;
 }
 
 }  // namespace

@@ -11,12 +11,17 @@ namespace bess {
 inline constexpr std::string_view kBareNonAsciiMessage =
     "not valid TOML: a character other than ASCII outside quotes and comments";
 
+/// A quote behind anything else opens no string: 30''' is a mistake in a number.
+inline constexpr std::string_view kBeforeString = " \t\r\n=,[{.";
+
 /// Line, counted from 1, of the first character other than ASCII outside quotes and comments; 0
 /// when there is none.
 constexpr int line_of_bare_non_ascii(std::string_view toml) {
   int line = 1;
   if (toml.starts_with("\xEF\xBB\xBF")) toml.remove_prefix(3);  // a byte order mark is allowed
+  char before = '\n';
   const auto skip = [&](std::size_t bytes) {
+    if (bytes > 0) before = toml[std::min(bytes, toml.size()) - 1];
     line += static_cast<int>(std::ranges::count(toml.substr(0, bytes), '\n'));
     toml.remove_prefix(std::min(bytes, toml.size()));
   };
@@ -25,7 +30,7 @@ constexpr int line_of_bare_non_ascii(std::string_view toml) {
     if (static_cast<unsigned char>(c) >= 0x80) return line;
     if (c == '#') {
       skip(std::min(toml.find('\n'), toml.size()));
-    } else if (c == '"' || c == '\'') {
+    } else if ((c == '"' || c == '\'') && kBeforeString.find(before) != std::string_view::npos) {
       const std::string_view triple = c == '"' ? "\"\"\"" : "'''";
       const std::string_view quote = toml.starts_with(triple) ? triple : triple.substr(0, 1);
       skip(quote.size());

@@ -55,11 +55,10 @@ class ControlLoop {
 
   /// Runs the cycle of the next tick; false when the process was asked to stop before it.
   bool run_cycle(CycleRecord& record) {
-    const std::int64_t now_utc_s = clock_.now_utc_ns() / kNanosecondsPerSecond;
-    const std::int64_t tick_utc_s = next_tick_utc_s(now_utc_s);
+    std::int64_t tick_utc_s = 0;
+    if (!await_next_tick(tick_utc_s)) return false;
     count_missed_ticks(tick_utc_s);
     record = CycleRecord{.utc_s = tick_utc_s, .cycle = ++cycle_};
-    if (!sleep_until_s(tick_utc_s - settings_.read_lead_s)) return false;
     request_price(tick_utc_s);  // before the battery is read: a slow bus must not cost the price
     read_battery(record);
     if (!sleep_until_s(tick_utc_s)) return false;
@@ -122,7 +121,7 @@ class ControlLoop {
 
   CycleRecord final_record(Reason reason) {
     mode_ = Mode::kStopping;
-    CycleRecord record{.utc_s = clock_.now_utc_ns() / kNanosecondsPerSecond,
+    CycleRecord record{.utc_s = now_utc_s(),
                        .cycle = cycle_,
                        .mode = mode_,
                        .reason = reason,
@@ -131,19 +130,39 @@ class ControlLoop {
     return record;
   }
 
-  /// Sleeps, and feeds the battery's watchdog meanwhile; false when asked to stop.
+  [[nodiscard]] std::int64_t now_utc_s() const {
+    return clock_.now_utc_ns() / kNanosecondsPerSecond;
+  }
+
+  /// Sleeps until `read_lead_s` before the next tick. A clock that is stepped back meanwhile has
+  /// other ticks.
+  bool await_next_tick(std::int64_t& tick_utc_s) {
+    do {
+      tick_utc_s = next_tick_utc_s(now_utc_s());
+      if (!sleep_until_s(tick_utc_s - settings_.read_lead_s)) return false;
+    } while (now_utc_s() < tick_utc_s - kSecondsPerStep - settings_.read_lead_s);
+    return true;
+  }
+
+  /// Sleeps, and feeds the battery's watchdog meanwhile; false when asked to stop. Returns early when
+  /// the clock was stepped back: the instant may lie hours ahead by now.
   bool sleep_until_s(std::int64_t utc_s) {
     const std::int64_t until_ns = utc_s * kNanosecondsPerSecond;
-    while (refresh_due_utc_ns() < until_ns) {
-      if (!clock_.sleep_until_utc_ns(refresh_due_utc_ns())) return false;
+    while (true) {
+      const std::int64_t before_ns = clock_.now_utc_ns();
+      const std::int64_t due_ns = refresh_due_utc_ns();
+      if (due_ns >= until_ns) return clock_.sleep_until_utc_ns(until_ns);
+      if (!clock_.sleep_until_utc_ns(due_ns)) return false;
       refresh();
+      if (clock_.now_utc_ns() < before_ns) return true;
     }
-    return clock_.sleep_until_utc_ns(until_ns);
   }
 
   std::int64_t refresh_due_utc_ns() const {
     const std::int32_t interval_s = battery_.refresh_interval_s();
     if (!settings_.control || !has_ordered_ || interval_s <= 0) return INT64_MAX;
+    const std::int64_t now_ns = clock_.now_utc_ns();
+    if (fed_utc_ns_ > now_ns) return now_ns;  // the clock was stepped back meanwhile
     return fed_utc_ns_ + interval_s * kNanosecondsPerSecond;
   }
 
@@ -194,13 +213,22 @@ class ControlLoop {
     if (measurement.has_order_power) order_power_w_ = measurement.order_power_w;
   }
 
+  /// The instant in monotonic time, at most `longest_s` from now: to a clock that was stepped back
+  /// the tick lies far ahead.
+  std::int64_t bounded_ns(std::int64_t utc_s, std::int64_t longest_s) const {
+    const std::int64_t longest_ns = clock_.now_utc_ns() + longest_s * kNanosecondsPerSecond;
+    const std::int64_t utc_ns = utc_s * kNanosecondsPerSecond;
+    return clock_.monotonic_ns_at(utc_ns < longest_ns ? utc_ns : longest_ns);
+  }
+
   std::int64_t price_deadline_ns(std::int64_t tick_utc_s) const {
-    return clock_.monotonic_ns_at((tick_utc_s + settings_.price_wait_s) * kNanosecondsPerSecond);
+    return bounded_ns(tick_utc_s + settings_.price_wait_s,
+                      settings_.price_wait_s + settings_.read_lead_s);
   }
 
   void request_price(std::int64_t tick_utc_s) {
     request_ns_ = clock_.monotonic_ns();
-    prices_.request(tick_utc_s - 60, clock_.monotonic_ns_at(tick_utc_s * kNanosecondsPerSecond),
+    prices_.request(tick_utc_s - 60, bounded_ns(tick_utc_s, settings_.read_lead_s),
                     price_deadline_ns(tick_utc_s));
   }
 
@@ -231,10 +259,13 @@ class ControlLoop {
       record.student_action = decide_with_student(state);
       record.has_student_action = true;
     }
+    const std::int64_t decided_utc_s = decision_utc_s(record.utc_s);
+    // Suspended between reading and deciding: what was read is no measurement any more.
+    const bool is_recent = decided_utc_s - record.utc_s <= kSecondsPerStep;
     const GuardDecision decision =
-        guard_.decide({.now_utc_s = decision_utc_s(record.utc_s),
+        guard_.decide({.now_utc_s = decided_utc_s,
                        .clock_ok = clock_.is_synchronised(),
-                       .link_ok = record.has_measurement,
+                       .link_ok = record.has_measurement && is_recent,
                        .measurement = record.measurement,
                        .wrong_direction = follow_.has_tripped(),
                        .cycle_budget_spent = cycle_budget_.is_spent(),
@@ -252,8 +283,7 @@ class ControlLoop {
   /// The tick, unless more than the wait for the price has passed since: a process that was
   /// suspended, or a clock that jumped, must not act on what was new before.
   std::int64_t decision_utc_s(std::int64_t tick_utc_s) const {
-    const std::int64_t now_utc_s = clock_.now_utc_ns() / kNanosecondsPerSecond;
-    const std::int64_t latest_utc_s = now_utc_s - settings_.price_wait_s;
+    const std::int64_t latest_utc_s = now_utc_s() - settings_.price_wait_s;
     return latest_utc_s > tick_utc_s ? latest_utc_s : tick_utc_s;
   }
 
@@ -263,6 +293,8 @@ class ControlLoop {
     mode_ = next_mode(mode_, {.stop_requested = clock_.stop_requested(),
                               .stop_reason = is_stop_reason(record.reason),
                               .hold_elapsed = hold_elapsed,
+                              // At 0 W a house that lives on its battery goes dark.
+                              .release_now = record.reason == Reason::kOffGrid,
                               .order_found = order_found_});
     if (mode_ == Mode::kHolding && before != Mode::kHolding) hold_start_utc_s_ = record.utc_s;
     record.mode = mode_;

@@ -1,7 +1,7 @@
 // The controller's modes and every transition between them: a pure function, tested as a table.
 //
 //   start     nothing was ordered yet; waits for battery, price and clock   -> running, holding
-//   running   orders follow student and guard                               -> holding
+//   running   orders follow student and guard                               -> holding, safe
 //   holding   a stop reason is present: 0 W is held for a while             -> running, safe
 //   safe      released: the battery is in its own mode, the loop goes on    -> running
 //   stopping  the process ends: 0 W, then release                           (reached from all)
@@ -26,6 +26,7 @@ struct ModeInputs {
   bool stop_requested;
   bool stop_reason;   ///< the guard forbids driving the battery
   bool hold_elapsed;  ///< 0 W has been held for the configured time
+  bool release_now;   ///< the reason is one that 0 W makes worse
   bool order_found;   ///< at start the battery was found following an order, of an earlier run
 };
 
@@ -34,11 +35,12 @@ constexpr Mode next_mode(Mode mode, const ModeInputs& in) {
   if (!in.stop_reason) return Mode::kRunning;
   switch (mode) {
     case Mode::kRunning:
-      return Mode::kHolding;
+      return in.release_now ? Mode::kSafe : Mode::kHolding;
     case Mode::kHolding:
-      return in.hold_elapsed ? Mode::kSafe : Mode::kHolding;
+      return in.hold_elapsed || in.release_now ? Mode::kSafe : Mode::kHolding;
     case Mode::kStart:
-      return in.order_found ? Mode::kHolding : Mode::kStart;
+      if (!in.order_found) return Mode::kStart;
+      return in.release_now ? Mode::kSafe : Mode::kHolding;
     case Mode::kSafe:
     case Mode::kStopping:
       break;

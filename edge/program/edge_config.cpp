@@ -80,6 +80,7 @@ void read_battery(TomlTable table, EdgeConfig& config) {
   table.integer("capacity_wh", config.capacity_wh, 1, 1'000'000'000);
   table.integer("capacity_tolerance_percent", config.capacity_tolerance_percent, 0, 100);
   table.integer("start_timeout_s", config.start_timeout_s, 0, 3'600);
+  table.boolean("allow_without_watchdog", config.allow_without_watchdog);
   table.boolean("start_without_battery", config.start_without_battery);
   table.integer("read_lead_s", config.control.read_lead_s, 0, 60);
   static_cast<void>(table.table("units"));
@@ -105,6 +106,14 @@ void check_battery_against_map(TomlTable table, EdgeConfig& config) {
                               std::string(config.map.name.view()) + " can express (charge " +
                               std::to_string(config.map.charge_w_max) + " W, discharge " +
                               std::to_string(config.map.discharge_w_max) + " W)");
+  }
+  if (config.control.control && config.map.watchdog.duration_s == 0 &&
+      !config.allow_without_watchdog) {
+    table.fail("variant",
+               "\"" + std::string(config.map.variant.view()) + "\" of map " +
+                   std::string(config.map.name.view()) +
+                   " has no watchdog: if bess-edge dies, the battery follows its last order for "
+                   "ever; choose another variant, or add allow_without_watchdog = true");
   }
 }
 

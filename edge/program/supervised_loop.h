@@ -28,9 +28,9 @@ inline void write_farewell(const CycleRecord& last, bool ends_by_itself) {
   }
 }
 
-/// Returns when the battery was given back; the last order keeps its whole step.
+/// The last order keeps its whole step. False when the battery could not be given back.
 template <typename Loop>
-void run_supervised(Loop& loop, std::int64_t cycles, EdgeClock& clock, EventLog& log,
+bool run_supervised(Loop& loop, std::int64_t cycles, EdgeClock& clock, EventLog& log,
                     ServiceNotify& notify) {
   constexpr std::int64_t kDrainNsMax = 5 * kNanosecondsPerSecond;
   CycleRecord record{};
@@ -48,6 +48,7 @@ void run_supervised(Loop& loop, std::int64_t cycles, EdgeClock& clock, EventLog&
     report(JournalLevel::kWarning, "the disk is too slow: the last records are not logged");
   }
   write_farewell(record, loop.order_ends_by_itself());
+  return record.battery_status == Status::kOk;
 }
 
 }  // namespace bess

@@ -124,6 +124,9 @@ void read_map_watchdog(TomlTable& root, RegisterMap& map) {
     map.watchdog.remaining =
         require_point(table, *table.native()->get("remaining"), remaining.view(), map);
   }
+  if (map.watchdog.kind == Watchdog::Kind::kNone) {
+    map.watchdog.duration_s = map.watchdog.refresh_s = 0;  // a variant may have inherited them
+  }
   if (map.watchdog.kind != Watchdog::Kind::kNone &&
       map.watchdog.refresh_s * 2 > map.watchdog.duration_s) {
     table.fail("refresh_s", "must be at most half of duration_s: one feeding may be lost");

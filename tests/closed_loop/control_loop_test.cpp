@@ -329,8 +329,42 @@ TEST(ClosedLoop, AProcessThatWasSuspendedDoesNotActOnAnOldPrice) {
     return -60'000;
   };
   const CycleRecord record = plant.cycle();
-  EXPECT_EQ(record.reason, Reason::kPriceAge);
+  EXPECT_EQ(record.reason, Reason::kLink);  // the reading is as old as the price
   EXPECT_TRUE(plant.battery.orders.empty());
+}
+
+TEST(ClosedLoop, AProcessThatWasSuspendedDoesNotActOnAnOldReading) {
+  Plant plant;
+  plant.prices.price = [&](std::int64_t) { return -60'000; };
+  plant.prices.arrives_after_ns = 200 * kNanosecondsPerSecond;  // fresh, the reading is not
+  const CycleRecord record = plant.cycle();
+  EXPECT_EQ(record.reason, Reason::kLink);
+  EXPECT_TRUE(plant.battery.orders.empty());
+}
+
+TEST(ClosedLoop, OffGridReleasesAtOnceSoThatTheHouseKeepsItsBattery) {
+  Plant plant;
+  plant.prices.price = [](std::int64_t) { return -60'000; };
+  plant.cycle();
+  plant.battery.off_grid = true;
+  const CycleRecord record = plant.cycle();
+  EXPECT_EQ(record.reason, Reason::kOffGrid);
+  EXPECT_EQ(record.mode, Mode::kSafe);
+  EXPECT_EQ(plant.battery.releases, 1);
+}
+
+/// NTP finds that the clock was an hour ahead, while the loop waits for its tick.
+TEST(ClosedLoop, AClockSteppedBackCostsNoHour) {
+  Plant plant;
+  plant.battery.refresh_s = 30;
+  plant.cycle();
+  plant.clock.step_back_ns = 3'600 * kNanosecondsPerSecond;
+  const std::int64_t before_ns = plant.clock.now_ns;
+  const CycleRecord record = plant.cycle();
+  EXPECT_LT(plant.clock.now_ns, before_ns);
+  EXPECT_LE(record.utc_s * kNanosecondsPerSecond, plant.clock.now_ns);
+  EXPECT_EQ(record.mode, Mode::kRunning);
+  EXPECT_FALSE(plant.battery.refreshed_ns.empty());
 }
 
 TEST(ClosedLoop, CountsOrdersThatComeTooLateOrNotAtAll) {

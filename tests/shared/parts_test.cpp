@@ -85,6 +85,8 @@ b = '''
   EXPECT_EQ(line_of_bare_non_ascii("a = \"\"\"\n\n\"\"\"\u00E9\n"), 3);
   EXPECT_EQ(line_of_bare_non_ascii("a = \"unclosed\nb = \u00E9\n"), 2);
   EXPECT_EQ(line_of_bare_non_ascii("a = \"unclosed"), 0);
+  EXPECT_EQ(line_of_bare_non_ascii("a = 1\nb = 30'''\u00E9 # found by fuzzing"), 2);
+  EXPECT_EQ(line_of_bare_non_ascii("a = '''\u00E9''''\nb = [\"\u00E9\",'\u00E9']"), 0);
 }
 
 }  // namespace

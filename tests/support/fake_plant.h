@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "edge/control/control_types.h"
@@ -23,12 +24,13 @@ struct FakeClock {
   std::int64_t now_ns = kDayStartS * kNanosecondsPerSecond;
   bool stop = false;
   bool synchronised = true;
+  std::int64_t step_back_ns = 0;  ///< taken off during the next sleep, which it ends
 
   [[nodiscard]] std::int64_t now_utc_ns() const { return now_ns; }
   [[nodiscard]] std::int64_t monotonic_ns() const { return now_ns; }
   [[nodiscard]] std::int64_t monotonic_ns_at(std::int64_t utc_ns) const { return utc_ns; }
   bool sleep_until_utc_ns(std::int64_t utc_ns) {
-    now_ns = std::max(now_ns, utc_ns);
+    now_ns = std::max(now_ns, utc_ns) - std::exchange(step_back_ns, 0);
     return !stop;
   }
   void pause_ns(std::int64_t ns) { now_ns += ns; }
@@ -48,6 +50,7 @@ struct FakeBattery {
     m.power_w = static_cast<std::int32_t>(physics.power_w());
     m.capacity_wh = 8'000;
     m.alarm = alarm;
+    m.off_grid = off_grid;
     m.dispatch_active = physics.dispatch_active();
     m.has_order_power = true;
     m.order_power_w = static_cast<std::int32_t>(physics.commanded_power_w());
@@ -85,6 +88,7 @@ struct FakeBattery {
   SimulatedBattery physics;
   bool link = true;
   bool alarm = false;
+  bool off_grid = false;
   std::int32_t offset_w = 0;  ///< what its meter shows too much
   bool inverted = false;      ///< its meter shows the wrong sign
   bool refuses_orders = false;
@@ -103,6 +107,8 @@ struct FakePrices {
   void request(std::int64_t minute_utc_s, std::int64_t, std::int64_t) { wanted = minute_utc_s; }
   bool wait(std::int64_t until_ns) {
     if (!outage) {
+      clock.now_ns += arrives_after_ns;
+      wanted += arrives_after_ns / (60 * kNanosecondsPerSecond) * 60;
       report = {.has_row = true,
                 .minute_utc_s = wanted,
                 .price_centi_eur_per_mwh = price(wanted),
@@ -119,6 +125,7 @@ struct FakePrices {
   FakeClock& clock;
   std::int64_t wanted = 0;
   bool outage = false;
+  std::int64_t arrives_after_ns = 0;  ///< with the newest row of then
   PriceReport report;
   std::function<std::int32_t(std::int64_t)> price = [](std::int64_t minute_utc_s) {
     const double hours = static_cast<double>(minute_utc_s % 86'400) / 3'600;
