@@ -68,6 +68,9 @@ bool parse_count(std::string_view text, std::int64_t& value) {
 bool store(const Option& option, std::string_view value, CommandLine& line) {
   if (const auto* text = std::get_if<std::string CommandLine::*>(&option.target)) {
     line.*(*text) = value;
+    if (!value.empty()) return true;  // "$UNSET" must not mean the installed file
+    usage_error(std::string(option.name) + " needs a file, not an empty text", "");
+    return false;
   } else if (const auto* count = std::get_if<std::int64_t CommandLine::*>(&option.target)) {
     if (parse_count(value, line.*(*count))) return true;
     usage_error(std::string(option.name) + " needs a whole number above 0, not ", value);
@@ -106,7 +109,7 @@ bool print_general(std::string_view argument, SubCommand command) {
 
 CommandLineResult settle_config(CommandLine& line) {
   if (!line.config_path.empty()) return CommandLineResult::kGo;
-  if (access(kDefaultConfigPath, R_OK) != 0) {
+  if (access(kDefaultConfigPath, F_OK) != 0) {
     return usage_error("--config FILE is required, there is no ", kDefaultConfigPath);
   }
   line.config_path = kDefaultConfigPath;
