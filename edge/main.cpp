@@ -48,7 +48,7 @@ int run_controller(const CommandLine& command_line, const EdgeConfig& config) {
   }
   static PriceFeed prices(config.price, config.clock);
   if (command_line.command == SubCommand::kCheck) {
-    return report_check(config, battery, prices) ? 0 : 1;
+    return report_check(config, battery, prices, clock) ? 0 : 1;
   }
   static ServiceNotify notify;
   notify.extend_start(config.start_timeout_s + 60);
@@ -72,7 +72,7 @@ int run_controller(const CommandLine& command_line, const EdgeConfig& config) {
     battery.restore_flash_writes(before.counters.flash_day, before.counters.flash_writes_today);
   }
   notify.ready();
-  run_supervised(loop, command_line.cycles, clock, log, notify);
+  run_supervised(loop, command_line.cycles, clock, log, notify, config.control.control);
   return 0;
 }
 

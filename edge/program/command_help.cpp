@@ -14,19 +14,20 @@ constexpr const char* kRunHelp =
   bess-edge COMMAND --help                              more on one of them
 
   --config FILE  settings in TOML; edge/bess-edge.toml documents every key; default /etc/bess/edge.toml
-  --check        check settings, map and student, print the registers that would be written, read the
-                 battery and the newest price once, write nothing, exit
+  --check        check settings, map, student and sign check, print the registers that would be
+                 written, read the battery and the newest price once, write nothing, exit
   --dry-run      run, but write nothing, whatever the file says (control = false does the same)
   --cycles N     stop cleanly after N cycles
   --help         this text
   --version      version and the student that is built in
 
 Nothing is written to the battery unless the file says control = true and `bess-edge commission` has
-found its sign right. One controller to one battery:
-a second one is refused, also one that only reads, because many batteries serve one connection.
+found its sign right. One controller to one battery: a second one is refused, also one that only
+reads (--check too), because many batteries serve one connection.
 SIGTERM or Ctrl-C: 0 W is ordered, the battery is released, exit 0. SIGHUP: exit 0 and leave the order
 in force for the next start, which takes over; the battery's own timer ends it if there is none.
-Exit codes: 0 done   1 settings, battery or price server are bad   2 the command line is bad
+Exit codes: 0 done   1 settings or battery are bad, the sign is not checked, or the battery is in use;
+with --check also: no price, clock not set by NTP   2 the command line is bad
 
   bess-edge --config /etc/bess/edge.toml --check
   bess-edge --config /etc/bess/edge.toml --dry-run --cycles 5

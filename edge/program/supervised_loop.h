@@ -12,8 +12,10 @@
 
 namespace bess {
 
-inline void write_farewell(bool is_ok, bool is_handed_over) {
-  if (!is_ok) {
+inline void write_farewell(bool is_ok, bool is_handed_over, bool in_control) {
+  if (!in_control) {
+    write_journal_line(JournalLevel::kNotice, "stopped: read-only, nothing was written");
+  } else if (!is_ok) {
     write_journal_line(JournalLevel::kWarning,
                        "stopped: release failed, the battery's own timer ends it");
   } else {
@@ -26,7 +28,7 @@ inline void write_farewell(bool is_ok, bool is_handed_over) {
 /// Returns when the battery was given back; the last order keeps its whole step.
 template <typename Loop>
 void run_supervised(Loop& loop, std::int64_t cycles, EdgeClock& clock, EventLog& log,
-                    ServiceNotify& notify) {
+                    ServiceNotify& notify, bool in_control) {
   constexpr std::int64_t kDrainNsMax = 5 * kNanosecondsPerSecond;
   CycleRecord record{};
   const HeapSeal seal;  // from here on this thread calls no allocator
@@ -43,7 +45,7 @@ void run_supervised(Loop& loop, std::int64_t cycles, EdgeClock& clock, EventLog&
   if (!log.drain(kDrainNsMax)) {
     report(JournalLevel::kWarning, "the disk is too slow: the last records are not logged");
   }
-  write_farewell(status == Status::kOk, is_handed_over);
+  write_farewell(status == Status::kOk, is_handed_over, in_control);
 }
 
 }  // namespace bess
