@@ -359,6 +359,7 @@ TEST_F(Processes, BadStartsEndWithOneClearLine) {
       {{BESS_SIM_PROGRAM, "batery"}, 2, "unknown subcommand batery"},
       {{BESS_SIM_PROGRAM, "market", "--prices", "/nonexistent"}, 1, "cannot open"},
       {{BESS_SIM_PROGRAM, "battery", "--soc", "2"}, 2, "--soc"},
+      {{BESS_SIM_PROGRAM, "battery", "--host", "battery"}, 2, "--host"},
       {{BESS_SIM_PROGRAM, "battery", "--fault", "crc"}, 2, "--fault"},
       {{BESS_SIM_PROGRAM, "battery", "--fault", "bad-crc"}, 1, "bad-crc: only on a serial line"},
       {{BESS_SIM_PROGRAM, "battery", "--serial", "/nonexistent"}, 1, "cannot open this serial"},
