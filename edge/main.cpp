@@ -15,6 +15,7 @@
 #include "edge/program/commission_command.h"
 #include "edge/program/commission_file.h"
 #include "edge/program/log_command.h"
+#include "edge/program/release_command.h"
 #include "edge/program/run_locks.h"
 #include "edge/program/startup.h"
 #include "edge/program/status_command.h"
@@ -62,9 +63,12 @@ int run_controller(const CommandLine& command_line, const EdgeConfig& config) {
     if (command_line.yes) release_if_a_check_fails(battery);
     return run_commission_command(command_line, config, battery, clock);
   }
+  if (command_line.command == SubCommand::kRelease) {
+    return run_release_command(command_line, config, battery, clock);
+  }
   static PriceFeed prices(config.price, config.clock);
   if (command_line.command == SubCommand::kCheck) {
-    return report_check(config, battery, prices) ? 0 : 1;
+    return report_check(config, battery, prices, clock) ? 0 : 1;
   }
   static ServiceNotify notify;
   notify.extend_start(config.start_timeout_s + 60);

@@ -58,9 +58,9 @@ constexpr std::string_view status_text(Status status) {
       "registers in flash memory have had their writes of the day (see the map's write budget)",
       "the price server's name cannot be resolved (is the name server reachable?)",
       "no trusted TLS connection to the price server (are ca_file and the clock right?)",
-      "the price server answered with an HTTP error",
-      "the price server's answer is not the JSON that [price] describes",
-      "the price server's answer holds no usable price",
+      "the price server answered with an HTTP error (are url and the key in header_file right?)",
+      "the price server's answer is not the JSON that [price] describes (is rows_field right?)",
+      "the price server's answer holds no usable price (are time_field and price_field right?)",
       "the answer is larger than the buffer",
       "the static arena is exhausted"};
   static_assert(std::size(kTexts) == kStatusCount);

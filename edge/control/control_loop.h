@@ -95,6 +95,7 @@ class ControlLoop {
     fill_totals(record);
   }
 
+  [[nodiscard]] bool is_in_control() const { return settings_.control; }
   /// False: what was ordered last stays in force until somebody ends it.
   [[nodiscard]] bool order_ends_by_itself() const { return settings_.has_watchdog; }
 

@@ -123,6 +123,18 @@ void EventLog::keep(const CycleRecord& record) {
   publish_metrics();
   totals_.disk_is_failing = totals_.disk_failures > failures_before;
   publish_status();
+  tell_of_disk(totals_.disk_failures > failures_before);
+}
+
+/// On the journal, once each time: the files that would tell of it cannot be written.
+void EventLog::tell_of_disk(bool is_failing) {
+  if (is_failing == was_failing_) return;
+  was_failing_ = is_failing;
+  write_journal_line(
+      JournalLevel::kWarning,
+      is_failing ? "the files of [state], [log] or [metrics] cannot be written, is the disk full "
+                   "or read-only? The battery is driven on"
+                 : "the files of [state], [log] and [metrics] are written again");
 }
 
 void EventLog::publish_metrics() {

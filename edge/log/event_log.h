@@ -55,12 +55,14 @@ class EventLog {
   void keep(const CycleRecord& record);
   void publish_metrics();
   void publish_status();
+  void tell_of_disk(bool is_failing);
 
   EventLogSettings settings_;
   RunIdentity identity_;
   RunTotals totals_;
   RingLog ring_;
   int csv_fd_ = -1;
+  bool was_failing_ = false;
   HandoverQueue<CycleRecord, kQueueRecords> queue_;
   std::int64_t handed_over_ = 0;
   std::atomic<std::int64_t> kept_{0};

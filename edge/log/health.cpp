@@ -10,10 +10,11 @@ std::string seconds(std::int64_t ms) { return std::to_string(ms / 1'000) + " s";
 
 /// The convention of the field: warn at twice the cadence, critical at four times.
 void check_age(const HealthInputs& in, std::vector<std::string>& reasons) {
-  if (in.age_ms <= 2 * in.cadence_ms) return;
-  const bool is_critical = in.age_ms > 4 * in.cadence_ms;
+  const std::int64_t age_ms = in.age_ms - in.cycles_behind * in.cadence_ms;
+  if (age_ms <= 2 * in.cadence_ms) return;
+  const bool is_critical = age_ms > 4 * in.cadence_ms;
   const std::string level = is_critical ? "CRITICAL" : "WARN";
-  reasons.push_back(level + ": the last cycle ended " + seconds(in.age_ms) +
+  reasons.push_back(level + ": the last cycle ended " + seconds(age_ms) +
                     " ago, one is due every " + seconds(in.cadence_ms));
 }
 
@@ -49,7 +50,10 @@ Health assess_health(const HealthInputs& in) {
   if (in.is_of_this_run) check_age(in, health.reasons);
   if (in.disk_is_slow)
     health.reasons.emplace_back("WARN: records not logged, the disk is too slow");
-  if (in.disk_is_failing) {
+  if (in.cycles_behind > 1) {
+    health.reasons.push_back("WARN: status.json is " + std::to_string(in.cycles_behind) +
+                             " cycles behind the log, is the disk full or read-only?");
+  } else if (in.disk_is_failing) {
     health.reasons.emplace_back("WARN: the log cannot be written, is the disk full or read-only?");
   }
   if (!health.reasons.empty()) health.level = HealthLevel::kDegraded;

@@ -59,11 +59,13 @@ void sync_folder_of(const char* path) {
 }
 
 bool fail_with_errno(const char* path, std::string_view what, FileMessage& error) {
+  const bool is_refused = errno == EACCES || errno == EPERM;
   char reason_buffer[128];
   const char* reason = strerror_r(errno, reason_buffer, sizeof reason_buffer);
   char line[768];
-  std::snprintf(line, sizeof line, "%s: %.*s: %s", path, static_cast<int>(what.size()), what.data(),
-                reason);
+  std::snprintf(line, sizeof line, "%s: %.*s: %s%s", path, static_cast<int>(what.size()),
+                what.data(), reason,
+                is_refused ? " (does it belong to the user that runs bess-edge?)" : "");
   static_cast<void>(error.assign(line));
   return false;
 }

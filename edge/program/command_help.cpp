@@ -9,24 +9,26 @@ constexpr const char* kRunHelp =
   bess-edge [--config FILE] [--dry-run] [--cycles N]    run
   bess-edge [--config FILE] --check                     what would be done; writes nothing
   bess-edge commission [--config FILE] --yes            check the sign of a new battery, once
+  bess-edge release [--config FILE] --yes               end an order that nobody ends any more
   bess-edge status [--config FILE] ...                  how the running controller is
   bess-edge log [--config FILE] ...                     what was decided, and why
   bess-edge COMMAND --help                              more on one of them
 
   --config FILE  settings in TOML; edge/bess-edge.toml documents every key; default /etc/bess/edge.toml
-  --check        check settings, map and student, print the registers that would be written, read the
-                 battery and the newest price once, write nothing, exit
+  --check        check settings, map, student and sign check, print the registers that would be
+                 written, read the battery and the newest price once, write nothing, exit
   --dry-run      run, but write nothing, whatever the file says (control = false does the same)
   --cycles N     stop cleanly after N cycles
   --help         this text
   --version      version and the student that is built in
 
 Nothing is written to the battery unless the file says control = true and `bess-edge commission` has
-found its sign right. One controller to one battery:
-a second one is refused, also one that only reads, because many batteries serve one connection.
+found its sign right. One controller to one battery: a second one is refused, also one that only
+reads (--check too), because many batteries serve one connection.
 SIGTERM or Ctrl-C: 0 W is ordered, the battery is released, exit 0. SIGHUP: exit 0 and leave the order
 in force for the next start, which takes over; the battery's own timer ends it if there is none.
-Exit codes: 0 done   1 settings, battery or price server are bad   2 the command line is bad
+Exit codes: 0 done   1 settings or battery are bad, the sign is not checked, or the battery is in use;
+with --check also: no price, clock not set by NTP   2 the command line is bad
 
   bess-edge --config /etc/bess/edge.toml --check
   bess-edge --config /etc/bess/edge.toml --dry-run --cycles 5
@@ -46,6 +48,20 @@ map, variant and address; bess-edge refuses to control a battery without it.
 Exit codes: 0 passed   1 refused: the line says why   2 the command line is bad, or --yes is missing
 
   bess-edge commission --config /etc/bess/edge.toml --yes
+)";
+
+constexpr const char* kReleaseHelp =
+    R"(bess-edge release: gives a battery back to its own mode, when a controller that is gone left an order
+
+  bess-edge release [--config FILE] --yes
+
+  --config FILE  the controller's settings; default /etc/bess/edge.toml
+  --yes          really write it
+
+Needs no sign check. Refused while a bess-edge controls the battery: stop that instead.
+Exit codes: 0 released   1 refused or failed: the line says why   2 the command line is bad, or --yes is missing
+
+  systemctl stop bess-edge; bess-edge release --yes
 )";
 
 constexpr const char* kStatusHelp =
@@ -90,6 +106,8 @@ const char* help_of(SubCommand command) {
   switch (command) {
     case SubCommand::kCommission:
       return kCommissionHelp;
+    case SubCommand::kRelease:
+      return kReleaseHelp;
     case SubCommand::kStatus:
       return kStatusHelp;
     case SubCommand::kLog:

@@ -42,6 +42,8 @@ constexpr Option kOptions[] = {
     {SubCommand::kRun, "--cycles", &CommandLine::cycles},
     {SubCommand::kCommission, "--config", &CommandLine::config_path},
     {SubCommand::kCommission, "--yes", &CommandLine::yes},
+    {SubCommand::kRelease, "--config", &CommandLine::config_path},
+    {SubCommand::kRelease, "--yes", &CommandLine::yes},
     {SubCommand::kStatus, "--config", &CommandLine::config_path},
     {SubCommand::kStatus, "--json", &CommandLine::json},
     {SubCommand::kStatus, "--prometheus", &CommandLine::prometheus},
@@ -68,6 +70,9 @@ bool parse_count(std::string_view text, std::int64_t& value) {
 bool store(const Option& option, std::string_view value, CommandLine& line) {
   if (const auto* text = std::get_if<std::string CommandLine::*>(&option.target)) {
     line.*(*text) = value;
+    if (!value.empty()) return true;  // "$UNSET" must not mean the installed file
+    usage_error(std::string(option.name) + " needs a file, not an empty text", "");
+    return false;
   } else if (const auto* count = std::get_if<std::int64_t CommandLine::*>(&option.target)) {
     if (parse_count(value, line.*(*count))) return true;
     usage_error(std::string(option.name) + " needs a whole number above 0, not ", value);
@@ -106,7 +111,7 @@ bool print_general(std::string_view argument, SubCommand command) {
 
 CommandLineResult settle_config(CommandLine& line) {
   if (!line.config_path.empty()) return CommandLineResult::kGo;
-  if (access(kDefaultConfigPath, R_OK) != 0) {
+  if (access(kDefaultConfigPath, F_OK) != 0) {
     return usage_error("--config FILE is required, there is no ", kDefaultConfigPath);
   }
   line.config_path = kDefaultConfigPath;
@@ -123,6 +128,8 @@ CommandLineResult parse_command_line(int argc, char** argv, CommandLine& line) {
       line.command = SubCommand::kStatus;
     } else if (name == "commission") {
       line.command = SubCommand::kCommission;
+    } else if (name == "release") {
+      line.command = SubCommand::kRelease;
     } else if (name == "log") {
       line.command = SubCommand::kLog;
     } else if (name != "run") {

@@ -8,7 +8,7 @@
 namespace bess {
 
 /// `run` is what bess-edge does without a sub-command; --check makes it `check`.
-enum class SubCommand : std::uint8_t { kRun, kCheck, kCommission, kStatus, kLog };
+enum class SubCommand : std::uint8_t { kRun, kCheck, kCommission, kRelease, kStatus, kLog };
 
 struct CommandLine {
   SubCommand command = SubCommand::kRun;

@@ -3,7 +3,9 @@
 #include <arpa/inet.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 
 #include "edge/prices/http_secrets.h"
@@ -92,6 +94,10 @@ void read_battery(TomlTable table, EdgeConfig& config) {
   const auto folder = std::filesystem::path(table.file()).parent_path();
   const std::string map_path = (folder / map_file.c_str()).string();
   if (!config.map_path.assign(map_path)) table.fail("map", "is too long");
+  if (access(map_path.c_str(), R_OK) != 0) {
+    return table.fail("map", "= " + map_path + " cannot be read: " + std::strerror(errno) +
+                                 "; the installed maps lie in share/bess/maps");
+  }
   if (!load_register_map(map_path, variant.view(), config.map, table.error())) return;
   complete_link(table, config);
   expect_capacity(config);
@@ -192,6 +198,7 @@ void read_state(TomlTable table, EdgeConfig& config) {
   const bool has_run_lock = std::filesystem::is_directory("/run/lock");
   config.state.lock_folder = has_run_lock ? "/run/lock" : "/tmp";
   table.text("folder", folder);
+  if (folder.empty()) table.fail("folder", "must not be empty");
   table.text("lock_folder", config.state.lock_folder);
   table.finish();
   const std::string path = resolved(table, folder.view());

@@ -9,6 +9,7 @@
 #include "edge/control/policy.h"
 #include "edge/log/journal.h"
 #include "edge/prices/http_secrets.h"
+#include "edge/program/commission_file.h"
 #include "edge/registers/codec.h"
 #include "shared/utc_text.h"
 
@@ -18,6 +19,13 @@ namespace {
 void complain(const EdgeConfig& config, std::string_view what) {
   report(JournalLevel::kError, "battery at %s: %.*s", battery_place(config).c_str(),
          static_cast<int>(what.size()), what.data());
+}
+
+/// What the link's trouble means for this transport.
+std::string_view link_text(const EdgeConfig& config, Status status) {
+  if (!config.link.rtu || status != Status::kNotConnected) return status_text(status);
+  return "the serial line cannot be opened (is device right and plugged in, is this user in the "
+         "group dialout?)";
 }
 
 /// Proves that this is the configured battery; one line when it is not.
@@ -37,7 +45,7 @@ Status identify(const EdgeConfig& config, ModbusBattery& battery, bool complain_
   BatteryMeasurement measurement;
   if (status == Status::kOk) status = battery.read(measurement);
   if (status == Status::kImplausible || (status != Status::kOk && complain_about_link)) {
-    complain(config, status_text(status));
+    complain(config, link_text(config, status));
   }
   return status;
 }
@@ -89,6 +97,32 @@ bool report_price(const EdgeConfig& config, PriceFeed& prices) {
   return true;
 }
 
+/// Without the sign check a controller would refuse to start; one that only reads does not need it.
+bool report_sign(const EdgeConfig& config) {
+  std::string refusal;
+  if (is_commissioned(config, refusal)) {
+    std::printf("sign       checked by bess-edge commission\n");
+    return true;
+  }
+  const bool is_needed = config.control.control;
+  report(is_needed ? JournalLevel::kError : JournalLevel::kWarning, "%s%s",
+         is_needed ? "" : "note, before control = true: ", refusal.c_str());
+  return !is_needed;
+}
+
+/// A clock that nobody sets is a stop reason in every cycle: it should show before the first.
+bool report_clock(const EdgeConfig& config, const EdgeClock& clock) {
+  if (clock.is_synchronised()) {
+    std::printf("clock      %s\n", !config.clock.is_real_time()        ? "simulated"
+                                   : config.require_synchronised_clock ? "set by NTP"
+                                                                       : "not asked for");
+    return true;
+  }
+  report(config.control.control ? JournalLevel::kError : JournalLevel::kWarning,
+         "the clock is not set by NTP: no order will be given before it is; see timedatectl");
+  return !config.control.control;
+}
+
 }  // namespace
 
 bool check_student() {
@@ -123,21 +157,27 @@ void greet_price_server(const EdgeConfig& config, PriceFeed& prices) {
          loggable_url(config.price.http.url.view()).c_str(), price_status_text(status).data());
 }
 
-bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& prices) {
+bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& prices,
+                  const EdgeClock& clock) {
   std::printf("student    %s (%d self-checks passed)\n", student_provenance(),
               student_self_check_count());
-  std::printf("map        %s, variant %s; control = %s\n", config.map.name.c_str(),
-              config.map.variant.c_str(), config.control.control ? "true" : "false (read-only)");
+  std::printf("map        %s%s%s; control = %s\n", config.map.name.c_str(),
+              config.map.variant.empty() ? "" : ", variant ", config.map.variant.c_str(),
+              config.control.control ? "true" : "false (read-only)");
   std::fflush(stdout);
   const bool battery_ok = identify(config, battery, true) == Status::kOk;
   print_orders(config, battery);
   BatteryMeasurement m;
   if (battery_ok && battery.read(m) == Status::kOk) {
-    std::printf("battery    %s: SoC %.1f %%, %d W, %d Wh, dispatch %s\n",
-                battery_place(config).c_str(), m.soc_e4 / 100.0, m.power_w, m.capacity_wh,
+    char capacity[32] = "capacity not reported";
+    if (m.capacity_wh > 0) std::snprintf(capacity, sizeof capacity, "%d Wh", m.capacity_wh);
+    std::printf("battery    %s: SoC %.1f %%, %d W, %s, dispatch %s\n",
+                battery_place(config).c_str(), m.soc_e4 / 100.0, m.power_w, capacity,
                 m.dispatch_active ? "active" : "off");
   }
-  return report_price(config, prices) && battery_ok;
+  const bool sign_ok = report_sign(config);
+  const bool clock_ok = report_clock(config, clock);
+  return report_price(config, prices) && battery_ok && sign_ok && clock_ok;
 }
 
 void prepare_process() {

@@ -23,7 +23,8 @@ bool reach_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& 
 void greet_price_server(const EdgeConfig& config, PriceFeed& prices);
 
 /// Prints settings, encoded orders, a battery reading and the newest price; true when all is well.
-bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& prices);
+bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& prices,
+                  const EdgeClock& clock);
 
 /// Who this process is, for the status that it publishes.
 RunIdentity identity_of_run(const EdgeConfig& config);

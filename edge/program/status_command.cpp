@@ -12,6 +12,7 @@
 #include "edge/log/journal.h"
 #include "edge/log/ring_log.h"
 #include "edge/program/run_locks.h"
+#include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
 
 namespace bess {
@@ -62,6 +63,19 @@ std::int64_t age_ms_of(const cJSON* status) {
   return clock_ns(CLOCK_MONOTONIC) / 1'000'000 - whole(status, nullptr, "written_monotonic_ms");
 }
 
+/// On a full disk the status stays as it was, while the log goes on in its file of fixed size.
+std::int64_t cycles_behind(const EdgeConfig& config, const cJSON* status) {
+  RingLog ring;
+  FileMessage ignored;
+  CycleRecord newest;
+  std::int64_t published_utc_s = 0;
+  const bool is_known = ring.open_to_read(config.log.ring.c_str(), ignored) &&
+                        ring.read(ring.newest_number(), newest) &&
+                        parse_utc_text(text_of(status, "last", "utc"), published_utc_s);
+  if (!is_known || newest.utc_s < published_utc_s) return 0;
+  return (newest.utc_s - published_utc_s) / kSecondsPerStep;
+}
+
 Health health_of(const EdgeConfig& config, const cJSON* status) {
   const int holder = holder_of(state_lock_path(config).c_str());
   HealthInputs in;
@@ -78,6 +92,7 @@ Health health_of(const EdgeConfig& config, const cJSON* status) {
   in.unanswered_orders = whole(status, "totals", "unanswered_orders");
   in.disk_is_slow = is_true(status, "totals", "disk_is_slow");
   in.disk_is_failing = is_true(status, "totals", "disk_is_failing");
+  if (in.is_of_this_run && in.cycles > 0) in.cycles_behind = cycles_behind(config, status);
   return assess_health(in);
 }
 
@@ -148,8 +163,9 @@ void print_text(const EdgeConfig& config, const cJSON* status, const Health& hea
                 static_cast<long long>(whole(status, nullptr, "pid")),
                 text_of(status, nullptr, "start_utc"), text_of(status, nullptr, "version"),
                 text_of(status, nullptr, "student"));
-    std::printf("driving    %s, map %s, variant %s\n", text_of(status, nullptr, "battery"),
-                text_of(status, nullptr, "map"), text_of(status, nullptr, "variant"));
+    const char* const variant = text_of(status, nullptr, "variant");
+    std::printf("driving    %s, map %s%s%s\n", text_of(status, nullptr, "battery"),
+                text_of(status, nullptr, "map"), *variant == '\0' ? "" : ", variant ", variant);
     if (whole(status, "totals", "cycles") > 0) print_last_cycle(status);
     print_counters(status);
   }

@@ -12,8 +12,10 @@
 
 namespace bess {
 
-inline void write_farewell(const CycleRecord& last, bool ends_by_itself) {
-  if (last.reason == Reason::kHandOver) {
+inline void write_farewell(const CycleRecord& last, bool is_in_control, bool ends_by_itself) {
+  if (!is_in_control) {
+    write_journal_line(JournalLevel::kNotice, "stopped: read-only, nothing was written");
+  } else if (last.reason == Reason::kHandOver) {
     write_journal_line(JournalLevel::kNotice, "stopped: handed over, the order stays in force");
   } else if (last.battery_status != Status::kOk && !ends_by_itself) {
     write_journal_line(JournalLevel::kError,
@@ -47,7 +49,7 @@ bool run_supervised(Loop& loop, std::int64_t cycles, EdgeClock& clock, EventLog&
   if (!log.drain(kDrainNsMax)) {
     report(JournalLevel::kWarning, "the disk is too slow: the last records are not logged");
   }
-  write_farewell(record, loop.order_ends_by_itself());
+  write_farewell(record, loop.is_in_control(), loop.order_ends_by_itself());
   return record.battery_status == Status::kOk;
 }
 

@@ -146,6 +146,7 @@ void TomlTable::finish() {
     if (asked_.contains(key.str())) continue;
     std::string known;
     for (const std::string& name : asked_) known += (known.empty() ? "" : ", ") + name;
+    if (known.empty()) known = "none";
     return fail(key.str(), "is not a known key here (known: " + known + ")");
   }
 }

@@ -321,11 +321,16 @@ TEST_F(Processes, BusFaultsCostCyclesButNeverGiveAWrongOrder) {
 TEST_F(Processes, CheckReportsAndReadsButWritesNothing) {
   start_simulators();
   sleep_until_monotonic(site_.anchor_ns());
-  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", site_.write_config(), "--check"});
+  ChildProcess early({BESS_EDGE_PROGRAM, "--config", site_.write_config(), "--check"});
+  EXPECT_THAT(early.read_all(), HasSubstr("the battery's sign has not been checked"));
+  EXPECT_EQ(early.wait(), 1);  // as the start would
+  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", site_.commission(), "--check"});
   const std::string text = edge.read_all();
   EXPECT_EQ(edge.wait(), 0) << text;
+  EXPECT_THAT(text, HasSubstr("sign       checked"));
+  EXPECT_THAT(text, HasSubstr("clock      simulated"));
   EXPECT_THAT(text, HasSubstr("charge     0x0880:[1 0 28000 0 32000 2 250 0 300 255 0]"));
-  EXPECT_THAT(text, HasSubstr("SoC 50.0 %"));
+  EXPECT_THAT(text, HasSubstr("SoC 50."));  // the sign check has charged a little
   EXPECT_THAT(text, HasSubstr("dispatch off"));
   EXPECT_THAT(text, HasSubstr("EUR/MWh of minute"));
 }
@@ -344,6 +349,7 @@ TEST_F(Processes, BadStartsEndWithOneClearLine) {
       {{BESS_EDGE_PROGRAM, "--config", "/nonexistent"}, 1, "cannot open"},
       {{BESS_EDGE_PROGRAM, "--confg", config}, 2, "unknown option --confg"},
       {{BESS_EDGE_PROGRAM, "--config", config, "--cycles", "x"}, 2, "needs a whole number"},
+      {{BESS_EDGE_PROGRAM, "--config", ""}, 2, "--config needs a file, not an empty text"},
       {{BESS_EDGE_PROGRAM, "stat"}, 2, "unknown command stat"},
       {{BESS_EDGE_PROGRAM, "status", "--csv"}, 2, "unknown option --csv"},
       {{BESS_EDGE_PROGRAM, "status", "--json", "--prometheus"}, 2, "exclude each other"},
@@ -353,6 +359,7 @@ TEST_F(Processes, BadStartsEndWithOneClearLine) {
       {{BESS_SIM_PROGRAM, "batery"}, 2, "unknown subcommand batery"},
       {{BESS_SIM_PROGRAM, "market", "--prices", "/nonexistent"}, 1, "cannot open"},
       {{BESS_SIM_PROGRAM, "battery", "--soc", "2"}, 2, "--soc"},
+      {{BESS_SIM_PROGRAM, "battery", "--host", "battery"}, 2, "--host"},
       {{BESS_SIM_PROGRAM, "battery", "--fault", "crc"}, 2, "--fault"},
       {{BESS_SIM_PROGRAM, "battery", "--fault", "bad-crc"}, 1, "bad-crc: only on a serial line"},
       {{BESS_SIM_PROGRAM, "battery", "--serial", "/nonexistent"}, 1, "cannot open this serial"},
@@ -386,7 +393,9 @@ TEST_F(Processes, ABatteryWhoseSignWasNeverCheckedIsNotControlled) {
   EXPECT_THAT(hesitant.read_all(), HasSubstr("charge or discharge 500 W for 30 s"));
   EXPECT_EQ(hesitant.wait(), 2);
   ChildProcess reader({BESS_EDGE_PROGRAM, "--config", config, "--dry-run", "--cycles", "1"});
-  EXPECT_THAT(reader.read_all(), HasSubstr("started: read-only"));
+  const std::string read_only = reader.read_all();
+  EXPECT_THAT(read_only, HasSubstr("started: read-only"));
+  EXPECT_THAT(read_only, HasSubstr("stopped: read-only, nothing was written"));
   EXPECT_EQ(reader.wait(), 0);
   EXPECT_EQ(SimulatedSite::stop(*site_.battery), 0);
   for (const CsvRow& row : read_csv(site_.folder.file("battery.csv"))) {
@@ -409,6 +418,27 @@ TEST_F(Processes, AHandOverKeepsThePowerAndARestartGoesOn) {
   for (const CsvRow& row : read_csv(site_.folder.file("edge.csv"))) {
     EXPECT_NE(row.at("mode"), "holding") << row.at("utc");
   }
+}
+
+/// A killed controller's order, ended by hand before its watchdog does.
+TEST_F(Processes, ReleaseEndsAnOrderThatNobodyEndsAnyMore) {
+  start_simulators();
+  const std::string config = site_.commission();
+  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", config});
+  for (int i = 0; i < 4; ++i) edge.read_line();
+  ChildProcess refused({BESS_EDGE_PROGRAM, "release", "--config", config, "--yes"});
+  EXPECT_THAT(refused.read_all(), HasSubstr("is in use by another bess-edge"));
+  EXPECT_EQ(refused.wait(), 1);
+  edge.signal(SIGKILL);
+  edge.wait();
+  ChildProcess hesitant({BESS_EDGE_PROGRAM, "release", "--config", config});
+  EXPECT_THAT(hesitant.read_all(), HasSubstr("add --yes"));
+  EXPECT_EQ(hesitant.wait(), 2);
+  ChildProcess release({BESS_EDGE_PROGRAM, "release", "--config", config, "--yes"});
+  EXPECT_THAT(release.read_all(), HasSubstr("is in its own mode"));
+  EXPECT_EQ(release.wait(), 0);
+  EXPECT_EQ(SimulatedSite::stop(*site_.battery), 0);
+  EXPECT_EQ(read_csv(site_.folder.file("battery.csv")).back().at("commanded_power_w"), "0");
 }
 
 TEST_F(Processes, TheWrongBatteryIsRefusedBeforeAnythingIsWritten) {

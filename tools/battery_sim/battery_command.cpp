@@ -107,7 +107,9 @@ std::string footer() {
 }
 
 void add_bus_options(CLI::App& command, BatteryServerSettings& server) {
-  command.add_option("--host", server.host, "Numeric address to listen on")->capture_default_str();
+  command.add_option("--host", server.host, "Numeric IPv4 address to listen on")
+      ->check(CLI::ValidIPV4)
+      ->capture_default_str();
   command.add_option("--port", server.port, "TCP port, 0 = any free one")
       ->check(CLI::Range(0, 65'535))
       ->capture_default_str();

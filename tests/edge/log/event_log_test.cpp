@@ -121,10 +121,17 @@ TEST_F(Log, AMetricsFolderThatVanishesIsAFailureOfThatFileOnly) {
   const auto log = std::make_unique<EventLog>();
   ASSERT_TRUE(log->open(s, RunIdentity{}, error_)) << error_.c_str();
   std::filesystem::remove_all(folder_.file("metrics"));
+  ::testing::internal::CaptureStdout();
   log->write(record_of(1));
-  ASSERT_TRUE(log->drain(kDrainNs));
+  log->write(record_of(2));
+  const bool drained = log->drain(kDrainNs);
+  const std::string journal = ::testing::internal::GetCapturedStdout();
+  ASSERT_TRUE(drained);
+  const std::size_t told = journal.find("cannot be written, is the disk full or read-only?");
+  ASSERT_NE(told, std::string::npos) << journal;  // once, not every cycle
+  EXPECT_EQ(journal.find("cannot be written", told + 1), std::string::npos) << journal;
   const std::string status = text_of(folder_.file("status.json"));
-  EXPECT_THAT(status, HasSubstr("\"cycles\": 1"));
+  EXPECT_THAT(status, HasSubstr("\"cycles\": 2"));
   EXPECT_THAT(status, HasSubstr("\"disk_is_failing\": true"));
 }
 

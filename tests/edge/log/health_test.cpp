@@ -45,6 +45,11 @@ TEST(Health, EveryTroubleHasItsReason) {
        "after 6 orders"},
       {[](HealthInputs& in) { in.disk_is_slow = true; }, HealthLevel::kDegraded, "too slow"},
       {[](HealthInputs& in) { in.disk_is_failing = true; }, HealthLevel::kDegraded, "disk full"},
+      {[](HealthInputs& in) {
+         in.age_ms = 1'319'000;
+         in.cycles_behind = 10;
+       },
+       HealthLevel::kDegraded, "WARN: status.json is 10 cycles behind the log, is the disk full"},
   };
   for (const Case& c : cases) {
     HealthInputs in = healthy();
@@ -54,6 +59,17 @@ TEST(Health, EveryTroubleHasItsReason) {
     ASSERT_EQ(health.reasons.size(), 1U) << c.reason;
     EXPECT_THAT(health.reasons[0], HasSubstr(c.reason));
   }
+}
+
+/// A controller that hangs on a full disk must not look as if only the disk were full.
+TEST(Health, AgeCountsFromTheNewestCycleInTheLog) {
+  HealthInputs in = healthy();
+  in.cycles_behind = 10;
+  in.age_ms = 14 * 120'000 + 1'000;
+  const Health health = assess_health(in);
+  ASSERT_EQ(health.reasons.size(), 2U);
+  EXPECT_THAT(health.reasons[0], HasSubstr("CRITICAL: the last cycle ended 481 s ago"));
+  EXPECT_THAT(health.reasons[1], HasSubstr("10 cycles behind"));
 }
 
 TEST(Health, StaleStartsBeyondTwoCadencesWhateverTheTimeScale) {

@@ -183,6 +183,9 @@ TEST(EdgeConfig, EveryMistakeIsOneClearLineWithItsPlace) {
       {"time_scale = 900", "time_scale = 0", 10, "must lie between"},
       {"[guard]", "[log]\ndays = 0\n[guard]", 8, "days must lie between 1 and 3660"},
       {"[guard]", "[state]\nfoldr = \"x\"\n[guard]", 8, "foldr is not a known key"},
+      {"[guard]", "[state]\nfolder = \"\"\n[guard]", 8, "folder must not be empty"},
+      {"power_w = 4000", "units = { vebus = 1 }", 4, "vebus is not a known key here (known: none)"},
+      {"maps/alphaess", "maps/alfaess", 3, "alfaess.toml cannot be read: No such file"},
       {"[guard]", "[gard]", 7, "gard is not a known key"},
       {"[guard]", "[guard", 7, "not valid TOML"},
   };
