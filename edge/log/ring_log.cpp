@@ -73,8 +73,11 @@ bool RingLog::open_to_read(const char* path, FileMessage& error) {
   fd_ = ::open(path, O_RDONLY | O_CLOEXEC);
   if (fd_ < 0) return fail_with_errno(path, "cannot open the log", error);
   if (!read_header()) {
-    errno = EILSEQ;
-    return fail_with_errno(path, "is not a decision log of this program", error);
+    char line[700];
+    std::snprintf(line, sizeof line,
+                  "%s: is not a decision log of this program; the next start sets it aside", path);
+    static_cast<void>(error.assign(line));
+    return false;
   }
   find_newest();
   return true;

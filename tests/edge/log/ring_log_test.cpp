@@ -233,7 +233,7 @@ TEST_F(Ring, AnotherCapacityOrABrokenHeaderSetsTheFileAsideAndTakesOver) {
   write_file(path_, broken);
   RingLog reader;
   EXPECT_FALSE(reader.open_to_read(path_.c_str(), error_));
-  EXPECT_THAT(error_.c_str(), HasSubstr("is not a decision log"));
+  EXPECT_THAT(error_.c_str(), HasSubstr("is not a decision log of this program; the next start"));
   RingLog fresh;
   ASSERT_TRUE(fresh.open(path_.c_str(), 9, error_)) << error_.c_str();
   EXPECT_FALSE(fresh.newest(newest));
