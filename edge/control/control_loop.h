@@ -261,8 +261,8 @@ class ControlLoop {
       record.has_student_action = true;
     }
     const std::int64_t decided_utc_s = decision_utc_s(record.utc_s);
-    // Suspended between reading and deciding: what was read is no measurement any more.
-    const bool is_recent = decided_utc_s - record.utc_s <= kSecondsPerStep;
+    // Suspended between reading and deciding: a reading may be as old as a price, not older.
+    const bool is_recent = decided_utc_s - record.utc_s <= settings_.guard.price_age_s_max;
     const GuardDecision decision =
         guard_.decide({.now_utc_s = decided_utc_s,
                        .clock_ok = clock_.is_synchronised(),

@@ -336,7 +336,7 @@ TEST(ClosedLoop, AProcessThatWasSuspendedDoesNotActOnAnOldPrice) {
 TEST(ClosedLoop, AProcessThatWasSuspendedDoesNotActOnAnOldReading) {
   Plant plant;
   plant.prices.price = [&](std::int64_t) { return -60'000; };
-  plant.prices.arrives_after_ns = 200 * kNanosecondsPerSecond;  // fresh, the reading is not
+  plant.prices.arrives_after_ns = 300 * kNanosecondsPerSecond;  // fresh, the reading is not
   const CycleRecord record = plant.cycle();
   EXPECT_EQ(record.reason, Reason::kLink);
   EXPECT_TRUE(plant.battery.orders.empty());

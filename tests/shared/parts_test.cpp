@@ -86,6 +86,9 @@ b = '''
   EXPECT_EQ(line_of_bare_non_ascii("a = \"unclosed\nb = \u00E9\n"), 2);
   EXPECT_EQ(line_of_bare_non_ascii("a = \"unclosed"), 0);
   EXPECT_EQ(line_of_bare_non_ascii("a = 1\nb = 30'''\u00E9 # found by fuzzing"), 2);
+  EXPECT_EQ(line_of_bare_non_ascii("a = 5p.9.\"\"\"\"&\u00E9"), 1);
+  EXPECT_EQ(line_of_bare_non_ascii("a = 5['''\u00E9\nb = 5='''\u00E9"), 1);
+  EXPECT_EQ(line_of_bare_non_ascii("a = {b=\"\u00E9\", c=[\n\"\u00E9\", '\u00E9'\n]}"), 0);
   EXPECT_EQ(line_of_bare_non_ascii("a = '''\u00E9''''\nb = [\"\u00E9\",'\u00E9']"), 0);
 }
 
