@@ -8,6 +8,7 @@
 
 #include <utility>
 
+#include "edge/base/check.h"
 #include "edge/control/control_loop.h"
 #include "edge/log/journal.h"
 #include "edge/memory/heap_seal.h"
@@ -20,7 +21,6 @@
 #include "edge/program/startup.h"
 #include "edge/program/status_command.h"
 #include "edge/program/supervised_loop.h"
-#include "shared/check.h"
 
 namespace bess {
 namespace {

@@ -11,10 +11,10 @@
 #include <cstdint>
 #include <utility>
 
+#include "edge/base/status.h"
 #include "edge/battery/read_plan.h"
 #include "edge/registers/live_points.h"
 #include "shared/scaled_clock.h"
-#include "shared/status.h"
 
 namespace bess {
 

@@ -4,9 +4,9 @@
 
 #include <cstdint>
 
+#include "edge/base/status.h"
 #include "edge/control/control_types.h"
 #include "edge/registers/live_points.h"
-#include "shared/status.h"
 
 namespace bess {
 

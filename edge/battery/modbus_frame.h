@@ -8,7 +8,7 @@
 
 #include <cstdint>
 
-#include "shared/status.h"
+#include "edge/base/status.h"
 
 namespace bess {
 

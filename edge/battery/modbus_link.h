@@ -14,12 +14,12 @@
 
 #include <cstdint>
 
+#include "edge/base/status.h"
 #include "edge/battery/link_state.h"
 #include "edge/battery/modbus_frame.h"
 #include "edge/battery/modbus_wire.h"
 #include "edge/battery/unanswered_requests.h"
 #include "shared/scaled_clock.h"
-#include "shared/status.h"
 
 namespace bess {
 

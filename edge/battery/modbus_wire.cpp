@@ -10,7 +10,7 @@
 
 #include <cerrno>
 
-#include "shared/check.h"
+#include "edge/base/check.h"
 #include "shared/scaled_clock.h"
 
 namespace bess {

@@ -7,10 +7,10 @@
 
 #include <cstdint>
 
+#include "edge/base/status.h"
 #include "edge/battery/modbus_frame.h"
+#include "edge/registers/parity.h"
 #include "shared/fixed_text.h"
-#include "shared/parity.h"
-#include "shared/status.h"
 
 struct _modbus;
 

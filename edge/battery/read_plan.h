@@ -3,9 +3,9 @@
 
 #include <cstdint>
 
+#include "edge/base/static_vector.h"
 #include "edge/battery/modbus_link.h"
 #include "edge/registers/register_map.h"
-#include "shared/static_vector.h"
 
 namespace bess {
 

@@ -8,8 +8,8 @@
 
 #include <cstdint>
 
+#include "edge/base/static_vector.h"
 #include "edge/battery/modbus_frame.h"
-#include "shared/static_vector.h"
 
 namespace bess {
 

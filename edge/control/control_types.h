@@ -9,10 +9,10 @@
 #include <iterator>
 #include <string_view>
 
+#include "edge/base/status.h"
 #include "edge/control/cycle_budget.h"
 #include "edge/control/mode.h"
 #include "shared/action.h"
-#include "shared/status.h"
 
 namespace bess {
 

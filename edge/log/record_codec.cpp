@@ -3,7 +3,7 @@
 #include <iterator>
 #include <type_traits>
 
-#include "shared/check.h"
+#include "edge/base/check.h"
 #include "shared/crc32.h"
 
 namespace bess {

@@ -2,7 +2,7 @@
 
 #include <bit>
 
-#include "shared/check.h"
+#include "edge/base/check.h"
 
 namespace bess {
 namespace {

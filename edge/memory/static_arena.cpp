@@ -4,8 +4,8 @@
 
 #include <cstring>
 
+#include "edge/base/check.h"
 #include "edge/memory/segregated_fit.h"
-#include "shared/check.h"
 
 namespace bess {
 namespace {

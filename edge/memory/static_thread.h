@@ -8,7 +8,7 @@
 
 #include <cstddef>
 
-#include "shared/check.h"
+#include "edge/base/check.h"
 
 namespace bess {
 

@@ -5,8 +5,8 @@
 
 #include <cstdint>
 
+#include "edge/base/status.h"
 #include "shared/fixed_text.h"
-#include "shared/status.h"
 
 namespace bess {
 

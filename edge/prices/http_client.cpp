@@ -5,8 +5,8 @@
 #include <cstring>
 #include <memory>
 
+#include "edge/base/check.h"
 #include "edge/memory/static_arena.h"
-#include "shared/check.h"
 #include "shared/scaled_clock.h"
 
 namespace bess {

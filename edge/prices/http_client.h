@@ -10,9 +10,9 @@
 #include <cstdint>
 #include <string_view>
 
+#include "edge/base/status.h"
 #include "edge/prices/host_addresses.h"
 #include "shared/fixed_text.h"
-#include "shared/status.h"
 
 namespace bess {
 

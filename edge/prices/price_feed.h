@@ -9,12 +9,12 @@
 #include <cstdint>
 #include <mutex>
 
+#include "edge/base/status.h"
 #include "edge/control/control_types.h"
 #include "edge/memory/static_thread.h"
 #include "edge/prices/http_client.h"
 #include "edge/prices/price_json.h"
 #include "shared/scaled_clock.h"
-#include "shared/status.h"
 
 namespace bess {
 

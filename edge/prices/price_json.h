@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "edge/base/status.h"
 #include "shared/fixed_text.h"
-#include "shared/status.h"
 
 namespace bess {
 

@@ -11,8 +11,8 @@
 #include <sstream>
 
 #include "edge/log/whole_file.h"
-#include "edge/registers/toml_reader.h"
 #include "shared/crc32.h"
+#include "shared/host/toml_reader.h"
 #include "shared/utc_text.h"
 
 namespace bess {

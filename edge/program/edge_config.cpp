@@ -11,7 +11,7 @@
 #include "edge/prices/http_secrets.h"
 #include "edge/registers/codec.h"
 #include "edge/registers/map_file.h"
-#include "edge/registers/toml_reader.h"
+#include "shared/host/toml_reader.h"
 #include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
 

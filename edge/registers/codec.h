@@ -4,10 +4,10 @@
 
 #include <cstdint>
 
+#include "edge/base/status.h"
 #include "edge/registers/live_points.h"
 #include "edge/registers/point_codec.h"
 #include "edge/registers/register_map.h"
-#include "shared/status.h"
 
 namespace bess {
 

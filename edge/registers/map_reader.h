@@ -6,7 +6,7 @@
 #include <string_view>
 
 #include "edge/registers/register_map.h"
-#include "edge/registers/toml_reader.h"
+#include "shared/host/toml_reader.h"
 
 namespace bess {
 

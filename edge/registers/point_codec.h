@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
+#include "edge/base/status.h"
 #include "edge/registers/register_map.h"
-#include "shared/status.h"
 
 namespace bess {
 

@@ -6,8 +6,8 @@
 #include <cstdint>
 
 #include "edge/registers/battery_command.h"
+#include "edge/registers/parity.h"
 #include "edge/registers/register_point.h"
-#include "shared/parity.h"
 
 namespace bess {
 

@@ -9,8 +9,8 @@
 
 #include <cstdint>
 
+#include "edge/base/static_vector.h"
 #include "shared/fixed_text.h"
-#include "shared/static_vector.h"
 
 namespace bess {
 

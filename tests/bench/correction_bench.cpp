@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "tests/bench/registry.h"
+#include "workstation/base/random.h"
 #include "workstation/correction/isotonic.h"
-#include "workstation/io/random.h"
 
 namespace bess {
 namespace {

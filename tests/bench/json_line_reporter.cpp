@@ -1,6 +1,6 @@
 #include "tests/bench/json_line_reporter.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

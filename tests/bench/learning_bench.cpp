@@ -9,7 +9,7 @@
 #include "tests/bench/registry.h"
 #include "tests/bench/simulated_year.h"
 #include "tests/bench/torch_peer.h"
-#include "workstation/io/random.h"
+#include "workstation/base/random.h"
 #include "workstation/rl/experience.h"
 #include "workstation/rl/learner.h"
 

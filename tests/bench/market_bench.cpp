@@ -2,8 +2,8 @@
 #include "tests/bench/registry.h"
 #include "tests/bench/simulated_year.h"
 #include "workstation/env/evaluate.h"
-#include "workstation/env/foresight.h"
-#include "workstation/env/tabular.h"
+#include "workstation/planners/foresight.h"
+#include "workstation/planners/tabular.h"
 
 namespace bess {
 namespace {

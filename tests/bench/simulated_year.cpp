@@ -1,8 +1,8 @@
 #include "tests/bench/simulated_year.h"
 
 #include "shared/local_time.h"
-#include "workstation/market/quarter_hours_to_minutes.h"
-#include "workstation/market/simulated_market.h"
+#include "workstation/market/model/quarter_hours_to_minutes.h"
+#include "workstation/market/model/simulated_market.h"
 
 namespace bess {
 namespace {

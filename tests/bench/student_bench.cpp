@@ -1,8 +1,8 @@
 // The integer student: one decision, and the proof over the whole lattice.
 #include "shared/nn/exported_student.h"
 #include "tests/bench/registry.h"
+#include "workstation/base/random.h"
 #include "workstation/correction/distil.h"
-#include "workstation/io/random.h"
 #include "workstation/student/student_file.h"
 
 namespace bess {

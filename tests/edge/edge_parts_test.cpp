@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <string>
 
+#include "edge/base/static_vector.h"
 #include "edge/control/control_loop.h"
 #include "edge/control/policy.h"
 #include "edge/log/log_text.h"
 #include "shared/fixed_text.h"
-#include "shared/static_vector.h"
 #include "shared/utc_text.h"
 
 namespace bess {

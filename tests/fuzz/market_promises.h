@@ -3,10 +3,10 @@
 
 #include <string_view>
 
+#include "shared/host/user_error.h"
 #include "shared/local_time.h"
 #include "tests/fuzz/fuzz_target.h"
-#include "workstation/io/user_error.h"
-#include "workstation/market/market_join.h"
+#include "workstation/market/feed/market_join.h"
 
 namespace bess {
 

@@ -1,7 +1,7 @@
 // Student files: whatever is accepted evaluates without overflow on any state.
+#include "shared/host/user_error.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/support/integer_nets.h"
-#include "workstation/io/user_error.h"
 #include "workstation/student/student_file.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

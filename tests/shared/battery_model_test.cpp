@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "shared/units_and_limits.h"
-#include "workstation/io/random.h"
+#include "workstation/base/random.h"
 
 namespace bess {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "shared/nn/clipped_relu.h"
-#include "workstation/io/random.h"
+#include "workstation/base/random.h"
 
 namespace bess {
 namespace {

@@ -1,11 +1,11 @@
 // The small shared parts: the one argmax, the checksum, the fixed-capacity vector and text.
 #include <gtest/gtest.h>
 
+#include "edge/base/static_vector.h"
 #include "shared/action.h"
 #include "shared/crc32.h"
 #include "shared/fixed_text.h"
-#include "shared/static_vector.h"
-#include "shared/toml_text.h"
+#include "shared/host/toml_text.h"
 
 namespace bess {
 namespace {

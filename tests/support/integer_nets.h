@@ -3,7 +3,7 @@
 #pragma once
 
 #include "shared/nn/student_net.h"
-#include "workstation/io/random.h"
+#include "workstation/base/random.h"
 
 namespace bess {
 

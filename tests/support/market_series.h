@@ -5,9 +5,9 @@
 
 #include <filesystem>
 
+#include "shared/host/minute_file.h"
 #include "shared/units_and_limits.h"
-#include "workstation/io/random.h"
-#include "workstation/market/minute_series.h"
+#include "workstation/base/random.h"
 
 namespace bess {
 

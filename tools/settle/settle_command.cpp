@@ -1,5 +1,5 @@
 // bess-sim settle: energy and money of a closed-loop run, from both ends of the loop.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <memory>
 

@@ -1,7 +1,7 @@
 // Errors that the user can mend; caught in main, printed as one line, exit code 1.
 #pragma once
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <stdexcept>
 

@@ -6,8 +6,8 @@
 
 #include <string>
 
-#include "workstation/correction/correct_and_prove.h"
 #include "workstation/rl/train.h"
+#include "workstation/student/correct_and_prove.h"
 #include "workstation/student/student_file.h"
 
 namespace bess {

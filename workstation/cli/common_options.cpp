@@ -1,12 +1,12 @@
 #include "workstation/cli/common_options.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <unistd.h>
 
 #include <csignal>
 #include <thread>
 
-#include "workstation/io/user_error.h"
+#include "shared/host/user_error.h"
 
 namespace bess {
 namespace {

@@ -1,5 +1,5 @@
 // bess-train config: every key with its default, range and meaning.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <memory>
 

@@ -1,16 +1,16 @@
 // bess-train delays: what it costs to see prices late, and what it costs to have been fitted for
 // another delay than the one that is met. For each policy a square table: fitted at delay 0..3 (rows)
 // and run at delay 0..3 (columns).
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <array>
 #include <memory>
 
+#include "shared/host/user_error.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
 #include "workstation/cli/policy_factory.h"
 #include "workstation/env/evaluate.h"
-#include "workstation/io/user_error.h"
 
 namespace bess {
 namespace {

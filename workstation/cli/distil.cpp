@@ -1,14 +1,14 @@
 // bess-train distil: teacher in, corrected and proved integer student out.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <memory>
 
+#include "shared/host/file.h"
+#include "shared/host/user_error.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
-#include "workstation/correction/correct_and_prove.h"
-#include "workstation/io/file.h"
-#include "workstation/io/user_error.h"
 #include "workstation/report/curves.h"
+#include "workstation/student/correct_and_prove.h"
 
 namespace bess {
 namespace {

@@ -1,18 +1,18 @@
 // bess-train evaluate: what a policy would have earned.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
 
+#include "shared/host/file.h"
+#include "shared/host/text.h"
+#include "shared/host/user_error.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
 #include "workstation/cli/policy_factory.h"
 #include "workstation/env/evaluate.h"
-#include "workstation/io/file.h"
-#include "workstation/io/text.h"
-#include "workstation/io/user_error.h"
 #include "workstation/report/comparison.h"
 
 namespace bess {

@@ -1,14 +1,14 @@
 // bess-train export: proves a student once more and writes the weight header of the edge.
 #include "workstation/student/export.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <memory>
 
+#include "shared/host/file.h"
+#include "shared/host/user_error.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
-#include "workstation/io/file.h"
-#include "workstation/io/user_error.h"
 
 namespace bess {
 namespace {

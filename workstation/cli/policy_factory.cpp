@@ -4,13 +4,13 @@
 #include <charconv>
 #include <cmath>
 
+#include "shared/host/user_error.h"
 #include "workstation/env/evaluate.h"
-#include "workstation/env/foresight.h"
-#include "workstation/env/rolling_horizon.h"
-#include "workstation/env/shadow_price.h"
-#include "workstation/env/tabular.h"
-#include "workstation/env/tuned_rule.h"
-#include "workstation/io/user_error.h"
+#include "workstation/planners/foresight.h"
+#include "workstation/planners/rolling_horizon.h"
+#include "workstation/planners/shadow_price.h"
+#include "workstation/planners/tabular.h"
+#include "workstation/planners/tuned_rule.h"
 #include "workstation/student/student_file.h"
 #include "workstation/student/student_policy.h"
 

@@ -1,18 +1,18 @@
 // bess-train prices fetch: real prices from Elia's open data.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <chrono>
 #include <ctime>
 #include <memory>
 #include <thread>
 
+#include "shared/host/file.h"
+#include "shared/host/user_error.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
 #include "workstation/cli/prices.h"
-#include "workstation/io/file.h"
-#include "workstation/io/user_error.h"
-#include "workstation/market/elia_fetch.h"
-#include "workstation/market/market_files.h"
+#include "workstation/market/feed/elia_fetch.h"
+#include "workstation/market/feed/market_files.h"
 
 namespace bess {
 namespace {

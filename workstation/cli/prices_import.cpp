@@ -1,11 +1,11 @@
 // bess-train prices import: downloaded CSV and JSON to one minute file.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <memory>
 
 #include "workstation/cli/prices.h"
-#include "workstation/market/market_files.h"
-#include "workstation/market/market_join.h"
+#include "workstation/market/feed/market_files.h"
+#include "workstation/market/feed/market_join.h"
 
 namespace bess {
 namespace {

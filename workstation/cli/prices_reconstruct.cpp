@@ -1,13 +1,13 @@
 // bess-train prices reconstruct: plausible minutes on real settled quarter-hours.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <memory>
 
+#include "shared/host/plain_text.h"
 #include "workstation/cli/prices.h"
-#include "workstation/market/gaps.h"
-#include "workstation/market/market_files.h"
-#include "workstation/market/plain_text.h"
-#include "workstation/market/quarter_hours_to_minutes.h"
+#include "workstation/market/feed/market_files.h"
+#include "workstation/market/model/quarter_hours_to_minutes.h"
+#include "workstation/market/series/gaps.h"
 
 namespace bess {
 namespace {

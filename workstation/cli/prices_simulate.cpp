@@ -1,15 +1,15 @@
 // bess-train prices simulate: a year of market without any download.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <memory>
 
+#include "shared/host/minute_file.h"
+#include "shared/host/plain_text.h"
+#include "shared/host/user_error.h"
 #include "workstation/cli/prices.h"
-#include "workstation/io/user_error.h"
-#include "workstation/market/local_date.h"
-#include "workstation/market/minute_series.h"
-#include "workstation/market/plain_text.h"
-#include "workstation/market/quarter_hours_to_minutes.h"
-#include "workstation/market/simulated_market.h"
+#include "workstation/market/model/quarter_hours_to_minutes.h"
+#include "workstation/market/model/simulated_market.h"
+#include "workstation/market/series/local_date.h"
 
 namespace bess {
 namespace {

@@ -1,14 +1,14 @@
 // bess-train prices stats: what is in a price file.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <memory>
 
+#include "shared/host/file.h"
+#include "shared/host/user_error.h"
 #include "workstation/cli/prices.h"
-#include "workstation/io/file.h"
-#include "workstation/io/user_error.h"
-#include "workstation/market/market_join.h"
-#include "workstation/market/statistics_plot.h"
-#include "workstation/market/statistics_report.h"
+#include "workstation/market/feed/market_join.h"
+#include "workstation/market/statistics/statistics_plot.h"
+#include "workstation/market/statistics/statistics_report.h"
 
 namespace bess {
 namespace {

@@ -1,14 +1,14 @@
 // bess-train report: figures and tables of a run, made again from its folder.
 #include <cJSON.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <memory>
 
+#include "shared/host/file.h"
+#include "shared/host/user_error.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
 #include "workstation/cli/run_report.h"
-#include "workstation/io/file.h"
-#include "workstation/io/user_error.h"
 
 namespace bess {
 namespace {

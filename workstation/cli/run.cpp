@@ -1,18 +1,18 @@
 // bess-train run: the whole chain into one folder, from prices to the weight header and the report.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <memory>
 
+#include "shared/host/file.h"
+#include "shared/host/user_error.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
 #include "workstation/cli/run_folder.h"
 #include "workstation/cli/run_report.h"
-#include "workstation/correction/correct_and_prove.h"
-#include "workstation/io/file.h"
-#include "workstation/io/user_error.h"
-#include "workstation/market/local_date.h"
-#include "workstation/market/quarter_hours_to_minutes.h"
-#include "workstation/market/simulated_market.h"
+#include "workstation/market/model/quarter_hours_to_minutes.h"
+#include "workstation/market/model/simulated_market.h"
+#include "workstation/market/series/local_date.h"
+#include "workstation/student/correct_and_prove.h"
 #include "workstation/student/export.h"
 
 namespace bess {

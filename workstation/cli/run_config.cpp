@@ -7,9 +7,9 @@
 #include <functional>
 #include <vector>
 
-#include "shared/toml_text.h"
-#include "workstation/io/file.h"
-#include "workstation/io/user_error.h"
+#include "shared/host/file.h"
+#include "shared/host/toml_text.h"
+#include "shared/host/user_error.h"
 
 namespace bess {
 namespace {

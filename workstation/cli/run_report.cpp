@@ -1,11 +1,11 @@
 #include "workstation/cli/run_report.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
+#include "shared/host/file.h"
+#include "shared/host/user_error.h"
 #include "workstation/cli/policy_factory.h"
 #include "workstation/env/evaluate.h"
-#include "workstation/io/file.h"
-#include "workstation/io/user_error.h"
 #include "workstation/student/student_policy.h"
 
 namespace bess {

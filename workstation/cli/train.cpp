@@ -1,7 +1,7 @@
 // bess-train train: prices in, teacher out.
 #include "workstation/rl/train.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,11 +9,11 @@
 #include <memory>
 
 #include "shared/crc32.h"
+#include "shared/host/file.h"
+#include "shared/host/user_error.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
 #include "workstation/env/evaluate.h"
-#include "workstation/io/file.h"
-#include "workstation/io/user_error.h"
 #include "workstation/report/curves.h"
 
 namespace bess {

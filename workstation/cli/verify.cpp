@@ -1,11 +1,11 @@
 // bess-train verify: the certificate of an integer student over the whole lattice.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <memory>
 
+#include "shared/host/user_error.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
-#include "workstation/io/user_error.h"
 #include "workstation/student/student_file.h"
 
 namespace bess {

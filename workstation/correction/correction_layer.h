@@ -10,7 +10,7 @@
 // x = u + ramp is plainly non-increasing when u falls at least as fast as the ramp rises.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include <vector>
 

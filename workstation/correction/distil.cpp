@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "shared/host/user_error.h"
+#include "workstation/base/progress.h"
 #include "workstation/correction/policy_loss.h"
-#include "workstation/io/progress.h"
-#include "workstation/io/user_error.h"
 #include "workstation/rl/transition.h"
 
 namespace bess {

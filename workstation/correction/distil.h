@@ -9,8 +9,8 @@
 
 #include "shared/battery_model.h"
 #include "shared/features.h"
+#include "workstation/base/random.h"
 #include "workstation/correction/correction_layer.h"
-#include "workstation/io/random.h"
 #include "workstation/nn/adam.h"
 #include "workstation/nn/thread_team.h"
 #include "workstation/rl/teacher.h"

@@ -3,7 +3,7 @@
 // pi' student, pi corrected student, mu teacher = softmax(action values / temperature).
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 namespace bess {
 

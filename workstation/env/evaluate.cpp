@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "shared/units_and_limits.h"
-#include "workstation/env/bellman_sweep.h"
+#include "workstation/env/exchange_cost.h"
 
 namespace bess {
 namespace {

@@ -1,12 +1,12 @@
 #include "workstation/env/market_steps.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <cmath>
 
+#include "shared/host/user_error.h"
 #include "shared/local_time.h"
 #include "shared/units_and_limits.h"
-#include "workstation/io/user_error.h"
 
 namespace bess {
 namespace {

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "workstation/market/minute_series.h"
+#include "shared/host/minute_file.h"
 
 namespace bess {
 

@@ -2,7 +2,7 @@
 // SoC.
 #pragma once
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <memory>
 #include <span>

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "workstation/io/random.h"
+#include "workstation/base/random.h"
 
 namespace bess {
 namespace {

@@ -5,11 +5,11 @@
 // h2], b3, each column-major.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 #include <cstdint>
 
-#include "workstation/io/binary_file.h"
+#include "workstation/base/binary_file.h"
 
 namespace bess {
 

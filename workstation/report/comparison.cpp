@@ -1,11 +1,11 @@
 #include "workstation/report/comparison.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "workstation/io/text.h"
+#include "shared/host/text.h"
 
 namespace bess {
 namespace {

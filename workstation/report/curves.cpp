@@ -1,13 +1,13 @@
 #include "workstation/report/curves.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 
-#include "workstation/io/text.h"
-#include "workstation/io/user_error.h"
+#include "shared/host/text.h"
+#include "shared/host/user_error.h"
 
 namespace bess {
 namespace {

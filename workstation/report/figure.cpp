@@ -1,13 +1,13 @@
 #include "workstation/report/figure.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
-#include "workstation/io/gnuplot.h"
-#include "workstation/io/user_error.h"
+#include "shared/host/user_error.h"
+#include "workstation/base/gnuplot.h"
 #include "workstation/report/html.h"
 
 namespace bess {

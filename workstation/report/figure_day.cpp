@@ -1,5 +1,5 @@
 // One day as the battery lived it: prices, orders, state of charge.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // Learning curve of the teacher and losses of the distillation.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // Policy heat maps side by side [Paper, policy figures before and after correction].
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "workstation/report/figures.h"
 

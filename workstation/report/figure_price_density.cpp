@@ -1,10 +1,10 @@
 // How the observed prices of training and test days are distributed.
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "workstation/market/market_statistics.h"
+#include "workstation/market/statistics/market_statistics.h"
 #include "workstation/report/figures.h"
 
 namespace bess {

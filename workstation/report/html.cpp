@@ -1,6 +1,6 @@
 #include "workstation/report/html.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include "workstation/report/palette.h"
 

@@ -1,6 +1,6 @@
 #include "workstation/report/report.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 #include <memory>
 #include <optional>
 
-#include "workstation/io/file.h"
-#include "workstation/io/user_error.h"
+#include "shared/host/file.h"
+#include "shared/host/user_error.h"
 #include "workstation/report/html.h"
 #include "workstation/student/student_policy.h"
 

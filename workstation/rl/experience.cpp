@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "workstation/io/user_error.h"
+#include "shared/host/user_error.h"
 
 namespace bess {
 namespace {

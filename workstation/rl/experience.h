@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "shared/battery_model.h"
+#include "workstation/base/random.h"
 #include "workstation/env/market_steps.h"
-#include "workstation/env/soc_grid.h"
-#include "workstation/io/random.h"
+#include "workstation/planners/soc_grid.h"
 #include "workstation/rl/potential.h"
 #include "workstation/rl/transition.h"
 

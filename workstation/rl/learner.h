@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "workstation/io/binary_file.h"
+#include "workstation/base/binary_file.h"
 #include "workstation/nn/adam.h"
 #include "workstation/nn/thread_team.h"
 #include "workstation/rl/c51.h"

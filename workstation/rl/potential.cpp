@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "workstation/env/rolling_horizon.h"
+#include "workstation/planners/rolling_horizon.h"
 
 namespace bess {
 namespace {

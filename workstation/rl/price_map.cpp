@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shared/host/user_error.h"
 #include "shared/nn/student_net.h"
-#include "workstation/io/user_error.h"
 
 namespace bess {
 namespace {

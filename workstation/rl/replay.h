@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "workstation/io/binary_file.h"
+#include "workstation/base/binary_file.h"
 #include "workstation/rl/experience.h"
 #include "workstation/rl/teacher.h"
 

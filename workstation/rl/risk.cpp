@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "workstation/io/user_error.h"
+#include "shared/host/user_error.h"
 
 namespace bess {
 

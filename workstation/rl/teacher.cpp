@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "workstation/io/binary_file.h"
-#include "workstation/io/file.h"
-#include "workstation/io/user_error.h"
+#include "shared/host/file.h"
+#include "shared/host/user_error.h"
+#include "workstation/base/binary_file.h"
 #include "workstation/rl/c51.h"
 
 namespace bess {

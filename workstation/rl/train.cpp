@@ -4,9 +4,9 @@
 #include <chrono>
 #include <numbers>
 
-#include "workstation/env/tabular.h"
-#include "workstation/io/progress.h"
-#include "workstation/io/user_error.h"
+#include "shared/host/user_error.h"
+#include "workstation/base/progress.h"
+#include "workstation/planners/tabular.h"
 #include "workstation/rl/learner.h"
 #include "workstation/rl/replay.h"
 

@@ -1,11 +1,11 @@
 #include "workstation/student/export.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <fmt/ranges.h>
 
 #include <vector>
 
-#include "workstation/io/random.h"
+#include "workstation/base/random.h"
 
 namespace bess {
 namespace {

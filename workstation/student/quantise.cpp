@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "shared/host/user_error.h"
 #include "workstation/correction/distil.h"
-#include "workstation/io/user_error.h"
 
 namespace bess {
 namespace {

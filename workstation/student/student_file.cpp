@@ -1,16 +1,16 @@
 #include "workstation/student/student_file.h"
 
 #include <cJSON.h>
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <fmt/ranges.h>
 
 #include <cmath>
 #include <memory>
 #include <span>
 
+#include "shared/host/file.h"
+#include "shared/host/user_error.h"
 #include "shared/nn/exported_student.h"
-#include "workstation/io/file.h"
-#include "workstation/io/user_error.h"
 #include "workstation/student/quantise.h"
 
 namespace bess {

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <thread>
 
-#include "workstation/io/progress.h"
+#include "workstation/base/progress.h"
 
 namespace bess {
 namespace {

@@ -11,9 +11,9 @@
 #include <random>
 #include <vector>
 
+#include "edge/base/check.h"
 #include "edge/memory/heap_seal.h"
 #include "edge/memory/static_arena.h"
-#include "shared/check.h"
 
 namespace bess {
 namespace {

@@ -17,29 +17,51 @@ layer() {
   shift
   [ -e "$place" ] || { echo "$place is not there: was it renamed?"; status=1; return; }
   allowed=$(printf '|%s' "$@")
-  blame "$(includes '"' "$place" | grep -vE ":#include \"(${allowed#|})/")" "$place may include: $*"
+  blame "$(includes '"' "$place" | grep -vE ":#include \"(${allowed#|})(/|\")")" "$place may include: $*"
 }
-layer shared             shared
-layer edge/memory        edge/memory shared
-layer edge/registers     edge/registers shared
-layer edge/control       edge/control edge/registers shared
-layer edge/battery       edge/battery edge/control edge/registers shared
-layer edge/prices        edge/prices edge/control edge/memory shared
-layer edge/log           edge/log edge/control edge/memory shared
-layer edge/program       edge shared
-layer edge/main.cpp      edge shared
-layer tools/battery_sim  tools edge/registers shared
-layer tools/market_sim   tools shared
-layer tools/settle       tools shared
-layer tools/sim          tools shared
-layer workstation        workstation shared
+layer shared                        shared
+layer shared/host                   shared
+blame "$(includes '"shared/host' "$(echo shared/*.h shared/*.cpp) shared/nn")" "the integer part of shared knows no host"
+# The edge, from the ground up. What uses the heap at start-up is named: the control path may not.
+layer edge/base                     edge/base shared
+layer edge/memory                   edge/memory edge/base shared
+layer edge/registers                edge/registers edge/base shared
+layer edge/control                  edge/control edge/registers edge/base shared
+layer edge/battery                  edge/battery edge/control edge/registers edge/base shared
+layer edge/prices                   edge/prices edge/control edge/memory edge/base shared
+layer edge/log                      edge/log edge/control edge/memory edge/base shared
+layer edge/program                  edge shared
+layer edge/main.cpp                 edge shared
+blame "$(includes '"shared/host' edge | grep -vE '^edge/(registers/map_|program/)')" \
+  "only start-up uses the heap: edge/program and the reader of register maps"
+# The simulators.
+layer tools/battery_sim             tools edge/registers edge/base shared
+layer tools/market_sim              tools shared
+layer tools/settle                  tools shared
+layer tools/sim                     tools shared
+# The workstation, in the order in which data flows.
+w=workstation
+layer $w/base                       $w/base shared
+layer $w/market/series              $w/market/series $w/base shared
+layer $w/market/feed                $w/market/feed $w/market/series $w/base shared
+layer $w/market/model               $w/market/model $w/market/series $w/base shared
+layer $w/market/statistics          $w/market/statistics $w/market/series $w/base shared
+layer $w/env                        $w/env $w/market/series $w/base shared
+layer $w/planners                   $w/planners $w/env $w/base shared
+layer $w/nn                         $w/nn $w/base shared
+layer $w/rl                         $w/rl $w/nn $w/planners $w/env $w/base shared
+layer $w/correction                 $w/correction $w/rl $w/nn $w/env $w/base shared
+layer $w/student                    $w/student $w/correction $w/rl $w/nn $w/env $w/base shared student_weights.h
+layer $w/report                     $w/report $w/student $w/correction $w/rl $w/env $w/market/statistics $w/base shared
+layer $w/cli                        $w shared
+layer $w/main.cpp                   $w shared
 
 # only HEADER OWNERS: of the edge and shared, only files whose path begins with OWNERS include <HEADER>.
 only() { blame "$(includes "<$1" "edge shared" | grep -vE "^($2)")" "only $2 knows $1"; }
 only modbus/ edge/battery/modbus_wire.cpp:
 only curl/   edge/prices/
 only cjson/  'edge/prices/|edge/program/status_command.cpp:'
-only toml++/ edge/registers/toml_reader.h:
+only toml++/ shared/host/toml_reader.h:
 
 # The control layer knows neither files, sockets, threads nor signals.
 io='<(sys/|arpa/|net|poll|unistd|fcntl|pthread|signal|semaphore|cstdio|stdio|fstream|iostream|thread|mutex)'

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "tests/support/market_series.h"
-#include "workstation/env/foresight.h"
+#include "workstation/planners/foresight.h"
 
 namespace bess {
 namespace {

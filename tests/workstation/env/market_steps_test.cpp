@@ -8,10 +8,10 @@
 #include <cmath>
 #include <limits>
 
+#include "shared/host/user_error.h"
 #include "tests/support/market_series.h"
 #include "workstation/env/policy.h"
-#include "workstation/env/tabular.h"
-#include "workstation/io/user_error.h"
+#include "workstation/planners/tabular.h"
 
 namespace bess {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "workstation/io/user_error.h"
+#include "shared/host/user_error.h"
 #include "workstation/report/curves.h"
 
 namespace bess {

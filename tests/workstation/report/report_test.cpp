@@ -1,12 +1,12 @@
 #include "workstation/report/report.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 #include <stdlib.h>
 
 #include "report_test_support.h"
+#include "shared/host/file.h"
+#include "shared/host/user_error.h"
 #include "tests/support/temporary_folder.h"
-#include "workstation/io/file.h"
-#include "workstation/io/user_error.h"
 
 namespace bess {
 namespace {

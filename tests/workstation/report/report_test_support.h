@@ -8,9 +8,9 @@
 
 #include "shared/local_time.h"
 #include "workstation/correction/distil.h"
-#include "workstation/market/local_date.h"
-#include "workstation/market/quarter_hours_to_minutes.h"
-#include "workstation/market/simulated_market.h"
+#include "workstation/market/model/quarter_hours_to_minutes.h"
+#include "workstation/market/model/simulated_market.h"
+#include "workstation/market/series/local_date.h"
 #include "workstation/report/report.h"
 #include "workstation/student/quantise.h"
 

@@ -1,0 +1,202 @@
+#include "shared/host/minute_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "shared/host/file.h"
+#include "shared/host/plain_text.h"
+#include "shared/host/text.h"
+#include "shared/host/user_error.h"
+#include "shared/local_time.h"
+
+namespace bess {
+namespace {
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+constexpr std::string_view kHeader = "minute_utc,indicative_eur_mwh,settled_eur_mwh";
+/// Gaps are stored as missing minutes, so a stray date must not ask for centuries of memory.
+constexpr std::int64_t kMinutesMax = 40LL * 366 * 24 * 60;
+
+bool parse_digits(std::string_view text, std::size_t at, std::size_t count, int& value) {
+  if (at + count > text.size()) return false;
+  value = 0;
+  for (std::size_t i = at; i < at + count; ++i) {
+    if (text[i] < '0' || text[i] > '9') return false;
+    value = value * 10 + (text[i] - '0');
+  }
+  return true;
+}
+
+bool parse_offset(std::string_view text, int& offset_s) {
+  if (text == "Z") {
+    offset_s = 0;
+    return true;
+  }
+  int hours = 0;
+  int minutes = 0;
+  if (text.size() != 6 || (text[0] != '+' && text[0] != '-') || text[3] != ':') return false;
+  if (!parse_digits(text, 1, 2, hours) || !parse_digits(text, 4, 2, minutes)) return false;
+  if (hours > 14 || minutes > 59) return false;
+  offset_s = (text[0] == '-' ? -1 : 1) * (hours * 3600 + minutes * 60);
+  return true;
+}
+
+/// Passes over ".123" where it stands.
+std::size_t after_fraction(std::string_view text, std::size_t at) {
+  if (at >= text.size() || text[at] != '.') return at;
+  const std::size_t end = std::min(text.find_first_not_of("0123456789", at + 1), text.size());
+  return end > at + 1 ? end : at;
+}
+
+/// A price field: empty = missing; anything else must be one finite number.
+bool parse_price(std::string_view field, double& value) {
+  if (field.empty()) {
+    value = kMissing;
+    return true;
+  }
+  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+  return error == std::errc{} && end == field.data() + field.size() && std::isfinite(value);
+}
+
+struct Row {
+  std::int64_t utc_s;
+  double indicative;
+  double settled;
+};
+
+Row parse_row(std::string_view line, std::string_view name, std::size_t line_number) {
+  const auto bad = [&](std::string_view what) -> void {
+    fail("{}:{}: {}: \"{}\"; expected e.g. 2023-01-01T00:00:00Z,10.71,-11.28", name, line_number,
+         what, one_line(line, 80));
+  };
+  const std::size_t comma1 = line.find(',');
+  const std::size_t comma2 = comma1 == line.npos ? line.npos : line.find(',', comma1 + 1);
+  if (comma2 == line.npos || line.find(',', comma2 + 1) != line.npos) bad("not three columns");
+  Row row{};
+  if (!parse_utc(line.substr(0, comma1), row.utc_s)) bad("not a UTC minute");
+  if (row.utc_s % 60 != 0) bad("not a whole minute");
+  if (!parse_price(line.substr(comma1 + 1, comma2 - comma1 - 1), row.indicative)) {
+    bad("indicative price is not a number");
+  }
+  if (!parse_price(line.substr(comma2 + 1), row.settled)) bad("settled price is not a number");
+  return row;
+}
+
+void append_row(MinuteSeries& series, const Row& row, std::string_view name,
+                std::size_t line_number) {
+  if (series.settled.empty()) series.start_utc_s = row.utc_s;
+  const std::int64_t index = (row.utc_s - series.start_utc_s) / 60;
+  const auto size = static_cast<std::int64_t>(series.size());
+  if (index < size) {
+    fail(
+        "{}:{}: row out of order: {} does not come after {}; sort the file by time and drop "
+        "duplicates",
+        name, line_number, format_utc(row.utc_s), format_utc(series.utc_s(series.size() - 1)));
+  }
+  if (index >= kMinutesMax) {
+    fail("{}:{}: {} is more than 40 years after the first row; mend the date", name, line_number,
+         format_utc(row.utc_s));
+  }
+  series.indicative.resize(static_cast<std::size_t>(index), kMissing);
+  series.settled.resize(static_cast<std::size_t>(index), kMissing);
+  series.indicative.push_back(row.indicative);
+  series.settled.push_back(row.settled);
+}
+
+}  // namespace
+
+bool parse_utc(std::string_view text, std::int64_t& utc_s) {
+  CivilTime t{};
+  if (!parse_digits(text, 0, 4, t.year) || !parse_digits(text, 5, 2, t.month) ||
+      !parse_digits(text, 8, 2, t.day) || !parse_digits(text, 11, 2, t.hour) ||
+      !parse_digits(text, 14, 2, t.minute)) {
+    return false;
+  }
+  if (text[4] != '-' || text[7] != '-' || (text[10] != 'T' && text[10] != ' ') || text[13] != ':') {
+    return false;
+  }
+  std::size_t at = 16;
+  if (at < text.size() && text[at] == ':') {
+    if (!parse_digits(text, at + 1, 2, t.second)) return false;
+    at = after_fraction(text, at + 3);
+  }
+  int offset_s = 0;
+  if (at >= text.size() || !parse_offset(text.substr(at), offset_s)) return false;
+  const std::chrono::year_month_day date{std::chrono::year{t.year} / t.month / t.day};
+  if (!date.ok() || t.hour > 23 || t.minute > 59 || t.second > 59) return false;
+  utc_s = utc_from_civil(t) - offset_s;
+  return true;
+}
+
+std::string format_utc(std::int64_t utc_s) {
+  const CivilTime t = civil_from_utc(utc_s);
+  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", t.year, t.month, t.day, t.hour,
+                     t.minute, t.second);
+}
+
+bool has_no_price(std::span<const double> prices) {
+  return std::ranges::all_of(prices, [](double price) { return std::isnan(price); });
+}
+
+MinuteSeries parse_minute_csv(std::string_view text, std::string_view name) {
+  text = plain_text(text, name);
+  MinuteSeries series;
+  std::size_t line_number = 0;
+  bool header_seen = false;
+  bool has_price = false;
+  while (!text.empty()) {
+    const std::string_view line = take_line(text);
+    ++line_number;
+    if (line.empty() || line[0] == '#') continue;
+    if (!header_seen) {
+      if (line != kHeader) {
+        fail(
+            "{}:{}: not a minute file: the header must be \"{}\"; convert downloads with "
+            "'bess-train prices import'",
+            name, line_number, kHeader);
+      }
+      header_seen = true;
+      continue;
+    }
+    const Row row = parse_row(line, name, line_number);
+    append_row(series, row, name, line_number);
+    has_price = has_price || !std::isnan(row.indicative) || !std::isnan(row.settled);
+  }
+  if (series.settled.empty()) fail("{}: holds no minutes", name);
+  if (!has_price) fail("{}: holds minutes but no price in any of them", name);
+  return series;
+}
+
+MinuteSeries read_minute_file(const std::filesystem::path& path) {
+  return parse_minute_csv(read_file(path), path.string());
+}
+
+std::string format_minute_csv(const MinuteSeries& series, std::string_view provenance) {
+  fmt::memory_buffer out;
+  while (!provenance.empty()) fmt::format_to(fmt::appender(out), "# {}\n", take_line(provenance));
+  fmt::format_to(fmt::appender(out), "{}\n", kHeader);
+  const auto append_price = [&out](double price) {
+    if (!std::isnan(price)) fmt::format_to(fmt::appender(out), "{}", price);
+  };
+  for (std::size_t m = 0; m < series.size(); ++m) {
+    if (std::isnan(series.indicative[m]) && std::isnan(series.settled[m])) continue;
+    fmt::format_to(fmt::appender(out), "{},", format_utc(series.utc_s(m)));
+    append_price(series.indicative[m]);
+    out.push_back(',');
+    append_price(series.settled[m]);
+    out.push_back('\n');
+  }
+  return fmt::to_string(out);
+}
+
+void write_minute_file(const std::filesystem::path& path, const MinuteSeries& series,
+                       std::string_view provenance) {
+  write_file(path, format_minute_csv(series, provenance));
+}
+
+}  // namespace bess

@@ -1,0 +1,64 @@
+// What the market tests share: the local time zone, real samples when they are there, a scratch
+// folder.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+namespace bess {
+
+/// A real sample kept outside the project; tests that need one skip where it is absent.
+inline std::filesystem::path real_sample(const std::string& name) {
+  return std::filesystem::path(BESS_SOURCE_DIR) / "../shared/data" / name;
+}
+
+#define BESS_SKIP_WITHOUT(sample)                                                \
+  if (!std::filesystem::exists(bess::real_sample(sample))) {                     \
+    GTEST_SKIP() << "needs the real sample " << (sample) << ", which is absent"; \
+  }
+
+/// An empty folder of this test, removed at its end.
+class ScratchFolder {
+ public:
+  ScratchFolder()
+      : path_(std::filesystem::path(testing::TempDir()) /
+              (std::string("bess_market_") +
+               testing::UnitTest::GetInstance()->current_test_info()->name())) {
+    std::filesystem::remove_all(path_);
+    std::filesystem::create_directories(path_);
+  }
+  ~ScratchFolder() {
+    std::error_code error;
+    std::filesystem::remove_all(path_, error);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  [[nodiscard]] std::filesystem::path operator/(const std::string& name) const {
+    return path_ / name;
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// Runs `action` and returns the text of the UserError it throws; fails the test when it throws
+/// none.
+template <typename Action>
+std::string user_error_of(Action action);
+
+}  // namespace bess
+
+#include "shared/host/user_error.h"
+
+template <typename Action>
+std::string bess::user_error_of(Action action) {
+  try {
+    action();
+  } catch (const UserError& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << "expected a UserError";
+  return {};
+}

@@ -1,0 +1,140 @@
+// What evaluate and delays print and write, as a user calls them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cJSON.h>
+
+#include <filesystem>
+
+#include "shared/host/file.h"
+#include "tests/support/small_market.h"
+#include "tests/support/temporary_folder.h"
+#include "workstation/cli/commands.h"
+
+namespace bess {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+class EvaluateCli : public testing::Test {
+ protected:
+  EvaluateCli() { write_minute_file(prices_, small_series(), ""); }
+
+  /// Standard output of `bess-train COMMAND --prices <file> ARGUMENTS`.
+  std::string output(const std::string& command, const std::string& arguments) {
+    CLI::App app;
+    add_evaluate_command(app);
+    add_delays_command(app);
+    testing::internal::CaptureStdout();
+    app.parse(command + " --prices " + prices_.string() + " " + arguments);
+    return testing::internal::GetCapturedStdout();
+  }
+  static std::vector<std::string> lines(const std::string& text) {
+    std::vector<std::string> out;
+    for (std::size_t at = 0; at < text.size();) {
+      const std::size_t end = text.find('\n', at);
+      out.push_back(text.substr(at, end - at));
+      at = end + 1;
+    }
+    return out;
+  }
+
+  TemporaryFolder folder_;
+  std::filesystem::path prices_ = folder_.file("prices.csv.gz");
+};
+
+std::vector<std::string> json_keys(const std::string& line) {
+  cJSON* root = cJSON_Parse(line.c_str());
+  std::vector<std::string> keys;
+  for (const cJSON* item = root == nullptr ? nullptr : root->child; item; item = item->next) {
+    keys.emplace_back(item->string);
+  }
+  cJSON_Delete(root);
+  return keys;
+}
+
+TEST_F(EvaluateCli, OnePolicyKeepsItsJsonFields) {
+  const auto text = lines(output("evaluate", "--policy rbc --json"));
+  ASSERT_EQ(text.size(), 1U);
+  EXPECT_THAT(json_keys(text[0]),
+              testing::ElementsAre("policy", "split", "days", "profit_eur_per_day_per_mwh",
+                                   "standard_error", "cycles_per_day", "worst_day_eur_per_mwh",
+                                   "share_of_foresight", "switches_per_day", "soc_end_mean",
+                                   "carry_soc", "description"));
+  EXPECT_THAT(text[0], HasSubstr("\"carry_soc\": false"));
+  EXPECT_THAT(output("evaluate", "--policy rbc --json --carry-soc"),
+              HasSubstr("\"carry_soc\": true"));
+}
+
+TEST_F(EvaluateCli, SeveralPoliciesAddTheDifferenceAndTheOtherWayOfCounting) {
+  const auto text = lines(output("evaluate", "--policy rbc rbc:60:140 --json"));
+  ASSERT_EQ(text.size(), 2U);
+  const auto keys = json_keys(text[1]);
+  EXPECT_THAT(keys, testing::IsSupersetOf(
+                        {"difference_to_first", "difference_standard_error", "carried_over"}));
+}
+
+TEST_F(EvaluateCli, SeveralPoliciesShowBothTables) {
+  const std::string text = output("evaluate", "--policy rbc rbc:60:140");
+  EXPECT_THAT(text, HasSubstr("Each day starts at the same SoC"));
+  EXPECT_THAT(text, HasSubstr("SoC carried over from day to day"));
+  EXPECT_THAT(output("evaluate", "--policy rbc"), Not(HasSubstr("carried over")));
+}
+
+TEST_F(EvaluateCli, FilesHoldEveryPolicy) {
+  const auto file = [&](const char* name) { return folder_.file(name); };
+  output("evaluate", "--policy rbc rbc:60:140 --csv " + file("t.csv") + " --days-out " +
+                         file("d.csv") + " --steps-out " + file("s.csv"));
+  const auto table = lines(read_file(file("t.csv")));
+  EXPECT_EQ(table.size(), 1U + 4U);
+  const auto days = lines(read_file(file("d.csv")));
+  EXPECT_EQ(days[0], "date,profit_eur,cycles,switches,soc_end,policy,soc_mode");
+  const std::size_t test_days = 6 + 3;  // of January and February 2023
+  EXPECT_EQ(days.size(), 1 + 4 * test_days);
+  EXPECT_THAT(days.back(), testing::EndsWith(",rbc:60:140,carried"));
+  EXPECT_EQ(lines(read_file(file("s.csv"))).size(), 1 + 4 * test_days * 720);
+}
+
+TEST_F(EvaluateCli, FitDelayChangesWhatIsFittedAndNothingElse) {
+  EXPECT_EQ(output("evaluate", "--policy rbc --json --fit-delay 3"),
+            output("evaluate", "--policy rbc --json"));
+  EXPECT_NE(output("evaluate", "--policy tabular --json --fit-delay 3"),
+            output("evaluate", "--policy tabular --json"));
+}
+
+TEST_F(EvaluateCli, DelaysAgreesWithEvaluate) {
+  const auto table = lines(output("delays", "--policy tabular --json"));
+  ASSERT_EQ(table.size(), 16U);
+  const std::string one = output("evaluate", "--policy tabular --json --fit-delay 0 --delay 2");
+  const std::string figure =
+      one.substr(one.find("\"profit"), one.find(", \"standard") - one.find("\"profit"));
+  EXPECT_THAT(table[2], HasSubstr("\"fit_delay_min\": 0, \"run_delay_min\": 2"));
+  EXPECT_THAT(table[2], HasSubstr(figure));
+}
+
+TEST_F(EvaluateCli, OneDayOfTheSplitKeepsTheSocThatWasCarriedIntoIt) {
+  const auto split_days = folder_.file("split.csv");
+  const auto one_day = folder_.file("day.csv");
+  output("evaluate", "--policy rbc tabular --days-out " + split_days);
+  const std::string whole = read_file(split_days);
+  const std::string last_line = whole.substr(whole.rfind('\n', whole.size() - 2) + 1);
+  const std::string date = last_line.substr(0, last_line.find(','));
+  const std::string table =
+      output("evaluate", "--policy rbc tabular --date " + date + " --days-out " + one_day);
+  EXPECT_THAT(read_file(one_day), HasSubstr(last_line));
+  EXPECT_EQ(lines(read_file(one_day)).size(), 1U + 2U * 2U);  // policies times ways of counting
+  EXPECT_THAT(table, HasSubstr("1 day;"));
+  EXPECT_THAT(output("evaluate", "--policy rbc --json --date " + date),
+              HasSubstr(R"("standard_error": null)"));  // one day tells nothing of the spread
+}
+
+TEST_F(EvaluateCli, FittedThresholdsAreTold) {
+  EXPECT_THAT(output("evaluate", "--policy rbc-quartile"), HasSubstr("rbc-quartile: charge below"));
+  EXPECT_THAT(output("evaluate", "--policy rbc --json"),
+              HasSubstr("charge below 11, discharge above 179 EUR/MWh"));
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,105 @@
+// The prices commands as a user runs them.
+#include <gmock/gmock.h>
+
+#include "shared/host/file.h"
+#include "tests/support/child_process.h"
+#include "tests/support/market_test_support.h"
+
+namespace bess {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr const char* kEntsoeDocument =
+    "<Balancing_MarketDocument><TimeSeries><curveType>A01</curveType><Period><timeInterval>"
+    "<start>2023-01-01T00:00Z</start><end>2023-01-01T00:15Z</end></timeInterval>"
+    "<resolution>PT15M</resolution><Point><position>1</position>"
+    "<imbalance_Price.amount>5</imbalance_Price.amount></Point></Period></TimeSeries>"
+    "</Balancing_MarketDocument>";
+constexpr const char* kEliaQuarterHour =
+    "datetime;resolutioncode;imbalanceprice\n2023-01-01T00:15:00Z;PT15M;-30.258\n";
+
+class PricesCli : public testing::Test {
+ protected:
+  struct Result {
+    int exit_code;
+    std::string output;
+  };
+
+  static Result run(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {BESS_TRAIN_PROGRAM, "prices"});
+    ChildProcess program(arguments);
+    std::string output = program.read_all();
+    return {program.wait(), std::move(output)};
+  }
+  [[nodiscard]] std::string path(const std::string& name) const {
+    return (folder_ / name).string();
+  }
+  [[nodiscard]] std::string written(const std::string& name, std::string_view text) const {
+    write_file(folder_ / name, text);
+    return path(name);
+  }
+
+  ScratchFolder folder_;
+};
+
+TEST_F(PricesCli, ImportNamesTheSource) {
+  const std::string entsoe = written("a85.xml", kEntsoeDocument);
+  const std::string elia = written("ods134.csv", kEliaQuarterHour);
+  const Result only_entsoe = run({"import", entsoe, "--out", path("entsoe.csv")});
+  EXPECT_EQ(only_entsoe.exit_code, 0) << only_entsoe.output;
+  EXPECT_THAT(only_entsoe.output, AllOf(HasSubstr("Source: ENTSO-E"), Not(HasSubstr("Elia"))));
+  EXPECT_THAT(read_file(path("entsoe.csv")),
+              AllOf(HasSubstr("# Source: ENTSO-E"), Not(HasSubstr("Elia"))));
+  EXPECT_EQ(run({"import", entsoe, elia, "--out", path("both.csv")}).exit_code, 0);
+  EXPECT_THAT(read_file(path("both.csv")),
+              AllOf(HasSubstr("a85.xml, ods134.csv"), HasSubstr("ENTSO-E"),
+                    HasSubstr("Elia, opendata.elia.be, CC BY 4.0"), HasSubstr("-30.258")));
+}
+
+TEST_F(PricesCli, ReconstructNamesAllFilesAndSources) {
+  const std::string entsoe = written("a85.xml", kEntsoeDocument);
+  const std::string elia = written("ods134.csv", kEliaQuarterHour);
+  const Result result =
+      run({"reconstruct", "--quarter-hours", entsoe, elia, "--out", path("minutes.csv")});
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_THAT(result.output, HasSubstr("Source: Elia"));
+  EXPECT_THAT(read_file(path("minutes.csv")),
+              AllOf(HasSubstr("a85.xml, ods134.csv"), HasSubstr("Source: Elia"),
+                    HasSubstr("; ENTSO-E"), HasSubstr(",-30.258,-30.258\n")));
+}
+
+TEST_F(PricesCli, NegativeSeedsAreRefused) {
+  EXPECT_NE(run({"simulate", "--days", "1", "--seed", "-1", "--out", path("s.csv")}).exit_code, 0);
+  EXPECT_NE(run({"reconstruct", "--quarter-hours", written("q.csv", kEliaQuarterHour), "--seed",
+                 "-1", "--out", path("s.csv")})
+                .exit_code,
+            0);
+  EXPECT_FALSE(std::filesystem::exists(path("s.csv")));
+  EXPECT_THAT(run({"simulate", "--days", "1", "--seed", "2", "--out", path("s.csv")}).output,
+              HasSubstr("1 simulated day from"));
+}
+
+TEST_F(PricesCli, AFailingPictureDoesNotTakeTheFiguresWithIt) {
+  const std::string minutes =
+      written("m.csv", "minute_utc,indicative_eur_mwh,settled_eur_mwh\n2023-01-01T00:00:00Z,5,\n");
+  const Result pdf = run({"stats", minutes, "--plot", path("new/p.pdf")});
+  EXPECT_EQ(pdf.exit_code, 1);
+  EXPECT_THAT(pdf.output, HasSubstr(path("new/p.pdf") + ": a picture is .svg or .png"));
+  const Result unsettled = run({"stats", minutes, "--plot", path("p.svg")});
+  EXPECT_EQ(unsettled.exit_code, 1);
+  EXPECT_THAT(unsettled.output,
+              AllOf(HasSubstr("0 quarter-hours"), HasSubstr("no settled price from -600 to 1000")));
+}
+
+TEST_F(PricesCli, ImportSaysWhatToDoWithAZip) {
+  const Result zip = run({"import", written("a.zip", "PK\x03\x04..."), "--out", path("o.csv")});
+  EXPECT_EQ(zip.exit_code, 1);
+  EXPECT_THAT(zip.output, HasSubstr("a.zip: a ZIP archive: unzip it first"));
+  EXPECT_THAT(run({"import", "--help"}).output, HasSubstr("unzip"));
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,166 @@
+#include "workstation/correction/correction_layer.h"
+
+#include <gtest/gtest.h>
+
+#include "shared/action.h"
+#include "shared/units_and_limits.h"
+#include "workstation/base/random.h"
+
+namespace bess {
+namespace {
+
+constexpr int kDis = static_cast<int>(Action::kDischarge);
+constexpr int kIdle = static_cast<int>(Action::kIdle);
+constexpr int kCha = static_cast<int>(Action::kCharge);
+
+LatticeAxes even_axes(int prices, int socs) {
+  LatticeAxes axes;
+  for (int i = 0; i < prices; ++i) {
+    const int price = kLatticePriceMinEurPerMwh + i * (kPriceCount - 1) / std::max(1, prices - 1);
+    axes.price_eur_per_mwh.push_back(price);
+    axes.mapped_price.push_back((price - kLatticePriceMinEurPerMwh) / double{kPriceCount - 1});
+  }
+  for (int j = 0; j < socs; ++j) axes.soc.push_back(j / double{std::max(1.0, socs - 1.0)});
+  return axes;
+}
+
+Eigen::MatrixXd random_logits(Eigen::Index columns, Random& random, double spread) {
+  Eigen::MatrixXd logits(kActionCount, columns);
+  for (double& z : logits.reshaped()) z = spread * random.normal();
+  return logits;
+}
+
+struct LayerCase {
+  const char* name;
+  CorrectionOptions options;
+  int prices, socs;
+};
+
+const LayerCase kCases[] = {
+    {"defaults", {}, 16, 8},
+    {"thresholds inside the lattice", {-120, 640, 1.0, 0.2, 0.4}, 16, 8},
+    {"thresholds outside the lattice", {-600, 2000, 1.0, 0.2, 0.4}, 16, 8},
+    {"one threshold outside", {-600, 800, 1.0, 0.2, 0.4}, 12, 5},
+    {"neighbouring thresholds", {500, 501, 1.0, 0.2, 0.4}, 11, 4},
+    {"no slope", {-500, 1500, 0.5, 0, 0}, 8, 8},
+    {"steep slopes, bounds that would cross", {-300, 1200, 0.1, 50, 3}, 9, 6},
+    {"one price", {-500, 1500, 1.0, 0.2, 0.4}, 1, 6},
+    {"one SoC", {-500, 1500, 1.0, 0.2, 0.4}, 16, 1},
+};
+
+/// Everything the header promises, on every cell.
+void expect_properties(const CorrectionOptions& options, const LatticeAxes& axes,
+                       const Eigen::MatrixXd& z) {
+  constexpr double kTiny = 1e-9;
+  const int prices = static_cast<int>(axes.price_eur_per_mwh.size());
+  const int socs = static_cast<int>(axes.soc.size());
+  const auto u = [&](int i, int j) { return z(kCha, i * socs + j) - z(kIdle, i * socs + j); };
+  const auto v = [&](int i, int j) { return z(kIdle, i * socs + j) - z(kDis, i * socs + j); };
+  const auto action = [&](int i, int j) { return argmax_action(z.col(i * socs + j).data()); };
+  for (int i = 0; i < prices; ++i) {
+    for (int j = 0; j < socs; ++j) {
+      if (i + 1 < prices) {
+        const double fall =
+            options.price_slope * (axes.mapped_price[i + 1] - axes.mapped_price[i]) - kTiny;
+        EXPECT_GE(u(i, j) - u(i + 1, j), fall);
+        EXPECT_GE(v(i, j) - v(i + 1, j), fall);
+        EXPECT_GE(action(i, j), action(i + 1, j));
+      }
+      if (j + 1 < socs) {
+        const double fall = options.soc_slope * (axes.soc[j + 1] - axes.soc[j]) - kTiny;
+        EXPECT_GE(u(i, j) - u(i, j + 1), fall);
+        EXPECT_GE(v(i, j) - v(i, j + 1), fall);
+        EXPECT_GE(action(i, j), action(i, j + 1));
+      }
+      if (axes.price_eur_per_mwh[i] <= options.low_price_eur_per_mwh) {
+        EXPECT_GE(u(i, j), options.logit_margin - kTiny);
+        EXPECT_GE(v(i, j), -kTiny);
+        EXPECT_EQ(action(i, j), Action::kCharge);
+      }
+      if (axes.price_eur_per_mwh[i] >= options.high_price_eur_per_mwh) {
+        EXPECT_LE(v(i, j), -options.logit_margin + kTiny);
+        EXPECT_LE(u(i, j), kTiny);
+        EXPECT_EQ(action(i, j), Action::kDischarge);
+      }
+    }
+  }
+}
+
+TEST(CorrectionLayer, OutputHasTheProperties) {
+  Random random(201);
+  for (const LayerCase& c : kCases) {
+    SCOPED_TRACE(c.name);
+    const LatticeAxes axes = even_axes(c.prices, c.socs);
+    // One SoC price row cannot be bound from both ends; even_axes(1) holds only -500.
+    CorrectionLayer layer(c.options, c.prices, c.socs);
+    for (const double spread : {0.1, 1.0, 20.0}) {
+      const Eigen::MatrixXd logits = random_logits(c.prices * c.socs, random, spread);
+      Eigen::MatrixXd corrected;
+      layer.forward(axes, logits, corrected);
+      expect_properties(c.options, axes, corrected);
+      const Eigen::RowVectorXd moved = corrected.colwise().mean() - logits.colwise().mean();
+      EXPECT_LT(moved.cwiseAbs().maxCoeff(), 1e-12 * (1 + spread)) << "the mean passes through";
+    }
+  }
+}
+
+TEST(CorrectionLayer, FeasibleLogitsStay) {
+  const LatticeAxes axes = even_axes(16, 8);
+  Eigen::MatrixXd logits(kActionCount, 16 * 8);
+  for (int i = 0; i < 16; ++i) {
+    for (int j = 0; j < 8; ++j) {
+      const double u = 5 - 10 * axes.mapped_price[i] - axes.soc[j];
+      const double v = 4 - 9 * axes.mapped_price[i] - 1.5 * axes.soc[j];
+      const double mean = std::sin(i + 3.0 * j);
+      logits.col(i * 8 + j) << mean - (2 * v + u) / 3, mean + (v - u) / 3, mean + (v + 2 * u) / 3;
+    }
+  }
+  Eigen::MatrixXd corrected;
+  CorrectionLayer layer({}, 16, 8);
+  layer.forward(axes, logits, corrected);
+  EXPECT_LT((corrected - logits).cwiseAbs().maxCoeff(), 1e-10);
+}
+
+TEST(CorrectionLayer, TwiceIsOnce) {
+  Random random(202);
+  for (const LayerCase& c : kCases) {
+    SCOPED_TRACE(c.name);
+    const LatticeAxes axes = even_axes(c.prices, c.socs);
+    CorrectionLayer layer(c.options, c.prices, c.socs);
+    Eigen::MatrixXd once, twice;
+    layer.forward(axes, random_logits(c.prices * c.socs, random, 2), once);
+    layer.forward(axes, once, twice);
+    EXPECT_LT((twice - once).cwiseAbs().maxCoeff(), 1e-9);
+  }
+}
+
+TEST(CorrectionLayer, BackwardIsTheDerivative) {
+  constexpr double kStep = 1e-6;
+  Random random(203);
+  for (const LayerCase& c : kCases) {
+    SCOPED_TRACE(c.name);
+    const LatticeAxes axes = even_axes(c.prices, c.socs);
+    const Eigen::Index columns = c.prices * c.socs;
+    const Eigen::MatrixXd logits = random_logits(columns, random, 1.5);
+    const Eigen::MatrixXd g = random_logits(columns, random, 1);
+    CorrectionLayer layer(c.options, c.prices, c.socs);
+    Eigen::MatrixXd corrected, gradient;
+    layer.forward(axes, logits, corrected);
+    layer.backward(g, gradient);
+    for (int probe = 0; probe < 40; ++probe) {
+      const auto k = static_cast<Eigen::Index>(random.index(static_cast<std::size_t>(3 * columns)));
+      Eigen::MatrixXd up = logits;
+      Eigen::MatrixXd down = logits;
+      up.reshaped()[k] += kStep;
+      down.reshaped()[k] -= kStep;
+      layer.forward(axes, up, corrected);
+      const double loss_up = corrected.cwiseProduct(g).sum();
+      layer.forward(axes, down, corrected);
+      const double loss_down = corrected.cwiseProduct(g).sum();
+      EXPECT_NEAR(gradient.reshaped()[k], (loss_up - loss_down) / (2 * kStep), 1e-6) << k;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace bess

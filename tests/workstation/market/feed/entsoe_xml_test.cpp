@@ -1,0 +1,128 @@
+// ENTSO-E A85 documents.
+#include "workstation/market/feed/entsoe_xml.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "tests/support/market_test_support.h"
+#include "workstation/market/model/quarter_hours_to_minutes.h"
+
+namespace bess {
+namespace {
+
+using testing::HasSubstr;
+
+std::string point(int position, const std::string& amount, const std::string& category) {
+  return "<Point><position>" + std::to_string(position) + "</position><imbalance_Price.amount>" +
+         amount + "</imbalance_Price.amount><imbalance_Price.category>" + category +
+         "</imbalance_Price.category></Point>";
+}
+
+std::string document(const std::string& points, const std::string& curve = "A01",
+                     const std::string& resolution = "PT15M") {
+  return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<Balancing_MarketDocument xmlns=\"urn:x\">\n"
+         "<!-- <Point> --><mRID>1</mRID><TimeSeries><curveType>" +
+         curve +
+         "</curveType><Period><timeInterval><start>2023-01-01T00:00Z</start>"
+         "<end>2023-01-01T01:00Z</end></timeInterval><resolution>" +
+         resolution + "</resolution>" + points +
+         "</Period></TimeSeries></Balancing_MarketDocument>\n";
+}
+
+std::vector<double> prices(const std::string& text) {
+  std::vector<double> values;
+  for (const QuarterHour& row : parse_market_text(text, "a85.xml").quarter_hours) {
+    values.push_back(row.price_eur_per_mwh);
+  }
+  return values;
+}
+
+TEST(EntsoeXml, SinglePriceInBothCategories) {
+  const std::string text =
+      document(point(1, "-11.28", "A04") + point(1, "-11.28", "A05") + point(2, "5", "A04") +
+               point(2, "5", "A05") + point(4, "7.5", "A04"));
+  const MarketRows rows = parse_market_text(text, "a85.xml");
+  ASSERT_EQ(rows.quarter_hours.size(), 3u);
+  EXPECT_EQ(rows.quarter_hours[0].utc_s, 1'672'531'200);
+  EXPECT_EQ(rows.quarter_hours[0].price_eur_per_mwh, -11.28);
+  EXPECT_EQ(rows.quarter_hours[2].utc_s, 1'672'531'200 + 2700);  // position 3 is a gap
+  EXPECT_TRUE(rows.dual_priced_quarter_hours.empty());
+  EXPECT_THAT(rows.sources, testing::ElementsAre(MarketSource::kEntsoe));
+}
+
+TEST(EntsoeXml, CurveTypeA03RepeatsThePointBefore) {
+  EXPECT_THAT(prices(document(point(1, "3", "A04") + point(3, "4", "A04"), "A03")),
+              testing::ElementsAre(3, 3, 4, 4));
+}
+
+TEST(EntsoeXml, LongerIntervalsBecomeQuarterHours) {
+  EXPECT_THAT(prices(document(point(1, "3", "A04") + point(2, "4", "A04"), "A01", "PT30M")),
+              testing::ElementsAre(3, 3, 4, 4));
+  EXPECT_THAT(prices(document(point(1, "9", "A04"), "A01", "PT60M")),
+              testing::ElementsAre(9, 9, 9, 9));
+}
+
+TEST(EntsoeXml, TwoPricesAreNotOne) {
+  const MarketRows rows =
+      parse_market_text(document(point(1, "3", "A04") + point(1, "9", "A05")), "a85.xml");
+  ASSERT_EQ(rows.quarter_hours.size(), 1u);
+  EXPECT_TRUE(std::isnan(rows.quarter_hours[0].price_eur_per_mwh));
+  EXPECT_EQ(rows.dual_priced_quarter_hours.size(), 1u);
+}
+
+TEST(EntsoeXml, BadDocumentsAreOneClearLine) {
+  const auto error_of = [](const std::string& text) {
+    return user_error_of([&] { (void)parse_market_text(text, "f.xml"); });
+  };
+  const std::string good = document(point(1, "3", "A04"));
+  EXPECT_THAT(error_of("<html><body>x</body></html>"), HasSubstr("f.xml: a web page, not data"));
+  EXPECT_THAT(error_of("<Publication_MarketDocument/><a>"), HasSubstr("not an ENTSO-E"));
+  EXPECT_THAT(error_of(good.substr(0, good.size() - 40)), HasSubstr("cut short"));
+  EXPECT_THAT(error_of(document(point(1, "x", "A04"))), HasSubstr("\"x\" is not a number"));
+  EXPECT_THAT(error_of(document(point(5, "3", "A04"))), HasSubstr("outside its period"));
+  EXPECT_THAT(error_of(document(point(0, "3", "A04"))), HasSubstr("start at 1"));
+  EXPECT_THAT(error_of(document(point(1, "3", "A04"), "A01", "P1Y")), HasSubstr("\"P1Y\""));
+  EXPECT_THAT(error_of(document("")), HasSubstr("no imbalance prices"));
+}
+
+TEST(EntsoeXml, OtherUnitsAreRefused) {
+  const auto with = [](const std::string& currency, const std::string& energy) {
+    std::string text = document(point(1, "3", "A04"));
+    return text.insert(text.find("<Period>"),
+                       "<currency_Unit.name>" + currency + "</currency_Unit.name>" +
+                           "<price_Measure_Unit.name>" + energy + "</price_Measure_Unit.name>");
+  };
+  const auto error_of = [](const std::string& text) {
+    return user_error_of([&] { (void)parse_market_text(text, "f.xml"); });
+  };
+  EXPECT_THAT(prices(with("EUR", "MWH")), testing::ElementsAre(3));
+  EXPECT_THAT(error_of(with("BGN", "MWH")), HasSubstr("\"BGN\" where EUR"));
+  EXPECT_THAT(error_of(with("EUR", "KWH")), HasSubstr("\"KWH\" where MWH"));
+}
+
+TEST(EntsoeXml, AnAcknowledgementTellsItsReason) {
+  EXPECT_THAT(user_error_of([] {
+                (void)parse_market_text(
+                    "<?xml version=\"1.0\"?><Acknowledgement_MarketDocument xmlns=\"x\"><Reason>"
+                    "<code>999</code><text>No matching\n data found</text></Reason>"
+                    "</Acknowledgement_MarketDocument>",
+                    "f.xml");
+              }),
+              HasSubstr("f.xml: ENTSO-E sent no prices but a reason: \"No matching data found\""));
+}
+
+TEST(EntsoeXml, MinutesAreDrawnWithoutAPublishedImbalance) {
+  auto rows = parse_market_text(document(point(1, "50", "A04") + point(2, "90", "A04") +
+                                         point(3, "-20", "A04") + point(4, "60", "A04")),
+                                "a85.xml")
+                  .quarter_hours;
+  EXPECT_EQ(infer_missing_imbalances(rows), 4u);
+  EXPECT_GT(rows[2].system_imbalance_mw, 0);  // cheapest of the day: long
+  const MinuteSeries series = minutes_on_quarter_hours(rows, 1);
+  for (std::size_t m = 14; m < 60; m += 15) EXPECT_EQ(series.indicative[m], series.settled[m]);
+  for (const double price : series.indicative) EXPECT_TRUE(std::isfinite(price));
+}
+
+}  // namespace
+}  // namespace bess

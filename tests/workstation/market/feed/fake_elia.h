@@ -1,0 +1,99 @@
+// A local server that answers like Elia's API, and like it on a bad day when a fault is given.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <httplib.h>
+
+#include <chrono>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "shared/host/minute_file.h"
+#include "workstation/market/series/local_date.h"
+
+namespace bess {
+
+enum class FakeRows {
+  kMidnights,  ///< one minute and one settled quarter-hour for each local midnight of the window
+  kAll,        ///< every minute and every quarter-hour
+};
+
+/// Serves the asked window, newest first.
+class FakeElia {
+ public:
+  using Fault = std::function<bool(const std::string& dataset, int request, httplib::Response&)>;
+
+  explicit FakeElia(Fault fault = {}, FakeRows served = FakeRows::kMidnights)
+      : fault_(std::move(fault)), served_(served) {
+    server_.Get(R"(/api/explore/v2\.1/catalog/datasets/(ods\d+)/exports/csv)",
+                [this](const httplib::Request& request, httplib::Response& response) {
+                  answer(request, response);
+                });
+    port_ = server_.bind_to_any_port("127.0.0.1");
+    thread_ = std::thread([this] { server_.listen_after_bind(); });
+    while (!server_.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  ~FakeElia() {
+    server_.stop();
+    thread_.join();
+  }
+  FakeElia(const FakeElia&) = delete;
+  FakeElia& operator=(const FakeElia&) = delete;
+
+  [[nodiscard]] std::string base_url() const {
+    return "http://127.0.0.1:" + std::to_string(port_) + "/api/explore/v2.1";
+  }
+  /// Requests seen so far, by dataset.
+  std::map<std::string, int> requests() {
+    const std::lock_guard lock(mutex_);
+    return requests_;
+  }
+
+ private:
+  void answer(const httplib::Request& request, httplib::Response& response) {
+    const std::string dataset = request.matches[1];
+    int number = 0;
+    {
+      const std::lock_guard lock(mutex_);
+      number = ++requests_[dataset];
+    }
+    if (fault_ && fault_(dataset, number, response)) return;
+    // cpp-httplib would spend seconds on packing a month of text.
+    response.set_content(rows(dataset, request.get_param_value("where")),
+                         served_ == FakeRows::kAll ? "application/csv" : "text/csv; charset=utf-8");
+  }
+
+  [[nodiscard]] std::string rows(const std::string& dataset, const std::string& where) const {
+    std::int64_t from_utc_s = 0;
+    std::int64_t until_utc_s = 0;
+    EXPECT_TRUE(parse_utc(where.substr(where.find(">= \"") + 4, 25), from_utc_s)) << where;
+    EXPECT_TRUE(parse_utc(where.substr(where.find("< \"") + 3, 25), until_utc_s)) << where;
+    const bool minutes = dataset == "ods046" || dataset == "ods133" || dataset == "ods161";
+    std::string text =
+        "\xEF\xBB\xBF"
+        "datetime;resolutioncode;qualitystatus;imbalanceprice\n";
+    // newest first, and one row too many: the window's end is exclusive
+    const bool all = served_ == FakeRows::kAll;
+    const std::int64_t step_s = !all ? 3600 : minutes ? 60 : 900;
+    for (std::int64_t utc_s = until_utc_s; utc_s >= from_utc_s; utc_s -= step_s) {
+      const int day = all ? static_cast<int>(utc_s / 86'400 % 97) : local_date_of(utc_s).day;
+      if (!all && local_midnight_utc_s(local_date_of(utc_s)) != utc_s) continue;
+      text += format_utc(utc_s).substr(0, 19) + "+00:00;" + (minutes ? "PT1M" : "PT15M") +
+              ";DataIssue;" + std::to_string(day) + (minutes ? ".5" : "") + "\n";
+    }
+    return text;
+  }
+
+  Fault fault_;
+  FakeRows served_;
+  httplib::Server server_;
+  int port_ = 0;
+  std::thread thread_;
+  std::mutex mutex_;
+  std::map<std::string, int> requests_;
+};
+
+}  // namespace bess

@@ -1,0 +1,81 @@
+#include "workstation/market/feed/fetch_plan.h"
+
+#include <gmock/gmock.h>
+
+#include "shared/host/minute_file.h"
+#include "tests/support/market_test_support.h"
+#include "workstation/market/feed/http_client.h"
+
+namespace bess {
+namespace {
+
+constexpr std::int64_t kNow_s = 1'750'000'000;  // 15 June 2025, 17:06 local
+
+std::vector<std::string> described(const FetchSpan& span) {
+  std::vector<std::string> lines;
+  for (const FetchWindow& window : plan_fetch(span, kNow_s)) {
+    lines.push_back(window.dataset + " " + format_utc(window.from_utc_s).substr(0, 13) + " " +
+                    format_utc(window.until_utc_s).substr(0, 13) +
+                    (window.settles_later ? " later" : ""));
+  }
+  return lines;
+}
+
+TEST(FetchPlan, CutsByMonthAndChangesDatasetsOn22May2024) {
+  EXPECT_THAT(described({{2024, 4, 30}, {2024, 6, 1}}),
+              testing::ElementsAre(
+                  "ods046 2024-04-29T22 2024-04-30T22", "ods047 2024-04-29T22 2024-04-30T22",
+                  "ods046 2024-04-30T22 2024-05-21T22", "ods047 2024-04-30T22 2024-05-21T22",
+                  "ods133 2024-05-21T22 2024-05-31T22", "ods134 2024-05-21T22 2024-05-31T22",
+                  "ods133 2024-05-31T22 2024-06-01T22", "ods134 2024-05-31T22 2024-06-01T22"));
+}
+
+TEST(FetchPlan, TodayHasItsOwnDatasetsAndTomorrowNone) {
+  EXPECT_THAT(described({{2025, 6, 14}, {2025, 7, 31}}),
+              testing::ElementsAre("ods133 2025-06-13T22 2025-06-14T22 later",
+                                   "ods134 2025-06-13T22 2025-06-14T22 later",
+                                   "ods161 2025-06-14T22 2025-06-15T22 later",
+                                   "ods162 2025-06-14T22 2025-06-15T22 later"));
+}
+
+TEST(FetchPlan, DaysThatMayStillBeFillingAreAWindowOfTheirOwn) {
+  EXPECT_THAT(described({{2025, 6, 1}, {2025, 6, 14}}),
+              testing::ElementsAre("ods133 2025-05-31T22 2025-06-12T22",
+                                   "ods134 2025-05-31T22 2025-06-12T22",
+                                   "ods133 2025-06-12T22 2025-06-14T22 later",
+                                   "ods134 2025-06-12T22 2025-06-14T22 later"));
+}
+
+TEST(FetchPlan, AYearIsTwelveWindowsOfEachKind) {
+  EXPECT_EQ(plan_fetch({{2023, 1, 1}, {2023, 12, 31}}, kNow_s).size(), 24u);
+}
+
+TEST(FetchPlan, RefusesEmptySpans) {
+  EXPECT_THAT(user_error_of([] {
+                (void)plan_fetch({{2023, 2, 1}, {2023, 1, 1}}, kNow_s);
+              }),
+              testing::HasSubstr("swap them"));
+  EXPECT_THAT(user_error_of([] {
+                (void)plan_fetch({{2026, 2, 1}, {2026, 3, 1}}, kNow_s);
+              }),
+              testing::HasSubstr("in the future"));
+}
+
+TEST(WaitSeconds, EveryFormServersUse) {
+  EXPECT_EQ(wait_seconds("120", 1e9), 120);
+  EXPECT_EQ(wait_seconds("1750000030", kNow_s), 30);
+  EXPECT_EQ(wait_seconds("2025-06-15 15:07:00+00:00", kNow_s), 20);
+  EXPECT_EQ(wait_seconds("Sun, 15 Jun 2025 15:07:00 GMT", kNow_s), 20);
+  EXPECT_EQ(wait_seconds("Sun, 15 Jun 2025 15:00:00 GMT", kNow_s), 0);
+  EXPECT_EQ(wait_seconds("-5", kNow_s), 0);
+  EXPECT_EQ(wait_seconds("soon", kNow_s), std::nullopt);
+  EXPECT_EQ(wait_seconds("", kNow_s), std::nullopt);
+}
+
+TEST(Redirects, NeverLeadFromHttpsToHttp) {
+  EXPECT_STREQ(redirect_protocols("https://opendata.elia.be/api"), "https");
+  EXPECT_STREQ(redirect_protocols("http://127.0.0.1:8080/api"), "http,https");
+}
+
+}  // namespace
+}  // namespace bess

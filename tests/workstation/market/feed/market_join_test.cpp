@@ -1,0 +1,84 @@
+// Joining rows: order, duplicates, gaps, and what stands for a missing settled price.
+#include "workstation/market/feed/market_join.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "tests/support/market_test_support.h"
+#include "workstation/market/feed/market_files.h"
+
+namespace bess {
+namespace {
+
+using testing::HasSubstr;
+
+QuarterHour settled(std::int64_t utc_s, double price) {
+  QuarterHour row;
+  row.utc_s = utc_s;
+  row.price_eur_per_mwh = price;
+  return row;
+}
+
+TEST(MarketJoin, SortsAndJoins) {
+  const MarketRows rows{{{1020, 3}, {960, 2}, {900, 1}}, {settled(900, 50), settled(0, 40)}};
+  const JoinedMarket market = join_market(rows, "test");
+  ASSERT_EQ(market.series.size(), 30u);
+  EXPECT_EQ(market.series.start_utc_s, 0);
+  EXPECT_TRUE(std::isnan(market.series.indicative[14]));
+  EXPECT_EQ(market.series.indicative[15], 1);
+  EXPECT_EQ(market.series.indicative[17], 3);
+  EXPECT_EQ(market.series.settled[14], 40);
+  EXPECT_EQ(market.series.settled[15], 50);
+  EXPECT_FALSE(market.report.settled_from_minutes);
+}
+
+TEST(MarketJoin, OfDuplicatesTheLastReadWinsButNotANull) {
+  const MarketRows rows{{{0, 1}, {0, 2}, {60, 5}, {60, kNotPublished}}, {settled(0, 40)}};
+  const JoinedMarket market = join_market(rows, "test");
+  EXPECT_EQ(market.series.indicative[0], 2);
+  EXPECT_EQ(market.series.indicative[1], 5);
+  EXPECT_EQ(market.report.duplicates, 2u);
+  EXPECT_EQ(market.report.duplicates_changed, 1u);
+}
+
+TEST(MarketJoin, MinutesAloneSettleAtMinute14) {
+  MarketRows rows;
+  for (int m = 0; m < 20; ++m) rows.minutes.push_back({m * 60, 100.0 + m});
+  const JoinedMarket market = join_market(rows, "test");
+  EXPECT_EQ(market.series.settled[0], 114);
+  EXPECT_EQ(market.series.settled[14], 114);
+  EXPECT_TRUE(std::isnan(market.series.settled[15]));  // the second quarter-hour is not over
+  EXPECT_THAT(describe_join(market), HasSubstr("indicative one of minute 14"));
+}
+
+TEST(MarketJoin, StrayDatesAndEmptinessAreRefused) {
+  EXPECT_THAT(user_error_of([] { (void)join_market({}, "f.csv"); }), HasSubstr("holds no rows"));
+  const MarketRows rows{{{0, 1}, {4'000'000'020, 1}}, {}};
+  EXPECT_THAT(user_error_of([&] { (void)join_market(rows, "f.csv"); }), HasSubstr("40 years"));
+  const MarketRows unpriced{{{0, kNotPublished}}, {settled(0, kNotPublished)}};
+  EXPECT_THAT(user_error_of([&] { (void)join_market(unpriced, "f.csv"); }),
+              HasSubstr("no price in any"));
+}
+
+TEST(MarketJoin, GapsAreReported) {
+  const MarketRows rows{{{0, 1}, {180, 1}}, {settled(0, 40), settled(2700, 40)}};
+  const std::string text = describe_join(join_market(rows, "test"));
+  EXPECT_THAT(text, HasSubstr("settled price: 1 gap, 30 minutes missing"));
+  EXPECT_THAT(text, HasSubstr("1970-01-01T00:01:00Z to 1970-01-01T00:03:00Z: 2 minutes"));
+}
+
+TEST(MarketJoin, RealDownloadsMatchTheTidyFile) {
+  BESS_SKIP_WITHOUT("raw/ods161_2024-09-06.csv.gz");
+  const auto joined = [](const std::string& name) {
+    return join_market(read_market_files({real_sample(name).string()}), name).series;
+  };
+  const MinuteSeries raw = joined("raw/ods161_2024-09-06.csv.gz");
+  const MinuteSeries tidy = joined("elia_minute_2024-09-06.csv.gz");
+  EXPECT_EQ(format_minute_csv(raw, ""), format_minute_csv(tidy, ""));
+  EXPECT_EQ(raw.size(), 1137u);
+  EXPECT_EQ(format_utc(raw.start_utc_s), "2024-09-05T22:00:00Z");
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,239 @@
+// The readers: every spelling of Elia's downloads, and one clear line for what cannot be read.
+#include "workstation/market/feed/market_rows.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "shared/host/file.h"
+#include "shared/host/plain_text.h"
+#include "tests/support/market_test_support.h"
+#include "workstation/market/feed/market_files.h"
+
+namespace bess {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr std::int64_t k2024September6At1656Utc_s = 1'725'641'760;
+
+TEST(MarketCsv, PortalMinutesWithByteOrderMarkAndNulls) {
+  const MarketRows rows = parse_market_text(
+      "\xEF\xBB\xBF"
+      "Datetime;Resolution code;Quarter hour;Quality status;ACE;System imbalance;Alpha;Alpha';"
+      "Marginal incremental price;Marginal decremental price;Imbalance Price\r\n"
+      "2024-09-06T18:56:00+02:00;PT1M;2024-09-06T18:45:00+02:00;NV;-55.073;-107.004;0.0;0.0;369."
+      "425;"
+      "-10.338;369.425\r\n"
+      "2025-04-08T08:02:00+02:00;PT1M;2025-04-08T08:00:00+02:00;DataIssue;-69.292;-126.48;;0.0;;55."
+      "0;"
+      "\r\n",
+      "portal.csv");
+  ASSERT_EQ(rows.minutes.size(), 2u);
+  EXPECT_TRUE(rows.quarter_hours.empty());
+  EXPECT_EQ(rows.minutes[0].utc_s, k2024September6At1656Utc_s);
+  EXPECT_EQ(rows.minutes[0].indicative_eur_per_mwh, 369.425);
+  EXPECT_TRUE(std::isnan(rows.minutes[1].indicative_eur_per_mwh));
+}
+
+TEST(MarketCsv, OldQuarterHoursByLabelAndByApiName) {
+  const char* row =
+      "2023-01-01T00:00:00+01:00;Validated;PT15M;-145.361;153.32;1.09;59.39;-10.19;;-11.28;-11."
+      "28\n";
+  for (const char* header :
+       {"DateTime;Quality status;Resolution code;Net regulation volume;System imbalance;Alpha;"
+        "Marginal incremental price;Marginal decremental price;Strategic reserve price;Positive "
+        "imbalance price;Negative imbalance price\n",
+        "datetime;qualitystatus;resolutioncode;netregulationvolume;systemimbalance;alpha;"
+        "marginalincrementalprice;marginaldecrementalprice;strategicreserveprice;"
+        "positiveimbalanceprice;negativeimbalanceprice\n"}) {
+    const MarketRows rows = parse_market_text(std::string(header) + row, "ods047.csv");
+    ASSERT_EQ(rows.quarter_hours.size(), 1u);
+    const QuarterHour& first = rows.quarter_hours[0];
+    EXPECT_EQ(first.utc_s, 1'672'527'600);
+    EXPECT_EQ(first.price_eur_per_mwh, -11.28);
+    EXPECT_EQ(first.system_imbalance_mw, 153.32);
+    EXPECT_EQ(first.alpha_eur_per_mwh, 1.09);
+    EXPECT_EQ(first.marginal_incremental_eur_per_mwh, 59.39);
+    EXPECT_EQ(first.marginal_decremental_eur_per_mwh, -10.19);
+  }
+}
+
+TEST(MarketCsv, TidyCommaFilesAndQuotes) {
+  const MarketRows quarter_hours = parse_market_text(
+      "datetime_utc,price_eur_mwh,system_imbalance_mw,nrv_mw,alpha_eur_mwh,mip_eur_mwh,mdp_eur_mwh,"
+      "quality\n2022-12-31T23:00:00Z,-11.28,153.32,-145.361,1.09,59.39,-10.19,\"a,b\"\n",
+      "tidy.csv");
+  ASSERT_EQ(quarter_hours.quarter_hours.size(), 1u);
+  EXPECT_EQ(quarter_hours.quarter_hours[0].marginal_decremental_eur_per_mwh, -10.19);
+  const MarketRows minutes = parse_market_text(
+      "datetime_utc,quarter_hour_utc,price_eur_mwh\n\"2024-09-05T22:01:00Z\",2024-09-05T22:00:00Z,"
+      "80.0\n",
+      "tidy.csv");
+  ASSERT_EQ(minutes.minutes.size(), 1u);
+}
+
+TEST(MarketCsv, TwoDifferentPricesAreNotOne) {
+  const MarketRows rows = parse_market_text(
+      "datetime;resolutioncode;positiveimbalanceprice;negativeimbalanceprice\n"
+      "2023-01-01T00:00:00Z;PT15M;10;60\n"
+      "2023-01-01T00:15:00Z;PT15M;10;10\n"
+      "2023-01-01T00:30:00Z;PT15M;;20\n"
+      "2023-01-01T00:45:00Z;PT15M;30;\n"
+      "2023-01-01T01:00:00Z;PT15M;;\n"
+      "2023-01-01T00:00:00Z;PT1M;1;2\n",
+      "ods047.csv");
+  ASSERT_EQ(rows.quarter_hours.size(), 5u);
+  EXPECT_TRUE(std::isnan(rows.quarter_hours[0].price_eur_per_mwh));
+  EXPECT_EQ(rows.quarter_hours[1].price_eur_per_mwh, 10);
+  EXPECT_EQ(rows.quarter_hours[2].price_eur_per_mwh, 20);
+  EXPECT_EQ(rows.quarter_hours[3].price_eur_per_mwh, 30);
+  EXPECT_TRUE(std::isnan(rows.quarter_hours[4].price_eur_per_mwh));
+  EXPECT_TRUE(std::isnan(rows.minutes.at(0).indicative_eur_per_mwh));
+  EXPECT_THAT(rows.dual_priced_quarter_hours, testing::ElementsAre(1'672'531'200));
+  EXPECT_THAT(rows.dual_priced_minutes, testing::ElementsAre(1'672'531'200));
+  const std::string text = describe_join(join_market(rows, "test"));
+  EXPECT_THAT(text, HasSubstr("1 quarter-hour with different prices for long and short"));
+  EXPECT_THAT(text, HasSubstr("1 minute with different prices for long and short"));
+}
+
+TEST(MarketJson, TwoDifferentPricesAreNotOne) {
+  const MarketRows rows =
+      parse_market_text(R"([{"datetime":"2023-01-01T00:00:00Z","resolutioncode":"PT15M",)"
+                        R"("positiveimbalanceprice":10,"negativeimbalanceprice":60},)"
+                        R"({"datetime":"2023-01-01T00:15:00Z","resolutioncode":"PT15M",)"
+                        R"("positiveimbalanceprice":null,"negativeimbalanceprice":60}])",
+                        "ods047.json");
+  ASSERT_EQ(rows.quarter_hours.size(), 2u);
+  EXPECT_TRUE(std::isnan(rows.quarter_hours[0].price_eur_per_mwh));
+  EXPECT_EQ(rows.quarter_hours[1].price_eur_per_mwh, 60);
+  EXPECT_EQ(rows.dual_priced_quarter_hours.size(), 1u);
+}
+
+TEST(MarketText, SaysWhoseDataItIs) {
+  EXPECT_THAT(parse_market_text("datetime;resolutioncode;imbalanceprice\n"
+                                "2025-01-01T00:00:00Z;PT15M;1\n",
+                                "elia.csv")
+                  .sources,
+              testing::ElementsAre(MarketSource::kElia));
+  EXPECT_THAT(
+      parse_market_text("datetime_utc,price_eur_mwh\n2025-01-01T00:00:00Z,1\n", "tidy.csv").sources,
+      testing::ElementsAre(MarketSource::kUnknown));
+  EXPECT_THAT(attribution_of({MarketSource::kEntsoe}),
+              testing::AllOf(HasSubstr("ENTSO-E"), testing::Not(HasSubstr("Elia"))));
+  EXPECT_THAT(attribution_of({MarketSource::kElia, MarketSource::kUnknown}),
+              testing::AllOf(HasSubstr("Elia, opendata.elia.be, CC BY 4.0"),
+                             HasSubstr("does not name its source")));
+}
+
+TEST(MarketText, WhatIsNoTextIsNamed) {
+  using namespace std::string_view_literals;
+  const auto error_of = [](std::string_view text) {
+    return user_error_of([&] { (void)parse_market_text(text, "f"); });
+  };
+  EXPECT_EQ(error_of("PK\x03\x04\x14\0\0"sv), "f: a ZIP archive: unzip it first");
+  EXPECT_EQ(error_of("\xFF\xFE"
+                     "d\0a\0"sv),
+            "f: UTF-16 text: save it as UTF-8");
+  EXPECT_THAT(error_of("d\0a\0t\0e\0"sv), HasSubstr("UTF-16 text? save it as UTF-8"));
+  EXPECT_EQ(error_of(" \n<!DOCTYPE HTML><html>"),
+            "f: a web page, not data (maintenance or a proxy's log-in?)");
+}
+
+TEST(PlainText, MessagesStayOnOneLineAndQuiet) {
+  EXPECT_EQ(one_line("bad\x1b[31m where\r\n\n second \xC2\x9B line\n", 200),
+            "bad [31m where second line");
+  EXPECT_EQ(one_line("abcdef", 3), "abc");
+  EXPECT_EQ(one_line("ab\xC3\xA9", 3), "ab");  // no half characters
+  const std::string text = user_error_of([] {
+    (void)parse_market_text("datetime;imbalanceprice\n2025-01-01T00:00:00Z;\x1b[31m\n", "f");
+  });
+  EXPECT_THAT(text, testing::Not(HasSubstr("\x1b")));
+}
+
+TEST(MarketCsv, AlphaPrimeIsNotAlpha) {
+  EXPECT_EQ(market_field_of("Alpha"), MarketField::kAlpha);
+  EXPECT_EQ(market_field_of("Alpha'"), std::nullopt);
+  EXPECT_EQ(market_field_of("alpha_prime"), std::nullopt);
+  EXPECT_EQ(market_field_of("Imbalance Price"), MarketField::kPrice);
+  EXPECT_EQ(market_field_of("Negative imbalance price"), MarketField::kNegativePrice);
+}
+
+TEST(MarketJson, RecordsExportsAndVersion1) {
+  const std::string record =
+      R"({"datetime":"2025-08-17T00:36:00+00:00","resolutioncode":"PT1M",)"
+      R"("quarterhour":"2025-08-17T00:30:00+00:00","qualitystatus":"DataIssue","ace":-4.387,)"
+      R"("systemimbalance":237.58,"alpha":6.258,"alpha_prime":null,)"
+      R"("marginalincrementalprice":127.3,"marginaldecrementalprice":-24.0,"imbalanceprice":-30.258})";
+  for (const std::string& text :
+       {"[" + record + "]", R"({"total_count": 4, "results": [)" + record + "]}",
+        R"( {"nhits": 1, "records": [{"datasetid": "ods161", "fields": )" + record + "}]}"}) {
+    const MarketRows rows = parse_market_text(text, "answer.json");
+    ASSERT_EQ(rows.minutes.size(), 1u) << text;
+    EXPECT_EQ(rows.minutes[0].utc_s, 1'755'390'960);
+    EXPECT_EQ(rows.minutes[0].indicative_eur_per_mwh, -30.258);
+  }
+}
+
+TEST(MarketJson, QuarterHourAndNullPrice) {
+  const MarketRows rows = parse_market_text(
+      R"([{"datetime":"2025-10-08T13:00:00+02:00","resolutioncode":"PT15M","imbalanceprice":100.06},
+          {"datetime":"2025-10-08T12:45:00+02:00","resolutioncode":"PT15M","imbalanceprice":null}])",
+      "answer.json");
+  ASSERT_EQ(rows.quarter_hours.size(), 2u);
+  EXPECT_EQ(rows.quarter_hours[0].price_eur_per_mwh, 100.06);
+  EXPECT_TRUE(std::isnan(rows.quarter_hours[1].price_eur_per_mwh));
+}
+
+TEST(MarketText, BadInputIsOneClearLine) {
+  const std::string header = "datetime;resolutioncode;imbalanceprice\n";
+  const auto error_of = [](const std::string& text) {
+    return user_error_of([&] { (void)parse_market_text(text, "f.csv"); });
+  };
+  EXPECT_THAT(error_of(""), HasSubstr("f.csv: the file is empty"));
+  EXPECT_THAT(error_of("a;b\n1;2\n"), HasSubstr("no column for the time"));
+  EXPECT_THAT(error_of("datetime;b\n"), HasSubstr("no column for the imbalance price"));
+  EXPECT_THAT(error_of(header + "2025-01-01T00:00:00Z;PT1M;abc\n"), HasSubstr("f.csv:2: \"abc\""));
+  EXPECT_THAT(error_of(header + "2025-01-01T00:00:00Z;PT1M;inf\n"), HasSubstr("not a number"));
+  EXPECT_THAT(error_of(header + "2025-01-01T00:00:00;PT1M;1\n"), HasSubstr("UTC offset"));
+  EXPECT_THAT(error_of(header + "2025-01-01T00:00:00Z;PT1M\n"), HasSubstr("cut short"));
+  EXPECT_THAT(error_of(header + "2025-01-01T00:00:00Z;PT1H;1\n"), HasSubstr("neither PT1M nor"));
+  EXPECT_THAT(error_of(header + "2025-01-01T00:05:00Z;PT15M;1\n"), HasSubstr("quarter-hour"));
+  EXPECT_THAT(error_of(header + ";PT15M;1\n"), HasSubstr("has no time"));
+  EXPECT_THAT(error_of("[{\"datetime\":"), HasSubstr("not valid JSON"));
+  EXPECT_THAT(error_of("{\"error\":\"x\"}"), HasSubstr("no list of records"));
+  EXPECT_THAT(error_of("[7]"), HasSubstr("record 1: is not an object"));
+  EXPECT_THAT(error_of(R"([{"datetime":5}])"), HasSubstr("wrong kind"));
+}
+
+TEST(MarketText, EveryCutOfARealRowIsReadOrRefused) {
+  const std::string text =
+      "\xEF\xBB\xBF"
+      "Datetime;Resolution code;Imbalance Price\n2025-04-08T08:21:00+02:00;PT1M;49.174\n";
+  int read = 0;
+  for (std::size_t size = 0; size <= text.size(); ++size) {
+    try {
+      read += static_cast<int>(parse_market_text(text.substr(0, size), "cut").minutes.size());
+    } catch (const UserError&) {
+    }
+  }
+  EXPECT_GE(read, 2);  // whole, with and without its line end
+}
+
+TEST(MarketText, RealDownloads) {
+  BESS_SKIP_WITHOUT("raw/ods047_head3000.csv.gz");
+  const auto rows_of = [](const std::string& name) {
+    return parse_market_text(read_file(real_sample("raw/" + name)), name);
+  };
+  EXPECT_EQ(rows_of("ods047_head3000.csv.gz").quarter_hours.size(), 2999u);
+  EXPECT_EQ(rows_of("ods161_2024-09-06.csv.gz").minutes.size(), 1137u);
+  const MarketRows april = rows_of("ods161_2025-04-08.csv.gz");
+  EXPECT_EQ(april.minutes.size(), 502u);
+  EXPECT_EQ(
+      std::count_if(april.minutes.begin(), april.minutes.end(),
+                    [](const MinuteRow& row) { return std::isnan(row.indicative_eur_per_mwh); }),
+      8);
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,180 @@
+#include <cstring>
+#include <filesystem>
+
+#include "market_by_hand.h"
+#include "shared/crc32.h"
+#include "shared/host/file.h"
+#include "tests/support/temporary_folder.h"
+#include "workstation/base/random.h"
+#include "workstation/rl/teacher.h"
+
+namespace bess {
+namespace {
+
+Teacher teacher_of(Method method) {
+  const Support support{-14.5F, 15.25F, 21};
+  const MlpShape shape = teacher_shape(method, support);
+  return {method,
+          support,
+          shape,
+          straight_price_map(),
+          initial_parameters(shape, 91),
+          "bess-train on \"m\u00e4rkt.csv\", seed 1"};
+}
+
+class TeacherFile : public testing::Test {
+ protected:
+  const TemporaryFolder folder;
+  const std::string path = folder.file("teacher.bin");
+
+  std::string saved(Method method) const {
+    save_teacher(path, teacher_of(method));
+    return read_file(path);
+  }
+  /// Loads `bytes` from the file and returns the UserError; empty when it loaded.
+  std::string refusal_of(std::string_view bytes) const {
+    write_file(path, bytes);
+    return user_error_of([&] { (void)load_teacher(path); });
+  }
+  void expect_refused(std::string_view bytes, const std::string& what) const {
+    const std::string message = refusal_of(bytes);
+    EXPECT_NE(message.find(path), std::string::npos) << what << ": \"" << message << '"';
+  }
+};
+
+TEST_F(TeacherFile, RoundTripIsBitForBit) {
+  for (const Method method : {Method::kC51, Method::kDqn}) {
+    const std::string bytes = saved(method);
+    const Teacher teacher = teacher_of(method);
+    const Teacher read = load_teacher(path);
+    EXPECT_EQ(read.method, teacher.method);
+    EXPECT_EQ(std::memcmp(&read.support, &teacher.support, sizeof(Support)), 0);
+    EXPECT_EQ(read.shape, teacher.shape);
+    EXPECT_EQ(read.price_map.table(), teacher.price_map.table());
+    ASSERT_EQ(read.parameters.size(), teacher.parameters.size());
+    EXPECT_EQ(std::memcmp(read.parameters.data(), teacher.parameters.data(),
+                          sizeof(float) * static_cast<std::size_t>(read.parameters.size())),
+              0);
+    EXPECT_EQ(read.provenance, teacher.provenance);
+    EXPECT_TRUE(is_teacher_file(path));
+    save_teacher(path, read);
+    EXPECT_EQ(read_file(path), bytes);
+  }
+}
+
+TEST_F(TeacherFile, ReadBackItDecidesTheSame) {
+  const Teacher teacher = teacher_of(Method::kC51);
+  save_teacher(path, teacher);
+  const Teacher read = load_teacher(path);
+  const MarketSteps market = uneven_market();
+  for (const MarketStep& step : market.steps) {
+    EXPECT_EQ(TeacherPolicy(read).decide(step, 0, 0.4),
+              TeacherPolicy(teacher).decide(step, 0, 0.4));
+  }
+}
+
+TEST_F(TeacherFile, ProvenanceOfAnyLengthIsReadBackOrCut) {
+  for (const std::size_t length : {0u, 1u, 4096u, 4097u, 10'000u}) {
+    Teacher teacher = teacher_of(Method::kDqn);
+    teacher.provenance = std::string(length, 'p');
+    save_teacher(path, teacher);
+    std::string provenance;
+    EXPECT_EQ(user_error_of([&] { provenance = load_teacher(path).provenance; }), "") << length;
+    EXPECT_EQ(provenance, teacher.provenance.substr(0, 4096)) << length;
+  }
+}
+
+TEST_F(TeacherFile, TruncatedIsRefused) {
+  const std::string bytes = saved(Method::kDqn);
+  std::vector<std::size_t> lengths;
+  for (std::size_t length = 0; length < 64; ++length) lengths.push_back(length);
+  for (std::size_t part = 1; part < 40; ++part) lengths.push_back(bytes.size() * part / 40);
+  for (std::size_t less = 1; less <= 9; ++less) lengths.push_back(bytes.size() - less);
+  for (const std::size_t length : lengths) {
+    expect_refused(std::string_view(bytes).substr(0, length), fmt::format("{} bytes", length));
+  }
+}
+
+TEST_F(TeacherFile, FlippedBytesAreRefused) {
+  const std::string bytes = saved(Method::kDqn);
+  std::vector<std::size_t> places{0, 7, 8, 11, 12, 16, bytes.size() - 4, bytes.size() - 1};
+  Random random(92);
+  while (places.size() < 50) places.push_back(random.index(bytes.size()));
+  for (const std::size_t at : places) {
+    std::string damaged = bytes;
+    damaged[at] = static_cast<char>(damaged[at] ^ static_cast<char>(1 + random.index(255)));
+    expect_refused(damaged, fmt::format("byte {}", at));
+  }
+}
+
+TEST_F(TeacherFile, AppendedBytesAreRefused) {
+  expect_refused(saved(Method::kDqn) + "x", "one more");
+  expect_refused(saved(Method::kDqn) + saved(Method::kDqn), "twice");
+}
+
+TEST_F(TeacherFile, OtherFilesAreRefused) {
+  expect_refused("", "empty");
+  expect_refused("minute_utc,indicative_eur_mwh,settled_eur_mwh\n", "prices");
+  expect_refused(std::string(1000, '\0'), "zeros");
+  expect_refused("BESSTCHR", "magic only");
+  EXPECT_FALSE((write_file(path, "BESSTCH"), is_teacher_file(path)));
+  for (const std::string& other : {folder.file("."), folder.file("missing.bin")}) {
+    const std::string message = user_error_of([&] { (void)load_teacher(other); });
+    EXPECT_NE(message.find(other), std::string::npos) << message;
+  }
+}
+
+TEST_F(TeacherFile, OtherVersionNamesBoth) {
+  std::string bytes = saved(Method::kDqn);
+  bytes[8] = 2;
+  const std::string message = refusal_of(bytes);
+  EXPECT_NE(message.find("version 2"), std::string::npos) << message;
+  EXPECT_NE(message.find("reads 1"), std::string::npos) << message;
+}
+
+/// Fields in the file: magic 8, version 4, then these.
+constexpr std::size_t kMethodAt = 12, kSupportMinAt = 16, kSupportMaxAt = 20, kSupportCountAt = 24,
+                      kShapeAt = 28, kTableAt = 44;
+
+/// The checksum is right, the contents are not: another program's or a later one's file.
+TEST_F(TeacherFile, SoundChecksumOverImpossibleContentsIsRefused) {
+  const struct {
+    const char* what;
+    std::size_t at;
+    std::int32_t value;
+  } cases[] = {{"method", kMethodAt, 7},
+               {"no atoms", kSupportCountAt, 0},
+               {"negative atoms", kSupportCountAt, -1},
+               {"very many atoms", kSupportCountAt, 0x7FFFFFFF},
+               {"one atom", kSupportCountAt, 1},
+               {"support upside down", kSupportMinAt, 0x42C80000},  // 100.0F
+               {"support not a number", kSupportMaxAt, 0x7FC00000},
+               {"inputs", kShapeAt, 6},
+               {"hidden", kShapeAt + 4, 255},
+               {"outputs", kShapeAt + 12, 1'000'000},
+               {"price table", kTableAt + 800, 0},
+               {"provenance length", kTableAt + 2 * kPriceCount, 0x7FFFFFFF}};
+  for (const Method method : {Method::kC51, Method::kDqn}) {
+    const std::string sound = saved(method);
+    for (const auto& c : cases) {
+      std::string bytes = sound;
+      std::memcpy(bytes.data() + c.at, &c.value, sizeof c.value);
+      Crc32 crc;
+      crc.add_bytes(bytes.data(), bytes.size() - sizeof(std::uint32_t));
+      const std::uint32_t value = crc.value();
+      std::memcpy(bytes.data() + bytes.size() - sizeof value, &value, sizeof value);
+      expect_refused(bytes, fmt::format("{}, {}", method_name(method), c.what));
+    }
+  }
+}
+
+TEST(Methods, NamesReadBack) {
+  for (const Method method : {Method::kC51, Method::kDqn}) {
+    EXPECT_EQ(parse_method(method_name(method)), method);
+  }
+  EXPECT_NE(user_error_of([] { (void)parse_method("ppo"); }).find("use c51 or dqn"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,218 @@
+#include "workstation/rl/train.h"
+
+#include <chrono>
+#include <thread>
+
+#include "market_by_hand.h"
+#include "shared/host/file.h"
+#include "tests/support/temporary_folder.h"
+#include "workstation/base/random.h"
+
+namespace bess {
+namespace {
+
+/// Forty days from the first of January 2023.
+const MarketSteps& small_market() {
+  static const MarketSteps market = simulated_market({2023, 1, 1}, 40);
+  return market;
+}
+
+struct Case {
+  const char* name;
+  Method method;
+  Source source;
+  Horizon horizon;
+  long steps;
+};
+
+void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+
+TrainOptions small_options() {
+  TrainOptions options;
+  options.batch_size = 96;
+  options.atoms = 21;
+  options.validate_every = 100;
+  options.steps = 200;
+  return options;
+}
+
+TrainOptions options_of(const Case& c) {
+  TrainOptions options = small_options();
+  options.method = c.method;
+  options.source = c.source;
+  options.horizon = c.horizon;
+  options.steps = c.steps;
+  return options;
+}
+
+TrainResult train(const TrainOptions& options) {
+  const std::atomic<bool> interrupted = false;
+  return train_teacher(small_market(), {}, options, interrupted);
+}
+
+class TrainTeacher : public testing::TestWithParam<Case> {};
+
+TEST_P(TrainTeacher, RunsAndRepeatsToTheBit) {
+  const TrainOptions options = options_of(GetParam());
+  const TrainResult result = train(options);
+  ASSERT_EQ(result.curve.size(), static_cast<std::size_t>((options.steps + 99) / 100));
+  double best = -1e300;
+  for (const CurvePoint& point : result.curve) {
+    EXPECT_TRUE(std::isfinite(point.loss));
+    EXPECT_TRUE(std::isfinite(point.validation_eur_per_day_per_mwh));
+    EXPECT_GE(point.edge_mass_frac, 0);
+    EXPECT_LE(point.edge_mass_frac, 1);
+    best = std::max(best, point.validation_eur_per_day_per_mwh);
+  }
+  EXPECT_EQ(result.curve.back().step, options.steps);
+  EXPECT_EQ(result.best_validation_eur_per_day_per_mwh, best);
+  EXPECT_TRUE(result.teacher.parameters.allFinite());
+
+  const TrainResult again = train(options);
+  EXPECT_EQ(again.teacher.parameters, result.teacher.parameters);
+  EXPECT_EQ(again.best_step, result.best_step);
+  ASSERT_EQ(again.curve.size(), result.curve.size());
+  for (std::size_t i = 0; i < result.curve.size(); ++i) {
+    EXPECT_EQ(again.curve[i].loss, result.curve[i].loss);
+    EXPECT_EQ(again.curve[i].validation_eur_per_day_per_mwh,
+              result.curve[i].validation_eur_per_day_per_mwh);
+  }
+}
+
+TEST_P(TrainTeacher, BestEarnsOnTheValidationDaysWhatIsReported) {
+  const TrainResult result = train(options_of(GetParam()));
+  TeacherPolicy policy(result.teacher);
+  const auto days = small_market().days_of(Split::kValidation);
+  EXPECT_DOUBLE_EQ(evaluate(small_market(), days, policy, {}).profit_eur_per_day_per_mwh(),
+                   result.best_validation_eur_per_day_per_mwh);
+}
+
+TEST_P(TrainTeacher, ResumedItGivesTheSameWeightsToTheBit) {
+  const TemporaryFolder folder;
+  TrainOptions options = options_of(GetParam());
+  const TrainResult whole = train(options);
+  const CheckpointOptions first{folder.file("a.checkpoint"), false, "this run"};
+  std::atomic<bool> interrupted = false;
+  std::jthread interrupter([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(30));
+    interrupted = true;
+  });
+  (void)train_teacher(small_market(), {}, options, interrupted, first);
+  interrupter.join();
+  interrupted = false;
+  const CheckpointOptions second{first.path, true, "this run"};
+  const TrainResult resumed = train_teacher(small_market(), {}, options, interrupted, second);
+  EXPECT_EQ(resumed.teacher.parameters, whole.teacher.parameters);
+  EXPECT_EQ(resumed.best_step, whole.best_step);
+  ASSERT_EQ(resumed.curve.size(), whole.curve.size());
+  for (std::size_t i = 0; i < whole.curve.size(); ++i) {
+    EXPECT_EQ(resumed.curve[i].loss, whole.curve[i].loss);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Ways, TrainTeacher,
+    testing::Values(Case{"c51", Method::kC51, Source::kCounterfactual, Horizon::kContinuing, 300},
+                    Case{"dqn_days", Method::kDqn, Source::kCounterfactual, Horizon::kDay, 150},
+                    Case{"dqn_replay", Method::kDqn, Source::kReplay, Horizon::kContinuing, 40},
+                    Case{"paper", Method::kC51, Source::kReplay, Horizon::kDay, 40}),
+    [](const auto& instance) { return instance.param.name; });
+
+TEST(Train, AnotherSeedIsAnotherTeacher) {
+  TrainOptions options = small_options();
+  options.steps = 20;
+  const TrainResult first = train(options);
+  options.seed = 2;
+  EXPECT_NE(train(options).teacher.parameters, first.teacher.parameters);
+}
+
+TEST(Train, LearnsToEarn) {
+  TrainOptions options = small_options();
+  options.batch_size = 384;
+  options.validate_every = 500;
+  options.steps = 500;
+  const TrainResult result = train(options);
+  EXPECT_GT(result.best_validation_eur_per_day_per_mwh, 0);
+}
+
+TEST(Train, InterruptedBeforeTheStartReturnsNothingValidated) {
+  const std::atomic<bool> interrupted = true;
+  const TrainResult result = train_teacher(small_market(), {}, small_options(), interrupted);
+  EXPECT_TRUE(result.curve.empty());
+  EXPECT_EQ(result.best_step, 0);
+  EXPECT_TRUE(result.teacher.parameters.allFinite());
+}
+
+TEST(Train, InterruptedInTheMiddleKeepsTheBestSoFar) {
+  TrainOptions options = small_options();
+  options.steps = 1'000'000'000;
+  options.validate_every = 10;
+  std::atomic<bool> interrupted = false;
+  std::jthread interrupter([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(700));
+    interrupted = true;
+  });
+  const TrainResult result = train_teacher(small_market(), {}, options, interrupted);
+  EXPECT_LT(result.seconds, 30);
+  if (result.curve.empty()) return;  // a slow machine
+  EXPECT_LT(result.curve.back().step, options.steps);
+  EXPECT_GT(result.best_step, 0);
+}
+
+TEST(Train, DaysThatLackAreNamedWithTheMend) {
+  const struct {
+    const char* name;
+    LocalDate first;
+    int days;
+    const char* lacks;
+  } cases[] = {{"validation only", {2023, 1, 21}, 4, "training days"},
+               {"training only", {2023, 1, 2}, 4, "validation days"},
+               {"test only", {2023, 1, 27}, 3, "validation days"},
+               {"validation and test", {2023, 1, 24}, 5, "training days"}};
+  const std::atomic<bool> interrupted = false;
+  for (const auto& c : cases) {
+    for (const PotentialKind potential : {PotentialKind::kPlan, PotentialKind::kNone}) {
+      TrainOptions options = small_options();
+      options.potential = potential;
+      const MarketSteps market = simulated_market(c.first, c.days);
+      const std::string message =
+          user_error_of([&] { (void)train_teacher(market, {}, options, interrupted); });
+      EXPECT_NE(message.find(c.lacks), std::string::npos) << c.name << ": " << message;
+      EXPECT_NE(message.find("add some"), std::string::npos) << c.name << ": " << message;
+    }
+  }
+}
+
+TEST(Checkpoint, DamagedOrOfAnotherRunIsRefused) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("a.checkpoint");
+  const std::atomic<bool> interrupted = false;
+  TrainOptions options = small_options();
+  options.steps = 30;
+  const auto refusal = [&](const std::string& identity) {
+    return user_error_of([&] {
+      (void)train_teacher(small_market(), {}, options, interrupted, {path, true, identity});
+    });
+  };
+  EXPECT_NE(refusal("this run").find("cannot open"), std::string::npos);
+  (void)train_teacher(small_market(), {}, options, interrupted, {path, false, "this run"});
+  EXPECT_EQ(refusal("this run"), "");
+  EXPECT_NE(refusal("another run").find("is of another run"), std::string::npos);
+  const std::string sound = read_file(path);
+  const auto expect_refused = [&](const std::string& bytes, const std::string& what) {
+    write_file(path, bytes);
+    const std::string message = refusal("this run");
+    EXPECT_NE(message.find(path), std::string::npos) << what << ": \"" << message << '"';
+  };
+  Random random(93);
+  for (int part = 0; part < 20; ++part) {
+    expect_refused(sound.substr(0, sound.size() * static_cast<std::size_t>(part) / 20), "cut");
+    std::string flipped = sound;
+    flipped[random.index(flipped.size())] ^= 0x10;
+    expect_refused(flipped, "flipped");
+  }
+  expect_refused(sound + "x", "appended");
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,232 @@
+#include "workstation/student/export.h"
+
+#include <fmt/core.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <student_weights.h>
+
+#include <charconv>
+#include <filesystem>
+
+#include "shared/host/file.h"
+#include "tests/support/child_process.h"
+#include "tests/support/student_nets.h"
+#include "tests/support/temporary_folder.h"
+
+namespace bess {
+namespace {
+
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+/// Integers of one array of a header, in order, whatever its nesting.
+std::vector<int> array_in(const std::string& header, const std::string& name) {
+  std::size_t at = header.find("bess_student_" + name + '[');
+  if (at == std::string::npos) return {};
+  at = header.find('=', at);
+  const std::size_t end = header.find(';', at);
+  std::vector<int> values;
+  while (at < end) {
+    int value = 0;
+    const auto [rest, error] = std::from_chars(&header[at], &header[end], value);
+    if (error == std::errc{}) {
+      values.push_back(value);
+      at = static_cast<std::size_t>(rest - header.data());
+    } else {
+      ++at;
+    }
+  }
+  return values;
+}
+
+template <typename T, std::size_t kCount>
+std::vector<int> flat(const T (&values)[kCount]) {
+  return {values, values + kCount};
+}
+template <typename T, std::size_t kRows, std::size_t kColumns>
+std::vector<int> flat(const T (&values)[kRows][kColumns]) {
+  return {&values[0][0], &values[0][0] + kRows * kColumns};
+}
+
+TEST(Export, HeaderHoldsTheNet) {
+  const StudentFile student{seeded_net(31), -400, 1400, "seeded"};
+  const StudentNet& net = student.net;
+  const std::string header = format_weight_header(student);
+  EXPECT_EQ(array_in(header, "price_map"), flat(net.price_map));
+  EXPECT_EQ(array_in(header, "layer1_weight"), flat(net.layer1.weight));
+  EXPECT_EQ(array_in(header, "layer1_bias"), flat(net.layer1.bias));
+  EXPECT_EQ(array_in(header, "layer2_weight"), flat(net.layer2.weight));
+  EXPECT_EQ(array_in(header, "layer2_bias"), flat(net.layer2.bias));
+  EXPECT_EQ(array_in(header, "layer3_weight"), flat(net.layer3.weight));
+  EXPECT_EQ(array_in(header, "layer3_bias"), flat(net.layer3.bias));
+  EXPECT_THAT(header, HasSubstr(fmt::format("relu1_shift = {};", net.relu1.shift)));
+  EXPECT_THAT(header, HasSubstr(fmt::format("relu2_shift = {};", net.relu2.shift)));
+  EXPECT_THAT(header, HasSubstr(fmt::format("WEIGHTS_HASH 0x{:08x}u", student_weights_hash(net))));
+  EXPECT_THAT(header, HasSubstr("BESS_STUDENT_LOW_PRICE_EUR_PER_MWH (-400)\n"));
+  EXPECT_THAT(header, HasSubstr("BESS_STUDENT_HIGH_PRICE_EUR_PER_MWH (1400)\n"));
+  const std::vector<int> states = array_in(header, "self_check_state");
+  const std::vector<int> logits = array_in(header, "self_check_logits");
+  ASSERT_EQ(states.size() / kStudentInputs, logits.size() / kActionCount);
+  ASSERT_GE(logits.size() / kActionCount, 32U);
+  for (std::size_t n = 0; n < logits.size() / kActionCount; ++n) {
+    const auto field = [&](std::size_t i) {
+      return static_cast<std::int16_t>(states[n * kStudentInputs + i]);
+    };
+    std::int16_t x[kStudentInputs];
+    std::int32_t z[kActionCount];
+    net.quantise({field(0), field(1), field(2), field(3), field(4)}, x);
+    net.propagate(x, z);
+    for (std::size_t a = 0; a < kActionCount; ++a) EXPECT_EQ(z[a], logits[n * kActionCount + a]);
+  }
+}
+
+TEST(Export, CommittedHeaderIsWhatTheExporterWrites) {
+  EXPECT_EQ(read_file(fs::path(BESS_COMMITTED_STUDENT_DIR) / "student_weights.h"),
+            format_weight_header(compiled_student()));
+}
+
+struct Outcome {
+  int exit_code;
+  std::string output;
+};
+
+Outcome run(std::vector<std::string> arguments) {
+  ChildProcess child(std::move(arguments));
+  std::string output = child.read_all();
+  return {child.wait(), std::move(output)};
+}
+
+/// Compiles the header of `folder` in a C and a C++ program and runs both; `provenance` is what
+/// both must find in it.
+void expect_header_compiles(const std::string& header_dir, const std::string& provenance) {
+  const TemporaryFolder folder;
+  std::string literal;
+  for (const char c : provenance) literal += fmt::format("\\{:03o}", static_cast<unsigned char>(c));
+  const std::string c_source = folder.write(
+      "header.c",
+      "#include <string.h>\n#include <student_weights.h>\n#include \"student_weights.h\"\n"
+      "int main(void) {\n"
+      "  if (strcmp(BESS_STUDENT_PROVENANCE, \"" +
+          literal +
+          "\") != 0) return 2;\n"
+          "  return bess_student_price_map[0] < bess_student_price_map[2000] ? 0 : 1;\n}\n");
+  const std::string cpp_source =
+      folder.write("header.cpp",
+                   "#include <cstring>\n#include \"shared/nn/exported_student.h\"\n"
+                   "int main() {\n"
+                   "  if (std::strcmp(BESS_STUDENT_PROVENANCE, \"" +
+                       literal +
+                       "\") != 0) return 2;\n"
+                       "  return bess::count_exported_self_check_failures() == 0 ? 0 : 1;\n}\n");
+  const std::string program = folder.file("program");
+  const Outcome c = run({BESS_C_COMPILER, "-std=c11", "-Wall", "-Wextra", "-Wpedantic", "-Werror",
+                         "-I", header_dir, "-o", program, c_source});
+  ASSERT_EQ(c.exit_code, 0) << c.output;
+  EXPECT_EQ(run({program}).exit_code, 0) << "C";
+  const Outcome cpp =
+      run({BESS_CXX_COMPILER, "-std=c++20", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-I",
+           header_dir, "-I", BESS_SOURCE_DIR, "-o", program, cpp_source});
+  ASSERT_EQ(cpp.exit_code, 0) << cpp.output;
+  EXPECT_EQ(run({program}).exit_code, 0) << "C++";
+}
+
+TEST(Export, CommittedHeaderIsCAndCpp) {
+  expect_header_compiles(BESS_COMMITTED_STUDENT_DIR, BESS_STUDENT_PROVENANCE);
+}
+
+struct ProvenanceCase {
+  const char* name;
+  std::string given, found;
+};
+
+TEST(Export, ProvenanceIsSafe) {
+  const std::string harmless = "*/ #error // /* {} {0} %s why?\?) ?\?' ";
+  const ProvenanceCase cases[] = {
+      {"empty", "", ""},
+      {"quotes, newlines, a backslash at the end",
+       harmless + "\"a\" 'b' one\ntwo\r\n\t C:\\new\\x41\\",
+       harmless + "\"a\" 'b' one?two?\?? C:\\new\\x41\\"},
+      {"not ASCII, a trigraph at the end", harmless + "é/", harmless + "?\?/"},
+  };
+  for (const ProvenanceCase& c : cases) {
+    SCOPED_TRACE(c.name);
+    const TemporaryFolder folder;
+    write_file(folder.file("student_weights.h"),
+               format_weight_header({LinearNet{}.net(), -500, 1500, c.given}));
+    const auto base = fs::path(folder.file("student_weights.h")).parent_path().string();
+    expect_header_compiles(base, c.found);
+  }
+}
+
+TEST(Export, DamagedHeaderDoesNotCompile) {
+  const TemporaryFolder folder;
+  std::string header = format_weight_header(compiled_student());
+  const std::size_t digit = header.find_first_of("234567", header.find("layer2_weight"));
+  const std::size_t body = header.find_first_of("234567", header.find('{', digit));
+  ++header[body];
+  write_file(folder.file("student_weights.h"), header);
+  const std::string source = folder.write("a.cpp", "#include \"shared/nn/exported_student.h\"\n");
+  const Outcome outcome =
+      run({BESS_CXX_COMPILER, "-std=c++20", "-fsyntax-only", "-I",
+           fs::path(source).parent_path().string(), "-I", BESS_SOURCE_DIR, source});
+  EXPECT_NE(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.output, HasSubstr("damaged or was edited by hand"));
+}
+
+// bess-train export. The nets are hand-made, so that the proof over the whole lattice is quick.
+
+TEST(ExportCommand, WritesAProvedStudent) {
+  const TemporaryFolder folder;
+  const std::string student = folder.file("student.json");
+  const std::string header = folder.file("out/student_weights.h");
+  const StudentFile proved{LinearNet{}.net(), -500, 1500, "made by hand \"q\" ?"};
+  save_student(student, proved);
+  const Outcome outcome =
+      run({BESS_TRAIN_PROGRAM, "export", "--student", student, "--out", header, "--threads", "2"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_EQ(read_file(header), format_weight_header(proved));
+  expect_header_compiles(folder.file("out"), proved.provenance);
+}
+
+TEST(ExportCommand, RefusesViolations) {
+  const TemporaryFolder folder;
+  const std::string student = folder.file("student.json");
+  const std::string header = folder.file("out/student_weights.h");
+  save_student(student, {LinearNet{.charge_below = 0}.net(), -500, 1500, "never charges"});
+  const Outcome outcome =
+      run({BESS_TRAIN_PROGRAM, "export", "--student", student, "--out", header});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.output, HasSubstr(student + ": refused: 3473280 violations"));
+  EXPECT_FALSE(fs::exists(header));
+  EXPECT_FALSE(fs::exists(folder.file("out")));
+}
+
+TEST(ExportCommand, RefusesDamagedFiles) {
+  const TemporaryFolder folder;
+  const std::string header = folder.file("student_weights.h");
+  for (const std::string& student : {folder.file("missing.json"), folder.write("empty.json", ""),
+                                     folder.write("text.json", "hello")}) {
+    const Outcome outcome =
+        run({BESS_TRAIN_PROGRAM, "export", "--student", student, "--out", header});
+    EXPECT_EQ(outcome.exit_code, 1);
+    EXPECT_THAT(outcome.output, HasSubstr(student));
+    EXPECT_FALSE(fs::exists(header));
+  }
+}
+
+#ifndef __SANITIZE_ADDRESS__  // a whole proof takes long there, and two are above
+TEST(VerifyCommand, ExitCodeIsTheVerdict) {
+  const TemporaryFolder folder;
+  const std::string student = folder.file("student.json");
+  save_student(student,
+               {LinearNet{.discharge_from = 20'000}.net(), -500, 1500, "never discharges"});
+  const Outcome outcome = run({BESS_TRAIN_PROGRAM, "verify", "--student", student, "--json"});
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.output, HasSubstr("\"violations_property_1\": 0"));
+  EXPECT_THAT(outcome.output, HasSubstr("\"violations_property_2\": 3473280"));
+  EXPECT_THAT(outcome.output, HasSubstr("\"states_checked\": 6950033280"));
+}
+#endif
+
+}  // namespace
+}  // namespace bess

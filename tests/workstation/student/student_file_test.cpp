@@ -1,0 +1,176 @@
+#include "workstation/student/student_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <student_weights.h>
+
+#include <functional>
+#include <limits>
+
+#include "shared/host/file.h"
+#include "shared/host/user_error.h"
+#include "tests/support/student_nets.h"
+#include "tests/support/temporary_folder.h"
+
+namespace bess {
+namespace {
+
+using testing::HasSubstr;
+
+StudentFile seeded_student() { return {seeded_net(21), -450, 1200, "seeded \"21\" \\ é\nline"}; }
+
+std::string seeded_text() {
+  const TemporaryFolder folder;
+  save_student(folder.file("student.json"), seeded_student());
+  return read_file(folder.file("student.json"));
+}
+
+/// Text with the value of `key` replaced; the values of a student file stand one per line.
+std::string with(std::string text, const std::string& key, const std::string& value) {
+  const std::size_t begin = text.find('"' + key + "\": ") + key.size() + 4;
+  const std::size_t end = text.find('\n', begin);
+  const bool comma = text[end - 1] == ',';
+  return text.replace(begin, end - begin, value + (comma ? "," : ""));
+}
+
+std::string without(std::string text, const std::string& key) {
+  const std::size_t begin = text.find('"' + key + "\": ");
+  return text.erase(begin, text.find('\n', begin) + 1 - begin);
+}
+
+std::string array_of(const std::string& first, int count) {
+  std::string text = '[' + first;
+  for (int i = 1; i < count; ++i) text += ",0";
+  return text + ']';
+}
+
+TEST(StudentFile, RoundTrip) {
+  const TemporaryFolder folder;
+  const StudentFile student = seeded_student();
+  for (const char* name : {"student.json", "student.json.gz", "new/folder/student.json"}) {
+    SCOPED_TRACE(name);
+    save_student(folder.file(name), student);
+    const StudentFile again = load_student(folder.file(name));
+    EXPECT_EQ(student_weights_hash(again.net), student_weights_hash(student.net));
+    EXPECT_EQ(again.low_price_eur_per_mwh, -450);
+    EXPECT_EQ(again.high_price_eur_per_mwh, 1200);
+    EXPECT_EQ(again.provenance, student.provenance);
+  }
+}
+
+TEST(StudentFile, CompiledStudentRoundTrips) {
+  const TemporaryFolder folder;
+  const StudentFile student = compiled_student();
+  save_student(folder.file("student.json"), student);
+  const StudentFile again = load_student(folder.file("student.json"));
+  EXPECT_EQ(student_weights_hash(again.net), BESS_STUDENT_WEIGHTS_HASH);
+  EXPECT_EQ(again.provenance, BESS_STUDENT_PROVENANCE);
+}
+
+struct Damage {
+  std::string name;
+  std::string text;
+  const char* complaint;
+};
+
+TEST(StudentFile, DamageIsRefused) {
+  const std::string good = seeded_text();
+  ASSERT_NO_THROW(static_cast<void>(parse_student(good, "good.json")));
+  StudentNet falling = seeded_net(21);
+  falling.price_map[100] = falling.price_map[99];
+  std::string falling_map = "[";
+  for (const int p : falling.price_map) falling_map += std::to_string(p) + ',';
+  falling_map.back() = ']';
+  std::vector<Damage> damages{
+      {"empty", "", "not a student file"},
+      {"not JSON", "price,soc\n1,2\n", "not a student file"},
+      {"an array", "[1,2,3]", "not a student file"},
+      {"a number", "17", "not a student file"},
+      {"other JSON", "{\"a\": 1}", "\"format\" is missing"},
+      {"other format", with(good, "format", "\"bess-teacher\""), "\"format\" is not"},
+      {"format of another type", with(good, "format", "3"), "not a text"},
+      {"newer version", with(good, "version", "2"), "version 2"},
+      {"other architecture", with(good, "architecture_hash", "12345"), "another student arch"},
+      {"hash differs", with(good, "weights_hash", "12345"), "damaged"},
+      {"a weight was edited", with(good, "layer3_bias", "[1,2,3]"), "damaged"},
+      {"array too short", with(good, "layer3_bias", "[1,2]"), "array of 3 integers"},
+      {"array too long", with(good, "layer3_bias", "[1,2,3,4]"), "array of 3 integers"},
+      {"object for array", with(good, "layer3_bias", "{\"a\":1}"), "array of 3 integers"},
+      {"number for array", with(good, "price_map", "5"), "array of 2001 integers"},
+      {"text in array", with(good, "layer3_bias", "[1,\"2\",3]"), "integers of 32 bits"},
+      {"null in array", with(good, "layer3_bias", "[1,null,3]"), "integers of 32 bits"},
+      {"fraction in array", with(good, "layer3_bias", "[1,2.5,3]"), "integers of 32 bits"},
+      {"beyond 32 bits", with(good, "layer3_bias", "[1,3000000000,3]"), "integers of 32 bits"},
+      {"huge", with(good, "layer3_bias", "[1,1e999,3]"), ""},
+      {"beyond 16 bits", with(good, "layer3_weight", array_of("40000", kStudentHidden2 * 3)),
+       "integers of 16 bits"},
+      {"below 16 bits", with(good, "layer3_weight", array_of("-32769", kStudentHidden2 * 3)),
+       "integers of 16 bits"},
+      {"shift 31", with(good, "relu1_shift", "[31]"), "shift 31"},
+      {"shift -1", with(good, "relu2_shift", "[-1]"), "shift -1"},
+      {"flat price map", with(good, "price_map", falling_map), "rise strictly"},
+      {"price map below 0", with(good, "price_map", array_of("-1", kPriceCount)), "rise strictly"},
+      {"sums overflow", with(good, "layer3_bias", "[2147483647,0,0]"), "overflow"},
+      {"low price is a text", with(good, "low_price_eur_per_mwh", "\"-450\""), "not a number"},
+      {"low price is no integer", with(good, "low_price_eur_per_mwh", "-450.5"), "low_price"},
+      {"low price is huge", with(good, "low_price_eur_per_mwh", "-1e300"), "low_price"},
+      {"high price is implausible", with(good, "high_price_eur_per_mwh", "2147483647"),
+       "high_price"},
+      {"thresholds cross", with(good, "low_price_eur_per_mwh", "1200"), "low_price"},
+      {"provenance is a number", with(good, "provenance", "1"), "not a text"},
+  };
+  for (const char* key : {"format", "version", "architecture_hash", "weights_hash", "provenance",
+                          "low_price_eur_per_mwh", "high_price_eur_per_mwh", "price_map",
+                          "layer1_weight", "layer1_bias", "relu1_shift", "layer2_weight",
+                          "layer2_bias", "relu2_shift", "layer3_weight"}) {
+    damages.push_back({std::string("without ") + key, without(good, key), key});
+    damages.push_back({std::string("null ") + key, with(good, key, "null"), key});
+  }
+  for (std::size_t size = 0; size < good.rfind('}'); size += 997) {
+    damages.push_back({"cut at " + std::to_string(size), good.substr(0, size), "not a student"});
+  }
+  damages.push_back({"only the end is missing", good.substr(0, good.rfind('}')), "not a student"});
+  for (const Damage& d : damages) {
+    SCOPED_TRACE(d.name);
+    try {
+      static_cast<void>(parse_student(d.text, "some/student.json"));
+      ADD_FAILURE() << "accepted";
+    } catch (const UserError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("some/student.json: "));
+      EXPECT_THAT(error.what(), HasSubstr(d.complaint));
+    }
+  }
+}
+
+TEST(StudentFile, EveryFlippedDigitIsNoticed) {
+  const std::string good = seeded_text();
+  const std::size_t first = good.find("\"price_map\"");
+  Random random(601);
+  for (int round = 0; round < 200; ++round) {
+    std::string text = good;
+    std::size_t at = first;
+    do {
+      at = first + random.index(good.size() - first);
+    } while (good[at] < '2' || good[at] > '8');  // digits only, never a leading zero
+    ++text[at];
+    if (text.compare(good.rfind('"', at) - 6, 6, "relu1_") == 0) continue;
+    EXPECT_THROW(static_cast<void>(parse_student(text, "flipped")), UserError) << at;
+  }
+}
+
+TEST(StudentFile, FilesThatCannotBeRead) {
+  const TemporaryFolder folder;
+  EXPECT_THROW(static_cast<void>(load_student(folder.file("missing.json"))), UserError);
+  EXPECT_THROW(static_cast<void>(load_student(folder.file(""))), UserError);
+}
+
+TEST(StudentFile, ANetThatCouldOverflowIsNotSaved) {
+  const TemporaryFolder folder;
+  StudentFile student = seeded_student();
+  student.net.layer1.bias[0] = std::numeric_limits<std::int32_t>::max();
+  EXPECT_THROW(save_student(folder.file("student.json"), student), UserError);
+  EXPECT_FALSE(std::filesystem::exists(folder.file("student.json")));
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,101 @@
+// Fixed-width little-endian files of ours: magic, version, fields, CRC-32 of all before it. Written
+// beside and renamed; whatever is not whole and ours is named before any of it is used.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "shared/host/user_error.h"
+
+namespace bess {
+
+static_assert(std::endian::native == std::endian::little);
+
+class BinaryWriter {
+ public:
+  BinaryWriter(std::string_view magic, std::uint32_t version) {
+    bytes_.append(magic);
+    put(version);
+  }
+  template <typename T>
+  void put(const T& value) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    put_bytes(&value, sizeof value);
+  }
+  void put_bytes(const void* data, std::size_t size) {
+    bytes_.append(static_cast<const char*>(data), size);
+  }
+  void put_text(std::string_view text) {
+    put(static_cast<std::uint32_t>(text.size()));
+    bytes_.append(text);
+  }
+  /// With its length, for element types without padding.
+  template <typename T>
+  void put_list(const std::vector<T>& list) {
+    put(static_cast<std::uint64_t>(list.size()));
+    put_bytes(list.data(), sizeof(T) * list.size());
+  }
+  /// Adds the checksum and writes the file.
+  void save(const std::filesystem::path& path);
+
+ private:
+  std::string bytes_;
+};
+
+class BinaryReader {
+ public:
+  /// Reads the whole file and checks magic, version and checksum. `kind` ("teacher file") and `mend`
+  /// ("train again") are used in messages.
+  BinaryReader(const std::filesystem::path& path, std::string_view magic, std::uint32_t version,
+               std::string_view kind, std::string_view mend);
+
+  template <typename T>
+  T take() {
+    static_assert(std::is_trivially_copyable_v<T>);
+    T value;
+    take_bytes(&value, sizeof value);
+    return value;
+  }
+  void take_bytes(void* data, std::size_t size) {
+    if (size > rest_.size()) damaged("is truncated");
+    std::memcpy(data, rest_.data(), size);
+    rest_.remove_prefix(size);
+  }
+  std::string take_text() {
+    const auto size = take<std::uint32_t>();
+    if (size > rest_.size()) damaged("is truncated");
+    std::string text(rest_.substr(0, size));
+    rest_.remove_prefix(size);
+    return text;
+  }
+  template <typename T>
+  std::vector<T> take_list() {
+    const auto count = take<std::uint64_t>();
+    if (count > rest_.size() / sizeof(T)) damaged("is truncated");
+    std::vector<T> list(count);
+    take_bytes(list.data(), sizeof(T) * list.size());
+    return list;
+  }
+  /// Throws UserError unless everything was taken.
+  void finish() const {
+    if (!rest_.empty()) damaged("has trailing bytes");
+  }
+  [[nodiscard]] const std::string& name() const { return name_; }
+  /// Throws "FILE: KIND WHAT; MEND".
+  [[noreturn]] void damaged(std::string_view what) const {
+    fail("{}: {} {}; {}", name_, kind_, what, mend_);
+  }
+
+ private:
+  std::string name_, kind_, mend_;
+  std::string bytes_;
+  std::string_view rest_;
+};
+
+}  // namespace bess

@@ -1,0 +1,51 @@
+// Downloads a span of days from Elia's open data, window by window. Finished windows are kept in a
+// folder beside the output until the whole span is written, so that an interrupted download goes on
+// where it stopped; a file under its final name is always complete.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "workstation/market/feed/fetch_plan.h"
+#include "workstation/market/feed/market_join.h"
+
+namespace bess {
+
+inline constexpr const char* kEliaBaseUrl = "https://opendata.elia.be/api/explore/v2.1";
+
+struct RetryPolicy {
+  int attempts_max = 6;
+  int attempts_unreachable_max = 3;
+  double first_wait_s = 1;  ///< doubled after each attempt
+  double wait_max_s = 900;  ///< a server that asks for longer ends the run, to be resumed
+};
+
+struct FetchRequest {
+  FetchSpan span;
+  std::filesystem::path out;
+  std::string base_url = kEliaBaseUrl;  ///< the API root that ends in /api/explore/v2.1
+  std::int64_t now_utc_s;
+  RetryPolicy retry;
+  /// Between attempts; returns early when interrupted.
+  std::function<void(double seconds, const std::atomic<bool>& interrupted)> sleep;
+};
+
+/// Folder of the finished windows.
+std::filesystem::path fetch_cache_folder(const FetchRequest& request);
+
+struct FetchedPrices {
+  JoinedMarket market;
+  std::string description;  ///< what was joined and what is missing, for the user
+};
+
+/// Downloads, joins, writes `out` with its provenance, removes the cache. Returns what it wrote, or
+/// nothing when interrupted before all windows were in. Throws UserError. Either way finished
+/// windows stay for the next run.
+std::optional<FetchedPrices> fetch_prices(const FetchRequest& request,
+                                          const std::atomic<bool>& interrupted);
+
+}  // namespace bess

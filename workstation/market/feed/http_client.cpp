@@ -1,0 +1,192 @@
+#include "workstation/market/feed/http_client.h"
+
+#include <curl/curl.h>
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <chrono>
+#include <memory>
+
+#include "shared/host/minute_file.h"
+#include "shared/host/plain_text.h"
+#include "shared/host/user_error.h"
+
+namespace bess {
+namespace {
+
+using Kind = HttpOutcome::Kind;
+
+constexpr long kConnectTimeout_s = 20;
+constexpr long kSilenceTimeout_s = 60;  // an export of a month is prepared for some seconds
+constexpr std::size_t kBodyMax = std::size_t{512} << 20;
+constexpr std::size_t kReasonMax = 200;  // of a server's own words in a message
+
+struct Received {
+  std::string body;
+  std::string retry_after, rate_limit_reset;
+  bool has_length = false;
+};
+
+std::size_t take_body(char* data, std::size_t size, std::size_t count, void* user) {
+  std::string& body = static_cast<Received*>(user)->body;
+  if (body.size() + size * count > kBodyMax) return 0;
+  body.append(data, size * count);
+  return size * count;
+}
+
+std::string trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  if (first == std::string_view::npos) return {};
+  return std::string(text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1));
+}
+
+std::size_t take_header(char* data, std::size_t size, std::size_t count, void* user) {
+  auto& received = *static_cast<Received*>(user);
+  const std::string_view line(data, size * count);
+  // Each redirect and a proxy's CONNECT has headers of its own, which say nothing of the answer.
+  if (line.starts_with("HTTP/")) {
+    received.retry_after.clear();
+    received.rate_limit_reset.clear();
+    received.has_length = false;
+  }
+  const std::size_t colon = line.find(':');
+  if (colon == std::string_view::npos) return size * count;
+  std::string name(line.substr(0, colon));
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string value = trimmed(line.substr(colon + 1));
+  if (name == "retry-after") received.retry_after = value;
+  if (name == "x-ratelimit-reset") received.rate_limit_reset = value;
+  if (name == "content-length" || name == "transfer-encoding") received.has_length = true;
+  return size * count;
+}
+
+/// libcurl calls it at least once a second, also while it waits.
+int stop_when_interrupted(void* user, curl_off_t, curl_off_t, curl_off_t, curl_off_t) {
+  return *static_cast<const std::atomic<bool>*>(user) ? 1 : 0;
+}
+
+double now_s() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+Kind kind_of_transport_error(CURLcode code) {
+  switch (code) {
+    case CURLE_COULDNT_RESOLVE_HOST:
+    case CURLE_COULDNT_RESOLVE_PROXY:
+    case CURLE_COULDNT_CONNECT:
+      return Kind::kUnreachable;
+    case CURLE_OPERATION_TIMEDOUT:
+    case CURLE_PARTIAL_FILE:
+    case CURLE_GOT_NOTHING:
+    case CURLE_RECV_ERROR:
+    case CURLE_SEND_ERROR:
+    case CURLE_HTTP2:
+    case CURLE_HTTP2_STREAM:
+    case CURLE_BAD_CONTENT_ENCODING:
+      return Kind::kTransient;
+    case CURLE_ABORTED_BY_CALLBACK:
+      return Kind::kInterrupted;
+    default:  // certificate, address, ...
+      return Kind::kRefused;
+  }
+}
+
+HttpOutcome outcome_of_status(long status, Received received) {
+  if (status == 200) {
+    // Without a length the end of the connection is the end of the body: then a whole line is
+    // needed.
+    const bool whole = received.has_length || received.body.ends_with('\n');
+    if (!whole) return {Kind::kTransient, {}, "the answer was cut short", {}};
+    return {Kind::kDone, std::move(received.body), {}, {}};
+  }
+  const std::string& told =
+      received.retry_after.empty() ? received.rate_limit_reset : received.retry_after;
+  const std::string body = one_line(received.body, kReasonMax);
+  const std::string reason =
+      fmt::format("the server answered {}{}{}", status, body.empty() ? "" : ": ", body);
+  if (status == 429 || status == 503) {
+    return {Kind::kBusy, {}, reason, wait_seconds(told, now_s())};
+  }
+  return {status >= 500 || status == 408 ? Kind::kTransient : Kind::kRefused, {}, reason, {}};
+}
+
+struct Cleanup {
+  void operator()(CURL* curl) const { curl_easy_cleanup(curl); }
+};
+using Handle = std::unique_ptr<CURL, Cleanup>;
+
+Handle new_handle() {
+  static const CURLcode started = curl_global_init(CURL_GLOBAL_DEFAULT);
+  Handle curl(started == CURLE_OK ? curl_easy_init() : nullptr);
+  if (!curl) fail("libcurl cannot be started");
+  return curl;
+}
+
+}  // namespace
+
+const char* redirect_protocols(const std::string& url) {
+  return url.starts_with("https://") ? "https" : "http,https";
+}
+
+std::string url_encoded(const std::string& text) {
+  const Handle curl = new_handle();
+  char* escaped = curl_easy_escape(curl.get(), text.data(), static_cast<int>(text.size()));
+  std::string result = escaped;
+  curl_free(escaped);
+  return result;
+}
+
+std::optional<double> wait_seconds(const std::string& header_value, double now_utc_s) {
+  double number = 0;
+  const char* end = header_value.data() + header_value.size();
+  const auto [stop, error] = std::from_chars(header_value.data(), end, number);
+  if (error == std::errc{} && stop == end) {
+    constexpr double kSmallestTimestamp = 1e9;  // September 2001; nobody is told to wait so long
+    return std::max(0.0, number < kSmallestTimestamp ? number : number - now_utc_s);
+  }
+  std::int64_t utc_s = 0;
+  if (!parse_utc(header_value, utc_s)) utc_s = curl_getdate(header_value.c_str(), nullptr);
+  if (utc_s <= 0) return std::nullopt;
+  return std::max(0.0, static_cast<double>(utc_s) - now_utc_s);
+}
+
+HttpOutcome http_get(const std::string& url, const std::atomic<bool>& interrupted) {
+  const Handle curl = new_handle();
+  Received received;
+  char error_text[CURL_ERROR_SIZE] = "";
+  curl_easy_setopt(curl.get(), CURLOPT_URL, url.c_str());
+  curl_easy_setopt(curl.get(), CURLOPT_PROTOCOLS_STR, "http,https");
+  curl_easy_setopt(curl.get(), CURLOPT_REDIR_PROTOCOLS_STR, redirect_protocols(url));
+  curl_easy_setopt(curl.get(), CURLOPT_FOLLOWLOCATION, 1L);
+  curl_easy_setopt(curl.get(), CURLOPT_MAXREDIRS, 5L);
+  curl_easy_setopt(curl.get(), CURLOPT_SSL_VERIFYPEER, 1L);
+  curl_easy_setopt(curl.get(), CURLOPT_SSL_VERIFYHOST, 2L);
+  curl_easy_setopt(curl.get(), CURLOPT_CONNECTTIMEOUT, kConnectTimeout_s);
+  curl_easy_setopt(curl.get(), CURLOPT_LOW_SPEED_LIMIT, 1L);
+  curl_easy_setopt(curl.get(), CURLOPT_LOW_SPEED_TIME, kSilenceTimeout_s);
+  curl_easy_setopt(curl.get(), CURLOPT_ACCEPT_ENCODING, "");  // whatever libcurl can unpack
+  curl_easy_setopt(curl.get(), CURLOPT_USERAGENT, "bess-train/" BESS_VERSION);
+  curl_easy_setopt(curl.get(), CURLOPT_NOSIGNAL, 1L);
+  curl_easy_setopt(curl.get(), CURLOPT_ERRORBUFFER, error_text);
+  curl_easy_setopt(curl.get(), CURLOPT_WRITEFUNCTION, take_body);
+  curl_easy_setopt(curl.get(), CURLOPT_WRITEDATA, &received);
+  curl_easy_setopt(curl.get(), CURLOPT_HEADERFUNCTION, take_header);
+  curl_easy_setopt(curl.get(), CURLOPT_HEADERDATA, &received);
+  curl_easy_setopt(curl.get(), CURLOPT_NOPROGRESS, 0L);
+  curl_easy_setopt(curl.get(), CURLOPT_XFERINFOFUNCTION, stop_when_interrupted);
+  curl_easy_setopt(curl.get(), CURLOPT_XFERINFODATA, &interrupted);
+  const CURLcode code = curl_easy_perform(curl.get());
+  if (code != CURLE_OK) {
+    const std::string reason =
+        one_line(error_text[0] != '\0' ? error_text : curl_easy_strerror(code), kReasonMax);
+    return {kind_of_transport_error(code), {}, reason, {}};
+  }
+  long status = 0;
+  curl_easy_getinfo(curl.get(), CURLINFO_RESPONSE_CODE, &status);
+  return outcome_of_status(status, std::move(received));
+}
+
+}  // namespace bess

@@ -1,0 +1,97 @@
+// CSV downloads: `;` (portal and API) or `,` (tidy), optional byte order mark and quotes, any
+// column order.
+#include <string>
+
+#include "shared/host/text.h"
+#include "shared/host/user_error.h"
+#include "workstation/market/feed/market_rows.h"
+
+namespace bess {
+namespace {
+
+/// Next field of a line; quotes keep a separator inside. False when the line is used up.
+bool take_field(std::string_view& rest, bool& more, char separator, std::string_view& field) {
+  if (!more) return false;
+  const bool quoted = rest.starts_with('"');
+  const std::size_t closing = quoted ? rest.find('"', 1) : 0;
+  const std::size_t end = rest.find(separator, closing == std::string_view::npos ? 0 : closing);
+  field = rest.substr(0, end);
+  more = end != std::string_view::npos;
+  rest.remove_prefix(more ? end + 1 : rest.size());
+  if (field.size() >= 2 && field.front() == '"' && field.back() == '"') {
+    field = field.substr(1, field.size() - 2);
+  }
+  return true;
+}
+
+struct Columns {
+  char separator;
+  std::vector<std::optional<MarketField>> fields;
+};
+
+Columns parse_header(std::string_view line, std::string_view name) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
+  Columns columns{.separator = line.find(';') != std::string_view::npos ? ';' : ',', .fields = {}};
+  bool has_time = false;
+  bool has_price = false;
+  bool more = true;
+  std::string_view label;
+  while (take_field(line, more, columns.separator, label)) {
+    const std::optional<MarketField> field = market_field_of(label);
+    has_time |= field == MarketField::kTime;
+    has_price |= field == MarketField::kPrice || field == MarketField::kPositivePrice ||
+                 field == MarketField::kNegativePrice;
+    columns.fields.push_back(field);
+  }
+  if (!has_time || !has_price) {
+    fail(
+        "{}: no column for the {}; expected a download of ods046, ods047, ods133, ods134, ods161 "
+        "or ods162",
+        name, has_time ? "imbalance price" : "time (Datetime)");
+  }
+  return columns;
+}
+
+void parse_row(std::string_view line, const Columns& columns, std::string_view place,
+               MarketRows& rows) {
+  MarketRowBuilder builder(place);
+  bool more = true;
+  std::size_t column = 0;
+  std::string_view text;
+  while (take_field(line, more, columns.separator, text)) {
+    if (column < columns.fields.size() && columns.fields[column]) {
+      builder.set_text(*columns.fields[column], text);
+    }
+    ++column;
+  }
+  if (column != columns.fields.size()) {
+    fail("{}: {} columns where the header has {}; the file may be cut short, download it again",
+         place, column, columns.fields.size());
+  }
+  builder.finish(rows);
+}
+
+}  // namespace
+
+MarketRows parse_market_csv(std::string_view text, std::string_view name) {
+  MarketRows rows;
+  std::optional<Columns> columns;
+  std::size_t line_number = 0;
+  std::string place;
+  while (!text.empty()) {
+    const std::string_view line = take_line(text);
+    ++line_number;
+    if (line.empty() || line[0] == '#') continue;
+    if (!columns) {
+      columns = parse_header(line, name);
+      continue;
+    }
+    place.assign(name).append(":").append(std::to_string(line_number));
+    parse_row(line, *columns, place, rows);
+  }
+  if (!columns) fail("{}: the file is empty; download it again", name);
+  return rows;
+}
+
+}  // namespace bess

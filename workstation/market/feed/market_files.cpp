@@ -1,0 +1,66 @@
+#include "workstation/market/feed/market_files.h"
+
+#include <filesystem>
+
+#include "shared/host/file.h"
+#include "shared/host/user_error.h"
+
+namespace bess {
+namespace {
+
+const char* attribution_of(MarketSource source) {
+  switch (source) {
+    case MarketSource::kElia:
+      return "Elia, opendata.elia.be, CC BY 4.0 (https://creativecommons.org/licenses/by/4.0/)";
+    case MarketSource::kEntsoe:
+      return "ENTSO-E Transparency Platform, transparency.entsoe.eu, by its terms of use";
+    case MarketSource::kUnknown:
+      break;
+  }
+  return "a file that does not name its source";
+}
+
+std::string joined(const std::vector<std::string>& parts, std::string_view separator) {
+  std::string text;
+  for (const std::string& part : parts) text.append(text.empty() ? "" : separator).append(part);
+  return text;
+}
+
+}  // namespace
+
+MarketRows read_market_files(const std::vector<std::string>& paths) {
+  MarketRows all;
+  for (const std::string& path : paths) append_rows(all, parse_market_text(read_file(path), path));
+  return all;
+}
+
+SettledQuarterHours read_quarter_hour_files(const std::vector<std::string>& paths) {
+  MarketRows rows = read_market_files(paths);
+  if (!rows.minutes.empty()) {
+    fail("{}: holds minute rows; give settled quarter-hours (ods047, ods134)", joined(paths, ", "));
+  }
+  if (rows.quarter_hours.empty()) fail("{}: holds no rows", joined(paths, ", "));
+  SettledQuarterHours settled;
+  settled.sources = rows.sources;
+  settled.report.dual_priced_quarter_hours = rows.dual_priced_quarter_hours.size();
+  settled.quarter_hours = sorted_quarter_hours(std::move(rows.quarter_hours), settled.report);
+  check_span(settled.quarter_hours.front().utc_s, settled.quarter_hours.back().utc_s,
+             paths.front());
+  return settled;
+}
+
+std::string file_names(const std::vector<std::string>& paths) {
+  std::vector<std::string> names;
+  for (const std::string& path : paths) {
+    names.push_back(std::filesystem::path(path).filename().string());
+  }
+  return joined(names, ", ");
+}
+
+std::string attribution_of(const std::set<MarketSource>& sources) {
+  std::vector<std::string> names;
+  for (const MarketSource source : sources) names.emplace_back(attribution_of(source));
+  return "Source: " + joined(names, "; ");
+}
+
+}  // namespace bess

@@ -1,0 +1,43 @@
+// From rows in any order to one minute series: sorts, drops duplicates, joins the minutes with
+// their settled quarter-hours, and says what it did.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "shared/host/minute_file.h"
+#include "workstation/market/feed/market_rows.h"
+
+namespace bess {
+
+struct JoinReport {
+  std::size_t minutes = 0, quarter_hours = 0;  ///< after dropping duplicates
+  std::size_t duplicates = 0;
+  std::size_t duplicates_changed = 0;  ///< with another price: the row read last is kept
+  std::size_t dual_priced_minutes = 0, dual_priced_quarter_hours = 0;  ///< two prices: left out
+  bool settled_from_minutes = false;  ///< no quarter-hours were given: minute 14 stands for them
+};
+
+struct JoinedMarket {
+  MinuteSeries series;
+  JoinReport report;
+};
+
+/// Throws UserError when there are no rows, or none with a price. `name` is used in messages.
+JoinedMarket join_market(MarketRows rows, std::string_view name);
+
+/// Ascending, one per time. Of duplicates the last one read wins, but never a row without a price
+/// over one with a price.
+std::vector<QuarterHour> sorted_quarter_hours(std::vector<QuarterHour> rows, JoinReport& report);
+
+/// Throws UserError when rows are so far apart that a dense series of them cannot be meant.
+void check_span(std::int64_t from_utc_s, std::int64_t until_utc_s, std::string_view name);
+
+/// A line for each kind of row that lost its price; empty when none did.
+std::string describe_dual_priced(const JoinReport& report);
+
+/// Lines that tell a user what was joined and what is missing.
+std::string describe_join(const JoinedMarket& market);
+
+}  // namespace bess

@@ -1,0 +1,88 @@
+// Rows of downloaded market files, whatever their form: Elia's CSV and JSON exports of ods046,
+// ods047, ods133, ods134, ods161 and ods162, under API field names or portal labels, and tidy CSV.
+// Names are compared without case, spaces and punctuation, so "Marginal incremental price" and
+// "marginalincrementalprice" are one.
+// Quality flags are not read: Elia says itself that DataIssue is set on far too many usable rows.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string_view>
+#include <vector>
+
+#include "workstation/market/series/quarter_hour.h"
+
+namespace bess {
+
+/// Indicative price computed at the END of the minute that starts at `utc_s`.
+struct MinuteRow {
+  std::int64_t utc_s;
+  double indicative_eur_per_mwh;  ///< NaN = the TSO published the row without a price
+};
+
+enum class MarketSource {
+  kElia,
+  kEntsoe,
+  kUnknown,  ///< tidy files do not say where they come from
+};
+
+/// In the order of the files; duplicates and disorder are the business of join_market().
+struct MarketRows {
+  std::vector<MinuteRow> minutes;
+  std::vector<QuarterHour> quarter_hours;
+  /// Times of the rows that lost their price because it was not one.
+  std::set<std::int64_t> dual_priced_minutes{}, dual_priced_quarter_hours{};
+  std::set<MarketSource> sources{};
+};
+
+void append_rows(MarketRows& all, const MarketRows& rows);
+
+enum class MarketField {
+  kTime,
+  kResolution,
+  kQuarterHour,  ///< only minute rows have one
+  kSystemImbalance,
+  kAlpha,
+  kMarginalIncremental,
+  kMarginalDecremental,
+  kPrice,
+  kPositivePrice,  ///< of a long party; the datasets until May 2024 have the two instead of one
+  kNegativePrice,  ///< of a short party
+};
+
+/// Field of a column label or JSON key; nothing for those that are not needed.
+std::optional<MarketField> market_field_of(std::string_view label);
+
+/// Collects the fields of one row and files it as a minute or a quarter-hour. Throws UserError.
+class MarketRowBuilder {
+ public:
+  /// `place` names the row in messages, e.g. "prices.csv:17"; it must outlive the builder.
+  explicit MarketRowBuilder(std::string_view place) : place_(place) {}
+
+  void set_text(MarketField field, std::string_view text);
+  void set_number(MarketField field, double value);
+  void finish(MarketRows& rows) const;
+
+ private:
+  [[nodiscard]] bool is_minute() const;
+  [[nodiscard]] bool is_dual_priced() const;
+  [[nodiscard]] double single_price() const;
+
+  std::string_view place_;
+  QuarterHour values_;
+  double positive_eur_per_mwh_ = kNotPublished, negative_eur_per_mwh_ = kNotPublished;
+  std::optional<std::int64_t> utc_s_;
+  std::string_view resolution_;
+  bool has_quarter_hour_ = false;
+};
+
+/// Reads CSV (`,` or `;`, byte order mark, any column order). `name` is used in messages.
+MarketRows parse_market_csv(std::string_view text, std::string_view name);
+/// Reads JSON: a bare array of records (exports), {"results": [...]} or version 1's {"records":
+/// [...]}.
+MarketRows parse_market_json(std::string_view text, std::string_view name);
+/// Any of them or ENTSO-E's XML, told apart by the first character.
+MarketRows parse_market_text(std::string_view text, std::string_view name);
+
+}  // namespace bess

@@ -1,0 +1,95 @@
+#include "workstation/market/statistics/statistics_plot.h"
+
+#include <fmt/core.h>
+
+#include <map>
+
+#include "shared/host/file.h"
+#include "shared/host/user_error.h"
+#include "workstation/base/gnuplot.h"
+
+namespace bess {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kBinEurPerMwh = 20;
+constexpr double kShownMinEurPerMwh = -600;
+constexpr double kShownMaxEurPerMwh = 1000;
+
+std::string_view terminal_for(const fs::path& path) {
+  if (path.extension() == ".svg") return "svg size 900,700 dynamic background 'white'";
+  if (path.extension() == ".png") return "pngcairo size 900,700";
+  fail("{}: a picture is .svg or .png; rename it", path.string());
+}
+
+/// Share of quarter-hours by price bin, in percent per bin.
+std::string histogram_data(std::span<const double> settled) {
+  std::map<int, int> bins;
+  int count = 0;
+  for (const double price : settled) {
+    if (!is_published(price) || price < kShownMinEurPerMwh || price > kShownMaxEurPerMwh) continue;
+    ++bins[static_cast<int>(std::floor(price / kBinEurPerMwh))];
+    ++count;
+  }
+  std::string data;
+  for (const auto& [bin, hits] : bins) {
+    data += fmt::format("{} {:.4f}\n", (bin + 0.5) * kBinEurPerMwh, 100.0 * hits / count);
+  }
+  return data;
+}
+
+std::string convergence_data(const ConvergenceByMinute& convergence) {
+  std::string data;
+  for (std::size_t m = 0; m < convergence.size(); ++m) {
+    if (convergence[m].count == 0) continue;
+    data += fmt::format("{} {:.3f} {:.3f}\n", m, convergence[m].median_error,
+                        convergence[m].mean_error);
+  }
+  return data;
+}
+
+}  // namespace
+
+std::string gnuplot_script(const fs::path& output, const MarketStatistics& statistics,
+                           std::span<const double> settled) {
+  const std::string convergence =
+      statistics.convergence ? convergence_data(*statistics.convergence) : std::string();
+  std::string script =
+      fmt::format("set terminal {}\nset output {}\n$prices << EOD\n{}EOD\n", terminal_for(output),
+                  gnuplot_quoted(output.string()), histogram_data(settled));
+  if (!convergence.empty()) script += fmt::format("$errors << EOD\n{}EOD\n", convergence);
+  script += fmt::format(
+      "set multiplot layout {},1\nset grid\nset key top right\nset style fill solid 0.6\n"
+      "set xlabel 'settled price, EUR/MWh (-600 to 1000 shown)'\n"
+      "set ylabel '% of quarter-hours'\nset title 'Imbalance prices {} to {}'\n"
+      "plot $prices using 1:2 with boxes notitle\n",
+      convergence.empty() ? 1 : 2, format_utc(statistics.from_utc_s),
+      format_utc(statistics.until_utc_s));
+  if (!convergence.empty()) {
+    script +=
+        "set title 'Indicative against settled price'\nset xlabel 'minute of the quarter-hour'\n"
+        "set ylabel 'absolute error, EUR/MWh'\nset yrange [0:*]\n"
+        "plot $errors using 1:2 with linespoints title 'median', "
+        "$errors using 1:3 with linespoints title 'mean'\n";
+  }
+  return script + "unset multiplot\n";
+}
+
+void require_drawable(const fs::path& path) {
+  (void)terminal_for(path);
+  require_writable(path);
+}
+
+void plot_statistics(const fs::path& path, const MarketStatistics& statistics,
+                     std::span<const double> settled) {
+  require_drawable(path);
+  if (histogram_data(settled).empty()) {
+    fail("{}: nothing to draw: no settled price from {} to {} EUR/MWh", path.string(),
+         kShownMinEurPerMwh, kShownMaxEurPerMwh);
+  }
+  draw_with_gnuplot(
+      path, [&](const fs::path& output) { return gnuplot_script(output, statistics, settled); });
+}
+
+}  // namespace bess

@@ -1,0 +1,24 @@
+// The picture of a market, drawn by gnuplot: how prices are distributed, and how fast the
+// indicative price finds the settled one.
+#pragma once
+
+#include <filesystem>
+#include <span>
+
+#include "workstation/market/statistics/market_statistics.h"
+
+namespace bess {
+
+/// Throws UserError unless a picture can be made at `path`, creating its folder.
+void require_drawable(const std::filesystem::path& path);
+
+/// Writes .svg or .png by the name of `path`. `settled` holds one price a quarter-hour. Throws
+/// UserError when there is nothing to draw, or gnuplot is missing or fails; then nothing is left under the final name.
+void plot_statistics(const std::filesystem::path& path, const MarketStatistics& statistics,
+                     std::span<const double> settled);
+
+/// The commands and inline data that gnuplot is fed.
+std::string gnuplot_script(const std::filesystem::path& output, const MarketStatistics& statistics,
+                           std::span<const double> settled);
+
+}  // namespace bess

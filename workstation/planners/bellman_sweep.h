@@ -1,0 +1,48 @@
+// One backward step of dynamic programming over the SoC at a known price, the inner loop of the
+// foresight bound and of rolling-horizon control:
+//   now[i] = max over actions a of  next(SoC after a from point i) - energy * price - wear.
+// On an even grid a full-power action moves every point by the same distance, so all but the points
+// next to a bound read `next` shifted: a straight loop that the compiler turns into vector code.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "workstation/env/exchange_cost.h"
+#include "workstation/planners/soc_grid.h"
+
+namespace bess {
+
+class BellmanSweep {
+ public:
+  BellmanSweep(const BatteryParameters& battery, const SocGrid& grid);
+
+  /// `next` and `now` hold one value (EUR) for each point of the grid and must not overlap.
+  /// `shadow_eur_per_mwh` is counted like wear.
+  void run(const float* next, float price_eur_per_mwh, float* now,
+           float shadow_eur_per_mwh = 0) const;
+
+ private:
+  /// Charging or discharging at full power.
+  struct Direction {
+    int shift;            ///< points from i to the lower neighbour of the SoC reached
+    float weight;         ///< of its upper neighbour
+    float energy_mwh;     ///< at full power, grid side, charge positive
+    int first_unbounded;  ///< points [first, end) exchange full power
+    int end_unbounded;
+    std::vector<GridMove> moves;  ///< [point]
+  };
+  [[nodiscard]] Direction make_direction(const BatteryParameters& battery, Action action) const;
+  void improve(const Direction& direction, const float* next, float price, float wear,
+               float* now) const;
+
+  SocGrid grid_;
+  float wear_eur_per_mwh_;
+  std::array<Direction, 2> directions_;
+};
+
+/// The action from any SoC when `next` values the grid's points after it.
+Action best_action(const BatteryParameters& battery, const SocGrid& grid, const float* next,
+                   double price_eur_per_mwh, double soc_frac);
+
+}  // namespace bess

@@ -1,0 +1,109 @@
+#include "workstation/planners/foresight.h"
+
+#include <cmath>
+
+#include "shared/units_and_limits.h"
+#include "workstation/planners/shadow_price.h"
+
+namespace bess {
+namespace {
+constexpr std::size_t kSocPoints = 1801;
+constexpr std::size_t kBlockSteps = 750;     // the longest local day, so that a day is one block
+constexpr int kClockChangeQuarterHours = 4;  // local time falls back by an hour once a year
+
+/// One past the last step of each local day: the quarter-hour of day falls at midnight only.
+std::vector<std::size_t> day_ends(std::span<const MarketStep> steps) {
+  std::vector<std::size_t> ends;
+  for (std::size_t i = 1; i < steps.size(); ++i) {
+    const bool long_gap = steps[i].utc_s - steps[i - 1].utc_s > 12 * 3600;
+    if (long_gap || steps[i].quarter_hour < steps[i - 1].quarter_hour - kClockChangeQuarterHours) {
+      ends.push_back(i);
+    }
+  }
+  ends.push_back(steps.size());
+  return ends;
+}
+
+}  // namespace
+
+ForesightPolicy::ForesightPolicy(const BatteryParameters& battery)
+    : battery_(battery), grid_(battery, kSocPoints), sweep_(battery, grid_) {}
+
+void ForesightPolicy::begin(std::span<const MarketStep> ahead, double soc_frac) {
+  paid_.clear();
+  for (const MarketStep& step : ahead) paid_.push_back(static_cast<float>(step.paid_eur_per_mwh));
+  shadow_.assign(paid_.size(), 0.0F);
+  if (battery_.cycles_per_day_max > 0) find_shadow_prices(ahead, soc_frac);
+  plan();
+}
+
+void ForesightPolicy::plan() {
+  const std::size_t blocks = (paid_.size() + kBlockSteps - 1) / kBlockSteps;
+  border_.assign((blocks + 1) * kSocPoints, 0.0F);
+  value_.resize((kBlockSteps + 1) * kSocPoints);
+  for (std::size_t block = blocks; block-- > 0;) {
+    solve_block(block);
+    // Only differences between SoCs decide; taken relative to the empty battery they stay small, so
+    // that a float tells them apart even a year ahead.
+    for (std::size_t i = 0; i < kSocPoints; ++i) {
+      border_[block * kSocPoints + i] = value_[i] - value_[0];
+    }
+  }
+}
+
+/// All days at once: plan with their trial prices, run the plan, tell each day whether it kept its
+/// limit.
+void ForesightPolicy::find_shadow_prices(std::span<const MarketStep> ahead, double soc_frac) {
+  std::vector<std::size_t> ends = day_ends(ahead);
+  std::vector<ShadowPrice> prices(ends.size());
+  const auto set_shadow = [&](auto price_of) {
+    std::size_t step = 0;
+    for (std::size_t day = 0; day < ends.size(); ++day) {
+      for (; step < ends[day]; ++step) shadow_[step] = static_cast<float>(price_of(prices[day]));
+    }
+  };
+  const double energy_mwh_max =
+      battery_.cycles_per_day_max * 2 * battery_.capacity_wh / kWattsPerMegawatt;
+  for (int trial = 0; trial <= kShadowPriceBisections; ++trial) {
+    set_shadow([](const ShadowPrice& price) { return price.trial(); });
+    plan();
+    double soc = soc_frac;
+    std::size_t step = 0;
+    for (std::size_t day = 0; day < ends.size(); ++day) {
+      double energy_mwh = 0;
+      for (; step < ends[day]; ++step) {
+        const BatteryStep moved = battery_step(
+            battery_, soc, power_sign(best(step, soc)) * battery_.power_w_max, kHoursPerStep);
+        energy_mwh += std::fabs(moved.power_w) / kWattsPerMegawatt * kHoursPerStep;
+        soc = moved.soc_frac;
+      }
+      prices[day].learn(energy_mwh <= energy_mwh_max);
+    }
+  }
+  set_shadow([](const ShadowPrice& price) { return price.found(); });
+}
+
+void ForesightPolicy::solve_block(std::size_t block) const {
+  const std::size_t first = block * kBlockSteps;
+  const std::size_t count = std::min(kBlockSteps, paid_.size() - first);
+  std::copy_n(&border_[(block + 1) * kSocPoints], kSocPoints, &value_[count * kSocPoints]);
+  for (std::size_t t = count; t-- > 0;) {
+    sweep_.run(&value_[(t + 1) * kSocPoints], paid_[first + t], &value_[t * kSocPoints],
+               shadow_[first + t]);
+  }
+  solved_block_ = block;
+}
+
+Action ForesightPolicy::best(std::size_t index, double soc_frac) const {
+  if (index / kBlockSteps != solved_block_) solve_block(index / kBlockSteps);
+  const float* next = &value_[(index % kBlockSteps + 1) * kSocPoints];
+  BatteryParameters shadowed = battery_;
+  shadowed.wear_eur_per_mwh += static_cast<double>(shadow_[index]);
+  return best_action(shadowed, grid_, next, static_cast<double>(paid_[index]), soc_frac);
+}
+
+Action ForesightPolicy::decide(const MarketStep&, std::size_t index, double soc_frac) const {
+  return best(index, soc_frac);
+}
+
+}  // namespace bess
