@@ -10,6 +10,7 @@
 #include "shared/fixed_text.h"
 #include "shared/static_vector.h"
 #include "shared/utc_text.h"
+#include "tests/edge/log/sample_records.h"
 
 namespace bess {
 namespace {
@@ -62,20 +63,7 @@ TEST(LogText, CsvLineHasAsManyFieldsAsItsHeader) {
 }
 
 TEST(LogText, LongestLineFits) {
-  CycleRecord record;
-  record.utc_s = 4'102'444'800;
-  record.cycle = INT64_MAX;
-  record.mode = Mode::kStopping;
-  record.measurement = {.soc_e4 = INT32_MIN, .power_w = INT32_MIN};
-  record.price = {.has_row = true,
-                  .minute_utc_s = 4'102'444'800,
-                  .price_centi_eur_per_mwh = INT32_MIN,
-                  .fetch_us = INT32_MIN,
-                  .status = Status::kNotConnected};
-  record.price_age_s = record.ordered_power_w = record.decision_us = INT32_MIN;
-  record.write_us = record.total_us = record.missed_ticks = INT32_MIN;
-  record.reason = Reason::kStopRequested;
-  record.battery_status = Status::kNotExpressible;
+  const CycleRecord record = longest_record();
   char line[kLogLineBytes];
   EXPECT_LT(format_log_line(record, line), kLogLineBytes - 1);
   EXPECT_LT(format_csv_line(record, line), kLogLineBytes - 1);
