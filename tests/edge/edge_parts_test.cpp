@@ -57,7 +57,7 @@ TEST(LogText, CsvLineHasAsManyFieldsAsItsHeader) {
   record.price.minute_utc_s = 1'679'788'740;
   char line[kLogLineBytes];
   const std::string csv(line, format_csv_line(record, line));
-  const std::string header = csv_header();
+  const std::string header(line, format_csv_header(line));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), ','), std::count(header.begin(), header.end(), ','));
   EXPECT_TRUE(csv.starts_with("2023-03-26T00:00:00Z,0,start,2023-03-25T23:59:00Z,")) << csv;
 }

@@ -50,9 +50,10 @@ void add_files(const CycleRecord& last, std::ostream& out) {
 
 std::string golden_text() {
   std::ostringstream out;
+  char header[kLogLineBytes];
   out << "# generator edge_test, version 1, no seed, command: BESS_UPDATE_GOLDEN=1 edge_test "
          "--gtest_filter=DecisionRecord.Golden*\n"
-      << "csv header " << csv_header() << '\n';
+      << "csv header " << std::string_view(header, format_csv_header(header)) << '\n';
   CycleRecord unmeasured = full_record(1);
   unmeasured.has_measurement = false;
   CycleRecord unpriced = full_record(2);
