@@ -69,7 +69,8 @@ bool EventLog::open_csv(const char* path, FileMessage& error) {
   if (csv_fd_ < 0) return fail_with_errno(path, "cannot write the log here", error);
   struct stat info {};
   const bool is_empty = fstat(csv_fd_, &info) == 0 && info.st_size == 0;
-  if (is_empty && !append_line(csv_fd_, csv_header(), std::strlen(csv_header()))) {
+  char line[kLogLineBytes];
+  if (is_empty && !append_line(csv_fd_, line, format_csv_header(line))) {
     return fail_with_errno(path, "cannot write the log here", error);
   }
   return true;

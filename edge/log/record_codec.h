@@ -1,5 +1,5 @@
 // One CycleRecord as 256 bytes on disk, the same on every machine:
-//   0    sequence number, u64        8 ...  the record's fields in the order of `visit_fields`
+//   0    sequence number, u64        8 ...  the fields in the order of record_fields.h
 //   ...  zeros for later fields      252    CRC-32 of everything before it
 // All integers are little-endian and of fixed width. A field may be added behind the last one
 // without a new version: older records read as zero there.

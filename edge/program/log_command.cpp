@@ -27,9 +27,12 @@ int run_log_command(const CommandLine& command_line, const EdgeConfig& config) {
     report(JournalLevel::kError, "%s", error.c_str());
     return 1;
   }
-  if (command_line.csv) std::puts(csv_header());
-  CycleRecord record;
   char line[kLogLineBytes];
+  if (command_line.csv) {
+    format_csv_header(line);
+    std::puts(line);
+  }
+  CycleRecord record;
   for (std::uint64_t n = first_number(ring, command_line.last); n <= ring.newest_number(); ++n) {
     if (!ring.read(n, record) || record.utc_s < command_line.since_utc_s) continue;
     command_line.csv ? format_csv_line(record, line) : format_log_line(record, line);

@@ -11,12 +11,19 @@
 #include "edge/log/health.h"
 #include "edge/log/journal.h"
 #include "edge/log/ring_log.h"
+#include "edge/log/status_keys.h"
 #include "edge/program/run_locks.h"
 #include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
 
 namespace bess {
 namespace {
+
+using R = CycleRecord;
+using B = BatteryMeasurement;
+using P = PriceReport;
+using C = BatteryCounters;
+using T = RunTotals;
 
 using Json = std::unique_ptr<cJSON, decltype(&cJSON_Delete)>;
 
@@ -36,31 +43,29 @@ Json read_status(const EdgeConfig& config) {
   return {cJSON_ParseWithLength(text.data(), text.size()), &cJSON_Delete};
 }
 
-const cJSON* item(const cJSON* root, const char* section, const char* name) {
-  if (section != nullptr) root = cJSON_GetObjectItemCaseSensitive(root, section);
-  return cJSON_GetObjectItemCaseSensitive(root, name);
+const cJSON* item(const cJSON* object, const char* name) {
+  return cJSON_GetObjectItemCaseSensitive(object, name);
 }
 
-double number(const cJSON* root, const char* section, const char* name) {
-  const cJSON* const found = item(root, section, name);
-  return cJSON_IsNumber(found) ? found->valuedouble : 0;
+/// What the status says of the member at this path of CycleRecord or RunTotals.
+template <auto... kPath>
+const cJSON* field(const cJSON* status) {
+  constexpr StatusKey kKey = status_key<kPath...>();
+  return item(item(status, kKey.section), kKey.name);
 }
 
-std::int64_t whole(const cJSON* root, const char* section, const char* name) {
-  return static_cast<std::int64_t>(number(root, section, name));
-}
+double number(const cJSON* found) { return cJSON_IsNumber(found) ? found->valuedouble : 0; }
 
-const char* text_of(const cJSON* root, const char* section, const char* name) {
-  const cJSON* const found = item(root, section, name);
+long long whole(const cJSON* found) { return static_cast<long long>(number(found)); }
+
+const char* text_of(const cJSON* found) {
   return cJSON_IsString(found) ? found->valuestring : "none";
 }
 
-bool is_true(const cJSON* root, const char* section, const char* name) {
-  return cJSON_IsTrue(item(root, section, name)) != 0;
-}
+bool is_true(const cJSON* found) { return cJSON_IsTrue(found) != 0; }
 
 std::int64_t age_ms_of(const cJSON* status) {
-  return clock_ns(CLOCK_MONOTONIC) / 1'000'000 - whole(status, nullptr, "written_monotonic_ms");
+  return clock_ns(CLOCK_MONOTONIC) / 1'000'000 - whole(item(status, "written_monotonic_ms"));
 }
 
 /// On a full disk the status stays as it was, while the log goes on in its file of fixed size.
@@ -71,7 +76,7 @@ std::int64_t cycles_behind(const EdgeConfig& config, const cJSON* status) {
   std::int64_t published_utc_s = 0;
   const bool is_known = ring.open_to_read(config.log.ring.c_str(), ignored) &&
                         ring.read(ring.newest_number(), newest) &&
-                        parse_utc_text(text_of(status, "last", "utc"), published_utc_s);
+                        parse_utc_text(text_of(field<&R::utc_s>(status)), published_utc_s);
   if (!is_known || newest.utc_s < published_utc_s) return 0;
   return (newest.utc_s - published_utc_s) / kSecondsPerStep;
 }
@@ -81,17 +86,17 @@ Health health_of(const EdgeConfig& config, const cJSON* status) {
   HealthInputs in;
   in.is_running = holder != 0;
   if (status == nullptr) return assess_health(in);
-  in.is_of_this_run = holder == whole(status, nullptr, "pid");
+  in.is_of_this_run = holder == whole(item(status, "pid"));
   in.age_ms = age_ms_of(status);
-  in.cadence_ms = whole(status, nullptr, "cadence_ms");
-  in.cycles = whole(status, "totals", "cycles");
-  in.mode = text_of(status, "last", "mode");
-  in.reason = text_of(status, "last", "reason");
-  in.battery_status = text_of(status, "last", "battery_status");
-  in.price_status = text_of(status, "last", "price_status");
-  in.unanswered_orders = whole(status, "totals", "unanswered_orders");
-  in.disk_is_slow = is_true(status, "totals", "disk_is_slow");
-  in.disk_is_failing = is_true(status, "totals", "disk_is_failing");
+  in.cadence_ms = whole(item(status, "cadence_ms"));
+  in.cycles = whole(field<&T::cycles>(status));
+  in.mode = text_of(field<&R::mode>(status));
+  in.reason = text_of(field<&R::reason>(status));
+  in.battery_status = text_of(field<&R::battery_status>(status));
+  in.price_status = text_of(field<&R::price, &P::status>(status));
+  in.unanswered_orders = whole(field<&R::unanswered_orders>(status));
+  in.disk_is_slow = is_true(field<&T::disk_is_slow>(status));
+  in.disk_is_failing = is_true(field<&T::disk_is_failing>(status));
   if (in.is_of_this_run && in.cycles > 0) in.cycles_behind = cycles_behind(config, status);
   return assess_health(in);
 }
@@ -102,40 +107,42 @@ void print_health(const Health& health) {
 }
 
 void print_last_cycle(const cJSON* s) {
-  std::printf("state      %s at %s, cycle %lld\n", text_of(s, "last", "mode"),
-              text_of(s, "last", "utc"), static_cast<long long>(whole(s, "last", "cycle")));
-  if (is_true(s, "last", "has_measurement")) {
+  std::printf("state      %s at %s, cycle %lld\n", text_of(field<&R::mode>(s)),
+              text_of(field<&R::utc_s>(s)), whole(field<&R::cycle>(s)));
+  if (is_true(field<&R::has_measurement>(s))) {
     std::printf("battery    SoC %.1f %%, %.0f W (charging is positive), %s\n",
-                number(s, "last", "soc_e4") / 100, number(s, "last", "battery_power_w"),
-                text_of(s, "last", "battery_status"));
+                number(field<&R::measurement, &B::soc_e4>(s)) / 100,
+                number(field<&R::measurement, &B::power_w>(s)),
+                text_of(field<&R::battery_status>(s)));
   } else {
-    std::printf("battery    not measured, %s\n", text_of(s, "last", "battery_status"));
+    std::printf("battery    not measured, %s\n", text_of(field<&R::battery_status>(s)));
   }
-  if (is_true(s, "last", "has_price")) {
+  if (is_true(field<&R::price, &P::has_row>(s))) {
     std::printf("price      %.2f EUR/MWh, %.0f s old at the decision, %s\n",
-                number(s, "last", "price_centi_eur_per_mwh") / 100,
-                number(s, "last", "price_age_s"), text_of(s, "last", "price_status"));
+                number(field<&R::price, &P::price_centi_eur_per_mwh>(s)) / 100,
+                number(field<&R::price_age_s>(s)), text_of(field<&R::price, &P::status>(s)));
   } else {
-    std::printf("price      none, %s\n", text_of(s, "last", "price_status"));
+    std::printf("price      none, %s\n", text_of(field<&R::price, &P::status>(s)));
   }
-  std::printf("order      %.0f W, reason %s\n", number(s, "last", "ordered_power_w"),
-              text_of(s, "last", "reason"));
+  std::printf("order      %.0f W, reason %s\n", number(field<&R::ordered_power_w>(s)),
+              text_of(field<&R::reason>(s)));
 }
 
 void print_counters(const cJSON* s) {
-  const auto total = [s](const char* name) {
-    return static_cast<long long>(whole(s, "totals", name));
-  };
   std::printf(
       "cycles     %lld, missed ticks %lld, late orders %lld, orders written %lld, log records "
       "dropped %lld\n",
-      total("cycles"), total("missed_ticks"), total("deadline_misses"), total("written_orders"),
-      total("records_dropped"));
-  std::printf("failures   battery %lld, prices %lld, disk %lld\n", total("battery_failures"),
-              total("price_failures"), total("disk_failures"));
+      whole(field<&T::cycles>(s)), whole(field<&R::missed_ticks>(s)),
+      whole(field<&R::deadline_misses>(s)), whole(field<&T::written_orders>(s)),
+      whole(field<&T::records_dropped>(s)));
+  std::printf("failures   battery %lld, prices %lld, disk %lld\n",
+              whole(field<&T::battery_failures>(s)), whole(field<&T::price_failures>(s)),
+              whole(field<&T::disk_failures>(s)));
   std::printf("modbus     %lld requests, %lld failed, %lld reconnects, %lld register writes\n",
-              total("requests"), total("failed_requests"), total("reconnects"),
-              total("register_writes"));
+              whole(field<&R::counters, &C::requests>(s)),
+              whole(field<&R::counters, &C::failed_requests>(s)),
+              whole(field<&R::counters, &C::reconnects>(s)),
+              whole(field<&R::counters, &C::register_writes>(s)));
 }
 
 void print_last_orders(const EdgeConfig& config) {
@@ -159,14 +166,13 @@ void print_text(const EdgeConfig& config, const cJSON* status, const Health& hea
   print_health(health);
   if (status != nullptr) {
     std::printf("controller %s, process %lld since %s, version %s, student %s\n",
-                is_true(status, nullptr, "control") ? "in control" : "read-only",
-                static_cast<long long>(whole(status, nullptr, "pid")),
-                text_of(status, nullptr, "start_utc"), text_of(status, nullptr, "version"),
-                text_of(status, nullptr, "student"));
-    const char* const variant = text_of(status, nullptr, "variant");
-    std::printf("driving    %s, map %s%s%s\n", text_of(status, nullptr, "battery"),
-                text_of(status, nullptr, "map"), *variant == '\0' ? "" : ", variant ", variant);
-    if (whole(status, "totals", "cycles") > 0) print_last_cycle(status);
+                is_true(item(status, "control")) ? "in control" : "read-only",
+                whole(item(status, "pid")), text_of(item(status, "start_utc")),
+                text_of(item(status, "version")), text_of(item(status, "student")));
+    const char* const variant = text_of(item(status, "variant"));
+    std::printf("driving    %s, map %s%s%s\n", text_of(item(status, "battery")),
+                text_of(item(status, "map")), *variant == '\0' ? "" : ", variant ", variant);
+    if (whole(field<&T::cycles>(status)) > 0) print_last_cycle(status);
     print_counters(status);
   }
   print_last_orders(config);

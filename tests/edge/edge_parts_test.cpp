@@ -10,6 +10,7 @@
 #include "edge/log/log_text.h"
 #include "shared/fixed_text.h"
 #include "shared/utc_text.h"
+#include "tests/edge/log/sample_records.h"
 
 namespace bess {
 namespace {
@@ -56,26 +57,13 @@ TEST(LogText, CsvLineHasAsManyFieldsAsItsHeader) {
   record.price.minute_utc_s = 1'679'788'740;
   char line[kLogLineBytes];
   const std::string csv(line, format_csv_line(record, line));
-  const std::string header = csv_header();
+  const std::string header(line, format_csv_header(line));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), ','), std::count(header.begin(), header.end(), ','));
   EXPECT_TRUE(csv.starts_with("2023-03-26T00:00:00Z,0,start,2023-03-25T23:59:00Z,")) << csv;
 }
 
 TEST(LogText, LongestLineFits) {
-  CycleRecord record;
-  record.utc_s = 4'102'444'800;
-  record.cycle = INT64_MAX;
-  record.mode = Mode::kStopping;
-  record.measurement = {.soc_e4 = INT32_MIN, .power_w = INT32_MIN};
-  record.price = {.has_row = true,
-                  .minute_utc_s = 4'102'444'800,
-                  .price_centi_eur_per_mwh = INT32_MIN,
-                  .fetch_us = INT32_MIN,
-                  .status = Status::kNotConnected};
-  record.price_age_s = record.ordered_power_w = record.decision_us = INT32_MIN;
-  record.write_us = record.total_us = record.missed_ticks = INT32_MIN;
-  record.reason = Reason::kStopRequested;
-  record.battery_status = Status::kNotExpressible;
+  const CycleRecord record = longest_record();
   char line[kLogLineBytes];
   EXPECT_LT(format_log_line(record, line), kLogLineBytes - 1);
   EXPECT_LT(format_csv_line(record, line), kLogLineBytes - 1);

@@ -14,6 +14,7 @@
 
 #include "shared/crc32.h"
 #include "shared/scaled_clock.h"
+#include "tests/edge/log/sample_records.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bess {
@@ -23,57 +24,19 @@ using ::testing::HasSubstr;
 
 constexpr std::int64_t kHeaderBytes = 4'096;
 
-/// Every field its own value, so that a swapped or forgotten one shows.
-CycleRecord full_record(std::int64_t cycle) {
-  CycleRecord r;
-  r.utc_s = 1'700'000'000 + 120 * cycle;
-  r.cycle = cycle;
-  r.mode = Mode::kHolding;
-  r.has_measurement = true;
-  r.measurement = {.soc_e4 = 1,
-                   .power_w = -2,
-                   .capacity_wh = 3,
-                   .charge_w_max = 4,
-                   .discharge_w_max = 5,
-                   .temperature_min_deci_c = -6,
-                   .temperature_max_deci_c = 7,
-                   .alarm = true,
-                   .off_grid = false,
-                   .dispatch_active = true,
-                   .has_order_power = true,
-                   .order_power_w = -8};
-  r.price = {.has_row = true,
-             .minute_utc_s = 9,
-             .price_centi_eur_per_mwh = -10,
-             .received_monotonic_ns = 11,
-             .fetch_us = 12,
-             .status = Status::kTlsRefused,
-             .large_step = true};
-  r.price_age_s = 13;
-  r.has_student_action = true;
-  r.student_action = Action::kCharge;
-  r.ordered_power_w = -14;
-  r.reason = Reason::kPriceQuarterHour;
-  r.battery_status = Status::kNotApplied;
-  r.written = true;
-  r.decision_us = 15;
-  r.write_us = 16;
-  r.total_us = 17;
-  r.missed_ticks = 18;
-  r.counters = {.requests = 19,
-                .failed_requests = 20,
-                .reconnects = 21,
-                .register_writes = 22,
-                .unchanged_orders = 23,
-                .flash_day = 24,
-                .flash_writes_today = 25};
-  return r;
-}
-
 RecordBytes bytes_of(const CycleRecord& record, std::uint64_t number) {
   RecordBytes bytes;
   encode_record(record, number, bytes);
   return bytes;
+}
+
+/// Puts the CRC that the bytes now need at their end.
+void seal(RecordBytes& bytes) {
+  Crc32 crc;
+  crc.add_bytes(bytes.data(), kRecordBytes - 4);
+  for (std::size_t i = 0; i < 4; ++i) {
+    bytes[kRecordBytes - 4 + i] = static_cast<std::uint8_t>(crc.value() >> (8 * i));
+  }
 }
 
 std::string read_file(const std::string& path) {
@@ -137,8 +100,25 @@ TEST(RecordCodec, LayoutOnDiskIsFixed) {
   EXPECT_EQ(bytes[26], 1);     // soc_e4
   EXPECT_EQ(bytes[30], 0xFE);  // power_w = -2
   EXPECT_EQ(bytes[118], 19);   // counters begin
-  EXPECT_EQ(bytes[166], 25);   // flash_writes_today, the last field
-  for (std::size_t i = 170; i < kRecordBytes - 4; ++i) EXPECT_EQ(bytes[i], 0) << i;
+  EXPECT_EQ(bytes[166], 25);   // flash_writes_today
+  EXPECT_EQ(bytes[170], 26);   // deadline_misses
+  EXPECT_EQ(bytes[182], 29);   // soc_moved_e4, the last field
+  for (std::size_t i = 186; i < kRecordBytes - 4; ++i) EXPECT_EQ(bytes[i], 0) << i;
+}
+
+/// A ring of the program that ended its records with flash_writes_today: later fields read as 0.
+TEST(RecordCodec, ARecordOfAnOlderLayoutIsRead) {
+  RecordBytes bytes = bytes_of(full_record(7), 42);
+  std::fill(bytes.begin() + 170, bytes.end(), std::uint8_t{0});
+  seal(bytes);
+  CycleRecord back;
+  std::uint64_t number = 0;
+  ASSERT_TRUE(decode_record(bytes, back, number));
+  EXPECT_EQ(number, 42U);
+  CycleRecord expected = full_record(7);
+  expected.deadline_misses = expected.unanswered_orders = 0;
+  expected.throughput = {};
+  EXPECT_EQ(bytes_of(back, 42), bytes_of(expected, 42));
 }
 
 TEST(RecordCodec, ZerosAndUnknownCodesAreNoRecord) {
@@ -147,11 +127,7 @@ TEST(RecordCodec, ZerosAndUnknownCodesAreNoRecord) {
   EXPECT_FALSE(decode_record(RecordBytes{}, record, number));
   RecordBytes bytes = bytes_of(full_record(7), 42);
   bytes[24] = kModeCount;  // a mode of a later program, with a sound CRC
-  Crc32 crc;
-  crc.add_bytes(bytes.data(), kRecordBytes - 4);
-  for (std::size_t i = 0; i < 4; ++i) {
-    bytes[kRecordBytes - 4 + i] = static_cast<std::uint8_t>(crc.value() >> (8 * i));
-  }
+  seal(bytes);
   EXPECT_FALSE(decode_record(bytes, record, number));
 }
 

@@ -9,24 +9,12 @@
 #include <regex>
 #include <sstream>
 
+#include "tests/edge/log/sample_records.h"
+
 namespace bess {
 namespace {
 
 using ::testing::HasSubstr;
-
-RunIdentity identity() {
-  RunIdentity id;
-  id.version = "1.2.3";
-  id.student_hash = 0xABCD;
-  id.student_provenance = "trained on \"prices\"\\today\n";
-  id.map = "alphaess";
-  id.variant = "block";
-  id.battery = "127.0.0.1:502 unit 85";
-  id.control = true;
-  id.pid = 4711;
-  id.start_utc_s = 1'679'788'800;
-  return id;
-}
 
 CycleRecord good_record() {
   CycleRecord r;
@@ -58,7 +46,7 @@ RunTotals totals_after(std::initializer_list<CycleRecord> records) {
 std::string prometheus_text(const RunTotals& totals) {
   char storage[kMetricsBytes];
   TextBuffer text(storage);
-  format_prometheus(identity(), totals, text);
+  format_prometheus(sample_identity(), totals, text);
   EXPECT_FALSE(text.was_cut());
   return std::string(text.view());
 }
@@ -153,7 +141,7 @@ TEST(RunTotals, CountFailuresAndReasons) {
 TEST(StatusJson, HoldsWhatItWasToldAndEscapesForeignText) {
   char storage[kStatusBytes];
   TextBuffer json(storage);
-  format_status_json(identity(), totals_after({good_record()}), 5'000'000'000, json);
+  format_status_json(sample_identity(), totals_after({good_record()}), 5'000'000'000, json);
   EXPECT_FALSE(json.was_cut());
   const std::string text(json.view());
   EXPECT_THAT(text, HasSubstr("\"provenance\": \"trained on 'prices''today \""));
@@ -164,25 +152,16 @@ TEST(StatusJson, HoldsWhatItWasToldAndEscapesForeignText) {
 
 /// The buffers are fixed: the longest texts and numbers must fit, or readers would get half a file.
 TEST(RunStatus, TheLargestValuesFit) {
-  RunIdentity id = identity();
+  RunIdentity id = sample_identity();
   id.student_provenance = FixedText<255>(std::string(255, 'x'));
   id.battery = FixedText<159>(std::string(159, 'x'));
   id.map = id.variant = FixedText<31>(std::string(31, 'x'));
   id.pid = INT32_MIN;
   id.cadence_ms = INT32_MIN;
   RunTotals t;
-  t.last = good_record();
-  t.last.utc_s = t.last.price.minute_utc_s = 4'102'444'800;
-  t.last.measurement = {.soc_e4 = INT32_MIN, .power_w = INT32_MIN};
-  t.last.price.price_centi_eur_per_mwh = t.last.price.fetch_us = INT32_MIN;
-  t.last.price_age_s = t.last.ordered_power_w = t.last.decision_us = INT32_MIN;
-  t.last.write_us = t.last.total_us = t.last.missed_ticks = INT32_MIN;
-  t.last.counters = {INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT32_MIN};
-  t.last.counters.requests = 0;  // requests - failed_requests must not overflow
-  t.last.counters.failed_requests = INT64_MAX;
+  t.last = longest_record();
   t.cycles = t.written_orders = t.battery_failures = t.price_failures = INT64_MIN;
   t.records_dropped = t.disk_failures = INT64_MIN;
-  t.last.cycle = INT64_MIN;
   t.cycles_by_reason.fill(INT64_MIN);
   char status_storage[kStatusBytes];
   TextBuffer json(status_storage);

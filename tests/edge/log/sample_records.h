@@ -1,0 +1,129 @@
+// Hand-made decision records for the tests of what is written from them.
+#pragma once
+
+#include "edge/log/run_status.h"
+
+namespace bess {
+
+/// Every field its own value, so that a swapped or forgotten one shows.
+inline CycleRecord full_record(std::int64_t cycle) {
+  CycleRecord r;
+  r.utc_s = 1'700'000'000 + 120 * cycle;
+  r.cycle = cycle;
+  r.mode = Mode::kHolding;
+  r.has_measurement = true;
+  r.measurement = {.soc_e4 = 1,
+                   .power_w = -2,
+                   .capacity_wh = 3,
+                   .charge_w_max = 4,
+                   .discharge_w_max = 5,
+                   .temperature_min_deci_c = -6,
+                   .temperature_max_deci_c = 7,
+                   .alarm = true,
+                   .off_grid = false,
+                   .dispatch_active = true,
+                   .has_order_power = true,
+                   .order_power_w = -8};
+  r.price = {.has_row = true,
+             .minute_utc_s = 9,
+             .price_centi_eur_per_mwh = -10,
+             .received_monotonic_ns = 11,
+             .fetch_us = 12,
+             .status = Status::kTlsRefused,
+             .large_step = true};
+  r.price_age_s = 13;
+  r.has_student_action = true;
+  r.student_action = Action::kCharge;
+  r.ordered_power_w = -14;
+  r.reason = Reason::kPriceQuarterHour;
+  r.battery_status = Status::kNotApplied;
+  r.written = true;
+  r.decision_us = 15;
+  r.write_us = 16;
+  r.total_us = 17;
+  r.missed_ticks = 18;
+  r.counters = {.requests = 19,
+                .failed_requests = 20,
+                .reconnects = 21,
+                .register_writes = 22,
+                .unchanged_orders = 23,
+                .flash_day = 24,
+                .flash_writes_today = 25};
+  r.deadline_misses = 26;
+  r.unanswered_orders = 27;
+  r.throughput = {.local_day = 28, .soc_moved_e4 = 29};
+  return r;
+}
+
+/// The longest text of every field.
+inline CycleRecord longest_record() {
+  CycleRecord r = full_record(0);
+  r.utc_s = r.price.minute_utc_s = 4'102'444'800;
+  r.cycle = INT64_MIN;
+  r.mode = Mode::kStopping;
+  r.measurement = {.soc_e4 = INT32_MIN,
+                   .power_w = INT32_MIN,
+                   .capacity_wh = INT32_MIN,
+                   .charge_w_max = INT32_MIN,
+                   .discharge_w_max = INT32_MIN,
+                   .temperature_min_deci_c = INT32_MIN,
+                   .temperature_max_deci_c = INT32_MIN,
+                   .order_power_w = INT32_MIN};
+  r.price.price_centi_eur_per_mwh = r.price.fetch_us = INT32_MIN;
+  r.price.received_monotonic_ns = INT64_MIN;
+  r.price.status = r.battery_status = Status::kNotExpressible;
+  r.price_age_s = r.ordered_power_w = r.decision_us = r.write_us = r.total_us = INT32_MIN;
+  r.student_action = Action::kDischarge;
+  r.reason = Reason::kWrongDirection;
+  r.missed_ticks = r.deadline_misses = r.unanswered_orders = INT32_MIN;
+  r.throughput = {.local_day = INT32_MIN, .soc_moved_e4 = INT32_MIN};
+  r.counters = {INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT32_MIN};
+  r.counters.requests = 0;  // requests - failed_requests must not overflow
+  r.counters.failed_requests = INT64_MAX;
+  return r;
+}
+
+/// Enumerators number i of every enumeration, round and round: 19 of them show each name.
+inline CycleRecord record_with_enumerators(int i) {
+  CycleRecord r = full_record(i);
+  r.mode = static_cast<Mode>(i % kModeCount);
+  r.student_action = static_cast<Action>(i % kActionCount);
+  r.reason = static_cast<Reason>(i % kReasonCount);
+  r.battery_status = static_cast<Status>(i % kStatusCount);
+  r.price.status = static_cast<Status>((i + 5) % kStatusCount);
+  return r;
+}
+
+/// Every total its own value as well.
+inline RunTotals full_totals(const CycleRecord& last) {
+  RunTotals t;
+  t.cycles = 101;
+  for (std::size_t i = 0; i < t.cycles_by_reason.size(); ++i) {
+    t.cycles_by_reason[i] = 200 + static_cast<std::int64_t>(i);
+  }
+  t.written_orders = 102;
+  t.battery_failures = 103;
+  t.price_failures = 104;
+  t.records_dropped = 105;
+  t.disk_failures = 106;
+  t.disk_is_slow = true;
+  t.disk_is_failing = false;
+  t.last = last;
+  return t;
+}
+
+inline RunIdentity sample_identity() {
+  RunIdentity id;
+  id.version = "1.2.3";
+  id.student_hash = 0xABCD;
+  id.student_provenance = "trained on \"prices\"\\today\n";
+  id.map = "alphaess";
+  id.variant = "block";
+  id.battery = "127.0.0.1:502 unit 85";
+  id.control = true;
+  id.pid = 4711;
+  id.start_utc_s = 1'679'788'800;
+  return id;
+}
+
+}  // namespace bess
