@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <map>
 
 #include "edge/registers/map_file.h"
 #include "shared/utc_text.h"
@@ -106,28 +105,24 @@ std::string footer() {
   return text;
 }
 
-void add_bus_options(CLI::App& command, BatteryServerSettings& server) {
-  command.add_option("--host", server.host, "Numeric IPv4 address to listen on")
-      ->check(CLI::ValidIPV4)
-      ->capture_default_str();
-  command.add_option("--port", server.port, "TCP port, 0 = any free one")
-      ->check(CLI::Range(0, 65'535))
-      ->capture_default_str();
-  command.add_option("--clients-max", server.clients_max, "More are refused, like the real device")
-      ->check(CLI::Range(1, 32))
-      ->capture_default_str();
-  command.add_option("--serial", server.serial_device, "Serve RTU on this serial line instead");
-  command.add_option("--baud", server.baud, "Of the serial line")->capture_default_str();
-  static const std::map<std::string, char> kParities = {{"none", 'N'}, {"even", 'E'}, {"odd", 'O'}};
-  command.add_option("--parity", server.parity, "none, even or odd")
-      ->transform(CLI::CheckedTransformer(kParities))
-      ->type_name("TEXT");
-  command.add_option("--stop-bits", server.stop_bits, "1 or 2")->check(CLI::Range(1, 2));
-  command.add_option("--response-delay-ms", server.response_delay_ms, "Before every answer")
-      ->check(CLI::Range(0, 60'000));
+void add_bus_options(ProgramCommand& command, BatteryServerSettings& server) {
+  command.option("--host", server.host, "Numeric IPv4 address to listen on").ipv4().with_default();
+  command.option("--port", server.port, "TCP port, 0 = any free one")
+      .range(0, 65'535)
+      .with_default();
+  command.option("--clients-max", server.clients_max, "More are refused, like the real device")
+      .range(1, 32)
+      .with_default();
+  command.option("--serial", server.serial_device, "Serve RTU on this serial line instead");
+  command.option("--baud", server.baud, "Of the serial line").with_default();
+  command.choice<char>("--parity", server.parity, {{"none", 'N'}, {"even", 'E'}, {"odd", 'O'}},
+                       "none, even or odd");
+  command.option("--stop-bits", server.stop_bits, "1 or 2").range(1, 2);
+  command.option("--response-delay-ms", server.response_delay_ms, "Before every answer")
+      .range(0, 60'000);
 }
 
-void add_fault_options(CLI::App& command, BatteryOptions& options) {
+void add_fault_options(ProgramCommand& command, BatteryOptions& options) {
   BatteryServerSettings& server = options.server;
   FaultSchedule& faults = server.faults;
   const auto known = [](const std::string& name) -> std::string {
@@ -135,67 +130,65 @@ void add_fault_options(CLI::App& command, BatteryOptions& options) {
     return "there is no fault " + name;
   };
   command
-      .add_option("--fault", options.fault_names,
-                  "Misbehave now and then; of several, one at random each time (see below)")
-      ->check(CLI::Validator(known, ""))
-      ->type_name("NAME");
-  command.add_option("--fault-every", faults.every, "At every Nth chance")
-      ->check(CLI::Range(1, 1'000'000))
-      ->capture_default_str();
-  command.add_option("--fault-probability", faults.probability, "At each chance, instead of every")
-      ->check(CLI::Range(0.0, 1.0));
-  command.add_option("--fault-seed", faults.seed, "Of what is random")->capture_default_str();
-  command.add_option("--fault-from-s", faults.from_s, "Simulated seconds after the start")
-      ->check(CLI::NonNegativeNumber);
-  command.add_option("--fault-to-s", faults.to_s, "And until when")->check(CLI::NonNegativeNumber);
-  command.add_option("--late-ms", server.late_ms, "Delay of late and byte-gap")
-      ->check(CLI::Range(1, 60'000))
-      ->capture_default_str();
-  command.add_option("--drip-ms", server.drip_ms, "Between the bytes of drip")
-      ->check(CLI::Range(1, 60'000))
-      ->capture_default_str();
-  command.add_option("--exception-code", server.exception_code, "1, 2, 3, 4, 6 or a vendor's")
-      ->check(CLI::Range(1, 255))
-      ->capture_default_str();
+      .option("--fault", options.fault_names,
+              "Misbehave now and then; of several, one at random each time (see below)")
+      .check(known)
+      .value_name("NAME");
+  command.option("--fault-every", faults.every, "At every Nth chance")
+      .range(1, 1'000'000)
+      .with_default();
+  command.option("--fault-probability", faults.probability, "At each chance, instead of every")
+      .range(0.0, 1.0);
+  command.option("--fault-seed", faults.seed, "Of what is random").with_default();
+  command.option("--fault-from-s", faults.from_s, "Simulated seconds after the start")
+      .non_negative();
+  command.option("--fault-to-s", faults.to_s, "And until when").non_negative();
+  command.option("--late-ms", server.late_ms, "Delay of late and byte-gap")
+      .range(1, 60'000)
+      .with_default();
+  command.option("--drip-ms", server.drip_ms, "Between the bytes of drip")
+      .range(1, 60'000)
+      .with_default();
+  command.option("--exception-code", server.exception_code, "1, 2, 3, 4, 6 or a vendor's")
+      .range(1, 255)
+      .with_default();
 }
 
-void add_plant_options(CLI::App& command, BatteryOptions& options) {
-  command.add_option("--map", options.map_path, "Register map (TOML): the device to act");
-  command.add_option("--variant", options.map_variant, "Of the map; default: its first");
-  command.add_option("--soc", options.soc_frac, "State of charge at start, 0..1")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
-  command.add_option("--power-w", options.battery.power_w_max, "Rated power")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  command.add_option("--capacity-wh", options.battery.capacity_wh, "Capacity")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  command.add_option("--soc-min", options.battery.soc_min_frac, "The battery's own floor")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
-  command.add_option("--soc-max", options.battery.soc_max_frac, "The battery's own ceiling")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
-  command.add_option("--efficiency", options.round_trip_efficiency, "Round trip")
-      ->check(CLI::Range(0.01, 1.0))
-      ->capture_default_str();
-  command.add_option("--record", options.record_path,
-                     "CSV of energy and SoC per simulated minute, written at exit");
+void add_plant_options(ProgramCommand& command, BatteryOptions& options) {
+  command.option("--map", options.map_path, "Register map (TOML): the device to act");
+  command.option("--variant", options.map_variant, "Of the map; default: its first");
+  command.option("--soc", options.soc_frac, "State of charge at start, 0..1")
+      .range(0.0, 1.0)
+      .with_default();
+  command.option("--power-w", options.battery.power_w_max, "Rated power").positive().with_default();
+  command.option("--capacity-wh", options.battery.capacity_wh, "Capacity")
+      .positive()
+      .with_default();
+  command.option("--soc-min", options.battery.soc_min_frac, "The battery's own floor")
+      .range(0.0, 1.0)
+      .with_default();
+  command.option("--soc-max", options.battery.soc_max_frac, "The battery's own ceiling")
+      .range(0.0, 1.0)
+      .with_default();
+  command.option("--efficiency", options.round_trip_efficiency, "Round trip")
+      .range(0.01, 1.0)
+      .with_default();
+  command.option("--record", options.record_path,
+                 "CSV of energy and SoC per simulated minute, written at exit");
 }
 
 }  // namespace
 
-void add_battery_command(CLI::App& app) {
+void add_battery_command(ProgramCommand& app) {
   auto options = std::make_shared<BatteryOptions>();
-  CLI::App* command =
-      app.add_subcommand("battery", "A Modbus battery, TCP or RTU: any register map");
-  command->footer(footer());
-  add_bus_options(*command, options->server);
-  options->clock.add_to(*command);
-  add_plant_options(*command, *options);
-  add_fault_options(*command, *options);
-  command->callback([options] { run_battery(*options); });
+  ProgramCommand command =
+      app.subcommand("battery", "A Modbus battery, TCP or RTU: any register map");
+  command.footer(footer());
+  add_bus_options(command, options->server);
+  options->clock.add_to(command);
+  add_plant_options(command, *options);
+  add_fault_options(command, *options);
+  command.runs([options] { run_battery(*options); });
 }
 
 }  // namespace bess

@@ -1,6 +1,5 @@
 // bess-sim market: options and composition.
 #include <cstdio>
-#include <map>
 #include <thread>
 
 #include "shared/utc_text.h"
@@ -46,46 +45,44 @@ void run_market(const MarketOptions& options) {
 
 }  // namespace
 
-void add_market_command(CLI::App& app) {
+void add_market_command(ProgramCommand& app) {
   auto options = std::make_shared<MarketOptions>();
-  CLI::App* command =
-      app.add_subcommand("market", "A price server with Elia's API (ods161, ods162)");
-  command->footer(
+  ProgramCommand command =
+      app.subcommand("market", "A price server with Elia's API (ods161, ods162)");
+  command.footer(
       "Examples:\n"
       "  bess-sim market --prices minutes.csv.gz --port 8080 --utc-start 2023-03-26T00:00:00Z "
       "--time-scale 900 --anchor-monotonic-ns $(bess-sim clock)\n"
       "  curl 'http://127.0.0.1:8080/api/explore/v2.1/catalog/datasets/ods161/records"
       "?order_by=datetime%20desc&limit=3'");
-  command->add_option("--prices", options->prices_path, "Minute file, CSV or .csv.gz")->required();
-  command->add_option("--host", options->server.host, "Address to listen on")
-      ->capture_default_str();
-  command->add_option("--port", options->server.port, "TCP port, 0 = any free one")
-      ->check(CLI::Range(0, 65'535))
-      ->capture_default_str();
-  options->clock.add_to(*command);
+  command.option("--prices", options->prices_path, "Minute file, CSV or .csv.gz").required();
+  command.option("--host", options->server.host, "Address to listen on").with_default();
+  command.option("--port", options->server.port, "TCP port, 0 = any free one")
+      .range(0, 65'535)
+      .with_default();
+  options->clock.add_to(command);
   command
-      ->add_option("--latency-s", options->latency_s,
-                   "Simulated seconds from the end of a minute until its row is readable")
-      ->check(CLI::Range(0.0, 3'600.0))
-      ->capture_default_str();
-  const std::map<std::string, MarketFault> faults = {{"null", MarketFault::kNull},
-                                                     {"http-500", MarketFault::kHttp500},
-                                                     {"stale", MarketFault::kStale},
-                                                     {"garbage", MarketFault::kGarbage},
-                                                     {"all", MarketFault::kAll}};
-  command->add_option("--fault", options->server.fault, "Misbehave now and then")
-      ->transform(CLI::Transformer(faults, CLI::ignore_case))
-      ->type_name("null|http-500|stale|garbage|all");
-  command->add_option("--fault-every", options->server.fault_every, "At every Nth request")
-      ->check(CLI::Range(1, 1'000'000))
-      ->capture_default_str();
-  auto* certificate = command->add_option("--tls-cert", options->server.tls_certificate,
-                                          "PEM certificate: serves HTTPS");
-  command->add_option("--tls-key", options->server.tls_key, "Its PEM key")->needs(certificate);
-  certificate->needs("--tls-key");
-  command->add_flag("--close-each", options->server.close_each,
-                    "Close the connection after each answer");
-  command->callback([options] { run_market(*options); });
+      .option("--latency-s", options->latency_s,
+              "Simulated seconds from the end of a minute until its row is readable")
+      .range(0.0, 3'600.0)
+      .with_default();
+  command.choice<MarketFault>("--fault", options->server.fault,
+                              {{"null", MarketFault::kNull},
+                               {"http-500", MarketFault::kHttp500},
+                               {"stale", MarketFault::kStale},
+                               {"garbage", MarketFault::kGarbage},
+                               {"all", MarketFault::kAll}},
+                              "Misbehave now and then");
+  command.option("--fault-every", options->server.fault_every, "At every Nth request")
+      .range(1, 1'000'000)
+      .with_default();
+  ProgramOption certificate = command.option("--tls-cert", options->server.tls_certificate,
+                                             "PEM certificate: serves HTTPS");
+  command.option("--tls-key", options->server.tls_key, "Its PEM key").needs("--tls-cert");
+  certificate.needs("--tls-key");
+  command.flag("--close-each", options->server.close_each,
+               "Close the connection after each answer");
+  command.runs([options] { run_market(*options); });
 }
 
 }  // namespace bess

@@ -56,25 +56,25 @@ void print_text(const Settlement& s) {
 
 }  // namespace
 
-void add_settle_command(CLI::App& app) {
+void add_settle_command(ProgramCommand& app) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
+  ProgramCommand command = app.subcommand(
       "settle", "Count a run's energy and money from the battery's record and from the edge's log");
-  command->add_option("--record", options->record, "Battery record (bess-sim battery --record)")
-      ->required();
-  command->add_option("--edge-log", options->edge_log, "The edge's CSV log")->required();
-  command->add_option("--prices", options->prices, "Minute file with settled prices")->required();
-  command->add_option("--power-w", options->battery.power_w_max, "Battery's power")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  command->add_option("--capacity-wh", options->battery.capacity_wh, "Battery's capacity")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  command->add_flag("--json", options->json, "One JSON object");
-  command->footer(
+  command.option("--record", options->record, "Battery record (bess-sim battery --record)")
+      .required();
+  command.option("--edge-log", options->edge_log, "The edge's CSV log").required();
+  command.option("--prices", options->prices, "Minute file with settled prices").required();
+  command.option("--power-w", options->battery.power_w_max, "Battery's power")
+      .positive()
+      .with_default();
+  command.option("--capacity-wh", options->battery.capacity_wh, "Battery's capacity")
+      .positive()
+      .with_default();
+  command.flag("--json", options->json, "One JSON object");
+  command.footer(
       "Example:\n"
       "  bess-sim settle --record battery.csv --edge-log edge.csv --prices market.csv.gz");
-  command->callback([options] {
+  command.runs([options] {
     const Settlement settlement =
         settle(CsvTable::read(options->record), CsvTable::read(options->edge_log),
                read_minute_prices(options->prices), options->battery);

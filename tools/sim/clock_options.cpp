@@ -5,14 +5,14 @@
 
 namespace bess {
 
-void ClockOptions::add_to(CLI::App& app) {
-  app.add_option("--utc-start", utc_start,
-                 "UTC at the anchor, e.g. 2023-03-26T00:00:00Z; default: real time");
-  app.add_option("--time-scale", time_scale, "Simulated seconds per second (900: a day in 96 s)")
-      ->check(CLI::Range(1, 100'000));
-  app.add_option("--anchor-monotonic-ns", anchor_monotonic_ns,
-                 "CLOCK_MONOTONIC at which the clock shows --utc-start; default: now. Give all "
-                 "processes the same, from: bess-sim clock");
+void ClockOptions::add_to(ProgramCommand& app) {
+  app.option("--utc-start", utc_start,
+             "UTC at the anchor, e.g. 2023-03-26T00:00:00Z; default: real time");
+  app.option("--time-scale", time_scale, "Simulated seconds per second (900: a day in 96 s)")
+      .range(1, 100'000);
+  app.option("--anchor-monotonic-ns", anchor_monotonic_ns,
+             "CLOCK_MONOTONIC at which the clock shows --utc-start; default: now. Give all "
+             "processes the same, from: bess-sim clock");
 }
 
 ScaledClock ClockOptions::clock() const {

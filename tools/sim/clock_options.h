@@ -1,11 +1,10 @@
 // The options that put several processes on the same simulated clock (shared/scaled_clock.h).
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <cstdint>
 #include <string>
 
+#include "shared/host/command_line.h"
 #include "shared/scaled_clock.h"
 
 namespace bess {
@@ -16,7 +15,7 @@ struct ClockOptions {
   std::int64_t anchor_monotonic_ns = 0;
 
   /// Declares --utc-start, --time-scale and --anchor-monotonic-ns.
-  void add_to(CLI::App& app);
+  void add_to(ProgramCommand& app);
   /// Throws SimError when they do not make sense. Without any of them: real time.
   [[nodiscard]] ScaledClock clock() const;
 };

@@ -2,12 +2,12 @@
 // callback.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "shared/host/command_line.h"
 
 namespace bess {
 
-void add_battery_command(CLI::App& app);
-void add_market_command(CLI::App& app);
-void add_settle_command(CLI::App& app);
+void add_battery_command(ProgramCommand& app);
+void add_market_command(ProgramCommand& app);
+void add_settle_command(ProgramCommand& app);
 
 }  // namespace bess

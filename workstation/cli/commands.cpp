@@ -2,7 +2,7 @@
 
 namespace bess {
 
-void add_commands(CLI::App& app) {
+void add_commands(ProgramCommand& app) {
   add_run_command(app);
   add_prices_commands(app);
   add_train_command(app);

@@ -2,46 +2,22 @@
 // with examples, and runs it as the subcommand's callback.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
-#include <string>
-
-#include "workstation/rl/train.h"
-#include "workstation/student/correct_and_prove.h"
-#include "workstation/student/student_file.h"
+#include "shared/host/command_line.h"
 
 namespace bess {
 
-/// Thrown when Ctrl-C stopped a command after it saved what it had.
-struct Interrupted {};
-
-void add_prices_commands(CLI::App& app);  ///< simulate, reconstruct, import, fetch, stats
-void add_train_command(CLI::App& app);
-void add_distil_command(CLI::App& app);
-void add_verify_command(CLI::App& app);
-void add_evaluate_command(CLI::App& app);
-void add_delays_command(CLI::App& app);
-void add_export_command(CLI::App& app);
-void add_report_command(CLI::App& app);
-void add_run_command(CLI::App& app);
-void add_config_command(CLI::App& app);
-
-// --- Pieces that `run` shares with the single subcommands ---------------------------------------
-
-/// One line for the files made from this training.
-std::string training_provenance(const std::string& prices, const TrainOptions& options,
-                                const TrainResult& result);
-/// One line on stderr when the support of C51 is too narrow for the values met.
-void warn_narrow_support(const TrainOptions& options, const TrainResult& result);
-
-StudentFile student_file(const CorrectedStudent& student, const DistilOptions& options,
-                         const std::string& teacher_provenance);
-
-/// Writes the weight header if the whole lattice is free of violations, else throws UserError.
-void export_proved_student(const StudentFile& student, const std::string& name,
-                           const std::string& out, int threads);
+void add_prices_commands(ProgramCommand& app);  ///< simulate, reconstruct, import, fetch, stats
+void add_train_command(ProgramCommand& app);
+void add_distil_command(ProgramCommand& app);
+void add_verify_command(ProgramCommand& app);
+void add_evaluate_command(ProgramCommand& app);
+void add_delays_command(ProgramCommand& app);
+void add_export_command(ProgramCommand& app);
+void add_report_command(ProgramCommand& app);
+void add_run_command(ProgramCommand& app);
+void add_config_command(ProgramCommand& app);
 
 /// Every subcommand, in the order of the help.
-void add_commands(CLI::App& app);
+void add_commands(ProgramCommand& app);
 
 }  // namespace bess

@@ -13,22 +13,20 @@ namespace {
 constexpr int kThreadsMax = 256;
 }
 
-void CommonOptions::add_config(CLI::App& command) {
-  command.add_option("--config", config_path, "TOML file; 'bess-train config' prints all keys");
+void CommonOptions::add_config(ProgramCommand& command) {
+  command.option("--config", config_path, "TOML file; 'bess-train config' prints all keys");
 }
 
-void CommonOptions::add_seed_and_threads(CLI::App& command) {
-  command.add_option("--seed", seed, "Seed of every random draw (default 1)")
-      ->check(CLI::NonNegativeNumber);
-  command.add_option("--threads", threads, "Default: all cores")->check(CLI::Range(1, kThreadsMax));
+void CommonOptions::add_seed_and_threads(ProgramCommand& command) {
+  command.option("--seed", seed, "Seed of every random draw (default 1)").non_negative();
+  command.option("--threads", threads, "Default: all cores").range(1, kThreadsMax);
 }
 
-void CommonOptions::add_market(CLI::App& command) {
-  command.add_option("--delay", delay_min, "Observation delay in minutes, 0 to 5 (default 1)")
-      ->check(CLI::Range(0, 5));
-  command.add_option("--settlement", settlement, "minute (default) or step")
-      ->check(CLI::IsMember({"minute", "step"}));
-  command.add_option("--initial-soc", initial_soc_frac, "0..1, default 0.5");
+void CommonOptions::add_market(ProgramCommand& command) {
+  command.option("--delay", delay_min, "Observation delay in minutes, 0 to 5 (default 1)")
+      .range(0, 5);
+  command.option("--settlement", settlement, "minute (default) or step").one_of({"minute", "step"});
+  command.option("--initial-soc", initial_soc_frac, "0..1, default 0.5");
 }
 
 RunConfig CommonOptions::resolve() const {

@@ -1,12 +1,11 @@
 // Options that several subcommands share, and what they resolve to: one place for their names and ranges.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <atomic>
 #include <optional>
 #include <string>
 
+#include "shared/host/command_line.h"
 #include "workstation/cli/run_config.h"
 
 namespace bess {
@@ -19,9 +18,9 @@ struct CommonOptions {
   std::optional<std::string> settlement;
   std::optional<double> initial_soc_frac;
 
-  void add_config(CLI::App& command);
-  void add_seed_and_threads(CLI::App& command);
-  void add_market(CLI::App& command);
+  void add_config(ProgramCommand& command);
+  void add_seed_and_threads(ProgramCommand& command);
+  void add_market(ProgramCommand& command);
 
   /// The configuration file with the command line's options on top.
   [[nodiscard]] RunConfig resolve() const;

@@ -8,15 +8,15 @@
 
 namespace bess {
 
-void add_config_command(CLI::App& app) {
+void add_config_command(ProgramCommand& app) {
   auto path = std::make_shared<std::string>();
-  CLI::App* command = app.add_subcommand("config", "Print the configuration as commented TOML");
-  command->add_option("--config", *path, "File whose values replace the defaults");
-  command->footer(
+  ProgramCommand command = app.subcommand("config", "Print the configuration as commented TOML");
+  command.option("--config", *path, "File whose values replace the defaults");
+  command.footer(
       "Examples:\n"
       "  bess-train config > my.toml\n"
       "  bess-train config --config my.toml     # checks it and shows what is in force");
-  command->callback([path] { fmt::print("{}", format_run_config(load_run_config(*path))); });
+  command.runs([path] { fmt::print("{}", format_run_config(load_run_config(*path))); });
 }
 
 }  // namespace bess

@@ -89,25 +89,25 @@ void run(const Options& options) {
 
 }  // namespace
 
-void add_delays_command(CLI::App& app) {
+void add_delays_command(ProgramCommand& app) {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("delays", "The cost of seeing prices late: fitted at 0-3 min, run at 0-3");
-  command->add_option("--prices", options->prices, "Minute file (.csv or .csv.gz)")->required();
-  command->add_option("--policy", options->policies, std::string("One or more of ") + kPolicyHelp)
-      ->capture_default_str();
-  command->add_option("--split", options->split, "Local days 1-20, 21-25, 26-end, or all")
-      ->check(CLI::IsMember({"train", "val", "test", "all"}))
-      ->capture_default_str();
-  options->common.add_config(*command);
-  command->add_flag("--carry-soc", options->carry_soc, "Chain the days instead of resetting SoC");
-  command->add_flag("--json", options->json, "One JSON object a line, policy and pair of delays");
-  command->footer(
+  ProgramCommand command =
+      app.subcommand("delays", "The cost of seeing prices late: fitted at 0-3 min, run at 0-3");
+  command.option("--prices", options->prices, "Minute file (.csv or .csv.gz)").required();
+  command.option("--policy", options->policies, std::string("One or more of ") + kPolicyHelp)
+      .with_default();
+  command.option("--split", options->split, "Local days 1-20, 21-25, 26-end, or all")
+      .one_of({"train", "val", "test", "all"})
+      .with_default();
+  options->common.add_config(command);
+  command.flag("--carry-soc", options->carry_soc, "Chain the days instead of resetting SoC");
+  command.flag("--json", options->json, "One JSON object a line, policy and pair of delays");
+  command.footer(
       "Examples:\n"
       "  bess-train delays --prices market.csv.gz\n"
       "  bess-train delays --prices market.csv.gz --policy rbc mpc student.json --carry-soc "
       "--json");
-  command->callback([options] { run(*options); });
+  command.runs([options] { run(*options); });
 }
 
 }  // namespace bess

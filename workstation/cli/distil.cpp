@@ -5,6 +5,7 @@
 
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
+#include "workstation/cli/chain_steps.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
 #include "workstation/report/curves.h"
@@ -80,32 +81,31 @@ StudentFile student_file(const CorrectedStudent& student, const DistilOptions& o
                       options.seed)};
 }
 
-void add_distil_command(CLI::App& app) {
+void add_distil_command(ProgramCommand& app) {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("distil", "Correct the teacher while distilling it, until proved");
-  command->add_option("--prices", options->prices, "Minute file (.csv or .csv.gz)")->required();
-  command->add_option("--teacher", options->teacher, "Teacher file")->required();
-  command->add_option("--out", options->out, "Student file to write")->required();
+  ProgramCommand command =
+      app.subcommand("distil", "Correct the teacher while distilling it, until proved");
+  command.option("--prices", options->prices, "Minute file (.csv or .csv.gz)").required();
+  command.option("--teacher", options->teacher, "Teacher file").required();
+  command.option("--out", options->out, "Student file to write").required();
   command
-      ->add_option("--risk", options->risk,
-                   "What of the teacher is distilled: mean, or cvar:ALPHA, the mean of the worst "
-                   "share ALPHA")
-      ->capture_default_str();
-  command->add_option("--omega", options->omega, "Larger follows the teacher more closely");
-  command->add_option("--epochs", options->epochs, "Before the first proof")
-      ->check(CLI::PositiveNumber);
-  command->add_flag("--plain", options->plain, "No correction: what the teacher alone would give");
-  command->add_option("--curve-out", options->curve_out, "CSV of the losses");
-  command->add_flag("--json", options->json, "One JSON object");
-  options->common.add_market(*command);
-  options->common.add_config(*command);
-  options->common.add_seed_and_threads(*command);
-  command->footer(
+      .option("--risk", options->risk,
+              "What of the teacher is distilled: mean, or cvar:ALPHA, the mean of the worst "
+              "share ALPHA")
+      .with_default();
+  command.option("--omega", options->omega, "Larger follows the teacher more closely");
+  command.option("--epochs", options->epochs, "Before the first proof").positive();
+  command.flag("--plain", options->plain, "No correction: what the teacher alone would give");
+  command.option("--curve-out", options->curve_out, "CSV of the losses");
+  command.flag("--json", options->json, "One JSON object");
+  options->common.add_market(command);
+  options->common.add_config(command);
+  options->common.add_seed_and_threads(command);
+  command.footer(
       "Examples:\n"
       "  bess-train distil --prices market.csv.gz --teacher teacher.bin --out student.json\n"
       "  bess-train distil --prices market.csv.gz --teacher teacher.bin --plain --out plain.json");
-  command->callback([options] { run(*options); });
+  command.runs([options] { run(*options); });
 }
 
 }  // namespace bess

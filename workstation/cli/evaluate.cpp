@@ -226,36 +226,35 @@ void run(const Options& options) {
 
 }  // namespace
 
-void add_evaluate_command(CLI::App& app) {
+void add_evaluate_command(ProgramCommand& app) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("evaluate", "What a policy would have earned");
-  command->add_option("--prices", options->prices, "Minute file (.csv or .csv.gz)")->required();
-  command->add_option("--policy", options->policies, std::string("One or more of ") + kPolicyHelp)
-      ->required();
-  command->add_option("--split", options->split, "Local days 1-20, 21-25, 26-end, or all")
-      ->check(CLI::IsMember({"train", "val", "test", "all"}))
-      ->capture_default_str();
-  command->add_option("--date", options->date,
-                      "Only this day of the split: YYYY-MM-DD, or widest (largest price range)");
-  options->common.add_market(*command);
-  options->common.add_config(*command);
-  command->add_flag(
-      "--carry-soc", options->carry_soc,
-      "Chain the days instead of resetting SoC (several policies: both, unless given)");
-  command->add_flag("--json", options->json, "One JSON object a line and policy");
-  command->add_option("--csv", options->csv, "Write the comparison as CSV");
+  ProgramCommand command = app.subcommand("evaluate", "What a policy would have earned");
+  command.option("--prices", options->prices, "Minute file (.csv or .csv.gz)").required();
+  command.option("--policy", options->policies, std::string("One or more of ") + kPolicyHelp)
+      .required();
+  command.option("--split", options->split, "Local days 1-20, 21-25, 26-end, or all")
+      .one_of({"train", "val", "test", "all"})
+      .with_default();
+  command.option("--date", options->date,
+                 "Only this day of the split: YYYY-MM-DD, or widest (largest price range)");
+  options->common.add_market(command);
+  options->common.add_config(command);
+  command.flag("--carry-soc", options->carry_soc,
+               "Chain the days instead of resetting SoC (several policies: both, unless given)");
+  command.flag("--json", options->json, "One JSON object a line and policy");
+  command.option("--csv", options->csv, "Write the comparison as CSV");
   command
-      ->add_option("--fit-delay", options->fit_delay_min,
-                   "Delay at which rbc-quartile, rbc-tuned, tabular and mpc are fitted (default: "
-                   "--delay)")
-      ->check(CLI::Range(0, 5));
+      .option("--fit-delay", options->fit_delay_min,
+              "Delay at which rbc-quartile, rbc-tuned, tabular and mpc are fitted (default: "
+              "--delay)")
+      .range(0, 5);
   command
-      ->add_option("--risk", options->risk,
-                   "A c51 teacher's choice: mean, or cvar:ALPHA, the mean of the worst share ALPHA")
-      ->capture_default_str();
-  command->add_option("--days-out", options->days_out, "CSV of every policy's days");
-  command->add_option("--steps-out", options->steps_out, "CSV of every policy's steps");
-  command->footer(
+      .option("--risk", options->risk,
+              "A c51 teacher's choice: mean, or cvar:ALPHA, the mean of the worst share ALPHA")
+      .with_default();
+  command.option("--days-out", options->days_out, "CSV of every policy's days");
+  command.option("--steps-out", options->steps_out, "CSV of every policy's steps");
+  command.footer(
       "Examples:\n"
       "  bess-train evaluate --prices market.csv.gz --policy rbc rbc-tuned tabular mpc foresight "
       "--csv table.csv\n"
@@ -266,7 +265,7 @@ void add_evaluate_command(CLI::App& app) {
       "  bess-train evaluate --prices market.csv.gz --policy compiled --date widest --steps-out "
       "day.csv\n"
       "  bess-train evaluate --prices market.csv.gz --policy teacher.bin --risk cvar:0.1");
-  command->callback([options] { run(*options); });
+  command.runs([options] { run(*options); });
 }
 
 }  // namespace bess

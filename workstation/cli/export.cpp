@@ -7,6 +7,7 @@
 
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
+#include "workstation/cli/chain_steps.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
 
@@ -40,18 +41,18 @@ void export_proved_student(const StudentFile& student, const std::string& name,
   write_file(out, format_weight_header(student));
 }
 
-void add_export_command(CLI::App& app) {
+void add_export_command(ProgramCommand& app) {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("export", "Prove a student and write it as the edge's weight header");
-  command->add_option("--student", options->student, "Student file")->required();
-  command->add_option("--out", options->out, "Header to write")->capture_default_str();
-  options->common.add_seed_and_threads(*command);
-  command->footer(
+  ProgramCommand command =
+      app.subcommand("export", "Prove a student and write it as the edge's weight header");
+  command.option("--student", options->student, "Student file").required();
+  command.option("--out", options->out, "Header to write").with_default();
+  options->common.add_seed_and_threads(command);
+  command.footer(
       "Examples:\n"
       "  bess-train export --student runs/a/student.json\n"
       "  bess-train export --student runs/a/student.json --out build/student/student_weights.h");
-  command->callback([options] { run(*options); });
+  command.runs([options] { run(*options); });
 }
 
 }  // namespace bess

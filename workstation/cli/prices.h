@@ -1,14 +1,14 @@
 // The subcommands of `bess-train prices`, one file each.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "shared/host/command_line.h"
 
 namespace bess {
 
-void add_prices_simulate(CLI::App& prices);
-void add_prices_reconstruct(CLI::App& prices);
-void add_prices_import(CLI::App& prices);
-void add_prices_fetch(CLI::App& prices);
-void add_prices_stats(CLI::App& prices);
+void add_prices_simulate(ProgramCommand& prices);
+void add_prices_reconstruct(ProgramCommand& prices);
+void add_prices_import(ProgramCommand& prices);
+void add_prices_fetch(ProgramCommand& prices);
+void add_prices_stats(ProgramCommand& prices);
 
 }  // namespace bess

@@ -59,23 +59,23 @@ void run(const Options& options) {
 
 }  // namespace
 
-void add_prices_fetch(CLI::App& prices) {
+void add_prices_fetch(ProgramCommand& prices) {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      prices.add_subcommand("fetch", "Download minute and settled prices from Elia's open data");
-  command->add_option("--from", options->from, "First local day, YYYY-MM-DD")->required();
-  command->add_option("--to", options->to, "Last local day, included")->required();
-  command->add_option("--out", options->out, "Minute file to write (.csv or .csv.gz)")->required();
-  command->add_option("--base-url", options->base_url, "API root, ends in /api/explore/v2.1")
-      ->capture_default_str();
-  command->footer(
+  ProgramCommand command =
+      prices.subcommand("fetch", "Download minute and settled prices from Elia's open data");
+  command.option("--from", options->from, "First local day, YYYY-MM-DD").required();
+  command.option("--to", options->to, "Last local day, included").required();
+  command.option("--out", options->out, "Minute file to write (.csv or .csv.gz)").required();
+  command.option("--base-url", options->base_url, "API root, ends in /api/explore/v2.1")
+      .with_default();
+  command.footer(
       "Interrupted? Run the same command again: finished months are kept in OUT.fetch until the "
       "end.\n"
       "Behind a proxy set https_proxy. No key is needed.\n"
       "Examples:\n"
       "  bess-train prices fetch --from 2023-01-01 --to 2023-12-31 --out 2023.csv.gz\n"
       "  bess-train prices fetch --from 2025-06-01 --to 2025-06-07 --out week.csv");
-  command->callback([options] { run(*options); });
+  command.runs([options] { run(*options); });
 }
 
 }  // namespace bess

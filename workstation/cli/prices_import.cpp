@@ -28,23 +28,23 @@ void run(const Options& options) {
 
 }  // namespace
 
-void add_prices_import(CLI::App& prices) {
+void add_prices_import(ProgramCommand& prices) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = prices.add_subcommand(
-      "import", "Join downloaded minute and quarter-hour files to a minute file");
+  ProgramCommand command =
+      prices.subcommand("import", "Join downloaded minute and quarter-hour files to a minute file");
   command
-      ->add_option("files", options->files,
-                   "Downloads of ods046, ods047, ods133, ods134, ods161, ods162, or ENTSO-E A85 "
-                   "(XML); plain or .gz")
-      ->required();
-  command->add_option("--out", options->out, "Minute file to write (.csv or .csv.gz)")->required();
-  command->footer(
+      .option("files", options->files,
+              "Downloads of ods046, ods047, ods133, ods134, ods161, ods162, or ENTSO-E A85 "
+              "(XML); plain or .gz")
+      .required();
+  command.option("--out", options->out, "Minute file to write (.csv or .csv.gz)").required();
+  command.footer(
       "Later files win where two have the same minute. ENTSO-E sends a ZIP archive: unzip it "
       "first.\n"
       "Examples:\n"
       "  bess-train prices import ods133.csv ods134.csv --out prices.csv.gz\n"
       "  bess-train prices import today/*.json --out today.csv");
-  command->callback([options] { run(*options); });
+  command.runs([options] { run(*options); });
 }
 
 }  // namespace bess

@@ -42,26 +42,24 @@ void run(const Options& options) {
 
 }  // namespace
 
-void add_prices_reconstruct(CLI::App& prices) {
+void add_prices_reconstruct(ProgramCommand& prices) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = prices.add_subcommand(
+  ProgramCommand command = prices.subcommand(
       "reconstruct", "Draw minute prices that converge to real settled quarter-hours");
   command
-      ->add_option("--quarter-hours", options->files,
-                   "Settled quarter-hours: ods047 or ods134 (CSV or JSON), tidy CSV, or ENTSO-E "
-                   "A85 (XML); plain or .gz")
-      ->required();
-  command->add_option("--seed", options->seed, "Same seed, same minutes")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  command->add_option("--out", options->out, "Minute file to write (.csv or .csv.gz)")->required();
-  command->footer(
+      .option("--quarter-hours", options->files,
+              "Settled quarter-hours: ods047 or ods134 (CSV or JSON), tidy CSV, or ENTSO-E "
+              "A85 (XML); plain or .gz")
+      .required();
+  command.option("--seed", options->seed, "Same seed, same minutes").non_negative().with_default();
+  command.option("--out", options->out, "Minute file to write (.csv or .csv.gz)").required();
+  command.footer(
       "Sources without a system imbalance (ENTSO-E A85) get its side from the price. ENTSO-E "
       "sends a ZIP archive: unzip it first.\n"
       "Examples:\n"
       "  bess-train prices reconstruct --quarter-hours A85_AT.xml --out austria.csv.gz\n"
       "  bess-train prices reconstruct --quarter-hours ods047.csv --seed 3 --out prices.csv.gz");
-  command->callback([options] { run(*options); });
+  command.runs([options] { run(*options); });
 }
 
 }  // namespace bess

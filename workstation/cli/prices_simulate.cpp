@@ -40,24 +40,19 @@ void run(const Options& options) {
 
 }  // namespace
 
-void add_prices_simulate(CLI::App& prices) {
+void add_prices_simulate(ProgramCommand& prices) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = prices.add_subcommand(
-      "simulate", "Draw a market with the statistics of Belgium in early 2023");
-  command->add_option("--days", options->days, "Local days")
-      ->check(CLI::Range(1, 7320))
-      ->capture_default_str();
-  command->add_option("--seed", options->seed, "Same seed, same market")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  command->add_option("--start", options->start, "First local day, YYYY-MM-DD")
-      ->capture_default_str();
-  command->add_option("--out", options->out, "Minute file to write (.csv or .csv.gz)")->required();
-  command->footer(
+  ProgramCommand command =
+      prices.subcommand("simulate", "Draw a market with the statistics of Belgium in early 2023");
+  command.option("--days", options->days, "Local days").range(1, 7320).with_default();
+  command.option("--seed", options->seed, "Same seed, same market").non_negative().with_default();
+  command.option("--start", options->start, "First local day, YYYY-MM-DD").with_default();
+  command.option("--out", options->out, "Minute file to write (.csv or .csv.gz)").required();
+  command.footer(
       "Examples:\n"
       "  bess-train prices simulate --out market.csv.gz\n"
       "  bess-train prices simulate --days 30 --seed 7 --start 2024-03-15 --out spring.csv");
-  command->callback([options] { run(*options); });
+  command.runs([options] { run(*options); });
 }
 
 }  // namespace bess

@@ -61,22 +61,22 @@ void run(const Options& options) {
 
 }  // namespace
 
-void add_prices_stats(CLI::App& prices) {
+void add_prices_stats(ProgramCommand& prices) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = prices.add_subcommand(
+  ProgramCommand command = prices.subcommand(
       "stats", "Quartiles, tails, memory, convergence, gaps and clock changes of a price file");
-  command->add_option("file", options->file, "Minute file, or a download of Elia (CSV, JSON, .gz)")
-      ->required();
-  command->add_flag("--json", options->json, "One JSON object");
-  command->add_option("--plot", options->plot, "Picture to draw with gnuplot (.svg or .png)");
-  command->footer(
+  command.option("file", options->file, "Minute file, or a download of Elia (CSV, JSON, .gz)")
+      .required();
+  command.flag("--json", options->json, "One JSON object");
+  command.option("--plot", options->plot, "Picture to draw with gnuplot (.svg or .png)");
+  command.footer(
       "Sign flips of the system imbalance need a quarter-hour download, convergence by minute "
       "needs "
       "minutes.\n"
       "Examples:\n"
       "  bess-train prices stats prices.csv.gz\n"
       "  bess-train prices stats ods047.csv --json --plot prices.svg");
-  command->callback([options] { run(*options); });
+  command.runs([options] { run(*options); });
 }
 
 }  // namespace bess

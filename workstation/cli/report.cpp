@@ -53,15 +53,15 @@ void run(const std::string& path, const std::string& prices) {
 
 }  // namespace
 
-void add_report_command(CLI::App& app) {
+void add_report_command(ProgramCommand& app) {
   auto path = std::make_shared<std::string>();
   auto prices = std::make_shared<std::string>();
-  CLI::App* command =
-      app.add_subcommand("report", "Make a run's figures, tables and report.html again");
-  command->add_option("--run", *path, "Run folder")->required();
-  command->add_option("--prices", *prices, "Minute file, if it moved since the run");
-  command->footer("Examples:\n  bess-train report --run runs/first");
-  command->callback([path, prices] { run(*path, *prices); });
+  ProgramCommand command =
+      app.subcommand("report", "Make a run's figures, tables and report.html again");
+  command.option("--run", *path, "Run folder").required();
+  command.option("--prices", *prices, "Minute file, if it moved since the run");
+  command.footer("Examples:\n  bess-train report --run runs/first");
+  command.runs([path, prices] { run(*path, *prices); });
 }
 
 }  // namespace bess

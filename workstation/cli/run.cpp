@@ -5,6 +5,7 @@
 
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
+#include "workstation/cli/chain_steps.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
 #include "workstation/cli/run_folder.h"
@@ -133,21 +134,20 @@ void run(const Options& options) {
 
 }  // namespace
 
-void add_run_command(CLI::App& app) {
+void add_run_command(ProgramCommand& app) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
+  ProgramCommand command = app.subcommand(
       "run", "The whole chain into one folder: train, correct, prove, export, evaluate, report");
-  command->add_option("--prices", options->prices,
-                      "Minute file; without it a built-in simulated year");
-  command->add_option("--out", options->out, "Run folder")->required();
-  options->common.add_market(*command);
-  options->common.add_config(*command);
-  options->common.add_seed_and_threads(*command);
-  command->footer(
+  command.option("--prices", options->prices, "Minute file; without it a built-in simulated year");
+  command.option("--out", options->out, "Run folder").required();
+  options->common.add_market(command);
+  options->common.add_config(command);
+  options->common.add_seed_and_threads(command);
+  command.footer(
       "Examples:\n"
       "  bess-train run --out runs/first\n"
       "  bess-train run --prices market.csv.gz --config my.toml --seed 7 --out runs/second");
-  command->callback([options] { run(*options); });
+  command.runs([options] { run(*options); });
 }
 
 }  // namespace bess

@@ -11,6 +11,7 @@
 #include "shared/crc32.h"
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
+#include "workstation/cli/chain_steps.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
 #include "workstation/env/evaluate.h"
@@ -210,27 +211,26 @@ void warn_narrow_support(const TrainOptions& options, const TrainResult& result)
              100 * result.curve.back().edge_mass_frac);
 }
 
-void add_train_command(CLI::App& app) {
+void add_train_command(ProgramCommand& app) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("train", "Train the teacher, C51 or DQN");
-  command->add_option("--prices", options->prices, "Minute file (.csv or .csv.gz)")->required();
-  command->add_option("--out", options->out, "Teacher file to write")->required();
-  command->add_option("--method", options->method, "c51 (default) or dqn")
-      ->check(CLI::IsMember({"c51", "dqn"}));
-  command->add_option("--steps", options->steps, "Gradient steps")->check(CLI::PositiveNumber);
-  command->add_option("--curve-out", options->curve_out, "CSV of the learning curve, one a seed");
+  ProgramCommand command = app.subcommand("train", "Train the teacher, C51 or DQN");
+  command.option("--prices", options->prices, "Minute file (.csv or .csv.gz)").required();
+  command.option("--out", options->out, "Teacher file to write").required();
+  command.option("--method", options->method, "c51 (default) or dqn").one_of({"c51", "dqn"});
+  command.option("--steps", options->steps, "Gradient steps").positive();
+  command.option("--curve-out", options->curve_out, "CSV of the learning curve, one a seed");
   command
-      ->add_option("--seeds", options->seeds,
-                   "Train this many, from --seed on; OUT is the best on the validation days, the "
-                   "others lie beside it")
-      ->check(CLI::Range(1, 1000));
-  command->add_flag("--resume", options->resume, "Go on from OUT.checkpoint, to the same weights")
-      ->excludes("--seeds");
-  command->add_flag("--json", options->json, "One JSON object; with --seeds one a line and seed");
-  options->common.add_market(*command);
-  options->common.add_config(*command);
-  options->common.add_seed_and_threads(*command);
-  command->footer(
+      .option("--seeds", options->seeds,
+              "Train this many, from --seed on; OUT is the best on the validation days, the "
+              "others lie beside it")
+      .range(1, 1000);
+  command.flag("--resume", options->resume, "Go on from OUT.checkpoint, to the same weights")
+      .excludes("--seeds");
+  command.flag("--json", options->json, "One JSON object; with --seeds one a line and seed");
+  options->common.add_market(command);
+  options->common.add_config(command);
+  options->common.add_seed_and_threads(command);
+  command.footer(
       "Ctrl-C saves the best so far and a checkpoint, and exits with 3; --resume goes on from it.\n"
       "Examples:\n"
       "  bess-train train --prices market.csv.gz --out teacher.bin\n"
@@ -238,7 +238,7 @@ void add_train_command(CLI::App& app) {
       "  bess-train train --prices market.csv.gz --seeds 3 --out best.bin\n"
       "  bess-train train --prices market.csv.gz --config workstation/config/paper.toml --out "
       "paper.bin");
-  command->callback([options] { run(*options); });
+  command.runs([options] { run(*options); });
 }
 
 }  // namespace bess

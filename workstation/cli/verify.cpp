@@ -68,21 +68,21 @@ void run(const Options& options) {
 
 }  // namespace
 
-void add_verify_command(CLI::App& app) {
+void add_verify_command(ProgramCommand& app) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
+  ProgramCommand command = app.subcommand(
       "verify", "Prove an integer student over every input it can see (exit 1 if it fails)");
-  command->add_option("--student", options->student,
-                      "Student file; without it the array compiled into this program");
-  command->add_flag("--exhaustive", options->exhaustive,
-                    "Evaluate every state instead of proving boxes by bounds (minutes)");
-  command->add_flag("--json", options->json, "One JSON object");
-  options->common.add_seed_and_threads(*command);
-  command->footer(
+  command.option("--student", options->student,
+                 "Student file; without it the array compiled into this program");
+  command.flag("--exhaustive", options->exhaustive,
+               "Evaluate every state instead of proving boxes by bounds (minutes)");
+  command.flag("--json", options->json, "One JSON object");
+  options->common.add_seed_and_threads(command);
+  command.footer(
       "Examples:\n"
       "  bess-train verify\n"
       "  bess-train verify --student runs/a/student.json --json");
-  command->callback([options] { run(*options); });
+  command.runs([options] { run(*options); });
 }
 
 }  // namespace bess

@@ -24,11 +24,12 @@ class EvaluateCli : public testing::Test {
 
   /// Standard output of `bess-train COMMAND --prices <file> ARGUMENTS`.
   std::string output(const std::string& command, const std::string& arguments) {
-    CLI::App app;
-    add_evaluate_command(app);
-    add_delays_command(app);
+    CommandLine command_line("bess-train", "", "");
+    ProgramCommand root = command_line.root();
+    add_evaluate_command(root);
+    add_delays_command(root);
     testing::internal::CaptureStdout();
-    app.parse(command + " --prices " + prices_.string() + " " + arguments);
+    command_line.parse(command + " --prices " + prices_.string() + " " + arguments);
     return testing::internal::GetCapturedStdout();
   }
   static std::vector<std::string> lines(const std::string& text) {
