@@ -5,19 +5,12 @@
 #include <cstdint>
 
 #include "edge/base/status.h"
+#include "edge/control/power_order.h"
 #include "edge/registers/live_points.h"
 #include "edge/registers/point_codec.h"
 #include "edge/registers/register_map.h"
 
 namespace bess {
-
-/// What the edge wants of the battery, in the project's own units.
-struct PowerOrder {
-  std::int32_t power_w = 0;  ///< grid side, charge positive
-  std::int32_t soc_min_e4 = 0;
-  std::int32_t soc_max_e4 = 10'000;
-  std::int32_t duration_s = 0;  ///< until the device's watchdog ends it
-};
 
 /// What a write needs beside the order.
 struct WriteContext {

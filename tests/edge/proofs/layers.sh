@@ -25,8 +25,8 @@ blame "$(includes '"shared/host' "$(echo shared/*.h shared/*.cpp) shared/nn")" "
 # The edge, from the ground up. What uses the heap at start-up is named: the control path may not.
 layer edge/base                     edge/base shared
 layer edge/memory                   edge/memory edge/base shared
-layer edge/registers                edge/registers edge/base shared
-layer edge/control                  edge/control edge/registers edge/base shared
+layer edge/control                  edge/control edge/base shared
+layer edge/registers                edge/registers edge/control/power_order.h edge/base shared
 layer edge/battery                  edge/battery edge/control edge/registers edge/base shared
 layer edge/prices                   edge/prices edge/control edge/memory edge/base shared
 layer edge/log                      edge/log edge/control edge/memory edge/base shared

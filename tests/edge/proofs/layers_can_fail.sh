@@ -18,6 +18,7 @@ wrong() {  # wrong FILE LINE
 wrong shared/features.h '#include "edge/registers/codec.h"'
 wrong edge/memory/static_arena.h '#include "edge/control/mode.h"'
 wrong edge/registers/codec.h '#include "edge/control/control_types.h"'
+wrong edge/control/mode.h '#include "edge/registers/codec.h"'
 wrong edge/control/mode.h '#include "edge/log/journal.h"'
 wrong edge/control/policy.cpp '#include <sys/socket.h>'
 wrong edge/battery/modbus_link.cpp '#include "edge/prices/price_feed.h"'

@@ -4,7 +4,7 @@
 
 #include <tuple>
 
-#include "reference_net.h"
+#include "tests/workstation/nn/reference_net.h"
 #include "workstation/nn/packed_mlp.h"
 
 namespace bess {

@@ -1,6 +1,6 @@
 #include "workstation/report/policy_map.h"
 
-#include "report_test_support.h"
+#include "tests/workstation/report/report_test_support.h"
 #include "workstation/student/verify.h"
 
 namespace bess {

@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 #include <stdlib.h>
 
-#include "report_test_support.h"
+#include "tests/workstation/report/report_test_support.h"
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
 #include "tests/support/temporary_folder.h"

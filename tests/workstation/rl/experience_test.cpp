@@ -3,7 +3,7 @@
 
 #include <set>
 
-#include "market_by_hand.h"
+#include "tests/workstation/rl/market_by_hand.h"
 
 namespace bess {
 namespace {

@@ -1,6 +1,6 @@
 #include "workstation/rl/price_map.h"
 
-#include "market_by_hand.h"
+#include "tests/workstation/rl/market_by_hand.h"
 #include "workstation/base/random.h"
 
 namespace bess {

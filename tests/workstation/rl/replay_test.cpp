@@ -4,7 +4,7 @@
 #include <map>
 #include <tuple>
 
-#include "market_by_hand.h"
+#include "tests/workstation/rl/market_by_hand.h"
 
 namespace bess {
 namespace {

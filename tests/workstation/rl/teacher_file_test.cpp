@@ -1,7 +1,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include "market_by_hand.h"
+#include "tests/workstation/rl/market_by_hand.h"
 #include "shared/crc32.h"
 #include "shared/host/file.h"
 #include "tests/support/temporary_folder.h"

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <thread>
 
-#include "market_by_hand.h"
+#include "tests/workstation/rl/market_by_hand.h"
 #include "shared/host/file.h"
 #include "tests/support/temporary_folder.h"
 #include "workstation/base/random.h"
