@@ -116,8 +116,8 @@ struct CycleRecord {
   std::int32_t total_us = 0;         ///< from the price row's arrival to the order read back
   std::int32_t missed_ticks = 0;     ///< ticks skipped since start because a cycle overran
   std::int32_t deadline_misses = 0;  ///< cycles since start whose order was not in force in time
-  std::int32_t unanswered_orders =
-      0;  ///< orders in a row that the battery did not answer with power
+  /// Orders in a row that the battery did not answer with power.
+  std::int32_t unanswered_orders = 0;
   DayThroughput throughput{};
   BatteryCounters counters{};
 };

@@ -63,8 +63,7 @@ struct MlpTile {
 };
 
 /// Uniform in +-1/sqrt(fan in) as PyTorch does, but for the first layer, whose weights are uniform
-/// in
-/// +-1 with the kinks spread over the inputs' unit cube. Drawn from the named seed.
+/// in +-1 with the kinks spread over the inputs' unit cube. Drawn from the named seed.
 Parameters initial_parameters(const MlpShape& shape, std::uint64_t seed);
 
 /// Parameters into and out of a file; the size is the reader's to know.

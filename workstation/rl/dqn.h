@@ -13,8 +13,7 @@ struct DqnTile {
   TileMatrix q;        ///< [1 x samples] taken action's value, then dL/dq
 };
 
-/// Adds to `gradient` (of the mean over the minibatch) and returns the summed loss 0.5 (q - y)^2
-/// with
+/// Adds to `gradient` (of the mean over the minibatch) and returns the summed loss 0.5 (q - y)^2,
 ///   y = r + gamma max_a' q_target(s', a')   (no bootstrap when terminal)
 double dqn_tile_gradient(const GradientStep& step, const TileRange& range, DqnTile& tile,
                          PackedGradient& gradient);

@@ -1,15 +1,12 @@
 // The fifteen indicative prices on the way to a settled quarter-hour, drawn at random but exact at
 // the end. Row m is computed at the END of minute m from everything since the quarter-hour began:
-//   S_m   running mean of the instantaneous imbalance, an AR(1) path shifted so that its mean over
-//   the
-//         fifteen minutes is the quarter-hour's SI
-//   MIP_m running maximum of the activated upward bids: a staircase that reaches the settled MIP at
-//   a
-//         random minute (MDP_m falls likewise). No minute prices of the marginal regime are public:
-//         the staircase is an assumption, its speed fitted to two later days of ods161
-//   price_m = the formula of imbalance_price.h on S_m, MIP_m, MDP_m. At minute 0 Elia does not know
-//   the
-//         previous quarter-hour yet and takes its SI as 0 (seen in 1,596 of 1,598 rows of ods161)
+//   S_m      running mean of the instantaneous imbalance, an AR(1) path shifted so that its mean
+//            over the fifteen minutes is the quarter-hour's SI
+//   MIP_m    running maximum of the activated upward bids: a staircase that reaches the settled MIP
+//            at a random minute (MDP_m falls likewise). No minute prices of the marginal regime are
+//            public: the staircase is an assumption, its speed fitted to two later days of ods161
+//   price_m  the formula of imbalance_price.h on S_m, MIP_m, MDP_m. At minute 0 Elia does not know
+//            the previous quarter-hour yet and takes its SI as 0 (1,596 of 1,598 rows of ods161)
 // Used on simulated and on real quarter-hours alike.
 #pragma once
 
