@@ -22,7 +22,7 @@ class MeasurementReader {
   Status translate(const LivePoints& live, std::int64_t now_ns, BatteryMeasurement& m);
 
  private:
-  void store(int point, std::int64_t value, BatteryMeasurement& m) const;
+  void store(int point, std::int64_t wide, BatteryMeasurement& m) const;
   [[nodiscard]] bool is_true(const LivePoints& live, const Condition& condition) const;
   bool is_alive(const LivePoints& live, std::int64_t now_ns);
 

@@ -17,8 +17,8 @@ class HostAddresses {
  public:
   static constexpr std::int32_t kRetryS = 60;  ///< after a failed lookup, while old ones are known
 
-  /// kMalformed when `url` has no host.
-  Status set_url(const char* url);
+  /// kMalformed when `text` is no URL with a host.
+  Status set_url(const char* text);
   /// False for numeric addresses: there is nothing to look up.
   [[nodiscard]] bool is_name() const { return is_name_; }
   [[nodiscard]] bool is_same_host(const HostAddresses& other) const;

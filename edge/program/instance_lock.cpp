@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <climits>
 #include <cstdio>
 #include <cstdlib>
 
@@ -37,8 +38,8 @@ bool is_still_at(int fd, const char* path) {
 int pid_in(int fd) {
   char text[16] = {};
   if (pread(fd, text, sizeof text - 1, 0) <= 0) return -1;
-  const int pid = std::atoi(text);
-  return pid > 0 ? pid : -1;
+  const long pid = std::strtol(text, nullptr, 10);  // 0 when it is no number
+  return pid > 0 && pid <= INT_MAX ? static_cast<int>(pid) : -1;
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ namespace {
 std::string unknown_subcommand(const CLI::App& app, int argc, const char* const* argv) {
   const CLI::App* command = &app;
   for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
+    std::string word = argv[i];
     const auto subcommands = command->get_subcommands([](const CLI::App*) { return true; });
     if (subcommands.empty() || word.starts_with('-')) break;
     const auto found = std::ranges::find(subcommands, word, &CLI::App::get_name);

@@ -189,7 +189,7 @@ void BatteryServer::answer_with_fault(Client& client, const BusRequest& request,
 Bytes BatteryServer::right_answer(const BusRequest& request, bool keep_registers) {
   std::vector<std::uint16_t> before;
   if (keep_registers) before = registers_;
-  const Bytes bytes = reply_->answer(request, mapping_);
+  Bytes bytes = reply_->answer(request, mapping_);
   if (keep_registers) {
     std::copy(before.begin(), before.end(), registers_.begin());  // image_ holds a view
   } else if (request.is_write() &&

@@ -38,7 +38,7 @@ void announce(int stage, const std::string& text) {
 MinuteSeries built_in_market(const RunFolder& folder) {
   const SimulationPeriod period{local_midnight_utc_s(kBuiltInStart),
                                 local_midnight_utc_s(add_days(kBuiltInStart, kBuiltInDays))};
-  const MinuteSeries series =
+  MinuteSeries series =
       minutes_on_quarter_hours(simulate_quarter_hours(period, kBuiltInSeed), kBuiltInSeed);
   write_minute_file(folder.simulated_prices(), series,
                     fmt::format("Simulated, not real: built-in market, seed {}", kBuiltInSeed));

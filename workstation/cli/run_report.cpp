@@ -66,7 +66,7 @@ std::string write_run_report(const RunResults& run, const RunFolder& folder) {
     return fmt::format("{} / {} / {}", c.violations_property_1, c.violations_property_2,
                        c.violations_property_3);
   };
-  const std::string summary =
+  std::string summary =
       format_comparison_table(evaluations) +
       fmt::format(
           "\nviolations of properties 1 / 2 / 3 over {} lattice states\n"

@@ -55,7 +55,7 @@ class IsotonicProjection {
   double best_staircase(const Block& block, Rows rows, double theta, int forced_in_rows,
                         int forced_out_rows, std::vector<int>& cut);
   void split(const Block& block, const std::vector<int>& cut, Block& above, Block& below) const;
-  void solve(Block block);
+  void solve(Block whole);
   void finish_level_set(const Block& block, Rows rows, double mean);
 
   int rows_;
