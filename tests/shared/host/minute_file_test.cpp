@@ -6,9 +6,6 @@
 #include <cmath>
 
 #include "tests/support/market_test_support.h"
-#include "workstation/market/model/quarter_hours_to_minutes.h"
-#include "workstation/market/model/simulated_market.h"
-#include "workstation/market/series/local_date.h"
 
 namespace bess {
 namespace {
@@ -16,7 +13,7 @@ namespace {
 using testing::HasSubstr;
 
 TEST(MinuteFile, PricesReadBackToTheLastDigit) {
-  const MinuteSeries series{0, {-30.258, 0.1 + 0.2, 100}, {-999, 1e-7, kNotPublished}};
+  const MinuteSeries series{0, {-30.258, 0.1 + 0.2, 100}, {-999, 1e-7, std::nan("")}};
   const std::string text = format_minute_csv(series, "");
   EXPECT_THAT(text, HasSubstr("1970-01-01T00:00:00Z,-30.258,-999\n"));
   const MinuteSeries read = parse_minute_csv(text, "written");
@@ -42,17 +39,6 @@ TEST(ParseUtc, PassesOverFractionsOfSeconds) {
   EXPECT_FALSE(parse_utc("2025-06-15T15:07:09.000", utc_s));
   EXPECT_FALSE(parse_utc("2025-06-15T15:07:09.Z", utc_s));
   EXPECT_FALSE(parse_utc("2025-06-15T15:07.5Z", utc_s));
-}
-
-TEST(MinuteFile, SimulatedPricesAreWholeCents) {
-  const SimulationPeriod period{local_midnight_utc_s({2023, 1, 1}),
-                                local_midnight_utc_s({2023, 1, 8})};
-  const MinuteSeries series = minutes_on_quarter_hours(simulate_quarter_hours(period, 1), 1);
-  for (std::size_t m = 0; m < series.size(); ++m) {
-    for (const double price : {series.indicative[m], series.settled[m]}) {
-      EXPECT_EQ(price, std::round(100 * price) / 100);
-    }
-  }
 }
 
 }  // namespace

@@ -143,5 +143,16 @@ TEST(SimulatedMarketYear, SeedDecidesEverything) {
   EXPECT_GT(different, 600);
 }
 
+TEST(SimulatedMarketYear, PricesAreWholeCents) {
+  const SimulationPeriod period{local_midnight_utc_s({2023, 1, 1}),
+                                local_midnight_utc_s({2023, 1, 8})};
+  const MinuteSeries series = minutes_on_quarter_hours(simulate_quarter_hours(period, 1), 1);
+  for (std::size_t m = 0; m < series.size(); ++m) {
+    for (const double price : {series.indicative[m], series.settled[m]}) {
+      EXPECT_EQ(price, std::round(100 * price) / 100);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace bess
