@@ -35,12 +35,12 @@ std::string map_checksum(const EdgeConfig& config) {
   const std::string path(config.map_path.view());
   Crc32 crc;
   add_file(path, crc);
-  toml::table document;
+  TomlValue document;
   std::string error;
-  const toml::value<std::string>* included = nullptr;
-  if (parse_toml_file(path, document, error)) included = document.get_as<std::string>("include");
-  if (included != nullptr) {
-    add_file((std::filesystem::path(path).parent_path() / included->get()).string(), crc);
+  const bool is_map = parse_toml_file(path, document, error);
+  const TomlValue* include = is_map ? document.find("include") : nullptr;
+  if (const auto* name = include == nullptr ? nullptr : include->as<std::string>()) {
+    add_file((std::filesystem::path(path).parent_path() / *name).string(), crc);
   }
   char hex[16];
   std::snprintf(hex, sizeof hex, "%08x", crc.value());
@@ -101,7 +101,7 @@ bool is_commissioned(const EdgeConfig& config, std::string& error) {
             "--config FILE --yes";
     return false;
   }
-  toml::table document;
+  TomlValue document;
   if (!parse_toml_file(path, document, error)) return false;
   TomlTable table(&document, path, "", error);
   const bool same = expect_same(table, "map", std::string(config.map.name.view())) &&

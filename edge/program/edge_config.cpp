@@ -233,7 +233,7 @@ void read_simulation(TomlTable table, ScaledClock& clock) {
   table.text("utc_start", utc_start);
   table.integer("anchor_monotonic_ns", anchor_ns, 0, INT64_MAX);
   table.finish();
-  if (table.native() == nullptr) return;
+  if (table.value() == nullptr) return;
   clock.scale = scale;
   clock.anchor_monotonic_ns = anchor_ns != 0 ? anchor_ns : clock_ns(CLOCK_MONOTONIC);
   table.require("utc_start");
@@ -245,7 +245,7 @@ void read_simulation(TomlTable table, ScaledClock& clock) {
 }  // namespace
 
 bool load_edge_config(const std::string& path, EdgeConfig& config, std::string& error) {
-  toml::table document;
+  TomlValue document;
   if (!parse_toml_file(path, document, error)) return false;
   TomlTable root(&document, path, "", error);
   root.boolean("control", config.control.control);

@@ -59,7 +59,7 @@ bool parse_argument(std::string_view text, WriteValue& value) {
   return false;
 }
 
-bool parse_assignment(TomlTable& table, const toml::node& at, std::string_view text,
+bool parse_assignment(TomlTable& table, const TomlValue& at, std::string_view text,
                       const RegisterMap& map, WriteValue& value) {
   const MapPhrase phrase = split_phrase(text);
   if (phrase.op != "=") {
@@ -82,7 +82,7 @@ bool parse_assignment(TomlTable& table, const toml::node& at, std::string_view t
 }
 
 /// Points of one request must lie side by side, in the order given.
-bool append_value(TomlTable& table, const toml::node& at, const RegisterMap& map,
+bool append_value(TomlTable& table, const TomlValue& at, const RegisterMap& map,
                   const WriteValue& value, BlockWrite& write) {
   const RegisterPoint& point = map.points[value.point];
   if (!write.values.empty()) {
@@ -105,7 +105,7 @@ bool append_value(TomlTable& table, const toml::node& at, const RegisterMap& map
   return false;
 }
 
-void finish_write(TomlTable& table, const toml::node& at, const RegisterMap& map,
+void finish_write(TomlTable& table, const TomlValue& at, const RegisterMap& map,
                   BlockWrite& write) {
   int registers = 0;
   for (const WriteValue& value : write.values) {
@@ -119,19 +119,19 @@ void finish_write(TomlTable& table, const toml::node& at, const RegisterMap& map
   if (write.function == 6 && registers != 1) table.fail_at(at, "function 6 writes one register");
 }
 
-void read_values(TomlTable& table, const toml::node& node, const RegisterMap& map,
+void read_values(TomlTable& table, const TomlValue& node, const RegisterMap& map,
                  BlockWrite& write) {
-  const auto read_one = [&](const toml::node& item) {
-    const auto* text = item.as_string();
+  const auto read_one = [&](const TomlValue& item) {
+    const auto* text = item.as<std::string>();
     WriteValue value;
     if (text == nullptr) {
       table.fail_at(item, "a step must say \"point = value\"");
-    } else if (parse_assignment(table, item, text->get(), map, value)) {
+    } else if (parse_assignment(table, item, *text, map, value)) {
       append_value(table, item, map, value, write);
     }
   };
-  if (const toml::array* list = node.as_array()) {
-    for (const toml::node& item : *list) read_one(item);
+  if (const auto* list = node.as<TomlArray>()) {
+    for (const TomlValue& item : *list) read_one(item);
   } else {
     read_one(node);
   }
@@ -145,15 +145,15 @@ std::uint8_t default_function(const RegisterMap& map, const BlockWrite& write,
   return defaults.write_function == 6 && single ? 6 : 16;
 }
 
-void read_write(TomlTable& table, const toml::node& node, const MapDefaults& defaults,
+void read_write(TomlTable& table, const TomlValue& node, const MapDefaults& defaults,
                 const RegisterMap& map, CommandSequence& sequence) {
   BlockWrite write;
-  const toml::table* options = node.as_table();
-  TomlTable step{options, table.file(), "write", table.error()};
-  const toml::node* values = options == nullptr ? &node : step.node("write");
+  const bool has_options = node.as<TomlMembers>() != nullptr;
+  TomlTable step{&node, table.file(), "write", table.error()};
+  const TomlValue* values = has_options ? step.node("write") : &node;
   read_values(table, *values, map, write);
   if (!table.ok() || write.values.empty()) return finish_write(table, node, map, write);
-  if (options != nullptr) {
+  if (has_options) {
     std::int32_t function = default_function(map, write, defaults);
     int read_back = 0;
     step.integer("function", function, 6, 16);
@@ -172,9 +172,9 @@ void read_write(TomlTable& table, const toml::node& node, const MapDefaults& def
 }
 
 /// A delay or a wait belongs to the write before it.
-void read_pause(TomlTable& table, const toml::node& node, const RegisterMap& map,
+void read_pause(TomlTable& table, const TomlValue& node, const RegisterMap& map,
                 CommandSequence& sequence) {
-  TomlTable step{node.as_table(), table.file(), "step", table.error()};
+  TomlTable step{&node, table.file(), "step", table.error()};
   FixedText<63> wait;
   std::int32_t delay_ms = 0;
   std::int32_t timeout_ms = 0;
@@ -194,13 +194,12 @@ void read_pause(TomlTable& table, const toml::node& node, const RegisterMap& map
 
 void read_sequence(TomlTable& table, std::string_view key, const MapDefaults& defaults,
                    const RegisterMap& map, CommandSequence& sequence) {
-  const toml::node* node = table.node(key);
+  const TomlValue* node = table.node(key);
   if (node == nullptr) return;
-  const toml::array* steps = node->as_array();
+  const auto* steps = node->as<TomlArray>();
   if (steps == nullptr) return table.fail(key, "must be a list of steps in [ ]");
-  for (const toml::node& step : *steps) {
-    const toml::table* options = step.as_table();
-    if (options != nullptr && options->get("write") == nullptr) {
+  for (const TomlValue& step : *steps) {
+    if (step.as<TomlMembers>() != nullptr && step.find("write") == nullptr) {
       read_pause(table, step, map, sequence);
     } else {
       read_write(table, step, defaults, map, sequence);
@@ -210,7 +209,7 @@ void read_sequence(TomlTable& table, std::string_view key, const MapDefaults& de
 }
 
 void read_saved(TomlTable& table, RegisterMap& map) {
-  for_each_text(table, "save", [&](std::string_view text, const toml::node& at) {
+  for_each_text(table, "save", [&](std::string_view text, const TomlValue& at) {
     const MapPhrase phrase = split_phrase(text);
     SavedPoint saved{.point = require_point(table, at, phrase.left, map)};
     if (saved.point < 0) return;

@@ -7,40 +7,41 @@ namespace {
 
 constexpr int kVariantsMax = 8;
 
-std::string name_in(const toml::node& node) {
-  const toml::table* table = node.as_table();
-  const auto* name = table == nullptr ? nullptr : table->get_as<std::string>("name");
-  return name == nullptr ? std::string() : name->get();
+std::string name_in(const TomlValue& node) {
+  const TomlValue* found = node.find("name");
+  const auto* name = found == nullptr ? nullptr : found->as<std::string>();
+  return name == nullptr ? std::string() : *name;
 }
 
-void overlay(toml::table& base, toml::table& over);
+void overlay(TomlMembers& base, TomlMembers& over);
 
 /// Points are overlaid by name: a variant changes some keys of one point and leaves the others.
-void overlay_points(toml::array& base, toml::array& over) {
-  for (toml::node& item : over) {
-    toml::node* same = nullptr;
-    for (toml::node& old : base) {
-      if (item.is_table() && !name_in(item).empty() && name_in(old) == name_in(item)) same = &old;
+void overlay_points(TomlArray& base, TomlArray& over) {
+  for (TomlValue& item : over) {
+    TomlValue* same = nullptr;
+    for (TomlValue& old : base) {
+      if (!name_in(item).empty() && name_in(old) == name_in(item)) same = &old;
     }
     if (same != nullptr) {
-      overlay(*same->as_table(), *item.as_table());
+      overlay(*same->as<TomlMembers>(), *item.as<TomlMembers>());
     } else {
       base.push_back(std::move(item));
     }
   }
 }
 
-/// Lays `over` upon `base`: tables key by key, points by name, everything else replaces. Nodes are
-/// moved, because only so they keep the line that error messages name.
-void overlay(toml::table& base, toml::table& over) {
-  for (auto&& [key, node] : over) {
-    toml::node* old = base.get(key);
-    if (old != nullptr && old->is_table() && node.is_table()) {
-      overlay(*old->as_table(), *node.as_table());
-    } else if (old != nullptr && key == "point" && old->is_array() && node.is_array()) {
-      overlay_points(*old->as_array(), *node.as_array());
+/// Lays `over` upon `base`: tables key by key, points by name, everything else replaces.
+void overlay(TomlMembers& base, TomlMembers& over) {
+  for (auto& [key, value] : over) {
+    TomlValue& old = base[key];
+    auto* members = old.as<TomlMembers>();
+    auto* points = key == "point" ? old.as<TomlArray>() : nullptr;
+    if (members != nullptr && value.as<TomlMembers>() != nullptr) {
+      overlay(*members, *value.as<TomlMembers>());
+    } else if (points != nullptr && value.as<TomlArray>() != nullptr) {
+      overlay_points(*points, *value.as<TomlArray>());
     } else {
-      base.insert_or_assign(key, std::move(node));
+      old = std::move(value);
     }
   }
 }
@@ -51,7 +52,7 @@ std::string file_beside(const std::string& path, const std::string& name) {
 }
 
 /// The file, upon the file that it includes.
-bool parse_map_file(const std::string& path, toml::table& document, std::string& error) {
+bool parse_map_file(const std::string& path, TomlValue& document, std::string& error) {
   if (!parse_toml_file(path, document, error)) return false;
   TomlTable root(&document, path, "", error);
   FixedText<63> include;
@@ -62,24 +63,24 @@ bool parse_map_file(const std::string& path, toml::table& document, std::string&
     root.fail("include", "must name a file beside this one");
     return false;
   }
-  toml::table base;
+  TomlValue base;
   if (!parse_toml_file(file_beside(path, name), base, error)) return false;
-  if (base.get("include") != nullptr) {
+  if (base.find("include") != nullptr) {
     root.fail("include", "names a file that includes another one: one level only");
     return false;
   }
-  document.erase("include");
-  overlay(base, document);
+  document.as<TomlMembers>()->erase("include");
+  overlay(*base.as<TomlMembers>(), *document.as<TomlMembers>());
   document = std::move(base);
   return true;
 }
 
-bool list_variants(toml::table& document, const std::string& path, std::vector<std::string>& names,
-                   std::string& error) {
+bool list_variants(const TomlValue& document, const std::string& path,
+                   std::vector<std::string>& names, std::string& error) {
   TomlTable root(&document, path, "", error);
-  const toml::array* list = root.array("variant");
+  const TomlArray* list = root.array("variant");
   if (list == nullptr) return root.ok();
-  for (const toml::node& item : *list) {
+  for (const TomlValue& item : *list) {
     names.push_back(name_in(item));
     if (names.back().empty()) root.fail_at(item, "[[variant]] name is missing: add it");
   }
@@ -89,22 +90,22 @@ bool list_variants(toml::table& document, const std::string& path, std::vector<s
 }
 
 /// The map with one of its variants laid upon it; -1 = the file has none.
-bool read_map(const std::string& path, int variant, RegisterMap& map, std::string& error) {
-  toml::table document;
-  if (!parse_map_file(path, document, error)) return false;
+bool read_map(const std::string& path, TomlValue document, int variant, RegisterMap& map,
+              std::string& error) {
   map = RegisterMap{};
   if (variant >= 0) {
-    toml::array variants = std::move(*document.get_as<toml::array>("variant"));
-    document.erase("variant");
-    toml::table& chosen = *variants.get(static_cast<std::size_t>(variant))->as_table();
+    auto& members = *document.as<TomlMembers>();
+    TomlValue chosen =
+        (*document.find("variant")->as<TomlArray>())[static_cast<std::size_t>(variant)];
+    members.erase("variant");
     TomlTable header(&chosen, path, "[[variant]]", error);
     FixedText<255> description;
     header.text("name", map.variant);
     header.text("description", description);
     if (!header.ok()) return false;
-    chosen.erase("name");
-    chosen.erase("description");
-    overlay(document, chosen);
+    chosen.as<TomlMembers>()->erase("name");
+    chosen.as<TomlMembers>()->erase("description");
+    overlay(members, *chosen.as<TomlMembers>());
   }
   TomlTable root(&document, path, "", error);
   for (const std::string_view key : {"map", "power", "watchdog", "state", "point", "command"}) {
@@ -131,7 +132,7 @@ bool read_map(const std::string& path, int variant, RegisterMap& map, std::strin
 
 bool load_register_map(const std::string& path, std::string_view variant, RegisterMap& map,
                        std::string& error) {
-  toml::table document;
+  TomlValue document;
   std::vector<std::string> names;
   if (!parse_map_file(path, document, error)) return false;
   if (!list_variants(document, path, names, error)) return false;
@@ -148,9 +149,9 @@ bool load_register_map(const std::string& path, std::string_view variant, Regist
   }
   for (int i = 0; i < static_cast<int>(names.size()); ++i) {
     if (i == chosen) continue;  // variants that are not chosen must be valid all the same
-    if (!read_map(path, i, map, error)) return false;
+    if (!read_map(path, document, i, map, error)) return false;
   }
-  return read_map(path, chosen, map, error);
+  return read_map(path, std::move(document), chosen, map, error);
 }
 
 }  // namespace bess

@@ -20,15 +20,15 @@ constexpr TypeFacts kTypes[] = {{"u16", 1, 0xFFFF},      {"s16", 1, 0x8000},
 template <typename T, int kCapacity>
 void read_numbers(TomlTable& table, std::string_view key, std::int64_t max,
                   StaticVector<T, kCapacity>& out) {
-  const toml::array* list = table.array(key);
+  const TomlArray* list = table.array(key);
   if (list == nullptr) return;
-  for (const toml::node& item : *list) {
-    const auto* number = item.as_integer();
-    if (number == nullptr || number->get() < 0 || number->get() > max) {
+  for (const TomlValue& item : *list) {
+    const auto* number = item.as<std::int64_t>();
+    if (number == nullptr || *number < 0 || *number > max) {
       return table.fail_at(
           item, std::string(key) + " must hold whole numbers from 0 to " + std::to_string(max));
     }
-    if (!out.try_push_back(static_cast<T>(number->get()))) {
+    if (!out.try_push_back(static_cast<T>(*number))) {
       return table.fail(key, "holds more than " + std::to_string(kCapacity) + " numbers");
     }
   }
@@ -36,19 +36,19 @@ void read_numbers(TomlTable& table, std::string_view key, std::int64_t max,
 
 void read_unit_groups(TomlTable& root, RegisterMap& map) {
   TomlTable groups = map_child(root, "unit_groups");
-  if (groups.native() == nullptr) return;
-  for (const auto& [key, node] : *groups.native()) {
+  if (groups.value() == nullptr) return;
+  for (const auto& [key, node] : *groups.value()->as<TomlMembers>()) {
     UnitGroup group;
-    groups.integer(key.str(), group.unit, 0, 255);
-    if (!group.name.assign(key.str())) groups.fail(key.str(), "is too long a name");
-    if (!map.unit_groups.try_push_back(group)) groups.fail(key.str(), "is one group too many");
+    groups.integer(key, group.unit, 0, 255);
+    if (!group.name.assign(key)) groups.fail(key, "is too long a name");
+    if (!map.unit_groups.try_push_back(group)) groups.fail(key, "is one group too many");
   }
   groups.finish();
 }
 
 void read_sunspec(TomlTable& root, RegisterMap& map) {
   TomlTable table = map_child(root, "sunspec");
-  if (table.native() == nullptr) return;
+  if (table.value() == nullptr) return;
   table.require("models");
   read_numbers(table, "models", 65'534, map.models);
   read_numbers(table, "bases", 65'000, map.model_bases);
@@ -64,7 +64,7 @@ void read_reference(TomlTable& table, std::string_view key, const RegisterMap& m
   RegisterName name;
   table.text(key, name);
   if (!table.has(key) || !table.ok()) return;
-  point = require_point(table, *table.native()->get(key), name.view(), map);
+  point = require_point(table, *table.node(key), name.view(), map);
   if (point >= 0 && map.points[point].percent_of >= 0) {
     table.fail(key, "must not itself be a percentage");
   }
@@ -154,21 +154,20 @@ void read_scale(TomlTable& table, const RegisterMap& map, RegisterPoint& point) 
 
 /// names = { charge = 1, ... } for values, bits = { fault = 3, ... } for bit numbers.
 void read_names(TomlTable& table, std::string_view key, bool bits, RegisterMap& map) {
-  const toml::table* names = table.table(key);
+  const TomlValue* names = table.table(key);
   if (names == nullptr || !table.ok()) return;
-  for (const auto& [name, node] : *names) {
+  for (const auto& [name, node] : *names->as<TomlMembers>()) {
     NamedValue named;
     named.point = static_cast<std::int8_t>(map.points.size() - 1);
     named.is_bit = bits;
-    const auto* number = node.as_integer();
-    if (number == nullptr || number->get() < -kMapValueLimit ||
-        number->get() > (bits ? 31 : kMapValueLimit)) {
+    const auto* number = node.as<std::int64_t>();
+    if (number == nullptr || *number < -kMapValueLimit || *number > (bits ? 31 : kMapValueLimit)) {
       return table.fail_at(
           node, std::string(key) + " must hold numbers" + (bits ? " of bits, 0 to 31" : ""));
     }
-    if (bits && number->get() < 0) return table.fail_at(node, "a bit number is not negative");
-    named.value = bits ? std::int64_t{1} << number->get() : number->get();
-    if (!named.name.assign(name.str())) return table.fail_at(node, "this name is too long");
+    if (bits && *number < 0) return table.fail_at(node, "a bit number is not negative");
+    named.value = bits ? std::int64_t{1} << *number : *number;
+    if (!named.name.assign(name)) return table.fail_at(node, "this name is too long");
     if (!map.names.try_push_back(named)) return table.fail(key, "holds more names than fit");
   }
 }

@@ -7,15 +7,15 @@ namespace {
 template <int kCapacity>
 void read_codes(TomlTable& table, std::string_view key,
                 StaticVector<std::uint8_t, kCapacity>& out) {
-  const toml::array* list = table.array(key);
+  const TomlArray* list = table.array(key);
   if (list == nullptr) return;
   out.clear();
-  for (const toml::node& item : *list) {
-    const auto* number = item.as_integer();
-    if (number == nullptr || number->get() < 1 || number->get() > 255) {
+  for (const TomlValue& item : *list) {
+    const auto* number = item.as<std::int64_t>();
+    if (number == nullptr || *number < 1 || *number > 255) {
       return table.fail_at(item, std::string(key) + " must hold exception codes, 1 to 255");
     }
-    if (!out.try_push_back(static_cast<std::uint8_t>(number->get()))) {
+    if (!out.try_push_back(static_cast<std::uint8_t>(*number))) {
       return table.fail(key, "holds more than 6 codes");
     }
   }
@@ -23,7 +23,7 @@ void read_codes(TomlTable& table, std::string_view key,
 
 void read_assignments(TomlTable& table, std::string_view key, const RegisterMap& map, auto& out) {
   using Assignment = SimulatorHints::Assignment;
-  for_each_text(table, key, [&](std::string_view text, const toml::node& at) {
+  for_each_text(table, key, [&](std::string_view text, const TomlValue& at) {
     const MapPhrase phrase = split_phrase(text);
     Assignment assignment{.point = require_point(table, at, phrase.left, map)};
     if (assignment.point < 0) return;
@@ -73,7 +73,7 @@ void read_map_simulator(TomlTable& root, RegisterMap& map) {
   read_power_cases(table, "order_power", map, map.simulator.order_power);
   read_assignments(table, "initial", map, map.simulator.initial);
   read_assignments(table, "at_expiry", map, map.simulator.at_expiry);
-  for_each_text(table, "apply_on", [&](std::string_view name, const toml::node& at) {
+  for_each_text(table, "apply_on", [&](std::string_view name, const TomlValue& at) {
     const std::int8_t point = require_point(table, at, name, map);
     if (point >= 0 && !map.simulator.apply_on.try_push_back(point)) {
       table.fail("apply_on", "is too long");

@@ -47,11 +47,12 @@ inline TomlTable map_child(TomlTable& parent, std::string_view key) {
 /// Calls `read` with each table of the list `key`, named e.g. [[point]].
 template <typename Function>
 void for_each_table(TomlTable& parent, std::string_view key, Function read) {
-  const toml::array* list = parent.array(key);
+  const TomlArray* list = parent.array(key);
   if (list == nullptr) return;
-  for (const toml::node& item : *list) {
-    if (!item.is_table()) return parent.fail_at(item, std::string(key) + " must hold tables");
-    TomlTable table{item.as_table(), parent.file(), std::string("[[").append(key).append("]]"),
+  for (const TomlValue& item : *list) {
+    if (item.as<TomlMembers>() == nullptr)
+      return parent.fail_at(item, std::string(key) + " must hold tables");
+    TomlTable table{&item, parent.file(), std::string("[[").append(key).append("]]"),
                     parent.error()};
     read(table);
     table.finish();
@@ -61,15 +62,15 @@ void for_each_table(TomlTable& parent, std::string_view key, Function read) {
 /// Calls `read(text, node)` with each text of the list `key`, or with its one text.
 template <typename Function>
 void for_each_text(TomlTable& table, std::string_view key, Function read) {
-  const toml::node* node = table.node(key);
+  const TomlValue* node = table.node(key);
   if (node == nullptr) return;
-  if (const auto* text = node->as_string()) return read(std::string_view(text->get()), *node);
-  const toml::array* list = node->as_array();
+  if (const auto* text = node->as<std::string>()) return read(std::string_view(*text), *node);
+  const auto* list = node->as<TomlArray>();
   if (list == nullptr) return table.fail(key, "must be text or a list of texts");
-  for (const toml::node& item : *list) {
-    const auto* text = item.as_string();
+  for (const TomlValue& item : *list) {
+    const auto* text = item.as<std::string>();
     if (text == nullptr) return table.fail_at(item, std::string(key) + " must hold texts");
-    read(std::string_view(text->get()), item);
+    read(std::string_view(*text), item);
   }
 }
 
@@ -80,7 +81,7 @@ struct MapPhrase {
 MapPhrase split_phrase(std::string_view text);
 
 /// Index of a point; -1, with the error set, when there is none.
-std::int8_t require_point(TomlTable& table, const toml::node& at, std::string_view name,
+std::int8_t require_point(TomlTable& table, const TomlValue& at, std::string_view name,
                           const RegisterMap& map);
 /// "point", or a list of { when = "condition", power = "point" or a list of points to add up }.
 void read_power_cases(TomlTable& table, std::string_view key, const RegisterMap& map,
@@ -88,13 +89,13 @@ void read_power_cases(TomlTable& table, std::string_view key, const RegisterMap&
 /// A number, or one of the point's names for values or bits.
 bool parse_value(const RegisterMap& map, int point, std::string_view text, std::int64_t& value);
 /// "point = value", "point != value", "point has bit", or "point" alone for "point != 0".
-bool parse_condition(TomlTable& table, const toml::node& at, std::string_view text,
+bool parse_condition(TomlTable& table, const TomlValue& at, std::string_view text,
                      const RegisterMap& map, Condition& condition);
 
 template <int kCapacity>
 void read_conditions(TomlTable& table, std::string_view key, const RegisterMap& map,
                      StaticVector<Condition, kCapacity>& out) {
-  for_each_text(table, key, [&](std::string_view text, const toml::node& at) {
+  for_each_text(table, key, [&](std::string_view text, const TomlValue& at) {
     Condition condition;
     if (!parse_condition(table, at, text, map, condition)) return;
     if (!out.try_push_back(condition)) table.fail(key, "holds too many conditions");

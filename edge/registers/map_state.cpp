@@ -7,7 +7,7 @@ namespace bess {
 namespace {
 
 void read_measured(TomlTable& table, RegisterMap& map) {
-  for_each_text(table, "measure", [&](std::string_view name, const toml::node& at) {
+  for_each_text(table, "measure", [&](std::string_view name, const TomlValue& at) {
     const std::int8_t point = require_point(table, at, name, map);
     if (point < 0) return;
     if (std::find(map.measure.begin(), map.measure.end(), point) != map.measure.end()) {
@@ -18,8 +18,8 @@ void read_measured(TomlTable& table, RegisterMap& map) {
 }
 
 /// "point" or "-point".
-bool read_term(TomlTable& table, const toml::node& at, std::string_view text,
-               const RegisterMap& map, PowerCase& out) {
+bool read_term(TomlTable& table, const TomlValue& at, std::string_view text, const RegisterMap& map,
+               PowerCase& out) {
   PowerCase::Term term;
   if (text.starts_with('-')) {
     term.sign = -1;
@@ -38,16 +38,16 @@ void read_power_case(TomlTable& table, const RegisterMap& map, StaticVector<Powe
   table.require("power");
   table.text("when", when);
   if (table.has("when") && table.ok()) {
-    parse_condition(table, *table.native()->get("when"), when.view(), map, out.when);
+    parse_condition(table, *table.node("when"), when.view(), map, out.when);
   }
-  for_each_text(table, "power", [&](std::string_view text, const toml::node& at) {
+  for_each_text(table, "power", [&](std::string_view text, const TomlValue& at) {
     read_term(table, at, text, map, out);
   });
   if (table.ok() && !cases.try_push_back(out)) table.fail("power", "is a case too many");
 }
 
 void read_alive(TomlTable& state, RegisterMap& map) {
-  const toml::table* found = state.table("alive");
+  const TomlValue* found = state.table("alive");
   if (found == nullptr) return;
   TomlTable table{found, state.file(), "[state] alive", state.error()};
   RegisterName name;
@@ -70,7 +70,7 @@ void read_identity_check(TomlTable& table, RegisterMap& map) {
   table.integer("min", check.value_min, -kMapValueLimit, kMapValueLimit);
   table.integer("max", check.value_max, -kMapValueLimit, kMapValueLimit);
   if (!table.ok()) return;
-  check.point = require_point(table, *table.native(), name.view(), map);
+  check.point = require_point(table, *table.value(), name.view(), map);
   if (!table.ok()) return;
   const bool is_text = map.points[check.point].type == RegisterType::kText;
   for (const std::string_view key : {"min", "max"}) {
@@ -86,11 +86,11 @@ void read_identity_check(TomlTable& table, RegisterMap& map) {
 
 void read_power_cases(TomlTable& table, std::string_view key, const RegisterMap& map,
                       StaticVector<PowerCase, 4>& cases) {
-  const toml::node* node = table.node(key);
+  const TomlValue* node = table.node(key);
   if (node == nullptr) return;
-  if (const auto* text = node->as_string()) {
+  if (const auto* text = node->as<std::string>()) {
     PowerCase always;
-    if (read_term(table, *node, text->get(), map, always)) cases.push_back(always);
+    if (read_term(table, *node, *text, map, always)) cases.push_back(always);
     return;
   }
   for_each_table(table, key, [&](TomlTable& item) { read_power_case(item, map, cases); });
@@ -121,8 +121,7 @@ void read_map_watchdog(TomlTable& root, RegisterMap& map) {
   table.boolean("expiry_visible", map.watchdog.expiry_visible);
   table.text("remaining", remaining);
   if (table.has("remaining") && table.ok()) {
-    map.watchdog.remaining =
-        require_point(table, *table.native()->get("remaining"), remaining.view(), map);
+    map.watchdog.remaining = require_point(table, *table.node("remaining"), remaining.view(), map);
   }
   if (map.watchdog.kind == Watchdog::Kind::kNone) {
     map.watchdog.duration_s = map.watchdog.refresh_s = 0;  // a variant may have inherited them
@@ -139,7 +138,7 @@ void read_map_state(TomlTable& root, RegisterMap& map) {
   read_measured(state, map);
   read_conditions(state, "active", map, map.active);
   read_conditions(state, "alarms", map, map.alarms);
-  for_each_text(state, "off_grid", [&](std::string_view text, const toml::node& at) {
+  for_each_text(state, "off_grid", [&](std::string_view text, const TomlValue& at) {
     parse_condition(state, at, text, map, map.off_grid);
   });
   read_power_cases(state, "measured_power", map, map.measured_power);

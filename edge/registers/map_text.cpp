@@ -35,7 +35,7 @@ MapPhrase split_phrase(std::string_view text) {
   return {trimmed(text), {}, {}};
 }
 
-std::int8_t require_point(TomlTable& table, const toml::node& at, std::string_view name,
+std::int8_t require_point(TomlTable& table, const TomlValue& at, std::string_view name,
                           const RegisterMap& map) {
   const int index = find_point(map, name);
   if (index < 0) table.fail_at(at, "no [[point]] is named " + quoted(name));
@@ -51,7 +51,7 @@ bool parse_value(const RegisterMap& map, int point, std::string_view text, std::
   return parse_number(text, value);
 }
 
-bool parse_condition(TomlTable& table, const toml::node& at, std::string_view text,
+bool parse_condition(TomlTable& table, const TomlValue& at, std::string_view text,
                      const RegisterMap& map, Condition& condition) {
   const MapPhrase phrase = split_phrase(text);
   condition.point = require_point(table, at, phrase.left, map);

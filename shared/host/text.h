@@ -1,10 +1,17 @@
-// Lines out of a text, and a field into one.
+// Lines out of a text, a field into one, and text that is made fit for a message.
 #pragma once
 
 #include <string>
 #include <string_view>
 
 namespace bess {
+
+/// Spreadsheets and editors of Windows begin a text with U+FEFF; no reader needs it.
+inline std::string_view without_byte_order_mark(std::string_view text) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  return text;
+}
 
 /// Takes the first line off `rest`, without its line end (LF or CRLF).
 inline std::string_view take_line(std::string_view& rest) {
@@ -22,5 +29,12 @@ inline std::string csv_field(std::string_view text) {
   for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
   return quoted + "\"";
 }
+
+/// At most `size_max` bytes of `text` in one line: control characters, which a terminal would obey,
+/// become spaces, and neighbouring spaces one.
+std::string one_line(std::string_view text, std::size_t size_max = std::string_view::npos);
+
+/// "1 minute", "2 minutes".
+std::string counted(std::size_t count, std::string_view noun);
 
 }  // namespace bess

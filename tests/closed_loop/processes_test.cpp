@@ -10,6 +10,7 @@
 
 #include "tests/support/pty_bridge.h"
 #include "tests/support/simulated_site.h"
+#include "tests/support/toml_mistakes.h"
 
 namespace bess {
 namespace {
@@ -370,6 +371,26 @@ TEST_F(Processes, BadStartsEndWithOneClearLine) {
     EXPECT_EQ(child.wait(), start.exit_code) << text;
     EXPECT_THAT(text, HasSubstr(start.message));
     EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
+  }
+}
+
+TEST_F(Processes, BrokenTomlEndsWithOneClearLine) {
+  for (const TomlMistake& mistake : toml_mistakes()) {
+    SCOPED_TRACE(mistake.text.substr(0, 40));
+    const std::string broken = site_.folder.write("broken.toml", mistake.text);
+    const std::string config = site_.folder.write(
+        "edge.toml", "[battery]\nmap = \"broken.toml\"\n[price]\nurl = \"http://a\"\n");
+    const std::vector<std::string> starts[] = {{BESS_EDGE_PROGRAM, "--check", "--config", broken},
+                                               {BESS_EDGE_PROGRAM, "--check", "--config", config},
+                                               {BESS_SIM_PROGRAM, "battery", "--map", broken}};
+    for (const std::vector<std::string>& start : starts) {
+      ChildProcess child(start);
+      const std::string text = child.read_all();
+      EXPECT_EQ(child.wait(), 1) << text;
+      EXPECT_THAT(text,
+                  HasSubstr("broken.toml:" + std::to_string(mistake.line) + ": not valid TOML: "));
+      EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
+    }
   }
 }
 

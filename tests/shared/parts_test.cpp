@@ -5,7 +5,6 @@
 #include "shared/action.h"
 #include "shared/crc32.h"
 #include "shared/fixed_text.h"
-#include "shared/host/toml_text.h"
 
 namespace bess {
 namespace {
@@ -67,29 +66,6 @@ TEST(FixedText, CutsAndSaysSo) {
   EXPECT_FALSE(text.assign("fives"));
   EXPECT_EQ(text.view(), "five");
   EXPECT_EQ(text.c_str()[4], '\0');
-}
-
-TEST(TomlText, NonAsciiIsFoundOutsideQuotesAndCommentsOnly) {
-  EXPECT_EQ(line_of_bare_non_ascii(""), 0);
-  EXPECT_EQ(line_of_bare_non_ascii("\xEF\xBB\xBF"
-                                   "key = 1  # \u00E9\npath = \"\u00E9\"\n"),
-            0);
-  EXPECT_EQ(line_of_bare_non_ascii("a = '\u00E9#'\nb = \"\\\"\u00E9\"\nc = 1"), 0);
-  EXPECT_EQ(line_of_bare_non_ascii(R"(a = """
-"é"
-"""
-b = '''
-é''')"),
-            0);
-  EXPECT_EQ(line_of_bare_non_ascii("a = 1\n\u00E9 = 2\n"), 2);
-  EXPECT_EQ(line_of_bare_non_ascii("a = \"\"\"\n\n\"\"\"\u00E9\n"), 3);
-  EXPECT_EQ(line_of_bare_non_ascii("a = \"unclosed\nb = \u00E9\n"), 2);
-  EXPECT_EQ(line_of_bare_non_ascii("a = \"unclosed"), 0);
-  EXPECT_EQ(line_of_bare_non_ascii("a = 1\nb = 30'''\u00E9 # found by fuzzing"), 2);
-  EXPECT_EQ(line_of_bare_non_ascii("a = 5p.9.\"\"\"\"&\u00E9"), 1);
-  EXPECT_EQ(line_of_bare_non_ascii("a = 5['''\u00E9\nb = 5='''\u00E9"), 1);
-  EXPECT_EQ(line_of_bare_non_ascii("a = {b=\"\u00E9\", c=[\n\"\u00E9\", '\u00E9'\n]}"), 0);
-  EXPECT_EQ(line_of_bare_non_ascii("a = '''\u00E9''''\nb = [\"\u00E9\",'\u00E9']"), 0);
 }
 
 }  // namespace

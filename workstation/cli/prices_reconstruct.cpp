@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "shared/host/plain_text.h"
+#include "shared/host/text.h"
 #include "workstation/cli/prices.h"
 #include "workstation/market/feed/market_files.h"
 #include "workstation/market/model/quarter_hours_to_minutes.h"

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "shared/host/minute_file.h"
-#include "shared/host/plain_text.h"
+#include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "workstation/cli/prices.h"
 #include "workstation/market/model/quarter_hours_to_minutes.h"

@@ -1,14 +1,14 @@
 #include "workstation/cli/run_config.h"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <functional>
 #include <vector>
 
 #include "shared/host/file.h"
-#include "shared/host/toml_text.h"
+#include "shared/host/text.h"
+#include "shared/host/toml_document.h"
 #include "shared/host/user_error.h"
 
 namespace bess {
@@ -16,12 +16,18 @@ namespace {
 
 /// Where a value came from, for messages.
 struct Place {
-  const std::string& file;
-  const toml::node& node;
+  const TomlValue& value;
   std::string key;
 
   [[noreturn]] void complain(const std::string& what) const {
-    fail("{}:{}: {}: {}", file, node.source().begin.line, key, what);
+    fail("{}:{}: {}: {}", *value.file, value.line, key, what);
+  }
+  /// What is held, which must be a T.
+  template <typename T>
+  [[nodiscard]] const T& expect(const char* what) const {
+    const T* held = value.as<T>();
+    if (held == nullptr) complain(fmt::format("expected {}", what));
+    return *held;
   }
 };
 
@@ -45,7 +51,7 @@ class KeyList {
   void number(const char* name, double& field, double low, double high, const char* comment) {
     keys_.push_back({section_, name, fmt::format("{} ({:g} .. {:g})", comment, low, high),
                      [&field, low, high](const Place& place) {
-                       const auto value = place.node.value<double>();
+                       const auto value = place.value.number();
                        if (!value) place.complain("expected a number");
                        if (!(*value >= low && *value <= high)) {
                          place.complain(fmt::format("{:g} is out of range: use {:g} to {:g}",
@@ -60,8 +66,7 @@ class KeyList {
                const char* comment) {
     keys_.push_back({section_, name, fmt::format("{} ({} .. {})", comment, low, high),
                      [&field, low, high](const Place& place) {
-                       if (!place.node.is_integer()) place.complain("expected a whole number");
-                       const std::int64_t value = *place.node.value<std::int64_t>();
+                       const auto value = place.expect<std::int64_t>("a whole number");
                        if (value < low || value > high) {
                          place.complain(
                              fmt::format("{} is out of range: use {} to {}", value, low, high));
@@ -72,10 +77,7 @@ class KeyList {
   }
   void boolean(const char* name, bool& field, const char* comment) {
     keys_.push_back({section_, name, comment,
-                     [&field](const Place& place) {
-                       if (!place.node.is_boolean()) place.complain("expected true or false");
-                       field = *place.node.value<bool>();
-                     },
+                     [&field](const Place& place) { field = place.expect<bool>("true or false"); },
                      [&field] { return std::string(field ? "true" : "false"); }});
   }
   template <typename Enum>
@@ -84,8 +86,8 @@ class KeyList {
     keys_.push_back(
         {section_, name, fmt::format("{} ({})", comment, fmt::join(choices, " | ")),
          [&field, choices](const Place& place) {
-           const auto value = place.node.value<std::string>();
-           const auto found = std::ranges::find(choices, value.value_or(""));
+           const auto* text = place.value.as<std::string>();
+           const auto found = text == nullptr ? choices.end() : std::ranges::find(choices, *text);
            if (found == choices.end()) {
              place.complain(fmt::format("use one of \"{}\"", fmt::join(choices, "\", \"")));
            }
@@ -191,25 +193,22 @@ void check_relations(const RunConfig& config, const std::string& name) {
   }
 }
 
-void apply_table(const toml::table& root, const std::vector<Key>& keys, const std::string& name) {
-  for (const auto& [section, node] : root) {
-    const toml::table* table = node.as_table();
-    const std::string section_name(section.str());
-    const bool known =
-        std::ranges::any_of(keys, [&](const Key& k) { return k.section == section_name; });
-    if (table == nullptr || !known) {
-      fail("{}:{}: unknown section or key \"{}\"; 'bess-train config' lists all", name,
-           node.source().begin.line, section_name);
+void apply_document(const TomlValue& document, const std::vector<Key>& keys) {
+  for (const auto& [section, table] : *document.as<TomlMembers>()) {
+    const auto* members = table.as<TomlMembers>();
+    const bool known = std::ranges::find(keys, section, &Key::section) != keys.end();
+    if (members == nullptr || !known) {
+      fail("{}:{}: unknown section or key \"{}\"; 'bess-train config' lists all", *table.file,
+           table.line, one_line(section));
     }
-    for (const auto& [key, value] : *table) {
-      const std::string key_name(key.str());
+    for (const auto& [name, value] : *members) {
       const auto found = std::ranges::find_if(
-          keys, [&](const Key& k) { return k.section == section_name && k.name == key_name; });
+          keys, [&](const Key& k) { return k.section == section && k.name == name; });
       if (found == keys.end()) {
-        fail("{}:{}: unknown key \"{}\" in [{}]; 'bess-train config' lists all", name,
-             value.source().begin.line, key_name, section_name);
+        fail("{}:{}: unknown key \"{}\" in [{}]; 'bess-train config' lists all", *value.file,
+             value.line, one_line(name), section);
       }
-      found->set({name, value, fmt::format("[{}] {}", section_name, key_name)});
+      found->set({value, fmt::format("[{}] {}", section, name)});
     }
   }
 }
@@ -219,14 +218,10 @@ void apply_table(const toml::table& root, const std::vector<Key>& keys, const st
 RunConfig parse_run_config(std::string_view text, const std::string& name) {
   RunConfig config;
   const KeyList list(config);
-  if (const int line = line_of_bare_non_ascii(text); line > 0) {
-    fail("{}:{}: {}", name, line, kBareNonAsciiMessage);
-  }
-  try {
-    apply_table(toml::parse(text, name), list.keys(), name);
-  } catch (const toml::parse_error& error) {
-    fail("{}:{}: not valid TOML: {}", name, error.source().begin.line, error.description());
-  }
+  TomlValue document;
+  std::string error;
+  if (!parse_toml_text(text, name, document, error)) throw UserError(error);
+  apply_document(document, list.keys());
   check_relations(config, name);
   return config;
 }

@@ -225,6 +225,15 @@ TEST(EdgeConfig, ReadsTheKeysOfAnotherPriceServer) {
   EXPECT_EQ(config.price.step_flag_centi_eur_per_mwh, 100'050);
 }
 
+TEST(EdgeConfig, AByteOrderMarkIsPassedOver) {
+  const TemporaryFolder folder;
+  EdgeConfig config;
+  std::string error;
+  EXPECT_TRUE(
+      load_edge_config(folder.write("edge.toml", "\xEF\xBB\xBF" + valid_text()), config, error))
+      << error;
+}
+
 TEST(EdgeConfig, MissingFileAndFolder) {
   EdgeConfig config;
   std::string error;

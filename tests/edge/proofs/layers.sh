@@ -56,12 +56,13 @@ layer $w/report                     $w/report $w/student $w/correction $w/rl $w/
 layer $w/cli                        $w shared
 layer $w/main.cpp                   $w shared
 
-# only HEADER OWNERS: of the edge and shared, only files whose path begins with OWNERS include <HEADER>.
-only() { blame "$(includes "<$1" "edge shared" | grep -vE "^($2)")" "only $2 knows $1"; }
+# only HEADER OWNERS [PLACES]: of PLACES, the edge and shared unless given, only files whose path begins with
+# OWNERS include <HEADER>.
+only() { blame "$(includes "<$1" "${3:-edge shared}" | grep -vE "^($2)")" "only $2 knows $1"; }
 only modbus/ edge/battery/modbus_wire.cpp:
 only curl/   edge/prices/
 only cjson/  'edge/prices/|edge/program/status_command.cpp:'
-only toml++/ shared/host/toml_reader.h:
+only toml++/ shared/host/toml_document.cpp: 'edge shared workstation tools'
 
 # The control layer knows neither files, sockets, threads nor signals.
 io='<(sys/|arpa/|net|poll|unistd|fcntl|pthread|signal|semaphore|cstdio|stdio|fstream|iostream|thread|mutex)'

@@ -235,6 +235,14 @@ address = 201
   EXPECT_EQ(map.sequence(Command::kCharge).writes[1].address, 200);
 }
 
+TEST_F(MapFormat, AByteOrderMarkIsPassedOver) {
+  const std::string text = std::string(kHead) + "type = \"s32\"\nmin = -1000\nmax = 1000\n";
+  const std::string path = folder_.write("map.toml", "\xEF\xBB\xBF" + text);
+  RegisterMap map;
+  std::string error;
+  EXPECT_TRUE(load_register_map(path, "", map, error)) << error;
+}
+
 TEST_F(MapFormat, MistakesNameTheFileInWhichTheyAre) {
   std::string base = std::string(kHead) + "type = \"s31\"\nmin = -1000\nmax = 1000\n";
   const std::string base_path = folder_.write("base.toml", base);

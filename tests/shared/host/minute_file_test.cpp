@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <limits>
 
 #include "tests/support/market_test_support.h"
 
@@ -13,10 +12,8 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr double kNoPrice = std::numeric_limits<double>::quiet_NaN();
-
 TEST(MinuteFile, PricesReadBackToTheLastDigit) {
-  const MinuteSeries series{0, {-30.258, 0.1 + 0.2, 100}, {-999, 1e-7, kNoPrice}};
+  const MinuteSeries series{0, {-30.258, 0.1 + 0.2, 100}, {-999, 1e-7, std::nan("")}};
   const std::string text = format_minute_csv(series, "");
   EXPECT_THAT(text, HasSubstr("1970-01-01T00:00:00Z,-30.258,-999\n"));
   const MinuteSeries read = parse_minute_csv(text, "written");

@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "tests/support/child_process.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/toml_mistakes.h"
 
 namespace bess {
 namespace {
@@ -20,6 +22,28 @@ TEST(Program, OutputThatCannotBeWrittenIsAnError) {
   ChildProcess program({"/bin/sh", "-c", BESS_TRAIN_PROGRAM " config > /dev/full"});
   EXPECT_THAT(program.read_all(), HasSubstr("cannot write to the standard output"));
   EXPECT_EQ(program.wait(), 1);
+}
+
+TEST(Program, BrokenTomlIsOneClearLine) {
+  const TemporaryFolder folder;
+  for (const TomlMistake& mistake : toml_mistakes()) {
+    SCOPED_TRACE(mistake.text.substr(0, 40));
+    const std::string config = folder.write("broken.toml", mistake.text);
+    ChildProcess program({BESS_TRAIN_PROGRAM, "config", "--config", config});
+    const std::string text = program.read_all();
+    EXPECT_EQ(program.wait(), 1) << text;
+    EXPECT_THAT(text,
+                HasSubstr("broken.toml:" + std::to_string(mistake.line) + ": not valid TOML: "));
+    EXPECT_EQ(std::ranges::count(text, '\n'), 1) << text;
+  }
+}
+
+TEST(Program, AByteOrderMarkBeforeTheConfigurationIsPassedOver) {
+  const TemporaryFolder folder;
+  const std::string config = folder.write("run.toml", "\xEF\xBB\xBF[train]\nsteps = 7\n");
+  ChildProcess program({BESS_TRAIN_PROGRAM, "config", "--config", config});
+  EXPECT_THAT(program.read_all(), HasSubstr("steps = 7 "));
+  EXPECT_EQ(program.wait(), 0);
 }
 
 TEST(Program, CtrlCEndsACommandThatHasNothingToSave) {

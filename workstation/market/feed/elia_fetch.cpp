@@ -6,7 +6,7 @@
 
 #include "shared/crc32.h"
 #include "shared/host/file.h"
-#include "shared/host/plain_text.h"
+#include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "workstation/base/progress.h"
 #include "workstation/market/feed/http_client.h"

@@ -10,7 +10,7 @@
 #include <memory>
 
 #include "shared/host/minute_file.h"
-#include "shared/host/plain_text.h"
+#include "shared/host/text.h"
 #include "shared/host/user_error.h"
 
 namespace bess {

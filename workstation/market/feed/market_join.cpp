@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "shared/host/plain_text.h"
+#include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "shared/units_and_limits.h"
 #include "workstation/market/series/gaps.h"

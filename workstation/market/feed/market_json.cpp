@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "shared/host/plain_text.h"
+#include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "workstation/market/feed/market_rows.h"
 

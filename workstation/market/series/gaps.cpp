@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "shared/host/minute_file.h"
-#include "shared/host/plain_text.h"
+#include "shared/host/text.h"
 #include "workstation/market/series/quarter_hour.h"
 
 namespace bess {

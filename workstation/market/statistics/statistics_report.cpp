@@ -6,7 +6,7 @@
 #include <cmath>
 #include <memory>
 
-#include "shared/host/plain_text.h"
+#include "shared/host/text.h"
 
 namespace bess {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "shared/host/file.h"
-#include "shared/host/plain_text.h"
+#include "shared/host/text.h"
 #include "tests/support/market_test_support.h"
 #include "workstation/market/feed/market_files.h"
 

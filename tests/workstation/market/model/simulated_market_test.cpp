@@ -143,7 +143,7 @@ TEST(SimulatedMarketYear, SeedDecidesEverything) {
   EXPECT_GT(different, 600);
 }
 
-TEST(SimulatedMarket, SimulatedPricesAreWholeCents) {
+TEST(SimulatedMarketYear, PricesAreWholeCents) {
   const SimulationPeriod period{local_midnight_utc_s({2023, 1, 1}),
                                 local_midnight_utc_s({2023, 1, 8})};
   const MinuteSeries series = minutes_on_quarter_hours(simulate_quarter_hours(period, 1), 1);

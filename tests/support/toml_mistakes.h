@@ -1,0 +1,42 @@
+// TOML that is not, as users write it and fuzzing found it. toml++ 3.3 as it comes crashes on most of it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace bess {
+
+struct TomlMistake {
+  std::string text;
+  int line;               ///< that the complaint names
+  const char* complaint;  ///< a part of it
+};
+
+inline std::vector<TomlMistake> toml_mistakes() {
+  std::string long_key = "a";
+  for (int i = 0; i < 200'000; ++i) long_key += ".a";
+  return {{"[=]", 1, "expected bare key"},
+          {"a = 1\n[=]\n", 2, "expected bare key"},
+          {"[[=]]\n", 1, "expected bare key"},
+          {"a = \"\u00E9", 1, "end-of-file"},
+          {"a = '\u00E9", 1, "end-of-file"},
+          {"a = \"\u00E9\n[b]\n", 1, "control characters"},
+          {"a = \"\"\"\u00E9", 1, "end-of-file"},
+          {"a = \"\"\"x\\\u00E9", 1, "not valid TOML"},
+          {"a = \"\"\"x\\\n\u00E9\u2028", 2, "end-of-file"},
+          {"a = '''x\n\u00E9", 2, "end-of-file"},
+          {"a = [\"\u00E9\", '\u00E9", 1, "end-of-file"},
+          {"a = 1\n\u00E9 = 2\n", 2, "other than ASCII"},
+          {"a = 1\u00E9\n", 1, "other than ASCII"},
+          {"\xEF\xBB\xBF\xEF\xBB\xBF"
+           "a = 1\n",
+           1, "other than ASCII"},  // one byte order mark, not two
+          {"\xFF\xFE", 1, "other than ASCII"},
+          {long_key + " = 1\n", 1, "a key of more parts"},
+          {"[" + long_key + "]\n", 1, "a key of more parts"},
+          {"a = " + std::string(100'000, '['), 1, "nested"},
+          {"a = 1\na = 2\n", 2, "cannot redefine"},
+          {"a = \n", 1, "not valid TOML"}};
+}
+
+}  // namespace bess
