@@ -18,6 +18,7 @@
 #include "edge/program/log_command.h"
 #include "edge/program/release_command.h"
 #include "edge/program/run_locks.h"
+#include "edge/program/signature_command.h"
 #include "edge/program/startup.h"
 #include "edge/program/status_command.h"
 #include "edge/program/supervised_loop.h"
@@ -100,6 +101,7 @@ int main(int argc, char** argv) {
   CommandLine command_line;
   const CommandLineResult result = parse_command_line(argc, argv, command_line);
   if (result != CommandLineResult::kGo) return result == CommandLineResult::kExitOk ? 0 : 2;
+  if (command_line.command == SubCommand::kSignature) return run_signature_command();
   static EdgeConfig config;
   std::string error;
   if (!load_edge_config(command_line.config_path, config, error)) return fail(error.c_str());

@@ -12,6 +12,7 @@ constexpr const char* kRunHelp =
   bess-edge release [--config FILE] --yes               end an order that nobody ends any more
   bess-edge status [--config FILE] ...                  how the running controller is
   bess-edge log [--config FILE] ...                     what was decided, and why
+  bess-edge signature                                   one number for what this build decides
   bess-edge COMMAND --help                              more on one of them
 
   --config FILE  settings in TOML; edge/bess-edge.toml documents every key; default /etc/bess/edge.toml
@@ -100,6 +101,17 @@ Exit codes: 0 done   1 the log cannot be read   2 the command line is bad
   bess-edge log --csv --since 2026-11-01T00:00:00Z > november.csv
 )";
 
+constexpr const char* kSignatureHelp =
+    R"(bess-edge signature: one number for what this build decides
+
+  bess-edge signature
+
+Student and guard replay two recorded days of prices in each month of a year, those of the clock changes
+among them, in integers. The signature is over every order: builds with the same student that print
+different ones do not decide the same. edge/generated/decision_signature.txt holds the expected line.
+Exit codes: 0 done   2 the command line is bad
+)";
+
 }  // namespace
 
 const char* help_of(SubCommand command) {
@@ -112,6 +124,8 @@ const char* help_of(SubCommand command) {
       return kStatusHelp;
     case SubCommand::kLog:
       return kLogHelp;
+    case SubCommand::kSignature:
+      return kSignatureHelp;
     case SubCommand::kRun:
     case SubCommand::kCheck:
       break;

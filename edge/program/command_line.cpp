@@ -132,6 +132,8 @@ CommandLineResult parse_command_line(int argc, char** argv, CommandLine& line) {
       line.command = SubCommand::kRelease;
     } else if (name == "log") {
       line.command = SubCommand::kLog;
+    } else if (name == "signature") {
+      line.command = SubCommand::kSignature;
     } else if (name != "run") {
       return usage_error("unknown command ", name);
     }
@@ -147,6 +149,7 @@ CommandLineResult parse_command_line(int argc, char** argv, CommandLine& line) {
   }
   if (line.json && line.prometheus)
     return usage_error("--json and --prometheus exclude each other", "");
+  if (line.command == SubCommand::kSignature) return CommandLineResult::kGo;
   return settle_config(line);
 }
 

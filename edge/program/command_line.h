@@ -8,7 +8,15 @@
 namespace bess {
 
 /// `run` is what bess-edge does without a sub-command; --check makes it `check`.
-enum class SubCommand : std::uint8_t { kRun, kCheck, kCommission, kRelease, kStatus, kLog };
+enum class SubCommand : std::uint8_t {
+  kRun,
+  kCheck,
+  kCommission,
+  kRelease,
+  kStatus,
+  kLog,
+  kSignature
+};
 
 struct CommandLine {
   SubCommand command = SubCommand::kRun;

@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "edge/control/policy.h"
-#include "edge/control/safety_guard.h"
+#include "edge/control/decision_signature.h"
 #include "edge/program/edge_config.h"
 #include "shared/local_time.h"
+#include "shared/signature.h"
 #include "shared/utc_text.h"
 #include "tests/support/csv_rows.h"
 
@@ -29,24 +29,9 @@ std::int64_t utc_of(const CsvRow& row, const char* column) {
 
 /// What the guard was given: the simulated site has no alarm, and limits that never bind.
 GuardInputs inputs_of(const CsvRow& row) {
-  GuardInputs in;
-  in.now_utc_s = utc_of(row, "utc");
-  in.clock_ok = in.link_ok = in.has_price = true;
-  in.price_minute_utc_s = utc_of(row, "price_minute_utc");
-  in.price_centi_eur_per_mwh = std::stoi(row.at("price_centi_eur_per_mwh"));
-  in.measurement.soc_e4 = std::stoi(row.at("soc_e4"));
-  const LatticeState state = make_lattice_state(local_minute_of(in.now_utc_s),
-                                                in.measurement.soc_e4, in.price_centi_eur_per_mwh);
-  in.student_action = decide_with_student(state);
-  return in;
-}
-
-/// FNV-1a over the orders, one number to compare and to write down.
-std::uint64_t add_to_signature(std::uint64_t signature, std::int64_t value) {
-  for (int byte = 0; byte < 8; ++byte) {
-    signature = (signature ^ ((value >> (8 * byte)) & 0xff)) * 0x100000001b3U;
-  }
-  return signature;
+  return undisturbed_inputs(utc_of(row, "utc"), std::stoi(row.at("soc_e4")),
+                            utc_of(row, "price_minute_utc"),
+                            std::stoi(row.at("price_centi_eur_per_mwh")));
 }
 
 bool is_same(const CsvRow& row, const GuardInputs& in, const GuardDecision& decision) {
@@ -66,7 +51,7 @@ bool is_same(const CsvRow& row, const GuardInputs& in, const GuardDecision& deci
 int replay(const EdgeConfig& config, const std::vector<CsvRow>& log) {
   SafetyGuard guard(config.control.guard);
   std::map<std::int32_t, int> orders;
-  std::uint64_t signature = 0xcbf29ce484222325U;
+  Signature signature;
   for (const CsvRow& row : log) {
     if (row.at("mode") == "stopping") continue;
     if (row.at("mode") != "running" || row.at("written") != "1") {
@@ -77,10 +62,11 @@ int replay(const EdgeConfig& config, const std::vector<CsvRow>& log) {
     const GuardInputs in = inputs_of(row);
     const GuardDecision decision = guard.decide(in);
     if (!is_same(row, in, decision)) return 1;
-    signature = add_to_signature(add_to_signature(signature, in.now_utc_s), decision.power_w);
+    signature.add(in.now_utc_s);
+    signature.add(decision.power_w);
     ++orders[decision.power_w];
   }
-  std::printf("orders signature=%016llx", static_cast<unsigned long long>(signature));
+  std::printf("orders signature=%016llx", static_cast<unsigned long long>(signature.value()));
   for (const auto& [power_w, count] : orders) std::printf(" %+dW=%d", power_w, count);
   std::printf("\n");
   return 0;

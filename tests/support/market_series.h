@@ -1,9 +1,7 @@
-// Minute series for tests: flat, drawn from a seed, or the benchmark file where it is there.
+// Minute series for tests: flat, drawn from a seed, or the yardstick.
 #pragma once
 
 #include <gtest/gtest.h>
-
-#include <filesystem>
 
 #include "shared/host/minute_file.h"
 #include "shared/units_and_limits.h"
@@ -41,13 +39,9 @@ inline MinuteSeries random_series(std::string_view start_utc, int minutes, std::
   return series;
 }
 
-inline std::filesystem::path shared_data(const std::string& name) {
-  return std::filesystem::path(BESS_SOURCE_DIR) / "../shared/data" / name;
+/// The yardstick [SPEC 8]: real settled quarter-hours of January to May 2023, see tests/data/README.md.
+inline MinuteSeries read_yardstick() {
+  return read_minute_file(BESS_SOURCE_DIR "/tests/data/benchmark_minutes_2023.csv.gz");
 }
 
 }  // namespace bess
-
-#define BESS_SKIP_WITHOUT_DATA(name)                                            \
-  if (!std::filesystem::exists(bess::shared_data(name))) {                      \
-    GTEST_SKIP() << "needs ../shared/data/" << (name) << ", which is not here"; \
-  }

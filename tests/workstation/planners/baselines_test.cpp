@@ -2,8 +2,6 @@
 // foresight above all, and the fast sweep equal to the plain one.
 #include <gtest/gtest.h>
 
-#include <filesystem>
-
 #include "shared/host/user_error.h"
 #include "tests/support/small_market.h"
 #include "workstation/cli/policy_factory.h"
@@ -108,19 +106,6 @@ TEST(BellmanSweep, EqualsThePlainMaximumForAnyBattery) {
       ASSERT_NEAR(now[i], best, 0.05) << n << ' ' << i;
     }
   }
-}
-
-// The yardstick, skipped where its file is not [SPEC 8].
-TEST(Yardstick, RuleTabularAndForesightCarriedOver) {
-  const std::filesystem::path path =
-      std::filesystem::path(BESS_SOURCE_DIR) / "../shared/data/benchmark_minutes_2023.csv.gz";
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << "no yardstick file";
-  set_market_time_zone();
-  const MarketSteps market = make_market_steps(read_minute_file(path), {});
-  EXPECT_NEAR(profit("rbc", market, Split::kTest, true), 356.2, 1.0);
-  EXPECT_NEAR(profit("tabular", market, Split::kTest, true), 557.5, 6.0);
-  EXPECT_NEAR(profit("foresight", market, Split::kTest, true), 940.7, 1.0);
-  EXPECT_NEAR(profit("foresight", market, Split::kTest, false), 987.4, 1.0);
 }
 
 }  // namespace

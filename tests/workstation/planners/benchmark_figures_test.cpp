@@ -10,10 +10,8 @@
 namespace bess {
 namespace {
 
-constexpr const char* kBenchmark = "benchmark_minutes_2023.csv.gz";
-
-const MinuteSeries& benchmark() {
-  static const MinuteSeries series = read_minute_file(shared_data(kBenchmark));
+const MinuteSeries& yardstick() {
+  static const MinuteSeries series = read_yardstick();
   return series;
 }
 
@@ -25,14 +23,13 @@ struct Setting {
 };
 
 TEST(BenchmarkFigures, RuleTabularAndForesightOnTestDays) {
-  BESS_SKIP_WITHOUT_DATA(kBenchmark);
   const Setting settings[] = {{1, Settlement::kMinute, false, 412.4, 575.0, 987.4},
                               {0, Settlement::kStep, false, 443.0, 620.6, 992.9},
                               {2, Settlement::kMinute, false, 400.8, 561.6, 987.4},
                               {1, Settlement::kMinute, true, 356.2, 557.5, 940.7}};
   for (const Setting& s : settings) {
     const MarketSteps market = make_market_steps(
-        benchmark(), {.observation_delay_min = s.delay_min, .settlement = s.settlement});
+        yardstick(), {.observation_delay_min = s.delay_min, .settlement = s.settlement});
     const std::vector<MarketDay> days = market.days_of(Split::kTest);
     EvaluationOptions options;
     options.carry_soc = s.carry_soc;
@@ -55,8 +52,7 @@ TEST(BenchmarkFigures, RuleTabularAndForesightOnTestDays) {
 }
 
 TEST(BenchmarkFigures, OtherSplits) {
-  BESS_SKIP_WITHOUT_DATA(kBenchmark);
-  const MarketSteps market = make_market_steps(benchmark(), {});
+  const MarketSteps market = make_market_steps(yardstick(), {});
   const struct {
     Split split;
     double rule, foresight;

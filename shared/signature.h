@@ -1,0 +1,23 @@
+// One number that stands for a series of integers: FNV-1a, 64 bits. Equal series have equal
+// signatures on every machine; two that differ by accident practically never do.
+#pragma once
+
+#include <cstdint>
+
+namespace bess {
+
+class Signature {
+ public:
+  void add(std::int64_t value) {
+    constexpr std::uint64_t kPrime = 0x100000001b3;
+    for (int byte = 0; byte < 8; ++byte) {
+      hash_ = (hash_ ^ ((static_cast<std::uint64_t>(value) >> (8 * byte)) & 0xff)) * kPrime;
+    }
+  }
+  [[nodiscard]] std::uint64_t value() const { return hash_; }
+
+ private:
+  std::uint64_t hash_ = 0xcbf29ce484222325;
+};
+
+}  // namespace bess
