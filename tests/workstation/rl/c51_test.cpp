@@ -1,8 +1,8 @@
 #include "workstation/rl/c51.h"
 
-#include "reference_net.h"
 #include "shared/host/user_error.h"
-#include "tile_sums.h"
+#include "tests/workstation/nn/reference_net.h"
+#include "tests/workstation/nn/tile_sums.h"
 #include "workstation/rl/learner.h"
 
 namespace bess {

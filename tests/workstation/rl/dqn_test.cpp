@@ -1,7 +1,7 @@
 #include "workstation/rl/dqn.h"
 
-#include "reference_net.h"
-#include "tile_sums.h"
+#include "tests/workstation/nn/reference_net.h"
+#include "tests/workstation/nn/tile_sums.h"
 #include "workstation/rl/learner.h"
 
 namespace bess {

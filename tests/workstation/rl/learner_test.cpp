@@ -1,6 +1,6 @@
 #include "workstation/rl/learner.h"
 
-#include "reference_net.h"
+#include "tests/workstation/nn/reference_net.h"
 
 namespace bess {
 namespace {
