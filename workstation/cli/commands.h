@@ -7,8 +7,6 @@
 #include <string>
 
 #include "workstation/rl/train.h"
-#include "workstation/student/correct_and_prove.h"
-#include "workstation/student/student_file.h"
 
 namespace bess {
 
@@ -33,13 +31,6 @@ std::string training_provenance(const std::string& prices, const TrainOptions& o
                                 const TrainResult& result);
 /// One line on stderr when the support of C51 is too narrow for the values met.
 void warn_narrow_support(const TrainOptions& options, const TrainResult& result);
-
-StudentFile student_file(const CorrectedStudent& student, const DistilOptions& options,
-                         const std::string& teacher_provenance);
-
-/// Writes the weight header if the whole lattice is free of violations, else throws UserError.
-void export_proved_student(const StudentFile& student, const std::string& name,
-                           const std::string& out, int threads);
 
 /// Every subcommand, in the order of the help.
 void add_commands(CLI::App& app);
