@@ -82,6 +82,7 @@ int run_controller(const CommandLine& command_line, const EdgeConfig& config) {
   greet_price_server(config, prices);
   write_journal_line(JournalLevel::kNotice,
                      config.control.control ? "started: in control" : "started: read-only");
+  journal_thresholds(config);
   if (config.control.control) release_if_a_check_fails(battery);
   static Loop loop(config.control, battery, prices, clock);
   CycleRecord before;

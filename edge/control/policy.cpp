@@ -14,4 +14,6 @@ const char* student_provenance() { return BESS_STUDENT_PROVENANCE; }
 
 std::uint32_t student_hash() { return BESS_STUDENT_WEIGHTS_HASH; }
 
+PriceThresholds student_thresholds() { return kExportedThresholds; }
+
 }  // namespace bess

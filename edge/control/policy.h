@@ -5,6 +5,7 @@
 
 #include "shared/action.h"
 #include "shared/features.h"
+#include "shared/price_thresholds.h"
 
 namespace bess {
 
@@ -16,5 +17,7 @@ int count_student_self_check_failures();
 int student_self_check_count();
 const char* student_provenance();
 std::uint32_t student_hash();
+/// What the exported student was proved for; the guard's own thresholds may be others.
+PriceThresholds student_thresholds();
 
 }  // namespace bess

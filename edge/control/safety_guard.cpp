@@ -66,12 +66,13 @@ bool SafetyGuard::find_price_stop_reason(const GuardInputs& in, Reason& reason) 
 }
 
 GuardDecision SafetyGuard::apply_thresholds(const GuardInputs& in) const {
+  const PriceThresholds& thresholds = settings_.thresholds;
   Action action = in.student_action;
   Reason reason = Reason::kStudent;
-  if (in.price_centi_eur_per_mwh <= settings_.low_price_centi_eur_per_mwh) {
+  if (in.price_centi_eur_per_mwh <= thresholds.low_eur_per_mwh * kCentiPerEur) {
     action = Action::kCharge;
     reason = Reason::kPriceLow;
-  } else if (in.price_centi_eur_per_mwh >= settings_.high_price_centi_eur_per_mwh) {
+  } else if (in.price_centi_eur_per_mwh >= thresholds.high_eur_per_mwh * kCentiPerEur) {
     action = Action::kDischarge;
     reason = Reason::kPriceHigh;
   }

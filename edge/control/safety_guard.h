@@ -6,13 +6,13 @@
 #include <cstdint>
 
 #include "edge/control/control_types.h"
+#include "shared/price_thresholds.h"
 
 namespace bess {
 
 struct GuardSettings {
-  std::int32_t power_w = 4'000;  ///< rated power of the battery, both directions
-  std::int32_t low_price_centi_eur_per_mwh = -500 * 100;    ///< at or below: charge
-  std::int32_t high_price_centi_eur_per_mwh = 1'500 * 100;  ///< at or above: discharge
+  std::int32_t power_w = 4'000;     ///< rated power of the battery, both directions
+  PriceThresholds thresholds = {};  ///< beyond them the student is not asked
   std::int32_t soc_min_e4 = 1'000;
   std::int32_t soc_max_e4 = 10'000;
   std::int32_t soc_hysteresis_e4 = 50;  ///< back inside by this much before the bound opens again

@@ -155,10 +155,21 @@ void read_price(TomlTable table, PriceFeedSettings& price) {
   load_http_headers((folder / header_file.c_str()).c_str(), price.http.headers, table.error());
 }
 
+/// In whole EUR/MWh, as the proof counts them: 1500 as well as 1500.0.
+void read_threshold(TomlTable& table, std::string_view key, std::int32_t& eur_per_mwh) {
+  std::int32_t centi_eur_per_mwh = eur_per_mwh * kCentiPerEur;
+  table.scaled(key, centi_eur_per_mwh, kCentiPerEur, -kThresholdMaxEurPerMwh,
+               kThresholdMaxEurPerMwh);
+  if (centi_eur_per_mwh % kCentiPerEur != 0) {
+    table.fail(key, "must be whole EUR/MWh, as the student is proved for");
+  }
+  eur_per_mwh = centi_eur_per_mwh / kCentiPerEur;
+}
+
 void read_guard(TomlTable table, EdgeConfig& config) {
   GuardSettings& guard = config.control.guard;
-  table.scaled("low_price_eur_per_mwh", guard.low_price_centi_eur_per_mwh, 100, -15'000, 15'000);
-  table.scaled("high_price_eur_per_mwh", guard.high_price_centi_eur_per_mwh, 100, -15'000, 15'000);
+  read_threshold(table, "low_price_eur_per_mwh", guard.thresholds.low_eur_per_mwh);
+  read_threshold(table, "high_price_eur_per_mwh", guard.thresholds.high_eur_per_mwh);
   table.scaled("soc_min", guard.soc_min_e4, 10'000, 0, 1);
   table.scaled("soc_max", guard.soc_max_e4, 10'000, 0, 1);
   table.scaled("soc_hysteresis", guard.soc_hysteresis_e4, 10'000, 0, 0.2);
@@ -171,7 +182,7 @@ void read_guard(TomlTable table, EdgeConfig& config) {
   table.integer("order_deadline_s", config.control.order_deadline_s, 1, kSecondsPerStep);
   table.boolean("require_synchronised_clock", config.require_synchronised_clock);
   table.finish();
-  if (guard.low_price_centi_eur_per_mwh >= guard.high_price_centi_eur_per_mwh) {
+  if (!guard.thresholds.are_ordered()) {
     table.fail("low_price_eur_per_mwh", "must be below high_price_eur_per_mwh");
   }
   if (guard.soc_min_e4 + 2 * guard.soc_hysteresis_e4 >= guard.soc_max_e4) {

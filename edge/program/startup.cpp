@@ -10,6 +10,7 @@
 #include "edge/log/journal.h"
 #include "edge/prices/http_secrets.h"
 #include "edge/program/commission_file.h"
+#include "edge/program/threshold_note.h"
 #include "edge/registers/codec.h"
 #include "shared/utc_text.h"
 
@@ -97,6 +98,20 @@ bool report_price(const EdgeConfig& config, PriceFeed& prices) {
   return true;
 }
 
+ThresholdNote note_on_thresholds(const EdgeConfig& config) {
+  return compare_thresholds(config.control.guard.thresholds, student_thresholds());
+}
+
+void warn_of_thresholds(const ThresholdNote& note) {
+  report(JournalLevel::kWarning, "note: %s", note.text.c_str());
+}
+
+void print_thresholds(const EdgeConfig& config) {
+  const ThresholdNote note = note_on_thresholds(config);
+  if (!note.agree) return warn_of_thresholds(note);
+  std::printf("guard      %s\n", note.text.c_str());
+}
+
 /// Without the sign check a controller would refuse to start; one that only reads does not need it.
 bool report_sign(const EdgeConfig& config) {
   std::string refusal;
@@ -157,6 +172,12 @@ void greet_price_server(const EdgeConfig& config, PriceFeed& prices) {
          loggable_url(config.price.http.url.view()).c_str(), price_status_text(status).data());
 }
 
+void journal_thresholds(const EdgeConfig& config) {
+  const ThresholdNote note = note_on_thresholds(config);
+  if (!note.agree) return warn_of_thresholds(note);
+  write_journal_line(JournalLevel::kInfo, "guard: " + note.text);
+}
+
 bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& prices,
                   const EdgeClock& clock) {
   std::printf("student    %s (%d self-checks passed)\n", student_provenance(),
@@ -164,6 +185,8 @@ bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& p
   std::printf("map        %s%s%s; control = %s\n", config.map.name.c_str(),
               config.map.variant.empty() ? "" : ", variant ", config.map.variant.c_str(),
               config.control.control ? "true" : "false (read-only)");
+  std::fflush(stdout);
+  print_thresholds(config);
   std::fflush(stdout);
   const bool battery_ok = identify(config, battery, true) == Status::kOk;
   print_orders(config, battery);

@@ -22,6 +22,9 @@ bool reach_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& 
 /// yet.
 void greet_price_server(const EdgeConfig& config, PriceFeed& prices);
 
+/// One journal line: whether the guard enforces what the student is proved for.
+void journal_thresholds(const EdgeConfig& config);
+
 /// Prints settings, encoded orders, a battery reading and the newest price; true when all is well.
 bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& prices,
                   const EdgeClock& clock);

@@ -1,11 +1,13 @@
 // The student that this build carries: assembled at compile time from the exported plain C arrays
-// of <student_weights.h>, so that weights of another architecture, or damaged ones, do not compile.
+// of <student_weights.h>, so that weights of another architecture, damaged ones or unproved ones do
+// not compile.
 // Include this in few files: the tables are constant-initialised in each.
 #pragma once
 
 #include <student_weights.h>
 
 #include "shared/nn/student_net.h"
+#include "shared/price_thresholds.h"
 
 namespace bess {
 
@@ -35,11 +37,22 @@ constexpr StudentNet assemble_exported_student() {
 
 inline constexpr StudentNet kExportedStudent = detail::assemble_exported_student();
 
-static_assert(BESS_STUDENT_VERSION == 1, "student_weights.h is of another format version");
+static_assert(BESS_STUDENT_VERSION == 2,
+              "student_weights.h is of another format version: export it again");
 static_assert(BESS_STUDENT_ARCHITECTURE_HASH == student_architecture_hash(),
               "student_weights.h was exported for another architecture: export it again");
 static_assert(BESS_STUDENT_WEIGHTS_HASH == student_weights_hash(kExportedStudent),
               "student_weights.h is damaged or was edited by hand: export it again");
+
+/// What the net was proved for. The guard's thresholds are the operator's and may be others.
+inline constexpr PriceThresholds kExportedThresholds{BESS_STUDENT_LOW_PRICE_EUR_PER_MWH,
+                                                     BESS_STUDENT_HIGH_PRICE_EUR_PER_MWH};
+static_assert(kExportedThresholds.are_ordered());
+static_assert(BESS_STUDENT_STATES_CHECKED == kLatticeStateCount &&
+                  BESS_STUDENT_VIOLATIONS_PROPERTY_1 == 0 &&
+                  BESS_STUDENT_VIOLATIONS_PROPERTY_2 == 0 &&
+                  BESS_STUDENT_VIOLATIONS_PROPERTY_3 == 0,
+              "student_weights.h is not proved over the whole lattice: export it again");
 
 inline constexpr int kExportedSelfCheckCount = BESS_STUDENT_SELF_CHECK_COUNT;
 static_assert(kExportedSelfCheckCount > 0, "student_weights.h carries no self-check vectors");

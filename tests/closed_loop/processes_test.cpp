@@ -15,14 +15,19 @@
 namespace bess {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr std::int32_t kScale = 900;  // from an hour before summer time on
 
-/// Notes are about the machine that the test runs on: no seccomp, memory that may not be locked.
+/// Notes are about the machine that the test runs on: no seccomp, memory that may not be locked. The
+/// guard's thresholds are said at every start.
 std::string line_after_notes(ChildProcess& child) {
   std::string line = child.read_line();
-  while (line.starts_with("bess-edge: note:")) line = child.read_line();
+  while (line.starts_with("bess-edge: note:") || line.starts_with("guard: ")) {
+    line = child.read_line();
+  }
   return line;
 }
 
@@ -103,7 +108,7 @@ TEST_F(Processes, TwoControllersCannotShareABattery) {
     EXPECT_THAT(text, HasSubstr(in_use + std::to_string(edge.pid()))) << way.back();
     EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
   }
-  edge.read_line();  // undisturbed
+  static_cast<void>(line_after_notes(edge));  // undisturbed
   EXPECT_THAT(edge.read_line(), HasSubstr("mode=running"));
   edge.signal(SIGKILL);
   edge.wait();
@@ -223,7 +228,7 @@ TEST_F(Processes, EachCommandHasItsHelp) {
 TEST_F(Processes, AKilledEdgesOrderIsEndedByTheBatterysWatchdog) {
   start_simulators();
   ChildProcess edge({BESS_EDGE_PROGRAM, "--config", site_.commission()});
-  for (int i = 0; i < 4; ++i) edge.read_line();
+  for (int i = 0; i < 4; ++i) line_after_notes(edge);
   edge.signal(SIGKILL);
   EXPECT_EQ(edge.wait(), 128 + SIGKILL);
   sleep_until_monotonic(clock_ns(CLOCK_MONOTONIC) + kNanosecondsPerSecond / 2);  // 450 s
@@ -330,10 +335,35 @@ TEST_F(Processes, CheckReportsAndReadsButWritesNothing) {
   EXPECT_EQ(edge.wait(), 0) << text;
   EXPECT_THAT(text, HasSubstr("sign       checked"));
   EXPECT_THAT(text, HasSubstr("clock      simulated"));
+  EXPECT_THAT(text, HasSubstr("guard      charge at or below -500, discharge at or above 1500 "
+                              "EUR/MWh, as the student is proved for\n"));
   EXPECT_THAT(text, HasSubstr("charge     0x0880:[1 0 28000 0 32000 2 250 0 300 255 0]"));
   EXPECT_THAT(text, HasSubstr("SoC 50."));  // the sign check has charged a little
   EXPECT_THAT(text, HasSubstr("dispatch off"));
   EXPECT_THAT(text, HasSubstr("EUR/MWh of minute"));
+}
+
+/// The operator's guard and the weights come from two people; where they differ is said, not refused.
+TEST_F(Processes, ThresholdsOtherThanTheProvedOnesAreSaidAtStart) {
+  start_simulators();
+  sleep_until_monotonic(site_.anchor_ns());
+  const std::string narrow = site_.commission({.guard_keys = "high_price_eur_per_mwh = 450\n"});
+  const std::string warning =
+      "bess-edge: note: [guard] high_price_eur_per_mwh = 450, the student is proved for 1500: "
+      "between them the guard alone makes it discharge\n";
+  ChildProcess check({BESS_EDGE_PROGRAM, "--config", narrow, "--check"});
+  const std::string checked = check.read_all();
+  EXPECT_THAT(checked, HasSubstr(warning));
+  EXPECT_THAT(checked, Not(HasSubstr("guard      ")));
+  EXPECT_EQ(check.wait(), 0) << checked;
+  ChildProcess warned({BESS_EDGE_PROGRAM, "--config", narrow, "--cycles", "1"});
+  EXPECT_THAT(warned.read_all(), AllOf(HasSubstr("started: in control"), HasSubstr(warning)));
+  EXPECT_EQ(warned.wait(), 0);
+  ChildProcess agreed({BESS_EDGE_PROGRAM, "--config", site_.commission(), "--cycles", "1"});
+  EXPECT_THAT(agreed.read_all(),
+              HasSubstr("\nguard: charge at or below -500, discharge at or above "
+                        "1500 EUR/MWh, as the student is proved for\n"));
+  EXPECT_EQ(agreed.wait(), 0);
 }
 
 TEST_F(Processes, BadStartsEndWithOneClearLine) {
@@ -429,7 +459,7 @@ TEST_F(Processes, AHandOverKeepsThePowerAndARestartGoesOn) {
   start_simulators();
   const std::string config = site_.commission();
   ChildProcess before({BESS_EDGE_PROGRAM, "--config", config});
-  for (int i = 0; i < 12; ++i) before.read_line();
+  for (int i = 0; i < 12; ++i) line_after_notes(before);
   before.signal(SIGHUP);
   EXPECT_THAT(before.read_all(), HasSubstr("stopped: handed over, the order stays in force"));
   EXPECT_EQ(before.wait(), 0);
@@ -446,7 +476,7 @@ TEST_F(Processes, ReleaseEndsAnOrderThatNobodyEndsAnyMore) {
   start_simulators();
   const std::string config = site_.commission();
   ChildProcess edge({BESS_EDGE_PROGRAM, "--config", config});
-  for (int i = 0; i < 4; ++i) edge.read_line();
+  for (int i = 0; i < 4; ++i) line_after_notes(edge);
   ChildProcess refused({BESS_EDGE_PROGRAM, "release", "--config", config, "--yes"});
   EXPECT_THAT(refused.read_all(), HasSubstr("is in use by another bess-edge"));
   EXPECT_EQ(refused.wait(), 1);

@@ -1,4 +1,4 @@
-// Student files: whatever is accepted evaluates without overflow on any state.
+// Student files: whatever is accepted has sane thresholds and evaluates without overflow on any state.
 #include "shared/host/user_error.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/support/integer_nets.h"
@@ -8,6 +8,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace bess;
   try {
     const StudentFile student = parse_student(std::string(text_of(data, size)), "fuzz");
+    must(student.certificate.thresholds.are_ordered(), "ordered thresholds");
     Random random(1);
     for (int i = 0; i < 16; ++i) {
       const Action action = student.net.decide(random_lattice_state(random));

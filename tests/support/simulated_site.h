@@ -78,6 +78,7 @@ class SimulatedSite {
     std::string battery_keys = alphaess_keys() + "start_timeout_s = 1\n";  ///< all but the port
     std::string price_server = "http://127.0.0.1";                         ///< without its port
     std::string price_keys = "";  ///< lines of TOML for [price], beside the URL
+    std::string guard_keys = "";  ///< lines of TOML
     std::string state = "state";  ///< folder; the file is named after it
   };
 
@@ -89,7 +90,8 @@ class SimulatedSite {
         << options.battery_keys << "port = " << battery_port << "\n[price]\nurl = \""
         << options.price_server << ":" << market_port
         << "/api/explore/v2.1/catalog/datasets/ods161/records?order_by=datetime%20desc&limit=20\"\n"
-        << options.price_keys << "[state]\nfolder = \"" << options.state << "\"\nlock_folder = \""
+        << options.price_keys << "[guard]\n"
+        << options.guard_keys << "[state]\nfolder = \"" << options.state << "\"\nlock_folder = \""
         << folder.file("")
         << "\"\n[log]\ncsv = \"edge.csv\"\n[simulation]\ntime_scale = " << time_scale_
         << "\nutc_start = \"" << utc_text(kStartS).view()

@@ -27,22 +27,21 @@ struct Options {
   bool json = false;
 };
 
-void print_result(const Options& options, const CorrectedStudent& student) {
-  const Certificate& c = student.certificate;
+void print_result(const Options& options, const CorrectionResult& result) {
+  const Certificate& c = student_of(result.verdict).certificate;
+  const std::size_t rounds = result.violations_by_round.size();
   if (options.json) {
     fmt::print(R"({{"student": {}, "corrected": {}, "rounds": {}, "states_checked": {}, )"
                R"("violations_property_1": {}, "violations_property_2": {}, )"
                R"("violations_property_3": {}}})"
                "\n",
-               json_quote(options.out), !options.plain, student.violations_by_round.size(),
-               c.states_checked, c.violations_property_1, c.violations_property_2,
-               c.violations_property_3);
+               json_quote(options.out), !options.plain, rounds, c.states_checked,
+               c.violations_property_1, c.violations_property_2, c.violations_property_3);
     return;
   }
   fmt::print("{}: {} states checked, violations {} / {} / {} after {} round{}\n", options.out,
              c.states_checked, c.violations_property_1, c.violations_property_2,
-             c.violations_property_3, student.violations_by_round.size(),
-             student.violations_by_round.size() == 1 ? "" : "s");
+             c.violations_property_3, rounds, rounds == 1 ? "" : "s");
 }
 
 void run(const Options& options) {
@@ -51,35 +50,27 @@ void run(const Options& options) {
   if (options.epochs) config.distil.epochs = *options.epochs;
   config.distil.correct = !options.plain;
   require_writable(options.out);
-  const Teacher teacher = load_teacher(options.teacher, parse_risk(options.risk));
+  Teacher teacher = load_teacher(options.teacher, parse_risk(options.risk));
+  if (!teacher.risk.is_mean()) teacher.provenance += ", risk " + options.risk;
   const MarketSteps market = make_market_steps(read_minute_file(options.prices), config.market);
   watch_interruption();
   const Matrix visited = visited_inputs(teacher, market, config.battery, config.distil.seed);
-  const CorrectedStudent student =
+  const CorrectionResult result =
       correct_and_prove(teacher, visited, config.distil, interruption());
   if (interruption()) throw Interrupted{};
-  if (!options.plain && student.certificate.violations() != 0) {
+  const StudentFile& student = student_of(result.verdict);
+  if (!options.plain && !std::holds_alternative<ProvedStudent>(result.verdict)) {
     fail(
         "{} violations are left after {} rounds, nothing was written; raise [correction] "
         "price_slope and soc_slope or [distil] repair_rounds",
-        student.certificate.violations(), student.violations_by_round.size());
+        student.certificate.violations(), result.violations_by_round.size());
   }
-  const std::string risk = teacher.risk.is_mean() ? "" : ", risk " + options.risk;
-  save_student(options.out, student_file(student, config.distil, teacher.provenance + risk));
-  if (!options.curve_out.empty()) write_file(options.curve_out, distil_curve_csv(student.curve));
-  print_result(options, student);
+  save_student(options.out, student);
+  if (!options.curve_out.empty()) write_file(options.curve_out, distil_curve_csv(result.curve));
+  print_result(options, result);
 }
 
 }  // namespace
-
-StudentFile student_file(const CorrectedStudent& student, const DistilOptions& options,
-                         const std::string& teacher_provenance) {
-  return {student.net, options.correction.low_price_eur_per_mwh,
-          options.correction.high_price_eur_per_mwh,
-          fmt::format("{}; {} omega {:g}, {} epochs, seed {}", teacher_provenance,
-                      options.correct ? "corrected," : "plain,", options.omega, options.epochs,
-                      options.seed)};
-}
 
 void add_distil_command(ProgramCommand& app) {
   auto options = std::make_shared<Options>();

@@ -20,26 +20,22 @@ struct Options {
   std::string out = "edge/generated/student_weights.h";
 };
 
+[[noreturn]] void refuse(const std::string& name, const Certificate& c) {
+  fail("{}: refused: {} violations over the lattice ({} / {} / {}); distil it again", name,
+       c.violations(), c.violations_property_1, c.violations_property_2, c.violations_property_3);
+}
+
 void run(const Options& options) {
-  const StudentFile student = load_student(options.student);
-  export_proved_student(student, options.student, options.out,
-                        options.common.resolve().train.threads);
+  const Verdict verdict =
+      prove(load_student(options.student), options.common.resolve().train.threads);
+  const auto* student = std::get_if<ProvedStudent>(&verdict);
+  if (student == nullptr) refuse(options.student, student_of(verdict).certificate);
+  write_file(options.out, format_weight_header(*student));
   fmt::print("{}: weights {:08x}, proved, written\n", options.out,
-             student_weights_hash(student.net));
+             student_weights_hash(student->net()));
 }
 
 }  // namespace
-
-void export_proved_student(const StudentFile& student, const std::string& name,
-                           const std::string& out, int threads) {
-  const Certificate certificate = prove(student, threads);
-  if (certificate.violations() != 0) {
-    fail("{}: refused: {} violations over the lattice ({} / {} / {}); distil it again", name,
-         certificate.violations(), certificate.violations_property_1,
-         certificate.violations_property_2, certificate.violations_property_3);
-  }
-  write_file(out, format_weight_header(student));
-}
 
 void add_export_command(ProgramCommand& app) {
   auto options = std::make_shared<Options>();

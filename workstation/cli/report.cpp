@@ -33,18 +33,14 @@ void run(const std::string& path, const std::string& prices) {
   const std::string prices_path = prices.empty() ? prices_of_run(folder) : prices;
   MarketSteps market = make_market_steps(read_minute_file(prices_path), config.market);
   Teacher teacher = load_teacher(folder.teacher());
-  StudentFile plain = load_student(folder.plain_student());
-  StudentFile corrected = load_student(folder.student());
-  Certificate plain_proof = prove(plain, config.train.threads);
-  Certificate corrected_proof = prove(corrected, config.train.threads);
+  Verdict plain = prove(load_student(folder.plain_student()), config.train.threads);
+  Verdict corrected = prove(load_student(folder.student()), config.train.threads);
   const RunResults results{
       config,
       std::move(market),
       std::move(teacher),
       std::move(plain),
-      std::move(plain_proof),
       std::move(corrected),
-      std::move(corrected_proof),
       parse_training_curve_csv(read_file(folder.training_curve()),
                                folder.training_curve().string()),
       parse_distil_curve_csv(read_file(folder.distil_curve()), folder.distil_curve().string())};

@@ -60,45 +60,45 @@ RunResults learn(const RunConfig& config, MarketSteps market, const std::string&
       visited_inputs(trained.teacher, market, config.battery, config.distil.seed);
   DistilOptions plain_options = config.distil;
   plain_options.correct = false;
-  const CorrectedStudent plain =
+  CorrectionResult plain =
       correct_and_prove(trained.teacher, visited, plain_options, interruption());
   if (interruption()) throw Interrupted{};
-  fmt::print("      {} violations over the lattice\n", plain.certificate.violations());
+  fmt::print("      {} violations over the lattice\n",
+             student_of(plain.verdict).certificate.violations());
 
   announce(4, "correct while distilling, and prove");
-  const CorrectedStudent corrected =
+  CorrectionResult corrected =
       correct_and_prove(trained.teacher, visited, config.distil, interruption());
   if (interruption()) throw Interrupted{};
-  if (corrected.certificate.violations() != 0) {
+  const Certificate& certificate = student_of(corrected.verdict).certificate;
+  if (!std::holds_alternative<ProvedStudent>(corrected.verdict)) {
     fail(
         "{} violations are left after {} rounds; raise [correction] price_slope and soc_slope or "
         "[distil] repair_rounds",
-        corrected.certificate.violations(), corrected.violations_by_round.size());
+        certificate.violations(), corrected.violations_by_round.size());
   }
-  fmt::print("      no violation over {} states, {} round{}\n",
-             corrected.certificate.states_checked, corrected.violations_by_round.size(),
+  fmt::print("      no violation over {} states, {} round{}\n", certificate.states_checked,
+             corrected.violations_by_round.size(),
              corrected.violations_by_round.size() == 1 ? "" : "s");
-  const std::string provenance = trained.teacher.provenance;
   return {config,
           std::move(market),
           std::move(trained.teacher),
-          student_file(plain, plain_options, provenance),
-          plain.certificate,
-          student_file(corrected, config.distil, provenance),
-          corrected.certificate,
+          std::move(plain.verdict),
+          std::move(corrected.verdict),
           std::move(trained.curve),
-          corrected.curve};
+          std::move(corrected.curve)};
 }
 
 std::string manifest(const RunResults& run, const std::string& prices) {
+  const StudentFile& corrected = student_of(run.corrected);
   return fmt::format(
       "{{\n\"version\": \"{}\",\n\"prices\": {},\n\"seed\": {},\n\"threads\": {},\n"
       "\"provenance\": {},\n\"weights_hash\": \"{:08x}\",\n\"states_checked\": {},\n"
       "\"violations_plain\": {},\n\"violations_corrected\": {}\n}}\n",
       BESS_VERSION, json_quote(prices), run.config.train.seed, run.config.train.threads,
-      json_quote(run.corrected.provenance), student_weights_hash(run.corrected.net),
-      run.corrected_certificate.states_checked, run.plain_certificate.violations(),
-      run.corrected_certificate.violations());
+      json_quote(corrected.provenance), student_weights_hash(corrected.net),
+      corrected.certificate.states_checked, student_of(run.plain).certificate.violations(),
+      corrected.certificate.violations());
 }
 
 void run(const Options& options) {
@@ -119,11 +119,11 @@ void run(const Options& options) {
 
   announce(5, "export");
   save_teacher(folder.teacher(), results.teacher);
-  save_student(folder.plain_student(), results.plain);
-  save_student(folder.student(), results.corrected);
+  save_student(folder.plain_student(), student_of(results.plain));
+  save_student(folder.student(), student_of(results.corrected));
   write_file(folder.training_curve(), training_curve_csv(results.training_curve));
   write_file(folder.distil_curve(), distil_curve_csv(results.distil_curve));
-  write_file(folder.header(), format_weight_header(results.corrected));
+  write_file(folder.header(), format_weight_header(std::get<ProvedStudent>(results.corrected)));
   write_file(folder.manifest(), manifest(results, prices));
 
   announce(6, "evaluate on test days and report");

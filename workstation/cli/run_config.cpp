@@ -165,9 +165,11 @@ void KeyList::list(RunConfig& c) {
   integer("repair_epochs", c.distil.repair_epochs, 1, 1'000'000, "of each repair");
 
   section("correction");
-  integer("low_price_eur_per_mwh", c.distil.correction.low_price_eur_per_mwh, -15'000, 15'000,
-          "property 1: charge at or below; binds the student from -500 up");
-  integer("high_price_eur_per_mwh", c.distil.correction.high_price_eur_per_mwh, -15'000, 15'000,
+  PriceThresholds& thresholds = c.distil.correction.thresholds;
+  integer("low_price_eur_per_mwh", thresholds.low_eur_per_mwh, -kThresholdMaxEurPerMwh,
+          kThresholdMaxEurPerMwh, "property 1: charge at or below; binds the student from -500 up");
+  integer("high_price_eur_per_mwh", thresholds.high_eur_per_mwh, -kThresholdMaxEurPerMwh,
+          kThresholdMaxEurPerMwh,
           "property 2: discharge at or above; binds the student up to 1500");
   number("logit_margin", c.distil.correction.logit_margin, 0.01, 100, "at the thresholds");
   number("price_slope", c.distil.correction.price_slope, 0, 100,
@@ -187,8 +189,7 @@ void check_relations(const RunConfig& config, const std::string& name) {
   if (config.train.value_min_eur_per_h >= config.train.value_max_eur_per_h) {
     fail("{}: [train] value_min_eur_per_h must be below value_max_eur_per_h", name);
   }
-  const auto& correction = config.distil.correction;
-  if (correction.low_price_eur_per_mwh >= correction.high_price_eur_per_mwh) {
+  if (!config.distil.correction.thresholds.are_ordered()) {
     fail("{}: [correction] low_price_eur_per_mwh must be below high_price_eur_per_mwh", name);
   }
 }

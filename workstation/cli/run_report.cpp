@@ -35,9 +35,9 @@ std::vector<NamedEvaluation> evaluate_run(const RunResults& run) {
   TeacherPolicy teacher(run.teacher);
   all.push_back(
       evaluate_both(fmt::format("{} teacher", method_name(run.teacher.method)), teacher, run));
-  StudentPolicy plain(run.plain.net);
+  StudentPolicy plain(student_of(run.plain).net);
   all.push_back(evaluate_both("plain student", plain, run));
-  StudentPolicy corrected(run.corrected.net);
+  StudentPolicy corrected(student_of(run.corrected).net);
   all.push_back(evaluate_both("corrected student", corrected, run));
   baseline("foresight");
   return all;
@@ -46,6 +46,8 @@ std::vector<NamedEvaluation> evaluate_run(const RunResults& run) {
 std::string write_run_report(const RunResults& run, const RunFolder& folder) {
   const std::vector<NamedEvaluation> evaluations = evaluate_run(run);
   write_file(folder.table(), comparison_csv(evaluations));
+  const StudentFile& plain = student_of(run.plain);
+  const StudentFile& corrected = student_of(run.corrected);
   const ReportInputs inputs{
       .market = run.market,
       .battery = run.config.battery,
@@ -53,27 +55,22 @@ std::string write_run_report(const RunResults& run, const RunFolder& folder) {
       .training_curve = run.training_curve,
       .distil_curve = run.distil_curve,
       .teacher = &run.teacher,
-      .uncorrected = &run.plain.net,
-      .uncorrected_certificate = &run.plain_certificate,
-      .corrected = &run.corrected.net,
-      .corrected_certificate = &run.corrected_certificate,
-      .thresholds = {.student_low = run.corrected.low_price_eur_per_mwh,
-                     .student_high = run.corrected.high_price_eur_per_mwh},
-      .provenance = run.corrected.provenance,
+      .uncorrected = &plain,
+      .corrected = &corrected,
+      .provenance = corrected.provenance,
   };
   write_report(inputs, folder.path);
   const auto violations = [](const Certificate& c) {
     return fmt::format("{} / {} / {}", c.violations_property_1, c.violations_property_2,
                        c.violations_property_3);
   };
-  std::string summary =
-      format_comparison_table(evaluations) +
-      fmt::format(
-          "\nviolations of properties 1 / 2 / 3 over {} lattice states\n"
-          "  before correction (plain student)    {}\n"
-          "  after correction (corrected student) {}\n",
-          run.corrected_certificate.states_checked, violations(run.plain_certificate),
-          violations(run.corrected_certificate));
+  std::string summary = format_comparison_table(evaluations) +
+                        fmt::format(
+                            "\nviolations of properties 1 / 2 / 3 over {} lattice states\n"
+                            "  before correction (plain student)    {}\n"
+                            "  after correction (corrected student) {}\n",
+                            corrected.certificate.states_checked, violations(plain.certificate),
+                            violations(corrected.certificate));
   write_file(folder.summary(), summary);
   return summary;
 }

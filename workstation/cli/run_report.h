@@ -9,7 +9,7 @@
 #include "workstation/cli/run_folder.h"
 #include "workstation/report/curves.h"
 #include "workstation/report/report.h"
-#include "workstation/student/student_file.h"
+#include "workstation/student/prove.h"
 
 namespace bess {
 
@@ -17,10 +17,8 @@ struct RunResults {
   RunConfig config;
   MarketSteps market;
   Teacher teacher;
-  StudentFile plain;
-  Certificate plain_certificate;
-  StudentFile corrected;
-  Certificate corrected_certificate;
+  Verdict plain;
+  Verdict corrected;
   std::vector<CurvePoint> training_curve;
   std::vector<DistilPoint> distil_curve;
 };

@@ -6,7 +6,7 @@
 #include "shared/host/user_error.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
-#include "workstation/student/student_file.h"
+#include "workstation/student/prove.h"
 
 namespace bess {
 namespace {
@@ -18,8 +18,8 @@ struct Options {
   bool json = false;
 };
 
-void print_json(const std::string& name, const StudentFile& student, bool exhaustive,
-                const Certificate& c) {
+void print_json(const std::string& name, const StudentFile& student, bool exhaustive) {
+  const Certificate& c = student.certificate;
   fmt::print(
       R"({{"student": {}, "weights_hash": "{:08x}", "method": "{}", "states_checked": {}, )"
       R"("states_evaluated": {}, "violations_property_1": {}, "violations_property_2": {}, )"
@@ -29,40 +29,39 @@ void print_json(const std::string& name, const StudentFile& student, bool exhaus
       json_quote(name), student_weights_hash(student.net),
       exhaustive ? "exhaustive" : "bounds and enumeration", c.states_checked, c.states_evaluated,
       c.violations_property_1, c.violations_property_2, c.violations_property_3,
-      student.low_price_eur_per_mwh, student.high_price_eur_per_mwh, c.seconds);
+      c.thresholds.low_eur_per_mwh, c.thresholds.high_eur_per_mwh, c.seconds);
 }
 
-void print_text(const std::string& name, const StudentFile& student, const Certificate& c) {
+void print_text(const std::string& name, const StudentFile& student) {
+  const Certificate& c = student.certificate;
   fmt::print("{} (weights {:08x})\n", name, student_weights_hash(student.net));
   fmt::print("  {} states checked, {} of them evaluated one by one, {:.1f} s\n", c.states_checked,
              c.states_evaluated, c.seconds);
-  fmt::print(
-      "  property 1, charge at or below {} EUR/MWh:    {} violations{}\n",
-      student.low_price_eur_per_mwh, c.violations_property_1,
-      student.low_price_eur_per_mwh < kLatticePriceMinEurPerMwh ? " (the guard's alone)" : "");
-  fmt::print(
-      "  property 2, discharge at or above {} EUR/MWh: {} violations{}\n",
-      student.high_price_eur_per_mwh, c.violations_property_2,
-      student.high_price_eur_per_mwh > kLatticePriceMaxEurPerMwh ? " (the guard's alone)" : "");
+  fmt::print("  property 1, charge at or below {} EUR/MWh:    {} violations{}\n",
+             c.thresholds.low_eur_per_mwh, c.violations_property_1,
+             guard_alone_note(c.thresholds.low_binds_student()));
+  fmt::print("  property 2, discharge at or above {} EUR/MWh: {} violations{}\n",
+             c.thresholds.high_eur_per_mwh, c.violations_property_2,
+             guard_alone_note(c.thresholds.high_binds_student()));
   fmt::print("  property 3, monotone in price and SoC:          {} violations\n",
              c.violations_property_3);
-  fmt::print("{}\n", c.violations() == 0 ? "PROVED" : "NOT PROVED");
+  fmt::print("{}\n", c.covers_lattice_without_violation() ? "PROVED" : "NOT PROVED");
 }
 
 void run(const Options& options) {
   const bool compiled = options.student.empty();
-  const StudentFile student = compiled ? compiled_student() : load_student(options.student);
   const std::string name = compiled ? "compiled array" : options.student;
-  const Certificate certificate =
-      prove(student, options.common.resolve().train.threads, options.exhaustive);
+  const Verdict verdict = prove(compiled ? compiled_student() : load_student(options.student),
+                                options.common.resolve().train.threads, options.exhaustive);
+  const StudentFile& student = student_of(verdict);
   if (options.json) {
-    print_json(name, student, options.exhaustive, certificate);
+    print_json(name, student, options.exhaustive);
   } else {
-    print_text(name, student, certificate);
+    print_text(name, student);
   }
-  if (certificate.violations() != 0) {
+  if (!std::holds_alternative<ProvedStudent>(verdict)) {
     fail("{}: {} violations; distil it again before it is exported", name,
-         certificate.violations());
+         student.certificate.violations());
   }
 }
 

@@ -27,9 +27,9 @@ RowBounds CorrectionLayer::bounds_of(const LatticeAxes& axes, double lower, doub
   const auto& price = axes.price_eur_per_mwh;
   RowBounds bounds;
   bounds.lower_rows = static_cast<int>(
-      std::ranges::upper_bound(price, options_.low_price_eur_per_mwh) - price.begin());
+      std::ranges::upper_bound(price, options_.thresholds.low_eur_per_mwh) - price.begin());
   bounds.upper_rows = static_cast<int>(
-      price.end() - std::ranges::lower_bound(price, options_.high_price_eur_per_mwh));
+      price.end() - std::ranges::lower_bound(price, options_.thresholds.high_eur_per_mwh));
   const double low_ramp =
       bounds.lower_rows > 0 ? options_.price_slope * axes.mapped_price[bounds.lower_rows - 1] : 0;
   const double high_ramp =

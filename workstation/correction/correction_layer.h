@@ -14,16 +14,16 @@
 
 #include <vector>
 
+#include "shared/price_thresholds.h"
 #include "workstation/correction/isotonic.h"
 
 namespace bess {
 
 struct CorrectionOptions {
-  int low_price_eur_per_mwh = -500;   ///< property 1 binds at or below
-  int high_price_eur_per_mwh = 1500;  ///< property 2 binds at or above
-  double logit_margin = 1.0;          ///< m
-  double price_slope = 0.2;           ///< logits over the whole mapped price range
-  double soc_slope = 0.4;             ///< logits over the whole SoC range
+  PriceThresholds thresholds = {};  ///< of properties 1 and 2
+  double logit_margin = 1.0;        ///< m
+  double price_slope = 0.2;         ///< logits over the whole mapped price range
+  double soc_slope = 0.4;           ///< logits over the whole SoC range
 };
 
 /// Axes of one lattice, ascending: prices in EUR/MWh with their network input, SoC as network input

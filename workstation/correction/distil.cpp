@@ -116,10 +116,9 @@ void Distiller::draw_axes(const LatticeState* centre, LatticeAxes& axes) {
     }
     return static_cast<int>(random_.index(kSocCount));
   };
-  const auto& correction = options_.correction;
+  const PriceThresholds& thresholds = options_.correction.thresholds;
   axes.price_eur_per_mwh = {kLatticePriceMinEurPerMwh, kLatticePriceMaxEurPerMwh};
-  for (const int threshold :
-       {correction.low_price_eur_per_mwh, correction.high_price_eur_per_mwh}) {
+  for (const int threshold : {thresholds.low_eur_per_mwh, thresholds.high_eur_per_mwh}) {
     axes.price_eur_per_mwh.push_back(
         clamped(threshold, kLatticePriceMinEurPerMwh, kLatticePriceMaxEurPerMwh));
   }

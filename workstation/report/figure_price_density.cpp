@@ -72,14 +72,16 @@ std::string threshold_line(const Line& line, int tag) {
       line.charges ? "right" : "left", line.charges ? "-0.7" : "0.7");
 }
 
-std::string threshold_lines(const ReportThresholds& t, const Shown& shown) {
+std::string threshold_lines(const PriceThresholds& student, const Shown& shown) {
+  const int low = student.low_eur_per_mwh;
+  const int high = student.high_eur_per_mwh;
   const Line lines[] = {
-      {t.rule_low, fmt::format("rule-based charges below {:g}", t.rule_low), true, 0.95},
-      {t.rule_high, fmt::format("rule-based discharges above {:g}", t.rule_high), false, 0.95},
-      {static_cast<double>(t.student_low), fmt::format("must charge up to {}", t.student_low), true,
-       0.84},
-      {static_cast<double>(t.student_high), fmt::format("must discharge from {}", t.student_high),
-       false, 0.84}};
+      {kPaperRuleLowEurPerMwh, fmt::format("rule-based charges below {:g}", kPaperRuleLowEurPerMwh),
+       true, 0.95},
+      {kPaperRuleHighEurPerMwh,
+       fmt::format("rule-based discharges above {:g}", kPaperRuleHighEurPerMwh), false, 0.95},
+      {static_cast<double>(low), fmt::format("must charge up to {}", low), true, 0.84},
+      {static_cast<double>(high), fmt::format("must discharge from {}", high), false, 0.84}};
   std::string text;
   int tag = 1;
   for (const Line& line : lines) {
@@ -90,7 +92,7 @@ std::string threshold_lines(const ReportThresholds& t, const Shown& shown) {
 }
 
 std::string caption_of(const std::vector<double>& train, const std::vector<double>& test,
-                       const ReportThresholds& t, const Shown& shown) {
+                       const PriceThresholds& student, const Shown& shown) {
   if (train.empty() || test.empty()) return "One of the two splits has no days.";
   const auto percent = [](double share) { return 100 * share; };
   return fmt::format(
@@ -102,13 +104,13 @@ std::string caption_of(const std::vector<double>& train, const std::vector<doubl
       quantile_of_sorted(train, 0.25), quantile_of_sorted(train, 0.75),
       quantile_of_sorted(test, 0.25), quantile_of_sorted(test, 0.75),
       percent(share_below(train, 0)), percent(share_below(test, 0)),
-      percent(share_below(test, shown.low) + 1 - share_below(test, shown.high)), t.student_low,
-      t.student_high);
+      percent(share_below(test, shown.low) + 1 - share_below(test, shown.high)),
+      student.low_eur_per_mwh, student.high_eur_per_mwh);
 }
 
 }  // namespace
 
-Figure price_density_figure(const MarketSteps& market, const ReportThresholds& thresholds) {
+Figure price_density_figure(const MarketSteps& market, const PriceThresholds& student) {
   const std::vector<double> train = sorted_observed(market, Split::kTrain);
   const std::vector<double> test = sorted_observed(market, Split::kTest);
   const Shown shown = shown_range(train, test);
@@ -120,13 +122,13 @@ Figure price_density_figure(const MarketSteps& market, const ReportThresholds& t
       "Histogram of observed prices from {:.0f} to {:.0f} EUR/MWh, training days as an area, test "
       "days as a line, thresholds as dashed lines.",
       shown.low, shown.high);
-  figure.caption = caption_of(train, test, thresholds, shown);
+  figure.caption = caption_of(train, test, student, shown);
   const KeyRow key = key_row(figure, 84,
                              {{"training days", kSoft, KeyEntry::Kind::kArea, 0, 0.7},
                               {"test days", kInk, KeyEntry::Kind::kLine, 2}});
   figure.commands =
       histogram("train", train, shown) + histogram("test", test, shown) +
-      threshold_lines(thresholds, shown) + key.set +
+      threshold_lines(student, shown) + key.set +
       fmt::format(
           "set lmargin at screen 0.095\nset rmargin at screen 0.96\nset tmargin at screen 0.89\n"
           "set xrange [{}:{}]\nset yrange [0:*]\nset offsets graph 0,0,0.22,0\n"

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "shared/price_thresholds.h"
 #include "workstation/correction/distil.h"
 #include "workstation/env/evaluate.h"
 #include "workstation/report/figure.h"
@@ -11,14 +12,6 @@
 #include "workstation/rl/train.h"
 
 namespace bess {
-
-/// Prices at which somebody acts by rule, EUR/MWh.
-struct ReportThresholds {
-  double rule_low = kPaperRuleLowEurPerMwh;
-  double rule_high = kPaperRuleHighEurPerMwh;
-  int student_low = kLatticePriceMinEurPerMwh;
-  int student_high = kLatticePriceMaxEurPerMwh;
-};
 
 /// Validation profit and loss over gradient steps; `curve` not empty.
 Figure learning_figure(const std::vector<CurvePoint>& curve,
@@ -31,8 +24,9 @@ Figure distillation_figure(const std::vector<DistilPoint>& curve);
 Figure policy_map_figure(const PolicyContext& context, const std::vector<NamedPolicyMap>& maps,
                          const BatteryParameters& battery, const std::string& note);
 
-/// Distribution of observed prices on training and on test days.
-Figure price_density_figure(const MarketSteps& market, const ReportThresholds& thresholds);
+/// Distribution of observed prices on training and on test days, with the prices at which the student
+/// and the paper's rule must act.
+Figure price_density_figure(const MarketSteps& market, const PriceThresholds& student);
 
 /// What one policy did on one day.
 struct DayStory {

@@ -20,8 +20,14 @@ namespace fs = std::filesystem;
 
 constexpr const char* kPageTitle = "Battery arbitrage: what was learned, corrected and proved";
 
+/// What the students were checked against.
+PriceThresholds thresholds_of(const ReportInputs& in) {
+  if (in.corrected) return in.corrected->certificate.thresholds;
+  return in.uncorrected ? in.uncorrected->certificate.thresholds : PriceThresholds{};
+}
+
 double rule_validation_profit(const ReportInputs& in) {
-  RuleBasedPolicy rule(in.thresholds.rule_low, in.thresholds.rule_high);
+  RuleBasedPolicy rule(kPaperRuleLowEurPerMwh, kPaperRuleHighEurPerMwh);
   return evaluate(in.market, in.market.days_of(Split::kValidation), rule, {.battery = in.battery})
       .profit_eur_per_day_per_mwh();
 }
@@ -30,17 +36,17 @@ std::vector<NamedPolicyMap> policy_maps(const ReportInputs& in, const PolicyCont
   std::vector<NamedPolicyMap> maps;
   if (in.teacher) maps.push_back({"teacher", teacher_grid(*in.teacher, context)});
   if (in.uncorrected) {
-    maps.push_back({"uncorrected student", student_grid(*in.uncorrected, context)});
+    maps.push_back({"uncorrected student", student_grid(in.uncorrected->net, context)});
   }
-  if (in.corrected) maps.push_back({"corrected student", student_grid(*in.corrected, context)});
+  if (in.corrected) maps.push_back({"corrected student", student_grid(in.corrected->net, context)});
   return maps;
 }
 
 /// Where the uncorrected student's counterexamples are most frequent; none without any.
 std::optional<PolicyContext> worst_context(const ReportInputs& in) {
-  if (in.uncorrected_certificate == nullptr) return std::nullopt;
+  if (in.uncorrected == nullptr) return std::nullopt;
   std::map<PolicyContext, int> count;
-  for (const LatticeState& s : in.uncorrected_certificate->counterexamples) {
+  for (const LatticeState& s : in.uncorrected->certificate.counterexamples) {
     ++count[{.month = s.month, .quarter_hour = s.qh, .t_qh = s.t_qh}];
   }
   const auto worst = std::ranges::max_element(count, {}, [](const auto& c) { return c.second; });
@@ -75,13 +81,15 @@ struct ShownPolicy {
 
 /// The last link of the chain that there is.
 ShownPolicy shown_policy(const ReportInputs& in) {
-  if (in.corrected) return {"corrected student", std::make_unique<StudentPolicy>(*in.corrected)};
+  if (in.corrected) {
+    return {"corrected student", std::make_unique<StudentPolicy>(in.corrected->net)};
+  }
   if (in.uncorrected) {
-    return {"uncorrected student", std::make_unique<StudentPolicy>(*in.uncorrected)};
+    return {"uncorrected student", std::make_unique<StudentPolicy>(in.uncorrected->net)};
   }
   if (in.teacher) return {"teacher", std::make_unique<TeacherPolicy>(*in.teacher)};
   return {"rule-based controller",
-          std::make_unique<RuleBasedPolicy>(in.thresholds.rule_low, in.thresholds.rule_high)};
+          std::make_unique<RuleBasedPolicy>(kPaperRuleLowEurPerMwh, kPaperRuleHighEurPerMwh)};
 }
 
 Figure widest_day_figure(const ReportInputs& in, const MarketDay& day) {
@@ -101,7 +109,7 @@ std::vector<Figure> figures_of(const ReportInputs& in) {
     figures.push_back(learning_figure(in.training_curve, rule_validation_profit(in)));
   }
   if (!in.distil_curve.empty()) figures.push_back(distillation_figure(in.distil_curve));
-  figures.push_back(price_density_figure(in.market, in.thresholds));
+  figures.push_back(price_density_figure(in.market, thresholds_of(in)));
   return figures;
 }
 
@@ -212,20 +220,21 @@ std::string proof_section(const ReportInputs& in) {
                   {"Student", "States checked", "Not charging when cheap",
                    "Not discharging when dear", "Pairs out of order", "Seconds"},
                   {}};
-  if (in.uncorrected_certificate) {
-    table.rows.push_back(proof_cells("uncorrected", *in.uncorrected_certificate));
+  if (in.uncorrected) {
+    table.rows.push_back(proof_cells("uncorrected", in.uncorrected->certificate));
   }
-  if (in.corrected_certificate) {
-    table.rows.push_back(proof_cells("corrected", *in.corrected_certificate));
-  }
+  if (in.corrected) table.rows.push_back(proof_cells("corrected", in.corrected->certificate));
   if (table.rows.empty()) return {};
+  const PriceThresholds thresholds = thresholds_of(in);
   return fmt::format(
       "<section class=\"block\"><h2>The proof</h2>\n{}<p class=\"note\">Checked over the lattice "
       "of "
       "minute, quarter-hour, month, charge and price that the edge can meet: charge at {} EUR/MWh "
-      "and below, discharge at {} and above, and never a larger action at a higher price or a "
+      "and below{}, discharge at {} and above{}, and never a larger action at a higher price or a "
       "fuller battery.</p></section>\n",
-      format_table(table), in.thresholds.student_low, in.thresholds.student_high);
+      format_table(table), thresholds.low_eur_per_mwh,
+      guard_alone_note(thresholds.low_binds_student()), thresholds.high_eur_per_mwh,
+      guard_alone_note(thresholds.high_binds_student()));
 }
 
 std::string comparison_section(const ReportInputs& in) {
@@ -257,8 +266,8 @@ std::string head_section(const ReportInputs& in) {
   const auto rows = comparison_rows(in.evaluations, &NamedEvaluation::day_reset);
   std::string text = fmt::format("<h1>{}</h1>\n", kPageTitle);
   if (!rows.empty()) text += fmt::format("<p class=\"lead\">{}</p>\n", html_escaped(lead(rows)));
-  if (in.corrected_certificate) {
-    text += fmt::format("<p class=\"lead\">{}</p>\n", proof_sentence(*in.corrected_certificate));
+  if (in.corrected) {
+    text += fmt::format("<p class=\"lead\">{}</p>\n", proof_sentence(in.corrected->certificate));
   }
   return text;
 }

@@ -11,7 +11,7 @@
 #include "workstation/report/comparison.h"
 #include "workstation/report/figures.h"
 #include "workstation/rl/train.h"
-#include "workstation/student/verify.h"
+#include "workstation/student/student_file.h"
 
 namespace bess {
 
@@ -22,11 +22,8 @@ struct ReportInputs {
   std::vector<CurvePoint> training_curve = {};    ///< may be empty
   std::vector<DistilPoint> distil_curve = {};     ///< may be empty
   const Teacher* teacher = nullptr;  ///< each pointer may be null: what it shows is left out
-  const StudentNet* uncorrected = nullptr;
-  const Certificate* uncorrected_certificate = nullptr;
-  const StudentNet* corrected = nullptr;
-  const Certificate* corrected_certificate = nullptr;
-  ReportThresholds thresholds = {};
+  const StudentFile* uncorrected = nullptr;  ///< both students with the prover's certificate
+  const StudentFile* corrected = nullptr;
   std::vector<PolicyContext> maps = {{.month = 1, .quarter_hour = 48, .t_qh = 7},
                                      {.month = 9, .quarter_hour = 48, .t_qh = 7}};
   std::string provenance = {};  ///< lines, shown as they are

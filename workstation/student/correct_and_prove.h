@@ -3,21 +3,23 @@
 // again.
 #pragma once
 
+#include <atomic>
+#include <vector>
+
 #include "workstation/correction/distil.h"
-#include "workstation/student/verify.h"
+#include "workstation/student/prove.h"
 
 namespace bess {
 
-struct CorrectedStudent {
-  StudentNet net;
-  Certificate certificate;  ///< of `net`; violations() == 0 when the correction succeeded
+struct CorrectionResult {
+  Verdict verdict;  ///< of the last round: a proved student, or the one with what is left
   std::vector<DistilPoint> curve;
-  std::vector<std::int64_t> violations_by_round;
+  std::vector<std::int64_t> violations_by_round;  ///< empty when interrupted before the first proof
 };
 
-/// Never throws for a failed proof: look at certificate.violations(). With options.correct false
-/// there is one round and no repair.
-CorrectedStudent correct_and_prove(const Teacher& teacher, const Matrix& visited,
+/// Never throws for a failed proof: the verdict says it. With options.correct false there is one
+/// round and no repair.
+CorrectionResult correct_and_prove(const Teacher& teacher, const Matrix& visited,
                                    const DistilOptions& options,
                                    const std::atomic<bool>& interrupted);
 

@@ -1,16 +1,19 @@
 // Writes the proved student as edge/generated/student_weights.h: constant arrays that C and C++
-// compilers read alike, with provenance, hashes, the thresholds it is bound to and self-check
-// vectors.
+// compilers read alike, with provenance, hashes, certificate and self-check vectors.
 #pragma once
 
 #include <string>
 
-#include "workstation/student/student_file.h"
+#include "workstation/student/prove.h"
 
 namespace bess {
 
 /// Text of the header. Self-check vectors are corners of the lattice and states drawn from a fixed
 /// seed.
-std::string format_weight_header(const StudentFile& student);
+std::string format_weight_header(const ProvedStudent& student);
+
+/// A C string literal of `text`: no byte of it can end the literal, nor start an escape or a trigraph; what
+/// is not printable ASCII becomes a question mark.
+std::string c_string_literal(const std::string& text);
 
 }  // namespace bess

@@ -16,7 +16,8 @@
 namespace bess {
 namespace {
 
-constexpr int kFormatVersion = 1;
+constexpr int kFormatVersion = 2;
+constexpr int kVersionWithoutCounts = 1;  ///< it had the thresholds beside the weights
 using Json = std::unique_ptr<cJSON, decltype(&cJSON_Delete)>;
 
 /// One named array of the net. All arrays are listed once, for reading and for writing.
@@ -45,12 +46,16 @@ class FieldReader {
   }
   /// A threshold: whole EUR/MWh, as plausible as any price.
   [[nodiscard]] int price(const char* key) const {
-    constexpr int kPriceMax = kPlausiblePriceMaxCentiEurPerMwh / kCentiPerEur;
-    const double value = number(key);
-    if (!(value >= -kPriceMax && value <= kPriceMax) || value != std::trunc(value)) {
-      fail("{}: \"{}\" is not a whole number in {}..{}", name_, key, -kPriceMax, kPriceMax);
-    }
-    return static_cast<int>(value);
+    return static_cast<int>(whole(key, -kThresholdMaxEurPerMwh, kThresholdMaxEurPerMwh));
+  }
+  [[nodiscard]] std::int64_t count(const char* key) const {
+    constexpr std::int64_t kExactInDouble = std::int64_t{1} << 53;
+    return whole(key, 0, kExactInDouble);
+  }
+  [[nodiscard]] FieldReader object(const char* key) const {
+    const cJSON* item = field(key);
+    if (!cJSON_IsObject(item)) fail("{}: \"{}\" is not an object", name_, key);
+    return {item, name_};
   }
   [[nodiscard]] std::string text(const char* key) const {
     const cJSON* item = field(key);
@@ -76,6 +81,14 @@ class FieldReader {
   }
 
  private:
+  [[nodiscard]] std::int64_t whole(const char* key, std::int64_t min, std::int64_t max) const {
+    const double value = number(key);
+    const bool inside = value >= static_cast<double>(min) && value <= static_cast<double>(max);
+    if (!inside || value != std::trunc(value)) {
+      fail("{}: \"{}\" is not a whole number in {}..{}", name_, key, min, max);
+    }
+    return static_cast<std::int64_t>(value);
+  }
   [[nodiscard]] const cJSON* field(const char* key) const {
     const cJSON* item = cJSON_GetObjectItemCaseSensitive(object_, key);
     if (item == nullptr) fail("{}: not a student file: \"{}\" is missing", name_, key);
@@ -84,6 +97,36 @@ class FieldReader {
   const cJSON* object_;
   const std::string& name_;
 };
+
+PriceThresholds parse_thresholds(const FieldReader& in, const std::string& name) {
+  const PriceThresholds thresholds{in.price("low_price_eur_per_mwh"),
+                                   in.price("high_price_eur_per_mwh")};
+  if (!thresholds.are_ordered()) {
+    fail("{}: \"low_price_eur_per_mwh\" is not below \"high_price_eur_per_mwh\"", name);
+  }
+  return thresholds;
+}
+
+Certificate parse_certificate(const FieldReader& in, const std::string& name) {
+  return {.thresholds = parse_thresholds(in, name),
+          .states_checked = in.count("states_checked"),
+          .states_evaluated = in.count("states_evaluated"),
+          .violations_property_1 = in.count("violations_property_1"),
+          .violations_property_2 = in.count("violations_property_2"),
+          .violations_property_3 = in.count("violations_property_3")};
+}
+
+std::string certificate_text(const Certificate& c) {
+  return fmt::format(
+      "{{\n\"low_price_eur_per_mwh\": {},\n\"high_price_eur_per_mwh\": {},\n"
+      "\"states_checked\": {},\n\"states_evaluated\": {},\n\"violations_property_1\": {},\n"
+      "\"violations_property_2\": {},\n\"violations_property_3\": {}\n}}",
+      c.thresholds.low_eur_per_mwh, c.thresholds.high_eur_per_mwh, c.states_checked,
+      c.states_evaluated, c.violations_property_1, c.violations_property_2,
+      c.violations_property_3);
+}
+
+}  // namespace
 
 void check_net(const StudentNet& net, const std::string& name) {
   constexpr int kShiftMax = 30;
@@ -103,8 +146,6 @@ void check_net(const StudentNet& net, const std::string& name) {
   }
 }
 
-}  // namespace
-
 void save_student(const std::filesystem::path& path, const StudentFile& student) {
   check_net(student.net, path.string());
   Json provenance(cJSON_CreateString(student.provenance.c_str()), cJSON_Delete);
@@ -112,10 +153,9 @@ void save_student(const std::filesystem::path& path, const StudentFile& student)
       cJSON_PrintUnformatted(provenance.get()), cJSON_free);
   std::string text = fmt::format(
       "{{\n\"format\": \"bess-student\",\n\"version\": {},\n\"architecture_hash\": {},\n"
-      "\"weights_hash\": {},\n\"provenance\": {},\n\"low_price_eur_per_mwh\": {},\n"
-      "\"high_price_eur_per_mwh\": {}",
+      "\"weights_hash\": {},\n\"provenance\": {},\n\"certificate\": {}",
       kFormatVersion, student_architecture_hash(), student_weights_hash(student.net), quoted.get(),
-      student.low_price_eur_per_mwh, student.high_price_eur_per_mwh);
+      certificate_text(student.certificate));
   visit_arrays(student.net, [&text](const char* key, auto values) {
     text += fmt::format(",\n\"{}\": [{}]", key, fmt::join(values, ","));
   });
@@ -136,9 +176,10 @@ StudentFile parse_student(const std::string& text, const std::string& name) {
   }
   const FieldReader in(json.get(), name);
   if (in.text("format") != "bess-student") fail("{}: \"format\" is not \"bess-student\"", name);
-  if (in.number("version") != kFormatVersion) {
-    fail("{}: version {}, this program reads {}; distil again", name, in.number("version"),
-         kFormatVersion);
+  const double version = in.number("version");
+  if (version != kFormatVersion && version != kVersionWithoutCounts) {
+    fail("{}: version {}, this program reads {} and {}; distil again", name, version,
+         kVersionWithoutCounts, kFormatVersion);
   }
   if (in.number("architecture_hash") != student_architecture_hash()) {
     fail("{}: made for another student architecture; distil again", name);
@@ -149,25 +190,21 @@ StudentFile parse_student(const std::string& text, const std::string& name) {
   if (in.number("weights_hash") != student_weights_hash(student.net)) {
     fail("{}: damaged: the weights do not match their hash; copy it again or distil again", name);
   }
-  student.low_price_eur_per_mwh = in.price("low_price_eur_per_mwh");
-  student.high_price_eur_per_mwh = in.price("high_price_eur_per_mwh");
-  if (student.low_price_eur_per_mwh >= student.high_price_eur_per_mwh) {
-    fail("{}: \"low_price_eur_per_mwh\" is not below \"high_price_eur_per_mwh\"", name);
+  if (version == kVersionWithoutCounts) {
+    student.certificate.thresholds = parse_thresholds(in, name);
+  } else {
+    student.certificate = parse_certificate(in.object("certificate"), name);
   }
   student.provenance = in.text("provenance");
   return student;
 }
 
 StudentFile compiled_student() {
-  return {kExportedStudent, BESS_STUDENT_LOW_PRICE_EUR_PER_MWH, BESS_STUDENT_HIGH_PRICE_EUR_PER_MWH,
+  return {kExportedStudent,
+          {.thresholds = kExportedThresholds,
+           .states_checked = BESS_STUDENT_STATES_CHECKED,
+           .states_evaluated = BESS_STUDENT_STATES_EVALUATED},
           BESS_STUDENT_PROVENANCE};
-}
-
-Certificate prove(const StudentFile& student, int threads, bool exhaustive) {
-  return verify_student(student.net, {.low_price_eur_per_mwh = student.low_price_eur_per_mwh,
-                                      .high_price_eur_per_mwh = student.high_price_eur_per_mwh,
-                                      .exhaustive = exhaustive,
-                                      .threads = threads});
 }
 
 }  // namespace bess

@@ -1,34 +1,35 @@
-// The proved student on disk: a JSON text with every integer of the net, what it was made from, the
-// thresholds it is bound to and its certificate. Readable by people and by other programs.
+// The student on disk: a JSON text with every integer of the net, what it was made from, and its
+// certificate with the thresholds it is bound to. Readable by people and by other programs.
 #pragma once
 
 #include <filesystem>
 #include <string>
 
 #include "shared/nn/student_net.h"
-#include "workstation/student/verify.h"
+#include "workstation/student/certificate.h"
 
 namespace bess {
 
 struct StudentFile {
   StudentNet net;
-  int low_price_eur_per_mwh = kLatticePriceMinEurPerMwh;
-  int high_price_eur_per_mwh = kLatticePriceMaxEurPerMwh;
-  std::string provenance;  ///< one line: prices, teacher, seed, options
+  Certificate certificate;  ///< a claim: prove() finds out whether it holds
+  std::string provenance;   ///< one line: prices, teacher, seed, options
 };
 
 /// Written beside and renamed.
 void save_student(const std::filesystem::path& path, const StudentFile& student);
 
 /// Throws UserError naming the file and what is wrong: not JSON, another architecture, a number out
-/// of range, a hash that differs, weights whose accumulators could overflow.
+/// of range, a hash that differs, a net that check_net refuses. Reads the files of version 1 too, which
+/// have thresholds but no counts.
 StudentFile load_student(const std::filesystem::path& path);
 StudentFile parse_student(const std::string& text, const std::string& name);
 
 /// The array that this program was compiled with (edge/generated/student_weights.h).
 StudentFile compiled_student();
 
-/// The certificate of a student against its own thresholds.
-Certificate prove(const StudentFile& student, int threads, bool exhaustive = false);
+/// Throws UserError, with `name` in front, for a net that neither code nor bounds hold for: a price map
+/// that does not rise, a shift out of range, weights whose accumulators could overflow.
+void check_net(const StudentNet& net, const std::string& name);
 
 }  // namespace bess

@@ -1,6 +1,7 @@
 #include "workstation/student/verify.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <thread>
 
@@ -195,10 +196,11 @@ class GridChecker {
   void check(const LatticeState& context, const std::vector<std::int8_t>& grid) {
     context_ = context;
     kept_in_context_ = 0;
+    const PriceThresholds& thresholds = options_.thresholds;
     const int low =
-        std::clamp(options_.low_price_eur_per_mwh - kLatticePriceMinEurPerMwh, -1, kPriceCount - 1);
+        std::clamp(thresholds.low_eur_per_mwh - kLatticePriceMinEurPerMwh, -1, kPriceCount - 1);
     const int high =
-        std::clamp(options_.high_price_eur_per_mwh - kLatticePriceMinEurPerMwh, 0, kPriceCount);
+        std::clamp(thresholds.high_eur_per_mwh - kLatticePriceMinEurPerMwh, 0, kPriceCount);
     constexpr auto kCharge = static_cast<std::int8_t>(Action::kCharge);
     constexpr auto kDischarge = static_cast<std::int8_t>(Action::kDischarge);
     for (int s = 0; s < kSocCount; ++s) {
@@ -282,7 +284,7 @@ Certificate verify_student(const StudentNet& net, const VerifyOptions& options) 
   for (int w = 1; w < options.threads; ++w) threads.emplace_back(work, w);
   work(0);
   for (std::thread& thread : threads) thread.join();
-  Certificate total;
+  Certificate total{.thresholds = options.thresholds};
   for (const Certificate& part : parts) {
     total.states_checked += part.states_checked;
     total.states_evaluated += part.states_evaluated;

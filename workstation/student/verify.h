@@ -14,35 +14,20 @@
 // give the same counts.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <vector>
 
 #include "shared/nn/student_net.h"
+#include "workstation/student/certificate.h"
 
 namespace bess {
 
 struct VerifyOptions {
-  int low_price_eur_per_mwh = kLatticePriceMinEurPerMwh;
-  int high_price_eur_per_mwh = kLatticePriceMaxEurPerMwh;
+  PriceThresholds thresholds = {};
   bool exhaustive = false;  ///< evaluate every state, no bounds
   int context_stride = 1;   ///< check every n-th context only (a quick look, not a proof)
   std::size_t counterexamples_max = 4096;
   int threads = 2;
-};
-
-struct Certificate {
-  std::int64_t states_checked = 0;
-  std::int64_t states_evaluated = 0;  ///< by the net itself; the rest is covered by bounds
-  std::int64_t violations_property_1 = 0;
-  std::int64_t violations_property_2 = 0;
-  std::int64_t violations_property_3 = 0;
-  std::vector<LatticeState> counterexamples;  ///< evenly thinned, at most counterexamples_max
-  double seconds = 0;
-
-  [[nodiscard]] std::int64_t violations() const {
-    return violations_property_1 + violations_property_2 + violations_property_3;
-  }
 };
 
 Certificate verify_student(const StudentNet& net, const VerifyOptions& options);

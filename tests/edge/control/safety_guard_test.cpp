@@ -123,6 +123,12 @@ TEST(SafetyGuard, ThresholdsAreExactToTheCent) {
   EXPECT_EQ(decide_once(in).reason, Reason::kStudent);
   in.price_centi_eur_per_mwh = 149'999;
   EXPECT_EQ(decide_once(in).reason, Reason::kStudent);
+
+  SafetyGuard widest({.thresholds = {.low_eur_per_mwh = -15'000, .high_eur_per_mwh = 15'000}});
+  in.price_centi_eur_per_mwh = -1'500'000;
+  EXPECT_EQ(widest.decide(in).reason, Reason::kPriceLow);
+  in.price_centi_eur_per_mwh = 1'499'999;
+  EXPECT_EQ(widest.decide(in).reason, Reason::kStudent);
 }
 
 TEST(SafetyGuard, AgreementIsNotAnIntervention) {

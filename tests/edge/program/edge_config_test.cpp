@@ -39,8 +39,7 @@ TEST(EdgeConfig, TheDocumentedExampleIsValidAndReadOnly) {
   ASSERT_TRUE(load_edge_config(BESS_SOURCE_DIR "/edge/bess-edge.toml", config, error)) << error;
   EXPECT_FALSE(config.control.control);
   EXPECT_TRUE(config.clock.is_real_time());
-  EXPECT_EQ(config.control.guard.low_price_centi_eur_per_mwh, -50'000);
-  EXPECT_EQ(config.control.guard.high_price_centi_eur_per_mwh, 150'000);
+  EXPECT_EQ(config.control.guard.thresholds, (PriceThresholds{-500, 1500}));
   EXPECT_EQ(config.control.order_duration_s, 300);
   EXPECT_EQ(config.map.unit, 85);
 }
@@ -49,8 +48,12 @@ TEST(EdgeConfig, ReadsEveryUnit) {
   const TemporaryFolder folder;
   EdgeConfig config;
   std::string error;
-  ASSERT_TRUE(load_edge_config(folder.write("edge.toml", valid_text()), config, error)) << error;
+  std::string text = valid_text();
+  text.replace(text.find("soc_min"), 0,
+               "low_price_eur_per_mwh = -120.0\nhigh_price_eur_per_mwh = 640\n");
+  ASSERT_TRUE(load_edge_config(folder.write("edge.toml", text), config, error)) << error;
   EXPECT_TRUE(config.control.control);
+  EXPECT_EQ(config.control.guard.thresholds, (PriceThresholds{-120, 640}));
   EXPECT_EQ(config.control.guard.soc_min_e4, 2'000);
   EXPECT_EQ(config.clock.scale, 900);
   EXPECT_EQ(config.clock.anchor_utc_s, 1'679'788'800);
@@ -179,6 +182,9 @@ TEST(EdgeConfig, EveryMistakeIsOneClearLineWithItsPlace) {
       {"soc_min = 0.2", "soc_min = \"0.2\"", 8, "must be a number"},
       {"soc_min = 0.2", "soc_min = 1.0", 8, "must be below soc_max"},
       {"soc_min = 0.2", "low_price_eur_per_mwh = 2000", 8, "must be below high_price"},
+      {"soc_min = 0.2", "low_price_eur_per_mwh = -15001", 8, "must lie between -15000 and 15000"},
+      {"soc_min = 0.2", "high_price_eur_per_mwh = 999.5", 8,
+       "must be whole EUR/MWh, as the student is proved for"},
       {"2023-03-26T00:00:00Z", "2023-03-26 00:00", 11, "utc_start must be a UTC instant"},
       {"time_scale = 900", "time_scale = 0", 10, "must lie between"},
       {"[guard]", "[log]\ndays = 0\n[guard]", 8, "days must lie between 1 and 3660"},

@@ -32,8 +32,7 @@ TEST(RunConfig, ChangedValuesRoundTrip) {
   config.train.steps = 123'456;
   config.train.value_min_eur_per_h = -1e9;
   config.distil.omega = 2.5e-7;
-  config.distil.correction.low_price_eur_per_mwh = -120;
-  config.distil.correction.high_price_eur_per_mwh = 640;
+  config.distil.correction.thresholds = {-120, 640};
   const RunConfig again = parse_run_config(format_run_config(config), "changed.toml");
   EXPECT_EQ(format_run_config(again), format_run_config(config));
   EXPECT_EQ(again.market.settlement, Settlement::kStep);
@@ -44,7 +43,7 @@ TEST(RunConfig, ChangedValuesRoundTrip) {
   EXPECT_EQ(again.train.centre_rewards, false);
   EXPECT_EQ(again.train.steps, 123'456);
   EXPECT_EQ(again.distil.omega, 2.5e-7);
-  EXPECT_EQ(again.distil.correction.high_price_eur_per_mwh, 640);
+  EXPECT_EQ(again.distil.correction.thresholds, (PriceThresholds{-120, 640}));
 }
 
 TEST(RunConfig, KeysOverlayTheDefaults) {

@@ -38,14 +38,14 @@ struct LayerCase {
 
 const LayerCase kCases[] = {
     {"defaults", {}, 16, 8},
-    {"thresholds inside the lattice", {-120, 640, 1.0, 0.2, 0.4}, 16, 8},
-    {"thresholds outside the lattice", {-600, 2000, 1.0, 0.2, 0.4}, 16, 8},
-    {"one threshold outside", {-600, 800, 1.0, 0.2, 0.4}, 12, 5},
-    {"neighbouring thresholds", {500, 501, 1.0, 0.2, 0.4}, 11, 4},
-    {"no slope", {-500, 1500, 0.5, 0, 0}, 8, 8},
-    {"steep slopes, bounds that would cross", {-300, 1200, 0.1, 50, 3}, 9, 6},
-    {"one price", {-500, 1500, 1.0, 0.2, 0.4}, 1, 6},
-    {"one SoC", {-500, 1500, 1.0, 0.2, 0.4}, 16, 1},
+    {"thresholds inside the lattice", {{-120, 640}, 1.0, 0.2, 0.4}, 16, 8},
+    {"thresholds outside the lattice", {{-600, 2000}, 1.0, 0.2, 0.4}, 16, 8},
+    {"one threshold outside", {{-600, 800}, 1.0, 0.2, 0.4}, 12, 5},
+    {"neighbouring thresholds", {{500, 501}, 1.0, 0.2, 0.4}, 11, 4},
+    {"no slope", {{-500, 1500}, 0.5, 0, 0}, 8, 8},
+    {"steep slopes, bounds that would cross", {{-300, 1200}, 0.1, 50, 3}, 9, 6},
+    {"one price", {{-500, 1500}, 1.0, 0.2, 0.4}, 1, 6},
+    {"one SoC", {{-500, 1500}, 1.0, 0.2, 0.4}, 16, 1},
 };
 
 /// Everything the header promises, on every cell.
@@ -72,12 +72,12 @@ void expect_properties(const CorrectionOptions& options, const LatticeAxes& axes
         EXPECT_GE(v(i, j) - v(i, j + 1), fall);
         EXPECT_GE(action(i, j), action(i, j + 1));
       }
-      if (axes.price_eur_per_mwh[i] <= options.low_price_eur_per_mwh) {
+      if (axes.price_eur_per_mwh[i] <= options.thresholds.low_eur_per_mwh) {
         EXPECT_GE(u(i, j), options.logit_margin - kTiny);
         EXPECT_GE(v(i, j), -kTiny);
         EXPECT_EQ(action(i, j), Action::kCharge);
       }
-      if (axes.price_eur_per_mwh[i] >= options.high_price_eur_per_mwh) {
+      if (axes.price_eur_per_mwh[i] >= options.thresholds.high_eur_per_mwh) {
         EXPECT_LE(v(i, j), -options.logit_margin + kTiny);
         EXPECT_LE(u(i, j), kTiny);
         EXPECT_EQ(action(i, j), Action::kDischarge);

@@ -118,8 +118,9 @@ TEST(Distiller, InterruptionReturns) {
   distiller.run(options.epochs, {}, 1, interrupted);
   EXPECT_TRUE(distiller.curve().empty());
   EXPECT_EQ(distiller.parameters(), before);
-  const CorrectedStudent student = correct_and_prove(teacher, visited, options, interrupted);
-  EXPECT_TRUE(student.violations_by_round.empty()) << "no proof after an interruption";
+  const CorrectionResult result = correct_and_prove(teacher, visited, options, interrupted);
+  EXPECT_TRUE(result.violations_by_round.empty()) << "no proof after an interruption";
+  EXPECT_FALSE(std::holds_alternative<ProvedStudent>(result.verdict));
 }
 
 }  // namespace

@@ -16,8 +16,7 @@ namespace fs = std::filesystem;
 /// Everything that ReportInputs points to.
 struct FinishedRun {
   Teacher teacher = untrained_teacher();
-  StudentNet student = untrained_student();
-  Certificate certificate = failed_certificate();
+  StudentFile student{untrained_student(), failed_certificate(), ""};
 
   static Certificate failed_certificate() {
     Certificate certificate;
@@ -38,8 +37,6 @@ struct FinishedRun {
     in.teacher = &teacher;
     in.uncorrected = &student;
     in.corrected = &student;
-    in.uncorrected_certificate = &certificate;
-    in.corrected_certificate = &certificate;
     in.provenance = "seed 1 <untrained> & small";
     return in;
   }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <student_weights.h>
 
+#include <algorithm>
 #include <functional>
 #include <limits>
 
@@ -17,7 +18,16 @@ namespace {
 
 using testing::HasSubstr;
 
-StudentFile seeded_student() { return {seeded_net(21), -450, 1200, "seeded \"21\" \\ é\nline"}; }
+StudentFile seeded_student() {
+  return {seeded_net(21),
+          {.thresholds = {-450, 1200},
+           .states_checked = kLatticeStateCount,
+           .states_evaluated = 58'325'611,
+           .violations_property_1 = 1,
+           .violations_property_2 = 20,
+           .violations_property_3 = 3'000'000'000},
+          "seeded \"21\" \\ é\nline"};
+}
 
 std::string seeded_text() {
   const TemporaryFolder folder;
@@ -38,6 +48,15 @@ std::string without(std::string text, const std::string& key) {
   return text.erase(begin, text.find('\n', begin) + 1 - begin);
 }
 
+/// Text in which the certificate, too, stands on one line.
+std::string one_line_certificate(std::string text) {
+  const std::size_t begin = text.find("\"certificate\"");
+  const std::size_t end = text.find('}', begin);
+  std::replace(text.begin() + static_cast<std::ptrdiff_t>(begin),
+               text.begin() + static_cast<std::ptrdiff_t>(end), '\n', ' ');
+  return text;
+}
+
 std::string array_of(const std::string& first, int count) {
   std::string text = '[' + first;
   for (int i = 1; i < count; ++i) text += ",0";
@@ -52,8 +71,12 @@ TEST(StudentFile, RoundTrip) {
     save_student(folder.file(name), student);
     const StudentFile again = load_student(folder.file(name));
     EXPECT_EQ(student_weights_hash(again.net), student_weights_hash(student.net));
-    EXPECT_EQ(again.low_price_eur_per_mwh, -450);
-    EXPECT_EQ(again.high_price_eur_per_mwh, 1200);
+    EXPECT_EQ(again.certificate.thresholds, student.certificate.thresholds);
+    EXPECT_EQ(again.certificate.states_checked, 6'950'033'280);
+    EXPECT_EQ(again.certificate.states_evaluated, 58'325'611);
+    EXPECT_EQ(again.certificate.violations_property_1, 1);
+    EXPECT_EQ(again.certificate.violations_property_2, 20);
+    EXPECT_EQ(again.certificate.violations_property_3, 3'000'000'000);
     EXPECT_EQ(again.provenance, student.provenance);
   }
 }
@@ -65,6 +88,16 @@ TEST(StudentFile, CompiledStudentRoundTrips) {
   const StudentFile again = load_student(folder.file("student.json"));
   EXPECT_EQ(student_weights_hash(again.net), BESS_STUDENT_WEIGHTS_HASH);
   EXPECT_EQ(again.provenance, BESS_STUDENT_PROVENANCE);
+}
+
+/// Written before a file had counts: the thresholds stood beside the weights.
+TEST(StudentFile, Version1IsStillRead) {
+  const StudentFile student =
+      load_student(BESS_SOURCE_DIR "/tests/fuzz/seeds/student_file_fuzz/version_1.json");
+  EXPECT_EQ(student_weights_hash(student.net), BESS_STUDENT_WEIGHTS_HASH);
+  EXPECT_EQ(student.certificate.thresholds, (PriceThresholds{-500, 1500}));
+  EXPECT_EQ(student.certificate.states_checked, 0);
+  EXPECT_FALSE(student.certificate.covers_lattice_without_violation());
 }
 
 struct Damage {
@@ -89,7 +122,8 @@ TEST(StudentFile, DamageIsRefused) {
       {"other JSON", "{\"a\": 1}", "\"format\" is missing"},
       {"other format", with(good, "format", "\"bess-teacher\""), "\"format\" is not"},
       {"format of another type", with(good, "format", "3"), "not a text"},
-      {"newer version", with(good, "version", "2"), "version 2"},
+      {"newer version", with(good, "version", "3"), "version 3"},
+      {"older version with a certificate", with(good, "version", "1"), "low_price"},
       {"other architecture", with(good, "architecture_hash", "12345"), "another student arch"},
       {"hash differs", with(good, "weights_hash", "12345"), "damaged"},
       {"a weight was edited", with(good, "layer3_bias", "[1,2,3]"), "damaged"},
@@ -117,12 +151,21 @@ TEST(StudentFile, DamageIsRefused) {
       {"high price is implausible", with(good, "high_price_eur_per_mwh", "2147483647"),
        "high_price"},
       {"thresholds cross", with(good, "low_price_eur_per_mwh", "1200"), "low_price"},
+      {"without certificate", without(one_line_certificate(good), "certificate"), "certificate"},
+      {"certificate is a number", with(one_line_certificate(good), "certificate", "1"),
+       "\"certificate\" is not an object"},
+      {"empty certificate", with(one_line_certificate(good), "certificate", "{}"), "low_price"},
+      {"half a state", with(good, "states_checked", "0.5"), "states_checked"},
+      {"fewer than no violation", with(good, "violations_property_2", "-1"), "property_2"},
+      {"more states than can be counted", with(good, "states_evaluated", "1e300"), "evaluated"},
+      {"violations are a text", with(good, "violations_property_3", "\"0\""), "not a number"},
       {"provenance is a number", with(good, "provenance", "1"), "not a text"},
   };
   for (const char* key : {"format", "version", "architecture_hash", "weights_hash", "provenance",
-                          "low_price_eur_per_mwh", "high_price_eur_per_mwh", "price_map",
-                          "layer1_weight", "layer1_bias", "relu1_shift", "layer2_weight",
-                          "layer2_bias", "relu2_shift", "layer3_weight"}) {
+                          "low_price_eur_per_mwh", "high_price_eur_per_mwh", "states_checked",
+                          "states_evaluated", "violations_property_1", "violations_property_2",
+                          "price_map", "layer1_weight", "layer1_bias", "relu1_shift",
+                          "layer2_weight", "layer2_bias", "relu2_shift", "layer3_weight"}) {
     damages.push_back({std::string("without ") + key, without(good, key), key});
     damages.push_back({std::string("null ") + key, with(good, key, "null"), key});
   }

@@ -106,10 +106,11 @@ Counts brute_force(Decide decide, LatticeState state, int low, int high) {
 /// A kept state must itself break a property, or begin a pair that does.
 bool is_violation(const StudentNet& net, const LatticeState& state, const VerifyOptions& options) {
   const Action action = net.decide(state);
-  if (state.price_eur_per_mwh <= options.low_price_eur_per_mwh && action != Action::kCharge) {
+  const PriceThresholds& thresholds = options.thresholds;
+  if (state.price_eur_per_mwh <= thresholds.low_eur_per_mwh && action != Action::kCharge) {
     return true;
   }
-  if (state.price_eur_per_mwh >= options.high_price_eur_per_mwh && action != Action::kDischarge) {
+  if (state.price_eur_per_mwh >= thresholds.high_eur_per_mwh && action != Action::kDischarge) {
     return true;
   }
   LatticeState next = state;
@@ -176,16 +177,15 @@ TEST(Verify, CountsMatchTheDefinitions) {
     SCOPED_TRACE(c.name);
     const StudentNet net = c.net.net();
     ASSERT_LE(accumulator_bound(net), INT32_MAX);
-    const VerifyOptions options{.low_price_eur_per_mwh = c.low,
-                                .high_price_eur_per_mwh = c.high,
-                                .context_stride = kOneContext,
-                                .threads = 1};
+    const VerifyOptions options{
+        .thresholds = {c.low, c.high}, .context_stride = kOneContext, .threads = 1};
     const Certificate certificate = verify_student(net, options);
     const auto answer = [&c](const LatticeState& s) { return c.net.action(s); };
     EXPECT_EQ(counts_of(certificate), brute_force(answer, {0, 0, 1, 0, 0}, c.low, c.high));
     EXPECT_EQ(certificate.violations_property_1 > 0, c.breaks_low);
     EXPECT_EQ(certificate.violations_property_2 > 0, c.breaks_high);
     EXPECT_EQ(certificate.violations_property_3 > 0, c.breaks_order);
+    EXPECT_EQ(certificate.thresholds, options.thresholds);
     EXPECT_EQ(certificate.counterexamples.empty(), certificate.violations() == 0);
     for (const LatticeState& state : certificate.counterexamples) {
       ASSERT_TRUE(is_violation(net, state, options));
@@ -195,10 +195,8 @@ TEST(Verify, CountsMatchTheDefinitions) {
 
 TEST(Verify, CountsOfASeededNetMatch) {
   const StudentNet net = seeded_net(11);
-  const VerifyOptions options{.low_price_eur_per_mwh = -200,
-                              .high_price_eur_per_mwh = 700,
-                              .context_stride = kContextCount / 2,
-                              .threads = 2};
+  const VerifyOptions options{
+      .thresholds = {-200, 700}, .context_stride = kContextCount / 2, .threads = 2};
   Counts expected;
   for (const LatticeState& context : {LatticeState{0, 0, 1, 0, 0}, LatticeState{0, 0, 7, 0, 0}}) {
     const Counts part =
@@ -213,9 +211,8 @@ TEST(Verify, CountsOfASeededNetMatch) {
 TEST(Verify, KnownCounts) {
   // Property 1 and 2 of a net that idles everywhere: one state per SoC and bound price.
   const StudentNet idle = LinearNet{.charge_below = 0, .discharge_from = 20'000}.net();
-  const Certificate c = verify_student(idle, {.low_price_eur_per_mwh = -498,
-                                              .high_price_eur_per_mwh = 1497,
-                                              .context_stride = kOneContext});
+  const Certificate c =
+      verify_student(idle, {.thresholds = {-498, 1497}, .context_stride = kOneContext});
   EXPECT_EQ(counts_of(c), (Counts{3 * kSocCount, 4 * kSocCount, 0}));
   // Rising in price: two increases (discharge, idle, charge) per SoC.
   const StudentNet rising = LinearNet{.price_weight = -1, .offset = 16'000}.net();
@@ -236,11 +233,8 @@ TEST(Verify, StrideLooksAtEveryNthContext) {
 
 TEST(Verify, ThreadsDoNotChangeTheCounts) {
   const StudentNet net = seeded_net(12);
-  VerifyOptions options{.low_price_eur_per_mwh = -100,
-                        .high_price_eur_per_mwh = 500,
-                        .context_stride = 1571,
-                        .counterexamples_max = 100,
-                        .threads = 1};
+  VerifyOptions options{
+      .thresholds = {-100, 500}, .context_stride = 1571, .counterexamples_max = 100, .threads = 1};
   const Certificate one = verify_student(net, options);
   ASSERT_GT(one.violations(), 0);
   EXPECT_LE(one.counterexamples.size(), 100U);

@@ -1,0 +1,46 @@
+// Students that are proved in a moment, and the claim of one that was not.
+#pragma once
+
+#include "tests/support/student_nets.h"
+#include "workstation/student/prove.h"
+
+namespace bess {
+
+/// What a file may say about itself.
+inline Certificate flawless_claim() {
+  return {.states_checked = kLatticeStateCount, .states_evaluated = 1};
+}
+
+/// A LinearNet among hidden units that hold numbers but move no difference of logits: every array can be
+/// told from every other, and bounds still prove it in few boxes.
+inline StudentNet crowded_net() {
+  StudentNet n = LinearNet{.price_weight = 2}.net();
+  n.relu1.shift = 1;
+  n.layer2.weight[0][0] = 4;
+  n.relu2.shift = 2;
+  const StudentNet seeded = seeded_net(31);
+  for (int h = 1; h < kStudentHidden1; ++h) {
+    for (int i = 0; i < kStudentInputs; ++i) n.layer1.weight[i][h] = seeded.layer1.weight[i][h];
+    n.layer1.bias[h] = seeded.layer1.bias[h];
+    for (int o = 1; o < kStudentHidden2; ++o) {
+      n.layer2.weight[h][o] = static_cast<std::int16_t>(seeded.layer2.weight[h][o] / 64);
+    }
+  }
+  for (int o = 1; o < kStudentHidden2; ++o) {
+    n.layer2.bias[o] = seeded.layer2.bias[o] / 64;
+    for (std::int16_t& w : n.layer3.weight[o]) w = static_cast<std::int16_t>(o);
+  }
+  return n;
+}
+
+inline constexpr PriceThresholds kCrowdedThresholds{-400, 1400};
+inline constexpr const char* kCrowdedProvenance = "made by hand \"q\" ?";
+
+/// Proved once for all tests of a program: the whole lattice takes seconds.
+inline const ProvedStudent& crowded_student() {
+  static const Verdict verdict =
+      prove({crowded_net(), {.thresholds = kCrowdedThresholds}, kCrowdedProvenance}, 2);
+  return std::get<ProvedStudent>(verdict);
+}
+
+}  // namespace bess

@@ -1,0 +1,32 @@
+// What the prover found out about an integer student over the lattice, and against which thresholds
+// [SPEC 6]. Anybody can write these numbers down: only a ProvedStudent (prove.h) is more than a claim.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "shared/features.h"
+#include "shared/price_thresholds.h"
+
+namespace bess {
+
+struct Certificate {
+  PriceThresholds thresholds = {};    ///< of properties 1 and 2
+  std::int64_t states_checked = 0;    ///< 0: nobody has looked yet
+  std::int64_t states_evaluated = 0;  ///< by the net itself; the rest is covered by bounds
+  std::int64_t violations_property_1 = 0;
+  std::int64_t violations_property_2 = 0;
+  std::int64_t violations_property_3 = 0;
+  std::vector<LatticeState> counterexamples = {};  ///< evenly thinned; not kept in files
+  double seconds = 0;                              ///< not kept in files
+
+  [[nodiscard]] std::int64_t violations() const {
+    return violations_property_1 + violations_property_2 + violations_property_3;
+  }
+  /// Every lattice state was checked and none violates a property.
+  [[nodiscard]] bool covers_lattice_without_violation() const {
+    return states_checked == kLatticeStateCount && violations() == 0;
+  }
+};
+
+}  // namespace bess

@@ -1,0 +1,21 @@
+#include "workstation/student/prove.h"
+
+#include "workstation/student/verify.h"
+
+namespace bess {
+
+Verdict prove(StudentFile student, int threads, bool exhaustive) {
+  check_net(student.net, "the student");
+  student.certificate = verify_student(
+      student.net,
+      {.thresholds = student.certificate.thresholds, .exhaustive = exhaustive, .threads = threads});
+  if (!student.certificate.covers_lattice_without_violation()) return student;
+  return ProvedStudent(std::move(student));
+}
+
+const StudentFile& student_of(const Verdict& verdict) {
+  const auto* proved = std::get_if<ProvedStudent>(&verdict);
+  return proved != nullptr ? proved->file() : std::get<StudentFile>(verdict);
+}
+
+}  // namespace bess
