@@ -5,7 +5,6 @@
 
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
-#include "workstation/cli/chain_steps.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
 #include "workstation/report/curves.h"
