@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "shared/host/file.h"
+#include "shared/host/json.h"
 #include "shared/host/user_error.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
@@ -90,14 +91,17 @@ RunResults learn(const RunConfig& config, MarketSteps market, const std::string&
 }
 
 std::string manifest(const RunResults& run, const std::string& prices) {
-  return fmt::format(
-      "{{\n\"version\": \"{}\",\n\"prices\": {},\n\"seed\": {},\n\"threads\": {},\n"
-      "\"provenance\": {},\n\"weights_hash\": \"{:08x}\",\n\"states_checked\": {},\n"
-      "\"violations_plain\": {},\n\"violations_corrected\": {}\n}}\n",
-      BESS_VERSION, json_quote(prices), run.config.train.seed, run.config.train.threads,
-      json_quote(run.corrected.provenance), student_weights_hash(run.corrected.net),
-      run.corrected_certificate.states_checked, run.plain_certificate.violations(),
-      run.corrected_certificate.violations());
+  const std::uint32_t hash = student_weights_hash(run.corrected.net);
+  return Json::object({{"version", BESS_VERSION},
+                       {"prices", prices},
+                       {"seed", run.config.train.seed},
+                       {"threads", run.config.train.threads},
+                       {"provenance", run.corrected.provenance},
+                       {"weights_hash", fmt::format("{:08x}", hash)},
+                       {"states_checked", run.corrected_certificate.states_checked},
+                       {"violations_plain", run.plain_certificate.violations()},
+                       {"violations_corrected", run.corrected_certificate.violations()}})
+      .text();
 }
 
 void run(const Options& options) {

@@ -1,23 +1,17 @@
 #include "workstation/student/student_file.h"
 
-#include <cJSON.h>
-#include <fmt/core.h>
-#include <fmt/ranges.h>
-
-#include <cmath>
-#include <memory>
 #include <span>
 
 #include "shared/host/file.h"
-#include "shared/host/user_error.h"
+#include "shared/host/json_reader.h"
 #include "shared/nn/exported_student.h"
 #include "workstation/student/quantise.h"
 
 namespace bess {
 namespace {
 
+constexpr const char* kFormat = "bess-student";
 constexpr int kFormatVersion = 1;
-using Json = std::unique_ptr<cJSON, decltype(&cJSON_Delete)>;
 
 /// One named array of the net. All arrays are listed once, for reading and for writing.
 template <typename Net, typename Visit>
@@ -33,57 +27,11 @@ void visit_arrays(Net& net, Visit visit) {
   visit("layer3_bias", std::span(net.layer3.bias));
 }
 
-/// Reads fields of one JSON object; every complaint names the file and the key.
-class FieldReader {
- public:
-  FieldReader(const cJSON* object, const std::string& name) : object_(object), name_(name) {}
-
-  [[nodiscard]] double number(const char* key) const {
-    const cJSON* item = field(key);
-    if (!cJSON_IsNumber(item)) fail("{}: \"{}\" is not a number", name_, key);
-    return item->valuedouble;
-  }
-  /// A threshold: whole EUR/MWh, as plausible as any price.
-  [[nodiscard]] int price(const char* key) const {
-    constexpr int kPriceMax = kPlausiblePriceMaxCentiEurPerMwh / kCentiPerEur;
-    const double value = number(key);
-    if (!(value >= -kPriceMax && value <= kPriceMax) || value != std::trunc(value)) {
-      fail("{}: \"{}\" is not a whole number in {}..{}", name_, key, -kPriceMax, kPriceMax);
-    }
-    return static_cast<int>(value);
-  }
-  [[nodiscard]] std::string text(const char* key) const {
-    const cJSON* item = field(key);
-    if (!cJSON_IsString(item)) fail("{}: \"{}\" is not a text", name_, key);
-    return item->valuestring;
-  }
-  template <typename T, std::size_t kExtent>
-  void integers(const char* key, std::span<T, kExtent> out) const {
-    const cJSON* array = field(key);
-    if (!cJSON_IsArray(array) || cJSON_GetArraySize(array) != static_cast<int>(out.size())) {
-      fail("{}: \"{}\" is not an array of {} integers", name_, key, out.size());
-    }
-    const cJSON* item = array->child;
-    for (T& value : out) {
-      const double x = cJSON_IsNumber(item) ? item->valuedouble : 0.5;
-      value = static_cast<T>(
-          clamp_to<double>(x, std::numeric_limits<T>::min(), std::numeric_limits<T>::max()));
-      if (static_cast<double>(value) != x) {
-        fail("{}: \"{}\" holds something else than integers of {} bits", name_, key, 8 * sizeof(T));
-      }
-      item = item->next;
-    }
-  }
-
- private:
-  [[nodiscard]] const cJSON* field(const char* key) const {
-    const cJSON* item = cJSON_GetObjectItemCaseSensitive(object_, key);
-    if (item == nullptr) fail("{}: not a student file: \"{}\" is missing", name_, key);
-    return item;
-  }
-  const cJSON* object_;
-  const std::string& name_;
-};
+/// A threshold: whole EUR/MWh, as plausible as any price.
+int price_of(const JsonReader& in, const char* key) {
+  constexpr int kPriceMax = kPlausiblePriceMaxCentiEurPerMwh / kCentiPerEur;
+  return static_cast<int>(in.whole(key, -kPriceMax, kPriceMax));
+}
 
 void check_net(const StudentNet& net, const std::string& name) {
   constexpr int kShiftMax = 30;
@@ -107,19 +55,15 @@ void check_net(const StudentNet& net, const std::string& name) {
 
 void save_student(const std::filesystem::path& path, const StudentFile& student) {
   check_net(student.net, path.string());
-  Json provenance(cJSON_CreateString(student.provenance.c_str()), cJSON_Delete);
-  const std::unique_ptr<char, decltype(&cJSON_free)> quoted(
-      cJSON_PrintUnformatted(provenance.get()), cJSON_free);
-  std::string text = fmt::format(
-      "{{\n\"format\": \"bess-student\",\n\"version\": {},\n\"architecture_hash\": {},\n"
-      "\"weights_hash\": {},\n\"provenance\": {},\n\"low_price_eur_per_mwh\": {},\n"
-      "\"high_price_eur_per_mwh\": {}",
-      kFormatVersion, student_architecture_hash(), student_weights_hash(student.net), quoted.get(),
-      student.low_price_eur_per_mwh, student.high_price_eur_per_mwh);
-  visit_arrays(student.net, [&text](const char* key, auto values) {
-    text += fmt::format(",\n\"{}\": [{}]", key, fmt::join(values, ","));
-  });
-  write_file(path, text + "\n}\n");
+  Json json = Json::object({{"format", kFormat},
+                            {"version", kFormatVersion},
+                            {"architecture_hash", student_architecture_hash()},
+                            {"weights_hash", student_weights_hash(student.net)},
+                            {"provenance", student.provenance},
+                            {"low_price_eur_per_mwh", student.low_price_eur_per_mwh},
+                            {"high_price_eur_per_mwh", student.high_price_eur_per_mwh}});
+  visit_arrays(student.net, [&json](const char* key, auto values) { json.set(key, values); });
+  write_file(path, json.text());
 }
 
 StudentFile load_student(const std::filesystem::path& path) {
@@ -127,15 +71,12 @@ StudentFile load_student(const std::filesystem::path& path) {
 }
 
 StudentFile parse_student(const std::string& text, const std::string& name) {
-  const char* end = nullptr;
-  const Json json(cJSON_ParseWithLengthOpts(text.data(), text.size(), &end, 0), cJSON_Delete);
-  const bool whole = json != nullptr &&
-                     std::string_view(end).find_first_not_of(" \t\r\n") == std::string_view::npos;
-  if (!whole || !cJSON_IsObject(json.get())) {
+  const Json json = Json::parse(text);
+  if (!json.value().is_object()) {
     fail("{}: not a student file (JSON); make one with 'bess-train distil'", name);
   }
-  const FieldReader in(json.get(), name);
-  if (in.text("format") != "bess-student") fail("{}: \"format\" is not \"bess-student\"", name);
+  const JsonReader in(json.value(), name, "a student file");
+  if (in.text("format") != kFormat) fail("{}: \"format\" is not \"{}\"", name, kFormat);
   if (in.number("version") != kFormatVersion) {
     fail("{}: version {}, this program reads {}; distil again", name, in.number("version"),
          kFormatVersion);
@@ -144,13 +85,13 @@ StudentFile parse_student(const std::string& text, const std::string& name) {
     fail("{}: made for another student architecture; distil again", name);
   }
   StudentFile student{};
-  visit_arrays(student.net, [&in](const char* key, auto values) { in.integers(key, values); });
+  visit_arrays(student.net, [&in](const char* key, auto values) { in.wholes(key, values); });
   check_net(student.net, name);
   if (in.number("weights_hash") != student_weights_hash(student.net)) {
     fail("{}: damaged: the weights do not match their hash; copy it again or distil again", name);
   }
-  student.low_price_eur_per_mwh = in.price("low_price_eur_per_mwh");
-  student.high_price_eur_per_mwh = in.price("high_price_eur_per_mwh");
+  student.low_price_eur_per_mwh = price_of(in, "low_price_eur_per_mwh");
+  student.high_price_eur_per_mwh = price_of(in, "high_price_eur_per_mwh");
   if (student.low_price_eur_per_mwh >= student.high_price_eur_per_mwh) {
     fail("{}: \"low_price_eur_per_mwh\" is not below \"high_price_eur_per_mwh\"", name);
   }
