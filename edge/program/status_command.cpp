@@ -1,11 +1,9 @@
 #include "edge/program/status_command.h"
 
-#include <cjson/cJSON.h>
 #include <unistd.h>
 
 #include <cstdio>
 #include <fstream>
-#include <memory>
 #include <sstream>
 
 #include "edge/log/health.h"
@@ -13,6 +11,7 @@
 #include "edge/log/ring_log.h"
 #include "edge/log/status_keys.h"
 #include "edge/program/run_locks.h"
+#include "shared/host/json.h"
 #include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
 
@@ -25,8 +24,6 @@ using P = PriceReport;
 using C = BatteryCounters;
 using T = RunTotals;
 
-using Json = std::unique_ptr<cJSON, decltype(&cJSON_Delete)>;
-
 bool read_text(const char* path, std::string& text) {
   const std::ifstream file(path);
   if (!file) return false;
@@ -36,40 +33,34 @@ bool read_text(const char* path, std::string& text) {
   return true;
 }
 
-/// The published status; null when there is none or it is not ours.
+/// The published status; does not exist when there is none or it is not ours.
 Json read_status(const EdgeConfig& config) {
   std::string text;
-  if (!read_text(config.log.status.c_str(), text)) return {nullptr, &cJSON_Delete};
-  return {cJSON_ParseWithLength(text.data(), text.size()), &cJSON_Delete};
-}
-
-const cJSON* item(const cJSON* object, const char* name) {
-  return cJSON_GetObjectItemCaseSensitive(object, name);
+  read_text(config.log.status.c_str(), text);
+  return Json::parse(text);
 }
 
 /// What the status says of the member at this path of CycleRecord or RunTotals.
 template <auto... kPath>
-const cJSON* field(const cJSON* status) {
+JsonValue field(JsonValue status) {
   constexpr StatusKey kKey = status_key<kPath...>();
-  return item(item(status, kKey.section), kKey.name);
+  return status[kKey.section][kKey.name];
 }
 
-double number(const cJSON* found) { return cJSON_IsNumber(found) ? found->valuedouble : 0; }
+double number(JsonValue found) { return found.number().value_or(0); }
 
-long long whole(const cJSON* found) { return static_cast<long long>(number(found)); }
+long long whole(JsonValue found) { return static_cast<long long>(number(found)); }
 
-const char* text_of(const cJSON* found) {
-  return cJSON_IsString(found) ? found->valuestring : "none";
-}
+const char* text_of(JsonValue found) { return found.text() != nullptr ? found.text() : "none"; }
 
-bool is_true(const cJSON* found) { return cJSON_IsTrue(found) != 0; }
+bool is_true(JsonValue found) { return found.boolean().value_or(false); }
 
-std::int64_t age_ms_of(const cJSON* status) {
-  return clock_ns(CLOCK_MONOTONIC) / 1'000'000 - whole(item(status, "written_monotonic_ms"));
+std::int64_t age_ms_of(JsonValue status) {
+  return clock_ns(CLOCK_MONOTONIC) / 1'000'000 - whole(status["written_monotonic_ms"]);
 }
 
 /// On a full disk the status stays as it was, while the log goes on in its file of fixed size.
-std::int64_t cycles_behind(const EdgeConfig& config, const cJSON* status) {
+std::int64_t cycles_behind(const EdgeConfig& config, JsonValue status) {
   RingLog ring;
   FileMessage ignored;
   CycleRecord newest;
@@ -81,14 +72,14 @@ std::int64_t cycles_behind(const EdgeConfig& config, const cJSON* status) {
   return (newest.utc_s - published_utc_s) / kSecondsPerStep;
 }
 
-Health health_of(const EdgeConfig& config, const cJSON* status) {
+Health health_of(const EdgeConfig& config, JsonValue status) {
   const int holder = holder_of(state_lock_path(config).c_str());
   HealthInputs in;
   in.is_running = holder != 0;
-  if (status == nullptr) return assess_health(in);
-  in.is_of_this_run = holder == whole(item(status, "pid"));
+  if (!status.exists()) return assess_health(in);
+  in.is_of_this_run = holder == whole(status["pid"]);
   in.age_ms = age_ms_of(status);
-  in.cadence_ms = whole(item(status, "cadence_ms"));
+  in.cadence_ms = whole(status["cadence_ms"]);
   in.cycles = whole(field<&T::cycles>(status));
   in.mode = text_of(field<&R::mode>(status));
   in.reason = text_of(field<&R::reason>(status));
@@ -106,7 +97,7 @@ void print_health(const Health& health) {
   for (const std::string& reason : health.reasons) std::printf("           %s\n", reason.c_str());
 }
 
-void print_last_cycle(const cJSON* s) {
+void print_last_cycle(JsonValue s) {
   std::printf("state      %s at %s, cycle %lld\n", text_of(field<&R::mode>(s)),
               text_of(field<&R::utc_s>(s)), whole(field<&R::cycle>(s)));
   if (is_true(field<&R::has_measurement>(s))) {
@@ -128,7 +119,7 @@ void print_last_cycle(const cJSON* s) {
               text_of(field<&R::reason>(s)));
 }
 
-void print_counters(const cJSON* s) {
+void print_counters(JsonValue s) {
   std::printf(
       "cycles     %lld, missed ticks %lld, late orders %lld, orders written %lld, log records "
       "dropped %lld\n",
@@ -162,36 +153,29 @@ void print_last_orders(const EdgeConfig& config) {
   }
 }
 
-void print_text(const EdgeConfig& config, const cJSON* status, const Health& health) {
+void print_text(const EdgeConfig& config, JsonValue status, const Health& health) {
   print_health(health);
-  if (status != nullptr) {
+  if (status.exists()) {
     std::printf("controller %s, process %lld since %s, version %s, student %s\n",
-                is_true(item(status, "control")) ? "in control" : "read-only",
-                whole(item(status, "pid")), text_of(item(status, "start_utc")),
-                text_of(item(status, "version")), text_of(item(status, "student")));
-    const char* const variant = text_of(item(status, "variant"));
-    std::printf("driving    %s, map %s%s%s\n", text_of(item(status, "battery")),
-                text_of(item(status, "map")), *variant == '\0' ? "" : ", variant ", variant);
+                is_true(status["control"]) ? "in control" : "read-only", whole(status["pid"]),
+                text_of(status["start_utc"]), text_of(status["version"]),
+                text_of(status["student"]));
+    const char* const variant = text_of(status["variant"]);
+    std::printf("driving    %s, map %s%s%s\n", text_of(status["battery"]), text_of(status["map"]),
+                *variant == '\0' ? "" : ", variant ", variant);
     if (whole(field<&T::cycles>(status)) > 0) print_last_cycle(status);
     print_counters(status);
   }
   print_last_orders(config);
 }
 
-void print_json(cJSON* status, const Health& health) {
-  Json made(nullptr, &cJSON_Delete);
-  if (status == nullptr) {
-    made.reset(cJSON_CreateObject());
-    status = made.get();
-  }
-  cJSON_AddStringToObject(status, "health", health_name(health.level).data());
-  cJSON* const reasons = cJSON_AddArrayToObject(status, "health_reasons");
-  for (const std::string& reason : health.reasons) {
-    cJSON_AddItemToArray(reasons, cJSON_CreateString(reason.c_str()));
-  }
-  char* const text = cJSON_Print(status);
-  std::puts(text);
-  cJSON_free(text);
+void print_json(Json status, const Health& health) {
+  if (!status.value().is_object()) status = Json::object();
+  Json reasons = Json::list();
+  for (const std::string& reason : health.reasons) reasons.add(reason);
+  status.set("health", health_name(health.level));
+  status.set("health_reasons", std::move(reasons));
+  std::fputs(status.text().c_str(), stdout);
 }
 
 bool print_metrics(const EdgeConfig& config) {
@@ -206,14 +190,14 @@ bool print_metrics(const EdgeConfig& config) {
 }
 
 int print_once(const CommandLine& command_line, const EdgeConfig& config) {
-  const Json status = read_status(config);
-  const Health health = health_of(config, status.get());
+  Json status = read_status(config);
+  const Health health = health_of(config, status.value());
   if (command_line.prometheus) {
     if (!print_metrics(config)) return 1;
   } else if (command_line.json) {
-    print_json(status.get(), health);
+    print_json(std::move(status), health);
   } else {
-    print_text(config, status.get(), health);
+    print_text(config, status.value(), health);
   }
   std::fflush(stdout);
   return static_cast<int>(health.level);

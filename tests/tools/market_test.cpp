@@ -65,7 +65,7 @@ TEST(MinuteFile, NamesTheLineOfEveryMistake) {
 TEST(MarketView, RowIsVisibleAtTheEndOfItsMinutePlusLatency) {
   const MarketView view(parse_minute_prices(kFile, "f"), 2.0);
   const RecordsQuery query{.limit = 1};
-  EXPECT_THAT(view.records(query, utc_ns("2023-03-26T00:14:01Z")), HasSubstr("\"total_count\": 0"));
+  EXPECT_THAT(view.records(query, utc_ns("2023-03-26T00:14:01Z")), HasSubstr("\"total_count\":0"));
   EXPECT_THAT(view.records(query, utc_ns("2023-03-26T00:14:02Z")),
               HasSubstr("\"datetime\":\"2023-03-26T00:13:00+00:00\""));
   const std::string later = view.records({.limit = 2}, utc_ns("2023-03-26T00:16:02Z"));
@@ -77,7 +77,7 @@ TEST(MarketView, RowIsVisibleAtTheEndOfItsMinutePlusLatency) {
 TEST(MarketView, SettledQuarterHourIsVisibleAfterItsEnd) {
   const MarketView view(parse_minute_prices(kFile, "f"), 0);
   const RecordsQuery query{.dataset = Dataset::kQuarterHours};
-  EXPECT_THAT(view.records(query, utc_ns("2023-03-26T00:14:59Z")), HasSubstr("\"total_count\": 0"));
+  EXPECT_THAT(view.records(query, utc_ns("2023-03-26T00:14:59Z")), HasSubstr("\"total_count\":0"));
   const std::string json = view.records(query, utc_ns("2023-03-26T00:15:00Z"));
   EXPECT_THAT(json, HasSubstr("\"datetime\":\"2023-03-26T00:00:00+00:00\""));
   EXPECT_THAT(json, HasSubstr("\"imbalanceprice\":20.000"));

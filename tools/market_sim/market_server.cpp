@@ -4,6 +4,7 @@
 
 #include <charconv>
 
+#include "shared/host/json.h"
 #include "tools/sim/sim_error.h"
 
 namespace bess {
@@ -99,17 +100,16 @@ void MarketServer::answer(Dataset dataset, const httplib::Request& request,
   const MarketFault fault = next_fault();
   if (fault == MarketFault::kHttp500) {
     response.status = 500;
-    return response.set_content("{\"message\": \"simulated fault\"}", kJson);
+    return response.set_content(Json::object({{"message", "simulated fault"}}).line(), kJson);
   }
   if (fault == MarketFault::kGarbage) return response.set_content("{\"results\": [{\"dat", kJson);
   RecordsQuery query{.dataset = dataset, .hide_newest_price = fault == MarketFault::kNull};
   std::string problem;
   if (!parse_query(request, query, problem)) {
     response.status = 400;
-    return response.set_content(
-        fmt::format("{{\"error_code\": \"InvalidRESTParameterError\", \"message\": \"{}\"}}",
-                    problem),
-        kJson);
+    const Json refusal =
+        Json::object({{"error_code", "InvalidRESTParameterError"}, {"message", problem}});
+    return response.set_content(refusal.line(), kJson);
   }
   std::int64_t now_ns = clock_.now_utc_ns();
   if (fault == MarketFault::kStale) now_ns -= kStaleNs;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shared/host/json.h"
 #include "shared/local_time.h"
 #include "shared/scaled_clock.h"
 
@@ -18,10 +19,6 @@ std::string offset_time(std::int64_t utc_s) {
   const CivilTime t = civil_from_utc(utc_s);
   return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}+00:00", t.year, t.month, t.day, t.hour,
                      t.minute, t.second);
-}
-
-std::string price_text(double price) {
-  return std::isfinite(price) ? fmt::format("{:.3f}", price) : "null";
 }
 
 }  // namespace
@@ -67,18 +64,16 @@ std::string MarketView::records(const RecordsQuery& query, std::int64_t now_utc_
   if (query.newest_first) std::reverse(rows.begin(), rows.end());
   const std::size_t first = std::min(rows.size(), static_cast<std::size_t>(query.offset));
   const std::size_t last = std::min(rows.size(), first + static_cast<std::size_t>(query.limit));
-  std::string json = fmt::format("{{\"total_count\": {}, \"results\": [", rows.size());
+  Json results = Json::list();
   for (std::size_t i = first; i < last; ++i) {
-    json += fmt::format("{}{{\"datetime\":\"{}\",\"resolutioncode\":\"{}\"", i == first ? "" : ",",
-                        offset_time(rows[i].utc_s), minutes ? "PT1M" : "PT15M");
-    if (minutes) {
-      const std::int64_t quarter_hour = rows[i].utc_s / kQuarterHourS * kQuarterHourS;
-      json += fmt::format(",\"quarterhour\":\"{}\"", offset_time(quarter_hour));
-    }
-    json += fmt::format(",\"qualitystatus\":\"NotValidated\",\"imbalanceprice\":{}}}",
-                        price_text(rows[i].price));
+    Json row = Json::object(
+        {{"datetime", offset_time(rows[i].utc_s)}, {"resolutioncode", minutes ? "PT1M" : "PT15M"}});
+    if (minutes) row.set("quarterhour", offset_time(rows[i].utc_s / kQuarterHourS * kQuarterHourS));
+    row.set("qualitystatus", "NotValidated");
+    row.set("imbalanceprice", Decimals{rows[i].price, 3});
+    results.add(std::move(row));
   }
-  return json + "]}";
+  return Json::object({{"total_count", rows.size()}, {"results", std::move(results)}}).line();
 }
 
 }  // namespace bess

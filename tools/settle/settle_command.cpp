@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "shared/host/json.h"
 #include "tools/settle/settlement.h"
 #include "tools/sim/commands.h"
 
@@ -17,22 +18,28 @@ struct Options {
   bool json = false;
 };
 
+Json account_json(const Account& account) {
+  return Json::object({{"charged_wh", Decimals{account.charged_wh, 3}},
+                       {"discharged_wh", Decimals{account.discharged_wh, 3}},
+                       {"profit_eur", Decimals{account.profit_eur, 6}},
+                       {"soc_end", Decimals{account.soc_end_frac, 5}}});
+}
+
+Json latency_json(const Latency& latency) {
+  return Json::object({{"median", Decimals{latency.median_us, 0}},
+                       {"p99", Decimals{latency.p99_us, 0}},
+                       {"max", Decimals{latency.max_us, 0}}});
+}
+
 void print_json(const Settlement& s) {
-  const auto account = [](const Account& a) {
-    return fmt::format(
-        R"({{"charged_wh": {:.3f}, "discharged_wh": {:.3f}, "profit_eur": {:.6f}, "soc_end": {:.5f}}})",
-        a.charged_wh, a.discharged_wh, a.profit_eur, a.soc_end_frac);
-  };
-  const auto latency = [](const Latency& l) {
-    return fmt::format(R"({{"median": {:.0f}, "p99": {:.0f}, "max": {:.0f}}})", l.median_us,
-                       l.p99_us, l.max_us);
-  };
-  fmt::print(
-      R"({{"cycles": {}, "cycles_running": {}, "battery": {}, "edge": {}, "decision_us": {}, )"
-      R"("write_us": {}, "total_us": {}}})"
-      "\n",
-      s.cycles, s.cycles_running, account(s.battery), account(s.edge), latency(s.decision),
-      latency(s.write), latency(s.total));
+  const Json json = Json::object({{"cycles", s.cycles},
+                                  {"cycles_running", s.cycles_running},
+                                  {"battery", account_json(s.battery)},
+                                  {"edge", account_json(s.edge)},
+                                  {"decision_us", latency_json(s.decision)},
+                                  {"write_us", latency_json(s.write)},
+                                  {"total_us", latency_json(s.total)}});
+  fmt::print("{}\n", json.line());
 }
 
 void print_text(const Settlement& s) {

@@ -33,7 +33,4 @@ void end_when_interrupted();
 void watch_interruption();
 std::atomic<bool>& interruption();
 
-/// Quotes a text as JSON.
-std::string json_quote(std::string_view text);
-
 }  // namespace bess

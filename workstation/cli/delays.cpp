@@ -6,6 +6,7 @@
 #include <array>
 #include <memory>
 
+#include "shared/host/json.h"
 #include "shared/host/user_error.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
@@ -61,10 +62,14 @@ void print_table(const std::string& name, const Table& table) {
 void print_json(const std::string& name, const Table& table, const Options& options) {
   for (int fit = 0; fit < kDelays; ++fit) {
     for (int run = 0; run < kDelays; ++run) {
-      fmt::print(R"({{"policy": {}, "split": "{}", "carry_soc": {}, "fit_delay_min": {}, )"
-                 R"("run_delay_min": {}, "profit_eur_per_day_per_mwh": {:.4f}}})"
-                 "\n",
-                 json_quote(name), options.split, options.carry_soc, fit, run, table[fit][run]);
+      const Json json =
+          Json::object({{"policy", name},
+                        {"split", options.split},
+                        {"carry_soc", options.carry_soc},
+                        {"fit_delay_min", fit},
+                        {"run_delay_min", run},
+                        {"profit_eur_per_day_per_mwh", Decimals{table[fit][run], 4}}});
+      fmt::print("{}\n", json.line());
     }
   }
 }

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "shared/host/file.h"
+#include "shared/host/json.h"
 #include "shared/host/user_error.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
@@ -30,12 +31,14 @@ void print_result(const Options& options, const CorrectionResult& result) {
   const Certificate& c = student_of(result.verdict).certificate;
   const std::size_t rounds = result.violations_by_round.size();
   if (options.json) {
-    fmt::print(R"({{"student": {}, "corrected": {}, "rounds": {}, "states_checked": {}, )"
-               R"("violations_property_1": {}, "violations_property_2": {}, )"
-               R"("violations_property_3": {}}})"
-               "\n",
-               json_quote(options.out), !options.plain, rounds, c.states_checked,
-               c.violations_property_1, c.violations_property_2, c.violations_property_3);
+    const Json json = Json::object({{"student", options.out},
+                                    {"corrected", !options.plain},
+                                    {"rounds", rounds},
+                                    {"states_checked", c.states_checked},
+                                    {"violations_property_1", c.violations_property_1},
+                                    {"violations_property_2", c.violations_property_2},
+                                    {"violations_property_3", c.violations_property_3}});
+    fmt::print("{}\n", json.line());
     return;
   }
   fmt::print("{}: {} states checked, violations {} / {} / {} after {} round{}\n", options.out,

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "shared/host/file.h"
+#include "shared/host/json.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "workstation/cli/commands.h"
@@ -60,51 +61,44 @@ struct Records {
   }
 };
 
-/// JSON has no NaN: what one day cannot tell is null.
-std::string number_json(double value) {
-  return std::isnan(value) ? "null" : fmt::format("{:.4f}", value);
-}
-
-std::string metrics_json(const Evaluation& e, double foresight_profit) {
+void add_metrics(Json& json, const Evaluation& e, double foresight_profit) {
   const double profit = e.profit_eur_per_day_per_mwh();
-  return fmt::format(
-      R"("days": {}, "profit_eur_per_day_per_mwh": {:.4f}, "standard_error": {}, )"
-      R"("cycles_per_day": {:.4f}, "worst_day_eur_per_mwh": {:.4f}, )"
-      R"("share_of_foresight": {}, "switches_per_day": {:.3f}, "soc_end_mean": {:.5f})",
-      e.days.size(), profit, number_json(e.standard_error()), e.cycles_per_day(),
-      e.worst_day_eur_per_mwh(),
-      foresight_profit > 0 ? fmt::format("{:.5f}", profit / foresight_profit) : "null",
-      e.switches_per_day(), e.soc_end_mean());
+  const double share = foresight_profit > 0 ? profit / foresight_profit : NAN;  // null then
+  json.set("days", e.days.size());
+  json.set("profit_eur_per_day_per_mwh", Decimals{profit, 4});
+  json.set("standard_error", Decimals{e.standard_error(), 4});
+  json.set("cycles_per_day", Decimals{e.cycles_per_day(), 4});
+  json.set("worst_day_eur_per_mwh", Decimals{e.worst_day_eur_per_mwh(), 4});
+  json.set("share_of_foresight", Decimals{share, 5});
+  json.set("switches_per_day", Decimals{e.switches_per_day(), 3});
+  json.set("soc_end_mean", Decimals{e.soc_end_mean(), 5});
 }
 
-std::string difference_json(const Evaluation& e, const Evaluation& first) {
+void add_difference(Json& json, const Evaluation& e, const Evaluation& first) {
   const PairedDifference difference = paired_difference(e, first);
-  return fmt::format(R"("difference_to_first": {:.4f}, "difference_standard_error": {})",
-                     difference.mean, number_json(difference.standard_error));
+  json.set("difference_to_first", Decimals{difference.mean, 4});
+  json.set("difference_standard_error", Decimals{difference.standard_error, 4});
 }
 
-/// One line. With several policies: also the paired difference to the first and, nested, the same
-/// with the SoC carried over.
-std::string evaluation_json(const NamedEvaluation& named, const NamedEvaluation& first,
-                            const NamedEvaluation& foresight, const Options& options) {
+/// With several policies: also the paired difference to the first and, nested, the same with the SoC
+/// carried over.
+Json evaluation_json(const NamedEvaluation& named, const NamedEvaluation& first,
+                     const NamedEvaluation& foresight, const Options& options) {
   const EvaluationField field =
       options.carry_soc ? &NamedEvaluation::carried_over : &NamedEvaluation::day_reset;
   const bool several = options.policies.size() > 1;
-  std::string line = fmt::format(
-      R"({{"policy": {}, "split": "{}", {}, "carry_soc": {})", json_quote(named.name),
-      options.split, metrics_json(named.*field, (foresight.*field).profit_eur_per_day_per_mwh()),
-      options.carry_soc);
-  if (!named.description.empty()) {
-    line += fmt::format(R"(, "description": {})", json_quote(named.description));
-  }
-  if (several) line += ", " + difference_json(named.*field, first.*field);
+  Json json = Json::object({{"policy", named.name}, {"split", options.split}});
+  add_metrics(json, named.*field, (foresight.*field).profit_eur_per_day_per_mwh());
+  json.set("carry_soc", options.carry_soc);
+  if (!named.description.empty()) json.set("description", named.description);
+  if (several) add_difference(json, named.*field, first.*field);
   if (several && !options.carry_soc) {
-    line += fmt::format(
-        R"(, "carried_over": {{{}, {}}})",
-        metrics_json(named.carried_over, foresight.carried_over.profit_eur_per_day_per_mwh()),
-        difference_json(named.carried_over, first.carried_over));
+    Json carried = Json::object();
+    add_metrics(carried, named.carried_over, foresight.carried_over.profit_eur_per_day_per_mwh());
+    add_difference(carried, named.carried_over, first.carried_over);
+    json.set("carried_over", std::move(carried));
   }
-  return line + "}\n";
+  return json;
 }
 
 double price_range(const MarketSteps& market, const MarketDay& day) {
@@ -220,7 +214,7 @@ void run(const Options& options) {
     return;
   }
   for (const NamedEvaluation& named : results) {
-    fmt::print("{}", evaluation_json(named, results.front(), foresight, options));
+    fmt::print("{}\n", evaluation_json(named, results.front(), foresight, options).line());
   }
 }
 

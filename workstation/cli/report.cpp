@@ -1,11 +1,10 @@
 // bess-train report: figures and tables of a run, made again from its folder.
-#include <cJSON.h>
 #include <fmt/core.h>
 
 #include <memory>
 
 #include "shared/host/file.h"
-#include "shared/host/user_error.h"
+#include "shared/host/json_reader.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
 #include "workstation/cli/run_report.h"
@@ -14,15 +13,8 @@ namespace bess {
 namespace {
 
 std::string prices_of_run(const RunFolder& folder) {
-  const std::string text = read_file(folder.manifest());
-  const std::unique_ptr<cJSON, decltype(&cJSON_Delete)> json(
-      cJSON_ParseWithLength(text.data(), text.size()), cJSON_Delete);
-  const cJSON* prices = cJSON_GetObjectItemCaseSensitive(json.get(), "prices");
-  if (!cJSON_IsString(prices)) {
-    fail("{}: not a run's manifest: \"prices\" is missing; make the run again",
-         folder.manifest().string());
-  }
-  return prices->valuestring;
+  const Json json = Json::parse(read_file(folder.manifest()));
+  return JsonReader(json.value(), folder.manifest().string(), "a run's manifest").text("prices");
 }
 
 void run(const std::string& path, const std::string& prices) {

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "shared/host/file.h"
+#include "shared/host/json.h"
 #include "shared/host/user_error.h"
 #include "workstation/cli/chain_steps.h"
 #include "workstation/cli/commands.h"
@@ -91,14 +92,17 @@ RunResults learn(const RunConfig& config, MarketSteps market, const std::string&
 
 std::string manifest(const RunResults& run, const std::string& prices) {
   const StudentFile& corrected = student_of(run.corrected);
-  return fmt::format(
-      "{{\n\"version\": \"{}\",\n\"prices\": {},\n\"seed\": {},\n\"threads\": {},\n"
-      "\"provenance\": {},\n\"weights_hash\": \"{:08x}\",\n\"states_checked\": {},\n"
-      "\"violations_plain\": {},\n\"violations_corrected\": {}\n}}\n",
-      BESS_VERSION, json_quote(prices), run.config.train.seed, run.config.train.threads,
-      json_quote(corrected.provenance), student_weights_hash(corrected.net),
-      corrected.certificate.states_checked, student_of(run.plain).certificate.violations(),
-      corrected.certificate.violations());
+  const Certificate& certificate = corrected.certificate;
+  return Json::object({{"version", BESS_VERSION},
+                       {"prices", prices},
+                       {"seed", run.config.train.seed},
+                       {"threads", run.config.train.threads},
+                       {"provenance", corrected.provenance},
+                       {"weights_hash", fmt::format("{:08x}", student_weights_hash(corrected.net))},
+                       {"states_checked", certificate.states_checked},
+                       {"violations_plain", student_of(run.plain).certificate.violations()},
+                       {"violations_corrected", certificate.violations()}})
+      .text();
 }
 
 void run(const Options& options) {

@@ -10,6 +10,7 @@
 
 #include "shared/crc32.h"
 #include "shared/host/file.h"
+#include "shared/host/json.h"
 #include "shared/host/user_error.h"
 #include "workstation/cli/chain_steps.h"
 #include "workstation/cli/commands.h"
@@ -73,11 +74,14 @@ std::string identity_of(const RunConfig& config, const MinuteSeries& series) {
 }
 
 std::string result_json(const std::string& out, Method method, const TrainResult& result) {
-  return fmt::format(R"({{"teacher": {}, "method": "{}", "steps": {}, "best_step": {}, )"
-                     R"("validation_eur_per_day_per_mwh": {:.4f}, "seconds": {:.2f}}})"
-                     "\n",
-                     json_quote(out), method_name(method), result.curve.back().step,
-                     result.best_step, result.best_validation_eur_per_day_per_mwh, result.seconds);
+  return Json::object({{"teacher", out},
+                       {"method", method_name(method)},
+                       {"steps", result.curve.back().step},
+                       {"best_step", result.best_step},
+                       {"validation_eur_per_day_per_mwh",
+                        Decimals{result.best_validation_eur_per_day_per_mwh, 4}},
+                       {"seconds", Decimals{result.seconds, 2}}})
+      .line();
 }
 
 /// Trains with the configuration's seed, keeping a checkpoint beside `out` until the end.
@@ -121,12 +125,15 @@ void print_seeds(const std::vector<SeedResult>& results, const Options& options,
       column([](const SeedResult& r) { return r.test_carried.profit_eur_per_day_per_mwh(); });
   if (options.json) {
     for (std::size_t i = 0; i < results.size(); ++i) {
-      fmt::print(R"({{"method": "{}", "seed": {}, "best_step": {}, )"
-                 R"("validation_eur_per_day_per_mwh": {:.4f}, "test_eur_per_day_per_mwh": {:.4f}, )"
-                 R"("test_carried_eur_per_day_per_mwh": {:.4f}, "seconds": {:.2f}}})"
-                 "\n",
-                 method_name(method), results[i].seed, results[i].training.best_step, validation[i],
-                 test[i], carried[i], results[i].training.seconds);
+      const Json json =
+          Json::object({{"method", method_name(method)},
+                        {"seed", results[i].seed},
+                        {"best_step", results[i].training.best_step},
+                        {"validation_eur_per_day_per_mwh", Decimals{validation[i], 4}},
+                        {"test_eur_per_day_per_mwh", Decimals{test[i], 4}},
+                        {"test_carried_eur_per_day_per_mwh", Decimals{carried[i], 4}},
+                        {"seconds", Decimals{results[i].training.seconds, 2}}});
+      fmt::print("{}\n", json.line());
     }
     return;
   }
@@ -184,7 +191,7 @@ void run(const Options& options) {
   if (options.seeds > 1) return run_seeds(options, config, series, market);
   const TrainResult result = train_one(options.out, options, config, series, market);
   if (options.json) {
-    fmt::print("{}", result_json(options.out, config.train.method, result));
+    fmt::print("{}\n", result_json(options.out, config.train.method, result));
   } else {
     fmt::print("{}: {}, best at step {} of {}: {:.1f} EUR/day/MWh on validation days, {:.0f} s\n",
                options.out, method_name(config.train.method), result.best_step,

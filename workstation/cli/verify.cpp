@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "shared/host/json.h"
 #include "shared/host/user_error.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
@@ -20,16 +21,19 @@ struct Options {
 
 void print_json(const std::string& name, const StudentFile& student, bool exhaustive) {
   const Certificate& c = student.certificate;
-  fmt::print(
-      R"({{"student": {}, "weights_hash": "{:08x}", "method": "{}", "states_checked": {}, )"
-      R"("states_evaluated": {}, "violations_property_1": {}, "violations_property_2": {}, )"
-      R"("violations_property_3": {}, "low_price_eur_per_mwh": {}, "high_price_eur_per_mwh": {}, )"
-      R"("seconds": {:.3f}}})"
-      "\n",
-      json_quote(name), student_weights_hash(student.net),
-      exhaustive ? "exhaustive" : "bounds and enumeration", c.states_checked, c.states_evaluated,
-      c.violations_property_1, c.violations_property_2, c.violations_property_3,
-      c.thresholds.low_eur_per_mwh, c.thresholds.high_eur_per_mwh, c.seconds);
+  const Json json =
+      Json::object({{"student", name},
+                    {"weights_hash", fmt::format("{:08x}", student_weights_hash(student.net))},
+                    {"method", exhaustive ? "exhaustive" : "bounds and enumeration"},
+                    {"states_checked", c.states_checked},
+                    {"states_evaluated", c.states_evaluated},
+                    {"violations_property_1", c.violations_property_1},
+                    {"violations_property_2", c.violations_property_2},
+                    {"violations_property_3", c.violations_property_3},
+                    {"low_price_eur_per_mwh", c.thresholds.low_eur_per_mwh},
+                    {"high_price_eur_per_mwh", c.thresholds.high_eur_per_mwh},
+                    {"seconds", Decimals{c.seconds, 3}}});
+  fmt::print("{}\n", json.line());
 }
 
 void print_text(const std::string& name, const StudentFile& student) {

@@ -61,7 +61,7 @@ layer $w/main.cpp                   $w shared
 only() { blame "$(includes "<$1" "${3:-edge shared}" | grep -vE "^($2)")" "only $2 knows $1"; }
 only modbus/ edge/battery/modbus_wire.cpp:
 only curl/   edge/prices/
-only cjson/  'edge/prices/|edge/program/status_command.cpp:'
+only cjson/  'edge/prices/|shared/host/json.cpp:' 'edge shared workstation tools'
 only toml++/ shared/host/toml_document.cpp: 'edge shared workstation tools'
 
 # The control layer knows neither files, sockets, threads nor signals.

@@ -2,11 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cJSON.h>
-
 #include <filesystem>
 
 #include "shared/host/file.h"
+#include "shared/host/json.h"
 #include "tests/support/small_market.h"
 #include "tests/support/temporary_folder.h"
 #include "workstation/cli/commands.h"
@@ -47,12 +46,9 @@ class EvaluateCli : public testing::Test {
 };
 
 std::vector<std::string> json_keys(const std::string& line) {
-  cJSON* root = cJSON_Parse(line.c_str());
+  const Json json = Json::parse(line);
   std::vector<std::string> keys;
-  for (const cJSON* item = root == nullptr ? nullptr : root->child; item; item = item->next) {
-    keys.emplace_back(item->string);
-  }
-  cJSON_Delete(root);
+  for (const JsonValue member : json.value()) keys.emplace_back(member.key());
   return keys;
 }
 
@@ -64,9 +60,9 @@ TEST_F(EvaluateCli, OnePolicyKeepsItsJsonFields) {
                                    "standard_error", "cycles_per_day", "worst_day_eur_per_mwh",
                                    "share_of_foresight", "switches_per_day", "soc_end_mean",
                                    "carry_soc", "description"));
-  EXPECT_THAT(text[0], HasSubstr("\"carry_soc\": false"));
+  EXPECT_THAT(text[0], HasSubstr("\"carry_soc\":false"));
   EXPECT_THAT(output("evaluate", "--policy rbc --json --carry-soc"),
-              HasSubstr("\"carry_soc\": true"));
+              HasSubstr("\"carry_soc\":true"));
 }
 
 TEST_F(EvaluateCli, SeveralPoliciesAddTheDifferenceAndTheOtherWayOfCounting) {
@@ -110,8 +106,8 @@ TEST_F(EvaluateCli, DelaysAgreesWithEvaluate) {
   ASSERT_EQ(table.size(), 16U);
   const std::string one = output("evaluate", "--policy tabular --json --fit-delay 0 --delay 2");
   const std::string figure =
-      one.substr(one.find("\"profit"), one.find(", \"standard") - one.find("\"profit"));
-  EXPECT_THAT(table[2], HasSubstr("\"fit_delay_min\": 0, \"run_delay_min\": 2"));
+      one.substr(one.find("\"profit"), one.find(",\"standard") - one.find("\"profit"));
+  EXPECT_THAT(table[2], HasSubstr("\"fit_delay_min\":0,\"run_delay_min\":2"));
   EXPECT_THAT(table[2], HasSubstr(figure));
 }
 
@@ -128,7 +124,7 @@ TEST_F(EvaluateCli, OneDayOfTheSplitKeepsTheSocThatWasCarriedIntoIt) {
   EXPECT_EQ(lines(read_file(one_day)).size(), 1U + 2U * 2U);  // policies times ways of counting
   EXPECT_THAT(table, HasSubstr("1 day;"));
   EXPECT_THAT(output("evaluate", "--policy rbc --json --date " + date),
-              HasSubstr(R"("standard_error": null)"));  // one day tells nothing of the spread
+              HasSubstr(R"("standard_error":null)"));  // one day tells nothing of the spread
 }
 
 TEST_F(EvaluateCli, FittedThresholdsAreTold) {

@@ -280,9 +280,9 @@ TEST(VerifyCommand, ExitCodeIsTheVerdict) {
                {LinearNet{.discharge_from = 20'000}.net(), flawless_claim(), "never discharges"});
   const Outcome outcome = run({BESS_TRAIN_PROGRAM, "verify", "--student", student, "--json"});
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.output, HasSubstr("\"violations_property_1\": 0"));
-  EXPECT_THAT(outcome.output, HasSubstr("\"violations_property_2\": 3473280"));
-  EXPECT_THAT(outcome.output, HasSubstr("\"states_checked\": 6950033280"));
+  EXPECT_THAT(outcome.output, HasSubstr("\"violations_property_1\":0"));
+  EXPECT_THAT(outcome.output, HasSubstr("\"violations_property_2\":3473280"));
+  EXPECT_THAT(outcome.output, HasSubstr("\"states_checked\":6950033280"));
 }
 #endif
 

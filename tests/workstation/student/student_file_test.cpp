@@ -37,14 +37,14 @@ std::string seeded_text() {
 
 /// Text with the value of `key` replaced; the values of a student file stand one per line.
 std::string with(std::string text, const std::string& key, const std::string& value) {
-  const std::size_t begin = text.find('"' + key + "\": ") + key.size() + 4;
+  const std::size_t begin = text.find('"' + key + "\":\t") + key.size() + 4;
   const std::size_t end = text.find('\n', begin);
   const bool comma = text[end - 1] == ',';
   return text.replace(begin, end - begin, value + (comma ? "," : ""));
 }
 
 std::string without(std::string text, const std::string& key) {
-  const std::size_t begin = text.find('"' + key + "\": ");
+  const std::size_t begin = text.find('"' + key + "\":\t");
   return text.erase(begin, text.find('\n', begin) + 1 - begin);
 }
 

@@ -1,15 +1,18 @@
 #include "workstation/market/statistics/statistics_report.h"
 
-#include <cjson/cJSON.h>
 #include <fmt/core.h>
 
 #include <cmath>
-#include <memory>
 
+#include "shared/host/json.h"
 #include "shared/host/text.h"
 
 namespace bess {
 namespace {
+
+std::string day_of(const ClockChange& change) {
+  return fmt::format("{:04}-{:02}-{:02}", change.year, change.month, change.day);
+}
 
 std::string format_price_text(const PriceStatistics& price) {
   std::string text =
@@ -43,70 +46,53 @@ std::string format_convergence_text(const ConvergenceByMinute& convergence) {
   return text;
 }
 
-struct Delete {
-  void operator()(cJSON* json) const { cJSON_Delete(json); }
-};
-
-/// JSON has no NaN: an unknown figure is null.
-void add_number(cJSON* object, const char* key, double value) {
-  if (std::isfinite(value)) {
-    cJSON_AddNumberToObject(object, key, value);
-  } else {
-    cJSON_AddNullToObject(object, key);
-  }
-}
-
-void add_price_json(cJSON* root, const PriceStatistics& price) {
-  add_number(root, "quarter_hours", static_cast<double>(price.count));
+void add_price(Json& json, const PriceStatistics& price) {
+  json.set("quarter_hours", price.count);
   if (price.count == 0) return;
-  add_number(root, "mean", price.mean);
-  add_number(root, "minimum", price.minimum);
-  add_number(root, "quartile_1", price.quartile_1);
-  add_number(root, "median", price.median);
-  add_number(root, "quartile_3", price.quartile_3);
-  add_number(root, "maximum", price.maximum);
-  add_number(root, "share_below_minus_200", price.share_below_minus_200);
-  add_number(root, "share_below_0", price.share_below_0);
-  add_number(root, "share_above_1000", price.share_above_1000);
-  add_number(root, "sign_flip_rate", price.sign_flip_rate);
-  cJSON* lags = cJSON_AddObjectToObject(root, "autocorrelation");
+  json.set("mean", price.mean);
+  json.set("minimum", price.minimum);
+  json.set("quartile_1", price.quartile_1);
+  json.set("median", price.median);
+  json.set("quartile_3", price.quartile_3);
+  json.set("maximum", price.maximum);
+  json.set("share_below_minus_200", price.share_below_minus_200);
+  json.set("share_below_0", price.share_below_0);
+  json.set("share_above_1000", price.share_above_1000);
+  json.set("sign_flip_rate", price.sign_flip_rate);
+  Json lags = Json::object();
   for (std::size_t i = 0; i < kAutocorrelationLags.size(); ++i) {
-    add_number(lags, std::to_string(kAutocorrelationLags[i]).c_str(), price.autocorrelation[i]);
+    lags.set(std::to_string(kAutocorrelationLags[i]).c_str(), price.autocorrelation[i]);
   }
+  json.set("autocorrelation", std::move(lags));
 }
 
-void add_convergence_json(cJSON* root, const ConvergenceByMinute& convergence) {
-  cJSON* list = cJSON_AddArrayToObject(root, "convergence");
+Json convergence_json(const ConvergenceByMinute& convergence) {
+  Json list = Json::list();
   for (std::size_t m = 0; m < convergence.size(); ++m) {
-    cJSON* of_minute = cJSON_CreateObject();
-    cJSON_AddItemToArray(list, of_minute);
     const bool known = convergence[m].count > 0;
-    add_number(of_minute, "minute", static_cast<double>(m));
-    add_number(of_minute, "rows", static_cast<double>(convergence[m].count));
-    add_number(of_minute, "median_error", known ? convergence[m].median_error : NAN);
-    add_number(of_minute, "mean_error", known ? convergence[m].mean_error : NAN);
+    list.add(Json::object({{"minute", m},
+                           {"rows", convergence[m].count},
+                           {"median_error", known ? convergence[m].median_error : NAN},
+                           {"mean_error", known ? convergence[m].mean_error : NAN}}));
   }
+  return list;
 }
 
-void add_gaps_json(cJSON* root, const char* key, const std::vector<Gap>& gaps) {
-  cJSON* list = cJSON_AddArrayToObject(root, key);
+Json gaps_json(const std::vector<Gap>& gaps) {
+  Json list = Json::list();
   for (const Gap& gap : gaps) {
-    cJSON* item = cJSON_CreateObject();
-    cJSON_AddItemToArray(list, item);
-    cJSON_AddStringToObject(item, "from", format_utc(gap.from_utc_s).c_str());
-    cJSON_AddStringToObject(item, "until", format_utc(gap.until_utc_s).c_str());
+    list.add(Json::object(
+        {{"from", format_utc(gap.from_utc_s)}, {"until", format_utc(gap.until_utc_s)}}));
   }
+  return list;
 }
 
-void add_clock_changes_json(cJSON* root, const std::vector<ClockChange>& changes) {
-  cJSON* list = cJSON_AddArrayToObject(root, "clock_changes");
+Json clock_changes_json(const std::vector<ClockChange>& changes) {
+  Json list = Json::list();
   for (const ClockChange& change : changes) {
-    cJSON* item = cJSON_CreateObject();
-    cJSON_AddItemToArray(list, item);
-    const std::string day = fmt::format("{:04}-{:02}-{:02}", change.year, change.month, change.day);
-    cJSON_AddStringToObject(item, "day", day.c_str());
-    cJSON_AddNumberToObject(item, "quarter_hours", change.quarter_hours);
+    list.add(Json::object({{"day", day_of(change)}, {"quarter_hours", change.quarter_hours}}));
   }
+  return list;
 }
 
 }  // namespace
@@ -123,27 +109,22 @@ std::string format_statistics_text(const MarketStatistics& statistics) {
   text += describe_gaps("settled price", statistics.settled_gaps);
   if (statistics.convergence) text += describe_gaps("indicative price", statistics.indicative_gaps);
   for (const ClockChange& change : statistics.clock_changes) {
-    text += fmt::format("clock change: {:04}-{:02}-{:02} has {} quarter-hours\n", change.year,
-                        change.month, change.day, change.quarter_hours);
+    text += fmt::format("clock change: {} has {} quarter-hours\n", day_of(change),
+                        change.quarter_hours);
   }
   return text;
 }
 
 std::string format_statistics_json(const MarketStatistics& statistics) {
-  const std::unique_ptr<cJSON, Delete> root(cJSON_CreateObject());
-  cJSON_AddStringToObject(root.get(), "from", format_utc(statistics.from_utc_s).c_str());
-  cJSON_AddStringToObject(root.get(), "until", format_utc(statistics.until_utc_s).c_str());
-  add_price_json(root.get(), statistics.price);
-  add_number(root.get(), "imbalance_sign_flip_rate",
-             statistics.imbalance_sign_flip_rate.value_or(NAN));
-  if (statistics.convergence) add_convergence_json(root.get(), *statistics.convergence);
-  add_gaps_json(root.get(), "settled_gaps", statistics.settled_gaps);
-  add_gaps_json(root.get(), "indicative_gaps", statistics.indicative_gaps);
-  add_clock_changes_json(root.get(), statistics.clock_changes);
-  char* printed = cJSON_PrintUnformatted(root.get());
-  std::string text = printed;
-  cJSON_free(printed);
-  return text;
+  Json json = Json::object(
+      {{"from", format_utc(statistics.from_utc_s)}, {"until", format_utc(statistics.until_utc_s)}});
+  add_price(json, statistics.price);
+  json.set("imbalance_sign_flip_rate", statistics.imbalance_sign_flip_rate.value_or(NAN));
+  if (statistics.convergence) json.set("convergence", convergence_json(*statistics.convergence));
+  json.set("settled_gaps", gaps_json(statistics.settled_gaps));
+  json.set("indicative_gaps", gaps_json(statistics.indicative_gaps));
+  json.set("clock_changes", clock_changes_json(statistics.clock_changes));
+  return json.line();
 }
 
 }  // namespace bess

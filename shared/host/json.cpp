@@ -1,0 +1,118 @@
+#include "shared/host/json.h"
+
+#include <cjson/cJSON.h>
+
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <new>
+
+namespace bess {
+namespace {
+
+/// cJSON answers "no memory" with null.
+cJSON* made(cJSON* item) {
+  if (item == nullptr) throw std::bad_alloc();
+  return item;
+}
+
+/// cJSON itself would write a number in 15 or 17 digits, and a whole one as the nearest double.
+cJSON* number_item(double number, int decimals_max) {
+  if (!std::isfinite(number)) return made(cJSON_CreateNull());
+  constexpr int kDigitsMax = std::numeric_limits<double>::max_exponent10 + 64;
+  char digits[kDigitsMax] = {};
+  char* const last = digits + kDigitsMax - 1;
+  if (decimals_max < 0) {
+    std::to_chars(digits, last, number);
+  } else {
+    std::to_chars(digits, last, number, std::chars_format::fixed, decimals_max);
+  }
+  return made(cJSON_CreateRaw(digits));
+}
+
+std::string taken(char* printed) {
+  if (printed == nullptr) throw std::bad_alloc();
+  std::string text(printed);
+  cJSON_free(printed);
+  return text;
+}
+
+}  // namespace
+
+bool JsonValue::is_null() const { return cJSON_IsNull(item_) != 0; }
+bool JsonValue::is_object() const { return cJSON_IsObject(item_) != 0; }
+bool JsonValue::is_list() const { return cJSON_IsArray(item_) != 0; }
+
+std::optional<bool> JsonValue::boolean() const {
+  if (!cJSON_IsBool(item_)) return {};
+  return cJSON_IsTrue(item_) != 0;
+}
+
+std::optional<double> JsonValue::number() const {
+  if (!cJSON_IsNumber(item_)) return {};
+  return item_->valuedouble;
+}
+
+const char* JsonValue::text() const {
+  return cJSON_IsString(item_) != 0 ? item_->valuestring : nullptr;
+}
+
+std::string_view JsonValue::key() const {
+  return item_ == nullptr || item_->string == nullptr ? std::string_view() : item_->string;
+}
+
+JsonValue JsonValue::operator[](const char* key) const {
+  return JsonValue(cJSON_GetObjectItemCaseSensitive(item_, key));
+}
+
+JsonValue::Iterator& JsonValue::Iterator::operator++() {
+  item_ = item_->next;
+  return *this;
+}
+
+JsonValue::Iterator JsonValue::begin() const {
+  return Iterator(item_ == nullptr ? nullptr : item_->child);
+}
+
+std::size_t JsonValue::size() const { return static_cast<std::size_t>(cJSON_GetArraySize(item_)); }
+
+void Json::Delete::operator()(cJSON* item) const { cJSON_Delete(item); }
+
+Json Json::parse(std::string_view text) {
+  const char* end = nullptr;
+  Json json(cJSON_ParseWithLengthOpts(text.data(), text.size(), &end, 0));
+  if (!json.value().exists()) return json;
+  const std::string_view rest = text.substr(static_cast<std::size_t>(end - text.data()));
+  if (rest.find_first_not_of(" \t\r\n") != std::string_view::npos) json.item_.reset();
+  return json;
+}
+
+Json::Json(std::string_view text) : Json(made(cJSON_CreateString(std::string(text).c_str()))) {}
+Json::Json(double number) : Json(number_item(number, -1)) {}
+Json::Json(Decimals number) : Json(number_item(number.value, number.count)) {}
+Json Json::of_boolean(bool value) { return Json(made(cJSON_CreateBool(value ? 1 : 0))); }
+Json Json::of_whole(const std::string& digits) {
+  return Json(made(cJSON_CreateRaw(digits.c_str())));
+}
+Json Json::list() { return Json(made(cJSON_CreateArray())); }
+
+Json Json::object(std::initializer_list<JsonMember> members) {
+  Json json(made(cJSON_CreateObject()));
+  for (const JsonMember& member : members) json.set(member.key, std::move(member.value));
+  return json;
+}
+
+void Json::set(const char* key, Json value) {
+  if (!cJSON_AddItemToObject(item_.get(), key, value.item_.get())) throw std::bad_alloc();
+  static_cast<void>(value.item_.release());  // it belongs to the object now
+}
+
+void Json::add(Json value) {
+  if (!cJSON_AddItemToArray(item_.get(), value.item_.get())) throw std::bad_alloc();
+  static_cast<void>(value.item_.release());
+}
+
+std::string Json::line() const { return taken(cJSON_PrintUnformatted(item_.get())); }
+std::string Json::text() const { return taken(cJSON_Print(item_.get())) + "\n"; }
+
+}  // namespace bess
