@@ -12,7 +12,7 @@
 #include "shared/host/plain_text.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
-#include "shared/local_time.h"
+#include "shared/utc_text.h"
 
 namespace bess {
 namespace {
@@ -21,37 +21,6 @@ constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::string_view kHeader = "minute_utc,indicative_eur_mwh,settled_eur_mwh";
 /// Gaps are stored as missing minutes, so a stray date must not ask for centuries of memory.
 constexpr std::int64_t kMinutesMax = 40LL * 366 * 24 * 60;
-
-bool parse_digits(std::string_view text, std::size_t at, std::size_t count, int& value) {
-  if (at + count > text.size()) return false;
-  value = 0;
-  for (std::size_t i = at; i < at + count; ++i) {
-    if (text[i] < '0' || text[i] > '9') return false;
-    value = value * 10 + (text[i] - '0');
-  }
-  return true;
-}
-
-bool parse_offset(std::string_view text, int& offset_s) {
-  if (text == "Z") {
-    offset_s = 0;
-    return true;
-  }
-  int hours = 0;
-  int minutes = 0;
-  if (text.size() != 6 || (text[0] != '+' && text[0] != '-') || text[3] != ':') return false;
-  if (!parse_digits(text, 1, 2, hours) || !parse_digits(text, 4, 2, minutes)) return false;
-  if (hours > 14 || minutes > 59) return false;
-  offset_s = (text[0] == '-' ? -1 : 1) * (hours * 3600 + minutes * 60);
-  return true;
-}
-
-/// Passes over ".123" where it stands.
-std::size_t after_fraction(std::string_view text, std::size_t at) {
-  if (at >= text.size() || text[at] != '.') return at;
-  const std::size_t end = std::min(text.find_first_not_of("0123456789", at + 1), text.size());
-  return end > at + 1 ? end : at;
-}
 
 /// A price field: empty = missing; anything else must be one finite number.
 bool parse_price(std::string_view field, double& value) {
@@ -111,33 +80,14 @@ void append_row(MinuteSeries& series, const Row& row, std::string_view name,
 }  // namespace
 
 bool parse_utc(std::string_view text, std::int64_t& utc_s) {
-  CivilTime t{};
-  if (!parse_digits(text, 0, 4, t.year) || !parse_digits(text, 5, 2, t.month) ||
-      !parse_digits(text, 8, 2, t.day) || !parse_digits(text, 11, 2, t.hour) ||
-      !parse_digits(text, 14, 2, t.minute)) {
-    return false;
-  }
-  if (text[4] != '-' || text[7] != '-' || (text[10] != 'T' && text[10] != ' ') || text[13] != ':') {
-    return false;
-  }
-  std::size_t at = 16;
-  if (at < text.size() && text[at] == ':') {
-    if (!parse_digits(text, at + 1, 2, t.second)) return false;
-    at = after_fraction(text, at + 3);
-  }
-  int offset_s = 0;
-  if (at >= text.size() || !parse_offset(text.substr(at), offset_s)) return false;
-  const std::chrono::year_month_day date{std::chrono::year{t.year} / t.month / t.day};
-  if (!date.ok() || t.hour > 23 || t.minute > 59 || t.second > 59) return false;
-  utc_s = utc_from_civil(t) - offset_s;
-  return true;
+  constexpr std::size_t kSeparator = 10;
+  if (text.size() <= kSeparator || text[kSeparator] != ' ') return parse_utc_text(text, utc_s);
+  std::string with_t(text);
+  with_t[kSeparator] = 'T';
+  return parse_utc_text(with_t, utc_s);
 }
 
-std::string format_utc(std::int64_t utc_s) {
-  const CivilTime t = civil_from_utc(utc_s);
-  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", t.year, t.month, t.day, t.hour,
-                     t.minute, t.second);
-}
+std::string format_utc(std::int64_t utc_s) { return std::string(utc_text(utc_s).view()); }
 
 bool has_no_price(std::span<const double> prices) {
   return std::ranges::all_of(prices, [](double price) { return std::isnan(price); });

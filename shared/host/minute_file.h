@@ -40,8 +40,7 @@ void write_minute_file(const std::filesystem::path& path, const MinuteSeries& se
 
 /// "2023-01-01T00:00:00Z".
 std::string format_utc(std::int64_t utc_s);
-/// Accepts YYYY-MM-DDTHH:MM[:SS] followed by Z or +hh:mm; a fraction of the second is
-/// passed over. False when malformed or out of range.
+/// As parse_utc_text (shared/utc_text.h), and with a space in place of the T, as portals write it.
 bool parse_utc(std::string_view text, std::int64_t& utc_s);
 
 }  // namespace bess

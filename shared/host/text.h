@@ -1,4 +1,4 @@
-// Lines out of a text, a field into one, and text that is made fit for a message.
+// Lines out of a text, and text that is made fit for a message.
 #pragma once
 
 #include <string>
@@ -20,14 +20,6 @@ inline std::string_view take_line(std::string_view& rest) {
   rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
   if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
   return line;
-}
-
-/// A field of CSV, quoted where it must be.
-inline std::string csv_field(std::string_view text) {
-  if (text.find_first_of(",\"\n") == std::string_view::npos) return std::string(text);
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
 }
 
 /// At most `size_max` bytes of `text` in one line: control characters, which a terminal would obey,

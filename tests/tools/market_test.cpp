@@ -6,8 +6,6 @@
 #include "shared/scaled_clock.h"
 #include "shared/utc_text.h"
 #include "tools/market_sim/market_view.h"
-#include "tools/market_sim/minute_file.h"
-#include "tools/sim/sim_error.h"
 
 namespace bess {
 namespace {
@@ -27,43 +25,8 @@ std::int64_t utc_ns(std::string_view text) {
   return utc_s * kNanosecondsPerSecond;
 }
 
-TEST(MinuteFile, ReadsPricesNullsAndComments) {
-  const auto prices = parse_minute_prices(kFile, "f");
-  ASSERT_EQ(prices.size(), 3U);
-  EXPECT_EQ(prices[0].indicative_eur_per_mwh, 10.5);
-  EXPECT_TRUE(std::isnan(prices[1].indicative_eur_per_mwh));
-  EXPECT_EQ(prices[2].settled_eur_per_mwh, 30);
-}
-
-TEST(MinuteFile, PassesOverAByteOrderMark) {
-  EXPECT_EQ(parse_minute_prices("\xEF\xBB\xBF" + std::string(kFile), "f").size(), 3U);
-}
-
-TEST(MinuteFile, NamesTheLineOfEveryMistake) {
-  const std::string header = "minute_utc,indicative_eur_mwh,settled_eur_mwh\n";
-  const std::pair<std::string, const char*> mistakes[] = {
-      {"", "holds no minutes"},
-      {header, "holds no minutes"},
-      {"time,price\n", "f:1: the header must be"},
-      {header + "yesterday,1,2\n", "f:2: \"yesterday\" is not a UTC minute"},
-      {header + "2023-01-01T00:00:30Z,1,2\n", "is not a UTC minute"},
-      {header + "2023-01-01T00:00:00Z,abc,2\n", "f:2: \"abc\" is not a price"},
-      {header + "2023-01-01T00:00:00Z,1,inf\n", "\"inf\" is not a price"},
-      {header + "2023-01-01T00:00:00Z,1,2,3\n", "more than three columns"},
-      {header + "2023-01-01T00:01:00Z,1,2\n2023-01-01T00:00:00Z,1,2\n", "f:3: minutes must ascend"},
-  };
-  for (const auto& [text, message] : mistakes) {
-    try {
-      static_cast<void>(parse_minute_prices(text, "f"));
-      ADD_FAILURE() << message;
-    } catch (const SimError& error) {
-      EXPECT_THAT(error.what(), HasSubstr(message));
-    }
-  }
-}
-
 TEST(MarketView, RowIsVisibleAtTheEndOfItsMinutePlusLatency) {
-  const MarketView view(parse_minute_prices(kFile, "f"), 2.0);
+  const MarketView view(parse_minute_csv(kFile, "f"), 2.0);
   const RecordsQuery query{.limit = 1};
   EXPECT_THAT(view.records(query, utc_ns("2023-03-26T00:14:01Z")), HasSubstr("\"total_count\":0"));
   EXPECT_THAT(view.records(query, utc_ns("2023-03-26T00:14:02Z")),
@@ -75,7 +38,7 @@ TEST(MarketView, RowIsVisibleAtTheEndOfItsMinutePlusLatency) {
 }
 
 TEST(MarketView, SettledQuarterHourIsVisibleAfterItsEnd) {
-  const MarketView view(parse_minute_prices(kFile, "f"), 0);
+  const MarketView view(parse_minute_csv(kFile, "f"), 0);
   const RecordsQuery query{.dataset = Dataset::kQuarterHours};
   EXPECT_THAT(view.records(query, utc_ns("2023-03-26T00:14:59Z")), HasSubstr("\"total_count\":0"));
   const std::string json = view.records(query, utc_ns("2023-03-26T00:15:00Z"));
@@ -84,7 +47,7 @@ TEST(MarketView, SettledQuarterHourIsVisibleAfterItsEnd) {
 }
 
 TEST(MarketView, TheEdgeUnderstandsWhatItServes) {
-  const MarketView view(parse_minute_prices(kFile, "f"), 0);
+  const MarketView view(parse_minute_csv(kFile, "f"), 0);
   const std::int64_t now_ns = utc_ns("2023-03-26T00:15:00Z");
   PriceRow row;
   ASSERT_EQ(parse_newest_price(view.records({.limit = 20}, now_ns), PriceFields{},

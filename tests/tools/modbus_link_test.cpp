@@ -6,8 +6,8 @@
 #include <thread>
 
 #include "edge/battery/modbus_battery.h"
+#include "shared/host/user_error.h"
 #include "tests/tools/loopback_battery.h"
-#include "tools/sim/sim_error.h"
 
 namespace bess {
 namespace {
@@ -131,7 +131,7 @@ TEST(BatteryServer, PortInUseIsOneClearLine) {
   try {
     BatteryServer second(settings, loopback.map, other, loopback.clock);
     ADD_FAILURE() << "two servers on one port";
-  } catch (const SimError& error) {
+  } catch (const UserError& error) {
     EXPECT_NE(std::string(error.what()).find("the port is in use"), std::string::npos);
   }
 }

@@ -5,13 +5,14 @@
 #include <cstdio>
 
 #include "edge/registers/map_file.h"
+#include "shared/host/file.h"
+#include "shared/host/user_error.h"
 #include "shared/utc_text.h"
 #include "tools/battery_sim/battery_faults.h"
 #include "tools/battery_sim/battery_record.h"
 #include "tools/battery_sim/battery_server.h"
 #include "tools/sim/clock_options.h"
 #include "tools/sim/commands.h"
-#include "tools/sim/sim_error.h"
 #include "tools/sim/stop_signal.h"
 
 namespace bess {
@@ -29,14 +30,6 @@ struct BatteryOptions {
   double round_trip_efficiency = 0.9;
 };
 
-/// Fails before serving rather than after a day when the record cannot be written.
-void check_record_folder(const std::string& path) {
-  if (path.empty()) return;
-  const auto slash = path.find_last_of('/');
-  const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash + 1);
-  if (access(folder.c_str(), W_OK) != 0) sim_fail("{}: cannot write in this folder", path);
-}
-
 const BatteryFaultInfo* find_fault(const std::string& name) {
   for (const BatteryFaultInfo& fault : battery_faults()) {
     if (name == fault.name) return &fault;
@@ -50,7 +43,7 @@ void take_faults(const std::vector<std::string>& names, BatteryServerSettings& s
   for (const std::string& name : names) {
     const BatteryFaultInfo& info = *find_fault(name);
     if (!(rtu ? info.rtu : info.tcp)) {
-      sim_fail("--fault {}: only {} a serial line", name, rtu ? "without" : "on");
+      fail("--fault {}: only {} a serial line", name, rtu ? "without" : "on");
     }
     server.faults.faults.push_back(info.fault);
   }
@@ -60,18 +53,18 @@ void run_battery(BatteryOptions& options) {
   const StopSignal stop;
   take_faults(options.fault_names, options.server);
   const ScaledClock clock = options.clock.clock();
-  check_record_folder(options.record_path);
+  // Fails before serving rather than after a day.
+  if (!options.record_path.empty()) require_writable(options.record_path);
   static RegisterMap map;
   std::string error;
   if (!load_register_map(options.map_path, options.map_variant, map, error)) {
-    throw SimError(error);
+    throw UserError(error);
   }
   BatteryParameters& battery = options.battery;
   battery.charge_efficiency = battery.discharge_efficiency =
       std::sqrt(options.round_trip_efficiency);
   if (battery.power_w_max > map.charge_w_max || battery.power_w_max > map.discharge_w_max) {
-    sim_fail("--power-w {}: more than the map {} can express", battery.power_w_max,
-             map.name.view());
+    fail("--power-w {}: more than the map {} can express", battery.power_w_max, map.name.view());
   }
   SimulatedBattery simulated(battery, options.soc_frac, clock.now_utc_ns());
   BatteryServer server(options.server, map, simulated, clock);

@@ -10,7 +10,7 @@
 #include <cstring>
 
 #include "edge/registers/codec.h"
-#include "tools/sim/sim_error.h"
+#include "shared/host/user_error.h"
 
 namespace bess {
 namespace {
@@ -48,7 +48,7 @@ BatteryServer::BatteryServer(const BatteryServerSettings& settings, const Regist
   context_.reset(rtu_ ? modbus_new_rtu(settings.serial_device.c_str(), settings.baud,
                                        settings.parity, 8, settings.stop_bits)
                       : modbus_new_tcp(settings.host.c_str(), settings.port));
-  if (context_ == nullptr) sim_fail("no memory for libmodbus");
+  if (context_ == nullptr) fail("no memory for libmodbus");
   make_registers();
   reply_ = std::make_unique<BusReply>(context_.get(), rtu_);
   if (rtu_) {
@@ -77,9 +77,9 @@ void BatteryServer::listen_tcp() {
   listen_fd_ = modbus_tcp_listen(context_.get(), 4);
   if (listen_fd_ < 0) {
     const int error = errno;
-    sim_fail("cannot listen on {}:{}: {}", settings_.host, settings_.port,
-             error == EADDRINUSE ? "the port is in use; choose another with --port"
-                                 : std::strerror(error));
+    fail("cannot listen on {}:{}: {}", settings_.host, settings_.port,
+         error == EADDRINUSE ? "the port is in use; choose another with --port"
+                             : std::strerror(error));
   }
   sockaddr_in address{};
   socklen_t size = sizeof address;
@@ -90,7 +90,7 @@ void BatteryServer::listen_tcp() {
 void BatteryServer::open_serial() {
   modbus_set_slave(context_.get(), map_.unit);  // requests to other units are not even seen
   if (modbus_connect(context_.get()) != 0) {
-    sim_fail("{}: cannot open this serial line: {}", settings_.serial_device, std::strerror(errno));
+    fail("{}: cannot open this serial line: {}", settings_.serial_device, std::strerror(errno));
   }
   clients_.push_back({.fd = modbus_get_socket(context_.get())});
 }
@@ -137,7 +137,7 @@ void BatteryServer::serve(Client& client) {
   if (request.size < 0) {
     if (!rtu_) return close_client(client, false);
     if (errno == EIO || errno == EBADF || errno == ECONNRESET) {
-      sim_fail("{}: the serial line is gone", settings_.serial_device);
+      fail("{}: the serial line is gone", settings_.serial_device);
     }
     modbus_flush(context_.get());
     return;

@@ -36,7 +36,7 @@ struct BatteryServerSettings {
 
 class BatteryServer {
  public:
-  /// Binds and listens, or opens the line. Throws SimError when the port is in use.
+  /// Binds and listens, or opens the line. Throws UserError when the port is in use.
   BatteryServer(const BatteryServerSettings& settings, const RegisterMap& map,
                 SimulatedBattery& battery, const ScaledClock& clock);
   BatteryServer(const BatteryServer&) = delete;
@@ -44,7 +44,7 @@ class BatteryServer {
   ~BatteryServer();
 
   [[nodiscard]] int port() const { return port_; }
-  /// Serves until `stop_fd` becomes readable. Throws SimError when the serial line disappears.
+  /// Serves until `stop_fd` becomes readable. Throws UserError when the serial line disappears.
   void run(int stop_fd);
 
  private:

@@ -1,12 +1,11 @@
 #include "tools/battery_sim/bus_reply.h"
+#include "shared/host/user_error.h"
 
 #include <modbus/modbus.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <algorithm>
-
-#include "tools/sim/sim_error.h"
 
 namespace bess {
 namespace {
@@ -48,7 +47,7 @@ void change_content(BatteryFault fault, Bytes& content) {
 
 BusReply::BusReply(_modbus* context, bool rtu)
     : context_(context), rtu_(rtu), header_(rtu ? 0 : kTcpHeaderBytes) {
-  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, tap_) != 0) sim_fail("no socket pair");
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, tap_) != 0) fail("no socket pair");
 }
 
 BusReply::~BusReply() {

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "edge/registers/codec.h"
+#include "shared/host/user_error.h"
 #include "shared/scaled_clock.h"
-#include "tools/sim/sim_error.h"
 
 namespace bess {
 namespace {
@@ -42,8 +42,7 @@ RegisterImage::RegisterImage(const RegisterMap& map, SimulatedBattery& battery,
                                                      : map.simulator.order_power) {
   const int end = address_end(map);
   if (end > kRegisterCount || std::ssize(holding) < end || std::ssize(input) < end) {
-    sim_fail("map {}: {} registers are not enough, it needs {}", map.name.view(), holding.size(),
-             end);
+    fail("map {}: {} registers are not enough, it needs {}", map.name.view(), holding.size(), end);
   }
   lay_out_models();
   find_arguments();

@@ -2,11 +2,11 @@
 #include <cstdio>
 #include <thread>
 
+#include "shared/host/user_error.h"
 #include "shared/utc_text.h"
 #include "tools/market_sim/market_server.h"
 #include "tools/sim/clock_options.h"
 #include "tools/sim/commands.h"
-#include "tools/sim/sim_error.h"
 #include "tools/sim/stop_signal.h"
 
 namespace bess {
@@ -28,7 +28,7 @@ void check_coverage(const MarketView& view, std::int64_t now_utc_s) {
 
 void run_market(const MarketOptions& options) {
   const StopSignal stop;
-  const MarketView view(read_minute_prices(options.prices_path), options.latency_s);
+  const MarketView view(read_minute_file(options.prices_path), options.latency_s);
   const ScaledClock clock = options.clock.clock();
   MarketServer server(options.server, view, clock);
   const std::int64_t now_utc_s = clock.now_utc_ns() / kNanosecondsPerSecond;

@@ -5,7 +5,7 @@
 #include <charconv>
 
 #include "shared/host/json.h"
-#include "tools/sim/sim_error.h"
+#include "shared/host/user_error.h"
 
 namespace bess {
 namespace {
@@ -39,8 +39,8 @@ std::unique_ptr<httplib::Server> make_server(const MarketServerSettings& setting
   auto server = std::make_unique<httplib::SSLServer>(settings.tls_certificate.c_str(),
                                                      settings.tls_key.c_str());
   if (!server->is_valid()) {
-    sim_fail("--tls-cert {} --tls-key {}: not a PEM certificate and its key",
-             settings.tls_certificate, settings.tls_key);
+    fail("--tls-cert {} --tls-key {}: not a PEM certificate and its key", settings.tls_certificate,
+         settings.tls_key);
   }
   return server;
 }
@@ -73,9 +73,8 @@ MarketServer::MarketServer(const MarketServerSettings& settings, const MarketVie
     port_ = settings.port;
   }
   if (port_ <= 0) {
-    sim_fail(
-        "cannot listen on {}:{}: the port is in use or not allowed; choose another with --port",
-        settings.host, settings.port);
+    fail("cannot listen on {}:{}: the port is in use or not allowed; choose another with --port",
+         settings.host, settings.port);
   }
 }
 

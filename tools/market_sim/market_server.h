@@ -39,7 +39,7 @@ struct MarketServerSettings {
 
 class MarketServer {
  public:
-  /// Binds. Throws SimError when the port is in use or the certificate is bad.
+  /// Binds. Throws UserError when the port is in use or the certificate is bad.
   MarketServer(const MarketServerSettings& settings, const MarketView& view,
                const ScaledClock& clock);
   ~MarketServer();

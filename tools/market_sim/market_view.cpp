@@ -23,25 +23,24 @@ std::string offset_time(std::int64_t utc_s) {
 
 }  // namespace
 
-/// Index range of the minutes that ended up to now, at most 24 hours back. O(log n).
+/// Index range of the minutes that ended up to now, at most 24 hours back.
 std::pair<std::size_t, std::size_t> MarketView::window(std::int64_t now_utc_ns) const {
   const std::int64_t published_s = (now_utc_ns - latency_ns_) / kNanosecondsPerSecond - 60;
-  const auto before = [](const MinutePrice& price, std::int64_t utc_s) {
-    return price.minute_utc_s < utc_s;
+  const auto first_at_or_after = [this](std::int64_t utc_s) {
+    const std::int64_t minute = (utc_s - prices_.start_utc_s + 59) / 60;
+    return static_cast<std::size_t>(
+        std::clamp<std::int64_t>(minute, 0, static_cast<std::int64_t>(prices_.size())));
   };
-  const auto begin =
-      std::lower_bound(prices_.begin(), prices_.end(), published_s + 1 - kDayS, before);
-  const auto end = std::lower_bound(begin, prices_.end(), published_s + 1, before);
-  return {static_cast<std::size_t>(begin - prices_.begin()),
-          static_cast<std::size_t>(end - prices_.begin())};
+  return {first_at_or_after(published_s + 1 - kDayS), first_at_or_after(published_s + 1)};
 }
 
 std::vector<MarketView::Row> MarketView::visible_minutes(std::int64_t now_utc_ns) const {
   const auto [begin, end] = window(now_utc_ns);
   std::vector<Row> rows;
   rows.reserve(end - begin);
-  for (std::size_t i = begin; i < end; ++i) {
-    rows.push_back({prices_[i].minute_utc_s, prices_[i].indicative_eur_per_mwh});
+  for (std::size_t m = begin; m < end; ++m) {
+    if (!has_row(m)) continue;
+    rows.push_back({prices_.utc_s(m), prices_.indicative[m]});
   }
   return rows;
 }
@@ -49,10 +48,10 @@ std::vector<MarketView::Row> MarketView::visible_minutes(std::int64_t now_utc_ns
 std::vector<MarketView::Row> MarketView::visible_quarter_hours(std::int64_t now_utc_ns) const {
   std::vector<Row> rows;
   const auto [begin, end] = window(now_utc_ns);
-  for (std::size_t i = begin; i < end; ++i) {
-    const MinutePrice& minute = prices_[i];
-    if (minute.minute_utc_s % kQuarterHourS != kQuarterHourS - 60) continue;  // its last minute
-    rows.push_back({minute.minute_utc_s - (kQuarterHourS - 60), minute.settled_eur_per_mwh});
+  for (std::size_t m = begin; m < end; ++m) {
+    const std::int64_t utc_s = prices_.utc_s(m);
+    if (utc_s % kQuarterHourS != kQuarterHourS - 60 || !has_row(m)) continue;
+    rows.push_back({utc_s - (kQuarterHourS - 60), prices_.settled[m]});
   }
   return rows;
 }

@@ -3,11 +3,12 @@
 // settled price of a quarter-hour is readable as long after its end.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "tools/market_sim/minute_file.h"
+#include "shared/host/minute_file.h"
 
 namespace bess {
 
@@ -23,14 +24,15 @@ struct RecordsQuery {
 
 class MarketView {
  public:
-  MarketView(std::vector<MinutePrice> prices, double latency_s)
+  /// A minute without any price has no row; one with a settled price alone has a row without price.
+  MarketView(MinuteSeries prices, double latency_s)
       : prices_(std::move(prices)), latency_ns_(static_cast<std::int64_t>(latency_s * 1e9)) {}
 
   /// The answer to `/records` at an instant: rows of the last 24 hours, as the near-real-time sets
   /// hold.
   [[nodiscard]] std::string records(const RecordsQuery& query, std::int64_t now_utc_ns) const;
-  [[nodiscard]] std::int64_t first_utc_s() const { return prices_.front().minute_utc_s; }
-  [[nodiscard]] std::int64_t last_utc_s() const { return prices_.back().minute_utc_s; }
+  [[nodiscard]] std::int64_t first_utc_s() const { return prices_.start_utc_s; }
+  [[nodiscard]] std::int64_t last_utc_s() const { return prices_.utc_s(prices_.size() - 1); }
 
  private:
   struct Row {
@@ -39,9 +41,12 @@ class MarketView {
   };
   [[nodiscard]] std::vector<Row> visible_minutes(std::int64_t now_utc_ns) const;
   [[nodiscard]] std::vector<Row> visible_quarter_hours(std::int64_t now_utc_ns) const;
+  [[nodiscard]] bool has_row(std::size_t minute) const {
+    return !std::isnan(prices_.indicative[minute]) || !std::isnan(prices_.settled[minute]);
+  }
   [[nodiscard]] std::pair<std::size_t, std::size_t> window(std::int64_t now_utc_ns) const;
 
-  std::vector<MinutePrice> prices_;
+  MinuteSeries prices_;
   std::int64_t latency_ns_;
 };
 

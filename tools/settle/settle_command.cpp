@@ -84,7 +84,7 @@ void add_settle_command(ProgramCommand& app) {
   command.runs([options] {
     const Settlement settlement =
         settle(CsvTable::read(options->record), CsvTable::read(options->edge_log),
-               read_minute_prices(options->prices), options->battery);
+               read_minute_file(options->prices), options->battery);
     if (options->json) {
       print_json(settlement);
     } else {

@@ -2,34 +2,24 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
 
+#include "shared/host/user_error.h"
 #include "shared/units_and_limits.h"
-#include "shared/utc_text.h"
-#include "tools/sim/sim_error.h"
 
 namespace bess {
 namespace {
 
 constexpr double kWattHoursPerMegawattHour = 1e6;
 
-/// Settled price of each minute.
-class SettledPrices {
- public:
-  explicit SettledPrices(const std::vector<MinutePrice>& prices) {
-    for (const MinutePrice& p : prices) settled_.emplace(p.minute_utc_s, p.settled_eur_per_mwh);
-  }
-  [[nodiscard]] double at(std::int64_t minute_utc_s) const {
-    const auto found = settled_.find(minute_utc_s);
-    if (found == settled_.end() || std::isnan(found->second)) {
-      sim_fail("the prices hold no settled price for minute {} (UTC seconds)", minute_utc_s);
-    }
-    return found->second;
-  }
-
- private:
-  std::unordered_map<std::int64_t, double> settled_;
-};
+/// Throws UserError when the minute has no settled price.
+double settled_at(const MinuteSeries& prices, std::int64_t minute_utc_s) {
+  const std::int64_t minute = (minute_utc_s - prices.start_utc_s) / 60;
+  const bool is_inside =
+      minute_utc_s >= prices.start_utc_s && minute < static_cast<std::int64_t>(prices.size());
+  const double price = is_inside ? prices.settled[static_cast<std::size_t>(minute)] : std::nan("");
+  if (std::isnan(price)) fail("the prices hold no settled price for {}", format_utc(minute_utc_s));
+  return price;
+}
 
 struct Period {
   std::int64_t begin_utc_s, end_utc_s;
@@ -42,12 +32,11 @@ std::vector<std::size_t> cycle_rows(const CsvTable& log) {
   for (std::size_t r = 0; r < log.row_count(); ++r) {
     if (log.text(r, mode) != "stopping") rows.push_back(r);
   }
-  if (rows.empty()) sim_fail("the edge's log holds no cycle");
+  if (rows.empty()) fail("the edge's log holds no cycle");
   return rows;
 }
 
-Account battery_account(const CsvTable& record, const Period& period,
-                        const SettledPrices& settled) {
+Account battery_account(const CsvTable& record, const Period& period, const MinuteSeries& prices) {
   const std::size_t minute = record.column("minute_utc");
   const std::size_t energy = record.column("energy_wh");
   const std::size_t soc = record.column("soc");
@@ -55,7 +44,7 @@ Account battery_account(const CsvTable& record, const Period& period,
   for (std::size_t r = 0; r < record.row_count(); ++r) {
     const std::int64_t utc_s = record.utc_s(r, minute);
     if (utc_s < period.begin_utc_s || utc_s >= period.end_utc_s) continue;
-    account.add(record.number(r, energy), settled.at(utc_s));
+    account.add(record.number(r, energy), settled_at(prices, utc_s));
     account.soc_end_frac = record.number(r, soc);
   }
   return account;
@@ -63,7 +52,7 @@ Account battery_account(const CsvTable& record, const Period& period,
 
 /// The energy that the order of one cycle should have moved, from the SoC that the edge read.
 Account edge_account(const CsvTable& log, const std::vector<std::size_t>& rows,
-                     const SettledPrices& settled, const BatteryParameters& battery) {
+                     const MinuteSeries& prices, const BatteryParameters& battery) {
   const std::size_t utc = log.column("utc");
   const std::size_t soc = log.column("soc_e4");
   const std::size_t power = log.column("ordered_power_w");
@@ -74,7 +63,7 @@ Account edge_account(const CsvTable& log, const std::vector<std::size_t>& rows,
     const double wanted_w = log.number(r, written) != 0 ? log.number(r, power) : 0.0;
     const BatteryStep step = battery_step(battery, soc_frac, wanted_w, kHoursPerStep);
     for (int m = 0; m < kMinutesPerStep; ++m) {
-      account.add(step.power_w / 60, settled.at(log.utc_s(r, utc) + 60 * m));
+      account.add(step.power_w / 60, settled_at(prices, log.utc_s(r, utc) + 60 * m));
     }
     account.soc_end_frac = step.soc_frac;
   }
@@ -102,16 +91,15 @@ void Account::add(double energy_wh, double settled_eur_per_mwh) {
 }
 
 Settlement settle(const CsvTable& battery_record, const CsvTable& edge_log,
-                  const std::vector<MinutePrice>& prices, const BatteryParameters& battery) {
-  const SettledPrices settled(prices);
+                  const MinuteSeries& prices, const BatteryParameters& battery) {
   const std::vector<std::size_t> rows = cycle_rows(edge_log);
   const std::size_t utc = edge_log.column("utc");
   const std::size_t mode = edge_log.column("mode");
   const Period period{edge_log.utc_s(rows.front(), utc),
                       edge_log.utc_s(rows.back(), utc) + kSecondsPerStep};
   Settlement result;
-  result.battery = battery_account(battery_record, period, settled);
-  result.edge = edge_account(edge_log, rows, settled, battery);
+  result.battery = battery_account(battery_record, period, prices);
+  result.edge = edge_account(edge_log, rows, prices, battery);
   result.cycles = rows.size();
   result.cycles_running = static_cast<std::size_t>(std::ranges::count_if(
       rows, [&](std::size_t r) { return edge_log.text(r, mode) == "running"; }));

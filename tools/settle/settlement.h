@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "shared/battery_model.h"
-#include "tools/market_sim/minute_file.h"
-#include "tools/settle/csv_table.h"
+#include "shared/host/csv.h"
+#include "shared/host/minute_file.h"
 
 namespace bess {
 
@@ -36,9 +36,9 @@ struct Settlement {
   Latency decision, write, total;
 };
 
-/// Only minutes from the edge's first to the end of its last cycle count. Throws SimError when a minute has
+/// Only minutes from the edge's first to the end of its last cycle count. Throws UserError when a minute has
 /// no settled price.
 Settlement settle(const CsvTable& battery_record, const CsvTable& edge_log,
-                  const std::vector<MinutePrice>& prices, const BatteryParameters& battery);
+                  const MinuteSeries& prices, const BatteryParameters& battery);
 
 }  // namespace bess

@@ -1,7 +1,7 @@
 #include "tools/sim/clock_options.h"
 
+#include "shared/host/user_error.h"
 #include "shared/utc_text.h"
-#include "tools/sim/sim_error.h"
 
 namespace bess {
 
@@ -17,12 +17,12 @@ void ClockOptions::add_to(ProgramCommand& app) {
 
 ScaledClock ClockOptions::clock() const {
   if (utc_start.empty()) {
-    if (time_scale != 1) sim_fail("--time-scale needs --utc-start");
+    if (time_scale != 1) fail("--time-scale needs --utc-start");
     return {};
   }
   ScaledClock clock{.scale = time_scale};
   if (!parse_utc_text(utc_start, clock.anchor_utc_s)) {
-    sim_fail("--utc-start {}: not a UTC instant such as 2023-03-26T00:00:00Z", utc_start);
+    fail("--utc-start {}: not a UTC instant such as 2023-03-26T00:00:00Z", utc_start);
   }
   clock.anchor_monotonic_ns =
       anchor_monotonic_ns != 0 ? anchor_monotonic_ns : clock_ns(CLOCK_MONOTONIC);

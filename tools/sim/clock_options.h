@@ -16,7 +16,7 @@ struct ClockOptions {
 
   /// Declares --utc-start, --time-scale and --anchor-monotonic-ns.
   void add_to(ProgramCommand& app);
-  /// Throws SimError when they do not make sense. Without any of them: real time.
+  /// Throws UserError when they do not make sense. Without any of them: real time.
   [[nodiscard]] ScaledClock clock() const;
 };
 

@@ -6,9 +6,9 @@
 #include <memory>
 #include <optional>
 
+#include "shared/host/csv.h"
 #include "shared/host/file.h"
 #include "shared/host/json.h"
-#include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"

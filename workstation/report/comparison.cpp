@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "shared/host/text.h"
+#include "shared/host/csv.h"
 
 namespace bess {
 namespace {

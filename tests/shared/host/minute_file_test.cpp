@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "shared/host/user_error.h"
 #include "tests/support/market_test_support.h"
 
 namespace bess {
@@ -28,6 +29,38 @@ TEST(MinuteFile, AByteOrderMarkIsPassedOver) {
   EXPECT_THAT(
       user_error_of([] { (void)parse_minute_csv(std::string_view("\xFF\xFEm\0i\0", 6), "f"); }),
       HasSubstr("UTF-16"));
+}
+
+TEST(MinuteFile, NamesTheLineOfEveryMistake) {
+  const std::string header = "minute_utc,indicative_eur_mwh,settled_eur_mwh\n";
+  const std::pair<std::string, const char*> mistakes[] = {
+      {"", "f: holds no minutes"},
+      {header, "f: holds no minutes"},
+      {"time,price\n", "f:1: not a minute file: the header must be"},
+      {header + "yesterday,1,2\n", "f:2: "},
+      {header + "2023-01-01T00:00:30Z,1,2\n", "f:2: "},
+      {header + "2023-01-01T00:00:00Z,abc,2\n", "f:2: "},
+      {header + "2023-01-01T00:00:00Z,1,inf\n", "f:2: "},
+      {header + "2023-01-01T00:00:00Z,1,2,3\n", "f:2: "},
+      {header + "2023-01-01T00:01:00Z,1,2\n2023-01-01T00:00:00Z,1,2\n", "f:3: "},
+  };
+  for (const auto& [text, message] : mistakes) {
+    try {
+      static_cast<void>(parse_minute_csv(text, "f"));
+      ADD_FAILURE() << text;
+    } catch (const UserError& error) {
+      EXPECT_THAT(error.what(), testing::StartsWith(message)) << text;
+    }
+  }
+}
+
+TEST(ParseUtc, TakesASpaceForTheT) {
+  std::int64_t with_t = 0;
+  std::int64_t with_space = 1;
+  EXPECT_TRUE(parse_utc("2023-01-01T00:01:00+01:00", with_t));
+  EXPECT_TRUE(parse_utc("2023-01-01 00:01:00+01:00", with_space));
+  EXPECT_EQ(with_t, with_space);
+  EXPECT_FALSE(parse_utc("2023-01-01 ", with_t));
 }
 
 TEST(ParseUtc, PassesOverFractionsOfSeconds) {

@@ -1,0 +1,59 @@
+// Fields with quotes, and the table with named columns.
+#include "shared/host/csv.h"
+
+#include <gmock/gmock.h>
+
+#include "shared/host/user_error.h"
+
+namespace bess {
+namespace {
+
+std::vector<std::string> fields_of(std::string_view line, char separator) {
+  std::vector<std::string> all;
+  CsvFields fields(line, separator);
+  for (std::string_view field; fields.take(field);) all.emplace_back(field);
+  return all;
+}
+
+std::string complaint(std::string_view text) {
+  try {
+    const CsvTable table(text, "f.csv");
+    static_cast<void>(table.number(0, table.column("price")));
+    static_cast<void>(table.utc_s(0, table.column("utc")));
+  } catch (const UserError& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+TEST(Csv, FieldsKeepSeparatorsInsideQuotes) {
+  EXPECT_THAT(fields_of("a,\"b,c\",,d", ','), testing::ElementsAre("a", "b,c", "", "d"));
+  EXPECT_THAT(fields_of("1,5;2", ';'), testing::ElementsAre("1,5", "2"));
+  EXPECT_THAT(fields_of("", ','), testing::ElementsAre(""));
+}
+
+TEST(Csv, AFieldThatNeedsQuotesReadsBack) {
+  const std::string text = "say \"no\", then\tgo";
+  const CsvTable table("name\n" + csv_field(text) + "\n", "f.csv");
+  EXPECT_EQ(table.text(0, 0), text);
+}
+
+TEST(Csv, TableIsReadByColumn) {
+  const CsvTable table("\xEF\xBB\xBF# by hand\nutc,price\r\n2023-01-01T00:00:00Z,-2.5\r\n",
+                       "f.csv");
+  ASSERT_EQ(table.row_count(), 1U);
+  EXPECT_EQ(table.number(0, table.column("price")), -2.5);
+  EXPECT_EQ(table.utc_s(0, table.column("utc")), 1'672'531'200);
+}
+
+TEST(Csv, EveryMistakeNamesItsPlace) {
+  EXPECT_EQ(complaint("utc,price\n"), "f.csv: holds no rows");
+  EXPECT_THAT(complaint("utc,price\n1\n"),
+              testing::StartsWith("f.csv:2: 1 fields, the header has 2"));
+  EXPECT_THAT(complaint("utc,cost\n1,2\n"), testing::HasSubstr("no column \"price\""));
+  EXPECT_THAT(complaint("utc,price\n# gap\nx,y\n"), testing::StartsWith("f.csv:3: price \"y\""));
+  EXPECT_THAT(complaint("utc,price\nx,1\n"), testing::StartsWith("f.csv:2: utc \"x\""));
+}
+
+}  // namespace
+}  // namespace bess
