@@ -41,7 +41,7 @@ TEST(Prove, AProvedStudentCarriesTheCertificateOfTheWholeLattice) {
   const Certificate& certificate = student.certificate();
   EXPECT_EQ(certificate.thresholds, kCrowdedThresholds);
   EXPECT_EQ(certificate.states_checked, 6'950'033'280);
-  EXPECT_GT(certificate.states_evaluated, 0);
+  EXPECT_EQ(certificate.states_evaluated, 0) << "bounds decide every box of this net";
   EXPECT_EQ(certificate.violations(), 0);
   EXPECT_TRUE(certificate.counterexamples.empty());
 }
