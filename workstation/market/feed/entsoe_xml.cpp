@@ -6,7 +6,9 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <pugixml.hpp>
 #include <string>
+#include <vector>
 
 #include "shared/host/minute_file.h"
 #include "shared/host/plain_text.h"
@@ -17,38 +19,137 @@ namespace {
 
 constexpr std::int64_t kPeriodSecondsMax = 366LL * 86'400;  // the platform answers a year at most
 
-struct Tag {
-  std::string_view name;  ///< without namespace prefix and attributes
-  bool closing;
-  std::string_view text;  ///< up to the next tag
+struct Source {
+  std::string_view text;
+  std::string_view name;
+
+  /// "a85.xml:17"
+  [[nodiscard]] std::string place(std::ptrdiff_t offset) const {
+    const std::string_view before = text.substr(0, static_cast<std::size_t>(offset));
+    return fmt::format("{}:{}", name, 1 + std::ranges::count(before, '\n'));
+  }
 };
 
-/// Next tag of the document; comments, processing instructions and empty elements are passed over.
-bool take_tag(std::string_view& rest, Tag& tag) {
-  while (true) {
-    const std::size_t open = rest.find('<');
-    if (open == std::string_view::npos) return false;
-    rest.remove_prefix(open);
-    const bool comment = rest.starts_with("<!--");
-    const std::size_t end = comment ? rest.find("-->") : rest.find('>');
-    if (end == std::string_view::npos) return false;
-    const std::string_view inside = rest.substr(1, end - 1);
-    rest.remove_prefix(end + (comment ? 3 : 1));
-    if (inside.empty() || inside[0] == '!' || inside[0] == '?' || inside.back() == '/') continue;
-    tag.closing = inside[0] == '/';
-    tag.name = inside.substr(tag.closing ? 1 : 0);
-    tag.name = tag.name.substr(0, tag.name.find_first_of(" \t\r\n"));
-    const std::size_t prefix = tag.name.find(':');
-    if (prefix != std::string_view::npos) tag.name.remove_prefix(prefix + 1);
-    tag.text = rest.substr(0, rest.find('<'));
-    return true;
+/// Without the prefix of its namespace: documents come with and without one.
+std::string_view local_name(const pugi::xml_node& node) {
+  const std::string_view name = node.name();
+  return name.substr(name.find(':') + 1);
+}
+
+/// An element that can say where it stands.
+struct Element {
+  pugi::xml_node node;
+  const Source& source;
+
+  [[nodiscard]] std::string_view text() const { return node.child_value(); }
+  [[nodiscard]] std::string place() const { return source.place(node.offset_debug()); }
+
+  /// The first one of that name, or one without a node.
+  [[nodiscard]] Element child(std::string_view name) const {
+    const auto named = [name](const pugi::xml_node& n) { return local_name(n) == name; };
+    return {node.find_child(named), source};
   }
+  [[nodiscard]] Element required(std::string_view name) const {
+    const Element found = child(name);
+    if (!found.node) {
+      fail("{}: a {} without {}; download the file again", place(), local_name(node), name);
+    }
+    return found;
+  }
+  [[nodiscard]] std::vector<Element> children(std::string_view name) const {
+    std::vector<Element> found;
+    for (const pugi::xml_node& n : node) {
+      if (local_name(n) == name) found.push_back({n, source});
+    }
+    return found;
+  }
+};
+
+std::int64_t time_of(const Element& element) {
+  std::int64_t utc_s = 0;
+  if (!parse_utc(element.text(), utc_s) || utc_s % kSecondsPerQuarterHour != 0) {
+    fail("{}: \"{}\" is not the UTC start of a quarter-hour; download the file again",
+         element.place(), one_line(element.text(), 40));
+  }
+  return utc_s;
+}
+
+template <typename Number>
+Number number_of(const Element& element) {
+  const std::string_view text = element.text();
+  Number value{};
+  const auto [end, error] = std::from_chars(text.begin(), text.end(), value);
+  if (error != std::errc{} || end != text.end() || !std::isfinite(static_cast<double>(value))) {
+    fail("{}: \"{}\" is not a number; download the file again", element.place(),
+         one_line(text, 40));
+  }
+  return value;
+}
+
+/// Which party a point's price is for; documents of some areas name none.
+enum Category { kBoth, kLong, kShort, kCategoryCount };
+
+struct Point {
+  std::int64_t position = 0;  ///< 1 = first of its period
+  double eur_per_mwh = kNotPublished;
+  Category category = kBoth;
+};
+
+struct Period {
+  std::int64_t start_utc_s = 0;
+  std::int64_t resolution_s = 0;
+  std::int64_t positions = 0;
+  std::vector<Point> points{};  ///< in order of position
+};
+
+std::int64_t resolution_s_of(const Element& element) {
+  const std::string_view text = element.text();
+  if (text == "PT15M") return 900;
+  if (text == "PT30M") return 1800;
+  if (text == "PT60M" || text == "PT1H") return 3600;
+  fail("{}: resolution \"{}\" is not known; PT15M, PT30M and PT60M are", element.place(),
+       one_line(text, 20));
+}
+
+Point point_of(const Element& element, std::int64_t positions) {
+  Point point{.position = number_of<std::int64_t>(element.required("position"))};
+  if (point.position < 1 || point.position > positions) {
+    fail("{}: position {} is outside its period (they start at 1, end at {}); download it again",
+         element.place(), point.position, positions);
+  }
+  const Element amount = element.child("imbalance_Price.amount");
+  if (amount.node) point.eur_per_mwh = number_of<double>(amount);
+  const std::string_view category = element.child("imbalance_Price.category").text();
+  point.category = category == "A04" ? kLong : category == "A05" ? kShort : kBoth;
+  return point;
+}
+
+Period period_of(const Element& element) {
+  const Element interval = element.required("timeInterval");
+  Period period{.start_utc_s = time_of(interval.required("start")),
+                .resolution_s = resolution_s_of(element.required("resolution"))};
+  const std::int64_t span_s = time_of(interval.required("end")) - period.start_utc_s;
+  if (span_s <= 0 || span_s > kPeriodSecondsMax) {
+    fail("{}: a period may last up to a year, not {} s; download the file again", interval.place(),
+         span_s);
+  }
+  period.positions = span_s / period.resolution_s;
+  for (const Element& point : element.children("Point")) {
+    period.points.push_back(point_of(point, period.positions));
+  }
+  // Some documents list all long prices, then all short ones.
+  std::ranges::stable_sort(period.points, {}, &Point::position);
+  return period;
 }
 
 struct Prices {
   double long_eur_per_mwh = kNotPublished;
   double short_eur_per_mwh = kNotPublished;
 
+  void set(const Point& point) {
+    if (point.category != kShort) long_eur_per_mwh = point.eur_per_mwh;
+    if (point.category != kLong) short_eur_per_mwh = point.eur_per_mwh;
+  }
   /// The one price; NaN when there are two different ones.
   [[nodiscard]] double single() const {
     if (!is_published(long_eur_per_mwh)) return short_eur_per_mwh;
@@ -56,177 +157,79 @@ struct Prices {
     return long_eur_per_mwh == short_eur_per_mwh ? long_eur_per_mwh : kNotPublished;
   }
 };
+using QuarterHourPrices = std::map<std::int64_t, Prices>;  ///< by start, UTC seconds
 
-/// Which party a point's price is for; documents of some areas name none.
-enum Category { kBoth, kLong, kShort, kCategoryCount };
-
-class DocumentReader {
- public:
-  explicit DocumentReader(std::string_view name) : name_(name) {}
-  void read(std::string_view text);
-  [[nodiscard]] MarketRows rows() const;
-
- private:
-  struct Point {
-    std::int64_t position = 0;
-    double amount = kNotPublished;
-    Category category = kBoth;
-  };
-
-  void open(const Tag& tag);
-  void close(const Tag& tag);
-  void finish_period();
-  void set_prices(std::int64_t first_utc_s, const Point& point);
-  [[noreturn]] void refuse_acknowledgement(std::string_view rest) const;
-  void require_unit(std::string_view unit, std::string_view wanted) const;
-  [[nodiscard]] std::int64_t time_of(std::string_view text) const;
-  template <typename Number>
-  [[nodiscard]] Number number_of(std::string_view text) const;
-
-  std::string_view name_;
-  bool is_document_ = false;
-  bool repeats_ = false;  ///< curveType A03
-  std::int64_t start_utc_s_ = 0, end_utc_s_ = 0, resolution_s_ = 0;
-  Point point_;
-  std::vector<Point> points_;
-  std::map<std::int64_t, Prices> prices_;
-};
+/// A price of a longer interval is that of each of its quarter-hours; where points repeat, one holds
+/// until the next of its own category.
+void add_period(const Period& period, bool repeats, QuarterHourPrices& prices) {
+  std::array<std::optional<Point>, kCategoryCount> current;
+  auto next = period.points.begin();
+  for (std::int64_t position = 1; position <= period.positions; ++position) {
+    if (!repeats) current = {};
+    for (; next != period.points.end() && next->position == position; ++next) {
+      current[next->category] = *next;
+    }
+    const std::int64_t end_utc_s = period.start_utc_s + position * period.resolution_s;
+    for (const std::optional<Point>& point : current) {
+      if (!point) continue;
+      for (std::int64_t utc_s = end_utc_s - period.resolution_s; utc_s < end_utc_s;
+           utc_s += kSecondsPerQuarterHour) {
+        prices[utc_s].set(*point);
+      }
+    }
+  }
+}
 
 /// Everything here reckons in EUR/MWh.
-void DocumentReader::require_unit(std::string_view unit, std::string_view wanted) const {
-  if (unit == wanted) return;
+void require_unit(const Element& unit, std::string_view wanted) {
+  if (!unit.node || unit.text() == wanted) return;
   fail("{}: prices in or per \"{}\" where {} is needed; use an area that publishes EUR per MWH",
-       name_, one_line(unit, 20), wanted);
+       unit.place(), one_line(unit.text(), 20), wanted);
 }
 
-std::int64_t DocumentReader::time_of(std::string_view text) const {
-  std::int64_t utc_s = 0;
-  if (!parse_utc(text, utc_s) || utc_s % kSecondsPerQuarterHour != 0) {
-    fail("{}: \"{}\" is not the UTC start of a quarter-hour; download the file again", name_,
-         one_line(text, 40));
+void add_series(const Element& series, QuarterHourPrices& prices) {
+  require_unit(series.child("currency_Unit.name"), "EUR");
+  require_unit(series.child("price_Measure_Unit.name"), "MWH");
+  const bool repeats = series.child("curveType").text() == "A03";
+  for (const Element& period : series.children("Period")) {
+    add_period(period_of(period), repeats, prices);
   }
-  return utc_s;
 }
 
-template <typename Number>
-Number DocumentReader::number_of(std::string_view text) const {
-  Number value{};
-  const char* text_end = text.data() + text.size();
-  const auto [end, error] = std::from_chars(text.data(), text_end, value);
-  if (error != std::errc{} || end != text_end || !std::isfinite(static_cast<double>(value))) {
-    fail("{}: \"{}\" is not a number; download the file again", name_, one_line(text, 40));
+/// ENTSO-E may answer with a document that holds only the reason why there are no prices.
+void require_balancing_document(const pugi::xml_node& root, std::string_view name) {
+  if (local_name(root) == "Acknowledgement_MarketDocument") {
+    std::string reason;
+    for (const pugi::xpath_node& text : root.select_nodes(".//*[local-name()='text']")) {
+      reason += std::string(text.node().child_value()) + " ";
+    }
+    fail("{}: ENTSO-E sent no prices but a reason: \"{}\"", name, one_line(reason, 200));
   }
-  return value;
+  if (local_name(root) != "Balancing_MarketDocument") {
+    fail("{}: not an ENTSO-E balancing document (A85) but \"{}\"", name,
+         one_line(local_name(root), 60));
+  }
 }
 
-void DocumentReader::open(const Tag& tag) {
-  if (tag.name == "Balancing_MarketDocument") is_document_ = true;
-  if (tag.name == "TimeSeries") repeats_ = false;
-  if (tag.name == "curveType") repeats_ = tag.text == "A03";
-  if (tag.name == "Period") points_.clear(), start_utc_s_ = end_utc_s_ = resolution_s_ = 0;
-  if (tag.name == "start") start_utc_s_ = time_of(tag.text);
-  if (tag.name == "end") end_utc_s_ = time_of(tag.text);
-  if (tag.name == "resolution") {
-    resolution_s_ = tag.text == "PT15M" ? 900 : tag.text == "PT30M" ? 1800 : 3600;
-    if (resolution_s_ == 3600 && tag.text != "PT60M" && tag.text != "PT1H") {
-      fail("{}: resolution \"{}\" is not known; PT15M, PT30M and PT60M are", name_,
-           one_line(tag.text, 20));
+QuarterHourPrices prices_of(const Source& source) {
+  pugi::xml_document document;
+  // UTF-8 whatever the declaration says: a converted text would have other offsets.
+  const pugi::xml_parse_result parsed = document.load_buffer(
+      source.text.data(), source.text.size(), pugi::parse_default, pugi::encoding_utf8);
+  // What a broken document began as tells more than where it breaks.
+  for (const pugi::xml_node& root : document) require_balancing_document(root, source.name);
+  if (!parsed) {
+    fail("{}: cut short or damaged ({}); download it again", source.place(parsed.offset),
+         parsed.description());
+  }
+  QuarterHourPrices prices;
+  for (const pugi::xml_node& root : document) {
+    for (const Element& series : Element{root, source}.children("TimeSeries")) {
+      add_series(series, prices);
     }
   }
-  if (tag.name == "currency_Unit.name") require_unit(tag.text, "EUR");
-  if (tag.name == "price_Measure_Unit.name") require_unit(tag.text, "MWH");
-  if (tag.name == "Point") point_ = {};
-  if (tag.name == "position") point_.position = number_of<std::int64_t>(tag.text);
-  if (tag.name == "imbalance_Price.amount") point_.amount = number_of<double>(tag.text);
-  if (tag.name == "imbalance_Price.category") {
-    point_.category = tag.text == "A04" ? kLong : tag.text == "A05" ? kShort : kBoth;
-  }
-}
-
-void DocumentReader::close(const Tag& tag) {
-  if (tag.name == "Point") points_.push_back(point_);
-  if (tag.name == "Period") finish_period();
-}
-
-/// A price of a longer interval is that of each of its quarter-hours.
-void DocumentReader::set_prices(std::int64_t first_utc_s, const Point& point) {
-  for (std::int64_t part_s = 0; part_s < resolution_s_; part_s += kSecondsPerQuarterHour) {
-    Prices& prices = prices_[first_utc_s + part_s];
-    if (point.category != kShort) prices.long_eur_per_mwh = point.amount;
-    if (point.category != kLong) prices.short_eur_per_mwh = point.amount;
-  }
-}
-
-void DocumentReader::finish_period() {
-  const std::int64_t span_s = end_utc_s_ - start_utc_s_;
-  if (resolution_s_ == 0 || span_s <= 0 || span_s > kPeriodSecondsMax) {
-    fail("{}: a period without start, end or resolution; download the file again", name_);
-  }
-  // Some documents list all long prices, then all short ones.
-  std::stable_sort(points_.begin(), points_.end(),
-                   [](const Point& a, const Point& b) { return a.position < b.position; });
-  if (!points_.empty() && points_.front().position < 1) {
-    fail("{}: positions start at 1; download the file again", name_);
-  }
-  // Where points repeat, one holds until the next of its own category.
-  std::array<std::optional<Point>, kCategoryCount> current;
-  std::size_t next = 0;
-  for (std::int64_t position = 1; position <= span_s / resolution_s_; ++position) {
-    if (!repeats_) current = {};
-    for (; next < points_.size() && points_[next].position <= position; ++next) {
-      current[points_[next].category] = points_[next];
-    }
-    const std::int64_t first_utc_s = start_utc_s_ + (position - 1) * resolution_s_;
-    for (const std::optional<Point>& point : current) {
-      if (point) set_prices(first_utc_s, *point);
-    }
-  }
-  if (next < points_.size()) {
-    fail("{}: a point lies outside its period; download the file again", name_);
-  }
-}
-
-/// What ENTSO-E answers instead of data: the rest of the document holds its reason.
-void DocumentReader::refuse_acknowledgement(std::string_view rest) const {
-  Tag tag{};
-  std::string reason;
-  while (take_tag(rest, tag)) {
-    if (tag.name == "text" && !tag.closing) reason += std::string(tag.text) + " ";
-  }
-  fail("{}: ENTSO-E sent no prices but a reason: \"{}\"", name_, one_line(reason, 200));
-}
-
-void DocumentReader::read(std::string_view text) {
-  Tag tag{};
-  while (take_tag(text, tag)) {
-    if (tag.closing) {
-      close(tag);
-    } else {
-      open(tag);
-    }
-    if (tag.name == "Acknowledgement_MarketDocument") refuse_acknowledgement(text);
-    if (!is_document_) {
-      fail("{}: not an ENTSO-E balancing document (A85) but \"{}\"", name_, one_line(tag.name, 60));
-    }
-  }
-  if (prices_.empty()) {
-    fail("{}: holds no imbalance prices, or is cut short; download it again", name_);
-  }
-}
-
-MarketRows DocumentReader::rows() const {
-  MarketRows rows;
-  rows.sources = {MarketSource::kEntsoe};
-  for (const auto& [utc_s, prices] : prices_) {
-    QuarterHour quarter_hour;
-    quarter_hour.utc_s = utc_s;
-    quarter_hour.price_eur_per_mwh = prices.single();
-    if (!is_published(quarter_hour.price_eur_per_mwh)) {
-      rows.dual_priced_quarter_hours.insert(utc_s);
-    }
-    rows.quarter_hours.push_back(quarter_hour);
-  }
-  return rows;
+  if (prices.empty()) fail("{}: holds no imbalance prices; choose other days", source.name);
+  return prices;
 }
 
 }  // namespace
@@ -237,14 +240,18 @@ bool looks_like_xml(std::string_view text) {
 }
 
 MarketRows parse_entsoe_xml(std::string_view text, std::string_view name) {
-  if (text.find("</Balancing_MarketDocument") == std::string_view::npos &&
-      text.find(":Balancing_MarketDocument>") == std::string_view::npos &&
-      text.find("<Balancing_MarketDocument") != std::string_view::npos) {
-    fail("{}: the document is cut short; download it again", name);
+  MarketRows rows;
+  rows.sources = {MarketSource::kEntsoe};
+  for (const auto& [utc_s, prices] : prices_of({text, name})) {
+    QuarterHour quarter_hour;
+    quarter_hour.utc_s = utc_s;
+    quarter_hour.price_eur_per_mwh = prices.single();
+    if (!is_published(quarter_hour.price_eur_per_mwh)) {
+      rows.dual_priced_quarter_hours.insert(utc_s);
+    }
+    rows.quarter_hours.push_back(quarter_hour);
   }
-  DocumentReader reader(name);
-  reader.read(text);
-  return reader.rows();
+  return rows;
 }
 
 }  // namespace bess

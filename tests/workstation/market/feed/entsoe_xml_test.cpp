@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <regex>
 
 #include "tests/support/market_test_support.h"
 #include "workstation/market/model/quarter_hours_to_minutes.h"
@@ -78,12 +79,45 @@ TEST(EntsoeXml, BadDocumentsAreOneClearLine) {
   const std::string good = document(point(1, "3", "A04"));
   EXPECT_THAT(error_of("<html><body>x</body></html>"), HasSubstr("f.xml: a web page, not data"));
   EXPECT_THAT(error_of("<Publication_MarketDocument/><a>"), HasSubstr("not an ENTSO-E"));
-  EXPECT_THAT(error_of(good.substr(0, good.size() - 40)), HasSubstr("cut short"));
-  EXPECT_THAT(error_of(document(point(1, "x", "A04"))), HasSubstr("\"x\" is not a number"));
+  EXPECT_THAT(error_of(good.substr(0, good.size() - 40)), HasSubstr("f.xml:3: cut short"));
+  EXPECT_THAT(error_of(document(point(1, "x", "A04"))),
+              HasSubstr("f.xml:3: \"x\" is not a number"));
   EXPECT_THAT(error_of(document(point(5, "3", "A04"))), HasSubstr("outside its period"));
   EXPECT_THAT(error_of(document(point(0, "3", "A04"))), HasSubstr("start at 1"));
   EXPECT_THAT(error_of(document(point(1, "3", "A04"), "A01", "P1Y")), HasSubstr("\"P1Y\""));
   EXPECT_THAT(error_of(document("")), HasSubstr("no imbalance prices"));
+}
+
+TEST(EntsoeXml, WhatAPeriodLacksIsNamed) {
+  const std::string good = document(point(1, "3", "A04"));
+  for (const std::string name : {"timeInterval", "start", "end", "resolution", "position"}) {
+    std::string text = good;
+    const std::size_t first = text.find("<" + name + ">");
+    const std::string closing = "</" + name + ">";
+    text.erase(first, text.find(closing) + closing.size() - first);
+    EXPECT_THAT(user_error_of([&] { (void)parse_market_text(text, "f.xml"); }),
+                HasSubstr(" without " + name + ";"));
+  }
+}
+
+TEST(EntsoeXml, NamespacesMayHaveAPrefix) {
+  const std::string text = document(point(1, "3", "A04") + point(2, "4", "A04"));
+  EXPECT_THAT(prices(std::regex_replace(text, std::regex("<(/?)(?=[A-Za-z])"), "<$1ns0:")),
+              testing::ElementsAre(3, 4));
+}
+
+TEST(EntsoeXml, EntitiesOfADocumentsOwnAreNotExpanded) {
+  std::string text = document(point(1, "&price;", "A04"));
+  text.insert(text.find("<Balancing"), "<!DOCTYPE x [<!ENTITY price \"3\">]>\n");
+  EXPECT_THAT(user_error_of([&] { (void)parse_market_text(text, "f.xml"); }),
+              HasSubstr("f.xml:4: \"&price;\" is not a number"));
+}
+
+TEST(EntsoeXml, SpansOverAYearAreRefused) {
+  std::string text = document(point(1, "3", "A04"));
+  text.replace(text.find("<end>2023"), 9, "<end>9999");
+  EXPECT_THAT(user_error_of([&] { (void)parse_market_text(text, "f.xml"); }),
+              HasSubstr("up to a year"));
 }
 
 TEST(EntsoeXml, OtherUnitsAreRefused) {
