@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <pugixml.hpp>
+#include <sstream>
 
 #include "shared/host/user_error.h"
 #include "workstation/base/gnuplot.h"
-#include "workstation/report/html.h"
 
 namespace bess {
 namespace {
@@ -35,68 +36,53 @@ std::string script_of(const Figure& figure, const fs::path& output) {
          style() + figure.commands;
 }
 
-void replace_all(std::string& text, std::string_view from, std::string_view to) {
-  for (std::size_t at = text.find(from); at != std::string::npos;
-       at = text.find(from, at + to.size())) {
-    text.replace(at, from.size(), to);
-  }
-}
-
-std::string variable_of(std::string_view hex) {
-  for (const Colour& colour : kPalette) {
-    if (hex == colour.light) return fmt::format("var(--{})", colour.name);
-  }
-  return std::string(hex);
-}
-
 /// gnuplot writes a colour as `rgb( 31,  41,  51)`, `#ffffff` or `black`.
-void make_colours_variable(std::string& svg) {
-  for (std::size_t at = svg.find("rgb("); at != std::string::npos; at = svg.find("rgb(", at + 1)) {
-    unsigned r = 0, g = 0, b = 0;
-    if (std::sscanf(svg.c_str() + at, "rgb(%u,%u,%u)", &r, &g, &b) != 3) continue;
-    const std::size_t end = svg.find(')', at) + 1;
-    svg.replace(at, end - at, variable_of(fmt::format("#{:02x}{:02x}{:02x}", r, g, b)));
+std::string variable_of(const std::string& colour) {
+  std::string hex = colour == "black" ? std::string(kInk.light) : colour;
+  unsigned r = 0, g = 0, b = 0;
+  if (std::sscanf(colour.c_str(), "rgb(%u,%u,%u)", &r, &g, &b) == 3) {
+    hex = fmt::format("#{:02x}{:02x}{:02x}", r, g, b);
   }
-  for (const std::string_view attribute : {"fill", "stroke", "color"}) {
-    replace_all(svg, fmt::format("{}=\"black\"", attribute),
-                fmt::format("{}=\"var(--{})\"", attribute, kInk.name));
-    replace_all(svg, fmt::format("{}=\"{}\"", attribute, kPaper.light),
-                fmt::format("{}=\"var(--{})\"", attribute, kPaper.name));
+  const auto found = std::ranges::find(kPalette, hex, &Colour::light);
+  return found == kPalette.end() ? colour : fmt::format("var(--{})", found->name);
+}
+
+void make_colours_variable(const pugi::xml_node& svg) {
+  for (const pugi::xpath_node& found : svg.select_nodes(".//@fill|.//@stroke|.//@color")) {
+    found.attribute() = variable_of(found.attribute().value()).c_str();
   }
 }
 
 /// Several figures share a page, but an id may occur there only once.
-void prefix_ids(std::string& svg, std::string_view prefix) {
-  for (const char quote : {'\'', '"'}) {
-    replace_all(svg, fmt::format(" id={}", quote), fmt::format(" id={}{}-", quote, prefix));
-    replace_all(svg, fmt::format("xlink:href={}#", quote),
-                fmt::format("href={}#{}-", quote, prefix));
+void prefix_ids(const pugi::xml_node& svg, std::string_view prefix) {
+  for (const pugi::xpath_node& found : svg.select_nodes(".//@id")) {
+    found.attribute() = fmt::format("{}-{}", prefix, found.attribute().value()).c_str();
+  }
+  for (const pugi::xpath_node& found : svg.select_nodes(".//@xlink:href[starts-with(., '#')]")) {
+    pugi::xml_attribute reference = found.attribute();
+    reference = fmt::format("#{}-{}", prefix, reference.value() + 1).c_str();
+    reference.set_name("href");
   }
 }
 
 /// gnuplot opens a group for every change of pen, used or not.
-void drop_empty_groups(std::string& svg) {
-  constexpr std::string_view kClose = "</g>\n";
-  for (std::size_t at = svg.find("<g fill="); at != std::string::npos;
-       at = svg.find("<g fill=", at)) {
-    const std::size_t end = svg.find(">\n", at);
-    if (end != std::string::npos && svg.compare(end + 2, kClose.size(), kClose) == 0) {
-      svg.erase(at, end + 2 + kClose.size() - at);
-    } else {
-      ++at;
-    }
+void drop_empty_groups(const pugi::xml_node& svg) {
+  for (const pugi::xpath_node& group : svg.select_nodes(".//g[not(*)]")) {
+    group.parent().remove_child(group.node());
   }
 }
 
-/// Between gnuplot's own head, which names the program, and its closing tag.
-std::string body_of(std::string_view svg, const Figure& figure) {
-  constexpr std::string_view kHeadEnd = "</desc>";
-  const std::size_t head = svg.find(kHeadEnd);
-  const std::size_t tail = svg.rfind("</svg>");
-  if (head == std::string_view::npos || tail == std::string_view::npos) {
-    fail("{}.svg: gnuplot drew a picture of another form than that of version 5.4", figure.name);
-  }
-  return std::string(svg.substr(head + kHeadEnd.size(), tail - head - kHeadEnd.size()));
+/// As wide as the page, and with words for those who cannot see it.
+void describe(pugi::xml_node svg, const Figure& figure) {
+  for (const char* attribute : {"width", "height", "xmlns:xlink"}) svg.remove_attribute(attribute);
+  svg.append_attribute("role") = "img";
+  svg.append_attribute("aria-labelledby") = fmt::format("{0}-title {0}-alt", figure.name).c_str();
+  pugi::xml_node title = svg.child("title");
+  title.append_attribute("id") = fmt::format("{}-title", figure.name).c_str();
+  title.text() = figure.title.c_str();
+  pugi::xml_node description = svg.child("desc");
+  description.append_attribute("id") = fmt::format("{}-alt", figure.name).c_str();
+  description.text() = figure.alt.c_str();
 }
 
 }  // namespace
@@ -106,17 +92,20 @@ void draw_figure(const Figure& figure, const fs::path& folder) {
                     [&](const fs::path& output) { return script_of(figure, output); });
 }
 
-std::string inline_svg(std::string_view svg, const Figure& figure) {
-  std::string body = body_of(svg, figure);
-  prefix_ids(body, figure.name);
-  make_colours_variable(body);
-  drop_empty_groups(body);
-  return fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" role=\"img\" "
-      "aria-labelledby=\"{2}-title {2}-alt\">\n<title id=\"{2}-title\">{3}</title>\n"
-      "<desc id=\"{2}-alt\">{4}</desc>{5}</svg>\n",
-      figure.width_px, figure.height_px, figure.name, html_escaped(figure.title),
-      html_escaped(figure.alt), body);
+std::string inline_svg(std::string_view file, const Figure& figure) {
+  pugi::xml_document document;
+  const bool parsed = document.load_buffer(file.data(), file.size());
+  const pugi::xml_node svg = document.child("svg");
+  if (!parsed || !svg.child("title") || !svg.child("desc")) {
+    fail("{}.svg: gnuplot drew a picture of another form than that of version 5.4", figure.name);
+  }
+  prefix_ids(svg, figure.name);
+  make_colours_variable(svg);
+  drop_empty_groups(svg);
+  describe(svg, figure);
+  std::ostringstream out;
+  svg.print(out, "");
+  return out.str();
 }
 
 KeyRow key_row(const Figure& figure, double left_px, const std::vector<KeyEntry>& entries) {

@@ -24,9 +24,9 @@ struct Figure {
 /// Writes `folder`/`name`.svg, beside and renamed. Throws UserError without gnuplot.
 void draw_figure(const Figure& figure, const std::filesystem::path& folder);
 
-/// The SVG element alone: its ids made unique, its colours made variables of the page, with title
-/// and description for screen readers.
-std::string inline_svg(std::string_view svg, const Figure& figure);
+/// The SVG element of gnuplot's `file` alone: its ids made unique, its colours made variables of the
+/// page, with title and description for screen readers. Throws UserError for a file of another form.
+std::string inline_svg(std::string_view file, const Figure& figure);
 
 /// One entry of a figure's key.
 struct KeyEntry {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "shared/host/user_error.h"
 #include "workstation/report/html.h"
 
 namespace bess {
@@ -22,11 +23,28 @@ constexpr const char* kSvg =
 
 TEST(Figure, InlinedSvgStandsBesideOthers) {
   const std::string svg = inline_svg(kSvg, figure_named("prices"));
-  EXPECT_NE(svg.find("id='prices-gpDot' fill='var(--ink)'"), std::string::npos) << svg;
-  EXPECT_NE(svg.find("href='#prices-gpDot'"), std::string::npos) << svg;
+  EXPECT_NE(svg.find("id=\"prices-gpDot\" fill=\"var(--ink)\""), std::string::npos) << svg;
+  EXPECT_NE(svg.find(" href=\"#prices-gpDot\""), std::string::npos) << svg;
   EXPECT_NE(svg.find("A &lt; B</title>"), std::string::npos) << svg;
   EXPECT_EQ(svg.find("<?xml"), std::string::npos);
   EXPECT_EQ(svg.find("<g "), std::string::npos) << "an empty group is left";
+}
+
+TEST(Figure, OnlyColoursOfThePaletteBecomeVariables) {
+  const std::string svg = inline_svg(
+      "<svg><title/><desc/><path stroke='black' fill='#ffffff' color='rgb(1,2,3)'/>"
+      "<text> black</text></svg>",
+      figure_named("prices"));
+  EXPECT_NE(svg.find("stroke=\"var(--ink)\" fill=\"var(--paper)\" color=\"rgb(1,2,3)\""),
+            std::string::npos)
+      << svg;
+  EXPECT_NE(svg.find("<text> black</text>"), std::string::npos) << svg;
+}
+
+TEST(Figure, APictureOfAnotherFormIsRefused) {
+  for (const char* svg : {"", "<svg><title/><desc/>", "<svg><title/></svg>", "<html/>"}) {
+    EXPECT_THROW((void)inline_svg(svg, figure_named("prices")), UserError) << svg;
+  }
 }
 
 TEST(Figure, TicDistancesAreRound) {
