@@ -38,15 +38,15 @@ class RandomReplay {
   }
   const MiniBatch& draw() {
     drawn_.resize(kMinibatch);
-    for (const Transition*& t : drawn_) t = &ring_[random_.index(kReplay)];
-    fill_minibatch(drawn_, batch_);
+    for (auto& slot : drawn_) slot = static_cast<std::uint32_t>(random_.index(kReplay));
+    fill_minibatch(ring_, drawn_, batch_);
     return batch_;
   }
 
  private:
   Random random_{1};
   std::vector<Transition> ring_;
-  std::vector<const Transition*> drawn_;
+  std::vector<std::uint32_t> drawn_;
   MiniBatch batch_;
 };
 
@@ -114,13 +114,10 @@ void draw_counterfactual_minibatch(benchmark::State& state) {
                               Horizon::kContinuing, {});
   Random random(1);
   std::vector<Transition> drawn;
-  std::vector<const Transition*> pointers;
   MiniBatch batch;
   for (auto _ : state) {
     draw_counterfactual(market, kMinibatch, {}, random, drawn);
-    pointers.clear();
-    for (const Transition& transition : drawn) pointers.push_back(&transition);
-    fill_minibatch(pointers, batch);
+    fill_minibatch(drawn, batch);
     benchmark::DoNotOptimize(batch.reward.data());
   }
 }

@@ -46,9 +46,10 @@ void Replay::play(const Teacher& teacher, std::size_t days, double epsilon, Rand
   }
 }
 
-void Replay::draw(std::size_t count, Random& random, std::vector<const Transition*>& out) const {
-  out.resize(count);
-  for (const Transition*& transition : out) transition = &ring_[random.index(ring_.size())];
+void Replay::draw(std::size_t count, Random& random, MiniBatch& batch) {
+  drawn_.resize(count);
+  for (std::uint32_t& slot : drawn_) slot = static_cast<std::uint32_t>(random.index(ring_.size()));
+  fill_minibatch(ring_, drawn_, batch);
 }
 
 void Replay::save(BinaryWriter& out) const {

@@ -19,10 +19,11 @@ class Replay {
   /// Plays `days` days drawn with replacement, exploring with probability epsilon.
   void play(const Teacher& teacher, std::size_t days, double epsilon, Random& random);
 
-  /// `count` transitions drawn with replacement; valid until the next play().
-  void draw(std::size_t count, Random& random, std::vector<const Transition*>& out) const;
+  /// A minibatch of `count` transitions drawn with replacement.
+  void draw(std::size_t count, Random& random, MiniBatch& batch);
 
-  [[nodiscard]] std::size_t size() const { return ring_.size(); }
+  /// In the order of the ring's slots.
+  [[nodiscard]] const std::vector<Transition>& transitions() const { return ring_; }
 
   void save(BinaryWriter& out) const;
   /// Throws UserError when the ring in the file does not fit this one.
@@ -35,6 +36,7 @@ class Replay {
   std::size_t capacity_;
   std::size_t next_ = 0;  ///< slot that the next transition overwrites once the ring is full
   std::vector<Transition> ring_;
+  std::vector<std::uint32_t> drawn_;  ///< slots of the last minibatch
 };
 
 }  // namespace bess

@@ -32,15 +32,13 @@ class Experience {
     const auto count = static_cast<std::size_t>(options_.batch_size);
     if (options_.source == Source::kCounterfactual) {
       draw_counterfactual(market_, count, options_.jitter, minibatch_random_, drawn_);
-      pointers_.clear();
-      for (const Transition& transition : drawn_) pointers_.push_back(&transition);
+      fill_minibatch(drawn_, batch_);
     } else {
       if (step % kLockstepDays == 0) {
         replay_.play(acting, kLockstepDays, epsilon(step), experience_random_);
       }
-      replay_.draw(count, minibatch_random_, pointers_);
+      replay_.draw(count, minibatch_random_, batch_);
     }
-    fill_minibatch(pointers_, batch_);
     return batch_;
   }
 
@@ -70,7 +68,6 @@ class Experience {
   Random experience_random_;
   Random minibatch_random_;
   std::vector<Transition> drawn_;
-  std::vector<const Transition*> pointers_;
   MiniBatch batch_;
 };
 

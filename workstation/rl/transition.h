@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "workstation/nn/mlp.h"
@@ -41,6 +42,9 @@ struct MiniBatch {
 };
 
 /// Groups the given transitions by action, stable within each group.
-void fill_minibatch(const std::vector<const Transition*>& transitions, MiniBatch& batch);
+void fill_minibatch(std::span<const Transition> transitions, MiniBatch& batch);
+/// The same of those in the given slots of a ring, one of which may come more than once.
+void fill_minibatch(std::span<const Transition> ring, std::span<const std::uint32_t> slots,
+                    MiniBatch& batch);
 
 }  // namespace bess

@@ -300,10 +300,8 @@ inline std::vector<Transition> random_transitions(const BatchRecipe& recipe,
 }
 
 inline MiniBatch minibatch_of(const std::vector<Transition>& transitions) {
-  std::vector<const Transition*> pointers;
-  for (const Transition& t : transitions) pointers.push_back(&t);
   MiniBatch batch;
-  fill_minibatch(pointers, batch);
+  fill_minibatch(transitions, batch);
   return batch;
 }
 

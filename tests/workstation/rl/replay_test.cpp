@@ -1,6 +1,7 @@
 #include "workstation/rl/replay.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <tuple>
 
@@ -13,17 +14,6 @@ Teacher untrained_teacher() {
   const Support support{-15, 15, 11};
   const MlpShape shape = teacher_shape(Method::kDqn, support);
   return {Method::kDqn, support, shape, straight_price_map(), initial_parameters(shape, 81), ""};
-}
-
-/// Everything in the ring, in the order of its slots: draws point into it.
-std::vector<Transition> contents_of(const Replay& replay) {
-  Random random(82);
-  std::vector<const Transition*> drawn;
-  replay.draw(200 * replay.size(), random, drawn);
-  const Transition* first = *std::ranges::min_element(drawn);
-  const Transition* last = *std::ranges::max_element(drawn);
-  EXPECT_EQ(static_cast<std::size_t>(last - first) + 1, replay.size()) << "every slot is drawn";
-  return {first, last + 1};
 }
 
 auto key_of(const Transition& t) {
@@ -41,7 +31,7 @@ TEST_P(ReplayOf, PlayStoresEachStepOfADayInOrder) {
   for (int day = 0; day < 40; ++day) {
     Replay replay(market, 1000);
     replay.play(teacher, 1, 0.5, random);
-    const auto played = contents_of(replay);
+    const auto& played = replay.transitions();
     const int first = step_of_input(played[0].state[4]);
     const auto found = std::ranges::find_if(market.days(), [&](const TrainingMarket::Day& d) {
       Transition t{};
@@ -74,9 +64,9 @@ TEST_P(ReplayOf, ManyDaysAtOnceStoreTheirSteps) {
   }
   Replay replay(market, 1000);
   replay.play(teacher, kDays, 1, random);
-  ASSERT_EQ(replay.size(), steps);
+  ASSERT_EQ(replay.transitions().size(), steps);
   std::map<int, std::size_t> stored;
-  for (const Transition& t : contents_of(replay)) ++stored[step_of_input(t.state[4])];
+  for (const Transition& t : replay.transitions()) ++stored[step_of_input(t.state[4])];
   for (const auto& [first, times] : expected) EXPECT_EQ(stored[first], times) << first;
 }
 
@@ -85,7 +75,7 @@ TEST_P(ReplayOf, WithoutExploringItIsGreedy) {
   Replay replay(market, 1000);
   replay.play(teacher, 8, 0, random);
   MlpTile tile;
-  for (const Transition& t : contents_of(replay)) {
+  for (const Transition& t : replay.transitions()) {
     const Matrix x = Eigen::Map<const Matrix>(t.state, kNetworkInputs, 1);
     const Matrix values = teacher.action_values(x, tile);
     EXPECT_NEAR(values(t.action, 0), values.maxCoeff(), 1e-5F);
@@ -97,7 +87,7 @@ TEST_P(ReplayOf, ExploringTakesEveryActionAlike) {
   Replay replay(market, 100'000);
   replay.play(teacher, 1000, 1, random);
   double count[kActionCount] = {};
-  const auto played = contents_of(replay);
+  const auto& played = replay.transitions();
   for (const Transition& t : played) ++count[t.action];
   for (const double times : count) {
     EXPECT_NEAR(times / static_cast<double>(played.size()), 1.0 / 3, 0.03);
@@ -113,19 +103,35 @@ TEST_P(ReplayOf, RingOverwritesTheOldest) {
     for (int day = 0; day < 9; ++day) {
       ring.play(teacher, 1, 0.5, random);
       all.play(teacher, 1, 0.5, twin);
-      const auto history = contents_of(all);
+      const auto& history = all.transitions();
       const std::size_t kept = std::min(capacity, history.size());
-      ASSERT_EQ(ring.size(), kept);
+      ASSERT_EQ(ring.transitions().size(), kept);
       std::vector<decltype(key_of(Transition{}))> newest, held;
       for (std::size_t i = history.size() - kept; i < history.size(); ++i) {
         newest.push_back(key_of(history[i]));
       }
-      for (const Transition& t : contents_of(ring)) held.push_back(key_of(t));
+      for (const Transition& t : ring.transitions()) held.push_back(key_of(t));
       std::ranges::sort(newest);
       std::ranges::sort(held);
       ASSERT_EQ(held, newest) << "capacity " << capacity << ", day " << day;
     }
   }
+}
+
+TEST_P(ReplayOf, DrawsReachEverySlotAlike) {
+  Random random(88);
+  Replay replay(market, 1000);
+  replay.play(teacher, 4, 0.5, random);
+  const std::size_t size = replay.transitions().size();
+  MiniBatch batch;
+  replay.draw(1000 * size, random, batch);
+  std::map<std::array<float, 3>, int> drawn, held;
+  for (const Transition& t : replay.transitions()) ++held[{t.state[3], t.state[4], t.reward}];
+  for (Eigen::Index i = 0; i < batch.size(); ++i) {
+    ++drawn[{batch.state(3, i), batch.state(4, i), batch.reward[i]}];
+  }
+  ASSERT_EQ(drawn.size(), held.size());
+  for (const auto& [key, times] : held) EXPECT_NEAR(drawn[key], 1000 * times, 150 * times);
 }
 
 INSTANTIATE_TEST_SUITE_P(Horizons, ReplayOf, testing::Values(Horizon::kContinuing, Horizon::kDay),
