@@ -31,6 +31,21 @@ std::string line_after_notes(ChildProcess& child) {
   return line;
 }
 
+std::int64_t utc_of(const std::string& text) {
+  std::int64_t utc_s = 0;
+  EXPECT_TRUE(parse_utc_text(text, utc_s)) << text;
+  return utc_s;
+}
+
+/// Follows a controller until it orders power; the line of that cycle, empty when it ended before.
+std::string line_with_power(ChildProcess& edge) {
+  std::string line;
+  do line = edge.read_line();
+  while (!line.empty() && (line.find(" written=1 ") == std::string::npos ||
+                           line.find(" ordered_power_w=0 ") != std::string::npos));
+  return line;
+}
+
 /// Starts the two simulators; the edge is started by each test.
 class Processes : public ::testing::Test {
  protected:
@@ -79,7 +94,7 @@ TEST_F(Processes, SigtermOrdersZeroReleasesAndExitsWithZero) {
   start_simulators();
   ChildProcess edge({BESS_EDGE_PROGRAM, "--config", site_.commission()});
   EXPECT_EQ(line_after_notes(edge), "started: in control");
-  for (int i = 0; i < 3; ++i) EXPECT_THAT(line_after_notes(edge), HasSubstr("mode="));
+  ASSERT_THAT(line_with_power(edge), HasSubstr("mode=running"));
   edge.signal(SIGTERM);
   EXPECT_THAT(edge.read_all(), HasSubstr("mode=stopping"));
   EXPECT_EQ(edge.wait(), 0);
@@ -98,14 +113,16 @@ TEST_F(Processes, TwoControllersCannotShareABattery) {
   ChildProcess edge({BESS_EDGE_PROGRAM, "--config", mine});
   EXPECT_EQ(edge.read_line(), "started: in control");
   const std::string in_use = "unit 85 is in use by another bess-edge (process ";
-  const std::vector<std::string> ways[] = {{BESS_EDGE_PROGRAM, "--config", other},
-                                           {BESS_EDGE_PROGRAM, "--config", other, "--check"},
-                                           {BESS_EDGE_PROGRAM, "--config", other, "--dry-run"}};
-  for (const std::vector<std::string>& way : ways) {
-    ChildProcess second(way);
+  ChildProcess ways[] = {
+      ChildProcess({BESS_EDGE_PROGRAM, "--config", other}),
+      ChildProcess({BESS_EDGE_PROGRAM, "--config", other, "--check"}),
+      ChildProcess({BESS_EDGE_PROGRAM, "--config", other, "--dry-run"}),
+      ChildProcess({BESS_EDGE_PROGRAM, "release", "--config", other, "--yes"}),
+  };  // together: each waits a second for the lock
+  for (ChildProcess& second : ways) {
     const std::string text = second.read_all();
-    EXPECT_EQ(second.wait(), 1) << way.back();
-    EXPECT_THAT(text, HasSubstr(in_use + std::to_string(edge.pid()))) << way.back();
+    EXPECT_EQ(second.wait(), 1) << text;
+    EXPECT_THAT(text, HasSubstr(in_use + std::to_string(edge.pid())));
     EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
   }
   static_cast<void>(line_after_notes(edge));  // undisturbed
@@ -228,7 +245,7 @@ TEST_F(Processes, EachCommandHasItsHelp) {
 TEST_F(Processes, AKilledEdgesOrderIsEndedByTheBatterysWatchdog) {
   start_simulators();
   ChildProcess edge({BESS_EDGE_PROGRAM, "--config", site_.commission()});
-  for (int i = 0; i < 4; ++i) line_after_notes(edge);
+  ASSERT_THAT(line_with_power(edge), HasSubstr("mode=running"));
   edge.signal(SIGKILL);
   EXPECT_EQ(edge.wait(), 128 + SIGKILL);
   sleep_until_monotonic(clock_ns(CLOCK_MONOTONIC) + kNanosecondsPerSecond / 2);  // 450 s
@@ -249,8 +266,12 @@ TEST_F(Processes, MarketFaultsDoNotStopTheLoop) {
       if (row.at("mode") == "running") ++running;
     }
     EXPECT_GE(running, 9) << fault;
-    SimulatedSite::stop(*site_.battery);
-    SimulatedSite::stop(*site_.market);
+    EXPECT_EQ(SimulatedSite::stop(*site_.battery), 0);
+    EXPECT_EQ(SimulatedSite::stop(*site_.market), 0);
+    const std::string end = site_.market->read_all();
+    const std::size_t count = end.find("stopped after ");
+    ASSERT_NE(count, std::string::npos) << end;
+    EXPECT_GE(std::stoi(end.substr(count + 14)), 2) << fault;
   }
 }
 
@@ -300,13 +321,8 @@ TEST_F(Processes, BusFaultsCostCyclesButNeverGiveAWrongOrder) {
   EXPECT_EQ(edge.wait(), 0);
   EXPECT_EQ(SimulatedSite::stop(*site_.battery), 0);
   std::map<std::int64_t, std::string> commanded;  // at the end of each minute
-  const auto instant = [](const std::string& text) {
-    std::int64_t utc_s = 0;
-    EXPECT_TRUE(parse_utc_text(text, utc_s)) << text;
-    return utc_s;
-  };
   for (const CsvRow& row : read_csv(site_.folder.file("battery.csv"))) {
-    commanded[instant(row.at("minute_utc"))] = row.at("commanded_power_w");
+    commanded[utc_of(row.at("minute_utc"))] = row.at("commanded_power_w");
   }
   int written = 0;
   int troubled = 0;
@@ -316,7 +332,7 @@ TEST_F(Processes, BusFaultsCostCyclesButNeverGiveAWrongOrder) {
     ++written;
     bool obeyed = false;  // soon after the tick, on a busy machine a cycle later
     for (int minute = 0; minute < 4; ++minute) {
-      obeyed |= commanded[instant(row.at("utc")) + 60 * minute] == row.at("ordered_power_w");
+      obeyed |= commanded[utc_of(row.at("utc")) + 60 * minute] == row.at("ordered_power_w");
     }
     EXPECT_TRUE(obeyed) << row.at("utc") << " " << row.at("ordered_power_w");
   }
@@ -454,32 +470,39 @@ TEST_F(Processes, ABatteryWhoseSignWasNeverCheckedIsNotControlled) {
   }
 }
 
-/// As for an upgrade: SIGHUP, and a new process goes on where the old one was.
+/// As for an upgrade: SIGHUP, and a new process goes on where the old one was. Slower than the
+/// others, so that the order outlasts the start of a process.
 TEST_F(Processes, AHandOverKeepsThePowerAndARestartGoesOn) {
-  start_simulators();
-  const std::string config = site_.commission();
+  SimulatedSite site(kScale / 3);
+  site.start_battery();
+  site.start_market();
+  const std::string config = site.commission();
   ChildProcess before({BESS_EDGE_PROGRAM, "--config", config});
-  for (int i = 0; i < 12; ++i) line_after_notes(before);
+  ASSERT_THAT(line_with_power(before), HasSubstr("mode=running"));
   before.signal(SIGHUP);
   EXPECT_THAT(before.read_all(), HasSubstr("stopped: handed over, the order stays in force"));
   EXPECT_EQ(before.wait(), 0);
   ChildProcess after({BESS_EDGE_PROGRAM, "--config", config, "--cycles", "3"});
   EXPECT_THAT(after.read_all(), HasSubstr("stopped: battery released"));
   EXPECT_EQ(after.wait(), 0);
-  for (const CsvRow& row : read_csv(site_.folder.file("edge.csv"))) {
+  int first_cycles = 0;
+  for (const CsvRow& row : read_csv(site.folder.file("edge.csv"))) {
     EXPECT_NE(row.at("mode"), "holding") << row.at("utc");
+    if (row.at("mode") != "running" || row.at("cycle") != "1" || ++first_cycles != 2) continue;
+    EXPECT_NE(row.at("battery_power_w"), "0") << "the order did not outlast the change";
   }
+  EXPECT_EQ(first_cycles, 2);
 }
 
-/// A killed controller's order, ended by hand before its watchdog does.
+/// A killed controller's order, ended by hand before its watchdog does; as slow as the one above.
 TEST_F(Processes, ReleaseEndsAnOrderThatNobodyEndsAnyMore) {
-  start_simulators();
-  const std::string config = site_.commission();
+  SimulatedSite site(kScale / 3);
+  site.start_battery();
+  site.start_market();
+  const std::string config = site.commission();
   ChildProcess edge({BESS_EDGE_PROGRAM, "--config", config});
-  for (int i = 0; i < 4; ++i) line_after_notes(edge);
-  ChildProcess refused({BESS_EDGE_PROGRAM, "release", "--config", config, "--yes"});
-  EXPECT_THAT(refused.read_all(), HasSubstr("is in use by another bess-edge"));
-  EXPECT_EQ(refused.wait(), 1);
+  const std::string order = line_with_power(edge);
+  ASSERT_THAT(order, ::testing::StartsWith("utc="));
   edge.signal(SIGKILL);
   edge.wait();
   ChildProcess hesitant({BESS_EDGE_PROGRAM, "release", "--config", config});
@@ -488,8 +511,15 @@ TEST_F(Processes, ReleaseEndsAnOrderThatNobodyEndsAnyMore) {
   ChildProcess release({BESS_EDGE_PROGRAM, "release", "--config", config, "--yes"});
   EXPECT_THAT(release.read_all(), HasSubstr("is in its own mode"));
   EXPECT_EQ(release.wait(), 0);
-  EXPECT_EQ(SimulatedSite::stop(*site_.battery), 0);
-  EXPECT_EQ(read_csv(site_.folder.file("battery.csv")).back().at("commanded_power_w"), "0");
+  const std::int64_t ordered_utc_s = utc_of(order.substr(4, order.find(' ') - 4));
+  sleep_until_monotonic(clock_ns(CLOCK_MONOTONIC) + kNanosecondsPerSecond / 3);  // 100 s
+  EXPECT_EQ(SimulatedSite::stop(*site.battery), 0);
+  bool ended_by_hand = false;  // the watchdog would have after 300 s
+  for (const CsvRow& row : read_csv(site.folder.file("battery.csv"))) {
+    const std::int64_t age_s = utc_of(row.at("minute_utc")) - ordered_utc_s;
+    ended_by_hand |= age_s > 0 && age_s < 240 && row.at("commanded_power_w") == "0";
+  }
+  EXPECT_TRUE(ended_by_hand);
 }
 
 TEST_F(Processes, TheWrongBatteryIsRefusedBeforeAnythingIsWritten) {

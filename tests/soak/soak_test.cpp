@@ -201,6 +201,8 @@ void expect_clean(const RunResult& result, int cycles) {
   EXPECT_EQ(result.cycles, cycles);
   EXPECT_GE(result.connections, cycles * 9 / 10);  // cut in every cycle in which there was one
   EXPECT_GT(result.modes.at("running"), cycles / 2);
+  EXPECT_GE(result.price_statuses.at("not_connected"), 5);  // while the price server was dead
+  EXPECT_GE(result.modes.at("safe"), 5);                    // while the battery was
   EXPECT_EQ(result.warm.has_heap, false);
   EXPECT_EQ(result.end.has_heap, false);
   EXPECT_GT(result.end.resident_kib, 0);

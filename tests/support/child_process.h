@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -54,6 +55,18 @@ class ChildProcess {
     return text;
   }
   [[nodiscard]] pid_t pid() const { return pid_; }
+  /// Waits until it has a handler for this signal; false when a minute passes before.
+  [[nodiscard]] bool catches(int number) const {
+    for (int ms = 0; ms < 60'000; ++ms) {
+      std::ifstream status("/proc/" + std::to_string(pid_) + "/status");
+      for (std::string line; std::getline(status, line);) {
+        if (!line.starts_with("SigCgt:")) continue;
+        if (std::stoull(line.substr(7), nullptr, 16) >> (number - 1) & 1) return true;
+      }
+      usleep(1'000);
+    }
+    return false;
+  }
   void signal(int number) const { kill(pid_, number); }
   /// Exit code, or 128 + signal.
   int wait() {

@@ -41,6 +41,8 @@ void run_market(const MarketOptions& options) {
   stop.wait();
   server.stop();
   serving.join();
+  std::printf("bess-sim market: stopped after %lld faults\n",
+              static_cast<long long>(server.faults()));
 }
 
 }  // namespace

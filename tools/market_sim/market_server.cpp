@@ -88,6 +88,7 @@ MarketFault MarketServer::next_fault() {
   if (settings_.fault == MarketFault::kNone) return MarketFault::kNone;
   const std::int64_t request = ++requests_;
   if (request % settings_.fault_every != 0) return MarketFault::kNone;
+  ++faults_;
   if (settings_.fault != MarketFault::kAll) return settings_.fault;
   constexpr MarketFault kTurns[] = {MarketFault::kNull, MarketFault::kHttp500, MarketFault::kStale,
                                     MarketFault::kGarbage};

@@ -45,8 +45,9 @@ class MarketServer {
   ~MarketServer();
 
   [[nodiscard]] int port() const { return port_; }
-  void run();   ///< serves until `stop`
-  void stop();  ///< from another thread
+  void run();                                                    ///< serves until `stop`
+  void stop();                                                   ///< from another thread
+  [[nodiscard]] std::int64_t faults() const { return faults_; }  ///< answers spoilt so far
 
  private:
   [[nodiscard]] MarketFault next_fault();
@@ -58,6 +59,7 @@ class MarketServer {
   std::unique_ptr<httplib::Server> server_;
   int port_ = 0;
   std::atomic<std::int64_t> requests_ = 0;
+  std::atomic<std::int64_t> faults_ = 0;
 };
 
 }  // namespace bess

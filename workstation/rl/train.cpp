@@ -125,12 +125,12 @@ class Training {
         average_(learner_.online()),
         result_{current_, {}, -1e300, 0, 0} {}
 
-  void run(const std::atomic<bool>& interrupted, const CheckpointOptions& checkpoint) {
+  void run(const std::function<bool()>& interrupted, const CheckpointOptions& checkpoint) {
     const auto start = std::chrono::steady_clock::now();
     if (checkpoint.resume) restore(checkpoint);
     Progress progress(fmt::format("train {}", method_name(options_.method)), "steps",
                       static_cast<double>(options_.steps), static_cast<double>(step_));
-    while (step_ < options_.steps && !interrupted) {
+    while (step_ < options_.steps && !interrupted()) {
       const double loss = learn();
       progress.update(
           static_cast<double>(step_),
@@ -141,7 +141,7 @@ class Training {
       validate();
       if (!checkpoint.path.empty()) save(checkpoint);
     }
-    if (interrupted && !checkpoint.path.empty()) save(checkpoint);
+    if (step_ < options_.steps && !checkpoint.path.empty()) save(checkpoint);
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
     result_.seconds += taken.count();
   }
@@ -234,7 +234,7 @@ class Training {
 }  // namespace
 
 TrainResult train_teacher(const MarketSteps& market, const BatteryParameters& battery,
-                          const TrainOptions& options, const std::atomic<bool>& interrupted,
+                          const TrainOptions& options, const std::function<bool()>& interrupted,
                           const CheckpointOptions& checkpoint) {
   if (market.days_of(Split::kValidation).empty()) {
     fail("no validation days (local days 21 to 25) in these prices; add some");
@@ -243,6 +243,13 @@ TrainResult train_teacher(const MarketSteps& market, const BatteryParameters& ba
   Training training(market, battery, options);
   training.run(interrupted, checkpoint);
   return training.take_result();
+}
+
+TrainResult train_teacher(const MarketSteps& market, const BatteryParameters& battery,
+                          const TrainOptions& options, const std::atomic<bool>& interrupted,
+                          const CheckpointOptions& checkpoint) {
+  const auto is_raised = [&interrupted] { return interrupted.load(); };
+  return train_teacher(market, battery, options, is_raised, checkpoint);
 }
 
 }  // namespace bess

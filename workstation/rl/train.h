@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -67,9 +68,13 @@ struct CheckpointOptions {
   std::string identity;        ///< configuration and prices: a checkpoint of others is refused
 };
 
-/// Trains on the training days of `market` and selects on its validation days. `interrupted` ends
-/// it early with what is best so far. Throws UserError for missing days; ranges of the options are
-/// checked where they are read (cli/run_config.cpp).
+/// Trains on the training days of `market` and selects on its validation days. `interrupted` is asked
+/// before every gradient step: true ends it early with what is best so far. Throws UserError for
+/// missing days; ranges of the options are checked where they are read (cli/run_config.cpp).
+TrainResult train_teacher(const MarketSteps& market, const BatteryParameters& battery,
+                          const TrainOptions& options, const std::function<bool()>& interrupted,
+                          const CheckpointOptions& checkpoint = {});
+/// The same, ended by a flag that a signal raises.
 TrainResult train_teacher(const MarketSteps& market, const BatteryParameters& battery,
                           const TrainOptions& options, const std::atomic<bool>& interrupted,
                           const CheckpointOptions& checkpoint = {});

@@ -224,34 +224,49 @@ TEST_F(Ring, WhatCannotBeOpenedIsOneLine) {
   EXPECT_THAT(error_.c_str(), HasSubstr("No such file"));
 }
 
+/// Appends until it is killed; says on `told` when it has begun.
+[[noreturn]] void append_for_ever(const char* path, int told) {
+  RingLog ring;
+  FileMessage error;
+  if (!ring.open(path, 16, error)) _exit(1);
+  while (ring.append(full_record(static_cast<std::int64_t>(ring.newest_number()) + 1))) {
+    if (told >= 0 && write(told, "x", 1) != 1) _exit(3);
+    told = -1;
+  }
+  _exit(2);
+}
+
 /// A writer that is killed at random instants: the next one goes on without a gap or a repetition.
+/// Every third is killed at any instant since its birth, the others while they append.
 TEST_F(Ring, SurvivesKillsAtRandomInstants) {
   std::mt19937 random(20261121);
   std::uint64_t newest_before = 0;
   for (int round = 0; round < 30; ++round) {
+    const bool while_appending = round % 3 != 2;
+    int ends[2];
+    ASSERT_EQ(pipe(ends), 0);
     const pid_t child = fork();
-    if (child == 0) {
-      RingLog ring;
-      FileMessage error;
-      if (!ring.open(path_.c_str(), 16, error)) _exit(1);
-      while (ring.append(full_record(static_cast<std::int64_t>(ring.newest_number()) + 1)))
-        continue;
-      _exit(2);
+    if (child == 0) append_for_ever(path_.c_str(), ends[1]);
+    close(ends[1]);
+    char told = 0;
+    if (while_appending) {
+      ASSERT_EQ(read(ends[0], &told, 1), 1) << "round " << round;
     }
-    sleep_until_monotonic(clock_ns(CLOCK_MONOTONIC) + 2'000'000 + random() % 20'000'000);
+    sleep_until_monotonic(clock_ns(CLOCK_MONOTONIC) + random() % 5'000'000);
     kill(child, SIGKILL);
     int status = 0;
     waitpid(child, &status, 0);
+    close(ends[0]);
     ASSERT_TRUE(WIFSIGNALED(status)) << "round " << round;
-    if (!std::filesystem::exists(path_)) continue;  // killed before the file had its name
     const std::vector<std::int64_t> found = cycles();
     for (std::size_t i = 1; i < found.size(); ++i) ASSERT_EQ(found[i], found[i - 1] + 1);
-    if (found.empty()) continue;
-    ASSERT_GE(static_cast<std::uint64_t>(found.back()), newest_before);
-    newest_before = static_cast<std::uint64_t>(found.back());
+    ASSERT_FALSE(found.empty());
+    const auto newest = static_cast<std::uint64_t>(found.back());
+    ASSERT_GE(newest, newest_before + (while_appending ? 1 : 0));
+    newest_before = newest;
     ASSERT_GE(found.size(), std::min<std::uint64_t>(newest_before, 15));
   }
-  EXPECT_GT(newest_before, 0U);
+  EXPECT_GT(newest_before, 16U) << "the ring has not wrapped";
 }
 
 }  // namespace

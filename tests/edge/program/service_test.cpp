@@ -1,16 +1,20 @@
 // What ties the controller to its machine: lock files, systemd's notify socket, journal levels.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sched.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cstring>
 #include <filesystem>
 
 #include "edge/log/journal.h"
 #include "edge/program/instance_lock.h"
 #include "edge/program/service_notify.h"
+#include "shared/scaled_clock.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bess {
@@ -61,14 +65,21 @@ TEST(InstanceLock, ManyTakersAreNeverInsideTogether) {
   const TemporaryFolder folder;
   const std::string path = folder.file("lock");
   const std::string inside = folder.file("inside");
+  void* const shared = mmap(nullptr, sizeof(std::atomic<int>), PROT_READ | PROT_WRITE,
+                            MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  ASSERT_NE(shared, MAP_FAILED);
+  auto& waits = *new (shared) std::atomic<int>(0);
   for (int i = 0; i < 4; ++i) {
     if (fork() != 0) continue;
     int taken = 0;
     for (int round = 0; round < 200; ++round) {
       InstanceLock lock;
       FileMessage error;
+      const std::int64_t start_ns = clock_ns(CLOCK_MONOTONIC);
       if (!lock.take(path.c_str(), "x", error)) continue;
+      if (clock_ns(CLOCK_MONOTONIC) - start_ns > kNanosecondsPerSecond / 20) ++waits;
       if (mkdir(inside.c_str(), 0755) != 0) _exit(1);  // somebody else is inside
+      sched_yield();                                   // lets the others come and try
       if (rmdir(inside.c_str()) != 0) _exit(2);
       ++taken;
     }
@@ -76,6 +87,8 @@ TEST(InstanceLock, ManyTakersAreNeverInsideTogether) {
   }
   int status = 0;
   while (wait(&status) > 0) EXPECT_EQ(status, 0);
+  EXPECT_GT(waits, 0) << "they never met";
+  munmap(shared, sizeof(std::atomic<int>));
 }
 
 TEST(InstanceLock, AFolderThatIsNotThereIsOneLine) {

@@ -50,7 +50,7 @@ TEST(Program, CtrlCEndsACommandThatHasNothingToSave) {
   const TemporaryFolder folder;
   const auto out = folder.file("market.csv.gz");
   ChildProcess program({BESS_TRAIN_PROGRAM, "prices", "simulate", "--days", "7000", "--out", out});
-  usleep(200'000);  // long enough to start, far too short for 7,000 days
+  ASSERT_TRUE(program.catches(SIGINT));  // far too soon for 7,000 days
   program.signal(SIGINT);
   EXPECT_EQ(program.wait(), 3);
   EXPECT_THAT(program.read_all(), HasSubstr("interrupted"));
