@@ -111,7 +111,7 @@ TEST_F(Processes, TwoControllersCannotShareABattery) {
   const std::string mine = site_.commission();
   const std::string other = site_.commission({.state = "other"});
   ChildProcess edge({BESS_EDGE_PROGRAM, "--config", mine});
-  EXPECT_EQ(edge.read_line(), "started: in control");
+  EXPECT_EQ(line_after_notes(edge), "started: in control");
   const std::string in_use = "unit 85 is in use by another bess-edge (process ";
   ChildProcess ways[] = {
       ChildProcess({BESS_EDGE_PROGRAM, "--config", other}),
@@ -138,7 +138,7 @@ TEST_F(Processes, TwoControllersCannotShareABattery) {
 TEST_F(Processes, TwoControllersCannotShareAStateFolder) {
   start_simulators();
   ChildProcess edge({BESS_EDGE_PROGRAM, "--config", site_.commission()});
-  EXPECT_EQ(edge.read_line(), "started: in control");
+  EXPECT_EQ(line_after_notes(edge), "started: in control");
   const auto first_battery = std::move(site_.battery);
   site_.start_battery();
   ChildProcess second({BESS_EDGE_PROGRAM, "--config", site_.write_config()});
@@ -163,7 +163,7 @@ TEST_F(Processes, StatusAndLogShowWhatTheRunningControllerDoes) {
   EXPECT_THAT(run({"status", "--prometheus"}, 1), HasSubstr("no metrics here"));
   {
     ChildProcess edge({BESS_EDGE_PROGRAM, "--config", config});
-    EXPECT_EQ(edge.read_line(), "started: in control");
+    EXPECT_EQ(line_after_notes(edge), "started: in control");
     for (int i = 0; i < 15; ++i) edge.read_line();
     // A loaded machine may be late with a cycle of 133 ms: ok and degraded are both honest here.
     ChildProcess status({BESS_EDGE_PROGRAM, "status", "--config", config});

@@ -3,10 +3,10 @@
 #include <fmt/core.h>
 #include <stdlib.h>
 
-#include "tests/workstation/report/report_test_support.h"
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/workstation/report/report_test_support.h"
 
 namespace bess {
 namespace {

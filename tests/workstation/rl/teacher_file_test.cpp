@@ -1,10 +1,10 @@
 #include <cstring>
 #include <filesystem>
 
-#include "tests/workstation/rl/market_by_hand.h"
 #include "shared/crc32.h"
 #include "shared/host/file.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/workstation/rl/market_by_hand.h"
 #include "workstation/base/random.h"
 #include "workstation/rl/teacher.h"
 
