@@ -5,11 +5,10 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <fstream>
 #include <sstream>
 
 #include "shared/nn/exported_student.h"
+#include "tests/support/golden_file.h"
 #include "tests/support/integer_nets.h"
 
 namespace bess {
@@ -58,15 +57,7 @@ std::string golden_text() {
   return out.str();
 }
 
-TEST(StudentNet, GoldenVectors) {
-  const std::string text = golden_text();
-  if (std::getenv("BESS_UPDATE_GOLDEN") != nullptr) std::ofstream(kGoldenPath) << text;
-  std::ifstream file(kGoldenPath);
-  ASSERT_TRUE(file) << kGoldenPath;
-  std::ostringstream golden;
-  golden << file.rdbuf();
-  EXPECT_EQ(text, golden.str());
-}
+TEST(StudentNet, GoldenVectors) { expect_golden(kGoldenPath, golden_text()); }
 
 TEST(StudentNet, HandMadeNetsDecideAsTheirFormulaSays) {
   // price_map = 8 (price + 500): low 2400 is price -200, high 4000 is price 0.

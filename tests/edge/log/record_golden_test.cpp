@@ -4,14 +4,13 @@
 // line.
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <fstream>
 #include <sstream>
 
 #include "edge/log/log_text.h"
 #include "edge/log/record_codec.h"
 #include "edge/log/run_status.h"
 #include "tests/edge/log/sample_records.h"
+#include "tests/support/golden_file.h"
 
 namespace bess {
 namespace {
@@ -73,15 +72,7 @@ std::string golden_text() {
   return out.str();
 }
 
-TEST(DecisionRecord, GoldenBytes) {
-  const std::string text = golden_text();
-  if (std::getenv("BESS_UPDATE_GOLDEN") != nullptr) std::ofstream(kGoldenPath) << text;
-  std::ifstream file(kGoldenPath);
-  ASSERT_TRUE(file) << kGoldenPath;
-  std::ostringstream golden;
-  golden << file.rdbuf();
-  EXPECT_EQ(text, golden.str());
-}
+TEST(DecisionRecord, GoldenBytes) { expect_golden(kGoldenPath, golden_text()); }
 
 }  // namespace
 }  // namespace bess
