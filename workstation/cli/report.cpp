@@ -14,7 +14,9 @@ namespace {
 
 std::string prices_of_run(const RunFolder& folder) {
   const Json json = Json::parse(read_file(folder.manifest()));
-  return JsonReader(json.value(), folder.manifest().string(), "a run's manifest").text("prices");
+  return JsonReader(json.value(), folder.manifest().string(),
+                    "a run's manifest (make the run again)")
+      .text("prices");
 }
 
 void run(const std::string& path, const std::string& prices) {
