@@ -65,9 +65,13 @@ constexpr bool take_offset(std::string_view& text, int& offset_s) {
 
 }  // namespace detail
 
+/// What stands between day and time: T in what is written here, also a blank in what others write.
+inline constexpr std::string_view kAlsoBlank = "T ";
+
 /// Reads YYYY-MM-DDTHH:MM[:SS[.digits]] followed by Z or an offset; false when anything is amiss.
 /// A time without an offset is refused: it would be ambiguous twice a year.
-inline bool parse_utc_text(std::string_view text, std::int64_t& utc_s) {
+inline bool parse_utc(std::string_view text, std::int64_t& utc_s,
+                      std::string_view separators = "T") {
   using namespace detail;
   CivilTime t{};
   t.year = take_digits(text, 4);
@@ -75,7 +79,8 @@ inline bool parse_utc_text(std::string_view text, std::int64_t& utc_s) {
   t.month = take_digits(text, 2);
   if (!take(text, '-')) return false;
   t.day = take_digits(text, 2);
-  if (!take(text, 'T')) return false;
+  if (text.empty() || separators.find(text.front()) == separators.npos) return false;
+  text.remove_prefix(1);
   t.hour = take_digits(text, 2);
   if (!take(text, ':')) return false;
   t.minute = take_digits(text, 2);

@@ -29,7 +29,7 @@ const cJSON* item_at(const cJSON* item, std::string_view path) {
 }
 
 bool parse_time(const cJSON* time, std::int64_t& utc_s) {
-  if (cJSON_IsString(time)) return parse_utc_text(time->valuestring, utc_s);
+  if (cJSON_IsString(time)) return parse_utc(time->valuestring, utc_s);
   if (!cJSON_IsNumber(time)) return false;
   const double number = time->valuedouble;
   if (!(number >= 0 && number < kLastMilliseconds)) return false;

@@ -78,7 +78,7 @@ bool store(const Option& option, std::string_view value, CommandLine& line) {
     usage_error(std::string(option.name) + " needs a whole number above 0, not ", value);
     return false;
   } else if (const auto* instant = std::get_if<UtcInstant>(&option.target)) {
-    if (parse_utc_text(value, line.*(instant->utc_s))) return true;
+    if (parse_utc(value, line.*(instant->utc_s))) return true;
     usage_error(std::string(option.name) + " needs an instant such as 2026-11-21T06:00:00Z, not ",
                 value);
     return false;

@@ -248,7 +248,7 @@ void read_simulation(TomlTable table, ScaledClock& clock) {
   clock.scale = scale;
   clock.anchor_monotonic_ns = anchor_ns != 0 ? anchor_ns : clock_ns(CLOCK_MONOTONIC);
   table.require("utc_start");
-  if (table.ok() && !parse_utc_text(utc_start.view(), clock.anchor_utc_s)) {
+  if (table.ok() && !parse_utc(utc_start.view(), clock.anchor_utc_s)) {
     table.fail("utc_start", "must be a UTC instant such as \"2023-03-26T00:00:00Z\"");
   }
 }

@@ -67,7 +67,7 @@ std::int64_t cycles_behind(const EdgeConfig& config, JsonValue status) {
   std::int64_t published_utc_s = 0;
   const bool is_known = ring.open_to_read(config.log.ring.c_str(), ignored) &&
                         ring.read(ring.newest_number(), newest) &&
-                        parse_utc_text(text_of(field<&R::utc_s>(status)), published_utc_s);
+                        parse_utc(text_of(field<&R::utc_s>(status)), published_utc_s);
   if (!is_known || newest.utc_s < published_utc_s) return 0;
   return (newest.utc_s - published_utc_s) / kSecondsPerStep;
 }

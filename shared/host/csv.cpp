@@ -100,7 +100,7 @@ double CsvTable::number(std::size_t row, std::size_t column) const {
 
 std::int64_t CsvTable::utc_s(std::size_t row, std::size_t column) const {
   std::int64_t value = 0;
-  if (!parse_utc_text(text(row, column), value)) {
+  if (!parse_utc(text(row, column), value)) {
     fail("{}:{}: {} \"{}\" is not a UTC time", name_, rows_[row].line, header_[column],
          one_line(text(row, column), 40));
   }

@@ -1,11 +1,11 @@
 #include "shared/host/minute_file.h"
 
-#include <fmt/format.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <charconv>
-#include <chrono>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "shared/host/file.h"
@@ -47,7 +47,7 @@ Row parse_row(std::string_view line, std::string_view name, std::size_t line_num
   const std::size_t comma2 = comma1 == line.npos ? line.npos : line.find(',', comma1 + 1);
   if (comma2 == line.npos || line.find(',', comma2 + 1) != line.npos) bad("not three columns");
   Row row{};
-  if (!parse_utc(line.substr(0, comma1), row.utc_s)) bad("not a UTC minute");
+  if (!parse_utc(line.substr(0, comma1), row.utc_s, kAlsoBlank)) bad("not a UTC minute");
   if (row.utc_s % 60 != 0) bad("not a whole minute");
   if (!parse_price(line.substr(comma1 + 1, comma2 - comma1 - 1), row.indicative)) {
     bad("indicative price is not a number");
@@ -65,11 +65,12 @@ void append_row(MinuteSeries& series, const Row& row, std::string_view name,
     fail(
         "{}:{}: row out of order: {} does not come after {}; sort the file by time and drop "
         "duplicates",
-        name, line_number, format_utc(row.utc_s), format_utc(series.utc_s(series.size() - 1)));
+        name, line_number, utc_text(row.utc_s).view(),
+        utc_text(series.utc_s(series.size() - 1)).view());
   }
   if (index >= kMinutesMax) {
     fail("{}:{}: {} is more than 40 years after the first row; mend the date", name, line_number,
-         format_utc(row.utc_s));
+         utc_text(row.utc_s).view());
   }
   series.indicative.resize(static_cast<std::size_t>(index), kMissing);
   series.settled.resize(static_cast<std::size_t>(index), kMissing);
@@ -78,16 +79,6 @@ void append_row(MinuteSeries& series, const Row& row, std::string_view name,
 }
 
 }  // namespace
-
-bool parse_utc(std::string_view text, std::int64_t& utc_s) {
-  constexpr std::size_t kSeparator = 10;
-  if (text.size() <= kSeparator || text[kSeparator] != ' ') return parse_utc_text(text, utc_s);
-  std::string with_t(text);
-  with_t[kSeparator] = 'T';
-  return parse_utc_text(with_t, utc_s);
-}
-
-std::string format_utc(std::int64_t utc_s) { return std::string(utc_text(utc_s).view()); }
 
 bool has_no_price(std::span<const double> prices) {
   return std::ranges::all_of(prices, [](double price) { return std::isnan(price); });
@@ -127,21 +118,21 @@ MinuteSeries read_minute_file(const std::filesystem::path& path) {
 }
 
 std::string format_minute_csv(const MinuteSeries& series, std::string_view provenance) {
-  fmt::memory_buffer out;
-  while (!provenance.empty()) fmt::format_to(fmt::appender(out), "# {}\n", take_line(provenance));
-  fmt::format_to(fmt::appender(out), "{}\n", kHeader);
-  const auto append_price = [&out](double price) {
-    if (!std::isnan(price)) fmt::format_to(fmt::appender(out), "{}", price);
+  std::string text;
+  while (!provenance.empty()) text.append("# ").append(take_line(provenance)).append("\n");
+  text.append(kHeader).append("\n");
+  const auto append_price = [&text](double price) {
+    if (!std::isnan(price)) fmt::format_to(std::back_inserter(text), "{}", price);
   };
   for (std::size_t m = 0; m < series.size(); ++m) {
-    if (std::isnan(series.indicative[m]) && std::isnan(series.settled[m])) continue;
-    fmt::format_to(fmt::appender(out), "{},", format_utc(series.utc_s(m)));
+    if (series.is_empty(m)) continue;
+    text.append(utc_text(series.utc_s(m)).view()).append(",");
     append_price(series.indicative[m]);
-    out.push_back(',');
+    text += ',';
     append_price(series.settled[m]);
-    out.push_back('\n');
+    text += '\n';
   }
-  return fmt::to_string(out);
+  return text;
 }
 
 void write_minute_file(const std::filesystem::path& path, const MinuteSeries& series,

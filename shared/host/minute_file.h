@@ -5,6 +5,7 @@
 // with # are provenance comments.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <span>
@@ -23,6 +24,10 @@ struct MinuteSeries {
   [[nodiscard]] std::int64_t utc_s(std::size_t minute) const {
     return start_utc_s + 60 * static_cast<std::int64_t>(minute);
   }
+  /// True of a minute that has neither price: a file leaves it out.
+  [[nodiscard]] bool is_empty(std::size_t minute) const {
+    return std::isnan(indicative[minute]) && std::isnan(settled[minute]);
+  }
 };
 
 /// True when not one minute of a series' column has a price.
@@ -37,10 +42,5 @@ MinuteSeries read_minute_file(const std::filesystem::path& path);
 std::string format_minute_csv(const MinuteSeries& series, std::string_view provenance);
 void write_minute_file(const std::filesystem::path& path, const MinuteSeries& series,
                        std::string_view provenance);
-
-/// "2023-01-01T00:00:00Z".
-std::string format_utc(std::int64_t utc_s);
-/// As parse_utc_text (shared/utc_text.h), and with a space in place of the T, as portals write it.
-bool parse_utc(std::string_view text, std::int64_t& utc_s);
 
 }  // namespace bess

@@ -33,7 +33,7 @@ std::string line_after_notes(ChildProcess& child) {
 
 std::int64_t utc_of(const std::string& text) {
   std::int64_t utc_s = 0;
-  EXPECT_TRUE(parse_utc_text(text, utc_s)) << text;
+  EXPECT_TRUE(parse_utc(text, utc_s)) << text;
   return utc_s;
 }
 

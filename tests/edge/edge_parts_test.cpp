@@ -28,15 +28,17 @@ TEST(Ticks, LieOnTheTwoMinuteGridStrictlyAhead) {
 
 TEST(UtcText, RoundTripAndOffsets) {
   std::int64_t utc_s = 0;
-  ASSERT_TRUE(parse_utc_text("2023-03-26T01:02:03Z", utc_s));
+  ASSERT_TRUE(parse_utc("2023-03-26T01:02:03Z", utc_s));
   EXPECT_EQ(utc_text(utc_s), "2023-03-26T01:02:03Z");
   std::int64_t same = 0;
   for (const char* text :
        {"2023-03-26T03:02:03+02:00", "2023-03-25T23:32:03-01:30", "2023-03-26T01:02:03.456Z"}) {
-    ASSERT_TRUE(parse_utc_text(text, same)) << text;
+    ASSERT_TRUE(parse_utc(text, same)) << text;
     EXPECT_EQ(same, utc_s) << text;
   }
-  ASSERT_TRUE(parse_utc_text("2024-02-29T00:00Z", same));
+  ASSERT_TRUE(parse_utc("2023-03-26 01:02:03.000Z", same, kAlsoBlank));
+  EXPECT_EQ(same, utc_s);
+  ASSERT_TRUE(parse_utc("2024-02-29T00:00Z", same));
 }
 
 TEST(UtcText, RefusesWhatIsAmbiguousOrImpossible) {
@@ -45,8 +47,9 @@ TEST(UtcText, RefusesWhatIsAmbiguousOrImpossible) {
        {"", "2023", "2023-03-26", "2023-03-26T01:02:03", "2023-03-26 01:02:03Z",
         "2023-13-01T00:00:00Z", "2023-02-29T00:00:00Z", "2023-03-26T24:00:00Z",
         "2023-03-26T01:60:00Z", "2023-03-26T01:02:03+0200", "2023-03-26T01:02:03+99:00",
-        "2023-03-26T01:02:03Zx", "2023-03-26T01:02:03.Z", "-023-03-26T01:02:03Z"}) {
-    EXPECT_FALSE(parse_utc_text(text, utc_s)) << text;
+        "2023-03-26T01:02:03Zx", "2023-03-26T01:02:03.Z", "2023-03-26T01:02.5Z",
+        "-023-03-26T01:02:03Z"}) {
+    EXPECT_FALSE(parse_utc(text, utc_s)) << text;
   }
 }
 

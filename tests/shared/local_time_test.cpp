@@ -18,7 +18,7 @@ class LocalTime : public testing::Test {
 
 std::int64_t utc(std::string_view text) {
   std::int64_t utc_s = 0;
-  EXPECT_TRUE(parse_utc_text(text, utc_s)) << text;
+  EXPECT_TRUE(parse_utc(text, utc_s)) << text;
   return utc_s;
 }
 
@@ -92,7 +92,7 @@ TEST_F(LocalTime, InstantsReadAndWriteAsText) {
   for (const char* text :
        {"", "2023", "2023-02-29T00:00:00Z", "2023-01-01T24:00:00Z", "2023-01-01T00:00:00",
         "2023-01-01T00:00:00ZZ", "2023-01-01 00:00:00Z", "2023-13-01T00:00:00Z"}) {
-    EXPECT_FALSE(parse_utc_text(text, ignored)) << text;
+    EXPECT_FALSE(parse_utc(text, ignored)) << text;
   }
 }
 

@@ -22,8 +22,7 @@ namespace {
 
 std::int64_t utc_of(const CsvRow& row, const char* column) {
   std::int64_t utc_s = 0;
-  if (!parse_utc_text(row.at(column), utc_s))
-    throw std::runtime_error("not a time: " + row.at(column));
+  if (!parse_utc(row.at(column), utc_s)) throw std::runtime_error("not a time: " + row.at(column));
   return utc_s;
 }
 

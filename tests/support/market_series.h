@@ -5,6 +5,7 @@
 
 #include "shared/host/minute_file.h"
 #include "shared/units_and_limits.h"
+#include "shared/utc_text.h"
 #include "workstation/base/random.h"
 
 namespace bess {

@@ -6,6 +6,7 @@
 
 #include "shared/host/minute_file.h"
 #include "shared/local_time.h"
+#include "shared/utc_text.h"
 #include "workstation/base/random.h"
 #include "workstation/env/evaluate.h"
 

@@ -21,7 +21,7 @@ constexpr const char* kFile =
 
 std::int64_t utc_ns(std::string_view text) {
   std::int64_t utc_s = 0;
-  EXPECT_TRUE(parse_utc_text(text, utc_s)) << text;
+  EXPECT_TRUE(parse_utc(text, utc_s)) << text;
   return utc_s * kNanosecondsPerSecond;
 }
 
@@ -44,6 +44,15 @@ TEST(MarketView, SettledQuarterHourIsVisibleAfterItsEnd) {
   const std::string json = view.records(query, utc_ns("2023-03-26T00:15:00Z"));
   EXPECT_THAT(json, HasSubstr("\"datetime\":\"2023-03-26T00:00:00+00:00\""));
   EXPECT_THAT(json, HasSubstr("\"imbalanceprice\":20.000"));
+}
+
+TEST(MarketView, AMinuteWithoutAnyPriceHasNoRow) {
+  const MarketView view(parse_minute_csv(std::string(kFile) + "2023-03-26T00:17:00Z,5,30\n", "f"),
+                        0);
+  const std::string json = view.records({.limit = 20}, utc_ns("2023-03-26T00:18:00Z"));
+  EXPECT_THAT(json, HasSubstr("\"total_count\":4"));
+  EXPECT_THAT(json, HasSubstr("T00:17:00"));
+  EXPECT_THAT(json, ::testing::Not(HasSubstr("T00:16:00")));
 }
 
 TEST(MarketView, TheEdgeUnderstandsWhatItServes) {

@@ -39,7 +39,7 @@ std::vector<MarketView::Row> MarketView::visible_minutes(std::int64_t now_utc_ns
   std::vector<Row> rows;
   rows.reserve(end - begin);
   for (std::size_t m = begin; m < end; ++m) {
-    if (!has_row(m)) continue;
+    if (prices_.is_empty(m)) continue;
     rows.push_back({prices_.utc_s(m), prices_.indicative[m]});
   }
   return rows;
@@ -50,7 +50,7 @@ std::vector<MarketView::Row> MarketView::visible_quarter_hours(std::int64_t now_
   const auto [begin, end] = window(now_utc_ns);
   for (std::size_t m = begin; m < end; ++m) {
     const std::int64_t utc_s = prices_.utc_s(m);
-    if (utc_s % kQuarterHourS != kQuarterHourS - 60 || !has_row(m)) continue;
+    if (utc_s % kQuarterHourS != kQuarterHourS - 60 || prices_.is_empty(m)) continue;
     rows.push_back({utc_s - (kQuarterHourS - 60), prices_.settled[m]});
   }
   return rows;

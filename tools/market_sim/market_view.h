@@ -3,7 +3,6 @@
 // settled price of a quarter-hour is readable as long after its end.
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -41,9 +40,6 @@ class MarketView {
   };
   [[nodiscard]] std::vector<Row> visible_minutes(std::int64_t now_utc_ns) const;
   [[nodiscard]] std::vector<Row> visible_quarter_hours(std::int64_t now_utc_ns) const;
-  [[nodiscard]] bool has_row(std::size_t minute) const {
-    return !std::isnan(prices_.indicative[minute]) || !std::isnan(prices_.settled[minute]);
-  }
   [[nodiscard]] std::pair<std::size_t, std::size_t> window(std::int64_t now_utc_ns) const;
 
   MinuteSeries prices_;

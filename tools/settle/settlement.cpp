@@ -5,6 +5,7 @@
 
 #include "shared/host/user_error.h"
 #include "shared/units_and_limits.h"
+#include "shared/utc_text.h"
 
 namespace bess {
 namespace {
@@ -17,7 +18,8 @@ double settled_at(const MinuteSeries& prices, std::int64_t minute_utc_s) {
   const bool is_inside =
       minute_utc_s >= prices.start_utc_s && minute < static_cast<std::int64_t>(prices.size());
   const double price = is_inside ? prices.settled[static_cast<std::size_t>(minute)] : std::nan("");
-  if (std::isnan(price)) fail("the prices hold no settled price for {}", format_utc(minute_utc_s));
+  if (std::isnan(price))
+    fail("the prices hold no settled price for {}", utc_text(minute_utc_s).view());
   return price;
 }
 

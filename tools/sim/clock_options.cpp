@@ -21,7 +21,7 @@ ScaledClock ClockOptions::clock() const {
     return {};
   }
   ScaledClock clock{.scale = time_scale};
-  if (!parse_utc_text(utc_start, clock.anchor_utc_s)) {
+  if (!parse_utc(utc_start, clock.anchor_utc_s)) {
     fail("--utc-start {}: not a UTC instant such as 2023-03-26T00:00:00Z", utc_start);
   }
   clock.anchor_monotonic_ns =

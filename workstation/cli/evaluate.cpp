@@ -10,6 +10,7 @@
 #include "shared/host/file.h"
 #include "shared/host/json.h"
 #include "shared/host/user_error.h"
+#include "shared/utc_text.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
 #include "workstation/cli/policy_factory.h"
@@ -54,9 +55,9 @@ struct Records {
                           d.switches, d.soc_end_frac, tail);
     }
     for (const StepRecord& r : records) {
-      steps += fmt::format("{},{:.10g},{:.10g},{:.6f},{},{:.3f},{:.8g},{}\n", format_utc(r.utc_s),
-                           r.observed_eur_per_mwh, r.paid_eur_per_mwh, r.soc_frac,
-                           action_name(r.action), r.power_w, r.profit_eur, tail);
+      steps += fmt::format("{},{:.10g},{:.10g},{:.6f},{},{:.3f},{:.8g},{}\n",
+                           utc_text(r.utc_s).view(), r.observed_eur_per_mwh, r.paid_eur_per_mwh,
+                           r.soc_frac, action_name(r.action), r.power_w, r.profit_eur, tail);
     }
   }
 };

@@ -9,7 +9,7 @@ namespace {
 
 std::int64_t utc(std::string_view text) {
   std::int64_t utc_s = 0;
-  EXPECT_TRUE(parse_utc_text(text, utc_s)) << text;
+  EXPECT_TRUE(parse_utc(text, utc_s)) << text;
   return utc_s;
 }
 

@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include "shared/host/user_error.h"
 #include "tests/support/market_test_support.h"
 
 namespace bess {
@@ -31,47 +30,44 @@ TEST(MinuteFile, AByteOrderMarkIsPassedOver) {
       HasSubstr("UTF-16"));
 }
 
-TEST(MinuteFile, NamesTheLineOfEveryMistake) {
+TEST(MinuteFile, EmptyPricesCommentsAndGapsAreMissing) {
+  const MinuteSeries series = parse_minute_csv(
+      "# provenance\n"
+      "minute_utc,indicative_eur_mwh,settled_eur_mwh\r\n"
+      "\n"
+      "2023-03-26T00:13:00Z,10.5,20\r\n"
+      "2023-03-26T00:14:00Z,,20\n"
+      "2023-03-26 01:16:00+01:00,-3.25,\n",
+      "f");
+  ASSERT_EQ(series.size(), 4U);
+  EXPECT_EQ(series.indicative[0], 10.5);
+  EXPECT_TRUE(std::isnan(series.indicative[1]));
+  EXPECT_FALSE(series.is_empty(1));
+  EXPECT_TRUE(series.is_empty(2));
+  EXPECT_EQ(series.indicative[3], -3.25);
+  EXPECT_TRUE(std::isnan(series.settled[3]));
+}
+
+TEST(MinuteFile, EveryMistakeNamesItsLine) {
   const std::string header = "minute_utc,indicative_eur_mwh,settled_eur_mwh\n";
   const std::pair<std::string, const char*> mistakes[] = {
       {"", "f: holds no minutes"},
       {header, "f: holds no minutes"},
+      {header + "2023-01-01T00:00:00Z,,\n", "f: holds minutes but no price"},
       {"time,price\n", "f:1: not a minute file: the header must be"},
-      {header + "yesterday,1,2\n", "f:2: "},
-      {header + "2023-01-01T00:00:30Z,1,2\n", "f:2: "},
-      {header + "2023-01-01T00:00:00Z,abc,2\n", "f:2: "},
-      {header + "2023-01-01T00:00:00Z,1,inf\n", "f:2: "},
-      {header + "2023-01-01T00:00:00Z,1,2,3\n", "f:2: "},
-      {header + "2023-01-01T00:01:00Z,1,2\n2023-01-01T00:00:00Z,1,2\n", "f:3: "},
+      {header + "yesterday,1,2\n", "f:2: not a UTC minute: \"yesterday,1,2\""},
+      {header + "2023-01-01T00:00:30Z,1,2\n", "f:2: not a whole minute"},
+      {header + "2023-01-01T00:00:00Z,abc,2\n", "f:2: indicative price is not a number"},
+      {header + "2023-01-01T00:00:00Z,1,inf\n", "f:2: settled price is not a number"},
+      {header + "2023-01-01T00:00:00Z,1,2,3\n", "f:2: not three columns"},
+      {header + "#\n2023-01-01T00:01:00Z,1,2\n2023-01-01T00:00:00Z,1,2\n", "f:4: row out of order"},
+      {header + "2023-01-01T00:00:00Z,1,2\n2073-01-01T00:00:00Z,1,2\n",
+       "f:3: 2073-01-01T00:00:00Z is more than 40 years"},
   };
   for (const auto& [text, message] : mistakes) {
-    try {
-      static_cast<void>(parse_minute_csv(text, "f"));
-      ADD_FAILURE() << text;
-    } catch (const UserError& error) {
-      EXPECT_THAT(error.what(), testing::StartsWith(message)) << text;
-    }
+    EXPECT_THAT(user_error_of([&] { static_cast<void>(parse_minute_csv(text, "f")); }),
+                testing::StartsWith(message));
   }
-}
-
-TEST(ParseUtc, TakesASpaceForTheT) {
-  std::int64_t with_t = 0;
-  std::int64_t with_space = 1;
-  EXPECT_TRUE(parse_utc("2023-01-01T00:01:00+01:00", with_t));
-  EXPECT_TRUE(parse_utc("2023-01-01 00:01:00+01:00", with_space));
-  EXPECT_EQ(with_t, with_space);
-  EXPECT_FALSE(parse_utc("2023-01-01 ", with_t));
-}
-
-TEST(ParseUtc, PassesOverFractionsOfSeconds) {
-  std::int64_t utc_s = 0;
-  ASSERT_TRUE(parse_utc("2025-06-15T15:07:00.123456+00:00", utc_s));
-  EXPECT_EQ(format_utc(utc_s), "2025-06-15T15:07:00Z");
-  ASSERT_TRUE(parse_utc("2025-06-15T15:07:09.000Z", utc_s));
-  EXPECT_EQ(format_utc(utc_s), "2025-06-15T15:07:09Z");
-  EXPECT_FALSE(parse_utc("2025-06-15T15:07:09.000", utc_s));
-  EXPECT_FALSE(parse_utc("2025-06-15T15:07:09.Z", utc_s));
-  EXPECT_FALSE(parse_utc("2025-06-15T15:07.5Z", utc_s));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "shared/host/file.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
+#include "shared/utc_text.h"
 #include "workstation/base/progress.h"
 #include "workstation/market/feed/http_client.h"
 #include "workstation/market/feed/market_files.h"
@@ -21,7 +22,7 @@ using Kind = HttpOutcome::Kind;
 std::string window_url(const std::string& base_url, const FetchWindow& window) {
   // Explicit offsets: the API reads naive times as UTC or local, depending on other parameters.
   const auto instant = [](std::int64_t utc_s) {
-    std::string text = format_utc(utc_s);
+    std::string text(utc_text(utc_s).view());
     return text.replace(text.size() - 1, 1, "+00:00");
   };
   const std::string where = fmt::format("datetime >= \"{}\" AND datetime < \"{}\"",
@@ -74,7 +75,7 @@ void drop_rows(MarketRows& rows, Unwanted unwanted) {
 WindowRows rows_in_window(std::string_view text, const std::string& name, const FetchWindow& window,
                           std::int64_t now_utc_s) {
   WindowRows result;
-  if (text.find_first_not_of(" \t\r\n\xEF\xBB\xBF") == std::string_view::npos) return result;
+  if (without_byte_order_mark(text).find_first_not_of(" \t\r\n") == text.npos) return result;
   result.rows = parse_market_text(text, name);
   result.received = count_of(result.rows);
   drop_rows(result.rows, [&window](std::int64_t from_utc_s, std::int64_t) {
@@ -242,7 +243,7 @@ std::string describe_unpublished(const FetchWindow& window, const MarketRows& ro
   if (end_utc_s >= window.until_utc_s) return {};
   return fmt::format(
       "{}: not published yet from {} to {}: it is refreshed once a day; run again tomorrow\n",
-      window.dataset, format_utc(end_utc_s), format_utc(window.until_utc_s));
+      window.dataset, utc_text(end_utc_s).view(), utc_text(window.until_utc_s).view());
 }
 
 std::string describe_windows(const std::vector<FetchWindow>& windows,
@@ -253,7 +254,8 @@ std::string describe_windows(const std::vector<FetchWindow>& windows,
     const std::string unpublished = describe_unpublished(windows[i], rows[i].rows);
     if (unpublished.empty() && rows[i].received == 0) {
       text += fmt::format("{}: no rows from {} to {}\n", windows[i].dataset,
-                          format_utc(windows[i].from_utc_s), format_utc(windows[i].until_utc_s));
+                          utc_text(windows[i].from_utc_s).view(),
+                          utc_text(windows[i].until_utc_s).view());
     }
     text += unpublished;
     unended += rows[i].unended;
@@ -279,12 +281,12 @@ std::string describe_coverage(const FetchRequest& request, const std::vector<Fet
   }
   const std::int64_t end_utc_s = series.utc_s(series.size());
   if (from_utc_s < series.start_utc_s) {
-    text += fmt::format("nothing published from {} to {}\n", format_utc(from_utc_s),
-                        format_utc(series.start_utc_s));
+    text += fmt::format("nothing published from {} to {}\n", utc_text(from_utc_s).view(),
+                        utc_text(series.start_utc_s).view());
   }
   if (end_utc_s + kSecondsPerQuarterHour < until_utc_s) {
-    text += fmt::format("nothing published from {} to {}\n", format_utc(end_utc_s),
-                        format_utc(until_utc_s));
+    text += fmt::format("nothing published from {} to {}\n", utc_text(end_utc_s).view(),
+                        utc_text(until_utc_s).view());
   }
   return text;
 }
@@ -295,8 +297,8 @@ std::string provenance_of(const FetchRequest& request, const std::vector<FetchWi
     if (datasets.find(window.dataset) == std::string::npos) datasets += " " + window.dataset;
   }
   return fmt::format("{}\nDatasets{} fetched {} from {} by bess-train {}\n",
-                     attribution_of({MarketSource::kElia}), datasets, format_utc(request.now_utc_s),
-                     request.base_url, BESS_VERSION);
+                     attribution_of({MarketSource::kElia}), datasets,
+                     utc_text(request.now_utc_s).view(), request.base_url, BESS_VERSION);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "shared/host/minute_file.h"
 #include "shared/host/plain_text.h"
 #include "shared/host/user_error.h"
+#include "shared/utc_text.h"
 
 namespace bess {
 namespace {

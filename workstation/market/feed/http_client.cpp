@@ -12,6 +12,7 @@
 #include "shared/host/minute_file.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
+#include "shared/utc_text.h"
 
 namespace bess {
 namespace {
@@ -148,7 +149,8 @@ std::optional<double> wait_seconds(const std::string& header_value, double now_u
     return std::max(0.0, number < kSmallestTimestamp ? number : number - now_utc_s);
   }
   std::int64_t utc_s = 0;
-  if (!parse_utc(header_value, utc_s)) utc_s = curl_getdate(header_value.c_str(), nullptr);
+  if (!parse_utc(header_value, utc_s, kAlsoBlank))
+    utc_s = curl_getdate(header_value.c_str(), nullptr);
   if (utc_s <= 0) return std::nullopt;
   return std::max(0.0, static_cast<double>(utc_s) - now_utc_s);
 }

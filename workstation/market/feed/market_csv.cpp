@@ -1,7 +1,7 @@
-// CSV downloads: `;` (portal and API) or `,` (tidy), optional byte order mark and quotes, any
-// column order.
+// CSV downloads: `;` (portal and API) or `,` (tidy), optional quotes, any column order.
 #include <string>
 
+#include "shared/host/csv.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "workstation/market/feed/market_rows.h"
@@ -9,35 +9,17 @@
 namespace bess {
 namespace {
 
-/// Next field of a line; quotes keep a separator inside. False when the line is used up.
-bool take_field(std::string_view& rest, bool& more, char separator, std::string_view& field) {
-  if (!more) return false;
-  const bool quoted = rest.starts_with('"');
-  const std::size_t closing = quoted ? rest.find('"', 1) : 0;
-  const std::size_t end = rest.find(separator, closing == std::string_view::npos ? 0 : closing);
-  field = rest.substr(0, end);
-  more = end != std::string_view::npos;
-  rest.remove_prefix(more ? end + 1 : rest.size());
-  if (field.size() >= 2 && field.front() == '"' && field.back() == '"') {
-    field = field.substr(1, field.size() - 2);
-  }
-  return true;
-}
-
 struct Columns {
   char separator;
   std::vector<std::optional<MarketField>> fields;
 };
 
 Columns parse_header(std::string_view line, std::string_view name) {
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  if (line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
   Columns columns{.separator = line.find(';') != std::string_view::npos ? ';' : ',', .fields = {}};
   bool has_time = false;
   bool has_price = false;
-  bool more = true;
-  std::string_view label;
-  while (take_field(line, more, columns.separator, label)) {
+  CsvFields labels(line, columns.separator);
+  for (std::string_view label; labels.take(label);) {
     const std::optional<MarketField> field = market_field_of(label);
     has_time |= field == MarketField::kTime;
     has_price |= field == MarketField::kPrice || field == MarketField::kPositivePrice ||
@@ -56,10 +38,9 @@ Columns parse_header(std::string_view line, std::string_view name) {
 void parse_row(std::string_view line, const Columns& columns, std::string_view place,
                MarketRows& rows) {
   MarketRowBuilder builder(place);
-  bool more = true;
+  CsvFields fields(line, columns.separator);
   std::size_t column = 0;
-  std::string_view text;
-  while (take_field(line, more, columns.separator, text)) {
+  for (std::string_view text; fields.take(text);) {
     if (column < columns.fields.size() && columns.fields[column]) {
       builder.set_text(*columns.fields[column], text);
     }

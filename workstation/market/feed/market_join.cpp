@@ -8,6 +8,7 @@
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "shared/units_and_limits.h"
+#include "shared/utc_text.h"
 #include "workstation/market/series/gaps.h"
 
 namespace bess {
@@ -85,7 +86,7 @@ Span span_of(const std::vector<MinuteRow>& minutes, const std::vector<QuarterHou
 void check_span(std::int64_t from_utc_s, std::int64_t until_utc_s, std::string_view name) {
   if (until_utc_s - from_utc_s <= kSpanSecondsMax) return;
   fail("{}: the rows span {} to {}, more than 40 years; mend the stray date", name,
-       format_utc(from_utc_s), format_utc(until_utc_s));
+       utc_text(from_utc_s).view(), utc_text(until_utc_s).view());
 }
 
 std::vector<QuarterHour> sorted_quarter_hours(std::vector<QuarterHour> rows, JoinReport& report) {
@@ -138,8 +139,8 @@ std::string describe_join(const JoinedMarket& market) {
   const JoinReport& report = market.report;
   std::string text = fmt::format("{} and {} from {} to {}\n", counted(report.minutes, "minute"),
                                  counted(report.quarter_hours, "quarter-hour"),
-                                 format_utc(market.series.start_utc_s),
-                                 format_utc(market.series.utc_s(market.series.size())));
+                                 utc_text(market.series.start_utc_s).view(),
+                                 utc_text(market.series.utc_s(market.series.size())).view());
   if (report.duplicates > 0) {
     text += fmt::format("{} dropped, {} of them with another price (the last one read was kept)\n",
                         counted(report.duplicates, "duplicate row"), report.duplicates_changed);

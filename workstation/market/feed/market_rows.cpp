@@ -9,6 +9,7 @@
 #include "shared/host/minute_file.h"
 #include "shared/host/plain_text.h"
 #include "shared/host/user_error.h"
+#include "shared/utc_text.h"
 #include "workstation/market/feed/entsoe_xml.h"
 
 namespace bess {
@@ -72,7 +73,7 @@ void MarketRowBuilder::set_text(MarketField field, std::string_view text) {
     has_quarter_hour_ = true;
   } else if (field == kTime) {
     std::int64_t utc_s = 0;
-    if (!parse_utc(text, utc_s)) {
+    if (!parse_utc(text, utc_s, kAlsoBlank)) {
       fail(
           "{}: \"{}\" is not a time with its UTC offset, e.g. 2023-01-31T00:15:00+01:00; export "
           "the file again with time zone UTC",
@@ -125,7 +126,7 @@ void MarketRowBuilder::finish(MarketRows& rows) const {
   if (!utc_s_) fail("{}: the row has no time; mend it or delete it", place_);
   const bool minute = is_minute();
   if (*utc_s_ % (minute ? 60 : kSecondsPerQuarterHour) != 0) {
-    fail("{}: {} does not start a {}; mend the time", place_, format_utc(*utc_s_),
+    fail("{}: {} does not start a {}; mend the time", place_, utc_text(*utc_s_).view(),
          minute ? "minute" : "quarter-hour");
   }
   if (minute) {

@@ -77,7 +77,7 @@ class MarketRowBuilder {
   bool has_quarter_hour_ = false;
 };
 
-/// Reads CSV (`,` or `;`, byte order mark, any column order). `name` is used in messages.
+/// Reads CSV (`,` or `;`, any column order). `name` is used in messages.
 MarketRows parse_market_csv(std::string_view text, std::string_view name);
 /// Reads JSON: a bare array of records (exports), {"results": [...]} or version 1's {"records":
 /// [...]}.

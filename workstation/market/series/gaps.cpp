@@ -6,6 +6,7 @@
 
 #include "shared/host/minute_file.h"
 #include "shared/host/text.h"
+#include "shared/utc_text.h"
 #include "workstation/market/series/quarter_hour.h"
 
 namespace bess {
@@ -42,8 +43,8 @@ std::string describe_gaps(std::string_view what, std::vector<Gap> gaps) {
   std::stable_sort(gaps.begin(), gaps.end(),
                    [](const Gap& a, const Gap& b) { return minutes_of(a) > minutes_of(b); });
   for (std::size_t i = 0; i < std::min(kGapsListed, gaps.size()); ++i) {
-    text += fmt::format("  {} to {}: {}\n", format_utc(gaps[i].from_utc_s),
-                        format_utc(gaps[i].until_utc_s),
+    text += fmt::format("  {} to {}: {}\n", utc_text(gaps[i].from_utc_s).view(),
+                        utc_text(gaps[i].until_utc_s).view(),
                         counted(static_cast<std::size_t>(minutes_of(gaps[i])), "minute"));
   }
   if (gaps.size() > kGapsListed) {

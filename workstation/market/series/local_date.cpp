@@ -5,6 +5,7 @@
 #include "shared/host/minute_file.h"
 #include "shared/host/user_error.h"
 #include "shared/local_time.h"
+#include "shared/utc_text.h"
 
 namespace bess {
 namespace {

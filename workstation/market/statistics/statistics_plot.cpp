@@ -6,6 +6,7 @@
 
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
+#include "shared/utc_text.h"
 #include "workstation/base/gnuplot.h"
 
 namespace bess {
@@ -64,8 +65,8 @@ std::string gnuplot_script(const fs::path& output, const MarketStatistics& stati
       "set xlabel 'settled price, EUR/MWh (-600 to 1000 shown)'\n"
       "set ylabel '% of quarter-hours'\nset title 'Imbalance prices {} to {}'\n"
       "plot $prices using 1:2 with boxes notitle\n",
-      convergence.empty() ? 1 : 2, format_utc(statistics.from_utc_s),
-      format_utc(statistics.until_utc_s));
+      convergence.empty() ? 1 : 2, utc_text(statistics.from_utc_s).view(),
+      utc_text(statistics.until_utc_s).view());
   if (!convergence.empty()) {
     script +=
         "set title 'Indicative against settled price'\nset xlabel 'minute of the quarter-hour'\n"

@@ -6,6 +6,7 @@
 
 #include "shared/host/json.h"
 #include "shared/host/text.h"
+#include "shared/utc_text.h"
 
 namespace bess {
 namespace {
@@ -82,7 +83,7 @@ Json gaps_json(const std::vector<Gap>& gaps) {
   Json list = Json::list();
   for (const Gap& gap : gaps) {
     list.add(Json::object(
-        {{"from", format_utc(gap.from_utc_s)}, {"until", format_utc(gap.until_utc_s)}}));
+        {{"from", utc_text(gap.from_utc_s).view()}, {"until", utc_text(gap.until_utc_s).view()}}));
   }
   return list;
 }
@@ -98,8 +99,8 @@ Json clock_changes_json(const std::vector<ClockChange>& changes) {
 }  // namespace
 
 std::string format_statistics_text(const MarketStatistics& statistics) {
-  std::string text = fmt::format("{} to {}\n", format_utc(statistics.from_utc_s),
-                                 format_utc(statistics.until_utc_s));
+  std::string text = fmt::format("{} to {}\n", utc_text(statistics.from_utc_s).view(),
+                                 utc_text(statistics.until_utc_s).view());
   text += format_price_text(statistics.price);
   if (statistics.imbalance_sign_flip_rate) {
     text += fmt::format("system imbalance changes sides between {:.1f} % of quarter-hours\n",
@@ -116,8 +117,8 @@ std::string format_statistics_text(const MarketStatistics& statistics) {
 }
 
 std::string format_statistics_json(const MarketStatistics& statistics) {
-  Json json = Json::object(
-      {{"from", format_utc(statistics.from_utc_s)}, {"until", format_utc(statistics.until_utc_s)}});
+  Json json = Json::object({{"from", utc_text(statistics.from_utc_s).view()},
+                            {"until", utc_text(statistics.until_utc_s).view()}});
   add_price(json, statistics.price);
   json.set("imbalance_sign_flip_rate", statistics.imbalance_sign_flip_rate.value_or(NAN));
   if (statistics.convergence) json.set("convergence", convergence_json(*statistics.convergence));

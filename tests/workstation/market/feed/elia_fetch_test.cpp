@@ -6,6 +6,7 @@
 #include <atomic>
 
 #include "shared/host/file.h"
+#include "shared/utc_text.h"
 #include "tests/support/market_test_support.h"
 #include "tests/workstation/market/feed/fake_elia.h"
 #include "workstation/market/series/local_date.h"
@@ -54,7 +55,7 @@ TEST_F(EliaFetch, JoinsDatasetsAcrossTheChangeOfMay2024) {
   EXPECT_EQ(market.report.quarter_hours, 34u);
   EXPECT_EQ(market.report.duplicates, 0u);
   const MinuteSeries series = read_minute_file(wanted.out);
-  EXPECT_EQ(format_utc(series.start_utc_s), "2024-04-29T22:00:00Z");
+  EXPECT_EQ(utc_text(series.start_utc_s), "2024-04-29T22:00:00Z");
   EXPECT_EQ(series.indicative.front(), 30.5);
   EXPECT_EQ(series.settled.front(), 30);
   EXPECT_EQ(series.settled.back(), 2);

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "shared/host/minute_file.h"
+#include "shared/utc_text.h"
 #include "workstation/market/series/local_date.h"
 
 namespace bess {
@@ -81,8 +82,9 @@ class FakeElia {
     for (std::int64_t utc_s = until_utc_s; utc_s >= from_utc_s; utc_s -= step_s) {
       const int day = all ? static_cast<int>(utc_s / 86'400 % 97) : local_date_of(utc_s).day;
       if (!all && local_midnight_utc_s(local_date_of(utc_s)) != utc_s) continue;
-      text += format_utc(utc_s).substr(0, 19) + "+00:00;" + (minutes ? "PT1M" : "PT15M") +
-              ";DataIssue;" + std::to_string(day) + (minutes ? ".5" : "") + "\n";
+      text += std::string(utc_text(utc_s).view().substr(0, 19)) + "+00:00;" +
+              (minutes ? "PT1M" : "PT15M") + ";DataIssue;" + std::to_string(day) +
+              (minutes ? ".5" : "") + "\n";
     }
     return text;
   }

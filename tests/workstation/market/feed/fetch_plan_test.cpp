@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "shared/host/minute_file.h"
+#include "shared/utc_text.h"
 #include "tests/support/market_test_support.h"
 #include "workstation/market/feed/http_client.h"
 
@@ -14,9 +15,11 @@ constexpr std::int64_t kNow_s = 1'750'000'000;  // 15 June 2025, 17:06 local
 std::vector<std::string> described(const FetchSpan& span) {
   std::vector<std::string> lines;
   for (const FetchWindow& window : plan_fetch(span, kNow_s)) {
-    lines.push_back(window.dataset + " " + format_utc(window.from_utc_s).substr(0, 13) + " " +
-                    format_utc(window.until_utc_s).substr(0, 13) +
-                    (window.settles_later ? " later" : ""));
+    const auto hour = [](std::int64_t utc_s) {
+      return std::string(utc_text(utc_s).view().substr(0, 13));
+    };
+    lines.push_back(window.dataset + " " + hour(window.from_utc_s) + " " +
+                    hour(window.until_utc_s) + (window.settles_later ? " later" : ""));
   }
   return lines;
 }

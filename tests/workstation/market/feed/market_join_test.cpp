@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "shared/utc_text.h"
 #include "tests/support/market_test_support.h"
 #include "workstation/market/feed/market_files.h"
 
@@ -77,7 +78,7 @@ TEST(MarketJoin, RealDownloadsMatchTheTidyFile) {
   const MinuteSeries tidy = joined("elia_minute_2024-09-06.csv.gz");
   EXPECT_EQ(format_minute_csv(raw, ""), format_minute_csv(tidy, ""));
   EXPECT_EQ(raw.size(), 1137u);
-  EXPECT_EQ(format_utc(raw.start_utc_s), "2024-09-05T22:00:00Z");
+  EXPECT_EQ(utc_text(raw.start_utc_s), "2024-09-05T22:00:00Z");
 }
 
 }  // namespace

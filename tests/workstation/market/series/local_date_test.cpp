@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "shared/host/minute_file.h"
+#include "shared/utc_text.h"
 #include "tests/support/market_test_support.h"
 
 namespace bess {
@@ -17,10 +18,10 @@ TEST(LocalDate, ReadsOnlyRealDates) {
 }
 
 TEST(LocalDate, MidnightsFollowTheClock) {
-  EXPECT_EQ(format_utc(local_midnight_utc_s({2023, 1, 1})), "2022-12-31T23:00:00Z");
-  EXPECT_EQ(format_utc(local_midnight_utc_s({2023, 3, 26})), "2023-03-25T23:00:00Z");
-  EXPECT_EQ(format_utc(local_midnight_utc_s({2023, 3, 27})), "2023-03-26T22:00:00Z");
-  EXPECT_EQ(format_utc(local_midnight_utc_s({2023, 10, 30})), "2023-10-29T23:00:00Z");
+  EXPECT_EQ(utc_text(local_midnight_utc_s({2023, 1, 1})), "2022-12-31T23:00:00Z");
+  EXPECT_EQ(utc_text(local_midnight_utc_s({2023, 3, 26})), "2023-03-25T23:00:00Z");
+  EXPECT_EQ(utc_text(local_midnight_utc_s({2023, 3, 27})), "2023-03-26T22:00:00Z");
+  EXPECT_EQ(utc_text(local_midnight_utc_s({2023, 10, 30})), "2023-10-29T23:00:00Z");
 }
 
 TEST(LocalDate, DaysCrossMonthsAndYears) {
