@@ -111,7 +111,7 @@ TEST_F(KilledFetch, AtEachWindowKeepsThoseBefore) {
 }
 
 TEST_F(KilledFetch, AtRandomLeavesNoWrongOrPartialFile) {
-  constexpr int kKills = 30;
+  constexpr int kKills = 50;
   const fs::path whole = folder_ / "whole.csv.gz";
   const auto start = Clock::now();
   ASSERT_EQ(ChildProcess(command(whole)).wait(), 0);
