@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <iterator>
 #include <limits>
 
 #include "shared/host/file.h"
@@ -122,7 +121,7 @@ std::string format_minute_csv(const MinuteSeries& series, std::string_view prove
   while (!provenance.empty()) text.append("# ").append(take_line(provenance)).append("\n");
   text.append(kHeader).append("\n");
   const auto append_price = [&text](double price) {
-    if (!std::isnan(price)) fmt::format_to(std::back_inserter(text), "{}", price);
+    if (!std::isnan(price)) text.append(fmt::format("{}", price));
   };
   for (std::size_t m = 0; m < series.size(); ++m) {
     if (series.is_empty(m)) continue;
