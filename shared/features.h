@@ -15,8 +15,8 @@ namespace bess {
 
 /// One point of the lattice. Invariant: every field inside the range given above.
 struct LatticeState {
-  std::int16_t t_qh;
-  std::int16_t qh;
+  std::int16_t minute_of_quarter_hour;
+  std::int16_t quarter_hour;
   std::int16_t month;
   std::int16_t soc_index;
   std::int16_t price_eur_per_mwh;

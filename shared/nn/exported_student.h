@@ -61,8 +61,8 @@ static_assert(kExportedSelfCheckCount > 0, "student_weights.h carries no self-ch
 constexpr StudentSelfCheck exported_self_check(int index) {
   const auto& s = bess_student_self_check_state[index];
   const auto& z = bess_student_self_check_logits[index];
-  return {.state = {.t_qh = s[0],
-                    .qh = s[1],
+  return {.state = {.minute_of_quarter_hour = s[0],
+                    .quarter_hour = s[1],
                     .month = s[2],
                     .soc_index = s[3],
                     .price_eur_per_mwh = s[4]},

@@ -25,8 +25,8 @@ inline constexpr int kStudentHidden2 = 32;
 
 // Inputs are Q14: 0 .. 16384 spans the whole range of each quantity.
 inline constexpr int kInputOne = 1 << 14;
-inline constexpr int kTqhScale = kInputOne / (kTqhCount - 1);
-inline constexpr int kQhScale = kInputOne / (kQhCount - 1);
+inline constexpr int kMinuteOfQuarterHourScale = kInputOne / (kMinuteOfQuarterHourCount - 1);
+inline constexpr int kQuarterHourScale = kInputOne / (kQuarterHourCount - 1);
 inline constexpr int kMonthScale = kInputOne / (kMonthCount - 1);
 inline constexpr int kSocScale = kInputOne / (kSocCount - 1);
 static_assert(kSocScale * (kSocCount - 1) <= INT16_MAX && kSocScale > 0);
@@ -42,8 +42,8 @@ struct StudentNet {
 
   /// Network input of a lattice state, order T_qh, qh, mo, SoC, price.
   constexpr void quantise(const LatticeState& s, std::int16_t (&x)[kStudentInputs]) const {
-    x[0] = static_cast<std::int16_t>(s.t_qh * kTqhScale);
-    x[1] = static_cast<std::int16_t>(s.qh * kQhScale);
+    x[0] = static_cast<std::int16_t>(s.minute_of_quarter_hour * kMinuteOfQuarterHourScale);
+    x[1] = static_cast<std::int16_t>(s.quarter_hour * kQuarterHourScale);
     x[2] = static_cast<std::int16_t>((s.month - 1) * kMonthScale);
     x[3] = static_cast<std::int16_t>(s.soc_index * kSocScale);
     x[4] = price_map[s.price_eur_per_mwh - kLatticePriceMinEurPerMwh];
@@ -86,8 +86,8 @@ constexpr void add_layer(Crc32& crc, const Affine<kInputs, kOutputs>& layer) {
 constexpr std::uint32_t student_architecture_hash() {
   Crc32 crc;
   for (const int fact :
-       {kStudentInputs, kStudentHidden1, kStudentHidden2, kActionCount, kTqhScale, kQhScale,
-        kMonthScale, kSocScale, kPriceCount, kLatticePriceMinEurPerMwh}) {
+       {kStudentInputs, kStudentHidden1, kStudentHidden2, kActionCount, kMinuteOfQuarterHourScale,
+        kQuarterHourScale, kMonthScale, kSocScale, kPriceCount, kLatticePriceMinEurPerMwh}) {
     crc.add_integer(fact);
   }
   return crc.value();

@@ -12,8 +12,8 @@ std::vector<LatticeState> random_states() {
   Random random(1);
   std::vector<LatticeState> states(1024);
   for (LatticeState& s : states) {
-    s = {static_cast<std::int16_t>(random.index(kTqhCount)),
-         static_cast<std::int16_t>(random.index(kQhCount)),
+    s = {static_cast<std::int16_t>(random.index(kMinuteOfQuarterHourCount)),
+         static_cast<std::int16_t>(random.index(kQuarterHourCount)),
          static_cast<std::int16_t>(1 + random.index(kMonthCount)),
          static_cast<std::int16_t>(random.index(kSocCount)),
          static_cast<std::int16_t>(kLatticePriceMinEurPerMwh +

@@ -25,7 +25,7 @@ std::int64_t utc(std::string_view text) {
 TEST_F(LocalTime, InstantsOfBothOffsetsAndAroundTheChanges) {
   const struct {
     const char* utc;
-    int year, month, day, quarter_hour, t_qh;
+    int year, month, day, quarter_hour, minute_of_quarter_hour;
   } cases[] = {
       {"2022-12-31T23:00:00Z", 2023, 1, 1, 0, 0},    {"2023-01-01T00:14:00Z", 2023, 1, 1, 4, 14},
       {"2023-06-30T21:59:00Z", 2023, 6, 30, 95, 14}, {"2023-06-30T22:00:00Z", 2023, 7, 1, 0, 0},
@@ -40,7 +40,7 @@ TEST_F(LocalTime, InstantsOfBothOffsetsAndAroundTheChanges) {
     EXPECT_EQ(local.month, c.month) << c.utc;
     EXPECT_EQ(local.day, c.day) << c.utc;
     EXPECT_EQ(local.quarter_hour, c.quarter_hour) << c.utc;
-    EXPECT_EQ(local.minute_of_quarter_hour, c.t_qh) << c.utc;
+    EXPECT_EQ(local.minute_of_quarter_hour, c.minute_of_quarter_hour) << c.utc;
   }
 }
 

@@ -44,9 +44,10 @@ std::string golden_text() {
       for (const std::int32_t z : logits) all_logits.add_integer(z);
       ++count[static_cast<int>(action)];
       if (i < kWrittenOut) {
-        written_out << "state " << s.t_qh << ' ' << s.qh << ' ' << s.month << ' ' << s.soc_index
-                    << ' ' << s.price_eur_per_mwh << " logits " << logits[0] << ' ' << logits[1]
-                    << ' ' << logits[2] << ' ' << action_name(action) << '\n';
+        written_out << "state " << s.minute_of_quarter_hour << ' ' << s.quarter_hour << ' '
+                    << s.month << ' ' << s.soc_index << ' ' << s.price_eur_per_mwh << " logits "
+                    << logits[0] << ' ' << logits[1] << ' ' << logits[2] << ' '
+                    << action_name(action) << '\n';
       }
     }
     out << "net " << seed << std::hex << " weights " << student_weights_hash(net) << " decisions "
@@ -72,8 +73,8 @@ TEST(StudentNet, HandMadeNetsDecideAsTheirFormulaSays) {
       {-199, Action::kIdle, Action::kIdle},        {0, Action::kIdle, Action::kDischarge},
       {1, Action::kCharge, Action::kDischarge},    {1'500, Action::kCharge, Action::kDischarge}};
   for (const auto& c : cases) {
-    const LatticeState state{.t_qh = 3,
-                             .qh = 40,
+    const LatticeState state{.minute_of_quarter_hour = 3,
+                             .quarter_hour = 40,
                              .month = 5,
                              .soc_index = 100,
                              .price_eur_per_mwh = static_cast<std::int16_t>(c.price)};

@@ -11,8 +11,8 @@ inline LatticeState random_lattice_state(Random& random) {
   const auto draw = [&random](int low, int count) {
     return static_cast<std::int16_t>(low + static_cast<int>(random.index(count)));
   };
-  return {.t_qh = draw(0, kTqhCount),
-          .qh = draw(0, kQhCount),
+  return {.minute_of_quarter_hour = draw(0, kMinuteOfQuarterHourCount),
+          .quarter_hour = draw(0, kQuarterHourCount),
           .month = draw(1, kMonthCount),
           .soc_index = draw(0, kSocCount),
           .price_eur_per_mwh = draw(kLatticePriceMinEurPerMwh, kPriceCount)};

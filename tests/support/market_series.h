@@ -31,10 +31,11 @@ inline MinuteSeries random_series(std::string_view start_utc, int minutes, std::
   Random random(seed);
   double settled = 100;
   for (std::size_t m = 0; m < series.size(); ++m) {
-    const std::size_t t_qh = m % kMinutesPerQuarterHour;
-    if (t_qh == 0) settled = 100 + 0.7 * (settled - 100) + 90 * random.normal();
+    const std::size_t minute_of_quarter_hour = m % kMinutesPerQuarterHour;
+    if (minute_of_quarter_hour == 0) settled = 100 + 0.7 * (settled - 100) + 90 * random.normal();
     series.settled[m] = settled;
-    const double left = 1 - static_cast<double>(t_qh + 1) / kMinutesPerQuarterHour;
+    const double left =
+        1 - static_cast<double>(minute_of_quarter_hour + 1) / kMinutesPerQuarterHour;
     series.indicative[m] = settled + 60 * left * random.normal();
   }
   return series;

@@ -25,8 +25,8 @@ inline StudentNet seeded_net(std::uint64_t seed) {
 }
 
 inline LatticeState random_state(Random& random) {
-  return {static_cast<std::int16_t>(random.index(kTqhCount)),
-          static_cast<std::int16_t>(random.index(kQhCount)),
+  return {static_cast<std::int16_t>(random.index(kMinuteOfQuarterHourCount)),
+          static_cast<std::int16_t>(random.index(kQuarterHourCount)),
           static_cast<std::int16_t>(1 + random.index(kMonthCount)),
           static_cast<std::int16_t>(random.index(kSocCount)),
           static_cast<std::int16_t>(kLatticePriceMinEurPerMwh +

@@ -144,7 +144,8 @@ void KeyList::list(RunConfig& c) {
   boolean("centre_rewards", c.train.centre_rewards,
           "subtract the mean reward (continuing horizon): values lie around zero");
   number("jitter_quarter_hours", c.train.jitter.quarter_hours, 0, 96,
-         "standard deviation of a random shift of qh: keeps days from being learnt by heart");
+         "standard deviation of a random shift of the quarter-hour: keeps days from being learnt "
+         "by heart");
   number("jitter_months", c.train.jitter.months, 0, 12, "the same for the month");
   integer("replay_capacity", c.train.replay_capacity, 1, 100'000'000, "transitions in the ring");
   number("epsilon_start", c.train.epsilon_start, 0, 1, "share of random actions at the start");

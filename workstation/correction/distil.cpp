@@ -145,14 +145,15 @@ Distiller::Lattice Distiller::draw_lattice(const std::vector<LatticeState>& coun
     const auto nearby = [this](int value, int low, int high) {
       return clamped(value + static_cast<int>(random_.index(3)) - 1, low, high);
     };
-    lattice.t_qh = nearby(centre.t_qh, 0, kTqhCount - 1);
-    lattice.quarter_hour = nearby(centre.qh, 0, kQhCount - 1);
+    lattice.minute_of_quarter_hour =
+        nearby(centre.minute_of_quarter_hour, 0, kMinuteOfQuarterHourCount - 1);
+    lattice.quarter_hour = nearby(centre.quarter_hour, 0, kQuarterHourCount - 1);
     lattice.month = nearby(centre.month, 1, kMonthCount);
     draw_axes(&centre, lattice.axes);
     return lattice;
   }
-  lattice.t_qh = static_cast<int>(random_.index(kTqhCount));
-  lattice.quarter_hour = static_cast<int>(random_.index(kQhCount));
+  lattice.minute_of_quarter_hour = static_cast<int>(random_.index(kMinuteOfQuarterHourCount));
+  lattice.quarter_hour = static_cast<int>(random_.index(kQuarterHourCount));
   lattice.month = 1 + static_cast<int>(random_.index(kMonthCount));
   draw_axes(nullptr, lattice.axes);
   return lattice;
@@ -163,8 +164,9 @@ void Distiller::lattice_inputs(const Lattice& lattice, Matrix& x) const {
   x.resize(kNetworkInputs, static_cast<Eigen::Index>(axes.soc.size() * axes.mapped_price.size()));
   Eigen::Index at = 0;
   for (const double price : axes.mapped_price) {
-    const NetworkContext context = network_context(lattice.t_qh, lattice.quarter_hour,
-                                                   lattice.month, static_cast<float>(price));
+    const NetworkContext context =
+        network_context(lattice.minute_of_quarter_hour, lattice.quarter_hour, lattice.month,
+                        static_cast<float>(price));
     for (const double soc : axes.soc) {
       float* column = x.col(at++).data();
       write_input(context, 0, column);

@@ -65,7 +65,7 @@ class Distiller {
  private:
   /// One context with its axes.
   struct Lattice {
-    int t_qh, quarter_hour, month;
+    int minute_of_quarter_hour, quarter_hour, month;
     LatticeAxes axes;
   };
   struct Losses {

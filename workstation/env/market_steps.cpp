@@ -121,7 +121,7 @@ MarketSteps make_market_steps(const MinuteSeries& series, const MarketOptions& o
          .observed_eur_per_mwh = series.indicative[static_cast<std::size_t>(row)],
          .paid_eur_per_mwh = paid,
          .observed_age_min = static_cast<std::int16_t>(static_cast<std::int64_t>(m) - row),
-         .t_qh = static_cast<std::int8_t>(local.minute_of_quarter_hour),
+         .minute_of_quarter_hour = static_cast<std::int8_t>(local.minute_of_quarter_hour),
          .quarter_hour = static_cast<std::int8_t>(local.quarter_hour),
          .month = static_cast<std::int8_t>(local.month),
          .half_hour_phase = static_cast<std::int8_t>(local.minute_of_day % 30 / kMinutesPerStep)});

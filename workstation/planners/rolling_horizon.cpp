@@ -33,7 +33,7 @@ int steps_of(int quarter_hour) { return quarter_hour % 2 == 0 ? 8 : 7; }
 
 /// Of this quarter-hour, this one included.
 int steps_left(const MarketStep& step) {
-  return (RollingHorizonPolicy::kQuarterHourMinutes + 1 - step.t_qh) / 2;
+  return (RollingHorizonPolicy::kQuarterHourMinutes + 1 - step.minute_of_quarter_hour) / 2;
 }
 
 std::size_t row_of(int quarter_hour, int deviation) {
@@ -65,7 +65,7 @@ void RollingHorizonPolicy::fit_usual_prices(const MarketSteps& market,
   std::array<double, kQuarterHours> count{};
   for (const MarketDay& day : days) {
     for (const MarketStep& step : market.of(day)) {
-      if (step.t_qh == kStraddlingMinute) continue;
+      if (step.minute_of_quarter_hour == kStraddlingMinute) continue;
       sum[step.quarter_hour] += step.paid_eur_per_mwh;
       count[step.quarter_hour] += 1;
     }
@@ -80,7 +80,8 @@ void RollingHorizonPolicy::fit_persistence(const MarketSteps& market,
   for (const MarketDay& day : days) {
     const MarketStep* before = nullptr;
     for (const MarketStep& step : market.of(day)) {
-      if (step.t_qh > 1) continue;  // the first step that starts in each quarter-hour
+      if (step.minute_of_quarter_hour > 1)
+        continue;  // the first step that starts in each quarter-hour
       if (before != nullptr) {
         const double was = before->paid_eur_per_mwh - usual_eur_per_mwh_[before->quarter_hour];
         product += was * (step.paid_eur_per_mwh - usual_eur_per_mwh_[step.quarter_hour]);
@@ -96,14 +97,16 @@ void RollingHorizonPolicy::fit_shrinkage(const MarketSteps& market,
                                          const std::vector<MarketDay>& days) {
   std::array<double, kQuarterHourMinutes> product{};
   std::array<double, kQuarterHourMinutes> square{};
-  ordinary_age_qh_.fill(kQuarterHours);
+  ordinary_age_quarter_hours_.fill(kQuarterHours);
   for (const MarketDay& day : days) {
     for (const MarketStep& step : market.of(day)) {
       const Observation seen = observe(step);
       const double is = step.paid_eur_per_mwh - usual_eur_per_mwh_[step.quarter_hour];
-      product[step.t_qh] += seen.deviation_eur_per_mwh * is;
-      square[step.t_qh] += seen.deviation_eur_per_mwh * seen.deviation_eur_per_mwh;
-      ordinary_age_qh_[step.t_qh] = std::min(ordinary_age_qh_[step.t_qh], seen.quarter_hours_ago);
+      product[step.minute_of_quarter_hour] += seen.deviation_eur_per_mwh * is;
+      square[step.minute_of_quarter_hour] +=
+          seen.deviation_eur_per_mwh * seen.deviation_eur_per_mwh;
+      ordinary_age_quarter_hours_[step.minute_of_quarter_hour] = std::min(
+          ordinary_age_quarter_hours_[step.minute_of_quarter_hour], seen.quarter_hours_ago);
     }
   }
   for (int t = 0; t < kQuarterHourMinutes; ++t) {
@@ -113,16 +116,19 @@ void RollingHorizonPolicy::fit_shrinkage(const MarketSteps& market,
 
 RollingHorizonPolicy::Observation RollingHorizonPolicy::observe(const MarketStep& step) const {
   // The row of minute t - age belongs to the quarter-hour that many quarter-hours before this one.
-  const int before_this_min = std::max(0, step.observed_age_min - step.t_qh);
+  const int before_this_min = std::max(0, step.observed_age_min - step.minute_of_quarter_hour);
   const int ago = (before_this_min + kQuarterHourMinutes - 1) / kQuarterHourMinutes;
-  const int row_qh = (step.quarter_hour - ago % kQuarterHours + kQuarterHours) % kQuarterHours;
-  return {step.observed_eur_per_mwh - usual_eur_per_mwh_[row_qh], ago};
+  const int row_quarter_hour =
+      (step.quarter_hour - ago % kQuarterHours + kQuarterHours) % kQuarterHours;
+  return {step.observed_eur_per_mwh - usual_eur_per_mwh_[row_quarter_hour], ago};
 }
 
 double RollingHorizonPolicy::deviation_now(const MarketStep& step) const {
   const Observation seen = observe(step);
-  const int late_qh = std::max(0, seen.quarter_hours_ago - ordinary_age_qh_[step.t_qh]);
-  return shrinkage_[step.t_qh] * std::pow(persistence_, late_qh) * seen.deviation_eur_per_mwh;
+  const int quarter_hours_late = std::max(
+      0, seen.quarter_hours_ago - ordinary_age_quarter_hours_[step.minute_of_quarter_hour]);
+  return shrinkage_[step.minute_of_quarter_hour] * std::pow(persistence_, quarter_hours_late) *
+         seen.deviation_eur_per_mwh;
 }
 
 void RollingHorizonPolicy::value_from(const std::vector<float>& table, int quarter_hour,

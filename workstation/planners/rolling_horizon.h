@@ -60,10 +60,11 @@ class RollingHorizonPolicy final : public Policy {
   SocGrid grid_;
   BellmanSweep sweep_;
   std::array<double, kQuarterHours> usual_eur_per_mwh_{};
-  std::array<double, kQuarterHourMinutes> shrinkage_{};     ///< s
-  std::array<int, kQuarterHourMinutes> ordinary_age_qh_{};  ///< quarter-hours, in training
-  double persistence_ = 0;                                  ///< rho
-  std::vector<float> value_;  ///< [quarter-hour][deviation][SoC point] EUR
+  std::array<double, kQuarterHourMinutes> shrinkage_{};  ///< s
+  std::array<int, kQuarterHourMinutes>
+      ordinary_age_quarter_hours_{};  ///< quarter-hours, in training
+  double persistence_ = 0;            ///< rho
+  std::vector<float> value_;          ///< [quarter-hour][deviation][SoC point] EUR
 };
 
 }  // namespace bess

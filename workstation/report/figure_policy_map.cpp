@@ -78,7 +78,9 @@ std::string frame(std::size_t panels, const BatteryParameters& battery) {
       100 * battery.soc_min_frac, 100 * battery.soc_min_frac, rgb(kInk));
 }
 
-int minute_of(const PolicyContext& context) { return context.quarter_hour % 4 * 15 + context.t_qh; }
+int minute_of(const PolicyContext& context) {
+  return context.quarter_hour % 4 * 15 + context.minute_of_quarter_hour;
+}
 
 std::string clock_text(const PolicyContext& context) {
   return fmt::format("{:02}:{:02}", context.quarter_hour / 4, minute_of(context));

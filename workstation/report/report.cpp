@@ -47,7 +47,9 @@ std::optional<PolicyContext> worst_context(const ReportInputs& in) {
   if (in.uncorrected == nullptr) return std::nullopt;
   std::map<PolicyContext, int> count;
   for (const LatticeState& s : in.uncorrected->certificate.counterexamples) {
-    ++count[{.month = s.month, .quarter_hour = s.qh, .t_qh = s.t_qh}];
+    ++count[{.month = s.month,
+             .quarter_hour = s.quarter_hour,
+             .minute_of_quarter_hour = s.minute_of_quarter_hour}];
   }
   const auto worst = std::ranges::max_element(count, {}, [](const auto& c) { return c.second; });
   return worst == count.end() ? std::nullopt : std::optional(worst->first);

@@ -115,7 +115,7 @@ void draw_counterfactual(const TrainingMarket& market, std::size_t count,
     if (action == 0) {
       index = random.index(market.step_count());
       soc_frac = market.draw_soc(random);
-      quarter_hour_shift = random.normal() * jitter.quarter_hours / (kQhCount - 1);
+      quarter_hour_shift = random.normal() * jitter.quarter_hours / (kQuarterHourCount - 1);
       month_shift = random.normal() * jitter.months / (kMonthCount - 1);
     }
     Transition& transition = out[i];

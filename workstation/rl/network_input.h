@@ -13,7 +13,7 @@ inline constexpr int kNetworkInputs = kStudentInputs;
 
 /// What of a state does not depend on the battery, ready for the network.
 struct NetworkContext {
-  float t_qh, quarter_hour, month, price;
+  float minute_of_quarter_hour, quarter_hour, month, price;
 };
 
 inline float scaled_input(int value, int scale) {
@@ -23,18 +23,20 @@ inline float scaled_soc(double soc_frac) {
   return static_cast<float>(soc_frac * (kSocCount - 1) * kSocScale / kInputOne);
 }
 
-inline NetworkContext network_context(int t_qh, int quarter_hour, int month, float mapped_price) {
-  return {scaled_input(t_qh, kTqhScale), scaled_input(quarter_hour, kQhScale),
-          scaled_input(month - 1, kMonthScale), mapped_price};
+inline NetworkContext network_context(int minute_of_quarter_hour, int quarter_hour, int month,
+                                      float mapped_price) {
+  return {scaled_input(minute_of_quarter_hour, kMinuteOfQuarterHourScale),
+          scaled_input(quarter_hour, kQuarterHourScale), scaled_input(month - 1, kMonthScale),
+          mapped_price};
 }
 inline NetworkContext network_context(const MarketStep& step, const PriceMap& price_map) {
-  return network_context(step.t_qh, step.quarter_hour, step.month,
+  return network_context(step.minute_of_quarter_hour, step.quarter_hour, step.month,
                          price_map(step.observed_eur_per_mwh));
 }
 
 /// Writes the five inputs in the student's order.
 inline void write_input(const NetworkContext& context, double soc_frac, float* x) {
-  x[0] = context.t_qh;
+  x[0] = context.minute_of_quarter_hour;
   x[1] = context.quarter_hour;
   x[2] = context.month;
   x[3] = scaled_soc(soc_frac);

@@ -54,8 +54,8 @@ std::vector<LatticeState> self_check_states() {
   std::vector<LatticeState> states;
   for (int corner = 0; corner < 8; ++corner) {
     const bool last = (corner & 1) != 0;
-    states.push_back({static_cast<std::int16_t>(last ? kTqhCount - 1 : 0),
-                      static_cast<std::int16_t>(last ? kQhCount - 1 : 0),
+    states.push_back({static_cast<std::int16_t>(last ? kMinuteOfQuarterHourCount - 1 : 0),
+                      static_cast<std::int16_t>(last ? kQuarterHourCount - 1 : 0),
                       static_cast<std::int16_t>(last ? kMonthCount : 1),
                       static_cast<std::int16_t>((corner & 2) != 0 ? kSocCount - 1 : 0),
                       static_cast<std::int16_t>((corner & 4) != 0 ? kLatticePriceMaxEurPerMwh
@@ -63,8 +63,8 @@ std::vector<LatticeState> self_check_states() {
   }
   Random random(kSelfCheckSeed);
   for (int i = 0; i < kRandomSelfChecks; ++i) {
-    states.push_back({static_cast<std::int16_t>(random.index(kTqhCount)),
-                      static_cast<std::int16_t>(random.index(kQhCount)),
+    states.push_back({static_cast<std::int16_t>(random.index(kMinuteOfQuarterHourCount)),
+                      static_cast<std::int16_t>(random.index(kQuarterHourCount)),
                       static_cast<std::int16_t>(1 + random.index(kMonthCount)),
                       static_cast<std::int16_t>(random.index(kSocCount)),
                       static_cast<std::int16_t>(kLatticePriceMinEurPerMwh +
@@ -82,8 +82,8 @@ std::string self_checks(const StudentNet& net) {
     std::int32_t logits[kActionCount];
     net.quantise(s, x);
     net.propagate(x, logits);
-    states += fmt::format("{{{},{},{},{},{}}},\n", s.t_qh, s.qh, s.month, s.soc_index,
-                          s.price_eur_per_mwh);
+    states += fmt::format("{{{},{},{},{},{}}},\n", s.minute_of_quarter_hour, s.quarter_hour,
+                          s.month, s.soc_index, s.price_eur_per_mwh);
     answers += fmt::format("{{{}}},\n", fmt::join(logits, ","));
   }
   return fmt::format(

@@ -127,11 +127,13 @@ StudentFile parse_student(const std::string& text, const std::string& name) {
 }
 
 StudentFile compiled_student() {
-  return {kExportedStudent,
-          {.thresholds = kExportedThresholds,
-           .states_checked = BESS_STUDENT_STATES_CHECKED,
-           .states_evaluated = BESS_STUDENT_STATES_EVALUATED},
-          BESS_STUDENT_PROVENANCE};
+  StudentFile student{};
+  student.net = kExportedStudent;  // assigned: as an initialiser, g++ 12 takes it apart for 17 s
+  student.certificate = {.thresholds = kExportedThresholds,
+                         .states_checked = BESS_STUDENT_STATES_CHECKED,
+                         .states_evaluated = BESS_STUDENT_STATES_EVALUATED};
+  student.provenance = BESS_STUDENT_PROVENANCE;
+  return student;
 }
 
 }  // namespace bess

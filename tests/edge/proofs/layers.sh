@@ -63,6 +63,7 @@ only modbus/ edge/battery/modbus_wire.cpp:
 only curl/   edge/prices/
 only cjson/  'edge/prices/|shared/host/json.cpp:' 'edge shared workstation tools'
 only toml++/ shared/host/toml_document.cpp: 'edge shared workstation tools'
+only pugixml 'workstation/(market/feed/entsoe_xml.cpp|report/figure.cpp):' 'edge shared workstation tools'
 
 # The control layer knows neither files, sockets, threads nor signals.
 io='<(sys/|arpa/|net|poll|unistd|fcntl|pthread|signal|semaphore|cstdio|stdio|fstream|iostream|thread|mutex)'

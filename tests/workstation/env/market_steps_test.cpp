@@ -64,8 +64,9 @@ TEST(MarketSteps, UnpublishedMinutesLeaveTheLastKnownPriceAndItsAge) {
 /// Everything a causal controller may know of a step.
 bool same_knowledge(const MarketStep& a, const MarketStep& b) {
   return a.utc_s == b.utc_s && a.observed_eur_per_mwh == b.observed_eur_per_mwh &&
-         a.observed_age_min == b.observed_age_min && a.t_qh == b.t_qh &&
-         a.quarter_hour == b.quarter_hour && a.month == b.month;
+         a.observed_age_min == b.observed_age_min &&
+         a.minute_of_quarter_hour == b.minute_of_quarter_hour && a.quarter_hour == b.quarter_hour &&
+         a.month == b.month;
 }
 
 TEST(MarketSteps, RowsLaterThanTheDelayChangeNoDecision) {
@@ -134,11 +135,13 @@ TEST(MarketSteps, ShortAndLongDaysAreWhole) {
     ASSERT_FALSE(market.days.empty());
     const MarketDay& day = market.days.back();
     EXPECT_EQ(day.step_count, c.steps) << c.start_utc;
-    std::vector<bool> seen(kQhCount, false);
+    std::vector<bool> seen(kQuarterHourCount, false);
     for (const MarketStep& step : market.of(day)) {
       seen[static_cast<std::size_t>(step.quarter_hour)] = true;
-      ASSERT_TRUE(step.t_qh >= 0 && step.t_qh < kTqhCount);
-      const int minute_of_day = step.quarter_hour * kMinutesPerQuarterHour + step.t_qh;
+      ASSERT_TRUE(step.minute_of_quarter_hour >= 0 &&
+                  step.minute_of_quarter_hour < kMinuteOfQuarterHourCount);
+      const int minute_of_day =
+          step.quarter_hour * kMinutesPerQuarterHour + step.minute_of_quarter_hour;
       ASSERT_EQ(step.half_hour_phase, minute_of_day % 30 / 2);
     }
     EXPECT_EQ(std::ranges::count(seen, true), c.quarter_hours_seen) << c.start_utc;

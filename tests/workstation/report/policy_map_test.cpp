@@ -6,7 +6,7 @@
 namespace bess {
 namespace {
 
-constexpr PolicyContext kContext{.month = 1, .quarter_hour = 48, .t_qh = 7};
+constexpr PolicyContext kContext{.month = 1, .quarter_hour = 48, .minute_of_quarter_hour = 7};
 
 std::size_t cell(int soc, int price) { return static_cast<std::size_t>(soc * kPriceCount + price); }
 
@@ -51,7 +51,7 @@ TEST(PolicyMap, GridsAreThePoliciesThemselves) {
       EXPECT_EQ(student[cell(soc, p)], static_cast<std::int8_t>(decided));
       MarketStep step{};
       step.observed_eur_per_mwh = price;
-      step.t_qh = 7;
+      step.minute_of_quarter_hour = 7;
       step.quarter_hour = 48;
       step.month = 1;
       const Action taught_here = policy.decide(step, 0, soc / 200.0);

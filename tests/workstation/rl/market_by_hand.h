@@ -35,7 +35,7 @@ inline MarketSteps market_by_hand(const std::vector<DayByHand>& days) {
       step.utc_s = std::int64_t{start} * kSecondsPerStep;
       step.observed_eur_per_mwh = 10 * k;
       step.paid_eur_per_mwh = 100 + k;
-      step.t_qh = static_cast<std::int8_t>(2 * start % 15);
+      step.minute_of_quarter_hour = static_cast<std::int8_t>(2 * start % 15);
       step.quarter_hour = static_cast<std::int8_t>(40 + start);
       step.month = 6;
       market.steps.push_back(step);

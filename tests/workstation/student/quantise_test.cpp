@@ -127,7 +127,8 @@ TEST(Quantise, IntegersAgreeWithFloat) {
       for (int n = 0; n < kStates; ++n) {
         states.push_back(random_state(random));
         const LatticeState& s = states.back();
-        write_input(network_context(s.t_qh, s.qh, s.month, map(s.price_eur_per_mwh)),
+        write_input(network_context(s.minute_of_quarter_hour, s.quarter_hour, s.month,
+                                    map(s.price_eur_per_mwh)),
                     s.soc_index / double{kSocCount - 1}, x.col(n).data());
       }
       MlpTile tile;

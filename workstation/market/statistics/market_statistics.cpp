@@ -46,7 +46,7 @@ std::vector<ClockChange> clock_changes_between(std::int64_t from_utc_s, std::int
   for (std::int64_t utc_s = from_utc_s - from_utc_s % 3600; utc_s <= until_utc_s; utc_s += 3600) {
     if (local_minute_of(utc_s).minute_of_day != 0 || utc_s < from_utc_s) continue;
     const std::int64_t quarter_hours = (utc_s - midnight_utc_s) / kSecondsPerQuarterHour;
-    if (midnight_utc_s >= 0 && quarter_hours != kQhCount) {
+    if (midnight_utc_s >= 0 && quarter_hours != kQuarterHourCount) {
       const LocalMinute day = local_minute_of(midnight_utc_s);
       changes.push_back({day.year, day.month, day.day, static_cast<int>(quarter_hours)});
     }
@@ -118,18 +118,21 @@ ConvergenceByMinute convergence_by_minute(const MinuteSeries& series) {
   std::array<std::vector<double>, kMinutesPerQuarterHour> errors;
   for (std::size_t m = 0; m < series.size(); ++m) {
     const double error = std::abs(series.indicative[m] - series.settled[m]);
-    const auto t_qh = static_cast<std::size_t>(series.utc_s(m) % kSecondsPerQuarterHour / 60);
-    if (is_published(error)) errors[t_qh].push_back(error);
+    const auto minute_of_quarter_hour =
+        static_cast<std::size_t>(series.utc_s(m) % kSecondsPerQuarterHour / 60);
+    if (is_published(error)) errors[minute_of_quarter_hour].push_back(error);
   }
   ConvergenceByMinute result{};
-  for (std::size_t t_qh = 0; t_qh < errors.size(); ++t_qh) {
-    std::vector<double>& of_minute = errors[t_qh];
+  for (std::size_t minute_of_quarter_hour = 0; minute_of_quarter_hour < errors.size();
+       ++minute_of_quarter_hour) {
+    std::vector<double>& of_minute = errors[minute_of_quarter_hour];
     if (of_minute.empty()) continue;
     std::sort(of_minute.begin(), of_minute.end());
-    result[t_qh] = {.count = of_minute.size(),
-                    .median_error = quantile_of_sorted(of_minute, 0.5),
-                    .mean_error = std::accumulate(of_minute.begin(), of_minute.end(), 0.0) /
-                                  static_cast<double>(of_minute.size())};
+    result[minute_of_quarter_hour] = {
+        .count = of_minute.size(),
+        .median_error = quantile_of_sorted(of_minute, 0.5),
+        .mean_error = std::accumulate(of_minute.begin(), of_minute.end(), 0.0) /
+                      static_cast<double>(of_minute.size())};
   }
   return result;
 }
