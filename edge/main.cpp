@@ -87,7 +87,7 @@ int run_controller(const CommandLine& command_line, const EdgeConfig& config) {
   static Loop loop(config.control, battery, prices, clock);
   CycleRecord before;
   if (log.newest(before)) {
-    loop.take_over({.throughput = before.throughput});
+    loop.take_over({.throughput = before.throughput, .price_level = before.price_level});
     battery.restore_flash_writes(before.counters.flash_day, before.counters.flash_writes_today);
   }
   notify.ready();

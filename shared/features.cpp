@@ -16,11 +16,11 @@ std::int16_t lattice_price_of(std::int32_t price_centi_eur_per_mwh) {
   return static_cast<std::int16_t>(rounding_divide(clamped, kCentiPerEur));
 }
 
-LatticeState make_lattice_state(const LocalMinute& now, std::int32_t soc_e4,
-                                std::int32_t price_centi_eur_per_mwh) {
+LatticeState make_lattice_state(const LocalMinute& now, std::int16_t context_class,
+                                std::int32_t soc_e4, std::int32_t price_centi_eur_per_mwh) {
   return {.minute_of_quarter_hour = static_cast<std::int16_t>(now.minute_of_quarter_hour),
           .quarter_hour = static_cast<std::int16_t>(now.quarter_hour),
-          .month = static_cast<std::int16_t>(now.month),
+          .context_class = context_class,
           .soc_index = soc_index_of(soc_e4),
           .price_eur_per_mwh = lattice_price_of(price_centi_eur_per_mwh)};
 }

@@ -14,9 +14,10 @@ constexpr std::int32_t rounding_shift_right(std::int32_t value, int shift) {
 }
 
 /// Nearest integer to numerator / denominator, halves up. Precondition: denominator > 0.
-constexpr std::int32_t rounding_divide(std::int32_t numerator, std::int32_t denominator) {
-  const std::int32_t shifted = numerator + denominator / 2;
-  const std::int32_t quotient = shifted / denominator;
+template <typename Integer>
+constexpr Integer rounding_divide(Integer numerator, Integer denominator) {
+  const Integer shifted = numerator + denominator / 2;
+  const Integer quotient = shifted / denominator;
   return quotient - (shifted % denominator < 0 ? 1 : 0);  // floor, also below zero
 }
 

@@ -19,12 +19,13 @@ static_assert(kStepsPerDay == 720);
 // --- The lattice of everything the student can see [SPEC 6] ------------------------------------
 inline constexpr int kMinuteOfQuarterHourCount = kMinutesPerQuarterHour;           ///< T_qh 0..14
 inline constexpr int kQuarterHourCount = kMinutesPerDay / kMinutesPerQuarterHour;  ///< qh 0..95
-inline constexpr int kMonthCount = 12;                                             ///< mo 1..12
+inline constexpr int kContextClassCount = 12;                                      ///< mo 1..12
 inline constexpr int kSocCount = 201;  ///< SoC k * 0.5 %
 inline constexpr int kLatticePriceMinEurPerMwh = -500;
 inline constexpr int kLatticePriceMaxEurPerMwh = 1500;
 inline constexpr int kPriceCount = kLatticePriceMaxEurPerMwh - kLatticePriceMinEurPerMwh + 1;
-inline constexpr int kContextCount = kMinuteOfQuarterHourCount * kQuarterHourCount * kMonthCount;
+inline constexpr int kContextCount =
+    kMinuteOfQuarterHourCount * kQuarterHourCount * kContextClassCount;
 inline constexpr std::int64_t kLatticeStateCount =
     std::int64_t{kContextCount} * kSocCount * kPriceCount;
 static_assert(kPriceCount == 2001 && kLatticeStateCount == 6'950'033'280);

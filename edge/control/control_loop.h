@@ -34,6 +34,7 @@ namespace bess {
 /// What an earlier run of the program left behind, by its own log.
 struct TakeOver {
   DayThroughput throughput{};
+  PriceLevel price_level{};
 };
 
 constexpr std::int64_t next_tick_utc_s(std::int64_t now_utc_s) {
@@ -51,7 +52,10 @@ class ControlLoop {
         guard_(settings.guard),
         cycle_budget_(settings.cycles_per_day_max_e4) {}
 
-  void take_over(const TakeOver& before) { cycle_budget_.restore(before.throughput); }
+  void take_over(const TakeOver& before) {
+    cycle_budget_.restore(before.throughput);
+    price_level_ = before.price_level;
+  }
 
   /// Runs the cycle of the next tick; false when the process was asked to stop before it.
   bool run_cycle(CycleRecord& record) {
@@ -253,11 +257,12 @@ class ControlLoop {
 
   void decide(CycleRecord& record) {
     const std::int64_t start_ns = clock_.monotonic_ns();
-    if (record.has_measurement && record.price.has_row) {
-      const LatticeState state =
-          make_lattice_state(local_minute_of(record.utc_s), record.measurement.soc_e4,
-                             record.price.price_centi_eur_per_mwh);
-      record.student_action = decide_with_student(state);
+    const PriceReport& price = record.price;
+    if (price.has_row) price_level_.observe(price.minute_utc_s, price.price_centi_eur_per_mwh);
+    if (record.has_measurement && price.has_row) {
+      record.student_action =
+          decide_with_student(local_minute_of(record.utc_s), price_level_,
+                              record.measurement.soc_e4, price.price_centi_eur_per_mwh);
       record.has_student_action = true;
     }
     const std::int64_t decided_utc_s = decision_utc_s(record.utc_s);
@@ -361,6 +366,7 @@ class ControlLoop {
     record.deadline_misses = deadline_misses_;
     record.unanswered_orders = follow_.unanswered_orders();
     record.throughput = cycle_budget_.today();
+    record.price_level = price_level_;
     record.counters = battery_.counters();
   }
 
@@ -374,6 +380,7 @@ class ControlLoop {
   Clock& clock_;
   SafetyGuard guard_;
   CycleBudget cycle_budget_;
+  PriceLevel price_level_;
   FollowMonitor follow_;
   Mode mode_ = Mode::kStart;
   std::int64_t cycle_ = 0;

@@ -13,6 +13,7 @@
 #include "edge/control/cycle_budget.h"
 #include "edge/control/mode.h"
 #include "shared/action.h"
+#include "shared/price_level.h"
 
 namespace bess {
 
@@ -120,6 +121,7 @@ struct CycleRecord {
   std::int32_t unanswered_orders = 0;
   DayThroughput throughput{};
   BatteryCounters counters{};
+  PriceLevel price_level{};  ///< the prices of this cycle included
 };
 
 }  // namespace bess

@@ -38,7 +38,7 @@ std::int64_t first_midnight_utc_s(int month) {
 
 }  // namespace
 
-GuardInputs undisturbed_inputs(std::int64_t now_utc_s, std::int32_t soc_e4,
+GuardInputs undisturbed_inputs(std::int64_t now_utc_s, std::int32_t soc_e4, const PriceLevel& level,
                                std::int64_t price_minute_utc_s,
                                std::int32_t price_centi_eur_per_mwh) {
   GuardInputs in;
@@ -47,20 +47,23 @@ GuardInputs undisturbed_inputs(std::int64_t now_utc_s, std::int32_t soc_e4,
   in.measurement.soc_e4 = soc_e4;
   in.price_minute_utc_s = price_minute_utc_s;
   in.price_centi_eur_per_mwh = price_centi_eur_per_mwh;
-  in.student_action = decide_with_student(
-      make_lattice_state(local_minute_of(now_utc_s), soc_e4, price_centi_eur_per_mwh));
+  in.student_action =
+      decide_with_student(local_minute_of(now_utc_s), level, soc_e4, price_centi_eur_per_mwh);
   return in;
 }
 
 DecisionSignature replay_recorded_days() {
   SafetyGuard guard{GuardSettings{}};
   IntegerBattery battery;
+  PriceLevel level;
   Signature signature;
   DecisionSignature result;
   for (int month = 1; month <= 12; ++month) {
     std::int64_t now_utc_s = first_midnight_utc_s(month);
     for (const std::int32_t price : kRecordedPricesCentiEurPerMwh) {
-      const GuardInputs in = undisturbed_inputs(now_utc_s, battery.soc_e4(), now_utc_s - 60, price);
+      level.observe(now_utc_s - 60, price);
+      const GuardInputs in =
+          undisturbed_inputs(now_utc_s, battery.soc_e4(), level, now_utc_s - 60, price);
       const std::int32_t power_w = guard.decide(in).power_w;
       battery.exchange(power_w);
       signature.add(now_utc_s);

@@ -9,12 +9,13 @@
 #include <cstdint>
 
 #include "edge/control/safety_guard.h"
+#include "shared/price_level.h"
 
 namespace bess {
 
-/// What the guard is given at a site where nothing is wrong, the student's wish included. The time
-/// zone must be set.
-GuardInputs undisturbed_inputs(std::int64_t now_utc_s, std::int32_t soc_e4,
+/// What the guard is given at a site where nothing is wrong, the student's wish at this price level
+/// included. The time zone must be set.
+GuardInputs undisturbed_inputs(std::int64_t now_utc_s, std::int32_t soc_e4, const PriceLevel& level,
                                std::int64_t price_minute_utc_s,
                                std::int32_t price_centi_eur_per_mwh);
 

@@ -4,13 +4,18 @@
 #include <cstdint>
 
 #include "shared/action.h"
+#include "shared/context_classes.h"
 #include "shared/features.h"
+#include "shared/price_level.h"
 #include "shared/price_thresholds.h"
 
 namespace bess {
 
+/// What the student's context class is made from.
+ContextKind student_context_kind();
 /// What the exported student would do.
-Action decide_with_student(const LatticeState& state);
+Action decide_with_student(const LocalMinute& now, const PriceLevel& level, std::int32_t soc_e4,
+                           std::int32_t price_centi_eur_per_mwh);
 
 /// 0 when this machine computes every golden vector of the weight header bit for bit.
 int count_student_self_check_failures();

@@ -17,6 +17,7 @@ consteval auto make_record_fields() {
   using P = PriceReport;
   using C = BatteryCounters;
   using D = DayThroughput;
+  using L = PriceLevel;
   return std::to_array<Field<CycleRecord>>({
       {utc_member<&R::utc_s>(),
        "utc",
@@ -112,6 +113,11 @@ consteval auto make_record_fields() {
        "soc_moved_e4",
        {.csv = 29, .totals = {23, "soc_moved_e4_today"}, .metrics = {36, "bess_full_cycles_today"}},
        {"Full cycles that orders have moved on this local day.", 20'000}},
+      {member<&R::price_level, &L::centi_q16>(),
+       "price_level_centi_q16",
+       {.csv = 30, .last = 44, .metrics = {16, "bess_price_level_eur_per_mwh"}},
+       {"Trailing level of the prices, the student's context.", 6'553'600}},
+      {member<&R::price_level, &L::row_minute_utc_s>()},
   });
 }
 

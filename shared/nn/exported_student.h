@@ -24,6 +24,10 @@ constexpr void copy_layer(const std::int16_t (&weight)[kInputs][kOutputs],
 
 constexpr StudentNet assemble_exported_student() {
   StudentNet net{};
+  net.context.kind = BESS_STUDENT_CONTEXT_IS_LEVEL ? ContextKind::kLevel : ContextKind::kMonth;
+  for (int c = 0; c + 1 < kContextClassCount; ++c) {
+    net.context.level_edge_eur_per_mwh[c] = bess_student_level_edge_eur_per_mwh[c];
+  }
   for (int p = 0; p < kPriceCount; ++p) net.price_map[p] = bess_student_price_map[p];
   copy_layer(bess_student_layer1_weight, bess_student_layer1_bias, net.layer1);
   net.relu1.shift = bess_student_relu1_shift;
@@ -37,7 +41,7 @@ constexpr StudentNet assemble_exported_student() {
 
 inline constexpr StudentNet kExportedStudent = detail::assemble_exported_student();
 
-static_assert(BESS_STUDENT_VERSION == 2,
+static_assert(BESS_STUDENT_VERSION == 3,
               "student_weights.h is of another format version: export it again");
 static_assert(BESS_STUDENT_ARCHITECTURE_HASH == student_architecture_hash(),
               "student_weights.h was exported for another architecture: export it again");
@@ -48,6 +52,7 @@ static_assert(BESS_STUDENT_WEIGHTS_HASH == student_weights_hash(kExportedStudent
 inline constexpr PriceThresholds kExportedThresholds{BESS_STUDENT_LOW_PRICE_EUR_PER_MWH,
                                                      BESS_STUDENT_HIGH_PRICE_EUR_PER_MWH};
 static_assert(kExportedThresholds.are_ordered());
+static_assert(kExportedStudent.context.is_valid());
 static_assert(BESS_STUDENT_STATES_CHECKED == kLatticeStateCount &&
                   BESS_STUDENT_VIOLATIONS_PROPERTY_1 == 0 &&
                   BESS_STUDENT_VIOLATIONS_PROPERTY_2 == 0 &&
@@ -63,7 +68,7 @@ constexpr StudentSelfCheck exported_self_check(int index) {
   const auto& z = bess_student_self_check_logits[index];
   return {.state = {.minute_of_quarter_hour = s[0],
                     .quarter_hour = s[1],
-                    .month = s[2],
+                    .context_class = s[2],
                     .soc_index = s[3],
                     .price_eur_per_mwh = s[4]},
           .logits = {z[0], z[1], z[2]}};

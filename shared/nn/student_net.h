@@ -12,6 +12,7 @@
 #include <cstdint>
 
 #include "shared/action.h"
+#include "shared/context_classes.h"
 #include "shared/crc32.h"
 #include "shared/features.h"
 #include "shared/nn/affine.h"
@@ -27,11 +28,12 @@ inline constexpr int kStudentHidden2 = 32;
 inline constexpr int kInputOne = 1 << 14;
 inline constexpr int kMinuteOfQuarterHourScale = kInputOne / (kMinuteOfQuarterHourCount - 1);
 inline constexpr int kQuarterHourScale = kInputOne / (kQuarterHourCount - 1);
-inline constexpr int kMonthScale = kInputOne / (kMonthCount - 1);
+inline constexpr int kContextClassScale = kInputOne / (kContextClassCount - 1);
 inline constexpr int kSocScale = kInputOne / (kSocCount - 1);
 static_assert(kSocScale * (kSocCount - 1) <= INT16_MAX && kSocScale > 0);
 
 struct StudentNet {
+  ContextClasses context;  ///< what the third input means
   std::int16_t
       price_map[kPriceCount];  ///< Q14, strictly increasing, from lattice price -500 upwards
   Affine<kStudentInputs, kStudentHidden1> layer1;
@@ -40,11 +42,11 @@ struct StudentNet {
   ClippedRelu<kStudentHidden2> relu2;
   Affine<kStudentHidden2, kActionCount> layer3;
 
-  /// Network input of a lattice state, order T_qh, qh, mo, SoC, price.
+  /// Network input of a lattice state, order T_qh, qh, context class, SoC, price.
   constexpr void quantise(const LatticeState& s, std::int16_t (&x)[kStudentInputs]) const {
     x[0] = static_cast<std::int16_t>(s.minute_of_quarter_hour * kMinuteOfQuarterHourScale);
     x[1] = static_cast<std::int16_t>(s.quarter_hour * kQuarterHourScale);
-    x[2] = static_cast<std::int16_t>((s.month - 1) * kMonthScale);
+    x[2] = static_cast<std::int16_t>((s.context_class - 1) * kContextClassScale);
     x[3] = static_cast<std::int16_t>(s.soc_index * kSocScale);
     x[4] = price_map[s.price_eur_per_mwh - kLatticePriceMinEurPerMwh];
   }
@@ -87,15 +89,19 @@ constexpr std::uint32_t student_architecture_hash() {
   Crc32 crc;
   for (const int fact :
        {kStudentInputs, kStudentHidden1, kStudentHidden2, kActionCount, kMinuteOfQuarterHourScale,
-        kQuarterHourScale, kMonthScale, kSocScale, kPriceCount, kLatticePriceMinEurPerMwh}) {
+        kQuarterHourScale, kContextClassScale, kSocScale, kPriceCount, kLatticePriceMinEurPerMwh}) {
     crc.add_integer(fact);
   }
   return crc.value();
 }
 
-/// Hash of every number of the net, in declaration order, independent of the machine's byte order.
+/// Hash of every number of the net, in declaration order, independent of the machine's byte order. By month
+/// the context adds nothing: nets of before have the hash that they had.
 constexpr std::uint32_t student_weights_hash(const StudentNet& net) {
   Crc32 crc;
+  if (net.context.kind == ContextKind::kLevel) {
+    for (const std::int16_t edge : net.context.level_edge_eur_per_mwh) crc.add_integer(edge);
+  }
   for (const std::int16_t p : net.price_map) crc.add_integer(p);
   detail::add_layer(crc, net.layer1);
   crc.add_integer(net.relu1.shift);

@@ -14,7 +14,7 @@ std::vector<LatticeState> random_states() {
   for (LatticeState& s : states) {
     s = {static_cast<std::int16_t>(random.index(kMinuteOfQuarterHourCount)),
          static_cast<std::int16_t>(random.index(kQuarterHourCount)),
-         static_cast<std::int16_t>(1 + random.index(kMonthCount)),
+         static_cast<std::int16_t>(1 + random.index(kContextClassCount)),
          static_cast<std::int16_t>(random.index(kSocCount)),
          static_cast<std::int16_t>(kLatticePriceMinEurPerMwh +
                                    static_cast<int>(random.index(kPriceCount)))};

@@ -71,7 +71,7 @@ TEST_F(LocalTime, FieldsStayInRangeAndFitTogetherForThreeYears) {
   for (std::int64_t at = utc("2023-01-01T00:00:00Z"); at < utc("2026-01-01T00:00:00Z");
        at += 7 * 60) {
     const LocalMinute local = local_minute_of(at);
-    ASSERT_TRUE(local.month >= 1 && local.month <= kMonthCount);
+    ASSERT_TRUE(local.month >= 1 && local.month <= 12);
     ASSERT_TRUE(local.minute_of_day >= 0 && local.minute_of_day < kMinutesPerDay);
     ASSERT_EQ(local.quarter_hour * kMinutesPerQuarterHour + local.minute_of_quarter_hour,
               local.minute_of_day);

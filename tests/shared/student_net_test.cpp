@@ -45,8 +45,8 @@ std::string golden_text() {
       ++count[static_cast<int>(action)];
       if (i < kWrittenOut) {
         written_out << "state " << s.minute_of_quarter_hour << ' ' << s.quarter_hour << ' '
-                    << s.month << ' ' << s.soc_index << ' ' << s.price_eur_per_mwh << " logits "
-                    << logits[0] << ' ' << logits[1] << ' ' << logits[2] << ' '
+                    << s.context_class << ' ' << s.soc_index << ' ' << s.price_eur_per_mwh
+                    << " logits " << logits[0] << ' ' << logits[1] << ' ' << logits[2] << ' '
                     << action_name(action) << '\n';
       }
     }
@@ -75,7 +75,7 @@ TEST(StudentNet, HandMadeNetsDecideAsTheirFormulaSays) {
   for (const auto& c : cases) {
     const LatticeState state{.minute_of_quarter_hour = 3,
                              .quarter_hour = 40,
-                             .month = 5,
+                             .context_class = 5,
                              .soc_index = 100,
                              .price_eur_per_mwh = static_cast<std::int16_t>(c.price)};
     EXPECT_EQ(cheap_discharge.decide(state), c.rising) << c.price;

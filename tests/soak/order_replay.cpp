@@ -28,9 +28,10 @@ std::int64_t utc_of(const CsvRow& row, const char* column) {
 
 /// What the guard was given: the simulated site has no alarm, and limits that never bind.
 GuardInputs inputs_of(const CsvRow& row) {
-  return undisturbed_inputs(utc_of(row, "utc"), std::stoi(row.at("soc_e4")),
-                            utc_of(row, "price_minute_utc"),
-                            std::stoi(row.at("price_centi_eur_per_mwh")));
+  return undisturbed_inputs(
+      utc_of(row, "utc"), std::stoi(row.at("soc_e4")),
+      {.centi_q16 = std::stoll(row.at("price_level_centi_q16")), .row_minute_utc_s = 1},
+      utc_of(row, "price_minute_utc"), std::stoi(row.at("price_centi_eur_per_mwh")));
 }
 
 bool is_same(const CsvRow& row, const GuardInputs& in, const GuardDecision& decision) {

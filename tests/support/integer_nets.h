@@ -13,7 +13,7 @@ inline LatticeState random_lattice_state(Random& random) {
   };
   return {.minute_of_quarter_hour = draw(0, kMinuteOfQuarterHourCount),
           .quarter_hour = draw(0, kQuarterHourCount),
-          .month = draw(1, kMonthCount),
+          .context_class = draw(1, kContextClassCount),
           .soc_index = draw(0, kSocCount),
           .price_eur_per_mwh = draw(kLatticePriceMinEurPerMwh, kPriceCount)};
 }

@@ -27,7 +27,7 @@ inline StudentNet seeded_net(std::uint64_t seed) {
 inline LatticeState random_state(Random& random) {
   return {static_cast<std::int16_t>(random.index(kMinuteOfQuarterHourCount)),
           static_cast<std::int16_t>(random.index(kQuarterHourCount)),
-          static_cast<std::int16_t>(1 + random.index(kMonthCount)),
+          static_cast<std::int16_t>(1 + random.index(kContextClassCount)),
           static_cast<std::int16_t>(random.index(kSocCount)),
           static_cast<std::int16_t>(kLatticePriceMinEurPerMwh +
                                     static_cast<int>(random.index(kPriceCount)))};

@@ -146,7 +146,7 @@ void KeyList::list(RunConfig& c) {
   number("jitter_quarter_hours", c.train.jitter.quarter_hours, 0, 96,
          "standard deviation of a random shift of the quarter-hour: keeps days from being learnt "
          "by heart");
-  number("jitter_months", c.train.jitter.months, 0, 12, "the same for the month");
+  number("jitter_classes", c.train.jitter.classes, 0, 12, "the same for the context class");
   integer("replay_capacity", c.train.replay_capacity, 1, 100'000'000, "transitions in the ring");
   number("epsilon_start", c.train.epsilon_start, 0, 1, "share of random actions at the start");
   number("epsilon_end", c.train.epsilon_end, 0, 1, "and from half of the steps on");

@@ -64,8 +64,8 @@ Matrix visited_inputs(const Teacher& teacher, const MarketSteps& market,
     const Eigen::Index first = at;
     for (const Episode& episode : episodes) {
       if (step >= episode.steps.size()) continue;
-      write_input(network_context(episode.steps[step], teacher.price_map), episode.soc_frac,
-                  visited.col(at++).data());
+      write_input(network_context(episode.steps[step], teacher.price_map, teacher.context),
+                  episode.soc_frac, visited.col(at++).data());
     }
     const Matrix values = teacher.action_values(visited.middleCols(first, at - first), tile);
     Eigen::Index column = 0;
@@ -148,13 +148,13 @@ Distiller::Lattice Distiller::draw_lattice(const std::vector<LatticeState>& coun
     lattice.minute_of_quarter_hour =
         nearby(centre.minute_of_quarter_hour, 0, kMinuteOfQuarterHourCount - 1);
     lattice.quarter_hour = nearby(centre.quarter_hour, 0, kQuarterHourCount - 1);
-    lattice.month = nearby(centre.month, 1, kMonthCount);
+    lattice.context_class = nearby(centre.context_class, 1, kContextClassCount);
     draw_axes(&centre, lattice.axes);
     return lattice;
   }
   lattice.minute_of_quarter_hour = static_cast<int>(random_.index(kMinuteOfQuarterHourCount));
   lattice.quarter_hour = static_cast<int>(random_.index(kQuarterHourCount));
-  lattice.month = 1 + static_cast<int>(random_.index(kMonthCount));
+  lattice.context_class = 1 + static_cast<int>(random_.index(kContextClassCount));
   draw_axes(nullptr, lattice.axes);
   return lattice;
 }
@@ -165,7 +165,7 @@ void Distiller::lattice_inputs(const Lattice& lattice, Matrix& x) const {
   Eigen::Index at = 0;
   for (const double price : axes.mapped_price) {
     const NetworkContext context =
-        network_context(lattice.minute_of_quarter_hour, lattice.quarter_hour, lattice.month,
+        network_context(lattice.minute_of_quarter_hour, lattice.quarter_hour, lattice.context_class,
                         static_cast<float>(price));
     for (const double soc : axes.soc) {
       float* column = x.col(at++).data();

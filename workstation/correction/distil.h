@@ -65,7 +65,7 @@ class Distiller {
  private:
   /// One context with its axes.
   struct Lattice {
-    int minute_of_quarter_hour, quarter_hour, month;
+    int minute_of_quarter_hour, quarter_hour, context_class;
     LatticeAxes axes;
   };
   struct Losses {

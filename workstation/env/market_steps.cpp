@@ -2,10 +2,12 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "shared/host/user_error.h"
 #include "shared/local_time.h"
+#include "shared/price_level.h"
 #include "shared/units_and_limits.h"
 
 namespace bess {
@@ -34,6 +36,13 @@ std::vector<std::int64_t> newest_published(const MinuteSeries& series) {
 double paid_price(const MinuteSeries& series, std::size_t minute, Settlement settlement) {
   const double first = series.settled[minute];
   return settlement == Settlement::kStep ? first : 0.5 * (first + series.settled[minute + 1]);
+}
+
+/// As the edge reads a price: to the nearest hundredth.
+std::int32_t price_centi(double eur_per_mwh) {
+  constexpr double kMax = kPlausiblePriceMaxCentiEurPerMwh;
+  return static_cast<std::int32_t>(
+      std::lround(std::clamp(eur_per_mwh * kCentiPerEur, -kMax, kMax)));
 }
 
 bool same_date(const MarketDay& day, const LocalMinute& local) {
@@ -102,13 +111,17 @@ MarketSteps make_market_steps(const MinuteSeries& series, const MarketOptions& o
   const std::vector<std::int64_t> newest = newest_published(series);
   MarketSteps market;
   market.steps.reserve(series.size() / kMinutesPerStep);
+  PriceLevel level;
   const std::size_t first = series.start_utc_s / 60 % kMinutesPerStep == 0 ? 0 : 1;
   for (std::size_t m = first; m + 1 < series.size(); m += kMinutesPerStep) {
     const std::int64_t visible = static_cast<std::int64_t>(m) - options.observation_delay_min;
     if (visible < 0) continue;
     const std::int64_t row = newest[static_cast<std::size_t>(visible)];
+    if (row < 0) continue;
+    const auto newest_row = static_cast<std::size_t>(row);
+    level.observe(series.utc_s(newest_row), price_centi(series.indicative[newest_row]));
     const double paid = paid_price(series, m, options.settlement);
-    if (row < 0 || std::isnan(paid)) continue;
+    if (std::isnan(paid)) continue;
     const std::int64_t utc_s = series.utc_s(m);
     const LocalMinute local = local_minute_of(utc_s);
     if (market.days.empty() || !same_date(market.days.back(), local)) {
@@ -118,8 +131,9 @@ MarketSteps make_market_steps(const MinuteSeries& series, const MarketOptions& o
     ++market.days.back().step_count;
     market.steps.push_back(
         {.utc_s = utc_s,
-         .observed_eur_per_mwh = series.indicative[static_cast<std::size_t>(row)],
+         .observed_eur_per_mwh = series.indicative[newest_row],
          .paid_eur_per_mwh = paid,
+         .level_centi_eur_per_mwh = level.centi_eur_per_mwh(),
          .observed_age_min = static_cast<std::int16_t>(static_cast<std::int64_t>(m) - row),
          .minute_of_quarter_hour = static_cast<std::int8_t>(local.minute_of_quarter_hour),
          .quarter_hour = static_cast<std::int8_t>(local.quarter_hour),

@@ -34,14 +34,15 @@ struct MarketOptions {
 };
 
 struct MarketStep {
-  std::int64_t utc_s;                  ///< start of the step
-  double observed_eur_per_mwh;         ///< newest indicative price published by then
-  double paid_eur_per_mwh;             ///< mean settled price of the step's two minutes
-  std::int16_t observed_age_min;       ///< decision minute minus the row's minute
-  std::int8_t minute_of_quarter_hour;  ///< local minute of the quarter-hour, 0..14
-  std::int8_t quarter_hour;            ///< local, 0..95
-  std::int8_t month;                   ///< local, 1..12
-  std::int8_t half_hour_phase;         ///< (minute of the half-hour) / 2, 0..14
+  std::int64_t utc_s;                    ///< start of the step
+  double observed_eur_per_mwh;           ///< newest indicative price published by then
+  double paid_eur_per_mwh;               ///< mean settled price of the step's two minutes
+  std::int32_t level_centi_eur_per_mwh;  ///< trailing level of the prices observed by then
+  std::int16_t observed_age_min;         ///< decision minute minus the row's minute
+  std::int8_t minute_of_quarter_hour;    ///< local minute of the quarter-hour, 0..14
+  std::int8_t quarter_hour;              ///< local, 0..95
+  std::int8_t month;                     ///< local, 1..12
+  std::int8_t half_hour_phase;           ///< (minute of the half-hour) / 2, 0..14
 };
 
 /// Consecutive steps of one local calendar day that can be traded.

@@ -98,7 +98,7 @@ std::string caption_of(const PolicyContext& context, const std::vector<NamedPoli
       "fuller the battery, the less a policy may charge; dots and lines mark neighbouring states "
       "that "
       "break this order",
-      clock_text(context), kMonthNames[context.month - 1]);
+      clock_text(context), kMonthNames[context.context_class - 1]);
   for (std::size_t i = 0; i < maps.size(); ++i) {
     text += fmt::format("{}{}: {}", i == 0 ? " (" : "; ", maps[i].name,
                         wrong_pairs(wrong_borders_of(maps[i].grid)));
@@ -113,10 +113,10 @@ std::string caption_of(const PolicyContext& context, const std::vector<NamedPoli
 Figure policy_map_figure(const PolicyContext& context, const std::vector<NamedPolicyMap>& maps,
                          const BatteryParameters& battery, const std::string& note) {
   Figure figure;
-  figure.name = fmt::format("policy_map_{:02}_{:02}{:02}", context.month, context.quarter_hour / 4,
-                            minute_of(context));
-  figure.title =
-      fmt::format("The policy in {} at {}", kMonthNames[context.month - 1], clock_text(context));
+  figure.name = fmt::format("policy_map_{:02}_{:02}{:02}", context.context_class,
+                            context.quarter_hour / 4, minute_of(context));
+  figure.title = fmt::format("The policy in {} at {}", kMonthNames[context.context_class - 1],
+                             clock_text(context));
   figure.width_px = 960;
   figure.height_px = 430;
   figure.alt = fmt::format(

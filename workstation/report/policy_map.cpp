@@ -54,7 +54,7 @@ ActionGrid teacher_grid(const Teacher& teacher, const PolicyContext& context) {
     for (int p = 0; p < kPriceCount; ++p) {
       const float mapped = teacher.price_map(kLatticePriceMinEurPerMwh + p);
       write_input(network_context(context.minute_of_quarter_hour, context.quarter_hour,
-                                  context.month, mapped),
+                                  context.context_class, mapped),
                   static_cast<double>(soc) / (kSocCount - 1), x.col(p).data());
     }
     const Matrix values = teacher.action_values(x, tile);
@@ -67,8 +67,8 @@ ActionGrid teacher_grid(const Teacher& teacher, const PolicyContext& context) {
 
 ActionGrid student_grid(const StudentNet& net, const PolicyContext& context) {
   ActionGrid grid;
-  fill_action_grid(net, context.minute_of_quarter_hour, context.quarter_hour, context.month, false,
-                   grid);
+  fill_action_grid(net, context.minute_of_quarter_hour, context.quarter_hour, context.context_class,
+                   false, grid);
   return grid;
 }
 

@@ -14,7 +14,7 @@ namespace bess {
 
 /// The part of a state that stays fixed over one map.
 struct PolicyContext {
-  int month;                   ///< 1..12
+  int context_class;           ///< 1..12
   int quarter_hour;            ///< local, 0..95
   int minute_of_quarter_hour;  ///< minute of the quarter-hour, 0..14
   friend auto operator<=>(const PolicyContext&, const PolicyContext&) = default;

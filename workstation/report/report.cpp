@@ -47,7 +47,7 @@ std::optional<PolicyContext> worst_context(const ReportInputs& in) {
   if (in.uncorrected == nullptr) return std::nullopt;
   std::map<PolicyContext, int> count;
   for (const LatticeState& s : in.uncorrected->certificate.counterexamples) {
-    ++count[{.month = s.month,
+    ++count[{.context_class = s.context_class,
              .quarter_hour = s.quarter_hour,
              .minute_of_quarter_hour = s.minute_of_quarter_hour}];
   }
@@ -65,8 +65,8 @@ void add_policy_map(const ReportInputs& in, const PolicyContext& context, const 
                     std::vector<Figure>& figures) {
   const std::vector<NamedPolicyMap> maps = policy_maps(in, context);
   if (maps.empty()) return;
-  figures.push_back(
-      policy_map_figure(context, maps, in.battery, note + month_note(in.market, context.month)));
+  figures.push_back(policy_map_figure(context, maps, in.battery,
+                                      note + month_note(in.market, context.context_class)));
 }
 
 void add_policy_maps(const ReportInputs& in, std::vector<Figure>& figures) {

@@ -24,8 +24,9 @@ struct ReportInputs {
   const Teacher* teacher = nullptr;  ///< each pointer may be null: what it shows is left out
   const StudentFile* uncorrected = nullptr;  ///< both students with the prover's certificate
   const StudentFile* corrected = nullptr;
-  std::vector<PolicyContext> maps = {{.month = 1, .quarter_hour = 48, .minute_of_quarter_hour = 7},
-                                     {.month = 9, .quarter_hour = 48, .minute_of_quarter_hour = 7}};
+  std::vector<PolicyContext> maps = {
+      {.context_class = 1, .quarter_hour = 48, .minute_of_quarter_hour = 7},
+      {.context_class = 9, .quarter_hour = 48, .minute_of_quarter_hour = 7}};
   std::string provenance = {};  ///< lines, shown as they are
 };
 

@@ -23,7 +23,7 @@ void move_input(float& x, double shift) {
 
 TrainingMarket::TrainingMarket(const MarketSteps& market, const PriceMap& price_map,
                                const BatteryParameters& battery, Horizon horizon,
-                               const RewardShaping& shaping)
+                               const RewardShaping& shaping, const ContextClasses& context)
     : battery_(battery),
       potential_grid_(battery, shaping.potential.soc_points),
       gamma_(static_cast<float>(shaping.gamma)),
@@ -43,8 +43,8 @@ TrainingMarket::TrainingMarket(const MarketSteps& market, const PriceMap& price_
       const bool follows = next != nullptr && next->utc_s == steps[i].utc_s + kSecondsPerStep;
       const bool terminal = last && horizon == Horizon::kDay;
       if (!follows && !terminal) continue;
-      const NetworkContext here = network_context(steps[i], price_map);
-      steps_.push_back({here, follows ? network_context(*next, price_map) : here,
+      const NetworkContext here = network_context(steps[i], price_map, context);
+      steps_.push_back({here, follows ? network_context(*next, price_map, context) : here,
                         static_cast<float>(steps[i].paid_eur_per_mwh), terminal,
                         add_potential(shaping.potential, steps[i]),
                         add_potential(shaping.potential, follows ? *next : steps[i])});
@@ -104,25 +104,25 @@ void draw_counterfactual(const TrainingMarket& market, std::size_t count,
                          const ContextJitter& jitter, Random& random,
                          std::vector<Transition>& out) {
   constexpr int kQuarterHourInput = 1;  // order of write_input
-  constexpr int kMonthInput = 2;
+  constexpr int kContextClassInput = 2;
   out.resize(count);
   std::size_t index = 0;
   double soc_frac = 0;
   double quarter_hour_shift = 0;
-  double month_shift = 0;
+  double class_shift = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t action = i % kActionCount;
     if (action == 0) {
       index = random.index(market.step_count());
       soc_frac = market.draw_soc(random);
       quarter_hour_shift = random.normal() * jitter.quarter_hours / (kQuarterHourCount - 1);
-      month_shift = random.normal() * jitter.months / (kMonthCount - 1);
+      class_shift = random.normal() * jitter.classes / (kContextClassCount - 1);
     }
     Transition& transition = out[i];
     market.make_transition(index, soc_frac, static_cast<Action>(action), transition);
     for (float* x : {transition.state, transition.next_state}) {
       move_input(x[kQuarterHourInput], quarter_hour_shift);
-      move_input(x[kMonthInput], month_shift);
+      move_input(x[kContextClassInput], class_shift);
     }
   }
 }

@@ -35,7 +35,7 @@ struct RewardShaping {
 /// by heart.
 struct ContextJitter {
   double quarter_hours = 4;
-  double months = 2;
+  double classes = 2;
 };
 
 /// Training steps with their successor, ready to become transitions.
@@ -43,7 +43,8 @@ class TrainingMarket {
  public:
   /// Throws UserError when `market` has no training days.
   TrainingMarket(const MarketSteps& market, const PriceMap& price_map,
-                 const BatteryParameters& battery, Horizon horizon, const RewardShaping& shaping);
+                 const BatteryParameters& battery, Horizon horizon, const RewardShaping& shaping,
+                 const ContextClasses& context = {});
 
   /// The transition of taking `action` at `soc_frac` in step `index`; also returns the SoC after
   /// it.

@@ -13,7 +13,7 @@ inline constexpr int kNetworkInputs = kStudentInputs;
 
 /// What of a state does not depend on the battery, ready for the network.
 struct NetworkContext {
-  float minute_of_quarter_hour, quarter_hour, month, price;
+  float minute_of_quarter_hour, quarter_hour, context_class, price;
 };
 
 inline float scaled_input(int value, int scale) {
@@ -23,14 +23,16 @@ inline float scaled_soc(double soc_frac) {
   return static_cast<float>(soc_frac * (kSocCount - 1) * kSocScale / kInputOne);
 }
 
-inline NetworkContext network_context(int minute_of_quarter_hour, int quarter_hour, int month,
-                                      float mapped_price) {
+inline NetworkContext network_context(int minute_of_quarter_hour, int quarter_hour,
+                                      int context_class, float mapped_price) {
   return {scaled_input(minute_of_quarter_hour, kMinuteOfQuarterHourScale),
-          scaled_input(quarter_hour, kQuarterHourScale), scaled_input(month - 1, kMonthScale),
-          mapped_price};
+          scaled_input(quarter_hour, kQuarterHourScale),
+          scaled_input(context_class - 1, kContextClassScale), mapped_price};
 }
-inline NetworkContext network_context(const MarketStep& step, const PriceMap& price_map) {
-  return network_context(step.minute_of_quarter_hour, step.quarter_hour, step.month,
+inline NetworkContext network_context(const MarketStep& step, const PriceMap& price_map,
+                                      const ContextClasses& classes) {
+  return network_context(step.minute_of_quarter_hour, step.quarter_hour,
+                         classes.class_of(step.month, step.level_centi_eur_per_mwh),
                          price_map(step.observed_eur_per_mwh));
 }
 
@@ -38,7 +40,7 @@ inline NetworkContext network_context(const MarketStep& step, const PriceMap& pr
 inline void write_input(const NetworkContext& context, double soc_frac, float* x) {
   x[0] = context.minute_of_quarter_hour;
   x[1] = context.quarter_hour;
-  x[2] = context.month;
+  x[2] = context.context_class;
   x[3] = scaled_soc(soc_frac);
   x[4] = context.price;
 }

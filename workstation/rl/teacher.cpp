@@ -11,7 +11,7 @@ namespace bess {
 namespace {
 
 constexpr std::string_view kMagic = "BESSTCHR";
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 constexpr int kTeacherHidden1 = 256;
 constexpr int kTeacherHidden2 = 128;
 constexpr std::size_t kProvenanceMax = 4096;
@@ -29,6 +29,17 @@ PriceMap take_price_map(BinaryReader& in) {
   } catch (const UserError& error) {
     fail("{}: {}", in.name(), error.what());
   }
+}
+
+ContextClasses take_context(BinaryReader& in) {
+  ContextClasses context;
+  const auto kind = in.take<std::uint32_t>();
+  context.kind = static_cast<ContextKind>(kind);
+  for (std::int16_t& edge : context.level_edge_eur_per_mwh) edge = in.take<std::int16_t>();
+  if (kind > static_cast<std::uint32_t>(ContextKind::kLevel) || !context.is_valid()) {
+    in.damaged("has impossible context classes");
+  }
+  return context;
 }
 
 }  // namespace
@@ -56,7 +67,7 @@ Matrix Teacher::action_values(const MatrixRef& x, MlpTile& tile) const {
 }
 
 Action TeacherPolicy::decide(const MarketStep& step, std::size_t, double soc_frac) const {
-  write_input(network_context(step, teacher_.price_map), soc_frac, x_.data());
+  write_input(network_context(step, teacher_.price_map, teacher_.context), soc_frac, x_.data());
   const Matrix values = teacher_.action_values(x_, tile_);
   return argmax_action(values.data());
 }
@@ -67,6 +78,8 @@ void save_teacher(const std::filesystem::path& path, const Teacher& teacher) {
   out.put(teacher.support);
   out.put(teacher.shape);
   out.put(teacher.price_map.table());
+  out.put(static_cast<std::uint32_t>(teacher.context.kind));
+  out.put(teacher.context.level_edge_eur_per_mwh);
   out.put_text(std::string_view(teacher.provenance).substr(0, kProvenanceMax));
   put_parameters(out, teacher.parameters);
   out.save(path);
@@ -88,11 +101,12 @@ Teacher load_teacher(const std::filesystem::path& path) {
   const auto shape = in.take<MlpShape>();
   if (!(shape == teacher_shape(method, support))) in.damaged("is of another network shape");
   const PriceMap price_map = take_price_map(in);
+  const ContextClasses context = take_context(in);
   std::string provenance = in.take_text();
   Parameters parameters(shape.parameter_count());
   take_parameters(in, parameters);
   in.finish();
-  return {method, support, shape, price_map, std::move(parameters), std::move(provenance)};
+  return {method, support, shape, price_map, std::move(parameters), std::move(provenance), context};
 }
 
 Teacher load_teacher(const std::filesystem::path& path, const Risk& risk) {

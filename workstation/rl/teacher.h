@@ -26,8 +26,9 @@ struct Teacher {
   MlpShape shape;
   PriceMap price_map;
   Parameters parameters;
-  std::string provenance;  ///< one line: prices, seed, steps
-  Risk risk{};             ///< how decisions are made; not part of the file
+  std::string provenance;    ///< one line: prices, seed, steps
+  ContextClasses context{};  ///< by month unless said otherwise
+  Risk risk{};               ///< how decisions are made; not part of the file
 
   /// Action values, means unless `risk` says otherwise, [3 x samples] in units of 1e4 EUR/h for
   /// inputs [5 x samples].

@@ -114,14 +114,16 @@ class Training {
         options_(options),
         validation_(market.days_of(Split::kValidation)),
         price_map_(PriceMap::fit(observed_training_prices(market))),
+        context_(fit_context_classes(market, options.context)),
         training_(market, price_map_, battery, options.horizon,
-                  fit_shaping(market, battery, options)),
+                  fit_shaping(market, battery, options), context_),
         support_{static_cast<float>(options.value_min_eur_per_h) * kRewardScale,
                  static_cast<float>(options.value_max_eur_per_h) * kRewardScale, options.atoms},
         learner_(options.method, support_, options.gamma, derive_seed(options.seed, kSeedWeights),
                  options.threads, options.mean_weight),
         experience_(training_, options),
-        current_{options.method, support_, learner_.shape(), price_map_, learner_.online(), "", {}},
+        current_{options.method,    support_, learner_.shape(), price_map_,
+                 learner_.online(), "",       context_},
         average_(learner_.online()),
         result_{current_, {}, -1e300, 0, 0} {}
 
@@ -219,6 +221,7 @@ class Training {
   const TrainOptions& options_;
   std::vector<MarketDay> validation_;
   PriceMap price_map_;
+  ContextClasses context_;
   TrainingMarket training_;
   Support support_;
   Learner learner_;

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "workstation/env/context_fit.h"
 #include "workstation/env/evaluate.h"
 #include "workstation/rl/experience.h"
 #include "workstation/rl/teacher.h"
@@ -30,6 +31,7 @@ struct TrainOptions {
   double gamma = 0.999;
   double tau = 0.05;  ///< target <- tau * online + (1 - tau) * target, each step
   int atoms = 51;
+  ContextKind context = ContextKind::kLevel;
   PotentialKind potential = PotentialKind::kPlan;  ///< of reward shaping
   bool centre_rewards = true;                      ///< continuing horizon only
   ContextJitter jitter;                            ///< counterfactual source only

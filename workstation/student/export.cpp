@@ -10,7 +10,7 @@
 namespace bess {
 namespace {
 
-constexpr int kHeaderVersion = 2;
+constexpr int kHeaderVersion = 3;
 constexpr int kRandomSelfChecks = 56;
 constexpr std::uint64_t kSelfCheckSeed = 2024;
 
@@ -56,7 +56,7 @@ std::vector<LatticeState> self_check_states() {
     const bool last = (corner & 1) != 0;
     states.push_back({static_cast<std::int16_t>(last ? kMinuteOfQuarterHourCount - 1 : 0),
                       static_cast<std::int16_t>(last ? kQuarterHourCount - 1 : 0),
-                      static_cast<std::int16_t>(last ? kMonthCount : 1),
+                      static_cast<std::int16_t>(last ? kContextClassCount : 1),
                       static_cast<std::int16_t>((corner & 2) != 0 ? kSocCount - 1 : 0),
                       static_cast<std::int16_t>((corner & 4) != 0 ? kLatticePriceMaxEurPerMwh
                                                                   : kLatticePriceMinEurPerMwh)});
@@ -65,7 +65,7 @@ std::vector<LatticeState> self_check_states() {
   for (int i = 0; i < kRandomSelfChecks; ++i) {
     states.push_back({static_cast<std::int16_t>(random.index(kMinuteOfQuarterHourCount)),
                       static_cast<std::int16_t>(random.index(kQuarterHourCount)),
-                      static_cast<std::int16_t>(1 + random.index(kMonthCount)),
+                      static_cast<std::int16_t>(1 + random.index(kContextClassCount)),
                       static_cast<std::int16_t>(random.index(kSocCount)),
                       static_cast<std::int16_t>(kLatticePriceMinEurPerMwh +
                                                 static_cast<int>(random.index(kPriceCount)))});
@@ -83,7 +83,7 @@ std::string self_checks(const StudentNet& net) {
     net.quantise(s, x);
     net.propagate(x, logits);
     states += fmt::format("{{{},{},{},{},{}}},\n", s.minute_of_quarter_hour, s.quarter_hour,
-                          s.month, s.soc_index, s.price_eur_per_mwh);
+                          s.context_class, s.soc_index, s.price_eur_per_mwh);
     answers += fmt::format("{{{}}},\n", fmt::join(logits, ","));
   }
   return fmt::format(
@@ -141,6 +141,9 @@ std::string format_weight_header(const ProvedStudent& student) {
   text += certificate_macros(student.certificate());
   text +=
       fmt::format("#define BESS_STUDENT_PROVENANCE {}\n", c_string_literal(student.provenance()));
+  text += fmt::format("#define BESS_STUDENT_CONTEXT_IS_LEVEL {}\n",
+                      net.context.kind == ContextKind::kLevel ? 1 : 0);
+  text += vector("int16_t", "level_edge_eur_per_mwh", net.context.level_edge_eur_per_mwh);
   text += vector("int16_t", "price_map", net.price_map);
   text += matrix("int16_t", "layer1_weight", net.layer1.weight);
   text += vector("int32_t", "layer1_bias", net.layer1.bias);

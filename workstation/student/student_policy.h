@@ -15,11 +15,12 @@ class StudentPolicy final : public Policy {
     const auto price_centi =
         static_cast<std::int32_t>(std::lround(step.observed_eur_per_mwh * kCentiPerEur));
     const auto soc_e4 = static_cast<std::int32_t>(std::lround(soc_frac * kSocFullE4));
-    return net_.decide({.minute_of_quarter_hour = step.minute_of_quarter_hour,
-                        .quarter_hour = step.quarter_hour,
-                        .month = step.month,
-                        .soc_index = soc_index_of(soc_e4),
-                        .price_eur_per_mwh = lattice_price_of(price_centi)});
+    return net_.decide(
+        {.minute_of_quarter_hour = step.minute_of_quarter_hour,
+         .quarter_hour = step.quarter_hour,
+         .context_class = net_.context.class_of(step.month, step.level_centi_eur_per_mwh),
+         .soc_index = soc_index_of(soc_e4),
+         .price_eur_per_mwh = lattice_price_of(price_centi)});
   }
 
  private:

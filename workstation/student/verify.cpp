@@ -183,7 +183,7 @@ LatticeState context_at(int index) {
   return {.minute_of_quarter_hour = static_cast<std::int16_t>(index % kMinuteOfQuarterHourCount),
           .quarter_hour =
               static_cast<std::int16_t>(index / kMinuteOfQuarterHourCount % kQuarterHourCount),
-          .month = static_cast<std::int16_t>(
+          .context_class = static_cast<std::int16_t>(
               index / (kMinuteOfQuarterHourCount * kQuarterHourCount) + 1),
           .soc_index = 0,
           .price_eur_per_mwh = 0};
@@ -253,11 +253,11 @@ void thin_out(std::vector<LatticeState>& states, std::size_t count_max) {
 }  // namespace
 
 std::int64_t fill_action_grid(const StudentNet& net, int minute_of_quarter_hour, int quarter_hour,
-                              int month, bool exhaustive, std::vector<std::int8_t>& grid) {
+                              int context_class, bool exhaustive, std::vector<std::int8_t>& grid) {
   const BoxBounds bounds(net);
   const LatticeState context{static_cast<std::int16_t>(minute_of_quarter_hour),
                              static_cast<std::int16_t>(quarter_hour),
-                             static_cast<std::int16_t>(month), 0, 0};
+                             static_cast<std::int16_t>(context_class), 0, 0};
   return GridFiller(net, bounds).fill(context, exhaustive, grid);
 }
 

@@ -35,6 +35,6 @@ Certificate verify_student(const StudentNet& net, const VerifyOptions& options);
 /// Actions of one context, [SoC][price], as Action's integers. Returns how many states were
 /// evaluated.
 std::int64_t fill_action_grid(const StudentNet& net, int minute_of_quarter_hour, int quarter_hour,
-                              int month, bool exhaustive, std::vector<std::int8_t>& grid);
+                              int context_class, bool exhaustive, std::vector<std::int8_t>& grid);
 
 }  // namespace bess

@@ -26,7 +26,7 @@ Matrix some_visited(int count, std::uint64_t seed) {
   Matrix visited(kNetworkInputs, count);
   for (int c = 0; c < count; ++c) {
     const LatticeState s = random_state(random);
-    write_input(network_context(s.minute_of_quarter_hour, s.quarter_hour, s.month,
+    write_input(network_context(s.minute_of_quarter_hour, s.quarter_hour, s.context_class,
                                 map(s.price_eur_per_mwh)),
                 random.uniform(), visited.col(c).data());
   }

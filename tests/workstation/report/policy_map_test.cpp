@@ -6,7 +6,8 @@
 namespace bess {
 namespace {
 
-constexpr PolicyContext kContext{.month = 1, .quarter_hour = 48, .minute_of_quarter_hour = 7};
+constexpr PolicyContext kContext{
+    .context_class = 1, .quarter_hour = 48, .minute_of_quarter_hour = 7};
 
 std::size_t cell(int soc, int price) { return static_cast<std::size_t>(soc * kPriceCount + price); }
 

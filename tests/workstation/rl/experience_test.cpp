@@ -312,7 +312,7 @@ TEST_F(Counterfactual, ThreeActionsShareStepAndSoc) {
 
 TEST_F(Counterfactual, WithoutJitterItIsTheObservedCalendar) {
   for (const Transition& t : drawn(300, {0, 0})) {
-    EXPECT_EQ(t.state[2], scaled_input(6 - 1, kMonthScale));
+    EXPECT_EQ(t.state[2], scaled_input(6 - 1, kContextClassScale));
     EXPECT_EQ(t.state[2], t.next_state[2]);
     EXPECT_NEAR(t.next_state[1] - t.state[1], 1.0 / 95, 1e-4);
   }
@@ -350,7 +350,7 @@ TEST_F(Counterfactual, JitterMovesStateAndSuccessorAlikeInsideTheRange) {
   const auto count = static_cast<double>(plain.size());
   EXPECT_LT(static_cast<double>(clamped), 0.05 * count);
   EXPECT_NEAR(std::sqrt(squares[0] / count), kJitter.quarter_hours / 95, 0.1 * 4 / 95);
-  EXPECT_NEAR(std::sqrt(squares[1] / count), kJitter.months / 11, 0.15 * 2 / 11);
+  EXPECT_NEAR(std::sqrt(squares[1] / count), kJitter.classes / 11, 0.15 * 2 / 11);
 }
 
 TEST_F(Counterfactual, WideJitterIsClamped) {

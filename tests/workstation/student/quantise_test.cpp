@@ -127,7 +127,7 @@ TEST(Quantise, IntegersAgreeWithFloat) {
       for (int n = 0; n < kStates; ++n) {
         states.push_back(random_state(random));
         const LatticeState& s = states.back();
-        write_input(network_context(s.minute_of_quarter_hour, s.quarter_hour, s.month,
+        write_input(network_context(s.minute_of_quarter_hour, s.quarter_hour, s.context_class,
                                     map(s.price_eur_per_mwh)),
                     s.soc_index / double{kSocCount - 1}, x.col(n).data());
       }

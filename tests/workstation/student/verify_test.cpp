@@ -16,7 +16,7 @@ constexpr int kOneContext = kContextCount;
 struct GridCase {
   const char* name;
   StudentNet net;
-  int minute_of_quarter_hour, quarter_hour, month;
+  int minute_of_quarter_hour, quarter_hour, context_class;
 };
 
 TEST(Verify, BoundsAndEnumerationGiveTheSameGrid) {
@@ -31,10 +31,10 @@ TEST(Verify, BoundsAndEnumerationGiveTheSameGrid) {
     SCOPED_TRACE(c.name);
     ASSERT_LE(accumulator_bound(c.net), INT32_MAX);
     std::vector<std::int8_t> bounded, exhaustive;
-    const std::int64_t some =
-        fill_action_grid(c.net, c.minute_of_quarter_hour, c.quarter_hour, c.month, false, bounded);
+    const std::int64_t some = fill_action_grid(c.net, c.minute_of_quarter_hour, c.quarter_hour,
+                                               c.context_class, false, bounded);
     const std::int64_t all = fill_action_grid(c.net, c.minute_of_quarter_hour, c.quarter_hour,
-                                              c.month, true, exhaustive);
+                                              c.context_class, true, exhaustive);
     EXPECT_EQ(all, kContextStates);
     EXPECT_LE(some, kContextStates);
     EXPECT_TRUE(bounded == exhaustive);
@@ -49,8 +49,8 @@ TEST(Verify, BoundsAgreeWithTheNetOnManyContexts) {
     const StudentNet& net = nets[round % std::size(nets)];
     LatticeState state = random_state(random);
     std::vector<std::int8_t> grid;
-    fill_action_grid(net, state.minute_of_quarter_hour, state.quarter_hour, state.month, false,
-                     grid);
+    fill_action_grid(net, state.minute_of_quarter_hour, state.quarter_hour, state.context_class,
+                     false, grid);
     ASSERT_EQ(grid.size(), static_cast<std::size_t>(kContextStates));
     for (int n = 0; n < 2000; ++n) {
       const LatticeState other = random_state(random);

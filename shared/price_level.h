@@ -1,0 +1,44 @@
+// The trailing price level [SPEC 8]: an exponentially weighted mean of the prices that decisions were made
+// on, time constant one day. In integers, so that the workstation, the simulator and the edge have the
+// same level to the bit after the same rows, whatever machine they run on.
+//
+// Each row counts once, at the first decision that sees it. A gap lets the level rest: an hour without
+// prices, or a year without the program, leaves it where it was.
+#pragma once
+
+#include <cstdint>
+
+#include "shared/fixed_point.h"
+#include "shared/units_and_limits.h"
+
+namespace bess {
+
+struct PriceLevel {
+  /// One decision's weight is one in this many: a day of decisions.
+  static constexpr std::int64_t kDecisions = kStepsPerDay;
+  static constexpr int kFractionBits = 16;
+
+  std::int64_t centi_q16 = 0;         ///< hundredths of EUR/MWh, times 2^16
+  std::int64_t row_minute_utc_s = 0;  ///< of the newest row that counted; 0: none, the level is not known
+
+  [[nodiscard]] constexpr bool is_known() const { return row_minute_utc_s != 0; }
+
+  /// The newest row that a decision saw. The first one sets the level. Prices count as the student sees
+  /// them, clamped to the lattice: one spike must not move a day.
+  constexpr void observe(std::int64_t minute_utc_s, std::int32_t price_centi_eur_per_mwh) {
+    if (minute_utc_s <= row_minute_utc_s) return;
+    const std::int64_t price_q16 =
+        std::int64_t{clamp_to(price_centi_eur_per_mwh, kLatticePriceMinEurPerMwh * kCentiPerEur,
+                              kLatticePriceMaxEurPerMwh * kCentiPerEur)}
+        << kFractionBits;
+    centi_q16 = is_known() ? centi_q16 + rounding_divide(price_q16 - centi_q16, kDecisions) : price_q16;
+    row_minute_utc_s = minute_utc_s;
+  }
+
+  [[nodiscard]] constexpr std::int32_t centi_eur_per_mwh() const {
+    return static_cast<std::int32_t>(rounding_divide(centi_q16, std::int64_t{1} << kFractionBits));
+  }
+  friend constexpr bool operator==(const PriceLevel&, const PriceLevel&) = default;
+};
+
+}  // namespace bess

@@ -1,0 +1,58 @@
+#include "workstation/env/context_fit.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "shared/host/user_error.h"
+
+namespace bess {
+namespace {
+
+/// Classes lie this many standard deviations of the training days' level around its mean.
+constexpr double kReachDeviations = 3;
+constexpr int kEdges = kContextClassCount - 1;
+
+}  // namespace
+
+ContextKind parse_context(std::string_view name) {
+  for (const ContextKind kind : {ContextKind::kMonth, ContextKind::kLevel}) {
+    if (name == context_name(kind)) return kind;
+  }
+  fail("unknown context \"{}\": use level or month", name);
+}
+
+ContextClasses fit_context_classes(const MarketSteps& market, ContextKind kind) {
+  ContextClasses classes{.kind = kind};
+  if (kind == ContextKind::kMonth) return classes;
+  const std::vector<MarketDay> training = market.days_of(Split::kTrain);
+  require_training_days(training.size());
+  double count = 0;
+  double sum = 0;
+  double squares = 0;
+  for (const MarketDay& day : training) {
+    for (const MarketStep& step : market.of(day)) {
+      const double level = double{1} * step.level_centi_eur_per_mwh / kCentiPerEur;
+      count += 1;
+      sum += level;
+      squares += level * level;
+    }
+  }
+  const double mean = sum / count;
+  const double deviation = std::sqrt(std::max(0.0, squares / count - mean * mean));
+  const int width =
+      std::max(1, static_cast<int>(std::lround(2 * kReachDeviations * deviation / kEdges)));
+  for (int e = 0; e < kEdges; ++e) {
+    classes.level_edge_eur_per_mwh[e] =
+        static_cast<std::int16_t>(std::lround(mean) + width * (2 * e + 1 - kEdges) / 2);
+  }
+  return classes;
+}
+
+double class_level_eur_per_mwh(const ContextClasses& classes, int context_class) {
+  const auto& edge = classes.level_edge_eur_per_mwh;
+  const double width = edge[1] - edge[0];
+  if (context_class == 1) return edge[0] - width / 2;
+  return edge[context_class - 2] + width / 2;
+}
+
+}  // namespace bess
