@@ -51,7 +51,7 @@ TEST(Features, StateTakesTheLocalMinute) {
                         .minute_of_quarter_hour = 14};
   EXPECT_EQ(make_lattice_state(now, 12, 1'000, 1'250), (LatticeState{.minute_of_quarter_hour = 14,
                                                                      .quarter_hour = 95,
-                                                                     .month = 12,
+                                                                     .context_class = 12,
                                                                      .soc_index = 20,
                                                                      .price_eur_per_mwh = 13}));
 }
