@@ -14,7 +14,8 @@ namespace bess {
 namespace {
 
 constexpr double kHoursPerTestStep = 2.0 / 60;
-const char* const kCausal[] = {"rbc", "rbc:60:140", "rbc-quartile", "rbc-tuned", "tabular", "mpc"};
+const char* const kCausal[] = {"rbc",     "rbc:60:140", "rbc-quartile", "rbc-tuned",
+                               "tabular", "mpc",        "sdp",          "sdp-hour"};
 
 BatteryParameters random_battery(Random& random) {
   BatteryParameters b;

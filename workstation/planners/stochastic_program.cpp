@@ -1,0 +1,299 @@
+#include "workstation/planners/stochastic_program.h"
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cmath>
+
+#include "workstation/env/exchange_cost.h"
+
+namespace bess {
+namespace {
+
+constexpr int kStepsPerPhaseCycle = StochasticProgram::kPhases;
+constexpr int kSmoothedQuarterHours = 24;  ///< reach of the smoothing, on both sides
+constexpr int kSmoothedBins = 3;
+constexpr int kDays = 4;           ///< of backward induction: greedy actions change no more
+constexpr double kLevelReach = 3;  ///< standard deviations of the level around its mean
+
+using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+double kernel(int distance, double sigma) {
+  if (sigma <= 0) return distance == 0 ? 1.0 : 0.0;
+  return std::exp(-0.5 * distance * distance / (sigma * sigma));
+}
+
+double level_of(const MarketStep& step) {
+  return static_cast<double>(step.level_centi_eur_per_mwh) / kCentiPerEur;
+}
+
+int step_of_day(const MarketStep& step) {
+  return (step.quarter_hour * kMinutesPerQuarterHour + step.minute_of_quarter_hour) /
+         kMinutesPerStep;
+}
+
+/// The quarter-hours at whose prices the step's two minutes are paid: 2 does not divide 15.
+std::array<int, 2> paid_quarter_hours(int step) {
+  const int minute = step * kMinutesPerStep;
+  return {minute / kMinutesPerQuarterHour, (minute + 1) / kMinutesPerQuarterHour};
+}
+
+template <typename Visit>
+void for_each_step(const MarketSteps& market, const std::vector<MarketDay>& days, Visit visit) {
+  for (const MarketDay& day : days) {
+    for (const MarketStep& step : market.of(day)) visit(step);
+  }
+}
+
+}  // namespace
+
+StochasticProgram::StochasticProgram(const MarketSteps& market, const std::vector<MarketDay>& days,
+                                     const BatteryParameters& battery,
+                                     const StochasticProgramOptions& options)
+    : battery_(battery), options_(options), grid_(battery, kSocPoints) {
+  require_training_days(days.size());
+  fit_usual(market, days);
+  fit_bins(market, days);
+  count_chain(market, days);
+  solve();
+}
+
+void StochasticProgram::save(BinaryWriter& out) const {
+  out.put(battery_);
+  out.put(options_.level_weight);
+  out.put(options_.gamma);
+  out.put(level_mean_);
+  out.put(usual_);
+  out.put(row_age_);
+  out.put_list(levels_);
+  out.put_list(bin_edges_);
+  out.put_list(bin_centres_);
+  out.put_list(paid_);
+  out.put_list(transition_);
+}
+
+StochasticProgram::StochasticProgram(BinaryReader& in)
+    : battery_(in.take<BatteryParameters>()), grid_(battery_, kSocPoints) {
+  options_.level_weight = in.take<double>();
+  options_.gamma = in.take<double>();
+  level_mean_ = in.take<double>();
+  usual_ = in.take<decltype(usual_)>();
+  row_age_ = in.take<decltype(row_age_)>();
+  levels_ = in.take_list<double>();
+  bin_edges_ = in.take_list<double>();
+  bin_centres_ = in.take_list<double>();
+  paid_ = in.take_list<double>();
+  transition_ = in.take_list<float>();
+  if (levels_.empty() || bin_edges_.size() != kBins - 1 || bin_centres_.size() != kBins ||
+      paid_.size() != kPhases * kBins || transition_.size() != kPhases * kBins * kBins) {
+    in.damaged("is of another size of the stochastic program");
+  }
+  solve();
+}
+
+StochasticProgram::Situation StochasticProgram::situation_of(const MarketStep& step) {
+  const int before_this_min = std::max(0, step.observed_age_min - step.minute_of_quarter_hour);
+  const int ago = (before_this_min + kMinutesPerQuarterHour - 1) / kMinutesPerQuarterHour;
+  return {
+      .step_of_day = step_of_day(step),
+      .row_quarter_hour = (step.quarter_hour - ago % kQuarterHours + kQuarterHours) % kQuarterHours,
+      .price_eur_per_mwh = step.observed_eur_per_mwh,
+      .level_eur_per_mwh = level_of(step)};
+}
+
+double StochasticProgram::usual(int quarter_hour, double level) const {
+  return usual_[static_cast<std::size_t>(quarter_hour)] +
+         options_.level_weight * (level - level_mean_);
+}
+
+double StochasticProgram::usual_paid(int step, double level) const {
+  const auto [first, second] = paid_quarter_hours(step);
+  return 0.5 * (usual(first, level) + usual(second, level));
+}
+
+int StochasticProgram::bin_of(double deviation) const {
+  return static_cast<int>(std::ranges::lower_bound(bin_edges_, deviation) - bin_edges_.begin());
+}
+
+StochasticProgram::Between StochasticProgram::between_bins(double deviation) const {
+  const auto upper = std::ranges::upper_bound(bin_centres_, deviation) - bin_centres_.begin();
+  const int lower = std::clamp(static_cast<int>(upper) - 1, 0, kBins - 2);
+  const double width = bin_centres_[lower + 1] - bin_centres_[lower];
+  const double weight = width > 0 ? (deviation - bin_centres_[lower]) / width : 0.0;
+  return {lower, std::clamp(weight, 0.0, 1.0)};
+}
+
+StochasticProgram::Between StochasticProgram::between_levels(double level) const {
+  const auto count = static_cast<int>(levels_.size());
+  if (count == 1) return {0, 0};
+  const double step = levels_[1] - levels_[0];
+  const double x = std::clamp((level - levels_[0]) / step, 0.0, count - 1.0);
+  const int lower = std::min(static_cast<int>(x), count - 2);
+  return {lower, x - lower};
+}
+
+void StochasticProgram::fit_usual(const MarketSteps& market, const std::vector<MarketDay>& days) {
+  std::array<double, kQuarterHours> sum{}, count{};
+  std::array<std::array<int, 2>, kMinutesPerQuarterHour> age_count{};
+  double level_sum = 0, level_squares = 0, all = 0, paid_sum = 0;
+  for_each_step(market, days, [&](const MarketStep& step) {
+    const bool is_older = situation_of(step).row_quarter_hour != step.quarter_hour;
+    ++age_count[step.minute_of_quarter_hour][is_older ? 1 : 0];
+    sum[step.quarter_hour] += step.paid_eur_per_mwh;
+    count[step.quarter_hour] += 1;
+    level_sum += level_of(step);
+    level_squares += level_of(step) * level_of(step);
+    paid_sum += step.paid_eur_per_mwh;
+    all += 1;
+  });
+  level_mean_ = level_sum / all;
+  for (int minute = 0; minute < kMinutesPerQuarterHour; ++minute) {
+    row_age_[minute] = age_count[minute][1] > age_count[minute][0] ? 1 : 0;
+  }
+  for (int q = 0; q < kQuarterHours; ++q) {
+    double weighted = 0, weight = 0;
+    for (int d = -kSmoothedQuarterHours; d <= kSmoothedQuarterHours; ++d) {
+      const double k = kernel(d, options_.hour_smoothing);
+      const int near = (q + d + kQuarterHours) % kQuarterHours;
+      weighted += k * sum[near];
+      weight += k * count[near];
+    }
+    usual_[q] = weight > 0 ? weighted / weight : paid_sum / all;
+  }
+  const double deviation =
+      std::sqrt(std::max(0.0, level_squares / all - level_mean_ * level_mean_));
+  const int last = std::max(1, options_.levels) - 1;
+  for (int i = 0; i <= last; ++i) {
+    const double place = last == 0 ? 0.0 : 2.0 * i / last - 1;
+    levels_.push_back(level_mean_ + place * kLevelReach * std::max(1.0, deviation));
+  }
+}
+
+void StochasticProgram::fit_bins(const MarketSteps& market, const std::vector<MarketDay>& days) {
+  std::vector<double> deviations;
+  for_each_step(market, days, [&](const MarketStep& step) {
+    const Situation at = situation_of(step);
+    deviations.push_back(at.price_eur_per_mwh - usual(at.row_quarter_hour, at.level_eur_per_mwh));
+  });
+  std::ranges::sort(deviations);
+  const std::size_t n = deviations.size();
+  for (int b = 0; b < kBins; ++b) {
+    const std::size_t first = n * static_cast<std::size_t>(b) / kBins;
+    const std::size_t end = std::max(first + 1, n * static_cast<std::size_t>(b + 1) / kBins);
+    if (b > 0) bin_edges_.push_back(deviations[first]);
+    double sum = 0;
+    for (std::size_t i = first; i < end; ++i) sum += deviations[i];
+    bin_centres_.push_back(sum / static_cast<double>(end - first));
+  }
+}
+
+void StochasticProgram::count_chain(const MarketSteps& market, const std::vector<MarketDay>& days) {
+  constexpr int kCells = kPhases * kBins;
+  Eigen::MatrixXd next = Eigen::MatrixXd::Zero(kCells, kBins);
+  Eigen::VectorXd paid = Eigen::VectorXd::Zero(kCells), visits = Eigen::VectorXd::Zero(kCells);
+  int cell = -1;  // of the step before, when this one follows it
+  std::int64_t follows_utc_s = 0;
+  for_each_step(market, days, [&](const MarketStep& step) {
+    const Situation at = situation_of(step);
+    const double level = at.level_eur_per_mwh;
+    const int bin = bin_of(at.price_eur_per_mwh - usual(at.row_quarter_hour, level));
+    if (cell >= 0 && step.utc_s == follows_utc_s) next(cell, bin) += 1;
+    cell = step.half_hour_phase * kBins + bin;
+    follows_utc_s = step.utc_s + kSecondsPerStep;
+    visits[cell] += 1;
+    paid[cell] += step.paid_eur_per_mwh - usual_paid(at.step_of_day, level);
+  });
+  paid_.assign(kCells, 0.0);
+  transition_.assign(kCells * kBins, 0.0F);
+  for (int phase = 0; phase < kPhases; ++phase) {
+    for (int b = 0; b < kBins; ++b) {
+      const int to = phase * kBins + b;
+      Eigen::RowVectorXd smoothed = Eigen::RowVectorXd::Zero(kBins);
+      double sum = 0, weight = 0;
+      for (int d = -kSmoothedBins; d <= kSmoothedBins; ++d) {
+        if (b + d < 0 || b + d >= kBins) continue;
+        const double k = kernel(d, options_.bin_smoothing);
+        smoothed += k * next.row(to + d);
+        sum += k * paid[to + d];
+        weight += k * visits[to + d];
+      }
+      const double total = smoothed.sum();
+      if (total <= 0) smoothed[b] = 1;  // never seen: it stays
+      paid_[to] = weight > 0 ? sum / weight : bin_centres_[b];
+      for (int n = 0; n < kBins; ++n) {
+        transition_[to * kBins + n] = static_cast<float>(smoothed[n] / std::max(total, 1.0));
+      }
+    }
+  }
+}
+
+void StochasticProgram::solve() {
+  const std::vector<GridMove> moves = tabulate_moves(battery_, grid_);
+  continuation_.assign(levels_.size() * kStepsPerDay * kBins * kSocPoints, 0.0F);
+  for (std::size_t l = 0; l < levels_.size(); ++l) {
+    Rows value = Rows::Zero(kBins, kSocPoints);
+    for (int step = kDays * kStepsPerDay - 1; step >= 0; --step) {
+      const int of_day = step % kStepsPerDay;
+      const int phase = of_day % kStepsPerPhaseCycle;
+      Eigen::Map<Rows> ahead(const_cast<float*>(continuation(static_cast<int>(l), of_day, 0)),
+                             kBins, kSocPoints);
+      const Eigen::Map<const Rows> chain(&transition_[phase * kBins * kBins], kBins, kBins);
+      ahead.noalias() = static_cast<float>(options_.gamma) * (chain * value);
+      const double usual_price = usual_paid(of_day, levels_[l]);
+      for (int b = 0; b < kBins; ++b) {
+        const double price = paid_[phase * kBins + b] + usual_price;
+        value.row(b) = ahead.row(b);  // idle
+        for (const Action action : {Action::kDischarge, Action::kCharge}) {
+          const GridMove* move = &moves[static_cast<int>(action) * kSocPoints];
+          const auto full = static_cast<double>(
+              action == Action::kCharge ? move[0].energy_mwh : move[kSocPoints - 1].energy_mwh);
+          const auto cost = static_cast<float>(exchange_cost_eur(battery_, full, price) / full);
+          for (int i = 0; i < kSocPoints; ++i) {
+            const float worth = interpolate(&ahead(b, 0), move[i].next) - move[i].energy_mwh * cost;
+            value(b, i) = std::max(value(b, i), worth);
+          }
+        }
+      }
+    }
+  }
+}
+
+std::array<double, kActionCount> StochasticProgram::action_values(const Situation& at,
+                                                                  double soc_frac) const {
+  const double level = at.level_eur_per_mwh;
+  const Between bins = between_bins(at.price_eur_per_mwh - usual(at.row_quarter_hour, level));
+  const Between anchors = between_levels(level);
+  const int phase = at.step_of_day % kPhases;
+  const double* paid = &paid_[phase * kBins + bins.lower];
+  const double price =
+      paid[0] + bins.weight * (paid[1] - paid[0]) + usual_paid(at.step_of_day, level);
+  std::array<double, kActionCount> worth{};
+  for (int a = 0; a < kActionCount; ++a) {
+    const double wanted_w = power_sign(static_cast<Action>(a)) * battery_.power_w_max;
+    const BatteryStep moved = battery_step(battery_, soc_frac, wanted_w, kHoursPerStep);
+    const SocGrid::Position soc = grid_.position(moved.soc_frac);
+    double ahead = 0;
+    for (int l = 0; l < 2; ++l) {
+      const double level_weight = l == 0 ? 1 - anchors.weight : anchors.weight;
+      if (level_weight == 0) continue;
+      for (int b = 0; b < 2; ++b) {
+        const double weight = level_weight * (b == 0 ? 1 - bins.weight : bins.weight);
+        ahead +=
+            weight * double{interpolate(
+                         continuation(anchors.lower + l, at.step_of_day, bins.lower + b), soc)};
+      }
+    }
+    worth[a] = ahead - exchange_cost_eur(battery_,
+                                         moved.power_w / kWattsPerMegawatt * kHoursPerStep, price);
+  }
+  return worth;
+}
+
+void StochasticProgram::values(const Situation& at, float* value_eur) const {
+  for (int i = 0; i < kSocPoints; ++i) {
+    const auto worth = action_values(at, grid_.at(i));
+    value_eur[i] = static_cast<float>(*std::ranges::max_element(worth));
+  }
+}
+
+}  // namespace bess

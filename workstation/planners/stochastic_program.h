@@ -1,0 +1,122 @@
+// Stochastic dynamic program [SPEC 8]: the baseline that knows the hour and the price level, and the exact
+// teacher. The newest price is split into what is usual and a deviation:
+//
+//   usual(q, level) = mean paid price of quarter-hour q, smoothed over the day + w (level - its mean)
+//   deviation       = newest price - usual(quarter-hour that the price belongs to, level)
+//
+// Deviations are a Markov chain over 48 quantile bins, counted by phase of the half-hour and pooled over
+// all hours, with the mean deviation paid in each bin. The value of stored energy follows by backward
+// induction over a day of 720 steps that repeats for ever, for each of a few price levels.
+// All of it is fitted on the days given; `level` is published by then, so nothing looks ahead.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "shared/battery_model.h"
+#include "workstation/base/binary_file.h"
+#include "workstation/env/policy.h"
+#include "workstation/planners/soc_grid.h"
+
+namespace bess {
+
+struct StochasticProgramOptions {
+  double level_weight = 0.6;   ///< w; 0: the usual price is the hour's alone
+  int levels = 5;              ///< price levels that values are found for
+  double gamma = 0.9995;       ///< discount a step
+  double hour_smoothing = 4;   ///< of the usual price, quarter-hours
+  double bin_smoothing = 0.5;  ///< of the counts, bins
+};
+
+class StochasticProgram {
+ public:
+  static constexpr int kPhases = 15;
+  static constexpr int kBins = 48;
+  static constexpr int kSocPoints = 121;
+  static constexpr int kQuarterHours = 96;
+
+  /// What a decision is made on, apart from the SoC.
+  struct Situation {
+    int step_of_day;           ///< 0..719, local
+    int row_quarter_hour;      ///< 0..95, of the newest price
+    double price_eur_per_mwh;  ///< newest price
+    double level_eur_per_mwh;  ///< trailing level
+  };
+
+  /// Fits on `days` of `market`; throws UserError when there are none.
+  StochasticProgram(const MarketSteps& market, const std::vector<MarketDay>& days,
+                    const BatteryParameters& battery, const StochasticProgramOptions& options = {});
+
+  /// What was fitted, without what follows from it: reading solves again, to the same bits.
+  void save(BinaryWriter& out) const;
+  explicit StochasticProgram(BinaryReader& in);
+
+  [[nodiscard]] static Situation situation_of(const MarketStep& step);
+  /// The quarter-hour that the newest price belongs to at this minute of a quarter-hour, as it mostly was on
+  /// the days fitted on: in the first minutes it is still the one before.
+  [[nodiscard]] int row_quarter_hour(int quarter_hour, int minute_of_quarter_hour) const {
+    return (quarter_hour - row_age_[static_cast<std::size_t>(minute_of_quarter_hour)] +
+            kQuarterHours) %
+           kQuarterHours;
+  }
+  /// What each action is worth, EUR until ever, up to a constant: [discharge, idle, charge].
+  [[nodiscard]] std::array<double, kActionCount> action_values(const Situation& at,
+                                                               double soc_frac) const;
+  /// Value of the SoC grid's points [kSocPoints], EUR, for shaping rewards.
+  void values(const Situation& at, float* value_eur) const;
+  [[nodiscard]] double mean_level_eur_per_mwh() const { return level_mean_; }
+  [[nodiscard]] const BatteryParameters& battery() const { return battery_; }
+
+ private:
+  /// How far between two neighbours of a table something lies.
+  struct Between {
+    int lower;
+    double weight;  ///< of the upper neighbour
+  };
+  [[nodiscard]] double usual(int quarter_hour, double level) const;
+  [[nodiscard]] double usual_paid(int step_of_day, double level) const;
+  [[nodiscard]] int bin_of(double deviation) const;
+  [[nodiscard]] Between between_bins(double deviation) const;
+  [[nodiscard]] Between between_levels(double level) const;
+  void fit_usual(const MarketSteps& market, const std::vector<MarketDay>& days);
+  void fit_bins(const MarketSteps& market, const std::vector<MarketDay>& days);
+  void count_chain(const MarketSteps& market, const std::vector<MarketDay>& days);
+  void solve();
+  [[nodiscard]] const float* continuation(int level, int step_of_day, int bin) const {
+    return &continuation_[((static_cast<std::size_t>(level) * kStepsPerDay + step_of_day) * kBins +
+                           bin) *
+                          kSocPoints];
+  }
+
+  BatteryParameters battery_;
+  StochasticProgramOptions options_;
+  SocGrid grid_;
+  std::array<double, kQuarterHours> usual_{};  ///< EUR/MWh at the mean level
+  std::array<int, kMinutesPerQuarterHour>
+      row_age_{};  ///< quarter-hours ago, by minute of the quarter-hour
+  double level_mean_ = 0;
+  std::vector<double> levels_;       ///< that values are known for, ascending
+  std::vector<double> bin_edges_;    ///< [47] ascending
+  std::vector<double> bin_centres_;  ///< [48] mean deviation of each
+  std::vector<double> paid_;         ///< [phase][bin] mean paid deviation
+  std::vector<float> transition_;    ///< [phase][bin][next bin]
+  std::vector<float>
+      continuation_;  ///< [level][step][bin][SoC point] discounted expected value, EUR
+};
+
+class StochasticProgramPolicy final : public Policy {
+ public:
+  StochasticProgramPolicy(const MarketSteps& market, const std::vector<MarketDay>& days,
+                          const BatteryParameters& battery,
+                          const StochasticProgramOptions& options = {})
+      : program_(market, days, battery, options) {}
+  [[nodiscard]] Action decide(const MarketStep& step, std::size_t, double soc_frac) const override {
+    const auto worth = program_.action_values(StochasticProgram::situation_of(step), soc_frac);
+    return argmax_action(worth.data());
+  }
+
+ private:
+  StochasticProgram program_;
+};
+
+}  // namespace bess
