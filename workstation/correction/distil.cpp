@@ -37,8 +37,8 @@ void fill_distinct(std::vector<int>& axis, int count, Draw draw) {
 }  // namespace
 
 Matrix visited_inputs(const Teacher& teacher, const MarketSteps& market,
-                      const BatteryParameters& battery, std::uint64_t seed) {
-  Random random(derive_seed(seed, kSeedVisited));
+                      const BatteryParameters& battery, const DistilOptions& options) {
+  Random random(derive_seed(options.seed, kSeedVisited));
   const std::vector<MarketDay> training = market.days_of(Split::kTrain);
   std::size_t steps = 0;
   for (const MarketDay& day : training) steps += day.step_count;
@@ -48,6 +48,7 @@ Matrix visited_inputs(const Teacher& teacher, const MarketSteps& market,
   struct Episode {
     std::span<const MarketStep> steps;
     double soc_frac;
+    double shift_eur_per_mwh;
   };
   std::vector<Episode> episodes;
   std::size_t longest = 0;
@@ -55,7 +56,10 @@ Matrix visited_inputs(const Teacher& teacher, const MarketSteps& market,
     for (const MarketDay& day : training) {
       const double soc =
           battery.soc_min_frac + random.uniform() * (battery.soc_max_frac - battery.soc_min_frac);
-      episodes.push_back({market.of(day), soc});
+      // Another year lies elsewhere: its levels are visited too, where the teacher knows them.
+      const bool moves = pass > 0 && teacher.program != nullptr;
+      const double shift = moves ? options.level_shift_eur_per_mwh * random.normal() : 0;
+      episodes.push_back({market.of(day), soc, shift});
       longest = std::max(longest, day.step_count);
     }
   }
@@ -64,8 +68,12 @@ Matrix visited_inputs(const Teacher& teacher, const MarketSteps& market,
     const Eigen::Index first = at;
     for (const Episode& episode : episodes) {
       if (step >= episode.steps.size()) continue;
-      write_input(network_context(episode.steps[step], teacher.price_map, teacher.context),
-                  episode.soc_frac, visited.col(at++).data());
+      MarketStep seen = episode.steps[step];
+      seen.observed_eur_per_mwh += episode.shift_eur_per_mwh;
+      seen.level_centi_eur_per_mwh +=
+          static_cast<std::int32_t>(std::lround(episode.shift_eur_per_mwh * kCentiPerEur));
+      write_input(network_context(seen, teacher.price_map, teacher.context), episode.soc_frac,
+                  visited.col(at++).data());
     }
     const Matrix values = teacher.action_values(visited.middleCols(first, at - first), tile);
     Eigen::Index column = 0;

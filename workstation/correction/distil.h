@@ -17,9 +17,19 @@
 
 namespace bess {
 
+/// How property 3 comes about.
+enum class CorrectionMethod : std::uint8_t {
+  kConstruction,  ///< signs of weights: no student violates it (monotone_distil.h)
+  kLayer,  ///< the paper's: training through the optimisation layer, until a student does not
+};
+
 struct DistilOptions {
+  CorrectionMethod method = CorrectionMethod::kConstruction;
   bool correct = true;  ///< false: plain distillation, for comparison
   CorrectionOptions correction;
+  double fidelity = 1;  ///< construction: of the cross-entropy beside the expected regret
+  double level_shift_eur_per_mwh =
+      60;               ///< construction: deviation of what is added to a visited day's prices
   double omega = 1e-4;  ///< the paper's trade-off: larger follows the teacher and violates more
   double temperature_eur_per_h = 100;  ///< of the teacher's softmax over action values
   int epochs = 600;
@@ -28,7 +38,7 @@ struct DistilOptions {
   int lattice_prices = 32;
   int lattice_socs = 16;
   int visited_per_epoch = 32'768;
-  double learning_rate = 2e-3;  ///< falling to a tenth along a cosine
+  double learning_rate = 5e-3;  ///< falling to a tenth along a cosine
   int repair_rounds = 12;       ///< proofs, each followed by counterexample training if it fails
   int repair_epochs = 40;
   std::uint64_t seed = 1;
@@ -38,9 +48,11 @@ struct DistilOptions {
 inline constexpr MlpShape kStudentShape{kStudentInputs, kStudentHidden1, kStudentHidden2,
                                         kActionCount};
 
-/// Inputs of states that the teacher's policy meets on the training days, with some exploration.
+/// Inputs of states that the teacher's policy meets on the training days, with some exploration. All but the
+/// first pass move the prices of each day when the teacher knows such days: a stochastic program does, a
+/// network knows what it was shown.
 Matrix visited_inputs(const Teacher& teacher, const MarketSteps& market,
-                      const BatteryParameters& battery, std::uint64_t seed);
+                      const BatteryParameters& battery, const DistilOptions& options);
 
 struct DistilPoint {
   int epoch;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <vector>
 
 #include "workstation/correction/distil.h"
@@ -19,8 +20,16 @@ struct CorrectionResult {
 
 /// Never throws for a failed proof: the verdict says it. With options.correct false there is one
 /// round and no repair.
+/// `score` tells what a student earns on validation days; without it the last one is taken.
+using StudentScore = std::function<double(const StudentNet&)>;
 CorrectionResult correct_and_prove(const Teacher& teacher, const Matrix& visited,
                                    const DistilOptions& options,
-                                   const std::atomic<bool>& interrupted);
+                                   const std::atomic<bool>& interrupted,
+                                   const StudentScore& score = {});
+
+/// Profit on the validation days of `market`, SoC carried over: a day that begins anew flatters a student
+/// that empties the battery every night.
+StudentScore validation_score(const MarketSteps& market, const BatteryParameters& battery,
+                              double initial_soc_frac);
 
 }  // namespace bess

@@ -26,7 +26,9 @@ Range affine_range(const Eigen::MatrixXd& w, const Eigen::VectorXd& b, const Ran
   return {positive * x.low + negative * x.high + b, positive * x.high + negative * x.low + b};
 }
 
-Range relu_range(const Range& x) { return {x.low.cwiseMax(0.0), x.high.cwiseMax(0.0)}; }
+Range relu_range(const Range& x, double saturation) {
+  return {x.low.cwiseMax(0.0).cwiseMin(saturation), x.high.cwiseMax(0.0).cwiseMin(saturation)};
+}
 
 /// Largest f with max|w| * 2^f inside int16 and every accumulator at scale 2^(f + input_bits)
 /// inside.
@@ -42,8 +44,11 @@ int weight_bits(const Eigen::MatrixXd& w, const Eigen::VectorXd& b, const Range&
   fail("the student's weights are too large for int16; distil again with a smaller learning rate");
 }
 
-/// Largest scale at which the activation's upper bound stays inside int16.
-int activation_bits(const Range& x) {
+/// Largest scale at which the activation's upper bound stays inside int16; where activations saturate, the
+/// one at which int16 ends there too.
+int activation_bits(const Range& x, double saturation) {
+  constexpr int kInt16Bits = 15;
+  if (std::isfinite(saturation)) return kInt16Bits - static_cast<int>(std::log2(saturation));
   const double highest = std::max(x.high.maxCoeff(), 1e-6);
   if (highest > INT16_MAX) {
     fail(
@@ -96,7 +101,8 @@ std::vector<std::int64_t> activation_bound(const Affine<kInputs, kOutputs>& laye
 
 }  // namespace
 
-StudentNet quantise_student(const Parameters& student, const PriceMap& price_map) {
+StudentNet quantise_student(const Parameters& student, const PriceMap& price_map,
+                            double saturation) {
   const ConstMlp mlp(kStudentShape, student.data());
   const Eigen::MatrixXd w1 = mlp.w1.cast<double>();
   const Eigen::MatrixXd w2 = mlp.w2.cast<double>();
@@ -105,17 +111,17 @@ StudentNet quantise_student(const Parameters& student, const PriceMap& price_map
   const Eigen::VectorXd b2 = mlp.b2.cast<double>();
   const Eigen::VectorXd b3 = mlp.b3.cast<double>();
   const Range input{Eigen::VectorXd::Zero(kStudentInputs), Eigen::VectorXd::Ones(kStudentInputs)};
-  const Range hidden1 = relu_range(affine_range(w1, b1, input));
-  const Range hidden2 = relu_range(affine_range(w2, b2, hidden1));
+  const Range hidden1 = relu_range(affine_range(w1, b1, input), saturation);
+  const Range hidden2 = relu_range(affine_range(w2, b2, hidden1), saturation);
 
   StudentNet net{};
   std::ranges::copy(price_map.table(), net.price_map);
   const int bits1 = weight_bits(w1, b1, input, kInputBits);
-  const int hidden1_bits = std::min(activation_bits(hidden1), bits1 + kInputBits);
+  const int hidden1_bits = std::min(activation_bits(hidden1, saturation), bits1 + kInputBits);
   quantise_layer(w1, b1, bits1, kInputBits, net.layer1);
   net.relu1.shift = bits1 + kInputBits - hidden1_bits;
   const int bits2 = weight_bits(w2, b2, hidden1, hidden1_bits);
-  const int hidden2_bits = std::min(activation_bits(hidden2), bits2 + hidden1_bits);
+  const int hidden2_bits = std::min(activation_bits(hidden2, saturation), bits2 + hidden1_bits);
   quantise_layer(w2, b2, bits2, hidden1_bits, net.layer2);
   net.relu2.shift = bits2 + hidden1_bits - hidden2_bits;
   const int bits3 = weight_bits(w3, b3, hidden2, hidden2_bits);

@@ -3,6 +3,8 @@
 // lattice input.
 #pragma once
 
+#include <limits>
+
 #include "shared/nn/student_net.h"
 #include "workstation/nn/mlp.h"
 #include "workstation/rl/price_map.h"
@@ -10,7 +12,10 @@
 namespace bess {
 
 /// Throws UserError when the weights are so large that no scale fits.
-StudentNet quantise_student(const Parameters& student, const PriceMap& price_map);
+/// `saturation`: where the float student's hidden activations were cut off, a power of two; infinite for
+/// plain ReLU, whose integer activations never reach their end.
+StudentNet quantise_student(const Parameters& student, const PriceMap& price_map,
+                            double saturation = std::numeric_limits<double>::infinity());
 
 /// Largest magnitude that any int32 sum of the net can reach over all inputs, rounding included.
 std::int64_t accumulator_bound(const StudentNet& net);

@@ -11,8 +11,9 @@ namespace bess {
 namespace {
 
 constexpr const char* kFormat = "bess-student";
-constexpr int kFormatVersion = 2;
-constexpr int kVersionWithoutCounts = 1;  ///< it had the thresholds beside the weights
+constexpr int kFormatVersion = 3;
+constexpr int kVersionWithoutCounts = 1;   ///< it had the thresholds beside the weights
+constexpr int kVersionWithoutContext = 2;  ///< it, too, was by month
 
 /// One named array of the net. All arrays are listed once, for reading and for writing.
 template <typename Net, typename Visit>
@@ -48,6 +49,21 @@ Certificate parse_certificate(const JsonReader& in, const std::string& name) {
           .violations_property_1 = count("violations_property_1"),
           .violations_property_2 = count("violations_property_2"),
           .violations_property_3 = count("violations_property_3")};
+}
+
+ContextClasses parse_context_classes(const JsonReader& in, const std::string& name) {
+  ContextClasses classes;
+  const std::string kind = in.text("context");
+  if (kind == context_name(ContextKind::kLevel)) {
+    classes.kind = ContextKind::kLevel;
+  } else if (kind != context_name(ContextKind::kMonth)) {
+    fail("{}: \"context\" is neither \"level\" nor \"month\"", name);
+  }
+  in.wholes("level_edge_eur_per_mwh", std::span(classes.level_edge_eur_per_mwh));
+  if (!classes.is_valid()) {
+    fail("{}: \"level_edge_eur_per_mwh\" must rise strictly by level, and be 0 by month", name);
+  }
+  return classes;
 }
 
 Json certificate_json(const Certificate& c) {
@@ -87,7 +103,9 @@ void save_student(const std::filesystem::path& path, const StudentFile& student)
                             {"architecture_hash", student_architecture_hash()},
                             {"weights_hash", student_weights_hash(student.net)},
                             {"provenance", student.provenance},
-                            {"certificate", certificate_json(student.certificate)}});
+                            {"certificate", certificate_json(student.certificate)},
+                            {"context", context_name(student.net.context.kind)}});
+  json.set("level_edge_eur_per_mwh", std::span(student.net.context.level_edge_eur_per_mwh));
   visit_arrays(student.net, [&json](const char* key, auto values) { json.set(key, values); });
   write_file(path, json.text());
 }
@@ -104,8 +122,9 @@ StudentFile parse_student(const std::string& text, const std::string& name) {
   const JsonReader in(json.value(), name, "a student file");
   if (in.text("format") != kFormat) fail("{}: \"format\" is not \"{}\"", name, kFormat);
   const double version = in.number("version");
-  if (version != kFormatVersion && version != kVersionWithoutCounts) {
-    fail("{}: version {}, this program reads {} and {}; distil again", name, version,
+  if (version != kFormatVersion && version != kVersionWithoutContext &&
+      version != kVersionWithoutCounts) {
+    fail("{}: version {}, this program reads {} to {}; distil again", name, version,
          kVersionWithoutCounts, kFormatVersion);
   }
   if (in.number("architecture_hash") != student_architecture_hash()) {
@@ -113,6 +132,7 @@ StudentFile parse_student(const std::string& text, const std::string& name) {
   }
   StudentFile student{};
   visit_arrays(student.net, [&in](const char* key, auto values) { in.wholes(key, values); });
+  if (version == kFormatVersion) student.net.context = parse_context_classes(in, name);
   check_net(student.net, name);
   if (in.number("weights_hash") != student_weights_hash(student.net)) {
     fail("{}: damaged: the weights do not match their hash; copy it again or distil again", name);

@@ -20,8 +20,8 @@ struct StudentFile {
 void save_student(const std::filesystem::path& path, const StudentFile& student);
 
 /// Throws UserError naming the file and what is wrong: not JSON, another architecture, a number out
-/// of range, a hash that differs, a net that check_net refuses. Reads the files of version 1 too, which
-/// have thresholds but no counts.
+/// of range, a hash that differs, a net that check_net refuses. Reads the files of before too: version 1
+/// has thresholds but no counts, 1 and 2 are by month.
 StudentFile load_student(const std::filesystem::path& path);
 StudentFile parse_student(const std::string& text, const std::string& name);
 

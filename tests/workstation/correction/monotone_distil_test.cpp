@@ -1,0 +1,130 @@
+// Distillation inside the bounds learns from its teacher, obeys the thresholds, and repeats to the bit.
+#include "workstation/correction/monotone_distil.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/small_market.h"
+#include "tests/support/student_nets.h"
+#include "workstation/env/context_fit.h"
+#include "workstation/student/correct_and_prove.h"
+#include "workstation/student/student_policy.h"
+
+namespace bess {
+namespace {
+
+const std::atomic<bool> kRunning{false};
+
+struct School {
+  MarketSteps market = make_market_steps(small_series(), {});
+  Teacher teacher;
+  DistilOptions options;
+  Matrix visited;
+  LessonStates lessons;
+
+  School() : teacher(make_teacher()) {
+    options.epochs = 12;
+    options.seed = 5;
+    visited = visited_inputs(teacher, market, {}, options);
+    lessons = make_lessons(teacher, visited, options);
+  }
+  [[nodiscard]] Teacher make_teacher() const {
+    std::vector<double> prices;
+    for (const MarketStep& step : market.steps) prices.push_back(step.observed_eur_per_mwh);
+    return {Method::kSdp,
+            {},
+            {},
+            PriceMap::fit(prices),
+            {},
+            "program",
+            std::make_shared<const StochasticProgram>(market, market.days_of(Split::kTrain),
+                                                      BatteryParameters{}),
+            fit_context_classes(market, ContextKind::kLevel)};
+  }
+};
+
+const School& school() {
+  static const School school;
+  return school;
+}
+
+TEST(Lessons, TellWhatTheTeacherWouldDoAndWhatOthersLose) {
+  const LessonStates& lessons = school().lessons;
+  ASSERT_EQ(lessons.inputs.cols(), lessons.teacher_frac.cols());
+  ASSERT_GT(lessons.inputs.cols(), school().visited.cols());
+  MlpTile tile;
+  for (Eigen::Index c = 0; c < lessons.inputs.cols(); c += 997) {
+    const Matrix values = school().teacher.action_values(lessons.inputs.middleCols(c, 1), tile);
+    const auto best = static_cast<int>(argmax_action(values.data()));
+    EXPECT_EQ(lessons.regret(best, c), 0);
+    EXPECT_NEAR(lessons.teacher_frac.col(c).sum(), 1, 1e-5);
+    EXPECT_EQ(lessons.teacher_frac.col(c).maxCoeff(), lessons.teacher_frac(best, c));
+    EXPECT_GE(lessons.inputs.col(c).minCoeff(), 0);
+    EXPECT_LE(lessons.inputs.col(c).maxCoeff(), 1);
+  }
+}
+
+TEST(MonotoneDistiller, RegretFallsAndTheBoundsHold) {
+  MonotoneDistiller distiller(school().teacher, school().lessons, school().options);
+  const SignBounds bounds = SignBounds::monotone();
+  distiller.run(12, {}, kRunning,
+                [&](double) { EXPECT_TRUE(bounds.contain(distiller.parameters())); });
+  const auto& curve = distiller.curve();
+  ASSERT_EQ(curve.size(), 12U);
+  EXPECT_LT(curve.back().visited_loss, 0.5 * curve.front().visited_loss);
+}
+
+TEST(MonotoneDistiller, SameSeedAndThreadsGiveTheSameBits) {
+  for (const int threads : {1, 2}) {
+    DistilOptions options = school().options;
+    options.threads = threads;
+    Parameters results[2];
+    for (Parameters& result : results) {
+      MonotoneDistiller distiller(school().teacher, school().lessons, options);
+      distiller.run(2, {}, kRunning, [](double) {});
+      result = distiller.parameters();
+    }
+    EXPECT_EQ(results[0], results[1]);
+    EXPECT_TRUE(results[0].allFinite());
+  }
+}
+
+TEST(MonotoneDistiller, InterruptionReturns) {
+  MonotoneDistiller distiller(school().teacher, school().lessons, school().options);
+  const std::atomic<bool> interrupted{true};
+  int looks = 0;
+  distiller.run(1'000'000, {}, interrupted, [&](double) { ++looks; });
+  EXPECT_EQ(looks, 0);
+  EXPECT_TRUE(distiller.curve().empty());
+}
+
+/// Thresholds inside the market's prices, where the teacher would often do something else.
+TEST(CorrectAndProve, ByConstructionTheThresholdsAreLearntAndTheStudentEarns) {
+  DistilOptions options = school().options;
+  options.epochs = 60;
+  options.repair_epochs = 30;
+  options.correction.thresholds = {-20, 260};
+  const CorrectionResult result =
+      correct_and_prove(school().teacher, school().visited, options, kRunning,
+                        validation_score(school().market, {}, 0.5));
+  ASSERT_TRUE(std::holds_alternative<ProvedStudent>(result.verdict));
+  EXPECT_LE(result.violations_by_round.size(), 3U);
+  const StudentNet& net = student_of(result.verdict).net;
+  EXPECT_EQ(net.context, school().teacher.context);
+  Random random(3);
+  for (int i = 0; i < 5'000; ++i) {
+    LatticeState s = random_state(random);
+    s.price_eur_per_mwh = static_cast<std::int16_t>(-500 + static_cast<int>(random.index(481)));
+    EXPECT_EQ(net.decide(s), Action::kCharge);
+    s.price_eur_per_mwh = static_cast<std::int16_t>(260 + static_cast<int>(random.index(1'241)));
+    EXPECT_EQ(net.decide(s), Action::kDischarge);
+  }
+  StudentPolicy student(net);
+  RuleBasedPolicy rule(kPaperRuleLowEurPerMwh, kPaperRuleHighEurPerMwh);
+  const auto days = school().market.days_of(Split::kTest);
+  const EvaluationOptions carried{.battery = {}, .carry_soc = true};
+  EXPECT_GT(evaluate(school().market, days, student, carried).profit_eur_per_day_per_mwh(),
+            evaluate(school().market, days, rule, carried).profit_eur_per_day_per_mwh());
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,254 @@
+#include "workstation/correction/monotone_distil.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "workstation/base/progress.h"
+#include "workstation/correction/policy_loss.h"
+#include "workstation/rl/transition.h"
+
+namespace bess {
+namespace {
+
+enum Seed : std::uint64_t { kSeedStudent = 21, kSeedBatches = 22, kSeedLessons = 23 };
+
+constexpr float kLeak = 0.05F;  ///< of the gradient through a saturated unit: it must find back
+constexpr double kRandomShare = 0.25;  ///< lessons from anywhere, per visited one
+constexpr double kAverageDecay = 0.998;
+constexpr int kBatch = 2048;
+constexpr int kThresholdStates = 64;  ///< per batch and threshold
+
+/// 1 inside the linear part, the leak outside.
+void mask_gradient(const Matrix& sum, Matrix& gradient) {
+  gradient.array() *= (sum.array() > 0.0F && sum.array() < static_cast<float>(kSaturation))
+                          .select(Eigen::ArrayXXf::Ones(sum.rows(), sum.cols()), kLeak);
+}
+
+void saturate(const Matrix& sum, Matrix& activation) {
+  activation = sum.cwiseMax(0.0F).cwiseMin(static_cast<float>(kSaturation));
+}
+
+}  // namespace
+
+LessonStates make_lessons(const Teacher& teacher, const Matrix& visited,
+                          const DistilOptions& options) {
+  Random random(derive_seed(options.seed, kSeedLessons));
+  const auto anywhere =
+      static_cast<Eigen::Index>(kRandomShare * static_cast<double>(visited.cols()));
+  LessonStates lessons;
+  lessons.inputs.resize(kNetworkInputs, visited.cols() + anywhere);
+  lessons.inputs.leftCols(visited.cols()) = visited;
+  for (Eigen::Index i = 0; i < anywhere; ++i) {
+    float* x = lessons.inputs.col(visited.cols() + i).data();
+    const Eigen::Index from =
+        static_cast<Eigen::Index>(random.index(static_cast<std::uint64_t>(visited.cols())));
+    const int price = kLatticePriceMinEurPerMwh + static_cast<int>(random.index(kPriceCount));
+    const float mapped = random.uniform() < 0.5 ? visited(4, from) : teacher.price_map(price);
+    write_input(network_context(static_cast<int>(random.index(kMinuteOfQuarterHourCount)),
+                                static_cast<int>(random.index(kQuarterHourCount)),
+                                1 + static_cast<int>(random.index(kContextClassCount)), mapped),
+                0, x);
+    x[3] = scaled_input(static_cast<int>(random.index(kSocCount)), kSocScale);
+  }
+  const double inverse_temperature = 1 / (options.temperature_eur_per_h * double{kRewardScale});
+  MlpTile tile;
+  constexpr Eigen::Index kTile = 1024;
+  lessons.teacher_frac.resize(kActionCount, lessons.inputs.cols());
+  lessons.regret.resize(kActionCount, lessons.inputs.cols());
+  for (Eigen::Index at = 0; at < lessons.inputs.cols(); at += kTile) {
+    const Eigen::Index count = std::min(kTile, lessons.inputs.cols() - at);
+    const Eigen::MatrixXd values =
+        teacher.action_values(lessons.inputs.middleCols(at, count), tile).cast<double>() *
+        inverse_temperature;
+    lessons.teacher_frac.middleCols(at, count) = log_softmax(values).array().exp().cast<float>();
+    for (Eigen::Index c = 0; c < count; ++c) {
+      lessons.regret.col(at + c) = (values.col(c).maxCoeff() - values.col(c).array()).cast<float>();
+    }
+  }
+  return lessons;
+}
+
+MonotoneDistiller::MonotoneDistiller(const Teacher& teacher, const LessonStates& lessons,
+                                     const DistilOptions& options)
+    : teacher_(teacher),
+      lessons_(lessons),
+      options_(options),
+      random_(derive_seed(options.seed, kSeedBatches)),
+      bounds_(options.correct ? SignBounds::monotone() : SignBounds::none()),
+      student_(initial_parameters(kStudentShape, derive_seed(options.seed, kSeedStudent))),
+      average_(student_),
+      adam_(kStudentShape.parameter_count()),
+      team_(options.threads),
+      workers_(static_cast<std::size_t>(options.threads)) {
+  bounds_.reflect(student_);
+  spread_activations();
+  average_ = student_;
+}
+
+/// Moves and scales each hidden unit so that over the lessons its sum has mean 1/2 and deviation 1/2:
+/// bent where the states are.
+void MonotoneDistiller::spread_activations() {
+  Worker& worker = workers_.front();
+  const Eigen::Index count = std::min<Eigen::Index>(4096, lessons_.inputs.cols());
+  worker.x.resize(kNetworkInputs, count);
+  for (Eigen::Index c = 0; c < count; ++c) {
+    worker.x.col(c) = lessons_.inputs.col(static_cast<Eigen::Index>(
+        random_.index(static_cast<std::uint64_t>(lessons_.inputs.cols()))));
+  }
+  MutableMlp net(kStudentShape, student_.data());
+  const auto spread = [count](const Matrix& sum, auto& weight, auto& bias) {
+    for (Eigen::Index unit = 0; unit < sum.rows(); ++unit) {
+      const float mean = sum.row(unit).mean();
+      const float deviation =
+          std::sqrt((sum.row(unit).array() - mean).square().sum() / static_cast<float>(count));
+      const float scale = 0.5F / std::max(deviation, 1e-3F);
+      weight.row(unit) *= scale;
+      bias[unit] = (bias[unit] - mean) * scale + 0.5F;
+    }
+  };
+  forward(student_, worker);
+  spread(worker.a1, net.w1, net.b1);
+  for (Eigen::Index unit = 0; unit < kStudentHidden1; ++unit) {
+    net.b1[unit] += static_cast<float>(random_.normal()) * 0.5F;
+  }
+  forward(student_, worker);
+  spread(worker.a2, net.w2, net.b2);
+  for (Eigen::Index unit = 0; unit < kStudentHidden2; ++unit) {
+    net.b2[unit] += static_cast<float>(random_.normal()) * 0.5F;
+  }
+}
+
+void MonotoneDistiller::forward(const Parameters& parameters, Worker& w) const {
+  const ConstMlp net(kStudentShape, parameters.data());
+  w.a1.noalias() = net.w1 * w.x;
+  w.a1.colwise() += net.b1;
+  saturate(w.a1, w.h1);
+  w.a2.noalias() = net.w2 * w.h1;
+  w.a2.colwise() += net.b2;
+  saturate(w.a2, w.h2);
+  w.z.noalias() = net.w3 * w.h2;
+  w.z.colwise() += net.b3;
+}
+
+/// By monotony the hardest state of property 1 is the low price at the highest SoC, of property 2 the high
+/// price at the lowest.
+void MonotoneDistiller::draw_threshold_state(const std::vector<LatticeState>& counterexamples,
+                                             bool low, float* x) {
+  const PriceThresholds& thresholds = options_.correction.thresholds;
+  const int price = std::clamp(low ? thresholds.low_eur_per_mwh : thresholds.high_eur_per_mwh,
+                               kLatticePriceMinEurPerMwh, kLatticePriceMaxEurPerMwh);
+  LatticeState state{};
+  if (!counterexamples.empty() && random_.uniform() < 0.5) {
+    state = counterexamples[random_.index(counterexamples.size())];
+  } else {
+    state.minute_of_quarter_hour =
+        static_cast<std::int16_t>(random_.index(kMinuteOfQuarterHourCount));
+    state.quarter_hour = static_cast<std::int16_t>(random_.index(kQuarterHourCount));
+    state.context_class = static_cast<std::int16_t>(1 + random_.index(kContextClassCount));
+  }
+  write_input(network_context(state.minute_of_quarter_hour, state.quarter_hour, state.context_class,
+                              teacher_.price_map(price)),
+              0, x);
+  x[3] = scaled_input(low ? kSocCount - 1 : 0, kSocScale);
+}
+
+void MonotoneDistiller::draw_batch(const std::vector<LatticeState>& counterexamples, Worker& w) {
+  const PriceThresholds& thresholds = options_.correction.thresholds;
+  w.learnt = kBatch / static_cast<Eigen::Index>(workers_.size());
+  w.at_low = options_.correct && thresholds.low_binds_student() ? kThresholdStates : 0;
+  const Eigen::Index at_high =
+      options_.correct && thresholds.high_binds_student() ? kThresholdStates : 0;
+  w.x.resize(kNetworkInputs, w.learnt + w.at_low + at_high);
+  w.target.resize(kActionCount, w.learnt);
+  w.regret.resize(kActionCount, w.learnt);
+  for (Eigen::Index c = 0; c < w.learnt; ++c) {
+    const auto from = static_cast<Eigen::Index>(
+        random_.index(static_cast<std::uint64_t>(lessons_.inputs.cols())));
+    w.x.col(c) = lessons_.inputs.col(from);
+    w.target.col(c) = lessons_.teacher_frac.col(from);
+    w.regret.col(c) = lessons_.regret.col(from);
+  }
+  for (Eigen::Index c = 0; c < w.at_low + at_high; ++c) {
+    draw_threshold_state(counterexamples, c < w.at_low, w.x.col(w.learnt + c).data());
+  }
+}
+
+/// Adds the gradient of this worker's part of the batch.
+void MonotoneDistiller::learn(Worker& w, double scale) const {
+  forward(student_, w);
+  w.dz.setZero(kActionCount, w.z.cols());
+  w.loss = 0;
+  const auto margin = static_cast<float>(options_.correction.logit_margin);
+  const auto share = static_cast<float>(scale);
+  const auto fidelity = static_cast<float>(options_.fidelity);
+  for (Eigen::Index c = 0; c < w.learnt; ++c) {
+    const float* z = w.z.col(c).data();
+    const float highest = std::max({z[0], z[1], z[2]});
+    float p[kActionCount];
+    float sum = 0;
+    for (int a = 0; a < kActionCount; ++a) sum += p[a] = std::exp(z[a] - highest);
+    float expected = 0;
+    for (int a = 0; a < kActionCount; ++a) expected += (p[a] /= sum) * w.regret(a, c);
+    w.loss += scale * double{expected};
+    // Cross-entropy finds the teacher's action from anywhere; expected regret then spends what the
+    // net can do where it pays.
+    for (int a = 0; a < kActionCount; ++a) {
+      w.dz(a, c) =
+          share * (fidelity * (p[a] - w.target(a, c)) + p[a] * (w.regret(a, c) - expected));
+    }
+  }
+  // Properties 1 and 2: hinges on u = charge - idle and v = idle - discharge.
+  for (Eigen::Index c = w.learnt; c < w.z.cols(); ++c) {
+    const bool low = c < w.learnt + w.at_low;
+    const float u = w.z(2, c) - w.z(1, c);
+    const float v = w.z(1, c) - w.z(0, c);
+    const float push = 4 * share;
+    if (low && u < margin) w.dz(2, c) -= push, w.dz(1, c) += push;
+    if (low && v < 0) w.dz(1, c) -= push, w.dz(0, c) += push;
+    if (!low && v > -margin) w.dz(1, c) += push, w.dz(0, c) -= push;
+    if (!low && u > 0) w.dz(2, c) += push, w.dz(1, c) -= push;
+  }
+  const ConstMlp net(kStudentShape, student_.data());
+  MutableMlp gradient(kStudentShape, w.gradient.data());
+  gradient.w3.noalias() += w.dz * w.h2.transpose();
+  gradient.b3 += w.dz.rowwise().sum();
+  w.d2.noalias() = net.w3.transpose() * w.dz;
+  mask_gradient(w.a2, w.d2);
+  gradient.w2.noalias() += w.d2 * w.h1.transpose();
+  gradient.b2 += w.d2.rowwise().sum();
+  w.d1.noalias() = net.w2.transpose() * w.d2;
+  mask_gradient(w.a1, w.d1);
+  gradient.w1.noalias() += w.d1 * w.x.transpose();
+  gradient.b1 += w.d1.rowwise().sum();
+}
+
+void MonotoneDistiller::run(int epochs, const std::vector<LatticeState>& counterexamples,
+                            const std::atomic<bool>& interrupted,
+                            const std::function<void(double done)>& look) {
+  Progress progress(options_.correct ? "distil, monotone" : "distil", "epochs", epochs);
+  for (int epoch = 0; epoch < epochs && !interrupted; ++epoch) {
+    const double blend = 0.5 * (1 + std::cos(std::numbers::pi * epoch / epochs));
+    const auto rate = static_cast<float>(options_.learning_rate * (0.01 + 0.99 * blend));
+    double loss = 0;
+    for (int s = 0; s < options_.steps_per_epoch; ++s) {
+      for (Worker& worker : workers_) draw_batch(counterexamples, worker);
+      team_.run([&](int member) {
+        Worker& worker = workers_[static_cast<std::size_t>(member)];
+        worker.gradient.setZero(kStudentShape.parameter_count());
+        learn(worker, 1.0 / kBatch);
+      });
+      for (std::size_t w = 1; w < workers_.size(); ++w)
+        workers_[0].gradient += workers_[w].gradient;
+      for (const Worker& worker : workers_) loss += worker.loss / options_.steps_per_epoch;
+      adam_.update(student_, workers_[0].gradient, rate);
+      bounds_.clamp(student_);
+      average_ += static_cast<float>(1 - kAverageDecay) * (student_ - average_);
+    }
+    curve_.push_back({static_cast<int>(curve_.size()) + 1, 0, 0, loss});
+    progress.update(epoch + 1, fmt::format("regret {:.4f}", loss));
+    look(static_cast<double>(epoch + 1) / epochs);
+  }
+}
+
+}  // namespace bess
