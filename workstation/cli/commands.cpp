@@ -9,6 +9,7 @@ void add_commands(ProgramCommand& app) {
   add_distil_command(app);
   add_verify_command(app);
   add_evaluate_command(app);
+  add_backtest_command(app);
   add_delays_command(app);
   add_export_command(app);
   add_report_command(app);

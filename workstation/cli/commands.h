@@ -11,6 +11,7 @@ void add_train_command(ProgramCommand& app);
 void add_distil_command(ProgramCommand& app);
 void add_verify_command(ProgramCommand& app);
 void add_evaluate_command(ProgramCommand& app);
+void add_backtest_command(ProgramCommand& app);
 void add_delays_command(ProgramCommand& app);
 void add_export_command(ProgramCommand& app);
 void add_report_command(ProgramCommand& app);

@@ -21,7 +21,7 @@ constexpr int kDelays = 4;  // 0 to 3 minutes
 struct Options {
   CommonOptions common;
   std::string prices;
-  std::vector<std::string> policies = {"rbc-tuned", "tabular", "mpc"};
+  std::vector<std::string> policies = {"rbc-tuned", "tabular", "mpc", "sdp"};
   std::string split = "test";
   bool carry_soc = false;
   bool json = false;

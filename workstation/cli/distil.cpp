@@ -56,9 +56,10 @@ void run(const Options& options) {
   if (!teacher.risk.is_mean()) teacher.provenance += ", risk " + options.risk;
   const MarketSteps market = make_market_steps(read_minute_file(options.prices), config.market);
   watch_interruption();
-  const Matrix visited = visited_inputs(teacher, market, config.battery, config.distil.seed);
+  const Matrix visited = visited_inputs(teacher, market, config.battery, config.distil);
   const CorrectionResult result =
-      correct_and_prove(teacher, visited, config.distil, interruption());
+      correct_and_prove(teacher, visited, config.distil, interruption(),
+                        validation_score(market, config.battery, config.initial_soc_frac));
   if (interruption()) throw Interrupted{};
   const StudentFile& student = student_of(result.verdict);
   if (!options.plain && !std::holds_alternative<ProvedStudent>(result.verdict)) {

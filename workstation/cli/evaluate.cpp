@@ -26,6 +26,7 @@ struct Options {
   std::vector<std::string> policies;
   std::string split = "test";
   std::string date;
+  std::string fit;
   std::optional<int> fit_delay_min;
   std::string risk = "mean";
   bool carry_soc = false;
@@ -136,12 +137,12 @@ void keep_day(const MarketDay& day, const MarketSteps& market, Evaluation& evalu
   });
 }
 
-/// The market as the fitted policies knew it: their training days at --fit-delay.
+/// The market as the fitted policies knew it: the training days of --fit, at --fit-delay.
 MarketSteps fitting_market(const MinuteSeries& series, const RunConfig& config,
                            const Options& options) {
   MarketOptions market = config.market;
   market.observation_delay_min = options.fit_delay_min.value_or(market.observation_delay_min);
-  return make_market_steps(series, market);
+  return make_market_steps(options.fit.empty() ? series : read_minute_file(options.fit), market);
 }
 
 /// What every policy is evaluated on.
@@ -238,9 +239,13 @@ void add_evaluate_command(ProgramCommand& app) {
                "Chain the days instead of resetting SoC (several policies: both, unless given)");
   command.flag("--json", options->json, "One JSON object a line and policy");
   command.option("--csv", options->csv, "Write the comparison as CSV");
+  command.option(
+      "--fit", options->fit,
+      "Minute file whose training days rbc-quartile, rbc-tuned, tabular, sdp and mpc are "
+      "fitted on (default: --prices)");
   command
       .option("--fit-delay", options->fit_delay_min,
-              "Delay at which rbc-quartile, rbc-tuned, tabular and mpc are fitted (default: "
+              "Delay at which rbc-quartile, rbc-tuned, tabular, sdp and mpc are fitted (default: "
               "--delay)")
       .range(0, 5);
   command
@@ -255,6 +260,8 @@ void add_evaluate_command(ProgramCommand& app) {
       "--csv table.csv\n"
       "  bess-train evaluate --prices market.csv.gz --policy rbc:0:150 rbc-tuned --fit-delay 1 "
       "--delay 3\n"
+      "  bess-train evaluate --prices 2024.csv.gz --fit 2023.csv.gz --split all --policy rbc-tuned "
+      "tabular sdp\n"
       "  bess-train evaluate --prices market.csv.gz --policy runs/a/student.json --split all "
       "--carry-soc --json\n"
       "  bess-train evaluate --prices market.csv.gz --policy compiled --date widest --steps-out "

@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "shared/host/user_error.h"
-#include "workstation/env/evaluate.h"
+#include "workstation/planners/cycle_limit.h"
 #include "workstation/planners/foresight.h"
 #include "workstation/planners/rolling_horizon.h"
-#include "workstation/planners/shadow_price.h"
+#include "workstation/planners/stochastic_program.h"
 #include "workstation/planners/tabular.h"
 #include "workstation/planners/tuned_rule.h"
 #include "workstation/student/student_file.h"
@@ -64,26 +64,14 @@ std::shared_ptr<Policy> given_rule(const std::string& name) {
   return std::make_shared<RuleBasedPolicy>(low, high);
 }
 
-/// Fits a planner on the training days. A limit on daily cycles is kept on their mean by a shadow
-/// price on throughput; the evaluation enforces it each day.
-template <typename Planner>
-std::shared_ptr<Policy> fit_planner(const MarketSteps& market, const BatteryParameters& battery) {
+/// Fits a planner on the training days, mindful of a limit on daily cycles.
+template <typename Planner, typename... Options>
+std::shared_ptr<Policy> fit_planner(const MarketSteps& market, const BatteryParameters& battery,
+                                    const Options&... options) {
   const std::vector<MarketDay> days = market.days_of(Split::kTrain);
-  BatteryParameters shadowed = battery;
-  shadowed.cycles_per_day_max = 0;
-  if (battery.cycles_per_day_max > 0) {
-    ShadowPrice price;
-    for (int trial = 0; trial <= kShadowPriceBisections; ++trial) {
-      shadowed.wear_eur_per_mwh = battery.wear_eur_per_mwh + price.trial();
-      Planner planner(market, days, shadowed);
-      const double start_frac = 0.5 * (battery.soc_min_frac + battery.soc_max_frac);
-      const Evaluation run = evaluate(market, days, planner, {shadowed, start_frac, true});
-      price.learn(run.cycles_per_day() <= battery.cycles_per_day_max);
-      if (price.found() == 0) break;
-    }
-    shadowed.wear_eur_per_mwh = battery.wear_eur_per_mwh + price.found();
-  }
-  return std::make_shared<Planner>(market, days, shadowed);
+  return std::make_shared<Planner>(
+      market, days, battery_with_shadow_price<Planner>(market, days, battery, options...),
+      options...);
 }
 
 }  // namespace
@@ -109,6 +97,11 @@ std::shared_ptr<Policy> make_policy(const std::string& name, const MarketSteps& 
   }
   if (name == "tabular") {
     return fit_planner<TabularPolicy>(market, battery);
+  }
+  if (name == "sdp") return fit_planner<StochasticProgramPolicy>(market, battery);
+  if (name == "sdp-hour") {
+    return fit_planner<StochasticProgramPolicy>(market, battery,
+                                                StochasticProgramOptions{.level_weight = 0});
   }
   if (name.starts_with(kGivenRule)) return given_rule(name);
   if (name == "rbc-tuned") {

@@ -14,7 +14,8 @@ namespace bess {
 inline constexpr const char* kPolicyHelp =
     "rbc (thresholds 11/179), rbc:LOW:HIGH, rbc-quartile (training days' quartiles), rbc-tuned "
     "(thresholds that earn most on the training days), tabular, mpc (rolling horizon on a naive "
-    "forecast), foresight, compiled (the array in this program), or a teacher's or student's file";
+    "forecast), sdp (stochastic program by hour and price level), sdp-hour (by hour alone), "
+    "foresight, compiled (the array in this program), or a teacher's or student's file";
 
 /// A policy with whatever it is made of; the baselines that are fitted are fitted on the training
 /// days of `market`, which may differ in its delay from the market they run on. Throws UserError for an unknown name or an unreadable file.

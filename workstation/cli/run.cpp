@@ -57,8 +57,7 @@ RunResults learn(const RunConfig& config, MarketSteps market, const std::string&
              trained.best_step, trained.best_validation_eur_per_day_per_mwh, trained.seconds);
 
   announce(3, "distil without correction, for comparison");
-  const Matrix visited =
-      visited_inputs(trained.teacher, market, config.battery, config.distil.seed);
+  const Matrix visited = visited_inputs(trained.teacher, market, config.battery, config.distil);
   DistilOptions plain_options = config.distil;
   plain_options.correct = false;
   CorrectionResult plain =
@@ -69,7 +68,8 @@ RunResults learn(const RunConfig& config, MarketSteps market, const std::string&
 
   announce(4, "correct while distilling, and prove");
   CorrectionResult corrected =
-      correct_and_prove(trained.teacher, visited, config.distil, interruption());
+      correct_and_prove(trained.teacher, visited, config.distil, interruption(),
+                        validation_score(market, config.battery, config.initial_soc_frac));
   if (interruption()) throw Interrupted{};
   const Certificate& certificate = student_of(corrected.verdict).certificate;
   if (!std::holds_alternative<ProvedStudent>(corrected.verdict)) {

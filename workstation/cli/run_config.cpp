@@ -123,7 +123,10 @@ void KeyList::list(RunConfig& c) {
   number("initial_soc", c.initial_soc_frac, 0, 1, "at the start of each evaluated day");
 
   section("train");
-  choice("method", c.train.method, {"c51", "dqn"}, "distributional or plain Q-learning");
+  choice("method", c.train.method, {"c51", "dqn", "sdp"},
+         "distributional or plain Q-learning, or the stochastic program, exact for its model");
+  choice("context", c.train.context, {"month", "level"},
+         "the student's third input: local month, or class of the trailing price level");
   choice("source", c.train.source, {"counterfactual", "replay"},
          "experience: one price move serves every SoC and action, or epsilon-greedy days");
   choice("horizon", c.train.horizon, {"continuing", "day"}, "midnight is a truncation, or the end");
@@ -138,9 +141,10 @@ void KeyList::list(RunConfig& c) {
   number("value_max_eur_per_h", c.train.value_max_eur_per_h, -1e9, 1e9, "highest atom");
   number("mean_weight", c.train.mean_weight, 0, 1000,
          "c51: of the squared error of the mean beside the cross-entropy; 0 is plain C51");
-  choice("potential", c.train.potential, {"none", "price", "plan"},
-         "shapes rewards without changing what is best: nothing, energy at the mean price, or a "
-         "plan's value");
+  choice(
+      "potential", c.train.potential, {"none", "price", "plan", "sdp"},
+      "shapes rewards without changing what is best: nothing, energy at the mean price, a plan's "
+      "value, or the stochastic program's");
   boolean("centre_rewards", c.train.centre_rewards,
           "subtract the mean reward (continuing horizon): values lie around zero");
   number("jitter_quarter_hours", c.train.jitter.quarter_hours, 0, 96,
@@ -155,6 +159,10 @@ void KeyList::list(RunConfig& c) {
   integer("validate_every", c.train.validate_every, 1, 1'000'000, "gradient steps");
 
   section("distil");
+  choice("method", c.distil.method, {"construction", "layer"},
+         "monotone by the signs of its weights, or the paper's optimisation layer");
+  number("fidelity", c.distil.fidelity, 0, 100,
+         "construction: following the teacher's every choice, beside losing no money");
   number("omega", c.distil.omega, 1e-8, 1, "the paper's trade-off: larger follows the teacher");
   number("temperature_eur_per_h", c.distil.temperature_eur_per_h, 1e-3, 1e6,
          "of the teacher's softmax over action values");

@@ -31,7 +31,8 @@ std::vector<NamedEvaluation> evaluate_run(const RunResults& run) {
     const auto policy = make_policy(name, run.market, run.config.battery);
     all.push_back(evaluate_both(name, *policy, run));
   };
-  for (const char* name : {"rbc", "rbc-quartile", "rbc-tuned", "tabular", "mpc"}) baseline(name);
+  for (const char* name : {"rbc", "rbc-quartile", "rbc-tuned", "tabular", "mpc", "sdp"})
+    baseline(name);
   TeacherPolicy teacher(run.teacher);
   all.push_back(
       evaluate_both(fmt::format("{} teacher", method_name(run.teacher.method)), teacher, run));

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "workstation/planners/rolling_horizon.h"
+#include "workstation/planners/stochastic_program.h"
 
 namespace bess {
 namespace {
@@ -38,6 +39,18 @@ Potential plan_potential(const MarketSteps& market, const BatteryParameters& bat
           }};
 }
 
+Potential program_potential(const MarketSteps& market, const BatteryParameters& battery) {
+  const auto program =
+      std::make_shared<StochasticProgram>(market, market.days_of(Split::kTrain), battery);
+  constexpr int kPoints = StochasticProgram::kSocPoints;
+  return {.soc_points = (kPoints - 1) / kPlanStride + 1,
+          .fill = [program](const MarketStep& step, float* phi) {
+            std::array<float, kPoints> values;
+            program->values(StochasticProgram::situation_of(step), values.data());
+            for (int i = 0; i < kPoints; i += kPlanStride) *phi++ = values[i];
+          }};
+}
+
 }  // namespace
 
 Potential fit_potential(PotentialKind kind, const MarketSteps& market,
@@ -47,6 +60,8 @@ Potential fit_potential(PotentialKind kind, const MarketSteps& market,
       return price_potential(market, battery);
     case PotentialKind::kPlan:
       return plan_potential(market, battery);
+    case PotentialKind::kSdp:
+      return program_potential(market, battery);
     case PotentialKind::kNone:
       break;
   }

@@ -17,7 +17,8 @@ namespace bess {
 enum class PotentialKind : std::uint8_t {
   kNone,
   kPrice,  ///< stored energy at the training days' mean price
-  kPlan,   ///< value of a rolling-horizon plan on a naive forecast (env/rolling_horizon.h)
+  kPlan,   ///< value of a rolling-horizon plan on a naive forecast (planners/rolling_horizon.h)
+  kSdp,    ///< value of the stochastic program (planners/stochastic_program.h)
 };
 
 struct Potential {

@@ -62,4 +62,14 @@ float PriceMap::operator()(double price_eur_per_mwh) const {
   return static_cast<float>(y / kInputOne);
 }
 
+double PriceMap::price_of(float input) const {
+  const double wanted = double{input} * kInputOne;
+  const auto above = std::ranges::upper_bound(table_, wanted);
+  const auto upper = std::clamp<std::ptrdiff_t>(above - table_.begin(), 1, kPriceCount - 1);
+  const double low = table_[upper - 1];
+  const double high = table_[upper];
+  const double weight = std::clamp((wanted - low) / (high - low), 0.0, 1.0);
+  return kLatticePriceMinEurPerMwh + static_cast<double>(upper) - 1 + weight;
+}
+
 }  // namespace bess

@@ -22,6 +22,8 @@ class PriceMap {
   /// Network input 0..1; prices outside the lattice are clamped, between lattice points
   /// interpolated.
   [[nodiscard]] float operator()(double price_eur_per_mwh) const;
+  /// The price of a network input, EUR/MWh: the inverse.
+  [[nodiscard]] double price_of(float input) const;
   /// Q14 value of each lattice price, strictly increasing.
   [[nodiscard]] const std::array<std::int16_t, kPriceCount>& table() const { return table_; }
 

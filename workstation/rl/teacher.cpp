@@ -5,7 +5,9 @@
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
 #include "workstation/base/binary_file.h"
+#include "workstation/env/context_fit.h"
 #include "workstation/rl/c51.h"
+#include "workstation/rl/transition.h"
 
 namespace bess {
 namespace {
@@ -47,17 +49,59 @@ ContextClasses take_context(BinaryReader& in) {
 Method parse_method(std::string_view name) {
   if (name == "c51") return Method::kC51;
   if (name == "dqn") return Method::kDqn;
-  fail("unknown method \"{}\": use c51 or dqn", name);
+  if (name == "sdp") return Method::kSdp;
+  fail("unknown method \"{}\": use sdp, c51 or dqn", name);
 }
 
-std::string_view method_name(Method method) { return method == Method::kC51 ? "c51" : "dqn"; }
+std::string_view method_name(Method method) {
+  constexpr std::string_view kNames[] = {"c51", "dqn", "sdp"};
+  return kNames[static_cast<int>(method)];
+}
 
 MlpShape teacher_shape(Method method, const Support& support) {
+  if (method == Method::kSdp) return {};
   const int outputs = method == Method::kC51 ? kActionCount * support.count : kActionCount;
   return {kNetworkInputs, kTeacherHidden1, kTeacherHidden2, outputs};
 }
 
+namespace {
+
+/// Whole number that an input was scaled from.
+int unscaled(float input, int scale) {
+  return static_cast<int>(
+      std::lround(input * static_cast<float>(kInputOne) / static_cast<float>(scale)));
+}
+
+/// The program's values in the teacher's unit: EUR over a step -> scaled EUR/h of the paper's 4 MW.
+Matrix program_values(const Teacher& teacher, const MatrixRef& x) {
+  const StochasticProgram& program = *teacher.program;
+  const double scale = double{kPaperPowerMw} * kWattsPerMegawatt / program.battery().power_w_max /
+                       kHoursPerStep * double{kRewardScale};
+  Matrix values(kActionCount, x.cols());
+  for (Eigen::Index c = 0; c < x.cols(); ++c) {
+    const int minute = unscaled(x(0, c), kMinuteOfQuarterHourScale);
+    const int quarter_hour = unscaled(x(1, c), kQuarterHourScale);
+    const int context_class = 1 + unscaled(x(2, c), kContextClassScale);
+    const double level = teacher.context.kind == ContextKind::kLevel
+                             ? class_level_eur_per_mwh(teacher.context, context_class)
+                             : program.mean_level_eur_per_mwh();
+    const auto worth = program.action_values(
+        {.step_of_day = (quarter_hour * kMinutesPerQuarterHour + minute) / kMinutesPerStep,
+         .row_quarter_hour = program.row_quarter_hour(quarter_hour, minute),
+         .price_eur_per_mwh = teacher.price_map.price_of(x(4, c)),
+         .level_eur_per_mwh = level},
+        double{x(3, c)} * kInputOne / kSocScale / (kSocCount - 1));
+    for (int a = 0; a < kActionCount; ++a) {
+      values(a, c) = static_cast<float>((worth[a] - worth[1]) * scale);
+    }
+  }
+  return values;
+}
+
+}  // namespace
+
 Matrix Teacher::action_values(const MatrixRef& x, MlpTile& tile) const {
+  if (program) return program_values(*this, x);
   const ConstMlp mlp(shape, parameters.data());
   Matrix z;
   forward_hidden(mlp, x, tile);
@@ -67,6 +111,11 @@ Matrix Teacher::action_values(const MatrixRef& x, MlpTile& tile) const {
 }
 
 Action TeacherPolicy::decide(const MarketStep& step, std::size_t, double soc_frac) const {
+  if (teacher_.program) {
+    const auto worth =
+        teacher_.program->action_values(StochasticProgram::situation_of(step), soc_frac);
+    return argmax_action(worth.data());
+  }
   write_input(network_context(step, teacher_.price_map, teacher_.context), soc_frac, x_.data());
   const Matrix values = teacher_.action_values(x_, tile_);
   return argmax_action(values.data());
@@ -81,7 +130,11 @@ void save_teacher(const std::filesystem::path& path, const Teacher& teacher) {
   out.put(static_cast<std::uint32_t>(teacher.context.kind));
   out.put(teacher.context.level_edge_eur_per_mwh);
   out.put_text(std::string_view(teacher.provenance).substr(0, kProvenanceMax));
-  put_parameters(out, teacher.parameters);
+  if (teacher.program) {
+    teacher.program->save(out);
+  } else {
+    put_parameters(out, teacher.parameters);
+  }
   out.save(path);
 }
 
@@ -94,7 +147,8 @@ Teacher load_teacher(const std::filesystem::path& path) {
   const auto method_number = in.take<std::uint32_t>();
   const auto support = in.take<Support>();
   // The checksum is right, so this was written by another program; say so before using any of it.
-  if (method_number > static_cast<std::uint32_t>(Method::kDqn) || !is_possible(support)) {
+  if (method_number > static_cast<std::uint32_t>(Method::kSdp) ||
+      (method_number != static_cast<std::uint32_t>(Method::kSdp) && !is_possible(support))) {
     in.damaged("has an impossible method or value range");
   }
   const auto method = static_cast<Method>(method_number);
@@ -104,16 +158,28 @@ Teacher load_teacher(const std::filesystem::path& path) {
   const ContextClasses context = take_context(in);
   std::string provenance = in.take_text();
   Parameters parameters(shape.parameter_count());
-  take_parameters(in, parameters);
+  std::shared_ptr<const StochasticProgram> program;
+  if (method == Method::kSdp) {
+    program = std::make_shared<const StochasticProgram>(in);
+  } else {
+    take_parameters(in, parameters);
+  }
   in.finish();
-  return {method, support, shape, price_map, std::move(parameters), std::move(provenance), context};
+  return {method,
+          support,
+          shape,
+          price_map,
+          std::move(parameters),
+          std::move(provenance),
+          std::move(program),
+          context};
 }
 
 Teacher load_teacher(const std::filesystem::path& path, const Risk& risk) {
   Teacher teacher = load_teacher(path);
-  if (teacher.method == Method::kDqn && !risk.is_mean()) {
+  if (teacher.method != Method::kC51 && !risk.is_mean()) {
     fail(
-        "{}: a dqn teacher knows means only, not how returns are distributed; train a c51 one for "
+        "{}: this teacher knows means only, not how returns are distributed; train a c51 one for "
         "--risk",
         path.string());
   }

@@ -1,14 +1,16 @@
-// The teacher: a network over the five inputs whose output is action values (DQN) or value
-// distributions (C51). One file holds everything needed to use it again: method, support, price
-// map, parameters.
+// The teacher: action values over the five inputs. A network that learnt them (DQN) or their
+// distributions (C51), or the stochastic program that knows them for its model of the market (SDP). One
+// file holds everything needed to use it again: method, support, price map, parameters.
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "workstation/env/policy.h"
 #include "workstation/nn/mlp.h"
+#include "workstation/planners/stochastic_program.h"
 #include "workstation/rl/network_input.h"
 #include "workstation/rl/price_map.h"
 #include "workstation/rl/risk.h"
@@ -16,8 +18,8 @@
 
 namespace bess {
 
-enum class Method { kC51, kDqn };
-Method parse_method(std::string_view name);  ///< "c51", "dqn"; throws UserError otherwise
+enum class Method { kC51, kDqn, kSdp };
+Method parse_method(std::string_view name);  ///< "c51", "dqn", "sdp"; throws UserError otherwise
 std::string_view method_name(Method method);
 
 struct Teacher {
@@ -26,7 +28,9 @@ struct Teacher {
   MlpShape shape;
   PriceMap price_map;
   Parameters parameters;
-  std::string provenance;    ///< one line: prices, seed, steps
+  std::string provenance;  ///< one line: prices, seed, steps
+  /// SDP only, instead of a network: shape and parameters are empty.
+  std::shared_ptr<const StochasticProgram> program = nullptr;
   ContextClasses context{};  ///< by month unless said otherwise
   Risk risk{};               ///< how decisions are made; not part of the file
 

@@ -6,6 +6,7 @@
 
 #include "shared/host/user_error.h"
 #include "workstation/base/progress.h"
+#include "workstation/planners/cycle_limit.h"
 #include "workstation/planners/tabular.h"
 #include "workstation/rl/learner.h"
 #include "workstation/rl/replay.h"
@@ -123,7 +124,7 @@ class Training {
                  options.threads, options.mean_weight),
         experience_(training_, options),
         current_{options.method,    support_, learner_.shape(), price_map_,
-                 learner_.online(), "",       context_},
+                 learner_.online(), "",       nullptr,          context_},
         average_(learner_.online()),
         result_{current_, {}, -1e300, 0, 0} {}
 
@@ -234,6 +235,35 @@ class Training {
   long step_ = 0;
 };
 
+/// Nothing to iterate: the program is fitted and solved.
+TrainResult fit_program(const MarketSteps& market, const BatteryParameters& battery,
+                        const TrainOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  const std::vector<MarketDay> training = market.days_of(Split::kTrain);
+  StochasticProgramOptions program;
+  if (options.context == ContextKind::kMonth) program.level_weight = 0;
+  Teacher teacher{
+      Method::kSdp,
+      {},
+      {},
+      PriceMap::fit(observed_training_prices(market)),
+      {},
+      "",
+      std::make_shared<const StochasticProgram>(
+          market, training,
+          battery_with_shadow_price<StochasticProgramPolicy>(market, training, battery, program),
+          program),
+      fit_context_classes(market, options.context)};
+  TeacherPolicy policy(teacher);
+  EvaluationOptions evaluation;
+  evaluation.battery = battery;
+  evaluation.carry_soc = true;
+  const double profit = evaluate(market, market.days_of(Split::kValidation), policy, evaluation)
+                            .profit_eur_per_day_per_mwh();
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  return {std::move(teacher), {{1, 0, profit, 0}}, profit, 1, taken.count()};
+}
+
 }  // namespace
 
 TrainResult train_teacher(const MarketSteps& market, const BatteryParameters& battery,
@@ -243,6 +273,7 @@ TrainResult train_teacher(const MarketSteps& market, const BatteryParameters& ba
     fail("no validation days (local days 21 to 25) in these prices; add some");
   }
   require_training_days(market.days_of(Split::kTrain).size());
+  if (options.method == Method::kSdp) return fit_program(market, battery, options);
   Training training(market, battery, options);
   training.run(interrupted, checkpoint);
   return training.take_result();

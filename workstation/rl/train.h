@@ -20,7 +20,7 @@ namespace bess {
 enum class Source { kCounterfactual, kReplay };
 
 struct TrainOptions {
-  Method method = Method::kC51;
+  Method method = Method::kSdp;
   Source source = Source::kCounterfactual;
   Horizon horizon = Horizon::kContinuing;
   long steps = 8'000;           ///< gradient steps

@@ -1,0 +1,60 @@
+// Walk-forward backtest: fit on the days before a month, freeze, trade that month, roll on. A fold holds
+// nothing later than its own month, so what is fitted in it cannot have seen what it is judged by; the
+// battery's charge goes over from fold to fold as it would.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "workstation/env/evaluate.h"
+
+namespace bess {
+
+/// One traded month with the window that its policies are fitted on. Of the window, local days 21 to 25 are
+/// validation days and all others training days; the month's are test days.
+struct Fold {
+  std::string month;  ///< "2024-06"
+  MarketSteps market;
+};
+
+/// A month that is not traded, and why.
+struct SkippedMonth {
+  std::string month;
+  std::string reason;
+};
+
+struct Folds {
+  std::vector<Fold> traded;
+  std::vector<SkippedMonth> skipped;
+};
+
+/// A fold for each month that has at least half of `window_days` complete days before it, and training and
+/// validation days among them. Throws UserError when no month has.
+Folds make_folds(const MarketSteps& market, int window_days);
+
+/// What a policy did, in the order of the days.
+struct WalkForward {
+  std::string name;
+  Evaluation total;
+  std::vector<std::string> months;   ///< as in Folds::traded
+  std::vector<Evaluation> by_month;  ///< parallel to `months`
+
+  /// Largest fall of the cumulative profit from a peak, EUR per MWh of capacity.
+  [[nodiscard]] double drawdown_eur_per_mwh() const;
+  /// Profit after each day, EUR per MWh of capacity.
+  [[nodiscard]] std::vector<double> cumulative_eur_per_mwh() const;
+  /// Energy through the battery per day, charged and discharged, in multiples of the capacity.
+  [[nodiscard]] double turnover_per_day() const { return 2 * total.cycles_per_day(); }
+};
+
+/// Makes the policy of a fold, from its training and validation days alone.
+using FoldPolicy = std::function<std::shared_ptr<Policy>(const Fold&)>;
+
+/// Trades fold after fold. A policy that sees the future, the bound, plans over `market` as a whole.
+WalkForward walk_forward(const std::string& name, const Folds& folds, const FoldPolicy& make,
+                         const BatteryParameters& battery, double initial_soc_frac,
+                         const MarketSteps& market);
+
+}  // namespace bess

@@ -1,0 +1,237 @@
+// bess-train backtest: what policies would have earned month after month, each month traded by what was
+// fitted before it.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "shared/crc32.h"
+#include "shared/host/file.h"
+#include "shared/host/user_error.h"
+#include "workstation/backtest/walk_forward.h"
+#include "workstation/base/progress.h"
+#include "workstation/cli/chain_steps.h"
+#include "workstation/cli/commands.h"
+#include "workstation/cli/common_options.h"
+#include "workstation/cli/policy_factory.h"
+#include "workstation/report/backtest_report.h"
+#include "workstation/report/comparison.h"
+#include "workstation/student/correct_and_prove.h"
+#include "workstation/student/student_file.h"
+#include "workstation/student/student_policy.h"
+
+namespace bess {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The whole chain, learnt anew for each fold.
+constexpr const char* kChainName = "student";
+
+struct Options {
+  CommonOptions common;
+  std::vector<std::string> prices;
+  std::vector<std::string> policies{"rbc-tuned", "tabular",  "mpc",
+                                    "sdp",       kChainName, kForesightName};
+  int window_days = 120;
+  std::string out;
+  bool json = false;
+};
+
+struct Inputs {
+  MinuteSeries series;
+  std::uint32_t crc = 0;
+};
+
+/// The files one after another; where two have the same minute, the later file's row counts.
+Inputs read_inputs(const std::vector<std::string>& paths) {
+  std::vector<MinuteSeries> parts;
+  for (const std::string& path : paths) parts.push_back(read_minute_file(path));
+  std::int64_t first = parts.front().start_utc_s;
+  std::int64_t end = first;
+  for (const MinuteSeries& part : parts) {
+    first = std::min(first, part.start_utc_s);
+    end = std::max(end, part.utc_s(part.size()));
+  }
+  constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+  const auto minutes = static_cast<std::size_t>((end - first) / 60);
+  Inputs inputs{
+      {first, std::vector<double>(minutes, kMissing), std::vector<double>(minutes, kMissing)}, 0};
+  for (const MinuteSeries& part : parts) {
+    const auto at = static_cast<std::size_t>((part.start_utc_s - first) / 60);
+    for (std::size_t m = 0; m < part.size(); ++m) {
+      if (part.is_empty(m)) continue;
+      inputs.series.indicative[at + m] = part.indicative[m];
+      inputs.series.settled[at + m] = part.settled[m];
+    }
+  }
+  Crc32 crc;
+  crc.add_bytes(inputs.series.indicative.data(), sizeof(double) * minutes);
+  crc.add_bytes(inputs.series.settled.data(), sizeof(double) * minutes);
+  inputs.crc = crc.value();
+  return inputs;
+}
+
+/// All that a fold's student depends on, but for the fold.
+std::string identity_of(const RunConfig& config, const Inputs& inputs, const Options& options) {
+  return fmt::format("# bess-train {}, prices {:08x}, window {} days, seed {}\n{}", BESS_VERSION,
+                     inputs.crc, options.window_days, config.train.seed, format_run_config(config));
+}
+
+/// A folder belongs to one configuration: its folds are kept when that comes again.
+void claim_folder(const fs::path& folder, const std::string& identity) {
+  const fs::path path = folder / "backtest.toml";
+  if (!fs::exists(path)) return write_file(path, identity);
+  if (read_file(path) != identity) {
+    fail(
+        "{}: holds the folds of other prices, window, seed or configuration (its backtest.toml "
+        "says "
+        "which); give another --out",
+        folder.string());
+  }
+}
+
+/// Train, correct, prove. Throws UserError when the proof fails.
+StudentFile learn_fold(const Fold& fold, const RunConfig& config) {
+  const TrainResult trained =
+      train_teacher(fold.market, config.battery, config.train, interruption());
+  if (interruption()) throw Interrupted{};
+  const Matrix visited =
+      visited_inputs(trained.teacher, fold.market, config.battery, config.distil);
+  const CorrectionResult corrected =
+      correct_and_prove(trained.teacher, visited, config.distil, interruption(),
+                        validation_score(fold.market, config.battery, config.initial_soc_frac));
+  if (interruption()) throw Interrupted{};
+  const StudentFile& student = student_of(corrected.verdict);
+  if (!std::holds_alternative<ProvedStudent>(corrected.verdict)) {
+    fail("{}: {} violations are left after {} rounds; raise [distil] repair_rounds", fold.month,
+         student.certificate.violations(), corrected.violations_by_round.size());
+  }
+  return student;
+}
+
+fs::path student_path(const fs::path& folder, const Fold& fold) {
+  return folder / (fold.month + ".student.json");
+}
+
+/// Learns what is not there yet, a fold to a thread: with one thread each, a fold repeats to the bit
+/// whatever runs beside it.
+void learn_folds(const Folds& folds, RunConfig config, const fs::path& folder) {
+  std::vector<const Fold*> missing;
+  for (const Fold& fold : folds.traded) {
+    if (!fs::exists(student_path(folder, fold))) missing.push_back(&fold);
+  }
+  const int threads = config.train.threads;
+  config.set_threads(1);
+  Progress progress("learn", "folds", static_cast<double>(folds.traded.size()),
+                    static_cast<double>(folds.traded.size() - missing.size()));
+  std::mutex mutex;
+  std::size_t next = 0;
+  std::size_t done = folds.traded.size() - missing.size();
+  std::exception_ptr failure;
+  const auto work = [&] {
+    for (;;) {
+      const Fold* fold = nullptr;
+      {
+        const std::lock_guard lock(mutex);
+        if (next == missing.size() || failure) return;
+        fold = missing[next++];
+      }
+      try {
+        save_student(student_path(folder, *fold), learn_fold(*fold, config));
+        const std::lock_guard lock(mutex);
+        progress.update(static_cast<double>(++done), fold->month);
+      } catch (...) {
+        const std::lock_guard lock(mutex);
+        if (!failure) failure = std::current_exception();
+      }
+    }
+  };
+  std::vector<std::thread> team;
+  for (int t = 1; t < threads; ++t) team.emplace_back(work);
+  work();
+  for (std::thread& thread : team) thread.join();
+  if (failure) std::rethrow_exception(failure);
+}
+
+/// Keeps the file's net alive as long as the policy that reads it.
+std::shared_ptr<Policy> read_student(const fs::path& path) {
+  return make_policy(path.string(), {}, {});
+}
+
+void run(const Options& options) {
+  const RunConfig config = options.common.resolve();
+  const fs::path folder = options.out;
+  const Inputs inputs = read_inputs(options.prices);
+  const MarketSteps market = make_market_steps(inputs.series, config.market);
+  const Folds folds = make_folds(market, options.window_days);
+  require_writable(folder / "backtest.csv");
+  claim_folder(folder, identity_of(config, inputs, options));
+  watch_interruption();
+  if (std::ranges::find(options.policies, kChainName) != options.policies.end()) {
+    learn_folds(folds, config, folder);
+  }
+  BacktestResults results{
+      {},
+      folds.skipped,
+      options.window_days,
+      config.battery.capacity_wh / kWattsPerMegawatt,
+      fmt::format("{} on {} file{}, prices {:08x}, seed {}", BESS_VERSION, options.prices.size(),
+                  options.prices.size() == 1 ? "" : "s", inputs.crc, config.train.seed)};
+  Progress progress("trade", "policies", static_cast<double>(options.policies.size()));
+  for (const std::string& name : options.policies) {
+    const FoldPolicy make = [&](const Fold& fold) {
+      if (interruption()) throw Interrupted{};
+      return name == kChainName ? read_student(student_path(folder, fold))
+                                : make_policy(name, fold.market, config.battery);
+    };
+    results.policies.push_back(
+        walk_forward(name, folds, make, config.battery, config.initial_soc_frac, market));
+    progress.update(static_cast<double>(results.policies.size()), name);
+  }
+  write_file(folder / "backtest.csv", backtest_csv(results));
+  write_file(folder / "backtest_days.csv", backtest_days_csv(results));
+  write_file(folder / "backtest.json", backtest_json(results).text());
+  write_backtest_page(results, folder);
+  if (options.json) {
+    fmt::print("{}\n", backtest_json(results).line());
+  } else {
+    fmt::print("{}{}: backtest.html, and the same as CSV and JSON\n",
+               format_backtest_table(results), folder.string());
+  }
+}
+
+}  // namespace
+
+void add_backtest_command(ProgramCommand& app) {
+  auto options = std::make_shared<Options>();
+  ProgramCommand command =
+      app.subcommand("backtest", "Walk forward: fit on a window, trade the next month, roll on");
+  command.option("--prices", options->prices, "Minute files, which may lie apart in time")
+      .required();
+  command.option("--out", options->out, "Folder for results and the folds' students").required();
+  command
+      .option("--policy", options->policies,
+              std::string("Gains are over the first. ") + kChainName +
+                  " is the whole chain, learnt anew for each month; the others: " + kPolicyHelp)
+      .with_default();
+  command.option("--window-days", options->window_days, "Days before a month that it is fitted on")
+      .range(30, 3650)
+      .with_default();
+  command.flag("--json", options->json, "One JSON object");
+  options->common.add_market(command);
+  options->common.add_config(command);
+  options->common.add_seed_and_threads(command);
+  command.footer(
+      "A month that was learnt is kept: the same command goes on after an interruption. Each fold "
+      "learns on one thread, so that it repeats to the bit.\n"
+      "Examples:\n"
+      "  bess-train backtest --prices 2023.csv.gz 2024.csv.gz --out backtests/first\n"
+      "  bess-train backtest --prices 2024.csv.gz --window-days 60 --policy rbc sdp --out quick");
+  command.runs([options] { run(*options); });
+}
+
+}  // namespace bess

@@ -1,0 +1,255 @@
+#include "workstation/report/backtest_report.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "shared/host/csv.h"
+#include "shared/host/file.h"
+#include "workstation/report/figure.h"
+#include "workstation/report/html.h"
+
+namespace bess {
+namespace {
+
+constexpr double kReferenceWearEurPerMwh = 10;
+constexpr const char* kAllMonths = "all";
+
+/// One policy in one month, or in all of them.
+struct Row {
+  std::string month;
+  std::size_t days;
+  double profit, profit_error;
+  PairedDifference gain;  ///< to the first policy; both 0 for itself
+  double turnover_per_day;
+  double after_wear;
+};
+
+Row make_row(const std::string& month, const Evaluation& e, const Evaluation& first) {
+  const double turnover = 2 * e.cycles_per_day();
+  return {.month = month,
+          .days = e.days.size(),
+          .profit = e.profit_eur_per_day_per_mwh(),
+          .profit_error = e.standard_error(),
+          .gain = paired_difference(e, first),
+          .turnover_per_day = turnover,
+          .after_wear = e.profit_eur_per_day_per_mwh() - kReferenceWearEurPerMwh * turnover};
+}
+
+std::vector<Row> rows_of(const WalkForward& policy, const WalkForward& first) {
+  std::vector<Row> rows;
+  for (std::size_t m = 0; m < policy.months.size(); ++m) {
+    rows.push_back(make_row(policy.months[m], policy.by_month[m], first.by_month[m]));
+  }
+  rows.push_back(make_row(kAllMonths, policy.total, first.total));
+  return rows;
+}
+
+std::size_t name_width(const BacktestResults& results) {
+  std::size_t width = std::string("policy").size();
+  for (const WalkForward& policy : results.policies) width = std::max(width, policy.name.size());
+  return width;
+}
+
+/// A figure, or nothing where it cannot be known: the spread of one day.
+std::string csv_figure(double value, int decimals) {
+  return std::isnan(value) ? "" : fmt::format("{:.{}f}", value, decimals);
+}
+
+constexpr std::array kLineColours{&kMuted, &kSoft, &kDischarge, &kCharge, &kInk};
+
+/// Cumulative profit of every policy but the bound, above; how far each is below its peak, below.
+Figure cumulative_figure(const BacktestResults& results) {
+  std::vector<const WalkForward*> shown;
+  for (const WalkForward& policy : results.policies) {
+    if (policy.name != "foresight") shown.push_back(&policy);
+  }
+  std::vector<std::string> rows;
+  std::vector<std::vector<double>> cumulative;
+  for (const WalkForward* policy : shown) cumulative.push_back(policy->cumulative_eur_per_mwh());
+  std::vector<double> peak(shown.size(), 0.0);
+  for (std::size_t d = 0; d < shown.front()->total.days.size(); ++d) {
+    std::string row = shown.front()->total.days[d].date;
+    for (std::size_t p = 0; p < shown.size(); ++p) {
+      peak[p] = std::max(peak[p], cumulative[p][d]);
+      row += fmt::format(" {:.3f} {:.3f}", cumulative[p][d] / 1000, cumulative[p][d] - peak[p]);
+    }
+    rows.push_back(std::move(row));
+  }
+  Figure figure;
+  figure.name = "backtest";
+  figure.title = "Profit month after month";
+  figure.height_px = 560;
+  figure.alt =
+      "Line chart: cumulative profit of each policy over the traded days; below it, how far "
+      "each lies under its own peak.";
+  const auto best = std::ranges::max_element(
+      shown, {}, [](const WalkForward* p) { return p->total.profit_eur_per_day_per_mwh(); });
+  figure.caption = fmt::format(
+      "Each month was traded by what was fitted on the {} days before it, the charge carried over. "
+      "{} earned most: {:.1f} EUR per day per MWh; its deepest fall from a peak was {:.0f} EUR per "
+      "MWh.",
+      results.window_days, (*best)->name, (*best)->total.profit_eur_per_day_per_mwh(),
+      (*best)->drawdown_eur_per_mwh());
+  std::vector<KeyEntry> entries;
+  std::string profit_plot;
+  std::string fall_plot;
+  for (std::size_t p = 0; p < shown.size(); ++p) {
+    const Colour& colour = *kLineColours[p % kLineColours.size()];
+    entries.push_back({shown[p]->name, colour, KeyEntry::Kind::kLine, 2.5});
+    const char* separator = p == 0 ? "plot " : ", ";
+    profit_plot += fmt::format("{}$days using 1:{} with lines lw 2.5 lc {}", separator, 2 + 2 * p,
+                               rgb(colour));
+    fall_plot += fmt::format("{}$days using 1:{} with lines lw 1.5 lc {}", separator, 3 + 2 * p,
+                             rgb(colour));
+  }
+  const KeyRow key = key_row(figure, 100, entries);
+  figure.commands = data_block("days", rows) +
+                    "set xdata time\nset timefmt '%Y-%m-%d'\nset format x ''\n"
+                    "set multiplot\nset lmargin at screen 0.115\nset rmargin at screen 0.96\n"
+                    "set tmargin at screen 0.925\nset bmargin at screen 0.42\n"
+                    "set ylabel \"profit,\\n1000 EUR/MWh\"\n" +
+                    key.set + profit_plot + "\n" + key.unset +
+                    "set tmargin at screen 0.36\nset bmargin at screen 0.12\nset format x '%Y-%m'\n"
+                    "set ylabel \"below its peak,\\nEUR/MWh\"\n" +
+                    fall_plot + "\nunset multiplot\n";
+  return figure;
+}
+
+HtmlTable total_table(const BacktestResults& results) {
+  HtmlTable table;
+  table.caption = "EUR per day per MWh of capacity, all traded days";
+  table.header = {"policy", "profit", "s.e.", "gain", "s.e.", "after wear", "turnover", "drawdown"};
+  for (const WalkForward& policy : results.policies) {
+    const Row row = rows_of(policy, results.policies.front()).back();
+    table.rows.push_back(
+        {policy.name, fmt::format("{:.1f}", row.profit), fmt::format("{:.1f}", row.profit_error),
+         fmt::format("{:+.1f}", row.gain.mean), fmt::format("{:.1f}", row.gain.standard_error),
+         fmt::format("{:.1f}", row.after_wear), fmt::format("{:.2f}", row.turnover_per_day),
+         fmt::format("{:.0f}", policy.drawdown_eur_per_mwh())});
+  }
+  return table;
+}
+
+HtmlTable month_table(const BacktestResults& results) {
+  HtmlTable table;
+  table.caption =
+      fmt::format("Profit by month, and the gain over {}", results.policies.front().name);
+  table.header = {"policy"};
+  for (const std::string& month : results.policies.front().months) table.header.push_back(month);
+  for (const WalkForward& policy : results.policies) {
+    std::vector<std::string> cells{policy.name};
+    for (const Row& row : rows_of(policy, results.policies.front())) {
+      if (row.month != kAllMonths) {
+        cells.push_back(fmt::format("{:.0f} ({:+.0f})", row.profit, row.gain.mean));
+      }
+    }
+    table.rows.push_back(std::move(cells));
+  }
+  return table;
+}
+
+}  // namespace
+
+std::string format_backtest_table(const BacktestResults& results) {
+  const std::size_t width = name_width(results);
+  const WalkForward& first = results.policies.front();
+  std::string text = fmt::format(
+      "{} months, {} days, each month by what was fitted on the {} days before it; SoC carried "
+      "over;\nEUR per day per MWh of capacity\n{:<{}}  {:>8} {:>6}  {:>8} {:>6}  {:>10}  {:>8}  "
+      "{:>8}\n",
+      first.months.size(), first.total.days.size(), results.window_days, "policy", width, "profit",
+      "s.e.", "gain", "s.e.", "after wear", "turnover", "drawdown");
+  for (const WalkForward& policy : results.policies) {
+    const Row row = rows_of(policy, first).back();
+    text += fmt::format(
+        "{:<{}}  {:>8.1f} {:>6.1f}  {:>+8.1f} {:>6.1f}  {:>10.1f}  {:>8.2f}  {:>8.0f}\n",
+        policy.name, width, row.profit, row.profit_error, row.gain.mean, row.gain.standard_error,
+        row.after_wear, row.turnover_per_day, policy.drawdown_eur_per_mwh());
+  }
+  text += fmt::format("\nprofit by month\n{:<{}}", "policy", width);
+  for (const std::string& month : first.months) text += fmt::format("  {:>8}", month);
+  text += "\n";
+  for (const WalkForward& policy : results.policies) {
+    text += fmt::format("{:<{}}", policy.name, width);
+    for (const Evaluation& month : policy.by_month) {
+      text += fmt::format("  {:>8.1f}", month.profit_eur_per_day_per_mwh());
+    }
+    text += "\n";
+  }
+  text += fmt::format(
+      "\ngain: day-by-day difference to {}; after wear: less {:g} EUR per MWh through the "
+      "battery;\n"
+      "turnover: energy through it a day, in capacities; drawdown: deepest fall from a peak, EUR "
+      "per "
+      "MWh\n",
+      first.name, kReferenceWearEurPerMwh);
+  for (const SkippedMonth& month : results.skipped) {
+    text += fmt::format("{} is not traded: {}\n", month.month, month.reason);
+  }
+  return text;
+}
+
+std::string backtest_csv(const BacktestResults& results) {
+  std::string text =
+      "month,policy,days,profit_eur_per_day_per_mwh,standard_error,gain_eur_per_day_per_mwh,"
+      "gain_standard_error,turnover_per_day,profit_after_10_eur_per_mwh_wear\n";
+  for (const WalkForward& policy : results.policies) {
+    for (const Row& row : rows_of(policy, results.policies.front())) {
+      text += fmt::format(
+          "{},{},{},{:.4f},{},{:.4f},{},{:.4f},{:.4f}\n", row.month, csv_field(policy.name),
+          row.days, row.profit, csv_figure(row.profit_error, 4), row.gain.mean,
+          csv_figure(row.gain.standard_error, 4), row.turnover_per_day, row.after_wear);
+    }
+  }
+  return text;
+}
+
+std::string backtest_days_csv(const BacktestResults& results) {
+  std::string text = "date,policy,profit_eur,cycles,switches,soc_end\n";
+  for (const WalkForward& policy : results.policies) {
+    for (const DayResult& d : policy.total.days) {
+      text += fmt::format("{},{},{:.8g},{:.4f},{},{:.5f}\n", d.date, csv_field(policy.name),
+                          d.profit_eur, d.cycles, d.switches, d.soc_end_frac);
+    }
+  }
+  return text;
+}
+
+Json backtest_json(const BacktestResults& results) {
+  Json policies = Json::list();
+  for (const WalkForward& policy : results.policies) {
+    const Row row = rows_of(policy, results.policies.front()).back();
+    policies.add(
+        Json::object({{"policy", policy.name},
+                      {"days", row.days},
+                      {"months", policy.months.size()},
+                      {"profit_eur_per_day_per_mwh", Decimals{row.profit, 4}},
+                      {"standard_error", Decimals{row.profit_error, 4}},
+                      {"gain_to_first", Decimals{row.gain.mean, 4}},
+                      {"gain_standard_error", Decimals{row.gain.standard_error, 4}},
+                      {"turnover_per_day", Decimals{row.turnover_per_day, 4}},
+                      {"profit_after_10_eur_per_mwh_wear", Decimals{row.after_wear, 4}},
+                      {"drawdown_eur_per_mwh", Decimals{policy.drawdown_eur_per_mwh(), 2}}}));
+  }
+  Json json = Json::object({{"window_days", results.window_days}, {"soc", "carried"}});
+  json.set("policies", std::move(policies));
+  return json;
+}
+
+void write_backtest_page(const BacktestResults& results, const std::filesystem::path& folder) {
+  const Figure figure = cumulative_figure(results);
+  draw_figure(figure, folder);
+  const std::filesystem::path svg = folder / (figure.name + ".svg");
+  const std::string body = fmt::format(
+      "<h1>Walk-forward backtest</h1>\n<p>{}</p>\n{}\n<figure>\n<h2>{}</h2>\n<div "
+      "class=\"wide\">{}</div>\n<figcaption>{}</figcaption>\n</figure>\n{}\n",
+      html_escaped(results.provenance), format_table(total_table(results)),
+      html_escaped(figure.title), inline_svg(read_file(svg), figure), html_escaped(figure.caption),
+      format_table(month_table(results)));
+  write_file(folder / "backtest.html", format_page("Walk-forward backtest", body));
+}
+
+}  // namespace bess
