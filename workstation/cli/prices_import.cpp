@@ -34,8 +34,8 @@ void add_prices_import(ProgramCommand& prices) {
       prices.subcommand("import", "Join downloaded minute and quarter-hour files to a minute file");
   command
       .option("files", options->files,
-              "Downloads of ods046, ods047, ods133, ods134, ods161, ods162, or ENTSO-E A85 "
-              "(XML); plain or .gz")
+              "Downloads of ods046, ods047, ods133, ods134, ods161, ods162, ENTSO-E A85 (XML), "
+              "or minute files; plain or .gz")
       .required();
   command.option("--out", options->out, "Minute file to write (.csv or .csv.gz)").required();
   command.footer(

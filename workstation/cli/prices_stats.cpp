@@ -24,10 +24,6 @@ struct Described {
   std::vector<double> settled;  ///< by quarter-hour
 };
 
-bool is_minute_file(std::string_view text) {
-  return text.substr(0, text.find("\n2")).find("minute_utc,") != std::string_view::npos;
-}
-
 Described describe_minutes(const MinuteSeries& series) {
   return {statistics_of_minutes(series), settled_by_quarter_hour(series)};
 }
@@ -45,7 +41,7 @@ Described describe_download(std::string_view text, const std::string& name) {
 void run(const Options& options) {
   if (!options.plot.empty()) require_drawable(options.plot);
   const std::string text = read_file(options.file);
-  const Described described = is_minute_file(text)
+  const Described described = is_minute_csv(text)
                                   ? describe_minutes(parse_minute_csv(text, options.file))
                                   : describe_download(text, options.file);
   if (options.json) {

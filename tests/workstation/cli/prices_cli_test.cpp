@@ -71,6 +71,35 @@ TEST_F(PricesCli, ReconstructNamesAllFilesAndSources) {
                     HasSubstr("; ENTSO-E"), HasSubstr(",-30.258,-30.258\n")));
 }
 
+TEST_F(PricesCli, ReconstructReadsWhatImportAndSimulateWrote) {
+  const std::string elia = written("ods134.csv", kEliaQuarterHour);
+  ASSERT_EQ(run({"import", elia, "--out", path("imported.csv.gz")}).exit_code, 0);
+  const Result result =
+      run({"reconstruct", "--quarter-hours", path("imported.csv.gz"), "--out", path("drawn.csv")});
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_THAT(result.output, AllOf(HasSubstr("minutes drawn on 1 settled quarter-hour"),
+                                   HasSubstr("1 quarter-hour without a system imbalance"),
+                                   HasSubstr("Source: Elia")));
+  EXPECT_THAT(read_file(path("drawn.csv")), AllOf(HasSubstr("# Source: Elia, opendata.elia.be"),
+                                                  HasSubstr(",-30.258,-30.258\n")));
+
+  ASSERT_EQ(run({"simulate", "--days", "1", "--out", path("s.csv")}).exit_code, 0);
+  const Result again =
+      run({"reconstruct", "--quarter-hours", path("s.csv"), "--out", path("d.csv")});
+  EXPECT_EQ(again.exit_code, 0) << again.output;
+  EXPECT_THAT(again.output, AllOf(HasSubstr("drawn on 96 settled quarter-hours"),
+                                  HasSubstr("1440 indicative prices of the files not used"),
+                                  HasSubstr("Source: a simulated market of bess-train, not real")));
+
+  const Result unsettled = run({"reconstruct", "--quarter-hours",
+                                written("m.csv",
+                                        "minute_utc,indicative_eur_mwh,settled_eur_mwh\n"
+                                        "2023-01-01T00:00:00Z,5,\n"),
+                                "--out", path("n.csv")});
+  EXPECT_EQ(unsettled.exit_code, 1);
+  EXPECT_THAT(unsettled.output, HasSubstr("m.csv: holds minute rows without settled prices"));
+}
+
 TEST_F(PricesCli, NegativeSeedsAreRefused) {
   EXPECT_NE(run({"simulate", "--days", "1", "--seed", "-1", "--out", path("s.csv")}).exit_code, 0);
   EXPECT_NE(run({"reconstruct", "--quarter-hours", written("q.csv", kEliaQuarterHour), "--seed",

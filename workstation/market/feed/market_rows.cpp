@@ -160,6 +160,7 @@ MarketRows parse_market_text(std::string_view text, std::string_view name) {
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   if (first == std::string_view::npos) fail("{}: the file is empty; download it again", name);
   if (looks_like_xml(text)) return parse_entsoe_xml(text, name);
+  if (is_minute_csv(text)) return parse_minute_file_rows(text, name);
   const bool json = text[first] == '{' || text[first] == '[';
   return json ? parse_market_json(text, name) : parse_market_csv(text, name);
 }

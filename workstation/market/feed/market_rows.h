@@ -1,5 +1,6 @@
 // Rows of downloaded market files, whatever their form: Elia's CSV and JSON exports of ods046,
-// ods047, ods133, ods134, ods161 and ods162, under API field names or portal labels, and tidy CSV.
+// ods047, ods133, ods134, ods161 and ods162, under API field names or portal labels, tidy CSV, and
+// the minute files that this program writes.
 // Names are compared without case, spaces and punctuation, so "Marginal incremental price" and
 // "marginalincrementalprice" are one.
 // Quality flags are not read: Elia says itself that DataIssue is set on far too many usable rows.
@@ -24,7 +25,9 @@ struct MinuteRow {
 enum class MarketSource {
   kElia,
   kEntsoe,
-  kUnknown,  ///< tidy files do not say where they come from
+  kSimulated,  ///< of a minute file: by `prices simulate`
+  kDrawn,      ///< of a minute file: its minutes are by `prices reconstruct`
+  kUnknown,    ///< tidy files do not say where they come from
 };
 
 /// In the order of the files; duplicates and disorder are the business of join_market().
@@ -82,7 +85,10 @@ MarketRows parse_market_csv(std::string_view text, std::string_view name);
 /// Reads JSON: a bare array of records (exports), {"results": [...]} or version 1's {"records":
 /// [...]}.
 MarketRows parse_market_json(std::string_view text, std::string_view name);
-/// Any of them or ENTSO-E's XML, told apart by the first character.
+/// A minute file's indicative prices as minutes, its settled ones as quarter-hours; its sources are
+/// those that its comments name.
+MarketRows parse_minute_file_rows(std::string_view text, std::string_view name);
+/// Any of them or ENTSO-E's XML, told apart by their content.
 MarketRows parse_market_text(std::string_view text, std::string_view name);
 
 }  // namespace bess
