@@ -7,6 +7,7 @@
 #include "shared/host/user_error.h"
 #include "workstation/cli/prices.h"
 #include "workstation/market/feed/market_join.h"
+#include "workstation/market/feed/recorded_day.h"
 #include "workstation/market/statistics/statistics_plot.h"
 #include "workstation/market/statistics/statistics_report.h"
 
@@ -49,6 +50,9 @@ void run(const Options& options) {
   } else {
     fmt::print("{}", format_statistics_text(described.statistics));
   }
+  if (!options.json && is_recorded_csv(text)) {
+    fmt::print("{}", describe_lateness(lateness_of(parse_recorded_day(text, options.file))));
+  }
   std::fflush(stdout);  // a picture that fails must not take the figures with it
   if (!options.plot.empty()) {
     plot_statistics(options.plot, described.statistics, described.settled);
@@ -61,7 +65,9 @@ void add_prices_stats(ProgramCommand& prices) {
   auto options = std::make_shared<Options>();
   ProgramCommand command = prices.subcommand(
       "stats", "Quartiles, tails, memory, convergence, gaps and clock changes of a price file");
-  command.option("file", options->file, "Minute file, or a download of Elia (CSV, JSON, .gz)")
+  command
+      .option("file", options->file,
+              "Minute file, a download of Elia (CSV, JSON), or a recorded day; plain or .gz")
       .required();
   command.flag("--json", options->json, "One JSON object");
   command.option("--plot", options->plot, "Picture to draw with gnuplot (.svg or .png)");
