@@ -44,6 +44,15 @@ std::string csv_field(std::string_view text) {
   return quoted + "\"";
 }
 
+std::string_view csv_header(std::string_view text) {
+  text = without_byte_order_mark(text);
+  while (!text.empty()) {
+    const std::string_view line = take_line(text);
+    if (!line.empty() && !line.starts_with('#')) return line;
+  }
+  return {};
+}
+
 bool CsvFields::take(std::string_view& field) {
   if (!more_) return false;
   const std::size_t closing = rest_.starts_with('"') ? closing_quote(rest_) : 0;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "shared/host/csv.h"
 #include "shared/host/file.h"
 #include "shared/host/plain_text.h"
 #include "shared/host/text.h"
@@ -82,6 +83,8 @@ void append_row(MinuteSeries& series, const Row& row, std::string_view name,
 bool has_no_price(std::span<const double> prices) {
   return std::ranges::all_of(prices, [](double price) { return std::isnan(price); });
 }
+
+bool is_minute_csv(std::string_view text) { return csv_header(text) == kHeader; }
 
 MinuteSeries parse_minute_csv(std::string_view text, std::string_view name) {
   text = plain_text(text, name);

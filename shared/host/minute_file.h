@@ -33,6 +33,9 @@ struct MinuteSeries {
 /// True when not one minute of a series' column has a price.
 bool has_no_price(std::span<const double> prices);
 
+/// True of a text with a minute file's header.
+bool is_minute_csv(std::string_view text);
+
 /// Parses a minute file's text; `name` is used in messages. Throws UserError naming the line.
 MinuteSeries parse_minute_csv(std::string_view text, std::string_view name);
 MinuteSeries read_minute_file(const std::filesystem::path& path);

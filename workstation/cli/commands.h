@@ -6,7 +6,8 @@
 
 namespace bess {
 
-void add_prices_commands(ProgramCommand& app);  ///< simulate, reconstruct, import, fetch, stats
+void add_prices_commands(
+    ProgramCommand& app);  ///< simulate, reconstruct, import, fetch, record, stats
 void add_train_command(ProgramCommand& app);
 void add_distil_command(ProgramCommand& app);
 void add_verify_command(ProgramCommand& app);

@@ -3,10 +3,12 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <thread>
 
 #include "shared/host/user_error.h"
+#include "workstation/market/feed/elia_fetch.h"
 
 namespace bess {
 namespace {
@@ -68,6 +70,23 @@ void watch_interruption() {
   const auto raise_flag = [](int) { interruption() = true; };
   std::signal(SIGINT, raise_flag);
   std::signal(SIGTERM, raise_flag);
+}
+
+void sleep_unless(double seconds, const std::atomic<bool>& interrupted) {
+  using Clock = std::chrono::steady_clock;
+  const auto end = Clock::now() + std::chrono::duration<double>(seconds);
+  while (!interrupted && Clock::now() < end) {
+    const std::chrono::duration<double> left = end - Clock::now();
+    std::this_thread::sleep_for(std::min(left, std::chrono::duration<double>(0.1)));
+  }
+}
+
+std::string checked_base_url(std::string url, const std::string& option) {
+  while (url.ends_with('/')) url.pop_back();
+  if (!url.starts_with("http://") && !url.starts_with("https://")) {
+    fail("{} \"{}\" is not a web address; write it as {}", option, url, kEliaBaseUrl);
+  }
+  return url;
 }
 
 }  // namespace bess

@@ -32,5 +32,10 @@ void end_when_interrupted();
 /// From here on they only raise the flag: long loops look at it, save what they have and return.
 void watch_interruption();
 std::atomic<bool>& interruption();
+/// Returns within a tenth of a second once interrupted.
+void sleep_unless(double seconds, const std::atomic<bool>& interrupted);
+
+/// The root of a web API without its last slash; throws UserError naming `option` when it is none.
+std::string checked_base_url(std::string url, const std::string& option);
 
 }  // namespace bess

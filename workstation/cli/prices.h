@@ -9,6 +9,7 @@ void add_prices_simulate(ProgramCommand& prices);
 void add_prices_reconstruct(ProgramCommand& prices);
 void add_prices_import(ProgramCommand& prices);
 void add_prices_fetch(ProgramCommand& prices);
+void add_prices_record(ProgramCommand& prices);
 void add_prices_stats(ProgramCommand& prices);
 
 }  // namespace bess

@@ -1,13 +1,10 @@
 // bess-train prices fetch: real prices from Elia's open data.
 #include <fmt/core.h>
 
-#include <chrono>
 #include <ctime>
 #include <memory>
-#include <thread>
 
 #include "shared/host/file.h"
-#include "shared/host/user_error.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
 #include "workstation/cli/prices.h"
@@ -22,29 +19,13 @@ struct Options {
   std::string base_url = kEliaBaseUrl;
 };
 
-std::string checked_base_url(std::string url) {
-  while (url.ends_with('/')) url.pop_back();
-  if (!url.starts_with("http://") && !url.starts_with("https://")) {
-    fail("--base-url \"{}\" is not a web address; write it as {}", url, kEliaBaseUrl);
-  }
-  return url;
-}
-
-void sleep_unless(double seconds, const std::atomic<bool>& interrupted) {
-  using Clock = std::chrono::steady_clock;
-  const auto end = Clock::now() + std::chrono::duration<double>(seconds);
-  while (!interrupted && Clock::now() < end) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
-  }
-}
-
 void run(const Options& options) {
   watch_interruption();
   require_writable(options.out);
   const std::optional<FetchedPrices> fetched = fetch_prices(
       {.span = {parse_local_date(options.from, "--from"), parse_local_date(options.to, "--to")},
        .out = options.out,
-       .base_url = checked_base_url(options.base_url),
+       .base_url = checked_base_url(options.base_url, "--base-url"),
        .now_utc_s = std::time(nullptr),
        .retry = {},
        .sleep = sleep_unless},

@@ -34,16 +34,19 @@ void add_prices_import(ProgramCommand& prices) {
       prices.subcommand("import", "Join downloaded minute and quarter-hour files to a minute file");
   command
       .option("files", options->files,
-              "Downloads of ods046, ods047, ods133, ods134, ods161, ods162, or ENTSO-E A85 "
-              "(XML); plain or .gz")
+              "Downloads of ods046, ods047, ods133, ods134, ods161, ods162, ENTSO-E A85 (XML), "
+              "days of 'prices record', or minute files; plain or .gz")
       .required();
   command.option("--out", options->out, "Minute file to write (.csv or .csv.gz)").required();
   command.footer(
-      "Later files win where two have the same minute. ENTSO-E sends a ZIP archive: unzip it "
+      "Later files win where two have the same minute. Of a recorded day the first price of a "
+      "minute "
+      "counts, the one that could be acted on. ENTSO-E sends a ZIP archive: unzip it "
       "first.\n"
       "Examples:\n"
       "  bess-train prices import ods133.csv ods134.csv --out prices.csv.gz\n"
-      "  bess-train prices import today/*.json --out today.csv");
+      "  bess-train prices import today/*.json --out today.csv\n"
+      "  bess-train prices import recorded/2025-06-*.csv ods134.csv --out june.csv.gz");
   command.runs([options] { run(*options); });
 }
 

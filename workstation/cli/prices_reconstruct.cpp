@@ -26,9 +26,13 @@ void run(const Options& options) {
   const MinuteSeries series = minutes_on_quarter_hours(quarter_hours, options.seed);
   write_minute_file(
       options.out, series,
-      fmt::format("Settled prices: real, from {}\n{}\nIndicative prices: drawn, not real: "
+      fmt::format("Settled prices: from {}\n{}\nIndicative prices: drawn, not real: "
                   "bess-train {} prices reconstruct --seed {}",
                   file_names(options.files), attribution, BESS_VERSION, options.seed));
+  if (settled.minutes_unused > 0) {
+    fmt::print("{} of the files not used: drawn ones take their place\n",
+               counted(settled.minutes_unused, "indicative price"));
+  }
   if (inferred > 0) {
     fmt::print("{} without a system imbalance: its side was inferred from the price\n",
                counted(inferred, "quarter-hour"));
@@ -48,17 +52,18 @@ void add_prices_reconstruct(ProgramCommand& prices) {
       "reconstruct", "Draw minute prices that converge to real settled quarter-hours");
   command
       .option("--quarter-hours", options->files,
-              "Settled quarter-hours: ods047 or ods134 (CSV or JSON), tidy CSV, or ENTSO-E "
-              "A85 (XML); plain or .gz")
+              "Settled quarter-hours: ods047 or ods134 (CSV or JSON), tidy CSV, ENTSO-E A85 "
+              "(XML), or what 'prices import' wrote; plain or .gz")
       .required();
   command.option("--seed", options->seed, "Same seed, same minutes").non_negative().with_default();
   command.option("--out", options->out, "Minute file to write (.csv or .csv.gz)").required();
   command.footer(
-      "Sources without a system imbalance (ENTSO-E A85) get its side from the price. ENTSO-E "
-      "sends a ZIP archive: unzip it first.\n"
+      "Sources without a system imbalance (ENTSO-E A85, minute files) get its side from the price. "
+      "ENTSO-E sends a ZIP archive: unzip it first.\n"
       "Examples:\n"
       "  bess-train prices reconstruct --quarter-hours A85_AT.xml --out austria.csv.gz\n"
-      "  bess-train prices reconstruct --quarter-hours ods047.csv --seed 3 --out prices.csv.gz");
+      "  bess-train prices reconstruct --quarter-hours ods047.csv --seed 3 --out prices.csv.gz\n"
+      "  bess-train prices reconstruct --quarter-hours imported.csv.gz --out drawn.csv.gz");
   command.runs([options] { run(*options); });
 }
 

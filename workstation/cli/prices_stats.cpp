@@ -7,6 +7,7 @@
 #include "shared/host/user_error.h"
 #include "workstation/cli/prices.h"
 #include "workstation/market/feed/market_join.h"
+#include "workstation/market/feed/recorded_day.h"
 #include "workstation/market/statistics/statistics_plot.h"
 #include "workstation/market/statistics/statistics_report.h"
 
@@ -23,10 +24,6 @@ struct Described {
   MarketStatistics statistics;
   std::vector<double> settled;  ///< by quarter-hour
 };
-
-bool is_minute_file(std::string_view text) {
-  return text.substr(0, text.find("\n2")).find("minute_utc,") != std::string_view::npos;
-}
 
 Described describe_minutes(const MinuteSeries& series) {
   return {statistics_of_minutes(series), settled_by_quarter_hour(series)};
@@ -45,13 +42,16 @@ Described describe_download(std::string_view text, const std::string& name) {
 void run(const Options& options) {
   if (!options.plot.empty()) require_drawable(options.plot);
   const std::string text = read_file(options.file);
-  const Described described = is_minute_file(text)
+  const Described described = is_minute_csv(text)
                                   ? describe_minutes(parse_minute_csv(text, options.file))
                                   : describe_download(text, options.file);
   if (options.json) {
     fmt::print("{}\n", format_statistics_json(described.statistics));
   } else {
     fmt::print("{}", format_statistics_text(described.statistics));
+  }
+  if (!options.json && is_recorded_csv(text)) {
+    fmt::print("{}", describe_lateness(lateness_of(parse_recorded_day(text, options.file))));
   }
   std::fflush(stdout);  // a picture that fails must not take the figures with it
   if (!options.plot.empty()) {
@@ -65,7 +65,9 @@ void add_prices_stats(ProgramCommand& prices) {
   auto options = std::make_shared<Options>();
   ProgramCommand command = prices.subcommand(
       "stats", "Quartiles, tails, memory, convergence, gaps and clock changes of a price file");
-  command.option("file", options->file, "Minute file, or a download of Elia (CSV, JSON, .gz)")
+  command
+      .option("file", options->file,
+              "Minute file, a download of Elia (CSV, JSON), or a recorded day; plain or .gz")
       .required();
   command.flag("--json", options->json, "One JSON object");
   command.option("--plot", options->plot, "Picture to draw with gnuplot (.svg or .png)");

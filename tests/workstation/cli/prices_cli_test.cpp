@@ -71,6 +71,79 @@ TEST_F(PricesCli, ReconstructNamesAllFilesAndSources) {
                     HasSubstr("; ENTSO-E"), HasSubstr(",-30.258,-30.258\n")));
 }
 
+TEST_F(PricesCli, ReconstructReadsWhatImportAndSimulateWrote) {
+  const std::string elia = written("ods134.csv", kEliaQuarterHour);
+  ASSERT_EQ(run({"import", elia, "--out", path("imported.csv.gz")}).exit_code, 0);
+  const Result result =
+      run({"reconstruct", "--quarter-hours", path("imported.csv.gz"), "--out", path("drawn.csv")});
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_THAT(result.output, AllOf(HasSubstr("minutes drawn on 1 settled quarter-hour"),
+                                   HasSubstr("1 quarter-hour without a system imbalance"),
+                                   HasSubstr("Source: Elia")));
+  EXPECT_THAT(read_file(path("drawn.csv")), AllOf(HasSubstr("# Source: Elia, opendata.elia.be"),
+                                                  HasSubstr(",-30.258,-30.258\n")));
+
+  ASSERT_EQ(run({"simulate", "--days", "1", "--out", path("s.csv")}).exit_code, 0);
+  const Result again =
+      run({"reconstruct", "--quarter-hours", path("s.csv"), "--out", path("d.csv")});
+  EXPECT_EQ(again.exit_code, 0) << again.output;
+  EXPECT_THAT(again.output, AllOf(HasSubstr("drawn on 96 settled quarter-hours"),
+                                  HasSubstr("1440 indicative prices of the files not used"),
+                                  HasSubstr("Source: a simulated market of bess-train, not real")));
+
+  const Result unsettled = run({"reconstruct", "--quarter-hours",
+                                written("m.csv",
+                                        "minute_utc,indicative_eur_mwh,settled_eur_mwh\n"
+                                        "2023-01-01T00:00:00Z,5,\n"),
+                                "--out", path("n.csv")});
+  EXPECT_EQ(unsettled.exit_code, 1);
+  EXPECT_THAT(unsettled.output, HasSubstr("m.csv: holds minute rows without settled prices"));
+}
+
+constexpr const char* kRecordedDay =
+    "# Recorded by bess-train\n"
+    "minute_utc,price_eur_mwh,system_imbalance_mw,price_arrived_utc,imbalance_arrived_utc,"
+    "quality_status,arrival\n"
+    "2023-01-01T00:15:00Z,10,-5,2023-01-01T00:17:00Z,2023-01-01T00:17:00Z,DataIssue,found\n"
+    "2023-01-01T00:16:00Z,20,,2023-01-01T00:18:05Z,,DataIssue,seen\n"
+    "2023-01-01T00:17:00Z,,7,2023-01-01T00:19:05Z,2023-01-01T00:19:05Z,DataIssue,seen\n"
+    "2023-01-01T00:16:00Z,25,,2023-01-01T00:20:05Z,,NotValidated,seen\n"
+    "2023-01-01T00:17:00Z,30,,2023-01-01T00:20:05Z,,Data";  // torn
+
+TEST_F(PricesCli, ARecordedDayIsImportedAndDescribed) {
+  const std::string day = written("2023-01-01.csv", kRecordedDay);
+  const std::string elia = written("ods134.csv", kEliaQuarterHour);
+  const Result import = run({"import", day, elia, "--out", path("m.csv")});
+  EXPECT_EQ(import.exit_code, 0) << import.output;
+  EXPECT_THAT(read_file(path("m.csv")), AllOf(HasSubstr("2023-01-01T00:15:00Z,10,-30.258\n"),
+                                              HasSubstr("2023-01-01T00:16:00Z,20,-30.258\n"),
+                                              HasSubstr("2023-01-01T00:17:00Z,,-30.258\n")));
+  EXPECT_THAT(run({"stats", day}).output,
+              AllOf(HasSubstr("1 price seen to arrive: median 65 s after the minute's end"),
+                    HasSubstr("1 price found")));
+  const Result mended =
+      run({"import", written("bad.csv", std::string(kRecordedDay) + "\n"), "--out", path("n.csv")});
+  EXPECT_EQ(mended.exit_code, 1);
+}
+
+TEST_F(PricesCli, RecordRefusesWhatItCannotMean) {
+  EXPECT_EQ(run({"record"}).exit_code, 2);
+  EXPECT_EQ(run({"record", "--out", path("r"), "--poll-s", "5"}).exit_code, 2);
+  EXPECT_EQ(run({"record", "--out", path("r"), "--for", "1h", "--until", "x"}).exit_code, 2);
+  const Result duration = run({"record", "--out", path("r"), "--for", "5 weeks"});
+  EXPECT_EQ(duration.exit_code, 1);
+  EXPECT_THAT(duration.output, HasSubstr("--for \"5 weeks\" is not a duration; write it as 90s"));
+  EXPECT_THAT(run({"record", "--out", path("r"), "--until", "tomorrow"}).output,
+              HasSubstr("write it as 2025-06-15T22:00:00Z"));
+  EXPECT_THAT(run({"record", "--out", path("r"), "--url", "elia"}).output,
+              HasSubstr("--url \"elia\" is not a web address"));
+  EXPECT_FALSE(std::filesystem::exists(path("r")));
+  const Result silent =
+      run({"record", "--out", path("r"), "--url", "http://127.0.0.1:9", "--for", "1s"});
+  EXPECT_EQ(silent.exit_code, 1);
+  EXPECT_THAT(silent.output, HasSubstr("nothing was recorded"));
+}
+
 TEST_F(PricesCli, NegativeSeedsAreRefused) {
   EXPECT_NE(run({"simulate", "--days", "1", "--seed", "-1", "--out", path("s.csv")}).exit_code, 0);
   EXPECT_NE(run({"reconstruct", "--quarter-hours", written("q.csv", kEliaQuarterHour), "--seed",

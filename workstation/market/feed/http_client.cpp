@@ -155,7 +155,8 @@ std::optional<double> wait_seconds(const std::string& header_value, double now_u
   return std::max(0.0, static_cast<double>(utc_s) - now_utc_s);
 }
 
-HttpOutcome http_get(const std::string& url, const std::atomic<bool>& interrupted) {
+HttpOutcome http_get(const std::string& url, const std::atomic<bool>& interrupted,
+                     double deadline_s) {
   const Handle curl = new_handle();
   Received received;
   char error_text[CURL_ERROR_SIZE] = "";
@@ -167,6 +168,7 @@ HttpOutcome http_get(const std::string& url, const std::atomic<bool>& interrupte
   curl_easy_setopt(curl.get(), CURLOPT_SSL_VERIFYPEER, 1L);
   curl_easy_setopt(curl.get(), CURLOPT_SSL_VERIFYHOST, 2L);
   curl_easy_setopt(curl.get(), CURLOPT_CONNECTTIMEOUT, kConnectTimeout_s);
+  curl_easy_setopt(curl.get(), CURLOPT_TIMEOUT_MS, static_cast<long>(1000 * deadline_s));
   curl_easy_setopt(curl.get(), CURLOPT_LOW_SPEED_LIMIT, 1L);
   curl_easy_setopt(curl.get(), CURLOPT_LOW_SPEED_TIME, kSilenceTimeout_s);
   curl_easy_setopt(curl.get(), CURLOPT_ACCEPT_ENCODING, "");  // whatever libcurl can unpack

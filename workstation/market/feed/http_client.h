@@ -23,8 +23,10 @@ struct HttpOutcome {
   std::optional<double> wait_s;  ///< what the server asked for
 };
 
-/// Returns soon after `interrupted` is raised.
-HttpOutcome http_get(const std::string& url, const std::atomic<bool>& interrupted);
+/// Returns soon after `interrupted` is raised, and as kTransient when the whole of it takes longer
+/// than `deadline_s`; 0 = only silence ends it.
+HttpOutcome http_get(const std::string& url, const std::atomic<bool>& interrupted,
+                     double deadline_s = 0);
 
 /// Where a redirect may lead: never from https to plain http.
 const char* redirect_protocols(const std::string& url);

@@ -14,6 +14,10 @@ const char* attribution_of(MarketSource source) {
       return "Elia, opendata.elia.be, CC BY 4.0 (https://creativecommons.org/licenses/by/4.0/)";
     case MarketSource::kEntsoe:
       return "ENTSO-E Transparency Platform, transparency.entsoe.eu, by its terms of use";
+    case MarketSource::kSimulated:
+      return "a simulated market of bess-train, not real";
+    case MarketSource::kDrawn:
+      return "minutes by bess-train prices reconstruct: drawn, not real";
     case MarketSource::kUnknown:
       break;
   }
@@ -36,12 +40,16 @@ MarketRows read_market_files(const std::vector<std::string>& paths) {
 
 SettledQuarterHours read_quarter_hour_files(const std::vector<std::string>& paths) {
   MarketRows rows = read_market_files(paths);
-  if (!rows.minutes.empty()) {
-    fail("{}: holds minute rows; give settled quarter-hours (ods047, ods134)", joined(paths, ", "));
+  if (rows.quarter_hours.empty() && !rows.minutes.empty()) {
+    fail(
+        "{}: holds minute rows without settled prices; give settled quarter-hours (ods047, ods134)",
+        joined(paths, ", "));
   }
   if (rows.quarter_hours.empty()) fail("{}: holds no rows", joined(paths, ", "));
   SettledQuarterHours settled;
   settled.sources = rows.sources;
+  settled.sources.erase(MarketSource::kDrawn);  // of the minutes, which are drawn anew
+  settled.minutes_unused = rows.minutes.size();
   settled.report.dual_priced_quarter_hours = rows.dual_priced_quarter_hours.size();
   settled.quarter_hours = sorted_quarter_hours(std::move(rows.quarter_hours), settled.report);
   check_span(settled.quarter_hours.front().utc_s, settled.quarter_hours.back().utc_s,

@@ -15,9 +15,11 @@ struct SettledQuarterHours {
   std::vector<QuarterHour> quarter_hours;  ///< ascending
   std::set<MarketSource> sources;
   JoinReport report;
+  std::size_t minutes_unused = 0;  ///< minute rows of the files
 };
 
-/// Settled quarter-hours of the files; minute rows are an error.
+/// Settled quarter-hours of the files; those of a minute file have no system imbalance. Throws
+/// UserError when there are none.
 SettledQuarterHours read_quarter_hour_files(const std::vector<std::string>& paths);
 
 /// File names without their folders, for a provenance.

@@ -11,6 +11,7 @@
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
 #include "workstation/market/feed/entsoe_xml.h"
+#include "workstation/market/feed/recorded_day.h"
 
 namespace bess {
 namespace {
@@ -18,12 +19,13 @@ namespace {
 using enum MarketField;
 
 /// Names without case and punctuation.
-constexpr std::array<std::pair<std::string_view, MarketField>, 17> kFieldNames{{
+constexpr std::array<std::pair<std::string_view, MarketField>, 18> kFieldNames{{
     {"datetime", kTime},
     {"datetimeutc", kTime},
     {"resolutioncode", kResolution},
     {"quarterhour", kQuarterHour},
     {"quarterhourutc", kQuarterHour},
+    {"qualitystatus", kQuality},
     {"systemimbalance", kSystemImbalance},
     {"systemimbalancemw", kSystemImbalance},
     {"alpha", kAlpha},
@@ -71,6 +73,8 @@ void MarketRowBuilder::set_text(MarketField field, std::string_view text) {
     resolution_ = text;
   } else if (field == kQuarterHour) {
     has_quarter_hour_ = true;
+  } else if (field == kQuality) {
+    quality_ = QualityStatus(std::string_view(one_line(text)));
   } else if (field == kTime) {
     std::int64_t utc_s = 0;
     if (!parse_utc(text, utc_s, kAlsoBlank)) {
@@ -130,7 +134,7 @@ void MarketRowBuilder::finish(MarketRows& rows) const {
          minute ? "minute" : "quarter-hour");
   }
   if (minute) {
-    rows.minutes.push_back({*utc_s_, single_price()});
+    rows.minutes.push_back({*utc_s_, single_price(), values_.system_imbalance_mw, quality_});
   } else {
     rows.quarter_hours.push_back(values_);
     rows.quarter_hours.back().utc_s = *utc_s_;
@@ -156,10 +160,12 @@ void append_rows(MarketRows& all, const MarketRows& rows) {
 }
 
 MarketRows parse_market_text(std::string_view text, std::string_view name) {
+  if (is_recorded_csv(text)) return parse_recorded_rows(text, name);  // also with a torn end
   text = plain_text(text, name);
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   if (first == std::string_view::npos) fail("{}: the file is empty; download it again", name);
   if (looks_like_xml(text)) return parse_entsoe_xml(text, name);
+  if (is_minute_csv(text)) return parse_minute_file_rows(text, name);
   const bool json = text[first] == '{' || text[first] == '[';
   return json ? parse_market_json(text, name) : parse_market_csv(text, name);
 }

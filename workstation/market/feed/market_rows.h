@@ -1,8 +1,10 @@
 // Rows of downloaded market files, whatever their form: Elia's CSV and JSON exports of ods046,
-// ods047, ods133, ods134, ods161 and ods162, under API field names or portal labels, and tidy CSV.
+// ods047, ods133, ods134, ods161 and ods162, under API field names or portal labels, tidy CSV, and
+// the minute files and recorded days that this program writes.
 // Names are compared without case, spaces and punctuation, so "Marginal incremental price" and
 // "marginalincrementalprice" are one.
-// Quality flags are not read: Elia says itself that DataIssue is set on far too many usable rows.
+// No row is refused for its quality flag: Elia says itself that DataIssue is set on far too many
+// usable rows.
 #pragma once
 
 #include <cstdint>
@@ -11,20 +13,28 @@
 #include <string_view>
 #include <vector>
 
+#include "shared/fixed_text.h"
 #include "workstation/market/series/quarter_hour.h"
 
 namespace bess {
+
+/// A quality flag: "Validated", "NotValidated", "DataIssue" and their spellings; longer ones are cut.
+using QualityStatus = FixedText<15>;
 
 /// Indicative price computed at the END of the minute that starts at `utc_s`.
 struct MinuteRow {
   std::int64_t utc_s;
   double indicative_eur_per_mwh;  ///< NaN = the TSO published the row without a price
+  double system_imbalance_mw = kNotPublished;
+  QualityStatus quality{};
 };
 
 enum class MarketSource {
   kElia,
   kEntsoe,
-  kUnknown,  ///< tidy files do not say where they come from
+  kSimulated,  ///< of a minute file: by `prices simulate`
+  kDrawn,      ///< of a minute file: its minutes are by `prices reconstruct`
+  kUnknown,    ///< tidy files do not say where they come from
 };
 
 /// In the order of the files; duplicates and disorder are the business of join_market().
@@ -42,6 +52,7 @@ enum class MarketField {
   kTime,
   kResolution,
   kQuarterHour,  ///< only minute rows have one
+  kQuality,
   kSystemImbalance,
   kAlpha,
   kMarginalIncremental,
@@ -74,6 +85,7 @@ class MarketRowBuilder {
   double positive_eur_per_mwh_ = kNotPublished, negative_eur_per_mwh_ = kNotPublished;
   std::optional<std::int64_t> utc_s_;
   std::string_view resolution_;
+  QualityStatus quality_;
   bool has_quarter_hour_ = false;
 };
 
@@ -82,7 +94,12 @@ MarketRows parse_market_csv(std::string_view text, std::string_view name);
 /// Reads JSON: a bare array of records (exports), {"results": [...]} or version 1's {"records":
 /// [...]}.
 MarketRows parse_market_json(std::string_view text, std::string_view name);
-/// Any of them or ENTSO-E's XML, told apart by the first character.
+/// A minute file's indicative prices as minutes, its settled ones as quarter-hours; its sources are
+/// those that its comments name.
+MarketRows parse_minute_file_rows(std::string_view text, std::string_view name);
+/// A day of `prices record` as minutes; of a minute that was revised, the first price.
+MarketRows parse_recorded_rows(std::string_view text, std::string_view name);
+/// Any of them or ENTSO-E's XML, told apart by their content.
 MarketRows parse_market_text(std::string_view text, std::string_view name);
 
 }  // namespace bess

@@ -69,6 +69,51 @@ TEST(MarketJoin, GapsAreReported) {
   EXPECT_THAT(text, HasSubstr("1970-01-01T00:01:00Z to 1970-01-01T00:03:00Z: 2 minutes"));
 }
 
+constexpr const char* kImported =
+    "# Source: Elia, opendata.elia.be, CC BY 4.0\n"
+    "minute_utc,indicative_eur_mwh,settled_eur_mwh\n"
+    "2023-01-01T00:00:00Z,10.5,-11.28\n"
+    "2023-01-01T00:01:00Z,,-11.28\n"
+    "2023-01-01T00:15:00Z,12,\n";
+
+TEST(MarketJoin, AMinuteFileIsReadBack) {
+  const MarketRows rows = parse_market_text(kImported, "imported.csv");
+  EXPECT_EQ(rows.sources, std::set{MarketSource::kElia});
+  ASSERT_EQ(rows.quarter_hours.size(), 1u);
+  EXPECT_EQ(utc_text(rows.quarter_hours[0].utc_s), "2023-01-01T00:00:00Z");
+  EXPECT_EQ(rows.quarter_hours[0].price_eur_per_mwh, -11.28);
+  const JoinedMarket market = join_market(rows, "imported.csv");
+  EXPECT_EQ(market.series.indicative[0], 10.5);
+  EXPECT_TRUE(std::isnan(market.series.indicative[1]));
+  EXPECT_EQ(market.series.settled[14], -11.28);
+  EXPECT_TRUE(std::isnan(market.series.settled[15]));
+  EXPECT_THAT(
+      user_error_of([] {
+        (void)parse_market_text(
+            "minute_utc,indicative_eur_mwh,settled_eur_mwh\n"
+            "2023-01-01T00:00:00Z,,1\n2023-01-01T00:14:00Z,,2\n",
+            "edited.csv");
+      }),
+      HasSubstr("edited.csv: the quarter-hour of 2023-01-01T00:00:00Z has two settled prices, 1 "));
+}
+
+TEST(MarketJoin, AMinuteFileNamesWhatIsNotReal) {
+  const auto sources = [](const std::string& comments) {
+    return parse_market_text(
+               comments + std::string(kImported).substr(std::string(kImported).find("minute_utc")),
+               "f.csv")
+        .sources;
+  };
+  EXPECT_EQ(sources(""), std::set{MarketSource::kUnknown});
+  EXPECT_EQ(sources("# Simulated, not real: bess-train\n"), std::set{MarketSource::kSimulated});
+  EXPECT_EQ(sources("# Source: ENTSO-E, transparency.entsoe.eu\n# Indicative prices: drawn, not "
+                    "real: bess-train\n"),
+            (std::set{MarketSource::kEntsoe, MarketSource::kDrawn}));
+  for (const MarketSource source : {MarketSource::kSimulated, MarketSource::kDrawn}) {
+    EXPECT_EQ(sources("# " + attribution_of({source}) + "\n"), std::set{source});
+  }
+}
+
 TEST(MarketJoin, RealDownloadsMatchTheTidyFile) {
   BESS_SKIP_WITHOUT("raw/ods161_2024-09-06.csv.gz");
   const auto joined = [](const std::string& name) {
