@@ -40,6 +40,7 @@ PairedDifference lead(const char* over, const Evaluation& teacher, const Evaluat
 TEST(LearningGate, TheTeacherIsAboveTheRuleAndLevelWithTabular) {
   set_market_time_zone();
   RunConfig config = load_run_config("");
+  config.train.method = Method::kC51;
   config.train.steps /= 2;
   const MarketSteps market = make_market_steps(read_yardstick(), config.market);
   const TrainResult training = train_by_default(market, config);

@@ -35,7 +35,7 @@ struct RewardShaping {
 /// by heart.
 struct ContextJitter {
   double quarter_hours = 4;
-  double classes = 2;
+  double classes = 0.5;
 };
 
 /// Training steps with their successor, ready to become transitions.

@@ -32,7 +32,7 @@ struct TrainOptions {
   double tau = 0.05;  ///< target <- tau * online + (1 - tau) * target, each step
   int atoms = 51;
   ContextKind context = ContextKind::kLevel;
-  PotentialKind potential = PotentialKind::kPlan;  ///< of reward shaping
+  PotentialKind potential = PotentialKind::kSdp;  ///< of reward shaping
   bool centre_rewards = true;                      ///< continuing horizon only
   ContextJitter jitter;                            ///< counterfactual source only
   double value_min_eur_per_h = -1e5;

@@ -126,10 +126,10 @@ TEST_F(TeacherFile, OtherFilesAreRefused) {
 
 TEST_F(TeacherFile, OtherVersionNamesBoth) {
   std::string bytes = saved(Method::kDqn);
-  bytes[8] = 2;
+  bytes[8] = 3;
   const std::string message = refusal_of(bytes);
-  EXPECT_NE(message.find("version 2"), std::string::npos) << message;
-  EXPECT_NE(message.find("reads 1"), std::string::npos) << message;
+  EXPECT_NE(message.find("version 3"), std::string::npos) << message;
+  EXPECT_NE(message.find("reads 2"), std::string::npos) << message;
 }
 
 /// Fields in the file: magic 8, version 4, then these.
@@ -172,7 +172,7 @@ TEST(Methods, NamesReadBack) {
   for (const Method method : {Method::kC51, Method::kDqn}) {
     EXPECT_EQ(parse_method(method_name(method)), method);
   }
-  EXPECT_NE(user_error_of([] { (void)parse_method("ppo"); }).find("use c51 or dqn"),
+  EXPECT_NE(user_error_of([] { (void)parse_method("ppo"); }).find("use sdp, c51 or dqn"),
             std::string::npos);
 }
 

@@ -26,6 +26,7 @@ void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 
 TrainOptions small_options() {
   TrainOptions options;
+  options.method = Method::kC51;
   options.batch_size = 96;
   options.atoms = 21;
   options.validate_every = 100;

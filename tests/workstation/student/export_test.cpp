@@ -226,7 +226,7 @@ TEST(Export, UnprovedHeaderDoesNotCompile) {
   expect_header_is_refused(edited("VIOLATIONS_PROPERTY_1 0", "VIOLATIONS_PROPERTY_1 1"), unproved);
   expect_header_is_refused(edited("VIOLATIONS_PROPERTY_2 0", "VIOLATIONS_PROPERTY_2 1"), unproved);
   expect_header_is_refused(edited("VIOLATIONS_PROPERTY_3 0", "VIOLATIONS_PROPERTY_3 1"), unproved);
-  expect_header_is_refused(edited("STUDENT_VERSION 2", "STUDENT_VERSION 1"),
+  expect_header_is_refused(edited("STUDENT_VERSION 3", "STUDENT_VERSION 2"),
                            "another format version: export it again");
 }
 

@@ -122,7 +122,10 @@ TEST(StudentFile, DamageIsRefused) {
       {"other JSON", "{\"a\": 1}", "\"format\" is missing"},
       {"other format", with(good, "format", "\"bess-teacher\""), "\"format\" is not"},
       {"format of another type", with(good, "format", "3"), "not a text"},
-      {"newer version", with(good, "version", "3"), "version 3"},
+      {"newer version", with(good, "version", "4"), "version 4"},
+      {"unknown context", with(good, "context", "\"week\""), "neither \"level\" nor \"month\""},
+      {"by level without edges", with(good, "context", "\"level\""), "rise strictly by level"},
+      {"edges by month", with(good, "level_edge_eur_per_mwh", "[1,2,3,4,5,6,7,8,9,10,11]"), "0 by month"},
       {"older version with a certificate", with(good, "version", "1"), "low_price"},
       {"other architecture", with(good, "architecture_hash", "12345"), "another student arch"},
       {"hash differs", with(good, "weights_hash", "12345"), "damaged"},
@@ -164,7 +167,7 @@ TEST(StudentFile, DamageIsRefused) {
   for (const char* key : {"format", "version", "architecture_hash", "weights_hash", "provenance",
                           "low_price_eur_per_mwh", "high_price_eur_per_mwh", "states_checked",
                           "states_evaluated", "violations_property_1", "violations_property_2",
-                          "price_map", "layer1_weight", "layer1_bias", "relu1_shift",
+                          "price_map", "context", "level_edge_eur_per_mwh", "layer1_weight", "layer1_bias", "relu1_shift",
                           "layer2_weight", "layer2_bias", "relu2_shift", "layer3_weight"}) {
     damages.push_back({std::string("without ") + key, without(good, key), key});
     damages.push_back({std::string("null ") + key, with(good, key, "null"), key});
