@@ -1,5 +1,7 @@
 #include "workstation/env/context_fit.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -31,7 +33,7 @@ ContextClasses fit_context_classes(const MarketSteps& market, ContextKind kind) 
   double squares = 0;
   for (const MarketDay& day : training) {
     for (const MarketStep& step : market.of(day)) {
-      const double level = double{1} * step.level_centi_eur_per_mwh / kCentiPerEur;
+      const double level = static_cast<double>(step.level_centi_eur_per_mwh) / kCentiPerEur;
       count += 1;
       sum += level;
       squares += level * level;
@@ -53,6 +55,20 @@ double class_level_eur_per_mwh(const ContextClasses& classes, int context_class)
   const double width = edge[1] - edge[0];
   if (context_class == 1) return edge[0] - width / 2;
   return edge[context_class - 2] + width / 2;
+}
+
+std::string context_text(const ContextClasses& classes, int context_class) {
+  constexpr const char* kMonths[] = {"January",   "February", "March",    "April",
+                                     "May",       "June",     "July",     "August",
+                                     "September", "October",  "November", "December"};
+  if (classes.kind == ContextKind::kMonth) return fmt::format("in {}", kMonths[context_class - 1]);
+  const auto& edge = classes.level_edge_eur_per_mwh;
+  if (context_class == 1) return fmt::format("at a price level below {} EUR/MWh", edge[0]);
+  if (context_class == kContextClassCount) {
+    return fmt::format("at a price level from {} EUR/MWh on", edge[context_class - 2]);
+  }
+  return fmt::format("at a price level from {} to {} EUR/MWh", edge[context_class - 2],
+                     edge[context_class - 1]);
 }
 
 }  // namespace bess

@@ -2,6 +2,7 @@
 // fitted on training days.
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include "shared/context_classes.h"
@@ -18,5 +19,8 @@ ContextClasses fit_context_classes(const MarketSteps& market, ContextKind kind);
 
 /// The level that stands for a class, EUR/MWh: its middle; of the open ones as far out as their neighbours'.
 double class_level_eur_per_mwh(const ContextClasses& classes, int context_class);
+
+/// For people, after a time of day: "in March", "at a price level from 84 to 96 EUR/MWh".
+std::string context_text(const ContextClasses& classes, int context_class);
 
 }  // namespace bess

@@ -1,6 +1,7 @@
 // Policy heat maps side by side [Paper, policy figures before and after correction].
 #include <fmt/core.h>
 
+#include "workstation/env/context_fit.h"
 #include "workstation/report/figures.h"
 
 namespace bess {
@@ -86,19 +87,16 @@ std::string clock_text(const PolicyContext& context) {
   return fmt::format("{:02}:{:02}", context.quarter_hour / 4, minute_of(context));
 }
 
-constexpr const char* kMonthNames[] = {"January",   "February", "March",    "April",
-                                       "May",       "June",     "July",     "August",
-                                       "September", "October",  "November", "December"};
-
-std::string caption_of(const PolicyContext& context, const std::vector<NamedPolicyMap>& maps,
-                       const BatteryParameters& battery, const std::string& note) {
+std::string caption_of(const PolicyContext& context, const ContextClasses& classes,
+                       const std::vector<NamedPolicyMap>& maps, const BatteryParameters& battery,
+                       const std::string& note) {
   std::string text = note;
   text += fmt::format(
-      "What to do at {} local time in {}, for every price and charge. The dearer the energy or the "
+      "What to do at {} local time {}, for every price and charge. The dearer the energy or the "
       "fuller the battery, the less a policy may charge; dots and lines mark neighbouring states "
       "that "
       "break this order",
-      clock_text(context), kMonthNames[context.context_class - 1]);
+      clock_text(context), context_text(classes, context.context_class));
   for (std::size_t i = 0; i < maps.size(); ++i) {
     text += fmt::format("{}{}: {}", i == 0 ? " (" : "; ", maps[i].name,
                         wrong_pairs(wrong_borders_of(maps[i].grid)));
@@ -110,12 +108,13 @@ std::string caption_of(const PolicyContext& context, const std::vector<NamedPoli
 
 }  // namespace
 
-Figure policy_map_figure(const PolicyContext& context, const std::vector<NamedPolicyMap>& maps,
-                         const BatteryParameters& battery, const std::string& note) {
+Figure policy_map_figure(const PolicyContext& context, const ContextClasses& classes,
+                         const std::vector<NamedPolicyMap>& maps, const BatteryParameters& battery,
+                         const std::string& note) {
   Figure figure;
   figure.name = fmt::format("policy_map_{:02}_{:02}{:02}", context.context_class,
                             context.quarter_hour / 4, minute_of(context));
-  figure.title = fmt::format("The policy in {} at {}", kMonthNames[context.context_class - 1],
+  figure.title = fmt::format("The policy {} at {}", context_text(classes, context.context_class),
                              clock_text(context));
   figure.width_px = 960;
   figure.height_px = 430;
@@ -123,7 +122,7 @@ Figure policy_map_figure(const PolicyContext& context, const std::vector<NamedPo
       "Maps of {} policies, price from -500 to 1500 EUR/MWh across and state of charge from 0 to "
       "100 % upwards: charge at low prices, discharge at high prices, idle between.",
       maps.size());
-  figure.caption = caption_of(context, maps, battery, note);
+  figure.caption = caption_of(context, classes, maps, battery, note);
   const KeyRow key = key_row(figure, 80,
                              {{"charge", kCharge},
                               {"idle", kIdle},

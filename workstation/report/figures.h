@@ -21,8 +21,9 @@ Figure learning_figure(const std::vector<CurvePoint>& curve,
 Figure distillation_figure(const std::vector<DistilPoint>& curve);
 
 /// One to three policies side by side over price and SoC; `note` opens the caption.
-Figure policy_map_figure(const PolicyContext& context, const std::vector<NamedPolicyMap>& maps,
-                         const BatteryParameters& battery, const std::string& note);
+Figure policy_map_figure(const PolicyContext& context, const ContextClasses& classes,
+                         const std::vector<NamedPolicyMap>& maps, const BatteryParameters& battery,
+                         const std::string& note);
 
 /// Distribution of observed prices on training and on test days, with the prices at which the student
 /// and the paper's rule must act.

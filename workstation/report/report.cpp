@@ -55,18 +55,30 @@ std::optional<PolicyContext> worst_context(const ReportInputs& in) {
   return worst == count.end() ? std::nullopt : std::optional(worst->first);
 }
 
-std::string month_note(const MarketSteps& market, int month) {
-  const auto trained = market.days_of(Split::kTrain);
-  const bool seen = std::ranges::find(trained, month, &MarketDay::month) != trained.end();
-  return seen ? "" : "No training day lies in this month: it is extrapolated. ";
+ContextClasses classes_of(const ReportInputs& in) {
+  if (in.teacher) return in.teacher->context;
+  if (in.corrected) return in.corrected->net.context;
+  return in.uncorrected ? in.uncorrected->net.context : ContextClasses{};
+}
+
+std::string context_note(const MarketSteps& market, const ContextClasses& classes,
+                         int context_class) {
+  for (const MarketDay& day : market.days_of(Split::kTrain)) {
+    for (const MarketStep& step : market.of(day)) {
+      if (classes.class_of(step.month, step.level_centi_eur_per_mwh) == context_class) return "";
+    }
+  }
+  return "No training day saw this context: it is extrapolated. ";
 }
 
 void add_policy_map(const ReportInputs& in, const PolicyContext& context, const std::string& note,
                     std::vector<Figure>& figures) {
   const std::vector<NamedPolicyMap> maps = policy_maps(in, context);
   if (maps.empty()) return;
-  figures.push_back(policy_map_figure(context, maps, in.battery,
-                                      note + month_note(in.market, context.context_class)));
+  const ContextClasses classes = classes_of(in);
+  figures.push_back(
+      policy_map_figure(context, classes, maps, in.battery,
+                        note + context_note(in.market, classes, context.context_class)));
 }
 
 void add_policy_maps(const ReportInputs& in, std::vector<Figure>& figures) {
@@ -231,7 +243,8 @@ std::string proof_section(const ReportInputs& in) {
   return fmt::format(
       "<section class=\"block\"><h2>The proof</h2>\n{}<p class=\"note\">Checked over the lattice "
       "of "
-      "minute, quarter-hour, month, charge and price that the edge can meet: charge at {} EUR/MWh "
+      "minute, quarter-hour, context class, charge and price that the edge can meet: charge at {} "
+      "EUR/MWh "
       "and below{}, discharge at {} and above{}, and never a larger action at a higher price or a "
       "fuller battery.</p></section>\n",
       format_table(table), thresholds.low_eur_per_mwh,

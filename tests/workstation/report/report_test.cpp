@@ -59,7 +59,7 @@ TEST(Report, HoldsEveryFigureAndNothingFromOutside) {
   const std::string html = html_of(run.inputs(), folder.file("run"));
   const std::vector<std::string> names{"learning_curve",
                                        "distillation_curve",
-                                       "policy_map_01_1207",
+                                       "policy_map_03_1207",
                                        "policy_map_09_1207",
                                        "policy_map_02_0503",
                                        "price_density",
