@@ -107,8 +107,9 @@ StudentFile learn_fold(const Fold& fold, const RunConfig& config) {
   if (interruption()) throw Interrupted{};
   const StudentFile& student = student_of(corrected.verdict);
   if (!std::holds_alternative<ProvedStudent>(corrected.verdict)) {
-    fail("{}: {} violations are left after {} rounds; raise [distil] repair_rounds", fold.month,
-         student.certificate.violations(), corrected.violations_by_round.size());
+    fail("{}: {} violations are left after {} rounds; {}", fold.month,
+         student.certificate.violations(), corrected.violations_by_round.size(),
+         mend_of_failed_proof(config.distil.method));
   }
   return student;
 }

@@ -63,10 +63,9 @@ void run(const Options& options) {
   if (interruption()) throw Interrupted{};
   const StudentFile& student = student_of(result.verdict);
   if (!options.plain && !std::holds_alternative<ProvedStudent>(result.verdict)) {
-    fail(
-        "{} violations are left after {} rounds, nothing was written; raise [correction] "
-        "price_slope and soc_slope or [distil] repair_rounds",
-        student.certificate.violations(), result.violations_by_round.size());
+    fail("{} violations are left after {} rounds, nothing was written; {}",
+         student.certificate.violations(), result.violations_by_round.size(),
+         mend_of_failed_proof(config.distil.method));
   }
   save_student(options.out, student);
   if (!options.curve_out.empty()) write_file(options.curve_out, distil_curve_csv(result.curve));
@@ -87,7 +86,8 @@ void add_distil_command(ProgramCommand& app) {
               "What of the teacher is distilled: mean, or cvar:ALPHA, the mean of the worst "
               "share ALPHA")
       .with_default();
-  command.option("--omega", options->omega, "Larger follows the teacher more closely");
+  command.option("--omega", options->omega,
+                 "Of the layer: larger follows the teacher more closely");
   command.option("--epochs", options->epochs, "Before the first proof").positive();
   command.flag("--plain", options->plain, "No correction: what the teacher alone would give");
   command.option("--curve-out", options->curve_out, "CSV of the losses");

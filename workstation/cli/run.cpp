@@ -73,10 +73,8 @@ RunResults learn(const RunConfig& config, MarketSteps market, const std::string&
   if (interruption()) throw Interrupted{};
   const Certificate& certificate = student_of(corrected.verdict).certificate;
   if (!std::holds_alternative<ProvedStudent>(corrected.verdict)) {
-    fail(
-        "{} violations are left after {} rounds; raise [correction] price_slope and soc_slope or "
-        "[distil] repair_rounds",
-        certificate.violations(), corrected.violations_by_round.size());
+    fail("{} violations are left after {} rounds; {}", certificate.violations(),
+         corrected.violations_by_round.size(), mend_of_failed_proof(config.distil.method));
   }
   fmt::print("      no violation over {} states, {} round{}\n", certificate.states_checked,
              corrected.violations_by_round.size(),

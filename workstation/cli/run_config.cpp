@@ -163,10 +163,14 @@ void KeyList::list(RunConfig& c) {
          "monotone by the signs of its weights, or the paper's optimisation layer");
   number("fidelity", c.distil.fidelity, 0, 100,
          "construction: following the teacher's every choice, beside losing no money");
-  number("omega", c.distil.omega, 1e-8, 1, "the paper's trade-off: larger follows the teacher");
+  number("level_shift_eur_per_mwh", c.distil.level_shift_eur_per_mwh, 0, 1000,
+         "construction, sdp: deviation of what visited days are moved by, to see other levels");
+  number("omega", c.distil.omega, 1e-8, 1,
+         "layer: the paper's trade-off, larger follows the teacher");
   number("temperature_eur_per_h", c.distil.temperature_eur_per_h, 1e-3, 1e6,
          "of the teacher's softmax over action values");
-  integer("epochs", c.distil.epochs, 1, 1'000'000, "of 64 lattices and 32,768 visited states");
+  integer("epochs", c.distil.epochs, 1, 1'000'000,
+          "of 16 Adam steps (construction), or of 64 lattices and 32,768 visited states (layer)");
   integer("steps_per_epoch", c.distil.steps_per_epoch, 1, 64, "Adam steps that share an epoch");
   number("learning_rate", c.distil.learning_rate, 1e-7, 1, "of Adam, falling to a tenth");
   integer("repair_rounds", c.distil.repair_rounds, 0, 1000,

@@ -220,10 +220,12 @@ void warn_narrow_support(const TrainOptions& options, const TrainResult& result)
 
 void add_train_command(ProgramCommand& app) {
   auto options = std::make_shared<Options>();
-  ProgramCommand command = app.subcommand("train", "Train the teacher, C51 or DQN");
+  ProgramCommand command =
+      app.subcommand("train", "Make the teacher: stochastic program, C51 or DQN");
   command.option("--prices", options->prices, "Minute file (.csv or .csv.gz)").required();
   command.option("--out", options->out, "Teacher file to write").required();
-  command.option("--method", options->method, "c51 (default) or dqn").one_of({"c51", "dqn"});
+  command.option("--method", options->method, "sdp (default), c51 or dqn")
+      .one_of({"sdp", "c51", "dqn"});
   command.option("--steps", options->steps, "Gradient steps").positive();
   command.option("--curve-out", options->curve_out, "CSV of the learning curve, one a seed");
   command
@@ -241,7 +243,7 @@ void add_train_command(ProgramCommand& app) {
       "Ctrl-C saves the best so far and a checkpoint, and exits with 3; --resume goes on from it.\n"
       "Examples:\n"
       "  bess-train train --prices market.csv.gz --out teacher.bin\n"
-      "  bess-train train --prices market.csv.gz --method dqn --seed 7 --out dqn.bin\n"
+      "  bess-train train --prices market.csv.gz --method c51 --seed 7 --out c51.bin\n"
       "  bess-train train --prices market.csv.gz --seeds 3 --out best.bin\n"
       "  bess-train train --prices market.csv.gz --config workstation/config/paper.toml --out "
       "paper.bin");

@@ -16,6 +16,11 @@ namespace {
 constexpr double kMarginGrowth = 1.4;
 
 std::string provenance_of(const Teacher& teacher, const DistilOptions& options) {
+  if (options.method == CorrectionMethod::kConstruction) {
+    return fmt::format("{}; {}, fidelity {:g}, {} epochs, seed {}", teacher.provenance,
+                       options.correct ? "monotone by construction" : "plain", options.fidelity,
+                       options.epochs, options.seed);
+  }
   return fmt::format("{}; {} omega {:g}, {} epochs, seed {}", teacher.provenance,
                      options.correct ? "corrected," : "plain,", options.omega, options.epochs,
                      options.seed);
@@ -70,6 +75,13 @@ CorrectionResult construct_and_prove(const Teacher& teacher, const Matrix& visit
 }
 
 }  // namespace
+
+std::string_view mend_of_failed_proof(CorrectionMethod method) {
+  return method == CorrectionMethod::kConstruction
+             ? "raise [distil] epochs or repair_rounds, or move the thresholds of [correction] "
+               "apart"
+             : "raise [correction] price_slope and soc_slope or [distil] repair_rounds";
+}
 
 StudentScore validation_score(const MarketSteps& market, const BatteryParameters& battery,
                               double initial_soc_frac) {

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <functional>
+#include <string_view>
 #include <vector>
 
 #include "workstation/correction/distil.h"
@@ -20,6 +21,9 @@ struct CorrectionResult {
 
 /// Never throws for a failed proof: the verdict says it. With options.correct false there is one
 /// round and no repair.
+/// What to change when violations are left, for a message.
+std::string_view mend_of_failed_proof(CorrectionMethod method);
+
 /// `score` tells what a student earns on validation days; without it the last one is taken.
 using StudentScore = std::function<double(const StudentNet&)>;
 CorrectionResult correct_and_prove(const Teacher& teacher, const Matrix& visited,
