@@ -99,5 +99,14 @@ TEST(PriceMap, DamagedTableIsRefusedWithThePrice) {
   }
 }
 
+TEST(PriceMap, TheInverseGivesThePriceBack) {
+  const PriceMap map = PriceMap::fit({-20, 10, 40, 90, 95, 100, 180, 400});
+  for (double price = -500; price <= 1500; price += 0.25) {
+    EXPECT_NEAR(map.price_of(map(price)), price, 0.05) << price;
+  }
+  EXPECT_EQ(map.price_of(0), -500);
+  EXPECT_EQ(map.price_of(1), 1500);
+}
+
 }  // namespace
 }  // namespace bess
