@@ -214,6 +214,7 @@ RunIdentity identity_of_run(const EdgeConfig& config) {
   identity.version = BESS_VERSION;
   identity.student_hash = student_hash();
   identity.student_provenance = student_provenance();
+  identity.context = context_name(student_context_kind());
   identity.map = config.map.name.view();
   identity.variant = config.map.variant.view();
   identity.battery = battery_place(config);
