@@ -104,6 +104,10 @@ void print_level(JsonValue s) {
   constexpr double kQ16PerEur = 65'536.0 * kCentiPerEur;
   const double level = number(field<&R::price_level, &L::centi_q16>(s)) / kQ16PerEur;
   const long long context_class = whole(field<&R::context_class>(s));
+  if (context_class == 0 && level == 0) {  // exactly: no price has set it yet
+    std::printf("level      not known\n");
+    return;
+  }
   std::printf("level      %.2f EUR/MWh, ", level);
   if (context_class == 0) {
     std::printf("the student was not asked\n");

@@ -201,13 +201,14 @@ TEST_F(Processes, StatusAndLogShowWhatTheRunningControllerDoes) {
 TEST_F(Processes, StatusShowsLevelAndClassWhereTheyAreTheContext) {
   const std::string config = site_.write_config();
   std::filesystem::create_directory(site_.folder.file("state"));
-  const auto level_line = [&](const std::string& context, int context_class) {
-    static_cast<void>(site_.folder.write("state/status.json",
-                                         "{\"context\": \"" + context +
-                                             "\", \"last\": {\"price_level_centi_q16\": -98304000, "
-                                             "\"context_class\": " +
-                                             std::to_string(context_class) +
-                                             "}, \"totals\": {\"cycles\": 7}}\n"));
+  const auto level_line = [&](const std::string& context, int context_class,
+                              const std::string& level = "-98304000") {
+    static_cast<void>(site_.folder.write(
+        "state/status.json",
+        "{\"context\": \"" + context + "\", \"last\": {\"price_level_centi_q16\": " + level +
+            ", "
+            "\"context_class\": " +
+            std::to_string(context_class) + "}, \"totals\": {\"cycles\": 7}}\n"));
     ChildProcess status({BESS_EDGE_PROGRAM, "status", "--config", config});
     const std::string text = status.read_all();
     EXPECT_EQ(status.wait(), 3) << text;  // nobody runs
@@ -218,6 +219,7 @@ TEST_F(Processes, StatusShowsLevelAndClassWhereTheyAreTheContext) {
   };
   EXPECT_EQ(level_line("level", 3), "level      -15.00 EUR/MWh, class 3 of 12");
   EXPECT_EQ(level_line("level", 0), "level      -15.00 EUR/MWh, the student was not asked");
+  EXPECT_EQ(level_line("level", 0, "0"), "level      not known");
   EXPECT_EQ(level_line("month", 3), "");
 }
 
