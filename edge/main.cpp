@@ -10,6 +10,7 @@
 
 #include "edge/base/check.h"
 #include "edge/control/control_loop.h"
+#include "edge/control/policy.h"
 #include "edge/log/journal.h"
 #include "edge/memory/heap_seal.h"
 #include "edge/program/command_line.h"
@@ -79,17 +80,22 @@ int run_controller(const CommandLine& command_line, const EdgeConfig& config) {
   if (!reach_battery(config, battery, clock)) return 1;
   std::string refusal;
   if (config.control.control && !is_commissioned(config, refusal)) return fail(refusal.c_str());
-  greet_price_server(config, prices);
+  const Status greeting = greet_price_server(config, prices);
   write_journal_line(JournalLevel::kNotice,
                      config.control.control ? "started: in control" : "started: read-only");
   journal_thresholds(config);
   if (config.control.control) release_if_a_check_fails(battery);
   static Loop loop(config.control, battery, prices, clock);
-  CycleRecord before;
+  if (student_context_kind() == ContextKind::kLevel) {
+    notify.extend_start(config.history.wait_s + 60);
+  }
+  CycleRecord before;  // stays empty where there is none
   if (log.newest(before)) {
-    loop.take_over({.throughput = before.throughput, .price_level = before.price_level});
     battery.restore_flash_writes(before.counters.flash_day, before.counters.flash_writes_today);
   }
+  loop.take_over(
+      {.throughput = before.throughput,
+       .price_level = level_at_start(config, before.price_level, greeting, prices, clock)});
   notify.ready();
   return run_supervised(loop, command_line.cycles, clock, log, notify) ? 0 : 1;
 }

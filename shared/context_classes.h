@@ -22,7 +22,8 @@ struct ContextClasses {
   std::int16_t level_edge_eur_per_mwh[kContextClassCount - 1] = {};
 
   /// 1..12. The level is in hundredths of EUR/MWh and counts only where it is the context.
-  [[nodiscard]] constexpr std::int16_t class_of(int month, std::int32_t level_centi_eur_per_mwh) const {
+  [[nodiscard]] constexpr std::int16_t class_of(int month,
+                                                std::int32_t level_centi_eur_per_mwh) const {
     if (kind == ContextKind::kMonth) return static_cast<std::int16_t>(month);
     std::int16_t found = 1;
     for (const std::int16_t edge : level_edge_eur_per_mwh) {

@@ -17,21 +17,32 @@ struct PriceLevel {
   /// One decision's weight is one in this many: a day of decisions.
   static constexpr std::int64_t kDecisions = kStepsPerDay;
   static constexpr int kFractionBits = 16;
+  static constexpr std::int32_t kMinCenti = kLatticePriceMinEurPerMwh * kCentiPerEur;
+  static constexpr std::int32_t kMaxCenti = kLatticePriceMaxEurPerMwh * kCentiPerEur;
 
-  std::int64_t centi_q16 = 0;         ///< hundredths of EUR/MWh, times 2^16
-  std::int64_t row_minute_utc_s = 0;  ///< of the newest row that counted; 0: none, the level is not known
+  std::int64_t centi_q16 = 0;  ///< hundredths of EUR/MWh, times 2^16
+  std::int64_t row_minute_utc_s =
+      0;  ///< of the newest row that counted; 0: none, the level is not known
+
+  /// As if every price so far had been this one; whatever row comes next counts.
+  static constexpr PriceLevel starting_at(std::int32_t centi_eur_per_mwh) {
+    return {.centi_q16 = to_q16(centi_eur_per_mwh), .row_minute_utc_s = 1};
+  }
 
   [[nodiscard]] constexpr bool is_known() const { return row_minute_utc_s != 0; }
+  /// False of what no prices lead to: read from a damaged or foreign place.
+  [[nodiscard]] constexpr bool is_sound() const {
+    return centi_q16 >= to_q16(kMinCenti) && centi_q16 <= to_q16(kMaxCenti) &&
+           row_minute_utc_s >= 0;
+  }
 
   /// The newest row that a decision saw. The first one sets the level. Prices count as the student sees
   /// them, clamped to the lattice: one spike must not move a day.
   constexpr void observe(std::int64_t minute_utc_s, std::int32_t price_centi_eur_per_mwh) {
     if (minute_utc_s <= row_minute_utc_s) return;
-    const std::int64_t price_q16 =
-        std::int64_t{clamp_to(price_centi_eur_per_mwh, kLatticePriceMinEurPerMwh * kCentiPerEur,
-                              kLatticePriceMaxEurPerMwh * kCentiPerEur)}
-        << kFractionBits;
-    centi_q16 = is_known() ? centi_q16 + rounding_divide(price_q16 - centi_q16, kDecisions) : price_q16;
+    const std::int64_t price_q16 = to_q16(price_centi_eur_per_mwh);
+    centi_q16 =
+        is_known() ? centi_q16 + rounding_divide(price_q16 - centi_q16, kDecisions) : price_q16;
     row_minute_utc_s = minute_utc_s;
   }
 
@@ -39,6 +50,11 @@ struct PriceLevel {
     return static_cast<std::int32_t>(rounding_divide(centi_q16, std::int64_t{1} << kFractionBits));
   }
   friend constexpr bool operator==(const PriceLevel&, const PriceLevel&) = default;
+
+ private:
+  static constexpr std::int64_t to_q16(std::int32_t centi) {
+    return std::int64_t{clamp_to(centi, kMinCenti, kMaxCenti)} << kFractionBits;
+  }
 };
 
 }  // namespace bess

@@ -260,9 +260,10 @@ class ControlLoop {
     const PriceReport& price = record.price;
     if (price.has_row) price_level_.observe(price.minute_utc_s, price.price_centi_eur_per_mwh);
     if (record.has_measurement && price.has_row) {
-      record.student_action =
-          decide_with_student(local_minute_of(record.utc_s), price_level_,
-                              record.measurement.soc_e4, price.price_centi_eur_per_mwh);
+      const LocalMinute now = local_minute_of(record.utc_s);
+      record.context_class = student_context_class(now, price_level_);
+      record.student_action = decide_with_student(now, price_level_, record.measurement.soc_e4,
+                                                  price.price_centi_eur_per_mwh);
       record.has_student_action = true;
     }
     const std::int64_t decided_utc_s = decision_utc_s(record.utc_s);

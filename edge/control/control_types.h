@@ -121,7 +121,8 @@ struct CycleRecord {
   std::int32_t unanswered_orders = 0;
   DayThroughput throughput{};
   BatteryCounters counters{};
-  PriceLevel price_level{};  ///< the prices of this cycle included
+  PriceLevel price_level{};        ///< the prices of this cycle included
+  std::int16_t context_class = 0;  ///< what the student was given, 1..12; 0 = it was not asked
 };
 
 }  // namespace bess

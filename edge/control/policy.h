@@ -12,7 +12,10 @@
 namespace bess {
 
 /// What the student's context class is made from.
+const ContextClasses& student_context();
 ContextKind student_context_kind();
+/// The class that the student is given, 1..12.
+std::int16_t student_context_class(const LocalMinute& now, const PriceLevel& level);
 /// What the exported student would do.
 Action decide_with_student(const LocalMinute& now, const PriceLevel& level, std::int32_t soc_e4,
                            std::int32_t price_centi_eur_per_mwh);

@@ -118,6 +118,9 @@ consteval auto make_record_fields() {
        {.csv = 30, .last = 44, .metrics = {16, "bess_price_level_eur_per_mwh"}},
        {"Trailing level of the prices, the student's context.", 6'553'600}},
       {member<&R::price_level, &L::row_minute_utc_s>()},
+      {member<&R::context_class>().given<&R::has_student_action>(),
+       "context_class",
+       {.csv = 31, .last = 64}},
   });
 }
 

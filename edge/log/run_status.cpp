@@ -29,6 +29,7 @@ FixedText<kCapacity> quotable(const FixedText<kCapacity>& text) {
 void add_identity(const RunIdentity& id, TextBuffer& json) {
   json.add("  \"version\": \"%s\",\n  \"student\": \"%08x\",\n  \"provenance\": \"%s\",\n",
            id.version.c_str(), id.student_hash, quotable(id.student_provenance).c_str());
+  json.add("  \"context\": \"%s\",\n", id.context.c_str());
   json.add("  \"map\": \"%s\",\n  \"variant\": \"%s\",\n  \"battery\": \"%s\",\n",
            quotable(id.map).c_str(), quotable(id.variant).c_str(), quotable(id.battery).c_str());
   json.add("  \"control\": %s,\n  \"pid\": %d,\n  \"start_utc\": \"%s\",\n  \"cadence_ms\": %d,\n",

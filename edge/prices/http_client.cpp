@@ -39,6 +39,10 @@ Status status_of_curl(CURLcode code) {
   }
 }
 
+std::int64_t deadline_after_ms(std::int32_t ms) {
+  return clock_ns(CLOCK_MONOTONIC) + ms * (kNanosecondsPerSecond / 1'000);
+}
+
 bool is_redirect(long http_code) { return http_code >= 300 && http_code < 400; }
 
 }  // namespace
@@ -64,8 +68,6 @@ HttpClient::~HttpClient() {
 void HttpClient::set_options() {
   CURL* curl = curl_;
   curl_easy_setopt(curl, CURLOPT_NOSIGNAL, 1L);
-  curl_easy_setopt(curl, CURLOPT_TIMEOUT_MS, static_cast<long>(settings_.timeout_ms));
-  curl_easy_setopt(curl, CURLOPT_CONNECTTIMEOUT_MS, static_cast<long>(settings_.timeout_ms));
   curl_easy_setopt(curl, CURLOPT_HTTP_VERSION, CURL_HTTP_VERSION_1_1);
   curl_easy_setopt(curl, CURLOPT_PROTOCOLS_STR, "http,https");
   curl_easy_setopt(curl, CURLOPT_FOLLOWLOCATION, 0L);  // `get` does it, and looks up the names
@@ -95,8 +97,18 @@ void HttpClient::set_headers() {
 }
 
 Status HttpClient::get(std::string_view& body) {
+  return fetch(settings_.url.c_str(), deadline_after_ms(settings_.timeout_ms), body);
+}
+
+Status HttpClient::get(const char* url, std::int32_t timeout_ms, std::string_view& body) {
+  HostAddresses host;
+  if (host.set_url(url) != Status::kOk || !host.is_same_host(origin_)) return Status::kMalformed;
+  return fetch(url, deadline_after_ms(timeout_ms), body);
+}
+
+Status HttpClient::fetch(const char* url, std::int64_t deadline_ns, std::string_view& body) {
   const std::int64_t refusals = arena_statistics().failures;
-  Status status = perform(settings_.url.c_str(), origin_, true);
+  Status status = perform(url, origin_, true, deadline_ns);
   FixedText<1023> target;
   HostAddresses elsewhere;
   for (int i = 0; status == Status::kOk && i < kRedirectsMax; ++i) {
@@ -105,7 +117,7 @@ Status HttpClient::get(std::string_view& body) {
     status = elsewhere.set_url(target.c_str());
     if (status != Status::kOk) break;
     const bool is_home = elsewhere.is_same_host(origin_);
-    status = perform(target.c_str(), is_home ? origin_ : elsewhere, is_home);
+    status = perform(target.c_str(), is_home ? origin_ : elsewhere, is_home, deadline_ns);
   }
   // OpenSSL hides want of memory behind errors of its own; the arena knows.
   if (status != Status::kOk && arena_statistics().failures != refusals) return Status::kNoMemory;
@@ -116,7 +128,8 @@ Status HttpClient::get(std::string_view& body) {
   return http_code == 200 ? Status::kOk : Status::kHttpError;
 }
 
-Status HttpClient::perform(const char* url, HostAddresses& host, bool with_headers) {
+Status HttpClient::perform(const char* url, HostAddresses& host, bool with_headers,
+                           std::int64_t deadline_ns) {
   // Lookups were prepared for before the seal only if the configured host is a name itself.
   if (host.is_name() && !origin_.is_name()) return Status::kNameUnresolved;
   Status status = host.refresh(clock_ns(CLOCK_MONOTONIC), settings_.resolve_every_s);
@@ -124,6 +137,10 @@ Status HttpClient::perform(const char* url, HostAddresses& host, bool with_heade
   const List addresses(host.is_name() ? curl_slist_append(nullptr, host.entry()) : nullptr,
                        &curl_slist_free_all);
   if (host.is_name() && addresses == nullptr) return Status::kNoMemory;
+  const std::int64_t left_ms = (deadline_ns - clock_ns(CLOCK_MONOTONIC)) / 1'000'000;
+  if (left_ms <= 0) return Status::kTimeout;
+  curl_easy_setopt(curl_, CURLOPT_TIMEOUT_MS, static_cast<long>(left_ms));
+  curl_easy_setopt(curl_, CURLOPT_CONNECTTIMEOUT_MS, static_cast<long>(left_ms));
   header_size_ = answer_size_ = 0;
   if (curl_easy_setopt(curl_, CURLOPT_URL, url) != CURLE_OK) return Status::kNoMemory;
   curl_easy_setopt(curl_, CURLOPT_RESOLVE, addresses.get());

@@ -20,7 +20,7 @@ struct HttpSettings {
   FixedText<511> url;
   FixedText<255> ca_file = "/etc/ssl/certs/ca-certificates.crt";
   FixedText<2047> headers;             ///< lines of the header file; secret
-  std::int32_t timeout_ms = 5'000;     ///< of one request, wall time
+  std::int32_t timeout_ms = 5'000;     ///< of one request with its redirects, wall time
   std::int32_t resolve_every_s = 600;  ///< at the latest; sooner when nobody answers
 };
 
@@ -37,6 +37,8 @@ class HttpClient {
 
   /// kOk: `body` is the whole answer of a 200, until the next call.
   Status get(std::string_view& body);
+  /// The same of another URL of that host (kMalformed: of another one), within at most `timeout_ms`.
+  Status get(const char* url, std::int32_t timeout_ms, std::string_view& body);
 
  private:
   static std::size_t on_body(char* bytes, std::size_t size, std::size_t count, void* client);
@@ -44,7 +46,8 @@ class HttpClient {
 
   void set_options();
   void set_headers();
-  Status perform(const char* url, HostAddresses& host, bool with_headers);
+  Status fetch(const char* url, std::int64_t deadline_ns, std::string_view& body);
+  Status perform(const char* url, HostAddresses& host, bool with_headers, std::int64_t deadline_ns);
   /// kOk with the target when the answer was a redirect that may be followed.
   Status take_redirect(FixedText<1023>& target);
 

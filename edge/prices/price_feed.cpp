@@ -138,4 +138,14 @@ Status PriceFeed::fetch_once(PriceRow& row) {
                             row);
 }
 
+Status PriceFeed::fetch_page(const char* url, std::int32_t timeout_ms, const PriceRowTaker& taker,
+                             int& items) {
+  items = 0;
+  std::string_view body;
+  const Status status = http_.get(url, timeout_ms, body);
+  if (status != Status::kOk) return status;
+  return parse_prices(body, settings_.fields, clock_.now_utc_ns() / kNanosecondsPerSecond, taker,
+                      items);
+}
+
 }  // namespace bess

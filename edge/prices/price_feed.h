@@ -46,6 +46,9 @@ class PriceFeed {
 
   /// One request on the caller's thread, for checking the configuration before the loop starts.
   Status fetch_once(PriceRow& row);
+  /// One page of rows from a URL of the same host, likewise; `items` as parse_prices has it.
+  Status fetch_page(const char* url, std::int32_t timeout_ms, const PriceRowTaker& taker,
+                    int& items);
 
  private:
   /// Measured: 16 KiB; JSON may nest, and ThreadSanitizer refuses less than 0.9 MiB.

@@ -56,8 +56,9 @@ bool parse_row(const cJSON* item, const PriceFields& fields, std::int64_t now_ut
 
 }  // namespace
 
-Status parse_newest_price(std::string_view json, const PriceFields& fields, std::int64_t now_utc_s,
-                          PriceRow& row) {
+Status parse_prices(std::string_view json, const PriceFields& fields, std::int64_t now_utc_s,
+                    const PriceRowTaker& taker, int& items) {
+  items = 0;
   const Json root(cJSON_ParseWithLength(json.data(), json.size()), &cJSON_Delete);
   if (root == nullptr) return Status::kMalformed;
   const cJSON* rows = root.get();
@@ -66,12 +67,28 @@ Status parse_newest_price(std::string_view json, const PriceFields& fields, std:
   bool found = false;
   const cJSON* item = nullptr;
   cJSON_ArrayForEach(item, rows) {
-    PriceRow candidate;
-    if (!parse_row(item, fields, now_utc_s, candidate)) continue;
-    if (!found || candidate.minute_utc_s > row.minute_utc_s) row = candidate;
+    ++items;
+    PriceRow row;
+    if (!parse_row(item, fields, now_utc_s, row)) continue;
+    taker.take(taker.self, row);
     found = true;
   }
   return found ? Status::kOk : Status::kNoRow;
+}
+
+Status parse_newest_price(std::string_view json, const PriceFields& fields, std::int64_t now_utc_s,
+                          PriceRow& row) {
+  struct Newest {
+    PriceRow& row;
+    bool found = false;
+  } newest{.row = row};
+  int items = 0;
+  const auto keep_newer = [](void* self, const PriceRow& candidate) {
+    auto& best = *static_cast<Newest*>(self);
+    if (!best.found || candidate.minute_utc_s > best.row.minute_utc_s) best.row = candidate;
+    best.found = true;
+  };
+  return parse_prices(json, fields, now_utc_s, {&newest, keep_newer}, items);
 }
 
 }  // namespace bess

@@ -30,4 +30,15 @@ struct PriceRow {
 Status parse_newest_price(std::string_view json, const PriceFields& fields, std::int64_t now_utc_s,
                           PriceRow& row);
 
+/// Who is given the rows of an answer, one by one.
+struct PriceRowTaker {
+  void* self;
+  void (*take)(void* self, const PriceRow& row);
+};
+
+/// Every usable row of an answer, in its order; kNoRow when none is. `items`: rows in the answer,
+/// usable or not.
+Status parse_prices(std::string_view json, const PriceFields& fields, std::int64_t now_utc_s,
+                    const PriceRowTaker& taker, int& items);
+
 }  // namespace bess

@@ -123,7 +123,39 @@ void check_battery_against_map(TomlTable table, EdgeConfig& config) {
   }
 }
 
-void read_price(TomlTable table, PriceFeedSettings& price) {
+bool is_http(std::string_view url) {
+  return url.starts_with("http://") || url.starts_with("https://");
+}
+
+/// How a student by level is given the level at a first start.
+void read_history(TomlTable& table, EdgeConfig& config) {
+  HistorySettings& history = config.history;
+  table.integer("history_hours", history.hours, 0, PriceHistory::kHoursMax);
+  table.integer("history_wait_s", history.wait_s, 1, 3'600);
+  table.text("history_url", history.url);
+  if (table.has("level_start_eur_per_mwh")) {
+    std::int32_t start_centi_eur_per_mwh = 0;
+    table.scaled("level_start_eur_per_mwh", start_centi_eur_per_mwh, kCentiPerEur,
+                 kLatticePriceMinEurPerMwh, kLatticePriceMaxEurPerMwh);
+    config.level_start_centi_eur_per_mwh = start_centi_eur_per_mwh;
+  }
+}
+
+/// Names are looked up, and secrets sent, for one host alone.
+void check_history_url(TomlTable& table, const EdgeConfig& config) {
+  const FixedText<511>& url = config.history.url;
+  if (url.empty()) return;
+  HostAddresses here;
+  HostAddresses there;
+  const bool is_known = here.set_url(config.price.http.url.c_str()) == Status::kOk &&
+                        there.set_url(url.c_str()) == Status::kOk;
+  if (!is_http(url.view()) || !is_known || !there.is_same_host(here)) {
+    table.fail("history_url", "must start with http:// or https:// and be of the host of url");
+  }
+}
+
+void read_price(TomlTable table, EdgeConfig& config) {
+  PriceFeedSettings& price = config.price;
   FixedText<255> header_file;
   table.require("url");
   table.text("url", price.http.url);
@@ -137,12 +169,12 @@ void read_price(TomlTable table, PriceFeedSettings& price) {
   table.integer("requests_per_cycle", price.requests_per_cycle, 1, 4);
   table.integer("wait_s", price.wait_s, 1, 60);
   table.scaled("step_flag_eur_per_mwh", price.step_flag_centi_eur_per_mwh, 100, 0, 20'000);
+  read_history(table, config);
   table.finish();
   if (!table.ok()) return;
   const std::string_view url = price.http.url.view();
-  if (!url.starts_with("http://") && !url.starts_with("https://")) {
-    table.fail("url", "must start with http:// or https://");
-  }
+  if (!is_http(url)) table.fail("url", "must start with http:// or https://");
+  check_history_url(table, config);
   const auto folder = std::filesystem::path(table.file()).parent_path();
   const std::string ca_file = (folder / price.http.ca_file.c_str()).string();
   if (!price.http.ca_file.assign(ca_file)) table.fail("ca_file", "is too long a path");
@@ -263,7 +295,7 @@ bool load_edge_config(const std::string& path, EdgeConfig& config, std::string& 
   root.require("price");
   read_battery(section(root, "battery"), config);
   check_battery_against_map(section(root, "battery"), config);
-  read_price(section(root, "price"), config.price);
+  read_price(section(root, "price"), config);
   read_guard(section(root, "guard"), config);
   read_state(section(root, "state"), config);
   read_log(section(root, "log"), config);

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "edge/battery/modbus_wire.h"
 #include "edge/control/control_settings.h"
 #include "edge/log/event_log.h"
+#include "edge/prices/history_pages.h"
 #include "edge/prices/price_feed.h"
 #include "edge/registers/register_map.h"
 #include "shared/fixed_text.h"
@@ -25,6 +27,8 @@ struct EdgeConfig {
   ControlSettings control;
   BatteryLinkSettings link;
   PriceFeedSettings price;
+  HistorySettings history;
+  std::optional<std::int32_t> level_start_centi_eur_per_mwh;
   RegisterMap map;
   ScaledClock clock;
   FixedText<511> map_path;

@@ -10,6 +10,7 @@
 #include "edge/log/journal.h"
 #include "edge/prices/http_secrets.h"
 #include "edge/program/commission_file.h"
+#include "edge/program/level_note.h"
 #include "edge/program/threshold_note.h"
 #include "edge/registers/codec.h"
 #include "shared/utc_text.h"
@@ -164,12 +165,34 @@ bool reach_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& 
   return true;
 }
 
-void greet_price_server(const EdgeConfig& config, PriceFeed& prices) {
+Status greet_price_server(const EdgeConfig& config, PriceFeed& prices) {
   PriceRow row;
   const Status status = prices.fetch_once(row);
-  if (status == Status::kOk) return;
+  if (status == Status::kOk) return status;
   report(JournalLevel::kWarning, "note: price from %s: %s; waiting in safe state",
          loggable_url(config.price.http.url.view()).c_str(), price_status_text(status).data());
+  return status;
+}
+
+PriceLevel level_at_start(const EdgeConfig& config, const PriceLevel& logged, Status greeting,
+                          PriceFeed& prices, EdgeClock& clock) {
+  const std::int64_t now_utc_s = clock.now_utc_ns() / kNanosecondsPerSecond;
+  LevelNews news{.hours_wanted = config.history.hours, .status = greeting};
+  const auto fetch = [&]() -> PriceLevel {
+    // A server that has just not answered would only hold up the start.
+    const bool has_answered = greeting == Status::kOk || greeting == Status::kNoRow;
+    if (news.hours_wanted == 0 || !has_answered) return {};
+    static PriceHistory history(news.hours_wanted, now_utc_s);
+    news.status = fetch_history(prices, config.price, config.history, clock, history);
+    news.hours = history.hours_covered();
+    news.rows = history.rows();
+    return history.level();
+  };
+  const ContextKind kind = student_context_kind();
+  news.start =
+      find_start_level(kind, logged, now_utc_s, config.level_start_centi_eur_per_mwh, fetch);
+  if (kind == ContextKind::kLevel) write_journal_line(journal_level_of(news), level_note(news));
+  return news.start.level;
 }
 
 void journal_thresholds(const EdgeConfig& config) {
@@ -182,6 +205,7 @@ bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& p
                   const EdgeClock& clock) {
   std::printf("student    %s (%d self-checks passed)\n", student_provenance(),
               student_self_check_count());
+  std::printf("context    %s\n", context_note(student_context()).c_str());
   std::printf("map        %s%s%s; control = %s\n", config.map.name.c_str(),
               config.map.variant.empty() ? "" : ", variant ", config.map.variant.c_str(),
               config.control.control ? "true" : "false (read-only)");
@@ -214,6 +238,7 @@ RunIdentity identity_of_run(const EdgeConfig& config) {
   identity.version = BESS_VERSION;
   identity.student_hash = student_hash();
   identity.student_provenance = student_provenance();
+  identity.context = context_name(student_context_kind());
   identity.map = config.map.name.view();
   identity.variant = config.map.variant.view();
   identity.battery = battery_place(config);

@@ -20,7 +20,13 @@ bool reach_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& 
 
 /// Fetches once: opens the connection before the first tick, and says it when there is no price
 /// yet.
-void greet_price_server(const EdgeConfig& config, PriceFeed& prices);
+Status greet_price_server(const EdgeConfig& config, PriceFeed& prices);
+
+/// The price level that the loop starts with, `logged` being the newest record's: kept, or for a student by
+/// level filled from what the server (which has just answered with `greeting`) still has. One
+/// journal line where the level is the context.
+PriceLevel level_at_start(const EdgeConfig& config, const PriceLevel& logged, Status greeting,
+                          PriceFeed& prices, EdgeClock& clock);
 
 /// One journal line: whether the guard enforces what the student is proved for.
 void journal_thresholds(const EdgeConfig& config);

@@ -22,6 +22,7 @@ using R = CycleRecord;
 using B = BatteryMeasurement;
 using P = PriceReport;
 using C = BatteryCounters;
+using L = PriceLevel;
 using T = RunTotals;
 
 bool read_text(const char* path, std::string& text) {
@@ -97,6 +98,24 @@ void print_health(const Health& health) {
   for (const std::string& reason : health.reasons) std::printf("           %s\n", reason.c_str());
 }
 
+/// What the student is given besides clock, SoC and price, where that is the trailing level.
+void print_level(JsonValue s) {
+  if (std::string_view(text_of(s["context"])) != "level") return;
+  constexpr double kQ16PerEur = 65'536.0 * kCentiPerEur;
+  const double level = number(field<&R::price_level, &L::centi_q16>(s)) / kQ16PerEur;
+  const long long context_class = whole(field<&R::context_class>(s));
+  if (context_class == 0 && level == 0) {  // exactly: no price has set it yet
+    std::printf("level      not known\n");
+    return;
+  }
+  std::printf("level      %.2f EUR/MWh, ", level);
+  if (context_class == 0) {
+    std::printf("the student was not asked\n");
+  } else {
+    std::printf("class %lld of %d\n", context_class, kContextClassCount);
+  }
+}
+
 void print_last_cycle(JsonValue s) {
   std::printf("state      %s at %s, cycle %lld\n", text_of(field<&R::mode>(s)),
               text_of(field<&R::utc_s>(s)), whole(field<&R::cycle>(s)));
@@ -115,6 +134,7 @@ void print_last_cycle(JsonValue s) {
   } else {
     std::printf("price      none, %s\n", text_of(field<&R::price, &P::status>(s)));
   }
+  print_level(s);
   std::printf("order      %.0f W, reason %s\n", number(field<&R::ordered_power_w>(s)),
               text_of(field<&R::reason>(s)));
 }

@@ -22,10 +22,11 @@ using ::testing::Not;
 constexpr std::int32_t kScale = 900;  // from an hour before summer time on
 
 /// Notes are about the machine that the test runs on: no seccomp, memory that may not be locked. The
-/// guard's thresholds are said at every start.
+/// guard's thresholds are said at every start, and by level how the price level was come by.
 std::string line_after_notes(ChildProcess& child) {
   std::string line = child.read_line();
-  while (line.starts_with("bess-edge: note:") || line.starts_with("guard: ")) {
+  while (line.starts_with("bess-edge: note:") || line.starts_with("guard: ") ||
+         line.starts_with("price level: ")) {
     line = child.read_line();
   }
   return line;
@@ -196,6 +197,32 @@ TEST_F(Processes, StatusAndLogShowWhatTheRunningControllerDoes) {
   EXPECT_THAT(since, ::testing::StartsWith("utc=2023-03-26T00:20:00Z "));
 }
 
+/// The status of a program whose student is by level, as it lies on the disk.
+TEST_F(Processes, StatusShowsLevelAndClassWhereTheyAreTheContext) {
+  const std::string config = site_.write_config();
+  std::filesystem::create_directory(site_.folder.file("state"));
+  const auto level_line = [&](const std::string& context, int context_class,
+                              const std::string& level = "-98304000") {
+    static_cast<void>(site_.folder.write(
+        "state/status.json",
+        "{\"context\": \"" + context + "\", \"last\": {\"price_level_centi_q16\": " + level +
+            ", "
+            "\"context_class\": " +
+            std::to_string(context_class) + "}, \"totals\": {\"cycles\": 7}}\n"));
+    ChildProcess status({BESS_EDGE_PROGRAM, "status", "--config", config});
+    const std::string text = status.read_all();
+    EXPECT_EQ(status.wait(), 3) << text;  // nobody runs
+    const std::size_t begin = text.find("\nlevel ");
+    return begin == std::string::npos
+               ? ""
+               : text.substr(begin + 1, text.find('\n', begin + 1) - begin - 1);
+  };
+  EXPECT_EQ(level_line("level", 3), "level      -15.00 EUR/MWh, class 3 of 12");
+  EXPECT_EQ(level_line("level", 0), "level      -15.00 EUR/MWh, the student was not asked");
+  EXPECT_EQ(level_line("level", 0, "0"), "level      not known");
+  EXPECT_EQ(level_line("month", 3), "");
+}
+
 /// systemd's end of a service's life: ready, fed every cycle, stopping.
 TEST_F(Processes, SystemdIsToldOfStartCyclesAndStop) {
   const std::string name = site_.folder.file("notify");
@@ -349,6 +376,7 @@ TEST_F(Processes, CheckReportsAndReadsButWritesNothing) {
   ChildProcess edge({BESS_EDGE_PROGRAM, "--config", site_.commission(), "--check"});
   const std::string text = edge.read_all();
   EXPECT_EQ(edge.wait(), 0) << text;
+  EXPECT_THAT(text, HasSubstr("\ncontext    "));
   EXPECT_THAT(text, HasSubstr("sign       checked"));
   EXPECT_THAT(text, HasSubstr("clock      simulated"));
   EXPECT_THAT(text, HasSubstr("guard      charge at or below -500, discharge at or above 1500 "

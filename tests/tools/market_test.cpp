@@ -55,6 +55,41 @@ TEST(MarketView, AMinuteWithoutAnyPriceHasNoRow) {
   EXPECT_THAT(json, ::testing::Not(HasSubstr("T00:16:00")));
 }
 
+/// Three days of minutes; the price is the number of the minute.
+MinuteSeries three_days() {
+  MinuteSeries series{.start_utc_s = utc_ns("2023-03-25T00:00:00Z") / kNanosecondsPerSecond,
+                      .indicative = {},
+                      .settled = {}};
+  for (int minute = 0; minute < 3 * 1'440; ++minute) series.indicative.push_back(minute);
+  series.settled = series.indicative;
+  return series;
+}
+
+TEST(MarketView, PagesLieBehindEachOther) {
+  const MarketView view(three_days(), 0);
+  const std::int64_t now_ns = utc_ns("2023-03-27T12:00:00Z");
+  const std::string first = view.records({.limit = 100}, now_ns);
+  EXPECT_THAT(first, HasSubstr("\"total_count\":1440"));
+  EXPECT_THAT(first, HasSubstr("2023-03-27T11:59:00"));
+  EXPECT_THAT(first, HasSubstr("2023-03-27T10:20:00"));
+  EXPECT_THAT(first, ::testing::Not(HasSubstr("2023-03-27T10:19:00")));
+  const std::string second = view.records({.limit = 100, .offset = 100}, now_ns);
+  EXPECT_THAT(second, HasSubstr("2023-03-27T10:19:00"));
+  EXPECT_THAT(second, HasSubstr("2023-03-27T08:40:00"));
+  EXPECT_THAT(view.records({.limit = 100, .offset = 1'440}, now_ns), HasSubstr("\"results\":[]"));
+}
+
+TEST(MarketView, PastDaysEndAtMidnightAndGoBackToTheFilesBegin) {
+  const MarketView view(three_days(), 0);
+  const RecordsQuery query{.dataset = Dataset::kMinutesOfPastDays, .limit = 1};
+  for (const char* now : {"2023-03-27T00:00:00Z", "2023-03-27T23:59:00Z"}) {
+    const std::string json = view.records(query, utc_ns(now));
+    EXPECT_THAT(json, HasSubstr("\"total_count\":2880")) << now;
+    EXPECT_THAT(json, HasSubstr("2023-03-26T23:59:00+00:00")) << now;
+  }
+  EXPECT_THAT(view.records(query, utc_ns("2023-03-25T12:00:00Z")), HasSubstr("\"results\":[]"));
+}
+
 TEST(MarketView, TheEdgeUnderstandsWhatItServes) {
   const MarketView view(parse_minute_csv(kFile, "f"), 0);
   const std::int64_t now_ns = utc_ns("2023-03-26T00:15:00Z");

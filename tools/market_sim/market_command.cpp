@@ -50,7 +50,7 @@ void run_market(const MarketOptions& options) {
 void add_market_command(ProgramCommand& app) {
   auto options = std::make_shared<MarketOptions>();
   ProgramCommand command =
-      app.subcommand("market", "A price server with Elia's API (ods161, ods162)");
+      app.subcommand("market", "A price server with Elia's API (ods161, ods162, ods133)");
   command.footer(
       "Examples:\n"
       "  bess-sim market --prices minutes.csv.gz --port 8080 --utc-start 2023-03-26T00:00:00Z "

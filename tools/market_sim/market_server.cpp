@@ -61,12 +61,15 @@ MarketServer::MarketServer(const MarketServerSettings& settings, const MarketVie
   server_->set_keep_alive_timeout(600);
   server_->new_task_queue = [] { return new httplib::ThreadPool(4); };
   const std::string root = "/api/explore/v2.1/catalog/datasets/";
-  server_->Get(root + "ods161/records", [this](const auto& request, auto& response) {
-    answer(Dataset::kMinutes, request, response);
-  });
-  server_->Get(root + "ods162/records", [this](const auto& request, auto& response) {
-    answer(Dataset::kQuarterHours, request, response);
-  });
+  const std::pair<const char*, Dataset> datasets[] = {{"ods161", Dataset::kMinutes},
+                                                      {"ods162", Dataset::kQuarterHours},
+                                                      {"ods133", Dataset::kMinutesOfPastDays}};
+  for (const auto& [name, dataset] : datasets) {
+    server_->Get(root + name + "/records",
+                 [this, dataset = dataset](const auto& request, auto& response) {
+                   answer(dataset, request, response);
+                 });
+  }
   if (settings.port == 0) {
     port_ = server_->bind_to_any_port(settings.host);
   } else if (server_->bind_to_port(settings.host, settings.port)) {

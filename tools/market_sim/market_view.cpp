@@ -23,19 +23,24 @@ std::string offset_time(std::int64_t utc_s) {
 
 }  // namespace
 
-/// Index range of the minutes that ended up to now, at most 24 hours back.
-std::pair<std::size_t, std::size_t> MarketView::window(std::int64_t now_utc_ns) const {
+/// Index range of the minutes that ended up to now, at most 24 hours back; of past days, all.
+std::pair<std::size_t, std::size_t> MarketView::window(Dataset dataset,
+                                                       std::int64_t now_utc_ns) const {
   const std::int64_t published_s = (now_utc_ns - latency_ns_) / kNanosecondsPerSecond - 60;
   const auto first_at_or_after = [this](std::int64_t utc_s) {
     const std::int64_t minute = (utc_s - prices_.start_utc_s + 59) / 60;
     return static_cast<std::size_t>(
         std::clamp<std::int64_t>(minute, 0, static_cast<std::int64_t>(prices_.size())));
   };
+  if (dataset == Dataset::kMinutesOfPastDays) {
+    return {0, first_at_or_after((published_s + 60) / kDayS * kDayS)};
+  }
   return {first_at_or_after(published_s + 1 - kDayS), first_at_or_after(published_s + 1)};
 }
 
-std::vector<MarketView::Row> MarketView::visible_minutes(std::int64_t now_utc_ns) const {
-  const auto [begin, end] = window(now_utc_ns);
+std::vector<MarketView::Row> MarketView::visible_minutes(Dataset dataset,
+                                                         std::int64_t now_utc_ns) const {
+  const auto [begin, end] = window(dataset, now_utc_ns);
   std::vector<Row> rows;
   rows.reserve(end - begin);
   for (std::size_t m = begin; m < end; ++m) {
@@ -47,7 +52,7 @@ std::vector<MarketView::Row> MarketView::visible_minutes(std::int64_t now_utc_ns
 
 std::vector<MarketView::Row> MarketView::visible_quarter_hours(std::int64_t now_utc_ns) const {
   std::vector<Row> rows;
-  const auto [begin, end] = window(now_utc_ns);
+  const auto [begin, end] = window(Dataset::kQuarterHours, now_utc_ns);
   for (std::size_t m = begin; m < end; ++m) {
     const std::int64_t utc_s = prices_.utc_s(m);
     if (utc_s % kQuarterHourS != kQuarterHourS - 60 || prices_.is_empty(m)) continue;
@@ -57,8 +62,9 @@ std::vector<MarketView::Row> MarketView::visible_quarter_hours(std::int64_t now_
 }
 
 std::string MarketView::records(const RecordsQuery& query, std::int64_t now_utc_ns) const {
-  const bool minutes = query.dataset == Dataset::kMinutes;
-  std::vector<Row> rows = minutes ? visible_minutes(now_utc_ns) : visible_quarter_hours(now_utc_ns);
+  const bool minutes = query.dataset != Dataset::kQuarterHours;
+  std::vector<Row> rows =
+      minutes ? visible_minutes(query.dataset, now_utc_ns) : visible_quarter_hours(now_utc_ns);
   if (query.hide_newest_price && !rows.empty()) rows.back().price = std::nan("");
   if (query.newest_first) std::reverse(rows.begin(), rows.end());
   const std::size_t first = std::min(rows.size(), static_cast<std::size_t>(query.offset));

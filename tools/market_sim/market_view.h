@@ -11,7 +11,11 @@
 
 namespace bess {
 
-enum class Dataset : std::uint8_t { kMinutes /* ods161 */, kQuarterHours /* ods162 */ };
+enum class Dataset : std::uint8_t {
+  kMinutes,            ///< ods161: the last 24 hours
+  kQuarterHours,       ///< ods162: the last 24 hours
+  kMinutesOfPastDays,  ///< ods133: all up to the last midnight, UTC
+};
 
 struct RecordsQuery {
   Dataset dataset = Dataset::kMinutes;
@@ -27,8 +31,7 @@ class MarketView {
   MarketView(MinuteSeries prices, double latency_s)
       : prices_(std::move(prices)), latency_ns_(static_cast<std::int64_t>(latency_s * 1e9)) {}
 
-  /// The answer to `/records` at an instant: rows of the last 24 hours, as the near-real-time sets
-  /// hold.
+  /// The answer to `/records` at an instant: one page of the rows that the set holds by then.
   [[nodiscard]] std::string records(const RecordsQuery& query, std::int64_t now_utc_ns) const;
   [[nodiscard]] std::int64_t first_utc_s() const { return prices_.start_utc_s; }
   [[nodiscard]] std::int64_t last_utc_s() const { return prices_.utc_s(prices_.size() - 1); }
@@ -38,9 +41,10 @@ class MarketView {
     std::int64_t utc_s;
     double price;
   };
-  [[nodiscard]] std::vector<Row> visible_minutes(std::int64_t now_utc_ns) const;
+  [[nodiscard]] std::vector<Row> visible_minutes(Dataset dataset, std::int64_t now_utc_ns) const;
   [[nodiscard]] std::vector<Row> visible_quarter_hours(std::int64_t now_utc_ns) const;
-  [[nodiscard]] std::pair<std::size_t, std::size_t> window(std::int64_t now_utc_ns) const;
+  [[nodiscard]] std::pair<std::size_t, std::size_t> window(Dataset dataset,
+                                                           std::int64_t now_utc_ns) const;
 
   MinuteSeries prices_;
   std::int64_t latency_ns_;

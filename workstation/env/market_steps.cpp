@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "shared/host/user_error.h"
@@ -22,12 +21,17 @@ Split split_of_day(int day_of_month) {
   return day_of_month <= kValidationDayLast ? Split::kValidation : Split::kTest;
 }
 
-/// Index of the newest published row for each minute, -1 before the first one.
+/// As the edge reads a row: one without price, or with a price beyond belief, is passed over.
+bool is_usable(double eur_per_mwh) {
+  return std::fabs(eur_per_mwh * kCentiPerEur) <= kPlausiblePriceMaxCentiEurPerMwh;
+}
+
+/// Index of the newest usable row for each minute, -1 before the first one.
 std::vector<std::int64_t> newest_published(const MinuteSeries& series) {
   std::vector<std::int64_t> newest(series.size());
   std::int64_t last = -1;
   for (std::size_t m = 0; m < series.size(); ++m) {
-    if (!std::isnan(series.indicative[m])) last = static_cast<std::int64_t>(m);
+    if (is_usable(series.indicative[m])) last = static_cast<std::int64_t>(m);
     newest[m] = last;
   }
   return newest;
@@ -38,11 +42,9 @@ double paid_price(const MinuteSeries& series, std::size_t minute, Settlement set
   return settlement == Settlement::kStep ? first : 0.5 * (first + series.settled[minute + 1]);
 }
 
-/// As the edge reads a price: to the nearest hundredth.
+/// As the edge reads a usable price: to the nearest hundredth.
 std::int32_t price_centi(double eur_per_mwh) {
-  constexpr double kMax = kPlausiblePriceMaxCentiEurPerMwh;
-  return static_cast<std::int32_t>(
-      std::lround(std::clamp(eur_per_mwh * kCentiPerEur, -kMax, kMax)));
+  return static_cast<std::int32_t>(std::lround(eur_per_mwh * kCentiPerEur));
 }
 
 bool same_date(const MarketDay& day, const LocalMinute& local) {

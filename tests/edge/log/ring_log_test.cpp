@@ -95,15 +95,18 @@ TEST(RecordCodec, LayoutOnDiskIsFixed) {
   const RecordBytes bytes = bytes_of(full_record(7), 0x0102030405060708);
   EXPECT_EQ(bytes[0], 8);
   EXPECT_EQ(bytes[7], 1);
-  EXPECT_EQ(bytes[16], 7);     // cycle
-  EXPECT_EQ(bytes[24], 2);     // mode: holding
-  EXPECT_EQ(bytes[26], 1);     // soc_e4
-  EXPECT_EQ(bytes[30], 0xFE);  // power_w = -2
-  EXPECT_EQ(bytes[118], 19);   // counters begin
-  EXPECT_EQ(bytes[166], 25);   // flash_writes_today
-  EXPECT_EQ(bytes[170], 26);   // deadline_misses
-  EXPECT_EQ(bytes[182], 29);   // soc_moved_e4, the last field
-  for (std::size_t i = 186; i < kRecordBytes - 4; ++i) EXPECT_EQ(bytes[i], 0) << i;
+  EXPECT_EQ(bytes[16], 7);      // cycle
+  EXPECT_EQ(bytes[24], 2);      // mode: holding
+  EXPECT_EQ(bytes[26], 1);      // soc_e4
+  EXPECT_EQ(bytes[30], 0xFE);   // power_w = -2
+  EXPECT_EQ(bytes[118], 19);    // counters begin
+  EXPECT_EQ(bytes[166], 25);    // flash_writes_today
+  EXPECT_EQ(bytes[170], 26);    // deadline_misses
+  EXPECT_EQ(bytes[182], 29);    // soc_moved_e4
+  EXPECT_EQ(bytes[186], 0xE2);  // price_level.centi_q16 = -30
+  EXPECT_EQ(bytes[194], 31);    // price_level.row_minute_utc_s
+  EXPECT_EQ(bytes[202], 12);    // context_class, the last field
+  for (std::size_t i = 204; i < kRecordBytes - 4; ++i) EXPECT_EQ(bytes[i], 0) << i;
 }
 
 /// A ring of the program that ended its records with flash_writes_today: later fields read as 0.
@@ -118,6 +121,8 @@ TEST(RecordCodec, ARecordOfAnOlderLayoutIsRead) {
   CycleRecord expected = full_record(7);
   expected.deadline_misses = expected.unanswered_orders = 0;
   expected.throughput = {};
+  expected.price_level = {};
+  expected.context_class = 0;
   EXPECT_EQ(bytes_of(back, 42), bytes_of(expected, 42));
 }
 

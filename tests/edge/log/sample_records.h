@@ -52,6 +52,8 @@ inline CycleRecord full_record(std::int64_t cycle) {
   r.deadline_misses = 26;
   r.unanswered_orders = 27;
   r.throughput = {.local_day = 28, .soc_moved_e4 = 29};
+  r.price_level = {.centi_q16 = -30, .row_minute_utc_s = 31};
+  r.context_class = 12;
   return r;
 }
 
@@ -77,6 +79,8 @@ inline CycleRecord longest_record() {
   r.reason = Reason::kWrongDirection;
   r.missed_ticks = r.deadline_misses = r.unanswered_orders = INT32_MIN;
   r.throughput = {.local_day = INT32_MIN, .soc_moved_e4 = INT32_MIN};
+  r.price_level = {.centi_q16 = INT64_MIN, .row_minute_utc_s = INT64_MIN};
+  r.context_class = INT16_MIN;
   r.counters = {INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT32_MIN};
   r.counters.requests = 0;  // requests - failed_requests must not overflow
   r.counters.failed_requests = INT64_MAX;

@@ -8,6 +8,7 @@
 
 #include "edge/battery/modbus_battery.h"
 #include "edge/control/control_loop.h"
+#include "edge/control/price_history.h"
 #include "edge/log/event_log.h"
 #include "edge/memory/heap_seal.h"
 #include "edge/memory/segregated_fit.h"
@@ -42,6 +43,7 @@ TEST(MemoryBudget, OfTheReadmeIsTrue) {
       {"kArenaBytes", kArenaBytes},
       {"PriceFeed", sizeof(PriceFeed)},
       {"HttpClient", sizeof(HttpClient)},
+      {"PriceHistory", sizeof(PriceHistory)},
       {"kControlStackBytes", kControlStackBytes},
       {"EdgeConfig", sizeof(EdgeConfig)},
       {"SegregatedFit", sizeof(SegregatedFit)},

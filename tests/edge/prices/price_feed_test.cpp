@@ -5,9 +5,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "edge/control/control_loop.h"
+#include "edge/prices/history_pages.h"
 #include "shared/utc_text.h"
 #include "tests/support/fake_resolver.h"
 #include "tests/support/test_server.h"
@@ -21,8 +23,8 @@ constexpr std::int64_t kNowS = 1'705'960'800;  // 2024-01-22T22:00:00Z
 std::int64_t now_ns() { return clock_ns(CLOCK_MONOTONIC); }
 
 /// Stands still for all that a test notices: an hour passes in an hour.
-ScaledClock clock_at(std::int64_t utc_s) {
-  return {.anchor_monotonic_ns = now_ns(), .anchor_utc_s = utc_s, .scale = 1};
+ScaledClock clock_at(std::int64_t utc_s, std::int32_t scale = 1) {
+  return {.anchor_monotonic_ns = now_ns(), .anchor_utc_s = utc_s, .scale = scale};
 }
 
 std::string row(std::int64_t minute_utc_s, const std::string& price) {
@@ -160,11 +162,12 @@ TEST_F(PriceFeedTest, ASlowResolverHoldsUpNobodyEither) {
 
 /// The loop's clock, in simulated time; nothing stops it.
 struct TestClock {
-  ScaledClock scaled;
-  [[nodiscard]] std::int64_t now_utc_ns() const { return scaled.now_utc_ns(); }
+  ScaledClock scaled_clock;
+  [[nodiscard]] const ScaledClock& scaled() const { return scaled_clock; }
+  [[nodiscard]] std::int64_t now_utc_ns() const { return scaled_clock.now_utc_ns(); }
   [[nodiscard]] std::int64_t monotonic_ns() const { return now_ns(); }
   [[nodiscard]] std::int64_t monotonic_ns_at(std::int64_t utc_ns) const {
-    return scaled.monotonic_ns_at(utc_ns);
+    return scaled_clock.monotonic_ns_at(utc_ns);
   }
   bool sleep_until_utc_ns(std::int64_t utc_ns) const {
     while (now_utc_ns() < utc_ns) sleep_until_monotonic(monotonic_ns_at(utc_ns));
@@ -218,7 +221,7 @@ TEST(MarketOutage, NineHoursOfOldRowsGiveNoOrder) {
   });
   PriceFeedSettings settings;
   settings.http.url = FixedText<511>("http://127.0.0.1:" + std::to_string(server.port()) + "/");
-  auto feed = std::make_unique<PriceFeed>(settings, clock.scaled);
+  auto feed = std::make_unique<PriceFeed>(settings, clock.scaled());
   ObedientBattery battery;
   ControlLoop<ObedientBattery, PriceFeed, const TestClock> loop(
       {.control = true, .guard = {}, .price_wait_s = settings.wait_s}, battery, *feed, clock);
@@ -249,6 +252,156 @@ TEST(MarketOutage, NineHoursOfOldRowsGiveNoOrder) {
   EXPECT_GT(running_before, 5);
   EXPECT_GT(held, 100);  // of 270 ticks; a busy machine skips some
   EXPECT_GT(running_after, 5);
+}
+
+/// A server with pages as Opendatasoft has them, or with less; its rows lie before kNowS, one a minute, and cost
+/// as many EUR/MWh as minutes have passed since.
+class HistoryTest : public ::testing::Test {
+ protected:
+  static std::int32_t centi_of(int age_min) { return 100 * age_min; }
+
+  std::string page(const std::string& request) {
+    const auto number = [&](const std::string& key) {
+      const std::size_t at = request.find(key);
+      return at == std::string::npos ? -1 : std::atoi(request.c_str() + at + key.size());
+    };
+    if (number("&limit=") > 100 || request.find("limit=20") != std::string::npos) return "[0";
+    const int first = knows_pages ? number("&offset=") : 0;
+    std::string rows;
+    for (int i = first; i < std::min(first + rows_per_page, rows_held); ++i) {
+      const bool is_null = i >= null_from && i < null_from + 150;
+      rows += (rows.empty() ? "" : ",") +
+              row(kNowS - 60 * (i + 1), is_null ? "null" : std::to_string(i + 1));
+    }
+    return "{\"results\":[" + rows + "]}";
+  }
+
+  Status fetch(int hours, const std::string& history_url = "") {
+    TestServer* self = nullptr;
+    TestServer server([&](TestConnection& connection, const std::string& request) {
+      requests.push_back(request.substr(0, request.find(" HTTP")));
+      if (static_cast<int>(requests.size()) == silent_at) {
+        self->wait_for_end();
+        return false;
+      }
+      const bool fails = std::count(failing.begin(), failing.end(), requests.size()) > 0;
+      return connection.answer(page(request),
+                               fails ? "HTTP/1.1 500 Oh\r\n" : "HTTP/1.1 200 OK\r\n");
+    });
+    self = &server;
+    PriceFeedSettings price;
+    const std::string host = "http://127.0.0.1:" + std::to_string(server.port());
+    price.http.url = FixedText<511>(host + "/now?order_by=datetime%20desc&limit=20&timezone=UTC");
+    HistorySettings settings{.hours = hours, .wait_s = wait_s, .url = {}};
+    if (!history_url.empty()) settings.url = FixedText<511>(host + history_url);
+    const TestClock clock{clock_at(kNowS, time_scale)};
+    PriceFeed feed(price, clock.scaled());
+    history = std::make_unique<PriceHistory>(hours, kNowS);
+    const std::int64_t start_ns = now_ns();
+    const Status status = fetch_history(feed, price, settings, clock, *history);
+    took_ms = (now_ns() - start_ns) / kMillisecond;
+    return status;
+  }
+
+  int rows_held = 100'000;
+  int rows_per_page = 100;
+  int null_from = 1'000'000;
+  bool knows_pages = true;
+  int silent_at = 0;
+  std::int32_t wait_s = 20;
+  std::int32_t time_scale = 1;
+  std::vector<std::size_t> failing;
+  std::vector<std::string> requests;
+  std::unique_ptr<PriceHistory> history;
+  std::int64_t took_ms = 0;
+};
+
+TEST_F(HistoryTest, PagesAreAskedForUntilTheHoursAreFull) {
+  EXPECT_EQ(fetch(72), Status::kOk);
+  EXPECT_EQ(history->rows(), 72 * 60);
+  EXPECT_EQ(history->hours_covered(), 72);
+  ASSERT_EQ(requests.size(), 44U);  // 4,320 rows
+  EXPECT_EQ(requests[0], "GET /now?order_by=datetime%20desc&timezone=UTC&limit=100&offset=0");
+  EXPECT_EQ(requests[43], "GET /now?order_by=datetime%20desc&timezone=UTC&limit=100&offset=4300");
+  PriceLevel level;  // kNowS is a tick: it saw the row of one minute ago
+  for (int age_min = 72 * 60 - 1; age_min > 0; age_min -= 2) {
+    level.observe(kNowS - 60 * age_min, centi_of(age_min));
+  }
+  EXPECT_EQ(history->level(), level);
+}
+
+TEST_F(HistoryTest, ThePageThatIsShortOrWithoutPricesIsNotTheLast) {
+  rows_per_page = 30;
+  null_from = 95;  // five pages without a price
+  EXPECT_EQ(fetch(5), Status::kOk);
+  EXPECT_EQ(history->rows(), 150);
+  EXPECT_EQ(requests.size(), 10U);
+}
+
+TEST_F(HistoryTest, AServerThatHasLessIsAskedOnceMore) {
+  rows_held = 250;
+  EXPECT_EQ(fetch(72), Status::kOk);
+  EXPECT_EQ(history->rows(), 250);
+  EXPECT_EQ(history->hours_covered(), 5);
+  EXPECT_EQ(requests.size(), 4U);
+}
+
+TEST_F(HistoryTest, AServerWithoutPagesGivesWhatItHas) {
+  knows_pages = false;
+  rows_per_page = 20;
+  EXPECT_EQ(fetch(72), Status::kOk);
+  EXPECT_EQ(history->rows(), 20);
+  EXPECT_EQ(requests.size(), 2U);
+}
+
+TEST_F(HistoryTest, TheSecondUrlIsAskedForWhatTheFirstNoLongerHas) {
+  rows_held = 150;
+  EXPECT_EQ(fetch(3, "/past"), Status::kOk);
+  ASSERT_EQ(requests.size(), 6U);  // 100, 50 and none of each
+  EXPECT_EQ(requests[3], "GET /past?limit=100&offset=0");
+  EXPECT_EQ(history->rows(), 150);  // the same ones
+}
+
+TEST_F(HistoryTest, AFailedPageIsAskedForAgainAndThenWhatThereIsMustDo) {
+  failing = {2, 4};
+  EXPECT_EQ(fetch(10), Status::kOk);
+  EXPECT_EQ(history->rows(), 600);
+  EXPECT_EQ(requests.size(), 8U);
+  requests.clear();
+  failing = {2, 4, 6};
+  EXPECT_EQ(fetch(10), Status::kHttpError);
+  EXPECT_EQ(history->rows(), 300);
+  EXPECT_EQ(requests.size(), 6U);
+}
+
+TEST_F(HistoryTest, ASilentServerHoldsUpNobodyPastTheDeadline) {
+  silent_at = 3;
+  wait_s = 1;
+  EXPECT_EQ(fetch(10), Status::kTimeout);
+  EXPECT_EQ(history->rows(), 200);
+  EXPECT_LT(took_ms, 4'000);
+}
+
+TEST_F(HistoryTest, TheDeadlineIsOfTheScaledClock) {
+  silent_at = 1;
+  wait_s = 900;
+  time_scale = 900;
+  EXPECT_EQ(fetch(10), Status::kTimeout);
+  EXPECT_EQ(history->rows(), 0);
+  EXPECT_LT(took_ms, 4'000);
+}
+
+TEST_F(HistoryTest, NobodyListeningIsNoHistory) {
+  const TestClock clock{clock_at(kNowS)};
+  PriceFeedSettings price;
+  price.http.url = "http://127.0.0.1:1/";
+  PriceFeed feed(price, clock.scaled());
+  PriceHistory none(72, kNowS);
+  EXPECT_EQ(fetch_history(feed, price, HistorySettings{}, clock, none), Status::kNotConnected);
+  EXPECT_FALSE(none.level().is_known());
+  int items = 0;
+  const PriceRowTaker taker{nullptr, [](void*, const PriceRow&) { ADD_FAILURE(); }};
+  EXPECT_EQ(feed.fetch_page("http://127.0.0.1:2/", 1'000, taker, items), Status::kMalformed);
 }
 
 }  // namespace

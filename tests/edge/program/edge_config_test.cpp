@@ -178,6 +178,12 @@ TEST(EdgeConfig, EveryMistakeIsOneClearLineWithItsPlace) {
       {"[price]", "[price]\nheader_file = \"none\"", 0, "none: cannot open the header file"},
       {"[price]", "[price]\nresolve_every_s = 0", 6, "must lie between 1 and 86400"},
       {"[price]", "[price]\nstep_flag_eur_per_mwh = -1", 6, "must lie between"},
+      {"[price]", "[price]\nhistory_hours = 97", 6, "history_hours must lie between 0 and 96"},
+      {"[price]", "[price]\nhistory_wait_s = 0", 6, "history_wait_s must lie between 1 and 3600"},
+      {"[price]", "[price]\nhistory_url = \"http://127.0.0.1:2/records\"", 6,
+       "history_url must start with http:// or https:// and be of the host of url"},
+      {"[price]", "[price]\nhistory_url = \"127.0.0.1:1/records\"", 6, "be of the host of url"},
+      {"[price]", "[price]\nlevel_start_eur_per_mwh = 1501", 6, "must lie between -500 and 1500"},
       {"soc_min = 0.2", "soc_min = 20", 8, "must lie between 0 and 1"},
       {"soc_min = 0.2", "soc_min = \"0.2\"", 8, "must be a number"},
       {"soc_min = 0.2", "soc_min = 1.0", 8, "must be below soc_max"},
@@ -210,6 +216,26 @@ TEST(EdgeConfig, EveryMistakeIsOneClearLineWithItsPlace) {
       EXPECT_THAT(error, StartsWith(path + ":" + std::to_string(mistake.line) + ":"));
     }
   }
+}
+
+TEST(EdgeConfig, ReadsWhatAFirstStartIsToldOfThePriceLevel) {
+  const TemporaryFolder folder;
+  EdgeConfig config;
+  std::string error;
+  ASSERT_TRUE(load_edge_config(folder.write("edge.toml", valid_text()), config, error)) << error;
+  EXPECT_EQ(config.history.hours, 72);
+  EXPECT_EQ(config.history.wait_s, 20);
+  EXPECT_TRUE(config.history.url.empty());
+  EXPECT_FALSE(config.level_start_centi_eur_per_mwh.has_value());
+  std::string text = valid_text();
+  text.insert(text.find("[guard]"),
+              "history_hours = 0\nhistory_wait_s = 5\nhistory_url = \"http://127.0.0.1:1/past\"\n"
+              "level_start_eur_per_mwh = -12.5\n");
+  ASSERT_TRUE(load_edge_config(folder.write("edge.toml", text), config, error)) << error;
+  EXPECT_EQ(config.history.hours, 0);
+  EXPECT_EQ(config.history.wait_s, 5);
+  EXPECT_EQ(config.history.url, "http://127.0.0.1:1/past");
+  EXPECT_EQ(config.level_start_centi_eur_per_mwh, -1'250);
 }
 
 TEST(EdgeConfig, ReadsTheKeysOfAnotherPriceServer) {

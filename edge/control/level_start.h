@@ -1,0 +1,55 @@
+// How the trailing price level is come by when the program starts. In this order:
+//   the log      the level rests while nobody runs, so the newest record has it
+//   history      the prices of the last days, from the server
+//   setting      what the operator expects
+//   none         the first price sets it
+// Only a student whose context is the level needs more than the log.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+
+#include "shared/context_classes.h"
+#include "shared/price_level.h"
+
+namespace bess {
+
+enum class LevelSource : std::uint8_t { kLog, kHistory, kSetting, kNone };
+
+struct LevelStart {
+  PriceLevel level{};
+  LevelSource source = LevelSource::kNone;
+  bool refused_log = false;  ///< the log had a level that no prices lead to
+};
+
+/// The level of the newest record, as far as it may be believed. A row later than any that can exist was
+/// logged while the clock was wrong: what the level is stands, but rows of now must count again.
+constexpr PriceLevel level_from_log(const PriceLevel& logged, std::int64_t now_utc_s) {
+  if (!logged.is_known() || !logged.is_sound()) return {};
+  const std::int64_t newest_possible_utc_s = std::max<std::int64_t>(now_utc_s / 60 * 60 - 60, 1);
+  return {.centi_q16 = logged.centi_q16,
+          .row_minute_utc_s = std::min(logged.row_minute_utc_s, newest_possible_utc_s)};
+}
+
+/// `fetch_history` gives the level of the last days, not known where no row came; it is asked only
+/// when it is needed.
+template <typename FetchHistory>
+LevelStart find_start_level(ContextKind kind, const PriceLevel& logged, std::int64_t now_utc_s,
+                            std::optional<std::int32_t> setting_centi_eur_per_mwh,
+                            const FetchHistory& fetch_history) {
+  const PriceLevel kept = level_from_log(logged, now_utc_s);
+  if (kept.is_known()) return {.level = kept, .source = LevelSource::kLog};
+  LevelStart start{.refused_log = !logged.is_sound()};
+  if (kind != ContextKind::kLevel) return start;
+  start.level = fetch_history();
+  if (start.level.is_known()) {
+    start.source = LevelSource::kHistory;
+  } else if (setting_centi_eur_per_mwh.has_value()) {
+    start.level = PriceLevel::starting_at(*setting_centi_eur_per_mwh);
+    start.source = LevelSource::kSetting;
+  }
+  return start;
+}
+
+}  // namespace bess
