@@ -9,9 +9,15 @@
 #include <cstring>
 #include <exception>
 #include <optional>
+#include <system_error>
 
 namespace bess {
 namespace {
+
+void complain_of_output(const char* program, int error) {
+  std::fprintf(stderr, "%s: cannot write to the standard output: %s\n", program,
+               std::strerror(error));
+}
 
 /// The first word that names no subcommand where one is due, or an empty text. CLI11 would only say
 /// that a subcommand is missing.
@@ -156,8 +162,7 @@ int CommandLine::run(int argc, const char* const* argv) {
   try {
     app_->parse(argc, argv);
     if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-      std::fprintf(stderr, "%s: cannot write to the standard output: %s\n", program,
-                   std::strerror(errno));
+      complain_of_output(program, errno);
       return 1;
     }
   } catch (const CLI::ParseError& error) {
@@ -167,6 +172,13 @@ int CommandLine::run(int argc, const char* const* argv) {
   } catch (const Interrupted&) {
     std::fprintf(stderr, "%s: interrupted\n", program);
     return 3;
+  } catch (const std::system_error& error) {  // {fmt}, when a long output meets a full disk
+    if (std::ferror(stdout) == 0) {
+      std::fprintf(stderr, "%s: %s\n", program, error.what());
+    } else {
+      complain_of_output(program, error.code().value());
+    }
+    return 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s: %s\n", program, error.what());
     return 1;

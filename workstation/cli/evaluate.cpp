@@ -40,13 +40,15 @@ struct Options {
   [[nodiscard]] bool wants_carried() const { return carry_soc || policies.size() > 1; }
 };
 
+constexpr const char* kValidationAndTest = "val+test";
 constexpr std::string_view kSocModes[] = {"reset", "carried"};
 
 /// Per-day and per-step records of every policy and way of counting, as CSV.
 struct Records {
   std::string days = "date,profit_eur,cycles,switches,soc_end,policy,soc_mode\n";
   std::string steps =
-      "utc,observed_eur_mwh,paid_eur_mwh,soc,action,power_w,profit_eur,policy,soc_mode\n";
+      "utc,observed_eur_mwh,paid_eur_mwh,level_eur_mwh,soc,action,power_w,profit_eur,policy,soc_"
+      "mode\n";
 
   void add(const std::string& policy, std::string_view mode, const Evaluation& e,
            const std::vector<StepRecord>& records) {
@@ -56,9 +58,10 @@ struct Records {
                           d.switches, d.soc_end_frac, tail);
     }
     for (const StepRecord& r : records) {
-      steps += fmt::format("{},{:.10g},{:.10g},{:.6f},{},{:.3f},{:.8g},{}\n",
+      steps += fmt::format("{},{:.10g},{:.10g},{:.2f},{:.6f},{},{:.3f},{:.8g},{}\n",
                            utc_text(r.utc_s).view(), r.observed_eur_per_mwh, r.paid_eur_per_mwh,
-                           r.soc_frac, action_name(r.action), r.power_w, r.profit_eur, tail);
+                           r.level_eur_per_mwh, r.soc_frac, action_name(r.action), r.power_w,
+                           r.profit_eur, tail);
     }
   }
 };
@@ -145,6 +148,14 @@ MarketSteps fitting_market(const MinuteSeries& series, const RunConfig& config,
   return make_market_steps(options.fit.empty() ? series : read_minute_file(options.fit), market);
 }
 
+/// Validation and test days together judge better than either, in the order of the calendar.
+std::vector<MarketDay> days_of_split(const MarketSteps& market, const std::string& split) {
+  if (split != kValidationAndTest) return market.days_of(parse_split(split));
+  std::vector<MarketDay> days = market.days;
+  std::erase_if(days, [](const MarketDay& day) { return day.split == Split::kTrain; });
+  return days;
+}
+
 /// What every policy is evaluated on.
 struct Trial {
   const MarketSteps& market;
@@ -192,7 +203,7 @@ void run(const Options& options) {
   const MarketSteps fitting = fitting_market(series, config, options);
   Trial trial{market,
               fitting,
-              market.days_of(parse_split(options.split)),
+              days_of_split(market, options.split),
               {},
               config,
               options,
@@ -228,8 +239,10 @@ void add_evaluate_command(ProgramCommand& app) {
   command.option("--prices", options->prices, "Minute file (.csv or .csv.gz)").required();
   command.option("--policy", options->policies, std::string("One or more of ") + kPolicyHelp)
       .required();
-  command.option("--split", options->split, "Local days 1-20, 21-25, 26-end, or all")
-      .one_of({"train", "val", "test", "all"})
+  command
+      .option("--split", options->split,
+              "Local days 1-20, 21-25, 26-end, the last two together, or all")
+      .one_of({"train", "val", "test", kValidationAndTest, "all"})
       .with_default();
   command.option("--date", options->date,
                  "Only this day of the split: YYYY-MM-DD, or widest (largest price range)");

@@ -204,9 +204,12 @@ void run(const Options& options) {
 
 std::string training_provenance(const std::string& prices, const TrainOptions& options,
                                 const TrainResult& result) {
-  return fmt::format("bess-train {} {} on {}, seed {}, best at step {} of {}", BESS_VERSION,
-                     method_name(options.method), std::filesystem::path(prices).filename().string(),
-                     options.seed, result.best_step, options.steps);
+  const std::string text =
+      fmt::format("bess-train {} {} on {}, by {}", BESS_VERSION, method_name(options.method),
+                  fs::path(prices).filename().string(), context_name(options.context));
+  if (options.method == Method::kSdp) return text;  // there is no chance in it, and no step
+  return fmt::format("{}, seed {}, best at step {} of {}", text, options.seed, result.best_step,
+                     options.steps);
 }
 
 void warn_narrow_support(const TrainOptions& options, const TrainResult& result) {

@@ -61,8 +61,9 @@ class Runner {
       energy_mwh += std::fabs(mwh);
       result.switches += action != last_action_ ? 1 : 0;
       if (records != nullptr) {
-        records->push_back({step.utc_s, step.observed_eur_per_mwh, step.paid_eur_per_mwh, soc_frac_,
-                            action, moved.power_w, profit_eur});
+        records->push_back({step.utc_s, step.observed_eur_per_mwh, step.paid_eur_per_mwh,
+                            static_cast<double>(step.level_centi_eur_per_mwh) / kCentiPerEur,
+                            soc_frac_, action, moved.power_w, profit_eur});
       }
       last_action_ = action;
       soc_frac_ = moved.soc_frac;

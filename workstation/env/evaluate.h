@@ -52,7 +52,8 @@ struct StepRecord {
   std::int64_t utc_s;
   double observed_eur_per_mwh;
   double paid_eur_per_mwh;
-  double soc_frac;  ///< before the step
+  double level_eur_per_mwh;  ///< trailing price level
+  double soc_frac;           ///< before the step
   Action action;
   double power_w;  ///< really exchanged, charge positive
   double profit_eur;

@@ -8,6 +8,7 @@
 #include "workstation/env/evaluate.h"
 #include "workstation/student/quantise.h"
 #include "workstation/student/student_policy.h"
+#include "workstation/student/verify.h"
 
 namespace bess {
 namespace {
@@ -32,6 +33,26 @@ struct Candidate {
   double score;
 };
 
+/// Contexts in which a monotone student disobeys a threshold: one state of each tells, the low price at the
+/// highest SoC and the high price at the lowest. Quick, where a proof takes seconds.
+std::vector<LatticeState> disobedient_states(const StudentNet& net,
+                                             const PriceThresholds& thresholds) {
+  std::vector<LatticeState> found;
+  const auto require = [&](LatticeState state, int soc_index, int price, Action action) {
+    state.soc_index = static_cast<std::int16_t>(soc_index);
+    state.price_eur_per_mwh = static_cast<std::int16_t>(price);
+    if (net.decide(state) != action) found.push_back(state);
+  };
+  const auto low = std::min(thresholds.low_eur_per_mwh, kLatticePriceMaxEurPerMwh);
+  const auto high = std::max(thresholds.high_eur_per_mwh, kLatticePriceMinEurPerMwh);
+  for (int c = 0; c < kContextCount; ++c) {
+    const LatticeState context = context_at(c);
+    if (thresholds.low_binds_student()) require(context, kSocCount - 1, low, Action::kCharge);
+    if (thresholds.high_binds_student()) require(context, 0, high, Action::kDischarge);
+  }
+  return found;
+}
+
 /// Monotone by construction: the proof can only fail at the thresholds.
 CorrectionResult construct_and_prove(const Teacher& teacher, const Matrix& visited,
                                      const DistilOptions& options,
@@ -39,7 +60,6 @@ CorrectionResult construct_and_prove(const Teacher& teacher, const Matrix& visit
                                      const StudentScore& score, StudentFile student) {
   constexpr double kFirstLook = 0.5;  ///< share of the epochs after which students are worth a look
   constexpr int kLooks = 16;
-  constexpr std::size_t kProofsPerRound = 3;
   const LessonStates lessons = make_lessons(teacher, visited, options);
   MonotoneDistiller distiller(teacher, lessons, options);
   CorrectionResult result{.verdict = student, .curve = {}, .violations_by_round = {}};
@@ -59,13 +79,18 @@ CorrectionResult construct_and_prove(const Teacher& teacher, const Matrix& visit
                     candidates.push_back({net, score && options.correct ? score(net) : 0.0});
                   });
     std::ranges::stable_sort(candidates, std::ranges::greater{}, &Candidate::score);
-    for (std::size_t c = 0; c < std::min(kProofsPerRound, candidates.size()); ++c) {
-      student.net = candidates[c].net;
-      Verdict verdict = prove(student, options.threads);
-      const bool proved = std::holds_alternative<ProvedStudent>(verdict);
-      if (c == 0 || proved) result.verdict = std::move(verdict);
-      if (proved) break;
+    if (candidates.empty()) break;  // interrupted
+    const auto obedient = std::ranges::find_if(candidates, [&](const Candidate& candidate) {
+      return disobedient_states(candidate.net, options.correction.thresholds).empty();
+    });
+    const bool is_last = round + 1 == rounds;
+    if (obedient == candidates.end() && !is_last) {
+      counterexamples = disobedient_states(candidates.front().net, options.correction.thresholds);
+      result.violations_by_round.push_back(static_cast<std::int64_t>(counterexamples.size()));
+      continue;
     }
+    student.net = (obedient == candidates.end() ? candidates.front() : *obedient).net;
+    result.verdict = prove(student, options.threads);
     counterexamples = student_of(result.verdict).certificate.counterexamples;
     result.violations_by_round.push_back(student_of(result.verdict).certificate.violations());
     if (std::holds_alternative<ProvedStudent>(result.verdict)) break;

@@ -179,16 +179,6 @@ class GridFiller {
   std::int64_t evaluated_ = 0;
 };
 
-LatticeState context_at(int index) {
-  return {.minute_of_quarter_hour = static_cast<std::int16_t>(index % kMinuteOfQuarterHourCount),
-          .quarter_hour =
-              static_cast<std::int16_t>(index / kMinuteOfQuarterHourCount % kQuarterHourCount),
-          .context_class = static_cast<std::int16_t>(
-              index / (kMinuteOfQuarterHourCount * kQuarterHourCount) + 1),
-          .soc_index = 0,
-          .price_eur_per_mwh = 0};
-}
-
 /// Counts violations of one context's grid into `certificate` and keeps their states.
 class GridChecker {
  public:
@@ -251,6 +241,16 @@ void thin_out(std::vector<LatticeState>& states, std::size_t count_max) {
 }
 
 }  // namespace
+
+LatticeState context_at(int index) {
+  return {.minute_of_quarter_hour = static_cast<std::int16_t>(index % kMinuteOfQuarterHourCount),
+          .quarter_hour =
+              static_cast<std::int16_t>(index / kMinuteOfQuarterHourCount % kQuarterHourCount),
+          .context_class = static_cast<std::int16_t>(
+              index / (kMinuteOfQuarterHourCount * kQuarterHourCount) + 1),
+          .soc_index = 0,
+          .price_eur_per_mwh = 0};
+}
 
 std::int64_t fill_action_grid(const StudentNet& net, int minute_of_quarter_hour, int quarter_hour,
                               int context_class, bool exhaustive, std::vector<std::int8_t>& grid) {

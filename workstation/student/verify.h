@@ -32,6 +32,9 @@ struct VerifyOptions {
 
 Certificate verify_student(const StudentNet& net, const VerifyOptions& options);
 
+/// Context `index` of kContextCount, with SoC and price 0.
+LatticeState context_at(int index);
+
 /// Actions of one context, [SoC][price], as Action's integers. Returns how many states were
 /// evaluated.
 std::int64_t fill_action_grid(const StudentNet& net, int minute_of_quarter_hour, int quarter_hour,
