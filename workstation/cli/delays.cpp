@@ -12,6 +12,7 @@
 #include "workstation/cli/common_options.h"
 #include "workstation/cli/policy_factory.h"
 #include "workstation/env/evaluate.h"
+#include "workstation/report/comparison.h"
 
 namespace bess {
 namespace {
@@ -27,8 +28,13 @@ struct Options {
   bool json = false;
 };
 
-/// [fitted at][run at] EUR per day per MWh
-using Table = std::array<std::array<double, kDelays>, kDelays>;
+/// EUR per day per MWh
+struct Cell {
+  double profit;
+  double profit_at_reference_wear;  ///< of the same decisions
+};
+/// [fitted at][run at]
+using Table = std::array<std::array<Cell, kDelays>, kDelays>;
 using Markets = std::vector<MarketSteps>;
 
 Table delay_table(const std::string& name, const Markets& markets, const RunConfig& config,
@@ -42,19 +48,26 @@ Table delay_table(const std::string& name, const Markets& markets, const RunConf
         fail("{}: no complete day in the {} split; add prices or use --split all", options.prices,
              options.split);
       }
-      table[fit][run] = evaluate(markets[run], days, *policy,
-                                 {config.battery, config.initial_soc_frac, options.carry_soc})
-                            .profit_eur_per_day_per_mwh();
+      const Evaluation result =
+          evaluate(markets[run], days, *policy,
+                   {config.battery, config.initial_soc_frac, options.carry_soc});
+      table[fit][run] = {result.profit_eur_per_day_per_mwh(),
+                         result.profit_at_wear_eur_per_day_per_mwh(kReferenceWearEurPerMwh)};
     }
   }
   return table;
 }
 
 void print_table(const std::string& name, const Table& table) {
-  fmt::print("{}\n{:>16}{:>9}{:>9}{:>9}{:>9}\n", name, "run at delay", "0", "1", "2", "3");
+  fmt::print("{}\n{:>52}{:>4}{:>36}\n", name, "profit", "",
+             fmt::format("at wear {:g}", kReferenceWearEurPerMwh));
+  fmt::print("{:>16}{:>9}{:>9}{:>9}{:>9}{:>4}{:>9}{:>9}{:>9}{:>9}\n", "run at delay", 0, 1, 2, 3,
+             "", 0, 1, 2, 3);
   for (int fit = 0; fit < kDelays; ++fit) {
     fmt::print("{:>14} {}", fit == 0 ? "fitted at" : "", fit);
-    for (const double profit : table[fit]) fmt::print("{:9.1f}", profit);
+    for (const Cell& cell : table[fit]) fmt::print("{:9.1f}", cell.profit);
+    fmt::print("{:>4}", "");
+    for (const Cell& cell : table[fit]) fmt::print("{:9.1f}", cell.profit_at_reference_wear);
     fmt::print("\n");
   }
 }
@@ -62,13 +75,14 @@ void print_table(const std::string& name, const Table& table) {
 void print_json(const std::string& name, const Table& table, const Options& options) {
   for (int fit = 0; fit < kDelays; ++fit) {
     for (int run = 0; run < kDelays; ++run) {
-      const Json json =
-          Json::object({{"policy", name},
-                        {"split", options.split},
-                        {"carry_soc", options.carry_soc},
-                        {"fit_delay_min", fit},
-                        {"run_delay_min", run},
-                        {"profit_eur_per_day_per_mwh", Decimals{table[fit][run], 4}}});
+      const Json json = Json::object(
+          {{"policy", name},
+           {"split", options.split},
+           {"carry_soc", options.carry_soc},
+           {"fit_delay_min", fit},
+           {"run_delay_min", run},
+           {"profit_eur_per_day_per_mwh", Decimals{table[fit][run].profit, 4}},
+           {kReferenceWearKey, Decimals{table[fit][run].profit_at_reference_wear, 4}}});
       fmt::print("{}\n", json.line());
     }
   }
@@ -89,6 +103,10 @@ void run(const Options& options) {
   for (const std::string& name : options.policies) {
     const Table table = delay_table(name, markets, config, options);
     options.json ? print_json(name, table, options) : print_table(name, table);
+  }
+  if (!options.json) {
+    fmt::print("\nat wear {:g}: {}\n", kReferenceWearEurPerMwh,
+               reference_wear_meaning(config.battery.wear_eur_per_mwh));
   }
 }
 

@@ -71,6 +71,8 @@ void add_metrics(Json& json, const Evaluation& e, double foresight_profit) {
   const double share = foresight_profit > 0 ? profit / foresight_profit : NAN;  // null then
   json.set("days", e.days.size());
   json.set("profit_eur_per_day_per_mwh", Decimals{profit, 4});
+  json.set(kReferenceWearKey,
+           Decimals{e.profit_at_wear_eur_per_day_per_mwh(kReferenceWearEurPerMwh), 4});
   json.set("standard_error", Decimals{e.standard_error(), 4});
   json.set("cycles_per_day", Decimals{e.cycles_per_day(), 4});
   json.set("worst_day_eur_per_mwh", Decimals{e.worst_day_eur_per_mwh(), 4});

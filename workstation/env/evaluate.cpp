@@ -69,6 +69,7 @@ class Runner {
       soc_frac_ = moved.soc_frac;
     }
     result.cycles = energy_mwh / two_capacities_mwh;
+    result.throughput_mwh = energy_mwh;
     result.soc_end_frac = soc_frac_;
     return result;
   }
@@ -110,6 +111,12 @@ std::vector<DayResult> run_whole_series(const MarketSteps& market,
 double Evaluation::profit_eur_per_day_per_mwh() const {
   return mean_over_days(days, [](const DayResult& d) { return d.profit_eur; }) / capacity_mwh;
 }
+double Evaluation::profit_at_wear_eur_per_day_per_mwh(double other_wear_eur_per_mwh) const {
+  const double throughput_mwh_per_day =
+      mean_over_days(days, [](const DayResult& d) { return d.throughput_mwh; });
+  return profit_eur_per_day_per_mwh() -
+         (other_wear_eur_per_mwh - wear_eur_per_mwh) * throughput_mwh_per_day / capacity_mwh;
+}
 double Evaluation::standard_error() const {
   std::vector<double> profits;
   for (const DayResult& day : days) profits.push_back(day.profit_eur / capacity_mwh);
@@ -133,6 +140,7 @@ Evaluation evaluate(const MarketSteps& market, const std::vector<MarketDay>& day
                     const EvaluationOptions& options, std::vector<StepRecord>* records) {
   Evaluation evaluation;
   evaluation.capacity_mwh = options.battery.capacity_wh / kWattsPerMegawatt;
+  evaluation.wear_eur_per_mwh = options.battery.wear_eur_per_mwh;
   if (options.carry_soc && policy.sees_future()) {
     evaluation.days = run_whole_series(market, days, policy, options, records);
     return evaluation;

@@ -32,13 +32,17 @@ struct DayResult {
   double cycles;  ///< equivalent full cycles: energy through / 2C
   int switches;   ///< changes of the action
   double soc_end_frac;
+  double throughput_mwh = 0;  ///< charged and discharged, grid side
 };
 
 struct Evaluation {
   std::vector<DayResult> days;
   double capacity_mwh = 0;
+  double wear_eur_per_mwh = 0;  ///< that the profits are net of
 
   [[nodiscard]] double profit_eur_per_day_per_mwh() const;
+  /// Of the same decisions, with this wear in place of the one that is counted.
+  [[nodiscard]] double profit_at_wear_eur_per_day_per_mwh(double other_wear_eur_per_mwh) const;
   [[nodiscard]] double standard_error()
       const;  ///< of the mean over days, same unit; NaN for one day
   [[nodiscard]] double worst_day_eur_per_mwh() const;

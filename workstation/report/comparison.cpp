@@ -23,6 +23,8 @@ ComparisonRow make_row(const std::string& name, const Evaluation& evaluation,
                     .days = evaluation.days.size(),
                     .profit = evaluation.profit_eur_per_day_per_mwh(),
                     .standard_error = evaluation.standard_error(),
+                    .profit_at_reference_wear =
+                        evaluation.profit_at_wear_eur_per_day_per_mwh(kReferenceWearEurPerMwh),
                     .difference = std::nullopt,
                     .worst_day = evaluation.worst_day_eur_per_mwh(),
                     .cycles_per_day = evaluation.cycles_per_day(),
@@ -51,31 +53,37 @@ std::string table_line(const ComparisonRow& row, std::size_t name_width) {
   const std::string gain_error = difference ? figure(difference->standard_error, 1, "-") : "-";
   const std::optional<double> percent =
       row.foresight_share ? std::optional(100 * *row.foresight_share) : std::nullopt;
-  return fmt::format("{:<{}}  {:>8.1f} {:>6}  {:>8} {:>6}  {:>9.1f}  {:>6.2f}  {:>8.1f}  {:>9}\n",
-                     row.name, name_width, row.profit, figure(row.standard_error, 1, "-"), gain,
-                     gain_error, row.worst_day, row.cycles_per_day, row.switches_per_day,
-                     or_dash(percent, 1));
+  return fmt::format(
+      "{:<{}}  {:>8.1f} {:>6}  {:>8} {:>6}  {:>9.1f}  {:>6.2f}  {:>8.1f}  {:>9}  {:>10.1f}\n",
+      row.name, name_width, row.profit, figure(row.standard_error, 1, "-"), gain, gain_error,
+      row.worst_day, row.cycles_per_day, row.switches_per_day, or_dash(percent, 1),
+      row.profit_at_reference_wear);
 }
+
+/// "at wear 10"
+std::string wear_column() { return fmt::format("at wear {:g}", kReferenceWearEurPerMwh); }
 
 std::string table_block(const std::string& title, const std::vector<ComparisonRow>& rows) {
   std::size_t name_width = std::string("policy").size();
   for (const ComparisonRow& row : rows) name_width = std::max(name_width, row.name.size());
   std::string text = fmt::format("{}, {} day{}; EUR per day per MWh of capacity\n", title,
                                  rows.front().days, rows.front().days == 1 ? "" : "s");
-  text += fmt::format("{:<{}}  {:>8} {:>6}  {:>8} {:>6}  {:>9}  {:>6}  {:>8}  {:>9}\n", "policy",
-                      name_width, "profit", "s.e.", "gain", "s.e.", "worst day", "cycles",
-                      "switches", "foresight");
+  text += fmt::format("{:<{}}  {:>8} {:>6}  {:>8} {:>6}  {:>9}  {:>6}  {:>8}  {:>9}  {:>10}\n",
+                      "policy", name_width, "profit", "s.e.", "gain", "s.e.", "worst day", "cycles",
+                      "switches", "foresight", wear_column());
   for (const ComparisonRow& row : rows) text += table_line(row, name_width);
   return text;
 }
 
 std::string csv_line(const ComparisonRow& row, std::string_view soc) {
   const auto& d = row.difference;
-  return fmt::format(
-      "{},{},{},{:.4f},{},{},{},{:.4f},{:.4f},{:.4f},{}\n", csv_field(row.name), soc, row.days,
-      row.profit, figure(row.standard_error, 4, ""), d ? fmt::format("{:.4f}", d->mean) : "",
-      d ? figure(d->standard_error, 4, "") : "", row.worst_day, row.cycles_per_day,
-      row.switches_per_day, row.foresight_share ? fmt::format("{:.6f}", *row.foresight_share) : "");
+  return fmt::format("{},{},{},{:.4f},{},{},{},{:.4f},{:.4f},{:.4f},{},{:.4f}\n",
+                     csv_field(row.name), soc, row.days, row.profit,
+                     figure(row.standard_error, 4, ""), d ? fmt::format("{:.4f}", d->mean) : "",
+                     d ? figure(d->standard_error, 4, "") : "", row.worst_day, row.cycles_per_day,
+                     row.switches_per_day,
+                     row.foresight_share ? fmt::format("{:.6f}", *row.foresight_share) : "",
+                     row.profit_at_reference_wear);
 }
 
 }  // namespace
@@ -101,16 +109,32 @@ std::string format_comparison_table(const std::vector<NamedEvaluation>& evaluati
   if (!reset.empty()) text += table_block("Each day starts at the same SoC", reset);
   if (!reset.empty() && !carried.empty()) text += "\n";
   if (!carried.empty()) text += table_block("SoC carried over from day to day", carried);
-  if (evaluations.size() > 1 && !text.empty()) {
+  if (text.empty()) return text;
+  text += "\n";
+  if (evaluations.size() > 1) {
     text += fmt::format(
-        "\ngain: day-by-day difference to {}; s.e.: standard error of the mean over days;\n"
+        "gain: day-by-day difference to {}; s.e.: standard error of the mean over days;\n"
         "cycles, switches: per day; foresight: % of the perfect-foresight profit\n",
         evaluations.front().name);
   }
+  text += fmt::format("{}: {}\n", wear_column(),
+                      reference_wear_meaning(configured_wear_eur_per_mwh(evaluations)));
   for (const NamedEvaluation& named : evaluations) {
     if (!named.description.empty()) text += fmt::format("{}: {}\n", named.name, named.description);
   }
   return text;
+}
+
+std::string reference_wear_meaning(double wear_eur_per_mwh) {
+  return fmt::format(
+      "profit of the same decisions if wear cost {:g} EUR per MWh charged or discharged;\n"
+      "in all other columns it costs what is configured: {:g}",
+      kReferenceWearEurPerMwh, wear_eur_per_mwh);
+}
+
+double configured_wear_eur_per_mwh(const std::vector<NamedEvaluation>& evaluations) {
+  const NamedEvaluation& any = evaluations.front();
+  return (any.day_reset.days.empty() ? any.carried_over : any.day_reset).wear_eur_per_mwh;
 }
 
 std::string comparison_csv(const std::vector<NamedEvaluation>& evaluations,
@@ -118,7 +142,8 @@ std::string comparison_csv(const std::vector<NamedEvaluation>& evaluations,
   std::string text =
       "policy,soc,days,profit_eur_per_day_per_mwh,standard_error,gain_eur_per_day_per_mwh,"
       "gain_standard_error,worst_day_eur_per_mwh,cycles_per_day,switches_per_day,"
-      "foresight_share\n";
+      "foresight_share," +
+      std::string(kReferenceWearKey) + "\n";
   for (const auto& row : comparison_rows(evaluations, &NamedEvaluation::day_reset, foresight)) {
     text += csv_line(row, "reset");
   }

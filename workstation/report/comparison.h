@@ -21,12 +21,18 @@ struct NamedEvaluation {
 /// The name by which the perfect-foresight bound is recognised.
 inline constexpr const char* kForesightName = "foresight";
 
+/// Wear at which every table shows the profit once more, whatever wear is configured: policies that trade
+/// more or less are compared by what wearing out the battery leaves of it.
+inline constexpr double kReferenceWearEurPerMwh = 10;
+inline constexpr const char* kReferenceWearKey = "profit_at_wear_10_eur_per_day_per_mwh";
+
 /// One line of a table. Money in EUR per day per MWh of capacity.
 struct ComparisonRow {
   std::string name;
   std::size_t days;
   double profit;
   double standard_error;
+  double profit_at_reference_wear;             ///< of the same decisions
   std::optional<PairedDifference> difference;  ///< to the first policy; none for itself
   double worst_day;
   double cycles_per_day;
@@ -46,6 +52,11 @@ std::vector<ComparisonRow> comparison_rows(const std::vector<NamedEvaluation>& e
 /// Aligned columns for the terminal: a block per way of counting, the missing one left out.
 std::string format_comparison_table(const std::vector<NamedEvaluation>& evaluations,
                                     const NamedEvaluation* foresight = nullptr);
+
+/// What the profit at the reference wear is, for people, where `wear_eur_per_mwh` is configured.
+std::string reference_wear_meaning(double wear_eur_per_mwh);
+/// The wear that the profits of these are net of.
+double configured_wear_eur_per_mwh(const std::vector<NamedEvaluation>& evaluations);
 
 /// Header `policy,soc,days,...`; soc is "reset" or "carried"; an empty field is "not applicable".
 std::string comparison_csv(const std::vector<NamedEvaluation>& evaluations,

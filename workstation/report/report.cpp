@@ -207,15 +207,17 @@ std::vector<std::string> comparison_cells(const ComparisonRow& row) {
           fmt::format("{:.2f}", row.cycles_per_day),
           fmt::format("{:.1f}", row.switches_per_day),
           dash_or(row.foresight_share.has_value(),
-                  fmt::format("{:.1f}", 100 * row.foresight_share.value_or(0)))};
+                  fmt::format("{:.1f}", 100 * row.foresight_share.value_or(0))),
+          fmt::format("{:.1f}", row.profit_at_reference_wear)};
 }
 
 std::string comparison_table(const std::string& caption, const std::vector<ComparisonRow>& rows) {
   if (rows.empty()) return {};
-  HtmlTable table{fmt::format("{}, {} days", caption, rows.front().days),
-                  {"Policy", "EUR/day/MWh", "s.e.", "Gain", "s.e.", "Worst day", "Cycles/day",
-                   "Switches/day", "% of foresight"},
-                  {}};
+  HtmlTable table{
+      fmt::format("{}, {} days", caption, rows.front().days),
+      {"Policy", "EUR/day/MWh", "s.e.", "Gain", "s.e.", "Worst day", "Cycles/day", "Switches/day",
+       "% of foresight", fmt::format("At wear {:g}", kReferenceWearEurPerMwh)},
+      {}};
   for (const ComparisonRow& row : rows) table.rows.push_back(comparison_cells(row));
   return format_table(table);
 }
@@ -263,10 +265,12 @@ std::string comparison_section(const ReportInputs& in) {
       "of "
       "the mean to its left. A gain under two standard errors shows nothing. Cycles: energy "
       "through "
-      "the battery over twice its capacity; switches: changes of the order.</p></section>\n",
+      "the battery over twice its capacity; switches: changes of the order. At wear {:g}: "
+      "{}.</p></section>\n",
       comparison_table("Each day starts at the same charge", reset),
       comparison_table("Charge carried over from day to day", carried),
-      html_escaped(in.evaluations.front().name));
+      html_escaped(in.evaluations.front().name), kReferenceWearEurPerMwh,
+      html_escaped(reference_wear_meaning(configured_wear_eur_per_mwh(in.evaluations))));
 }
 
 std::string figure_section(const Figure& figure, const fs::path& folder) {

@@ -57,9 +57,9 @@ TEST_F(EvaluateCli, OnePolicyKeepsItsJsonFields) {
   ASSERT_EQ(text.size(), 1U);
   EXPECT_THAT(json_keys(text[0]),
               testing::ElementsAre("policy", "split", "days", "profit_eur_per_day_per_mwh",
-                                   "standard_error", "cycles_per_day", "worst_day_eur_per_mwh",
-                                   "share_of_foresight", "switches_per_day", "soc_end_mean",
-                                   "carry_soc", "description"));
+                                   "profit_at_wear_10_eur_per_day_per_mwh", "standard_error",
+                                   "cycles_per_day", "worst_day_eur_per_mwh", "share_of_foresight",
+                                   "switches_per_day", "soc_end_mean", "carry_soc", "description"));
   EXPECT_THAT(text[0], HasSubstr("\"carry_soc\":false"));
   EXPECT_THAT(output("evaluate", "--policy rbc --json --carry-soc"),
               HasSubstr("\"carry_soc\":true"));
@@ -78,6 +78,35 @@ TEST_F(EvaluateCli, SeveralPoliciesShowBothTables) {
   EXPECT_THAT(text, HasSubstr("Each day starts at the same SoC"));
   EXPECT_THAT(text, HasSubstr("SoC carried over from day to day"));
   EXPECT_THAT(output("evaluate", "--policy rbc"), Not(HasSubstr("carried over")));
+}
+
+TEST_F(EvaluateCli, ProfitAtTheReferenceWearIsThatOfARunWithIt) {
+  const auto config = [&](const char* name, const char* text) {
+    return " --config " + folder_.write(name, text);
+  };
+  const auto number = [](const std::string& line, const char* key) {
+    const std::size_t at = line.find(key);
+    return at == std::string::npos ? NAN : std::stod(line.substr(line.find(':', at) + 1));
+  };
+  const auto at_10 =
+      output("evaluate", "--policy rbc --json" + config("a", "[battery]\nwear_eur_per_mwh = 10\n"));
+  const double expected = number(at_10, "\"profit_eur_per_day_per_mwh\"");
+  EXPECT_EQ(number(at_10, "\"profit_at_wear_10"), expected);
+  for (const std::string& other :
+       {std::string(), config("b", "[battery]\nwear_eur_per_mwh = 25\n")}) {
+    EXPECT_NEAR(number(output("evaluate", "--policy rbc --json" + other), "\"profit_at_wear_10"),
+                expected, 1e-3);
+    EXPECT_NEAR(number(output("delays", "--policy rbc --json" + other).substr(0, 400),
+                       "\"profit_at_wear_10"),
+                number(output("delays", "--policy rbc --json" +
+                                            config("c", "[battery]\nwear_eur_per_mwh = 10\n")),
+                       "\"profit_eur_per_day_per_mwh\""),
+                1e-3);
+  }
+  for (const char* command : {"evaluate", "delays"}) {
+    EXPECT_THAT(output(command, "--policy rbc"),
+                HasSubstr("at wear 10: profit of the same decisions if wear cost 10 EUR per MWh"));
+  }
 }
 
 TEST_F(EvaluateCli, FilesHoldEveryPolicy) {

@@ -40,6 +40,27 @@ TEST(Comparison, RowsAreThoseOfTheEvaluations) {
   EXPECT_NEAR(*rows[1].foresight_share, 0.5, 1e-12);
 }
 
+/// 8 MWh, days of 12 and 20 MWh through the battery: 16 MWh a day, 2 a MWh of capacity.
+TEST(Comparison, ProfitAtTheReferenceWearByHand) {
+  NamedEvaluation rule{"rule", evaluation_of({800, 1600}), {}};
+  rule.day_reset.days[0].throughput_mwh = 12;
+  rule.day_reset.days[1].throughput_mwh = 20;
+  const auto at_reference = [&](double configured_wear) {
+    rule.day_reset.wear_eur_per_mwh = configured_wear;
+    return comparison_rows({rule}, &NamedEvaluation::day_reset).front().profit_at_reference_wear;
+  };
+  EXPECT_DOUBLE_EQ(at_reference(0), 150 - 10 * 2);
+  EXPECT_DOUBLE_EQ(at_reference(10), 150);
+  EXPECT_DOUBLE_EQ(at_reference(25), 150 + 15 * 2);  // in place of the 25, not on top
+  const std::string table = format_comparison_table({rule});
+  EXPECT_NE(table.find("at wear 10\nrule "), std::string::npos) << table;
+  EXPECT_NE(table.find("     180.0\n"), std::string::npos) << table;
+  EXPECT_NE(table.find("it costs what is configured: 25"), std::string::npos) << table;
+  EXPECT_NE(comparison_csv({rule}).find(",profit_at_wear_10_eur_per_day_per_mwh\nrule,reset,2,"),
+            std::string::npos);
+  EXPECT_NE(comparison_csv({rule}).find(",180.0000\n"), std::string::npos);
+}
+
 TEST(Comparison, WithoutForesightThereIsNoShare) {
   const auto rows = comparison_rows(three_policies(), &NamedEvaluation::carried_over);
   ASSERT_EQ(rows.size(), 2u);

@@ -92,6 +92,11 @@ TEST(Report, TableNumbersAreThoseOfTheEvaluations) {
         teacher.worst_day_eur_per_mwh(), teacher.cycles_per_day(), teacher.switches_per_day());
     EXPECT_NE(html.find(cells), std::string::npos) << cells;
   }
+  EXPECT_NE(html.find("<th scope=\"col\">At wear 10</th>"), std::string::npos);
+  const double at_wear =
+      in.evaluations[1].day_reset.profit_at_wear_eur_per_day_per_mwh(kReferenceWearEurPerMwh);
+  EXPECT_NE(html.find(fmt::format("<td>{:.1f}</td></tr>", at_wear)), std::string::npos);
+  EXPECT_NE(html.find("At wear 10: profit of the same decisions"), std::string::npos);
   EXPECT_NE(html.find("<td>6,950,033,280</td><td>0</td><td>0</td><td>42</td><td>9.5</td>"),
             std::string::npos);
 }
