@@ -122,6 +122,17 @@ void KeyList::list(RunConfig& c) {
          "equivalent full cycles a local day, then no further order that day; 0 is no limit");
   number("initial_soc", c.initial_soc_frac, 0, 1, "at the start of each evaluated day");
 
+  section("costs");
+  TradingCosts& costs = c.battery.costs;
+  number("import_adder_eur_per_mwh", costs.import_adder_eur_per_mwh, 0, 1000,
+         "on top of the price of what is charged: grid fee, taxes, supplier");
+  number("import_percent", costs.import_percent, 0, 100,
+         "the same as a share of the price's size: at -100 and 5 %, one is paid 95");
+  number("export_fee_eur_per_mwh", costs.export_fee_eur_per_mwh, 0, 1000,
+         "off the price of what is discharged: grid fee, supplier");
+  number("export_percent", costs.export_percent, 0, 100,
+         "the same as a share of the price's size: at -100 and 5 %, one pays 105");
+
   section("train");
   choice("method", c.train.method, {"c51", "dqn", "sdp"},
          "distributional or plain Q-learning, or the stochastic program, exact for its model");

@@ -5,8 +5,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "shared/exchange_cost.h"
 #include "shared/units_and_limits.h"
-#include "workstation/env/exchange_cost.h"
 
 namespace bess {
 namespace {

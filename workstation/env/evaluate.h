@@ -7,8 +7,11 @@
 // the file, and the split's days are summed: what they bring to the best run of the whole period.
 // (On the yardstick 939.9; one plan over the chained days would claim 954.)
 //
-// Profit is net of wear. Once a local day has used up cycles_per_day_max no further order is given
-// until midnight, whatever the policy says.
+// Profit is net of trading costs and wear (shared/exchange_cost.h). A step is paid at the mean price of
+// its two minutes, and a percentage is taken of that mean: where a quarter-hour ends inside a step and
+// the price changes its sign, a bill by quarter-hours takes a little more.
+// Once a local day has used up cycles_per_day_max no further order is given until midnight, whatever
+// the policy says.
 #pragma once
 
 #include <string>

@@ -19,6 +19,7 @@ void improve_run(const float* __restrict from, float weight, float cost_eur, int
 
 BellmanSweep::BellmanSweep(const BatteryParameters& battery, const SocGrid& grid)
     : grid_(grid),
+      costs_(battery.costs),
       wear_eur_per_mwh_(static_cast<float>(battery.wear_eur_per_mwh)),
       directions_{make_direction(battery, Action::kDischarge),
                   make_direction(battery, Action::kCharge)} {}
@@ -69,8 +70,11 @@ void BellmanSweep::run(const float* next, float price_eur_per_mwh, float* now,
                        float shadow_eur_per_mwh) const {
   std::copy(next, next + grid_.count, now);  // idle
   const float wear = wear_eur_per_mwh_ + shadow_eur_per_mwh;
+  const auto market = static_cast<double>(price_eur_per_mwh);
   for (const Direction& direction : directions_) {
-    improve(direction, next, price_eur_per_mwh, wear, now);
+    const double paid_eur_per_mwh = direction.energy_mwh > 0 ? costs_.import_eur_per_mwh(market)
+                                                             : costs_.export_eur_per_mwh(market);
+    improve(direction, next, static_cast<float>(paid_eur_per_mwh), wear, now);
   }
 }
 

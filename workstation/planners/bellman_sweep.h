@@ -1,6 +1,6 @@
 // One backward step of dynamic programming over the SoC at a known price, the inner loop of the
 // foresight bound and of rolling-horizon control:
-//   now[i] = max over actions a of  next(SoC after a from point i) - energy * price - wear.
+//   now[i] = max over actions a of  next(SoC after a from point i) - cost of the exchange.
 // On an even grid a full-power action moves every point by the same distance, so all but the points
 // next to a bound read `next` shifted: a straight loop that the compiler turns into vector code.
 #pragma once
@@ -8,7 +8,7 @@
 #include <array>
 #include <vector>
 
-#include "workstation/env/exchange_cost.h"
+#include "shared/exchange_cost.h"
 #include "workstation/planners/soc_grid.h"
 
 namespace bess {
@@ -18,7 +18,8 @@ class BellmanSweep {
   BellmanSweep(const BatteryParameters& battery, const SocGrid& grid);
 
   /// `next` and `now` hold one value (EUR) for each point of the grid and must not overlap.
-  /// `shadow_eur_per_mwh` is counted like wear.
+  /// `price_eur_per_mwh` is the market's: trading costs and wear come on top, and `shadow_eur_per_mwh` is
+  /// counted like wear.
   void run(const float* next, float price_eur_per_mwh, float* now,
            float shadow_eur_per_mwh = 0) const;
 
@@ -37,6 +38,7 @@ class BellmanSweep {
                float* now) const;
 
   SocGrid grid_;
+  TradingCosts costs_;
   float wear_eur_per_mwh_;
   std::array<Direction, 2> directions_;
 };

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "workstation/env/exchange_cost.h"
+#include "shared/exchange_cost.h"
 
 namespace bess {
 namespace {

@@ -48,13 +48,15 @@ void TabularPolicy::count_market(const MarketSteps& market, const std::vector<Ma
   }
   std::vector<double> visits(kPhases * kBins, 0.0);
   std::vector<double> next(kPhases * kBins * kBins, kPseudoCount);
-  paid_.assign(kPhases * kBins, 0.0);
+  import_.assign(kPhases * kBins, 0.0);
+  export_.assign(kPhases * kBins, 0.0);
   for (const MarketDay& day : days) {
     const auto steps = market.of(day);
     for (std::size_t i = 0; i < steps.size(); ++i) {
       const int cell = steps[i].half_hour_phase * kBins + price_bin(steps[i].observed_eur_per_mwh);
       visits[cell] += 1;
-      paid_[cell] += steps[i].paid_eur_per_mwh;
+      import_[cell] += battery_.costs.import_eur_per_mwh(steps[i].paid_eur_per_mwh);
+      export_[cell] += battery_.costs.export_eur_per_mwh(steps[i].paid_eur_per_mwh);
       if (i + 1 < steps.size()) {
         next[cell * kBins + price_bin(steps[i + 1].observed_eur_per_mwh)] += 1;
       }
@@ -62,7 +64,10 @@ void TabularPolicy::count_market(const MarketSteps& market, const std::vector<Ma
   }
   transition_.resize(next.size());
   for (int cell = 0; cell < kPhases * kBins; ++cell) {
-    if (visits[cell] > 0) paid_[cell] /= visits[cell];
+    if (visits[cell] > 0) {
+      import_[cell] /= visits[cell];
+      export_[cell] /= visits[cell];
+    }
     double total = 0;
     for (int b = 0; b < kBins; ++b) total += next[cell * kBins + b];
     for (int b = 0; b < kBins; ++b) {
@@ -82,11 +87,13 @@ void TabularPolicy::iterate_values() {
       const Eigen::Map<const Values> chain(&transition_[phase * kBins * kBins], kBins, kBins);
       const Values expected = kGamma * (chain * value[(phase + 1) % kPhases]);
       for (int b = 0; b < kBins; ++b) {
-        const auto price = static_cast<float>(paid_[phase * kBins + b]);
+        const auto import_price = static_cast<float>(import_[phase * kBins + b]);
+        const auto export_price = static_cast<float>(export_[phase * kBins + b]);
         for (int i = 0; i < kSocPoints; ++i) {
           float worth[kActionCount];
           for (int a = 0; a < kActionCount; ++a) {
             const GridMove& move = moves[a * kSocPoints + i];
+            const float price = move.energy_mwh > 0 ? import_price : export_price;
             worth[a] = interpolate(expected.row(b).data(), move.next) - price * move.energy_mwh -
                        wear * std::fabs(move.energy_mwh);
           }

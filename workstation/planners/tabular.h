@@ -1,8 +1,8 @@
 // Tabular value iteration: the classical baseline that fits in two seconds [SPEC 8].
 // State: phase of the half-hour (15), bin of the observed price (48 quantile bins of the training
 // decisions), SoC (181 points). The price is a Markov chain from (phase, bin) to the next phase's
-// bin, counted on training days; the reward is the mean price paid in each (phase, bin). gamma
-// 0.999, continuing.
+// bin, counted on training days; the reward is the mean import or export price in each (phase,
+// bin). gamma 0.999, continuing.
 #pragma once
 
 #include <vector>
@@ -27,7 +27,8 @@ class TabularPolicy final : public Policy {
 
   BatteryParameters battery_;
   std::vector<double> bin_edges_;  ///< [47] ascending
-  std::vector<double> paid_;       ///< [phase][bin] mean paid price
+  std::vector<double> import_;  ///< [phase][bin] mean price of a MWh taken, trading costs included
+  std::vector<double> export_;  ///< the same of a MWh given
   std::vector<float> transition_;  ///< [phase][bin][next bin] probability
   std::vector<Action> greedy_;     ///< [phase][bin][SoC point]
 };

@@ -30,6 +30,7 @@ TrainingMarket::TrainingMarket(const MarketSteps& market, const PriceMap& price_
       reward_centre_(static_cast<float>(shaping.reward_centre_eur_per_h) * kRewardScale) {
   const std::vector<MarketDay> training = market.days_of(Split::kTrain);
   require_training_days(training.size());
+  const TradingCosts& costs = battery_.costs;
   for (std::size_t d = 0; d < training.size(); ++d) {
     const std::size_t first = steps_.size();
     const auto steps = market.of(training[d]);
@@ -45,8 +46,9 @@ TrainingMarket::TrainingMarket(const MarketSteps& market, const PriceMap& price_
       if (!follows && !terminal) continue;
       const NetworkContext here = network_context(steps[i], price_map, context);
       steps_.push_back({here, follows ? network_context(*next, price_map, context) : here,
-                        static_cast<float>(steps[i].paid_eur_per_mwh), terminal,
-                        add_potential(shaping.potential, steps[i]),
+                        static_cast<float>(costs.import_eur_per_mwh(steps[i].paid_eur_per_mwh)),
+                        static_cast<float>(costs.export_eur_per_mwh(steps[i].paid_eur_per_mwh)),
+                        terminal, add_potential(shaping.potential, steps[i]),
                         add_potential(shaping.potential, follows ? *next : steps[i])});
     }
     days_.push_back({first, steps_.size() - first});
@@ -80,10 +82,11 @@ double TrainingMarket::make_transition(std::size_t index, double soc_frac, Actio
   write_input(step.context, soc_frac, out.state);
   write_input(step.next, moved.soc_frac, out.next_state);
   // r = -p * price in EUR/h for a battery of the paper's 4 MW: scaled by P, so that the same
-  // support and learning rate serve every size [SPEC 3, 4].
+  // support and learning rate serve every size [SPEC 3, 4]. The money of exchange_cost.h, in floats.
   const auto power_frac = static_cast<float>(moved.power_w / battery_.power_w_max);
   const auto wear = static_cast<float>(battery_.wear_eur_per_mwh);
-  const float paid_eur_per_h = power_frac * step.paid_eur_per_mwh + std::fabs(power_frac) * wear;
+  const float price = power_frac > 0 ? step.import_eur_per_mwh : step.export_eur_per_mwh;
+  const float paid_eur_per_h = power_frac * price + std::fabs(power_frac) * wear;
   out.reward = -paid_eur_per_h * kPaperPowerMw * kRewardScale - reward_centre_;
   if (!step.terminal) out.reward += gamma_ * potential_at(step.next_potential, moved.soc_frac);
   out.reward -= potential_at(step.potential, soc_frac);

@@ -69,7 +69,7 @@ class TrainingMarket {
   struct Step {
     NetworkContext context;
     NetworkContext next;
-    float paid_eur_per_mwh;
+    float import_eur_per_mwh, export_eur_per_mwh;  ///< paid price with trading costs
     bool terminal;
     std::uint32_t potential, next_potential;  ///< rows of potential_
   };

@@ -15,7 +15,11 @@ Potential price_potential(const MarketSteps& market, const BatteryParameters& ba
   double sum_eur_per_mwh = 0;
   double count = 0;
   for (const MarketDay& day : market.days_of(Split::kTrain)) {
-    for (const MarketStep& step : market.of(day)) sum_eur_per_mwh += step.paid_eur_per_mwh;
+    for (const MarketStep& step : market.of(day)) {
+      // Half-way between what it costs to store and what it earns to sell: so neither looks free.
+      sum_eur_per_mwh += 0.5 * (battery.costs.import_eur_per_mwh(step.paid_eur_per_mwh) +
+                                battery.costs.export_eur_per_mwh(step.paid_eur_per_mwh));
+    }
     count += static_cast<double>(day.step_count);
   }
   const double window_mwh =

@@ -16,7 +16,7 @@ namespace bess {
 
 enum class PotentialKind : std::uint8_t {
   kNone,
-  kPrice,  ///< stored energy at the training days' mean price
+  kPrice,  ///< stored energy at the training days' mean price, half-way from import to export
   kPlan,   ///< value of a rolling-horizon plan on a naive forecast (planners/rolling_horizon.h)
   kSdp,    ///< value of the stochastic program (planners/stochastic_program.h)
 };

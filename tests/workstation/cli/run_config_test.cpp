@@ -24,6 +24,7 @@ TEST(RunConfig, ChangedValuesRoundTrip) {
   config.market.settlement = Settlement::kStep;
   config.battery.power_w_max = 1.0 / 3 * 1e7;
   config.battery.soc_min_frac = 0.123456789012345;
+  config.battery.costs = {12.5, 1.0 / 3, 2, 100};
   config.initial_soc_frac = 0.3;
   config.train.method = Method::kDqn;
   config.train.source = Source::kReplay;
@@ -38,6 +39,10 @@ TEST(RunConfig, ChangedValuesRoundTrip) {
   EXPECT_EQ(again.market.settlement, Settlement::kStep);
   EXPECT_EQ(again.battery.power_w_max, config.battery.power_w_max);
   EXPECT_EQ(again.battery.soc_min_frac, config.battery.soc_min_frac);
+  EXPECT_EQ(again.battery.costs.import_adder_eur_per_mwh, 12.5);
+  EXPECT_EQ(again.battery.costs.import_percent, 1.0 / 3);
+  EXPECT_EQ(again.battery.costs.export_fee_eur_per_mwh, 2);
+  EXPECT_EQ(again.battery.costs.export_percent, 100);
   EXPECT_EQ(again.train.method, Method::kDqn);
   EXPECT_EQ(again.train.source, Source::kReplay);
   EXPECT_EQ(again.train.centre_rewards, false);
@@ -102,6 +107,13 @@ TEST(RunConfig, MistakesNamePlaceAndMend) {
       {"[train]\nmethod = 1\n", ":2: ", "use one of \"c51\", \"dqn\""},
       {"[market]\nsettlement = \"hour\"\n", ":2: ", "use one of \"minute\", \"step\""},
       {"[train]\nsteps = \n", ":2: ", "not valid TOML"},
+      {"[costs]\nimport_adder_eur_per_mwh = -1\n",
+       ":2: ", "[costs] import_adder_eur_per_mwh: -1 is out of range: use 0 to 1000"},
+      {"[costs]\nimport_percent = 100.5\n", ":2: ", "100.5 is out of range: use 0 to 100"},
+      {"[costs]\nexport_fee_eur_per_mwh = 1001\n", ":2: ", "use 0 to 1000"},
+      {"[costs]\nexport_percent = \"5 %\"\n", ":2: ", "[costs] export_percent: expected a number"},
+      {"[costs]\nexport_percent = nan\n", ":2: ", "[costs] export_percent: nan is out of range"},
+      {"[costs]\nwear_eur_per_mwh = 5\n", ":2: ", "unknown key \"wear_eur_per_mwh\" in [costs]"},
       {"[train\nsteps = 1\n", ":1: ", "not valid TOML"},
       {"[train]\nsteps = 1\nsteps = 2\n", ":3: ", "not valid TOML"},
       {"[train]\nsteps = 1\n[train]\n", ":3: ", "not valid TOML"},

@@ -89,6 +89,8 @@ TEST(BellmanSweep, EqualsThePlainMaximumForAnyBattery) {
     b.charge_efficiency = 0.5 + 0.5 * random.uniform();
     b.discharge_efficiency = 0.5 + 0.5 * random.uniform();
     b.wear_eur_per_mwh = 20 * random.uniform();
+    b.costs = {50 * random.uniform(), 10 * random.uniform(), 10 * random.uniform(),
+               10 * random.uniform()};
     const SocGrid grid(b, 101);
     const auto moves = tabulate_moves(b, grid);
     std::vector<float> next(101);

@@ -26,6 +26,12 @@ BatteryParameters random_battery(Random& random) {
   b.soc_min_frac = 0.4 * random.uniform();
   b.soc_max_frac = b.soc_min_frac + 0.05 + random.uniform() * (0.95 - b.soc_min_frac);
   b.wear_eur_per_mwh = random.uniform() < 0.5 ? 0 : 50 * random.uniform();
+  if (random.uniform() < 0.5) {
+    b.costs = {.import_adder_eur_per_mwh = 60 * random.uniform(),
+               .import_percent = 10 * random.uniform(),
+               .export_fee_eur_per_mwh = 10 * random.uniform(),
+               .export_percent = 10 * random.uniform()};
+  }
   return b;
 }
 
@@ -35,7 +41,12 @@ void expect_conserved(const std::vector<StepRecord>& records, const Evaluation& 
   for (std::size_t i = 0; i < records.size(); ++i) {
     const StepRecord& r = records[i];
     const double mwh = r.power_w / 1e6 * kHoursPerTestStep;
-    const double cost_eur = mwh * r.paid_eur_per_mwh + std::fabs(mwh) * b.wear_eur_per_mwh;
+    const double size = std::fabs(r.paid_eur_per_mwh);
+    const double extra_eur_per_mwh =
+        b.wear_eur_per_mwh +
+        (mwh > 0 ? b.costs.import_adder_eur_per_mwh + b.costs.import_percent / 100 * size
+                 : b.costs.export_fee_eur_per_mwh + b.costs.export_percent / 100 * size);
+    const double cost_eur = mwh * r.paid_eur_per_mwh + std::fabs(mwh) * extra_eur_per_mwh;
     ASSERT_NEAR(r.profit_eur, -cost_eur, 1e-9 * (1 + std::fabs(cost_eur)));
     ASSERT_LE(std::fabs(r.power_w), b.power_w_max * (1 + 1e-12));
     ASSERT_GE(r.soc_frac, b.soc_min_frac - 1e-12);

@@ -1,4 +1,5 @@
 #include "workstation/rl/experience.h"
+#include "shared/exchange_cost.h"
 #include "workstation/planners/rolling_horizon.h"
 
 #include <set>
@@ -126,11 +127,47 @@ TEST(Transitions, AgreeWithTheBatteryOnRandomSteps) {
   }
 }
 
+/// A battery with costs that differ between taking and giving, at prices on both sides of zero.
+TEST(Transitions, RewardsAreTheMoneyOfTheAccounting) {
+  MarketSteps steps = uneven_market();
+  for (std::size_t k = 0; k < steps.steps.size(); ++k) {
+    steps.steps[k].paid_eur_per_mwh = (k % 2 == 0 ? 1 : -1) * (10.0 + static_cast<double>(k));
+  }
+  BatteryParameters battery;
+  battery.wear_eur_per_mwh = 6;
+  battery.costs = {40, 5, 3, 2};
+  const TrainingMarket market(steps, straight_price_map(), battery, kOn, {});
+  Random random(72);
+  for (int draw = 0; draw < 3000; ++draw) {
+    const std::size_t index = random.index(market.step_count());
+    const double soc = market.draw_soc(random);
+    const auto action = static_cast<Action>(random.index(kActionCount));
+    Transition t{};
+    market.make_transition(index, soc, action, t);
+    const MarketStep& step = steps.steps[static_cast<std::size_t>(step_of_input(t.state[4]))];
+    const BatteryStep moved = battery_step(battery, soc, power_sign(action) * 4e6, 2.0 / 60);
+    const double cost_eur =
+        exchange_cost_eur(battery, moved.power_w / 1e6 / 30, step.paid_eur_per_mwh);
+    ASSERT_NEAR(t.reward, -cost_eur * 30 / 1e4, 1e-7);  // EUR a step -> 1e4 EUR/h
+  }
+}
+
 // ---- Potentials ------------------------------------------------------------------------------
+
+TEST(Potentials, AtTheMeanPriceLieBetweenImportAndExport) {
+  const MarketSteps market = market_by_hand({{Split::kTrain, {0, 1}}});  // paid 100 and 101
+  BatteryParameters battery;
+  battery.costs = {40, 0, 10, 0};
+  std::vector<float> phi(2);
+  fit_potential(PotentialKind::kPrice, market, battery).fill(market.steps[0], phi.data());
+  EXPECT_EQ(phi[0], 0);
+  EXPECT_NEAR(phi[1], (100.5 + (40 - 10) / 2.0) * 0.9 * 8, 1e-3);
+}
 
 TEST(Potentials, OfAPlanIsWhatThePlanExpectsToEarn) {
   const MarketSteps market = simulated_market({2023, 1, 1}, 24);
-  const BatteryParameters battery;
+  BatteryParameters battery;
+  battery.costs = {20, 3, 2, 1};
   const RollingHorizonPolicy plan(market, market.days_of(Split::kTrain), battery);
   const Potential potential = fit_potential(PotentialKind::kPlan, market, battery);
   std::vector<float> phi(static_cast<std::size_t>(potential.soc_points));
@@ -146,7 +183,8 @@ TEST(Potentials, OfAPlanIsWhatThePlanExpectsToEarn) {
 /// Whatever the potential, what a round trip earns in the end is the same: it telescopes.
 TEST(Potentials, ShapedRewardsDifferByThePotentialOfTheEndsOnly) {
   const MarketSteps market = simulated_market({2023, 1, 1}, 24);
-  const BatteryParameters battery;
+  BatteryParameters battery;
+  battery.costs = {20, 3, 2, 1};
   const auto rewards_of = [&](PotentialKind kind, std::vector<float>& first_row) {
     RewardShaping shaping{0, 1, fit_potential(kind, market, battery)};
     first_row.resize(static_cast<std::size_t>(shaping.potential.soc_points));

@@ -1,0 +1,21 @@
+// What one exchange costs: the single place where energy becomes money, for accounting, planning, learning
+// and for settling what the edge did.
+#pragma once
+
+#include <cmath>
+
+#include "shared/battery_model.h"
+
+namespace bess {
+
+/// What exchanging `energy_mwh` (grid side, charge positive) costs at this price, trading costs and wear
+/// included. Negative: it earns.
+inline double exchange_cost_eur(const BatteryParameters& battery, double energy_mwh,
+                                double price_eur_per_mwh) {
+  const double paid_eur_per_mwh = energy_mwh > 0
+                                      ? battery.costs.import_eur_per_mwh(price_eur_per_mwh)
+                                      : battery.costs.export_eur_per_mwh(price_eur_per_mwh);
+  return energy_mwh * paid_eur_per_mwh + std::fabs(energy_mwh) * battery.wear_eur_per_mwh;
+}
+
+}  // namespace bess
