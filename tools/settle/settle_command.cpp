@@ -31,7 +31,7 @@ Json latency_json(const Latency& latency) {
                        {"max", Decimals{latency.max_us, 0}}});
 }
 
-void print_json(const Settlement& s) {
+void print_json(const RunSettlement& s) {
   const Json json = Json::object({{"cycles", s.cycles},
                                   {"cycles_running", s.cycles_running},
                                   {"battery", account_json(s.battery)},
@@ -42,7 +42,7 @@ void print_json(const Settlement& s) {
   fmt::print("{}\n", json.line());
 }
 
-void print_text(const Settlement& s) {
+void print_text(const RunSettlement& s) {
   fmt::print("{} cycles, {} of them running\n", s.cycles, s.cycles_running);
   fmt::print("{:24} {:>12} {:>14} {:>10} {:>9}\n", "", "charged Wh", "discharged Wh", "EUR",
              "SoC end");
@@ -61,6 +61,30 @@ void print_text(const Settlement& s) {
   latency("price received to order read back", s.total);
 }
 
+/// Named and limited as the keys of bess-train's configuration, so that both count alike.
+void add_costs(ProgramCommand& command, BatteryParameters& battery) {
+  TradingCosts& costs = battery.costs;
+  command
+      .option("--import-adder-eur-per-mwh", costs.import_adder_eur_per_mwh,
+              "On top of the price of what is charged")
+      .range(0.0, 1000.0)
+      .with_default();
+  command.option("--import-percent", costs.import_percent, "The same, as a share of |price|")
+      .range(0.0, 100.0)
+      .with_default();
+  command
+      .option("--export-fee-eur-per-mwh", costs.export_fee_eur_per_mwh,
+              "Off the price of what is discharged")
+      .range(0.0, 1000.0)
+      .with_default();
+  command.option("--export-percent", costs.export_percent, "The same, as a share of |price|")
+      .range(0.0, 100.0)
+      .with_default();
+  command.option("--wear-eur-per-mwh", battery.wear_eur_per_mwh, "Of energy charged or discharged")
+      .range(0.0, 1000.0)
+      .with_default();
+}
+
 }  // namespace
 
 void add_settle_command(ProgramCommand& app) {
@@ -77,12 +101,15 @@ void add_settle_command(ProgramCommand& app) {
   command.option("--capacity-wh", options->battery.capacity_wh, "Battery's capacity")
       .positive()
       .with_default();
+  add_costs(command, options->battery);
   command.flag("--json", options->json, "One JSON object");
   command.footer(
       "Example:\n"
-      "  bess-sim settle --record battery.csv --edge-log edge.csv --prices market.csv.gz");
+      "  bess-sim settle --record battery.csv --edge-log edge.csv --prices market.csv.gz\n"
+      "  bess-sim settle --record battery.csv --edge-log edge.csv --prices market.csv.gz "
+      "--import-adder-eur-per-mwh 45 --export-fee-eur-per-mwh 2");
   command.runs([options] {
-    const Settlement settlement =
+    const RunSettlement settlement =
         settle(CsvTable::read(options->record), CsvTable::read(options->edge_log),
                read_minute_file(options->prices), options->battery);
     if (options->json) {

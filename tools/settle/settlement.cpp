@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shared/exchange_cost.h"
 #include "shared/host/user_error.h"
 #include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
@@ -38,7 +39,8 @@ std::vector<std::size_t> cycle_rows(const CsvTable& log) {
   return rows;
 }
 
-Account battery_account(const CsvTable& record, const Period& period, const MinuteSeries& prices) {
+Account battery_account(const CsvTable& record, const Period& period, const MinuteSeries& prices,
+                        const BatteryParameters& battery) {
   const std::size_t minute = record.column("minute_utc");
   const std::size_t energy = record.column("energy_wh");
   const std::size_t soc = record.column("soc");
@@ -46,7 +48,7 @@ Account battery_account(const CsvTable& record, const Period& period, const Minu
   for (std::size_t r = 0; r < record.row_count(); ++r) {
     const std::int64_t utc_s = record.utc_s(r, minute);
     if (utc_s < period.begin_utc_s || utc_s >= period.end_utc_s) continue;
-    account.add(record.number(r, energy), settled_at(prices, utc_s));
+    account.add(battery, record.number(r, energy), settled_at(prices, utc_s));
     account.soc_end_frac = record.number(r, soc);
   }
   return account;
@@ -65,7 +67,7 @@ Account edge_account(const CsvTable& log, const std::vector<std::size_t>& rows,
     const double wanted_w = log.number(r, written) != 0 ? log.number(r, power) : 0.0;
     const BatteryStep step = battery_step(battery, soc_frac, wanted_w, kHoursPerStep);
     for (int m = 0; m < kMinutesPerStep; ++m) {
-      account.add(step.power_w / 60, settled_at(prices, log.utc_s(r, utc) + 60 * m));
+      account.add(battery, step.power_w / 60, settled_at(prices, log.utc_s(r, utc) + 60 * m));
     }
     account.soc_end_frac = step.soc_frac;
   }
@@ -87,20 +89,21 @@ Latency latency_of(const CsvTable& log, const std::vector<std::size_t>& rows,
 
 }  // namespace
 
-void Account::add(double energy_wh, double settled_eur_per_mwh) {
+void Account::add(const BatteryParameters& battery, double energy_wh, double settled_eur_per_mwh) {
   (energy_wh > 0 ? charged_wh : discharged_wh) += std::fabs(energy_wh);
-  profit_eur -= energy_wh / kWattHoursPerMegawattHour * settled_eur_per_mwh;
+  profit_eur -=
+      exchange_cost_eur(battery, energy_wh / kWattHoursPerMegawattHour, settled_eur_per_mwh);
 }
 
-Settlement settle(const CsvTable& battery_record, const CsvTable& edge_log,
-                  const MinuteSeries& prices, const BatteryParameters& battery) {
+RunSettlement settle(const CsvTable& battery_record, const CsvTable& edge_log,
+                     const MinuteSeries& prices, const BatteryParameters& battery) {
   const std::vector<std::size_t> rows = cycle_rows(edge_log);
   const std::size_t utc = edge_log.column("utc");
   const std::size_t mode = edge_log.column("mode");
   const Period period{edge_log.utc_s(rows.front(), utc),
                       edge_log.utc_s(rows.back(), utc) + kSecondsPerStep};
-  Settlement result;
-  result.battery = battery_account(battery_record, period, prices);
+  RunSettlement result;
+  result.battery = battery_account(battery_record, period, prices, battery);
   result.edge = edge_account(edge_log, rows, prices, battery);
   result.cycles = rows.size();
   result.cycles_running = static_cast<std::size_t>(std::ranges::count_if(

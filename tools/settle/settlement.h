@@ -18,7 +18,8 @@ struct Account {
   double profit_eur = 0;
   double soc_end_frac = 0;
 
-  void add(double energy_wh, double settled_eur_per_mwh);
+  /// Grid side, charge positive, at the settled price with the battery's costs.
+  void add(const BatteryParameters& battery, double energy_wh, double settled_eur_per_mwh);
 };
 
 /// Wall time of the edge's cycles, microseconds.
@@ -28,7 +29,7 @@ struct Latency {
   double max_us = 0;
 };
 
-struct Settlement {
+struct RunSettlement {
   Account battery;  ///< from the battery's record
   Account edge;  ///< from the edge's log: each order through the battery model from the SoC it read
   std::size_t cycles = 0;
@@ -38,7 +39,7 @@ struct Settlement {
 
 /// Only minutes from the edge's first to the end of its last cycle count. Throws UserError when a minute has
 /// no settled price.
-Settlement settle(const CsvTable& battery_record, const CsvTable& edge_log,
-                  const MinuteSeries& prices, const BatteryParameters& battery);
+RunSettlement settle(const CsvTable& battery_record, const CsvTable& edge_log,
+                     const MinuteSeries& prices, const BatteryParameters& battery);
 
 }  // namespace bess
