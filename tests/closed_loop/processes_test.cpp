@@ -245,12 +245,15 @@ TEST_F(Processes, SystemdIsToldOfStartCyclesAndStop) {
     told.emplace_back(text, static_cast<std::size_t>(n));
   }
   close(systemd);
-  ASSERT_EQ(told.size(), 6U);
+  ASSERT_FALSE(told.empty());
   EXPECT_THAT(told[0], HasSubstr("EXTEND_TIMEOUT_USEC=61000000"));
-  EXPECT_THAT(told[1], HasSubstr("READY=1"));
-  EXPECT_THAT(told[2],
+  // A student by level asks for more time to read the price level's history.
+  std::erase_if(told, [](const std::string& t) { return t.starts_with("EXTEND_TIMEOUT_USEC="); });
+  ASSERT_EQ(told.size(), 5U);
+  EXPECT_THAT(told[0], HasSubstr("READY=1"));
+  EXPECT_THAT(told[1],
               HasSubstr("STATUS=running: "));  // its WATCHDOG=1 only if the machine kept up
-  EXPECT_THAT(told[5], HasSubstr("STOPPING=1"));
+  EXPECT_THAT(told[4], HasSubstr("STOPPING=1"));
 }
 
 TEST_F(Processes, EachCommandHasItsHelp) {

@@ -33,8 +33,8 @@ struct TrainOptions {
   int atoms = 51;
   ContextKind context = ContextKind::kLevel;
   PotentialKind potential = PotentialKind::kSdp;  ///< of reward shaping
-  bool centre_rewards = true;                      ///< continuing horizon only
-  ContextJitter jitter;                            ///< counterfactual source only
+  bool centre_rewards = true;                     ///< continuing horizon only
+  ContextJitter jitter;                           ///< counterfactual source only
   double value_min_eur_per_h = -1e5;
   double value_max_eur_per_h = 1e5;
   long replay_capacity = 1'000'000;

@@ -12,7 +12,7 @@ namespace {
 
 /// Contexts with a pair of neighbours at which the action rises with price or SoC.
 int rising_contexts(const StudentNet& net, std::uint64_t seed) {
-  constexpr int kContexts = 12;
+  constexpr int kContexts = 4;
   Random random(seed);
   int rising = 0;
   std::vector<std::int8_t> grid;
