@@ -86,7 +86,7 @@ int run_controller(const CommandLine& command_line, const EdgeConfig& config) {
   journal_thresholds(config);
   if (config.control.control) release_if_a_check_fails(battery);
   static Loop loop(config.control, battery, prices, clock);
-  if (student_context_kind() == ContextKind::kLevel) {
+  if (student_context().kind == ContextKind::kLevel) {
     notify.extend_start(config.history.wait_s + 60);
   }
   CycleRecord before;  // stays empty where there is none

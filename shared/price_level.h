@@ -17,6 +17,7 @@ struct PriceLevel {
   /// One decision's weight is one in this many: a day of decisions.
   static constexpr std::int64_t kDecisions = kStepsPerDay;
   static constexpr int kFractionBits = 16;
+  static constexpr std::int64_t kQ16PerEur = std::int64_t{kCentiPerEur} << kFractionBits;
   static constexpr std::int32_t kMinCenti = kLatticePriceMinEurPerMwh * kCentiPerEur;
   static constexpr std::int32_t kMaxCenti = kLatticePriceMaxEurPerMwh * kCentiPerEur;
 

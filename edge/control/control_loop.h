@@ -262,8 +262,8 @@ class ControlLoop {
     if (record.has_measurement && price.has_row) {
       const LocalMinute now = local_minute_of(record.utc_s);
       record.context_class = student_context_class(now, price_level_);
-      record.student_action = decide_with_student(now, price_level_, record.measurement.soc_e4,
-                                                  price.price_centi_eur_per_mwh);
+      record.student_action = decide_with_student(make_lattice_state(
+          now, record.context_class, record.measurement.soc_e4, price.price_centi_eur_per_mwh));
       record.has_student_action = true;
     }
     const std::int64_t decided_utc_s = decision_utc_s(record.utc_s);

@@ -47,8 +47,9 @@ GuardInputs undisturbed_inputs(std::int64_t now_utc_s, std::int32_t soc_e4, cons
   in.measurement.soc_e4 = soc_e4;
   in.price_minute_utc_s = price_minute_utc_s;
   in.price_centi_eur_per_mwh = price_centi_eur_per_mwh;
-  in.student_action =
-      decide_with_student(local_minute_of(now_utc_s), level, soc_e4, price_centi_eur_per_mwh);
+  const LocalMinute now = local_minute_of(now_utc_s);
+  in.student_action = decide_with_student(
+      make_lattice_state(now, student_context_class(now, level), soc_e4, price_centi_eur_per_mwh));
   return in;
 }
 

@@ -6,17 +6,11 @@ namespace bess {
 
 const ContextClasses& student_context() { return kExportedStudent.context; }
 
-ContextKind student_context_kind() { return kExportedStudent.context.kind; }
-
 std::int16_t student_context_class(const LocalMinute& now, const PriceLevel& level) {
   return kExportedStudent.context.class_of(now.month, level.centi_eur_per_mwh());
 }
 
-Action decide_with_student(const LocalMinute& now, const PriceLevel& level, std::int32_t soc_e4,
-                           std::int32_t price_centi_eur_per_mwh) {
-  return kExportedStudent.decide(
-      make_lattice_state(now, student_context_class(now, level), soc_e4, price_centi_eur_per_mwh));
-}
+Action decide_with_student(const LatticeState& state) { return kExportedStudent.decide(state); }
 
 int count_student_self_check_failures() { return count_exported_self_check_failures(); }
 

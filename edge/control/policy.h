@@ -13,12 +13,10 @@ namespace bess {
 
 /// What the student's context class is made from.
 const ContextClasses& student_context();
-ContextKind student_context_kind();
 /// The class that the student is given, 1..12.
 std::int16_t student_context_class(const LocalMinute& now, const PriceLevel& level);
 /// What the exported student would do.
-Action decide_with_student(const LocalMinute& now, const PriceLevel& level, std::int32_t soc_e4,
-                           std::int32_t price_centi_eur_per_mwh);
+Action decide_with_student(const LatticeState& state);
 
 /// 0 when this machine computes every golden vector of the weight header bit for bit.
 int count_student_self_check_failures();

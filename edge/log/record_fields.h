@@ -116,7 +116,7 @@ consteval auto make_record_fields() {
       {member<&R::price_level, &L::centi_q16>(),
        "price_level_centi_q16",
        {.csv = 30, .last = 44, .metrics = {16, "bess_price_level_eur_per_mwh"}},
-       {"Trailing level of the prices, the student's context.", 6'553'600}},
+       {"Trailing level of the prices, the student's context.", L::kQ16PerEur}},
       {member<&R::price_level, &L::row_minute_utc_s>()},
       {member<&R::context_class>().given<&R::has_student_action>(),
        "context_class",

@@ -7,22 +7,10 @@
 #include <cerrno>
 #include <cstring>
 
+#include "shared/file_descriptor.h"
+
 namespace bess {
 namespace {
-
-class File {
- public:
-  explicit File(const char* path) : fd_(open(path, O_RDONLY | O_CLOEXEC)) {}
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
-  ~File() {
-    if (fd_ >= 0) close(fd_);
-  }
-  [[nodiscard]] int fd() const { return fd_; }
-
- private:
-  int fd_;
-};
 
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\r'; }
 
@@ -73,9 +61,9 @@ bool sounds_secret(std::string_view key) {
 }  // namespace
 
 bool load_http_headers(const char* path, FixedText<2047>& headers, std::string& error) {
-  const File file(path);
+  const FileDescriptor file(open(path, O_RDONLY | O_CLOEXEC));
   struct stat info {};
-  if (file.fd() < 0 || fstat(file.fd(), &info) != 0) {
+  if (file.get() < 0 || fstat(file.get(), &info) != 0) {
     error = std::string(path).append(": cannot open the header file: ").append(strerror(errno));
     return false;
   }
@@ -84,7 +72,7 @@ bool load_http_headers(const char* path, FixedText<2047>& headers, std::string& 
     return false;
   }
   char text[2048];
-  const ssize_t size = read(file.fd(), text, sizeof text);
+  const ssize_t size = read(file.get(), text, sizeof text);
   if (size < 0 || size == sizeof text) {
     error = std::string(path).append(size < 0 ? ": cannot be read: is it a file?"
                                               : ": is too long (at most 2047 bytes)");

@@ -188,7 +188,7 @@ PriceLevel level_at_start(const EdgeConfig& config, const PriceLevel& logged, St
     news.rows = history.rows();
     return history.level();
   };
-  const ContextKind kind = student_context_kind();
+  const ContextKind kind = student_context().kind;
   news.start =
       find_start_level(kind, logged, now_utc_s, config.level_start_centi_eur_per_mwh, fetch);
   if (kind == ContextKind::kLevel) write_journal_line(journal_level_of(news), level_note(news));
@@ -238,7 +238,7 @@ RunIdentity identity_of_run(const EdgeConfig& config) {
   identity.version = BESS_VERSION;
   identity.student_hash = student_hash();
   identity.student_provenance = student_provenance();
-  identity.context = context_name(student_context_kind());
+  identity.context = context_name(student_context().kind);
   identity.map = config.map.name.view();
   identity.variant = config.map.variant.view();
   identity.battery = battery_place(config);

@@ -101,8 +101,7 @@ void print_health(const Health& health) {
 /// What the student is given besides clock, SoC and price, where that is the trailing level.
 void print_level(JsonValue s) {
   if (std::string_view(text_of(s["context"])) != "level") return;
-  constexpr double kQ16PerEur = 65'536.0 * kCentiPerEur;
-  const double level = number(field<&R::price_level, &L::centi_q16>(s)) / kQ16PerEur;
+  const double level = number(field<&R::price_level, &L::centi_q16>(s)) / L::kQ16PerEur;
   const long long context_class = whole(field<&R::context_class>(s));
   if (context_class == 0 && level == 0) {  // exactly: no price has set it yet
     std::printf("level      not known\n");

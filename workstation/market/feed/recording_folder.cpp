@@ -9,6 +9,7 @@
 #include <cstring>
 #include <utility>
 
+#include "shared/file_descriptor.h"
 #include "shared/host/file.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
@@ -22,24 +23,9 @@ namespace fs = std::filesystem;
 constexpr const char* kLockName = ".recorder.lock";
 constexpr std::int64_t kLateRows_s = 3600;  // a day's last rows arrive after its end
 
-/// A file descriptor that is closed at its end.
-class Descriptor {
- public:
-  explicit Descriptor(int fd) : fd_(fd) {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() {
-    if (fd_ >= 0) close(fd_);
-  }
-  [[nodiscard]] int get() const { return fd_; }
-
- private:
-  int fd_;
-};
-
 /// A new name is on the disk only when its folder is.
 void sync_folder(const fs::path& folder) {
-  const Descriptor fd(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  const FileDescriptor fd(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (fd.get() >= 0) fsync(fd.get());  // some file systems cannot
 }
 
@@ -96,7 +82,7 @@ class RecordingFolder::Day {
       fail("{}: is not a day of this recorder; move it away", path_.string());
     }
     for (const RecordedLine& line : parse_recorded_day(text, path_.string())) note(line);
-    file_ = std::make_unique<Descriptor>(open(path_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC));
+    file_ = std::make_unique<FileDescriptor>(open(path_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC));
     if (file_->get() < 0) give_up("cannot write here", 0);
     size_ = static_cast<std::int64_t>(fs::file_size(path_));
     if (!text.empty()) mend(text);
@@ -187,7 +173,7 @@ class RecordingFolder::Day {
   fs::path path_;
   std::int64_t end_utc_s_, minutes_;
   std::int64_t size_ = 0;  ///< of what is whole
-  std::unique_ptr<Descriptor> file_;
+  std::unique_ptr<FileDescriptor> file_;
   std::map<std::int64_t, RecordedMinute> minutes_known_;
   bool appended_ = false;
   std::string mended_;
