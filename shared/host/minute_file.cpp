@@ -120,8 +120,7 @@ MinuteSeries read_minute_file(const std::filesystem::path& path) {
 }
 
 std::string format_minute_csv(const MinuteSeries& series, std::string_view provenance) {
-  std::string text;
-  while (!provenance.empty()) text.append("# ").append(take_line(provenance)).append("\n");
+  std::string text = comment_lines(provenance);
   text.append(kHeader).append("\n");
   const auto append_price = [&text](double price) {
     if (!std::isnan(price)) text.append(fmt::format("{}", price));

@@ -22,6 +22,12 @@ std::string_view cut(std::string_view text, std::size_t size_max) {
 
 }  // namespace
 
+std::string comment_lines(std::string_view text) {
+  std::string lines;
+  while (!text.empty()) lines.append("# ").append(take_line(text)).append("\n");
+  return lines;
+}
+
 std::string one_line(std::string_view text, std::size_t size_max) {
   std::string line;
   for (std::size_t i = 0; i < text.size() && line.size() <= size_max; ++i) {

@@ -22,6 +22,9 @@ inline std::string_view take_line(std::string_view& rest) {
   return line;
 }
 
+/// The lines of `text`, each behind "# ".
+std::string comment_lines(std::string_view text);
+
 /// At most `size_max` bytes of `text` in one line: control characters, which a terminal would obey,
 /// become spaces, and neighbouring spaces one.
 std::string one_line(std::string_view text, std::size_t size_max = std::string_view::npos);

@@ -22,14 +22,6 @@ TrainResult train_by_default(const MarketSteps& market, const RunConfig& config)
   return result;
 }
 
-/// Validation and test days together, in the order of the calendar: 42 days judge better than the 20
-/// test days alone. Of the validation days the teacher knows which of its 32 sets of weights they liked.
-std::vector<MarketDay> days_to_judge_by(const MarketSteps& market) {
-  std::vector<MarketDay> days = market.days;
-  std::erase_if(days, [](const MarketDay& day) { return day.split == Split::kTrain; });
-  return days;
-}
-
 PairedDifference lead(const char* over, const Evaluation& teacher, const Evaluation& other) {
   const PairedDifference lead = paired_difference(teacher, other);
   fmt::print("  over {:8} {:.1f}: {:+.1f}, s.e. {:.1f}\n", over, other.profit_eur_per_day_per_mwh(),
@@ -47,7 +39,9 @@ TEST(LearningGate, TheTeacherIsAboveTheRuleAndLevelWithTabular) {
   TeacherPolicy teacher(training.teacher);
   RuleBasedPolicy rule(kPaperRuleLowEurPerMwh, kPaperRuleHighEurPerMwh);
   TabularPolicy tabular(market, market.days_of(Split::kTrain), config.battery);
-  const std::vector<MarketDay> days = days_to_judge_by(market);
+  // 42 days judge better than the 20 test days alone. Of the validation days the teacher knows which of its
+  // 16 sets of weights they liked.
+  const std::vector<MarketDay> days = market.days_of(Split::kHeldOut);
   for (const bool carry_soc : {false, true}) {
     const EvaluationOptions options{config.battery, config.initial_soc_frac, carry_soc};
     const Evaluation earned = evaluate(market, days, teacher, options);

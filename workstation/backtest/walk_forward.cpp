@@ -6,18 +6,18 @@
 #include <cmath>
 
 #include "shared/host/user_error.h"
+#include "workstation/market/series/local_date.h"
 
 namespace bess {
 namespace {
 
 constexpr double kWindowShareMin = 0.5;
-constexpr int kFirstValidationDay = 21;
-constexpr int kLastValidationDay = 25;
-constexpr std::int64_t kSecondsPerDay = 86'400;
 
 bool same_month(const MarketDay& a, const MarketDay& b) {
   return a.year == b.year && a.month == b.month;
 }
+
+LocalDate date_of(const MarketDay& day) { return {day.year, day.month, day.day}; }
 
 /// The days [first, end) of `market` with their steps and nothing else; the last `traded` are test days.
 MarketSteps cut_out(const MarketSteps& market, std::size_t first, std::size_t end,
@@ -30,8 +30,11 @@ MarketSteps cut_out(const MarketSteps& market, std::size_t first, std::size_t en
   for (std::size_t d = first; d < end; ++d) {
     MarketDay day = market.days[d];
     day.first_step -= first_step;
-    const bool validates = day.day >= kFirstValidationDay && day.day <= kLastValidationDay;
-    day.split = d + traded >= end ? Split::kTest : validates ? Split::kValidation : Split::kTrain;
+    if (d + traded >= end) {
+      day.split = Split::kTest;
+    } else if (day.split == Split::kTest) {
+      day.split = Split::kTrain;
+    }
     cut.days.push_back(day);
   }
   return cut;
@@ -51,17 +54,12 @@ std::vector<std::pair<std::size_t, std::size_t>> months_of(const std::vector<Mar
 
 Folds make_folds(const MarketSteps& market, int window_days) {
   Folds folds;
-  const auto begins_at = [&](std::size_t day) {
-    return market.steps[market.days[day].first_step].utc_s;
-  };
   for (const auto& [first, end] : months_of(market.days)) {
     const MarketDay& day = market.days[first];
     const std::string month = fmt::format("{:04}-{:02}", day.year, day.month);
-    // Half an hour of grace: a window over a clock change is an hour longer or shorter.
-    const std::int64_t since_utc_s =
-        begins_at(first) - (day.day - 1 + window_days) * kSecondsPerDay - kSecondsPerDay / 12;
+    const LocalDate since = add_days({day.year, day.month, 1}, -window_days);
     std::size_t window = first;
-    while (window > 0 && begins_at(window - 1) >= since_utc_s) --window;
+    while (window > 0 && date_of(market.days[window - 1]) >= since) --window;
     const std::size_t known = first - window;
     if (static_cast<double>(known) < kWindowShareMin * window_days) {
       folds.skipped.push_back(
@@ -121,6 +119,7 @@ WalkForward walk_forward(const std::string& name, const Folds& folds, const Fold
       options.initial_soc_frac = evaluation.days.back().soc_end_frac;
     }
     result.total.capacity_mwh = evaluation.capacity_mwh;
+    result.total.wear_eur_per_mwh = evaluation.wear_eur_per_mwh;
     result.total.days.insert(result.total.days.end(), evaluation.days.begin(),
                              evaluation.days.end());
     result.months.push_back(fold.month);

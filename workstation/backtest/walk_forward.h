@@ -45,8 +45,6 @@ struct WalkForward {
   [[nodiscard]] double drawdown_eur_per_mwh() const;
   /// Profit after each day, EUR per MWh of capacity.
   [[nodiscard]] std::vector<double> cumulative_eur_per_mwh() const;
-  /// Energy through the battery per day, charged and discharged, in multiples of the capacity.
-  [[nodiscard]] double turnover_per_day() const { return 2 * total.cycles_per_day(); }
 };
 
 /// Makes the policy of a fold, from its training and validation days alone.

@@ -8,7 +8,6 @@
 #include <mutex>
 #include <thread>
 
-#include "shared/crc32.h"
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
 #include "workstation/backtest/walk_forward.h"
@@ -17,6 +16,7 @@
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
 #include "workstation/cli/policy_factory.h"
+#include "workstation/market/feed/market_files.h"
 #include "workstation/report/backtest_report.h"
 #include "workstation/report/comparison.h"
 #include "workstation/student/correct_and_prove.h"
@@ -41,44 +41,12 @@ struct Options {
   bool json = false;
 };
 
-struct Inputs {
-  MinuteSeries series;
-  std::uint32_t crc = 0;
-};
-
-/// The files one after another; where two have the same minute, the later file's row counts.
-Inputs read_inputs(const std::vector<std::string>& paths) {
-  std::vector<MinuteSeries> parts;
-  for (const std::string& path : paths) parts.push_back(read_minute_file(path));
-  std::int64_t first = parts.front().start_utc_s;
-  std::int64_t end = first;
-  for (const MinuteSeries& part : parts) {
-    first = std::min(first, part.start_utc_s);
-    end = std::max(end, part.utc_s(part.size()));
-  }
-  constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-  const auto minutes = static_cast<std::size_t>((end - first) / 60);
-  Inputs inputs{
-      {first, std::vector<double>(minutes, kMissing), std::vector<double>(minutes, kMissing)}, 0};
-  for (const MinuteSeries& part : parts) {
-    const auto at = static_cast<std::size_t>((part.start_utc_s - first) / 60);
-    for (std::size_t m = 0; m < part.size(); ++m) {
-      if (part.is_empty(m)) continue;
-      inputs.series.indicative[at + m] = part.indicative[m];
-      inputs.series.settled[at + m] = part.settled[m];
-    }
-  }
-  Crc32 crc;
-  crc.add_bytes(inputs.series.indicative.data(), sizeof(double) * minutes);
-  crc.add_bytes(inputs.series.settled.data(), sizeof(double) * minutes);
-  inputs.crc = crc.value();
-  return inputs;
-}
-
 /// All that a fold's student depends on, but for the fold.
-std::string identity_of(const RunConfig& config, const Inputs& inputs, const Options& options) {
+std::string identity_of(const RunConfig& config, const MinuteSeries& series,
+                        const Options& options) {
   return fmt::format("# bess-train {}, prices {:08x}, window {} days, seed {}\n{}", BESS_VERSION,
-                     inputs.crc, options.window_days, config.train.seed, format_run_config(config));
+                     prices_checksum(series), options.window_days, config.train.seed,
+                     format_run_config(config));
 }
 
 /// A folder belongs to one configuration: its folds are kept when that comes again.
@@ -105,13 +73,7 @@ StudentFile learn_fold(const Fold& fold, const RunConfig& config) {
       correct_and_prove(trained.teacher, visited, config.distil, interruption(),
                         validation_score(fold.market, config.battery, config.initial_soc_frac));
   if (interruption()) throw Interrupted{};
-  const StudentFile& student = student_of(corrected.verdict);
-  if (!std::holds_alternative<ProvedStudent>(corrected.verdict)) {
-    fail("{}: {} violations are left after {} rounds; {}", fold.month,
-         student.certificate.violations(), corrected.violations_by_round.size(),
-         mend_of_failed_proof(config.distil.method));
-  }
-  return student;
+  return require_proof(corrected, config.distil.method, fold.month + ": ").file();
 }
 
 fs::path student_path(const fs::path& folder, const Fold& fold) {
@@ -158,36 +120,32 @@ void learn_folds(const Folds& folds, RunConfig config, const fs::path& folder) {
   if (failure) std::rethrow_exception(failure);
 }
 
-/// Keeps the file's net alive as long as the policy that reads it.
-std::shared_ptr<Policy> read_student(const fs::path& path) {
-  return make_policy(path.string(), {}, {});
-}
-
 void run(const Options& options) {
   const RunConfig config = options.common.resolve();
   const fs::path folder = options.out;
-  const Inputs inputs = read_inputs(options.prices);
-  const MarketSteps market = make_market_steps(inputs.series, config.market);
+  const MinuteSeries series =
+      join_market(read_market_files(options.prices), options.prices.front()).series;
+  const MarketSteps market = make_market_steps(series, config.market);
   const Folds folds = make_folds(market, options.window_days);
   require_writable(folder / "backtest.csv");
-  claim_folder(folder, identity_of(config, inputs, options));
+  claim_folder(folder, identity_of(config, series, options));
   watch_interruption();
   if (std::ranges::find(options.policies, kChainName) != options.policies.end()) {
     learn_folds(folds, config, folder);
   }
-  BacktestResults results{
-      {},
-      folds.skipped,
-      options.window_days,
-      config.battery.capacity_wh / kWattsPerMegawatt,
-      fmt::format("{} on {} file{}, prices {:08x}, seed {}", BESS_VERSION, options.prices.size(),
-                  options.prices.size() == 1 ? "" : "s", inputs.crc, config.train.seed)};
+  BacktestResults results{{},
+                          folds.skipped,
+                          options.window_days,
+                          config.battery.capacity_wh / kWattsPerMegawatt,
+                          fmt::format("{} on {} file{}, prices {:08x}, seed {}", BESS_VERSION,
+                                      options.prices.size(), options.prices.size() == 1 ? "" : "s",
+                                      prices_checksum(series), config.train.seed)};
   Progress progress("trade", "policies", static_cast<double>(options.policies.size()));
   for (const std::string& name : options.policies) {
     const FoldPolicy make = [&](const Fold& fold) {
       if (interruption()) throw Interrupted{};
-      return name == kChainName ? read_student(student_path(folder, fold))
-                                : make_policy(name, fold.market, config.battery);
+      const std::string model = name == kChainName ? student_path(folder, fold).string() : name;
+      return make_policy(model, fold.market, config.battery);
     };
     results.policies.push_back(
         walk_forward(name, folds, make, config.battery, config.initial_soc_frac, market));
@@ -211,7 +169,8 @@ void add_backtest_command(ProgramCommand& app) {
   auto options = std::make_shared<Options>();
   ProgramCommand command =
       app.subcommand("backtest", "Walk forward: fit on a window, trade the next month, roll on");
-  command.option("--prices", options->prices, "Minute files, which may lie apart in time")
+  command
+      .option("--prices", options->prices, "Minute files or downloads, which may lie apart in time")
       .required();
   command.option("--out", options->out, "Folder for results and the folds' students").required();
   command

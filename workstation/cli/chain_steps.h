@@ -3,7 +3,9 @@
 
 #include <string>
 
+#include "shared/host/minute_file.h"
 #include "workstation/rl/train.h"
+#include "workstation/student/correct_and_prove.h"
 
 namespace bess {
 
@@ -12,5 +14,13 @@ std::string training_provenance(const std::string& prices, const TrainOptions& o
                                 const TrainResult& result);
 /// One line on stderr when the support of C51 is too narrow for the values met.
 void warn_narrow_support(const TrainOptions& options, const TrainResult& result);
+
+/// CRC-32 of both columns: a checkpoint or a fold belongs to the prices that it was made from.
+std::uint32_t prices_checksum(const MinuteSeries& series);
+
+/// The proved student of `result`. Throws UserError, `where` in front and `note` behind the violations that
+/// are left, naming the mend.
+const ProvedStudent& require_proof(const CorrectionResult& result, CorrectionMethod method,
+                                   const std::string& where = "", const std::string& note = "");
 
 }  // namespace bess

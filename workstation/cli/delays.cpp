@@ -119,8 +119,10 @@ void add_delays_command(ProgramCommand& app) {
   command.option("--prices", options->prices, "Minute file (.csv or .csv.gz)").required();
   command.option("--policy", options->policies, std::string("One or more of ") + kPolicyHelp)
       .with_default();
-  command.option("--split", options->split, "Local days 1-20, 21-25, 26-end, or all")
-      .one_of({"train", "val", "test", "all"})
+  command
+      .option("--split", options->split,
+              "Local days 1-20, 21-25, 26-end, the last two together, or all")
+      .one_of({kSplitNames.begin(), kSplitNames.end()})
       .with_default();
   options->common.add_config(command);
   command.flag("--carry-soc", options->carry_soc, "Chain the days instead of resetting SoC");

@@ -6,6 +6,7 @@
 #include "shared/host/file.h"
 #include "shared/host/json.h"
 #include "shared/host/user_error.h"
+#include "workstation/cli/chain_steps.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
 #include "workstation/report/curves.h"
@@ -61,18 +62,24 @@ void run(const Options& options) {
       correct_and_prove(teacher, visited, config.distil, interruption(),
                         validation_score(market, config.battery, config.initial_soc_frac));
   if (interruption()) throw Interrupted{};
-  const StudentFile& student = student_of(result.verdict);
-  if (!options.plain && !std::holds_alternative<ProvedStudent>(result.verdict)) {
-    fail("{} violations are left after {} rounds, nothing was written; {}",
-         student.certificate.violations(), result.violations_by_round.size(),
-         mend_of_failed_proof(config.distil.method));
+  if (!options.plain) {
+    require_proof(result, config.distil.method, "", ", nothing was written");
   }
+  const StudentFile& student = student_of(result.verdict);
   save_student(options.out, student);
   if (!options.curve_out.empty()) write_file(options.curve_out, distil_curve_csv(result.curve));
   print_result(options, result);
 }
 
 }  // namespace
+
+const ProvedStudent& require_proof(const CorrectionResult& result, CorrectionMethod method,
+                                   const std::string& where, const std::string& note) {
+  if (const auto* proved = std::get_if<ProvedStudent>(&result.verdict)) return *proved;
+  fail("{}{} violations are left after {} rounds{}; {}", where,
+       student_of(result.verdict).certificate.violations(), result.violations_by_round.size(), note,
+       mend_of_failed_proof(method));
+}
 
 void add_distil_command(ProgramCommand& app) {
   auto options = std::make_shared<Options>();

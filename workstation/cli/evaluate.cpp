@@ -40,7 +40,6 @@ struct Options {
   [[nodiscard]] bool wants_carried() const { return carry_soc || policies.size() > 1; }
 };
 
-constexpr const char* kValidationAndTest = "val+test";
 constexpr std::string_view kSocModes[] = {"reset", "carried"};
 
 /// Per-day and per-step records of every policy and way of counting, as CSV.
@@ -150,14 +149,6 @@ MarketSteps fitting_market(const MinuteSeries& series, const RunConfig& config,
   return make_market_steps(options.fit.empty() ? series : read_minute_file(options.fit), market);
 }
 
-/// Validation and test days together judge better than either, in the order of the calendar.
-std::vector<MarketDay> days_of_split(const MarketSteps& market, const std::string& split) {
-  if (split != kValidationAndTest) return market.days_of(parse_split(split));
-  std::vector<MarketDay> days = market.days;
-  std::erase_if(days, [](const MarketDay& day) { return day.split == Split::kTrain; });
-  return days;
-}
-
 /// What every policy is evaluated on.
 struct Trial {
   const MarketSteps& market;
@@ -205,7 +196,7 @@ void run(const Options& options) {
   const MarketSteps fitting = fitting_market(series, config, options);
   Trial trial{market,
               fitting,
-              days_of_split(market, options.split),
+              market.days_of(parse_split(options.split)),
               {},
               config,
               options,
@@ -244,7 +235,7 @@ void add_evaluate_command(ProgramCommand& app) {
   command
       .option("--split", options->split,
               "Local days 1-20, 21-25, 26-end, the last two together, or all")
-      .one_of({"train", "val", "test", kValidationAndTest, "all"})
+      .one_of({kSplitNames.begin(), kSplitNames.end()})
       .with_default();
   command.option("--date", options->date,
                  "Only this day of the split: YYYY-MM-DD, or widest (largest price range)");

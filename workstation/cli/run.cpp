@@ -71,11 +71,7 @@ RunResults learn(const RunConfig& config, MarketSteps market, const std::string&
       correct_and_prove(trained.teacher, visited, config.distil, interruption(),
                         validation_score(market, config.battery, config.initial_soc_frac));
   if (interruption()) throw Interrupted{};
-  const Certificate& certificate = student_of(corrected.verdict).certificate;
-  if (!std::holds_alternative<ProvedStudent>(corrected.verdict)) {
-    fail("{} violations are left after {} rounds; {}", certificate.violations(),
-         corrected.violations_by_round.size(), mend_of_failed_proof(config.distil.method));
-  }
+  const Certificate& certificate = require_proof(corrected, config.distil.method).certificate();
   fmt::print("      no violation over {} states, {} round{}\n", certificate.states_checked,
              corrected.violations_by_round.size(),
              corrected.violations_by_round.size() == 1 ? "" : "s");

@@ -65,12 +65,9 @@ fs::path seed_path(const fs::path& out, std::uint64_t seed) {
 
 /// All that the weights depend on; a checkpoint is good for one of these only.
 std::string identity_of(const RunConfig& config, const MinuteSeries& series) {
-  Crc32 prices;
-  prices.add_bytes(series.indicative.data(), sizeof(double) * series.size());
-  prices.add_bytes(series.settled.data(), sizeof(double) * series.size());
   return fmt::format("bess-train {} seed {} threads {} prices {:08x} from {}\n{}", BESS_VERSION,
-                     config.train.seed, config.train.threads, prices.value(), series.start_utc_s,
-                     format_run_config(config));
+                     config.train.seed, config.train.threads, prices_checksum(series),
+                     series.start_utc_s, format_run_config(config));
 }
 
 std::string result_json(const std::string& out, Method method, const TrainResult& result) {
@@ -201,6 +198,13 @@ void run(const Options& options) {
 }
 
 }  // namespace
+
+std::uint32_t prices_checksum(const MinuteSeries& series) {
+  Crc32 prices;
+  prices.add_bytes(series.indicative.data(), sizeof(double) * series.size());
+  prices.add_bytes(series.settled.data(), sizeof(double) * series.size());
+  return prices.value();
+}
 
 std::string training_provenance(const std::string& prices, const TrainOptions& options,
                                 const TrainResult& result) {

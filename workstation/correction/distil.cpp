@@ -70,8 +70,7 @@ Matrix visited_inputs(const Teacher& teacher, const MarketSteps& market,
       if (step >= episode.steps.size()) continue;
       MarketStep seen = episode.steps[step];
       seen.observed_eur_per_mwh += episode.shift_eur_per_mwh;
-      seen.level_centi_eur_per_mwh +=
-          static_cast<std::int32_t>(std::lround(episode.shift_eur_per_mwh * kCentiPerEur));
+      seen.level_centi_eur_per_mwh += price_centi_of(episode.shift_eur_per_mwh);
       write_input(network_context(seen, teacher.price_map, teacher.context), episode.soc_frac,
                   visited.col(at++).data());
     }
@@ -89,6 +88,12 @@ Matrix visited_inputs(const Teacher& teacher, const MarketSteps& market,
     }
   }
   return visited;
+}
+
+Eigen::MatrixXd teacher_logits(const Teacher& teacher, const DistilOptions& options,
+                               const MatrixRef& x, MlpTile& tile) {
+  const double inverse_temperature = 1 / (options.temperature_eur_per_h * double{kRewardScale});
+  return teacher.action_values(x, tile).cast<double>() * inverse_temperature;
 }
 
 Distiller::Distiller(const Teacher& teacher, const Matrix& visited, const DistilOptions& options)
@@ -184,10 +189,8 @@ void Distiller::lattice_inputs(const Lattice& lattice, Matrix& x) const {
 }
 
 /// log mu for the worker's inputs: softmax of the teacher's values over the temperature.
-Eigen::MatrixXd Distiller::teacher_logits(Worker& worker) const {
-  const double inverse_temperature = 1 / (options_.temperature_eur_per_h * double{kRewardScale});
-  const Matrix values = teacher_.action_values(worker.x, worker.teacher_tile);
-  return log_softmax(values.cast<double>() * inverse_temperature);
+Eigen::MatrixXd Distiller::teacher_log_policy(Worker& worker) const {
+  return log_softmax(teacher_logits(teacher_, options_, worker.x, worker.teacher_tile));
 }
 
 void Distiller::backward_student(Worker& worker) const {
@@ -201,7 +204,7 @@ void Distiller::learn_lattice(const Lattice& lattice, CorrectionLayer& layer, do
                               Worker& worker) {
   const ConstMlp student(kStudentShape, student_.data());
   lattice_inputs(lattice, worker.x);
-  const Eigen::MatrixXd log_mu = teacher_logits(worker);
+  const Eigen::MatrixXd log_mu = teacher_log_policy(worker);
   forward_hidden(student, worker.x, worker.student_tile);
   forward_head(student, worker.student_tile, worker.z);
   const Eigen::MatrixXd logits = worker.z.cast<double>();
@@ -233,7 +236,7 @@ void Distiller::learn_visited(const std::vector<Eigen::Index>& columns, double w
   for (std::size_t c = 0; c < columns.size(); ++c) {
     worker.x.col(static_cast<Eigen::Index>(c)) = visited_.col(columns[c]);
   }
-  const Eigen::MatrixXd log_mu = teacher_logits(worker);
+  const Eigen::MatrixXd log_mu = teacher_log_policy(worker);
   forward_hidden(student, worker.x, worker.student_tile);
   forward_head(student, worker.student_tile, worker.z);
   const Eigen::MatrixXd log_student = log_softmax(worker.z.cast<double>());

@@ -28,8 +28,8 @@ struct DistilOptions {
   bool correct = true;  ///< false: plain distillation, for comparison
   CorrectionOptions correction;
   double fidelity = 1;  ///< construction: of the cross-entropy beside the expected regret
-  double level_shift_eur_per_mwh =
-      60;               ///< construction: deviation of what is added to a visited day's prices
+  /// Construction: deviation of what is added to a visited day's prices.
+  double level_shift_eur_per_mwh = 60;
   double omega = 1e-4;  ///< the paper's trade-off: larger follows the teacher and violates more
   double temperature_eur_per_h = 100;  ///< of the teacher's softmax over action values
   int epochs = 600;
@@ -38,7 +38,7 @@ struct DistilOptions {
   int lattice_prices = 32;
   int lattice_socs = 16;
   int visited_per_epoch = 32'768;
-  double learning_rate = 5e-3;  ///< falling to a tenth along a cosine
+  double learning_rate = 5e-3;  ///< falling along a cosine
   int repair_rounds = 12;       ///< proofs, each followed by counterexample training if it fails
   int repair_epochs = 40;
   std::uint64_t seed = 1;
@@ -54,11 +54,21 @@ inline constexpr MlpShape kStudentShape{kStudentInputs, kStudentHidden1, kStuden
 Matrix visited_inputs(const Teacher& teacher, const MarketSteps& market,
                       const BatteryParameters& battery, const DistilOptions& options);
 
+/// The teacher's action values over the temperature of its softmax, [3 x samples]: its logits.
+Eigen::MatrixXd teacher_logits(const Teacher& teacher, const DistilOptions& options,
+                               const MatrixRef& x, MlpTile& tile);
+
+/// By construction there are no lattices: their losses are 0, and that of the visited states is the mean
+/// regret over the temperature.
 struct DistilPoint {
   int epoch;
   double teacher_loss;     ///< mean KL(pi || mu) over lattices
   double correction_loss;  ///< mean KL(pi' || pi) over lattices
   double visited_loss;     ///< mean KL(pi' || mu) over visited states
+
+  [[nodiscard]] bool is_by_construction() const {
+    return teacher_loss == 0 && correction_loss == 0;
+  }
 };
 
 class Distiller {
@@ -93,7 +103,7 @@ class Distiller {
   Lattice draw_lattice(const std::vector<LatticeState>& counterexamples, bool near_counterexample);
   void draw_axes(const LatticeState* centre, LatticeAxes& axes);
   void lattice_inputs(const Lattice& lattice, Matrix& x) const;
-  Eigen::MatrixXd teacher_logits(Worker& worker) const;
+  Eigen::MatrixXd teacher_log_policy(Worker& worker) const;
   void backward_student(Worker& worker) const;
   void learn_lattice(const Lattice& lattice, CorrectionLayer& layer, double weight, Worker& worker);
   void learn_visited(const std::vector<Eigen::Index>& columns, double weight, Worker& worker);

@@ -6,7 +6,6 @@
 
 #include "workstation/base/progress.h"
 #include "workstation/correction/policy_loss.h"
-#include "workstation/rl/transition.h"
 
 namespace bess {
 namespace {
@@ -45,13 +44,13 @@ LessonStates make_lessons(const Teacher& teacher, const Matrix& visited,
         static_cast<Eigen::Index>(random.index(static_cast<std::uint64_t>(visited.cols())));
     const int price = kLatticePriceMinEurPerMwh + static_cast<int>(random.index(kPriceCount));
     const float mapped = random.uniform() < 0.5 ? visited(4, from) : teacher.price_map(price);
-    write_input(network_context(static_cast<int>(random.index(kMinuteOfQuarterHourCount)),
-                                static_cast<int>(random.index(kQuarterHourCount)),
-                                1 + static_cast<int>(random.index(kContextClassCount)), mapped),
-                0, x);
+    // One after another: in one call the order of the draws would be the compiler's.
+    const int context_class = 1 + static_cast<int>(random.index(kContextClassCount));
+    const auto quarter_hour = static_cast<int>(random.index(kQuarterHourCount));
+    const auto minute = static_cast<int>(random.index(kMinuteOfQuarterHourCount));
+    write_input(network_context(minute, quarter_hour, context_class, mapped), 0, x);
     x[3] = scaled_input(static_cast<int>(random.index(kSocCount)), kSocScale);
   }
-  const double inverse_temperature = 1 / (options.temperature_eur_per_h * double{kRewardScale});
   MlpTile tile;
   constexpr Eigen::Index kTile = 1024;
   lessons.teacher_frac.resize(kActionCount, lessons.inputs.cols());
@@ -59,8 +58,7 @@ LessonStates make_lessons(const Teacher& teacher, const Matrix& visited,
   for (Eigen::Index at = 0; at < lessons.inputs.cols(); at += kTile) {
     const Eigen::Index count = std::min(kTile, lessons.inputs.cols() - at);
     const Eigen::MatrixXd values =
-        teacher.action_values(lessons.inputs.middleCols(at, count), tile).cast<double>() *
-        inverse_temperature;
+        teacher_logits(teacher, options, lessons.inputs.middleCols(at, count), tile);
     lessons.teacher_frac.middleCols(at, count) = log_softmax(values).array().exp().cast<float>();
     for (Eigen::Index c = 0; c < count; ++c) {
       lessons.regret.col(at + c) = (values.col(c).maxCoeff() - values.col(c).array()).cast<float>();

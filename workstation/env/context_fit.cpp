@@ -33,7 +33,7 @@ ContextClasses fit_context_classes(const MarketSteps& market, ContextKind kind) 
   double squares = 0;
   for (const MarketDay& day : training) {
     for (const MarketStep& step : market.of(day)) {
-      const double level = static_cast<double>(step.level_centi_eur_per_mwh) / kCentiPerEur;
+      const double level = step.level_eur_per_mwh();
       count += 1;
       sum += level;
       squares += level * level;

@@ -62,8 +62,8 @@ class Runner {
       result.switches += action != last_action_ ? 1 : 0;
       if (records != nullptr) {
         records->push_back({step.utc_s, step.observed_eur_per_mwh, step.paid_eur_per_mwh,
-                            static_cast<double>(step.level_centi_eur_per_mwh) / kCentiPerEur,
-                            soc_frac_, action, moved.power_w, profit_eur});
+                            step.level_eur_per_mwh(), soc_frac_, action, moved.power_w,
+                            profit_eur});
       }
       last_action_ = action;
       soc_frac_ = moved.soc_frac;

@@ -1,7 +1,8 @@
 #include "workstation/env/market_steps.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "shared/host/user_error.h"
@@ -42,11 +43,6 @@ double paid_price(const MinuteSeries& series, std::size_t minute, Settlement set
   return settlement == Settlement::kStep ? first : 0.5 * (first + series.settled[minute + 1]);
 }
 
-/// As the edge reads a usable price: to the nearest hundredth.
-std::int32_t price_centi(double eur_per_mwh) {
-  return static_cast<std::int32_t>(std::lround(eur_per_mwh * kCentiPerEur));
-}
-
 bool same_date(const MarketDay& day, const LocalMinute& local) {
   return day.day == local.day && day.month == local.month && day.year == local.year;
 }
@@ -54,16 +50,14 @@ bool same_date(const MarketDay& day, const LocalMinute& local) {
 }  // namespace
 
 Split parse_split(std::string_view name) {
-  for (const Split split : {Split::kTrain, Split::kValidation, Split::kTest, Split::kAll}) {
-    if (name == split_name(split)) return split;
+  const auto found = std::ranges::find(kSplitNames, name);
+  if (found == kSplitNames.end()) {
+    fail("unknown split \"{}\": use {}", name, fmt::join(kSplitNames, ", "));
   }
-  fail("unknown split \"{}\": use train, val, test or all", name);
+  return static_cast<Split>(found - kSplitNames.begin());
 }
 
-std::string_view split_name(Split split) {
-  constexpr std::string_view kNames[] = {"train", "val", "test", "all"};
-  return kNames[static_cast<int>(split)];
-}
+std::string_view split_name(Split split) { return kSplitNames[static_cast<std::size_t>(split)]; }
 
 Settlement parse_settlement(std::string_view name) {
   if (name == "minute") return Settlement::kMinute;
@@ -76,7 +70,8 @@ std::string MarketDay::date() const { return fmt::format("{:04}-{:02}-{:02}", ye
 std::vector<MarketDay> MarketSteps::days_of(Split split) const {
   std::vector<MarketDay> selected;
   for (const MarketDay& day : days) {
-    if (split == Split::kAll || day.split == split) selected.push_back(day);
+    const bool held_out = split == Split::kHeldOut && day.split != Split::kTrain;
+    if (split == Split::kAll || held_out || day.split == split) selected.push_back(day);
   }
   return selected;
 }
@@ -121,7 +116,7 @@ MarketSteps make_market_steps(const MinuteSeries& series, const MarketOptions& o
     const std::int64_t row = newest[static_cast<std::size_t>(visible)];
     if (row < 0) continue;
     const auto newest_row = static_cast<std::size_t>(row);
-    level.observe(series.utc_s(newest_row), price_centi(series.indicative[newest_row]));
+    level.observe(series.utc_s(newest_row), price_centi_of(series.indicative[newest_row]));
     const double paid = paid_price(series, m, options.settlement);
     if (std::isnan(paid)) continue;
     const std::int64_t utc_s = series.utc_s(m);

@@ -4,6 +4,9 @@
 // never depends on a row later than `decision minute - observation delay`.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -11,6 +14,7 @@
 #include <vector>
 
 #include "shared/host/minute_file.h"
+#include "shared/units_and_limits.h"
 
 namespace bess {
 
@@ -20,9 +24,12 @@ enum class Settlement {
   kStep,    ///< the whole step at the quarter-hour in which it starts (the paper's wording)
 };
 
-enum class Split { kTrain, kValidation, kTest, kAll };
+/// Held out are validation and test days together: they judge better than either.
+enum class Split { kTrain, kValidation, kTest, kHeldOut, kAll };
+inline constexpr std::array<std::string_view, 5> kSplitNames{"train", "val", "test", "val+test",
+                                                             "all"};
 
-/// "train", "val", "test", "all"; throws UserError otherwise.
+/// One of kSplitNames; throws UserError otherwise.
 Split parse_split(std::string_view name);
 std::string_view split_name(Split split);
 /// "minute", "step"; throws UserError otherwise.
@@ -43,7 +50,26 @@ struct MarketStep {
   std::int8_t quarter_hour;              ///< local, 0..95
   std::int8_t month;                     ///< local, 1..12
   std::int8_t half_hour_phase;           ///< (minute of the half-hour) / 2, 0..14
+
+  [[nodiscard]] double level_eur_per_mwh() const {
+    return static_cast<double>(level_centi_eur_per_mwh) / kCentiPerEur;
+  }
+  /// How many quarter-hours before this step's the newest row belongs: in its first minutes 1.
+  [[nodiscard]] int quarter_hours_ago() const {
+    const int before_this_min = std::max(0, observed_age_min - minute_of_quarter_hour);
+    return (before_this_min + kMinutesPerQuarterHour - 1) / kMinutesPerQuarterHour;
+  }
+  /// 0..95, of that row.
+  [[nodiscard]] int row_quarter_hour() const {
+    return (quarter_hour - quarter_hours_ago() % kQuarterHourCount + kQuarterHourCount) %
+           kQuarterHourCount;
+  }
 };
+
+/// As the edge reads a usable price: to the nearest hundredth.
+inline std::int32_t price_centi_of(double eur_per_mwh) {
+  return static_cast<std::int32_t>(std::lround(eur_per_mwh * kCentiPerEur));
+}
 
 /// Consecutive steps of one local calendar day that can be traded.
 struct MarketDay {

@@ -115,12 +115,8 @@ void RollingHorizonPolicy::fit_shrinkage(const MarketSteps& market,
 }
 
 RollingHorizonPolicy::Observation RollingHorizonPolicy::observe(const MarketStep& step) const {
-  // The row of minute t - age belongs to the quarter-hour that many quarter-hours before this one.
-  const int before_this_min = std::max(0, step.observed_age_min - step.minute_of_quarter_hour);
-  const int ago = (before_this_min + kQuarterHourMinutes - 1) / kQuarterHourMinutes;
-  const int row_quarter_hour =
-      (step.quarter_hour - ago % kQuarterHours + kQuarterHours) % kQuarterHours;
-  return {step.observed_eur_per_mwh - usual_eur_per_mwh_[row_quarter_hour], ago};
+  return {step.observed_eur_per_mwh - usual_eur_per_mwh_[step.row_quarter_hour()],
+          step.quarter_hours_ago()};
 }
 
 double RollingHorizonPolicy::deviation_now(const MarketStep& step) const {

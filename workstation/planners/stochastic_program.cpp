@@ -10,7 +10,6 @@
 namespace bess {
 namespace {
 
-constexpr int kStepsPerPhaseCycle = StochasticProgram::kPhases;
 constexpr int kSmoothedQuarterHours = 24;  ///< reach of the smoothing, on both sides
 constexpr int kSmoothedBins = 3;
 constexpr int kDays = 4;           ///< of backward induction: greedy actions change no more
@@ -21,10 +20,6 @@ using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajo
 double kernel(int distance, double sigma) {
   if (sigma <= 0) return distance == 0 ? 1.0 : 0.0;
   return std::exp(-0.5 * distance * distance / (sigma * sigma));
-}
-
-double level_of(const MarketStep& step) {
-  return static_cast<double>(step.level_centi_eur_per_mwh) / kCentiPerEur;
 }
 
 int step_of_day(const MarketStep& step) {
@@ -92,13 +87,10 @@ StochasticProgram::StochasticProgram(BinaryReader& in)
 }
 
 StochasticProgram::Situation StochasticProgram::situation_of(const MarketStep& step) {
-  const int before_this_min = std::max(0, step.observed_age_min - step.minute_of_quarter_hour);
-  const int ago = (before_this_min + kMinutesPerQuarterHour - 1) / kMinutesPerQuarterHour;
-  return {
-      .step_of_day = step_of_day(step),
-      .row_quarter_hour = (step.quarter_hour - ago % kQuarterHours + kQuarterHours) % kQuarterHours,
-      .price_eur_per_mwh = step.observed_eur_per_mwh,
-      .level_eur_per_mwh = level_of(step)};
+  return {.step_of_day = step_of_day(step),
+          .row_quarter_hour = step.row_quarter_hour(),
+          .price_eur_per_mwh = step.observed_eur_per_mwh,
+          .level_eur_per_mwh = step.level_eur_per_mwh()};
 }
 
 double StochasticProgram::usual(int quarter_hour, double level) const {
@@ -137,12 +129,11 @@ void StochasticProgram::fit_usual(const MarketSteps& market, const std::vector<M
   std::array<std::array<int, 2>, kMinutesPerQuarterHour> age_count{};
   double level_sum = 0, level_squares = 0, all = 0, paid_sum = 0;
   for_each_step(market, days, [&](const MarketStep& step) {
-    const bool is_older = situation_of(step).row_quarter_hour != step.quarter_hour;
-    ++age_count[step.minute_of_quarter_hour][is_older ? 1 : 0];
+    ++age_count[step.minute_of_quarter_hour][step.quarter_hours_ago() > 0 ? 1 : 0];
     sum[step.quarter_hour] += step.paid_eur_per_mwh;
     count[step.quarter_hour] += 1;
-    level_sum += level_of(step);
-    level_squares += level_of(step) * level_of(step);
+    level_sum += step.level_eur_per_mwh();
+    level_squares += step.level_eur_per_mwh() * step.level_eur_per_mwh();
     paid_sum += step.paid_eur_per_mwh;
     all += 1;
   });
@@ -234,9 +225,9 @@ void StochasticProgram::solve() {
     Rows value = Rows::Zero(kBins, kSocPoints);
     for (int step = kDays * kStepsPerDay - 1; step >= 0; --step) {
       const int of_day = step % kStepsPerDay;
-      const int phase = of_day % kStepsPerPhaseCycle;
-      Eigen::Map<Rows> ahead(const_cast<float*>(continuation(static_cast<int>(l), of_day, 0)),
-                             kBins, kSocPoints);
+      const int phase = of_day % kPhases;
+      Eigen::Map<Rows> ahead(&continuation_[continuation_at(static_cast<int>(l), of_day, 0)], kBins,
+                             kSocPoints);
       const Eigen::Map<const Rows> chain(&transition_[phase * kBins * kBins], kBins, kBins);
       ahead.noalias() = static_cast<float>(options_.gamma) * (chain * value);
       const double usual_price = usual_paid(of_day, levels_[l]);
@@ -279,8 +270,10 @@ std::array<double, kActionCount> StochasticProgram::action_values(const Situatio
       for (int b = 0; b < 2; ++b) {
         const double weight = level_weight * (b == 0 ? 1 - bins.weight : bins.weight);
         ahead +=
-            weight * double{interpolate(
-                         continuation(anchors.lower + l, at.step_of_day, bins.lower + b), soc)};
+            weight *
+            double{interpolate(
+                &continuation_[continuation_at(anchors.lower + l, at.step_of_day, bins.lower + b)],
+                soc)};
       }
     }
     worth[a] = ahead - exchange_cost_eur(battery_,

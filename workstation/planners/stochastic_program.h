@@ -82,10 +82,10 @@ class StochasticProgram {
   void fit_bins(const MarketSteps& market, const std::vector<MarketDay>& days);
   void count_chain(const MarketSteps& market, const std::vector<MarketDay>& days);
   void solve();
-  [[nodiscard]] const float* continuation(int level, int step_of_day, int bin) const {
-    return &continuation_[((static_cast<std::size_t>(level) * kStepsPerDay + step_of_day) * kBins +
-                           bin) *
-                          kSocPoints];
+  /// Where in `continuation_` the SoC points of a level, step and bin begin.
+  [[nodiscard]] static std::size_t continuation_at(int level, int step_of_day, int bin) {
+    return ((static_cast<std::size_t>(level) * kStepsPerDay + step_of_day) * kBins + bin) *
+           kSocPoints;
   }
 
   BatteryParameters battery_;

@@ -8,13 +8,13 @@
 
 #include "shared/host/csv.h"
 #include "shared/host/file.h"
+#include "workstation/report/comparison.h"
 #include "workstation/report/figure.h"
 #include "workstation/report/html.h"
 
 namespace bess {
 namespace {
 
-constexpr double kReferenceWearEurPerMwh = 10;
 constexpr const char* kAllMonths = "all";
 
 /// One policy in one month, or in all of them.
@@ -24,18 +24,17 @@ struct Row {
   double profit, profit_error;
   PairedDifference gain;  ///< to the first policy; both 0 for itself
   double turnover_per_day;
-  double after_wear;
+  double at_reference_wear;  ///< of the same decisions
 };
 
 Row make_row(const std::string& month, const Evaluation& e, const Evaluation& first) {
-  const double turnover = 2 * e.cycles_per_day();
   return {.month = month,
           .days = e.days.size(),
           .profit = e.profit_eur_per_day_per_mwh(),
           .profit_error = e.standard_error(),
           .gain = paired_difference(e, first),
-          .turnover_per_day = turnover,
-          .after_wear = e.profit_eur_per_day_per_mwh() - kReferenceWearEurPerMwh * turnover};
+          .turnover_per_day = 2 * e.cycles_per_day(),
+          .at_reference_wear = e.profit_at_wear_eur_per_day_per_mwh(kReferenceWearEurPerMwh)};
 }
 
 std::vector<Row> rows_of(const WalkForward& policy, const WalkForward& first) {
@@ -64,7 +63,7 @@ constexpr std::array kLineColours{&kMuted, &kSoft, &kDischarge, &kCharge, &kInk}
 Figure cumulative_figure(const BacktestResults& results) {
   std::vector<const WalkForward*> shown;
   for (const WalkForward& policy : results.policies) {
-    if (policy.name != "foresight") shown.push_back(&policy);
+    if (policy.name != kForesightName) shown.push_back(&policy);
   }
   std::vector<std::string> rows;
   std::vector<std::vector<double>> cumulative;
@@ -121,13 +120,14 @@ Figure cumulative_figure(const BacktestResults& results) {
 HtmlTable total_table(const BacktestResults& results) {
   HtmlTable table;
   table.caption = "EUR per day per MWh of capacity, all traded days";
-  table.header = {"policy", "profit", "s.e.", "gain", "s.e.", "after wear", "turnover", "drawdown"};
+  table.header = {"policy", "profit",      "s.e.",     "gain",
+                  "s.e.",   wear_column(), "turnover", "drawdown"};
   for (const WalkForward& policy : results.policies) {
     const Row row = rows_of(policy, results.policies.front()).back();
     table.rows.push_back(
         {policy.name, fmt::format("{:.1f}", row.profit), fmt::format("{:.1f}", row.profit_error),
          fmt::format("{:+.1f}", row.gain.mean), fmt::format("{:.1f}", row.gain.standard_error),
-         fmt::format("{:.1f}", row.after_wear), fmt::format("{:.2f}", row.turnover_per_day),
+         fmt::format("{:.1f}", row.at_reference_wear), fmt::format("{:.2f}", row.turnover_per_day),
          fmt::format("{:.0f}", policy.drawdown_eur_per_mwh())});
   }
   return table;
@@ -161,13 +161,13 @@ std::string format_backtest_table(const BacktestResults& results) {
       "over;\nEUR per day per MWh of capacity\n{:<{}}  {:>8} {:>6}  {:>8} {:>6}  {:>10}  {:>8}  "
       "{:>8}\n",
       first.months.size(), first.total.days.size(), results.window_days, "policy", width, "profit",
-      "s.e.", "gain", "s.e.", "after wear", "turnover", "drawdown");
+      "s.e.", "gain", "s.e.", wear_column(), "turnover", "drawdown");
   for (const WalkForward& policy : results.policies) {
     const Row row = rows_of(policy, first).back();
     text += fmt::format(
         "{:<{}}  {:>8.1f} {:>6.1f}  {:>+8.1f} {:>6.1f}  {:>10.1f}  {:>8.2f}  {:>8.0f}\n",
         policy.name, width, row.profit, row.profit_error, row.gain.mean, row.gain.standard_error,
-        row.after_wear, row.turnover_per_day, policy.drawdown_eur_per_mwh());
+        row.at_reference_wear, row.turnover_per_day, policy.drawdown_eur_per_mwh());
   }
   text += fmt::format("\nprofit by month\n{:<{}}", "policy", width);
   for (const std::string& month : first.months) text += fmt::format("  {:>8}", month);
@@ -180,12 +180,11 @@ std::string format_backtest_table(const BacktestResults& results) {
     text += "\n";
   }
   text += fmt::format(
-      "\ngain: day-by-day difference to {}; after wear: less {:g} EUR per MWh through the "
-      "battery;\n"
+      "\ngain: day-by-day difference to {}; {}: {}\n"
       "turnover: energy through it a day, in capacities; drawdown: deepest fall from a peak, EUR "
       "per "
       "MWh\n",
-      first.name, kReferenceWearEurPerMwh);
+      first.name, wear_column(), reference_wear_meaning(first.total.wear_eur_per_mwh));
   for (const SkippedMonth& month : results.skipped) {
     text += fmt::format("{} is not traded: {}\n", month.month, month.reason);
   }
@@ -195,13 +194,14 @@ std::string format_backtest_table(const BacktestResults& results) {
 std::string backtest_csv(const BacktestResults& results) {
   std::string text =
       "month,policy,days,profit_eur_per_day_per_mwh,standard_error,gain_eur_per_day_per_mwh,"
-      "gain_standard_error,turnover_per_day,profit_after_10_eur_per_mwh_wear\n";
+      "gain_standard_error,turnover_per_day," +
+      std::string(kReferenceWearKey) + "\n";
   for (const WalkForward& policy : results.policies) {
     for (const Row& row : rows_of(policy, results.policies.front())) {
       text += fmt::format(
           "{},{},{},{:.4f},{},{:.4f},{},{:.4f},{:.4f}\n", row.month, csv_field(policy.name),
           row.days, row.profit, csv_figure(row.profit_error, 4), row.gain.mean,
-          csv_figure(row.gain.standard_error, 4), row.turnover_per_day, row.after_wear);
+          csv_figure(row.gain.standard_error, 4), row.turnover_per_day, row.at_reference_wear);
     }
   }
   return text;
@@ -231,7 +231,7 @@ Json backtest_json(const BacktestResults& results) {
                       {"gain_to_first", Decimals{row.gain.mean, 4}},
                       {"gain_standard_error", Decimals{row.gain.standard_error, 4}},
                       {"turnover_per_day", Decimals{row.turnover_per_day, 4}},
-                      {"profit_after_10_eur_per_mwh_wear", Decimals{row.after_wear, 4}},
+                      {kReferenceWearKey, Decimals{row.at_reference_wear, 4}},
                       {"drawdown_eur_per_mwh", Decimals{policy.drawdown_eur_per_mwh(), 2}}}));
   }
   Json json = Json::object({{"window_days", results.window_days}, {"soc", "carried"}});

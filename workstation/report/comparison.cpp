@@ -60,9 +60,6 @@ std::string table_line(const ComparisonRow& row, std::size_t name_width) {
       row.profit_at_reference_wear);
 }
 
-/// "at wear 10"
-std::string wear_column() { return fmt::format("at wear {:g}", kReferenceWearEurPerMwh); }
-
 std::string table_block(const std::string& title, const std::vector<ComparisonRow>& rows) {
   std::size_t name_width = std::string("policy").size();
   for (const ComparisonRow& row : rows) name_width = std::max(name_width, row.name.size());
@@ -124,6 +121,8 @@ std::string format_comparison_table(const std::vector<NamedEvaluation>& evaluati
   }
   return text;
 }
+
+std::string wear_column() { return fmt::format("at wear {:g}", kReferenceWearEurPerMwh); }
 
 std::string reference_wear_meaning(double wear_eur_per_mwh) {
   return fmt::format(

@@ -53,6 +53,8 @@ std::vector<ComparisonRow> comparison_rows(const std::vector<NamedEvaluation>& e
 std::string format_comparison_table(const std::vector<NamedEvaluation>& evaluations,
                                     const NamedEvaluation* foresight = nullptr);
 
+/// "at wear 10", the head of its column.
+std::string wear_column();
 /// What the profit at the reference wear is, for people, where `wear_eur_per_mwh` is configured.
 std::string reference_wear_meaning(double wear_eur_per_mwh);
 /// The wear that the profits of these are net of.

@@ -1,5 +1,7 @@
 #include "workstation/rl/potential.h"
 
+#include <algorithm>
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -9,7 +11,7 @@
 namespace bess {
 namespace {
 
-constexpr int kPlanStride = 2;  // every other point of the plan's grid is enough
+constexpr int kPlanStride = 2;
 
 Potential price_potential(const MarketSteps& market, const BatteryParameters& battery) {
   double sum_eur_per_mwh = 0;
@@ -31,28 +33,33 @@ Potential price_potential(const MarketSteps& market, const BatteryParameters& ba
           }};
 }
 
+/// Of a plan whose `values` writes `points` of them: every other point is enough.
+template <int points, typename Values>
+Potential potential_of_plan(Values values) {
+  return {.soc_points = (points - 1) / kPlanStride + 1,
+          .fill = [values](const MarketStep& step, float* phi) {
+            std::array<float, points> all;
+            values(step, all.data());
+            for (int i = 0; i < points; i += kPlanStride) *phi++ = all[static_cast<std::size_t>(i)];
+          }};
+}
+
 Potential plan_potential(const MarketSteps& market, const BatteryParameters& battery) {
   const auto plan =
       std::make_shared<RollingHorizonPolicy>(market, market.days_of(Split::kTrain), battery);
-  return {.soc_points = (RollingHorizonPolicy::kSocPoints - 1) / kPlanStride + 1,
-          .fill = [plan](const MarketStep& step, float* phi) {
-            const RollingHorizonPolicy::Values values = plan->values(step);
-            for (int i = 0; i < RollingHorizonPolicy::kSocPoints; i += kPlanStride) {
-              *phi++ = values[static_cast<std::size_t>(i)];
-            }
-          }};
+  return potential_of_plan<RollingHorizonPolicy::kSocPoints>(
+      [plan](const MarketStep& step, float* values) {
+        std::ranges::copy(plan->values(step), values);
+      });
 }
 
 Potential program_potential(const MarketSteps& market, const BatteryParameters& battery) {
   const auto program =
       std::make_shared<StochasticProgram>(market, market.days_of(Split::kTrain), battery);
-  constexpr int kPoints = StochasticProgram::kSocPoints;
-  return {.soc_points = (kPoints - 1) / kPlanStride + 1,
-          .fill = [program](const MarketStep& step, float* phi) {
-            std::array<float, kPoints> values;
-            program->values(StochasticProgram::situation_of(step), values.data());
-            for (int i = 0; i < kPoints; i += kPlanStride) *phi++ = values[i];
-          }};
+  return potential_of_plan<StochasticProgram::kSocPoints>(
+      [program](const MarketStep& step, float* values) {
+        program->values(StochasticProgram::situation_of(step), values);
+      });
 }
 
 }  // namespace

@@ -44,28 +44,6 @@ ContextClasses take_context(BinaryReader& in) {
   return context;
 }
 
-}  // namespace
-
-Method parse_method(std::string_view name) {
-  if (name == "c51") return Method::kC51;
-  if (name == "dqn") return Method::kDqn;
-  if (name == "sdp") return Method::kSdp;
-  fail("unknown method \"{}\": use sdp, c51 or dqn", name);
-}
-
-std::string_view method_name(Method method) {
-  constexpr std::string_view kNames[] = {"c51", "dqn", "sdp"};
-  return kNames[static_cast<int>(method)];
-}
-
-MlpShape teacher_shape(Method method, const Support& support) {
-  if (method == Method::kSdp) return {};
-  const int outputs = method == Method::kC51 ? kActionCount * support.count : kActionCount;
-  return {kNetworkInputs, kTeacherHidden1, kTeacherHidden2, outputs};
-}
-
-namespace {
-
 /// Whole number that an input was scaled from.
 int unscaled(float input, int scale) {
   return static_cast<int>(
@@ -99,6 +77,24 @@ Matrix program_values(const Teacher& teacher, const MatrixRef& x) {
 }
 
 }  // namespace
+
+Method parse_method(std::string_view name) {
+  if (name == "c51") return Method::kC51;
+  if (name == "dqn") return Method::kDqn;
+  if (name == "sdp") return Method::kSdp;
+  fail("unknown method \"{}\": use sdp, c51 or dqn", name);
+}
+
+std::string_view method_name(Method method) {
+  constexpr std::string_view kNames[] = {"c51", "dqn", "sdp"};
+  return kNames[static_cast<int>(method)];
+}
+
+MlpShape teacher_shape(Method method, const Support& support) {
+  if (method == Method::kSdp) return {};
+  const int outputs = method == Method::kC51 ? kActionCount * support.count : kActionCount;
+  return {kNetworkInputs, kTeacherHidden1, kTeacherHidden2, outputs};
+}
 
 Matrix Teacher::action_values(const MatrixRef& x, MlpTile& tile) const {
   if (program) return program_values(*this, x);

@@ -65,18 +65,18 @@ CorrectionResult construct_and_prove(const Teacher& teacher, const Matrix& visit
   CorrectionResult result{.verdict = student, .curve = {}, .violations_by_round = {}};
   std::vector<LatticeState> counterexamples;
   const int rounds = options.correct ? 1 + options.repair_rounds : 1;
+  const bool chooses = score && options.correct;
   for (int round = 0; round < rounds && !interrupted; ++round) {
     std::vector<Candidate> candidates;
     double next_look = kFirstLook;
     distiller.run(round == 0 ? options.epochs : options.repair_epochs, counterexamples, interrupted,
                   [&](double done) {
-                    const bool is_last = done >= 1;
-                    if (!is_last && (!score || !options.correct || done < next_look)) return;
+                    if (done < 1 && (!chooses || done < next_look)) return;
                     next_look = done + (1 - kFirstLook) / kLooks;
                     StudentNet net =
                         quantise_student(distiller.parameters(), teacher.price_map, kSaturation);
                     net.context = teacher.context;
-                    candidates.push_back({net, score && options.correct ? score(net) : 0.0});
+                    candidates.push_back({net, chooses ? score(net) : 0.0});
                   });
     std::ranges::stable_sort(candidates, std::ranges::greater{}, &Candidate::score);
     if (candidates.empty()) break;  // interrupted

@@ -19,13 +19,15 @@ struct CorrectionResult {
   std::vector<std::int64_t> violations_by_round;  ///< empty when interrupted before the first proof
 };
 
-/// Never throws for a failed proof: the verdict says it. With options.correct false there is one
-/// round and no repair.
 /// What to change when violations are left, for a message.
 std::string_view mend_of_failed_proof(CorrectionMethod method);
 
-/// `score` tells what a student earns on validation days; without it the last one is taken.
+/// What a student earns on validation days.
 using StudentScore = std::function<double(const StudentNet&)>;
+
+/// Never throws for a failed proof: the verdict says it. With options.correct false there is one
+/// round and no repair. By construction the best by `score` is taken of the students on the way that
+/// are proved; without it, and through the layer, the last one.
 CorrectionResult correct_and_prove(const Teacher& teacher, const Matrix& visited,
                                    const DistilOptions& options,
                                    const std::atomic<bool>& interrupted,

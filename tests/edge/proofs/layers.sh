@@ -49,7 +49,7 @@ layer $w/market/statistics          $w/market/statistics $w/market/series $w/bas
 layer $w/env                        $w/env $w/market/series $w/base shared
 layer $w/planners                   $w/planners $w/env $w/base shared
 layer $w/nn                         $w/nn $w/base shared
-layer $w/backtest                   $w/backtest $w/env $w/base shared
+layer $w/backtest                   $w/backtest $w/env $w/market/series $w/base shared
 layer $w/rl                         $w/rl $w/nn $w/planners $w/env $w/base shared
 layer $w/correction                 $w/correction $w/rl $w/nn $w/env $w/base shared
 layer $w/student                    $w/student $w/correction $w/rl $w/nn $w/env $w/base shared student_weights.h

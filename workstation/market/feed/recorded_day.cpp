@@ -83,9 +83,7 @@ void for_first_prices(const std::vector<RecordedLine>& lines, Take take) {
 }  // namespace
 
 std::string recorded_head(std::string_view provenance) {
-  std::string text;
-  while (!provenance.empty()) text.append("# ").append(take_line(provenance)).append("\n");
-  return text.append(kHeader).append("\n");
+  return comment_lines(provenance).append(kHeader).append("\n");
 }
 
 std::string format_recorded_line(const RecordedLine& line) {
