@@ -5,6 +5,7 @@
 
 #include "shared/host/file.h"
 #include "shared/host/json_reader.h"
+#include "shared/host/user_error.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
 #include "workstation/cli/run_report.h"
@@ -21,6 +22,10 @@ std::string prices_of_run(const RunFolder& folder) {
 
 void run(const std::string& path, const std::string& prices) {
   const RunFolder folder{path};
+  if (!std::filesystem::exists(folder.config())) {
+    fail("{}: holds no run, there is no config.toml in it; make one with 'bess-train run --out {}'",
+         path, path);
+  }
   CommonOptions common;
   common.config_path = folder.config().string();
   const RunConfig config = common.resolve();

@@ -86,6 +86,31 @@ std::string loss_panel(const std::vector<CurvePoint>& curve) {
 /// Logarithmic axes have no zero: a loss of nothing is left out.
 std::string logarithmic(double loss) { return loss > 0 ? fmt::format("{:.6g}", loss) : "NaN"; }
 
+/// Inside sign bounds there is one loss, and nothing left to correct.
+Figure regret_figure(const std::vector<DistilPoint>& curve) {
+  std::vector<std::string> rows;
+  for (const DistilPoint& p : curve) {
+    rows.push_back(fmt::format("{} {}", p.epoch, logarithmic(p.visited_loss)));
+  }
+  Figure figure;
+  figure.name = "distillation_curve";
+  figure.title = "How the student learned";
+  figure.height_px = 360;
+  figure.alt = "Line chart with a logarithmic axis: the student's regret over epochs.";
+  figure.caption = fmt::format(
+      "What the student's choices lose against the teacher's best, over the temperature of its "
+      "softmax: {:.3g} at the end. The signs of its weights keep its order, so nothing was left to "
+      "correct.",
+      curve.back().visited_loss);
+  figure.commands = data_block("curve", rows) +
+                    fmt::format(
+                        "set lmargin at screen 0.115\nset rmargin at screen 0.96\nset logscale y\n"
+                        "set xlabel 'epochs'\nset ylabel 'regret / temperature'\n"
+                        "plot $curve using 1:2 with lines lw 2.5 lc {}\n",
+                        rgb(kCharge));
+  return figure;
+}
+
 }  // namespace
 
 Figure learning_figure(const std::vector<CurvePoint>& curve, double rule) {
@@ -120,6 +145,7 @@ Figure learning_figure(const std::vector<CurvePoint>& curve, double rule) {
 }
 
 Figure distillation_figure(const std::vector<DistilPoint>& curve) {
+  if (curve.back().is_by_construction()) return regret_figure(curve);
   std::vector<std::string> rows;
   for (const DistilPoint& p : curve) {
     rows.push_back(fmt::format("{} {} {} {}", p.epoch, logarithmic(p.teacher_loss),

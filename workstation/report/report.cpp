@@ -119,7 +119,7 @@ std::vector<Figure> figures_of(const ReportInputs& in) {
     figures.push_back(widest_day_figure(in, *day));
   }
   add_policy_maps(in, figures);
-  if (!in.training_curve.empty()) {
+  if (in.training_curve.size() > 1) {  // a program is fitted, not trained
     figures.push_back(learning_figure(in.training_curve, rule_validation_profit(in)));
   }
   if (!in.distil_curve.empty()) figures.push_back(distillation_figure(in.distil_curve));
