@@ -13,6 +13,7 @@
 #include "edge/control/policy.h"
 #include "edge/log/journal.h"
 #include "edge/memory/heap_seal.h"
+#include "edge/program/clear_command.h"
 #include "edge/program/command_line.h"
 #include "edge/program/commission_command.h"
 #include "edge/program/commission_file.h"
@@ -76,10 +77,11 @@ int run_controller(const CommandLine& command_line, const EdgeConfig& config) {
   notify.extend_start(config.start_timeout_s + 60);
   static EventLog log;
   if (!lock_state(config, locks, error)) return fail(error.c_str());
-  if (!log.open(config.log, identity_of_run(config), error)) return fail(error.c_str());
+  // A run that is refused leaves the status of the run before as it is.
   if (!reach_battery(config, battery, clock)) return 1;
   std::string refusal;
   if (config.control.control && !is_commissioned(config, refusal)) return fail(refusal.c_str());
+  if (!log.open(config.log, identity_of_run(config), error)) return fail(error.c_str());
   const Status greeting = greet_price_server(config, prices);
   write_journal_line(JournalLevel::kNotice,
                      config.control.control ? "started: in control" : "started: read-only");
@@ -93,11 +95,14 @@ int run_controller(const CommandLine& command_line, const EdgeConfig& config) {
   if (log.newest(before)) {
     battery.restore_flash_writes(before.counters.flash_day, before.counters.flash_writes_today);
   }
+  static const auto clearance = trip_clearance_path(config);
+  const bool is_cleared = is_trip_cleared(clearance.c_str(), before.trip.utc_s);
   loop.take_over(
       {.throughput = before.throughput,
-       .price_level = level_at_start(config, before.price_level, greeting, prices, clock)});
+       .price_level = level_at_start(config, before.price_level, greeting, prices, clock),
+       .trip = before.is_tripped && !is_cleared ? before.trip : Trip{}});
   notify.ready();
-  return run_supervised(loop, command_line.cycles, clock, log, notify) ? 0 : 1;
+  return run_supervised(loop, command_line.cycles, clock, log, notify, clearance.c_str()) ? 0 : 1;
 }
 
 }  // namespace
@@ -113,6 +118,7 @@ int main(int argc, char** argv) {
   std::string error;
   if (!load_edge_config(command_line.config_path, config, error)) return fail(error.c_str());
   if (command_line.command == SubCommand::kStatus) return run_status_command(command_line, config);
+  if (command_line.command == SubCommand::kClear) return run_clear_command(command_line, config);
   if (command_line.command == SubCommand::kLog) return run_log_command(command_line, config);
   if (command_line.dry_run) config.control.control = false;
   return run_controller(command_line, config);

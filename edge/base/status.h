@@ -27,9 +27,10 @@ enum class [[nodiscard]] Status : std::uint8_t{
     kNoRow,           ///< a good answer without any usable price
     kTooLarge,        ///< more bytes than the fixed buffer holds
     kNoMemory,        ///< the static arena is exhausted
+    kTooLate,         ///< an order was not written, because its time was over
 };
 
-inline constexpr int kStatusCount = static_cast<int>(Status::kNoMemory) + 1;
+inline constexpr int kStatusCount = static_cast<int>(Status::kTooLate) + 1;
 
 constexpr std::string_view status_name(Status status) {
   constexpr std::string_view kNames[] = {
@@ -37,7 +38,7 @@ constexpr std::string_view status_name(Status status) {
       "bus_busy",    "not_permitted",   "bad_reply",    "implausible",
       "not_applied", "not_expressible", "write_budget", "name_unresolved",
       "tls_refused", "http_error",      "malformed",    "no_row",
-      "too_large",   "no_memory"};
+      "too_large",   "no_memory",       "too_late"};
   static_assert(std::size(kNames) == kStatusCount);
   return kNames[static_cast<int>(status)];
 }
@@ -62,7 +63,8 @@ constexpr std::string_view status_text(Status status) {
       "the price server's answer is not the JSON that [price] describes (is rows_field right?)",
       "the price server's answer holds no usable price (are time_field and price_field right?)",
       "the answer is larger than the buffer",
-      "the static arena is exhausted"};
+      "the static arena is exhausted",
+      "an order was not written, because its time was over (was this process stopped?)"};
   static_assert(std::size(kTexts) == kStatusCount);
   return kTexts[static_cast<int>(status)];
 }

@@ -3,7 +3,7 @@
 // link and time, so that the same code drives Modbus, and registers in memory in the tests.
 //
 //   Link   Status read(const RegisterSpan&, uint16_t*); Status write(unit, function, address,
-//          const uint16_t*, count); void close(); int last_exception() const
+//          const uint16_t*, count, send_until_ns); void close(); int last_exception() const
 //   Time   int64 now_ns(); void sleep_ms(int); int64 utc_day()
 #pragma once
 
@@ -110,10 +110,11 @@ class BatteryBus {
     return read_span(placed(point, map_.points[point].read_function).place, registers);
   }
 
-  Status write(const BlockWrite& write, const RegisterBlock& block) {
+  /// Not after `send_until_ns`, CLOCK_MONOTONIC.
+  Status write(const BlockWrite& write, const RegisterBlock& block, std::int64_t send_until_ns) {
     const PlacedPoint first = placed(write.values[0].point, 3);
     return judged(link_.write(first.place.unit, write.function, first.place.address, block.data(),
-                              block.size()));
+                              block.size(), send_until_ns));
   }
 
  private:

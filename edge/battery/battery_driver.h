@@ -43,6 +43,7 @@ class BatteryDriver {
     const Status status = reader_.translate(bus_.live(), bus_.time().now_ns(), measurement);
     if (status != Status::kOk) return status;
     note_order_in_force(measurement);
+    if (in_force_) find_replaced_order(measurement);
     return Status::kOk;
   }
 
@@ -51,6 +52,7 @@ class BatteryDriver {
     if (const Status status = prepare(); status != Status::kOk) return refuse(status);
     const Command command = command_of(order.power_w);
     if (in_force_ && command == command_ && runner_.is_written(map_.sequence(command), order)) {
+      order_ = order;
       if (is_due()) return feed();
       ++unchanged_orders_;
       return Status::kOk;
@@ -86,8 +88,10 @@ class BatteryDriver {
 
   /// Gives the battery back to its own mode and reads that back. Has a reserve of the budget to
   /// itself, and is not refused because measurements fail: scale factors that were read once will do.
+  /// Nor because the device has changed since it was known, which an order would be.
   Status release() {
-    if (const Status status = identify(); status != Status::kOk) return status;
+    const Status known = identify();
+    if (known != Status::kOk && !(known == Status::kImplausible && may_be_released_)) return known;
     static_cast<void>(prepare());
     const Status status = runner_.run(map_.sequence(Command::kRelease), PowerOrder{});
     lose_order();
@@ -100,9 +104,15 @@ class BatteryDriver {
   /// Nothing is read or ordered before this has succeeded once: an unknown device stays untouched.
   Status check_identity(IdentityFailure& failure) {
     const Status status = check_identity_of(map_, bus_, failure);
-    identified_ = identified_ || status == Status::kOk;
+    identified_ = status == Status::kOk;
+    identified_ns_ = bus_.time().now_ns();
+    identified_connections_ = bus_.link().counters().reconnects;
+    may_be_released_ = may_be_released_ || identified_;
     return status;
   }
+
+  /// A person insists: this device is to be given back whatever its identity checks say.
+  void permit_release() { may_be_released_ = true; }
 
   [[nodiscard]] BatteryCounters counters() const {
     const LinkCounters link = bus_.link().counters();
@@ -141,9 +151,13 @@ class BatteryDriver {
 
  private:
   static constexpr std::int64_t kLiveAgeNs = 180 * kNanosecondsPerSecond;
+  static constexpr std::int64_t kIdentityAgeNs = 600 * kNanosecondsPerSecond;
 
+  /// Behind a new connection there may be another device, and one that stays may be changed.
   Status identify() {
-    if (identified_) return Status::kOk;
+    const bool same_connection = bus_.link().counters().reconnects == identified_connections_;
+    const bool is_recent = bus_.time().now_ns() - identified_ns_ < kIdentityAgeNs;
+    if (identified_ && same_connection && is_recent) return Status::kOk;
     IdentityFailure failure;
     return check_identity(failure);
   }
@@ -177,32 +191,18 @@ class BatteryDriver {
     m.has_order_power = m.dispatch_active && !left_behind &&
                         live_power(map_, map_.order_power, bus_.live(), power_w);
     if (m.has_order_power) m.order_power_w = clamp_to_int32(power_w);
-    if (in_force_ && (!m.dispatch_active || is_overwritten())) lose_order();
+    if (in_force_ && !m.dispatch_active) lose_order();
     std::int64_t left_s = 0;
     const int remaining = map_.watchdog.remaining;
     runs_out_ = in_force_ && remaining >= 0 && live_value(map_, bus_.live(), remaining, left_s) &&
                 left_s < map_.watchdog.refresh_s;
   }
 
-  /// Somebody else wrote: a register of the order that must keep its value has another one.
-  [[nodiscard]] bool is_overwritten() const {
-    for (const BlockWrite& write : map_.sequence(command_).writes) {
-      if (write.read_back != ReadBack::kExact) continue;
-      for (const WriteValue& value : write.values) {
-        if (differs(value.point)) return true;
-      }
-    }
-    return false;
-  }
-
-  [[nodiscard]] bool differs(std::int8_t point) const {
-    const bool measured =
-        std::find(map_.measure.begin(), map_.measure.end(), point) != map_.measure.end();
-    const LivePoints& written = runner_.written();
-    return measured && point != map_.watchdog.remaining && written.known[point] &&
-           map_.points[point].read_function == 3 &&
-           !std::equal(written.raw[point], written.raw[point] + kPointRegistersMax,
-                       bus_.live().raw[point]);
+  /// Somebody else wrote: a register of the order has another value than the one read back after it.
+  void find_replaced_order(BatteryMeasurement& m) {
+    if (runner_.confirm(map_.sequence(command_)) != Status::kNotApplied) return;
+    m.order_replaced = true;
+    lose_order();  // all of it is written again, unless control yields
   }
 
   /// Feeding at half the interval: nothing is lost when one feeding comes late.
@@ -214,11 +214,11 @@ class BatteryDriver {
 
   Status feed() {
     const CommandSequence& refresh = map_.sequence(Command::kRefresh);
-    const bool own = !refresh.writes.empty();
-    Status status = runner_.check(own ? refresh : map_.sequence(command_), order_);
-    if (status == Status::kOk) {
-      status = runner_.run(own ? refresh : map_.sequence(command_), order_);
-    }
+    const CommandSequence& sequence = refresh.writes.empty() ? map_.sequence(command_) : refresh;
+    PowerOrder order = order_;
+    order.write_until_ns = order_.feed_until_ns;
+    Status status = runner_.check(sequence, order);
+    if (status == Status::kOk) status = runner_.run(sequence, order);
     if (status == Status::kOk) {
       fed_ns_ = bus_.time().now_ns();
       runs_out_ = false;
@@ -282,7 +282,9 @@ class BatteryDriver {
     if (!sent || !(several || reason == Status::kNotApplied)) return;
     const CommandSequence& own = map_.sequence(Command::kRollback);
     const CommandSequence& undo = own.writes.empty() ? map_.sequence(Command::kRelease) : own;
-    static_cast<void>(runner_.run(undo, order));  // the link may be gone: the watchdog ends it
+    PowerOrder unbound = order;  // taking back is never too late
+    unbound.write_until_ns = INT64_MAX;
+    static_cast<void>(runner_.run(undo, unbound));  // the link may be gone: the watchdog ends it
   }
 
   void take_into_force(Command command, const PowerOrder& order) {
@@ -305,6 +307,9 @@ class BatteryDriver {
   MeasurementReader reader_;
   bool scales_elsewhere_;  ///< what is written depends on what is read
   bool identified_ = false;
+  bool may_be_released_ = false;  ///< it was known once, or a person insists
+  std::int64_t identified_ns_ = 0;
+  std::int64_t identified_connections_ = 0;
   bool was_ordered_ = false;  ///< what the device holds is ours, or was given back by us
   bool enabled_ = false;
   bool in_force_ = false;  ///< the order below was read back and nothing has ended it since

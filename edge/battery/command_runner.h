@@ -3,6 +3,7 @@
 // only written when something changes, and counts what it costs.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 
@@ -50,11 +51,30 @@ class CommandRunner {
       for (const WriteValue& value : sequence.writes[i].values) {
         const bool counts =
             value.argument != Argument::kHeartbeat && !is_written_later(sequence, i, value.point);
-        if (counts && !holds(written_, value.point, block, offset)) return false;
+        if (counts && !holds(written_, value.point, block.data(), offset)) return false;
         offset += map_.points[value.point].register_count();
       }
     }
     return true;
+  }
+
+  /// kNotApplied when a register of the command no longer holds what was read back after it. What the
+  /// device counts itself, and what was not read back, proves nothing.
+  Status confirm(const CommandSequence& sequence) {
+    const StaticVector<std::int8_t, kPointsMax> points = kept_points(sequence);
+    if (points.empty()) return Status::kOk;
+    LivePoints now;
+    const Status status = read_written(points, now);
+    if (status != Status::kOk) return status;
+    for (const BlockWrite& write : sequence.writes) {
+      for (const WriteValue& value : write.values) {
+        const bool counts = std::find(points.begin(), points.end(), value.point) != points.end();
+        if (counts && !is_close(write, value.point, written_.raw[value.point], 0, now)) {
+          return Status::kNotApplied;
+        }
+      }
+    }
+    return Status::kOk;
   }
 
   Status run(const CommandSequence& sequence, const PowerOrder& order) {
@@ -101,16 +121,16 @@ class CommandRunner {
         withheld = Status::kWriteBudget;
         continue;
       }
-      if (!same) status = send(write, block);
+      if (!same) status = send(write, block, order.write_until_ns);
       if (status == Status::kOk) status = pause_after(write);
       if (status != Status::kOk) return status;
     }
     return withheld == Status::kOk ? read_back(sequence, order) : withheld;
   }
 
-  Status send(const BlockWrite& write, const RegisterBlock& block) {
+  Status send(const BlockWrite& write, const RegisterBlock& block, std::int64_t send_until_ns) {
     if (write.eeprom) budget_.count(bus_.time().utc_day());
-    const Status status = bus_.write(write, block);
+    const Status status = bus_.write(write, block, send_until_ns);
     int offset = 0;
     for (const WriteValue& value : write.values) {
       // Not known before it is read back, unless the map says that it cannot be.
@@ -152,7 +172,7 @@ class CommandRunner {
     same = true;
     int offset = 0;
     for (const WriteValue& value : write.values) {
-      same = same && holds(written_, value.point, block, offset);
+      same = same && holds(written_, value.point, block.data(), offset);
       offset += map_.points[value.point].register_count();
     }
     return Status::kOk;
@@ -170,10 +190,10 @@ class CommandRunner {
     return false;
   }
 
-  bool holds(const LivePoints& registers, int point, const RegisterBlock& block, int offset) const {
+  bool holds(const LivePoints& registers, int point, const std::uint16_t* block, int offset) const {
     if (!registers.known[point]) return false;
     const int count = map_.points[point].register_count();
-    return std::equal(registers.raw[point], registers.raw[point] + count, block.data() + offset);
+    return std::equal(registers.raw[point], registers.raw[point] + count, block + offset);
   }
 
   static bool is_written_later(const CommandSequence& sequence, int write, int point) {
@@ -183,6 +203,20 @@ class CommandRunner {
       }
     }
     return false;
+  }
+
+  StaticVector<std::int8_t, kPointsMax> kept_points(const CommandSequence& sequence) const {
+    StaticVector<std::int8_t, kPointsMax> points;
+    for (int i = 0; i < sequence.writes.size(); ++i) {
+      if (sequence.writes[i].read_back == ReadBack::kNone) continue;
+      for (const WriteValue& value : sequence.writes[i].values) {
+        const bool counts = value.argument != Argument::kHeartbeat &&
+                            value.point != map_.watchdog.remaining && written_.known[value.point] &&
+                            !is_written_later(sequence, i, value.point);
+        if (counts) points.push_back(value.point);
+      }
+    }
+    return points;
   }
 
   /// Everything that the sequence left in the registers, compared in as few reads as possible.
@@ -213,16 +247,18 @@ class CommandRunner {
     int offset = 0;
     for (const WriteValue& value : write.values) {
       const bool last = !is_written_later(sequence, index, value.point);
-      if (last && !is_close(write, value.point, block, offset, now)) return Status::kNotApplied;
+      if (last && !is_close(write, value.point, block.data(), offset, now)) {
+        return Status::kNotApplied;
+      }
       if (last) written_.keep(map_, value.point, block.data() + offset);
       offset += map_.points[value.point].register_count();
     }
     return Status::kOk;
   }
 
-  bool is_close(const BlockWrite& write, int point, const RegisterBlock& block, int offset,
+  bool is_close(const BlockWrite& write, int point, const std::uint16_t* wanted_raw, int offset,
                 const LivePoints& now) const {
-    if (holds(now, point, block, offset)) return true;
+    if (holds(now, point, wanted_raw, offset)) return true;
     Scaling scaling;
     std::int64_t wanted = 0;
     std::int64_t got = 0;
@@ -230,7 +266,7 @@ class CommandRunner {
         !live_scaling(map_, bus_.live(), point, scaling)) {
       return false;
     }
-    return decode(map_.points[point], block.data() + offset, wanted, scaling) &&
+    return decode(map_.points[point], wanted_raw + offset, wanted, scaling) &&
            decode(map_.points[point], now.raw[point], got, scaling) &&
            std::abs(wanted - got) <= write.tolerance;
   }

@@ -50,17 +50,17 @@ ModbusLink::ModbusLink(const BatteryLinkSettings& settings, const LinkTiming& ti
 Status ModbusLink::read(const RegisterSpan& span, std::uint16_t* registers) {
   return request(
       {.unit = span.unit, .function = span.function, .address = span.address, .count = span.count},
-      registers);
+      registers, INT64_MAX);
 }
 
 Status ModbusLink::write(std::int32_t unit, std::uint8_t function, std::uint16_t address,
-                         const std::uint16_t* registers, int count) {
+                         const std::uint16_t* registers, int count, std::int64_t send_until_ns) {
   return request({.unit = unit,
                   .function = function,
                   .address = address,
                   .count = function == 6 ? 1 : count,
                   .values = registers},
-                 nullptr);
+                 nullptr, send_until_ns);
 }
 
 void ModbusLink::close() {
@@ -68,15 +68,16 @@ void ModbusLink::close() {
   state_.on_lost(now());
 }
 
-Status ModbusLink::request(ModbusRequest request, std::uint16_t* registers) {
+Status ModbusLink::request(ModbusRequest request, std::uint16_t* registers,
+                           std::int64_t send_until_ns) {
   last_exception_ = 0;
   if (!request.is_valid()) return Status::kNotExpressible;
   ++counters_.requests;
   Status status = make_ready(request);
   if (status == Status::kOk) {
     request.transaction = ++transaction_;
-    status = ask(request, registers);
-    finish(request, status);
+    status = ask(request, registers, send_until_ns);
+    if (status != Status::kTooLate) finish(request, status);
   }
   if (status != Status::kOk) ++counters_.failed_requests;
   return status;
@@ -118,10 +119,12 @@ Status ModbusLink::connect() {
   return Status::kOk;
 }
 
-Status ModbusLink::ask(const ModbusRequest& request, std::uint16_t* registers) {
+Status ModbusLink::ask(const ModbusRequest& request, std::uint16_t* registers,
+                       std::int64_t send_until_ns) {
   ModbusFrame frame;
   build_request(framing_, request, frame);
   sent_ns_ = now();
+  if (sent_ns_ > send_until_ns) return Status::kTooLate;
   if (const Status status = wire_.send(frame); status != Status::kOk) return status;
   if (request.is_write()) ++counters_.register_writes;
   const std::int64_t deadline_ns = sent_ns_ + milliseconds(timing_.response_timeout_ms) +

@@ -57,8 +57,10 @@ class ModbusLink {
   /// Connects if needed. `registers` holds at least `span.count` and is filled only on kOk.
   Status read(const RegisterSpan& span, std::uint16_t* registers);
   /// `function` 6 writes the first register alone, 16 writes `count` of them at once.
+  /// Nothing leaves after `send_until_ns` (CLOCK_MONOTONIC), which connecting and the device's gap may
+  /// take it past: kTooLate.
   Status write(std::int32_t unit, std::uint8_t function, std::uint16_t address,
-               const std::uint16_t* registers, int count);
+               const std::uint16_t* registers, int count, std::int64_t send_until_ns = INT64_MAX);
   void close();
 
   /// The exception code of the last request, 0 when the device answered none: for register maps
@@ -67,10 +69,10 @@ class ModbusLink {
   [[nodiscard]] const LinkCounters& counters() const { return counters_; }
 
  private:
-  Status request(ModbusRequest request, std::uint16_t* registers);
+  Status request(ModbusRequest request, std::uint16_t* registers, std::int64_t send_until_ns);
   Status make_ready(const ModbusRequest& request);
   Status connect();
-  Status ask(const ModbusRequest& request, std::uint16_t* registers);
+  Status ask(const ModbusRequest& request, std::uint16_t* registers, std::int64_t send_until_ns);
   Status receive_reply(const ModbusRequest& request, std::int64_t deadline_ns, ModbusFrame& reply);
   void finish(const ModbusRequest& request, Status status);
   void recover(Status status);

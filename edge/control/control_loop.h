@@ -21,10 +21,10 @@
 #include "edge/control/control_settings.h"
 #include "edge/control/control_types.h"
 #include "edge/control/cycle_budget.h"
-#include "edge/control/follow_monitor.h"
 #include "edge/control/policy.h"
 #include "edge/control/power_order.h"
 #include "edge/control/safety_guard.h"
+#include "edge/control/supervision.h"
 #include "shared/local_time.h"
 #include "shared/scaled_clock.h"
 #include "shared/units_and_limits.h"
@@ -35,6 +35,7 @@ namespace bess {
 struct TakeOver {
   DayThroughput throughput{};
   PriceLevel price_level{};
+  Trip trip{};
 };
 
 constexpr std::int64_t next_tick_utc_s(std::int64_t now_utc_s) {
@@ -50,18 +51,25 @@ class ControlLoop {
         prices_(prices),
         clock_(clock),
         guard_(settings.guard),
-        cycle_budget_(settings.cycles_per_day_max_e4) {}
+        cycle_budget_(settings.cycles_per_day_max_e4),
+        supervision_(settings.supervision) {}
 
   void take_over(const TakeOver& before) {
     cycle_budget_.restore(before.throughput);
     price_level_ = before.price_level;
+    supervision_.restore(before.trip);
   }
+
+  [[nodiscard]] const Trip& trip() const { return supervision_.trip(); }
+  /// A person has looked: the battery may be driven again.
+  void clear_trip() { supervision_.clear(); }
 
   /// Runs the cycle of the next tick; false when the process was asked to stop before it.
   bool run_cycle(CycleRecord& record) {
     std::int64_t tick_utc_s = 0;
     if (!await_next_tick(tick_utc_s)) return false;
     count_missed_ticks(tick_utc_s);
+    bind_orders(tick_utc_s);
     record = CycleRecord{.utc_s = tick_utc_s, .cycle = ++cycle_};
     request_price(tick_utc_s);  // before the battery is read: a slow bus must not cost the price
     read_battery(record);
@@ -197,14 +205,21 @@ class ControlLoop {
     const bool is_driven = has_ordered_ && order_power_w_ != 0;
     cycle_budget_.update(local_day_of(local_minute_of(record.utc_s)), record.measurement.soc_e4,
                          is_driven);
-    observe_answer(record.measurement);
+    if (settings_.control) observe_answer(record.measurement);
   }
 
   /// Only the order that the battery really follows can be answered: one that it refused, or that
   /// has run out, leaves it in its own mode, which goes any way.
   void observe_answer(const BatteryMeasurement& m) {
-    if (!settings_.control || !has_ordered_ || !m.dispatch_active) return;
-    follow_.observe(m.has_order_power ? m.order_power_w : order_power_w_, m.power_w);
+    const std::int64_t read_utc_s = now_utc_s();
+    const bool is_known = m.has_order_power || order_is_confirmed_;
+    supervision_.observe(
+        {.utc_s = read_utc_s,
+         .is_driven = has_ordered_ && m.dispatch_active && is_known && !m.order_replaced,
+         .ordered_power_w = m.has_order_power ? m.order_power_w : order_power_w_,
+         .order_age_s = static_cast<std::int32_t>(read_utc_s - ordered_since_utc_s_),
+         .measurement = m},
+        !has_ordered_);
   }
 
   /// After a restart the battery may still follow the order of the run before: it goes on until the
@@ -215,7 +230,17 @@ class ControlLoop {
     order_found_ = settings_.control && measurement.dispatch_active;
     if (!order_found_) return;
     has_ordered_ = true;
+    ordered_since_utc_s_ = now_utc_s();
     if (measurement.has_order_power) order_power_w_ = measurement.order_power_w;
+  }
+
+  /// An order belongs to its tick: a process that was stopped and goes on later neither writes it nor
+  /// feeds it, for the price that it was decided on is gone.
+  void bind_orders(std::int64_t tick_utc_s) {
+    const std::int32_t write_s = settings_.order_deadline_s;
+    const std::int32_t feed_s = kSecondsPerStep + settings_.price_wait_s + write_s;
+    write_until_ns_ = bounded_ns(tick_utc_s + write_s, write_s + settings_.read_lead_s);
+    feed_until_ns_ = bounded_ns(tick_utc_s + feed_s, feed_s + settings_.read_lead_s);
   }
 
   /// The instant in monotonic time, at most `longest_s` from now: to a clock that was stepped back
@@ -274,7 +299,7 @@ class ControlLoop {
                        .clock_ok = clock_.is_synchronised(),
                        .link_ok = record.has_measurement && is_recent,
                        .measurement = record.measurement,
-                       .wrong_direction = follow_.has_tripped(),
+                       .supervision = supervision_.stop_reason(),
                        .cycle_budget_spent = cycle_budget_.is_spent(),
                        .previous_power_w = order_power_w_,
                        .has_price = record.price.has_row,
@@ -300,8 +325,7 @@ class ControlLoop {
     mode_ = next_mode(mode_, {.stop_requested = clock_.stop_requested(),
                               .stop_reason = is_stop_reason(record.reason),
                               .hold_elapsed = hold_elapsed,
-                              // At 0 W a house that lives on its battery goes dark.
-                              .release_now = record.reason == Reason::kOffGrid,
+                              .release_now = is_better_released(record.reason),
                               .order_found = order_found_});
     if (mode_ == Mode::kHolding && before != Mode::kHolding) hold_start_utc_s_ = record.utc_s;
     record.mode = mode_;
@@ -313,9 +337,11 @@ class ControlLoop {
       return;
     }
     const std::int64_t start_ns = clock_.monotonic_ns();
+    const Status reading_status = record.battery_status;
     switch (mode_) {
       case Mode::kRunning:
         write_order(record.ordered_power_w, record);
+        if (record.has_measurement) supervision_.on_ordered(now_utc_s(), record.battery_status);
         break;
       case Mode::kHolding:
         write_order(0, record);
@@ -328,6 +354,7 @@ class ControlLoop {
         break;
     }
     record.write_us = elapsed_us(start_ns);
+    if (record.battery_status == Status::kOk) record.battery_status = reading_status;
     const bool fresh = record.price.has_row && record.price.received_monotonic_ns >= request_ns_;
     if (record.written && fresh) {
       record.total_us = elapsed_us(record.price.received_monotonic_ns);
@@ -335,15 +362,25 @@ class ControlLoop {
   }
 
   void write_order(std::int32_t power_w, CycleRecord& record) {
+    if (!has_ordered_ || power_w != order_power_w_) ordered_since_utc_s_ = now_utc_s();
     has_ordered_ = true;  // even when it fails: the battery may have understood
     order_power_w_ = power_w;
     fed_utc_ns_ = clock_.now_utc_ns();
     record.ordered_power_w = power_w;
-    record.battery_status = battery_.order({.power_w = power_w,
-                                            .soc_min_e4 = settings_.guard.soc_min_e4,
-                                            .soc_max_e4 = settings_.guard.soc_max_e4,
-                                            .duration_s = settings_.order_duration_s});
-    record.written = record.battery_status == Status::kOk;
+    if (record.price.has_row) {
+      record.price_age_s =
+          static_cast<std::int32_t>(price_age_s(now_utc_s(), record.price.minute_utc_s));
+    }
+    // 0 W is never too late.
+    const bool is_bound = power_w != 0;
+    record.battery_status =
+        battery_.order({.power_w = power_w,
+                        .soc_min_e4 = settings_.guard.soc_min_e4,
+                        .soc_max_e4 = settings_.guard.soc_max_e4,
+                        .duration_s = settings_.order_duration_s,
+                        .write_until_ns = is_bound ? write_until_ns_ : INT64_MAX,
+                        .feed_until_ns = is_bound ? feed_until_ns_ : INT64_MAX});
+    record.written = order_is_confirmed_ = record.battery_status == Status::kOk;
   }
 
   void write_release(CycleRecord& record) {
@@ -365,7 +402,11 @@ class ControlLoop {
   void fill_totals(CycleRecord& record) const {
     record.missed_ticks = missed_ticks_;
     record.deadline_misses = deadline_misses_;
-    record.unanswered_orders = follow_.unanswered_orders();
+    record.unanswered_orders = supervision_.response().unanswered_orders();
+    record.weak_answers = supervision_.response().weak_answers();
+    record.replaced_orders = supervision_.replaced_orders();
+    record.is_tripped = supervision_.trip().is_set();
+    record.trip = supervision_.trip();
     record.throughput = cycle_budget_.today();
     record.price_level = price_level_;
     record.counters = battery_.counters();
@@ -382,7 +423,7 @@ class ControlLoop {
   SafetyGuard guard_;
   CycleBudget cycle_budget_;
   PriceLevel price_level_;
-  FollowMonitor follow_;
+  Supervision supervision_;
   Mode mode_ = Mode::kStart;
   std::int64_t cycle_ = 0;
   std::int64_t last_tick_utc_s_ = 0;
@@ -390,10 +431,14 @@ class ControlLoop {
   std::int64_t request_ns_ = 0;  ///< when this cycle asked for its price
   std::int32_t missed_ticks_ = 0;
   std::int32_t deadline_misses_ = 0;
-  std::int64_t fed_utc_ns_ = 0;     ///< when the battery last got an order or a refresh
-  bool has_ordered_ = false;        ///< an order may be in force at the battery
-  std::int32_t order_power_w_ = 0;  ///< of that order
-  bool looked_for_order_ = false;   ///< the first reading tells what an earlier run left in force
+  std::int64_t fed_utc_ns_ = 0;           ///< when the battery last got an order or a refresh
+  bool has_ordered_ = false;              ///< an order may be in force at the battery
+  std::int32_t order_power_w_ = 0;        ///< of that order
+  bool order_is_confirmed_ = false;       ///< it was read back
+  std::int64_t ordered_since_utc_s_ = 0;  ///< when that power was ordered first
+  std::int64_t write_until_ns_ = 0;       ///< monotonic, of this cycle's order
+  std::int64_t feed_until_ns_ = 0;
+  bool looked_for_order_ = false;  ///< the first reading tells what an earlier run left in force
   bool order_found_ = false;
 };
 

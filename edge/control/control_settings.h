@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "edge/control/safety_guard.h"
+#include "edge/control/supervision.h"
 
 namespace bess {
 
@@ -17,6 +18,7 @@ struct ControlSettings {
   std::int32_t read_lead_s = 3;
   std::int32_t order_deadline_s = 60;  ///< an order in force later than this after its tick is late
   std::int32_t cycles_per_day_max_e4 = 0;  ///< in 1e-4 full cycles; 0 = no budget
+  SupervisionSettings supervision{};
 };
 
 }  // namespace bess

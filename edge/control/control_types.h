@@ -30,6 +30,7 @@ struct BatteryMeasurement {
   bool dispatch_active = false;  ///< the device follows an order that was written to it
   bool has_order_power = false;  ///< the map can read back the power of the order in force
   std::int32_t order_power_w = 0;
+  bool order_replaced = false;  ///< a register of our order holds what somebody else wrote
 };
 
 /// Totals since start, and what the flash-backed registers have had today.
@@ -64,6 +65,13 @@ enum class Reason : std::uint8_t {
   kTemperature,
   kOffGrid,
   kWrongDirection,
+  kUncontrolledPower,
+  kSocMismatch,
+  kOtherMaster,
+  kOrdersFail,
+  kNoAnswer,
+  kCapacity,
+  kSocJump,
   kNoPrice,
   kPriceAge,
   kPriceQuarterHour,
@@ -82,15 +90,49 @@ inline constexpr int kReasonCount = static_cast<int>(Reason::kStudent) + 1;
 
 constexpr bool is_stop_reason(Reason reason) { return reason <= Reason::kLastStopReason; }
 
+/// Whether holding 0 W would be the wrong answer: a house that lives on its battery goes dark, and a
+/// battery that does not follow its orders need not follow this one either.
+constexpr bool is_better_released(Reason reason) {
+  return reason >= Reason::kOffGrid && reason <= Reason::kCapacity;
+}
+
 constexpr std::string_view reason_name(Reason reason) {
-  constexpr std::string_view kNames[] = {
-      "stop_requested", "hand_over", "clock",           "link",         "alarm",
-      "temperature",    "off_grid",  "wrong_direction", "no_price",     "price_age",
-      "price_qh",       "soc_full",  "soc_empty",       "cycle_budget", "power_limit",
-      "ramp",           "price_low", "price_high",      "student"};
+  constexpr std::string_view kNames[] = {"stop_requested",
+                                         "hand_over",
+                                         "clock",
+                                         "link",
+                                         "alarm",
+                                         "temperature",
+                                         "off_grid",
+                                         "wrong_direction",
+                                         "uncontrolled_power",
+                                         "soc_mismatch",
+                                         "other_master",
+                                         "orders_fail",
+                                         "no_answer",
+                                         "capacity",
+                                         "soc_jump",
+                                         "no_price",
+                                         "price_age",
+                                         "price_qh",
+                                         "soc_full",
+                                         "soc_empty",
+                                         "cycle_budget",
+                                         "power_limit",
+                                         "ramp",
+                                         "price_low",
+                                         "price_high",
+                                         "student"};
   static_assert(std::size(kNames) == kReasonCount);
   return kNames[static_cast<int>(reason)];
 }
+
+/// Found by the supervision of the battery's answers; in force until a person clears it.
+struct Trip {
+  Reason reason = Reason::kStudent;  ///< kStudent: none
+  std::int64_t utc_s = 0;
+  [[nodiscard]] constexpr bool is_set() const { return reason != Reason::kStudent; }
+};
 
 struct GuardDecision {
   std::int32_t power_w = 0;
@@ -105,7 +147,8 @@ struct CycleRecord {
   bool has_measurement = false;
   BatteryMeasurement measurement{};
   PriceReport price{};
-  std::int32_t price_age_s = -1;  ///< since the end of the row's minute, at the tick; -1 = no price
+  /// Since the end of the row's minute: at the decision, or when an order was written later, then.
+  std::int32_t price_age_s = -1;  ///< -1 = no price
   bool has_student_action = false;
   Action student_action = Action::kIdle;
   std::int32_t ordered_power_w = 0;
@@ -123,6 +166,10 @@ struct CycleRecord {
   BatteryCounters counters{};
   PriceLevel price_level{};        ///< the prices of this cycle included
   std::int16_t context_class = 0;  ///< what the student was given, 1..12; 0 = it was not asked
+  bool is_tripped = false;
+  Trip trip{};
+  std::int32_t weak_answers = 0;     ///< readings in a row with less power than ordered
+  std::int32_t replaced_orders = 0;  ///< since start: of ours, by somebody else
 };
 
 }  // namespace bess

@@ -40,8 +40,8 @@ bool SafetyGuard::find_stop_reason(const GuardInputs& in, Reason& reason) const 
     reason = Reason::kTemperature;
   } else if (m.off_grid) {
     reason = Reason::kOffGrid;
-  } else if (in.wrong_direction) {
-    reason = Reason::kWrongDirection;
+  } else if (is_stop_reason(in.supervision)) {
+    reason = in.supervision;
   } else {
     return find_price_stop_reason(in, reason);
   }

@@ -27,7 +27,8 @@ struct GuardInputs {
   bool clock_ok = false;
   bool link_ok = false;
   BatteryMeasurement measurement;  ///< valid when link_ok
-  bool wrong_direction = false;    ///< the battery has gone against its orders
+  /// What supervision found in the battery's answers; kStudent: nothing.
+  Reason supervision = Reason::kStudent;
   bool cycle_budget_spent = false;
   std::int32_t previous_power_w = 0;  ///< of the order in force until now
   bool has_price = false;

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 
 #include "edge/log/journal.h"
@@ -113,6 +114,7 @@ void EventLog::keep(const CycleRecord& record) {
   char line[kLogLineBytes];
   const std::size_t size = format_log_line(record, line);
   write_journal_line(level_of(record), {line, size});
+  tell_of_trip(record);
   if (!ring_.append(record)) ++totals_.disk_failures;
   if (csv_fd_ >= 0 && !append_line(csv_fd_, line, format_csv_line(record, line))) {
     ++totals_.disk_failures;
@@ -125,6 +127,19 @@ void EventLog::keep(const CycleRecord& record) {
   totals_.disk_is_failing = totals_.disk_failures > failures_before;
   publish_status();
   tell_of_disk(totals_.disk_failures > failures_before);
+}
+
+/// On the journal, once each time: what a person has to end.
+void EventLog::tell_of_trip(const CycleRecord& record) {
+  if (record.is_tripped == was_tripped_) return;
+  was_tripped_ = record.is_tripped;
+  char line[160];
+  const int size = std::snprintf(
+      line, sizeof line, "tripped: %s; the battery is in its own mode until bess-edge clear",
+      reason_name(record.trip.reason).data());
+  write_journal_line(record.is_tripped ? JournalLevel::kError : JournalLevel::kNotice,
+                     record.is_tripped ? std::string_view(line, static_cast<std::size_t>(size))
+                                       : "cleared: a person lets the battery be driven again");
 }
 
 /// On the journal, once each time: the files that would tell of it cannot be written.

@@ -55,6 +55,7 @@ class EventLog {
   void keep(const CycleRecord& record);
   void publish_metrics();
   void publish_status();
+  void tell_of_trip(const CycleRecord& record);
   void tell_of_disk(bool is_failing);
 
   EventLogSettings settings_;
@@ -62,6 +63,7 @@ class EventLog {
   RunTotals totals_;
   RingLog ring_;
   int csv_fd_ = -1;
+  bool was_tripped_ = false;
   bool was_failing_ = false;
   HandoverQueue<CycleRecord, kQueueRecords> queue_;
   std::int64_t handed_over_ = 0;

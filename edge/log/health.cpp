@@ -5,6 +5,7 @@ namespace {
 
 /// A full, empty or cold battery rests for a while; one that never answers does not listen.
 constexpr std::int64_t kUnansweredOrdersMax = 5;
+constexpr std::int64_t kWeakAnswersMax = 1;
 
 std::string seconds(std::int64_t ms) { return std::to_string(ms / 1'000) + " s"; }
 
@@ -19,6 +20,10 @@ void check_age(const HealthInputs& in, std::vector<std::string>& reasons) {
 }
 
 void check_cycle(const HealthInputs& in, std::vector<std::string>& reasons) {
+  if (in.trip != "none") {
+    reasons.push_back("CRITICAL: tripped, " + std::string(in.trip) +
+                      ": find out why (bess-edge log), then bess-edge clear --yes");
+  }
   if (in.mode != "running") {
     reasons.push_back("WARN: mode is " + std::string(in.mode) + ", reason " +
                       std::string(in.reason));
@@ -29,6 +34,10 @@ void check_cycle(const HealthInputs& in, std::vector<std::string>& reasons) {
   if (in.unanswered_orders > kUnansweredOrdersMax) {
     reasons.push_back("WARN: no power flows after " + std::to_string(in.unanswered_orders) +
                       " orders: is the battery full, empty or cold, or does it not listen?");
+  }
+  if (in.weak_answers > kWeakAnswersMax) {
+    reasons.push_back("WARN: less power than ordered in " + std::to_string(in.weak_answers) +
+                      " readings: is power_w right, does the battery limit itself?");
   }
   if (in.price_status != "ok") {
     reasons.push_back("WARN: prices: " + std::string(in.price_status));

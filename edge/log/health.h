@@ -16,6 +16,8 @@ struct HealthInputs {
   std::int64_t cadence_ms = 120'000;
   std::int64_t cycles = 0;
   std::int64_t unanswered_orders = 0;  ///< in a row
+  std::int64_t weak_answers = 0;       ///< in a row
+  std::string_view trip = "none";      ///< the reason's name
   std::string_view mode;
   std::string_view reason;
   std::string_view battery_status;

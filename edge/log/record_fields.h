@@ -121,6 +121,21 @@ consteval auto make_record_fields() {
       {member<&R::context_class>().given<&R::has_student_action>(),
        "context_class",
        {.csv = 31, .last = 64}},
+      {member<&R::measurement, &B::order_replaced>()},
+      {member<&R::is_tripped>(),
+       "is_tripped",
+       {.last = 91, .metrics = {17, "bess_tripped"}},
+       {"1 while the supervision keeps the battery released until a person clears it."}},
+      {member<&R::trip, &Trip::reason>().given<&R::is_tripped>(), "trip", {.csv = 32, .last = 92}},
+      {utc_member<&R::trip, &Trip::utc_s>().given<&R::is_tripped>(), "trip_utc", {.last = 93}},
+      {member<&R::weak_answers>(),
+       "weak_answers",
+       {.csv = 33, .totals = 24, .metrics = {39, "bess_weak_answers"}},
+       {"Readings in a row with less power than ordered and no reason for it."}},
+      {member<&R::replaced_orders>(),
+       "replaced_orders",
+       {.csv = 34, .totals = 25, .metrics = {23, "bess_replaced_orders_total"}},
+       {"Orders that somebody else replaced."}},
   });
 }
 

@@ -30,12 +30,32 @@ struct StableCodes<Action> {
 
 template <>
 struct StableCodes<Reason> {
-  static constexpr Reason kList[] = {
-      Reason::kStopRequested,    Reason::kClock,       Reason::kLink,     Reason::kAlarm,
-      Reason::kTemperature,      Reason::kOffGrid,     Reason::kNoPrice,  Reason::kPriceAge,
-      Reason::kPriceQuarterHour, Reason::kSocFull,     Reason::kSocEmpty, Reason::kPowerLimit,
-      Reason::kPriceLow,         Reason::kPriceHigh,   Reason::kStudent,  Reason::kHandOver,
-      Reason::kWrongDirection,   Reason::kCycleBudget, Reason::kRamp};
+  static constexpr Reason kList[] = {Reason::kStopRequested,
+                                     Reason::kClock,
+                                     Reason::kLink,
+                                     Reason::kAlarm,
+                                     Reason::kTemperature,
+                                     Reason::kOffGrid,
+                                     Reason::kNoPrice,
+                                     Reason::kPriceAge,
+                                     Reason::kPriceQuarterHour,
+                                     Reason::kSocFull,
+                                     Reason::kSocEmpty,
+                                     Reason::kPowerLimit,
+                                     Reason::kPriceLow,
+                                     Reason::kPriceHigh,
+                                     Reason::kStudent,
+                                     Reason::kHandOver,
+                                     Reason::kWrongDirection,
+                                     Reason::kCycleBudget,
+                                     Reason::kRamp,
+                                     Reason::kUncontrolledPower,
+                                     Reason::kSocMismatch,
+                                     Reason::kOtherMaster,
+                                     Reason::kOrdersFail,
+                                     Reason::kNoAnswer,
+                                     Reason::kCapacity,
+                                     Reason::kSocJump};
   static constexpr auto kNameOf = reason_name;
 };
 
@@ -46,7 +66,7 @@ struct StableCodes<Status> {
       Status::kBusBusy,    Status::kNotPermitted,   Status::kBadReply,    Status::kImplausible,
       Status::kNotApplied, Status::kNotExpressible, Status::kWriteBudget, Status::kNameUnresolved,
       Status::kTlsRefused, Status::kHttpError,      Status::kMalformed,   Status::kNoRow,
-      Status::kTooLarge,   Status::kNoMemory};
+      Status::kTooLarge,   Status::kNoMemory,       Status::kTooLate};
   static constexpr auto kNameOf = status_name;
 };
 

@@ -10,6 +10,7 @@ constexpr const char* kRunHelp =
   bess-edge [--config FILE] --check                     what would be done; writes nothing
   bess-edge commission [--config FILE] --yes            check the sign of a new battery, once
   bess-edge release [--config FILE] --yes               end an order that nobody ends any more
+  bess-edge clear [--config FILE] --yes                 drive again after the supervision tripped
   bess-edge status [--config FILE] ...                  how the running controller is
   bess-edge log [--config FILE] ...                     what was decided, and why
   bess-edge signature                                   one number for what this build decides
@@ -54,15 +55,32 @@ Exit codes: 0 passed   1 refused: the line says why   2 the command line is bad,
 constexpr const char* kReleaseHelp =
     R"(bess-edge release: gives a battery back to its own mode, when a controller that is gone left an order
 
-  bess-edge release [--config FILE] --yes
+  bess-edge release [--config FILE] --yes [--force]
 
   --config FILE  the controller's settings; default /etc/bess/edge.toml
   --yes          really write it
+  --force        also to a device that does not answer as its register map says
 
 Needs no sign check. Refused while a bess-edge controls the battery: stop that instead.
 Exit codes: 0 released   1 refused or failed: the line says why   2 the command line is bad, or --yes is missing
 
   systemctl stop bess-edge; bess-edge release --yes
+)";
+
+constexpr const char* kClearHelp =
+    R"(bess-edge clear: a person has looked why the battery did not do what it was told
+
+  bess-edge clear [--config FILE] --yes
+
+  --config FILE  the controller's settings; default /etc/bess/edge.toml
+  --yes          let it be driven again; without it only the trip is told
+
+After wrong_direction, uncontrolled_power or soc_mismatch the battery is in its own mode until this is
+said, over restarts too. A running controller goes on at its next cycle.
+Exit codes: 0 cleared, or nothing to clear   1 log or state cannot be accessed   2 the command line is
+bad, or --yes is missing
+
+  bess-edge log --last 10; bess-edge clear --yes
 )";
 
 constexpr const char* kStatusHelp =
@@ -120,6 +138,8 @@ const char* help_of(SubCommand command) {
       return kCommissionHelp;
     case SubCommand::kRelease:
       return kReleaseHelp;
+    case SubCommand::kClear:
+      return kClearHelp;
     case SubCommand::kStatus:
       return kStatusHelp;
     case SubCommand::kLog:

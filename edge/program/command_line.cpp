@@ -44,6 +44,9 @@ constexpr Option kOptions[] = {
     {SubCommand::kCommission, "--yes", &CommandLine::yes},
     {SubCommand::kRelease, "--config", &CommandLine::config_path},
     {SubCommand::kRelease, "--yes", &CommandLine::yes},
+    {SubCommand::kRelease, "--force", &CommandLine::force},
+    {SubCommand::kClear, "--config", &CommandLine::config_path},
+    {SubCommand::kClear, "--yes", &CommandLine::yes},
     {SubCommand::kStatus, "--config", &CommandLine::config_path},
     {SubCommand::kStatus, "--json", &CommandLine::json},
     {SubCommand::kStatus, "--prometheus", &CommandLine::prometheus},
@@ -130,6 +133,8 @@ CommandLineResult parse_command_line(int argc, char** argv, CommandLine& line) {
       line.command = SubCommand::kCommission;
     } else if (name == "release") {
       line.command = SubCommand::kRelease;
+    } else if (name == "clear") {
+      line.command = SubCommand::kClear;
     } else if (name == "log") {
       line.command = SubCommand::kLog;
     } else if (name == "signature") {

@@ -15,7 +15,8 @@ enum class SubCommand : std::uint8_t {
   kRelease,
   kStatus,
   kLog,
-  kSignature
+  kSignature,
+  kClear
 };
 
 struct CommandLine {
@@ -23,6 +24,7 @@ struct CommandLine {
   std::string config_path;
   bool dry_run = false;
   bool yes = false;
+  bool force = false;
   std::int64_t cycles = -1;  ///< -1 = until stopped
   bool json = false;
   bool prometheus = false;

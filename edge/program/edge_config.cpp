@@ -50,6 +50,19 @@ void expect_capacity(EdgeConfig& config) {
   }
 }
 
+/// What counts as an answer of this battery, by its map and its rating.
+void set_supervision(EdgeConfig& config) {
+  SupervisionSettings& supervision = config.control.supervision;
+  supervision.response = {.band = config.map.response,
+                          .power_w = config.control.guard.power_w,
+                          .capacity_wh = config.capacity_wh,
+                          .soc_min_e4 = config.control.guard.soc_min_e4};
+  const std::int64_t capacity_wh = config.capacity_wh;
+  const std::int64_t tolerance_wh = capacity_wh * config.capacity_tolerance_percent / 100;
+  supervision.capacity_wh_min = static_cast<std::int32_t>(capacity_wh - tolerance_wh);
+  supervision.capacity_wh_max = static_cast<std::int32_t>(capacity_wh + tolerance_wh);
+}
+
 /// What the operator does not say about the link is as the device's maker ships it.
 void complete_link(TomlTable& table, EdgeConfig& config) {
   if (!table.has("port")) config.link.port = config.map.port;
@@ -85,6 +98,9 @@ void read_battery(TomlTable table, EdgeConfig& config) {
   table.boolean("allow_without_watchdog", config.allow_without_watchdog);
   table.boolean("start_without_battery", config.start_without_battery);
   table.integer("read_lead_s", config.control.read_lead_s, 0, 60);
+  int on_other_master = 0;
+  table.choice("on_other_master", on_other_master, {"yield", "insist"});
+  config.control.supervision.yields_to_other_master = on_other_master == 0;
   static_cast<void>(table.table("units"));
   config.link.rtu = transport == 1;
   config.link.parity = static_cast<Parity>(parity);
@@ -303,6 +319,7 @@ bool load_edge_config(const std::string& path, EdgeConfig& config, std::string& 
   read_simulation(section(root, "simulation"), config.clock);
   root.finish();
   config.control.price_wait_s = config.price.wait_s;
+  set_supervision(config);
   if (config.map.watchdog.duration_s > 0) {
     config.control.order_duration_s = config.map.watchdog.duration_s;
     config.control.has_watchdog = true;

@@ -1,4 +1,4 @@
-// [writes], [exceptions], [commissioning] and [simulator].
+// [writes], [exceptions], [response], [commissioning] and [simulator].
 #include "edge/registers/map_reader.h"
 
 namespace bess {
@@ -39,6 +39,27 @@ void read_assignments(TomlTable& table, std::string_view key, const RegisterMap&
   });
 }
 
+/// What the SoC moves by when its register counts one up, unless the map knows it to be coarser.
+std::int32_t soc_register_step_e4(const RegisterMap& map) {
+  const int soc = find_point(map, "soc");
+  if (soc < 0) return ResponseBand{}.soc_step_e4;
+  const RegisterPoint& p = map.points[soc];
+  const bool is_scaled_live = p.scale_from >= 0 || p.percent_of >= 0;
+  const std::int64_t step_e4 = is_scaled_live ? 100 : p.scale / p.scale_divisor;
+  return static_cast<std::int32_t>(step_e4 < 1 ? 1 : step_e4 > 1'000 ? 1'000 : step_e4);
+}
+
+void read_response(TomlTable& root, RegisterMap& map) {
+  TomlTable table = map_child(root, "response");
+  map.response.soc_step_e4 = soc_register_step_e4(map);
+  table.integer("settle_s", map.response.settle_s, 1, 100);
+  table.integer("tolerance_percent", map.response.tolerance_percent, 1, 50);
+  table.integer("tolerance_w", map.response.tolerance_w, 1, 1'000'000);
+  table.integer("soc_step_e4", map.response.soc_step_e4, 1, 1'000);
+  table.boolean("charges_by_itself", map.response.charges_by_itself);
+  table.finish();
+}
+
 }  // namespace
 
 void read_map_policies(TomlTable& root, RegisterMap& map) {
@@ -56,6 +77,7 @@ void read_map_policies(TomlTable& root, RegisterMap& map) {
   read_codes(exceptions, "retry", map.exceptions.retry);
   read_codes(exceptions, "not_permitted", map.exceptions.not_permitted);
   exceptions.finish();
+  read_response(root, map);
   TomlTable test = map_child(root, "commissioning");
   test.integer("power_w", map.commissioning.power_w, 1, 1'000'000);
   test.integer("duration_s", map.commissioning.duration_s, 5, 600);

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "edge/base/response_band.h"
 #include "edge/registers/battery_command.h"
 #include "edge/registers/parity.h"
 #include "edge/registers/register_point.h"
@@ -89,6 +90,7 @@ struct RegisterMap {
   Watchdog watchdog;
   WritePolicy writes;
   ExceptionCodes exceptions;
+  ResponseBand response;
   Commissioning commissioning;
 
   StaticVector<RegisterPoint, kPointsMax> points;

@@ -71,10 +71,11 @@ class DeviceLink {
     return Status::kOk;
   }
   Status write(std::int32_t unit, std::uint8_t function, std::uint16_t address,
-               const std::uint16_t* registers, int count) {
+               const std::uint16_t* registers, int count, std::int64_t send_until_ns) {
     ++counters_.requests;
-    ++counters_.register_writes;
     device_.before_request();
+    if (device_.now_ns > send_until_ns) return Status::kTooLate;
+    ++counters_.register_writes;
     device_.writes.push_back({unit, function, address, {registers, registers + count}});
     if (device_.failing_writes > 0) {
       --device_.failing_writes;

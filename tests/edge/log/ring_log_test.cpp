@@ -105,8 +105,14 @@ TEST(RecordCodec, LayoutOnDiskIsFixed) {
   EXPECT_EQ(bytes[182], 29);    // soc_moved_e4
   EXPECT_EQ(bytes[186], 0xE2);  // price_level.centi_q16 = -30
   EXPECT_EQ(bytes[194], 31);    // price_level.row_minute_utc_s
-  EXPECT_EQ(bytes[202], 12);    // context_class, the last field
-  for (std::size_t i = 204; i < kRecordBytes - 4; ++i) EXPECT_EQ(bytes[i], 0) << i;
+  EXPECT_EQ(bytes[202], 12);    // context_class
+  EXPECT_EQ(bytes[204], 1);     // order_replaced
+  EXPECT_EQ(bytes[205], 1);     // is_tripped
+  EXPECT_EQ(bytes[206], 20);    // trip: soc_mismatch
+  EXPECT_EQ(bytes[207], 0x20);  // its instant
+  EXPECT_EQ(bytes[215], 33);    // weak_answers
+  EXPECT_EQ(bytes[219], 34);    // replaced_orders, the last field
+  for (std::size_t i = 223; i < kRecordBytes - 4; ++i) EXPECT_EQ(bytes[i], 0) << i;
 }
 
 /// A ring of the program that ended its records with flash_writes_today: later fields read as 0.
@@ -123,6 +129,9 @@ TEST(RecordCodec, ARecordOfAnOlderLayoutIsRead) {
   expected.throughput = {};
   expected.price_level = {};
   expected.context_class = 0;
+  expected.measurement.order_replaced = expected.is_tripped = false;
+  expected.trip = {.reason = Reason::kStopRequested, .utc_s = 0};  // code 0; counts only if tripped
+  expected.weak_answers = expected.replaced_orders = 0;
   EXPECT_EQ(bytes_of(back, 42), bytes_of(expected, 42));
 }
 

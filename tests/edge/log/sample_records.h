@@ -23,7 +23,8 @@ inline CycleRecord full_record(std::int64_t cycle) {
                    .off_grid = false,
                    .dispatch_active = true,
                    .has_order_power = true,
-                   .order_power_w = -8};
+                   .order_power_w = -8,
+                   .order_replaced = true};
   r.price = {.has_row = true,
              .minute_utc_s = 9,
              .price_centi_eur_per_mwh = -10,
@@ -54,6 +55,10 @@ inline CycleRecord full_record(std::int64_t cycle) {
   r.throughput = {.local_day = 28, .soc_moved_e4 = 29};
   r.price_level = {.centi_q16 = -30, .row_minute_utc_s = 31};
   r.context_class = 12;
+  r.is_tripped = true;
+  r.trip = {.reason = Reason::kSocMismatch, .utc_s = 1'700'000'032};
+  r.weak_answers = 33;
+  r.replaced_orders = 34;
   return r;
 }
 
@@ -76,18 +81,20 @@ inline CycleRecord longest_record() {
   r.price.status = r.battery_status = Status::kNotExpressible;
   r.price_age_s = r.ordered_power_w = r.decision_us = r.write_us = r.total_us = INT32_MIN;
   r.student_action = Action::kDischarge;
-  r.reason = Reason::kWrongDirection;
+  r.reason = Reason::kUncontrolledPower;
   r.missed_ticks = r.deadline_misses = r.unanswered_orders = INT32_MIN;
   r.throughput = {.local_day = INT32_MIN, .soc_moved_e4 = INT32_MIN};
   r.price_level = {.centi_q16 = INT64_MIN, .row_minute_utc_s = INT64_MIN};
   r.context_class = INT16_MIN;
+  r.trip = {.reason = Reason::kUncontrolledPower, .utc_s = 4'102'444'800};
+  r.weak_answers = r.replaced_orders = INT32_MIN;
   r.counters = {INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT32_MIN};
   r.counters.requests = 0;  // requests - failed_requests must not overflow
   r.counters.failed_requests = INT64_MAX;
   return r;
 }
 
-/// Enumerators number i of every enumeration, round and round: 19 of them show each name.
+/// Enumerators number i of every enumeration, round and round: 26 of them show each name.
 inline CycleRecord record_with_enumerators(int i) {
   CycleRecord r = full_record(i);
   r.mode = static_cast<Mode>(i % kModeCount);

@@ -1,0 +1,20 @@
+// How a person's word that the battery may be driven again reaches the controller: a small file in the
+// [state] folder names the trip that was cleared, by the instant it was found at. The controller
+// looks at it once a cycle while it is tripped, and at its start.
+#pragma once
+
+#include <cstdint>
+
+#include "edge/program/edge_config.h"
+
+namespace bess {
+
+FixedText<767> trip_clearance_path(const EdgeConfig& config);
+
+/// False with errno set. On the disk before it returns.
+bool clear_trip_of(const char* path, std::int64_t trip_utc_s);
+
+/// Whether the trip found at this instant was cleared. Allocates nothing.
+bool is_trip_cleared(const char* path, std::int64_t trip_utc_s);
+
+}  // namespace bess

@@ -1,0 +1,237 @@
+// What counts as following an order: every fault is found in two readings, and a battery that is only
+// slow, noisy or near an end of its charge is left alone.
+#include "edge/control/response_monitor.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <random>
+
+namespace bess {
+namespace {
+
+constexpr std::int32_t kStepS = 120;
+
+/// A battery of 4 kW and 8 kWh that is read every two minutes, with what it shows.
+struct Site {
+  ResponseMonitor monitor{ResponseSettings{}};
+  double soc_frac = 0.5;
+  std::int64_t utc_s = 0;
+  BatteryMeasurement shown{.soc_e4 = 5'000, .capacity_wh = 8'000};
+
+  /// An order is followed for one step; then it is read, changed by `fault`.
+  void step(
+      std::int32_t ordered_w, double flowing_w,
+      const std::function<void(BatteryMeasurement&)>& fault = [](BatteryMeasurement&) {}) {
+    soc_frac = std::clamp(soc_frac + flowing_w * kStepS / 3'600.0 / 8'000, 0.0, 1.0);
+    utc_s += kStepS;
+    shown.soc_e4 = static_cast<std::int32_t>(std::lround(soc_frac * 1e3)) * 10;
+    shown.power_w = static_cast<std::int32_t>(std::lround(flowing_w));
+    BatteryMeasurement m = shown;
+    fault(m);
+    monitor.observe({.utc_s = utc_s,
+                     .is_driven = true,
+                     .ordered_power_w = ordered_w,
+                     .order_age_s = kStepS,
+                     .measurement = m});
+  }
+};
+
+TEST(ResponseMonitor, TheWrongDirectionIsFoundInTwoReadings) {
+  for (const std::int32_t ordered_w : {4'000, -4'000}) {
+    Site site;
+    site.step(ordered_w, -ordered_w);
+    EXPECT_EQ(site.monitor.trip(), Reason::kStudent);
+    site.step(ordered_w, -ordered_w);
+    EXPECT_EQ(site.monitor.trip(), Reason::kWrongDirection);
+  }
+}
+
+TEST(ResponseMonitor, IdleBetweenDoesNotForgetTheWrongDirection) {
+  Site site;
+  site.step(4'000, -4'000);
+  for (int i = 0; i < 5; ++i) site.step(0, 0);
+  EXPECT_EQ(site.monitor.trip(), Reason::kStudent);
+  site.step(4'000, -4'000);
+  EXPECT_EQ(site.monitor.trip(), Reason::kWrongDirection);
+}
+
+TEST(ResponseMonitor, ARightAnswerForgetsAWrongOne) {
+  Site site;
+  site.step(4'000, -4'000);
+  site.step(4'000, 4'000);
+  site.step(4'000, -4'000);
+  EXPECT_EQ(site.monitor.trip(), Reason::kStudent);
+}
+
+TEST(ResponseMonitor, DischargingAtZeroIsUncontrolled) {
+  Site site;
+  site.step(0, -3'000);
+  site.step(0, -3'000);
+  EXPECT_EQ(site.monitor.trip(), Reason::kUncontrolledPower);
+}
+
+TEST(ResponseMonitor, TwiceTheOrderIsUncontrolledAlsoWhenItRestsBetween) {
+  Site site;
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(site.monitor.trip(), Reason::kStudent);
+    site.step(4'000, 8'000);
+    site.step(0, 0);
+  }
+  EXPECT_EQ(site.monitor.trip(), Reason::kUncontrolledPower);
+}
+
+TEST(ResponseMonitor, LessThanOrderedIsToldButNotStopped) {
+  Site site;
+  for (int i = 0; i < 8; ++i) site.step(4'000, 1'200);
+  EXPECT_EQ(site.monitor.trip(), Reason::kStudent);
+  EXPECT_FALSE(site.monitor.gives_no_answer());
+  EXPECT_EQ(site.monitor.weak_answers(), 8);
+  site.step(4'000, 3'900);
+  EXPECT_EQ(site.monitor.weak_answers(), 0);
+}
+
+TEST(ResponseMonitor, NoPowerInTheMiddleOfTheChargeIsNoAnswer) {
+  Site site;
+  site.step(4'000, 0);
+  EXPECT_FALSE(site.monitor.gives_no_answer());
+  site.step(-4'000, 0);
+  EXPECT_TRUE(site.monitor.gives_no_answer());
+  EXPECT_EQ(site.monitor.trip(), Reason::kStudent);
+}
+
+TEST(ResponseMonitor, AFullEmptyColdOrLimitedBatteryMayRest) {
+  struct Case {
+    const char* name;
+    double soc_frac;
+    std::int32_t ordered_w;
+    std::function<void(BatteryMeasurement&)> fault;
+  };
+  const auto nothing = [](BatteryMeasurement&) {};
+  for (const Case& c : {
+           Case{"full", 0.97, 4'000, nothing},
+           Case{"empty", 0.12, -4'000, nothing},
+           Case{"cold", 0.5, 4'000, [](BatteryMeasurement& m) { m.temperature_min_deci_c = 20; }},
+           Case{"limited", 0.5, 4'000, [](BatteryMeasurement& m) { m.charge_w_max = 0; }},
+           Case{"limited", 0.5, -4'000, [](BatteryMeasurement& m) { m.discharge_w_max = 100; }},
+       }) {
+    Site site;
+    site.soc_frac = c.soc_frac;
+    for (int i = 0; i < 10; ++i) site.step(c.ordered_w, 0, c.fault);
+    EXPECT_FALSE(site.monitor.gives_no_answer()) << c.name;
+    EXPECT_EQ(site.monitor.weak_answers(), 0) << c.name;
+    EXPECT_EQ(site.monitor.unanswered_orders(), 10) << c.name;
+  }
+}
+
+TEST(ResponseMonitor, ASocThatStandsStillWhilePowerFlowsIsFound) {
+  Site site;
+  site.step(4'000, 4'000);
+  const std::int32_t frozen_e4 = site.shown.soc_e4;
+  const auto freeze = [&](BatteryMeasurement& m) { m.soc_e4 = frozen_e4; };
+  site.step(4'000, 4'000, freeze);
+  EXPECT_EQ(site.monitor.trip(), Reason::kStudent);
+  site.step(4'000, 4'000, freeze);
+  EXPECT_EQ(site.monitor.trip(), Reason::kSocMismatch);
+}
+
+TEST(ResponseMonitor, ASocThatMovesTheWrongWayIsFound) {
+  Site site;
+  site.step(4'000, 4'000);
+  const std::int32_t start_e4 = site.shown.soc_e4;
+  int readings = 0;
+  while (site.monitor.trip() == Reason::kStudent && readings < 10) {
+    ++readings;
+    site.step(4'000, 4'000, [&](BatteryMeasurement& m) { m.soc_e4 = 2 * start_e4 - m.soc_e4; });
+  }
+  EXPECT_EQ(site.monitor.trip(), Reason::kSocMismatch);
+  EXPECT_LE(readings, 5);
+}
+
+TEST(ResponseMonitor, ASocThatJumpsStopsUntilItAgreesAgain) {
+  Site site;
+  site.step(4'000, 4'000);
+  site.step(4'000, 4'000, [](BatteryMeasurement& m) { m.soc_e4 -= 4'000; });
+  EXPECT_TRUE(site.monitor.has_jumped());
+  site.step(0, 0);  // and back
+  EXPECT_TRUE(site.monitor.has_jumped());
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_TRUE(site.monitor.has_jumped());
+    site.step(0, 0);
+  }
+  EXPECT_FALSE(site.monitor.has_jumped());
+  EXPECT_EQ(site.monitor.trip(), Reason::kStudent);
+}
+
+TEST(ResponseMonitor, AnOrderThatIsTooYoungIsNotJudged) {
+  ResponseMonitor monitor{ResponseSettings{}};
+  for (int i = 0; i < 10; ++i) {
+    monitor.observe({.utc_s = 120 * i,
+                     .is_driven = true,
+                     .ordered_power_w = i % 2 == 0 ? 4'000 : -4'000,
+                     .order_age_s = ResponseBand{}.settle_s - 1,
+                     .measurement = {.soc_e4 = 5'000, .power_w = 0, .capacity_wh = 8'000}});
+  }
+  EXPECT_FALSE(monitor.gives_no_answer());
+  EXPECT_EQ(monitor.trip(), Reason::kStudent);
+}
+
+TEST(ResponseMonitor, ItsOwnModeIsNotJudged) {
+  ResponseMonitor monitor{ResponseSettings{}};
+  for (int i = 0; i < 10; ++i) {
+    monitor.observe({.utc_s = 120 * i,
+                     .is_driven = false,
+                     .ordered_power_w = 4'000,
+                     .order_age_s = 120,
+                     .measurement = {.soc_e4 = 5'000, .power_w = -3'000, .capacity_wh = 8'000}});
+  }
+  EXPECT_EQ(monitor.trip(), Reason::kStudent);
+}
+
+TEST(ResponseMonitor, SurplusSunMayChargeWhereTheMapSaysSo) {
+  ResponseSettings settings;
+  settings.band.charges_by_itself = true;
+  ResponseMonitor monitor{settings};
+  for (int i = 0; i < 4; ++i) {
+    monitor.observe(
+        {.utc_s = 120 * i,
+         .is_driven = true,
+         .ordered_power_w = 0,
+         .order_age_s = 120,
+         .measurement = {.soc_e4 = 5'000 + 100 * i, .power_w = 2'500, .capacity_wh = 8'000}});
+  }
+  EXPECT_EQ(monitor.trip(), Reason::kStudent);
+}
+
+/// Thirty days of a real battery's habits: 2 % noise, 5 % losses each way, power that falls from 85 %
+/// up and below 25 %, an idle draw, a counter of charge in 0.1 % that lags.
+TEST(ResponseMonitor, ThirtyDaysOfAnHonestBatteryRaiseNothing) {
+  for (const double capacity_scale : {0.85, 1.0, 1.15}) {
+    Site site;
+    std::mt19937_64 random(1);
+    std::normal_distribution<> noise(0, 0.02);
+    std::uniform_int_distribution<int> wish(-1, 1);
+    double charge = 0.5;
+    for (int i = 0; i < 30 * 720; ++i) {
+      const std::int32_t ordered_w = 4'000 * wish(random);
+      double flowing_w = ordered_w * (1 + noise(random));
+      if (ordered_w > 0) flowing_w *= std::clamp((1 - charge) / 0.15, 0.0, 1.0);
+      if (ordered_w < 0) flowing_w *= std::clamp((charge - 0.10) / 0.15, 0.0, 1.0);
+      flowing_w += -40 + 30 * noise(random);
+      const double stored_w = flowing_w > 0 ? 0.95 * flowing_w : flowing_w / 0.95;
+      charge = std::clamp(charge + stored_w * kStepS / 3'600 / (8'000 * capacity_scale), 0.0, 1.0);
+      site.step(ordered_w, flowing_w, [&](BatteryMeasurement& m) {
+        m.soc_e4 = static_cast<std::int32_t>(std::lround(charge * 1e3)) * 10;
+      });
+      ASSERT_EQ(site.monitor.trip(), Reason::kStudent) << "reading " << i;
+      ASSERT_FALSE(site.monitor.gives_no_answer()) << "reading " << i;
+      ASSERT_FALSE(site.monitor.has_jumped()) << "reading " << i;
+      ASSERT_LT(site.monitor.weak_answers(), 2) << "reading " << i;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace bess
