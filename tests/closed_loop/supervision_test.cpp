@@ -7,9 +7,11 @@
 #include <cstdio>
 #include <functional>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include "edge/control/control_loop.h"
+#include "shared/utc_text.h"
 #include "tests/support/image_device.h"
 
 namespace bess {
@@ -228,6 +230,44 @@ TEST_P(EveryMapSupervised, AMonthOfASlowNoisyThrottledBatteryRaisesNothing) {
     driven += record.ordered_power_w != 0 ? 1 : 0;
   }
   EXPECT_GT(driven, kDays * kStepsPerDay / 4);
+}
+
+/// Stopped between two cycles, continued twenty minutes later: the watchdog has ended the order, and
+/// nothing brings it back before a new price is decided on.
+TEST_P(EveryMapSupervised, AProcessThatWasStoppedDoesNotGoOnWithItsOldOrder) {
+  constexpr std::int64_t kStoppedS = 1'230;
+  SupervisedSite site(GetParam());
+  if (site.device.test.map.watchdog.kind == Watchdog::Kind::kNone) {
+    GTEST_SKIP() << "without a watchdog an order stays, whoever is stopped";
+  }
+  site.prices.price = [](std::int64_t) { return -60'000; };
+  CycleRecord before;
+  for (int i = 0; i < 3; ++i) before = site.cycle();
+  ASSERT_EQ(before.ordered_power_w, kRatedW);
+  bool was_stopped = false;
+  site.clock.every_half_minute = [&] {
+    if (std::exchange(was_stopped, true)) return;
+    site.device.test.device.now_ns += kStoppedS * kNanosecondsPerSecond;
+    auto& after_write = site.device.test.device.after_write;
+    after_write = [&site, act = after_write](int address, int count) {
+      act(address, count);
+      // An order of several writes passes through mixtures of the old and the new.
+      if (site.device.test.map.sequence(Command::kIdle).writes.size() > 1) return;
+      EXPECT_EQ(site.device.battery.commanded_power_w(), 0);
+    };
+  };
+  const CycleRecord record = site.cycle();
+  EXPECT_EQ(record.ordered_power_w, 0);  // the reading is as old as the tick
+  const std::int64_t ended_utc_s =
+      before.utc_s + kSecondsPerStep + site.device.test.map.watchdog.duration_s;
+  site.device.battery.advance(site.clock.now_utc_ns());
+  int minutes = 0;
+  for (const MinuteRecord& minute : site.device.battery.record()) {
+    if (minute.minute_utc_s < ended_utc_s) continue;
+    ++minutes;
+    EXPECT_EQ(minute.commanded_power_w, 0) << utc_text(minute.minute_utc_s).view();
+  }
+  EXPECT_GT(minutes, 8);
 }
 
 INSTANTIATE_TEST_SUITE_P(Maps, EveryMapSupervised, ::testing::ValuesIn(kShippedMapVariants));
