@@ -1,5 +1,7 @@
 #include "edge/log/health.h"
 
+#include <cstdio>
+
 namespace bess {
 namespace {
 
@@ -18,6 +20,15 @@ void check_age(const HealthInputs& in, std::vector<std::string>& reasons) {
                     " ago, one is due every " + seconds(in.cadence_ms));
 }
 
+std::string held_row(double eur_per_mwh) {
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "WARN: prices: a row of %.2f EUR/MWh lies further from the one before than "
+                "step_flag_eur_per_mwh; the next one decides whether it counts",
+                eur_per_mwh);
+  return text;
+}
+
 void check_cycle(const HealthInputs& in, std::vector<std::string>& reasons) {
   if (in.mode != "running") {
     reasons.push_back("WARN: mode is " + std::string(in.mode) + ", reason " +
@@ -33,6 +44,7 @@ void check_cycle(const HealthInputs& in, std::vector<std::string>& reasons) {
   if (in.price_status != "ok") {
     reasons.push_back("WARN: prices: " + std::string(in.price_status));
   }
+  if (in.price_step_held) reasons.push_back(held_row(in.held_eur_per_mwh));
 }
 
 }  // namespace

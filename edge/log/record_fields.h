@@ -18,6 +18,7 @@ consteval auto make_record_fields() {
   using C = BatteryCounters;
   using D = DayThroughput;
   using L = PriceLevel;
+  using V = ReversalHistory;
   return std::to_array<Field<CycleRecord>>({
       {utc_member<&R::utc_s>(),
        "utc",
@@ -121,6 +122,19 @@ consteval auto make_record_fields() {
       {member<&R::context_class>().given<&R::has_student_action>(),
        "context_class",
        {.csv = 31, .last = 64}},
+      {member<&R::price, &P::step_held>(),
+       "step_held",
+       {.journal = 20, .csv = 32, .last = 54, .metrics = {17, "bess_price_step_held"}},
+       {"1 while a row far from the one before waits for the next."}},
+      {member<&R::price, &P::held_centi_eur_per_mwh>().given<&R::price, &P::step_held>(),
+       "held_centi_eur_per_mwh",
+       {.journal = {21, "held_centi"}, .csv = 33, .last = 55}},
+      {member<&R::reversals, &V::steps>()},
+      {member<&R::reversals, &V::direction>()},
+      {member<&R::reversals, &V::in_hour>(),
+       "reversals_in_hour",
+       {.csv = 34, .totals = 24, .metrics = {39, "bess_reversals_last_hour"}},
+       {"Changes between charging and discharging in the last hour."}},
   });
 }
 

@@ -35,7 +35,7 @@ struct StableCodes<Reason> {
       Reason::kTemperature,      Reason::kOffGrid,     Reason::kNoPrice,  Reason::kPriceAge,
       Reason::kPriceQuarterHour, Reason::kSocFull,     Reason::kSocEmpty, Reason::kPowerLimit,
       Reason::kPriceLow,         Reason::kPriceHigh,   Reason::kStudent,  Reason::kHandOver,
-      Reason::kWrongDirection,   Reason::kCycleBudget, Reason::kRamp};
+      Reason::kWrongDirection,   Reason::kCycleBudget, Reason::kRamp,     Reason::kReversalCap};
   static constexpr auto kNameOf = reason_name;
 };
 

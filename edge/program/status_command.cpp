@@ -89,6 +89,8 @@ Health health_of(const EdgeConfig& config, JsonValue status) {
   in.unanswered_orders = whole(field<&R::unanswered_orders>(status));
   in.disk_is_slow = is_true(field<&T::disk_is_slow>(status));
   in.disk_is_failing = is_true(field<&T::disk_is_failing>(status));
+  in.price_step_held = is_true(field<&R::price, &P::step_held>(status));
+  in.held_eur_per_mwh = number(field<&R::price, &P::held_centi_eur_per_mwh>(status)) / kCentiPerEur;
   if (in.is_of_this_run && in.cycles > 0) in.cycles_behind = cycles_behind(config, status);
   return assess_health(in);
 }
@@ -132,6 +134,10 @@ void print_last_cycle(JsonValue s) {
                 number(field<&R::price_age_s>(s)), text_of(field<&R::price, &P::status>(s)));
   } else {
     std::printf("price      none, %s\n", text_of(field<&R::price, &P::status>(s)));
+  }
+  if (is_true(field<&R::price, &P::step_held>(s))) {
+    std::printf("held       %.2f EUR/MWh, until the next row confirms it\n",
+                number(field<&R::price, &P::held_centi_eur_per_mwh>(s)) / kCentiPerEur);
   }
   print_level(s);
   std::printf("order      %.0f W, reason %s\n", number(field<&R::ordered_power_w>(s)),

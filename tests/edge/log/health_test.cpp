@@ -46,6 +46,11 @@ TEST(Health, EveryTroubleHasItsReason) {
       {[](HealthInputs& in) { in.disk_is_slow = true; }, HealthLevel::kDegraded, "too slow"},
       {[](HealthInputs& in) { in.disk_is_failing = true; }, HealthLevel::kDegraded, "disk full"},
       {[](HealthInputs& in) {
+         in.price_step_held = true;
+         in.held_eur_per_mwh = 9'000;
+       },
+       HealthLevel::kDegraded, "a row of 9000.00 EUR/MWh lies further"},
+      {[](HealthInputs& in) {
          in.age_ms = 1'319'000;
          in.cycles_behind = 10;
        },

@@ -105,8 +105,13 @@ TEST(RecordCodec, LayoutOnDiskIsFixed) {
   EXPECT_EQ(bytes[182], 29);    // soc_moved_e4
   EXPECT_EQ(bytes[186], 0xE2);  // price_level.centi_q16 = -30
   EXPECT_EQ(bytes[194], 31);    // price_level.row_minute_utc_s
-  EXPECT_EQ(bytes[202], 12);    // context_class, the last field
-  for (std::size_t i = 204; i < kRecordBytes - 4; ++i) EXPECT_EQ(bytes[i], 0) << i;
+  EXPECT_EQ(bytes[202], 12);    // context_class
+  EXPECT_EQ(bytes[204], 1);     // price.step_held
+  EXPECT_EQ(bytes[205], 0xE0);  // price.held_centi_eur_per_mwh = -32
+  EXPECT_EQ(bytes[209], 33);    // reversals.steps
+  EXPECT_EQ(bytes[213], 0xFF);  // reversals.direction = -1
+  EXPECT_EQ(bytes[215], 34);    // reversals.in_hour, the last field
+  for (std::size_t i = 217; i < kRecordBytes - 4; ++i) EXPECT_EQ(bytes[i], 0) << i;
 }
 
 /// A ring of the program that ended its records with flash_writes_today: later fields read as 0.
@@ -123,6 +128,9 @@ TEST(RecordCodec, ARecordOfAnOlderLayoutIsRead) {
   expected.throughput = {};
   expected.price_level = {};
   expected.context_class = 0;
+  expected.price.step_held = false;
+  expected.price.held_centi_eur_per_mwh = 0;
+  expected.reversals = {};
   EXPECT_EQ(bytes_of(back, 42), bytes_of(expected, 42));
 }
 
