@@ -55,18 +55,21 @@ Health assess_health(const HealthInputs& in) {
   }
   Health health;
   if (!in.is_of_this_run || in.cycles == 0) {
-    health.reasons.emplace_back("WARN: started, no cycle has ended yet");
+    if (in.cycles_behind == 0) health.reasons.emplace_back("WARN: started, no cycle has ended yet");
   } else {
     check_cycle(in, health.reasons);
   }
   if (in.is_of_this_run) check_age(in, health.reasons);
   if (in.disk_is_slow)
     health.reasons.emplace_back("WARN: records not logged, the disk is too slow");
-  if (in.cycles_behind > 1) {
+  const std::int64_t cycles_behind_max = in.is_of_this_run ? 1 : 0;
+  if (in.cycles_behind > cycles_behind_max) {
     health.reasons.push_back("WARN: status.json is " + std::to_string(in.cycles_behind) +
                              " cycles behind the log, is the disk full or read-only?");
   } else if (in.disk_is_failing) {
     health.reasons.emplace_back("WARN: the log cannot be written, is the disk full or read-only?");
+  } else if (in.disk_is_full) {
+    health.reasons.emplace_back("WARN: the disk of the state folder is full or read-only");
   }
   if (!health.reasons.empty()) health.level = HealthLevel::kDegraded;
   return health;

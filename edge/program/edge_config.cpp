@@ -244,8 +244,6 @@ std::string resolved(const TomlTable& table, std::string_view path) {
 
 void read_state(TomlTable table, EdgeConfig& config) {
   FixedText<255> folder("state");
-  const bool has_run_lock = std::filesystem::is_directory("/run/lock");
-  config.state.lock_folder = has_run_lock ? "/run/lock" : "/tmp";
   table.text("folder", folder);
   if (folder.empty()) table.fail("folder", "must not be empty");
   table.text("lock_folder", config.state.lock_folder);
