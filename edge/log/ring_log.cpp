@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <utility>
 
 #include "shared/crc32.h"
 
@@ -54,19 +55,28 @@ std::int64_t RingLog::offset_of(std::uint64_t number) const {
 
 bool RingLog::open(const char* path, std::int64_t capacity, FileMessage& error) {
   fd_ = ::open(path, O_RDWR | O_CLOEXEC);
+  if (fd_ < 0 && errno == EROFS) return learn_newest(path, error);
   if (fd_ < 0 && errno != ENOENT) return fail_with_errno(path, "cannot open the log", error);
-  if (fd_ >= 0) {
-    const bool is_sound = read_header();
-    if (is_sound) find_newest();
-    if (is_sound && capacity_ == capacity) return true;
-    close_file();
-    FixedText<600> aside(path);
-    char name[640];
-    std::snprintf(name, sizeof name, "%s.old", aside.c_str());
-    if (rename(path, name) != 0) return fail_with_errno(path, "cannot set aside the log", error);
+  const bool is_sound = fd_ >= 0 && read_header();
+  if (is_sound) find_newest();
+  if (is_sound && capacity_ == capacity) return true;
+  const std::int64_t capacity_before = std::exchange(capacity_, capacity);
+  if (replace(path, error)) return true;
+  if (is_sound && is_disk_trouble(errno)) {
+    capacity_ = capacity_before;
+    return true;
   }
-  capacity_ = capacity;
-  return create(path, error);
+  close_file();
+  return false;
+}
+
+/// On a read-only disk nothing can be added, but the counters of earlier runs are known. Always false.
+bool RingLog::learn_newest(const char* path, FileMessage& error) {
+  fd_ = ::open(path, O_RDONLY | O_CLOEXEC);
+  if (fd_ >= 0 && read_header()) find_newest();
+  close_file();
+  errno = EROFS;
+  return fail_with_errno(path, "cannot open the log", error);
 }
 
 bool RingLog::open_to_read(const char* path, FileMessage& error) {
@@ -83,23 +93,40 @@ bool RingLog::open_to_read(const char* path, FileMessage& error) {
   return true;
 }
 
-/// The whole file exists on disk, with its header, before it gets its name.
-bool RingLog::create(const char* path, FileMessage& error) {
+/// The new file is there as a whole before the old one loses its name.
+bool RingLog::replace(const char* path, FileMessage& error) {
   char beside[640];
   std::snprintf(beside, sizeof beside, "%s.new", path);
-  fd_ = ::open(beside, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (fd_ < 0) return fail_with_errno(beside, "cannot make the log", error);
-  const std::int64_t size = kHeaderBytes + capacity_ * static_cast<std::int64_t>(kRecordBytes);
-  errno = posix_fallocate(fd_, 0, size);  // a full disk must show now, not in a month
-  const bool made = errno == 0 && write_header(fd_) && fsync(fd_) == 0 && rename(beside, path) == 0;
-  if (!made) {
-    fail_with_errno(path, "cannot make the log", error);
+  const int made = make_whole(beside);
+  if (made < 0) return fail_with_errno(beside, "cannot make the log", error);
+  char aside[640];
+  std::snprintf(aside, sizeof aside, "%s.old", path);
+  const bool is_free = fd_ < 0 || rename(path, aside) == 0;
+  if (!is_free || rename(beside, path) != 0) {
+    fail_with_errno(path, "cannot set aside the log", error);
+    close(made);
     unlink(beside);
-    close_file();
     return false;
   }
+  close_file();
+  fd_ = made;
   sync_folder_of(path);
   return true;
+}
+
+/// At its full size and with its header, on the disk. Negative with errno set, and nothing left.
+int RingLog::make_whole(const char* path) const {
+  const int made = make_afresh(path);
+  if (made < 0) return -1;
+  const std::int64_t size = kHeaderBytes + capacity_ * static_cast<std::int64_t>(kRecordBytes);
+  int cause = posix_fallocate(made, 0, size);  // a full disk must show now, not in a month
+  errno = ENOSPC;                              // what a short write means
+  if (cause == 0 && write_header(made) && fsync(made) == 0) return made;
+  if (cause == 0) cause = errno;
+  close(made);
+  unlink(path);
+  errno = cause;
+  return -1;
 }
 
 bool RingLog::write_header(int fd) const {

@@ -27,9 +27,14 @@ class RingLog {
 
   /// For writing. A missing file is made; one of another capacity or without a sound header is set
   /// aside as "PATH.old", its numbers and newest record are taken over as far as they can be read.
+  /// Where the disk has no room for another one, a sound log goes on at the size that it has. False
+  /// with one line and errno; may be tried again.
   bool open(const char* path, std::int64_t capacity, FileMessage& error);
   /// For reading, beside a writer.
   bool open_to_read(const char* path, FileMessage& error);
+
+  [[nodiscard]] bool is_open() const { return fd_ >= 0; }
+  [[nodiscard]] std::int64_t capacity() const { return capacity_; }
 
   /// Writes behind the newest record and waits for the disk. False when the disk refused; the next
   /// call tries the same slot again.
@@ -44,7 +49,9 @@ class RingLog {
   bool read(std::uint64_t number, CycleRecord& record) const;
 
  private:
-  bool create(const char* path, FileMessage& error);
+  bool learn_newest(const char* path, FileMessage& error);
+  bool replace(const char* path, FileMessage& error);
+  int make_whole(const char* path) const;
   bool read_header();
   bool write_header(int fd) const;
   void find_newest();

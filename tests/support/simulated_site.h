@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <sstream>
 #include <stdexcept>
@@ -24,6 +25,17 @@ class SimulatedSite {
 
   /// Simulated time starts half a second from now.
   explicit SimulatedSite(std::int32_t time_scale) : time_scale_(time_scale) { start_clock(); }
+  SimulatedSite(const SimulatedSite&) = delete;
+  SimulatedSite& operator=(const SimulatedSite&) = delete;
+  /// What a killed controller leaves where all controllers of a machine lock their batteries.
+  ~SimulatedSite() {
+    const std::string prefix = "bess-127.0.0.1_" + std::to_string(battery_port) + "_";
+    std::error_code ignored;
+    for (const auto& file : std::filesystem::directory_iterator("/run/lock", ignored)) {
+      const bool is_ours = file.path().filename().string().starts_with(prefix);
+      if (is_ours) std::filesystem::remove(file.path(), ignored);
+    }
+  }
 
   /// Sets the simulated clock back to its start, for simulators that are started anew.
   void start_clock() { anchor_ns_ = clock_ns(CLOCK_MONOTONIC) + kNanosecondsPerSecond / 2; }

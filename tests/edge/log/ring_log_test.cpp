@@ -111,8 +111,13 @@ TEST(RecordCodec, LayoutOnDiskIsFixed) {
   EXPECT_EQ(bytes[206], 20);    // trip: soc_mismatch
   EXPECT_EQ(bytes[207], 0x20);  // its instant
   EXPECT_EQ(bytes[215], 33);    // weak_answers
-  EXPECT_EQ(bytes[219], 34);    // replaced_orders, the last field
-  for (std::size_t i = 223; i < kRecordBytes - 4; ++i) EXPECT_EQ(bytes[i], 0) << i;
+  EXPECT_EQ(bytes[219], 34);    // replaced_orders
+  EXPECT_EQ(bytes[223], 1);     // price.step_held
+  EXPECT_EQ(bytes[224], 0xE0);  // price.held_centi_eur_per_mwh = -32
+  EXPECT_EQ(bytes[228], 33);    // reversals.steps
+  EXPECT_EQ(bytes[232], 0xFF);  // reversals.direction = -1
+  EXPECT_EQ(bytes[234], 34);    // reversals.in_hour, the last field
+  for (std::size_t i = 236; i < kRecordBytes - 4; ++i) EXPECT_EQ(bytes[i], 0) << i;
 }
 
 /// A ring of the program that ended its records with flash_writes_today: later fields read as 0.
@@ -132,6 +137,9 @@ TEST(RecordCodec, ARecordOfAnOlderLayoutIsRead) {
   expected.measurement.order_replaced = expected.is_tripped = false;
   expected.trip = {.reason = Reason::kStopRequested, .utc_s = 0};  // code 0; counts only if tripped
   expected.weak_answers = expected.replaced_orders = 0;
+  expected.price.step_held = false;
+  expected.price.held_centi_eur_per_mwh = 0;
+  expected.reversals = {};
   EXPECT_EQ(bytes_of(back, 42), bytes_of(expected, 42));
 }
 
