@@ -29,10 +29,11 @@ std::uint64_t take(const std::uint8_t* bytes, int count) {
   return value;
 }
 
-void fill_header(std::uint8_t (&header)[kHeaderUsedBytes], std::int64_t capacity) {
+void fill_header(std::uint8_t (&header)[kHeaderUsedBytes], std::size_t record_bytes,
+                 std::int64_t capacity) {
   std::memcpy(header, kMagic, sizeof kMagic);
   put(header + 8, kVersion, 4);
-  put(header + 12, kRecordBytes, 4);
+  put(header + 12, record_bytes, 4);
   put(header + 16, static_cast<std::uint64_t>(capacity), 8);
   Crc32 crc;
   crc.add_bytes(header, 24);
@@ -50,7 +51,7 @@ void RingLog::close_file() {
 
 std::int64_t RingLog::offset_of(std::uint64_t number) const {
   return kHeaderBytes + static_cast<std::int64_t>(number % static_cast<std::uint64_t>(capacity_)) *
-                            static_cast<std::int64_t>(kRecordBytes);
+                            static_cast<std::int64_t>(record_bytes_);
 }
 
 bool RingLog::open(const char* path, std::int64_t capacity, FileMessage& error) {
@@ -59,10 +60,11 @@ bool RingLog::open(const char* path, std::int64_t capacity, FileMessage& error) 
   if (fd_ < 0 && errno != ENOENT) return fail_with_errno(path, "cannot open the log", error);
   const bool is_sound = fd_ >= 0 && read_header();
   if (is_sound) find_newest();
-  if (is_sound && capacity_ == capacity) return true;
+  const bool takes_records = is_sound && record_bytes_ == kRecordBytes;
+  if (takes_records && capacity_ == capacity) return true;
   const std::int64_t capacity_before = std::exchange(capacity_, capacity);
   if (replace(path, error)) return true;
-  if (is_sound && is_disk_trouble(errno)) {
+  if (takes_records && is_disk_trouble(errno)) {
     capacity_ = capacity_before;
     return true;
   }
@@ -110,6 +112,7 @@ bool RingLog::replace(const char* path, FileMessage& error) {
   }
   close_file();
   fd_ = made;
+  record_bytes_ = kRecordBytes;
   sync_folder_of(path);
   return true;
 }
@@ -131,7 +134,7 @@ int RingLog::make_whole(const char* path) const {
 
 bool RingLog::write_header(int fd) const {
   std::uint8_t header[kHeaderUsedBytes];
-  fill_header(header, capacity_);
+  fill_header(header, kRecordBytes, capacity_);
   return pwrite(fd, header, sizeof header, 0) == static_cast<ssize_t>(sizeof header);
 }
 
@@ -139,8 +142,9 @@ bool RingLog::read_header() {
   std::uint8_t header[kHeaderUsedBytes];
   if (pread(fd_, header, sizeof header, 0) != static_cast<ssize_t>(sizeof header)) return false;
   const auto capacity = static_cast<std::int64_t>(take(header + 16, 8));
+  record_bytes_ = take(header + 12, 4) == kOlderRecordBytes ? kOlderRecordBytes : kRecordBytes;
   std::uint8_t expected[kHeaderUsedBytes];
-  fill_header(expected, capacity);
+  fill_header(expected, record_bytes_, capacity);
   if (capacity < 1 || std::memcmp(header, expected, sizeof header) != 0) return false;
   struct stat info {};
   const bool is_file = fstat(fd_, &info) == 0;
@@ -150,24 +154,24 @@ bool RingLog::read_header() {
 }
 
 void RingLog::find_newest() {
-  constexpr std::size_t kChunkRecords = 64;
-  RecordBytes chunk[kChunkRecords];
+  constexpr std::size_t kChunkBytes = 64 * kRecordBytes;
+  std::uint8_t chunk[kChunkBytes];
   CycleRecord record;
   std::int64_t offset = kHeaderBytes;
   for (std::int64_t slot = 0; slot < capacity_;) {
     const ssize_t bytes = pread(fd_, chunk, sizeof chunk, offset);
-    const auto count = bytes > 0 ? static_cast<std::size_t>(bytes) / kRecordBytes : 0;
+    const auto count = bytes > 0 ? static_cast<std::size_t>(bytes) / record_bytes_ : 0;
     if (count == 0) return;  // shorter than it should be: what is there counts
     for (std::size_t i = 0; i < count && slot < capacity_; ++i, ++slot) {
       std::uint64_t number = 0;
       const bool whole =
-          decode_record(chunk[i], record, number) &&
+          decode_record({chunk + i * record_bytes_, record_bytes_}, record, number) &&
           number % static_cast<std::uint64_t>(capacity_) == static_cast<std::uint64_t>(slot);
       if (!whole || number <= newest_number_) continue;
       newest_number_ = number;
       newest_ = record;
     }
-    offset += static_cast<std::int64_t>(count * kRecordBytes);
+    offset += static_cast<std::int64_t>(count * record_bytes_);
   }
 }
 
@@ -195,10 +199,10 @@ std::uint64_t RingLog::oldest_number() const {
 
 bool RingLog::read(std::uint64_t number, CycleRecord& record) const {
   RecordBytes bytes;
-  const ssize_t got = pread(fd_, bytes.data(), bytes.size(), offset_of(number));
+  const ssize_t got = pread(fd_, bytes.data(), record_bytes_, offset_of(number));
   std::uint64_t found = 0;
-  return got == static_cast<ssize_t>(bytes.size()) && decode_record(bytes, record, found) &&
-         found == number;
+  return got == static_cast<ssize_t>(record_bytes_) &&
+         decode_record(std::span(bytes).first(record_bytes_), record, found) && found == number;
 }
 
 }  // namespace bess
