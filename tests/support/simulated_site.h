@@ -29,11 +29,13 @@ class SimulatedSite {
   SimulatedSite& operator=(const SimulatedSite&) = delete;
   /// What a killed controller leaves where all controllers of a machine lock their batteries.
   ~SimulatedSite() {
-    const std::string prefix = "bess-127.0.0.1_" + std::to_string(battery_port) + "_";
     std::error_code ignored;
     for (const auto& file : std::filesystem::directory_iterator("/run/lock", ignored)) {
-      const bool is_ours = file.path().filename().string().starts_with(prefix);
-      if (is_ours) std::filesystem::remove(file.path(), ignored);
+      for (const int port : battery_ports_) {
+        const std::string prefix = "bess-127.0.0.1_" + std::to_string(port) + "_";
+        const bool is_ours = file.path().filename().string().starts_with(prefix);
+        if (is_ours) std::filesystem::remove(file.path(), ignored);
+      }
     }
   }
 
@@ -64,6 +66,7 @@ class SimulatedSite {
         {"battery", "--port", std::to_string(port), "--record", folder.file("battery.csv")},
         options);
     battery_port = port_of(battery->read_line());
+    battery_ports_.push_back(battery_port);
   }
   void start_serial_battery(const std::string& device) {
     battery = start_simulator({"battery", "--serial", device, "--baud", "115200"}, {});
@@ -160,6 +163,7 @@ class SimulatedSite {
 
   std::int32_t time_scale_;
   std::int64_t anchor_ns_ = 0;
+  std::vector<int> battery_ports_;
 };
 
 }  // namespace bess
