@@ -16,6 +16,8 @@
 #include "edge/program/command_line.h"
 #include "edge/program/commission_command.h"
 #include "edge/program/commission_file.h"
+#include "edge/program/hold_command.h"
+#include "edge/program/hold_watch.h"
 #include "edge/program/log_command.h"
 #include "edge/program/release_command.h"
 #include "edge/program/run_locks.h"
@@ -95,7 +97,11 @@ int run_controller(const CommandLine& command_line, const EdgeConfig& config) {
   }
   loop.take_over(
       {.throughput = before.throughput,
-       .price_level = level_at_start(config, before.price_level, greeting, prices, clock)});
+       .price_level = level_at_start(config, before.price_level, greeting, prices, clock),
+       .last_full_day = last_full_day_of(before.utc_s, before.days_since_full)});
+  static HoldWatch holds;
+  holds.start(hold_path(config).c_str(), config.clock.scale);
+  loop.follow_holds(holds.mailbox());
   notify.ready();
   return run_supervised(loop, command_line.cycles, clock, log, notify) ? 0 : 1;
 }
@@ -114,6 +120,7 @@ int main(int argc, char** argv) {
   if (!load_edge_config(command_line.config_path, config, error)) return fail(error.c_str());
   if (command_line.command == SubCommand::kStatus) return run_status_command(command_line, config);
   if (command_line.command == SubCommand::kLog) return run_log_command(command_line, config);
+  if (command_line.command == SubCommand::kHold) return run_hold_command(command_line, config);
   if (command_line.dry_run) config.control.control = false;
   return run_controller(command_line, config);
 }

@@ -12,7 +12,8 @@
 //
 // Order of a cycle around its tick t (a multiple of 2 minutes UTC):
 //   t - read_lead_s  battery measurements        t  the row of minute t-1 is requested
-//   row in, or price_wait_s over                 decision, order written and read back
+//   row in, or price_wait_s over, and not before
+//   start_offset_ms after the tick               decision, order written and read back
 // Between cycles the battery's watchdog is fed as often as its register map asks.
 #pragma once
 
@@ -22,8 +23,11 @@
 #include "edge/control/control_types.h"
 #include "edge/control/cycle_budget.h"
 #include "edge/control/follow_monitor.h"
+#include "edge/control/full_charge.h"
+#include "edge/control/hold.h"
 #include "edge/control/policy.h"
 #include "edge/control/power_order.h"
+#include "edge/control/reserve.h"
 #include "edge/control/safety_guard.h"
 #include "shared/local_time.h"
 #include "shared/scaled_clock.h"
@@ -35,6 +39,7 @@ namespace bess {
 struct TakeOver {
   DayThroughput throughput{};
   PriceLevel price_level{};
+  std::int32_t last_full_day = 0;  ///< full_charge.h
 };
 
 constexpr std::int64_t next_tick_utc_s(std::int64_t now_utc_s) {
@@ -50,12 +55,17 @@ class ControlLoop {
         prices_(prices),
         clock_(clock),
         guard_(settings.guard),
-        cycle_budget_(settings.cycles_per_day_max_e4) {}
+        cycle_budget_(settings.cycles_per_day_max_e4),
+        full_charge_(settings.full_charge_every_days) {}
 
   void take_over(const TakeOver& before) {
     cycle_budget_.restore(before.throughput);
     price_level_ = before.price_level;
+    full_charge_.restore(before.last_full_day);
   }
+
+  /// Follows the holds that are published there, which outlives the loop.
+  void follow_holds(const HoldMailbox& holds) { holds_ = &holds; }
 
   /// Runs the cycle of the next tick; false when the process was asked to stop before it.
   bool run_cycle(CycleRecord& record) {
@@ -67,7 +77,7 @@ class ControlLoop {
     read_battery(record);
     if (!sleep_until_s(tick_utc_s)) return false;
     await_price(record);
-    if (clock_.stop_requested()) return false;
+    if (!await_start(tick_utc_s) || clock_.stop_requested()) return false;
     decide(record);
     act(record);
     count_deadline_miss(record);
@@ -151,8 +161,9 @@ class ControlLoop {
 
   /// Sleeps, and feeds the battery's watchdog meanwhile; false when asked to stop. Returns early when
   /// the clock was stepped back: the instant may lie hours ahead by now.
-  bool sleep_until_s(std::int64_t utc_s) {
-    const std::int64_t until_ns = utc_s * kNanosecondsPerSecond;
+  bool sleep_until_s(std::int64_t utc_s) { return sleep_until_ns(utc_s * kNanosecondsPerSecond); }
+
+  bool sleep_until_ns(std::int64_t until_ns) {
     while (true) {
       const std::int64_t before_ns = clock_.now_utc_ns();
       const std::int64_t due_ns = refresh_due_utc_ns();
@@ -195,8 +206,9 @@ class ControlLoop {
     }
     find_order_in_force(record.measurement);
     const bool is_driven = has_ordered_ && order_power_w_ != 0;
-    cycle_budget_.update(local_day_of(local_minute_of(record.utc_s)), record.measurement.soc_e4,
-                         is_driven);
+    const LocalMinute now = local_minute_of(record.utc_s);
+    cycle_budget_.update(local_day_of(now), record.measurement.soc_e4, is_driven);
+    full_charge_.update(local_day_number(now), record.measurement.soc_e4);
     observe_answer(record.measurement);
   }
 
@@ -255,8 +267,23 @@ class ControlLoop {
     }
   }
 
+  /// Before the decision, so that what is decided is ordered at once. What was late already, a price
+  /// or a battery, is not made later.
+  bool await_start(std::int64_t tick_utc_s) {
+    if (settings_.start_offset_ms == 0) return true;
+    return sleep_until_ns(tick_utc_s * kNanosecondsPerSecond +
+                          std::int64_t{settings_.start_offset_ms} * 1'000'000);
+  }
+
+  /// What people want of this cycle: a hold, and a reserve at this hour.
+  void take_wishes(CycleRecord& record) const {
+    if (holds_ != nullptr) record.hold = hold_at(holds_->latest(), record.utc_s);
+    record.reserve_soc_e4 = reserve_soc_e4_at(settings_.reserve, local_minute_of(record.utc_s));
+  }
+
   void decide(CycleRecord& record) {
     const std::int64_t start_ns = clock_.monotonic_ns();
+    take_wishes(record);
     const PriceReport& price = record.price;
     if (price.has_row) price_level_.observe(price.minute_utc_s, price.price_centi_eur_per_mwh);
     if (record.has_measurement && price.has_row) {
@@ -269,18 +296,22 @@ class ControlLoop {
     const std::int64_t decided_utc_s = decision_utc_s(record.utc_s);
     // Suspended between reading and deciding: a reading may be as old as a price, not older.
     const bool is_recent = decided_utc_s - record.utc_s <= settings_.guard.price_age_s_max;
-    const GuardDecision decision =
-        guard_.decide({.now_utc_s = decided_utc_s,
-                       .clock_ok = clock_.is_synchronised(),
-                       .link_ok = record.has_measurement && is_recent,
-                       .measurement = record.measurement,
-                       .wrong_direction = follow_.has_tripped(),
-                       .cycle_budget_spent = cycle_budget_.is_spent(),
-                       .previous_power_w = order_power_w_,
-                       .has_price = record.price.has_row,
-                       .price_minute_utc_s = record.price.minute_utc_s,
-                       .price_centi_eur_per_mwh = record.price.price_centi_eur_per_mwh,
-                       .student_action = record.student_action});
+    const GuardDecision decision = guard_.decide(
+        {.now_utc_s = decided_utc_s,
+         .clock_ok = clock_.is_synchronised(),
+         .link_ok = record.has_measurement && is_recent,
+         .measurement = record.measurement,
+         .wrong_direction = follow_.has_tripped(),
+         .cycle_budget_spent = cycle_budget_.is_spent(),
+         .previous_power_w = order_power_w_,
+         .has_price = record.price.has_row,
+         .price_minute_utc_s = record.price.minute_utc_s,
+         .price_centi_eur_per_mwh = record.price.price_centi_eur_per_mwh,
+         .student_action = record.student_action,
+         .held = record.hold.held,
+         .held_power_w = record.hold.power_w,
+         .reserve_soc_e4 = record.reserve_soc_e4,
+         .full_charge = full_charge_.wish(price.price_centi_eur_per_mwh, price_level_)});
     record.reason = decision.reason;
     record.ordered_power_w = decision.power_w;
     advance_mode(record);
@@ -340,10 +371,16 @@ class ControlLoop {
     fed_utc_ns_ = clock_.now_utc_ns();
     record.ordered_power_w = power_w;
     record.battery_status = battery_.order({.power_w = power_w,
-                                            .soc_min_e4 = settings_.guard.soc_min_e4,
+                                            .soc_min_e4 = soc_floor_e4(record),
                                             .soc_max_e4 = settings_.guard.soc_max_e4,
                                             .duration_s = settings_.order_duration_s});
     record.written = record.battery_status == Status::kOk;
+  }
+
+  /// Where the device itself stops to discharge.
+  [[nodiscard]] std::int32_t soc_floor_e4(const CycleRecord& record) const {
+    const std::int32_t soc_min_e4 = settings_.guard.soc_min_e4;
+    return record.reserve_soc_e4 > soc_min_e4 ? record.reserve_soc_e4 : soc_min_e4;
   }
 
   void write_release(CycleRecord& record) {
@@ -368,6 +405,7 @@ class ControlLoop {
     record.unanswered_orders = follow_.unanswered_orders();
     record.throughput = cycle_budget_.today();
     record.price_level = price_level_;
+    record.days_since_full = full_charge_.days_since_full();
     record.counters = battery_.counters();
   }
 
@@ -381,6 +419,8 @@ class ControlLoop {
   Clock& clock_;
   SafetyGuard guard_;
   CycleBudget cycle_budget_;
+  FullCharge full_charge_;
+  const HoldMailbox* holds_ = nullptr;
   PriceLevel price_level_;
   FollowMonitor follow_;
   Mode mode_ = Mode::kStart;

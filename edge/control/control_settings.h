@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "edge/control/reserve.h"
 #include "edge/control/safety_guard.h"
 
 namespace bess {
@@ -17,6 +18,11 @@ struct ControlSettings {
   std::int32_t read_lead_s = 3;
   std::int32_t order_deadline_s = 60;  ///< an order in force later than this after its tick is late
   std::int32_t cycles_per_day_max_e4 = 0;  ///< in 1e-4 full cycles; 0 = no budget
+  ReservePlan reserve{};
+  std::int32_t full_charge_every_days = 0;  ///< 0 = never; its power is the guard's
+  /// After the tick nothing is ordered before this has passed: many controllers on one grid must not
+  /// switch at one instant.
+  std::int32_t start_offset_ms = 0;
 };
 
 }  // namespace bess

@@ -11,6 +11,7 @@
 
 #include "edge/base/status.h"
 #include "edge/control/cycle_budget.h"
+#include "edge/control/hold.h"
 #include "edge/control/mode.h"
 #include "shared/action.h"
 #include "shared/price_level.h"
@@ -70,11 +71,14 @@ enum class Reason : std::uint8_t {
   kLastStopReason = kPriceQuarterHour,  ///< up to here: the battery must not be driven
   kSocFull,
   kSocEmpty,
+  kReserve,
   kCycleBudget,
   kPowerLimit,
   kRamp,
+  kHeld,
   kPriceLow,
   kPriceHigh,
+  kFullCharge,
   kStudent  ///< no intervention
 };
 
@@ -84,10 +88,10 @@ constexpr bool is_stop_reason(Reason reason) { return reason <= Reason::kLastSto
 
 constexpr std::string_view reason_name(Reason reason) {
   constexpr std::string_view kNames[] = {
-      "stop_requested", "hand_over", "clock",           "link",         "alarm",
-      "temperature",    "off_grid",  "wrong_direction", "no_price",     "price_age",
-      "price_qh",       "soc_full",  "soc_empty",       "cycle_budget", "power_limit",
-      "ramp",           "price_low", "price_high",      "student"};
+      "stop_requested", "hand_over",       "clock",        "link",        "alarm",    "temperature",
+      "off_grid",       "wrong_direction", "no_price",     "price_age",   "price_qh", "soc_full",
+      "soc_empty",      "reserve",         "cycle_budget", "power_limit", "ramp",     "held",
+      "price_low",      "price_high",      "full_charge",  "student"};
   static_assert(std::size(kNames) == kReasonCount);
   return kNames[static_cast<int>(reason)];
 }
@@ -123,6 +127,9 @@ struct CycleRecord {
   BatteryCounters counters{};
   PriceLevel price_level{};        ///< the prices of this cycle included
   std::int16_t context_class = 0;  ///< what the student was given, 1..12; 0 = it was not asked
+  HoldReport hold{};
+  std::int16_t reserve_soc_e4 = 0;   ///< that held at the tick; 0 = none
+  std::int16_t days_since_full = 0;  ///< local days since the SoC was last full
 };
 
 }  // namespace bess

@@ -33,6 +33,9 @@ void check_cycle(const HealthInputs& in, std::vector<std::string>& reasons) {
   if (in.price_status != "ok") {
     reasons.push_back("WARN: prices: " + std::string(in.price_status));
   }
+  if (in.hold_is_unreadable) {
+    reasons.emplace_back("WARN: the hold file is not readable and not followed: bess-edge hold");
+  }
 }
 
 }  // namespace

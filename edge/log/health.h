@@ -23,6 +23,7 @@ struct HealthInputs {
   bool disk_is_slow = false;
   bool disk_is_failing = false;
   std::int64_t cycles_behind = 0;  ///< cycles that the log has and the status has not
+  bool hold_is_unreadable = false;
 };
 
 enum class HealthLevel { kOk = 0, kDegraded = 1, kNotRunning = 3 };  ///< also the exit codes

@@ -18,6 +18,7 @@ consteval auto make_record_fields() {
   using C = BatteryCounters;
   using D = DayThroughput;
   using L = PriceLevel;
+  using H = HoldReport;
   return std::to_array<Field<CycleRecord>>({
       {utc_member<&R::utc_s>(),
        "utc",
@@ -121,6 +122,24 @@ consteval auto make_record_fields() {
       {member<&R::context_class>().given<&R::has_student_action>(),
        "context_class",
        {.csv = 31, .last = 64}},
+      {member<&R::hold, &H::held>(), "held", {.last = 141}},
+      {member<&R::hold, &H::unreadable>(), "hold_unreadable", {.last = 142}},
+      {member<&R::hold, &H::power_w>().given<&R::hold, &H::held>(),
+       "hold_power_w",
+       {.csv = 32, .last = 143, .metrics = {41, "bess_hold_watts"}},
+       {"Power that an operator holds, positive is charging."}},
+      {utc_member<&R::hold, &H::until_utc_s>().given<&R::hold, &H::held>(),
+       "hold_until_utc",
+       {.csv = 33, .last = 144, .metrics = {42, "bess_hold_until_timestamp_seconds"}},
+       {"End of that hold, UTC."}},
+      {member<&R::reserve_soc_e4>(),
+       "reserve_soc_e4",
+       {.csv = 34, .last = 151, .metrics = {43, "bess_reserve_soc_ratio"}},
+       {"State of charge that is kept for a black-out at this hour, 0 to 1.", 10'000}},
+      {member<&R::days_since_full>(),
+       "days_since_full",
+       {.csv = 35, .last = 152, .metrics = {44, "bess_days_since_full"}},
+       {"Local days since the battery was last full."}},
   });
 }
 

@@ -35,7 +35,8 @@ struct StableCodes<Reason> {
       Reason::kTemperature,      Reason::kOffGrid,     Reason::kNoPrice,  Reason::kPriceAge,
       Reason::kPriceQuarterHour, Reason::kSocFull,     Reason::kSocEmpty, Reason::kPowerLimit,
       Reason::kPriceLow,         Reason::kPriceHigh,   Reason::kStudent,  Reason::kHandOver,
-      Reason::kWrongDirection,   Reason::kCycleBudget, Reason::kRamp};
+      Reason::kWrongDirection,   Reason::kCycleBudget, Reason::kRamp,     Reason::kHeld,
+      Reason::kReserve,          Reason::kFullCharge};
   static constexpr auto kNameOf = reason_name;
 };
 

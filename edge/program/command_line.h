@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace bess {
@@ -15,7 +16,8 @@ enum class SubCommand : std::uint8_t {
   kRelease,
   kStatus,
   kLog,
-  kSignature
+  kSignature,
+  kHold
 };
 
 struct CommandLine {
@@ -27,9 +29,13 @@ struct CommandLine {
   bool json = false;
   bool prometheus = false;
   bool follow = false;
+  bool no_lock = false;
   bool csv = false;
   std::int64_t last = -1;                ///< -1 = all
   std::int64_t since_utc_s = INT64_MIN;  ///< INT64_MIN = all
+  std::optional<std::int64_t> hold_power_w;
+  std::int64_t hold_for_s = 0;  ///< 0 = not given
+  bool release_hold = false;
 };
 
 enum class CommandLineResult { kGo, kExitOk, kExitUsage };

@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "edge/prices/http_secrets.h"
+#include "edge/program/people_config.h"
 #include "edge/registers/codec.h"
 #include "edge/registers/map_file.h"
 #include "shared/host/toml_reader.h"
@@ -85,6 +86,7 @@ void read_battery(TomlTable table, EdgeConfig& config) {
   table.boolean("allow_without_watchdog", config.allow_without_watchdog);
   table.boolean("start_without_battery", config.start_without_battery);
   table.integer("read_lead_s", config.control.read_lead_s, 0, 60);
+  read_full_charge(table, config.control);
   static_cast<void>(table.table("units"));
   config.link.rtu = transport == 1;
   config.link.parity = static_cast<Parity>(parity);
@@ -213,6 +215,7 @@ void read_guard(TomlTable table, EdgeConfig& config) {
   table.scaled("cycles_per_day_max", config.control.cycles_per_day_max_e4, 10'000, 0, 100);
   table.integer("order_deadline_s", config.control.order_deadline_s, 1, kSecondsPerStep);
   table.boolean("require_synchronised_clock", config.require_synchronised_clock);
+  read_start_spread(table, config);
   table.finish();
   if (!guard.thresholds.are_ordered()) {
     table.fail("low_price_eur_per_mwh", "must be below high_price_eur_per_mwh");
@@ -297,10 +300,15 @@ bool load_edge_config(const std::string& path, EdgeConfig& config, std::string& 
   check_battery_against_map(section(root, "battery"), config);
   read_price(section(root, "price"), config);
   read_guard(section(root, "guard"), config);
+  read_reserve(root, config.control);
+  TomlTable battery = section(root, "battery");
+  check_full_charge(battery, config.control);
   read_state(section(root, "state"), config);
   read_log(section(root, "log"), config);
   read_metrics(section(root, "metrics"), config);
   read_simulation(section(root, "simulation"), config.clock);
+  static_cast<void>(
+      root.table("notify"));  // bess-notify's: a slip there must not stop the controller
   root.finish();
   config.control.price_wait_s = config.price.wait_s;
   if (config.map.watchdog.duration_s > 0) {

@@ -1,7 +1,9 @@
 #include "edge/program/status_command.h"
 
+#include <signal.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
 #include <fstream>
 #include <sstream>
@@ -24,6 +26,7 @@ using P = PriceReport;
 using C = BatteryCounters;
 using L = PriceLevel;
 using T = RunTotals;
+using H = HoldReport;
 
 bool read_text(const char* path, std::string& text) {
   const std::ifstream file(path);
@@ -73,8 +76,16 @@ std::int64_t cycles_behind(const EdgeConfig& config, JsonValue status) {
   return (newest.utc_s - published_utc_s) / kSecondsPerStep;
 }
 
-Health health_of(const EdgeConfig& config, JsonValue status) {
-  const int holder = holder_of(state_lock_path(config).c_str());
+/// The process that wrote the status, while it lives; 0 = none. A status of before the last boot is nobody's.
+long long living_writer_of(JsonValue status) {
+  const long long pid = whole(status["pid"]);
+  if (pid <= 0 || age_ms_of(status) < 0) return 0;
+  return kill(static_cast<pid_t>(pid), 0) == 0 || errno == EPERM ? pid : 0;
+}
+
+Health health_of(const EdgeConfig& config, JsonValue status, bool no_lock) {
+  const long long holder =
+      no_lock ? living_writer_of(status) : holder_of(state_lock_path(config).c_str());
   HealthInputs in;
   in.is_running = holder != 0;
   if (!status.exists()) return assess_health(in);
@@ -89,6 +100,7 @@ Health health_of(const EdgeConfig& config, JsonValue status) {
   in.unanswered_orders = whole(field<&R::unanswered_orders>(status));
   in.disk_is_slow = is_true(field<&T::disk_is_slow>(status));
   in.disk_is_failing = is_true(field<&T::disk_is_failing>(status));
+  in.hold_is_unreadable = is_true(field<&R::hold, &H::unreadable>(status));
   if (in.is_of_this_run && in.cycles > 0) in.cycles_behind = cycles_behind(config, status);
   return assess_health(in);
 }
@@ -115,6 +127,18 @@ void print_level(JsonValue s) {
   }
 }
 
+/// What people asked for: a hold with its end, the reserve of this hour, full charges.
+void print_wishes(JsonValue s) {
+  if (is_true(field<&R::hold, &H::held>(s))) {
+    std::printf("hold       %lld W until %s\n", whole(field<&R::hold, &H::power_w>(s)),
+                text_of(field<&R::hold, &H::until_utc_s>(s)));
+  }
+  const double reserve_e4 = number(field<&R::reserve_soc_e4>(s));
+  if (reserve_e4 > 0) std::printf("reserve    SoC %.1f %% at this hour\n", reserve_e4 / 100);
+  std::printf("full       %lld days since the last full charge\n",
+              whole(field<&R::days_since_full>(s)));
+}
+
 void print_last_cycle(JsonValue s) {
   std::printf("state      %s at %s, cycle %lld\n", text_of(field<&R::mode>(s)),
               text_of(field<&R::utc_s>(s)), whole(field<&R::cycle>(s)));
@@ -136,6 +160,7 @@ void print_last_cycle(JsonValue s) {
   print_level(s);
   std::printf("order      %.0f W, reason %s\n", number(field<&R::ordered_power_w>(s)),
               text_of(field<&R::reason>(s)));
+  print_wishes(s);
 }
 
 void print_counters(JsonValue s) {
@@ -210,7 +235,7 @@ bool print_metrics(const EdgeConfig& config) {
 
 int print_once(const CommandLine& command_line, const EdgeConfig& config) {
   Json status = read_status(config);
-  const Health health = health_of(config, status.value());
+  const Health health = health_of(config, status.value(), command_line.no_lock);
   if (command_line.prometheus) {
     if (!print_metrics(config)) return 1;
   } else if (command_line.json) {

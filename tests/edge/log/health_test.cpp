@@ -45,6 +45,7 @@ TEST(Health, EveryTroubleHasItsReason) {
        "after 6 orders"},
       {[](HealthInputs& in) { in.disk_is_slow = true; }, HealthLevel::kDegraded, "too slow"},
       {[](HealthInputs& in) { in.disk_is_failing = true; }, HealthLevel::kDegraded, "disk full"},
+      {[](HealthInputs& in) { in.hold_is_unreadable = true; }, HealthLevel::kDegraded, "hold file"},
       {[](HealthInputs& in) {
          in.age_ms = 1'319'000;
          in.cycles_behind = 10;

@@ -54,6 +54,9 @@ inline CycleRecord full_record(std::int64_t cycle) {
   r.throughput = {.local_day = 28, .soc_moved_e4 = 29};
   r.price_level = {.centi_q16 = -30, .row_minute_utc_s = 31};
   r.context_class = 12;
+  r.hold = {.held = true, .unreadable = true, .power_w = -32, .until_utc_s = 33};
+  r.reserve_soc_e4 = 34;
+  r.days_since_full = 35;
   return r;
 }
 
@@ -81,13 +84,15 @@ inline CycleRecord longest_record() {
   r.throughput = {.local_day = INT32_MIN, .soc_moved_e4 = INT32_MIN};
   r.price_level = {.centi_q16 = INT64_MIN, .row_minute_utc_s = INT64_MIN};
   r.context_class = INT16_MIN;
+  r.hold = {.held = true, .power_w = INT32_MIN, .until_utc_s = UINT32_MAX};
+  r.reserve_soc_e4 = r.days_since_full = INT16_MIN;
   r.counters = {INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT32_MIN};
   r.counters.requests = 0;  // requests - failed_requests must not overflow
   r.counters.failed_requests = INT64_MAX;
   return r;
 }
 
-/// Enumerators number i of every enumeration, round and round: 19 of them show each name.
+/// Enumerators number i of every enumeration, round and round: one for each reason shows every name.
 inline CycleRecord record_with_enumerators(int i) {
   CycleRecord r = full_record(i);
   r.mode = static_cast<Mode>(i % kModeCount);
