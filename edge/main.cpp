@@ -19,6 +19,7 @@
 #include "edge/program/hold_command.h"
 #include "edge/program/hold_watch.h"
 #include "edge/program/log_command.h"
+#include "edge/program/people_config.h"
 #include "edge/program/release_command.h"
 #include "edge/program/run_locks.h"
 #include "edge/program/signature_command.h"

@@ -11,6 +11,7 @@
 #include "edge/log/journal.h"
 #include "edge/log/whole_file.h"
 #include "edge/program/hold_file.h"
+#include "edge/program/people_config.h"
 #include "edge/program/run_locks.h"
 #include "shared/local_time.h"
 #include "shared/utc_text.h"
@@ -59,12 +60,6 @@ int release_hold(const char* path) {
 }
 
 }  // namespace
-
-FixedText<639> hold_path(const EdgeConfig& config) {
-  char path[640];
-  std::snprintf(path, sizeof path, "%s/hold", config.state.folder.c_str());
-  return {path};
-}
 
 int run_hold_command(const CommandLine& command_line, const EdgeConfig& config) {
   const FixedText<639> path = hold_path(config);

@@ -62,6 +62,10 @@ ReservePeriod read_period(TomlTable table, const GuardSettings& guard) {
 
 }  // namespace
 
+FixedText<639> hold_path(const EdgeConfig& config) {
+  return {std::string(config.state.folder.view()) + "/hold"};
+}
+
 void read_full_charge(TomlTable& battery, ControlSettings& control) {
   std::int32_t share_e4 = 5'000;
   battery.integer("full_charge_every_days", control.full_charge_every_days, 0, 365);

@@ -16,6 +16,9 @@ void read_reserve(TomlTable& root, ControlSettings& control);
 /// Key start_spread_s of [guard]; the place of the battery must be known.
 void read_start_spread(TomlTable& guard, EdgeConfig& config);
 
+/// Where a controller of this configuration looks for an operator's hold.
+FixedText<639> hold_path(const EdgeConfig& config);
+
 /// A full charge that soc_max forbids would be tried for ever.
 void check_full_charge(TomlTable& battery, const ControlSettings& control);
 
