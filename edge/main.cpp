@@ -17,7 +17,10 @@
 #include "edge/program/command_line.h"
 #include "edge/program/commission_command.h"
 #include "edge/program/commission_file.h"
+#include "edge/program/hold_command.h"
+#include "edge/program/hold_watch.h"
 #include "edge/program/log_command.h"
+#include "edge/program/people_config.h"
 #include "edge/program/release_command.h"
 #include "edge/program/run_locks.h"
 #include "edge/program/signature_command.h"
@@ -103,7 +106,11 @@ int run_controller(const CommandLine& command_line, const EdgeConfig& config) {
        .price_level = level_at_start(config, before.price_level, greeting, prices, clock),
        .trip = before.is_tripped && !is_cleared ? before.trip : Trip{},
        .reversals = before.reversals,
-       .reversals_utc_s = before.utc_s});
+       .reversals_utc_s = before.utc_s,
+       .last_full_day = last_full_day_of(before.utc_s, before.days_since_full)});
+  static HoldWatch holds;
+  holds.start(hold_path(config).c_str(), config.clock.scale);
+  loop.follow_holds(holds.mailbox());
   notify.ready();
   return run_supervised(loop, command_line.cycles, clock, log, notify, clearance.c_str()) ? 0 : 1;
 }
@@ -123,6 +130,7 @@ int main(int argc, char** argv) {
   if (command_line.command == SubCommand::kStatus) return run_status_command(command_line, config);
   if (command_line.command == SubCommand::kClear) return run_clear_command(command_line, config);
   if (command_line.command == SubCommand::kLog) return run_log_command(command_line, config);
+  if (command_line.command == SubCommand::kHold) return run_hold_command(command_line, config);
   if (command_line.dry_run) config.control.control = false;
   return run_controller(command_line, config);
 }

@@ -12,17 +12,22 @@
 //
 // Order of a cycle around its tick t (a multiple of 2 minutes UTC):
 //   t - read_lead_s  battery measurements        t  the row of minute t-1 is requested
-//   row in, or price_wait_s over                 decision, order written and read back
+//   row in, or price_wait_s over, and not before
+//   start_offset_ms after the tick               decision, order written and read back
 // Between cycles the battery's watchdog is fed as often as its register map asks.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "edge/control/control_settings.h"
 #include "edge/control/control_types.h"
 #include "edge/control/cycle_budget.h"
+#include "edge/control/full_charge.h"
+#include "edge/control/hold.h"
 #include "edge/control/policy.h"
 #include "edge/control/power_order.h"
+#include "edge/control/reserve.h"
 #include "edge/control/safety_guard.h"
 #include "edge/control/supervision.h"
 #include "shared/local_time.h"
@@ -38,6 +43,7 @@ struct TakeOver {
   Trip trip{};
   ReversalHistory reversals{};
   std::int64_t reversals_utc_s = 0;  ///< when that history was written
+  std::int32_t last_full_day = 0;    ///< full_charge.h
 };
 
 constexpr std::int64_t next_tick_utc_s(std::int64_t now_utc_s) {
@@ -55,14 +61,20 @@ class ControlLoop {
         guard_(settings.guard),
         cycle_budget_(settings.cycles_per_day_max_e4),
         reversal_cap_(settings.reversals_per_hour_max),
-        supervision_(settings.supervision) {}
+        full_charge_(settings.full_charge_every_days),
+        supervision_(settings.supervision),
+        soc_floor_e4_(settings.guard.soc_min_e4) {}
 
   void take_over(const TakeOver& before) {
     cycle_budget_.restore(before.throughput);
     price_level_ = before.price_level;
     supervision_.restore(before.trip);
     reversal_cap_.restore(before.reversals, before.reversals_utc_s);
+    full_charge_.restore(before.last_full_day);
   }
+
+  /// Follows the holds that are published there, which outlives the loop.
+  void follow_holds(const HoldMailbox& holds) { holds_ = &holds; }
 
   [[nodiscard]] const Trip& trip() const { return supervision_.trip(); }
   /// A person has looked: the battery may be driven again.
@@ -79,7 +91,7 @@ class ControlLoop {
     read_battery(record);
     if (!sleep_until_s(tick_utc_s)) return false;
     await_price(record);
-    if (clock_.stop_requested()) return false;
+    if (!await_start(tick_utc_s) || clock_.stop_requested()) return false;
     decide(record);
     act(record);
     count_deadline_miss(record);
@@ -163,8 +175,9 @@ class ControlLoop {
 
   /// Sleeps, and feeds the battery's watchdog meanwhile; false when asked to stop. Returns early when
   /// the clock was stepped back: the instant may lie hours ahead by now.
-  bool sleep_until_s(std::int64_t utc_s) {
-    const std::int64_t until_ns = utc_s * kNanosecondsPerSecond;
+  bool sleep_until_s(std::int64_t utc_s) { return sleep_until_ns(utc_s * kNanosecondsPerSecond); }
+
+  bool sleep_until_ns(std::int64_t until_ns) {
     while (true) {
       const std::int64_t before_ns = clock_.now_utc_ns();
       const std::int64_t due_ns = refresh_due_utc_ns();
@@ -207,8 +220,9 @@ class ControlLoop {
     }
     find_order_in_force(record.measurement);
     const bool is_driven = has_ordered_ && order_power_w_ != 0;
-    cycle_budget_.update(local_day_of(local_minute_of(record.utc_s)), record.measurement.soc_e4,
-                         is_driven);
+    const LocalMinute now = local_minute_of(record.utc_s);
+    cycle_budget_.update(local_day_of(now), record.measurement.soc_e4, is_driven);
+    full_charge_.update(local_day_number(now), record.measurement.soc_e4);
     if (settings_.control) observe_answer(record.measurement);
   }
 
@@ -222,6 +236,7 @@ class ControlLoop {
          .is_driven = has_ordered_ && m.dispatch_active && is_known && !m.order_replaced,
          .ordered_power_w = m.has_order_power ? m.order_power_w : order_power_w_,
          .order_age_s = static_cast<std::int32_t>(read_utc_s - ordered_since_utc_s_),
+         .soc_floor_e4 = soc_floor_e4_,
          .measurement = m},
         !has_ordered_);
   }
@@ -284,8 +299,24 @@ class ControlLoop {
     }
   }
 
+  /// Before the decision, so that what is decided is ordered at once. What was late already, a price
+  /// or a battery, is not made later.
+  bool await_start(std::int64_t tick_utc_s) {
+    if (settings_.start_offset_ms == 0) return true;
+    return sleep_until_ns(tick_utc_s * kNanosecondsPerSecond +
+                          std::int64_t{settings_.start_offset_ms} * 1'000'000);
+  }
+
+  /// What people want of this cycle: a hold, and a reserve at this hour.
+  void take_wishes(CycleRecord& record) {
+    if (holds_ != nullptr) record.hold = hold_at(holds_->latest(), record.utc_s);
+    record.reserve_soc_e4 = reserve_soc_e4_at(settings_.reserve, local_minute_of(record.utc_s));
+    reserve_soc_e4_ = record.reserve_soc_e4;
+  }
+
   void decide(CycleRecord& record) {
     const std::int64_t start_ns = clock_.monotonic_ns();
+    take_wishes(record);
     const PriceReport& price = record.price;
     if (price.has_row) price_level_.observe(price.minute_utc_s, price.price_centi_eur_per_mwh);
     if (record.has_measurement && price.has_row) {
@@ -299,19 +330,23 @@ class ControlLoop {
     const std::int64_t decided_utc_s = decision_utc_s(record.utc_s);
     // Suspended between reading and deciding: a reading may be as old as a price, not older.
     const bool is_recent = decided_utc_s - record.utc_s <= settings_.guard.price_age_s_max;
-    const GuardDecision decision =
-        guard_.decide({.now_utc_s = decided_utc_s,
-                       .clock_ok = clock_.is_synchronised(),
-                       .link_ok = record.has_measurement && is_recent,
-                       .measurement = record.measurement,
-                       .supervision = supervision_.stop_reason(),
-                       .cycle_budget_spent = cycle_budget_.is_spent(),
-                       .barred_direction = reversal_cap_.barred_direction(),
-                       .previous_power_w = order_power_w_,
-                       .has_price = record.price.has_row,
-                       .price_minute_utc_s = record.price.minute_utc_s,
-                       .price_centi_eur_per_mwh = record.price.price_centi_eur_per_mwh,
-                       .student_action = record.student_action});
+    const GuardDecision decision = guard_.decide(
+        {.now_utc_s = decided_utc_s,
+         .clock_ok = clock_.is_synchronised(),
+         .link_ok = record.has_measurement && is_recent,
+         .measurement = record.measurement,
+         .supervision = supervision_.stop_reason(),
+         .cycle_budget_spent = cycle_budget_.is_spent(),
+         .barred_direction = reversal_cap_.barred_direction(),
+         .previous_power_w = order_power_w_,
+         .has_price = record.price.has_row,
+         .price_minute_utc_s = record.price.minute_utc_s,
+         .price_centi_eur_per_mwh = record.price.price_centi_eur_per_mwh,
+         .student_action = record.student_action,
+         .held = record.hold.held,
+         .held_power_w = record.hold.power_w,
+         .reserve_soc_e4 = record.reserve_soc_e4,
+         .full_charge = full_charge_.wish(price.price_centi_eur_per_mwh, price_level_)});
     record.reason = decision.reason;
     record.ordered_power_w = decision.power_w;
     reversal_cap_.note(decision.power_w);
@@ -378,11 +413,12 @@ class ControlLoop {
       record.price_age_s =
           static_cast<std::int32_t>(price_age_s(now_utc_s(), record.price.minute_utc_s));
     }
+    soc_floor_e4_ = std::max(settings_.guard.soc_min_e4, reserve_soc_e4_);
     // 0 W is never too late.
     const bool is_bound = power_w != 0;
     record.battery_status =
         battery_.order({.power_w = power_w,
-                        .soc_min_e4 = settings_.guard.soc_min_e4,
+                        .soc_min_e4 = soc_floor_e4_,
                         .soc_max_e4 = settings_.guard.soc_max_e4,
                         .duration_s = settings_.order_duration_s,
                         .write_until_ns = is_bound ? write_until_ns_ : INT64_MAX,
@@ -417,6 +453,7 @@ class ControlLoop {
     record.throughput = cycle_budget_.today();
     record.reversals = reversal_cap_.history();
     record.price_level = price_level_;
+    record.days_since_full = full_charge_.days_since_full();
     record.counters = battery_.counters();
   }
 
@@ -431,6 +468,9 @@ class ControlLoop {
   SafetyGuard guard_;
   CycleBudget cycle_budget_;
   ReversalCap reversal_cap_;
+  FullCharge full_charge_;
+  const HoldMailbox* holds_ = nullptr;
+  std::int32_t reserve_soc_e4_ = 0;  ///< of this hour; 0 = none
   PriceLevel price_level_;
   Supervision supervision_;
   Mode mode_ = Mode::kStart;
@@ -445,6 +485,7 @@ class ControlLoop {
   std::int32_t order_power_w_ = 0;        ///< of that order
   bool order_is_confirmed_ = false;       ///< it was read back
   std::int64_t ordered_since_utc_s_ = 0;  ///< when that power was ordered first
+  std::int32_t soc_floor_e4_;             ///< at which the device itself stops to discharge by it
   std::int64_t write_until_ns_ = 0;       ///< monotonic, of this cycle's order
   std::int64_t feed_until_ns_ = 0;
   bool looked_for_order_ = false;  ///< the first reading tells what an earlier run left in force

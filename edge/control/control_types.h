@@ -11,6 +11,7 @@
 
 #include "edge/base/status.h"
 #include "edge/control/cycle_budget.h"
+#include "edge/control/hold.h"
 #include "edge/control/mode.h"
 #include "edge/control/reversal_cap.h"
 #include "shared/action.h"
@@ -81,12 +82,15 @@ enum class Reason : std::uint8_t {
   kLastStopReason = kPriceQuarterHour,  ///< up to here: the battery must not be driven
   kSocFull,
   kSocEmpty,
+  kReserve,
   kCycleBudget,
   kReversalCap,
   kPowerLimit,
   kRamp,
+  kHeld,
   kPriceLow,
   kPriceHigh,
+  kFullCharge,
   kStudent  ///< no intervention
 };
 
@@ -101,15 +105,36 @@ constexpr bool is_better_released(Reason reason) {
 }
 
 constexpr std::string_view reason_name(Reason reason) {
-  constexpr std::string_view kNames[] = {"stop_requested", "hand_over",       "clock",
-                                         "link",           "alarm",           "temperature",
-                                         "off_grid",       "wrong_direction", "uncontrolled_power",
-                                         "soc_mismatch",   "other_master",    "orders_fail",
-                                         "no_answer",      "capacity",        "soc_jump",
-                                         "no_price",       "price_age",       "price_qh",
-                                         "soc_full",       "soc_empty",       "cycle_budget",
-                                         "reversal_cap",   "power_limit",     "ramp",
-                                         "price_low",      "price_high",      "student"};
+  constexpr std::string_view kNames[] = {"stop_requested",
+                                         "hand_over",
+                                         "clock",
+                                         "link",
+                                         "alarm",
+                                         "temperature",
+                                         "off_grid",
+                                         "wrong_direction",
+                                         "uncontrolled_power",
+                                         "soc_mismatch",
+                                         "other_master",
+                                         "orders_fail",
+                                         "no_answer",
+                                         "capacity",
+                                         "soc_jump",
+                                         "no_price",
+                                         "price_age",
+                                         "price_qh",
+                                         "soc_full",
+                                         "soc_empty",
+                                         "reserve",
+                                         "cycle_budget",
+                                         "reversal_cap",
+                                         "power_limit",
+                                         "ramp",
+                                         "held",
+                                         "price_low",
+                                         "price_high",
+                                         "full_charge",
+                                         "student"};
   static_assert(std::size(kNames) == kReasonCount);
   return kNames[static_cast<int>(reason)];
 }
@@ -158,6 +183,9 @@ struct CycleRecord {
   std::int32_t weak_answers = 0;     ///< readings in a row with less power than ordered
   std::int32_t replaced_orders = 0;  ///< since start: of ours, by somebody else
   ReversalHistory reversals{};       ///< this cycle's order included
+  HoldReport hold{};
+  std::int16_t reserve_soc_e4 = 0;   ///< that held at the tick; 0 = none
+  std::int16_t days_since_full = 0;  ///< local days since the SoC was last full
 };
 
 }  // namespace bess

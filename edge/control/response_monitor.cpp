@@ -102,8 +102,7 @@ bool ResponseMonitor::may_be_less(const Response& now) const {
   const BatteryMeasurement& m = now.measurement;
   const bool is_charging = now.ordered_power_w > 0;
   if (is_charging && m.temperature_min_deci_c < kColdDeciC) return true;
-  return is_charging ? m.soc_e4 >= kSlowFromE4
-                     : m.soc_e4 <= settings_.soc_min_e4 + kSlowAboveFloorE4;
+  return is_charging ? m.soc_e4 >= kSlowFromE4 : m.soc_e4 <= now.soc_floor_e4 + kSlowAboveFloorE4;
 }
 
 /// The reading's own power since its order, the power of the reading before until then.

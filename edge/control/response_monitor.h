@@ -24,7 +24,6 @@ struct ResponseSettings {
   ResponseBand band;
   std::int32_t power_w = 4'000;      ///< rated
   std::int32_t capacity_wh = 8'000;  ///< where the device tells none
-  std::int32_t soc_min_e4 = 1'000;   ///< floor of the orders
 };
 
 /// One reading, and the order that the battery followed when it was taken.
@@ -33,6 +32,8 @@ struct Response {
   bool is_driven = false;  ///< false: the battery is in its own mode, which goes any way
   std::int32_t ordered_power_w = 0;
   std::int32_t order_age_s = 0;  ///< since this power was ordered
+  std::int32_t soc_floor_e4 =
+      1'000;  ///< at which the device itself stops to discharge by that order
   BatteryMeasurement measurement;
 };
 

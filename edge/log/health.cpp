@@ -54,6 +54,9 @@ void check_cycle(const HealthInputs& in, std::vector<std::string>& reasons) {
     reasons.push_back("WARN: prices: " + std::string(in.price_status));
   }
   if (in.price_step_held) reasons.push_back(held_row(in.held_eur_per_mwh));
+  if (in.hold_is_unreadable) {
+    reasons.emplace_back("WARN: the hold file is not readable and not followed: bess-edge hold");
+  }
 }
 
 }  // namespace

@@ -28,6 +28,7 @@ struct HealthInputs {
   bool disk_is_full = false;       ///< of the state folder, or it is read-only
   bool price_step_held = false;
   double held_eur_per_mwh = 0;  ///< price of the row that waits for the next
+  bool hold_is_unreadable = false;
 };
 
 enum class HealthLevel { kOk = 0, kDegraded = 1, kNotRunning = 3 };  ///< also the exit codes

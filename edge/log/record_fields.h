@@ -19,6 +19,7 @@ consteval auto make_record_fields() {
   using D = DayThroughput;
   using L = PriceLevel;
   using V = ReversalHistory;
+  using H = HoldReport;
   return std::to_array<Field<CycleRecord>>({
       {utc_member<&R::utc_s>(),
        "utc",
@@ -150,6 +151,24 @@ consteval auto make_record_fields() {
        "reversals_in_hour",
        {.csv = 37, .totals = 26, .metrics = {39, "bess_reversals_last_hour"}},
        {"Changes between charging and discharging in the last hour."}},
+      {member<&R::hold, &H::held>(), "held", {.last = 141}},
+      {member<&R::hold, &H::unreadable>(), "hold_unreadable", {.last = 142}},
+      {member<&R::hold, &H::power_w>().given<&R::hold, &H::held>(),
+       "hold_power_w",
+       {.csv = 38, .last = 143, .metrics = {41, "bess_hold_watts"}},
+       {"Power that an operator holds, positive is charging."}},
+      {utc_member<&R::hold, &H::until_utc_s>().given<&R::hold, &H::held>(),
+       "hold_until_utc",
+       {.csv = 39, .last = 144, .metrics = {42, "bess_hold_until_timestamp_seconds"}},
+       {"End of that hold, UTC."}},
+      {member<&R::reserve_soc_e4>(),
+       "reserve_soc_e4",
+       {.csv = 40, .last = 151, .metrics = {43, "bess_reserve_soc_ratio"}},
+       {"State of charge that is kept for a black-out at this hour, 0 to 1.", 10'000}},
+      {member<&R::days_since_full>(),
+       "days_since_full",
+       {.csv = 41, .last = 152, .metrics = {44, "bess_days_since_full"}},
+       {"Local days since the battery was last full."}},
   });
 }
 

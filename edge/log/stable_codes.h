@@ -56,7 +56,10 @@ struct StableCodes<Reason> {
                                      Reason::kNoAnswer,
                                      Reason::kCapacity,
                                      Reason::kSocJump,
-                                     Reason::kReversalCap};
+                                     Reason::kReversalCap,
+                                     Reason::kHeld,
+                                     Reason::kReserve,
+                                     Reason::kFullCharge};
   static constexpr auto kNameOf = reason_name;
 };
 

@@ -13,6 +13,7 @@ constexpr const char* kRunHelp =
   bess-edge clear [--config FILE] --yes                 drive again after the supervision tripped
   bess-edge status [--config FILE] ...                  how the running controller is
   bess-edge log [--config FILE] ...                     what was decided, and why
+  bess-edge hold WATTS --for TIME [--config FILE]       a power until an end, whatever the price
   bess-edge signature                                   one number for what this build decides
   bess-edge COMMAND --help                              more on one of them
 
@@ -86,12 +87,13 @@ bad, or --yes is missing
 constexpr const char* kStatusHelp =
     R"(bess-edge status: how the running controller is; touches neither battery nor controller
 
-  bess-edge status [--config FILE] [--json | --prometheus] [--follow]
+  bess-edge status [--config FILE] [--json | --prometheus] [--follow] [--no-lock]
 
   --config FILE  the controller's settings; default /etc/bess/edge.toml
   --json         one JSON object with "health"
   --prometheus   the metrics as the node exporter's textfile collector takes them
   --follow       again every two seconds, until Ctrl-C
+  --no-lock      whether it runs is told by its process number alone: its lock is not even tried
 
 Health is ok, degraded (with the reasons) or not running. A status older than two cycles is a WARN,
 older than four CRITICAL.
@@ -130,6 +132,28 @@ different ones do not decide the same. edge/generated/decision_signature.txt hol
 Exit codes: 0 done   2 the command line is bad
 )";
 
+constexpr const char* kHoldHelp =
+    R"(bess-edge hold: so many watts until an end, whatever the price
+
+  bess-edge hold [--config FILE] WATTS --for DURATION
+  bess-edge hold [--config FILE] --release
+
+  WATTS           power to hold: positive charges, negative discharges, 0 rests; up to [battery] power_w
+  --for DURATION  how long, 2m to 7d: 90m, 2h, 1d12h
+  --release       end the hold before its time
+  --config FILE   the controller's settings; default /etc/bess/edge.toml
+
+The running controller follows from its next cycle on, restarts included, and trades again when the end has
+passed. A hold stands for the student and the price thresholds, and needs no price. Everything else of the
+guard stays stronger: stop reasons, SoC bounds, reserve, cycle budget, power limits, ramp. A new hold
+replaces the one before. It lies in the [state] folder: run it as the controller's user, or as root.
+Exit codes: 0 done   1 refused: the line says why   2 the command line is bad
+
+  bess-edge hold 0 --for 30m
+  bess-edge hold -2000 --for 2h
+  bess-edge hold --release
+)";
+
 }  // namespace
 
 const char* help_of(SubCommand command) {
@@ -146,6 +170,8 @@ const char* help_of(SubCommand command) {
       return kLogHelp;
     case SubCommand::kSignature:
       return kSignatureHelp;
+    case SubCommand::kHold:
+      return kHoldHelp;
     case SubCommand::kRun:
     case SubCommand::kCheck:
       break;

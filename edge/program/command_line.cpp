@@ -7,6 +7,7 @@
 #include <string_view>
 #include <variant>
 
+#include "edge/control/hold.h"
 #include "edge/control/policy.h"
 #include "edge/program/command_help.h"
 #include "shared/utc_text.h"
@@ -25,9 +26,13 @@ struct UtcInstant {
   std::int64_t CommandLine::*utc_s;
 };
 
-/// What an option sets: a switch, a count above 0, a text, or an instant.
+struct Duration {
+  std::int64_t CommandLine::*seconds;
+};
+
+/// What an option sets: a switch, a count above 0, a text, an instant, or how long.
 using Target = std::variant<bool CommandLine::*, std::int64_t CommandLine::*,
-                            std::string CommandLine::*, UtcInstant, SubCommand>;
+                            std::string CommandLine::*, UtcInstant, Duration, SubCommand>;
 
 struct Option {
   SubCommand command;
@@ -51,10 +56,14 @@ constexpr Option kOptions[] = {
     {SubCommand::kStatus, "--json", &CommandLine::json},
     {SubCommand::kStatus, "--prometheus", &CommandLine::prometheus},
     {SubCommand::kStatus, "--follow", &CommandLine::follow},
+    {SubCommand::kStatus, "--no-lock", &CommandLine::no_lock},
     {SubCommand::kLog, "--config", &CommandLine::config_path},
     {SubCommand::kLog, "--csv", &CommandLine::csv},
     {SubCommand::kLog, "--last", &CommandLine::last},
     {SubCommand::kLog, "--since", UtcInstant{&CommandLine::since_utc_s}},
+    {SubCommand::kHold, "--config", &CommandLine::config_path},
+    {SubCommand::kHold, "--for", Duration{&CommandLine::hold_for_s}},
+    {SubCommand::kHold, "--release", &CommandLine::release_hold},
 };
 
 const Option* find_option(SubCommand command, std::string_view name) {
@@ -67,6 +76,24 @@ const Option* find_option(SubCommand command, std::string_view name) {
 bool parse_count(std::string_view text, std::int64_t& value) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   return error == std::errc{} && end == text.data() + text.size() && value > 0;
+}
+
+/// "2h", "90m", "1d12h": numbers, each with s, m, h or d behind it.
+bool parse_duration(std::string_view text, std::int64_t& seconds) {
+  seconds = 0;
+  if (text.empty()) return false;
+  while (!text.empty()) {
+    std::int32_t count = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
+    if (error != std::errc{} || count < 0 || end == text.data() + text.size()) return false;
+    constexpr std::string_view kUnits = "smhd";
+    constexpr std::int64_t kUnitSeconds[] = {1, 60, 3'600, 86'400};
+    const std::size_t unit = kUnits.find(*end);
+    if (unit == kUnits.npos) return false;
+    seconds += count * kUnitSeconds[unit];
+    text.remove_prefix(static_cast<std::size_t>(end + 1 - text.data()));
+  }
+  return seconds <= kHoldSecondsMax && seconds >= kHoldSecondsMin;
 }
 
 /// Stores the option's value; false after printing what is wrong with it.
@@ -85,8 +112,31 @@ bool store(const Option& option, std::string_view value, CommandLine& line) {
     usage_error(std::string(option.name) + " needs an instant such as 2026-11-21T06:00:00Z, not ",
                 value);
     return false;
+  } else if (const auto* duration = std::get_if<Duration>(&option.target)) {
+    if (parse_duration(value, line.*(duration->seconds))) return true;
+    usage_error(std::string(option.name) + " needs 2m to 7d, such as 2h or 1h30m, not ", value);
+    return false;
   }
   return true;
+}
+
+/// The power to hold stands alone, and a minus before it begins no option.
+bool take_hold_power(std::string_view argument, CommandLine& line) {
+  if (line.command != SubCommand::kHold || line.hold_power_w.has_value()) return false;
+  if (argument.starts_with('+')) argument.remove_prefix(1);
+  std::int64_t power_w = 0;
+  const char* const last = argument.data() + argument.size();
+  const auto [end, error] = std::from_chars(argument.data(), last, power_w);
+  if (error != std::errc{} || end != last) return false;
+  line.hold_power_w = power_w;
+  return true;
+}
+
+/// Either a power and how long, or the end of what is held.
+bool is_complete_hold(const CommandLine& line) {
+  const bool is_order = line.hold_power_w.has_value() && line.hold_for_s > 0;
+  const bool is_partial = line.hold_power_w.has_value() || line.hold_for_s > 0;
+  return line.release_hold ? !is_partial : is_order;
 }
 
 /// True when the option is complete without a value.
@@ -137,6 +187,8 @@ CommandLineResult parse_command_line(int argc, char** argv, CommandLine& line) {
       line.command = SubCommand::kClear;
     } else if (name == "log") {
       line.command = SubCommand::kLog;
+    } else if (name == "hold") {
+      line.command = SubCommand::kHold;
     } else if (name == "signature") {
       line.command = SubCommand::kSignature;
     } else if (name != "run") {
@@ -146,6 +198,7 @@ CommandLineResult parse_command_line(int argc, char** argv, CommandLine& line) {
   const SubCommand command = line.command;  // --check is an option of run and changes line.command
   for (; i < argc; ++i) {
     if (print_general(argv[i], command)) return CommandLineResult::kExitOk;
+    if (take_hold_power(argv[i], line)) continue;
     const Option* const option = find_option(command, argv[i]);
     if (option == nullptr) return usage_error("unknown option ", argv[i]);
     if (set_switch(*option, line)) continue;
@@ -154,6 +207,9 @@ CommandLineResult parse_command_line(int argc, char** argv, CommandLine& line) {
   }
   if (line.json && line.prometheus)
     return usage_error("--json and --prometheus exclude each other", "");
+  if (line.command == SubCommand::kHold && !is_complete_hold(line)) {
+    return usage_error("hold needs a power in W and --for DURATION, or --release alone", "");
+  }
   if (line.command == SubCommand::kSignature) return CommandLineResult::kGo;
   return settle_config(line);
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace bess {
@@ -16,7 +17,8 @@ enum class SubCommand : std::uint8_t {
   kStatus,
   kLog,
   kSignature,
-  kClear
+  kClear,
+  kHold
 };
 
 struct CommandLine {
@@ -29,9 +31,13 @@ struct CommandLine {
   bool json = false;
   bool prometheus = false;
   bool follow = false;
+  bool no_lock = false;
   bool csv = false;
   std::int64_t last = -1;                ///< -1 = all
   std::int64_t since_utc_s = INT64_MIN;  ///< INT64_MIN = all
+  std::optional<std::int64_t> hold_power_w;
+  std::int64_t hold_for_s = 0;  ///< 0 = not given
+  bool release_hold = false;
 };
 
 enum class CommandLineResult { kGo, kExitOk, kExitUsage };

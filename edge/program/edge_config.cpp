@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "edge/prices/http_secrets.h"
+#include "edge/program/people_config.h"
 #include "edge/program/price_transport.h"
 #include "edge/registers/codec.h"
 #include "edge/registers/map_file.h"
@@ -56,8 +57,7 @@ void set_supervision(EdgeConfig& config) {
   SupervisionSettings& supervision = config.control.supervision;
   supervision.response = {.band = config.map.response,
                           .power_w = config.control.guard.power_w,
-                          .capacity_wh = config.capacity_wh,
-                          .soc_min_e4 = config.control.guard.soc_min_e4};
+                          .capacity_wh = config.capacity_wh};
   const std::int64_t capacity_wh = config.capacity_wh;
   const std::int64_t tolerance_wh = capacity_wh * config.capacity_tolerance_percent / 100;
   supervision.capacity_wh_min = static_cast<std::int32_t>(capacity_wh - tolerance_wh);
@@ -102,6 +102,7 @@ void read_battery(TomlTable table, EdgeConfig& config) {
   int on_other_master = 0;
   table.choice("on_other_master", on_other_master, {"yield", "insist"});
   config.control.supervision.yields_to_other_master = on_other_master == 0;
+  read_full_charge(table, config.control);
   static_cast<void>(table.table("units"));
   config.link.rtu = transport == 1;
   config.link.parity = static_cast<Parity>(parity);
@@ -235,6 +236,7 @@ void read_guard(TomlTable table, EdgeConfig& config) {
   table.integer("reversals_per_hour_max", config.control.reversals_per_hour_max, 0, kStepsPerHour);
   table.integer("order_deadline_s", config.control.order_deadline_s, 1, kSecondsPerStep);
   table.boolean("require_synchronised_clock", config.require_synchronised_clock);
+  read_start_spread(table, config);
   table.finish();
   if (!guard.thresholds.are_ordered()) {
     table.fail("low_price_eur_per_mwh", "must be below high_price_eur_per_mwh");
@@ -317,10 +319,15 @@ bool load_edge_config(const std::string& path, EdgeConfig& config, std::string& 
   check_battery_against_map(section(root, "battery"), config);
   read_price(section(root, "price"), config);
   read_guard(section(root, "guard"), config);
+  read_reserve(root, config.control);
+  TomlTable battery = section(root, "battery");
+  check_full_charge(battery, config.control);
   read_state(section(root, "state"), config);
   read_log(section(root, "log"), config);
   read_metrics(section(root, "metrics"), config);
   read_simulation(section(root, "simulation"), config.clock);
+  static_cast<void>(
+      root.table("notify"));  // bess-notify's: a slip there must not stop the controller
   root.finish();
   config.control.price_wait_s = config.price.wait_s;
   set_supervision(config);

@@ -19,6 +19,7 @@ struct Site {
   ResponseMonitor monitor{ResponseSettings{}};
   double soc_frac = 0.5;
   std::int64_t utc_s = 0;
+  std::int32_t soc_floor_e4 = 1'000;
   BatteryMeasurement shown{.soc_e4 = 5'000, .capacity_wh = 8'000};
 
   /// An order is followed for one step; then it is read, changed by `fault`.
@@ -35,6 +36,7 @@ struct Site {
                      .is_driven = true,
                      .ordered_power_w = ordered_w,
                      .order_age_s = kStepS,
+                     .soc_floor_e4 = soc_floor_e4,
                      .measurement = m});
   }
 };
@@ -108,17 +110,20 @@ TEST(ResponseMonitor, AFullEmptyColdOrLimitedBatteryMayRest) {
     double soc_frac;
     std::int32_t ordered_w;
     std::function<void(BatteryMeasurement&)> fault;
+    std::int32_t soc_floor_e4 = 1'000;
   };
   const auto nothing = [](BatteryMeasurement&) {};
   for (const Case& c : {
            Case{"full", 0.97, 4'000, nothing},
            Case{"empty", 0.12, -4'000, nothing},
+           Case{"at its reserve", 0.505, -4'000, nothing, 5'000},
            Case{"cold", 0.5, 4'000, [](BatteryMeasurement& m) { m.temperature_min_deci_c = 20; }},
            Case{"limited", 0.5, 4'000, [](BatteryMeasurement& m) { m.charge_w_max = 0; }},
            Case{"limited", 0.5, -4'000, [](BatteryMeasurement& m) { m.discharge_w_max = 100; }},
        }) {
     Site site;
     site.soc_frac = c.soc_frac;
+    site.soc_floor_e4 = c.soc_floor_e4;
     for (int i = 0; i < 10; ++i) site.step(c.ordered_w, 0, c.fault);
     EXPECT_FALSE(site.monitor.gives_no_answer()) << c.name;
     EXPECT_EQ(site.monitor.weak_answers(), 0) << c.name;

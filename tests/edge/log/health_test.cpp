@@ -57,6 +57,7 @@ TEST(Health, EveryTroubleHasItsReason) {
          in.cycles_behind = 1;
        },
        HealthLevel::kDegraded, "WARN: status.json is 1 cycles behind the log, is the disk full"},
+      {[](HealthInputs& in) { in.hold_is_unreadable = true; }, HealthLevel::kDegraded, "hold file"},
       {[](HealthInputs& in) {
          in.age_ms = 1'319'000;
          in.cycles_behind = 10;

@@ -62,6 +62,9 @@ inline CycleRecord full_record(std::int64_t cycle) {
   r.weak_answers = 33;
   r.replaced_orders = 34;
   r.reversals = {.steps = 33, .direction = -1, .in_hour = 34};
+  r.hold = {.held = true, .unreadable = true, .power_w = -35, .until_utc_s = 36};
+  r.reserve_soc_e4 = 37;
+  r.days_since_full = 38;
   return r;
 }
 
@@ -93,13 +96,15 @@ inline CycleRecord longest_record() {
   r.trip = {.reason = Reason::kUncontrolledPower, .utc_s = 4'102'444'800};
   r.weak_answers = r.replaced_orders = INT32_MIN;
   r.reversals = {.steps = UINT32_MAX, .direction = INT16_MIN, .in_hour = INT16_MIN};
+  r.hold = {.held = true, .power_w = INT32_MIN, .until_utc_s = UINT32_MAX};
+  r.reserve_soc_e4 = r.days_since_full = INT16_MIN;
   r.counters = {INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT32_MIN};
   r.counters.requests = 0;  // requests - failed_requests must not overflow
   r.counters.failed_requests = INT64_MAX;
   return r;
 }
 
-/// Enumerators number i of every enumeration, round and round: 27 of them show each name.
+/// Enumerators number i of every enumeration, round and round: one for each reason shows every name.
 inline CycleRecord record_with_enumerators(int i) {
   CycleRecord r = full_record(i);
   r.mode = static_cast<Mode>(i % kModeCount);

@@ -15,6 +15,7 @@
 #include "edge/memory/static_arena.h"
 #include "edge/program/edge_clock.h"
 #include "edge/program/edge_config.h"
+#include "edge/program/hold_watch.h"
 
 namespace bess {
 namespace {
@@ -50,6 +51,7 @@ TEST(MemoryBudget, OfTheReadmeIsTrue) {
       {"ModbusBattery", sizeof(ModbusBattery)},
       {"ControlLoop", sizeof(Loop)},
       {"EdgeClock", sizeof(EdgeClock)},
+      {"HoldWatch", sizeof(HoldWatch)},
       {"EventLog", sizeof(EventLog)},
   };
   std::map<std::string, std::size_t> budget = read_budget();
