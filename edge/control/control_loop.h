@@ -7,13 +7,15 @@
 //                int32 refresh_interval_s();  BatteryCounters counters()
 //   PriceSource  void request(minute_utc_s, start_monotonic_ns, deadline_monotonic_ns);
 //                bool wait(until_monotonic_ns);  PriceReport latest()
+//   Site         the house behind the same meter and who limits it (site_limits.h); NoSite: nothing
 //   Clock        now_utc_ns(), monotonic_ns(), monotonic_ns_at(utc_ns), sleep_until_utc_ns(utc_ns),
 //                pause_ns(ns), stop_requested(), is_synchronised()
 //
 // Order of a cycle around its tick t (a multiple of 2 minutes UTC):
-//   t - read_lead_s  battery measurements        t  the row of minute t-1 is requested
+//   t - read_lead_s  battery and site measured   t  the row of minute t-1 is requested
 //   row in, or price_wait_s over                 decision, order written and read back
-// Between cycles the battery's watchdog is fed as often as its register map asks.
+// Between cycles the battery's watchdog is fed as often as its register map asks, and an order that
+// the site no longer bears is cut.
 #pragma once
 
 #include <cstdint>
@@ -25,6 +27,7 @@
 #include "edge/control/policy.h"
 #include "edge/control/power_order.h"
 #include "edge/control/safety_guard.h"
+#include "edge/control/site_limits.h"
 #include "shared/local_time.h"
 #include "shared/scaled_clock.h"
 #include "shared/units_and_limits.h"
@@ -35,26 +38,31 @@ namespace bess {
 struct TakeOver {
   DayThroughput throughput{};
   PriceLevel price_level{};
+  SiteReport site{};
+  std::int64_t utc_s = 0;  ///< of that log's newest record
 };
 
 constexpr std::int64_t next_tick_utc_s(std::int64_t now_utc_s) {
   return (now_utc_s / kSecondsPerStep + 1) * kSecondsPerStep;
 }
 
-template <typename Battery, typename PriceSource, typename Clock>
+template <typename Battery, typename PriceSource, typename Clock, typename Site = NoSite>
 class ControlLoop {
  public:
-  ControlLoop(const ControlSettings& settings, Battery& battery, PriceSource& prices, Clock& clock)
+  ControlLoop(const ControlSettings& settings, Battery& battery, PriceSource& prices, Clock& clock,
+              const Site& site = Site())
       : settings_(settings),
         battery_(battery),
         prices_(prices),
         clock_(clock),
+        site_(site),
         guard_(settings.guard),
         cycle_budget_(settings.cycles_per_day_max_e4) {}
 
   void take_over(const TakeOver& before) {
     cycle_budget_.restore(before.throughput);
     price_level_ = before.price_level;
+    site_.take_over(before.utc_s, before.site);
   }
 
   /// Runs the cycle of the next tick; false when the process was asked to stop before it.
@@ -65,6 +73,7 @@ class ControlLoop {
     record = CycleRecord{.utc_s = tick_utc_s, .cycle = ++cycle_};
     request_price(tick_utc_s);  // before the battery is read: a slow bus must not cost the price
     read_battery(record);
+    observe_site(record.has_measurement, record.measurement);
     if (!sleep_until_s(tick_utc_s)) return false;
     await_price(record);
     if (clock_.stop_requested()) return false;
@@ -149,16 +158,22 @@ class ControlLoop {
     return true;
   }
 
-  /// Sleeps, and feeds the battery's watchdog meanwhile; false when asked to stop. Returns early when
-  /// the clock was stepped back: the instant may lie hours ahead by now.
+  /// Sleeps, feeds the battery's watchdog and looks after the site meanwhile; false when asked to
+  /// stop. Returns early when the clock was stepped back: the instant may lie hours ahead by now.
   bool sleep_until_s(std::int64_t utc_s) {
     const std::int64_t until_ns = utc_s * kNanosecondsPerSecond;
     while (true) {
       const std::int64_t before_ns = clock_.now_utc_ns();
-      const std::int64_t due_ns = refresh_due_utc_ns();
+      const std::int64_t refresh_ns = refresh_due_utc_ns();
+      const std::int64_t check_ns = site_due_utc_ns();
+      const std::int64_t due_ns = refresh_ns < check_ns ? refresh_ns : check_ns;
       if (due_ns >= until_ns) return clock_.sleep_until_utc_ns(until_ns);
       if (!clock_.sleep_until_utc_ns(due_ns)) return false;
-      refresh();
+      if (refresh_ns == due_ns) {
+        refresh();
+      } else {
+        check_site();
+      }
       if (clock_.now_utc_ns() < before_ns) return true;
     }
   }
@@ -177,6 +192,41 @@ class ControlLoop {
     fed_utc_ns_ = clock_.now_utc_ns();
   }
 
+  std::int64_t site_due_utc_ns() const {
+    const std::int32_t interval_s = site_.check_every_s();
+    if (interval_s <= 0) return INT64_MAX;
+    const std::int64_t now_ns = clock_.now_utc_ns();
+    if (site_utc_ns_ > now_ns) return now_ns;  // the clock was stepped back meanwhile
+    return site_utc_ns_ + interval_s * kNanosecondsPerSecond;
+  }
+
+  void observe_site(bool is_read, const BatteryMeasurement& measurement) {
+    site_.observe(now_utc_s(), is_read, measurement);
+    site_utc_ns_ = clock_.now_utc_ns();
+  }
+
+  [[nodiscard]] SiteRange site_range(std::int64_t utc_s, Margin margin) const {
+    return site_.range(utc_s, settings_.guard.power_w, margin);
+  }
+
+  /// Between two ticks: what the site no longer bears of the order in force is taken off it. Only a
+  /// tick gives it back.
+  void check_site() {
+    BatteryMeasurement measurement;
+    const bool is_read = site_.needs_battery() && battery_.read(measurement) == Status::kOk;
+    observe_site(is_read, measurement);
+    if (!settings_.control || !has_ordered_ || mode_ != Mode::kRunning) return;
+    GuardInputs now{.measurement = is_read ? measurement : measured_,
+                    .cycle_budget_spent = cycle_budget_.is_spent(),
+                    .previous_power_w = order_power_w_,
+                    .site = site_range(now_utc_s(), Margin::kHalf)};
+    if (guard_.recheck(now).power_w == order_power_w_) return;
+    now.site = site_range(now_utc_s(), Margin::kWhole);
+    CycleRecord between;  // the next cycle's record says what became of it
+    write_order(guard_.recheck(now).power_w, between);
+    ++order_cuts_;
+  }
+
   void count_missed_ticks(std::int64_t tick_utc_s) {
     if (last_tick_utc_s_ != 0 && tick_utc_s > last_tick_utc_s_ + kSecondsPerStep) {
       missed_ticks_ +=
@@ -193,6 +243,7 @@ class ControlLoop {
       cycle_budget_.forget_soc();
       return;
     }
+    measured_ = record.measurement;
     find_order_in_force(record.measurement);
     const bool is_driven = has_ordered_ && order_power_w_ != 0;
     cycle_budget_.update(local_day_of(local_minute_of(record.utc_s)), record.measurement.soc_e4,
@@ -280,7 +331,8 @@ class ControlLoop {
                        .has_price = record.price.has_row,
                        .price_minute_utc_s = record.price.minute_utc_s,
                        .price_centi_eur_per_mwh = record.price.price_centi_eur_per_mwh,
-                       .student_action = record.student_action});
+                       .student_action = record.student_action,
+                       .site = site_range(decided_utc_s, Margin::kWhole)});
     record.reason = decision.reason;
     record.ordered_power_w = decision.power_w;
     advance_mode(record);
@@ -368,6 +420,8 @@ class ControlLoop {
     record.unanswered_orders = follow_.unanswered_orders();
     record.throughput = cycle_budget_.today();
     record.price_level = price_level_;
+    record.site = site_.report(record.utc_s);
+    record.site.order_cuts = order_cuts_;
     record.counters = battery_.counters();
   }
 
@@ -379,6 +433,7 @@ class ControlLoop {
   Battery& battery_;
   PriceSource& prices_;
   Clock& clock_;
+  Site site_;
   SafetyGuard guard_;
   CycleBudget cycle_budget_;
   PriceLevel price_level_;
@@ -391,6 +446,9 @@ class ControlLoop {
   std::int32_t missed_ticks_ = 0;
   std::int32_t deadline_misses_ = 0;
   std::int64_t fed_utc_ns_ = 0;     ///< when the battery last got an order or a refresh
+  BatteryMeasurement measured_;     ///< the last that was read at a tick
+  std::int64_t site_utc_ns_ = 0;    ///< when the site was last looked at
+  std::int32_t order_cuts_ = 0;     ///< since start, between two ticks
   bool has_ordered_ = false;        ///< an order may be in force at the battery
   std::int32_t order_power_w_ = 0;  ///< of that order
   bool looked_for_order_ = false;   ///< the first reading tells what an earlier run left in force

@@ -12,6 +12,7 @@
 #include "edge/base/status.h"
 #include "edge/control/cycle_budget.h"
 #include "edge/control/mode.h"
+#include "edge/control/site_types.h"
 #include "shared/action.h"
 #include "shared/price_level.h"
 
@@ -30,6 +31,8 @@ struct BatteryMeasurement {
   bool dispatch_active = false;  ///< the device follows an order that was written to it
   bool has_order_power = false;  ///< the map can read back the power of the order in force
   std::int32_t order_power_w = 0;
+  bool has_grid_power = false;    ///< the map has a grid point, and it was asked for
+  std::int32_t grid_power_w = 0;  ///< import is positive
 };
 
 /// Totals since start, and what the flash-backed registers have had today.
@@ -72,6 +75,11 @@ enum class Reason : std::uint8_t {
   kSocEmpty,
   kCycleBudget,
   kPowerLimit,
+  kOutsideLimit,
+  kMeterLost,
+  kImportLimit,
+  kExportLimit,
+  kQuarterHourPeak,
   kRamp,
   kPriceLow,
   kPriceHigh,
@@ -84,10 +92,11 @@ constexpr bool is_stop_reason(Reason reason) { return reason <= Reason::kLastSto
 
 constexpr std::string_view reason_name(Reason reason) {
   constexpr std::string_view kNames[] = {
-      "stop_requested", "hand_over", "clock",           "link",         "alarm",
-      "temperature",    "off_grid",  "wrong_direction", "no_price",     "price_age",
-      "price_qh",       "soc_full",  "soc_empty",       "cycle_budget", "power_limit",
-      "ramp",           "price_low", "price_high",      "student"};
+      "stop_requested", "hand_over",  "clock",           "link",         "alarm",
+      "temperature",    "off_grid",   "wrong_direction", "no_price",     "price_age",
+      "price_qh",       "soc_full",   "soc_empty",       "cycle_budget", "power_limit",
+      "outside_limit",  "meter_lost", "import_limit",    "export_limit", "quarter_hour_peak",
+      "ramp",           "price_low",  "price_high",      "student"};
   static_assert(std::size(kNames) == kReasonCount);
   return kNames[static_cast<int>(reason)];
 }
@@ -123,6 +132,7 @@ struct CycleRecord {
   BatteryCounters counters{};
   PriceLevel price_level{};        ///< the prices of this cycle included
   std::int16_t context_class = 0;  ///< what the student was given, 1..12; 0 = it was not asked
+  SiteReport site{};
 };
 
 }  // namespace bess

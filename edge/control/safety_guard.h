@@ -1,11 +1,12 @@
 // The guard between student and battery [SPEC 7]: pure integers, no memory but the SoC hysteresis.
-// Precedence: stop reasons (clock, link, alarm, temperature, off-grid, price) > SoC, cycle and
-// power limits > ramp > price thresholds > student. Every intervention carries its reason.
+// Precedence: stop reasons (clock, link, alarm, temperature, off-grid, price) > limits of SoC,
+// cycles, power and site > ramp > price thresholds > student. Every intervention carries its reason.
 #pragma once
 
 #include <cstdint>
 
 #include "edge/control/control_types.h"
+#include "edge/control/site_range.h"
 #include "shared/price_thresholds.h"
 
 namespace bess {
@@ -34,6 +35,7 @@ struct GuardInputs {
   std::int64_t price_minute_utc_s = 0;
   std::int32_t price_centi_eur_per_mwh = 0;
   Action student_action = Action::kIdle;
+  SiteRange site{};
 };
 
 /// Seconds since the row was computed, at the END of its minute.
@@ -48,6 +50,10 @@ class SafetyGuard {
   /// Power to order, and the reason when it is not the student's wish.
   GuardDecision decide(const GuardInputs& in);
 
+  /// The order in force (`previous_power_w`) held against the limits as they are now, between two
+  /// decisions: never more charging or discharging than it was, but for the site's relief.
+  [[nodiscard]] GuardDecision recheck(const GuardInputs& in) const;
+
  private:
   [[nodiscard]] bool find_stop_reason(const GuardInputs& in, Reason& reason) const;
   [[nodiscard]] bool find_price_stop_reason(const GuardInputs& in, Reason& reason) const;
@@ -55,6 +61,8 @@ class SafetyGuard {
   void update_soc_latches(std::int32_t soc_e4);
   void apply_ramp(std::int32_t previous_power_w, GuardDecision& decision) const;
   void apply_limits(const GuardInputs& in, GuardDecision& decision) const;
+  static void apply_relief(const SiteRange& site, GuardDecision& decision);
+  static void apply_site(const SiteRange& site, GuardDecision& decision);
 
   GuardSettings settings_;
   bool full_ = false;   ///< charging is closed until SoC is below soc_max - hysteresis

@@ -18,6 +18,7 @@ consteval auto make_record_fields() {
   using C = BatteryCounters;
   using D = DayThroughput;
   using L = PriceLevel;
+  using S = SiteReport;
   return std::to_array<Field<CycleRecord>>({
       {utc_member<&R::utc_s>(),
        "utc",
@@ -121,6 +122,26 @@ consteval auto make_record_fields() {
       {member<&R::context_class>().given<&R::has_student_action>(),
        "context_class",
        {.csv = 31, .last = 64}},
+      {member<&R::site, &S::has_grid_power>(), "has_grid_power", {.last = 91}},
+      {member<&R::site, &S::grid_power_w>().given<&R::site, &S::has_grid_power>(),
+       "grid_power_w",
+       {.journal = {20, "grid_w"}, .csv = 32, .last = 92, .metrics = {17, "bess_grid_power_watts"}},
+       {"Power at the connection to the grid, positive is import."}},
+      {member<&R::site, &S::quarter_hour_import_wh>().given<&R::site, &S::has_grid_power>(),
+       "quarter_hour_import_wh",
+       {.csv = 33, .last = 93, .metrics = {18, "bess_quarter_hour_import_watthours"}},
+       {"Imported so far in this quarter-hour."}},
+      {member<&R::site, &S::quarter_hour_battery_wh>().given<&R::site, &S::has_grid_power>(),
+       "quarter_hour_battery_wh",
+       {.csv = 34, .last = 94}},
+      {member<&R::site, &S::order_cuts>(),
+       "order_cuts",
+       {.csv = 35, .totals = 24, .metrics = {39, "bess_order_cuts_total"}},
+       {"Orders cut between two cycles by meter or outside limits."}},
+      {member<&R::site, &S::meter_status>(),
+       "meter_status",
+       {.journal = {21, "meter"}, .csv = 36, .last = 95}},
+      {member<&R::site, &S::limit_status>(), "limit_status", {.csv = 37, .last = 96}},
   });
 }
 

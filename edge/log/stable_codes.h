@@ -31,11 +31,14 @@ struct StableCodes<Action> {
 template <>
 struct StableCodes<Reason> {
   static constexpr Reason kList[] = {
-      Reason::kStopRequested,    Reason::kClock,       Reason::kLink,     Reason::kAlarm,
-      Reason::kTemperature,      Reason::kOffGrid,     Reason::kNoPrice,  Reason::kPriceAge,
-      Reason::kPriceQuarterHour, Reason::kSocFull,     Reason::kSocEmpty, Reason::kPowerLimit,
-      Reason::kPriceLow,         Reason::kPriceHigh,   Reason::kStudent,  Reason::kHandOver,
-      Reason::kWrongDirection,   Reason::kCycleBudget, Reason::kRamp};
+      Reason::kStopRequested, Reason::kClock,          Reason::kLink,
+      Reason::kAlarm,         Reason::kTemperature,    Reason::kOffGrid,
+      Reason::kNoPrice,       Reason::kPriceAge,       Reason::kPriceQuarterHour,
+      Reason::kSocFull,       Reason::kSocEmpty,       Reason::kPowerLimit,
+      Reason::kPriceLow,      Reason::kPriceHigh,      Reason::kStudent,
+      Reason::kHandOver,      Reason::kWrongDirection, Reason::kCycleBudget,
+      Reason::kRamp,          Reason::kOutsideLimit,   Reason::kMeterLost,
+      Reason::kImportLimit,   Reason::kExportLimit,    Reason::kQuarterHourPeak};
   static constexpr auto kNameOf = reason_name;
 };
 

@@ -13,6 +13,7 @@ constexpr const char* kRunHelp =
   bess-edge status [--config FILE] ...                  how the running controller is
   bess-edge log [--config FILE] ...                     what was decided, and why
   bess-edge signature                                   one number for what this build decides
+  bess-edge limit [--config FILE] ...                   caps the power for a while
   bess-edge COMMAND --help                              more on one of them
 
   --config FILE  settings in TOML; edge/bess-edge.toml documents every key; default /etc/bess/edge.toml
@@ -112,6 +113,29 @@ different ones do not decide the same. edge/generated/decision_signature.txt hol
 Exit codes: 0 done   2 the command line is bad
 )";
 
+constexpr const char* kLimitHelp =
+    R"(bess-edge limit: caps the battery's power for a while, whatever prices and student say
+
+  bess-edge limit [--config FILE] [--charge W] [--discharge W] --for DURATION
+  bess-edge limit [--config FILE] --clear
+
+  --config FILE   the controller's settings, with [limits] file; default /etc/bess/edge.toml
+  --charge W      no order charges with more; 0 or more; default: any
+  --discharge W   no order discharges with more
+  --for DURATION  then the limit has lapsed: 90s, 15m, 2h, a week at most
+  --clear         takes the limit away
+
+Writes one line, "charge_w discharge_w utc_until", into the file of [limits], in place of the one before; any
+program may write it itself, beside and renamed. A running controller looks every few seconds and cuts an order
+that is too large at once. After its time the limit is gone, or with on_timeout = "idle" the battery is left at
+0 W until a new one comes: then --clear does that too.
+Exit codes: 0 done   1 no [limits], or the file cannot be written   2 the command line is bad
+
+  bess-edge limit --charge 0 --for 15m
+  bess-edge limit --charge 2000 --discharge 1000 --for 2h
+  bess-edge limit --clear
+)";
+
 }  // namespace
 
 const char* help_of(SubCommand command) {
@@ -126,6 +150,8 @@ const char* help_of(SubCommand command) {
       return kLogHelp;
     case SubCommand::kSignature:
       return kSignatureHelp;
+    case SubCommand::kLimit:
+      return kLimitHelp;
     case SubCommand::kRun:
     case SubCommand::kCheck:
       break;

@@ -52,6 +52,11 @@ constexpr Option kOptions[] = {
     {SubCommand::kLog, "--csv", &CommandLine::csv},
     {SubCommand::kLog, "--last", &CommandLine::last},
     {SubCommand::kLog, "--since", UtcInstant{&CommandLine::since_utc_s}},
+    {SubCommand::kLimit, "--config", &CommandLine::config_path},
+    {SubCommand::kLimit, "--charge", &CommandLine::charge_w},
+    {SubCommand::kLimit, "--discharge", &CommandLine::discharge_w},
+    {SubCommand::kLimit, "--for", &CommandLine::duration},
+    {SubCommand::kLimit, "--clear", &CommandLine::clear},
 };
 
 const Option* find_option(SubCommand command, std::string_view name) {
@@ -134,6 +139,8 @@ CommandLineResult parse_command_line(int argc, char** argv, CommandLine& line) {
       line.command = SubCommand::kLog;
     } else if (name == "signature") {
       line.command = SubCommand::kSignature;
+    } else if (name == "limit") {
+      line.command = SubCommand::kLimit;
     } else if (name != "run") {
       return usage_error("unknown command ", name);
     }
@@ -150,6 +157,9 @@ CommandLineResult parse_command_line(int argc, char** argv, CommandLine& line) {
   if (line.json && line.prometheus)
     return usage_error("--json and --prometheus exclude each other", "");
   if (line.command == SubCommand::kSignature) return CommandLineResult::kGo;
+  if (line.command == SubCommand::kLimit && line.clear != line.duration.empty()) {
+    return usage_error("limit needs either --for DURATION or --clear", "");
+  }
   return settle_config(line);
 }
 

@@ -15,7 +15,8 @@ enum class SubCommand : std::uint8_t {
   kRelease,
   kStatus,
   kLog,
-  kSignature
+  kSignature,
+  kLimit
 };
 
 struct CommandLine {
@@ -30,6 +31,10 @@ struct CommandLine {
   bool csv = false;
   std::int64_t last = -1;                ///< -1 = all
   std::int64_t since_utc_s = INT64_MIN;  ///< INT64_MIN = all
+  std::string charge_w;                  ///< of limit; empty = any
+  std::string discharge_w;
+  std::string duration;
+  bool clear = false;
 };
 
 enum class CommandLineResult { kGo, kExitOk, kExitUsage };

@@ -23,7 +23,7 @@ using ::testing::Not;
 /// Nothing but the flags without which a value does not exist.
 CycleRecord bare_record() {
   CycleRecord r;
-  r.has_measurement = r.price.has_row = r.has_student_action = true;
+  r.has_measurement = r.price.has_row = r.has_student_action = r.site.has_grid_power = true;
   return r;
 }
 

@@ -105,8 +105,12 @@ TEST(RecordCodec, LayoutOnDiskIsFixed) {
   EXPECT_EQ(bytes[182], 29);    // soc_moved_e4
   EXPECT_EQ(bytes[186], 0xE2);  // price_level.centi_q16 = -30
   EXPECT_EQ(bytes[194], 31);    // price_level.row_minute_utc_s
-  EXPECT_EQ(bytes[202], 12);    // context_class, the last field
-  for (std::size_t i = 204; i < kRecordBytes - 4; ++i) EXPECT_EQ(bytes[i], 0) << i;
+  EXPECT_EQ(bytes[202], 12);    // context_class
+  EXPECT_EQ(bytes[204], 1);     // site.has_grid_power
+  EXPECT_EQ(bytes[205], 0xE0);  // site.grid_power_w = -32
+  EXPECT_EQ(bytes[217], 35);    // site.order_cuts
+  EXPECT_EQ(bytes[222], 14);    // site.limit_status: malformed, the last field
+  for (std::size_t i = 223; i < kRecordBytes - 4; ++i) EXPECT_EQ(bytes[i], 0) << i;
 }
 
 /// A ring of the program that ended its records with flash_writes_today: later fields read as 0.
@@ -123,6 +127,7 @@ TEST(RecordCodec, ARecordOfAnOlderLayoutIsRead) {
   expected.throughput = {};
   expected.price_level = {};
   expected.context_class = 0;
+  expected.site = {};
   EXPECT_EQ(bytes_of(back, 42), bytes_of(expected, 42));
 }
 

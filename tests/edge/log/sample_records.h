@@ -54,6 +54,13 @@ inline CycleRecord full_record(std::int64_t cycle) {
   r.throughput = {.local_day = 28, .soc_moved_e4 = 29};
   r.price_level = {.centi_q16 = -30, .row_minute_utc_s = 31};
   r.context_class = 12;
+  r.site = {.has_grid_power = true,
+            .grid_power_w = -32,
+            .quarter_hour_import_wh = 33,
+            .quarter_hour_battery_wh = 34,
+            .order_cuts = 35,
+            .meter_status = Status::kBadReply,
+            .limit_status = Status::kMalformed};
   return r;
 }
 
@@ -81,13 +88,20 @@ inline CycleRecord longest_record() {
   r.throughput = {.local_day = INT32_MIN, .soc_moved_e4 = INT32_MIN};
   r.price_level = {.centi_q16 = INT64_MIN, .row_minute_utc_s = INT64_MIN};
   r.context_class = INT16_MIN;
+  r.site = {.has_grid_power = true,
+            .grid_power_w = INT32_MIN,
+            .quarter_hour_import_wh = INT32_MIN,
+            .quarter_hour_battery_wh = INT32_MIN,
+            .order_cuts = INT32_MIN,
+            .meter_status = Status::kNotExpressible,
+            .limit_status = Status::kNotExpressible};
   r.counters = {INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT32_MIN};
   r.counters.requests = 0;  // requests - failed_requests must not overflow
   r.counters.failed_requests = INT64_MAX;
   return r;
 }
 
-/// Enumerators number i of every enumeration, round and round: 19 of them show each name.
+/// Enumerators number i of every enumeration, round and round: kReasonCount of them show each name.
 inline CycleRecord record_with_enumerators(int i) {
   CycleRecord r = full_record(i);
   r.mode = static_cast<Mode>(i % kModeCount);
@@ -95,6 +109,7 @@ inline CycleRecord record_with_enumerators(int i) {
   r.reason = static_cast<Reason>(i % kReasonCount);
   r.battery_status = static_cast<Status>(i % kStatusCount);
   r.price.status = static_cast<Status>((i + 5) % kStatusCount);
+  r.site.meter_status = static_cast<Status>((i + 7) % kStatusCount);
   return r;
 }
 
