@@ -86,7 +86,7 @@ TEST_F(SiteProcesses, ASilentMeterLeavesTheBatteryIdleAndHealthSaysSo) {
   do line = edge.read_line();
   while (!line.empty() && line.find(" reason=meter_lost ") == std::string::npos);
   EXPECT_THAT(line, HasSubstr(" ordered_power_w=0 "));
-  EXPECT_THAT(line, HasSubstr(" meter=timeout "));
+  EXPECT_THAT(line, HasSubstr(" meter=timeout"));
   EXPECT_THAT(line, HasSubstr(" mode=running "));
   ChildProcess status({BESS_EDGE_PROGRAM, "status", "--config", config});
   EXPECT_THAT(status.read_all(), HasSubstr("WARN: meter: "));
