@@ -217,6 +217,40 @@ TEST(Site, PeakShavingKeepsTheHouseItselfUnderTheCap) {
   EXPECT_LT(house.battery.physics.soc_frac(), 0.5);
 }
 
+/// Weeks of a household's load, with a meter that is silent now and then: what passes a limit through
+/// the battery does so until the next check, or until a silent meter counts as lost.
+TEST(Site, ALimitIsPassedForNoLongerThanACheckTakes) {
+  constexpr double kImportW = 4'500, kExportW = 500;
+  SiteSettings settings = metered({.import_w_max = 4'500, .export_w_max = 500});
+  House house(settings, HouseLoad::daily(5));
+  std::mt19937_64 random(7);
+  house.prices.price = [&](std::int64_t) { return random() % 2 == 0 ? -60'000 : 160'000; };
+  std::vector<bool> silent_minutes;
+  const std::int64_t start_s = house.clock.now_ns / kNanosecondsPerSecond;
+  for (int i = 0; i < 21 * kStepsPerDay; ++i) {
+    house.meter.is_silent = house.meter.is_silent ? random() % 3 != 0 : random() % 40 == 0;
+    silent_minutes.insert(silent_minutes.end(), 2, house.meter.is_silent);
+    EXPECT_GE(house.battery.physics.soc_frac(), 0.1 - 1e-9);
+    house.cycle();
+  }
+  int limited = 0;
+  for (const MinuteRecord& minute : house.battery.physics.record()) {
+    const double house_w = house.meter.house.power_w(minute.minute_utc_s);
+    const double grid_w = house_w + minute.energy_wh * 60;
+    const double over_w =
+        std::max(grid_w - std::max(kImportW, house_w), -grid_w - std::max(kExportW, -house_w));
+    limited += minute.energy_wh != 0 && (grid_w > kImportW - 300 || grid_w < -kExportW + 300);
+    const auto at = static_cast<std::size_t>((minute.minute_utc_s - start_s) / 60);
+    const bool near_silence = silent_minutes[std::min(at, silent_minutes.size() - 1)] ||
+                              silent_minutes[std::min(at + 2, silent_minutes.size() - 1)] ||
+                              (at >= 2 && silent_minutes[at - 2]);
+    const double reaction_s =
+        near_silence ? settings.age_s_max + settings.check_every_s : settings.check_every_s;
+    ASSERT_LE(over_w * 60, 4'000 * reaction_s + 1) << utc_text(minute.minute_utc_s).c_str();
+  }
+  EXPECT_GT(limited, 1'000);
+}
+
 // --- a year ------------------------------------------------------------------------------------
 
 constexpr std::int64_t kYearStartS = 1'672'527'600;  // 2023-01-01T00:00 in Brussels
