@@ -14,6 +14,7 @@
 #include "edge/control/hold.h"
 #include "edge/control/mode.h"
 #include "edge/control/reversal_cap.h"
+#include "edge/control/site_types.h"
 #include "shared/action.h"
 #include "shared/price_level.h"
 
@@ -32,7 +33,9 @@ struct BatteryMeasurement {
   bool dispatch_active = false;  ///< the device follows an order that was written to it
   bool has_order_power = false;  ///< the map can read back the power of the order in force
   std::int32_t order_power_w = 0;
-  bool order_replaced = false;  ///< a register of our order holds what somebody else wrote
+  bool order_replaced = false;    ///< a register of our order holds what somebody else wrote
+  bool has_grid_power = false;    ///< the map has a grid point, and it was asked for
+  std::int32_t grid_power_w = 0;  ///< import is positive
 };
 
 /// Totals since start, and what the flash-backed registers have had today.
@@ -86,6 +89,11 @@ enum class Reason : std::uint8_t {
   kCycleBudget,
   kReversalCap,
   kPowerLimit,
+  kOutsideLimit,
+  kMeterLost,
+  kImportLimit,
+  kExportLimit,
+  kQuarterHourPeak,
   kRamp,
   kHeld,
   kPriceLow,
@@ -129,6 +137,11 @@ constexpr std::string_view reason_name(Reason reason) {
                                          "cycle_budget",
                                          "reversal_cap",
                                          "power_limit",
+                                         "outside_limit",
+                                         "meter_lost",
+                                         "import_limit",
+                                         "export_limit",
+                                         "quarter_hour_peak",
                                          "ramp",
                                          "held",
                                          "price_low",
@@ -186,6 +199,7 @@ struct CycleRecord {
   HoldReport hold{};
   std::int16_t reserve_soc_e4 = 0;   ///< that held at the tick; 0 = none
   std::int16_t days_since_full = 0;  ///< local days since the SoC was last full
+  SiteReport site{};
 };
 
 }  // namespace bess

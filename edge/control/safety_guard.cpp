@@ -1,18 +1,9 @@
 #include "edge/control/safety_guard.h"
 
+#include "edge/control/quarter_hour_energy.h"
 #include "shared/fixed_point.h"
-#include "shared/units_and_limits.h"
 
 namespace bess {
-namespace {
-
-constexpr std::int64_t kQuarterHourS = kMinutesPerQuarterHour * 60;
-
-// Quarter-hours of local time are quarter-hours of UTC: every offset in use is a multiple of 15
-// minutes.
-constexpr std::int64_t quarter_hour_of(std::int64_t utc_s) { return utc_s / kQuarterHourS; }
-
-}  // namespace
 
 GuardDecision SafetyGuard::decide(const GuardInputs& in) {
   if (in.link_ok) update_soc_latches(in.measurement.soc_e4, in.reserve_soc_e4);
@@ -23,6 +14,14 @@ GuardDecision SafetyGuard::decide(const GuardInputs& in) {
   }
   decision = find_wish(in);
   apply_ramp(in.previous_power_w, decision);
+  apply_relief(in.site, decision);
+  apply_limits(in, decision);
+  return decision;
+}
+
+GuardDecision SafetyGuard::recheck(const GuardInputs& in) const {
+  GuardDecision decision{.power_w = in.previous_power_w, .reason = Reason::kStudent};
+  apply_relief(in.site, decision);
   apply_limits(in, decision);
   return decision;
 }
@@ -123,8 +122,13 @@ void SafetyGuard::apply_ramp(std::int32_t previous_power_w, GuardDecision& decis
 
 void SafetyGuard::apply_limits(const GuardInputs& in, GuardDecision& decision) const {
   if (decision.power_w > 0 && full_) decision = {.power_w = 0, .reason = Reason::kSocFull};
-  if (decision.power_w < 0 && empty_) decision = {.power_w = 0, .reason = Reason::kSocEmpty};
-  if (decision.power_w < 0 && reserved_) decision = {.power_w = 0, .reason = Reason::kReserve};
+  // Relief gives back what was just taken: it goes down to the bound, whatever was there before.
+  const bool is_relief = decision.reason == Reason::kQuarterHourPeak;
+  const std::int32_t soc_e4 = in.measurement.soc_e4;
+  const bool is_empty = is_relief ? soc_e4 <= settings_.soc_min_e4 : empty_;
+  const bool is_reserved = is_relief ? soc_e4 <= in.reserve_soc_e4 : reserved_;
+  if (decision.power_w < 0 && is_empty) decision = {.power_w = 0, .reason = Reason::kSocEmpty};
+  if (decision.power_w < 0 && is_reserved) decision = {.power_w = 0, .reason = Reason::kReserve};
   if (decision.power_w != 0 && in.cycle_budget_spent) {
     decision = {.power_w = 0, .reason = Reason::kCycleBudget};
   }
@@ -136,6 +140,24 @@ void SafetyGuard::apply_limits(const GuardInputs& in, GuardDecision& decision) c
       decision.power_w, -clamp_to<std::int32_t>(in.measurement.discharge_w_max, 0, INT32_MAX),
       clamp_to<std::int32_t>(in.measurement.charge_w_max, 0, INT32_MAX));
   if (limited != decision.power_w) decision = {.power_w = limited, .reason = Reason::kPowerLimit};
+  apply_site(in.site, decision);
+}
+
+/// Before the limits: a battery that is empty, or not allowed more, gives the house no relief.
+void SafetyGuard::apply_relief(const SiteRange& site, GuardDecision& decision) {
+  if (site.relief_w > 0 && decision.power_w > -site.relief_w) {
+    decision = {.power_w = -site.relief_w, .reason = Reason::kQuarterHourPeak};
+  }
+}
+
+/// After all others: it only cuts, and what cuts the furthest names the reason.
+void SafetyGuard::apply_site(const SiteRange& site, GuardDecision& decision) {
+  if (decision.power_w > site.charge_w_max) {
+    decision = {.power_w = site.charge_w_max, .reason = site.charge_reason};
+  }
+  if (decision.power_w < -site.discharge_w_max) {
+    decision = {.power_w = -site.discharge_w_max, .reason = site.discharge_reason};
+  }
 }
 
 }  // namespace bess

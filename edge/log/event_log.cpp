@@ -27,9 +27,10 @@ bool append_line(int fd, const char* text, std::size_t size) {
 JournalLevel level_of(const CycleRecord& record) {
   const bool is_ordered_stop = record.reason == Reason::kStopRequested;
   const bool is_trouble = is_stop_reason(record.reason) && !is_ordered_stop;
-  const bool is_warning =
-      is_trouble || record.battery_status != Status::kOk || record.price.step_held;
-  return is_warning ? JournalLevel::kWarning : JournalLevel::kInfo;
+  const bool is_well = record.battery_status == Status::kOk && !record.price.step_held &&
+                       record.site.meter_status == Status::kOk &&
+                       record.site.limit_status == Status::kOk;
+  return is_trouble || !is_well ? JournalLevel::kWarning : JournalLevel::kInfo;
 }
 
 }  // namespace

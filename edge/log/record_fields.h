@@ -20,6 +20,7 @@ consteval auto make_record_fields() {
   using L = PriceLevel;
   using V = ReversalHistory;
   using H = HoldReport;
+  using S = SiteReport;
   return std::to_array<Field<CycleRecord>>({
       {utc_member<&R::utc_s>(),
        "utc",
@@ -169,6 +170,29 @@ consteval auto make_record_fields() {
        "days_since_full",
        {.csv = 41, .last = 152, .metrics = {44, "bess_days_since_full"}},
        {"Local days since the battery was last full."}},
+      {member<&R::site, &S::has_grid_power>(), "has_grid_power", {.last = 161}},
+      {member<&R::site, &S::grid_power_w>().given<&R::site, &S::has_grid_power>(),
+       "grid_power_w",
+       {.journal = {22, "grid_w"},
+        .csv = 42,
+        .last = 162,
+        .metrics = {51, "bess_grid_power_watts"}},
+       {"Power at the connection to the grid, positive is import."}},
+      {member<&R::site, &S::quarter_hour_import_wh>().given<&R::site, &S::has_grid_power>(),
+       "quarter_hour_import_wh",
+       {.csv = 43, .last = 163, .metrics = {52, "bess_quarter_hour_import_watthours"}},
+       {"Imported so far in this quarter-hour."}},
+      {member<&R::site, &S::quarter_hour_battery_wh>().given<&R::site, &S::has_grid_power>(),
+       "quarter_hour_battery_wh",
+       {.csv = 44, .last = 164}},
+      {member<&R::site, &S::order_cuts>(),
+       "order_cuts",
+       {.csv = 45, .totals = 27, .metrics = {53, "bess_order_cuts_total"}},
+       {"Orders cut between two cycles by meter or outside limits."}},
+      {member<&R::site, &S::meter_status>(),
+       "meter_status",
+       {.journal = {23, "meter"}, .csv = 46, .last = 171}},
+      {member<&R::site, &S::limit_status>(), "limit_status", {.csv = 47, .last = 172}},
   });
 }
 

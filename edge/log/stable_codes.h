@@ -59,7 +59,12 @@ struct StableCodes<Reason> {
                                      Reason::kReversalCap,
                                      Reason::kHeld,
                                      Reason::kReserve,
-                                     Reason::kFullCharge};
+                                     Reason::kFullCharge,
+                                     Reason::kOutsideLimit,
+                                     Reason::kMeterLost,
+                                     Reason::kImportLimit,
+                                     Reason::kExportLimit,
+                                     Reason::kQuarterHourPeak};
   static constexpr auto kNameOf = reason_name;
 };
 

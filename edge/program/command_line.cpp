@@ -7,9 +7,9 @@
 #include <string_view>
 #include <variant>
 
-#include "edge/control/hold.h"
 #include "edge/control/policy.h"
 #include "edge/program/command_help.h"
+#include "edge/program/duration_text.h"
 #include "shared/utc_text.h"
 
 namespace bess {
@@ -28,6 +28,7 @@ struct UtcInstant {
 
 struct Duration {
   std::int64_t CommandLine::*seconds;
+  std::string_view shortest;
 };
 
 /// What an option sets: a switch, a count above 0, a text, an instant, or how long.
@@ -62,8 +63,13 @@ constexpr Option kOptions[] = {
     {SubCommand::kLog, "--last", &CommandLine::last},
     {SubCommand::kLog, "--since", UtcInstant{&CommandLine::since_utc_s}},
     {SubCommand::kHold, "--config", &CommandLine::config_path},
-    {SubCommand::kHold, "--for", Duration{&CommandLine::hold_for_s}},
+    {SubCommand::kHold, "--for", Duration{&CommandLine::for_s, "2m"}},
     {SubCommand::kHold, "--release", &CommandLine::release_hold},
+    {SubCommand::kLimit, "--config", &CommandLine::config_path},
+    {SubCommand::kLimit, "--charge", &CommandLine::charge_w},
+    {SubCommand::kLimit, "--discharge", &CommandLine::discharge_w},
+    {SubCommand::kLimit, "--for", Duration{&CommandLine::for_s, "1s"}},
+    {SubCommand::kLimit, "--clear", &CommandLine::clear},
 };
 
 const Option* find_option(SubCommand command, std::string_view name) {
@@ -76,24 +82,6 @@ const Option* find_option(SubCommand command, std::string_view name) {
 bool parse_count(std::string_view text, std::int64_t& value) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   return error == std::errc{} && end == text.data() + text.size() && value > 0;
-}
-
-/// "2h", "90m", "1d12h": numbers, each with s, m, h or d behind it.
-bool parse_duration(std::string_view text, std::int64_t& seconds) {
-  seconds = 0;
-  if (text.empty()) return false;
-  while (!text.empty()) {
-    std::int32_t count = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
-    if (error != std::errc{} || count < 0 || end == text.data() + text.size()) return false;
-    constexpr std::string_view kUnits = "smhd";
-    constexpr std::int64_t kUnitSeconds[] = {1, 60, 3'600, 86'400};
-    const std::size_t unit = kUnits.find(*end);
-    if (unit == kUnits.npos) return false;
-    seconds += count * kUnitSeconds[unit];
-    text.remove_prefix(static_cast<std::size_t>(end + 1 - text.data()));
-  }
-  return seconds <= kHoldSecondsMax && seconds >= kHoldSecondsMin;
 }
 
 /// Stores the option's value; false after printing what is wrong with it.
@@ -113,8 +101,13 @@ bool store(const Option& option, std::string_view value, CommandLine& line) {
                 value);
     return false;
   } else if (const auto* duration = std::get_if<Duration>(&option.target)) {
-    if (parse_duration(value, line.*(duration->seconds))) return true;
-    usage_error(std::string(option.name) + " needs 2m to 7d, such as 2h or 1h30m, not ", value);
+    std::int64_t shortest_s = 0;
+    static_cast<void>(parse_duration(duration->shortest, shortest_s));
+    std::int64_t& seconds = line.*(duration->seconds);
+    if (parse_duration(value, seconds) && seconds >= shortest_s) return true;
+    usage_error(std::string(option.name) + " needs " + std::string(duration->shortest) +
+                    " to 7d, such as 2h or 1h30m, not ",
+                value);
     return false;
   }
   return true;
@@ -134,8 +127,8 @@ bool take_hold_power(std::string_view argument, CommandLine& line) {
 
 /// Either a power and how long, or the end of what is held.
 bool is_complete_hold(const CommandLine& line) {
-  const bool is_order = line.hold_power_w.has_value() && line.hold_for_s > 0;
-  const bool is_partial = line.hold_power_w.has_value() || line.hold_for_s > 0;
+  const bool is_order = line.hold_power_w.has_value() && line.for_s > 0;
+  const bool is_partial = line.hold_power_w.has_value() || line.for_s > 0;
   return line.release_hold ? !is_partial : is_order;
 }
 
@@ -191,6 +184,8 @@ CommandLineResult parse_command_line(int argc, char** argv, CommandLine& line) {
       line.command = SubCommand::kHold;
     } else if (name == "signature") {
       line.command = SubCommand::kSignature;
+    } else if (name == "limit") {
+      line.command = SubCommand::kLimit;
     } else if (name != "run") {
       return usage_error("unknown command ", name);
     }
@@ -211,6 +206,9 @@ CommandLineResult parse_command_line(int argc, char** argv, CommandLine& line) {
     return usage_error("hold needs a power in W and --for DURATION, or --release alone", "");
   }
   if (line.command == SubCommand::kSignature) return CommandLineResult::kGo;
+  if (line.command == SubCommand::kLimit && line.clear != (line.for_s == 0)) {
+    return usage_error("limit needs either --for DURATION or --clear", "");
+  }
   return settle_config(line);
 }
 

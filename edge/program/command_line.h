@@ -18,7 +18,8 @@ enum class SubCommand : std::uint8_t {
   kLog,
   kSignature,
   kClear,
-  kHold
+  kHold,
+  kLimit
 };
 
 struct CommandLine {
@@ -36,8 +37,11 @@ struct CommandLine {
   std::int64_t last = -1;                ///< -1 = all
   std::int64_t since_utc_s = INT64_MIN;  ///< INT64_MIN = all
   std::optional<std::int64_t> hold_power_w;
-  std::int64_t hold_for_s = 0;  ///< 0 = not given
   bool release_hold = false;
+  std::int64_t for_s = 0;  ///< of hold and limit; 0 = not given
+  std::string charge_w;    ///< of limit; empty = any
+  std::string discharge_w;
+  bool clear = false;
 };
 
 enum class CommandLineResult { kGo, kExitOk, kExitUsage };

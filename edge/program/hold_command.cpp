@@ -76,7 +76,7 @@ int run_hold_command(const CommandLine& command_line, const EdgeConfig& config) 
   set_market_time_zone();
   const std::int64_t now_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
   const Hold hold{.power_w = static_cast<std::int32_t>(power_w),
-                  .until_utc_s = static_cast<std::uint32_t>(now_utc_s + command_line.hold_for_s)};
+                  .until_utc_s = static_cast<std::uint32_t>(now_utc_s + command_line.for_s)};
   if (mkdir(config.state.folder.c_str(), 0755) != 0 && errno != EEXIST) {
     return fail(config.state.folder.c_str(), "cannot make the folder of [state] folder");
   }

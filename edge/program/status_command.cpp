@@ -27,6 +27,7 @@ using B = BatteryMeasurement;
 using P = PriceReport;
 using C = BatteryCounters;
 using L = PriceLevel;
+using S = SiteReport;
 using T = RunTotals;
 using H = HoldReport;
 
@@ -123,6 +124,8 @@ Health health_of(const EdgeConfig& config, JsonValue status, bool no_lock) {
   in.reason = text_of(field<&R::reason>(status));
   in.battery_status = text_of(field<&R::battery_status>(status));
   in.price_status = text_of(field<&R::price, &P::status>(status));
+  in.meter_status = text_of(field<&R::site, &S::meter_status>(status));
+  in.limit_status = text_of(field<&R::site, &S::limit_status>(status));
   in.unanswered_orders = whole(field<&R::unanswered_orders>(status));
   in.weak_answers = whole(field<&R::weak_answers>(status));
   in.trip = text_of(field<&R::trip, &Trip::reason>(status));
@@ -170,6 +173,17 @@ void print_wishes(JsonValue s) {
               whole(field<&R::days_since_full>(s)));
 }
 
+/// Nothing where there is no meter.
+void print_site(JsonValue s) {
+  if (!is_true(field<&R::site, &S::has_grid_power>(s))) return;
+  const double grid_w = number(field<&R::site, &S::grid_power_w>(s));
+  std::printf(
+      "grid       %.0f W (import is positive), house %.0f W, %lld Wh imported in this "
+      "quarter-hour\n",
+      grid_w, grid_w - number(field<&R::measurement, &B::power_w>(s)),
+      whole(field<&R::site, &S::quarter_hour_import_wh>(s)));
+}
+
 void print_last_cycle(JsonValue s) {
   std::printf("state      %s at %s, cycle %lld\n", text_of(field<&R::mode>(s)),
               text_of(field<&R::utc_s>(s)), whole(field<&R::cycle>(s)));
@@ -193,6 +207,7 @@ void print_last_cycle(JsonValue s) {
                 number(field<&R::price, &P::held_centi_eur_per_mwh>(s)) / kCentiPerEur);
   }
   print_level(s);
+  print_site(s);
   std::printf("order      %.0f W, reason %s\n", number(field<&R::ordered_power_w>(s)),
               text_of(field<&R::reason>(s)));
   print_wishes(s);

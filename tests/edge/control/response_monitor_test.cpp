@@ -155,6 +155,30 @@ TEST(ResponseMonitor, ASocThatMovesTheWrongWayIsFound) {
   EXPECT_LE(readings, 5);
 }
 
+/// Full power for the first half of every step, none for the second: what a meter's limit makes of it.
+TEST(ResponseMonitor, AnOrderThatIsCutWithinItsStepHasMovedWhatItMoved) {
+  ResponseMonitor monitor{ResponseSettings{}};
+  double soc_frac = 0.2;
+  for (int i = 0; i < 10; ++i) {
+    Response now;
+    now.utc_s = i * kStepS;
+    now.is_driven = true;
+    now.order_age_s = kStepS / 2;
+    now.measurement.capacity_wh = 8'000;
+    now.measurement.power_w = 4'000;
+    now.utc_s += kStepS / 2;
+    now.ordered_power_w = 4'000;
+    soc_frac += 4'000 * kStepS / 2 / 3'600.0 / 8'000;
+    now.measurement.soc_e4 = static_cast<std::int32_t>(std::lround(soc_frac * 1e4));
+    monitor.note_power(now);
+    now.measurement.power_w = now.ordered_power_w = 0;
+    now.utc_s += kStepS / 2;
+    monitor.observe(now);
+    EXPECT_EQ(monitor.trip(), Reason::kStudent) << i;
+    EXPECT_FALSE(monitor.has_jumped()) << i;
+  }
+}
+
 TEST(ResponseMonitor, ASocThatJumpsStopsUntilItAgreesAgain) {
   Site site;
   site.step(4'000, 4'000);

@@ -24,6 +24,7 @@ using ::testing::Not;
 CycleRecord bare_record() {
   CycleRecord r;
   r.has_measurement = r.price.has_row = r.has_student_action = r.is_tripped = r.hold.held = true;
+  r.site.has_grid_power = true;
   return r;
 }
 

@@ -151,8 +151,12 @@ TEST(RecordCodec, LayoutOnDiskIsFixed) {
   EXPECT_EQ(bytes[238], 0xDD);  // hold.power_w = -35
   EXPECT_EQ(bytes[242], 36);    // hold.until_utc_s
   EXPECT_EQ(bytes[246], 37);    // reserve_soc_e4
-  EXPECT_EQ(bytes[248], 38);    // days_since_full, the last field
-  for (std::size_t i = 250; i < kRecordBytes - 4; ++i) EXPECT_EQ(bytes[i], 0) << i;
+  EXPECT_EQ(bytes[248], 38);    // days_since_full
+  EXPECT_EQ(bytes[250], 1);     // site.has_grid_power
+  EXPECT_EQ(bytes[251], 0xD9);  // site.grid_power_w = -39
+  EXPECT_EQ(bytes[263], 42);    // site.order_cuts
+  EXPECT_EQ(bytes[268], 14);    // site.limit_status: malformed, the last field
+  for (std::size_t i = 269; i < kRecordBytes - 4; ++i) EXPECT_EQ(bytes[i], 0) << i;
 }
 
 /// A ring of the program that ended its records with flash_writes_today: later fields read as 0.
@@ -177,6 +181,7 @@ TEST(RecordCodec, ARecordOfAnOlderLayoutIsRead) {
   expected.reversals = {};
   expected.hold = {};
   expected.reserve_soc_e4 = expected.days_since_full = 0;
+  expected.site = {};
   EXPECT_EQ(bytes_of(back, 42), bytes_of(expected, 42));
 }
 

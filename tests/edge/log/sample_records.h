@@ -65,6 +65,13 @@ inline CycleRecord full_record(std::int64_t cycle) {
   r.hold = {.held = true, .unreadable = true, .power_w = -35, .until_utc_s = 36};
   r.reserve_soc_e4 = 37;
   r.days_since_full = 38;
+  r.site = {.has_grid_power = true,
+            .grid_power_w = -39,
+            .quarter_hour_import_wh = 40,
+            .quarter_hour_battery_wh = 41,
+            .order_cuts = 42,
+            .meter_status = Status::kBadReply,
+            .limit_status = Status::kMalformed};
   return r;
 }
 
@@ -98,13 +105,20 @@ inline CycleRecord longest_record() {
   r.reversals = {.steps = UINT32_MAX, .direction = INT16_MIN, .in_hour = INT16_MIN};
   r.hold = {.held = true, .power_w = INT32_MIN, .until_utc_s = UINT32_MAX};
   r.reserve_soc_e4 = r.days_since_full = INT16_MIN;
+  r.site = {.has_grid_power = true,
+            .grid_power_w = INT32_MIN,
+            .quarter_hour_import_wh = INT32_MIN,
+            .quarter_hour_battery_wh = INT32_MIN,
+            .order_cuts = INT32_MIN,
+            .meter_status = Status::kNotExpressible,
+            .limit_status = Status::kNotExpressible};
   r.counters = {INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT32_MIN};
   r.counters.requests = 0;  // requests - failed_requests must not overflow
   r.counters.failed_requests = INT64_MAX;
   return r;
 }
 
-/// Enumerators number i of every enumeration, round and round: one for each reason shows every name.
+/// Enumerators number i of every enumeration, round and round: kReasonCount of them show each name.
 inline CycleRecord record_with_enumerators(int i) {
   CycleRecord r = full_record(i);
   r.mode = static_cast<Mode>(i % kModeCount);
@@ -112,6 +126,7 @@ inline CycleRecord record_with_enumerators(int i) {
   r.reason = static_cast<Reason>(i % kReasonCount);
   r.battery_status = static_cast<Status>(i % kStatusCount);
   r.price.status = static_cast<Status>((i + 5) % kStatusCount);
+  r.site.meter_status = static_cast<Status>((i + 7) % kStatusCount);
   return r;
 }
 
