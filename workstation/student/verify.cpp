@@ -270,11 +270,13 @@ class GridChecker {
  private:
   template <typename Violates>
   void count(std::int64_t& total, int soc, int begin, int end, Violates violates) {
-    std::int64_t found = 0;
-    for (int p = begin; p < end; ++p) found += violates(p) ? 1 : 0;  // branch-free: vectorises
-    total += found;
-    for (int p = begin; found > 0 && p < end && kept_in_context_ < kKeptPerContext; ++p) {
-      if (violates(p)) keep(soc, p);
+    std::int8_t any = 0;  // as wide as an action, branch-free: vectorises
+    for (int p = begin; p < end; ++p) any |= static_cast<std::int8_t>(violates(p));
+    if (any == 0) return;
+    for (int p = begin; p < end; ++p) {
+      if (!violates(p)) continue;
+      ++total;
+      if (kept_in_context_ < kKeptPerContext) keep(soc, p);
     }
   }
   void keep(int soc, int price) {
