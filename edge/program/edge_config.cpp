@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 
@@ -171,6 +172,13 @@ void read_threshold(TomlTable& table, std::string_view key, std::int32_t& eur_pe
   eur_per_mwh = centi_eur_per_mwh / kCentiPerEur;
 }
 
+/// Twelve for a battery that is full in an hour, fewer for a slower one: what honest prices have needed.
+std::int32_t default_cycles_per_day_e4(const EdgeConfig& config) {
+  const std::int64_t cycles_e4 =
+      std::int64_t{120'000} * config.control.guard.power_w / config.capacity_wh;
+  return static_cast<std::int32_t>(std::clamp<std::int64_t>(cycles_e4, 10'000, 1'000'000));
+}
+
 void read_guard(TomlTable table, EdgeConfig& config) {
   GuardSettings& guard = config.control.guard;
   read_threshold(table, "low_price_eur_per_mwh", guard.thresholds.low_eur_per_mwh);
@@ -183,6 +191,7 @@ void read_guard(TomlTable table, EdgeConfig& config) {
   table.scaled("temperature_max_c", guard.temperature_max_deci_c, 10, -50, 100);
   table.integer("hold_s", config.control.hold_s, 0, 3'600);
   table.integer("ramp_w_max", guard.ramp_w_max, 0, 100'000'000);
+  config.control.cycles_per_day_max_e4 = default_cycles_per_day_e4(config);
   table.scaled("cycles_per_day_max", config.control.cycles_per_day_max_e4, 10'000, 0, 100);
   table.integer("reversals_per_hour_max", config.control.reversals_per_hour_max, 0, kStepsPerHour);
   table.integer("order_deadline_s", config.control.order_deadline_s, 1, kSecondsPerStep);

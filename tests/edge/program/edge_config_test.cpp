@@ -76,6 +76,16 @@ TEST(EdgeConfig, CyclesAndReversalsAreBoundedUnlessToldOtherwise) {
   EXPECT_EQ(config.control.reversals_per_hour_max, 0);
 }
 
+TEST(EdgeConfig, ABatteryThatIsFullSoonerMayCycleMore) {
+  const TemporaryFolder folder;
+  EdgeConfig config;
+  std::string error;
+  std::string text = valid_text();
+  text.insert(text.find("[battery]\n") + 10, "capacity_wh = 4000\n");
+  ASSERT_TRUE(load_edge_config(folder.write("edge.toml", text), config, error)) << error;
+  EXPECT_EQ(config.control.cycles_per_day_max_e4, 120'000);
+}
+
 TEST(EdgeConfig, UnitGroupsOfTheMapAreTheOperatorsToSet) {
   const TemporaryFolder folder;
   std::string text = valid_text();
