@@ -127,15 +127,15 @@ void EventLog::run() {
   }
 }
 
-/// Status last: whoever reads it finds the record in the ring as well.
+/// The ring first, status last: whoever is told of a record finds it in the ring, a next run as well.
 void EventLog::keep(const CycleRecord& record) {
   const std::int64_t failures_before = totals_.disk_failures;
   char line[kLogLineBytes];
   const std::size_t size = format_log_line(record, line);
+  if (!append_to_ring(record)) ++totals_.disk_failures;
   tell_of_hold(record);
   write_journal_line(level_of(record), {line, size});
   tell_of_trip(record);
-  if (!append_to_ring(record)) ++totals_.disk_failures;
   if (!append_to_csv(record)) ++totals_.disk_failures;
   totals_.count(record);
   const std::int64_t dropped = dropped_;

@@ -108,7 +108,7 @@ class SmallDisk {
  public:
   explicit SmallDisk(std::string folder) : folder_(std::move(folder)) {
     fs::create_directory(folder_);
-    is_mounted_ = mount("bess_test", folder_.c_str(), "tmpfs", 0, "size=7m") == 0;
+    is_mounted_ = mount("bess_test", folder_.c_str(), "tmpfs", 0, "size=14m") == 0;
   }
   SmallDisk(const SmallDisk&) = delete;
   SmallDisk& operator=(const SmallDisk&) = delete;

@@ -19,8 +19,8 @@ class AnyDevice {
     std::fill_n(registers, span.count, answer_);
     return Status::kOk;
   }
-  Status write(std::int32_t, std::uint8_t function, std::uint16_t, const std::uint16_t*,
-               int count) {
+  Status write(std::int32_t, std::uint8_t function, std::uint16_t, const std::uint16_t*, int count,
+               std::int64_t) {
     must(count > 0 && count <= kBlockRegistersMax, "a write has its size");
     must(function == 16 || (function == 6 && count == 1), "a write has its function");
     return Status::kOk;

@@ -5,11 +5,13 @@
 #include <mosquitto.h>
 #include <sys/stat.h>
 
+#include <chrono>
 #include <condition_variable>
 #include <filesystem>
 #include <fstream>
 #include <mutex>
 #include <sstream>
+#include <thread>
 
 #include "edge/log/ring_log.h"
 #include "edge/notify/notifier.h"
@@ -204,13 +206,29 @@ class Broker {
     close(bind_socket(address));
     return ntohs(address.sin_port);
   }
+  /// Returns once it listens, which takes a busy machine seconds.
   void start() {
     process_ = std::make_unique<ChildProcess>(std::vector<std::string>{kProgram, "-c", config_});
+    for (int tries = 0; tries < 500 && !listens(); ++tries) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
   }
   void stop() { process_.reset(); }
   [[nodiscard]] std::uint16_t port() const { return port_; }
 
  private:
+  [[nodiscard]] bool listens() const {
+    const sockaddr_in address{.sin_family = AF_INET,
+                              .sin_port = htons(port_),
+                              .sin_addr = {.s_addr = htonl(INADDR_LOOPBACK)},
+                              .sin_zero = {}};
+    const int fd = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    const bool is_open =
+        connect(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+    close(fd);
+    return is_open;
+  }
+
   std::uint16_t port_;
   std::string config_;
   std::unique_ptr<ChildProcess> process_;
