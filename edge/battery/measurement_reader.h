@@ -23,6 +23,7 @@ class MeasurementReader {
 
  private:
   void store(int point, std::int64_t wide, BatteryMeasurement& m) const;
+  /// Also false while its register is not known, which only an optional one can be here.
   [[nodiscard]] bool is_true(const LivePoints& live, const Condition& condition) const;
   bool is_alive(const LivePoints& live, std::int64_t now_ns);
 

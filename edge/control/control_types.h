@@ -31,6 +31,7 @@ struct BatteryMeasurement {
   bool has_order_power = false;  ///< the map can read back the power of the order in force
   std::int32_t order_power_w = 0;
   bool order_replaced = false;  ///< a register of our order holds what somebody else wrote
+  bool warning = false;         ///< the device warns and goes on: told, stops nothing
 };
 
 /// Totals since start, and what the flash-backed registers have had today.

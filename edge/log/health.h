@@ -22,6 +22,7 @@ struct HealthInputs {
   std::string_view reason;
   std::string_view battery_status;
   std::string_view price_status;
+  bool battery_warns = false;
   bool disk_is_slow = false;
   bool disk_is_failing = false;
   std::int64_t cycles_behind = 0;  ///< cycles that the log has and the status has not

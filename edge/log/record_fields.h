@@ -136,6 +136,10 @@ consteval auto make_record_fields() {
        "replaced_orders",
        {.csv = 34, .totals = 25, .metrics = {23, "bess_replaced_orders_total"}},
        {"Orders that somebody else replaced."}},
+      {member<&R::measurement, &B::warning>(),
+       "warning",
+       {.last = 34, .metrics = {18, "bess_battery_warning"}},
+       {"1 while the battery warns: see its own display."}},
   });
 }
 

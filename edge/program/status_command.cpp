@@ -89,6 +89,7 @@ Health health_of(const EdgeConfig& config, JsonValue status) {
   in.unanswered_orders = whole(field<&R::unanswered_orders>(status));
   in.weak_answers = whole(field<&R::weak_answers>(status));
   in.trip = text_of(field<&R::trip, &Trip::reason>(status));
+  in.battery_warns = is_true(field<&R::measurement, &B::warning>(status));
   in.disk_is_slow = is_true(field<&T::disk_is_slow>(status));
   in.disk_is_failing = is_true(field<&T::disk_is_failing>(status));
   if (in.is_of_this_run && in.cycles > 0) in.cycles_behind = cycles_behind(config, status);

@@ -111,8 +111,9 @@ TEST(RecordCodec, LayoutOnDiskIsFixed) {
   EXPECT_EQ(bytes[206], 20);    // trip: soc_mismatch
   EXPECT_EQ(bytes[207], 0x20);  // its instant
   EXPECT_EQ(bytes[215], 33);    // weak_answers
-  EXPECT_EQ(bytes[219], 34);    // replaced_orders, the last field
-  for (std::size_t i = 223; i < kRecordBytes - 4; ++i) EXPECT_EQ(bytes[i], 0) << i;
+  EXPECT_EQ(bytes[219], 34);    // replaced_orders
+  EXPECT_EQ(bytes[223], 1);     // warning, the last field
+  for (std::size_t i = 224; i < kRecordBytes - 4; ++i) EXPECT_EQ(bytes[i], 0) << i;
 }
 
 /// A ring of the program that ended its records with flash_writes_today: later fields read as 0.
@@ -129,7 +130,7 @@ TEST(RecordCodec, ARecordOfAnOlderLayoutIsRead) {
   expected.throughput = {};
   expected.price_level = {};
   expected.context_class = 0;
-  expected.measurement.order_replaced = expected.is_tripped = false;
+  expected.measurement.order_replaced = expected.measurement.warning = expected.is_tripped = false;
   expected.trip = {.reason = Reason::kStopRequested, .utc_s = 0};  // code 0; counts only if tripped
   expected.weak_answers = expected.replaced_orders = 0;
   EXPECT_EQ(bytes_of(back, 42), bytes_of(expected, 42));
