@@ -86,6 +86,7 @@ int run_controller(const CommandLine& command_line, const EdgeConfig& config) {
   write_journal_line(JournalLevel::kNotice,
                      config.control.control ? "started: in control" : "started: read-only");
   journal_thresholds(config);
+  journal_transport(config);
   if (config.control.control) release_if_a_check_fails(battery);
   static Loop loop(config.control, battery, prices, clock);
   if (student_context().kind == ContextKind::kLevel) {
@@ -100,7 +101,9 @@ int run_controller(const CommandLine& command_line, const EdgeConfig& config) {
   loop.take_over(
       {.throughput = before.throughput,
        .price_level = level_at_start(config, before.price_level, greeting, prices, clock),
-       .trip = before.is_tripped && !is_cleared ? before.trip : Trip{}});
+       .trip = before.is_tripped && !is_cleared ? before.trip : Trip{},
+       .reversals = before.reversals,
+       .reversals_utc_s = before.utc_s});
   notify.ready();
   return run_supervised(loop, command_line.cycles, clock, log, notify, clearance.c_str()) ? 0 : 1;
 }

@@ -43,7 +43,8 @@ class BatteryDriver {
     const Status status = reader_.translate(bus_.live(), bus_.time().now_ns(), measurement);
     if (status != Status::kOk) return status;
     note_order_in_force(measurement);
-    if (in_force_) find_replaced_order(measurement);
+    if (in_force_ && is_replaced()) give_up_replaced_order();
+    measurement.order_replaced = was_replaced_;
     return Status::kOk;
   }
 
@@ -96,6 +97,7 @@ class BatteryDriver {
     const Status status = runner_.run(map_.sequence(Command::kRelease), PowerOrder{});
     lose_order();
     if (status == Status::kOk) runner_.saved().forget();
+    was_replaced_ = was_replaced_ && status != Status::kOk;
     was_ordered_ = was_ordered_ || status == Status::kOk;
     return status;
   }
@@ -199,10 +201,15 @@ class BatteryDriver {
   }
 
   /// Somebody else wrote: a register of the order has another value than the one read back after it.
-  void find_replaced_order(BatteryMeasurement& m) {
-    if (runner_.confirm(map_.sequence(command_)) != Status::kNotApplied) return;
-    m.order_replaced = true;
-    lose_order();  // all of it is written again, unless control yields
+  [[nodiscard]] bool is_replaced() {
+    return runner_.confirm(map_.sequence(command_)) == Status::kNotApplied;
+  }
+
+  /// All of it is written again with the next order, unless control yields. Not before: two masters
+  /// that outdo each other would swing the power.
+  void give_up_replaced_order() {
+    was_replaced_ = true;
+    lose_order();
   }
 
   /// Feeding at half the interval: nothing is lost when one feeding comes late.
@@ -213,6 +220,10 @@ class BatteryDriver {
   }
 
   Status feed() {
+    if (is_replaced()) {
+      give_up_replaced_order();
+      return Status::kNotApplied;
+    }
     const CommandSequence& refresh = map_.sequence(Command::kRefresh);
     const CommandSequence& sequence = refresh.writes.empty() ? map_.sequence(command_) : refresh;
     PowerOrder order = order_;
@@ -288,6 +299,7 @@ class BatteryDriver {
   }
 
   void take_into_force(Command command, const PowerOrder& order) {
+    was_replaced_ = false;
     in_force_ = was_ordered_ = true;
     command_ = command;
     order_ = order;
@@ -312,8 +324,9 @@ class BatteryDriver {
   std::int64_t identified_connections_ = 0;
   bool was_ordered_ = false;  ///< what the device holds is ours, or was given back by us
   bool enabled_ = false;
-  bool in_force_ = false;  ///< the order below was read back and nothing has ended it since
-  bool runs_out_ = false;  ///< the device's timer shows less than one refresh interval
+  bool was_replaced_ = false;  ///< the newest order was, by somebody else
+  bool in_force_ = false;      ///< the order below was read back and nothing has ended it since
+  bool runs_out_ = false;      ///< the device's timer shows less than one refresh interval
   Command command_ = Command::kIdle;
   PowerOrder order_;
   std::int64_t fed_ns_ = 0;

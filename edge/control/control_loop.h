@@ -36,6 +36,8 @@ struct TakeOver {
   DayThroughput throughput{};
   PriceLevel price_level{};
   Trip trip{};
+  ReversalHistory reversals{};
+  std::int64_t reversals_utc_s = 0;  ///< when that history was written
 };
 
 constexpr std::int64_t next_tick_utc_s(std::int64_t now_utc_s) {
@@ -52,12 +54,14 @@ class ControlLoop {
         clock_(clock),
         guard_(settings.guard),
         cycle_budget_(settings.cycles_per_day_max_e4),
+        reversal_cap_(settings.reversals_per_hour_max),
         supervision_(settings.supervision) {}
 
   void take_over(const TakeOver& before) {
     cycle_budget_.restore(before.throughput);
     price_level_ = before.price_level;
     supervision_.restore(before.trip);
+    reversal_cap_.restore(before.reversals, before.reversals_utc_s);
   }
 
   [[nodiscard]] const Trip& trip() const { return supervision_.trip(); }
@@ -291,6 +295,7 @@ class ControlLoop {
           now, record.context_class, record.measurement.soc_e4, price.price_centi_eur_per_mwh));
       record.has_student_action = true;
     }
+    reversal_cap_.advance(record.utc_s);
     const std::int64_t decided_utc_s = decision_utc_s(record.utc_s);
     // Suspended between reading and deciding: a reading may be as old as a price, not older.
     const bool is_recent = decided_utc_s - record.utc_s <= settings_.guard.price_age_s_max;
@@ -301,6 +306,7 @@ class ControlLoop {
                        .measurement = record.measurement,
                        .supervision = supervision_.stop_reason(),
                        .cycle_budget_spent = cycle_budget_.is_spent(),
+                       .barred_direction = reversal_cap_.barred_direction(),
                        .previous_power_w = order_power_w_,
                        .has_price = record.price.has_row,
                        .price_minute_utc_s = record.price.minute_utc_s,
@@ -308,6 +314,7 @@ class ControlLoop {
                        .student_action = record.student_action});
     record.reason = decision.reason;
     record.ordered_power_w = decision.power_w;
+    reversal_cap_.note(decision.power_w);
     advance_mode(record);
     record.decision_us = elapsed_us(start_ns);
   }
@@ -408,6 +415,7 @@ class ControlLoop {
     record.is_tripped = supervision_.trip().is_set();
     record.trip = supervision_.trip();
     record.throughput = cycle_budget_.today();
+    record.reversals = reversal_cap_.history();
     record.price_level = price_level_;
     record.counters = battery_.counters();
   }
@@ -422,6 +430,7 @@ class ControlLoop {
   Clock& clock_;
   SafetyGuard guard_;
   CycleBudget cycle_budget_;
+  ReversalCap reversal_cap_;
   PriceLevel price_level_;
   Supervision supervision_;
   Mode mode_ = Mode::kStart;

@@ -12,6 +12,7 @@
 #include "edge/base/status.h"
 #include "edge/control/cycle_budget.h"
 #include "edge/control/mode.h"
+#include "edge/control/reversal_cap.h"
 #include "shared/action.h"
 #include "shared/price_level.h"
 
@@ -54,6 +55,8 @@ struct PriceReport {
   std::int32_t fetch_us = 0;       ///< wall time of the request that brought it
   Status status = Status::kNoRow;  ///< of the last request
   bool large_step = false;         ///< the row lies further from its predecessor than configured
+  bool step_held = false;          ///< a newer row does, and waits for one that confirms it
+  std::int32_t held_centi_eur_per_mwh = 0;  ///< price of that newer row
 };
 
 /// Why the guard ordered something else than the student. Order is precedence: lower numbers win.
@@ -80,6 +83,7 @@ enum class Reason : std::uint8_t {
   kSocFull,
   kSocEmpty,
   kCycleBudget,
+  kReversalCap,
   kPowerLimit,
   kRamp,
   kPriceLow,
@@ -98,32 +102,15 @@ constexpr bool is_better_released(Reason reason) {
 }
 
 constexpr std::string_view reason_name(Reason reason) {
-  constexpr std::string_view kNames[] = {"stop_requested",
-                                         "hand_over",
-                                         "clock",
-                                         "link",
-                                         "alarm",
-                                         "temperature",
-                                         "off_grid",
-                                         "wrong_direction",
-                                         "uncontrolled_power",
-                                         "soc_mismatch",
-                                         "other_master",
-                                         "orders_fail",
-                                         "no_answer",
-                                         "capacity",
-                                         "soc_jump",
-                                         "no_price",
-                                         "price_age",
-                                         "price_qh",
-                                         "soc_full",
-                                         "soc_empty",
-                                         "cycle_budget",
-                                         "power_limit",
-                                         "ramp",
-                                         "price_low",
-                                         "price_high",
-                                         "student"};
+  constexpr std::string_view kNames[] = {"stop_requested", "hand_over",       "clock",
+                                         "link",           "alarm",           "temperature",
+                                         "off_grid",       "wrong_direction", "uncontrolled_power",
+                                         "soc_mismatch",   "other_master",    "orders_fail",
+                                         "no_answer",      "capacity",        "soc_jump",
+                                         "no_price",       "price_age",       "price_qh",
+                                         "soc_full",       "soc_empty",       "cycle_budget",
+                                         "reversal_cap",   "power_limit",     "ramp",
+                                         "price_low",      "price_high",      "student"};
   static_assert(std::size(kNames) == kReasonCount);
   return kNames[static_cast<int>(reason)];
 }
@@ -171,6 +158,7 @@ struct CycleRecord {
   Trip trip{};
   std::int32_t weak_answers = 0;     ///< readings in a row with less power than ordered
   std::int32_t replaced_orders = 0;  ///< since start: of ours, by somebody else
+  ReversalHistory reversals{};       ///< this cycle's order included
 };
 
 }  // namespace bess

@@ -149,13 +149,14 @@ void ResponseMonitor::judge_soc(const Response& now) {
 
 void ResponseMonitor::judge_standstill(std::int32_t soc_e4, std::int64_t moved_e4) {
   if (soc_e4 != before_.measurement.soc_e4) {
-    still_e4_ = still_readings_ = 0;
-    return;
+    return begin_standstill();
   }
   still_e4_ += moved_e4;
+  still_range_.least_e4 = std::min(still_range_.least_e4, still_e4_);
+  still_range_.most_e4 = std::max(still_range_.most_e4, still_e4_);
   ++still_readings_;
   const std::int64_t must_show_e4 = settings_.band.soc_step_e4 * 6 / 5 + 50;
-  const std::int64_t moved_at_least_e4 = (still_e4_ < 0 ? -still_e4_ : still_e4_) * 3 / 4;
+  const std::int64_t moved_at_least_e4 = (still_range_.most_e4 - still_range_.least_e4) * 3 / 4;
   const bool stands_still = still_readings_ >= kReadingsToFind && moved_at_least_e4 > must_show_e4;
   if (stands_still && trip_ == Reason::kStudent) trip_ = Reason::kSocMismatch;
 }
@@ -172,8 +173,13 @@ void ResponseMonitor::judge_sum(std::int32_t soc_e4, const SocRange& range, std:
   }
 }
 
-void ResponseMonitor::begin_sum(std::int32_t soc_e4) {
+void ResponseMonitor::begin_standstill() {
+  still_range_ = SocRange{};
   still_e4_ = still_readings_ = 0;
+}
+
+void ResponseMonitor::begin_sum(std::int32_t soc_e4) {
+  begin_standstill();
   sum_soc_e4_ = soc_e4;
   sum_ = SocRange{};
   sum_readings_ = sum_apart_ = 0;

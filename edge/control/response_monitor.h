@@ -71,6 +71,7 @@ class ResponseMonitor {
   void judge_soc(const Response& now);
   void judge_standstill(std::int32_t soc_e4, std::int64_t moved_e4);
   void judge_sum(std::int32_t soc_e4, const SocRange& range, std::int64_t slack_e4);
+  void begin_standstill();
   void begin_sum(std::int32_t soc_e4);
   void count(std::int32_t& readings, Reason reason);
   [[nodiscard]] std::int32_t noise_w() const;
@@ -92,7 +93,9 @@ class ResponseMonitor {
 
   bool has_before_ = false;
   Response before_;
-  std::int64_t still_e4_ = 0;  ///< moved by the measured power since the SoC last changed
+  /// Moved by the measured power since the SoC last changed: now, and how far it went.
+  SocRange still_range_;
+  std::int64_t still_e4_ = 0;
   std::int32_t still_readings_ = 0;
   std::int32_t sum_soc_e4_ = 0;  ///< where the sum of the next two began
   SocRange sum_;

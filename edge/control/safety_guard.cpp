@@ -103,6 +103,10 @@ void SafetyGuard::apply_limits(const GuardInputs& in, GuardDecision& decision) c
   if (decision.power_w != 0 && in.cycle_budget_spent) {
     decision = {.power_w = 0, .reason = Reason::kCycleBudget};
   }
+  if ((decision.power_w > 0 && in.barred_direction > 0) ||
+      (decision.power_w < 0 && in.barred_direction < 0)) {
+    decision = {.power_w = 0, .reason = Reason::kReversalCap};
+  }
   const std::int32_t limited = clamp_to<std::int32_t>(
       decision.power_w, -clamp_to<std::int32_t>(in.measurement.discharge_w_max, 0, INT32_MAX),
       clamp_to<std::int32_t>(in.measurement.charge_w_max, 0, INT32_MAX));

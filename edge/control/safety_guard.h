@@ -1,6 +1,6 @@
 // The guard between student and battery [SPEC 7]: pure integers, no memory but the SoC hysteresis.
-// Precedence: stop reasons (clock, link, alarm, temperature, off-grid, price) > SoC, cycle and
-// power limits > ramp > price thresholds > student. Every intervention carries its reason.
+// Precedence: stop reasons (clock, link, alarm, temperature, off-grid, price) > SoC, cycle,
+// reversal and power limits > ramp > price thresholds > student. Every intervention carries its reason.
 #pragma once
 
 #include <cstdint>
@@ -30,6 +30,7 @@ struct GuardInputs {
   /// What supervision found in the battery's answers; kStudent: nothing.
   Reason supervision = Reason::kStudent;
   bool cycle_budget_spent = false;
+  int barred_direction = 0;           ///< sign of a power that would be a reversal too many
   std::int32_t previous_power_w = 0;  ///< of the order in force until now
   bool has_price = false;
   std::int64_t price_minute_utc_s = 0;

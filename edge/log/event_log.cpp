@@ -20,14 +20,16 @@ bool append_line(int fd, const char* text, std::size_t size) {
   char line[kLogLineBytes + 1];
   std::memcpy(line, text, size);
   line[size] = '\n';
+  errno = ENOSPC;  // what a short write means
   return ::write(fd, line, size + 1) == static_cast<ssize_t>(size + 1);
 }
 
 JournalLevel level_of(const CycleRecord& record) {
   const bool is_ordered_stop = record.reason == Reason::kStopRequested;
   const bool is_trouble = is_stop_reason(record.reason) && !is_ordered_stop;
-  return is_trouble || record.battery_status != Status::kOk ? JournalLevel::kWarning
-                                                            : JournalLevel::kInfo;
+  const bool is_warning =
+      is_trouble || record.battery_status != Status::kOk || record.price.step_held;
+  return is_warning ? JournalLevel::kWarning : JournalLevel::kInfo;
 }
 
 }  // namespace
@@ -45,16 +47,19 @@ bool EventLog::open(const EventLogSettings& settings, const RunIdentity& identit
                     FileMessage& error) {
   settings_ = settings;
   identity_ = identity;
-  if (!ring_.open(settings.ring.c_str(), settings.ring_days * kStepsPerDay, error)) return false;
-  if (!open_csv(settings.csv.c_str(), error)) return false;
-  publish_metrics();
-  if (totals_.disk_failures > 0) {
+  const auto may_go_on = [this](bool opened) {
+    const bool is_disk = !opened && is_disk_trouble(errno);
+    if (is_disk) totals_.disk_is_failing = true;
+    return opened || is_disk;
+  };
+  if (!may_go_on(open_ring(error)) || !may_go_on(open_csv(error))) return false;
+  if (!may_go_on(publish_metrics())) {
     return fail_with_errno(settings.metrics.c_str(), "cannot write the metrics here", error);
   }
-  publish_status();
-  if (totals_.disk_failures > 0) {
+  if (!may_go_on(publish_status())) {
     return fail_with_errno(settings.status.c_str(), "cannot write the status here", error);
   }
+  tell_of_disk(totals_.disk_is_failing);
   thread_.start(
       [](void* log) -> void* {
         static_cast<EventLog*>(log)->run();
@@ -64,17 +69,30 @@ bool EventLog::open(const EventLogSettings& settings, const RunIdentity& identit
   return true;
 }
 
-bool EventLog::open_csv(const char* path, FileMessage& error) {
-  if (*path == '\0') return true;
+/// A log that has no room to grow goes on at its size; the next start tries again.
+bool EventLog::open_ring(FileMessage& error) {
+  const std::int64_t capacity = settings_.ring_days * kStepsPerDay;
+  if (!ring_.open(settings_.ring.c_str(), capacity, error)) return false;
+  if (ring_.capacity() != capacity) totals_.disk_is_failing = true;
+  return true;
+}
+
+bool EventLog::open_csv(FileMessage& error) {
+  const char* const path = settings_.csv.c_str();
+  if (settings_.csv.empty()) return true;
   csv_fd_ = ::open(path, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
-  if (csv_fd_ < 0) return fail_with_errno(path, "cannot write the log here", error);
+  if (csv_fd_ >= 0 && head_csv()) return true;
+  return fail_with_errno(path, "cannot write the log here", error);
+}
+
+/// The names of the columns, where nothing stands before them.
+bool EventLog::head_csv() {
+  if (csv_has_head_) return true;
   struct stat info {};
   const bool is_empty = fstat(csv_fd_, &info) == 0 && info.st_size == 0;
   char line[kLogLineBytes];
-  if (is_empty && !append_line(csv_fd_, line, format_csv_header(line))) {
-    return fail_with_errno(path, "cannot write the log here", error);
-  }
-  return true;
+  csv_has_head_ = !is_empty || append_line(csv_fd_, line, format_csv_header(line));
+  return csv_has_head_;
 }
 
 void EventLog::write(const CycleRecord& record) {
@@ -115,17 +133,15 @@ void EventLog::keep(const CycleRecord& record) {
   const std::size_t size = format_log_line(record, line);
   write_journal_line(level_of(record), {line, size});
   tell_of_trip(record);
-  if (!ring_.append(record)) ++totals_.disk_failures;
-  if (csv_fd_ >= 0 && !append_line(csv_fd_, line, format_csv_line(record, line))) {
-    ++totals_.disk_failures;
-  }
+  if (!append_to_ring(record)) ++totals_.disk_failures;
+  if (!append_to_csv(record)) ++totals_.disk_failures;
   totals_.count(record);
   const std::int64_t dropped = dropped_;
   totals_.disk_is_slow = dropped > totals_.records_dropped;
   totals_.records_dropped = dropped;
-  publish_metrics();
+  static_cast<void>(publish_metrics());
   totals_.disk_is_failing = totals_.disk_failures > failures_before;
-  publish_status();
+  static_cast<void>(publish_status());
   tell_of_disk(totals_.disk_failures > failures_before);
 }
 
@@ -142,6 +158,20 @@ void EventLog::tell_of_trip(const CycleRecord& record) {
                                        : "cleared: a person lets the battery be driven again");
 }
 
+/// A log that the disk refused at the start is tried again.
+bool EventLog::append_to_ring(const CycleRecord& record) {
+  FileMessage ignored;
+  return (ring_.is_open() || open_ring(ignored)) && ring_.append(record);
+}
+
+bool EventLog::append_to_csv(const CycleRecord& record) {
+  if (settings_.csv.empty()) return true;
+  FileMessage ignored;
+  if (csv_fd_ < 0 ? !open_csv(ignored) : !head_csv()) return false;
+  char line[kLogLineBytes];
+  return append_line(csv_fd_, line, format_csv_line(record, line));
+}
+
 /// On the journal, once each time: the files that would tell of it cannot be written.
 void EventLog::tell_of_disk(bool is_failing) {
   if (is_failing == was_failing_) return;
@@ -153,16 +183,20 @@ void EventLog::tell_of_disk(bool is_failing) {
                  : "the files of [state], [log] and [metrics] are written again");
 }
 
-void EventLog::publish_metrics() {
+bool EventLog::publish_metrics() {
   TextBuffer metrics(metrics_text_);
   format_prometheus(identity_, totals_, metrics);
-  if (!replace_file(settings_.metrics.c_str(), metrics.view())) ++totals_.disk_failures;
+  const bool done = replace_file(settings_.metrics.c_str(), metrics.view());
+  if (!done) ++totals_.disk_failures;
+  return done;
 }
 
-void EventLog::publish_status() {
+bool EventLog::publish_status() {
   TextBuffer status(status_text_);
   format_status_json(identity_, totals_, clock_ns(CLOCK_MONOTONIC), status);
-  if (!replace_file(settings_.status.c_str(), status.view())) ++totals_.disk_failures;
+  const bool done = replace_file(settings_.status.c_str(), status.view());
+  if (!done) ++totals_.disk_failures;
+  return done;
 }
 
 }  // namespace bess

@@ -33,7 +33,9 @@ class EventLog {
   EventLog& operator=(const EventLog&) = delete;
   ~EventLog();
 
-  /// Opens the files, publishes a first status and starts the log thread. False with one line.
+  /// Opens the files, publishes a first status and starts the log thread. False with one line. A disk
+  /// that is full, read-only or broken is told and no reason to fail: what it refuses is tried again
+  /// with every record.
   bool open(const EventLogSettings& settings, const RunIdentity& identity, FileMessage& error);
   /// The newest record of earlier runs, for counters that a restart must take over; false = none.
   /// Only before the first `write`.
@@ -50,12 +52,16 @@ class EventLog {
   // the C library keeps there. Sanitizers need far more.
   static constexpr std::size_t kStackBytes = 256 * 1024;
 
-  bool open_csv(const char* path, FileMessage& error);
+  bool open_ring(FileMessage& error);
+  bool open_csv(FileMessage& error);
+  bool head_csv();
   void run();
   void keep(const CycleRecord& record);
-  void publish_metrics();
-  void publish_status();
   void tell_of_trip(const CycleRecord& record);
+  bool append_to_ring(const CycleRecord& record);
+  bool append_to_csv(const CycleRecord& record);
+  [[nodiscard]] bool publish_metrics();
+  [[nodiscard]] bool publish_status();
   void tell_of_disk(bool is_failing);
 
   EventLogSettings settings_;
@@ -64,6 +70,7 @@ class EventLog {
   RingLog ring_;
   int csv_fd_ = -1;
   bool was_tripped_ = false;
+  bool csv_has_head_ = false;
   bool was_failing_ = false;
   HandoverQueue<CycleRecord, kQueueRecords> queue_;
   std::int64_t handed_over_ = 0;

@@ -1,5 +1,7 @@
 #include "edge/log/health.h"
 
+#include <cstdio>
+
 namespace bess {
 namespace {
 
@@ -17,6 +19,15 @@ void check_age(const HealthInputs& in, std::vector<std::string>& reasons) {
   const std::string level = is_critical ? "CRITICAL" : "WARN";
   reasons.push_back(level + ": the last cycle ended " + seconds(age_ms) +
                     " ago, one is due every " + seconds(in.cadence_ms));
+}
+
+std::string held_row(double eur_per_mwh) {
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "WARN: prices: a row of %.2f EUR/MWh lies further from the one before than "
+                "step_flag_eur_per_mwh; the next one decides whether it counts",
+                eur_per_mwh);
+  return text;
 }
 
 void check_cycle(const HealthInputs& in, std::vector<std::string>& reasons) {
@@ -43,6 +54,7 @@ void check_cycle(const HealthInputs& in, std::vector<std::string>& reasons) {
   if (in.price_status != "ok") {
     reasons.push_back("WARN: prices: " + std::string(in.price_status));
   }
+  if (in.price_step_held) reasons.push_back(held_row(in.held_eur_per_mwh));
 }
 
 }  // namespace
@@ -53,18 +65,21 @@ Health assess_health(const HealthInputs& in) {
   }
   Health health;
   if (!in.is_of_this_run || in.cycles == 0) {
-    health.reasons.emplace_back("WARN: started, no cycle has ended yet");
+    if (in.cycles_behind == 0) health.reasons.emplace_back("WARN: started, no cycle has ended yet");
   } else {
     check_cycle(in, health.reasons);
   }
   if (in.is_of_this_run) check_age(in, health.reasons);
   if (in.disk_is_slow)
     health.reasons.emplace_back("WARN: records not logged, the disk is too slow");
-  if (in.cycles_behind > 1) {
+  const std::int64_t cycles_behind_max = in.is_of_this_run ? 1 : 0;
+  if (in.cycles_behind > cycles_behind_max) {
     health.reasons.push_back("WARN: status.json is " + std::to_string(in.cycles_behind) +
                              " cycles behind the log, is the disk full or read-only?");
   } else if (in.disk_is_failing) {
     health.reasons.emplace_back("WARN: the log cannot be written, is the disk full or read-only?");
+  } else if (in.disk_is_full) {
+    health.reasons.emplace_back("WARN: the disk of the state folder is full or read-only");
   }
   if (!health.reasons.empty()) health.level = HealthLevel::kDegraded;
   return health;

@@ -26,6 +26,9 @@ struct HealthInputs {
   bool disk_is_slow = false;
   bool disk_is_failing = false;
   std::int64_t cycles_behind = 0;  ///< cycles that the log has and the status has not
+  bool disk_is_full = false;       ///< of the state folder, or it is read-only
+  bool price_step_held = false;
+  double held_eur_per_mwh = 0;  ///< price of the row that waits for the next
 };
 
 enum class HealthLevel { kOk = 0, kDegraded = 1, kNotRunning = 3 };  ///< also the exit codes

@@ -1,5 +1,7 @@
 #include "edge/log/record_codec.h"
 
+#include <algorithm>
+
 #include "edge/log/record_fields.h"
 #include "shared/crc32.h"
 
@@ -27,9 +29,10 @@ std::uint64_t take(std::size_t count, const std::uint8_t* bytes) {
   return bits;
 }
 
-std::uint32_t crc_of(const RecordBytes& bytes) {
+/// Of everything before it.
+std::uint32_t crc_of(std::span<const std::uint8_t> record) {
   Crc32 crc;
-  crc.add_bytes(bytes.data(), kCrcOffset);
+  crc.add_bytes(record.data(), record.size() - kCrcBytes);
   return crc.value();
 }
 
@@ -46,8 +49,12 @@ void encode_record(const CycleRecord& record, std::uint64_t sequence, RecordByte
   put(crc_of(bytes), kCrcBytes, bytes.data() + kCrcOffset);
 }
 
-bool decode_record(const RecordBytes& bytes, CycleRecord& record, std::uint64_t& sequence) {
-  if (take(kCrcBytes, bytes.data() + kCrcOffset) != crc_of(bytes)) return false;
+bool decode_record(std::span<const std::uint8_t> stored, CycleRecord& record,
+                   std::uint64_t& sequence) {
+  const std::size_t crc_offset = stored.size() - kCrcBytes;
+  if (take(kCrcBytes, stored.data() + crc_offset) != crc_of(stored)) return false;
+  RecordBytes bytes{};  // fields behind an older record's end read as zero
+  std::copy_n(stored.begin(), crc_offset, bytes.begin());
   record = CycleRecord{};
   sequence = take(kNumberBytes, bytes.data());
   bool all_known = true;

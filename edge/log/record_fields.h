@@ -18,6 +18,7 @@ consteval auto make_record_fields() {
   using C = BatteryCounters;
   using D = DayThroughput;
   using L = PriceLevel;
+  using V = ReversalHistory;
   return std::to_array<Field<CycleRecord>>({
       {utc_member<&R::utc_s>(),
        "utc",
@@ -130,15 +131,28 @@ consteval auto make_record_fields() {
       {utc_member<&R::trip, &Trip::utc_s>().given<&R::is_tripped>(), "trip_utc", {.last = 93}},
       {member<&R::weak_answers>(),
        "weak_answers",
-       {.csv = 33, .totals = 24, .metrics = {39, "bess_weak_answers"}},
+       {.csv = 33, .totals = 24, .metrics = {18, "bess_weak_answers"}},
        {"Readings in a row with less power than ordered and no reason for it."}},
       {member<&R::replaced_orders>(),
        "replaced_orders",
        {.csv = 34, .totals = 25, .metrics = {23, "bess_replaced_orders_total"}},
        {"Orders that somebody else replaced."}},
+      {member<&R::price, &P::step_held>(),
+       "step_held",
+       {.journal = 20, .csv = 35, .last = 54, .metrics = {19, "bess_price_step_held"}},
+       {"1 while a row far from the one before waits for the next."}},
+      {member<&R::price, &P::held_centi_eur_per_mwh>().given<&R::price, &P::step_held>(),
+       "held_centi_eur_per_mwh",
+       {.journal = {21, "held_centi"}, .csv = 36, .last = 55}},
+      {member<&R::reversals, &V::steps>()},
+      {member<&R::reversals, &V::direction>()},
+      {member<&R::reversals, &V::in_hour>(),
+       "reversals_in_hour",
+       {.csv = 37, .totals = 26, .metrics = {39, "bess_reversals_last_hour"}},
+       {"Changes between charging and discharging in the last hour."}},
       {member<&R::measurement, &B::warning>(),
        "warning",
-       {.last = 34, .metrics = {18, "bess_battery_warning"}},
+       {.last = 34, .metrics = {24, "bess_battery_warning"}},
        {"1 while the battery warns: see its own display."}},
   });
 }

@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <utility>
 
 #include "shared/crc32.h"
 
@@ -28,10 +29,11 @@ std::uint64_t take(const std::uint8_t* bytes, int count) {
   return value;
 }
 
-void fill_header(std::uint8_t (&header)[kHeaderUsedBytes], std::int64_t capacity) {
+void fill_header(std::uint8_t (&header)[kHeaderUsedBytes], std::size_t record_bytes,
+                 std::int64_t capacity) {
   std::memcpy(header, kMagic, sizeof kMagic);
   put(header + 8, kVersion, 4);
-  put(header + 12, kRecordBytes, 4);
+  put(header + 12, record_bytes, 4);
   put(header + 16, static_cast<std::uint64_t>(capacity), 8);
   Crc32 crc;
   crc.add_bytes(header, 24);
@@ -49,24 +51,34 @@ void RingLog::close_file() {
 
 std::int64_t RingLog::offset_of(std::uint64_t number) const {
   return kHeaderBytes + static_cast<std::int64_t>(number % static_cast<std::uint64_t>(capacity_)) *
-                            static_cast<std::int64_t>(kRecordBytes);
+                            static_cast<std::int64_t>(record_bytes_);
 }
 
 bool RingLog::open(const char* path, std::int64_t capacity, FileMessage& error) {
   fd_ = ::open(path, O_RDWR | O_CLOEXEC);
+  if (fd_ < 0 && errno == EROFS) return learn_newest(path, error);
   if (fd_ < 0 && errno != ENOENT) return fail_with_errno(path, "cannot open the log", error);
-  if (fd_ >= 0) {
-    const bool is_sound = read_header();
-    if (is_sound) find_newest();
-    if (is_sound && capacity_ == capacity) return true;
-    close_file();
-    FixedText<600> aside(path);
-    char name[640];
-    std::snprintf(name, sizeof name, "%s.old", aside.c_str());
-    if (rename(path, name) != 0) return fail_with_errno(path, "cannot set aside the log", error);
+  const bool is_sound = fd_ >= 0 && read_header();
+  if (is_sound) find_newest();
+  const bool takes_records = is_sound && record_bytes_ == kRecordBytes;
+  if (takes_records && capacity_ == capacity) return true;
+  const std::int64_t capacity_before = std::exchange(capacity_, capacity);
+  if (replace(path, error)) return true;
+  if (takes_records && is_disk_trouble(errno)) {
+    capacity_ = capacity_before;
+    return true;
   }
-  capacity_ = capacity;
-  return create(path, error);
+  close_file();
+  return false;
+}
+
+/// On a read-only disk nothing can be added, but the counters of earlier runs are known. Always false.
+bool RingLog::learn_newest(const char* path, FileMessage& error) {
+  fd_ = ::open(path, O_RDONLY | O_CLOEXEC);
+  if (fd_ >= 0 && read_header()) find_newest();
+  close_file();
+  errno = EROFS;
+  return fail_with_errno(path, "cannot open the log", error);
 }
 
 bool RingLog::open_to_read(const char* path, FileMessage& error) {
@@ -83,28 +95,46 @@ bool RingLog::open_to_read(const char* path, FileMessage& error) {
   return true;
 }
 
-/// The whole file exists on disk, with its header, before it gets its name.
-bool RingLog::create(const char* path, FileMessage& error) {
+/// The new file is there as a whole before the old one loses its name.
+bool RingLog::replace(const char* path, FileMessage& error) {
   char beside[640];
   std::snprintf(beside, sizeof beside, "%s.new", path);
-  fd_ = ::open(beside, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (fd_ < 0) return fail_with_errno(beside, "cannot make the log", error);
-  const std::int64_t size = kHeaderBytes + capacity_ * static_cast<std::int64_t>(kRecordBytes);
-  errno = posix_fallocate(fd_, 0, size);  // a full disk must show now, not in a month
-  const bool made = errno == 0 && write_header(fd_) && fsync(fd_) == 0 && rename(beside, path) == 0;
-  if (!made) {
-    fail_with_errno(path, "cannot make the log", error);
+  const int made = make_whole(beside);
+  if (made < 0) return fail_with_errno(beside, "cannot make the log", error);
+  char aside[640];
+  std::snprintf(aside, sizeof aside, "%s.old", path);
+  const bool is_free = fd_ < 0 || rename(path, aside) == 0;
+  if (!is_free || rename(beside, path) != 0) {
+    fail_with_errno(path, "cannot set aside the log", error);
+    close(made);
     unlink(beside);
-    close_file();
     return false;
   }
+  close_file();
+  fd_ = made;
+  record_bytes_ = kRecordBytes;
   sync_folder_of(path);
   return true;
 }
 
+/// At its full size and with its header, on the disk. Negative with errno set, and nothing left.
+int RingLog::make_whole(const char* path) const {
+  const int made = make_afresh(path);
+  if (made < 0) return -1;
+  const std::int64_t size = kHeaderBytes + capacity_ * static_cast<std::int64_t>(kRecordBytes);
+  int cause = posix_fallocate(made, 0, size);  // a full disk must show now, not in a month
+  errno = ENOSPC;                              // what a short write means
+  if (cause == 0 && write_header(made) && fsync(made) == 0) return made;
+  if (cause == 0) cause = errno;
+  close(made);
+  unlink(path);
+  errno = cause;
+  return -1;
+}
+
 bool RingLog::write_header(int fd) const {
   std::uint8_t header[kHeaderUsedBytes];
-  fill_header(header, capacity_);
+  fill_header(header, kRecordBytes, capacity_);
   return pwrite(fd, header, sizeof header, 0) == static_cast<ssize_t>(sizeof header);
 }
 
@@ -112,8 +142,9 @@ bool RingLog::read_header() {
   std::uint8_t header[kHeaderUsedBytes];
   if (pread(fd_, header, sizeof header, 0) != static_cast<ssize_t>(sizeof header)) return false;
   const auto capacity = static_cast<std::int64_t>(take(header + 16, 8));
+  record_bytes_ = take(header + 12, 4) == kOlderRecordBytes ? kOlderRecordBytes : kRecordBytes;
   std::uint8_t expected[kHeaderUsedBytes];
-  fill_header(expected, capacity);
+  fill_header(expected, record_bytes_, capacity);
   if (capacity < 1 || std::memcmp(header, expected, sizeof header) != 0) return false;
   struct stat info {};
   const bool is_file = fstat(fd_, &info) == 0;
@@ -123,24 +154,24 @@ bool RingLog::read_header() {
 }
 
 void RingLog::find_newest() {
-  constexpr std::size_t kChunkRecords = 64;
-  RecordBytes chunk[kChunkRecords];
+  constexpr std::size_t kChunkBytes = 64 * kRecordBytes;
+  std::uint8_t chunk[kChunkBytes];
   CycleRecord record;
   std::int64_t offset = kHeaderBytes;
   for (std::int64_t slot = 0; slot < capacity_;) {
     const ssize_t bytes = pread(fd_, chunk, sizeof chunk, offset);
-    const auto count = bytes > 0 ? static_cast<std::size_t>(bytes) / kRecordBytes : 0;
+    const auto count = bytes > 0 ? static_cast<std::size_t>(bytes) / record_bytes_ : 0;
     if (count == 0) return;  // shorter than it should be: what is there counts
     for (std::size_t i = 0; i < count && slot < capacity_; ++i, ++slot) {
       std::uint64_t number = 0;
       const bool whole =
-          decode_record(chunk[i], record, number) &&
+          decode_record({chunk + i * record_bytes_, record_bytes_}, record, number) &&
           number % static_cast<std::uint64_t>(capacity_) == static_cast<std::uint64_t>(slot);
       if (!whole || number <= newest_number_) continue;
       newest_number_ = number;
       newest_ = record;
     }
-    offset += static_cast<std::int64_t>(count * kRecordBytes);
+    offset += static_cast<std::int64_t>(count * record_bytes_);
   }
 }
 
@@ -168,10 +199,10 @@ std::uint64_t RingLog::oldest_number() const {
 
 bool RingLog::read(std::uint64_t number, CycleRecord& record) const {
   RecordBytes bytes;
-  const ssize_t got = pread(fd_, bytes.data(), bytes.size(), offset_of(number));
+  const ssize_t got = pread(fd_, bytes.data(), record_bytes_, offset_of(number));
   std::uint64_t found = 0;
-  return got == static_cast<ssize_t>(bytes.size()) && decode_record(bytes, record, found) &&
-         found == number;
+  return got == static_cast<ssize_t>(record_bytes_) &&
+         decode_record(std::span(bytes).first(record_bytes_), record, found) && found == number;
 }
 
 }  // namespace bess

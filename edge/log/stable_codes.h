@@ -55,7 +55,8 @@ struct StableCodes<Reason> {
                                      Reason::kOrdersFail,
                                      Reason::kNoAnswer,
                                      Reason::kCapacity,
-                                     Reason::kSocJump};
+                                     Reason::kSocJump,
+                                     Reason::kReversalCap};
   static constexpr auto kNameOf = reason_name;
 };
 

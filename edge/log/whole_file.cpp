@@ -19,7 +19,7 @@ bool replace(const char* path, std::string_view text, Durability durability) {
     errno = ENAMETOOLONG;
     return false;
   }
-  const int fd = open(beside, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  const int fd = make_afresh(beside);
   if (fd < 0) return false;
   errno = ENOSPC;  // what a short write means
   const bool written = write(fd, text.data(), text.size()) == static_cast<ssize_t>(text.size()) &&
@@ -33,6 +33,17 @@ bool replace(const char* path, std::string_view text, Durability durability) {
 }
 
 }  // namespace
+
+int make_afresh(const char* path) {
+  constexpr int kFlags = O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
+  const int fd = open(path, kFlags, 0644);
+  if (fd >= 0 || errno != EEXIST) return fd;
+  return unlink(path) == 0 ? open(path, kFlags, 0644) : -1;
+}
+
+bool is_disk_trouble(int error) {
+  return error == ENOSPC || error == EDQUOT || error == EFBIG || error == EROFS || error == EIO;
+}
 
 bool replace_file(const char* path, std::string_view text) {
   return replace(path, text, Durability::kOrdinary);
@@ -59,14 +70,16 @@ void sync_folder_of(const char* path) {
 }
 
 bool fail_with_errno(const char* path, std::string_view what, FileMessage& error) {
-  const bool is_refused = errno == EACCES || errno == EPERM;
+  const int cause = errno;
+  const bool is_refused = cause == EACCES || cause == EPERM;
   char reason_buffer[128];
-  const char* reason = strerror_r(errno, reason_buffer, sizeof reason_buffer);
+  const char* reason = strerror_r(cause, reason_buffer, sizeof reason_buffer);
   char line[768];
   std::snprintf(line, sizeof line, "%s: %.*s: %s%s", path, static_cast<int>(what.size()),
                 what.data(), reason,
                 is_refused ? " (does it belong to the user that runs bess-edge?)" : "");
   static_cast<void>(error.assign(line));
+  errno = cause;
   return false;
 }
 

@@ -18,10 +18,18 @@ bool replace_file(const char* path, std::string_view text);
 /// The same, and on the disk before it returns: for what must outlast a power cut.
 bool replace_file_durably(const char* path, std::string_view text);
 
+/// A new file of that name, for writing and reading: what lies there, a link as well, is removed and not
+/// followed. Negative with errno set.
+int make_afresh(const char* path);
+
+/// Of an errno: the disk is full, read-only or broken. That keeps no battery from being driven; anything else is
+/// the operator's to mend.
+bool is_disk_trouble(int error);
+
 /// Makes a rename in this file's folder outlast a power cut.
 void sync_folder_of(const char* path);
 
-/// Puts "PATH: WHAT: why by errno" into `error`; always false.
+/// Puts "PATH: WHAT: why by errno" into `error`; always false. Keeps errno.
 bool fail_with_errno(const char* path, std::string_view what, FileMessage& error);
 
 }  // namespace bess

@@ -68,6 +68,13 @@ Status HostAddresses::set_url(const char* text) {
   return Status::kOk;
 }
 
+bool HostAddresses::is_loopback() const {
+  constexpr std::uint32_t kLoopbackNet = 127;
+  in_addr v4{};
+  if (inet_pton(AF_INET, host_.c_str(), &v4) == 1) return ntohl(v4.s_addr) >> 24 == kLoopbackNet;
+  return host_.view() == "[::1]";  // as libcurl spells it, however it was written
+}
+
 bool HostAddresses::is_same_host(const HostAddresses& other) const {
   return host_.view() == other.host_.view() && port_.view() == other.port_.view();
 }

@@ -21,6 +21,8 @@ class HostAddresses {
   Status set_url(const char* text);
   /// False for numeric addresses: there is nothing to look up.
   [[nodiscard]] bool is_name() const { return is_name_; }
+  /// True for the numbers of this machine itself, 127.0.0.0/8 and [::1].
+  [[nodiscard]] bool is_loopback() const;
   [[nodiscard]] bool is_same_host(const HostAddresses& other) const;
 
   /// Looks the name up when its time has come; kNameUnresolved when no address is known at all.

@@ -4,8 +4,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <iterator>
 
 #include "shared/file_descriptor.h"
 
@@ -48,14 +50,23 @@ bool keep_headers(std::string_view text, FixedText<2047>& headers, int& line_num
   return headers.assign(kept);
 }
 
-/// Contained in any letter case.
-bool sounds_secret(std::string_view key) {
-  std::string lower(key);
-  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  for (const char* word : {"key", "token", "secret", "password", "passwd", "auth", "signature"}) {
-    if (lower.find(word) != std::string::npos) return true;
-  }
-  return false;
+/// The names that Elia's Opendatasoft takes, of its versions 1 and 2. Of any other name nobody knows what it
+/// holds: code, sig and appid are secrets as well as apikey and token.
+bool is_harmless(std::string_view name) {
+  constexpr std::string_view kNames[] = {"dataset", "exclude", "format",   "group_by", "lang",
+                                         "limit",   "offset",  "order_by", "refine",   "rows",
+                                         "select",  "sort",    "start",    "timezone", "where"};
+  return std::ranges::find(kNames, name) != std::end(kNames);
+}
+
+/// "name=value" of a query: with the value hidden, or all of it where there is no name to show.
+std::string shown_piece(std::string_view piece) {
+  const std::size_t equals = std::min(piece.find('='), piece.size());
+  const std::string_view name = piece.substr(0, equals);
+  if (piece.empty() || is_harmless(name)) return std::string(piece);
+  // The = at the end of a bare token is its padding.
+  const bool has_value = piece.find_first_not_of('=', equals) != std::string_view::npos;
+  return has_value ? std::string(name) + "=..." : "...";
 }
 
 }  // namespace
@@ -85,25 +96,28 @@ bool load_http_headers(const char* path, FixedText<2047>& headers, std::string& 
   return false;
 }
 
-FixedText<511> loggable_url(std::string_view url) {
-  std::string shown;
+UrlParts url_parts(std::string_view url) {
+  UrlParts parts;
   const std::size_t scheme = url.find("://");
-  const std::size_t authority = scheme == std::string_view::npos ? 0 : scheme + 3;
-  std::size_t path = url.find_first_of("/?#", authority);
-  if (path == std::string_view::npos) path = url.size();
-  const std::size_t at = url.substr(0, path).rfind('@');
-  const bool has_user = at != std::string_view::npos && at >= authority;
-  shown.append(url.substr(0, authority));
-  shown.append(url.substr(has_user ? at + 1 : authority, path - (has_user ? at + 1 : authority)));
-  std::string_view rest = url.substr(path);
-  while (!rest.empty()) {  // piece by piece, each with the separator in front of it
-    std::size_t end = rest.find_first_of("?&;", 1);
-    if (end == std::string_view::npos) end = rest.size();
-    const std::string_view piece = rest.substr(0, end);
-    const std::size_t equals = piece.find('=');
-    const bool hidden = equals != std::string_view::npos && sounds_secret(piece.substr(0, equals));
-    shown.append(hidden ? piece.substr(0, equals + 1) : piece).append(hidden ? "..." : "");
-    rest.remove_prefix(end);
+  parts.authority_at = scheme == std::string_view::npos ? 0 : scheme + 3;
+  parts.path_at = std::min(url.find_first_of("/?#", parts.authority_at), url.size());
+  const std::size_t at =
+      url.substr(parts.authority_at, parts.path_at - parts.authority_at).rfind('@');
+  if (at != std::string_view::npos) parts.login_bytes = at + 1;
+  return parts;
+}
+
+FixedText<511> loggable_url(std::string_view url) {
+  const UrlParts parts = url_parts(url);
+  const std::size_t host_at = parts.authority_at + parts.login_bytes;
+  std::size_t query_at = std::min(url.find_first_of("?&;#", parts.path_at), url.size());
+  std::string shown(url.substr(0, parts.authority_at));
+  shown.append(url.substr(host_at, query_at - host_at));
+  while (query_at < url.size()) {  // piece by piece, each behind its separator
+    shown.push_back(url[query_at++]);
+    const std::size_t end = std::min(url.find_first_of("?&;#", query_at), url.size());
+    shown.append(shown_piece(url.substr(query_at, end - query_at)));
+    query_at = end;
   }
   return FixedText<511>(shown);
 }

@@ -14,6 +14,7 @@
 #include "edge/memory/static_thread.h"
 #include "edge/prices/http_client.h"
 #include "edge/prices/price_json.h"
+#include "edge/prices/step_hold.h"
 #include "shared/scaled_clock.h"
 
 namespace bess {
@@ -23,7 +24,8 @@ struct PriceFeedSettings {
   PriceFields fields;
   std::int32_t requests_per_cycle = 4;
   std::int32_t wait_s = 20;  ///< over which the requests of a cycle are spread
-  std::int32_t step_flag_centi_eur_per_mwh = 230'000;  ///< a larger step is flagged, not refused
+  std::int32_t step_flag_centi_eur_per_mwh = 230'000;  ///< a larger step is flagged
+  bool hold_flagged_step = true;                       ///< and held until the next row confirms it
 };
 
 /// What a status means when it comes from the price server, and what mends it.
@@ -64,7 +66,7 @@ class PriceFeed {
   void run();
   void serve(const Job& job);
   void publish(Status status, const PriceRow& row, std::int64_t start_ns);
-  void accept(const PriceRow& row);
+  [[nodiscard]] bool accept(const PriceRow& row);
   bool pause_until(std::int64_t until_ns);
 
   PriceFeedSettings settings_;
@@ -77,6 +79,7 @@ class PriceFeed {
   std::int64_t served_number_ = 0;
   bool stopping_ = false;
   PriceReport report_;
+  StepHold step_hold_;
   StaticThread<kStackBytes> thread_;
 };
 

@@ -3,12 +3,14 @@
 #include <arpa/inet.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
 
 #include "edge/prices/http_secrets.h"
+#include "edge/program/price_transport.h"
 #include "edge/registers/codec.h"
 #include "edge/registers/map_file.h"
 #include "shared/host/toml_reader.h"
@@ -173,6 +175,7 @@ void check_history_url(TomlTable& table, const EdgeConfig& config) {
 void read_price(TomlTable table, EdgeConfig& config) {
   PriceFeedSettings& price = config.price;
   FixedText<255> header_file;
+  PriceTransportKeys transport;
   table.require("url");
   table.text("url", price.http.url);
   table.text("ca_file", price.http.ca_file);
@@ -186,11 +189,14 @@ void read_price(TomlTable table, EdgeConfig& config) {
   table.integer("wait_s", price.wait_s, 1, 60);
   table.scaled("step_flag_eur_per_mwh", price.step_flag_centi_eur_per_mwh, 100, 0, 20'000);
   read_history(table, config);
+  table.boolean("allow_http", transport.allow_http);
+  table.boolean("hold_flagged_step", price.hold_flagged_step);
   table.finish();
   if (!table.ok()) return;
   const std::string_view url = price.http.url.view();
-  if (!is_http(url)) table.fail("url", "must start with http:// or https://");
   check_history_url(table, config);
+  transport.has_header_file = !header_file.empty();
+  check_price_transport(table, config, transport);
   const auto folder = std::filesystem::path(table.file()).parent_path();
   const std::string ca_file = (folder / price.http.ca_file.c_str()).string();
   if (!price.http.ca_file.assign(ca_file)) table.fail("ca_file", "is too long a path");
@@ -214,6 +220,13 @@ void read_threshold(TomlTable& table, std::string_view key, std::int32_t& eur_pe
   eur_per_mwh = centi_eur_per_mwh / kCentiPerEur;
 }
 
+/// Twelve for a battery that is full in an hour, fewer for a slower one: what honest prices have needed.
+std::int32_t default_cycles_per_day_e4(const EdgeConfig& config) {
+  const std::int64_t cycles_e4 =
+      std::int64_t{120'000} * config.control.guard.power_w / config.capacity_wh;
+  return static_cast<std::int32_t>(std::clamp<std::int64_t>(cycles_e4, 10'000, 1'000'000));
+}
+
 void read_guard(TomlTable table, EdgeConfig& config) {
   GuardSettings& guard = config.control.guard;
   read_threshold(table, "low_price_eur_per_mwh", guard.thresholds.low_eur_per_mwh);
@@ -226,7 +239,9 @@ void read_guard(TomlTable table, EdgeConfig& config) {
   table.scaled("temperature_max_c", guard.temperature_max_deci_c, 10, -50, 100);
   table.integer("hold_s", config.control.hold_s, 0, 3'600);
   table.integer("ramp_w_max", guard.ramp_w_max, 0, 100'000'000);
+  config.control.cycles_per_day_max_e4 = default_cycles_per_day_e4(config);
   table.scaled("cycles_per_day_max", config.control.cycles_per_day_max_e4, 10'000, 0, 100);
+  table.integer("reversals_per_hour_max", config.control.reversals_per_hour_max, 0, kStepsPerHour);
   table.integer("order_deadline_s", config.control.order_deadline_s, 1, kSecondsPerStep);
   table.boolean("require_synchronised_clock", config.require_synchronised_clock);
   table.finish();
@@ -254,8 +269,6 @@ std::string resolved(const TomlTable& table, std::string_view path) {
 
 void read_state(TomlTable table, EdgeConfig& config) {
   FixedText<255> folder("state");
-  const bool has_run_lock = std::filesystem::is_directory("/run/lock");
-  config.state.lock_folder = has_run_lock ? "/run/lock" : "/tmp";
   table.text("folder", folder);
   if (folder.empty()) table.fail("folder", "must not be empty");
   table.text("lock_folder", config.state.lock_folder);

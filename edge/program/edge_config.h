@@ -20,7 +20,7 @@ namespace bess {
 /// Where the controller keeps what outlives it, and where it locks battery and state.
 struct StateSettings {
   FixedText<511> folder;
-  FixedText<255> lock_folder;
+  FixedText<255> lock_folder;  ///< besides the standard one; empty = none
 };
 
 struct EdgeConfig {

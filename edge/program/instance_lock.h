@@ -16,19 +16,26 @@ class InstanceLock {
   ~InstanceLock();
 
   /// Tries for a second, because a predecessor may be on its way out and `holder_of` looks by
-  /// locking. False with one line; `what` names the locked thing in it.
+  /// locking. False with one line; `what` names the locked thing in it. A lock file of another user,
+  /// root apart, is refused: he could take it away. On a full or read-only disk it goes on without a
+  /// lock, and says so.
   bool take(const char* path, const char* what, FileMessage& error);
 
  private:
-  bool try_once(const char* path, bool& is_held);
+  enum class Try { kTaken, kHeld, kFailed };  ///< kFailed with errno set
+
+  Try try_once(const char* path);
+  static bool explain(const char* path, FileMessage& error);
   void leave_pid() const;
 
   FixedText<639> path_;
   int fd_ = -1;
 };
 
-/// Process that holds the lock, 0 = nobody, -1 = somebody whose number is unknown. Any program may
-/// ask.
+inline constexpr int kHolderHidden = -2;
+
+/// Process that holds the lock, 0 = nobody, or nobody who is to be believed; -1 = somebody whose number
+/// is unknown; kHolderHidden = this user may not ask.
 int holder_of(const char* path);
 
 }  // namespace bess

@@ -7,6 +7,8 @@
 #include <cerrno>
 #include <cstdio>
 
+#include "edge/program/file_owner.h"
+
 namespace bess {
 namespace {
 
@@ -19,17 +21,30 @@ FixedText<159> locked_thing(const EdgeConfig& config) {
   return {found != nullptr ? found : config.link.device.c_str()};
 }
 
+bool is_same_folder(const char* one, const char* other) {
+  struct stat here {};
+  struct stat there {};
+  return stat(one, &here) == 0 && stat(other, &there) == 0 && here.st_dev == there.st_dev &&
+         here.st_ino == there.st_ino;
+}
+
 }  // namespace
 
-FixedText<639> battery_lock_path(const EdgeConfig& config) {
+FixedText<639> battery_lock_path(const EdgeConfig& config, std::string_view folder) {
   FixedText<159> thing = locked_thing(config);
   char name[160];
   std::size_t size = 0;
   for (const char c : thing.view()) name[size++] = c == '/' || c == ' ' || c == ':' ? '_' : c;
   char path[640];
-  std::snprintf(path, sizeof path, "%s/bess-%.*s.lock", config.state.lock_folder.c_str(),
-                static_cast<int>(size), name);
+  std::snprintf(path, sizeof path, "%.*s/bess-%.*s.lock", static_cast<int>(folder.size()),
+                folder.data(), static_cast<int>(size), name);
   return {path};
+}
+
+std::string_view standard_lock_folder() {
+  struct stat info {};
+  const bool is_there = stat("/run/lock", &info) == 0 && S_ISDIR(info.st_mode);
+  return is_there ? "/run/lock" : "/tmp";
 }
 
 FixedText<639> state_lock_path(const EdgeConfig& config) {
@@ -41,13 +56,20 @@ FixedText<639> state_lock_path(const EdgeConfig& config) {
 bool lock_battery(const EdgeConfig& config, RunLocks& locks, FileMessage& error) {
   char what[200];
   std::snprintf(what, sizeof what, "the battery at %s", battery_place(config).c_str());
-  return locks.battery.take(battery_lock_path(config).c_str(), what, error);
+  const std::string_view standard = standard_lock_folder();
+  if (!locks.battery.take(battery_lock_path(config, standard).c_str(), what, error)) return false;
+  const FixedText<255>& other = config.state.lock_folder;
+  if (other.empty() || is_same_folder(other.c_str(), standard.data())) return true;
+  return locks.battery_elsewhere.take(battery_lock_path(config, other.view()).c_str(), what, error);
 }
 
 bool lock_state(const EdgeConfig& config, RunLocks& locks, FileMessage& error) {
   const char* const folder = config.state.folder.c_str();
   if (mkdir(folder, 0755) != 0 && errno != EEXIST) {
     return fail_with_errno(folder, "cannot make the folder of [state] folder", error);
+  }
+  for (const auto& path : {config.log.status, config.log.ring}) {
+    if (!refuse_stranger(path.c_str(), error)) return false;
   }
   char what[560];
   std::snprintf(what, sizeof what, "the state folder %s", folder);

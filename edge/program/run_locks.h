@@ -6,19 +6,22 @@
 
 namespace bess {
 
-/// Lock of the battery, the same for every configuration that leads to it.
-FixedText<639> battery_lock_path(const EdgeConfig& config);
+/// Lock of the battery in a folder: the same name for every configuration that leads to it.
+FixedText<639> battery_lock_path(const EdgeConfig& config, std::string_view folder);
+/// Where every controller of this machine locks its battery; no configuration leads past it.
+std::string_view standard_lock_folder();
 /// Lock of the state folder; held by the controller that writes the status there.
 FixedText<639> state_lock_path(const EdgeConfig& config);
 
 struct RunLocks {
   InstanceLock battery;
+  InstanceLock battery_elsewhere;  ///< in [state] lock_folder as well, if it names one
   InstanceLock state;
 };
 
 /// --check needs the battery alone. False with one line.
 bool lock_battery(const EdgeConfig& config, RunLocks& locks, FileMessage& error);
-/// Makes the state folder if it is missing.
+/// Makes the state folder if it is missing; refuses files of another user in it.
 bool lock_state(const EdgeConfig& config, RunLocks& locks, FileMessage& error);
 
 }  // namespace bess

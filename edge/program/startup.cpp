@@ -11,6 +11,7 @@
 #include "edge/prices/http_secrets.h"
 #include "edge/program/commission_file.h"
 #include "edge/program/level_note.h"
+#include "edge/program/price_transport.h"
 #include "edge/program/threshold_note.h"
 #include "edge/registers/codec.h"
 #include "shared/utc_text.h"
@@ -113,6 +114,12 @@ void print_thresholds(const EdgeConfig& config) {
   std::printf("guard      %s\n", note.text.c_str());
 }
 
+void print_transport(const EdgeConfig& config) {
+  const TransportNote note = transport_note(config);
+  if (!note.is_open) return static_cast<void>(std::printf("transport  %s\n", note.text.c_str()));
+  report(JournalLevel::kWarning, "note: %s", note.text.c_str());
+}
+
 /// Without the sign check a controller would refuse to start; one that only reads does not need it.
 bool report_sign(const EdgeConfig& config) {
   std::string refusal;
@@ -201,6 +208,11 @@ void journal_thresholds(const EdgeConfig& config) {
   write_journal_line(JournalLevel::kInfo, "guard: " + note.text);
 }
 
+void journal_transport(const EdgeConfig& config) {
+  const TransportNote note = transport_note(config);
+  if (note.is_open) report(JournalLevel::kWarning, "note: %s", note.text.c_str());
+}
+
 bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& prices,
                   const EdgeClock& clock) {
   std::printf("student    %s (%d self-checks passed)\n", student_provenance(),
@@ -211,6 +223,7 @@ bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& p
               config.control.control ? "true" : "false (read-only)");
   std::fflush(stdout);
   print_thresholds(config);
+  print_transport(config);
   std::fflush(stdout);
   const bool battery_ok = identify(config, battery, true) == Status::kOk;
   print_orders(config, battery);

@@ -31,6 +31,9 @@ PriceLevel level_at_start(const EdgeConfig& config, const PriceLevel& logged, St
 /// One journal line: whether the guard enforces what the student is proved for.
 void journal_thresholds(const EdgeConfig& config);
 
+/// One journal line where others than the price server could write the prices.
+void journal_transport(const EdgeConfig& config);
+
 /// Prints settings, encoded orders, a battery reading and the newest price; true when all is well.
 bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& prices,
                   const EdgeClock& clock);

@@ -1,5 +1,6 @@
 #include "edge/program/status_command.h"
 
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -10,6 +11,7 @@
 #include "edge/log/journal.h"
 #include "edge/log/ring_log.h"
 #include "edge/log/status_keys.h"
+#include "edge/program/file_owner.h"
 #include "edge/program/run_locks.h"
 #include "shared/host/json.h"
 #include "shared/units_and_limits.h"
@@ -37,8 +39,20 @@ bool read_text(const char* path, std::string& text) {
 /// The published status; does not exist when there is none or it is not ours.
 Json read_status(const EdgeConfig& config) {
   std::string text;
-  read_text(config.log.status.c_str(), text);
+  const char* const path = config.log.status.c_str();
+  if (is_believable(path)) {
+    read_text(path, text);
+  } else {
+    report(JournalLevel::kWarning, "%s", strangers_file(path).c_str());
+  }
   return Json::parse(text);
+}
+
+/// Nothing more would fit, for a user without root's reserve.
+bool disk_is_full(const EdgeConfig& config) {
+  struct statvfs disk {};
+  return statvfs(config.state.folder.c_str(), &disk) == 0 &&
+         (disk.f_bavail == 0 || (disk.f_flag & ST_RDONLY) != 0);
 }
 
 /// What the status says of the member at this path of CycleRecord or RunTotals.
@@ -73,10 +87,22 @@ std::int64_t cycles_behind(const EdgeConfig& config, JsonValue status) {
   return (newest.utc_s - published_utc_s) / kSecondsPerStep;
 }
 
-Health health_of(const EdgeConfig& config, JsonValue status) {
+/// Who may not open the lock asks for the process that the status names instead: its age shows all the same.
+int controller_of(const EdgeConfig& config, JsonValue status) {
   const int holder = holder_of(state_lock_path(config).c_str());
+  if (holder != kHolderHidden) return holder;
+  const auto named = static_cast<int>(whole(status["pid"]));
+  std::string name;
+  const bool is_alive = read_text(("/proc/" + std::to_string(named) + "/comm").c_str(), name) &&
+                        name == "bess-edge\n";
+  return is_alive ? named : 0;
+}
+
+Health health_of(const EdgeConfig& config, JsonValue status) {
+  const int holder = controller_of(config, status);
   HealthInputs in;
   in.is_running = holder != 0;
+  in.disk_is_full = disk_is_full(config);
   if (!status.exists()) return assess_health(in);
   in.is_of_this_run = holder == whole(status["pid"]);
   in.age_ms = age_ms_of(status);
@@ -92,7 +118,10 @@ Health health_of(const EdgeConfig& config, JsonValue status) {
   in.battery_warns = is_true(field<&R::measurement, &B::warning>(status));
   in.disk_is_slow = is_true(field<&T::disk_is_slow>(status));
   in.disk_is_failing = is_true(field<&T::disk_is_failing>(status));
-  if (in.is_of_this_run && in.cycles > 0) in.cycles_behind = cycles_behind(config, status);
+  in.price_step_held = is_true(field<&R::price, &P::step_held>(status));
+  in.held_eur_per_mwh = number(field<&R::price, &P::held_centi_eur_per_mwh>(status)) / kCentiPerEur;
+  // Of an earlier run: the disk was full at this one's start, and the log is all that it could write.
+  if (in.is_running && in.cycles > 0) in.cycles_behind = cycles_behind(config, status);
   return assess_health(in);
 }
 
@@ -135,6 +164,10 @@ void print_last_cycle(JsonValue s) {
                 number(field<&R::price_age_s>(s)), text_of(field<&R::price, &P::status>(s)));
   } else {
     std::printf("price      none, %s\n", text_of(field<&R::price, &P::status>(s)));
+  }
+  if (is_true(field<&R::price, &P::step_held>(s))) {
+    std::printf("held       %.2f EUR/MWh, until the next row confirms it\n",
+                number(field<&R::price, &P::held_centi_eur_per_mwh>(s)) / kCentiPerEur);
   }
   print_level(s);
   std::printf("order      %.0f W, reason %s\n", number(field<&R::ordered_power_w>(s)),

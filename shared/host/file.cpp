@@ -80,7 +80,8 @@ class TemporaryFile {
     } else {
       remove_stale_parts(target_);
       beside_ = target_.string() + ".part." + std::to_string(getpid());
-      fd_ = open(beside_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+      unlink(beside_.c_str());  // whatever was put there, a link as well: never followed
+      fd_ = open(beside_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0644);
     }
     if (fd_ < 0) fail("{}: cannot write here: {}", target_.string(), std::strerror(errno));
     struct stat before {};

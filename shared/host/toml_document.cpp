@@ -62,6 +62,7 @@ std::string complaint(const std::string& name, int line, std::string_view what) 
   return one_line(name) + ":" + std::to_string(line) + ": not valid TOML: " + one_line(what);
 }
 
+/// As far as it could be parsed: one byte more than that shows that there is more.
 bool read_whole_file(const std::string& path, std::string& text, std::string& error) {
   std::FILE* file = std::fopen(path.c_str(), "rb");
   if (file == nullptr) {
@@ -69,7 +70,8 @@ bool read_whole_file(const std::string& path, std::string& text, std::string& er
     return false;
   }
   char buffer[4096];
-  for (std::size_t got = 0; (got = std::fread(buffer, 1, sizeof buffer, file)) > 0;) {
+  std::size_t got = 0;
+  while (text.size() <= kTomlBytesMax && (got = std::fread(buffer, 1, sizeof buffer, file)) > 0) {
     text.append(buffer, got);
   }
   const bool read_failed = std::ferror(file) != 0;
@@ -95,6 +97,11 @@ const TomlValue* TomlValue::find(std::string_view key) const {
 
 bool parse_toml_text(std::string_view text, const std::string& name, TomlValue& document,
                      std::string& error) {
+  if (text.size() > kTomlBytesMax) {
+    error = complaint(name, 1, "longer than 256 KiB, which no configuration and no map is");
+    static_assert(kTomlBytesMax == 256 * 1024);
+    return false;
+  }
   text = without_byte_order_mark(text);
   if (const TomlTrap trap = find_toml_trap(text); trap.line > 0) {
     error = complaint(name, trap.line, trap.message);

@@ -2,6 +2,7 @@
 // toml_document.cpp alone: it takes ten seconds to compile, and needs mends.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -38,6 +39,9 @@ struct TomlValue {
   /// Of a table; null when it has no such key, or when this is no table.
   [[nodiscard]] const TomlValue* find(std::string_view key) const;
 };
+
+/// No configuration and no register map comes near: a larger file is a mistake, and is not read to its end.
+inline constexpr std::size_t kTomlBytesMax = 256 * 1024;
 
 /// Parses a text; false with `error` set ("name:line: message") when it is not TOML.
 bool parse_toml_text(std::string_view text, const std::string& name, TomlValue& document,

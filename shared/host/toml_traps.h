@@ -1,6 +1,7 @@
 // What toml++ 3.3 must not be shown, looked for before it parses. TOML wants ASCII outside quotes and comments,
 // and toml++ does not check: one accented letter there is undefined behaviour. Nor does it limit the parts of a
-// key: each becomes a table in a table, and some ten thousand of them overflow the stack.
+// key: each becomes a table in a table, and some ten thousand of them overflow the stack. Nor the number of
+// values: each takes some 200 bytes, and the edge has 8 MiB for everything.
 #pragma once
 
 #include <algorithm>
@@ -33,12 +34,14 @@ class TomlTrapFinder {
         skip(1);
       }
       if (dots_ >= kKeyPartsMax) return {line_, "a key of more parts than any here"};
+      if (pieces_ > kPiecesMax) return {line_, "more lines and values than any file here has"};
     }
     return {};
   }
 
  private:
   static constexpr int kKeyPartsMax = 16;
+  static constexpr int kPiecesMax = 10'000;  ///< the largest shipped map has 545
 
   constexpr void skip(std::size_t bytes) {
     bytes = std::min(bytes, rest_.size());
@@ -72,13 +75,17 @@ class TomlTrapFinder {
       in_word_ = c != '=' || in_value_;
       in_value_ = in_value_ || c == '=';
     }
-    if (c == '.' && !in_value_) ++dots_;
-    if (c == '\n' || c == ',' || c == '=' || c == '[' || c == '{') dots_ = 0;
+    const bool is_dot_of_key = c == '.' && !in_value_;  // a table in a table
+    const bool begins_piece = c == '\n' || c == ',' || c == '=' || c == '[' || c == '{';
+    if (is_dot_of_key) ++dots_;
+    if (begins_piece) dots_ = 0;
+    if (is_dot_of_key || begins_piece) ++pieces_;
   }
 
   std::string_view rest_;
   int line_ = 1;
-  int dots_ = 0;  ///< in the key so far
+  int dots_ = 0;    ///< in the key so far
+  int pieces_ = 0;  ///< lines, parts of keys and values so far
   bool in_word_ = false;
   bool in_value_ = false;  ///< behind the = of a key
 };

@@ -283,6 +283,42 @@ TEST(ClosedLoop, ABatteryThatGoesTheOtherWayIsLeftAlone) {
   EXPECT_EQ(plant.battery.releases, 1);
 }
 
+TEST(ClosedLoop, AFailedReadingKeepsItsCauseThoughTheOrderSucceeds) {
+  Plant plant;
+  plant.prices.price = [](std::int64_t) { return -60'000; };
+  plant.cycle();
+  plant.battery.is_implausible = true;
+  const CycleRecord record = plant.cycle();
+  EXPECT_EQ(record.reason, Reason::kLink);
+  EXPECT_EQ(record.mode, Mode::kHolding);
+  EXPECT_TRUE(record.written);  // 0 W
+  EXPECT_EQ(record.battery_status, Status::kImplausible);
+}
+
+TEST(ClosedLoop, ThePriceIsLoggedAsOldAsAtTheWrite) {
+  Plant plant;
+  plant.prices.price = [](std::int64_t) { return -60'000; };
+  plant.prices.arrives_after_ns = 7 * kNanosecondsPerSecond;
+  EXPECT_EQ(plant.cycle().price_age_s, 7);
+}
+
+TEST(ClosedLoop, ATripOfTheRunBeforeHoldsUntilItIsCleared) {
+  Plant plant;
+  plant.prices.price = [](std::int64_t) { return -60'000; };
+  plant.loop.take_over({.trip = {.reason = Reason::kUncontrolledPower, .utc_s = 7}});
+  for (int i = 0; i < 5; ++i) {
+    const CycleRecord record = plant.cycle();
+    EXPECT_EQ(record.reason, Reason::kUncontrolledPower);
+    EXPECT_TRUE(record.is_tripped);
+    EXPECT_EQ(record.trip.utc_s, 7);
+  }
+  EXPECT_TRUE(plant.battery.orders.empty());
+  plant.loop.clear_trip();
+  const CycleRecord record = plant.cycle();
+  EXPECT_EQ(record.ordered_power_w, 4'000);
+  EXPECT_FALSE(record.is_tripped);
+}
+
 TEST(ClosedLoop, WhatTheBatteryDoesWithoutAnOrderIsNoAnswerToOne) {
   Plant plant;
   plant.battery.refuses_orders = true;  // external control is switched off on the device

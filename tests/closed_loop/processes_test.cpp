@@ -7,6 +7,8 @@
 #include <sys/un.h>
 
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 
 #include "tests/support/pty_bridge.h"
 #include "tests/support/simulated_site.h"
@@ -499,6 +501,22 @@ TEST_F(Processes, ABatteryWhoseSignWasNeverCheckedIsNotControlled) {
   for (const CsvRow& row : read_csv(site_.folder.file("battery.csv"))) {
     EXPECT_EQ(row.at("commanded_power_w"), "0");
   }
+}
+
+TEST_F(Processes, ARefusedStartLeavesTheStatusOfTheRunBefore) {
+  start_simulators();
+  const std::string config = site_.commission();
+  ChildProcess({BESS_EDGE_PROGRAM, "--config", config, "--cycles", "2"}).wait();
+  const auto status = [&] {
+    std::ifstream file(site_.folder.file("state/status.json"));
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  const std::string before = status();
+  ASSERT_THAT(before, HasSubstr("\"reason\": \"stop_requested\""));
+  std::filesystem::remove(site_.folder.file("state/commissioned.toml"));
+  ChildProcess refused({BESS_EDGE_PROGRAM, "--config", config});
+  EXPECT_EQ(refused.wait(), 1);
+  EXPECT_EQ(status(), before);
 }
 
 /// As for an upgrade: SIGHUP, and a new process goes on where the old one was. Slower than the

@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <sstream>
 
 #include "tests/support/simulated_site.h"
@@ -18,6 +19,7 @@ using ::testing::ElementsAreArray;
 using ::testing::HasSubstr;
 
 constexpr std::int32_t kScale = 60;  // a cycle takes 2 s: time to kill the edge between two orders
+constexpr std::int32_t kBreakdownScale = 240;
 constexpr const char* kPython = "/usr/bin/python3";
 constexpr const char* kMbpoll = "/usr/bin/mbpoll";
 constexpr const char* kSocat = "/usr/bin/socat";
@@ -188,6 +190,113 @@ TEST_P(Peers, AStoppedEdgeLeavesTheBlockReleased) {
   }
   EXPECT_THAT(take_writes(), ElementsAreArray(expected));
 }
+
+/// A battery that breaks after two good orders, at a price that asks for the same order in every cycle.
+struct Breakdown {
+  const char* fault;
+  const char* reason;
+  int cycles_until_noticed;  ///< from the order with which it breaks
+  const char* guard_keys = "";
+  int exit_code = 0;
+};
+
+void PrintTo(const Breakdown& b, std::ostream* out) { *out << b.fault; }
+
+std::string breakdown_name(const ::testing::TestParamInfo<Breakdown>& info) {
+  std::string name = info.param.fault;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
+class PeersBreakdown : public ::testing::TestWithParam<Breakdown> {
+ protected:
+  void SetUp() override {
+    ChildProcess probe({kPython, "-c", "import pymodbus, serial_asyncio"});
+    if (probe.wait() != 0) GTEST_SKIP() << "pymodbus or serial_asyncio is not installed";
+    site_.start_clock();
+    site_.battery = std::make_unique<ChildProcess>(std::vector<std::string>{
+        kPython, BESS_SOURCE_DIR "/tests/peers/alphaess_peer.py", "--soc", "435", "--scale",
+        std::to_string(kBreakdownScale), "--fault", GetParam().fault});
+    const std::string ready = site_.battery->read_line();
+    site_.battery_port = std::stoi(ready.substr(ready.find_last_of(':') + 1));
+    const SimulatedSite::PriceWave cheap{.mean_eur_per_mwh = -600, .amplitude_eur_per_mwh = 0};
+    site_.start_market({}, SimulatedSite::minute_prices(600, cheap));
+    config_ = site_.commission(
+        {.battery_keys = SimulatedSite::alphaess_keys(2'000), .guard_keys = GetParam().guard_keys});
+  }
+
+  /// The cycle of the first line that holds the text; 0 when there is none within `cycles_max`.
+  static int cycle_with(ChildProcess& edge, const std::string& text, int cycles_max) {
+    for (int cycle = 0; cycle < cycles_max;) {
+      const std::string line = edge.read_line();
+      if (line.empty()) return 0;
+      const std::size_t at = line.find(" cycle=");
+      if (at == std::string::npos) continue;
+      cycle = std::atoi(line.c_str() + at + 7);
+      if (line.find(text) != std::string::npos) return cycle;
+    }
+    return 0;
+  }
+
+  std::string command(const std::vector<std::string>& words) const {
+    std::vector<std::string> arguments = {BESS_EDGE_PROGRAM};
+    arguments.insert(arguments.end(), words.begin(), words.end());
+    arguments.insert(arguments.end(), {"--config", config_});
+    ChildProcess child(arguments);
+    return child.read_all();
+  }
+
+  SimulatedSite site_{kBreakdownScale};
+  std::string config_;
+};
+
+TEST_P(PeersBreakdown, IsNoticedAndDrivenNoFurther) {
+  constexpr int kGoodCycles = 2;
+  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", config_});
+  const std::string reason = std::string("reason=") + GetParam().reason + " ";
+  const int noticed = cycle_with(edge, reason, 12);
+  EXPECT_GT(noticed, kGoodCycles);
+  EXPECT_LE(noticed, kGoodCycles + 1 + GetParam().cycles_until_noticed);
+  edge.signal(SIGTERM);
+  EXPECT_THAT(edge.read_all(), ::testing::Not(HasSubstr("mode=running")));
+  EXPECT_EQ(edge.wait(), GetParam().exit_code);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Bus, PeersBreakdown,
+    ::testing::Values(
+        Breakdown{"reversed", "wrong_direction", 2}, Breakdown{"twice", "uncontrolled_power", 2},
+        Breakdown{"idle-discharge", "uncontrolled_power", 2, "soc_max = 0.3\n"},
+        Breakdown{"soc-stuck", "soc_mismatch", 3}, Breakdown{"dead", "no_answer", 2},
+        Breakdown{"capacity", "capacity", 1}, Breakdown{"other-master", "other_master", 2},
+        // An order that fails is taken back at once: three of them are no danger. Nor can the
+        // release be confirmed.
+        Breakdown{"wrong-echo", "orders_fail", 3, "", 1}),
+    breakdown_name);
+
+class PeersTrip : public PeersBreakdown {};
+
+TEST_P(PeersTrip, StaysOverRestartsUntilAPersonClearsIt) {
+  const std::string reason = std::string("reason=") + GetParam().reason + " ";
+  {
+    ChildProcess edge({BESS_EDGE_PROGRAM, "--config", config_});
+    ASSERT_GT(cycle_with(edge, reason, 12), 0);
+    edge.signal(SIGKILL);
+    edge.wait();
+  }
+  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", config_});
+  EXPECT_EQ(cycle_with(edge, reason, 3), 1);
+  EXPECT_THAT(command({"status"}), HasSubstr("CRITICAL: tripped"));
+  EXPECT_THAT(command({"clear"}), HasSubstr("add --yes"));
+  EXPECT_EQ(cycle_with(edge, "mode=running", 3), 0);
+  EXPECT_THAT(command({"clear", "--yes"}), HasSubstr("cleared"));
+  EXPECT_GT(cycle_with(edge, "mode=running", 8), 0);
+  EXPECT_EQ(SimulatedSite::stop(edge), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Bus, PeersTrip,
+                         ::testing::Values(Breakdown{"twice", "uncontrolled_power", 2}),
+                         breakdown_name);
 
 std::string setup_name(const ::testing::TestParamInfo<Setup>& info) {
   return std::string(info.param.rtu ? "rtu_" : "tcp_") + info.param.variant;

@@ -45,6 +45,7 @@ struct FakeBattery {
   Status read(BatteryMeasurement& m) {
     physics.advance(clock.now_ns);
     if (!link) return Status::kTimeout;
+    if (is_implausible) return Status::kImplausible;
     m = BatteryMeasurement{};
     m.soc_e4 = static_cast<std::int32_t>(std::lround(physics.soc_frac() * 1e3)) * 10;
     m.power_w = static_cast<std::int32_t>(physics.power_w());
@@ -87,6 +88,7 @@ struct FakeBattery {
   FakeClock& clock;
   SimulatedBattery physics;
   bool link = true;
+  bool is_implausible = false;  ///< its readings; orders reach it
   bool alarm = false;
   bool off_grid = false;
   std::int32_t offset_w = 0;  ///< what its meter shows too much

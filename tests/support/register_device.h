@@ -43,6 +43,7 @@ struct RegisterDevice {
   std::vector<std::uint16_t> input = std::vector<std::uint16_t>(0x1'0000);
   std::vector<WriteRecord> writes;  ///< everything that was asked for, obeyed or not
   int reads = 0;
+  int reconnects = 0;
   std::int64_t now_ns = 1;  ///< the device's time, moved by hand
   std::int64_t day = 20'000;
   bool ignores_writes = false;  ///< acknowledges, does nothing
@@ -108,7 +109,11 @@ class DeviceLink {
   }
   void close() {}
   [[nodiscard]] int last_exception() const { return last_exception_; }
-  [[nodiscard]] const LinkCounters& counters() const { return counters_; }
+  [[nodiscard]] LinkCounters counters() const {
+    LinkCounters counters = counters_;
+    counters.reconnects = device_.reconnects;
+    return counters;
+  }
 
  private:
   Status fault() {

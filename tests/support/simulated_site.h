@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <sstream>
 #include <stdexcept>
@@ -24,6 +25,19 @@ class SimulatedSite {
 
   /// Simulated time starts half a second from now.
   explicit SimulatedSite(std::int32_t time_scale) : time_scale_(time_scale) { start_clock(); }
+  SimulatedSite(const SimulatedSite&) = delete;
+  SimulatedSite& operator=(const SimulatedSite&) = delete;
+  /// What a killed controller leaves where all controllers of a machine lock their batteries.
+  ~SimulatedSite() {
+    std::error_code ignored;
+    for (const auto& file : std::filesystem::directory_iterator("/run/lock", ignored)) {
+      for (const int port : battery_ports_) {
+        const std::string prefix = "bess-127.0.0.1_" + std::to_string(port) + "_";
+        const bool is_ours = file.path().filename().string().starts_with(prefix);
+        if (is_ours) std::filesystem::remove(file.path(), ignored);
+      }
+    }
+  }
 
   /// Sets the simulated clock back to its start, for simulators that are started anew.
   void start_clock() { anchor_ns_ = clock_ns(CLOCK_MONOTONIC) + kNanosecondsPerSecond / 2; }
@@ -52,6 +66,7 @@ class SimulatedSite {
         {"battery", "--port", std::to_string(port), "--record", folder.file("battery.csv")},
         options);
     battery_port = port_of(battery->read_line());
+    battery_ports_.push_back(battery_port);
   }
   void start_serial_battery(const std::string& device) {
     battery = start_simulator({"battery", "--serial", device, "--baud", "115200"}, {});
@@ -148,6 +163,7 @@ class SimulatedSite {
 
   std::int32_t time_scale_;
   std::int64_t anchor_ns_ = 0;
+  std::vector<int> battery_ports_;
 };
 
 }  // namespace bess

@@ -14,7 +14,12 @@ struct TomlMistake {
 
 inline std::vector<TomlMistake> toml_mistakes() {
   std::string long_key = "a";
-  for (int i = 0; i < 200'000; ++i) long_key += ".a";
+  for (int i = 0; i < 20'000; ++i) long_key += ".a";
+  std::string many_tables;  // fourteen in one another, and few lines
+  for (int i = 0; i < 1'000; ++i)
+    many_tables += "a" + std::to_string(i) + ".b.b.b.b.b.b.b.b.b.b.b.b.b = 1\n";
+  std::string many_values = "a = [0";
+  for (int i = 0; i < 20'000; ++i) many_values += ", 0";
   return {{"[=]", 1, "expected bare key"},
           {"a = 1\n[=]\n", 2, "expected bare key"},
           {"[[=]]\n", 1, "expected bare key"},
@@ -34,7 +39,12 @@ inline std::vector<TomlMistake> toml_mistakes() {
           {"\xFF\xFE", 1, "other than ASCII"},
           {long_key + " = 1\n", 1, "a key of more parts"},
           {"[" + long_key + "]\n", 1, "a key of more parts"},
-          {"a = " + std::string(100'000, '['), 1, "nested"},
+          {"a = " + std::string(9'000, '['), 1, "nested"},
+          {"a = " + std::string(100'000, '['), 1, "more lines and values"},
+          {many_values + "]\n", 1, "more lines and values"},
+          {many_tables, 667, "more lines and values"},
+          {"b = 1\n" + std::string(20'000, '\n'), 10'001, "more lines and values"},
+          {std::string(300 * 1024, '#'), 1, "longer than 256 KiB"},
           {"a = 1\na = 2\n", 2, "cannot redefine"},
           {"a = \n", 1, "not valid TOML"}};
 }

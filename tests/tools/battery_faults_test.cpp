@@ -24,7 +24,7 @@ TEST(BatteryFaults, EveryFaultHasItsPlaceInTheTable) {
     EXPECT_EQ(static_cast<int>(info.fault), ++value) << info.name;
     EXPECT_TRUE(info.tcp || info.rtu) << info.name;
   }
-  EXPECT_EQ(value, static_cast<int>(BatteryFault::kThrottle));
+  EXPECT_EQ(value, static_cast<int>(BatteryFault::kOtherMaster));
 }
 
 TEST(BatteryFaults, WrongSignShowsChargingAsDischarging) {
@@ -77,7 +77,7 @@ TEST(BatteryFaults, ThrottleLetsAQuarterFlowNearTheLimit) {
                             .charge_efficiency = 1,
                             .discharge_efficiency = 1},
                            0.94, 0);
-  battery.throttle(true);
+  battery.set_habits({.slows_near_limits = true});
   battery.start_dispatch(4'000, 1.0, 100'000);
   EXPECT_EQ(battery.power_w(), 4'000);
   battery.advance(72 * kNanosecondsPerSecond);  // 80 Wh to 95 %

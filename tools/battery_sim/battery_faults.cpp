@@ -9,7 +9,8 @@ constexpr unsigned kConnect = static_cast<unsigned>(FaultChance::kConnect);
 constexpr unsigned kRead = static_cast<unsigned>(FaultChance::kRead);
 constexpr unsigned kWrite = static_cast<unsigned>(FaultChance::kWrite);
 constexpr unsigned kAny = kRead | kWrite;
-constexpr unsigned kLasting = 0;  ///< struck by nothing: in force as long as the schedule's span
+constexpr unsigned kLasting =
+    0;  ///< struck by nothing: in force from --fault-from-s to --fault-to-s
 
 constexpr BatteryFaultInfo kFaults[] = {
     {BatteryFault::kSilence, "silence", "no answer", kAny},
@@ -40,8 +41,20 @@ constexpr BatteryFaultInfo kFaults[] = {
     {BatteryFault::kWrongSign, "wrong-sign", "battery_power with the other sign", kRead},
     {BatteryFault::kSocJump, "soc-jump", "the state of charge is off by half the scale", kRead},
     {BatteryFault::kEarlyExpiry, "early-expiry", "the order in force ends at once", kRead},
-    {BatteryFault::kThrottle, "throttle",
-     "a quarter of the power within 5 % of a limit, all the time from --fault-from-s", kLasting},
+    {BatteryFault::kThrottle, "throttle", "lasts: a quarter of the power within 5 % of a limit",
+     kLasting},
+    {BatteryFault::kPartPower, "part-power", "lasts: 0.3 of the ordered power flows", kLasting},
+    {BatteryFault::kExcessPower, "excess-power", "lasts: twice the ordered power flows", kLasting},
+    {BatteryFault::kIdleDischarge, "idle-discharge",
+     "lasts: while 0 W is ordered, three quarters of the rating are discharged", kLasting},
+    {BatteryFault::kSlowAndNoisy, "slow-and-noisy",
+     "lasts: no fault, a habit: orders show 5 s later, with 2 % noise", kLasting},
+    {BatteryFault::kSocStuck, "soc-stuck", "lasts: the state of charge is shown as it was",
+     kLasting},
+    {BatteryFault::kOtherCapacity, "other-capacity", "lasts: shows 5 times its capacity",
+     kLasting},
+    {BatteryFault::kOtherMaster, "other-master",
+     "lasts: every 30 s somebody else orders the rated discharge", kLasting},
 };
 
 }  // namespace

@@ -40,6 +40,13 @@ enum class BatteryFault : std::uint8_t {
   kSocJump,
   kEarlyExpiry,
   kThrottle,
+  kPartPower,
+  kExcessPower,
+  kIdleDischarge,
+  kSlowAndNoisy,
+  kSocStuck,
+  kOtherCapacity,
+  kOtherMaster,
 };
 
 /// A moment at which a fault may strike.
@@ -72,7 +79,7 @@ class FaultPlan {
 
   /// The fault that strikes now, or kNone. `at_s` counts from the start.
   BatteryFault draw(FaultChance chance, double at_s);
-  /// A fault that lasts (kThrottle) is in force.
+  /// A fault that lasts is in force.
   [[nodiscard]] bool lasts(BatteryFault fault, double at_s) const;
   std::mt19937_64& random() { return random_; }
 

@@ -149,7 +149,7 @@ void BatteryServer::serve(Client& client) {
 }
 
 void BatteryServer::answer(Client& client, const BusRequest& request) {
-  battery_.throttle(plan_.lasts(BatteryFault::kThrottle, elapsed_s()));
+  apply_lasting_faults();
   const FaultChance chance = request.is_write() ? FaultChance::kWrite : FaultChance::kRead;
   const BatteryFault fault = plan_.draw(chance, elapsed_s());
   if (fault != BatteryFault::kFrozen) image_->refresh(clock_.now_utc_ns());
@@ -184,6 +184,29 @@ void BatteryServer::answer_with_fault(Client& client, const BusRequest& request,
   const auto middle = bytes.begin() + static_cast<std::ptrdiff_t>(bytes.size() / 2);
   send(client, {bytes.begin(), middle});
   if (wait(settings_.late_ms)) send(client, {middle, bytes.end()});
+}
+
+/// From the request after --fault-from-s on; what another master did between two requests is done late.
+void BatteryServer::apply_lasting_faults() {
+  const auto lasts = [&](BatteryFault fault) { return plan_.lasts(fault, elapsed_s()); };
+  const double rated_w = battery_.parameters().power_w_max;
+  const std::int64_t now_ns = clock_.now_utc_ns();
+  battery_.advance(now_ns);
+  battery_.set_habits({.gain = lasts(BatteryFault::kPartPower)     ? 0.3
+                               : lasts(BatteryFault::kExcessPower) ? 2.0
+                                                                   : 1.0,
+                       .idle_power_w = lasts(BatteryFault::kIdleDischarge) ? -0.75 * rated_w : 0.0,
+                       .delay_s = lasts(BatteryFault::kSlowAndNoisy) ? 5.0 : 0.0,
+                       .noise_frac = lasts(BatteryFault::kSlowAndNoisy) ? 0.02 : 0.0,
+                       .slows_near_limits = lasts(BatteryFault::kThrottle)});
+  image_->set_display({.soc_stands_still = lasts(BatteryFault::kSocStuck),
+                       .capacity_factor = lasts(BatteryFault::kOtherCapacity) ? 5.0 : 1.0});
+  if (!lasts(BatteryFault::kOtherMaster)) return;
+  constexpr std::int64_t kForeignIntervalNs = 30 * kNanosecondsPerSecond;
+  if (now_ns < next_foreign_order_ns_) return;
+  next_foreign_order_ns_ = now_ns + kForeignIntervalNs;
+  image_->refresh(now_ns);
+  image_->order_from_outside(-static_cast<std::int32_t>(rated_w));
 }
 
 /// What a healthy battery answers, and what a write does to it.

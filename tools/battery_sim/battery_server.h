@@ -64,6 +64,7 @@ class BatteryServer {
   void answer_with_fault(Client& client, const BusRequest& request, BatteryFault fault);
   Bytes right_answer(const BusRequest& request, bool keep_registers);
   void change_values(BatteryFault fault);
+  void apply_lasting_faults();
   void send(Client& client, const Bytes& bytes);
   void drip(Client& client, const Bytes& bytes);
   void close_client(Client& client, bool reset);
@@ -83,6 +84,7 @@ class BatteryServer {
   std::unique_ptr<RegisterImage> image_;
   std::unique_ptr<BusReply> reply_;
   FaultPlan plan_;
+  std::int64_t next_foreign_order_ns_ = 0;  ///< UTC; 0 = no other master yet
   std::vector<Client> clients_;
   int listen_fd_ = -1;
   int stop_fd_ = -1;

@@ -113,9 +113,9 @@ void RegisterImage::refresh(std::int64_t utc_ns) {
   if (is_running_ && !battery_.dispatch_active()) show_expiry();
   is_running_ = battery_.dispatch_active();
   const BatteryParameters& p = battery_.parameters();
-  set("soc", battery_.soc_frac() * 1e4);
+  if (!display_.soc_stands_still) set("soc", battery_.soc_frac() * 1e4);
   show_power(std::llround(battery_.power_w()));
-  set("capacity", p.capacity_wh);
+  set("capacity", p.capacity_wh * display_.capacity_factor);
   set("charge_power_max", p.power_w_max);
   set("discharge_power_max", p.power_w_max);
   set("temperature_min", kRoomTemperatureDeciC);
@@ -162,6 +162,22 @@ void RegisterImage::apply_write(int address, int count) {
   }
   if (is_running_ && is_order_ignored(address, count)) return;
   start(registers);
+}
+
+void RegisterImage::order_from_outside(std::int32_t power_w) {
+  const PowerOrder order{.power_w = power_w, .duration_s = map_.watchdog.duration_s};
+  const auto write_all = [&](Command command) {
+    for (const BlockWrite& write : map_.sequence(command).writes) {
+      RegisterBlock block;
+      const LivePoints live = snapshot();
+      if (encode_block(map_, write, order, block, {.live = &live}) != Status::kOk) continue;
+      const int address = address_of(write.values[0].point);
+      std::copy(block.begin(), block.end(), holding_.begin() + address);
+      apply_write(address, block.size());
+    }
+  };
+  if (!is_running_) write_all(Command::kEnable);
+  write_all(command_of(power_w));
 }
 
 bool RegisterImage::is_order_ignored(int address, int count) const {

@@ -30,6 +30,16 @@ class RegisterImage {
   /// Acts on a write that has just changed holding registers; call `refresh` before the write.
   void apply_write(int address, int count);
 
+  /// What another master does who knows this map: registers are written as for an order, and acted on.
+  void order_from_outside(std::int32_t power_w);
+
+  /// Values that are shown otherwise than they are.
+  struct Display {
+    bool soc_stands_still = false;
+    double capacity_factor = 1;
+  };
+  void set_display(const Display& display) { display_ = display; }
+
   /// Where a point lies in this image.
   [[nodiscard]] int address_of(int point) const;
 
@@ -60,6 +70,7 @@ class RegisterImage {
   int timer_ = -1;  ///< point that an order's duration is written to; -1 = fixed by the device
   bool timer_counts_minutes_ = false;
   int soc_limit_ = -1, soc_min_ = -1, soc_max_ = -1;
+  Display display_{};
   bool is_running_ = false;  ///< an order, at the last refresh or write
   std::int64_t utc_s_ = 0;
   std::int64_t end_utc_s_ = 0;  ///< of the order under way

@@ -1,6 +1,8 @@
 #include "tools/battery_sim/simulated_battery.h"
 
 #include <algorithm>
+#include <cmath>
+#include <random>
 
 #include "shared/scaled_clock.h"
 
@@ -22,7 +24,8 @@ void SimulatedBattery::advance(std::int64_t utc_ns) {
   while (now_ns_ < utc_ns) {
     std::int64_t end_ns = std::min(utc_ns, (now_ns_ / kMinuteNs + 1) * kMinuteNs);
     if (dispatch_active_) end_ns = std::min(end_ns, dispatch_end_ns_);
-    if (throttled_) end_ns = std::min(end_ns, now_ns_ + kNanosecondsPerSecond);
+    if (now_ns_ < change_ns_) end_ns = std::min(end_ns, change_ns_);
+    if (habits_.slows_near_limits) end_ns = std::min(end_ns, now_ns_ + kNanosecondsPerSecond);
     integrate_segment(end_ns);
     if (dispatch_active_ && now_ns_ >= dispatch_end_ns_) dispatch_active_ = false;
   }
@@ -31,7 +34,7 @@ void SimulatedBattery::advance(std::int64_t utc_ns) {
 void SimulatedBattery::integrate_segment(std::int64_t end_ns) {
   const double hours = static_cast<double>(end_ns - now_ns_) / kNanosecondsPerHour;
   if (hours > 0) {
-    const BatteryStep step = battery_step(limited(), soc_frac_, commanded_power_w(), hours);
+    const BatteryStep step = battery_step(limited(), soc_frac_, wanted_power_w(), hours);
     minute_energy_wh_ += step.power_w * hours;
     soc_frac_ = step.soc_frac;
   }
@@ -46,15 +49,41 @@ void SimulatedBattery::integrate_segment(std::int64_t end_ns) {
 BatteryParameters SimulatedBattery::limited() const {
   BatteryParameters p = parameters_;
   if (!dispatch_active_) return p;
+  p.power_w_max *= std::max(habits_.gain, 1.0) * (1 + 5 * habits_.noise_frac);
+  if (power_w_ == 0 && habits_.idle_power_w != 0) {
+    p.soc_min_frac = 0;
+    p.soc_max_frac = 1;
+  }
   if (power_w_ > 0) p.soc_max_frac = std::min(p.soc_max_frac, soc_limit_frac_);
   if (power_w_ < 0) p.soc_min_frac = std::max(p.soc_min_frac, soc_limit_frac_);
   const double room_frac = power_w_ > 0 ? p.soc_max_frac - soc_frac_ : soc_frac_ - p.soc_min_frac;
-  if (throttled_ && room_frac < kThrottledSocFrac) p.power_w_max *= kThrottledFraction;
+  if (habits_.slows_near_limits && room_frac < kThrottledSocFrac) {
+    p.power_w_max *= kThrottledFraction;
+  }
   return p;
+}
+
+double SimulatedBattery::wanted_power_w() const {
+  if (!dispatch_active_) return 0;
+  const double ordered_w = now_ns_ < change_ns_ ? power_before_w_ : power_w_;
+  if (ordered_w == 0) return habits_.idle_power_w;
+  return ordered_w * habits_.gain * noise_factor();
+}
+
+/// Of the minute: the same whenever it is asked.
+double SimulatedBattery::noise_factor() const {
+  if (habits_.noise_frac == 0) return 1;
+  std::minstd_rand random(static_cast<unsigned>(now_ns_ / kMinuteNs));
+  random.discard(8);
+  return std::normal_distribution<>(1, habits_.noise_frac)(random);
 }
 
 void SimulatedBattery::start_dispatch(double power_w, double soc_limit_frac,
                                       std::int64_t duration_s) {
+  if (power_w != commanded_power_w()) {
+    power_before_w_ = commanded_power_w();
+    change_ns_ = now_ns_ + std::llround(habits_.delay_s * 1e9);
+  }
   dispatch_active_ = duration_s > 0;
   power_w_ = power_w;
   soc_limit_frac_ = soc_limit_frac;
@@ -63,7 +92,7 @@ void SimulatedBattery::start_dispatch(double power_w, double soc_limit_frac,
 
 double SimulatedBattery::power_w() const {
   constexpr double kOneSecondHours = 1.0 / 3'600.0;
-  return battery_step(limited(), soc_frac_, commanded_power_w(), kOneSecondHours).power_w;
+  return battery_step(limited(), soc_frac_, wanted_power_w(), kOneSecondHours).power_w;
 }
 
 MinuteRecord SimulatedBattery::current_minute() const {

@@ -18,6 +18,15 @@ struct MinuteRecord {
   double commanded_power_w;  ///< at the end of the minute; 0 without a dispatch
 };
 
+/// How a battery follows its orders. The defaults are a model's; real ones are slower, noisier, or broken.
+struct BatteryHabits {
+  double gain = 1;                 ///< of the ordered power that flows
+  double idle_power_w = 0;         ///< flows, whatever the SoC, while 0 W is ordered
+  double delay_s = 0;              ///< from a new order to its power
+  double noise_frac = 0;           ///< standard deviation of the power, another draw each minute
+  bool slows_near_limits = false;  ///< a quarter of the power within 5 % of a limit
+};
+
 class SimulatedBattery {
  public:
   SimulatedBattery(const BatteryParameters& parameters, double soc_frac, std::int64_t utc_ns);
@@ -31,8 +40,9 @@ class SimulatedBattery {
   void start_dispatch(double power_w, double soc_limit_frac, std::int64_t duration_s);
   void stop_dispatch() { dispatch_active_ = false; }
 
-  /// From now on only a quarter of the power flows close to a limit, as many batteries do.
-  void throttle(bool on) { throttled_ = on; }
+  /// From now on.
+  void set_habits(const BatteryHabits& habits) { habits_ = habits; }
+  [[nodiscard]] const BatteryHabits& habits() const { return habits_; }
 
   [[nodiscard]] bool dispatch_active() const { return dispatch_active_; }
   [[nodiscard]] double soc_frac() const { return soc_frac_; }
@@ -46,6 +56,8 @@ class SimulatedBattery {
 
  private:
   [[nodiscard]] BatteryParameters limited() const;
+  [[nodiscard]] double wanted_power_w() const;
+  [[nodiscard]] double noise_factor() const;
   [[nodiscard]] MinuteRecord current_minute() const;
   void integrate_segment(std::int64_t end_ns);
 
@@ -53,8 +65,10 @@ class SimulatedBattery {
   double soc_frac_;
   std::int64_t now_ns_;
   bool dispatch_active_ = false;
-  bool throttled_ = false;
+  BatteryHabits habits_{};
   double power_w_ = 0;
+  double power_before_w_ = 0;  ///< flows until `change_ns_`
+  std::int64_t change_ns_ = 0;
   double soc_limit_frac_ = 1;
   std::int64_t dispatch_end_ns_ = 0;
   double minute_energy_wh_ = 0;

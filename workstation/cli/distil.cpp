@@ -96,7 +96,8 @@ void add_distil_command(ProgramCommand& app) {
   command.option("--omega", options->omega,
                  "Of the layer: larger follows the teacher more closely");
   command.option("--epochs", options->epochs, "Before the first proof").positive();
-  command.flag("--plain", options->plain, "No correction: what the teacher alone would give");
+  command.flag("--plain", options->plain,
+               "No correction: what the teacher alone would give; its violations are sampled");
   command.option("--curve-out", options->curve_out, "CSV of the losses");
   command.flag("--json", options->json, "One JSON object");
   options->common.add_market(command);

@@ -63,8 +63,9 @@ RunResults learn(const RunConfig& config, MarketSteps market, const std::string&
   CorrectionResult plain =
       correct_and_prove(trained.teacher, visited, plain_options, interruption());
   if (interruption()) throw Interrupted{};
-  fmt::print("      {} violations over the lattice\n",
-             student_of(plain.verdict).certificate.violations());
+  const Certificate& sampled = student_of(plain.verdict).certificate;
+  fmt::print("      {} violations in {} states looked at\n", sampled.violations(),
+             sampled.states_checked);
 
   announce(4, "correct while distilling, and prove");
   CorrectionResult corrected =
@@ -87,6 +88,7 @@ RunResults learn(const RunConfig& config, MarketSteps market, const std::string&
 std::string manifest(const RunResults& run, const std::string& prices) {
   const StudentFile& corrected = student_of(run.corrected);
   const Certificate& certificate = corrected.certificate;
+  const Certificate& plain = student_of(run.plain).certificate;
   return Json::object({{"version", BESS_VERSION},
                        {"prices", prices},
                        {"seed", run.config.train.seed},
@@ -94,7 +96,8 @@ std::string manifest(const RunResults& run, const std::string& prices) {
                        {"provenance", corrected.provenance},
                        {"weights_hash", fmt::format("{:08x}", student_weights_hash(corrected.net))},
                        {"states_checked", certificate.states_checked},
-                       {"violations_plain", student_of(run.plain).certificate.violations()},
+                       {"states_checked_plain", plain.states_checked},
+                       {"violations_plain", plain.violations()},
                        {"violations_corrected", certificate.violations()}})
       .text();
 }

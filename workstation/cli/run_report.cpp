@@ -62,16 +62,15 @@ std::string write_run_report(const RunResults& run, const RunFolder& folder) {
   };
   write_report(inputs, folder.path);
   const auto violations = [](const Certificate& c) {
-    return fmt::format("{} / {} / {}", c.violations_property_1, c.violations_property_2,
-                       c.violations_property_3);
+    return fmt::format("{} / {} / {} in {} states", c.violations_property_1,
+                       c.violations_property_2, c.violations_property_3, c.states_checked);
   };
   std::string summary = format_comparison_table(evaluations) +
                         fmt::format(
-                            "\nviolations of properties 1 / 2 / 3 over {} lattice states\n"
+                            "\nviolations of properties 1 / 2 / 3\n"
                             "  before correction (plain student)    {}\n"
                             "  after correction (corrected student) {}\n",
-                            corrected.certificate.states_checked, violations(plain.certificate),
-                            violations(corrected.certificate));
+                            violations(plain.certificate), violations(corrected.certificate));
   write_file(folder.summary(), summary);
   return summary;
 }

@@ -4,10 +4,8 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 
-#include "shared/host/text.h"
-#include "shared/host/user_error.h"
+#include "shared/host/csv.h"
 
 namespace bess {
 namespace {
@@ -16,26 +14,16 @@ constexpr std::string_view kTrainingHeader =
     "step,loss,validation_eur_per_day_per_mwh,validation_smoothed,edge_mass_frac";
 constexpr std::string_view kDistilHeader = "epoch,teacher_loss,correction_loss,visited_loss";
 
-/// Rows of `kColumns` numbers under a known header.
+/// Rows of `kColumns` numbers under a known header; none for a run that was over before its first point.
 template <std::size_t kColumns>
 std::vector<std::array<double, kColumns>> parse_rows(std::string_view text, std::string_view header,
                                                      std::string_view name) {
   std::vector<std::array<double, kColumns>> rows;
-  for (std::size_t line = 1; !text.empty(); ++line) {
-    const std::string_view row = take_line(text);
-    if (line == 1) {
-      if (row != header) fail("{}:1: not a curve: the header must be \"{}\"", name, header);
-      continue;
-    }
+  if (text == fmt::format("{}\n", header)) return rows;
+  const CsvTable table(text, std::string(name), header);
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
     std::array<double, kColumns> values{};
-    const char* at = row.data();
-    const char* const last = row.data() + row.size();
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      const auto [next, error] = std::from_chars(at, last, values[i]);
-      const bool ended = i + 1 == values.size() ? next == last : next < last && *next == ',';
-      if (error != std::errc{} || !ended) fail("{}:{}: not {} numbers", name, line, kColumns);
-      at = next + 1;
-    }
+    for (std::size_t i = 0; i < kColumns; ++i) values[i] = table.number(row, i);
     rows.push_back(values);
   }
   return rows;

@@ -27,6 +27,12 @@ std::string provenance_of(const Teacher& teacher, const DistilOptions& options) 
                      options.seed);
 }
 
+/// A plain student is there to be compared with: its violations are sampled, not proved away.
+Verdict judge(StudentFile student, const DistilOptions& options) {
+  if (options.correct) return prove(std::move(student), options.threads);
+  return sample_violations(std::move(student), options.threads);
+}
+
 /// A student on the way, and what it earns on validation days.
 struct Candidate {
   StudentNet net;
@@ -90,7 +96,7 @@ CorrectionResult construct_and_prove(const Teacher& teacher, const Matrix& visit
       continue;
     }
     student.net = (obedient == candidates.end() ? candidates.front() : *obedient).net;
-    result.verdict = prove(student, options.threads);
+    result.verdict = judge(student, options);
     counterexamples = student_of(result.verdict).certificate.counterexamples;
     result.violations_by_round.push_back(student_of(result.verdict).certificate.violations());
     if (std::holds_alternative<ProvedStudent>(result.verdict)) break;
@@ -141,7 +147,7 @@ CorrectionResult correct_and_prove(const Teacher& teacher, const Matrix& visited
                   interrupted);
     student.net = quantise_student(distiller.parameters(), teacher.price_map);
     student.net.context = teacher.context;
-    result.verdict = prove(student, options.threads);
+    result.verdict = judge(student, options);
     result.violations_by_round.push_back(student_of(result.verdict).certificate.violations());
     if (std::holds_alternative<ProvedStudent>(result.verdict)) break;
     margin_scale *= kMarginGrowth;

@@ -26,7 +26,7 @@ std::string_view mend_of_failed_proof(CorrectionMethod method);
 using StudentScore = std::function<double(const StudentNet&)>;
 
 /// Never throws for a failed proof: the verdict says it. With options.correct false there is one
-/// round and no repair. By construction the best by `score` is taken of the students on the way that
+/// round, no repair and no proof: violations are counted in a sample of the contexts. By construction the best by `score` is taken of the students on the way that
 /// are proved; without it, and through the layer, the last one.
 CorrectionResult correct_and_prove(const Teacher& teacher, const Matrix& visited,
                                    const DistilOptions& options,

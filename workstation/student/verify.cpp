@@ -19,40 +19,106 @@ struct Box {
   [[nodiscard]] int size() const { return (soc_end - soc_begin) * (price_end - price_begin); }
 };
 
-/// Weights split by sign, so that interval bounds are two plain products.
-template <int kInputs, int kOutputs>
-struct SignedLayer {
-  std::int32_t positive[kInputs][kOutputs];
-  std::int32_t negative[kInputs][kOutputs];
-  std::int32_t bias[kOutputs];
+/// What `kCount` values lie between, in both orders, so that a bound is one plain dot product.
+template <int kCount>
+struct Interval {
+  std::int16_t low_high[2 * kCount];  ///< all lower ends, then all upper ones
+  std::int16_t high_low[2 * kCount];
 
-  explicit SignedLayer(const Affine<kInputs, kOutputs>& layer) {
-    for (int o = 0; o < kOutputs; ++o) {
-      bias[o] = layer.bias[o];
-      for (int i = 0; i < kInputs; ++i) {
-        positive[i][o] = std::max<std::int32_t>(layer.weight[i][o], 0);
-        negative[i][o] = std::min<std::int32_t>(layer.weight[i][o], 0);
+  /// Activations behind sums that lie between `low` and `high`: a ReLU is monotone.
+  void set(const ClippedRelu<kCount>& relu, const std::int32_t (&low)[kCount],
+           const std::int32_t (&high)[kCount]) {
+    for (int i = 0; i < kCount; ++i) {
+      low_high[i] = high_low[kCount + i] = relu.rescale(low[i]);
+      low_high[kCount + i] = high_low[i] = relu.rescale(high[i]);
+    }
+  }
+};
+
+/// Weights above zero, then those below: with the ends of an interval, low before high, their products add
+/// up to the least that the weighted sum can be, and in the other order to the most.
+template <typename Weight, int kCount>
+void split_by_sign(int i, Weight weight, Weight (&split)[2 * kCount]) {
+  split[i] = std::max<Weight>(weight, 0);
+  split[kCount + i] = std::min<Weight>(weight, 0);
+}
+
+template <typename Sum, typename Weight, int kCount>
+Sum dot(const Weight (&weight)[kCount], const std::int16_t (&x)[kCount]) {
+  Sum sum = 0;
+  for (int i = 0; i < kCount; ++i) sum += Sum{weight[i]} * x[i];
+  return sum;
+}
+
+/// First layer and its ReLU. Few inputs: the loop over the outputs vectorises.
+struct Layer1Bounds {
+  std::int32_t positive[kStudentInputs][kStudentHidden1];
+  std::int32_t negative[kStudentInputs][kStudentHidden1];
+  const StudentNet& net;
+
+  explicit Layer1Bounds(const StudentNet& student) : net(student) {
+    for (int i = 0; i < kStudentInputs; ++i) {
+      for (int o = 0; o < kStudentHidden1; ++o) {
+        positive[i][o] = std::max<std::int32_t>(net.layer1.weight[i][o], 0);
+        negative[i][o] = std::min<std::int32_t>(net.layer1.weight[i][o], 0);
       }
     }
   }
-  void bound(const std::int16_t (&low)[kInputs], const std::int16_t (&high)[kInputs],
-             std::int32_t (&out_low)[kOutputs], std::int32_t (&out_high)[kOutputs]) const {
-    for (int o = 0; o < kOutputs; ++o) out_low[o] = out_high[o] = bias[o];
-    for (int i = 0; i < kInputs; ++i) {
-      const std::int32_t l = low[i];
-      const std::int32_t h = high[i];
-      for (int o = 0; o < kOutputs; ++o) {
-        out_low[o] += positive[i][o] * l + negative[i][o] * h;
-        out_high[o] += positive[i][o] * h + negative[i][o] * l;
+  void bound(const std::int16_t (&x_low)[kStudentInputs],
+             const std::int16_t (&x_high)[kStudentInputs], Interval<kStudentHidden1>& y) const {
+    std::int32_t low[kStudentHidden1];
+    std::int32_t high[kStudentHidden1];
+    for (int o = 0; o < kStudentHidden1; ++o) low[o] = high[o] = net.layer1.bias[o];
+    for (int i = 0; i < kStudentInputs; ++i) {
+      const std::int32_t l = x_low[i];
+      const std::int32_t h = x_high[i];
+      for (int o = 0; o < kStudentHidden1; ++o) {
+        low[o] += positive[i][o] * l + negative[i][o] * h;
+        high[o] += positive[i][o] * h + negative[i][o] * l;
       }
     }
+    y.set(net.relu1, low, high);
+  }
+};
+
+/// Second layer and its ReLU. Many inputs: the loop over the inputs vectorises, two products at once.
+struct Layer2Bounds {
+  std::int16_t weight[kStudentHidden2][2 * kStudentHidden1];  ///< split by sign
+  const StudentNet& net;
+
+  explicit Layer2Bounds(const StudentNet& student) : net(student) {
+    for (int i = 0; i < kStudentHidden1; ++i) {
+      for (int o = 0; o < kStudentHidden2; ++o) {
+        split_by_sign<std::int16_t, kStudentHidden1>(i, net.layer2.weight[i][o], weight[o]);
+      }
+    }
+  }
+  void bound(const Interval<kStudentHidden1>& x, Interval<kStudentHidden2>& y) const {
+    std::int32_t low[kStudentHidden2];
+    std::int32_t high[kStudentHidden2];
+    for (int o = 0; o < kStudentHidden2; ++o) {
+      low[o] = net.layer2.bias[o] + dot<std::int32_t>(weight[o], x.low_high);
+      high[o] = net.layer2.bias[o] + dot<std::int32_t>(weight[o], x.high_low);
+    }
+    y.set(net.relu2, low, high);
   }
 };
 
 /// Decides boxes of one net. Holds nothing that changes, so threads share it.
 class BoxBounds {
  public:
-  explicit BoxBounds(const StudentNet& net) : net_(net), layer1_(net.layer1), layer2_(net.layer2) {}
+  explicit BoxBounds(const StudentNet& net) : net_(net), layer1_(net), layer2_(net) {
+    for (int c = 0; c < kActionCount; ++c) {
+      for (int other = 0; other < kActionCount; ++other) {
+        lead_bias_[c][other] = std::int64_t{net.layer3.bias[c]} - net.layer3.bias[other];
+        for (int i = 0; i < kStudentHidden2; ++i) {
+          const auto& weight = net.layer3.weight[i];
+          split_by_sign<std::int32_t, kStudentHidden2>(i, std::int32_t{weight[c]} - weight[other],
+                                                       lead_weight_[c][other]);
+        }
+      }
+    }
+  }
 
   /// True when every state of the box has the same action, which is then in `action`.
   bool single_action(const LatticeState& low_corner, const LatticeState& high_corner,
@@ -61,18 +127,12 @@ class BoxBounds {
     std::int16_t x_high[kStudentInputs];
     net_.quantise(low_corner, x_low);
     net_.quantise(high_corner, x_high);
-    std::int32_t sum1_low[kStudentHidden1], sum1_high[kStudentHidden1];
-    std::int16_t h1_low[kStudentHidden1], h1_high[kStudentHidden1];
-    layer1_.bound(x_low, x_high, sum1_low, sum1_high);
-    net_.relu1.propagate(sum1_low, h1_low);
-    net_.relu1.propagate(sum1_high, h1_high);
-    std::int32_t sum2_low[kStudentHidden2], sum2_high[kStudentHidden2];
-    std::int16_t h2_low[kStudentHidden2], h2_high[kStudentHidden2];
-    layer2_.bound(h1_low, h1_high, sum2_low, sum2_high);
-    net_.relu2.propagate(sum2_low, h2_low);
-    net_.relu2.propagate(sum2_high, h2_high);
+    Interval<kStudentHidden1> hidden1;
+    Interval<kStudentHidden2> hidden2;
+    layer1_.bound(x_low, x_high, hidden1);
+    layer2_.bound(hidden1, hidden2);
     for (const Action candidate : {Action::kCharge, Action::kIdle, Action::kDischarge}) {
-      if (wins(candidate, h2_low, h2_high)) {
+      if (wins(candidate, hidden2)) {
         action = candidate;
         return true;
       }
@@ -84,17 +144,12 @@ class BoxBounds {
   /// Whether `candidate` beats both others for all hidden activations inside the bounds: the
   /// smallest possible difference of logits decides, ties going to the lower action as in
   /// argmax_action.
-  [[nodiscard]] bool wins(Action candidate, const std::int16_t (&low)[kStudentHidden2],
-                          const std::int16_t (&high)[kStudentHidden2]) const {
+  [[nodiscard]] bool wins(Action candidate, const Interval<kStudentHidden2>& hidden) const {
     const int c = static_cast<int>(candidate);
     for (int other = 0; other < kActionCount; ++other) {
       if (other == c) continue;
-      std::int64_t least = std::int64_t{net_.layer3.bias[c]} - net_.layer3.bias[other];
-      for (int i = 0; i < kStudentHidden2; ++i) {
-        const std::int64_t w =
-            std::int64_t{net_.layer3.weight[i][c]} - net_.layer3.weight[i][other];
-        least += w * (w > 0 ? low[i] : high[i]);
-      }
+      const std::int64_t least =
+          lead_bias_[c][other] + dot<std::int64_t>(lead_weight_[c][other], hidden.low_high);
       const bool beats = other > c ? least >= 0 : least > 0;
       if (!beats) return false;
     }
@@ -102,8 +157,11 @@ class BoxBounds {
   }
 
   const StudentNet& net_;
-  SignedLayer<kStudentInputs, kStudentHidden1> layer1_;
-  SignedLayer<kStudentHidden1, kStudentHidden2> layer2_;
+  Layer1Bounds layer1_;
+  Layer2Bounds layer2_;
+  /// What the logit of one action is above that of another: weights of the last layer, split by sign.
+  std::int32_t lead_weight_[kActionCount][kActionCount][2 * kStudentHidden2];
+  std::int64_t lead_bias_[kActionCount][kActionCount];
 };
 
 /// Fills the action grid of one context.
@@ -212,11 +270,13 @@ class GridChecker {
  private:
   template <typename Violates>
   void count(std::int64_t& total, int soc, int begin, int end, Violates violates) {
-    std::int64_t found = 0;
-    for (int p = begin; p < end; ++p) found += violates(p) ? 1 : 0;  // branch-free: vectorises
-    total += found;
-    for (int p = begin; found > 0 && p < end && kept_in_context_ < kKeptPerContext; ++p) {
-      if (violates(p)) keep(soc, p);
+    std::int8_t any = 0;  // as wide as an action, branch-free: vectorises
+    for (int p = begin; p < end; ++p) any |= static_cast<std::int8_t>(violates(p));
+    if (any == 0) return;
+    for (int p = begin; p < end; ++p) {
+      if (!violates(p)) continue;
+      ++total;
+      if (kept_in_context_ < kKeptPerContext) keep(soc, p);
     }
   }
   void keep(int soc, int price) {

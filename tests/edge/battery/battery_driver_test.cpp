@@ -79,6 +79,12 @@ eeprom_writes_per_day = 5
 reserve = 1
 )";
 
+/// With a check of what device it is.
+const std::vector<std::pair<std::string, std::string>> kIdentity = {
+    {"[command]\n",
+     "[[identity]]\npoint = \"mode\"\nmin = 0\nmax = 7\nhint = \"is it this "
+     "device?\"\n[command]\n"}};
+
 /// The map above with some texts replaced.
 class DriverTest : public ::testing::Test {
  protected:
@@ -163,6 +169,112 @@ TEST_F(DriverTest, AnExpiredOrOverwrittenOrderIsWrittenAgain) {
   EXPECT_EQ(t.measured.order_power_w, 777);
   ASSERT_EQ(t.order(1'000), Status::kOk);
   EXPECT_THAT(t.device.take_writes(), SizeIs(2));
+}
+
+TEST_F(DriverTest, AnotherMastersValueIsSeenAndNotFedAgainst) {
+  MapUnderTest& t = with();
+  ASSERT_EQ(t.order(1'000), Status::kOk);
+  ASSERT_EQ(t.read(), Status::kOk);
+  EXPECT_FALSE(t.measured.order_replaced);
+  t.device.take_writes();
+  t.device.set(11, {777});
+  t.device.pass_s(100);  // the watchdog is due
+  EXPECT_EQ(t.driver->refresh(), Status::kNotApplied);
+  EXPECT_THAT(t.device.take_writes(), IsEmpty());
+  ASSERT_EQ(t.read(), Status::kOk);
+  EXPECT_TRUE(t.measured.order_replaced);
+  ASSERT_EQ(t.order(1'000), Status::kOk);  // where control insists
+  ASSERT_EQ(t.read(), Status::kOk);
+  EXPECT_FALSE(t.measured.order_replaced);
+}
+
+TEST_F(DriverTest, NothingOfAnOrderIsWrittenAfterItsTime) {
+  MapUnderTest& t = with();
+  ASSERT_EQ(t.read(), Status::kOk);
+  // The process is stopped before the second write leaves, and goes on twenty minutes later.
+  int requests = 0;
+  t.device.before_request = [&] {
+    if (++requests == 2) t.device.pass_s(1'200);
+  };
+  const PowerOrder order{.power_w = 1'000,
+                         .soc_max_e4 = 9'000,
+                         .duration_s = 300,
+                         .write_until_ns = t.device.now_ns + 60'000'000'000};
+  EXPECT_EQ(t.driver->order(order), Status::kTooLate);
+  // The first write's half is taken back; the second never left.
+  for (const WriteRecord& write : t.device.take_writes()) {
+    if (write.address == 10) {
+      EXPECT_EQ(write.values, std::vector<int>{0});
+    }
+  }
+  EXPECT_EQ(t.device.holding[10], 0);
+}
+
+TEST_F(DriverTest, ARetryAfterItsTimeIsNotMade) {
+  MapUnderTest& t = with();
+  ASSERT_EQ(t.read(), Status::kOk);
+  t.device.failing_writes = 1;
+  t.device.before_request = [&] {
+    if (t.device.failing_writes == 0) t.device.pass_s(1'200);
+  };
+  const PowerOrder order{
+      .power_w = 1'000, .duration_s = 300, .write_until_ns = t.device.now_ns + 60'000'000'000};
+  EXPECT_EQ(t.driver->order(order), Status::kTooLate);
+  EXPECT_EQ(t.device.holding[11], 0);
+}
+
+TEST_F(DriverTest, AnOrderOfYesterdayIsNotFed) {
+  MapUnderTest& t = with();
+  PowerOrder order{.power_w = 1'000, .duration_s = 300};
+  order.feed_until_ns = t.device.now_ns + 200'000'000'000;
+  ASSERT_EQ(t.driver->order(order), Status::kOk);
+  t.device.pass_s(100);
+  EXPECT_EQ(t.driver->refresh(), Status::kOk);
+  t.device.take_writes();
+  t.device.pass_s(1'200);
+  EXPECT_EQ(t.driver->refresh(), Status::kTooLate);
+  EXPECT_THAT(t.device.take_writes(), IsEmpty());
+}
+
+TEST_F(DriverTest, BehindANewConnectionTheDeviceIsProvedAgain) {
+  MapUnderTest& t = with(kIdentity);
+  ASSERT_EQ(t.order(1'000), Status::kOk);
+  t.device.set(20, {8});
+  ASSERT_EQ(t.read(), Status::kOk);  // known
+  ++t.device.reconnects;
+  EXPECT_EQ(t.read(), Status::kImplausible);
+  t.device.take_writes();
+  EXPECT_EQ(t.order(2'000), Status::kImplausible);
+  t.device.set(20, {7});
+  EXPECT_EQ(t.read(), Status::kOk);
+}
+
+TEST_F(DriverTest, AndEveryTenMinutes) {
+  MapUnderTest& t = with(kIdentity);
+  ASSERT_EQ(t.read(), Status::kOk);
+  t.device.set(20, {8});
+  t.device.pass_s(599);
+  EXPECT_EQ(t.read(), Status::kOk);
+  t.device.pass_s(2);
+  EXPECT_EQ(t.read(), Status::kImplausible);
+}
+
+TEST_F(DriverTest, ItCanAlwaysLetGoOfWhatItKnew) {
+  MapUnderTest& t = with(kIdentity);
+  ASSERT_EQ(t.order(1'000), Status::kOk);
+  t.device.set(20, {8});
+  ++t.device.reconnects;
+  EXPECT_EQ(t.driver->release(), Status::kOk);
+  EXPECT_EQ(t.device.holding[10], 0);
+}
+
+TEST_F(DriverTest, AStrangerIsReleasedOnlyWhenAPersonInsists) {
+  MapUnderTest& t = with(kIdentity);
+  t.device.set(20, {8});
+  EXPECT_EQ(t.driver->release(), Status::kImplausible);
+  EXPECT_THAT(t.device.take_writes(), IsEmpty());
+  t.driver->permit_release();
+  EXPECT_EQ(t.driver->release(), Status::kOk);
 }
 
 TEST_F(DriverTest, ARestartSeesWhatIsInForce) {

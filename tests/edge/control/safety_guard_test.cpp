@@ -63,6 +63,7 @@ std::vector<Case> cases() {
       {"soc full", [](GuardInputs& in) { in.measurement.soc_e4 = 10'000; }, Reason::kSocFull, 0},
       {"cycle budget", [](GuardInputs& in) { in.cycle_budget_spent = true; }, Reason::kCycleBudget,
        0},
+      {"reversal cap", [](GuardInputs& in) { in.barred_direction = 1; }, Reason::kReversalCap, 0},
       {"power limit", [](GuardInputs& in) { in.measurement.charge_w_max = 1'500; },
        Reason::kPowerLimit, 1'500},
   };
@@ -155,6 +156,21 @@ TEST(SafetyGuard, SocHysteresisKeepsAReachedBoundClosed) {
   EXPECT_EQ(power_at(1'000), 0);
   EXPECT_EQ(power_at(1'050), 0);
   EXPECT_EQ(power_at(1'051), -4'000);
+}
+
+/// However extreme the price: it is what a source that lies would send.
+TEST(SafetyGuard, AReversalTooManyIsNotFollowedBeyondTheThresholdsEither) {
+  GuardInputs in = healthy(Action::kIdle);
+  in.price_centi_eur_per_mwh = 1'000'000;
+  in.barred_direction = -1;
+  EXPECT_EQ(decide_once(in).power_w, 0);
+  EXPECT_EQ(decide_once(in).reason, Reason::kReversalCap);
+  in.price_centi_eur_per_mwh = -1'000'000;
+  EXPECT_EQ(decide_once(in).power_w, 4'000);
+  in.barred_direction = 1;
+  in.student_action = Action::kIdle;
+  in.price_centi_eur_per_mwh = 5'000;
+  EXPECT_EQ(decide_once(in).reason, Reason::kStudent) << "0 W needs no reversal";
 }
 
 TEST(SafetyGuard, PriceAgeAndQuarterHour) {

@@ -5,7 +5,10 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -106,12 +109,89 @@ TEST_F(Log, ADiskThatStandsStillNeverHoldsUpTheControlThread) {
   close(reader);
 }
 
-TEST_F(Log, AFullDiskStopsTheStart) {
+TEST_F(Log, AFullDiskIsToldAndDoesNotStopTheStart) {
   EventLogSettings s = settings();
   s.csv = "/dev/full";
+  ::testing::internal::CaptureStdout();
   const auto log = std::make_unique<EventLog>();
-  EXPECT_FALSE(log->open(s, RunIdentity{}, error_));
-  EXPECT_THAT(error_.c_str(), HasSubstr("/dev/full: cannot write the log here: No space left"));
+  const bool opened = log->open(s, RunIdentity{}, error_);
+  const std::string journal = ::testing::internal::GetCapturedStdout();
+  ASSERT_TRUE(opened) << error_.c_str();
+  EXPECT_THAT(journal, HasSubstr("cannot be written, is the disk full or read-only?"));
+  EXPECT_THAT(text_of(folder_.file("status.json")), HasSubstr("\"disk_is_failing\": true"));
+}
+
+/// What a process makes of a disk that has room for files of this size and no larger ones.
+template <typename Act>
+int exit_code_with_room_for(rlim_t bytes, const Act& act) {
+  const pid_t child = fork();
+  if (child == 0) {
+    signal(SIGXFSZ, SIG_IGN);  // the call fails instead
+    const rlimit room{bytes, RLIM_INFINITY};
+    setrlimit(RLIMIT_FSIZE, &room);
+    _exit(act());
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+void make_room() {
+  const rlimit all{RLIM_INFINITY, RLIM_INFINITY};
+  setrlimit(RLIMIT_FSIZE, &all);
+}
+
+/// No file can be made at all: the first records are lost, and as soon as there is room everything is.
+TEST_F(Log, AStartWithoutAnyRoomGoesOnAndWritesOnceThereIs) {
+  const int code = exit_code_with_room_for(0, [&] {
+    const auto log = std::make_unique<EventLog>();
+    if (!log->open(settings(), RunIdentity{}, error_)) return 1;
+    log->write(record_of(1));
+    if (!log->drain(kDrainNs)) return 2;
+    if (std::filesystem::exists(folder_.file("decisions.ring"))) return 3;
+    make_room();
+    log->write(record_of(2));
+    return log->drain(kDrainNs) ? 0 : 4;
+  });
+  EXPECT_EQ(code, 0);
+  EXPECT_THAT(text_of(folder_.file("status.json")), HasSubstr("\"cycles\": 2"));
+  EXPECT_THAT(text_of(folder_.file("log.csv")), ::testing::StartsWith("utc,"));
+  const auto log = std::make_unique<EventLog>();
+  CycleRecord newest;
+  ASSERT_TRUE(log->open(settings(), RunIdentity{}, error_)) << error_.c_str();
+  ASSERT_TRUE(log->newest(newest));
+  EXPECT_EQ(newest.cycle, 2);
+}
+
+/// A larger log has no room: the one that is there goes on, with what it knows.
+TEST_F(Log, ALogThatCannotGrowGoesOnAtItsSize) {
+  {
+    const auto log = std::make_unique<EventLog>();
+    ASSERT_TRUE(log->open(settings(), RunIdentity{}, error_)) << error_.c_str();
+    log->write(record_of(1));
+    ASSERT_TRUE(log->drain(kDrainNs));
+  }
+  const auto size = std::filesystem::file_size(folder_.file("decisions.ring"));
+  EventLogSettings larger = settings();
+  larger.ring_days = 30;
+  const int code = exit_code_with_room_for(size, [&] {
+    const auto log = std::make_unique<EventLog>();
+    CycleRecord newest;
+    if (!log->open(larger, RunIdentity{}, error_)) return 1;
+    if (!log->newest(newest) || newest.cycle != 1) return 2;
+    log->write(record_of(2));
+    return log->drain(kDrainNs) ? 0 : 3;
+  });
+  EXPECT_EQ(code, 0);
+  EXPECT_EQ(std::filesystem::file_size(folder_.file("decisions.ring")), size);
+  EXPECT_FALSE(std::filesystem::exists(folder_.file("decisions.ring.old")));
+  EXPECT_FALSE(std::filesystem::exists(folder_.file("decisions.ring.new")));
+  const auto log = std::make_unique<EventLog>();
+  CycleRecord newest;
+  ASSERT_TRUE(log->open(larger, RunIdentity{}, error_)) << error_.c_str();
+  ASSERT_TRUE(log->newest(newest));
+  EXPECT_EQ(newest.cycle, 2);
+  EXPECT_GT(std::filesystem::file_size(folder_.file("decisions.ring")), size);
 }
 
 TEST_F(Log, AMetricsFolderThatVanishesIsAFailureOfThatFileOnly) {

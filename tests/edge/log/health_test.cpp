@@ -47,6 +47,18 @@ TEST(Health, EveryTroubleHasItsReason) {
        "WARN: the battery warns"},
       {[](HealthInputs& in) { in.disk_is_slow = true; }, HealthLevel::kDegraded, "too slow"},
       {[](HealthInputs& in) { in.disk_is_failing = true; }, HealthLevel::kDegraded, "disk full"},
+      {[](HealthInputs& in) { in.disk_is_full = true; }, HealthLevel::kDegraded,
+       "the disk of the state folder is full or read-only"},
+      {[](HealthInputs& in) {
+         in.price_step_held = true;
+         in.held_eur_per_mwh = 9'000;
+       },
+       HealthLevel::kDegraded, "a row of 9000.00 EUR/MWh lies further"},
+      {[](HealthInputs& in) {  // it started on a full disk: the log alone tells of it
+         in.is_of_this_run = false;
+         in.cycles_behind = 1;
+       },
+       HealthLevel::kDegraded, "WARN: status.json is 1 cycles behind the log, is the disk full"},
       {[](HealthInputs& in) {
          in.age_ms = 1'319'000;
          in.cycles_behind = 10;

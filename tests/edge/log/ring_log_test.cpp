@@ -39,6 +39,35 @@ void seal(RecordBytes& bytes) {
   }
 }
 
+/// The ring as programs with records of 256 bytes wrote it: their header, and their part of each record.
+std::string older_ring(std::int64_t capacity, std::int64_t records) {
+  const auto put = [](std::string& out, std::uint64_t value, int bytes) {
+    for (int i = 0; i < bytes; ++i) out += static_cast<char>(value >> (8 * i));
+  };
+  const auto crc = [](const std::string& bytes) {
+    Crc32 sum;
+    sum.add_bytes(bytes.data(), bytes.size());
+    return sum.value();
+  };
+  std::string file = "BESSRING";
+  put(file, 1, 4);
+  put(file, kOlderRecordBytes, 4);
+  put(file, static_cast<std::uint64_t>(capacity), 8);
+  put(file, crc(file), 4);
+  file.resize(static_cast<std::size_t>(kHeaderBytes));
+  file.append(kOlderRecordBytes, '\0');  // number 0 never existed
+  for (std::int64_t n = 1; n <= records; ++n) {
+    const RecordBytes whole = bytes_of(full_record(n), static_cast<std::uint64_t>(n));
+    std::string record(whole.begin(), whole.begin() + 204);  // up to context_class
+    record.resize(kOlderRecordBytes - 4);
+    put(record, crc(record), 4);
+    file += record;
+  }
+  file.resize(static_cast<std::size_t>(kHeaderBytes) +
+              static_cast<std::size_t>(capacity) * kOlderRecordBytes);
+  return file;
+}
+
 std::string read_file(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};
@@ -112,8 +141,13 @@ TEST(RecordCodec, LayoutOnDiskIsFixed) {
   EXPECT_EQ(bytes[207], 0x20);  // its instant
   EXPECT_EQ(bytes[215], 33);    // weak_answers
   EXPECT_EQ(bytes[219], 34);    // replaced_orders
-  EXPECT_EQ(bytes[223], 1);     // warning, the last field
-  for (std::size_t i = 224; i < kRecordBytes - 4; ++i) EXPECT_EQ(bytes[i], 0) << i;
+  EXPECT_EQ(bytes[223], 1);     // price.step_held
+  EXPECT_EQ(bytes[224], 0xE0);  // price.held_centi_eur_per_mwh = -32
+  EXPECT_EQ(bytes[228], 33);    // reversals.steps
+  EXPECT_EQ(bytes[232], 0xFF);  // reversals.direction = -1
+  EXPECT_EQ(bytes[234], 34);    // reversals.in_hour
+  EXPECT_EQ(bytes[236], 1);     // measurement.warning, the last field
+  for (std::size_t i = 237; i < kRecordBytes - 4; ++i) EXPECT_EQ(bytes[i], 0) << i;
 }
 
 /// A ring of the program that ended its records with flash_writes_today: later fields read as 0.
@@ -133,6 +167,9 @@ TEST(RecordCodec, ARecordOfAnOlderLayoutIsRead) {
   expected.measurement.order_replaced = expected.measurement.warning = expected.is_tripped = false;
   expected.trip = {.reason = Reason::kStopRequested, .utc_s = 0};  // code 0; counts only if tripped
   expected.weak_answers = expected.replaced_orders = 0;
+  expected.price.step_held = false;
+  expected.price.held_centi_eur_per_mwh = 0;
+  expected.reversals = {};
   EXPECT_EQ(bytes_of(back, 42), bytes_of(expected, 42));
 }
 
@@ -157,6 +194,21 @@ TEST_F(Ring, NewestSurvivesReopeningAndTheRingWraps) {
   append(5, 4, 9);
   EXPECT_EQ(cycles(), (std::vector<std::int64_t>{8, 9, 10, 11, 12}));
   EXPECT_EQ(std::filesystem::file_size(path_), kHeaderBytes + 5 * kRecordBytes);
+}
+
+TEST_F(Ring, OneOfAnOlderProgramIsReadAndContinuedInANewFile) {
+  write_file(path_, older_ring(5, 3));
+  EXPECT_EQ(cycles(), (std::vector<std::int64_t>{1, 2, 3}));
+  RingLog ring;
+  CycleRecord newest;
+  ASSERT_TRUE(ring.open(path_.c_str(), 5, error_)) << error_.c_str();
+  ASSERT_TRUE(ring.newest(newest));
+  EXPECT_EQ(newest.cycle, 3);
+  EXPECT_EQ(newest.context_class, 12);
+  EXPECT_FALSE(newest.is_tripped);
+  ASSERT_TRUE(ring.append(full_record(4)));
+  EXPECT_EQ(cycles(), (std::vector<std::int64_t>{4}));
+  EXPECT_EQ(read_file(path_ + ".old"), older_ring(5, 3));
 }
 
 TEST_F(Ring, AnEmptyRingHasNoNewest) {

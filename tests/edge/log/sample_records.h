@@ -32,7 +32,9 @@ inline CycleRecord full_record(std::int64_t cycle) {
              .received_monotonic_ns = 11,
              .fetch_us = 12,
              .status = Status::kTlsRefused,
-             .large_step = true};
+             .large_step = true,
+             .step_held = true,
+             .held_centi_eur_per_mwh = -32};
   r.price_age_s = 13;
   r.has_student_action = true;
   r.student_action = Action::kCharge;
@@ -60,6 +62,7 @@ inline CycleRecord full_record(std::int64_t cycle) {
   r.trip = {.reason = Reason::kSocMismatch, .utc_s = 1'700'000'032};
   r.weak_answers = 33;
   r.replaced_orders = 34;
+  r.reversals = {.steps = 33, .direction = -1, .in_hour = 34};
   return r;
 }
 
@@ -78,6 +81,7 @@ inline CycleRecord longest_record() {
                    .temperature_max_deci_c = INT32_MIN,
                    .order_power_w = INT32_MIN};
   r.price.price_centi_eur_per_mwh = r.price.fetch_us = INT32_MIN;
+  r.price.held_centi_eur_per_mwh = INT32_MIN;
   r.price.received_monotonic_ns = INT64_MIN;
   r.price.status = r.battery_status = Status::kNotExpressible;
   r.price_age_s = r.ordered_power_w = r.decision_us = r.write_us = r.total_us = INT32_MIN;
@@ -89,13 +93,14 @@ inline CycleRecord longest_record() {
   r.context_class = INT16_MIN;
   r.trip = {.reason = Reason::kUncontrolledPower, .utc_s = 4'102'444'800};
   r.weak_answers = r.replaced_orders = INT32_MIN;
+  r.reversals = {.steps = UINT32_MAX, .direction = INT16_MIN, .in_hour = INT16_MIN};
   r.counters = {INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT32_MIN};
   r.counters.requests = 0;  // requests - failed_requests must not overflow
   r.counters.failed_requests = INT64_MAX;
   return r;
 }
 
-/// Enumerators number i of every enumeration, round and round: 26 of them show each name.
+/// Enumerators number i of every enumeration, round and round: 27 of them show each name.
 inline CycleRecord record_with_enumerators(int i) {
   CycleRecord r = full_record(i);
   r.mode = static_cast<Mode>(i % kModeCount);

@@ -44,6 +44,7 @@ class PriceFeedTest : public ::testing::Test {
     settings.http.url = FixedText<511>("http://127.0.0.1:" + std::to_string(server_->port()) + "/");
     settings.requests_per_cycle = requests_per_cycle;
     settings.wait_s = 1;
+    settings.hold_flagged_step = hold_flagged_step_;
     feed_ = std::make_unique<PriceFeed>(settings, clock_at(kNowS));
   }
   void set_answer(const std::string& rows) {
@@ -57,6 +58,7 @@ class PriceFeedTest : public ::testing::Test {
     return feed_->latest();
   }
 
+  bool hold_flagged_step_ = true;
   std::mutex mutex_;
   std::string answer_;
   std::unique_ptr<TestServer> server_;
@@ -102,7 +104,28 @@ TEST_F(PriceFeedTest, KeepsTheNewestRowEverAccepted) {
   EXPECT_GT(feed_->latest().received_monotonic_ns, first.received_monotonic_ns);
 }
 
-TEST_F(PriceFeedTest, ALargeStepIsFlaggedAndUsed) {
+TEST_F(PriceFeedTest, ALargeStepWaitsForTheNextRowAndTheRowBeforeKeepsItsAge) {
+  start();
+  const PriceReport before = fetch(row(kNowS - 240, "-300"));
+  const PriceReport held = fetch(row(kNowS - 180, "9000"));
+  EXPECT_EQ(held.status, Status::kOk);
+  EXPECT_TRUE(held.step_held);
+  EXPECT_EQ(held.held_centi_eur_per_mwh, 900'000);
+  EXPECT_EQ(held.minute_utc_s, kNowS - 240);
+  EXPECT_EQ(held.price_centi_eur_per_mwh, -30'000);
+  EXPECT_EQ(held.received_monotonic_ns, before.received_monotonic_ns);
+  EXPECT_FALSE(held.large_step);
+  EXPECT_TRUE(fetch(row(kNowS - 240, "-300")).step_held);  // a duplicate changes nothing
+  const PriceReport confirmed = fetch(row(kNowS - 120, "8900"));
+  EXPECT_FALSE(confirmed.step_held);
+  EXPECT_TRUE(confirmed.large_step);
+  EXPECT_EQ(confirmed.minute_utc_s, kNowS - 120);
+  EXPECT_EQ(confirmed.price_centi_eur_per_mwh, 890'000);
+  EXPECT_GT(confirmed.received_monotonic_ns, before.received_monotonic_ns);
+}
+
+TEST_F(PriceFeedTest, ALargeStepIsFlaggedAndUsedWhereItShallNotBeHeld) {
+  hold_flagged_step_ = false;
   start();
   EXPECT_FALSE(fetch(row(kNowS - 240, "-300")).large_step);
   EXPECT_FALSE(fetch(row(kNowS - 180, "2000")).large_step);  // exactly 2,300

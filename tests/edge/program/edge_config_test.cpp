@@ -60,6 +60,32 @@ TEST(EdgeConfig, ReadsEveryUnit) {
   EXPECT_EQ(config.clock.anchor_monotonic_ns, 5);
 }
 
+/// They bound what a price source that lies can do, and honest prices never come near: README, "Price source".
+TEST(EdgeConfig, CyclesAndReversalsAreBoundedUnlessToldOtherwise) {
+  const TemporaryFolder folder;
+  EdgeConfig config;
+  std::string error;
+  ASSERT_TRUE(load_edge_config(folder.write("edge.toml", valid_text()), config, error)) << error;
+  EXPECT_EQ(config.control.cycles_per_day_max_e4, 60'000);
+  EXPECT_EQ(config.control.reversals_per_hour_max, 20);
+  EXPECT_EQ(config.control.guard.ramp_w_max, 0);
+  std::string text = valid_text();
+  text.insert(text.find("soc_min"), "cycles_per_day_max = 0\nreversals_per_hour_max = 0\n");
+  ASSERT_TRUE(load_edge_config(folder.write("edge.toml", text), config, error)) << error;
+  EXPECT_EQ(config.control.cycles_per_day_max_e4, 0);
+  EXPECT_EQ(config.control.reversals_per_hour_max, 0);
+}
+
+TEST(EdgeConfig, ABatteryThatIsFullSoonerMayCycleMore) {
+  const TemporaryFolder folder;
+  EdgeConfig config;
+  std::string error;
+  std::string text = valid_text();
+  text.insert(text.find("[battery]\n") + 10, "capacity_wh = 4000\n");
+  ASSERT_TRUE(load_edge_config(folder.write("edge.toml", text), config, error)) << error;
+  EXPECT_EQ(config.control.cycles_per_day_max_e4, 120'000);
+}
+
 TEST(EdgeConfig, UnitGroupsOfTheMapAreTheOperatorsToSet) {
   const TemporaryFolder folder;
   std::string text = valid_text();
@@ -104,7 +130,7 @@ TEST(EdgeConfig, StateLogAndMetricsPathsAreRelativeToTheFile) {
   EXPECT_EQ(config.log.metrics, folder.file("state/metrics.prom"));
   EXPECT_TRUE(config.log.csv.empty());
   EXPECT_EQ(config.log.ring_days, 35);
-  EXPECT_TRUE(config.state.lock_folder == "/run/lock" || config.state.lock_folder == "/tmp");
+  EXPECT_TRUE(config.state.lock_folder.empty());
 
   const std::string text = valid_text() +
                            "[state]\nfolder = \"/var/lib/bess\"\nlock_folder = \"/run\"\n"
@@ -113,7 +139,7 @@ TEST(EdgeConfig, StateLogAndMetricsPathsAreRelativeToTheFile) {
   EdgeConfig other;
   ASSERT_TRUE(load_edge_config(folder.write("other.toml", text), other, error)) << error;
   EXPECT_EQ(other.log.ring, "/var/lib/bess/decisions.ring");
-  EXPECT_EQ(other.state.lock_folder, "/run");
+  EXPECT_EQ(other.state.lock_folder, "/run");  // besides the standard one
   EXPECT_EQ(other.log.csv, folder.file("edge.csv"));
   EXPECT_EQ(other.log.metrics, "/tmp/bess.prom");
   EXPECT_EQ(other.log.ring_days, 365);
@@ -137,17 +163,16 @@ TEST(EdgeConfig, ARelativeConfigurationKeepsItsStateBesideIt) {
 TEST(EdgeConfig, TheBatterysLockIsNamedByItsPlace) {
   const TemporaryFolder folder;
   EdgeConfig config;
-  config.state.lock_folder = "/locks";
   config.map.unit = 85;
-  EXPECT_EQ(battery_lock_path(config), "/locks/bess-127.0.0.1_502_unit_85.lock");
+  EXPECT_EQ(battery_lock_path(config, "/locks"), "/locks/bess-127.0.0.1_502_unit_85.lock");
   config.link.unit = 1;
-  EXPECT_EQ(battery_lock_path(config), "/locks/bess-127.0.0.1_502_unit_1.lock");
+  EXPECT_EQ(battery_lock_path(config, "/locks"), "/locks/bess-127.0.0.1_502_unit_1.lock");
   config.link.rtu = true;
   config.link.device = folder.write("ttyUSB0", "").c_str();
-  const FixedText<639> direct = battery_lock_path(config);
+  const FixedText<639> direct = battery_lock_path(config, "/locks");
   std::filesystem::create_symlink(folder.file("ttyUSB0"), folder.file("by-id"));
   config.link.device = folder.file("by-id").c_str();
-  EXPECT_EQ(battery_lock_path(config), direct.view());
+  EXPECT_EQ(battery_lock_path(config, "/locks"), direct.view());
 }
 
 struct Mistake {
@@ -176,7 +201,8 @@ TEST(EdgeConfig, EveryMistakeIsOneClearLineWithItsPlace) {
       {"url =", "uri =", 5, "url is missing"},
       {"[price]\nurl = \"http:", "[price]\nca_file = \"none.pem\"\nurl = \"https:", 6,
        "none.pem cannot be read"},
-      {"[price]", "[price]\nheader_file = \"none\"", 0, "none: cannot open the header file"},
+      {"[price]\nurl = \"http:", "[price]\nheader_file = \"none\"\nurl = \"https:", 0,
+       "none: cannot open the header file"},
       {"[price]", "[price]\nresolve_every_s = 0", 6, "must lie between 1 and 86400"},
       {"[price]", "[price]\nstep_flag_eur_per_mwh = -1", 6, "must lie between"},
       {"[price]", "[price]\nhistory_hours = 97", 6, "history_hours must lie between 0 and 96"},
@@ -192,6 +218,8 @@ TEST(EdgeConfig, EveryMistakeIsOneClearLineWithItsPlace) {
       {"soc_min = 0.2", "low_price_eur_per_mwh = -15001", 8, "must lie between -15000 and 15000"},
       {"soc_min = 0.2", "high_price_eur_per_mwh = 999.5", 8,
        "must be whole EUR/MWh, as the student is proved for"},
+      {"soc_min = 0.2", "reversals_per_hour_max = 31", 8,
+       "reversals_per_hour_max must lie between 0 and 30"},
       {"2023-03-26T00:00:00Z", "2023-03-26 00:00", 11, "utc_start must be a UTC instant"},
       {"time_scale = 900", "time_scale = 0", 10, "must lie between"},
       {"[guard]", "[log]\ndays = 0\n[guard]", 8, "days must lie between 1 and 3660"},
@@ -244,6 +272,7 @@ TEST(EdgeConfig, ReadsTheKeysOfAnotherPriceServer) {
   const std::string headers = folder.write("headers", "X-Api-Key: k\n");
   ASSERT_EQ(chmod(headers.c_str(), 0600), 0);
   std::string text = valid_text();
+  text.replace(text.find("http://"), 7, "https://");  // secrets go over nothing else
   text.replace(
       text.find("[price]"), 7,
       "[price]\nheader_file = \"headers\"\nca_file = \"headers\"\nrows_field = \"data.rows\"\n"

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -59,6 +60,16 @@ TEST_F(File, AFullDeviceIsAnErrorAndStaysADevice) {
   if (!fs::is_character_file(full)) GTEST_SKIP() << "needs /dev/full, which is absent";
   EXPECT_THROW(write_file(full, "text"), UserError);
   EXPECT_TRUE(fs::is_character_file(full));
+}
+
+/// Somebody else's link in the place of the temporary file must not lead the text anywhere.
+TEST_F(File, APlantedLinkIsNotFollowed) {
+  const std::string victim = folder_.write("victim", "precious");
+  fs::create_symlink(victim, path_.string() + ".part." + std::to_string(getpid()));
+  write_file(path_, "text");
+  EXPECT_EQ(read_file(victim), "precious");
+  EXPECT_EQ(read_file(path_), "text");
+  EXPECT_FALSE(fs::is_symlink(path_));
 }
 
 TEST_F(File, WhatAKilledProcessLeftIsRemoved) {

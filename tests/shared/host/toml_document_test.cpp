@@ -77,6 +77,14 @@ TEST(TomlDocument, AFileThatCannotBeReadIsNamed) {
   EXPECT_THAT(error, HasSubstr("is it a folder?"));
 }
 
+/// A device that never ends stands for a file of any size: neither memory nor time may grow with it.
+TEST(TomlDocument, AFileIsReadNoFurtherThanItCouldBeParsed) {
+  TomlValue document;
+  std::string error;
+  EXPECT_FALSE(parse_toml_file("/dev/zero", document, error));
+  EXPECT_THAT(error, StartsWith("/dev/zero:1: not valid TOML: longer than 256 KiB"));
+}
+
 TEST(TomlTraps, NonAsciiIsFoundOutsideQuotesAndCommentsOnly) {
   const auto line_of = [](std::string_view toml) { return find_toml_trap(toml).line; };
   EXPECT_EQ(line_of(""), 0);

@@ -73,6 +73,19 @@ TEST(Prove, NetsThatTheBoundsDoNotHoldForAreNoMatterOfProof) {
   EXPECT_THROW(static_cast<void>(prove(overflowing, 2)), UserError);
 }
 
+TEST(Prove, ASampleCountsInEverySeventhContextAndProvesNothing) {
+  constexpr std::int64_t kContexts = (kContextCount + kSampleStride - 1) / kSampleStride;
+  const StudentFile never_charges{LinearNet{.charge_below = 0}.net(), flawless_claim(), ""};
+  const Certificate sample = sample_violations(never_charges, 2).certificate;
+  EXPECT_EQ(sample.states_checked, kContexts * kSocCount * kPriceCount);
+  EXPECT_EQ(sample.violations_property_1, kContexts * kSocCount);
+  EXPECT_EQ(sample.violations(), sample.violations_property_1);
+  const StudentFile flawless{crowded_net(), {.thresholds = kCrowdedThresholds}, ""};
+  const Certificate no_proof = sample_violations(flawless, 2).certificate;
+  EXPECT_EQ(no_proof.violations(), 0);
+  EXPECT_FALSE(no_proof.covers_lattice_without_violation());
+}
+
 TEST(Certificate, CoversTheLatticeOnlyAsAWhole) {
   EXPECT_TRUE(flawless_claim().covers_lattice_without_violation());
   EXPECT_FALSE(Certificate{}.covers_lattice_without_violation()) << "nobody has looked yet";

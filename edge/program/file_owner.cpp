@@ -1,0 +1,48 @@
+#include "edge/program/file_owner.h"
+
+#include <unistd.h>
+
+#include <cstdio>
+
+namespace bess {
+namespace {
+
+/// The folder that holds a file, "." for a bare name.
+FixedText<639> folder_of(const char* path) {
+  const FixedText<639> text(path);
+  const std::size_t slash = text.view().rfind('/');
+  if (slash == std::string_view::npos) return {"."};
+  return {text.view().substr(0, slash == 0 ? 1 : slash)};
+}
+
+}  // namespace
+
+bool is_trusted(uid_t owner) { return owner == 0 || owner == geteuid(); }
+
+FileMessage strangers_file(const char* path) {
+  struct stat info {};
+  const bool is_known = lstat(path, &info) == 0;
+  char line[768];
+  std::snprintf(line, sizeof line,
+                "%s belongs to user %ld, neither to root nor to the user that runs this bess-edge "
+                "(%ld): if nothing of that user should be there, remove it",
+                path, is_known ? static_cast<long>(info.st_uid) : -1L,
+                static_cast<long>(geteuid()));
+  return {line};
+}
+
+bool refuse_stranger(const char* path, FileMessage& error) {
+  struct stat info {};
+  if (lstat(path, &info) != 0 || is_trusted(info.st_uid)) return true;
+  error = strangers_file(path);
+  return false;
+}
+
+bool is_believable(const char* path) {
+  struct stat file {};
+  if (lstat(path, &file) != 0 || is_trusted(file.st_uid)) return true;
+  struct stat folder {};
+  return stat(folder_of(path).c_str(), &folder) == 0 && folder.st_uid == file.st_uid;
+}
+
+}  // namespace bess

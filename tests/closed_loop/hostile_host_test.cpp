@@ -1,0 +1,159 @@
+// The real programs on a machine that is not on their side: prices that lie, configurations that lead past each
+// other, a full disk, files of somebody else.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/mount.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "tests/support/simulated_site.h"
+
+namespace bess {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+constexpr std::int32_t kScale = 900;
+
+std::string text_of(const std::string& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+class HostileHost : public ::testing::Test {
+ protected:
+  void start_simulators() {
+    site_.start_battery();
+    site_.start_market();
+  }
+  /// What a command of bess-edge says, and its exit code.
+  std::string run(std::vector<std::string> arguments, int expected_exit_code) {
+    arguments.insert(arguments.begin(), BESS_EDGE_PROGRAM);
+    ChildProcess child(arguments);
+    std::string text = child.read_all();
+    EXPECT_EQ(child.wait(), expected_exit_code) << text;
+    return text;
+  }
+
+  SimulatedSite site_{kScale};
+};
+
+TEST_F(HostileHost, CheckSaysOverWhatThePricesCome) {
+  start_simulators();
+  sleep_until_monotonic(site_.anchor_ns());
+  EXPECT_THAT(run({"--check", "--config", site_.commission()}, 0),
+              HasSubstr("\ntransport  plain http inside this machine\n"));
+}
+
+/// One row in ten cycles says 9,000 EUR/MWh: nothing is ordered by it.
+TEST_F(HostileHost, ASinglePriceFarFromTheOthersIsNotActedOn) {
+  std::string prices = "minute_utc,indicative_eur_mwh,settled_eur_mwh\n";
+  for (int minute = -60; minute < 150; ++minute) {
+    const char* const price = minute % 20 == 11 ? "9000" : "100";
+    prices.append(utc_text(SimulatedSite::kStartS + 60 * minute).view())
+        .append(",")
+        .append(price)
+        .append(",100\n");
+  }
+  site_.start_battery();
+  site_.start_market({}, prices);
+  const std::string config = site_.commission();
+  EXPECT_THAT(run({"--config", config, "--cycles", "60"}, 0),
+              HasSubstr(" step_held=1 held_centi=900000"));
+  int held = 0;
+  for (const CsvRow& row : read_csv(site_.folder.file("edge.csv"))) {
+    EXPECT_NE(row.at("reason"), "price_high") << row.at("utc");
+    EXPECT_NE(row.at("price_centi_eur_per_mwh"), "900000") << row.at("utc");
+    if (row.at("step_held") == "1") ++held;
+  }
+  EXPECT_GT(held, 0);
+}
+
+TEST_F(HostileHost, AnotherLockFolderLetsNoSecondControllerIn) {
+  start_simulators();
+  const std::string mine = site_.commission();
+  const std::string other = site_.commission({.state = "other"});
+  fs::create_directory(site_.folder.file("elsewhere"));
+  std::string text = text_of(other);
+  const std::string key = "lock_folder = \"";
+  text.insert(text.find(key) + key.size(), site_.folder.file("elsewhere") + "\" #");
+  static_cast<void>(site_.folder.write("other.toml", text));
+  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", mine});
+  for (std::string line; line != "started: in control";) {
+    line = edge.read_line();
+    ASSERT_NE(line, "") << "it did not start";
+  }
+  EXPECT_THAT(run({"--config", other, "--cycles", "1"}, 1),
+              HasSubstr("is in use by another bess-edge (process " + std::to_string(edge.pid())));
+}
+
+TEST_F(HostileHost, AStrangersStatusIsNotBelieved) {
+  if (geteuid() != 0) GTEST_SKIP() << "needs root, to give a file to somebody else";
+  start_simulators();
+  const std::string config = site_.commission();
+  const std::string status = site_.folder.file("state/status.json");
+  static_cast<void>(site_.folder.write("state/status.json", "{\"health\": \"ok\", \"pid\": 1}"));
+  ASSERT_EQ(chown(status.c_str(), 65'534, 65'534), 0);
+  const std::string mend = "state/status.json belongs to user 65534, neither to root nor";
+  EXPECT_THAT(run({"status", "--config", config}, 3), HasSubstr(mend));
+  EXPECT_THAT(run({"--config", config, "--cycles", "1"}, 1), HasSubstr(mend));
+}
+
+/// A file system of its own in the place of the state folder.
+class SmallDisk {
+ public:
+  explicit SmallDisk(std::string folder) : folder_(std::move(folder)) {
+    fs::create_directory(folder_);
+    is_mounted_ = mount("bess_test", folder_.c_str(), "tmpfs", 0, "size=7m") == 0;
+  }
+  SmallDisk(const SmallDisk&) = delete;
+  SmallDisk& operator=(const SmallDisk&) = delete;
+  ~SmallDisk() {
+    if (is_mounted_) umount2(folder_.c_str(), MNT_DETACH);
+  }
+  [[nodiscard]] bool is_mounted() const { return is_mounted_; }
+  /// To the last byte.
+  void fill() const {
+    std::ofstream filler(folder_ + "/filler", std::ios::app);
+    while (filler << std::string(1024, 'x') << std::flush) continue;
+  }
+
+ private:
+  std::string folder_;
+  bool is_mounted_ = false;
+};
+
+TEST_F(HostileHost, AFullDiskForbidsNoRestart) {
+  const SmallDisk disk(site_.folder.file("state"));
+  if (!disk.is_mounted()) GTEST_SKIP() << "needs root, to mount a small disk";
+  start_simulators();
+  const std::string config = site_.commission();
+  run({"--config", config, "--cycles", "2"}, 0);
+  disk.fill();
+  const std::string restarted = run({"--config", config, "--cycles", "2"}, 0);
+  EXPECT_THAT(restarted,
+              AllOf(HasSubstr("started: in control"), HasSubstr("is the disk full or read-only?"),
+                    HasSubstr("stopped: battery released")));
+  const std::string log = run({"log", "--csv", "--config", config}, 0);
+  EXPECT_EQ(std::count(log.begin(), log.end(), '\n'), 1 + 2 * 3) << "the log goes on in its place";
+
+  fs::remove(site_.folder.file("state/decisions.ring"));
+  fs::remove(site_.folder.file("state/status.json"));
+  disk.fill();
+  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", config});
+  for (std::string line; line.find("mode=running") == std::string::npos;) {
+    line = edge.read_line();
+    ASSERT_NE(line, "") << "it did not start";
+  }
+  EXPECT_THAT(run({"status", "--config", config}, 1),
+              AllOf(HasSubstr("health     degraded"),
+                    HasSubstr("the disk of the state folder is full or read-only")));
+  EXPECT_EQ(SimulatedSite::stop(edge), 0);
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,91 @@
+// A price source that lies, before the real control loop: what it can do to the battery is bounded.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <vector>
+
+#include "edge/control/control_loop.h"
+#include "tests/support/fake_plant.h"
+
+namespace bess {
+namespace {
+
+using Loop = ControlLoop<FakeBattery, FakePrices, FakeClock>;
+
+constexpr std::int32_t kExtremeCenti = 1'000'000;
+
+/// Dear and cheap in turns, beyond every threshold: the most that a source can ask for.
+struct Liar {
+  Liar() : battery(clock, 0.5), prices(clock) {
+    prices.price = [](std::int64_t minute_utc_s) {
+      return minute_utc_s / kSecondsPerStep % 2 == 0 ? kExtremeCenti : -kExtremeCenti;
+    };
+  }
+  std::vector<CycleRecord> run(Loop& loop, int cycles) {
+    std::vector<CycleRecord> records(static_cast<std::size_t>(cycles));
+    for (CycleRecord& record : records) EXPECT_TRUE(loop.run_cycle(record));
+    return records;
+  }
+
+  FakeClock clock;
+  FakeBattery battery;
+  FakePrices prices;
+};
+
+/// Changes of sign among the last orders of an hour, counted without the loop's help.
+int most_reversals_in_an_hour(const std::vector<CycleRecord>& records) {
+  std::vector<int> reversals;
+  int direction = 0;
+  for (const CycleRecord& record : records) {
+    const int now = record.ordered_power_w > 0 ? 1 : record.ordered_power_w < 0 ? -1 : 0;
+    reversals.push_back(now != 0 && now == -direction ? 1 : 0);
+    if (now != 0) direction = now;
+  }
+  int most = 0;
+  for (std::size_t end = 0; end < reversals.size(); ++end) {
+    int sum = 0;
+    for (std::size_t i = 0; i < kStepsPerHour && i <= end; ++i) sum += reversals[end - i];
+    most = std::max(most, sum);
+  }
+  return most;
+}
+
+TEST(PriceLies, ReversalsStayUnderTheCapWhateverThePricesAsk) {
+  Liar liar;
+  Loop loop({.control = true, .guard = {}}, liar.battery, liar.prices, liar.clock);
+  const std::vector<CycleRecord> records = liar.run(loop, 10 * kStepsPerHour);
+  EXPECT_EQ(most_reversals_in_an_hour(records), 20);  // the default
+  int capped = 0;
+  for (const CycleRecord& record : records) {
+    if (record.reason != Reason::kReversalCap) continue;
+    EXPECT_EQ(record.ordered_power_w, 0);
+    EXPECT_EQ(record.mode, Mode::kRunning);
+    ++capped;
+  }
+  EXPECT_GT(capped, 20);
+}
+
+TEST(PriceLies, ARestartDoesNotStartTheHourAgain) {
+  Liar liar;
+  std::vector<CycleRecord> records;
+  TakeOver before;
+  for (int run = 0; run < 20; ++run) {
+    Loop loop({.control = true, .guard = {}, .reversals_per_hour_max = 6}, liar.battery,
+              liar.prices, liar.clock);
+    loop.take_over(before);
+    for (const CycleRecord& record : liar.run(loop, 5)) records.push_back(record);
+    before.reversals = records.back().reversals;
+    before.reversals_utc_s = records.back().utc_s;
+  }
+  EXPECT_EQ(most_reversals_in_an_hour(records), 6);
+}
+
+TEST(PriceLies, WithoutACapEveryReversalIsFollowed) {
+  Liar liar;
+  Loop loop({.control = true, .guard = {}, .reversals_per_hour_max = 0}, liar.battery, liar.prices,
+            liar.clock);
+  EXPECT_GT(most_reversals_in_an_hour(liar.run(loop, 2 * kStepsPerHour)), 25);
+}
+
+}  // namespace
+}  // namespace bess
