@@ -51,8 +51,7 @@ constexpr BatteryFaultInfo kFaults[] = {
      "lasts: no fault, a habit: orders show 5 s later, with 2 % noise", kLasting},
     {BatteryFault::kSocStuck, "soc-stuck", "lasts: the state of charge is shown as it was",
      kLasting},
-    {BatteryFault::kOtherCapacity, "other-capacity", "lasts: shows 5 times its capacity",
-     kLasting},
+    {BatteryFault::kOtherCapacity, "other-capacity", "lasts: shows 5 times its capacity", kLasting},
     {BatteryFault::kOtherMaster, "other-master",
      "lasts: every 30 s somebody else orders the rated discharge", kLasting},
 };
