@@ -20,16 +20,25 @@ function(install_with_paths file folder name)
 endfunction()
 
 install(TARGETS bess-edge DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT edge)
-install(DIRECTORY maps DESTINATION ${CMAKE_INSTALL_DATADIR}/bess COMPONENT edge
+install(DIRECTORY maps meters DESTINATION ${CMAKE_INSTALL_DATADIR}/bess COMPONENT edge
         FILES_MATCHING PATTERN "*.toml")
-install(FILES README.md systemd/bess-edge-serial.conf DESTINATION ${CMAKE_INSTALL_DOCDIR}
+install(FILES README.md systemd/bess-edge-serial.conf systemd/bess-notify-mailer.conf DESTINATION ${CMAKE_INSTALL_DOCDIR}
         COMPONENT edge)
 install(FILES systemd/bess.sysusers DESTINATION lib/sysusers.d RENAME bess.conf COMPONENT edge)
 # Absolute: bess-edge looks in /etc whatever the prefix. An example, so that no edited file is lost.
 install_with_paths(${CMAKE_CURRENT_SOURCE_DIR}/bess-edge.toml /etc/bess edge.toml.example
   "map = \"maps/" "map = \"${CMAKE_INSTALL_FULL_DATADIR}/bess/maps/"
-  "folder = \"state\"  " "folder = \"/var/lib/bess\"  ")
+  "map = \"meters/" "map = \"${CMAKE_INSTALL_FULL_DATADIR}/bess/meters/"
+  "folder = \"state\"  " "folder = \"/var/lib/bess\"  "
+  "folder = \"notify\"  " "folder = \"/var/lib/bess-notify\"  ")
 install_with_paths(${CMAKE_CURRENT_SOURCE_DIR}/systemd/bess-edge.service lib/systemd/system
   bess-edge.service
   "/usr/bin/bess-edge" "${CMAKE_INSTALL_FULL_BINDIR}/bess-edge"
   "/usr/share/doc/bess" "${CMAKE_INSTALL_FULL_DOCDIR}")
+if(BESS_NOTIFY)
+  install(TARGETS bess-notify DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT edge)
+  install_with_paths(${CMAKE_CURRENT_SOURCE_DIR}/systemd/bess-notify.service lib/systemd/system
+    bess-notify.service
+    "/usr/bin/bess-notify" "${CMAKE_INSTALL_FULL_BINDIR}/bess-notify"
+    "/usr/share/doc/bess" "${CMAKE_INSTALL_FULL_DOCDIR}")
+endif()

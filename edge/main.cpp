@@ -3,12 +3,14 @@
 //   price server -> PriceFeed (own thread) -+
 //                                           +-> ControlLoop -> student -> SafetyGuard -> ModbusBattery
 //   battery ------> ModbusBattery ----------+         |
+//   meter, limits -> SiteLimits ------------+         |
 //                                                     +-> EventLog (own thread), ServiceNotify
 #include <pthread.h>
 
 #include <utility>
 
 #include "edge/base/check.h"
+#include "edge/battery/modbus_meter.h"
 #include "edge/control/control_loop.h"
 #include "edge/control/policy.h"
 #include "edge/log/journal.h"
@@ -17,10 +19,16 @@
 #include "edge/program/command_line.h"
 #include "edge/program/commission_command.h"
 #include "edge/program/commission_file.h"
+#include "edge/program/hold_command.h"
+#include "edge/program/hold_watch.h"
+#include "edge/program/limit_command.h"
+#include "edge/program/limit_file.h"
 #include "edge/program/log_command.h"
+#include "edge/program/people_config.h"
 #include "edge/program/release_command.h"
 #include "edge/program/run_locks.h"
 #include "edge/program/signature_command.h"
+#include "edge/program/site_check.h"
 #include "edge/program/startup.h"
 #include "edge/program/status_command.h"
 #include "edge/program/supervised_loop.h"
@@ -28,7 +36,8 @@
 namespace bess {
 namespace {
 
-using Loop = ControlLoop<ModbusBattery, PriceFeed, EdgeClock>;
+using Site = SiteLimits<ModbusMeter, LimitFile>;
+using Loop = ControlLoop<ModbusBattery, PriceFeed, EdgeClock, Site>;
 
 ModbusBattery* battery_of_check_handler = nullptr;
 pthread_t control_thread;
@@ -70,8 +79,10 @@ int run_controller(const CommandLine& command_line, const EdgeConfig& config) {
     return run_release_command(command_line, config, battery, clock);
   }
   static PriceFeed prices(config.price, config.clock);
+  static ModbusMeter meter(config.site.link, config.site.map, config.clock);
   if (command_line.command == SubCommand::kCheck) {
-    return report_check(config, battery, prices, clock) ? 0 : 1;
+    const bool is_well = report_check(config, battery, prices, clock);
+    return report_site(config, battery, meter) && is_well ? 0 : 1;
   }
   static ServiceNotify notify;
   notify.extend_start(config.start_timeout_s + 60);
@@ -88,7 +99,9 @@ int run_controller(const CommandLine& command_line, const EdgeConfig& config) {
   journal_thresholds(config);
   journal_transport(config);
   if (config.control.control) release_if_a_check_fails(battery);
-  static Loop loop(config.control, battery, prices, clock);
+  static LimitFile limits(config.site.limit_file.c_str());
+  static Loop loop(config.control, battery, prices, clock,
+                   Site(config.site.settings, &meter, &limits));
   if (student_context().kind == ContextKind::kLevel) {
     notify.extend_start(config.history.wait_s + 60);
   }
@@ -103,7 +116,12 @@ int run_controller(const CommandLine& command_line, const EdgeConfig& config) {
        .price_level = level_at_start(config, before.price_level, greeting, prices, clock),
        .trip = before.is_tripped && !is_cleared ? before.trip : Trip{},
        .reversals = before.reversals,
-       .reversals_utc_s = before.utc_s});
+       .last_full_day = last_full_day_of(before.utc_s, before.days_since_full),
+       .site = before.site,
+       .utc_s = before.utc_s});
+  static HoldWatch holds;
+  holds.start(hold_path(config).c_str(), config.clock.scale);
+  loop.follow_holds(holds.mailbox());
   notify.ready();
   return run_supervised(loop, command_line.cycles, clock, log, notify, clearance.c_str()) ? 0 : 1;
 }
@@ -123,6 +141,8 @@ int main(int argc, char** argv) {
   if (command_line.command == SubCommand::kStatus) return run_status_command(command_line, config);
   if (command_line.command == SubCommand::kClear) return run_clear_command(command_line, config);
   if (command_line.command == SubCommand::kLog) return run_log_command(command_line, config);
+  if (command_line.command == SubCommand::kHold) return run_hold_command(command_line, config);
+  if (command_line.command == SubCommand::kLimit) return run_limit_command(command_line, config);
   if (command_line.dry_run) config.control.control = false;
   return run_controller(command_line, config);
 }

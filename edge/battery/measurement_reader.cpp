@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "shared/scaled_clock.h"
-
 namespace bess {
 
 std::int32_t clamp_to_int32(std::int64_t value) {
@@ -17,7 +15,8 @@ MeasurementReader::MeasurementReader(const RegisterMap& map)
       charge_limit_(find_point(map, "charge_power_max")),
       discharge_limit_(find_point(map, "discharge_power_max")),
       temperature_min_(find_point(map, "temperature_min")),
-      temperature_max_(find_point(map, "temperature_max")) {}
+      temperature_max_(find_point(map, "temperature_max")),
+      alive_(map) {}
 
 Status MeasurementReader::translate(const LivePoints& live, std::int64_t now_ns,
                                     BatteryMeasurement& m) {
@@ -41,7 +40,9 @@ Status MeasurementReader::translate(const LivePoints& live, std::int64_t now_ns,
     m.alarm = false;
     m.warning = true;
   }
-  return is_alive(live, now_ns) ? Status::kOk : Status::kImplausible;
+  m.has_grid_power = live_power(map_, map_.grid_power, live, power_w);
+  if (m.has_grid_power) m.grid_power_w = clamp_to_int32(power_w);
+  return alive_.is_alive(live, now_ns) ? Status::kOk : Status::kImplausible;
 }
 
 void MeasurementReader::store(int point, std::int64_t wide, BatteryMeasurement& m) const {
@@ -57,16 +58,6 @@ void MeasurementReader::store(int point, std::int64_t wide, BatteryMeasurement& 
 bool MeasurementReader::is_true(const LivePoints& live, const Condition& condition) const {
   std::int64_t value = 0;
   return live_value(map_, live, condition.point, value) && condition.holds(value);
-}
-
-/// A device whose counter stands still shows frozen values as if they were new.
-bool MeasurementReader::is_alive(const LivePoints& live, std::int64_t now_ns) {
-  if (map_.alive.point < 0) return true;
-  std::int64_t counter = 0;
-  if (!live_value(map_, live, map_.alive.point, counter)) return false;
-  if (alive_ns_ == 0 || counter != alive_counter_) alive_ns_ = now_ns;
-  alive_counter_ = counter;
-  return now_ns - alive_ns_ <= map_.alive.max_age_s * kNanosecondsPerSecond;
 }
 
 }  // namespace bess

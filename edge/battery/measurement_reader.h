@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "edge/base/status.h"
+#include "edge/battery/alive_watch.h"
 #include "edge/control/control_types.h"
 #include "edge/registers/live_points.h"
 
@@ -25,13 +26,11 @@ class MeasurementReader {
   void store(int point, std::int64_t wide, BatteryMeasurement& m) const;
   /// Also false while its register is not known, which only an optional one can be here.
   [[nodiscard]] bool is_true(const LivePoints& live, const Condition& condition) const;
-  bool is_alive(const LivePoints& live, std::int64_t now_ns);
 
   const RegisterMap& map_;
   // Points with a meaning for the controller, by name; -1 = not in this map.
   int soc_, capacity_, charge_limit_, discharge_limit_, temperature_min_, temperature_max_;
-  std::int64_t alive_ns_ = 0;  ///< when the device's counter last moved
-  std::int64_t alive_counter_ = 0;
+  AliveWatch alive_;
 };
 
 }  // namespace bess

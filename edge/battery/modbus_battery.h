@@ -35,6 +35,13 @@ class DeviceTime {
   std::int64_t start_ns_;
 };
 
+/// What the map says of the device's timing.
+inline LinkTiming timing_of(const RegisterMap& map) {
+  return {.response_timeout_ms = map.response_timeout_ms,
+          .minimum_gap_ms = map.minimum_gap_ms,
+          .connect_delay_ms = map.connect_delay_ms};
+}
+
 extern template class BatteryDriver<ModbusLink, DeviceTime>;
 
 class ModbusBattery : public BatteryDriver<ModbusLink, DeviceTime> {

@@ -7,23 +7,31 @@
 //                int32 refresh_interval_s();  BatteryCounters counters()
 //   PriceSource  void request(minute_utc_s, start_monotonic_ns, deadline_monotonic_ns);
 //                bool wait(until_monotonic_ns);  PriceReport latest()
+//   Site         the house behind the same meter and who limits it (site_limits.h); NoSite: nothing
 //   Clock        now_utc_ns(), monotonic_ns(), monotonic_ns_at(utc_ns), sleep_until_utc_ns(utc_ns),
 //                pause_ns(ns), stop_requested(), is_synchronised()
 //
 // Order of a cycle around its tick t (a multiple of 2 minutes UTC):
-//   t - read_lead_s  battery measurements        t  the row of minute t-1 is requested
-//   row in, or price_wait_s over                 decision, order written and read back
-// Between cycles the battery's watchdog is fed as often as its register map asks.
+//   t - read_lead_s  battery and site measured   t  the row of minute t-1 is requested
+//   row in, or price_wait_s over, and not before
+//   start_offset_ms after the tick               decision, order written and read back
+// Between cycles the battery's watchdog is fed as often as its register map asks, and an order that
+// the site no longer bears is cut.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "edge/control/control_settings.h"
 #include "edge/control/control_types.h"
 #include "edge/control/cycle_budget.h"
+#include "edge/control/full_charge.h"
+#include "edge/control/hold.h"
 #include "edge/control/policy.h"
 #include "edge/control/power_order.h"
+#include "edge/control/reserve.h"
 #include "edge/control/safety_guard.h"
+#include "edge/control/site_limits.h"
 #include "edge/control/supervision.h"
 #include "shared/local_time.h"
 #include "shared/scaled_clock.h"
@@ -37,32 +45,43 @@ struct TakeOver {
   PriceLevel price_level{};
   Trip trip{};
   ReversalHistory reversals{};
-  std::int64_t reversals_utc_s = 0;  ///< when that history was written
+  std::int32_t last_full_day = 0;  ///< full_charge.h
+  SiteReport site{};
+  std::int64_t utc_s = 0;  ///< of that log's newest record
 };
 
 constexpr std::int64_t next_tick_utc_s(std::int64_t now_utc_s) {
   return (now_utc_s / kSecondsPerStep + 1) * kSecondsPerStep;
 }
 
-template <typename Battery, typename PriceSource, typename Clock>
+template <typename Battery, typename PriceSource, typename Clock, typename Site = NoSite>
 class ControlLoop {
  public:
-  ControlLoop(const ControlSettings& settings, Battery& battery, PriceSource& prices, Clock& clock)
+  ControlLoop(const ControlSettings& settings, Battery& battery, PriceSource& prices, Clock& clock,
+              const Site& site = Site())
       : settings_(settings),
         battery_(battery),
         prices_(prices),
         clock_(clock),
+        site_(site),
         guard_(settings.guard),
         cycle_budget_(settings.cycles_per_day_max_e4),
         reversal_cap_(settings.reversals_per_hour_max),
-        supervision_(settings.supervision) {}
+        full_charge_(settings.full_charge_every_days),
+        supervision_(settings.supervision),
+        soc_floor_e4_(settings.guard.soc_min_e4) {}
 
   void take_over(const TakeOver& before) {
     cycle_budget_.restore(before.throughput);
     price_level_ = before.price_level;
     supervision_.restore(before.trip);
-    reversal_cap_.restore(before.reversals, before.reversals_utc_s);
+    reversal_cap_.restore(before.reversals, before.utc_s);
+    full_charge_.restore(before.last_full_day);
+    site_.take_over(before.utc_s, before.site);
   }
+
+  /// Follows the holds that are published there, which outlives the loop.
+  void follow_holds(const HoldMailbox& holds) { holds_ = &holds; }
 
   [[nodiscard]] const Trip& trip() const { return supervision_.trip(); }
   /// A person has looked: the battery may be driven again.
@@ -77,9 +96,10 @@ class ControlLoop {
     record = CycleRecord{.utc_s = tick_utc_s, .cycle = ++cycle_};
     request_price(tick_utc_s);  // before the battery is read: a slow bus must not cost the price
     read_battery(record);
+    observe_site(record.has_measurement, record.measurement);
     if (!sleep_until_s(tick_utc_s)) return false;
     await_price(record);
-    if (clock_.stop_requested()) return false;
+    if (!await_start(tick_utc_s) || clock_.stop_requested()) return false;
     decide(record);
     act(record);
     count_deadline_miss(record);
@@ -129,7 +149,7 @@ class ControlLoop {
   static constexpr std::int64_t kStopPauseNs = 5 * kNanosecondsPerSecond;
 
   Status give_back(CycleRecord& record) {
-    write_order(0, record);
+    write_order(0, record, write_until_ns_);
     const Status zero_status = record.battery_status;
     write_release(record);
     if (record.battery_status == Status::kOk) record.battery_status = zero_status;
@@ -161,16 +181,23 @@ class ControlLoop {
     return true;
   }
 
-  /// Sleeps, and feeds the battery's watchdog meanwhile; false when asked to stop. Returns early when
-  /// the clock was stepped back: the instant may lie hours ahead by now.
-  bool sleep_until_s(std::int64_t utc_s) {
-    const std::int64_t until_ns = utc_s * kNanosecondsPerSecond;
+  /// Sleeps, feeds the battery's watchdog and looks after the site meanwhile; false when asked to
+  /// stop. Returns early when the clock was stepped back: the instant may lie hours ahead by now.
+  bool sleep_until_s(std::int64_t utc_s) { return sleep_until_ns(utc_s * kNanosecondsPerSecond); }
+
+  bool sleep_until_ns(std::int64_t until_ns) {
     while (true) {
       const std::int64_t before_ns = clock_.now_utc_ns();
-      const std::int64_t due_ns = refresh_due_utc_ns();
+      const std::int64_t refresh_ns = refresh_due_utc_ns();
+      const std::int64_t check_ns = site_due_utc_ns();
+      const std::int64_t due_ns = refresh_ns < check_ns ? refresh_ns : check_ns;
       if (due_ns >= until_ns) return clock_.sleep_until_utc_ns(until_ns);
       if (!clock_.sleep_until_utc_ns(due_ns)) return false;
-      refresh();
+      if (refresh_ns == due_ns) {
+        refresh();
+      } else {
+        check_site();
+      }
       if (clock_.now_utc_ns() < before_ns) return true;
     }
   }
@@ -189,6 +216,71 @@ class ControlLoop {
     fed_utc_ns_ = clock_.now_utc_ns();
   }
 
+  std::int64_t site_due_utc_ns() const {
+    const std::int32_t interval_s = site_.check_every_s();
+    if (interval_s <= 0) return INT64_MAX;
+    const std::int64_t now_ns = clock_.now_utc_ns();
+    if (site_utc_ns_ > now_ns) return now_ns;  // the clock was stepped back meanwhile
+    return site_utc_ns_ + interval_s * kNanosecondsPerSecond;
+  }
+
+  void observe_site(bool is_read, const BatteryMeasurement& measurement) {
+    site_.observe(now_utc_s(), is_read, measurement);
+    site_utc_ns_ = clock_.now_utc_ns();
+  }
+
+  [[nodiscard]] SiteRange site_range(std::int64_t utc_s, Margin margin) const {
+    return site_.range(utc_s, settings_.guard.power_w, margin);
+  }
+
+  /// Between two ticks: what the site no longer bears of the order in force is taken off it. Only a
+  /// tick gives it back.
+  void check_site() {
+    BatteryMeasurement measurement;
+    bool is_read = site_.needs_battery() && battery_.read(measurement) == Status::kOk;
+    observe_site(is_read, measurement);
+    if (!settings_.control || !has_ordered_ || mode_ != Mode::kRunning) return;
+    const BatteryMeasurement& known = is_read ? measurement : measured_;
+    if (bearable_power_w(known, Margin::kHalf) == order_power_w_ && !cut_failed_) return;
+    const std::int32_t power_w = bearable_power_w(known, Margin::kWhole);
+    if (!site_.needs_battery()) is_read = battery_.read(measurement) == Status::kOk;
+    // What follows somebody else's order is for the tick to see, and not to be hidden by ours.
+    if (is_read && measurement.order_replaced) return;
+    if (is_read) account_until_cut(measurement);
+    cut_order(power_w);
+  }
+
+  /// Of the order in force.
+  [[nodiscard]] std::int32_t bearable_power_w(const BatteryMeasurement& measurement,
+                                              Margin margin) const {
+    return guard_
+        .recheck({.measurement = measurement,
+                  .cycle_budget_spent = cycle_budget_.is_spent(),
+                  .barred_direction = reversal_cap_.barred_direction(),
+                  .previous_power_w = order_power_w_,
+                  .reserve_soc_e4 = reserve_soc_e4_,
+                  .site = site_range(now_utc_s(), margin)})
+        .power_w;
+  }
+
+  /// What flowed under the order until now would be taken for the next one's at the next reading.
+  void account_until_cut(const BatteryMeasurement& measurement) {
+    const Response now = response_of(measurement);
+    count_cycles(now.utc_s, measurement);
+    supervision_.note_power(now);
+  }
+
+  /// As fresh as the readings that it follows from, and never longer than its cycle's order.
+  void cut_order(std::int32_t power_w) {
+    if (power_w != order_power_w_) ++order_cuts_;
+    CycleRecord between;  // the next cycle's record says what became of it
+    write_order(power_w, between,
+                std::min(feed_until_ns_, clock_.monotonic_ns() +
+                                             settings_.order_deadline_s * kNanosecondsPerSecond));
+    cut_failed_ = !between.written;
+    reversal_cap_.note(power_w);
+  }
+
   void count_missed_ticks(std::int64_t tick_utc_s) {
     if (last_tick_utc_s_ != 0 && tick_utc_s > last_tick_utc_s_ + kSecondsPerStep) {
       missed_ticks_ +=
@@ -205,25 +297,31 @@ class ControlLoop {
       cycle_budget_.forget_soc();
       return;
     }
+    measured_ = record.measurement;
     find_order_in_force(record.measurement);
+    count_cycles(record.utc_s, record.measurement);
+    full_charge_.update(local_day_number(local_minute_of(record.utc_s)), record.measurement.soc_e4);
+    if (settings_.control) {
+      supervision_.observe(response_of(record.measurement), !has_ordered_);
+    }
+  }
+
+  void count_cycles(std::int64_t utc_s, const BatteryMeasurement& measurement) {
     const bool is_driven = has_ordered_ && order_power_w_ != 0;
-    cycle_budget_.update(local_day_of(local_minute_of(record.utc_s)), record.measurement.soc_e4,
-                         is_driven);
-    if (settings_.control) observe_answer(record.measurement);
+    cycle_budget_.update(local_day_of(local_minute_of(utc_s)), measurement.soc_e4, is_driven);
   }
 
   /// Only the order that the battery really follows can be answered: one that it refused, or that
   /// has run out, leaves it in its own mode, which goes any way.
-  void observe_answer(const BatteryMeasurement& m) {
+  [[nodiscard]] Response response_of(const BatteryMeasurement& m) const {
     const std::int64_t read_utc_s = now_utc_s();
     const bool is_known = m.has_order_power || order_is_confirmed_;
-    supervision_.observe(
-        {.utc_s = read_utc_s,
-         .is_driven = has_ordered_ && m.dispatch_active && is_known && !m.order_replaced,
-         .ordered_power_w = m.has_order_power ? m.order_power_w : order_power_w_,
-         .order_age_s = static_cast<std::int32_t>(read_utc_s - ordered_since_utc_s_),
-         .measurement = m},
-        !has_ordered_);
+    return {.utc_s = read_utc_s,
+            .is_driven = has_ordered_ && m.dispatch_active && is_known && !m.order_replaced,
+            .ordered_power_w = m.has_order_power ? m.order_power_w : order_power_w_,
+            .order_age_s = static_cast<std::int32_t>(read_utc_s - ordered_since_utc_s_),
+            .soc_floor_e4 = soc_floor_e4_,
+            .measurement = m};
   }
 
   /// After a restart the battery may still follow the order of the run before: it goes on until the
@@ -284,8 +382,24 @@ class ControlLoop {
     }
   }
 
+  /// Before the decision, so that what is decided is ordered at once. What was late already, a price
+  /// or a battery, is not made later.
+  bool await_start(std::int64_t tick_utc_s) {
+    if (settings_.start_offset_ms == 0) return true;
+    return sleep_until_ns(tick_utc_s * kNanosecondsPerSecond +
+                          std::int64_t{settings_.start_offset_ms} * 1'000'000);
+  }
+
+  /// What people want of this cycle: a hold, and a reserve at this hour.
+  void take_wishes(CycleRecord& record) {
+    if (holds_ != nullptr) record.hold = hold_at(holds_->latest(), record.utc_s);
+    record.reserve_soc_e4 = reserve_soc_e4_at(settings_.reserve, local_minute_of(record.utc_s));
+    reserve_soc_e4_ = record.reserve_soc_e4;
+  }
+
   void decide(CycleRecord& record) {
     const std::int64_t start_ns = clock_.monotonic_ns();
+    take_wishes(record);
     const PriceReport& price = record.price;
     if (price.has_row) price_level_.observe(price.minute_utc_s, price.price_centi_eur_per_mwh);
     if (record.has_measurement && price.has_row) {
@@ -299,19 +413,24 @@ class ControlLoop {
     const std::int64_t decided_utc_s = decision_utc_s(record.utc_s);
     // Suspended between reading and deciding: a reading may be as old as a price, not older.
     const bool is_recent = decided_utc_s - record.utc_s <= settings_.guard.price_age_s_max;
-    const GuardDecision decision =
-        guard_.decide({.now_utc_s = decided_utc_s,
-                       .clock_ok = clock_.is_synchronised(),
-                       .link_ok = record.has_measurement && is_recent,
-                       .measurement = record.measurement,
-                       .supervision = supervision_.stop_reason(),
-                       .cycle_budget_spent = cycle_budget_.is_spent(),
-                       .barred_direction = reversal_cap_.barred_direction(),
-                       .previous_power_w = order_power_w_,
-                       .has_price = record.price.has_row,
-                       .price_minute_utc_s = record.price.minute_utc_s,
-                       .price_centi_eur_per_mwh = record.price.price_centi_eur_per_mwh,
-                       .student_action = record.student_action});
+    const GuardDecision decision = guard_.decide(
+        {.now_utc_s = decided_utc_s,
+         .clock_ok = clock_.is_synchronised(),
+         .link_ok = record.has_measurement && is_recent,
+         .measurement = record.measurement,
+         .supervision = supervision_.stop_reason(),
+         .cycle_budget_spent = cycle_budget_.is_spent(),
+         .barred_direction = reversal_cap_.barred_direction(),
+         .previous_power_w = order_power_w_,
+         .has_price = record.price.has_row,
+         .price_minute_utc_s = record.price.minute_utc_s,
+         .price_centi_eur_per_mwh = record.price.price_centi_eur_per_mwh,
+         .student_action = record.student_action,
+         .held = record.hold.held,
+         .held_power_w = record.hold.power_w,
+         .reserve_soc_e4 = record.reserve_soc_e4,
+         .full_charge = full_charge_.wish(price.price_centi_eur_per_mwh, price_level_),
+         .site = site_range(decided_utc_s, Margin::kWhole)});
     record.reason = decision.reason;
     record.ordered_power_w = decision.power_w;
     reversal_cap_.note(decision.power_w);
@@ -345,13 +464,14 @@ class ControlLoop {
     }
     const std::int64_t start_ns = clock_.monotonic_ns();
     const Status reading_status = record.battery_status;
+    cut_failed_ = false;
     switch (mode_) {
       case Mode::kRunning:
-        write_order(record.ordered_power_w, record);
+        write_order(record.ordered_power_w, record, write_until_ns_);
         if (record.has_measurement) supervision_.on_ordered(now_utc_s(), record.battery_status);
         break;
       case Mode::kHolding:
-        write_order(0, record);
+        write_order(0, record, write_until_ns_);
         break;
       case Mode::kSafe:
         if (has_ordered_) write_release(record);
@@ -368,7 +488,7 @@ class ControlLoop {
     }
   }
 
-  void write_order(std::int32_t power_w, CycleRecord& record) {
+  void write_order(std::int32_t power_w, CycleRecord& record, std::int64_t write_until_ns) {
     if (!has_ordered_ || power_w != order_power_w_) ordered_since_utc_s_ = now_utc_s();
     has_ordered_ = true;  // even when it fails: the battery may have understood
     order_power_w_ = power_w;
@@ -378,14 +498,15 @@ class ControlLoop {
       record.price_age_s =
           static_cast<std::int32_t>(price_age_s(now_utc_s(), record.price.minute_utc_s));
     }
+    soc_floor_e4_ = std::max(settings_.guard.soc_min_e4, reserve_soc_e4_);
     // 0 W is never too late.
     const bool is_bound = power_w != 0;
     record.battery_status =
         battery_.order({.power_w = power_w,
-                        .soc_min_e4 = settings_.guard.soc_min_e4,
+                        .soc_min_e4 = soc_floor_e4_,
                         .soc_max_e4 = settings_.guard.soc_max_e4,
                         .duration_s = settings_.order_duration_s,
-                        .write_until_ns = is_bound ? write_until_ns_ : INT64_MAX,
+                        .write_until_ns = is_bound ? write_until_ns : INT64_MAX,
                         .feed_until_ns = is_bound ? feed_until_ns_ : INT64_MAX});
     record.written = order_is_confirmed_ = record.battery_status == Status::kOk;
   }
@@ -417,6 +538,9 @@ class ControlLoop {
     record.throughput = cycle_budget_.today();
     record.reversals = reversal_cap_.history();
     record.price_level = price_level_;
+    record.days_since_full = full_charge_.days_since_full();
+    record.site = site_.report(record.utc_s);
+    record.site.order_cuts = order_cuts_;
     record.counters = battery_.counters();
   }
 
@@ -428,9 +552,13 @@ class ControlLoop {
   Battery& battery_;
   PriceSource& prices_;
   Clock& clock_;
+  Site site_;
   SafetyGuard guard_;
   CycleBudget cycle_budget_;
   ReversalCap reversal_cap_;
+  FullCharge full_charge_;
+  const HoldMailbox* holds_ = nullptr;
+  std::int32_t reserve_soc_e4_ = 0;  ///< of this hour; 0 = none
   PriceLevel price_level_;
   Supervision supervision_;
   Mode mode_ = Mode::kStart;
@@ -440,11 +568,16 @@ class ControlLoop {
   std::int64_t request_ns_ = 0;  ///< when this cycle asked for its price
   std::int32_t missed_ticks_ = 0;
   std::int32_t deadline_misses_ = 0;
+  BatteryMeasurement measured_;           ///< the last that was read at a tick
+  std::int64_t site_utc_ns_ = 0;          ///< when the site was last looked at
+  std::int32_t order_cuts_ = 0;           ///< since start, between two ticks
+  bool cut_failed_ = false;               ///< since this tick: the battery may still follow more
   std::int64_t fed_utc_ns_ = 0;           ///< when the battery last got an order or a refresh
   bool has_ordered_ = false;              ///< an order may be in force at the battery
   std::int32_t order_power_w_ = 0;        ///< of that order
   bool order_is_confirmed_ = false;       ///< it was read back
   std::int64_t ordered_since_utc_s_ = 0;  ///< when that power was ordered first
+  std::int32_t soc_floor_e4_;             ///< at which the device itself stops to discharge by it
   std::int64_t write_until_ns_ = 0;       ///< monotonic, of this cycle's order
   std::int64_t feed_until_ns_ = 0;
   bool looked_for_order_ = false;  ///< the first reading tells what an earlier run left in force

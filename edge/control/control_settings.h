@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "edge/control/reserve.h"
 #include "edge/control/safety_guard.h"
 #include "edge/control/supervision.h"
 
@@ -23,6 +24,11 @@ struct ControlSettings {
   // reversals in any hour, 13 in 99.9 % of them.
   std::int32_t cycles_per_day_max_e4 = 60'000;  ///< at C/2, in 1e-4 full cycles; 0 = no budget
   std::int32_t reversals_per_hour_max = 20;     ///< between charging and discharging; 0 = any
+  ReservePlan reserve{};
+  std::int32_t full_charge_every_days = 0;  ///< 0 = never; its power is the guard's
+  /// After the tick nothing is ordered before this has passed: many controllers on one grid must not
+  /// switch at one instant.
+  std::int32_t start_offset_ms = 0;
 };
 
 }  // namespace bess

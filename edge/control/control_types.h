@@ -11,8 +11,10 @@
 
 #include "edge/base/status.h"
 #include "edge/control/cycle_budget.h"
+#include "edge/control/hold.h"
 #include "edge/control/mode.h"
 #include "edge/control/reversal_cap.h"
+#include "edge/control/site_types.h"
 #include "shared/action.h"
 #include "shared/price_level.h"
 
@@ -31,8 +33,10 @@ struct BatteryMeasurement {
   bool dispatch_active = false;  ///< the device follows an order that was written to it
   bool has_order_power = false;  ///< the map can read back the power of the order in force
   std::int32_t order_power_w = 0;
-  bool order_replaced = false;  ///< a register of our order holds what somebody else wrote
-  bool warning = false;         ///< the device warns and goes on: told, stops nothing
+  bool order_replaced = false;    ///< a register of our order holds what somebody else wrote
+  bool has_grid_power = false;    ///< the map has a grid point, and it was asked for
+  std::int32_t grid_power_w = 0;  ///< import is positive
+  bool warning = false;           ///< the device warns and goes on: told, stops nothing
 };
 
 /// Totals since start, and what the flash-backed registers have had today.
@@ -82,12 +86,20 @@ enum class Reason : std::uint8_t {
   kLastStopReason = kPriceQuarterHour,  ///< up to here: the battery must not be driven
   kSocFull,
   kSocEmpty,
+  kReserve,
   kCycleBudget,
   kReversalCap,
   kPowerLimit,
+  kOutsideLimit,
+  kMeterLost,
+  kImportLimit,
+  kExportLimit,
+  kQuarterHourPeak,
   kRamp,
+  kHeld,
   kPriceLow,
   kPriceHigh,
+  kFullCharge,
   kStudent  ///< no intervention
 };
 
@@ -102,15 +114,41 @@ constexpr bool is_better_released(Reason reason) {
 }
 
 constexpr std::string_view reason_name(Reason reason) {
-  constexpr std::string_view kNames[] = {"stop_requested", "hand_over",       "clock",
-                                         "link",           "alarm",           "temperature",
-                                         "off_grid",       "wrong_direction", "uncontrolled_power",
-                                         "soc_mismatch",   "other_master",    "orders_fail",
-                                         "no_answer",      "capacity",        "soc_jump",
-                                         "no_price",       "price_age",       "price_qh",
-                                         "soc_full",       "soc_empty",       "cycle_budget",
-                                         "reversal_cap",   "power_limit",     "ramp",
-                                         "price_low",      "price_high",      "student"};
+  constexpr std::string_view kNames[] = {"stop_requested",
+                                         "hand_over",
+                                         "clock",
+                                         "link",
+                                         "alarm",
+                                         "temperature",
+                                         "off_grid",
+                                         "wrong_direction",
+                                         "uncontrolled_power",
+                                         "soc_mismatch",
+                                         "other_master",
+                                         "orders_fail",
+                                         "no_answer",
+                                         "capacity",
+                                         "soc_jump",
+                                         "no_price",
+                                         "price_age",
+                                         "price_qh",
+                                         "soc_full",
+                                         "soc_empty",
+                                         "reserve",
+                                         "cycle_budget",
+                                         "reversal_cap",
+                                         "power_limit",
+                                         "outside_limit",
+                                         "meter_lost",
+                                         "import_limit",
+                                         "export_limit",
+                                         "quarter_hour_peak",
+                                         "ramp",
+                                         "held",
+                                         "price_low",
+                                         "price_high",
+                                         "full_charge",
+                                         "student"};
   static_assert(std::size(kNames) == kReasonCount);
   return kNames[static_cast<int>(reason)];
 }
@@ -159,6 +197,10 @@ struct CycleRecord {
   std::int32_t weak_answers = 0;     ///< readings in a row with less power than ordered
   std::int32_t replaced_orders = 0;  ///< since start: of ours, by somebody else
   ReversalHistory reversals{};       ///< this cycle's order included
+  HoldReport hold{};
+  std::int16_t reserve_soc_e4 = 0;   ///< that held at the tick; 0 = none
+  std::int16_t days_since_full = 0;  ///< local days since the SoC was last full
+  SiteReport site{};
 };
 
 }  // namespace bess

@@ -34,6 +34,8 @@ void ResponseMonitor::observe(const Response& now) {
   judge_power(now);
   has_before_ = true;
   before_ = now;
+  note_power(now);
+  flowed_ws_ = 0;
 }
 
 void ResponseMonitor::forget() { *this = ResponseMonitor(settings_); }
@@ -104,31 +106,33 @@ bool ResponseMonitor::may_be_less(const Response& now) const {
   const BatteryMeasurement& m = now.measurement;
   const bool is_charging = now.ordered_power_w > 0;
   if (is_charging && m.temperature_min_deci_c < kColdDeciC) return true;
-  return is_charging ? m.soc_e4 >= kSlowFromE4
-                     : m.soc_e4 <= settings_.soc_min_e4 + kSlowAboveFloorE4;
+  return is_charging ? m.soc_e4 >= kSlowFromE4 : m.soc_e4 <= now.soc_floor_e4 + kSlowAboveFloorE4;
+}
+
+void ResponseMonitor::note_power(const Response& now) {
+  flowed_ws_ += flowed_ws(now);
+  flow_utc_s_ = now.utc_s;
+  flow_power_w_ = now.measurement.power_w;
 }
 
 /// The reading's own power since its order, the power of the reading before until then.
-std::int64_t ResponseMonitor::moved_e4(const Response& now, std::int64_t seconds) const {
-  const std::int64_t reported_wh = now.measurement.capacity_wh;
-  const std::int64_t capacity_wh = reported_wh > 0 ? reported_wh : settings_.capacity_wh;
+std::int64_t ResponseMonitor::flowed_ws(const Response& now) const {
+  const std::int64_t seconds = std::max<std::int64_t>(now.utc_s - flow_utc_s_, 0);
   const std::int64_t of_order_s = std::clamp<std::int64_t>(now.order_age_s, 0, seconds);
-  const std::int64_t watt_seconds =
-      std::int64_t{now.measurement.power_w} * of_order_s +
-      std::int64_t{before_.measurement.power_w} * (seconds - of_order_s);
-  return watt_seconds * 10'000 / (3'600 * capacity_wh);
+  return std::int64_t{now.measurement.power_w} * of_order_s +
+         std::int64_t{flow_power_w_} * (seconds - of_order_s);
 }
 
 void ResponseMonitor::judge_soc(const Response& now) {
   const std::int32_t soc_e4 = now.measurement.soc_e4;
   const std::int64_t seconds = now.utc_s - before_.utc_s;
   if (!has_before_ || seconds <= 0 || seconds > kReadingGapMaxS) return begin_sum(soc_e4);
-  // Losses, ageing and a rounded capacity are all within these bounds.
-  const std::int64_t moved = moved_e4(now, seconds);
-  const SocRange range{std::min(moved * 3 / 5, moved * 7 / 5),
-                       std::max(moved * 3 / 5, moved * 7 / 5)};
   const std::int64_t capacity_wh =
       now.measurement.capacity_wh > 0 ? now.measurement.capacity_wh : settings_.capacity_wh;
+  const std::int64_t moved = (flowed_ws_ + flowed_ws(now)) * 10'000 / (3'600 * capacity_wh);
+  // Losses, ageing and a rounded capacity are all within these bounds.
+  const SocRange range{std::min(moved * 3 / 5, moved * 7 / 5),
+                       std::max(moved * 3 / 5, moved * 7 / 5)};
   const std::int64_t full_step_e4 =
       std::int64_t{settings_.power_w} * seconds * 10'000 / (3'600 * capacity_wh);
   const std::int64_t slack_e4 = kSocErrorE4 + settings_.band.soc_step_e4 + full_step_e4;

@@ -24,7 +24,6 @@ struct ResponseSettings {
   ResponseBand band;
   std::int32_t power_w = 4'000;      ///< rated
   std::int32_t capacity_wh = 8'000;  ///< where the device tells none
-  std::int32_t soc_min_e4 = 1'000;   ///< floor of the orders
 };
 
 /// One reading, and the order that the battery followed when it was taken.
@@ -33,6 +32,8 @@ struct Response {
   bool is_driven = false;  ///< false: the battery is in its own mode, which goes any way
   std::int32_t ordered_power_w = 0;
   std::int32_t order_age_s = 0;  ///< since this power was ordered
+  std::int32_t soc_floor_e4 =
+      1'000;  ///< at which the device itself stops to discharge by that order
   BatteryMeasurement measurement;
 };
 
@@ -43,6 +44,8 @@ class ResponseMonitor {
   explicit ResponseMonitor(const ResponseSettings& settings) : settings_(settings) {}
 
   void observe(const Response& now);
+  /// Between two readings that are judged, just before an order changes: counts what has flowed.
+  void note_power(const Response& now);
 
   /// kWrongDirection, kUncontrolledPower or kSocMismatch once it is found; kStudent: nothing.
   [[nodiscard]] Reason trip() const { return trip_; }
@@ -78,7 +81,7 @@ class ResponseMonitor {
   [[nodiscard]] std::int32_t tolerance_w(std::int32_t power_w) const;
   [[nodiscard]] std::int32_t reachable_power_w(const Response& now) const;
   [[nodiscard]] bool may_be_less(const Response& now) const;
-  [[nodiscard]] std::int64_t moved_e4(const Response& now, std::int64_t seconds) const;
+  [[nodiscard]] std::int64_t flowed_ws(const Response& now) const;
 
   ResponseSettings settings_;
   Reason trip_ = Reason::kStudent;
@@ -93,6 +96,9 @@ class ResponseMonitor {
 
   bool has_before_ = false;
   Response before_;
+  std::int64_t flowed_ws_ = 0;  ///< from then until `flow_utc_s_`, with `flow_power_w_` at its end
+  std::int64_t flow_utc_s_ = 0;
+  std::int32_t flow_power_w_ = 0;
   /// Moved by the measured power since the SoC last changed: now, and how far it went.
   SocRange still_range_;
   std::int64_t still_e4_ = 0;

@@ -1,28 +1,27 @@
 #include "edge/control/safety_guard.h"
 
+#include "edge/control/quarter_hour_energy.h"
 #include "shared/fixed_point.h"
-#include "shared/units_and_limits.h"
 
 namespace bess {
-namespace {
-
-constexpr std::int64_t kQuarterHourS = kMinutesPerQuarterHour * 60;
-
-// Quarter-hours of local time are quarter-hours of UTC: every offset in use is a multiple of 15
-// minutes.
-constexpr std::int64_t quarter_hour_of(std::int64_t utc_s) { return utc_s / kQuarterHourS; }
-
-}  // namespace
 
 GuardDecision SafetyGuard::decide(const GuardInputs& in) {
-  if (in.link_ok) update_soc_latches(in.measurement.soc_e4);
+  if (in.link_ok) update_soc_latches(in.measurement.soc_e4, in.reserve_soc_e4);
   GuardDecision decision;
   if (find_stop_reason(in, decision.reason)) {
     decision.power_w = 0;
     return decision;
   }
-  decision = apply_thresholds(in);
+  decision = find_wish(in);
   apply_ramp(in.previous_power_w, decision);
+  apply_relief(in.site, decision);
+  apply_limits(in, decision);
+  return decision;
+}
+
+GuardDecision SafetyGuard::recheck(const GuardInputs& in) const {
+  GuardDecision decision{.power_w = in.previous_power_w, .reason = Reason::kStudent};
+  apply_relief(in.site, decision);
   apply_limits(in, decision);
   return decision;
 }
@@ -43,7 +42,7 @@ bool SafetyGuard::find_stop_reason(const GuardInputs& in, Reason& reason) const 
   } else if (is_stop_reason(in.supervision)) {
     reason = in.supervision;
   } else {
-    return find_price_stop_reason(in, reason);
+    return !in.held && find_price_stop_reason(in, reason);
   }
   return true;
 }
@@ -65,6 +64,26 @@ bool SafetyGuard::find_price_stop_reason(const GuardInputs& in, Reason& reason) 
   return false;
 }
 
+GuardDecision SafetyGuard::find_wish(const GuardInputs& in) const {
+  if (in.held) {
+    return {.power_w = clamp_to(in.held_power_w, -settings_.power_w, settings_.power_w),
+            .reason = Reason::kHeld};
+  }
+  const PriceThresholds& thresholds = settings_.thresholds;
+  const bool is_beyond = in.price_centi_eur_per_mwh <= thresholds.low_eur_per_mwh * kCentiPerEur ||
+                         in.price_centi_eur_per_mwh >= thresholds.high_eur_per_mwh * kCentiPerEur;
+  const bool is_full_charge = in.full_charge != FullChargeWish::kNone && !is_beyond;
+  return is_full_charge ? apply_full_charge(in) : apply_thresholds(in);
+}
+
+GuardDecision SafetyGuard::apply_full_charge(const GuardInputs& in) const {
+  if (in.full_charge == FullChargeWish::kCharge) {
+    return {.power_w = settings_.full_charge_power_w, .reason = Reason::kFullCharge};
+  }
+  if (in.student_action == Action::kDischarge) return {.reason = Reason::kFullCharge};
+  return {.power_w = power_sign(in.student_action) * settings_.power_w, .reason = Reason::kStudent};
+}
+
 GuardDecision SafetyGuard::apply_thresholds(const GuardInputs& in) const {
   const PriceThresholds& thresholds = settings_.thresholds;
   Action action = in.student_action;
@@ -80,11 +99,15 @@ GuardDecision SafetyGuard::apply_thresholds(const GuardInputs& in) const {
   return {.power_w = power_sign(action) * settings_.power_w, .reason = reason};
 }
 
-void SafetyGuard::update_soc_latches(std::int32_t soc_e4) {
+void SafetyGuard::update_soc_latches(std::int32_t soc_e4, std::int32_t reserve_soc_e4) {
   if (soc_e4 >= settings_.soc_max_e4) full_ = true;
   if (soc_e4 < settings_.soc_max_e4 - settings_.soc_hysteresis_e4) full_ = false;
   if (soc_e4 <= settings_.soc_min_e4) empty_ = true;
   if (soc_e4 > settings_.soc_min_e4 + settings_.soc_hysteresis_e4) empty_ = false;
+  if (soc_e4 <= reserve_soc_e4) reserved_ = true;
+  if (soc_e4 > reserve_soc_e4 + settings_.soc_hysteresis_e4 || reserve_soc_e4 == 0) {
+    reserved_ = false;
+  }
 }
 
 void SafetyGuard::apply_ramp(std::int32_t previous_power_w, GuardDecision& decision) const {
@@ -99,7 +122,13 @@ void SafetyGuard::apply_ramp(std::int32_t previous_power_w, GuardDecision& decis
 
 void SafetyGuard::apply_limits(const GuardInputs& in, GuardDecision& decision) const {
   if (decision.power_w > 0 && full_) decision = {.power_w = 0, .reason = Reason::kSocFull};
-  if (decision.power_w < 0 && empty_) decision = {.power_w = 0, .reason = Reason::kSocEmpty};
+  // Relief gives back what was just taken: it goes down to the bound, whatever was there before.
+  const bool is_relief = decision.reason == Reason::kQuarterHourPeak;
+  const std::int32_t soc_e4 = in.measurement.soc_e4;
+  const bool is_empty = is_relief ? soc_e4 <= settings_.soc_min_e4 : empty_;
+  const bool is_reserved = is_relief ? soc_e4 <= in.reserve_soc_e4 : reserved_;
+  if (decision.power_w < 0 && is_empty) decision = {.power_w = 0, .reason = Reason::kSocEmpty};
+  if (decision.power_w < 0 && is_reserved) decision = {.power_w = 0, .reason = Reason::kReserve};
   if (decision.power_w != 0 && in.cycle_budget_spent) {
     decision = {.power_w = 0, .reason = Reason::kCycleBudget};
   }
@@ -111,6 +140,24 @@ void SafetyGuard::apply_limits(const GuardInputs& in, GuardDecision& decision) c
       decision.power_w, -clamp_to<std::int32_t>(in.measurement.discharge_w_max, 0, INT32_MAX),
       clamp_to<std::int32_t>(in.measurement.charge_w_max, 0, INT32_MAX));
   if (limited != decision.power_w) decision = {.power_w = limited, .reason = Reason::kPowerLimit};
+  apply_site(in.site, decision);
+}
+
+/// Before the limits: a battery that is empty, or not allowed more, gives the house no relief.
+void SafetyGuard::apply_relief(const SiteRange& site, GuardDecision& decision) {
+  if (site.relief_w > 0 && decision.power_w > -site.relief_w) {
+    decision = {.power_w = -site.relief_w, .reason = Reason::kQuarterHourPeak};
+  }
+}
+
+/// After all others: it only cuts, and what cuts the furthest names the reason.
+void SafetyGuard::apply_site(const SiteRange& site, GuardDecision& decision) {
+  if (decision.power_w > site.charge_w_max) {
+    decision = {.power_w = site.charge_w_max, .reason = site.charge_reason};
+  }
+  if (decision.power_w < -site.discharge_w_max) {
+    decision = {.power_w = -site.discharge_w_max, .reason = site.discharge_reason};
+  }
 }
 
 }  // namespace bess

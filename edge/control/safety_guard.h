@@ -1,11 +1,15 @@
 // The guard between student and battery [SPEC 7]: pure integers, no memory but the SoC hysteresis.
-// Precedence: stop reasons (clock, link, alarm, temperature, off-grid, price) > SoC, cycle,
-// reversal and power limits > ramp > price thresholds > student. Every intervention carries its reason.
+// Precedence: stop reasons (clock, link, alarm, temperature, off-grid, supervision, price) > limits of
+// SoC, reserve, cycles, reversals, power and site > ramp > an operator's hold > price thresholds >
+// full charge > student. Every intervention carries its reason. A hold needs no price: its stop
+// reasons do not count meanwhile.
 #pragma once
 
 #include <cstdint>
 
 #include "edge/control/control_types.h"
+#include "edge/control/full_charge.h"
+#include "edge/control/site_range.h"
 #include "shared/price_thresholds.h"
 
 namespace bess {
@@ -20,6 +24,7 @@ struct GuardSettings {
   std::int32_t price_age_s_max = 240;
   std::int32_t temperature_min_deci_c = 0;
   std::int32_t temperature_max_deci_c = 500;
+  std::int32_t full_charge_power_w = 0;  ///< of a full charge that is due
 };
 
 struct GuardInputs {
@@ -36,6 +41,11 @@ struct GuardInputs {
   std::int64_t price_minute_utc_s = 0;
   std::int32_t price_centi_eur_per_mwh = 0;
   Action student_action = Action::kIdle;
+  bool held = false;                ///< an operator's hold is in force
+  std::int32_t held_power_w = 0;    ///< of that hold
+  std::int32_t reserve_soc_e4 = 0;  ///< kept for a black-out at this hour; 0 = none
+  FullChargeWish full_charge = FullChargeWish::kNone;
+  SiteRange site{};
 };
 
 /// Seconds since the row was computed, at the END of its minute.
@@ -50,17 +60,26 @@ class SafetyGuard {
   /// Power to order, and the reason when it is not the student's wish.
   GuardDecision decide(const GuardInputs& in);
 
+  /// The order in force (`previous_power_w`) held against the limits as they are now, between two
+  /// decisions: never more charging or discharging than it was, but for the site's relief.
+  [[nodiscard]] GuardDecision recheck(const GuardInputs& in) const;
+
  private:
   [[nodiscard]] bool find_stop_reason(const GuardInputs& in, Reason& reason) const;
   [[nodiscard]] bool find_price_stop_reason(const GuardInputs& in, Reason& reason) const;
+  [[nodiscard]] GuardDecision find_wish(const GuardInputs& in) const;
+  [[nodiscard]] GuardDecision apply_full_charge(const GuardInputs& in) const;
   GuardDecision apply_thresholds(const GuardInputs& in) const;
-  void update_soc_latches(std::int32_t soc_e4);
+  void update_soc_latches(std::int32_t soc_e4, std::int32_t reserve_soc_e4);
   void apply_ramp(std::int32_t previous_power_w, GuardDecision& decision) const;
   void apply_limits(const GuardInputs& in, GuardDecision& decision) const;
+  static void apply_relief(const SiteRange& site, GuardDecision& decision);
+  static void apply_site(const SiteRange& site, GuardDecision& decision);
 
   GuardSettings settings_;
-  bool full_ = false;   ///< charging is closed until SoC is below soc_max - hysteresis
-  bool empty_ = false;  ///< discharging is closed until SoC is above soc_min + hysteresis
+  bool full_ = false;      ///< charging is closed until SoC is below soc_max - hysteresis
+  bool empty_ = false;     ///< discharging is closed until SoC is above soc_min + hysteresis
+  bool reserved_ = false;  ///< the same above the reserve
 };
 
 }  // namespace bess

@@ -72,6 +72,9 @@ class Supervision {
     }
   }
 
+  /// A reading in the middle of a step, just before the order changes: nothing is judged by it.
+  void note_power(const Response& now) { response_.note_power(now); }
+
   /// How an order ended that was due, with the battery within reach.
   void on_ordered(std::int64_t utc_s, Status status) {
     // Flash that has had its writes of the day is a rule of ours, not a fault of the link.

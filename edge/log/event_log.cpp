@@ -27,9 +27,10 @@ bool append_line(int fd, const char* text, std::size_t size) {
 JournalLevel level_of(const CycleRecord& record) {
   const bool is_ordered_stop = record.reason == Reason::kStopRequested;
   const bool is_trouble = is_stop_reason(record.reason) && !is_ordered_stop;
-  const bool is_warning =
-      is_trouble || record.battery_status != Status::kOk || record.price.step_held;
-  return is_warning ? JournalLevel::kWarning : JournalLevel::kInfo;
+  const bool is_well = record.battery_status == Status::kOk && !record.price.step_held &&
+                       record.site.meter_status == Status::kOk &&
+                       record.site.limit_status == Status::kOk;
+  return is_trouble || !is_well ? JournalLevel::kWarning : JournalLevel::kInfo;
 }
 
 }  // namespace
@@ -131,6 +132,7 @@ void EventLog::keep(const CycleRecord& record) {
   const std::int64_t failures_before = totals_.disk_failures;
   char line[kLogLineBytes];
   const std::size_t size = format_log_line(record, line);
+  tell_of_hold(record);
   write_journal_line(level_of(record), {line, size});
   tell_of_trip(record);
   if (!append_to_ring(record)) ++totals_.disk_failures;
@@ -181,6 +183,14 @@ void EventLog::tell_of_disk(bool is_failing) {
       is_failing ? "the files of [state], [log] or [metrics] cannot be written, is the disk full "
                    "or read-only? The battery is driven on"
                  : "the files of [state], [log] and [metrics] are written again");
+}
+
+void EventLog::tell_of_hold(const CycleRecord& record) {
+  char text[256];
+  TextBuffer line(text);
+  if (!hold_lines_.add_line(record, identity_.control, line)) return;
+  write_journal_line(record.hold.unreadable ? JournalLevel::kWarning : JournalLevel::kNotice,
+                     line.view());
 }
 
 bool EventLog::publish_metrics() {

@@ -29,7 +29,7 @@ struct Places {
 };
 
 /// Between the groups run_status.cpp writes what is more than one field.
-enum class MetricGroup { kSite = 1, kBus, kRun };
+enum class MetricGroup { kSite = 1, kBus, kRun, kPeople, kConnection };
 
 using Output = Place Places::*;
 

@@ -55,6 +55,19 @@ void check_cycle(const HealthInputs& in, std::vector<std::string>& reasons) {
     reasons.push_back("WARN: prices: " + std::string(in.price_status));
   }
   if (in.price_step_held) reasons.push_back(held_row(in.held_eur_per_mwh));
+  if (in.hold_is_unreadable) {
+    reasons.emplace_back("WARN: the hold file is not readable and not followed: bess-edge hold");
+  }
+  if (in.meter_status != "ok") {
+    reasons.push_back("WARN: meter: " + std::string(in.meter_status));
+  }
+  if (in.limit_status == "timeout") {
+    reasons.emplace_back(
+        "WARN: the outside limit has lapsed or was never set: 0 W until a new one");
+  } else if (in.limit_status != "ok") {
+    reasons.emplace_back(
+        "WARN: the file of [limits] cannot be read or understood: 0 W until it can");
+  }
 }
 
 }  // namespace

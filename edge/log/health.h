@@ -23,12 +23,15 @@ struct HealthInputs {
   std::string_view battery_status;
   std::string_view price_status;
   bool battery_warns = false;
+  std::string_view meter_status = "ok";  ///< also where there is no meter
+  std::string_view limit_status = "ok";
   bool disk_is_slow = false;
   bool disk_is_failing = false;
   std::int64_t cycles_behind = 0;  ///< cycles that the log has and the status has not
   bool disk_is_full = false;       ///< of the state folder, or it is read-only
   bool price_step_held = false;
   double held_eur_per_mwh = 0;  ///< price of the row that waits for the next
+  bool hold_is_unreadable = false;
 };
 
 enum class HealthLevel { kOk = 0, kDegraded = 1, kNotRunning = 3 };  ///< also the exit codes

@@ -178,6 +178,8 @@ void format_prometheus(const RunIdentity& identity, const RunTotals& totals, Tex
             "From the begin of the decision to the order read back, last cycle.",
             1e-6 * last.decision_us + 1e-6 * last.write_us);
   add_fields(MetricGroup::kRun, totals, text);
+  add_fields(MetricGroup::kPeople, totals, text);
+  add_fields(MetricGroup::kConnection, totals, text);
   add_model(identity, text);
 }
 

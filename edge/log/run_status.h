@@ -45,8 +45,8 @@ struct RunTotals {
   void count(const CycleRecord& record);
 };
 
-inline constexpr std::size_t kStatusBytes = 4'096;
-inline constexpr std::size_t kMetricsBytes = 8'192;
+inline constexpr std::size_t kStatusBytes = 6'144;
+inline constexpr std::size_t kMetricsBytes = 12'288;
 
 void format_status_json(const RunIdentity& identity, const RunTotals& totals,
                         std::int64_t written_monotonic_ns, TextBuffer& json);

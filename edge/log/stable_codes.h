@@ -56,7 +56,15 @@ struct StableCodes<Reason> {
                                      Reason::kNoAnswer,
                                      Reason::kCapacity,
                                      Reason::kSocJump,
-                                     Reason::kReversalCap};
+                                     Reason::kReversalCap,
+                                     Reason::kHeld,
+                                     Reason::kReserve,
+                                     Reason::kFullCharge,
+                                     Reason::kOutsideLimit,
+                                     Reason::kMeterLost,
+                                     Reason::kImportLimit,
+                                     Reason::kExportLimit,
+                                     Reason::kQuarterHourPeak};
   static constexpr auto kNameOf = reason_name;
 };
 

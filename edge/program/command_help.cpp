@@ -13,6 +13,8 @@ constexpr const char* kRunHelp =
   bess-edge clear [--config FILE] --yes                 drive again after the supervision tripped
   bess-edge status [--config FILE] ...                  how the running controller is
   bess-edge log [--config FILE] ...                     what was decided, and why
+  bess-edge hold WATTS --for TIME [--config FILE]       a power until an end, whatever the price
+  bess-edge limit [--config FILE] ...                   caps the power for a while
   bess-edge signature                                   one number for what this build decides
   bess-edge COMMAND --help                              more on one of them
 
@@ -86,12 +88,13 @@ bad, or --yes is missing
 constexpr const char* kStatusHelp =
     R"(bess-edge status: how the running controller is; touches neither battery nor controller
 
-  bess-edge status [--config FILE] [--json | --prometheus] [--follow]
+  bess-edge status [--config FILE] [--json | --prometheus] [--follow] [--no-lock]
 
   --config FILE  the controller's settings; default /etc/bess/edge.toml
   --json         one JSON object with "health"
   --prometheus   the metrics as the node exporter's textfile collector takes them
   --follow       again every two seconds, until Ctrl-C
+  --no-lock      whether it runs is told by its process number alone: its lock is not even tried
 
 Health is ok, degraded (with the reasons) or not running. A status older than two cycles is a WARN,
 older than four CRITICAL.
@@ -130,6 +133,51 @@ different ones do not decide the same. edge/generated/decision_signature.txt hol
 Exit codes: 0 done   2 the command line is bad
 )";
 
+constexpr const char* kHoldHelp =
+    R"(bess-edge hold: so many watts until an end, whatever the price
+
+  bess-edge hold [--config FILE] WATTS --for DURATION
+  bess-edge hold [--config FILE] --release
+
+  WATTS           power to hold: positive charges, negative discharges, 0 rests; up to [battery] power_w
+  --for DURATION  how long, 2m to 7d: 90m, 2h, 1d12h
+  --release       end the hold before its time
+  --config FILE   the controller's settings; default /etc/bess/edge.toml
+
+The running controller follows from its next cycle on, restarts included, and trades again when the end has
+passed. A hold stands for the student and the price thresholds, and needs no price. Everything else of the
+guard stays stronger: stop reasons, SoC bounds, reserve, cycles, reversals, power and connection limits,
+ramp. A new hold replaces the one before. It lies in the [state] folder: run it as the controller's user, or as root.
+Exit codes: 0 done   1 refused: the line says why   2 the command line is bad
+
+  bess-edge hold 0 --for 30m
+  bess-edge hold -2000 --for 2h
+  bess-edge hold --release
+)";
+
+constexpr const char* kLimitHelp =
+    R"(bess-edge limit: caps the battery's power for a while, whatever prices and student say
+
+  bess-edge limit [--config FILE] [--charge W] [--discharge W] --for DURATION
+  bess-edge limit [--config FILE] --clear
+
+  --config FILE   the controller's settings, with [limits] file; default /etc/bess/edge.toml
+  --charge W      no order charges with more; 0 or more; default: any
+  --discharge W   no order discharges with more
+  --for DURATION  then the limit has lapsed: 90s, 15m, 1h30m, up to 7d
+  --clear         takes the limit away
+
+Writes one line, "charge_w discharge_w utc_until", into the file of [limits], in place of the one before; any
+program may write it itself, beside and renamed. A running controller looks every few seconds and cuts an order
+that is too large at once. After its time the limit is gone, or with on_timeout = "idle" the battery is left at
+0 W until a new one comes: then --clear does that too.
+Exit codes: 0 done   1 no [limits], or the file cannot be written   2 the command line is bad
+
+  bess-edge limit --charge 0 --for 15m
+  bess-edge limit --charge 2000 --discharge 1000 --for 2h
+  bess-edge limit --clear
+)";
+
 }  // namespace
 
 const char* help_of(SubCommand command) {
@@ -146,6 +194,10 @@ const char* help_of(SubCommand command) {
       return kLogHelp;
     case SubCommand::kSignature:
       return kSignatureHelp;
+    case SubCommand::kHold:
+      return kHoldHelp;
+    case SubCommand::kLimit:
+      return kLimitHelp;
     case SubCommand::kRun:
     case SubCommand::kCheck:
       break;

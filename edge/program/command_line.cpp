@@ -9,6 +9,7 @@
 
 #include "edge/control/policy.h"
 #include "edge/program/command_help.h"
+#include "edge/program/duration_text.h"
 #include "shared/utc_text.h"
 
 namespace bess {
@@ -25,9 +26,14 @@ struct UtcInstant {
   std::int64_t CommandLine::*utc_s;
 };
 
-/// What an option sets: a switch, a count above 0, a text, or an instant.
+struct Duration {
+  std::int64_t CommandLine::*seconds;
+  std::string_view shortest;
+};
+
+/// What an option sets: a switch, a count above 0, a text, an instant, or how long.
 using Target = std::variant<bool CommandLine::*, std::int64_t CommandLine::*,
-                            std::string CommandLine::*, UtcInstant, SubCommand>;
+                            std::string CommandLine::*, UtcInstant, Duration, SubCommand>;
 
 struct Option {
   SubCommand command;
@@ -51,10 +57,19 @@ constexpr Option kOptions[] = {
     {SubCommand::kStatus, "--json", &CommandLine::json},
     {SubCommand::kStatus, "--prometheus", &CommandLine::prometheus},
     {SubCommand::kStatus, "--follow", &CommandLine::follow},
+    {SubCommand::kStatus, "--no-lock", &CommandLine::no_lock},
     {SubCommand::kLog, "--config", &CommandLine::config_path},
     {SubCommand::kLog, "--csv", &CommandLine::csv},
     {SubCommand::kLog, "--last", &CommandLine::last},
     {SubCommand::kLog, "--since", UtcInstant{&CommandLine::since_utc_s}},
+    {SubCommand::kHold, "--config", &CommandLine::config_path},
+    {SubCommand::kHold, "--for", Duration{&CommandLine::for_s, "2m"}},
+    {SubCommand::kHold, "--release", &CommandLine::release_hold},
+    {SubCommand::kLimit, "--config", &CommandLine::config_path},
+    {SubCommand::kLimit, "--charge", &CommandLine::charge_w},
+    {SubCommand::kLimit, "--discharge", &CommandLine::discharge_w},
+    {SubCommand::kLimit, "--for", Duration{&CommandLine::for_s, "1s"}},
+    {SubCommand::kLimit, "--clear", &CommandLine::clear},
 };
 
 const Option* find_option(SubCommand command, std::string_view name) {
@@ -85,8 +100,36 @@ bool store(const Option& option, std::string_view value, CommandLine& line) {
     usage_error(std::string(option.name) + " needs an instant such as 2026-11-21T06:00:00Z, not ",
                 value);
     return false;
+  } else if (const auto* duration = std::get_if<Duration>(&option.target)) {
+    std::int64_t shortest_s = 0;
+    static_cast<void>(parse_duration(duration->shortest, shortest_s));
+    std::int64_t& seconds = line.*(duration->seconds);
+    if (parse_duration(value, seconds) && seconds >= shortest_s) return true;
+    usage_error(std::string(option.name) + " needs " + std::string(duration->shortest) +
+                    " to 7d, such as 2h or 1h30m, not ",
+                value);
+    return false;
   }
   return true;
+}
+
+/// The power to hold stands alone, and a minus before it begins no option.
+bool take_hold_power(std::string_view argument, CommandLine& line) {
+  if (line.command != SubCommand::kHold || line.hold_power_w.has_value()) return false;
+  if (argument.starts_with('+')) argument.remove_prefix(1);
+  std::int64_t power_w = 0;
+  const char* const last = argument.data() + argument.size();
+  const auto [end, error] = std::from_chars(argument.data(), last, power_w);
+  if (error != std::errc{} || end != last) return false;
+  line.hold_power_w = power_w;
+  return true;
+}
+
+/// Either a power and how long, or the end of what is held.
+bool is_complete_hold(const CommandLine& line) {
+  const bool is_order = line.hold_power_w.has_value() && line.for_s > 0;
+  const bool is_partial = line.hold_power_w.has_value() || line.for_s > 0;
+  return line.release_hold ? !is_partial : is_order;
 }
 
 /// True when the option is complete without a value.
@@ -137,8 +180,12 @@ CommandLineResult parse_command_line(int argc, char** argv, CommandLine& line) {
       line.command = SubCommand::kClear;
     } else if (name == "log") {
       line.command = SubCommand::kLog;
+    } else if (name == "hold") {
+      line.command = SubCommand::kHold;
     } else if (name == "signature") {
       line.command = SubCommand::kSignature;
+    } else if (name == "limit") {
+      line.command = SubCommand::kLimit;
     } else if (name != "run") {
       return usage_error("unknown command ", name);
     }
@@ -146,6 +193,7 @@ CommandLineResult parse_command_line(int argc, char** argv, CommandLine& line) {
   const SubCommand command = line.command;  // --check is an option of run and changes line.command
   for (; i < argc; ++i) {
     if (print_general(argv[i], command)) return CommandLineResult::kExitOk;
+    if (take_hold_power(argv[i], line)) continue;
     const Option* const option = find_option(command, argv[i]);
     if (option == nullptr) return usage_error("unknown option ", argv[i]);
     if (set_switch(*option, line)) continue;
@@ -154,7 +202,13 @@ CommandLineResult parse_command_line(int argc, char** argv, CommandLine& line) {
   }
   if (line.json && line.prometheus)
     return usage_error("--json and --prometheus exclude each other", "");
+  if (line.command == SubCommand::kHold && !is_complete_hold(line)) {
+    return usage_error("hold needs a power in W and --for DURATION, or --release alone", "");
+  }
   if (line.command == SubCommand::kSignature) return CommandLineResult::kGo;
+  if (line.command == SubCommand::kLimit && line.clear != (line.for_s == 0)) {
+    return usage_error("limit needs either --for DURATION or --clear", "");
+  }
   return settle_config(line);
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace bess {
@@ -16,7 +17,9 @@ enum class SubCommand : std::uint8_t {
   kStatus,
   kLog,
   kSignature,
-  kClear
+  kClear,
+  kHold,
+  kLimit
 };
 
 struct CommandLine {
@@ -29,9 +32,16 @@ struct CommandLine {
   bool json = false;
   bool prometheus = false;
   bool follow = false;
+  bool no_lock = false;
   bool csv = false;
   std::int64_t last = -1;                ///< -1 = all
   std::int64_t since_utc_s = INT64_MIN;  ///< INT64_MIN = all
+  std::optional<std::int64_t> hold_power_w;
+  bool release_hold = false;
+  std::int64_t for_s = 0;  ///< of hold and limit; 0 = not given
+  std::string charge_w;    ///< of limit; empty = any
+  std::string discharge_w;
+  bool clear = false;
 };
 
 enum class CommandLineResult { kGo, kExitOk, kExitUsage };

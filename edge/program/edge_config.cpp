@@ -1,18 +1,16 @@
 #include "edge/program/edge_config.h"
 
-#include <arpa/inet.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
 
 #include "edge/prices/http_secrets.h"
+#include "edge/program/link_config.h"
+#include "edge/program/people_config.h"
 #include "edge/program/price_transport.h"
 #include "edge/registers/codec.h"
-#include "edge/registers/map_file.h"
 #include "shared/host/toml_reader.h"
 #include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
@@ -22,22 +20,6 @@ namespace {
 
 TomlTable section(TomlTable& root, std::string_view name) {
   return {root.table(name), root.file(), std::string("[").append(name).append("]"), root.error()};
-}
-
-bool is_numeric_ipv4(const char* host) {
-  in_addr address{};
-  return inet_pton(AF_INET, host, &address) == 1;
-}
-
-void check_link(TomlTable& table, const BatteryLinkSettings& link) {
-  if (!is_serial_speed(link.baud)) {
-    table.fail("baud", "must be a speed of serial lines such as 9600, 19200 or 115200");
-  }
-  if (!link.rtu && !is_numeric_ipv4(link.host.c_str())) {
-    table.fail("host",
-               "must be a numeric IPv4 address such as \"192.168.1.20\": a name would "
-               "depend on the resolver at every reconnect");
-  }
 }
 
 /// The battery must report the configured capacity, else the address leads to another one.
@@ -57,42 +39,19 @@ void set_supervision(EdgeConfig& config) {
   SupervisionSettings& supervision = config.control.supervision;
   supervision.response = {.band = config.map.response,
                           .power_w = config.control.guard.power_w,
-                          .capacity_wh = config.capacity_wh,
-                          .soc_min_e4 = config.control.guard.soc_min_e4};
+                          .capacity_wh = config.capacity_wh};
   const std::int64_t capacity_wh = config.capacity_wh;
   const std::int64_t tolerance_wh = capacity_wh * config.capacity_tolerance_percent / 100;
   supervision.capacity_wh_min = static_cast<std::int32_t>(capacity_wh - tolerance_wh);
   supervision.capacity_wh_max = static_cast<std::int32_t>(capacity_wh + tolerance_wh);
 }
 
-/// What the operator does not say about the link is as the device's maker ships it.
-void complete_link(TomlTable& table, EdgeConfig& config) {
-  if (!table.has("port")) config.link.port = config.map.port;
-  if (!table.has("baud")) config.link.baud = config.map.baud;
-  if (!table.has("parity")) config.link.parity = config.map.parity;
-  if (!table.has("stop_bits")) config.link.stop_bits = config.map.stop_bits;
-  TomlTable units(table.table("units"), table.file(), "[battery] units", table.error());
-  for (UnitGroup& group : config.map.unit_groups)
-    units.integer(group.name.view(), group.unit, 0, 255);
-  units.finish();
-}
-
 void read_battery(TomlTable table, EdgeConfig& config) {
   FixedText<255> map_file("maps/alphaess.toml");
   RegisterName variant;
-  int transport = 0;
-  int parity = 0;
   table.text("map", map_file);
   table.text("variant", variant);
-  table.choice("transport", transport, {"tcp", "rtu"});
-  table.text("host", config.link.host);
-  table.integer("port", config.link.port, 1, 65'535);
-  table.text("device", config.link.device);
-  table.integer("baud", config.link.baud, 1'200, 230'400);
-  table.choice("parity", parity, {"none", "even", "odd"});
-  table.integer("stop_bits", config.link.stop_bits, 1, 2);
-  table.integer("unit", config.link.unit, 0, 255);
-  table.integer("response_timeout_ms", config.link.response_timeout_ms, 10, 30'000);
+  read_link(table, config.link);
   table.integer("power_w", config.control.guard.power_w, 1, 100'000'000);
   table.integer("capacity_wh", config.capacity_wh, 1, 1'000'000'000);
   table.integer("capacity_tolerance_percent", config.capacity_tolerance_percent, 0, 100);
@@ -103,21 +62,14 @@ void read_battery(TomlTable table, EdgeConfig& config) {
   int on_other_master = 0;
   table.choice("on_other_master", on_other_master, {"yield", "insist"});
   config.control.supervision.yields_to_other_master = on_other_master == 0;
-  static_cast<void>(table.table("units"));
-  config.link.rtu = transport == 1;
-  config.link.parity = static_cast<Parity>(parity);
+  read_full_charge(table, config.control);
   table.finish();
   check_link(table, config.link);
-  if (!table.ok()) return;
-  const auto folder = std::filesystem::path(table.file()).parent_path();
-  const std::string map_path = (folder / map_file.c_str()).string();
-  if (!config.map_path.assign(map_path)) table.fail("map", "is too long");
-  if (access(map_path.c_str(), R_OK) != 0) {
-    return table.fail("map", "= " + map_path + " cannot be read: " + std::strerror(errno) +
-                                 "; the installed maps lie in share/bess/maps");
+  if (!load_linked_map(table, map_file.view(), variant.view(), config.link, config.map,
+                       config.map_path)) {
+    return;
   }
-  if (!load_register_map(map_path, variant.view(), config.map, table.error())) return;
-  complete_link(table, config);
+  if (config.map.is_meter) return table.fail("map", "is a meter's: it belongs into [meter]");
   expect_capacity(config);
 }
 
@@ -244,6 +196,7 @@ void read_guard(TomlTable table, EdgeConfig& config) {
   table.integer("reversals_per_hour_max", config.control.reversals_per_hour_max, 0, kStepsPerHour);
   table.integer("order_deadline_s", config.control.order_deadline_s, 1, kSecondsPerStep);
   table.boolean("require_synchronised_clock", config.require_synchronised_clock);
+  read_start_spread(table, config);
   table.finish();
   if (!guard.thresholds.are_ordered()) {
     table.fail("low_price_eur_per_mwh", "must be below high_price_eur_per_mwh");
@@ -326,10 +279,17 @@ bool load_edge_config(const std::string& path, EdgeConfig& config, std::string& 
   check_battery_against_map(section(root, "battery"), config);
   read_price(section(root, "price"), config);
   read_guard(section(root, "guard"), config);
+  read_reserve(root, config.control);
+  TomlTable battery = section(root, "battery");
+  check_full_charge(battery, config.control);
   read_state(section(root, "state"), config);
   read_log(section(root, "log"), config);
   read_metrics(section(root, "metrics"), config);
   read_simulation(section(root, "simulation"), config.clock);
+  read_meter(section(root, "meter"), {config.link, config.map}, config.site);
+  read_limits(section(root, "limits"), config.site);
+  static_cast<void>(
+      root.table("notify"));  // bess-notify's: a slip there must not stop the controller
   root.finish();
   config.control.price_wait_s = config.price.wait_s;
   set_supervision(config);

@@ -11,6 +11,7 @@
 #include "edge/log/event_log.h"
 #include "edge/prices/history_pages.h"
 #include "edge/prices/price_feed.h"
+#include "edge/program/site_config.h"
 #include "edge/registers/register_map.h"
 #include "shared/fixed_text.h"
 #include "shared/scaled_clock.h"
@@ -40,6 +41,7 @@ struct EdgeConfig {
   std::int32_t start_timeout_s = 10;    ///< wall time to reach the battery at start
   bool start_without_battery = false;   ///< true: keep trying in safe mode instead of exiting
   bool require_synchronised_clock = true;
+  SiteConfig site;
 };
 
 /// Reads the file and the register map it names. False with one line ("file:line: what, and the

@@ -10,9 +10,12 @@
 #include "edge/log/journal.h"
 #include "edge/prices/http_secrets.h"
 #include "edge/program/commission_file.h"
+#include "edge/program/hold_file.h"
 #include "edge/program/level_note.h"
+#include "edge/program/people_config.h"
 #include "edge/program/price_transport.h"
 #include "edge/program/threshold_note.h"
+#include "edge/program/wishes_note.h"
 #include "edge/registers/codec.h"
 #include "shared/utc_text.h"
 
@@ -224,6 +227,9 @@ bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& p
   std::fflush(stdout);
   print_thresholds(config);
   print_transport(config);
+  const std::int64_t now_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
+  const Hold hold = read_hold(hold_path(config).c_str());
+  std::fputs(wishes_note(config.control, hold, now_utc_s).c_str(), stdout);
   std::fflush(stdout);
   const bool battery_ok = identify(config, battery, true) == Status::kOk;
   print_orders(config, battery);

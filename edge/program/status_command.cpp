@@ -1,8 +1,10 @@
 #include "edge/program/status_command.h"
 
+#include <signal.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
 #include <fstream>
 #include <sstream>
@@ -25,7 +27,9 @@ using B = BatteryMeasurement;
 using P = PriceReport;
 using C = BatteryCounters;
 using L = PriceLevel;
+using S = SiteReport;
 using T = RunTotals;
+using H = HoldReport;
 
 bool read_text(const char* path, std::string& text) {
   const std::ifstream file(path);
@@ -87,19 +91,27 @@ std::int64_t cycles_behind(const EdgeConfig& config, JsonValue status) {
   return (newest.utc_s - published_utc_s) / kSecondsPerStep;
 }
 
-/// Who may not open the lock asks for the process that the status names instead: its age shows all the same.
-int controller_of(const EdgeConfig& config, JsonValue status) {
-  const int holder = holder_of(state_lock_path(config).c_str());
-  if (holder != kHolderHidden) return holder;
-  const auto named = static_cast<int>(whole(status["pid"]));
+/// The process that wrote the status, while it lives; 0 = none. A status of before the last boot is nobody's,
+/// nor is a number that another program has by now, where that can be seen.
+int living_writer_of(JsonValue status) {
+  const auto pid = static_cast<int>(whole(status["pid"]));
+  if (pid <= 0 || age_ms_of(status) < 0) return 0;
+  if (kill(pid, 0) != 0 && errno != EPERM) return 0;
   std::string name;
-  const bool is_alive = read_text(("/proc/" + std::to_string(named) + "/comm").c_str(), name) &&
-                        name == "bess-edge\n";
-  return is_alive ? named : 0;
+  const bool is_another =
+      read_text(("/proc/" + std::to_string(pid) + "/comm").c_str(), name) && name != "bess-edge\n";
+  return is_another ? 0 : pid;
 }
 
-Health health_of(const EdgeConfig& config, JsonValue status) {
-  const int holder = controller_of(config, status);
+/// Who may not open the lock, or will not, asks for the process that the status names instead: its age
+/// shows all the same.
+int controller_of(const EdgeConfig& config, JsonValue status, bool no_lock) {
+  const int holder = no_lock ? kHolderHidden : holder_of(state_lock_path(config).c_str());
+  return holder == kHolderHidden ? living_writer_of(status) : holder;
+}
+
+Health health_of(const EdgeConfig& config, JsonValue status, bool no_lock) {
+  const int holder = controller_of(config, status, no_lock);
   HealthInputs in;
   in.is_running = holder != 0;
   in.disk_is_full = disk_is_full(config);
@@ -112,6 +124,8 @@ Health health_of(const EdgeConfig& config, JsonValue status) {
   in.reason = text_of(field<&R::reason>(status));
   in.battery_status = text_of(field<&R::battery_status>(status));
   in.price_status = text_of(field<&R::price, &P::status>(status));
+  in.meter_status = text_of(field<&R::site, &S::meter_status>(status));
+  in.limit_status = text_of(field<&R::site, &S::limit_status>(status));
   in.unanswered_orders = whole(field<&R::unanswered_orders>(status));
   in.weak_answers = whole(field<&R::weak_answers>(status));
   in.trip = text_of(field<&R::trip, &Trip::reason>(status));
@@ -120,6 +134,7 @@ Health health_of(const EdgeConfig& config, JsonValue status) {
   in.disk_is_failing = is_true(field<&T::disk_is_failing>(status));
   in.price_step_held = is_true(field<&R::price, &P::step_held>(status));
   in.held_eur_per_mwh = number(field<&R::price, &P::held_centi_eur_per_mwh>(status)) / kCentiPerEur;
+  in.hold_is_unreadable = is_true(field<&R::hold, &H::unreadable>(status));
   // Of an earlier run: the disk was full at this one's start, and the log is all that it could write.
   if (in.is_running && in.cycles > 0) in.cycles_behind = cycles_behind(config, status);
   return assess_health(in);
@@ -147,6 +162,29 @@ void print_level(JsonValue s) {
   }
 }
 
+/// What people asked for: a hold with its end, the reserve of this hour, full charges.
+void print_wishes(JsonValue s) {
+  if (is_true(field<&R::hold, &H::held>(s))) {
+    std::printf("hold       %lld W until %s\n", whole(field<&R::hold, &H::power_w>(s)),
+                text_of(field<&R::hold, &H::until_utc_s>(s)));
+  }
+  const double reserve_e4 = number(field<&R::reserve_soc_e4>(s));
+  if (reserve_e4 > 0) std::printf("reserve    SoC %.1f %% at this hour\n", reserve_e4 / 100);
+  std::printf("full       %lld days since the last full charge\n",
+              whole(field<&R::days_since_full>(s)));
+}
+
+/// Nothing where there is no meter.
+void print_site(JsonValue s) {
+  if (!is_true(field<&R::site, &S::has_grid_power>(s))) return;
+  const double grid_w = number(field<&R::site, &S::grid_power_w>(s));
+  std::printf(
+      "grid       %.0f W (import is positive), house %.0f W, %lld Wh imported in this "
+      "quarter-hour\n",
+      grid_w, grid_w - number(field<&R::measurement, &B::power_w>(s)),
+      whole(field<&R::site, &S::quarter_hour_import_wh>(s)));
+}
+
 void print_last_cycle(JsonValue s) {
   std::printf("state      %s at %s, cycle %lld\n", text_of(field<&R::mode>(s)),
               text_of(field<&R::utc_s>(s)), whole(field<&R::cycle>(s)));
@@ -170,8 +208,10 @@ void print_last_cycle(JsonValue s) {
                 number(field<&R::price, &P::held_centi_eur_per_mwh>(s)) / kCentiPerEur);
   }
   print_level(s);
+  print_site(s);
   std::printf("order      %.0f W, reason %s\n", number(field<&R::ordered_power_w>(s)),
               text_of(field<&R::reason>(s)));
+  print_wishes(s);
 }
 
 void print_counters(JsonValue s) {
@@ -246,7 +286,7 @@ bool print_metrics(const EdgeConfig& config) {
 
 int print_once(const CommandLine& command_line, const EdgeConfig& config) {
   Json status = read_status(config);
-  const Health health = health_of(config, status.value());
+  const Health health = health_of(config, status.value(), command_line.no_lock);
   if (command_line.prometheus) {
     if (!print_metrics(config)) return 1;
   } else if (command_line.json) {

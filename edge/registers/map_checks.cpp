@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "edge/registers/codec.h"
+#include "edge/registers/map_file.h"
 #include "edge/registers/map_reader.h"
 
 namespace bess {
@@ -12,13 +13,13 @@ bool contains(const auto& list, std::int8_t point) {
   return std::find(list.begin(), list.end(), point) != list.end();
 }
 
-/// A point named battery_power is the measured power unless the map says otherwise.
-void complete_power(RegisterMap& map) {
-  const int point = find_point(map, "battery_power");
-  if (!map.measured_power.empty() || point < 0) return;
+/// A point of that name is the power unless the map says otherwise.
+void complete_power(RegisterMap& map, std::string_view name, StaticVector<PowerCase, 4>& cases) {
+  const int point = find_point(map, name);
+  if (!cases.empty() || point < 0) return;
   PowerCase always;
   always.terms.push_back({.point = static_cast<std::int8_t>(point)});
-  map.measured_power.push_back(always);
+  cases.push_back(always);
 }
 
 /// Everything that state and commands look at is read every cycle, whether listed or not.
@@ -174,6 +175,15 @@ void check_models(TomlTable& root, const RegisterMap& map) {
   }
 }
 
+/// A meter is its grid power.
+void check_meter(TomlTable& root, RegisterMap& map) {
+  if (!measure_grid_power(map)) {
+    root.fail("point",
+              "\"grid_power\" is missing: it is what a meter is for (or grid_power in [state])");
+  }
+  check_models(root, map);
+}
+
 /// Flash that has a budget must still be able to release when the budget is used up.
 void check_reserve(TomlTable& root, const RegisterMap& map) {
   int worn = 0;
@@ -204,10 +214,17 @@ void prove_power_range(TomlTable& root, const RegisterMap& map) {
 
 }  // namespace
 
+bool measure_grid_power(RegisterMap& map) {
+  measure_power(map, map.grid_power);
+  return !map.grid_power.empty();
+}
+
 void check_map(TomlTable& root, RegisterMap& map) {
   if (!root.ok()) return;
-  complete_power(map);
+  complete_power(map, "battery_power", map.measured_power);
+  complete_power(map, "grid_power", map.grid_power);
   complete_measure(map);
+  if (map.is_meter) return check_meter(root, map);
   for (const auto check : {check_roles, check_optional, check_watchdog, check_saved, check_models,
                            check_reserve, prove_power_range}) {
     if (root.ok()) check(root, map);

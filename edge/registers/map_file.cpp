@@ -89,6 +89,14 @@ bool list_variants(const TomlValue& document, const std::string& path,
   return root.ok();
 }
 
+/// What only a battery has: to a meter these sections are unknown.
+void read_map_control(TomlTable& root, const MapDefaults& defaults, RegisterMap& map) {
+  for (const std::string_view key : {"power", "watchdog", "command"}) root.require(key);
+  read_map_limits(root, map);
+  read_map_watchdog(root, map);
+  read_map_commands(root, defaults, map);
+}
+
 /// The map with one of its variants laid upon it; -1 = the file has none.
 bool read_map(const std::string& path, TomlValue document, int variant, RegisterMap& map,
               std::string& error) {
@@ -108,19 +116,15 @@ bool read_map(const std::string& path, TomlValue document, int variant, Register
     overlay(members, *chosen.as<TomlMembers>());
   }
   TomlTable root(&document, path, "", error);
-  for (const std::string_view key : {"map", "power", "watchdog", "state", "point", "command"}) {
-    root.require(key);
-  }
+  for (const std::string_view key : {"map", "state", "point"}) root.require(key);
   MapDefaults defaults;
   const RegisterName variant_name = map.variant;
   read_map_header(root, map, defaults);
   map.variant = variant_name;
   read_map_points(root, defaults, map);
-  read_map_limits(root, map);
-  read_map_watchdog(root, map);
   read_map_state(root, map);
   read_map_identity(root, map);
-  read_map_commands(root, defaults, map);
+  if (!map.is_meter) read_map_control(root, defaults, map);
   read_map_policies(root, map);
   read_map_simulator(root, map);
   root.finish();

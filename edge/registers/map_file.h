@@ -13,4 +13,7 @@ namespace bess {
 bool load_register_map(const std::string& path, std::string_view variant, RegisterMap& map,
                        std::string& error);
 
+/// From now on the map's grid point is read with its measurements: false when it has none.
+bool measure_grid_power(RegisterMap& map);
+
 }  // namespace bess

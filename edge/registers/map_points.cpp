@@ -216,6 +216,9 @@ void read_map_header(TomlTable& root, RegisterMap& map, MapDefaults& defaults) {
   FixedText<255> description;  // it and one_client tell the reader of a map, not the program
   bool one_client = false;
   int parity = 0;
+  int kind = 0;
+  table.choice("kind", kind, {"battery", "meter"});
+  map.is_meter = kind == 1;
   table.text("name", map.name);
   table.text("description", description);
   table.integer("unit", map.unit, 0, 255);

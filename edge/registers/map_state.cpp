@@ -149,6 +149,7 @@ void read_map_state(TomlTable& root, RegisterMap& map) {
   });
   read_power_cases(state, "measured_power", map, map.measured_power);
   read_power_cases(state, "order_power", map, map.order_power);
+  read_power_cases(state, "grid_power", map, map.grid_power);
   read_alive(state, map);
   state.finish();
 }

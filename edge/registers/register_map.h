@@ -71,6 +71,7 @@ struct SimulatorHints {
 struct RegisterMap {
   RegisterName name;
   RegisterName variant;
+  bool is_meter = false;  ///< of the grid's power alone: nothing in it is ever written
   std::int32_t unit = 1;
   StaticVector<UnitGroup, 4> unit_groups;
   StaticVector<std::uint16_t, 6> models;       ///< SunSpec model ids that points refer to
@@ -105,6 +106,7 @@ struct RegisterMap {
   AliveCounter alive;
   StaticVector<PowerCase, 4> measured_power;  ///< the first case that holds counts
   StaticVector<PowerCase, 4> order_power;
+  StaticVector<PowerCase, 4> grid_power;  ///< import is positive; a battery map's is read on demand
   StaticVector<IdentityCheck, 8> identity;
   StaticVector<Condition, 4> precondition;  ///< must hold before the first order
   StaticVector<SavedPoint, 6> saved;

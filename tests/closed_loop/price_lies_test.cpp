@@ -75,7 +75,7 @@ TEST(PriceLies, ARestartDoesNotStartTheHourAgain) {
     loop.take_over(before);
     for (const CycleRecord& record : liar.run(loop, 5)) records.push_back(record);
     before.reversals = records.back().reversals;
-    before.reversals_utc_s = records.back().utc_s;
+    before.utc_s = records.back().utc_s;
   }
   EXPECT_EQ(most_reversals_in_an_hour(records), 6);
 }

@@ -13,6 +13,7 @@
 #include "edge/control/control_loop.h"
 #include "shared/utc_text.h"
 #include "tests/support/image_device.h"
+#include "tools/battery_sim/house_load.h"
 
 namespace bess {
 namespace {
@@ -59,11 +60,29 @@ struct PromptPrices {
   std::function<std::int32_t(std::int64_t)> price = [](std::int64_t) { return 0; };
 };
 
+/// A house behind the same meter.
+struct HouseMeter {
+  Status read(std::int32_t& grid_power_w) {
+    device.battery.advance(device.utc_ns());
+    const double house_w = house.power_w(device.utc_ns() / kNanosecondsPerSecond);
+    grid_power_w = static_cast<std::int32_t>(std::lround(house_w + device.battery.power_w()));
+    return Status::kOk;
+  }
+  SimulatedDevice& device;
+  HouseLoad house = HouseLoad::daily(3);
+};
+
+struct NoOutsideLimits {
+  static Status read(OutsideLimit&, bool&) { return Status::kOk; }
+};
+
 class SupervisedSite {
  public:
-  using Loop = ControlLoop<DeviceDriver, PromptPrices, MovedClock>;
+  using Site = SiteLimits<HouseMeter, NoOutsideLimits>;
+  using Loop = ControlLoop<DeviceDriver, PromptPrices, MovedClock, Site>;
 
-  explicit SupervisedSite(const MapVariant& variant, ControlSettings settings = {})
+  explicit SupervisedSite(const MapVariant& variant, ControlSettings settings = {},
+                          const SiteSettings& site = {})
       : device(variant.map, variant.variant), clock(device) {
     settings.control = true;
     settings.order_duration_s = device.test.map.watchdog.duration_s;
@@ -71,7 +90,8 @@ class SupervisedSite {
     settings.supervision.response.band = device.test.map.response;
     settings.supervision.capacity_wh_min = 6'000;
     settings.supervision.capacity_wh_max = 10'000;
-    loop = std::make_unique<Loop>(settings, *device.test.driver, prices, clock);
+    loop = std::make_unique<Loop>(settings, *device.test.driver, prices, clock,
+                                  Site(site, &meter, nullptr));
   }
 
   CycleRecord cycle() {
@@ -91,6 +111,7 @@ class SupervisedSite {
   }
 
   SimulatedDevice device;
+  HouseMeter meter{device};
   MovedClock clock;
   PromptPrices prices;
   std::unique_ptr<Loop> loop;
@@ -233,6 +254,50 @@ TEST_P(EveryMapSupervised, AMonthOfASlowNoisyThrottledBatteryRaisesNothing) {
     driven += record.ordered_power_w != 0 ? 1 : 0;
   }
   EXPECT_GT(driven, kDays * kStepsPerDay / 4);
+}
+
+/// Operators hold, a reserve is kept, it is filled on every other day, and a meter cuts orders between cycles.
+TEST_P(EveryMapSupervised, AMonthOfHoldsReserveAndCutOrdersRaisesNothing) {
+  constexpr int kDays = 30;
+  set_market_time_zone();
+  ControlSettings settings;
+  settings.reserve.push_back({.from_minute = 16 * 60, .to_minute = 22 * 60, .soc_e4 = 6'000});
+  settings.full_charge_every_days = 1;
+  settings.guard.full_charge_power_w = 2'000;
+  SiteSettings meter;
+  meter.meter = MeterSource::kMap;
+  meter.connection = {.import_w_max = 4'500, .export_w_max = 2'000, .peak_w_max = 3'500};
+  SupervisedSite site(GetParam(), settings, meter);
+  set_habits(site, {.delay_s = 5, .noise_frac = 0.02, .slows_near_limits = true});
+  HoldMailbox holds;
+  site.loop->follow_holds(holds);
+  std::mt19937_64 random(3);
+  std::normal_distribution<> noise(0, 9'000);
+  site.prices.price = [&](std::int64_t minute_utc_s) {
+    const double hours = static_cast<double>(minute_utc_s % 86'400) / 3'600;
+    return static_cast<std::int32_t>(9'000 + 12'000 * std::sin(hours) + noise(random));
+  };
+  int held = 0, reserved = 0, filled = 0;
+  CycleRecord record;
+  for (int i = 0; i < kDays * kStepsPerDay; ++i) {
+    if (i % 150 == 0) {
+      const std::int64_t end_utc_s = site.clock.now_utc_ns() / kNanosecondsPerSecond + 3'600;
+      holds.publish({.power_w = static_cast<std::int32_t>(random() % 8'000) - 4'000,
+                     .until_utc_s = static_cast<std::uint32_t>(end_utc_s)});
+    }
+    record = site.cycle();
+    ASSERT_FALSE(is_stop_reason(record.reason))
+        << "cycle " << i << " " << reason_name(record.reason);
+    ASSERT_LT(record.weak_answers, 2) << "cycle " << i;
+    ASSERT_EQ(record.replaced_orders, 0) << "cycle " << i;
+    held += record.reason == Reason::kHeld;
+    reserved += record.reason == Reason::kReserve;
+    filled += record.reason == Reason::kFullCharge;
+  }
+  EXPECT_GT(held, kDays * 20);
+  EXPECT_GT(reserved, kDays);
+  EXPECT_GT(filled, 0);
+  EXPECT_GT(record.site.order_cuts, kDays * 10);
 }
 
 /// Stopped between two cycles, continued twenty minutes later: the watchdog has ended the order, and

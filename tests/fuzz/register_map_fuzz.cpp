@@ -1,6 +1,7 @@
 // Register maps: whatever is accepted keeps its promises about the power it can express, and the
 // driver can run it against a device that answers anything.
 #include "edge/battery/battery_driver.h"
+#include "edge/battery/grid_meter.h"
 #include "edge/registers/codec.h"
 #include "edge/registers/map_file.h"
 #include "tests/fuzz/fuzz_target.h"
@@ -53,6 +54,13 @@ void drive(const RegisterMap& map, std::uint16_t answer) {
   static_cast<void>(driver.release());
 }
 
+void read_meter(const RegisterMap& map, std::uint16_t answer) {
+  GridMeter<AnyDevice, AnyTime> meter(map, AnyTime(), -1, answer);
+  std::int32_t grid_power_w = 0;
+  static_cast<void>(meter.read(grid_power_w));
+  static_cast<void>(meter.read(grid_power_w));
+}
+
 }  // namespace
 }  // namespace bess
 
@@ -66,13 +74,18 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   must(ok == error.empty(), "refused with a reason, accepted without");
   must(error.find('\n') == std::string::npos, "one line");
   if (!ok) return 0;
+  constexpr std::uint16_t kAnswers[] = {0x0000, 0x0001, 0x8000, 0xFFFF};
+  must(measure_grid_power(map) || !map.is_meter, "a meter has a grid power");
+  if (map.is_meter) {
+    for (const std::uint16_t answer : kAnswers) read_meter(map, answer);
+    return 0;
+  }
   must(map.charge_w_max > 0 && map.discharge_w_max > 0, "an accepted map can express power");
   for (const std::int32_t power_w : {map.charge_w_max, 0, -map.discharge_w_max}) {
     const PowerOrder order{.power_w = power_w, .duration_s = map.watchdog.duration_s};
     must(check_expressible(map, order) == Status::kOk,
          "the power it states goes into its registers");
   }
-  constexpr std::uint16_t kAnswers[] = {0x0000, 0x0001, 0x8000, 0xFFFF};
   for (const std::uint16_t answer : kAnswers) drive(map, answer);
   return 0;
 }

@@ -1,8 +1,11 @@
 // bess-sim battery: options and composition.
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <cmath>
 #include <cstdio>
+#include <optional>
+#include <thread>
 
 #include "edge/registers/map_file.h"
 #include "shared/host/file.h"
@@ -18,6 +21,15 @@
 namespace bess {
 namespace {
 
+/// Any free port; meters serve several; a fault lasts from its begin to its end.
+BatteryServerSettings meter_defaults() {
+  BatteryServerSettings settings;
+  settings.port = 0;
+  settings.clients_max = 4;
+  settings.faults.every = 1;
+  return settings;
+}
+
 struct BatteryOptions {
   BatteryServerSettings server;
   ClockOptions clock;
@@ -28,6 +40,12 @@ struct BatteryOptions {
   double soc_frac = 0.5;
   BatteryParameters battery{.power_w_max = 4'000, .capacity_wh = 8'000};
   double round_trip_efficiency = 0.9;
+  std::string house;  ///< empty: none, and no meter
+  std::uint64_t house_seed = 1;
+  std::string meter_map_path;
+  std::string meter_variant;
+  BatteryServerSettings meter = meter_defaults();
+  std::vector<std::string> meter_fault_names;
 };
 
 const BatteryFaultInfo* find_fault(const std::string& name) {
@@ -36,6 +54,41 @@ const BatteryFaultInfo* find_fault(const std::string& name) {
   }
   return nullptr;
 }
+
+std::string known_fault(const std::string& name) {
+  return find_fault(name) != nullptr ? "" : "there is no fault " + name;
+}
+
+/// The meter at the house's connection, on a thread of its own until it is ended.
+class MeterThread {
+ public:
+  MeterThread(const BatteryOptions& options, SimulatedBattery& battery, const ScaledClock& clock,
+              MeteredHouse& house) {
+    std::string error;
+    if (!load_register_map(options.meter_map_path, options.meter_variant, map_, error)) {
+      throw UserError(error);
+    }
+    if (!map_.is_meter) fail("--meter-map {}: not a meter's map", options.meter_map_path);
+    server_.emplace(options.meter, map_, battery, clock, &house);
+    if (pipe2(stop_, O_CLOEXEC) != 0) fail("no pipe for the meter");
+    thread_ = std::thread([this] { server_->run(stop_[0]); });
+  }
+  MeterThread(const MeterThread&) = delete;
+  MeterThread& operator=(const MeterThread&) = delete;
+  ~MeterThread() {
+    close(stop_[1]);
+    thread_.join();
+    close(stop_[0]);
+  }
+  [[nodiscard]] int port() const { return server_->port(); }
+  [[nodiscard]] int unit() const { return map_.unit; }
+
+ private:
+  RegisterMap map_;
+  std::optional<BatteryServer> server_;
+  int stop_[2] = {-1, -1};
+  std::thread thread_;
+};
 
 /// A fault that this bus does not have would be waited for in vain.
 void take_faults(const std::vector<std::string>& names, BatteryServerSettings& server) {
@@ -52,6 +105,8 @@ void take_faults(const std::vector<std::string>& names, BatteryServerSettings& s
 void run_battery(BatteryOptions& options) {
   const StopSignal stop;
   take_faults(options.fault_names, options.server);
+  take_faults(options.meter_fault_names, options.meter);
+  if (options.house.empty() && !options.meter_map_path.empty()) fail("--meter-map needs --house");
   const ScaledClock clock = options.clock.clock();
   // Fails before serving rather than after a day.
   if (!options.record_path.empty()) require_writable(options.record_path);
@@ -67,15 +122,28 @@ void run_battery(BatteryOptions& options) {
     fail("--power-w {}: more than the map {} can express", battery.power_w_max, map.name.view());
   }
   SimulatedBattery simulated(battery, options.soc_frac, clock.now_utc_ns());
-  BatteryServer server(options.server, map, simulated, clock);
+  std::optional<MeteredHouse> house;
+  if (!options.house.empty()) {
+    house.emplace(HouseLoad::from_option(options.house, options.house_seed));
+  }
+  BatteryServer server(options.server, map, simulated, clock, house ? &*house : nullptr);
   const std::string place = options.server.serial_device.empty()
                                 ? fmt::format("{}:{}", options.server.host, server.port())
                                 : options.server.serial_device;
   std::printf("bess-sim battery: listening on %s, unit %d, %s at time scale %d\n", place.c_str(),
               map.unit, utc_text(clock.now_utc_ns() / kNanosecondsPerSecond).c_str(), clock.scale);
+  std::optional<MeterThread> meter;
+  if (!options.meter_map_path.empty()) {
+    meter.emplace(options, simulated, clock, *house);
+    std::printf("bess-sim battery: meter listening on %s:%d, unit %d\n", options.meter.host.c_str(),
+                meter->port(), meter->unit());
+  }
   std::fflush(stdout);
   server.run(stop.fd());
-  if (!options.record_path.empty()) write_battery_record(options.record_path, simulated);
+  meter.reset();
+  if (!options.record_path.empty()) {
+    write_battery_record(options.record_path, simulated, house ? &house->load : nullptr);
+  }
   std::printf("bess-sim battery: stopped at SoC %.2f %%\n", 100 * simulated.soc_frac());
 }
 
@@ -89,6 +157,8 @@ std::string footer() {
       "  bess-sim battery --port 1502 --fault drop --fault-every 7\n"
       "  bess-sim battery --port 1502 --fault late wrong-unit drip --fault-probability 0.1 "
       "--fault-seed 3 --fault-from-s 600 --fault-to-s 3600\n"
+      "  bess-sim battery --port 1502 --house daily --meter-map edge/meters/sunspec.toml "
+      "--meter-port 1503\n"
       "A serial line on one machine: socat pty,raw,echo=0,link=a pty,raw,echo=0,link=b, then "
       "--serial a here and device = \"b\" at the edge.\n"
       "Faults:\n";
@@ -118,14 +188,10 @@ void add_bus_options(ProgramCommand& command, BatteryServerSettings& server) {
 void add_fault_options(ProgramCommand& command, BatteryOptions& options) {
   BatteryServerSettings& server = options.server;
   FaultSchedule& faults = server.faults;
-  const auto known = [](const std::string& name) -> std::string {
-    if (find_fault(name) != nullptr) return "";
-    return "there is no fault " + name;
-  };
   command
       .option("--fault", options.fault_names,
               "Misbehave now and then; of several, one at random each time (see below)")
-      .check(known)
+      .check(known_fault)
       .value_name("NAME");
   command.option("--fault-every", faults.every, "At every Nth chance")
       .range(1, 1'000'000)
@@ -170,6 +236,30 @@ void add_plant_options(ProgramCommand& command, BatteryOptions& options) {
                  "CSV of energy and SoC per simulated minute, written at exit");
 }
 
+void add_house_options(ProgramCommand& command, BatteryOptions& options) {
+  command.option("--house", options.house,
+                 "House behind the same meter: daily, watts, or a CSV file (minute_utc,house_w)");
+  command.option("--house-seed", options.house_seed, "Of --house daily").with_default();
+  command.option(
+      "--meter-map", options.meter_map_path,
+      "Act the meter of this map too (edge/meters); a battery map's own grid point needs "
+      "none");
+  command.option("--meter-variant", options.meter_variant, "Of the map; default: its first");
+  command.option("--meter-port", options.meter.port, "TCP port, 0 = any free one")
+      .range(0, 65'535)
+      .with_default();
+  command
+      .option("--meter-fault", options.meter_fault_names,
+              "The meter misbehaves, at every chance: silence, frozen, wrong-sign, drop ...")
+      .check(known_fault)
+      .value_name("NAME");
+  command
+      .option("--meter-fault-from-s", options.meter.faults.from_s,
+              "Simulated seconds after the start")
+      .non_negative();
+  command.option("--meter-fault-to-s", options.meter.faults.to_s, "And until when").non_negative();
+}
+
 }  // namespace
 
 void add_battery_command(ProgramCommand& app) {
@@ -180,6 +270,7 @@ void add_battery_command(ProgramCommand& app) {
   add_bus_options(command, options->server);
   options->clock.add_to(command);
   add_plant_options(command, *options);
+  add_house_options(command, *options);
   add_fault_options(command, *options);
   command.runs([options] { run_battery(*options); });
 }

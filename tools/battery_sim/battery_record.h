@@ -5,10 +5,13 @@
 
 #include <string>
 
+#include "tools/battery_sim/house_load.h"
 #include "tools/battery_sim/simulated_battery.h"
 
 namespace bess {
 
-void write_battery_record(const std::string& path, const SimulatedBattery& battery);
+/// With a house two more columns: house_wh, and grid_wh = house_wh + energy_wh (import positive).
+void write_battery_record(const std::string& path, const SimulatedBattery& battery,
+                          const HouseLoad* house = nullptr);
 
 }  // namespace bess

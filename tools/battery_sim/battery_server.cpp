@@ -37,11 +37,13 @@ bool serves_unit(const RegisterMap& map, int unit) {
 }  // namespace
 
 BatteryServer::BatteryServer(const BatteryServerSettings& settings, const RegisterMap& map,
-                             SimulatedBattery& battery, const ScaledClock& clock)
+                             SimulatedBattery& battery, const ScaledClock& clock,
+                             MeteredHouse* house)
     : settings_(settings),
       rtu_(!settings.serial_device.empty()),
       map_(map),
       battery_(battery),
+      house_(house),
       clock_(clock),
       start_ns_(clock.now_utc_ns()),
       plan_(settings.faults, rtu_) {
@@ -72,6 +74,7 @@ void BatteryServer::make_registers() {
   mapping_.nb_input_registers = has_input_registers(map_) ? mapping_.nb_registers : 0;
   mapping_.tab_input_registers = input_registers_.data();
   image_ = std::make_unique<RegisterImage>(map_, battery_, registers_, input_registers_);
+  if (house_ != nullptr) image_->connect_house(house_->load);
 }
 
 void BatteryServer::listen_tcp() {
@@ -111,7 +114,17 @@ void BatteryServer::run(int stop_fd) {
     std::erase_if(clients_, [](const Client& client) { return client.fd < 0; });
     if (events[1].revents != 0) accept_client();
   }
+  const auto plant = hold_plant();
   battery_.advance(clock_.now_utc_ns());
+}
+
+std::unique_lock<std::mutex> BatteryServer::hold_plant() const {
+  return house_ == nullptr ? std::unique_lock<std::mutex>() : std::unique_lock(house_->plant);
+}
+
+void BatteryServer::refresh() {
+  const auto plant = hold_plant();
+  image_->refresh(clock_.now_utc_ns());
 }
 
 void BatteryServer::accept_client() {
@@ -152,7 +165,7 @@ void BatteryServer::answer(Client& client, const BusRequest& request) {
   apply_lasting_faults();
   const FaultChance chance = request.is_write() ? FaultChance::kWrite : FaultChance::kRead;
   const BatteryFault fault = plan_.draw(chance, elapsed_s());
-  if (fault != BatteryFault::kFrozen) image_->refresh(clock_.now_utc_ns());
+  if (fault != BatteryFault::kFrozen) refresh();
   answer_with_fault(client, request, fault);
 }
 
@@ -171,7 +184,7 @@ void BatteryServer::answer_with_fault(Client& client, const BusRequest& request,
       return send(client, reply_->exception(request, settings_.exception_code));
     case BatteryFault::kLate:
       if (!wait(settings_.late_ms)) return;
-      image_->refresh(clock_.now_utc_ns());
+      refresh();
       break;
     default:
       change_values(fault);
@@ -188,6 +201,8 @@ void BatteryServer::answer_with_fault(Client& client, const BusRequest& request,
 
 /// From the request after --fault-from-s on; what another master did between two requests is done late.
 void BatteryServer::apply_lasting_faults() {
+  if (map_.is_meter) return;
+  const auto plant = hold_plant();
   const auto lasts = [&](BatteryFault fault) { return plan_.lasts(fault, elapsed_s()); };
   const double rated_w = battery_.parameters().power_w_max;
   const std::int64_t now_ns = clock_.now_utc_ns();
@@ -218,6 +233,7 @@ Bytes BatteryServer::right_answer(const BusRequest& request, bool keep_registers
     std::copy(before.begin(), before.end(), registers_.begin());  // image_ holds a view
   } else if (request.is_write() &&
              request.address() + request.write_count() <= mapping_.nb_registers) {
+    const auto plant = hold_plant();
     image_->apply_write(request.address(), request.write_count());
   }
   return bytes;
@@ -237,12 +253,14 @@ void BatteryServer::change_values(BatteryFault fault) {
     std::copy(block.begin(), block.end(), registers.begin() + address);
   };
   if (fault == BatteryFault::kWrongSign) {
-    change("battery_power", [](std::int64_t power_w) { return -power_w; });
+    change(map_.is_meter ? "grid_power" : "battery_power",
+           [](std::int64_t power_w) { return -power_w; });
   }
   if (fault == BatteryFault::kSocJump) {
     change("soc", [](std::int64_t soc_e4) { return (soc_e4 + 5'000) % 10'000; });
   }
   if (fault == BatteryFault::kEarlyExpiry) {
+    const auto plant = hold_plant();
     battery_.stop_dispatch();
     image_->refresh(clock_.now_utc_ns());
   }

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -37,8 +38,9 @@ struct BatteryServerSettings {
 class BatteryServer {
  public:
   /// Binds and listens, or opens the line. Throws UserError when the port is in use.
+  /// With a house the map's grid point shows it, and a meter's map makes this a meter.
   BatteryServer(const BatteryServerSettings& settings, const RegisterMap& map,
-                SimulatedBattery& battery, const ScaledClock& clock);
+                SimulatedBattery& battery, const ScaledClock& clock, MeteredHouse* house = nullptr);
   BatteryServer(const BatteryServer&) = delete;
   BatteryServer& operator=(const BatteryServer&) = delete;
   ~BatteryServer();
@@ -70,11 +72,14 @@ class BatteryServer {
   void close_client(Client& client, bool reset);
   [[nodiscard]] bool wait(std::int32_t ms) const;
   [[nodiscard]] double elapsed_s() const;
+  [[nodiscard]] std::unique_lock<std::mutex> hold_plant() const;
+  void refresh();
 
   BatteryServerSettings settings_;
   bool rtu_;
   const RegisterMap& map_;
   SimulatedBattery& battery_;
+  MeteredHouse* house_;  ///< null: the battery is nobody else's
   ScaledClock clock_;
   std::int64_t start_ns_;
   std::unique_ptr<modbus_t, FreeContext> context_;

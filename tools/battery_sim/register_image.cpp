@@ -114,7 +114,10 @@ void RegisterImage::refresh(std::int64_t utc_ns) {
   is_running_ = battery_.dispatch_active();
   const BatteryParameters& p = battery_.parameters();
   if (!display_.soc_stands_still) set("soc", battery_.soc_frac() * 1e4);
-  show_power(std::llround(battery_.power_w()));
+  show_power(map_.measured_power, std::llround(battery_.power_w()));
+  if (house_ != nullptr) {
+    show_power(map_.grid_power, std::llround(house_->power_w(utc_s_) + battery_.power_w()));
+  }
   set("capacity", p.capacity_wh * display_.capacity_factor);
   set("charge_power_max", p.power_w_max);
   set("discharge_power_max", p.power_w_max);
@@ -129,19 +132,24 @@ void RegisterImage::refresh(std::int64_t utc_ns) {
   }
 }
 
-/// One register with a sign, one for each direction, or a size whose sign stands in a state.
-void RegisterImage::show_power(std::int64_t power_w) {
-  for (const PowerCase& c : map_.measured_power) {
-    for (const PowerCase::Term& term : c.terms) {
-      const bool signed_register = c.terms.size() == 1 && c.when.point < 0;
-      const std::int64_t value = term.sign * power_w;
-      set(term.point, signed_register ? value : std::max<std::int64_t>(value, 0));
+/// One register with a sign (of several phases the first), one for each direction, or a size whose
+/// sign stands in a state.
+void RegisterImage::show_power(const StaticVector<PowerCase, 4>& cases, std::int64_t power_w) {
+  for (const PowerCase& c : cases) {
+    const bool has_sign =
+        c.when.point < 0 && std::all_of(c.terms.begin(), c.terms.end(), [&](const auto& term) {
+          return term.sign == c.terms[0].sign;
+        });
+    for (int i = 0; i < c.terms.size(); ++i) {
+      const std::int64_t value = c.terms[i].sign * power_w;
+      const std::int64_t of_phase = i == 0 ? value : 0;
+      set(c.terms[i].point, has_sign ? of_phase : std::max<std::int64_t>(value, 0));
     }
   }
-  for (const PowerCase& c : map_.measured_power) {
+  for (const PowerCase& c : cases) {
     if (c.when.point >= 0) set(c.when.point, 0);
   }
-  for (const PowerCase& c : map_.measured_power) {
+  for (const PowerCase& c : cases) {
     if (c.when.point < 0 || c.terms.empty() || c.terms[0].sign * power_w <= 0) continue;
     set(c.terms[0].point, std::abs(power_w));
     set(c.when.point, c.when.value);
@@ -154,6 +162,7 @@ void RegisterImage::show_expiry() {
 }
 
 void RegisterImage::apply_write(int address, int count) {
+  if (map_.is_meter) return;  // it keeps what was written, and does nothing by it
   const LivePoints registers = snapshot();
   if (!active_.empty() && !live_all(map_, active_, registers)) {
     battery_.stop_dispatch();

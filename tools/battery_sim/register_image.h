@@ -9,6 +9,7 @@
 
 #include "edge/registers/live_points.h"
 #include "edge/registers/register_map.h"
+#include "tools/battery_sim/house_load.h"
 #include "tools/battery_sim/simulated_battery.h"
 
 namespace bess {
@@ -39,6 +40,8 @@ class RegisterImage {
     double capacity_factor = 1;
   };
   void set_display(const Display& display) { display_ = display; }
+  /// From now on the map's grid point shows this house and the battery.
+  void connect_house(const HouseLoad& house) { house_ = &house; }
 
   /// Where a point lies in this image.
   [[nodiscard]] int address_of(int point) const;
@@ -52,7 +55,7 @@ class RegisterImage {
   [[nodiscard]] std::int64_t value(int point) const;
   void set(int point, std::int64_t value);
   void set(std::string_view name, double value);
-  void show_power(std::int64_t power_w);
+  void show_power(const StaticVector<PowerCase, 4>& cases, std::int64_t power_w);
   void assign(const Assignment& assignment);
   [[nodiscard]] bool covers(int address, int count, int point) const;
   [[nodiscard]] bool is_order_ignored(int address, int count) const;
@@ -63,6 +66,7 @@ class RegisterImage {
 
   const RegisterMap& map_;
   SimulatedBattery& battery_;
+  const HouseLoad* house_ = nullptr;
   std::span<std::uint16_t> holding_, input_;
   const StaticVector<Condition, 4>& active_;
   const StaticVector<PowerCase, 4>& order_power_;

@@ -19,6 +19,7 @@ struct Site {
   ResponseMonitor monitor{ResponseSettings{}};
   double soc_frac = 0.5;
   std::int64_t utc_s = 0;
+  std::int32_t soc_floor_e4 = 1'000;
   BatteryMeasurement shown{.soc_e4 = 5'000, .capacity_wh = 8'000};
 
   /// An order is followed for one step; then it is read, changed by `fault`.
@@ -35,6 +36,7 @@ struct Site {
                      .is_driven = true,
                      .ordered_power_w = ordered_w,
                      .order_age_s = kStepS,
+                     .soc_floor_e4 = soc_floor_e4,
                      .measurement = m});
   }
 };
@@ -108,17 +110,20 @@ TEST(ResponseMonitor, AFullEmptyColdOrLimitedBatteryMayRest) {
     double soc_frac;
     std::int32_t ordered_w;
     std::function<void(BatteryMeasurement&)> fault;
+    std::int32_t soc_floor_e4 = 1'000;
   };
   const auto nothing = [](BatteryMeasurement&) {};
   for (const Case& c : {
            Case{"full", 0.97, 4'000, nothing},
            Case{"empty", 0.12, -4'000, nothing},
+           Case{"at its reserve", 0.505, -4'000, nothing, 5'000},
            Case{"cold", 0.5, 4'000, [](BatteryMeasurement& m) { m.temperature_min_deci_c = 20; }},
            Case{"limited", 0.5, 4'000, [](BatteryMeasurement& m) { m.charge_w_max = 0; }},
            Case{"limited", 0.5, -4'000, [](BatteryMeasurement& m) { m.discharge_w_max = 100; }},
        }) {
     Site site;
     site.soc_frac = c.soc_frac;
+    site.soc_floor_e4 = c.soc_floor_e4;
     for (int i = 0; i < 10; ++i) site.step(c.ordered_w, 0, c.fault);
     EXPECT_FALSE(site.monitor.gives_no_answer()) << c.name;
     EXPECT_EQ(site.monitor.weak_answers(), 0) << c.name;
@@ -148,6 +153,30 @@ TEST(ResponseMonitor, ASocThatMovesTheWrongWayIsFound) {
   }
   EXPECT_EQ(site.monitor.trip(), Reason::kSocMismatch);
   EXPECT_LE(readings, 5);
+}
+
+/// Full power for the first half of every step, none for the second: what a meter's limit makes of it.
+TEST(ResponseMonitor, AnOrderThatIsCutWithinItsStepHasMovedWhatItMoved) {
+  ResponseMonitor monitor{ResponseSettings{}};
+  double soc_frac = 0.2;
+  for (int i = 0; i < 10; ++i) {
+    Response now;
+    now.utc_s = i * kStepS;
+    now.is_driven = true;
+    now.order_age_s = kStepS / 2;
+    now.measurement.capacity_wh = 8'000;
+    now.measurement.power_w = 4'000;
+    now.utc_s += kStepS / 2;
+    now.ordered_power_w = 4'000;
+    soc_frac += 4'000 * kStepS / 2 / 3'600.0 / 8'000;
+    now.measurement.soc_e4 = static_cast<std::int32_t>(std::lround(soc_frac * 1e4));
+    monitor.note_power(now);
+    now.measurement.power_w = now.ordered_power_w = 0;
+    now.utc_s += kStepS / 2;
+    monitor.observe(now);
+    EXPECT_EQ(monitor.trip(), Reason::kStudent) << i;
+    EXPECT_FALSE(monitor.has_jumped()) << i;
+  }
 }
 
 TEST(ResponseMonitor, ASocThatJumpsStopsUntilItAgreesAgain) {

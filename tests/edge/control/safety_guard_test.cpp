@@ -66,6 +66,13 @@ std::vector<Case> cases() {
       {"reversal cap", [](GuardInputs& in) { in.barred_direction = 1; }, Reason::kReversalCap, 0},
       {"power limit", [](GuardInputs& in) { in.measurement.charge_w_max = 1'500; },
        Reason::kPowerLimit, 1'500},
+      {"outside limit", [](GuardInputs& in) { in.site.limit_charge(2'000, Reason::kOutsideLimit); },
+       Reason::kOutsideLimit, 2'000},
+      {"import limit", [](GuardInputs& in) { in.site.limit_charge(2'500, Reason::kImportLimit); },
+       Reason::kImportLimit, 2'500},
+      {"quarter-hour peak",
+       [](GuardInputs& in) { in.site.limit_charge(3'000, Reason::kQuarterHourPeak); },
+       Reason::kQuarterHourPeak, 3'000},
   };
 }
 
@@ -188,6 +195,52 @@ TEST(SafetyGuard, PriceAgeAndQuarterHour) {
   EXPECT_EQ(SafetyGuard(patient).decide(in).reason, Reason::kStudent);
   in.price_minute_utc_s -= 60;
   EXPECT_EQ(SafetyGuard(patient).decide(in).reason, Reason::kPriceQuarterHour);
+}
+
+TEST(SafetyGuard, ALostMeterLeavesNeitherDirection) {
+  for (const Action action : {Action::kCharge, Action::kDischarge}) {
+    GuardInputs in = healthy(action);
+    in.site.forbid(Reason::kMeterLost);
+    EXPECT_EQ(decide_once(in).power_w, 0);
+    EXPECT_EQ(decide_once(in).reason, Reason::kMeterLost);
+  }
+}
+
+TEST(SafetyGuard, ExportIsCutAndNeverTurnedIntoCharging) {
+  GuardInputs in = healthy(Action::kDischarge);
+  in.site.limit_discharge(800, Reason::kExportLimit);
+  EXPECT_EQ(decide_once(in).power_w, -800);
+  EXPECT_EQ(decide_once(in).reason, Reason::kExportLimit);
+  in.site.limit_discharge(-5'000, Reason::kExportLimit);
+  EXPECT_EQ(decide_once(in).power_w, 0);
+}
+
+TEST(SafetyGuard, ReliefIsBoundedByTheBatterysOwnLimits) {
+  GuardInputs in = healthy(Action::kCharge);
+  in.site.relief_w = 1'200;
+  EXPECT_EQ(decide_once(in).power_w, -1'200);
+  EXPECT_EQ(decide_once(in).reason, Reason::kQuarterHourPeak);
+  in.measurement.discharge_w_max = 500;
+  EXPECT_EQ(decide_once(in).power_w, -500);
+  in.measurement.soc_e4 = 1'000;
+  EXPECT_EQ(decide_once(in).power_w, 0);
+  EXPECT_EQ(decide_once(in).reason, Reason::kSocEmpty);
+  in = healthy(Action::kDischarge);  // the student gives more than that anyway
+  in.site.relief_w = 1'200;
+  EXPECT_EQ(decide_once(in).power_w, -4'000);
+  EXPECT_EQ(decide_once(in).reason, Reason::kStudent);
+}
+
+/// Between two ticks an order is only ever taken off.
+TEST(SafetyGuard, ARecheckCutsAndNeverGivesBack) {
+  const SafetyGuard guard{GuardSettings{}};
+  GuardInputs in = healthy(Action::kCharge);
+  in.previous_power_w = 1'000;
+  EXPECT_EQ(guard.recheck(in).power_w, 1'000);
+  in.site.limit_charge(300, Reason::kImportLimit);
+  EXPECT_EQ(guard.recheck(in).power_w, 300);
+  in.site.relief_w = 700;
+  EXPECT_EQ(guard.recheck(in).power_w, -700);
 }
 
 TEST(SafetyGuard, NegativeLiveLimitsMeanZero) {

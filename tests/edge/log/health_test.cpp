@@ -37,6 +37,12 @@ TEST(Health, EveryTroubleHasItsReason) {
       {[](HealthInputs& in) { in.is_of_this_run = false; }, HealthLevel::kDegraded, "no cycle has"},
       {[](HealthInputs& in) { in.cycles = 0; }, HealthLevel::kDegraded, "no cycle has"},
       {[](HealthInputs& in) { in.age_ms = 240'001; }, HealthLevel::kDegraded, "WARN: the last"},
+      {[](HealthInputs& in) { in.meter_status = "timeout"; }, HealthLevel::kDegraded,
+       "WARN: meter: timeout"},
+      {[](HealthInputs& in) { in.limit_status = "timeout"; }, HealthLevel::kDegraded,
+       "outside limit has lapsed"},
+      {[](HealthInputs& in) { in.limit_status = "malformed"; }, HealthLevel::kDegraded,
+       "cannot be read or understood"},
       {[](HealthInputs& in) { in.age_ms = 480'001; }, HealthLevel::kDegraded, "CRITICAL: the last"},
       {[](HealthInputs& in) { in.mode = "safe"; }, HealthLevel::kDegraded, "mode is safe"},
       {[](HealthInputs& in) { in.battery_status = "timeout"; }, HealthLevel::kDegraded, "timeout"},
@@ -59,6 +65,7 @@ TEST(Health, EveryTroubleHasItsReason) {
          in.cycles_behind = 1;
        },
        HealthLevel::kDegraded, "WARN: status.json is 1 cycles behind the log, is the disk full"},
+      {[](HealthInputs& in) { in.hold_is_unreadable = true; }, HealthLevel::kDegraded, "hold file"},
       {[](HealthInputs& in) {
          in.age_ms = 1'319'000;
          in.cycles_behind = 10;

@@ -23,7 +23,8 @@ using ::testing::Not;
 /// Nothing but the flags without which a value does not exist.
 CycleRecord bare_record() {
   CycleRecord r;
-  r.has_measurement = r.price.has_row = r.has_student_action = r.is_tripped = true;
+  r.has_measurement = r.price.has_row = r.has_student_action = r.is_tripped = r.hold.held = true;
+  r.site.has_grid_power = true;
   return r;
 }
 

@@ -146,8 +146,18 @@ TEST(RecordCodec, LayoutOnDiskIsFixed) {
   EXPECT_EQ(bytes[228], 33);    // reversals.steps
   EXPECT_EQ(bytes[232], 0xFF);  // reversals.direction = -1
   EXPECT_EQ(bytes[234], 34);    // reversals.in_hour
-  EXPECT_EQ(bytes[236], 1);     // measurement.warning, the last field
-  for (std::size_t i = 237; i < kRecordBytes - 4; ++i) EXPECT_EQ(bytes[i], 0) << i;
+  EXPECT_EQ(bytes[236], 1);     // hold.held
+  EXPECT_EQ(bytes[237], 1);     // hold.unreadable
+  EXPECT_EQ(bytes[238], 0xDD);  // hold.power_w = -35
+  EXPECT_EQ(bytes[242], 36);    // hold.until_utc_s
+  EXPECT_EQ(bytes[246], 37);    // reserve_soc_e4
+  EXPECT_EQ(bytes[248], 38);    // days_since_full
+  EXPECT_EQ(bytes[250], 1);     // site.has_grid_power
+  EXPECT_EQ(bytes[251], 0xD9);  // site.grid_power_w = -39
+  EXPECT_EQ(bytes[263], 42);    // site.order_cuts
+  EXPECT_EQ(bytes[268], 14);    // site.limit_status: malformed
+  EXPECT_EQ(bytes[269], 1);     // measurement.warning, the last field
+  for (std::size_t i = 270; i < kRecordBytes - 4; ++i) EXPECT_EQ(bytes[i], 0) << i;
 }
 
 /// A ring of the program that ended its records with flash_writes_today: later fields read as 0.
@@ -170,6 +180,9 @@ TEST(RecordCodec, ARecordOfAnOlderLayoutIsRead) {
   expected.price.step_held = false;
   expected.price.held_centi_eur_per_mwh = 0;
   expected.reversals = {};
+  expected.hold = {};
+  expected.reserve_soc_e4 = expected.days_since_full = 0;
+  expected.site = {};
   EXPECT_EQ(bytes_of(back, 42), bytes_of(expected, 42));
 }
 

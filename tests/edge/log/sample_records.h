@@ -63,6 +63,16 @@ inline CycleRecord full_record(std::int64_t cycle) {
   r.weak_answers = 33;
   r.replaced_orders = 34;
   r.reversals = {.steps = 33, .direction = -1, .in_hour = 34};
+  r.hold = {.held = true, .unreadable = true, .power_w = -35, .until_utc_s = 36};
+  r.reserve_soc_e4 = 37;
+  r.days_since_full = 38;
+  r.site = {.has_grid_power = true,
+            .grid_power_w = -39,
+            .quarter_hour_import_wh = 40,
+            .quarter_hour_battery_wh = 41,
+            .order_cuts = 42,
+            .meter_status = Status::kBadReply,
+            .limit_status = Status::kMalformed};
   return r;
 }
 
@@ -94,13 +104,22 @@ inline CycleRecord longest_record() {
   r.trip = {.reason = Reason::kUncontrolledPower, .utc_s = 4'102'444'800};
   r.weak_answers = r.replaced_orders = INT32_MIN;
   r.reversals = {.steps = UINT32_MAX, .direction = INT16_MIN, .in_hour = INT16_MIN};
+  r.hold = {.held = true, .power_w = INT32_MIN, .until_utc_s = UINT32_MAX};
+  r.reserve_soc_e4 = r.days_since_full = INT16_MIN;
+  r.site = {.has_grid_power = true,
+            .grid_power_w = INT32_MIN,
+            .quarter_hour_import_wh = INT32_MIN,
+            .quarter_hour_battery_wh = INT32_MIN,
+            .order_cuts = INT32_MIN,
+            .meter_status = Status::kNotExpressible,
+            .limit_status = Status::kNotExpressible};
   r.counters = {INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT32_MIN};
   r.counters.requests = 0;  // requests - failed_requests must not overflow
   r.counters.failed_requests = INT64_MAX;
   return r;
 }
 
-/// Enumerators number i of every enumeration, round and round: 27 of them show each name.
+/// Enumerators number i of every enumeration, round and round: kReasonCount of them show each name.
 inline CycleRecord record_with_enumerators(int i) {
   CycleRecord r = full_record(i);
   r.mode = static_cast<Mode>(i % kModeCount);
@@ -108,6 +127,7 @@ inline CycleRecord record_with_enumerators(int i) {
   r.reason = static_cast<Reason>(i % kReasonCount);
   r.battery_status = static_cast<Status>(i % kStatusCount);
   r.price.status = static_cast<Status>((i + 5) % kStatusCount);
+  r.site.meter_status = static_cast<Status>((i + 7) % kStatusCount);
   return r;
 }
 

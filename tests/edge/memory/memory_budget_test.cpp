@@ -7,6 +7,7 @@
 #include <string>
 
 #include "edge/battery/modbus_battery.h"
+#include "edge/battery/modbus_meter.h"
 #include "edge/control/control_loop.h"
 #include "edge/control/price_history.h"
 #include "edge/log/event_log.h"
@@ -15,11 +16,13 @@
 #include "edge/memory/static_arena.h"
 #include "edge/program/edge_clock.h"
 #include "edge/program/edge_config.h"
+#include "edge/program/hold_watch.h"
+#include "edge/program/limit_file.h"
 
 namespace bess {
 namespace {
 
-using Loop = ControlLoop<ModbusBattery, PriceFeed, EdgeClock>;
+using Loop = ControlLoop<ModbusBattery, PriceFeed, EdgeClock, SiteLimits<ModbusMeter, LimitFile>>;
 
 /// First column to second column of the table under the heading.
 std::map<std::string, std::size_t> read_budget() {
@@ -48,8 +51,10 @@ TEST(MemoryBudget, OfTheReadmeIsTrue) {
       {"EdgeConfig", sizeof(EdgeConfig)},
       {"SegregatedFit", sizeof(SegregatedFit)},
       {"ModbusBattery", sizeof(ModbusBattery)},
+      {"ModbusMeter", sizeof(ModbusMeter)},
       {"ControlLoop", sizeof(Loop)},
       {"EdgeClock", sizeof(EdgeClock)},
+      {"HoldWatch", sizeof(HoldWatch)},
       {"EventLog", sizeof(EventLog)},
   };
   std::map<std::string, std::size_t> budget = read_budget();

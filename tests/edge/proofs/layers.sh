@@ -32,7 +32,9 @@ layer edge/prices                   edge/prices edge/control edge/memory edge/ba
 layer edge/log                      edge/log edge/control edge/memory edge/base shared
 layer edge/program                  edge shared
 layer edge/main.cpp                 edge shared
-blame "$(includes '"shared/host' edge | grep -vE '^edge/(registers/map_|program/)')" \
+# Beside the controller: it reads what the log wrote.
+layer edge/notify                   edge/notify edge/log edge/control edge/prices/http_secrets.h edge/base shared
+blame "$(includes '"shared/host' edge | grep -vE '^edge/(registers/map_|program/|notify/)')" \
   "only start-up uses the heap: edge/program and the reader of register maps"
 # The simulators.
 layer tools/battery_sim             tools edge/registers edge/base shared
@@ -61,7 +63,8 @@ layer $w/main.cpp                   $w shared
 # OWNERS include <HEADER>.
 only() { blame "$(includes "<$1" "${3:-edge shared}" | grep -vE "^($2)")" "only $2 knows $1"; }
 only modbus/ edge/battery/modbus_wire.cpp:
-only curl/   edge/prices/
+only curl/   'edge/prices/|edge/notify/webhook.cpp:'
+only mosquitto.h edge/notify/mqtt_client.cpp: 'edge shared workstation tools'
 only cjson/  'edge/prices/|shared/host/json.cpp:' 'edge shared workstation tools'
 only toml++/ shared/host/toml_document.cpp: 'edge shared workstation tools'
 only pugixml 'workstation/(market/feed/entsoe_xml.cpp|report/figure.cpp):' 'edge shared workstation tools'

@@ -1,0 +1,135 @@
+#include "edge/notify/child_program.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "shared/scaled_clock.h"
+
+extern char** environ;
+
+namespace bess {
+namespace {
+
+constexpr std::size_t kOutputBytesMax = 1 << 20;
+
+/// Both ends of a pipe; neither reaches another program by accident.
+struct Pipe {
+  Pipe() {
+    if (pipe2(ends, O_CLOEXEC) != 0) ends[0] = ends[1] = -1;
+  }
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
+  ~Pipe() {
+    close_end(0);
+    close_end(1);
+  }
+  void close_end(int i) {
+    if (ends[i] >= 0) close(ends[i]);
+    ends[i] = -1;
+  }
+  int ends[2];
+};
+
+/// Signals are ours to wait for, not the other program's to inherit blocked or ignored. A group of its own: what
+/// it started must end with it.
+pid_t spawn(const std::vector<std::string>& arguments, const Pipe& in, const Pipe& out) {
+  std::vector<char*> argv;
+  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, in.ends[0], STDIN_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, out.ends[1], STDOUT_FILENO);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t none;
+  sigset_t pipe_signal;
+  sigemptyset(&none);
+  sigemptyset(&pipe_signal);
+  sigaddset(&pipe_signal, SIGPIPE);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setsigdefault(&attributes, &pipe_signal);
+  posix_spawnattr_setpgroup(&attributes, 0);
+  posix_spawnattr_setflags(&attributes,
+                           POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
+  pid_t pid = -1;
+  errno = posix_spawn(&pid, argv[0], &actions, &attributes, argv.data(), environ);
+  const int spawn_errno = errno;
+  posix_spawn_file_actions_destroy(&actions);
+  posix_spawnattr_destroy(&attributes);
+  errno = spawn_errno;
+  return errno == 0 ? pid : -1;
+}
+
+/// Feeds and reads until the program closes its output; false when the time is over or it says too much.
+bool exchange(Pipe& in, Pipe& out, std::string_view input, std::int64_t deadline_ns,
+              std::string& output) {
+  fcntl(in.ends[1], F_SETFL, O_NONBLOCK);
+  if (input.empty()) in.close_end(1);
+  char buffer[4'096];
+  while (output.size() < kOutputBytesMax) {
+    const std::int64_t left_ms = (deadline_ns - clock_ns(CLOCK_MONOTONIC)) / 1'000'000;
+    if (left_ms <= 0) return false;
+    pollfd waiting[] = {{.fd = out.ends[0], .events = POLLIN, .revents = 0},
+                        {.fd = in.ends[1], .events = POLLOUT, .revents = 0}};
+    if (poll(waiting, 2, static_cast<int>(left_ms)) < 0 && errno != EINTR) return false;
+    if (waiting[1].revents != 0) {
+      const ssize_t written = write(in.ends[1], input.data(), input.size());
+      if (written > 0) input.remove_prefix(static_cast<std::size_t>(written));
+      if ((written < 0 && errno != EAGAIN) || input.empty()) in.close_end(1);
+    }
+    if (waiting[0].revents == 0) continue;
+    const ssize_t size = read(out.ends[0], buffer, sizeof buffer);
+    if (size == 0) return true;
+    if (size > 0) output.append(buffer, static_cast<std::size_t>(size));
+  }
+  return false;
+}
+
+/// Its output may be closed before it ends. False when the time is over.
+bool reap(pid_t pid, std::int64_t deadline_ns, int& status) {
+  constexpr std::int64_t kSliceNs = 2'000'000;
+  while (waitpid(pid, &status, WNOHANG) == 0) {
+    const std::int64_t now_ns = clock_ns(CLOCK_MONOTONIC);
+    if (now_ns >= deadline_ns) return false;
+    sleep_until_monotonic(now_ns + kSliceNs);
+  }
+  return true;
+}
+
+}  // namespace
+
+ProgramResult run_program(const std::vector<std::string>& arguments, std::string_view input,
+                          int time_ms_max) {
+  ProgramResult result;
+  const std::int64_t deadline_ns = clock_ns(CLOCK_MONOTONIC) + time_ms_max * 1'000'000LL;
+  Pipe in;
+  Pipe out;
+  const pid_t pid = in.ends[0] < 0 || out.ends[0] < 0 ? -1 : spawn(arguments, in, out);
+  if (pid < 0) {
+    result.trouble = arguments[0] + " cannot be started: " + std::strerror(errno);
+    return result;
+  }
+  in.close_end(0);
+  out.close_end(1);
+  int status = 0;
+  const bool in_time =
+      exchange(in, out, input, deadline_ns, result.output) && reap(pid, deadline_ns, status);
+  if (!in_time) {
+    kill(-pid, SIGKILL);
+    waitpid(pid, &status, 0);
+    result.trouble = arguments[0] + " did not end in time";
+    return result;
+  }
+  result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return result;
+}
+
+}  // namespace bess

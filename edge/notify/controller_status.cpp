@@ -1,0 +1,63 @@
+#include "edge/notify/controller_status.h"
+
+#include <string_view>
+
+#include "edge/notify/child_program.h"
+#include "shared/host/text.h"
+
+namespace bess {
+namespace {
+
+constexpr int kAnswerMsMax = 10'000;
+
+std::string text_of(JsonValue value) { return value.text() == nullptr ? "" : value.text(); }
+
+/// The same sentence with other numbers is the same trouble, and so is a WARN that became CRITICAL.
+std::string key_of_line(std::string_view line) {
+  for (const std::string_view level : {"WARN: ", "CRITICAL: "}) {
+    if (line.starts_with(level)) line.remove_prefix(level.size());
+  }
+  std::string key;
+  for (const char c : line) {
+    const bool is_digit = c >= '0' && c <= '9';
+    if (!is_digit)
+      key += c;
+    else if (key.empty() || key.back() != '#')
+      key += '#';
+  }
+  return key;
+}
+
+}  // namespace
+
+ControllerStatus ask_controller(const std::string& program, const std::string& config_path) {
+  ControllerStatus status;
+  ProgramResult result = run_program(
+      {program, "status", "--json", "--no-lock", "--config", config_path}, "", kAnswerMsMax);
+  status.trouble = std::move(result.trouble);
+  if (!status.trouble.empty()) return status;
+  Json json = Json::parse(result.output);
+  if (json.value()["health"].text() == nullptr) {
+    status.trouble = program + " status gives no status (exit code " +
+                     std::to_string(result.exit_code) + "): try it by hand";
+    return status;
+  }
+  status.json = std::move(json);
+  return status;
+}
+
+std::vector<Trouble> troubles_of(const ControllerStatus& status) {
+  if (!status.trouble.empty()) return {{.key = "no status", .text = one_line(status.trouble)}};
+  const JsonValue json = status.json.value();
+  std::vector<Trouble> troubles;
+  for (const JsonValue reason : json["health_reasons"]) {
+    const std::string line = one_line(text_of(reason));
+    // Holding becomes safe while the reason stays: one trouble, named by its reason.
+    const bool is_mode = line.starts_with("WARN: mode is ");
+    const std::string why = text_of(json["last"]["reason"]);
+    troubles.push_back({.key = is_mode ? "not running: " + why : key_of_line(line), .text = line});
+  }
+  return troubles;
+}
+
+}  // namespace bess

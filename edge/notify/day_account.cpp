@@ -1,0 +1,72 @@
+#include "edge/notify/day_account.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "shared/units_and_limits.h"
+
+namespace bess {
+namespace {
+
+double kwh_of_watt_steps(std::int64_t watt_steps) {
+  return static_cast<double>(watt_steps) * kHoursPerStep / 1'000;
+}
+
+}  // namespace
+
+void DayAccount::add(const CycleRecord& record) {
+  if (record.mode == Mode::kStopping) return;  // no cycle
+  ++cycles_;
+  ++cycles_by_reason_[static_cast<std::size_t>(record.reason)];
+  if (record.throughput.local_day == local_day_) {
+    soc_moved_e4_ = std::max(soc_moved_e4_, record.throughput.soc_moved_e4);
+  }
+  if (!record.has_measurement) return;
+  const std::int64_t power_w = record.measurement.power_w;
+  (power_w > 0 ? charged_w_ : discharged_w_) += power_w > 0 ? power_w : -power_w;
+  if (!record.price.has_row) return;
+  ++valued_cycles_;
+  watt_centi_ += power_w * record.price.price_centi_eur_per_mwh;
+}
+
+double DayAccount::earned_eur() const {
+  // From 0: a day without exchange has earned nothing, and not minus nothing.
+  return 0.0 - static_cast<double>(watt_centi_) * kHoursPerStep / kWattsPerMegawatt / kCentiPerEur;
+}
+double DayAccount::charged_kwh() const { return kwh_of_watt_steps(charged_w_); }
+double DayAccount::discharged_kwh() const { return kwh_of_watt_steps(discharged_w_); }
+double DayAccount::full_cycles() const { return soc_moved_e4_ / (2.0 * kSocFullE4); }
+
+int DayAccount::interventions() const {
+  return cycles_ - cycles_by_reason_[static_cast<std::size_t>(Reason::kStudent)];
+}
+
+std::string DayAccount::date() const {
+  char text[16];
+  std::snprintf(text, sizeof text, "%04d-%02d-%02d", local_day_ / 10'000 % 10'000,
+                local_day_ / 100 % 100, local_day_ % 100);
+  return text;
+}
+
+std::string DayAccount::line() const {
+  char text[512];
+  std::snprintf(
+      text, sizeof text,
+      "%s: %+.2f EUR (estimate: measured power at the logged price, %d of %d cycles, no fees), "
+      "charged %.1f kWh, discharged %.1f kWh, %.2f full cycles, %d interventions",
+      date().c_str(), earned_eur(), valued_cycles_, cycles_, charged_kwh(), discharged_kwh(),
+      full_cycles(), interventions());
+  std::string line = text;
+  const char* separator = " (";
+  for (int i = 0; i < kReasonCount; ++i) {
+    const int count = cycles_by_reason_[static_cast<std::size_t>(i)];
+    if (count == 0 || static_cast<Reason>(i) == Reason::kStudent) continue;
+    line.append(separator).append(reason_name(static_cast<Reason>(i)));
+    line.append(" ").append(std::to_string(count));
+    separator = ", ";
+  }
+  if (interventions() > 0) line += ")";
+  return line;
+}
+
+}  // namespace bess

@@ -1,0 +1,48 @@
+// A local day in one line: money, energy, cycles, interventions, from the decision log's records. Integers
+// until they are written.
+//
+// A record's power was measured 3 s before its tick, and its price is of the minute before it: both stand
+// for the two minutes that end there. The money is an estimate: the measured power of one instant, at the
+// indicative price, without the settlement of the quarter-hour, fees or taxes.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "edge/control/control_types.h"
+
+namespace bess {
+
+class DayAccount {
+ public:
+  /// `local_day` as 20231126 (cycle_budget.h).
+  explicit DayAccount(std::int32_t local_day) : local_day_(local_day) {}
+
+  /// A record of that day; the order does not matter.
+  void add(const CycleRecord& record);
+
+  [[nodiscard]] bool is_empty() const { return cycles_ == 0; }
+  [[nodiscard]] std::int32_t local_day() const { return local_day_; }
+  [[nodiscard]] double earned_eur() const;
+  [[nodiscard]] double charged_kwh() const;
+  [[nodiscard]] double discharged_kwh() const;
+  [[nodiscard]] double full_cycles() const;
+  [[nodiscard]] int cycles() const { return cycles_; }
+  [[nodiscard]] int interventions() const;
+  /// "2023-11-26".
+  [[nodiscard]] std::string date() const;
+  [[nodiscard]] std::string line() const;
+
+ private:
+  std::int32_t local_day_;
+  std::int64_t watt_centi_ = 0;  ///< sum of W times hundredths of EUR/MWh, over two minutes each
+  std::int64_t charged_w_ = 0;   ///< sum of W, over two minutes each
+  std::int64_t discharged_w_ = 0;
+  std::int32_t soc_moved_e4_ = 0;
+  int cycles_ = 0;
+  int valued_cycles_ = 0;  ///< with a measurement and a price
+  std::array<int, kReasonCount> cycles_by_reason_{};
+};
+
+}  // namespace bess

@@ -1,0 +1,135 @@
+// bess-notify: calls for help. A program of its own, outside the control process: it asks `bess-edge status`
+// and reads the decision log, and tells what is wrong by mail, webhook and MQTT. Killed, stuck or absent,
+// it changes nothing for the controller.
+#include <signal.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstring>
+#include <string>
+
+#include "edge/notify/journal_line.h"
+#include "edge/notify/notifier.h"
+#include "edge/notify/notify_settings.h"
+#include "edge/notify/webhook.h"
+#include "shared/local_time.h"
+#include "shared/scaled_clock.h"
+
+namespace bess {
+namespace {
+
+constexpr const char* kHelp =
+    R"(bess-notify: tells by mail, webhook and MQTT when a battery controller needs help
+
+  bess-notify [--config FILE]            every [notify] every_s, until SIGTERM
+  bess-notify [--config FILE] --once     one round, for a timer
+  bess-notify [--config FILE] --test     one message by every way that is configured
+  bess-notify [--config FILE] --check    is [notify] right? Sends nothing
+
+  --config FILE  the controller's settings; section [notify]; default /etc/bess/edge.toml
+  --help         this text
+  --version      the version
+
+Each alarm is told once, and its end once, also over restarts. It reads what bess-edge publishes and takes no
+lock: the controller does not know that it exists.
+Exit codes: 0 done   1 the settings are bad, or a test message was not taken   2 the command line is bad
+)";
+
+enum class Task { kWatch, kOnce, kTest, kCheck };
+
+struct Options {
+  std::string config_path = "/etc/bess/edge.toml";
+  Task task = Task::kWatch;
+};
+
+/// -1 to go on; else the exit code.
+int parse(int argc, char** argv, Options& options) {
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view argument = argv[i];
+    if (argument == "--help" || argument == "-h") return std::fputs(kHelp, stdout), 0;
+    if (argument == "--version") return std::printf("bess-notify %s\n", BESS_VERSION), 0;
+    if (argument == "--once")
+      options.task = Task::kOnce;
+    else if (argument == "--test")
+      options.task = Task::kTest;
+    else if (argument == "--check")
+      options.task = Task::kCheck;
+    else if (argument == "--config" && i + 1 < argc)
+      options.config_path = argv[++i];
+    else {
+      std::fprintf(stderr, "bess-notify: unknown option or missing value: %s (see --help)\n",
+                   argv[i]);
+      return 2;
+    }
+  }
+  return -1;
+}
+
+std::int64_t now_utc_s() { return clock_ns(CLOCK_REALTIME) / kNanosecondsPerSecond; }
+
+void print_check(const NotifySettings& settings) {
+  std::printf("node       %s, every %d s, told after %d s\n", settings.node.c_str(),
+              settings.every_s, settings.after_s);
+  std::printf("asks       %s status --config %s\n", settings.program.c_str(),
+              settings.config_path.c_str());
+  std::printf("mail       %s\n", settings.mail_to.empty() ? "none" : settings.mail_to.c_str());
+  std::printf("webhook    %s\n", settings.webhook_url.empty() ? "none" : "configured");
+  if (settings.mqtt.host.empty()) {
+    std::printf("mqtt       none\n");
+  } else {
+    std::printf("mqtt       %s:%d%s, topics bess/v1/%s/...\n", settings.mqtt.host.c_str(),
+                settings.mqtt.port, settings.mqtt.ca_file.empty() ? "" : " with TLS",
+                settings.node.c_str());
+  }
+}
+
+/// Blocked, and taken while waiting: a round is never cut in the middle.
+sigset_t block_stop_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGTERM);
+  sigaddset(&signals, SIGINT);
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  return signals;
+}
+
+void watch(Notifier& notifier, std::int32_t every_s, const sigset_t& stop_signals) {
+  const timespec pause{.tv_sec = every_s, .tv_nsec = 0};
+  do notifier.run_round(now_utc_s());
+  while (sigtimedwait(&stop_signals, nullptr, &pause) < 0);
+}
+
+int run(const Options& options) {
+  NotifySettings settings;
+  std::string error;
+  if (!load_notify_settings(options.config_path, settings, error)) {
+    std::fprintf(stderr, "bess-notify: %s\n", error.c_str());
+    return 1;
+  }
+  if (options.task == Task::kCheck) return print_check(settings), 0;
+  if (!settings.has_a_way()) {
+    say(JournalLevel::kWarning,
+        "[notify] names no way (mail_to, webhook_url, mqtt_host): alarms stand in the journal "
+        "alone");
+  }
+  const sigset_t stop_signals = block_stop_signals();
+  signal(SIGPIPE, SIG_IGN);
+  set_market_time_zone();
+  prepare_webhooks();
+  Notifier notifier(settings);
+  if (options.task == Task::kTest) return notifier.send_test(now_utc_s()) ? 0 : 1;
+  if (options.task == Task::kOnce) return notifier.run_round(now_utc_s()), 0;
+  say(JournalLevel::kNotice, "started");
+  watch(notifier, settings.every_s, stop_signals);
+  say(JournalLevel::kNotice, "stopped");
+  return 0;
+}
+
+}  // namespace
+}  // namespace bess
+
+int main(int argc, char** argv) {
+  bess::Options options;
+  const int exit_code = bess::parse(argc, argv, options);
+  return exit_code >= 0 ? exit_code : bess::run(options);
+}

@@ -1,0 +1,44 @@
+// [notify] of the controller's configuration, and what else of it the notifier needs. Read apart from the
+// controller's own reader: when the configuration keeps the controller from starting, somebody must still
+// be able to tell.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace bess {
+
+struct MqttSettings {
+  std::string host;  ///< empty: no MQTT
+  std::int32_t port = 0;
+  std::string ca_file;  ///< empty: in clear
+  std::string user;
+  std::string password;
+  std::string discovery_prefix;  ///< of Home Assistant; empty: no discovery
+};
+
+struct NotifySettings {
+  std::string config_path;
+  std::string program;  ///< bess-edge
+  std::string ring;     ///< the decision log
+  std::string memory;   ///< file of what was told
+  std::string node;
+  std::int32_t every_s = 30;
+  std::int32_t after_s = 300;
+  bool daily = true;
+  std::string mail_to;  ///< empty: no mail
+  std::string mail_from;
+  std::string sendmail;
+  std::string webhook_url;      ///< empty: no webhook
+  std::string webhook_headers;  ///< one "Name: value" a line
+  MqttSettings mqtt;
+
+  [[nodiscard]] bool has_a_way() const {
+    return !mail_to.empty() || !webhook_url.empty() || !mqtt.host.empty();
+  }
+};
+
+/// False with one line: file, key, and the mend. Makes nothing and connects to nothing.
+bool load_notify_settings(const std::string& path, NotifySettings& settings, std::string& error);
+
+}  // namespace bess

@@ -1,0 +1,172 @@
+#include "edge/notify/topics.h"
+
+#include <optional>
+
+#include "shared/price_level.h"
+#include "shared/utc_text.h"
+
+namespace bess {
+namespace {
+
+std::string text_or(JsonValue value, const char* otherwise) {
+  return value.text() == nullptr ? otherwise : value.text();
+}
+
+/// Absent, not 0, where it was not measured.
+void set_scaled(Json& json, const char* key, JsonValue last, const char* name, double divisor,
+                int decimals) {
+  const std::optional<double> number = last[name].number();
+  if (number.has_value()) json.set(key, Decimals{*number / divisor, decimals});
+}
+
+bool is_true(JsonValue value) { return value.boolean().value_or(false); }
+
+/// One entity of Home Assistant; empty texts are left out.
+struct Entity {
+  const char* platform;
+  const char* key;
+  const char* name;
+  const char* value;  ///< template over the state
+  const char* device_class = "";
+  const char* unit = "";
+  const char* state_class = "";
+};
+
+constexpr Entity kEntities[] = {
+    {"sensor", "soc", "State of charge", "{{ value_json.soc_percent | default('None') }}",
+     "battery", "%", "measurement"},
+    {"sensor", "power", "Battery power", "{{ value_json.power_w | default('None') }}", "power", "W",
+     "measurement"},
+    {"sensor", "setpoint", "Ordered power", "{{ value_json.setpoint_w | default('None') }}",
+     "power", "W", "measurement"},
+    {"sensor", "price", "Imbalance price", "{{ value_json.price_eur_per_mwh | default('None') }}",
+     "", "EUR/MWh", "measurement"},
+    {"sensor", "reserve", "Reserve", "{{ value_json.reserve_percent | default('None') }}", "", "%",
+     "measurement"},
+    {"sensor", "full_cycles", "Full cycles today",
+     "{{ value_json.full_cycles_today | default('None') }}", "", "", "measurement"},
+    {"sensor", "days_since_full", "Days since full",
+     "{{ value_json.days_since_full | default('None') }}", "duration", "d", "measurement"},
+    {"sensor", "mode", "Mode", "{{ value_json.mode }}"},
+    {"sensor", "reason", "Reason", "{{ value_json.reason }}"},
+    {"sensor", "hold_until", "Held until", "{{ value_json.hold_until_utc | default('None') }}",
+     "timestamp"},
+    {"binary_sensor", "held", "Held", "{{ 'ON' if value_json.held else 'OFF' }}"},
+    {"binary_sensor", "problem", "Problem", "{{ 'OFF' if value_json.health == 'ok' else 'ON' }}",
+     "problem"},
+};
+
+Json entity_json(const NotifySettings& settings, const std::string& id, const Entity& entity) {
+  Json json = Json::object({{"platform", entity.platform},
+                            {"unique_id", id + "_" + entity.key},
+                            {"name", entity.name},
+                            {"state_topic", topic(settings.node, "state")},
+                            {"value_template", entity.value},
+                            {"availability_topic", topic(settings.node, "status")},
+                            {"expire_after", settings.every_s * 10}});
+  const std::pair<const char*, const char*> others[] = {{"device_class", entity.device_class},
+                                                        {"unit_of_measurement", entity.unit},
+                                                        {"state_class", entity.state_class}};
+  for (const auto& [key, value] : others) {
+    if (*value != '\0') json.set(key, value);
+  }
+  return json;
+}
+
+Json earned_yesterday_json(const NotifySettings& settings, const std::string& id) {
+  return Json::object({{"platform", "sensor"},
+                       {"unique_id", id + "_earned_yesterday"},
+                       {"name", "Earned yesterday (estimate)"},
+                       {"state_topic", topic(settings.node, "day")},
+                       {"value_template", "{{ value_json.earned_eur }}"},
+                       {"availability_topic", topic(settings.node, "status")},
+                       {"device_class", "monetary"},
+                       {"unit_of_measurement", "EUR"}});
+}
+
+std::string id_of(const NotifySettings& settings) { return "bess_" + settings.node; }
+
+}  // namespace
+
+std::string topic(const std::string& node, const char* name) {
+  return "bess/v1/" + node + "/" + name;
+}
+
+std::string state_json(const ControllerStatus& status, std::size_t open_alarms) {
+  const JsonValue all = status.json.value();
+  const JsonValue last = all["last"];
+  Json json = Json::object({{"health", status.trouble.empty() ? text_or(all["health"], "unknown")
+                                                              : std::string("unknown")},
+                            {"alarms", open_alarms},
+                            {"mode", text_or(last["mode"], "none")},
+                            {"reason", text_or(last["reason"], "none")},
+                            {"in_control", is_true(all["control"])},
+                            {"utc", text_or(last["utc"], "")}});
+  if (is_true(last["has_measurement"])) {
+    set_scaled(json, "soc_percent", last, "soc_e4", 100, 1);
+    set_scaled(json, "power_w", last, "battery_power_w", 1, 0);
+  }
+  set_scaled(json, "setpoint_w", last, "ordered_power_w", 1, 0);
+  if (is_true(last["has_price"])) {
+    set_scaled(json, "price_eur_per_mwh", last, "price_centi_eur_per_mwh", 100, 2);
+  }
+  set_scaled(json, "reserve_percent", last, "reserve_soc_e4", 100, 1);
+  set_scaled(json, "days_since_full", last, "days_since_full", 1, 0);
+  set_scaled(json, "full_cycles_today", all["totals"], "soc_moved_e4_today", 20'000, 3);
+  const bool held = is_true(last["held"]);
+  json.set("held", held);
+  if (held) {
+    set_scaled(json, "hold_w", last, "hold_power_w", 1, 0);
+    json.set("hold_until_utc", text_or(last["hold_until_utc"], ""));
+  }
+  return json.line();
+}
+
+std::string alarms_json(const std::vector<Alarm>& alarms) {
+  Json list = Json::list();
+  for (const Alarm& alarm : alarms) {
+    if (!alarm.is_told) continue;
+    list.add(Json::object({{"key", alarm.key},
+                           {"text", alarm.text},
+                           {"since_utc", utc_text(alarm.since_utc_s).view()}}));
+  }
+  return list.line();
+}
+
+std::string day_json(const DayAccount& day) {
+  return Json::object({{"date", day.date()},
+                       {"earned_eur", Decimals{day.earned_eur(), 2}},
+                       {"charged_kwh", Decimals{day.charged_kwh(), 3}},
+                       {"discharged_kwh", Decimals{day.discharged_kwh(), 3}},
+                       {"full_cycles", Decimals{day.full_cycles(), 3}},
+                       {"cycles", day.cycles()},
+                       {"interventions", day.interventions()}})
+      .line();
+}
+
+std::string discovery_topic(const NotifySettings& settings) {
+  return settings.mqtt.discovery_prefix + "/device/" + id_of(settings) + "/config";
+}
+
+std::string discovery_json(const NotifySettings& settings, const std::string& version) {
+  const std::string id = id_of(settings);
+  Json components = Json::object();
+  for (const Entity& entity : kEntities) {
+    components.set((id + "_" + entity.key).c_str(), entity_json(settings, id, entity));
+  }
+  components.set((id + "_earned_yesterday").c_str(), earned_yesterday_json(settings, id));
+  Json ids = Json::list();
+  ids.add(id);
+  Json device = Json::object({{"identifiers", std::move(ids)},
+                              {"name", "bess " + settings.node},
+                              {"manufacturer", "bess"},
+                              {"model", "battery controller"},
+                              {"sw_version", version}});
+  Json origin = Json::object({{"name", "bess-notify"}, {"sw_version", version}});
+  return Json::object({{"device", std::move(device)},
+                       {"origin", std::move(origin)},
+                       {"components", std::move(components)}})
+      .line();
+}
+
+}  // namespace bess

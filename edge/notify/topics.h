@@ -1,0 +1,31 @@
+// What stands where in the broker: a versioned tree, so that no later version moves what users have built upon.
+//   bess/v1/NODE/status   online | offline (the last will), retained
+//   bess/v1/NODE/state    the newest values, one JSON object, retained
+//   bess/v1/NODE/alarms   the alarms that are told and not over, JSON list, retained
+//   bess/v1/NODE/day      yesterday, JSON, retained
+//   bess/v1/NODE/event    each alarm and its end as it is told, JSON, not retained
+// A member may be added to an object; none is renamed or removed within v1.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "edge/notify/alarm_book.h"
+#include "edge/notify/controller_status.h"
+#include "edge/notify/day_account.h"
+#include "edge/notify/notify_settings.h"
+
+namespace bess {
+
+/// "bess/v1/NODE/NAME".
+std::string topic(const std::string& node, const char* name);
+
+std::string state_json(const ControllerStatus& status, std::size_t open_alarms);
+std::string alarms_json(const std::vector<Alarm>& alarms);
+std::string day_json(const DayAccount& day);
+
+/// Home Assistant's discovery: one message for the device and all its entities (since 2024.11).
+std::string discovery_topic(const NotifySettings& settings);
+std::string discovery_json(const NotifySettings& settings, const std::string& version);
+
+}  // namespace bess

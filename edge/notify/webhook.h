@@ -1,0 +1,21 @@
+// One JSON object, posted: to chat programs, gateways, pagers.
+#pragma once
+
+#include <string>
+
+#include "edge/notify/message.h"
+
+namespace bess {
+
+struct NotifySettings;
+
+/// Once, before any other thread is started.
+void prepare_webhooks();
+
+/// https, or http to this very machine: what is told, and the secret in the URL, cross no wire in clear.
+bool is_allowed_webhook(const std::string& url);
+
+/// Empty when it was answered with 2xx; else why not, without the URL, which may be a secret.
+std::string post_webhook(const NotifySettings& settings, const Message& message);
+
+}  // namespace bess

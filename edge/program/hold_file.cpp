@@ -1,0 +1,64 @@
+#include "edge/program/hold_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <charconv>
+#include <cstdio>
+
+#include "shared/crc32.h"
+#include "shared/file_descriptor.h"
+#include "shared/utc_text.h"
+
+namespace bess {
+namespace {
+
+constexpr std::string_view kBeforePower = "bess-hold 1 power_w=";
+constexpr std::size_t kPowerCharacters = 10;
+constexpr std::string_view kBeforeUntil = " until=";
+constexpr std::size_t kUntilCharacters = 20;
+
+constexpr Hold kUnreadable{.unreadable = true};
+
+}  // namespace
+
+HoldText format_hold(const Hold& hold) {
+  char text[160];
+  const int length =
+      std::snprintf(text, sizeof text, "%s%+010d%s%s", kBeforePower.data(), hold.power_w,
+                    kBeforeUntil.data(), utc_text(std::int64_t{hold.until_utc_s}).c_str());
+  Crc32 crc;
+  crc.add_bytes(text, static_cast<std::size_t>(length));
+  std::snprintf(text + length, sizeof text - static_cast<std::size_t>(length), " crc32=%08x\n",
+                crc.value());
+  return {text};
+}
+
+Hold parse_hold(std::string_view text) {
+  if (text.size() != kHoldFileBytes) return kUnreadable;
+  const char* const power = text.data() + kBeforePower.size();
+  const std::size_t sign_characters = *power == '+' ? 1 : 0;  // from_chars takes none
+  Hold hold;
+  std::int64_t until_utc_s = 0;
+  const auto read =
+      std::from_chars(power + sign_characters, power + kPowerCharacters, hold.power_w);
+  const std::string_view until(power + kPowerCharacters + kBeforeUntil.size(), kUntilCharacters);
+  if (read.ec != std::errc{} || !parse_utc(until, until_utc_s)) return kUnreadable;
+  if (until_utc_s < 0 || until_utc_s >= UINT32_MAX) return kUnreadable;
+  hold.until_utc_s = static_cast<std::uint32_t>(until_utc_s);
+  // Every other character, and the checksum: written again it must be the same.
+  return format_hold(hold) == text ? hold : kUnreadable;
+}
+
+Hold read_hold(const char* path) {
+  // Not what blocks (a pipe), nor what another may have pointed elsewhere.
+  const FileDescriptor file(open(path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
+  if (file.get() < 0) return errno == ENOENT ? Hold{} : kUnreadable;
+  char text[kHoldFileBytes + 1];  // one more: a longer file is none of ours
+  const ssize_t size = pread(file.get(), text, sizeof text, 0);
+  if (size < 0) return kUnreadable;
+  return parse_hold({text, static_cast<std::size_t>(size)});
+}
+
+}  // namespace bess

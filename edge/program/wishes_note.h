@@ -1,0 +1,14 @@
+// What --check says of people's wishes: each line only where there is one.
+#pragma once
+
+#include <string>
+
+#include "edge/control/control_settings.h"
+#include "edge/control/hold.h"
+
+namespace bess {
+
+/// Lines with their ends; empty when nothing is wanted. `now_utc_s` decides which reserve and hold are in force.
+std::string wishes_note(const ControlSettings& control, const Hold& hold, std::int64_t now_utc_s);
+
+}  // namespace bess

@@ -1,0 +1,220 @@
+// People and the real programs: a hold that the running controller finds, a notifier that it does not notice.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "tests/support/simulated_site.h"
+
+namespace bess {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+std::string text_of(const std::string& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+struct Said {
+  int exit_code;
+  std::string text;
+};
+
+Said run(std::vector<std::string> arguments) {
+  ChildProcess child(std::move(arguments));
+  std::string text = child.read_all();
+  return {child.wait(), std::move(text)};
+}
+
+Said edge(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), BESS_EDGE_PROGRAM);
+  return run(std::move(arguments));
+}
+
+/// The next line of output with this piece; empty when the program ended before.
+std::string await_line(ChildProcess& child, const std::string& piece) {
+  std::string line = child.read_line();
+  while (!line.empty() && line.find(piece) == std::string::npos) line = child.read_line();
+  return line;
+}
+
+class People : public ::testing::Test {
+ protected:
+  static constexpr std::int32_t kScale = 900;
+
+  void start_site(int minutes = 600) {
+    site_.start_battery();
+    site_.start_market({}, SimulatedSite::minute_prices(minutes));
+    config_ = site_.commission();
+  }
+
+  SimulatedSite site_{kScale};
+  std::string config_;
+};
+
+TEST_F(People, AHoldIsFollowedByTheRunningControllerUntilItIsReleased) {
+  start_site();
+  ChildProcess controller({BESS_EDGE_PROGRAM, "--config", config_});
+  ASSERT_NE(await_line(controller, "mode=running"), "");
+  const Said hold = edge({"hold", "-1000", "--for", "6h", "--config", config_});
+  EXPECT_EQ(hold.exit_code, 0);
+  EXPECT_THAT(hold.text,
+              AllOf(HasSubstr("hold       -1000 W (discharging) until 2023-03-26T"),
+                    HasSubstr("local time\n"), HasSubstr("from the cycle of 2023-03-26T")));
+  EXPECT_THAT(hold.text, Not(HasSubstr("no bess-edge runs")));
+  EXPECT_THAT(await_line(controller, "hold: "), HasSubstr("hold: -1000 W until 2023-03-26T"));
+  EXPECT_THAT(await_line(controller, "reason=held"),
+              AllOf(HasSubstr("ordered_power_w=-1000"), HasSubstr("written=1")));
+  EXPECT_THAT(edge({"status", "--config", config_}).text,
+              HasSubstr("hold       -1000 W until 2023-03-26T"));
+  EXPECT_THAT(edge({"status", "--prometheus", "--config", config_}).text,
+              HasSubstr("\nbess_hold_watts -1000\n"));
+  EXPECT_EQ(edge({"hold", "--release", "--config", config_}).exit_code, 0);
+  EXPECT_EQ(await_line(controller, "hold: "), "hold: released; the prices decide again");
+  EXPECT_THAT(await_line(controller, "utc="), Not(HasSubstr("reason=held")));
+  EXPECT_EQ(SimulatedSite::stop(controller), 0);
+}
+
+TEST_F(People, AHoldOutlastsARestartAndNeedsNoPrice) {
+  start_site();
+  const Said hold = edge({"hold", "+1500", "--for", "6h", "--config", config_});
+  EXPECT_THAT(hold.text, HasSubstr("no bess-edge runs with this configuration"));
+  for (int run = 0; run < 2; ++run) {
+    if (run == 1) site_.market->signal(SIGKILL);
+    const Said controller = edge({"--config", config_, "--cycles", "2"});
+    EXPECT_EQ(controller.exit_code, 0);
+    EXPECT_THAT(controller.text,
+                AllOf(HasSubstr("cycle=1 mode=running"), HasSubstr("reason=held")));
+    EXPECT_THAT(controller.text, HasSubstr("ordered_power_w=1500"));
+  }
+}
+
+TEST_F(People, AFileThatIsNoHoldIsToldOnceAndTradingGoesOn) {
+  start_site();
+  std::filesystem::create_directory(site_.folder.file("state"));
+  static_cast<void>(site_.folder.write("state/hold", "hold -1000 W for two hours, please\n"));
+  const Said controller = edge({"--config", config_, "--cycles", "4"});
+  EXPECT_EQ(controller.exit_code, 0);
+  EXPECT_THAT(controller.text, HasSubstr("mode=running"));
+  EXPECT_THAT(controller.text, Not(HasSubstr("reason=held")));
+  const std::size_t first =
+      controller.text.find("hold: the file hold in [state] folder is not one");
+  ASSERT_NE(first, std::string::npos) << controller.text;
+  EXPECT_EQ(controller.text.find("hold: the file", first + 1), std::string::npos);
+}
+
+TEST_F(People, EveryWrongHoldIsOneClearLine) {
+  start_site();
+  const std::pair<std::vector<std::string>, const char*> usage[] = {
+      {{"hold"}, "hold needs a power in W and --for DURATION, or --release alone"},
+      {{"hold", "100"}, "hold needs a power"},
+      {{"hold", "--for", "2h"}, "hold needs a power"},
+      {{"hold", "100", "--for", "2h", "--release"}, "hold needs a power"},
+      {{"hold", "100", "200", "--for", "2h"}, "unknown option 200"},
+      {{"hold", "1.5kW", "--for", "2h"}, "unknown option 1.5kW"},
+      {{"hold", "100", "--for", "2"}, "--for needs 2m to 7d"},
+      {{"hold", "100", "--for", "119s"}, "--for needs 2m to 7d"},
+      {{"hold", "100", "--for", "7d1s"}, "--for needs 2m to 7d"},
+      {{"hold", "100", "--for", "-2h"}, "--for needs 2m to 7d"},
+      {{"hold", "100", "--for", "99999999999h"}, "--for needs 2m to 7d"},
+      {{"status", "100"}, "unknown option 100"},
+  };
+  for (const auto& [arguments, message] : usage) {
+    const Said said = edge(arguments);
+    EXPECT_EQ(said.exit_code, 2) << message;
+    EXPECT_THAT(said.text, HasSubstr(message));
+  }
+  const Said beyond = edge({"hold", "-4001", "--for", "1d12h", "--config", config_});
+  EXPECT_EQ(beyond.exit_code, 1);
+  EXPECT_THAT(beyond.text, HasSubstr("hold -4001 W is beyond [battery] power_w of " + config_ +
+                                     ": choose between -4000 and 4000"));
+  EXPECT_FALSE(std::filesystem::exists(site_.folder.file("state/hold")));
+  EXPECT_EQ(edge({"hold", "--release", "--config", config_}).exit_code, 0);  // nothing to release
+}
+
+/// A lock that cannot even be opened without waiting for ever shows who tries.
+TEST_F(People, StatusWithoutLockTouchesNone) {
+  start_site();
+  EXPECT_EQ(edge({"--config", config_, "--cycles", "1"}).exit_code, 0);
+  ASSERT_EQ(mkfifo(site_.folder.file("state/lock").c_str(), 0600), 0);
+  const Said said = edge({"status", "--no-lock", "--config", config_});
+  EXPECT_EQ(said.exit_code, 3);
+  EXPECT_THAT(said.text, HasSubstr("health     not running"));
+}
+
+#ifdef BESS_NOTIFY_PROGRAM
+
+class Notify : public People {
+ protected:
+  /// Adds [notify] to the controller's own file, with a mailer that is a script.
+  void use_mail() {
+    const std::string mailer =
+        site_.folder.write("sendmail", "#!/bin/sh\ncat >>" + site_.folder.file("mails") + "\n");
+    ASSERT_EQ(chmod(mailer.c_str(), 0755), 0);
+    std::ofstream(config_, std::ios::app)
+        << "[notify]\nnode = \"garage\"\nevery_s = 1\nafter_s = 1\nmail_to = \"a@b.example\"\n"
+        << "sendmail = \"" << mailer << "\"\nprogram = \"" BESS_EDGE_PROGRAM "\"\n";
+  }
+  /// False after half a minute.
+  bool is_mailed(const std::string& piece) const {
+    for (int i = 0; i < 300; ++i) {
+      if (text_of(site_.folder.file("mails")).find(piece) != std::string::npos) return true;
+      usleep(100'000);
+    }
+    return false;
+  }
+};
+
+/// Stopped while it asks or writes, killed, started again: no cycle is late, none is missed.
+TEST_F(Notify, StuckOrKilledItHasNoEffectOnControl) {
+  start_site();
+  use_mail();
+  ChildProcess controller({BESS_EDGE_PROGRAM, "--config", config_, "--cycles", "60"});
+  for (int i = 0; i < 6; ++i) {
+    ChildProcess notify({BESS_NOTIFY_PROGRAM, "--config", config_});
+    usleep(static_cast<useconds_t>(300'000 + 37'000 * i));
+    notify.signal(SIGSTOP);
+    usleep(700'000);
+    notify.signal(SIGKILL);
+    notify.wait();
+  }
+  EXPECT_THAT(controller.read_all(), HasSubstr("stopped: battery released"));
+  EXPECT_EQ(controller.wait(), 0);
+  int cycles = 0;
+  for (const CsvRow& row : read_csv(site_.folder.file("edge.csv"))) {
+    if (row.at("mode") == "stopping") continue;
+    ++cycles;
+    EXPECT_EQ(row.at("mode"), "running");
+    EXPECT_EQ(row.at("written"), "1");
+  }
+  EXPECT_EQ(cycles, 60);
+}
+
+TEST_F(Notify, AKilledControllerIsToldOnceAndThatItIsBack) {
+  start_site(3'000);
+  use_mail();
+  ChildProcess notify({BESS_NOTIFY_PROGRAM, "--config", config_});
+  {
+    ChildProcess controller({BESS_EDGE_PROGRAM, "--config", config_});
+    ASSERT_NE(await_line(controller, "mode=running"), "");
+    controller.signal(SIGKILL);
+    controller.wait();
+  }
+  EXPECT_TRUE(is_mailed("ALARM: CRITICAL: no bess-edge runs with this configuration"));
+  ChildProcess controller({BESS_EDGE_PROGRAM, "--config", config_});
+  EXPECT_TRUE(is_mailed("over: CRITICAL: no bess-edge runs with this configuration"));
+  EXPECT_EQ(SimulatedSite::stop(notify), 0);
+  EXPECT_EQ(SimulatedSite::stop(controller), 0);
+}
+
+#endif
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,153 @@
+// Behind the meter with the real programs: bess-edge reads bess-sim's meter over Modbus, takes
+// limits from `bess-edge limit`, and bess-sim's own record says what flowed.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/simulated_site.h"
+
+namespace bess {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr std::int32_t kScale = 120;
+
+class SiteProcesses : public ::testing::Test {
+ protected:
+  /// Prices at which the battery charges all the time; the house takes 1500 W.
+  void start(const std::vector<std::string>& meter_options) {
+    std::vector<std::string> options = {"--house", "1500", "--soc", "0.3"};
+    options.insert(options.end(), meter_options.begin(), meter_options.end());
+    site_.start_battery(options);
+    const std::string line = has_meter(meter_options) ? site_.battery->read_line() : "";
+    meter_port_ = std::atoi(line.substr(line.rfind(':', line.rfind(',')) + 1).c_str());
+    site_.start_market({}, SimulatedSite::minute_prices(150, {-600, 0}));
+  }
+  static bool has_meter(const std::vector<std::string>& options) {
+    return !options.empty() && options[0] == "--meter-map";
+  }
+  static std::vector<std::string> own_meter(const std::string& map = "simulator") {
+    return {"--meter-map", BESS_SOURCE_DIR "/edge/meters/" + map + ".toml"};
+  }
+  [[nodiscard]] std::string meter_section(const std::string& keys,
+                                          const std::string& map = "simulator") const {
+    return "[meter]\nmap = \"" BESS_SOURCE_DIR "/edge/meters/" + map +
+           ".toml\"\nresponse_timeout_ms = 30\nport = " + std::to_string(meter_port_) + "\n" + keys;
+  }
+  std::string commission(const std::string& sections) {
+    return site_.commission({.guard_keys = sections});
+  }
+  /// Runs a controller to its end; its log.
+  std::vector<CsvRow> run(const std::string& config, int cycles) {
+    ChildProcess edge({BESS_EDGE_PROGRAM, "--config", config, "--cycles", std::to_string(cycles)});
+    edge.read_all();
+    EXPECT_EQ(edge.wait(), 0);
+    return read_csv(site_.folder.file("edge.csv"));
+  }
+
+  SimulatedSite site_{kScale};
+  int meter_port_ = 0;
+};
+
+TEST_F(SiteProcesses, TheBatteryChargesWithWhatTheHouseLeaves) {
+  start(own_meter("sunspec"));
+  const std::string config = commission(meter_section("import_w_max = 3000\n", "sunspec"));
+  const std::vector<CsvRow> log = run(config, 6);
+  ASSERT_EQ(log.size(), 7U);
+  for (std::size_t i = 1; i < 6; ++i) {
+    EXPECT_EQ(log[i].at("reason"), "import_limit");
+    EXPECT_NEAR(std::stoi(log[i].at("ordered_power_w")), 1'300, 5);
+    EXPECT_NEAR(std::stoi(log[i].at("grid_power_w")), 2'800, 5);
+    EXPECT_EQ(log[i].at("meter_status"), "ok");
+  }
+  EXPECT_EQ(SimulatedSite::stop(*site_.battery), 0);
+  for (const CsvRow& row : read_csv(site_.folder.file("battery.csv"))) {
+    EXPECT_NEAR(std::stod(row.at("house_wh")), 25, 1e-6);
+    EXPECT_LE(std::stod(row.at("grid_wh")), 3'000 / 60.0);
+  }
+}
+
+TEST_F(SiteProcesses, TheBatterysOwnGridPointDoesAsWell) {
+  start({});
+  const std::string config = commission("[meter]\nsource = \"battery\"\nimport_w_max = 3000\n");
+  const std::vector<CsvRow> log = run(config, 4);
+  ASSERT_EQ(log.size(), 5U);
+  EXPECT_NEAR(std::stoi(log[3].at("ordered_power_w")), 1'300, 5);
+  EXPECT_EQ(log[3].at("reason"), "import_limit");
+}
+
+TEST_F(SiteProcesses, ASilentMeterLeavesTheBatteryIdleAndHealthSaysSo) {
+  std::vector<std::string> options = own_meter();
+  options.insert(options.end(), {"--meter-fault", "silence", "--meter-fault-from-s", "360"});
+  start(options);
+  const std::string config = commission(meter_section("import_w_max = 3000\n"));
+  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", config});
+  std::string line;
+  do line = edge.read_line();
+  while (!line.empty() && line.find(" reason=meter_lost ") == std::string::npos);
+  EXPECT_THAT(line, HasSubstr(" ordered_power_w=0 "));
+  EXPECT_THAT(line, HasSubstr(" meter=timeout"));
+  EXPECT_THAT(line, HasSubstr(" mode=running "));
+  ChildProcess status({BESS_EDGE_PROGRAM, "status", "--config", config});
+  EXPECT_THAT(status.read_all(), HasSubstr("WARN: meter: "));
+  EXPECT_EQ(status.wait(), 1);
+  EXPECT_EQ(SimulatedSite::stop(edge), 0);
+}
+
+TEST_F(SiteProcesses, ALimitIsObeyedUntilItIsCleared) {
+  start({});
+  const std::string config = commission("[limits]\nfile = \"limit\"\n");
+  const auto limit = [&](std::vector<std::string> options) {
+    options.insert(options.begin(), {BESS_EDGE_PROGRAM, "limit", "--config", config});
+    ChildProcess command(options);
+    const std::string said = command.read_all();
+    EXPECT_EQ(command.wait(), 0) << said;
+    return said;
+  };
+  EXPECT_THAT(limit({"--charge", "700", "--for", "2h"}),
+              HasSubstr("charge 700 W, discharge any W, until 2023-03-26T"));
+  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", config});
+  const auto line_with = [&](const std::string& text) {
+    std::string line;
+    do line = edge.read_line();
+    while (!line.empty() && line.find(text) == std::string::npos);
+    return line;
+  };
+  EXPECT_THAT(line_with(" written=1 "), HasSubstr(" ordered_power_w=700 reason=outside_limit "));
+  limit({"--clear"});
+  EXPECT_THAT(line_with(" ordered_power_w=4000 "), HasSubstr(" reason=student "));
+  static_cast<void>(site_.folder.write("limit", "0 0 tomorrow\n"));
+  EXPECT_THAT(line_with(" reason=outside_limit "), HasSubstr(" ordered_power_w=0 "));
+  EXPECT_EQ(SimulatedSite::stop(edge), 0);
+}
+
+TEST_F(SiteProcesses, TheCommandLineOfALimitIsChecked) {
+  start({});
+  const std::string without = site_.write_config();
+  const auto exit_code = [](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), BESS_EDGE_PROGRAM);
+    ChildProcess command(arguments);
+    command.read_all();
+    return command.wait();
+  };
+  EXPECT_EQ(exit_code({"limit", "--config", without, "--for", "15m"}), 1);  // no [limits]
+  const std::string with =
+      site_.write_config({.guard_keys = "[limits]\nfile = \"limit\"\n", .state = "with"});
+  EXPECT_EQ(exit_code({"limit", "--config", with}), 2);
+  EXPECT_EQ(exit_code({"limit", "--config", with, "--for", "15"}), 2);
+  EXPECT_EQ(exit_code({"limit", "--config", with, "--charge", "-1", "--for", "15m"}), 2);
+  EXPECT_EQ(exit_code({"limit", "--config", with, "--for", "15m", "--clear"}), 2);
+  EXPECT_EQ(exit_code({"limit", "--config", with, "--clear"}), 0);
+}
+
+TEST_F(SiteProcesses, CheckShowsGridAndHouse) {
+  start(own_meter());
+  const std::string config = commission(meter_section(""));
+  ChildProcess check({BESS_EDGE_PROGRAM, "--config", config, "--check"});
+  EXPECT_THAT(check.read_all(),
+              HasSubstr("meter      grid 1500 W (import is positive), house 1500 W"));
+  EXPECT_EQ(check.wait(), 0);
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,186 @@
+// Holds, reserve, full charges and the spread of starts in the real control loop, on a fake clock.
+#include <gtest/gtest.h>
+
+#include "edge/control/control_loop.h"
+#include "tests/support/fake_plant.h"
+
+namespace bess {
+namespace {
+
+using Loop = ControlLoop<FakeBattery, FakePrices, FakeClock>;
+
+struct Site {
+  explicit Site(double soc, const ControlSettings& settings)
+      : battery(clock, soc), prices(clock), loop(settings, battery, prices, clock) {
+    set_market_time_zone();
+    loop.follow_holds(holds);
+  }
+  explicit Site(double soc = 0.5) : Site(soc, {.control = true, .guard = {}}) {}
+  CycleRecord cycle() {
+    CycleRecord record;
+    EXPECT_TRUE(loop.run_cycle(record));
+    return record;
+  }
+  void hold(std::int32_t power_w, std::int64_t seconds) {
+    const std::int64_t now_utc_s = clock.now_ns / kNanosecondsPerSecond;
+    holds.publish(
+        {.power_w = power_w, .until_utc_s = static_cast<std::uint32_t>(now_utc_s + seconds)});
+  }
+
+  FakeClock clock;
+  FakeBattery battery;
+  FakePrices prices;
+  HoldMailbox holds;
+  Loop loop;
+};
+
+TEST(LoopWithAHold, FollowsItFromTheNextCycleUntilItsEnd) {
+  Site site;
+  site.prices.price = [](std::int64_t) { return -20'000; };
+  EXPECT_EQ(site.cycle().ordered_power_w, 4'000);
+  site.hold(-1'000, 660);
+  for (int i = 0; i < 5; ++i) {
+    const CycleRecord record = site.cycle();
+    EXPECT_EQ(record.ordered_power_w, -1'000);
+    EXPECT_EQ(record.reason, Reason::kHeld);
+    EXPECT_EQ(record.mode, Mode::kRunning);
+    EXPECT_TRUE(record.hold.held);
+  }
+  const CycleRecord record = site.cycle();
+  EXPECT_EQ(record.ordered_power_w, 4'000);
+  EXPECT_FALSE(record.hold.held);
+}
+
+TEST(LoopWithAHold, NeedsNoPriceAndItsEndWithoutOneIsTheSafeState) {
+  Site site;
+  site.prices.outage = true;
+  EXPECT_EQ(site.cycle().mode, Mode::kStart);
+  site.hold(2'000, 300);
+  EXPECT_EQ(site.cycle().mode, Mode::kRunning);
+  EXPECT_EQ(site.cycle().ordered_power_w, 2'000);
+  const CycleRecord after = site.cycle();
+  EXPECT_EQ(after.mode, Mode::kHolding);
+  EXPECT_EQ(after.reason, Reason::kNoPrice);
+  EXPECT_EQ(after.ordered_power_w, 0);
+}
+
+TEST(LoopWithAHold, AnUnreadableOneIsToldAndNotFollowed) {
+  Site site;
+  site.prices.price = [](std::int64_t) { return -20'000; };
+  site.holds.publish({.unreadable = true});
+  const CycleRecord record = site.cycle();
+  EXPECT_TRUE(record.hold.unreadable);
+  EXPECT_EQ(record.ordered_power_w, 4'000);
+}
+
+TEST(LoopWithAHold, ReadOnlySaysWhatItWouldOrder) {
+  Site site(0.5, ControlSettings{});
+  site.hold(-500, 3'600);
+  const CycleRecord record = site.cycle();
+  EXPECT_EQ(record.ordered_power_w, -500);
+  EXPECT_EQ(record.reason, Reason::kHeld);
+  EXPECT_FALSE(record.written);
+  EXPECT_TRUE(site.battery.orders.empty());
+}
+
+TEST(LoopWithAReserve, KeepsItWhateverThePriceAndTellsTheBattery) {
+  ControlSettings settings{.control = true, .guard = {}};
+  settings.reserve.push_back({.soc_e4 = 4'000});
+  Site site(0.5, settings);
+  site.prices.price = [](std::int64_t) { return 200'000; };
+  CycleRecord record;
+  for (int i = 0; i < 60; ++i) record = site.cycle();
+  EXPECT_EQ(record.reason, Reason::kReserve);
+  EXPECT_EQ(record.reserve_soc_e4, 4'000);
+  EXPECT_EQ(record.ordered_power_w, 0);
+  EXPECT_NEAR(site.battery.physics.soc_frac(), 0.4, 1e-6);  // the device stops there itself
+  for (const PowerOrder& order : site.battery.orders) EXPECT_EQ(order.soc_min_e4, 4'000);
+}
+
+TEST(LoopWithAReserve, ALowerOneThanSocMinChangesNothing) {
+  ControlSettings settings{.control = true, .guard = {}};
+  settings.reserve.push_back({.soc_e4 = 500});
+  Site site(0.5, settings);
+  site.cycle();
+  EXPECT_EQ(site.battery.orders.back().soc_min_e4, 1'000);
+}
+
+/// Waves that never fill it: from the day on which it is due, the battery goes to full, once.
+TEST(LoopWithFullCharges, FillsTheBatteryWhenItIsDue) {
+  ControlSettings settings{.control = true, .guard = {.full_charge_power_w = 2'000}};
+  settings.full_charge_every_days = 3;
+  settings.guard.soc_max_e4 = 10'000;
+  Site site(0.5, settings);
+  site.prices.price = [](std::int64_t minute_utc_s) {  // dear: the student sells, or rests
+    return minute_utc_s % 3'600 < 1'800 ? 30'000 : 25'000;
+  };
+  int due_cycles = 0;
+  std::int32_t fullest_e4 = 0;
+  for (int i = 0; i < 6 * kStepsPerDay && fullest_e4 < FullCharge::kFullE4; ++i) {
+    const CycleRecord record = site.cycle();
+    if (record.measurement.soc_e4 > fullest_e4) fullest_e4 = record.measurement.soc_e4;
+    if (record.reason != Reason::kFullCharge) continue;
+    ++due_cycles;
+    EXPECT_GE(record.days_since_full, 3);
+    EXPECT_GE(record.ordered_power_w, 0);
+    EXPECT_LE(record.ordered_power_w, 2'000);
+  }
+  EXPECT_GT(due_cycles, 0);
+  EXPECT_GE(fullest_e4, FullCharge::kFullE4);
+  EXPECT_EQ(site.cycle().days_since_full, 0);
+}
+
+TEST(LoopWithFullCharges, ARestartGoesOnCounting) {
+  ControlSettings settings{.control = true, .guard = {.full_charge_power_w = 2'000}};
+  settings.full_charge_every_days = 3;
+  Site site(0.5, settings);
+  site.prices.price = [](std::int64_t) { return 5'000; };
+  const std::int32_t today = local_day_number(local_minute_of(kDayStartS));
+  site.loop.take_over({.price_level = PriceLevel::starting_at(8'000), .last_full_day = today - 3});
+  const CycleRecord record = site.cycle();
+  EXPECT_EQ(record.days_since_full, 3);
+  EXPECT_EQ(record.reason, Reason::kFullCharge);
+  EXPECT_EQ(record.ordered_power_w, 2'000);
+}
+
+TEST(LoopWithASpread, OrdersThatLongAfterTheTickOnTheTicksPrice) {
+  ControlSettings settings{.control = true, .guard = {}, .read_lead_s = 3};
+  settings.start_offset_ms = 7'500;
+  Site site(0.5, settings);
+  std::int64_t ordered_ns = 0;
+  const CycleRecord record = site.cycle();
+  ordered_ns = site.clock.now_ns;
+  EXPECT_EQ(ordered_ns, record.utc_s * kNanosecondsPerSecond + 7'500'000'000);
+  EXPECT_EQ(record.price.minute_utc_s, record.utc_s - 60);
+  EXPECT_EQ(record.price_age_s, 7);  // at the write
+  EXPECT_EQ(record.deadline_misses, 0);
+  EXPECT_EQ(record.decision_us, 0);  // the wait is no part of it
+  EXPECT_EQ(record.write_us, 0);
+}
+
+TEST(LoopWithASpread, APriceThatIsLateIsNotMadeLater) {
+  ControlSettings settings{.control = true, .guard = {}};
+  settings.start_offset_ms = 7'500;
+  Site site(0.5, settings);
+  site.prices.arrives_after_ns = 12 * kNanosecondsPerSecond;
+  const CycleRecord record = site.cycle();
+  EXPECT_EQ(site.clock.now_ns, (record.utc_s + 12) * kNanosecondsPerSecond);
+}
+
+TEST(LoopWithASpread, AStopDuringTheWaitOrdersNothingMore) {
+  ControlSettings settings{.control = true, .guard = {}};
+  settings.start_offset_ms = 7'500;
+  Site site(0.5, settings);
+  site.cycle();
+  const std::size_t orders = site.battery.orders.size();
+  site.prices.price = [&](std::int64_t) {
+    site.clock.stop = true;  // while the price comes in
+    return 0;
+  };
+  CycleRecord record;
+  EXPECT_FALSE(site.loop.run_cycle(record));
+  EXPECT_EQ(site.battery.orders.size(), orders);
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,71 @@
+// What the journal says of a hold: each of its turns once.
+#include "edge/log/hold_lines.h"
+
+#include <gtest/gtest.h>
+
+namespace bess {
+namespace {
+
+constexpr std::int64_t kTick = 1'679'875'320;  // 2023-03-27T00:02:00Z
+constexpr HoldReport kHeld{.held = true, .power_w = -2'000, .until_utc_s = kTick + 240};
+constexpr HoldReport kUnreadable{.unreadable = true};
+
+struct Journal {
+  /// Empty: nothing was worth a line.
+  std::string after(int cycle, const HoldReport& hold, bool is_in_control = true) {
+    CycleRecord record;
+    record.utc_s = kTick + 120 * cycle;
+    record.mode = Mode::kRunning;
+    record.hold = hold;
+    char text[256];
+    TextBuffer line(text);
+    const bool said = lines.add_line(record, is_in_control, line);
+    EXPECT_EQ(said, !line.view().empty());
+    EXPECT_FALSE(line.was_cut());
+    return std::string(line.view());
+  }
+
+  HoldLines lines;
+};
+
+TEST(HoldLines, ABeginningAndAnEnd) {
+  Journal journal;
+  EXPECT_EQ(journal.after(-1, {}), "");
+  EXPECT_EQ(journal.after(0, kHeld), "hold: -2000 W until 2023-03-27T00:06:00Z");
+  EXPECT_EQ(journal.after(1, kHeld), "");
+  EXPECT_EQ(journal.after(2, {}), "hold: over; the prices decide again");
+  EXPECT_EQ(journal.after(3, {}), "");
+}
+
+TEST(HoldLines, AChangeAndARelease) {
+  Journal journal;
+  EXPECT_NE(journal.after(0, kHeld), "");
+  HoldReport other = kHeld;
+  other.power_w = 0;
+  EXPECT_EQ(journal.after(1, other, false),
+            "hold: 0 W until 2023-03-27T00:06:00Z (read-only: nothing is written)");
+  EXPECT_EQ(journal.after(1, {}), "hold: released; the prices decide again");
+}
+
+TEST(HoldLines, AnUnreadableFileOnce) {
+  Journal journal;
+  EXPECT_NE(journal.after(0, kUnreadable), "");
+  EXPECT_EQ(journal.after(1, kUnreadable), "");
+  EXPECT_EQ(journal.after(2, {}), "hold: none; the prices decide again");
+}
+
+TEST(HoldLines, TheEndOfTheProcessIsNotTheEndOfTheHold) {
+  HoldLines lines;
+  CycleRecord record;
+  record.mode = Mode::kRunning;
+  record.hold = kHeld;
+  char text[256];
+  TextBuffer line(text);
+  EXPECT_TRUE(lines.add_line(record, true, line));
+  record.mode = Mode::kStopping;
+  record.hold = {};
+  EXPECT_FALSE(lines.add_line(record, true, line));
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,66 @@
+// The daily line: money by hand, and its text to the letter.
+#include "edge/notify/day_account.h"
+
+#include <gtest/gtest.h>
+
+namespace bess {
+namespace {
+
+constexpr std::int32_t kDay = 20'231'126;
+
+CycleRecord cycle(std::int32_t power_w, std::int32_t price_centi,
+                  Reason reason = Reason::kStudent) {
+  CycleRecord record;
+  record.mode = Mode::kRunning;
+  record.reason = reason;
+  record.has_measurement = true;
+  record.measurement.power_w = power_w;
+  record.price.has_row = true;
+  record.price.price_centi_eur_per_mwh = price_centi;
+  return record;
+}
+
+/// Half an hour at 4 kW in at -50, half an hour out at 200 EUR/MWh: 2 kWh each, 0.10 + 0.40 EUR.
+TEST(DayAccount, CountsMoneyAsAMeterWould) {
+  DayAccount day(kDay);
+  for (int i = 0; i < 15; ++i) day.add(cycle(4'000, -5'000));
+  for (int i = 0; i < 15; ++i) day.add(cycle(-4'000, 20'000));
+  EXPECT_DOUBLE_EQ(day.charged_kwh(), 2);
+  EXPECT_DOUBLE_EQ(day.discharged_kwh(), 2);
+  EXPECT_NEAR(day.earned_eur(), 0.10 + 0.40, 1e-12);
+  EXPECT_EQ(day.cycles(), 30);
+  EXPECT_EQ(day.interventions(), 0);
+}
+
+TEST(DayAccount, TheLineIsThis) {
+  DayAccount day(kDay);
+  for (int i = 0; i < 15; ++i) day.add(cycle(-4'000, 20'000));
+  for (int i = 0; i < 3; ++i) day.add(cycle(0, 0, Reason::kSocEmpty));
+  CycleRecord blind = cycle(0, 0, Reason::kLink);
+  blind.has_measurement = false;
+  day.add(blind);
+  CycleRecord last = cycle(0, 0, Reason::kHeld);
+  last.throughput = {.local_day = kDay, .soc_moved_e4 = 5'000};
+  day.add(last);
+  CycleRecord stop = last;
+  stop.mode = Mode::kStopping;
+  day.add(stop);
+  EXPECT_EQ(
+      day.line(),
+      "2023-11-26: +0.40 EUR (estimate: measured power at the logged price, 19 of 20 cycles, no "
+      "fees), charged 0.0 kWh, discharged 2.0 kWh, 0.25 full cycles, 5 interventions (link 1, "
+      "soc_empty 3, held 1)");
+}
+
+TEST(DayAccount, TheThroughputOfAnotherDayIsNotThisDays) {
+  DayAccount day(kDay);
+  CycleRecord first = cycle(0, 0);
+  first.throughput = {.local_day = kDay - 1, .soc_moved_e4 = 20'000};
+  day.add(first);
+  EXPECT_EQ(day.full_cycles(), 0);
+  EXPECT_FALSE(day.is_empty());
+  EXPECT_TRUE(DayAccount(kDay).is_empty());
+}
+
+}  // namespace
+}  // namespace bess

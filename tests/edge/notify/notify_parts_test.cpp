@@ -1,0 +1,284 @@
+// The notifier's parts: settings and their mistakes, a child program, troubles of a status, mail, topics, what
+// is kept over restarts.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "edge/notify/child_program.h"
+#include "edge/notify/controller_status.h"
+#include "edge/notify/mail.h"
+#include "edge/notify/notify_settings.h"
+#include "edge/notify/told.h"
+#include "edge/notify/topics.h"
+#include "edge/notify/webhook.h"
+#include "tests/support/golden_file.h"
+#include "tests/support/temporary_folder.h"
+
+namespace bess {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+std::string write_secret(const TemporaryFolder& folder, const char* name, const char* text,
+                         mode_t mode = 0600) {
+  const std::string path = folder.write(name, text);
+  EXPECT_EQ(chmod(path.c_str(), mode), 0);
+  return path;
+}
+
+TEST(NotifySettings, WithoutASectionThereIsNoWay) {
+  const TemporaryFolder folder;
+  NotifySettings settings;
+  std::string error;
+  ASSERT_TRUE(load_notify_settings(folder.write("edge.toml", "control = true\n"), settings, error))
+      << error;
+  EXPECT_FALSE(settings.has_a_way());
+  EXPECT_EQ(settings.ring, folder.file("state/decisions.ring"));
+  EXPECT_EQ(settings.memory, folder.file("notify/told.json"));
+  EXPECT_FALSE(settings.node.empty());
+  EXPECT_EQ(std::filesystem::path(settings.program).filename(), "bess-edge");
+}
+
+TEST(NotifySettings, TheDocumentedExampleIsValid) {
+  NotifySettings settings;
+  std::string error;
+  EXPECT_TRUE(load_notify_settings(BESS_SOURCE_DIR "/edge/bess-edge.toml", settings, error))
+      << error;
+}
+
+TEST(NotifySettings, ReadsEveryKey) {
+  const TemporaryFolder folder;
+  write_secret(folder, "password", "open sesame\n");
+  write_secret(folder, "headers", "Authorization: Bearer x\n");
+  NotifySettings settings;
+  std::string error;
+  ASSERT_TRUE(load_notify_settings(
+      folder.write("edge.toml",
+                   "[state]\nfolder = \"/var/lib/bess\"\n[notify]\nnode = \"garage-1\"\n"
+                   "every_s = 10\nafter_s = 60\ndaily = false\nfolder = \"memory\"\n"
+                   "program = \"/opt/bess-edge\"\nmail_to = \"a@b.example, c@d.example\"\n"
+                   "mail_from = \"bess@b.example\"\nsendmail = \"/bin/true\"\n"
+                   "webhook_url = \"https://example.org/hook\"\nwebhook_header_file = \"headers\"\n"
+                   "mqtt_host = \"127.0.0.1\"\nmqtt_port = 1884\nmqtt_user = \"u\"\n"
+                   "mqtt_password_file = \"password\"\nmqtt_discovery_prefix = \"ha\"\n"),
+      settings, error))
+      << error;
+  EXPECT_TRUE(settings.has_a_way());
+  EXPECT_EQ(settings.ring, "/var/lib/bess/decisions.ring");
+  EXPECT_EQ(settings.memory, folder.file("memory/told.json"));
+  EXPECT_EQ(settings.node, "garage-1");
+  EXPECT_EQ(settings.every_s, 10);
+  EXPECT_EQ(settings.after_s, 60);
+  EXPECT_FALSE(settings.daily);
+  EXPECT_EQ(settings.webhook_headers, "Authorization: Bearer x");
+  EXPECT_EQ(settings.mqtt.port, 1'884);
+  EXPECT_EQ(settings.mqtt.password, "open sesame");
+  EXPECT_EQ(settings.mqtt.discovery_prefix, "ha");
+}
+
+TEST(NotifySettings, EveryMistakeIsOneClearLine) {
+  const TemporaryFolder folder;
+  write_secret(folder, "password", "x\n");
+  write_secret(folder, "open", "x\n", 0644);
+  const std::pair<const char*, const char*> mistakes[] = {
+      {"nod = \"x\"", "nod is not a known key"},
+      {"node = \"a/b\"", "node must be a name"},
+      {"node = \"\"", "node must be a name"},
+      {"every_s = 0", "every_s must lie between 1 and 3600"},
+      {"after_s = -1", "after_s must lie between 0 and 86400"},
+      {"mail_to = \"a@b\\nBcc: c@d\"", "mail_to must be one line of text"},
+      {"mail_to = \"a@b\"\nsendmail = \"/no/such\"", "/no/such cannot be run"},
+      {"webhook_url = \"http://example.org/\"", "webhook_url must start with https://"},
+      {"webhook_url = \"http://localhost.evil.example/\"", "webhook_url must start with https://"},
+      {"webhook_url = \"http://127.0.0.1@evil.example/\"", "webhook_url must start with https://"},
+      {"webhook_url = \"ftp://127.0.0.1/\"", "webhook_url must start with https://"},
+      {"webhook_url = \"https://a.example\"\nwebhook_header_file = \"open\"", "others may read"},
+      {"mqtt_host = \"a\"\nmqtt_port = 0", "mqtt_port must lie between 1 and 65535"},
+      {"mqtt_host = \"a\"\nmqtt_ca_file = \"none.pem\"", "none.pem cannot be read"},
+      {"mqtt_host = \"a\"\nmqtt_password_file = \"password\"", "needs mqtt_user"},
+      {"mqtt_host = \"a\"\nmqtt_user = \"u\"\nmqtt_password_file = \"password\"",
+       "would be sent in clear"},
+      {"mqtt_host = \"127.0.0.1\"\nmqtt_user = \"u\"\nmqtt_password_file = \"open\"",
+       "is readable for others: chmod o-rwx"},
+      {"mqtt_host = \"127.0.0.1\"\nmqtt_user = \"u\"\nmqtt_password_file = \"none\"",
+       "none cannot be opened"},
+  };
+  for (const auto& [keys, message] : mistakes) {
+    const std::string path = folder.write("edge.toml", std::string("[notify]\n") + keys + "\n");
+    NotifySettings settings;
+    std::string error;
+    EXPECT_FALSE(load_notify_settings(path, settings, error)) << keys;
+    EXPECT_THAT(error, HasSubstr(message));
+    EXPECT_EQ(error.find('\n'), std::string::npos) << error;
+  }
+}
+
+TEST(ChildProgram, GivesItsOutputAndExitCode) {
+  signal(SIGPIPE, SIG_IGN);
+  const ProgramResult result = run_program({"/bin/sh", "-c", "cat; exit 3"}, "said", 10'000);
+  EXPECT_EQ(result.trouble, "");
+  EXPECT_EQ(result.output, "said");
+  EXPECT_EQ(result.exit_code, 3);
+  const std::string long_text(300'000, 'x');
+  EXPECT_EQ(run_program({"/bin/cat"}, long_text, 10'000).output, long_text);
+  EXPECT_EQ(run_program({"/bin/true"}, long_text, 10'000).exit_code, 0);  // does not read
+}
+
+TEST(ChildProgram, WhatDoesNotEndIsKilledWithItsChildren) {
+  const ProgramResult result = run_program({"/bin/sh", "-c", "sleep 1000 & sleep 1000"}, "", 100);
+  EXPECT_THAT(result.trouble, HasSubstr("did not end in time"));
+  EXPECT_THAT(run_program({"/bin/sh", "-c", "exec >&-; sleep 1000"}, "", 100).trouble,
+              HasSubstr("did not end in time"));
+  EXPECT_THAT(run_program({"/usr/bin/yes"}, "", 60'000).trouble, HasSubstr("did not end in time"));
+  EXPECT_THAT(run_program({"/no/such"}, "", 100).trouble, HasSubstr("cannot be started: No such"));
+}
+
+/// A script that stands for bess-edge.
+std::string write_program(const TemporaryFolder& folder, const std::string& body) {
+  const std::string path = folder.write("program", "#!/bin/sh\n" + body + "\n");
+  EXPECT_EQ(chmod(path.c_str(), 0755), 0);
+  return path;
+}
+
+std::vector<std::string> keys_of(const ControllerStatus& status) {
+  std::vector<std::string> keys;
+  for (const Trouble& trouble : troubles_of(status)) keys.push_back(trouble.key);
+  return keys;
+}
+
+TEST(ControllerStatus, EachReasonIsATroubleWhateverItsNumbers) {
+  const TemporaryFolder folder;
+  const std::string program = write_program(
+      folder,
+      R"(echo '{"health": "degraded", "last": {"reason": "link"}, "health_reasons": [)"
+      R"("WARN: mode is holding, reason link", "CRITICAL: the last cycle ended 601 s ago", )"
+      R"("WARN: a rule of next year"]}'; exit 1)");
+  const ControllerStatus status = ask_controller(program, "edge.toml");
+  EXPECT_EQ(status.trouble, "");
+  EXPECT_THAT(keys_of(status), ElementsAre("not running: link", "the last cycle ended # s ago",
+                                           "a rule of next year"));
+}
+
+TEST(ControllerStatus, ASickAnswerIsATroubleOfItsOwn) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(keys_of(ask_controller("/no/such", "x")), ElementsAre("no status"));
+  for (const char* body : {"exit 1", "echo nonsense", "echo '{}'", "echo '[1]'"}) {
+    const ControllerStatus status = ask_controller(write_program(folder, body), "x");
+    EXPECT_THAT(status.trouble, HasSubstr("gives no status")) << body;
+    EXPECT_THAT(keys_of(status), ElementsAre("no status"));
+  }
+  ControllerStatus well;
+  well.json.set("health", "ok");
+  EXPECT_TRUE(troubles_of(well).empty());
+}
+
+const Message kAlarm{.kind = MessageKind::kAlarm,
+                     .key = "not running: link",
+                     .text = "WARN: mode is safe, reason link\nBcc: evil@example.org",
+                     .utc_s = 1'679'875'320,
+                     .since_utc_s = 1'679'875'020};
+
+TEST(Mail, IsWholeAndNothingInAStatusBecomesAHeader) {
+  NotifySettings settings;
+  settings.node = "garage";
+  settings.mail_to = "a@b.example";
+  settings.mail_from = "bess@b.example";
+  EXPECT_EQ(mail_text(settings, kAlarm),
+            "To: a@b.example\nFrom: bess@b.example\n"
+            "Subject: [bess garage] ALARM: WARN: mode is safe, reason link Bcc: evil@example.org\n"
+            "Auto-Submitted: auto-generated\nMIME-Version: 1.0\n"
+            "Content-Type: text/plain; charset=UTF-8\n\n"
+            "WARN: mode is safe, reason link Bcc: evil@example.org\n\n"
+            "since 2023-03-26T23:57:00Z\ntold at 2023-03-27T00:02:00Z by bess-notify on garage\n"
+            "more: bess-edge status, bess-edge log --last 20\n");
+}
+
+TEST(Webhook, OnlyHttpsOrThisVeryMachine) {
+  for (const char* url :
+       {"https://example.org/x", "http://127.0.0.1:80/x", "http://127.1.2.3", "http://[::1]:9/"}) {
+    EXPECT_TRUE(is_allowed_webhook(url)) << url;
+  }
+  for (const char* url : {"http://example.org", "http://localhost/", "127.0.0.1", "file:///etc", "",
+                          "http://10.0.0.1/", "http://127.0.0.1.example.org/"}) {
+    EXPECT_FALSE(is_allowed_webhook(url)) << url;
+  }
+}
+
+ControllerStatus sample_status() {
+  ControllerStatus status;
+  status.json = Json::parse(
+      R"({"health": "degraded", "control": true, "last": {"utc": "2023-03-27T00:02:00Z",
+          "mode": "running", "reason": "held", "has_measurement": true, "soc_e4": 4235,
+          "battery_power_w": -1990, "ordered_power_w": -2000, "has_price": true,
+          "price_centi_eur_per_mwh": -16318, "held": true, "hold_power_w": -2000,
+          "hold_until_utc": "2023-03-27T02:00:00Z", "reserve_soc_e4": 1500, "days_since_full": 6},
+          "totals": {"soc_moved_e4_today": 5000}})");
+  return status;
+}
+
+/// What stands in the broker is an interface: a difference moves what users have built upon.
+TEST(Topics, AreTheseToTheLetter) {
+  NotifySettings settings;
+  settings.node = "garage";
+  settings.mqtt.discovery_prefix = "homeassistant";
+  DayAccount day(20'231'126);
+  day.add({});
+  std::string text =
+      "# generator notify_test, no seed, command: BESS_UPDATE_GOLDEN=1 notify_test "
+      "--gtest_filter=Topics.*\n";
+  text += topic("garage", "state") + " " + state_json(sample_status(), 2) + "\n";
+  text += topic("garage", "state") + " " + state_json({.trouble = "x"}, 0) + "\n";
+  text += topic("garage", "alarms") + " " +
+          alarms_json({{.key = "k", .text = "t", .since_utc_s = 0, .is_told = true},
+                       {.key = "not told yet"}}) +
+          "\n";
+  text += topic("garage", "day") + " " + day_json(day) + "\n";
+  text += topic("garage", "event") + " " + message_json("garage", kAlarm) + "\n";
+  text += discovery_topic(settings) + " " + discovery_json(settings, "1.2.3") + "\n";
+  expect_golden(BESS_SOURCE_DIR "/tests/golden/mqtt_topics.txt", text);
+}
+
+TEST(Told, OutlastsARestart) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("new/told.json");
+  Told told;
+  told.local_day = 20'231'126;
+  told.alarms = {{.key = "k", .text = "t", .since_utc_s = 60, .seen_utc_s = 120, .is_told = true}};
+  told.pending = {{.way = "mail", .message = kAlarm}};
+  std::string error;
+  ASSERT_TRUE(write_told(path, told, error)) << error;
+  const Told read = read_told(path);
+  EXPECT_EQ(read.local_day, 20'231'126);
+  ASSERT_EQ(read.alarms.size(), 1U);
+  EXPECT_EQ(read.alarms[0].key, "k");
+  EXPECT_EQ(read.alarms[0].since_utc_s, 60);
+  EXPECT_EQ(read.alarms[0].seen_utc_s, 120);
+  EXPECT_TRUE(read.alarms[0].is_told);
+  ASSERT_EQ(read.pending.size(), 1U);
+  EXPECT_EQ(read.pending[0].way, "mail");
+  EXPECT_EQ(read.pending[0].message.kind, MessageKind::kAlarm);
+  EXPECT_EQ(read.pending[0].message.text, kAlarm.text);
+  EXPECT_EQ(read.pending[0].message.utc_s, kAlarm.utc_s);
+}
+
+TEST(Told, ADamagedFileIsAsIfNothingWasTold) {
+  const TemporaryFolder folder;
+  for (const char* text : {"", "x", "{}", "[1]", R"({"version": 2, "local_day": 7})",
+                           R"({"version": 1, "alarms": 5, "pending": [1]})"}) {
+    const Told told = read_told(folder.write("told.json", text));
+    EXPECT_EQ(told.local_day, 0);
+    EXPECT_TRUE(told.alarms.empty());
+  }
+  std::string error;
+  EXPECT_FALSE(write_told("/proc/nowhere/told.json", {}, error));
+  EXPECT_THAT(error, HasSubstr("cannot be written"));
+}
+
+}  // namespace
+}  // namespace bess

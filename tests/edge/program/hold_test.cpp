@@ -1,0 +1,88 @@
+// A hold from the command to the mailbox: the file's text, what is no such text, and the thread that looks.
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "edge/log/whole_file.h"
+#include "edge/program/hold_file.h"
+#include "edge/program/hold_watch.h"
+#include "shared/scaled_clock.h"
+#include "tests/support/temporary_folder.h"
+
+namespace bess {
+namespace {
+
+constexpr Hold kHold{.power_w = -2'000, .until_utc_s = 1'679'875'320};
+
+std::string text_of(const Hold& hold) { return std::string(format_hold(hold).view()); }
+
+TEST(HoldFile, IsOneLineThatReadsBack) {
+  EXPECT_EQ(text_of(kHold), "bess-hold 1 power_w=-000002000 until=2023-03-27T00:02:00Z crc32=" +
+                                text_of(kHold).substr(64, 8) + "\n");
+  for (const Hold& hold :
+       {kHold, Hold{.power_w = 0, .until_utc_s = 1}, Hold{.power_w = 100'000'000, .until_utc_s = 2},
+        Hold{.power_w = -100'000'000, .until_utc_s = UINT32_MAX - 1}}) {
+    EXPECT_EQ(text_of(hold).size(), kHoldFileBytes);
+    EXPECT_EQ(parse_hold(text_of(hold)), hold);
+  }
+}
+
+TEST(HoldFile, AnythingElseIsUnreadable) {
+  const std::string good = text_of(kHold);
+  for (std::size_t i = 0; i < good.size(); ++i) {
+    for (const char c : {'\0', '0', '1', '-', 'x', '\n'}) {
+      std::string bad = good;
+      if (bad[i] == c) continue;
+      bad[i] = c;
+      EXPECT_TRUE(parse_hold(bad).unreadable) << bad;
+    }
+    EXPECT_TRUE(parse_hold(good.substr(0, i)).unreadable);
+  }
+  EXPECT_TRUE(parse_hold(good + "\n").unreadable);
+}
+
+TEST(HoldFile, NoFileIsNoHoldAndWhatBlocksOrLeadsAwayIsUnreadable) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(read_hold(folder.file("hold").c_str()), Hold{});
+  EXPECT_EQ(read_hold(folder.write("good", text_of(kHold)).c_str()), kHold);
+  ASSERT_EQ(mkfifo(folder.file("pipe").c_str(), 0600), 0);
+  EXPECT_TRUE(read_hold(folder.file("pipe").c_str()).unreadable);
+  std::filesystem::create_symlink("good", folder.file("link"));
+  EXPECT_TRUE(read_hold(folder.file("link").c_str()).unreadable);
+  EXPECT_TRUE(read_hold(folder.file("").c_str()).unreadable);  // the folder itself
+  EXPECT_TRUE(read_hold(folder.write("empty", "").c_str()).unreadable);
+  EXPECT_TRUE(read_hold(folder.write("big", std::string(1'000'000, 'x')).c_str()).unreadable);
+}
+
+/// Waits for what the other thread finds; false after half a minute.
+bool is_published(const HoldWatch& watch, const Hold& hold) {
+  for (int ms = 0; ms < 30'000; ++ms) {
+    if (watch.mailbox().latest() == hold) return true;
+    sleep_until_monotonic(clock_ns(CLOCK_MONOTONIC) + kNanosecondsPerSecond / 1'000);
+  }
+  return false;
+}
+
+TEST(HoldWatch, KnowsTheFileAtOnceAndFollowsIt) {
+  const TemporaryFolder folder;
+  const std::string path = folder.write("hold", text_of(kHold));
+  const auto watch = std::make_unique<HoldWatch>();
+  watch->start(path.c_str(), 900);
+  EXPECT_EQ(watch->mailbox().latest(), kHold);  // before the thread has looked
+  const Hold other{.power_w = 3, .until_utc_s = 4};
+  ASSERT_TRUE(replace_file(path.c_str(), text_of(other)));
+  EXPECT_TRUE(is_published(*watch, other));
+  ASSERT_TRUE(replace_file(path.c_str(), "nonsense"));
+  EXPECT_TRUE(is_published(*watch, {.unreadable = true}));
+  std::filesystem::remove(path);
+  EXPECT_TRUE(is_published(*watch, Hold{}));
+}
+
+TEST(HoldWatch, NeedsNoStart) {
+  EXPECT_EQ(std::make_unique<HoldWatch>()->mailbox().latest(), Hold{});
+}
+
+}  // namespace
+}  // namespace bess
