@@ -1,6 +1,7 @@
 // A register map's points over a link: where they lie (unit groups, SunSpec models), reading those
-// whose values are too old, writing blocks, telling which errors deserve a retry. A template over
-// link and time, so that the same code drives Modbus, and registers in memory in the tests.
+// whose values are too old, doing without those that this device does not have, writing blocks,
+// telling which errors deserve a retry. A template over link and time, so that the same code drives
+// Modbus, and registers in memory in the tests.
 //
 //   Link   Status read(const RegisterSpan&, uint16_t*); Status write(unit, function, address,
 //          const uint16_t*, count, send_until_ns); void close(); int last_exception() const
@@ -53,8 +54,10 @@ class BatteryBus {
   [[nodiscard]] const Link& link() const { return link_; }
   [[nodiscard]] std::int64_t last_read_ns() const { return last_read_ns_; }
 
-  /// Finds the models that the map's points refer to. kImplausible: not such a device.
+  /// Finds the models that the map's points refer to. kImplausible: not such a device. What was
+  /// found missing is asked for again: the device may be another one, or was not ready yet.
   Status locate_models() {
+    missing_.clear();
     if (map_.models.empty()) return Status::kOk;
     for (const std::uint16_t base : map_.model_bases) {
       bool found = false;
@@ -70,29 +73,23 @@ class BatteryBus {
   Status read_due() {
     PlacedPoints due;
     for (const std::int8_t point : map_.measure) {
-      if (!is_fresh(point)) due.push_back(placed(point, map_.points[point].read_function));
+      if (!is_fresh(point) && !is_missing(point))
+        due.push_back(placed(point, map_.points[point].read_function));
     }
     const Status status = read_placed(due, live_);
     if (status == Status::kOk) last_read_ns_ = time_.now_ns();
     return status;
   }
 
-  /// Reads `points` into `out`.
+  /// Reads `points` into `out`; optional ones that turn out to be missing leave the list.
   Status read_placed(PlacedPoints& points, LivePoints& out) {
-    ReadPlan plan;
-    plan_reads(map_, points, plan);
-    for (const RegisterSpan& span : plan) {
-      std::uint16_t registers[kSpanRegistersMax] = {};
-      const Status status = read_span(span, registers);
-      if (status != Status::kOk) return status;
-      for (const PlacedPoint& point : points) {
-        const int offset = offset_in(span, point);
-        if (offset < 0) continue;
-        out.keep(map_, point.point, registers + offset);
-        if (&out == &live_) read_ns_[point.point] = time_.now_ns();
-      }
+    while (true) {  // every round but the last finds one that is missing
+      ReadPlan plan;
+      RegisterSpan refused;
+      plan_reads(map_, points, missing_, plan);
+      const Status status = read_planned(plan, points, out, refused);
+      if (status == Status::kOk || !find_missing(refused, points)) return status;
     }
-    return Status::kOk;
   }
 
   /// `function` 3 for what was written, whatever table the point is measured from.
@@ -118,6 +115,57 @@ class BatteryBus {
   }
 
  private:
+  /// `failed` is the span at which it ended.
+  Status read_planned(const ReadPlan& plan, const PlacedPoints& points, LivePoints& out,
+                      RegisterSpan& failed) {
+    for (const RegisterSpan& span : plan) {
+      std::uint16_t registers[kSpanRegistersMax] = {};
+      failed = span;
+      const Status status = read_span(span, registers);
+      if (status != Status::kOk) return status;
+      for (const PlacedPoint& point : points) {
+        const int offset = offset_in(span, point);
+        if (offset < 0) continue;
+        out.keep(map_, point.point, registers + offset);
+        if (&out == &live_) read_ns_[point.point] = time_.now_ns();
+      }
+    }
+    return Status::kOk;
+  }
+
+  /// An optional point may be why the device refused a span: they are asked for one by one, and
+  /// what is refused again leaves `points`. False when nothing does.
+  bool find_missing(const RegisterSpan& refused, PlacedPoints& points) {
+    if (!has_no_such_register()) return false;
+    PlacedPoints kept;
+    for (const PlacedPoint& point : points) {
+      std::uint16_t registers[kTextRegistersMax] = {};
+      const bool is_suspect = map_.points[point.point].optional && offset_in(refused, point) >= 0;
+      const bool is_there = !is_suspect || read_span(point.place, registers) == Status::kOk ||
+                            !has_no_such_register();
+      if (!is_there) live_.known[point.point] = false;
+      (is_there ? kept : missing_).push_back(point);
+    }
+    const bool found = kept.size() < points.size();
+    points = kept;
+    return found;
+  }
+
+  /// By the last answer: an illegal address; behind a gateway, a device that is not there.
+  [[nodiscard]] bool has_no_such_register() const {
+    constexpr int kIllegalDataAddress = 2;
+    constexpr int kGatewayPathUnavailable = 10;
+    constexpr int kGatewayTargetSilent = 11;
+    const int code = link_.last_exception();
+    return code == kIllegalDataAddress || code == kGatewayPathUnavailable ||
+           code == kGatewayTargetSilent;
+  }
+
+  [[nodiscard]] bool is_missing(std::int8_t point) const {
+    return std::any_of(missing_.begin(), missing_.end(),
+                       [point](const PlacedPoint& m) { return m.point == point; });
+  }
+
   bool is_fresh(std::int8_t point) const {
     const std::int64_t age_ns = time_.now_ns() - read_ns_[point];
     return live_.known[point] && age_ns < map_.points[point].max_age_s * kNanosecondsPerSecond;
@@ -160,7 +208,23 @@ class BatteryBus {
         located |= 1U << m;
       }
     }
-    return located == (1U << map_.models.size()) - 1 ? Status::kOk : Status::kImplausible;
+    return do_without(located) ? Status::kOk : Status::kImplausible;
+  }
+
+  /// A model that holds nothing but optional points need not be there.
+  bool do_without(unsigned located) {
+    for (int m = 0; m < map_.models.size(); ++m) {
+      if ((located >> m & 1U) != 0) continue;
+      bool is_needed = true;
+      for (int i = 0; i < map_.points.size(); ++i) {
+        if (map_.points[i].model != m) continue;
+        if (!map_.points[i].optional) return false;
+        is_needed = false;
+        missing_.push_back({.place = {}, .point = static_cast<std::int8_t>(i)});
+      }
+      if (is_needed) return false;
+    }
+    return true;
   }
 
   Status read_at(int address, std::uint16_t (&registers)[2]) {
@@ -173,6 +237,7 @@ class BatteryBus {
   std::int32_t unit_;
   Link link_;
   LivePoints live_;
+  PlacedPoints missing_;  ///< optional points that this device does not have
   std::int64_t read_ns_[kPointsMax] = {};
   std::int64_t last_read_ns_ = 0;
   std::uint16_t model_start_[decltype(RegisterMap::models)::capacity()] = {};

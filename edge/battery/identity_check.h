@@ -25,6 +25,7 @@ Status check_identity_point(const RegisterMap& map, BatteryBus<Link, Time>& bus,
     const bool same = decode_text(point, registers).view().starts_with(check.text.view());
     return same ? Status::kOk : Status::kImplausible;
   }
+  if (check.may_be_unknown && is_not_implemented(point, registers)) return Status::kOk;
   if (point.scale_from >= 0 || point.percent_of >= 0) {
     status = retried([&] { return bus.read_due(); });
     if (status != Status::kOk) return status;

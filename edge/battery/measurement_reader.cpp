@@ -31,7 +31,15 @@ Status MeasurementReader::translate(const LivePoints& live, std::int64_t now_ns,
   for (const Condition& alarm : map_.alarms) {
     if (is_true(live, alarm)) m.alarm = true;
   }
+  for (const Condition& warning : map_.warnings) {
+    if (is_true(live, warning)) m.warning = true;
+  }
   m.off_grid = map_.off_grid.point >= 0 && is_true(live, map_.off_grid);
+  if (m.off_grid &&
+      m.alarm) {  // most are about the lost grid; an alarm's 0 W would darken the house
+    m.alarm = false;
+    m.warning = true;
+  }
   m.has_grid_power = live_power(map_, map_.grid_power, live, power_w);
   if (m.has_grid_power) m.grid_power_w = clamp_to_int32(power_w);
   return alive_.is_alive(live, now_ns) ? Status::kOk : Status::kImplausible;

@@ -24,6 +24,7 @@ class MeasurementReader {
 
  private:
   void store(int point, std::int64_t wide, BatteryMeasurement& m) const;
+  /// Also false while its register is not known, which only an optional one can be here.
   [[nodiscard]] bool is_true(const LivePoints& live, const Condition& condition) const;
 
   const RegisterMap& map_;

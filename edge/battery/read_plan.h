@@ -20,8 +20,10 @@ using ReadPlan = StaticVector<RegisterSpan, kPointsMax>;
 
 inline constexpr int kSpanRegistersMax = 120;
 
-/// Merges points into as few spans as the map's gap and size limits allow. Sorts `points`.
-void plan_reads(const RegisterMap& map, PlacedPoints& points, ReadPlan& plan);
+/// Merges points into as few spans as the map's gap and size limits allow, over nothing that is
+/// `missing` in the device. Sorts `points`.
+void plan_reads(const RegisterMap& map, PlacedPoints& points, const PlacedPoints& missing,
+                ReadPlan& plan);
 
 /// Offset of a point's first register in a span; -1 when it does not lie in it.
 int offset_in(const RegisterSpan& span, const PlacedPoint& point);

@@ -36,6 +36,7 @@ struct BatteryMeasurement {
   bool order_replaced = false;    ///< a register of our order holds what somebody else wrote
   bool has_grid_power = false;    ///< the map has a grid point, and it was asked for
   std::int32_t grid_power_w = 0;  ///< import is positive
+  bool warning = false;           ///< the device warns and goes on: told, stops nothing
 };
 
 /// Totals since start, and what the flash-backed registers have had today.

@@ -77,6 +77,8 @@ void ResponseMonitor::judge_driven(const Response& now) {
   const bool is_charging = now.ordered_power_w > 0;
   const std::int32_t measured_w =  // positive: as ordered
       is_charging ? now.measurement.power_w : -std::max(now.measurement.power_w, -INT32_MAX);
+  // The sun may outdo an order to discharge: that proves nothing.
+  if (!is_charging && measured_w < 0 && settings_.band.charges_by_itself) return;
   if (measured_w < -noise_w()) return count(opposed_, Reason::kWrongDirection);
   const bool is_pv = is_charging && settings_.band.charges_by_itself;
   if (measured_w - ordered_w > tolerance_w(ordered_w) && !is_pv) {

@@ -42,6 +42,7 @@ void check_cycle(const HealthInputs& in, std::vector<std::string>& reasons) {
   if (in.battery_status != "ok") {
     reasons.push_back("WARN: battery: " + std::string(in.battery_status));
   }
+  if (in.battery_warns) reasons.emplace_back("WARN: the battery warns, see its own display");
   if (in.unanswered_orders > kUnansweredOrdersMax) {
     reasons.push_back("WARN: no power flows after " + std::to_string(in.unanswered_orders) +
                       " orders: is the battery full, empty or cold, or does it not listen?");

@@ -22,6 +22,7 @@ struct HealthInputs {
   std::string_view reason;
   std::string_view battery_status;
   std::string_view price_status;
+  bool battery_warns = false;
   std::string_view meter_status = "ok";  ///< also where there is no meter
   std::string_view limit_status = "ok";
   bool disk_is_slow = false;

@@ -193,6 +193,10 @@ consteval auto make_record_fields() {
        "meter_status",
        {.journal = {23, "meter"}, .csv = 46, .last = 171}},
       {member<&R::site, &S::limit_status>(), "limit_status", {.csv = 47, .last = 172}},
+      {member<&R::measurement, &B::warning>(),
+       "warning",
+       {.last = 34, .metrics = {24, "bess_battery_warning"}},
+       {"1 while the battery warns: see its own display."}},
   });
 }
 

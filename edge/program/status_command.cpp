@@ -129,6 +129,7 @@ Health health_of(const EdgeConfig& config, JsonValue status, bool no_lock) {
   in.unanswered_orders = whole(field<&R::unanswered_orders>(status));
   in.weak_answers = whole(field<&R::weak_answers>(status));
   in.trip = text_of(field<&R::trip, &Trip::reason>(status));
+  in.battery_warns = is_true(field<&R::measurement, &B::warning>(status));
   in.disk_is_slow = is_true(field<&T::disk_is_slow>(status));
   in.disk_is_failing = is_true(field<&T::disk_is_failing>(status));
   in.price_step_held = is_true(field<&R::price, &P::step_held>(status));

@@ -36,13 +36,17 @@ void measure_power(RegisterMap& map, const StaticVector<PowerCase, 4>& cases) {
 }
 
 /// What the map lists, alarms and off-grid decide about safety: one implausible value of them
-/// spoils the measurement. The rest only tells what order is in force.
+/// spoils the measurement, unless not every device has it. The rest only tells what order is in
+/// force, or warns.
 void complete_measure(RegisterMap& map) {
   for (const Condition& c : map.alarms) measure_also(map, c.point);
   measure_also(map, map.off_grid.point);
   measure_also(map, map.alive.point);
   measure_power(map, map.measured_power);
-  map.required = map.measure;
+  for (const std::int8_t point : map.measure) {
+    if (!map.points[point].optional) map.required.push_back(point);
+  }
+  for (const Condition& c : map.warnings) measure_also(map, c.point);
   for (const Condition& c : map.active) measure_also(map, c.point);
   measure_also(map, map.watchdog.remaining);
   measure_power(map, map.order_power);
@@ -107,6 +111,39 @@ void check_roles(TomlTable& root, const RegisterMap& map) {
     if (map.points[point].type != RegisterType::kText) continue;
     root.fail("state", "measures " + quoted(map.points[point].name.view()) +
                            ", which is a text: use it in [[identity]] only");
+  }
+}
+
+bool is_told(const RegisterMap& map, int point) {
+  const auto looks_at = [point](const Condition& c) { return c.point == point; };
+  return looks_at(map.off_grid) || std::any_of(map.alarms.begin(), map.alarms.end(), looks_at) ||
+         std::any_of(map.warnings.begin(), map.warnings.end(), looks_at);
+}
+
+bool is_written(const RegisterMap& map, int point) {
+  return std::any_of(std::begin(map.command), std::end(map.command), [&](const auto& sequence) {
+    return std::any_of(
+        sequence.writes.begin(), sequence.writes.end(), [&](const BlockWrite& write) {
+          return std::any_of(write.values.begin(), write.values.end(),
+                             [&](const WriteValue& value) { return value.point == point; });
+        });
+  });
+}
+
+/// Nothing else may rely on a point that a device need not have.
+void check_optional(TomlTable& root, const RegisterMap& map) {
+  for (int point = 0; point < map.points.size(); ++point) {
+    const RegisterPoint& p = map.points[point];
+    if (!p.optional || (is_told(map, point) && !is_written(map, point))) continue;
+    root.fail("point", quoted(p.name.view()) +
+                           " is optional: only alarms, warnings and off_grid may look at it");
+  }
+  for (const RegisterPoint& p : map.points) {
+    for (const std::int8_t other : {p.scale_from, p.percent_of, p.clamp_to}) {
+      if (other < 0 || !map.points[other].optional) continue;
+      root.fail("point", quoted(p.name.view()) + " needs " + quoted(map.points[other].name.view()) +
+                             ", which is optional");
+    }
   }
 }
 
@@ -188,8 +225,8 @@ void check_map(TomlTable& root, RegisterMap& map) {
   complete_power(map, "grid_power", map.grid_power);
   complete_measure(map);
   if (map.is_meter) return check_meter(root, map);
-  for (const auto check :
-       {check_roles, check_watchdog, check_saved, check_models, check_reserve, prove_power_range}) {
+  for (const auto check : {check_roles, check_optional, check_watchdog, check_saved, check_models,
+                           check_reserve, prove_power_range}) {
     if (root.ok()) check(root, map);
   }
 }

@@ -8,13 +8,14 @@ struct TypeFacts {
   std::string_view name;
   std::uint8_t registers;  ///< 0: the map says it
   std::uint64_t sunspec_not_implemented;
+  std::uint64_t other_extreme;  ///< of signed numbers: the largest; 0 = none
 };
 
 /// In the order of RegisterType; raw values by the SunSpec information model specification.
-constexpr TypeFacts kTypes[] = {{"u16", 1, 0xFFFF},      {"s16", 1, 0x8000},
-                                {"u32", 2, 0xFFFF'FFFF}, {"s32", 2, 0x8000'0000},
-                                {"u64", 4, UINT64_MAX},  {"f32", 2, 0x7FC0'0000},
-                                {"bcd", 0, 0},           {"text", 0, 0}};
+constexpr TypeFacts kTypes[] = {{"u16", 1, 0xFFFF, 0},      {"s16", 1, 0x8000, 0x7FFF},
+                                {"u32", 2, 0xFFFF'FFFF, 0}, {"s32", 2, 0x8000'0000, 0x7FFF'FFFF},
+                                {"u64", 4, UINT64_MAX, 0},  {"f32", 2, 0x7FC0'0000, 0},
+                                {"bcd", 0, 0, 0},           {"text", 0, 0, 0}};
 
 /// Numbers of a list such as models = [124, 704].
 template <typename T, int kCapacity>
@@ -125,9 +126,12 @@ void read_type(TomlTable& table, const MapDefaults& defaults, RegisterPoint& poi
   point.registers = static_cast<std::uint8_t>(registers);
   point.mask = static_cast<std::uint64_t>(mask);
   read_numbers(table, "not_implemented", INT64_MAX, point.not_implemented);
-  const std::uint64_t nothing = kTypes[type].sunspec_not_implemented;
-  if (defaults.not_implemented == 1 && !table.has("not_implemented") && nothing != 0) {
-    point.not_implemented.push_back(nothing);
+  if (table.has("not_implemented")) return;
+  const auto [sunspec, other_extreme] =
+      std::pair(kTypes[type].sunspec_not_implemented, kTypes[type].other_extreme);
+  if (defaults.not_implemented >= 1 && sunspec != 0) point.not_implemented.push_back(sunspec);
+  if (defaults.not_implemented == 2 && other_extreme != 0) {
+    point.not_implemented.push_back(other_extreme);
   }
 }
 
@@ -186,6 +190,7 @@ void read_point(TomlTable& table, const MapDefaults& defaults, RegisterMap& map)
   table.choice("storage", storage, {"volatile", "eeprom"});
   table.integer("write_interval_s", point.write_interval_s, 0, 86'400);
   table.integer("max_age_s", point.max_age_s, 0, 86'400);
+  table.boolean("optional", point.optional);
   point.eeprom = storage == 1;
   if (point.type != RegisterType::kText) {
     table.require("min");
@@ -231,7 +236,7 @@ void read_map_header(TomlTable& root, RegisterMap& map, MapDefaults& defaults) {
   table.integer("write_function", defaults.write_function, 6, 16);
   table.integer("address_base", defaults.address_base, 0, 1);
   table.choice("word_order", defaults.word_order, {"high_first", "low_first"});
-  table.choice("not_implemented", defaults.not_implemented, {"none", "sunspec"});
+  table.choice("not_implemented", defaults.not_implemented, {"none", "sunspec", "extremes"});
   map.parity = static_cast<Parity>(parity);
   if (defaults.write_function != 6 && defaults.write_function != 16) {
     table.fail("write_function", "must be 6 or 16");

@@ -18,7 +18,7 @@ struct MapDefaults {
   std::int32_t write_function = 16;
   std::int32_t address_base = 0;
   int word_order = 0;
-  int not_implemented = 0;  ///< 1 = SunSpec's raw values, by type
+  int not_implemented = 0;  ///< by type: 0 = none, 1 = SunSpec's raw value, 2 = both extremes
 };
 
 void read_map_header(TomlTable& root, RegisterMap& map, MapDefaults& defaults);

@@ -13,6 +13,10 @@ void read_measured(TomlTable& table, RegisterMap& map) {
     if (std::find(map.measure.begin(), map.measure.end(), point) != map.measure.end()) {
       return table.fail_at(at, "measure holds " + quoted(name) + " twice");
     }
+    if (map.points[point].optional) {
+      return table.fail_at(at,
+                           quoted(name) + " is optional: name it in alarms, warnings or off_grid");
+    }
     map.measure.push_back(point);  // fits: there is room for every point once
   });
 }
@@ -69,6 +73,7 @@ void read_identity_check(TomlTable& table, RegisterMap& map) {
   table.text("text", check.text);
   table.integer("min", check.value_min, -kMapValueLimit, kMapValueLimit);
   table.integer("max", check.value_max, -kMapValueLimit, kMapValueLimit);
+  table.boolean("may_be_unknown", check.may_be_unknown);
   if (!table.ok()) return;
   check.point = require_point(table, *table.value(), name.view(), map);
   if (!table.ok()) return;
@@ -138,6 +143,7 @@ void read_map_state(TomlTable& root, RegisterMap& map) {
   read_measured(state, map);
   read_conditions(state, "active", map, map.active);
   read_conditions(state, "alarms", map, map.alarms);
+  read_conditions(state, "warnings", map, map.warnings);
   for_each_text(state, "off_grid", [&](std::string_view text, const TomlValue& at) {
     parse_condition(state, at, text, map, map.off_grid);
   });

@@ -1,5 +1,6 @@
 #include "edge/registers/point_codec.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -176,14 +177,17 @@ Status encode_float(const RegisterPoint& point, std::int64_t value, const Ratio&
 
 }  // namespace
 
+bool is_not_implemented(const RegisterPoint& point, const std::uint16_t* raw) {
+  const std::uint64_t bits = bits_of(point, raw);
+  return std::find(point.not_implemented.begin(), point.not_implemented.end(), bits) !=
+         point.not_implemented.end();
+}
+
 bool decode(const RegisterPoint& point, const std::uint16_t* raw, std::int64_t& value,
             const Scaling& scaling) {
-  const std::uint64_t bits = bits_of(point, raw);
-  for (const std::uint64_t nothing : point.not_implemented) {
-    if (bits == nothing) return false;
-  }
   const Ratio ratio = ratio_of(point, scaling);
-  if (!ratio.valid) return false;
+  if (!ratio.valid || is_not_implemented(point, raw)) return false;
+  const std::uint64_t bits = bits_of(point, raw);
   const bool decoded = point.type == RegisterType::kF32 ? decode_float(point, bits, ratio, value)
                                                         : decode_integer(point, bits, ratio, value);
   return decoded && value >= point.value_min && value <= point.value_max;

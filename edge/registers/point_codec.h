@@ -12,6 +12,9 @@ namespace bess {
 inline constexpr int kBlockRegistersMax = 24;
 using RegisterBlock = StaticVector<std::uint16_t, kBlockRegistersMax>;
 
+/// These registers say that the device has no value for this point.
+[[nodiscard]] bool is_not_implemented(const RegisterPoint& point, const std::uint16_t* raw);
+
 /// What other registers contribute to a point's scale.
 struct Scaling {
   std::int32_t exponent = 0;  ///< of ten, from RegisterPoint::scale_from

@@ -31,7 +31,8 @@ struct IdentityCheck {
   std::int8_t point = -1;
   std::int64_t value_min = 0;
   std::int64_t value_max = 0;
-  FixedText<31> text;  ///< of a text point: what it must begin with
+  bool may_be_unknown = false;  ///< "not implemented" passes: the device has no value just now
+  FixedText<31> text;           ///< of a text point: what it must begin with
   FixedText<95> hint;
 };
 
@@ -99,7 +100,8 @@ struct RegisterMap {
   StaticVector<std::int8_t, kPointsMax> measure;   ///< points read every cycle
   StaticVector<std::int8_t, kPointsMax> required;  ///< of these, those that must be plausible
   StaticVector<Condition, 4> active;               ///< all hold while the device follows an order
-  StaticVector<Condition, 8> alarms;               ///< any of them is an alarm
+  StaticVector<Condition, 40> alarms;              ///< any of them is an alarm: nothing is driven
+  StaticVector<Condition, 40> warnings;            ///< any of them is told, and stops nothing
   Condition off_grid;
   AliveCounter alive;
   StaticVector<PowerCase, 4> measured_power;  ///< the first case that holds counts

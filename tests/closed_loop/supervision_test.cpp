@@ -205,7 +205,10 @@ TEST_P(EveryMapSupervised, EveryFaultIsNoticedWithinTwoCyclesAndDrivenNoFurther)
                 reason_name(record.reason).data(), until_noticed_wh);
     EXPECT_EQ(record.reason, fault.reason) << fault.name << ": " << reason_name(record.reason);
     // The reading that ends the second cycle finds it, at the tick of the third.
-    EXPECT_LE(cycles, 3) << fault.name;
+    // What charges a hybrid too much may be the sun: only the discharging cycles show it.
+    const bool may_be_sun =
+        map.response.charges_by_itself && fault.reason == Reason::kUncontrolledPower;
+    EXPECT_LE(cycles, may_be_sun ? 5 : 3) << fault.name;
     EXPECT_EQ(record.mode, Mode::kSafe) << fault.name;
     EXPECT_EQ(record.ordered_power_w, 0) << fault.name;
     // And from here on nothing of ours is in force.

@@ -31,6 +31,13 @@ inline WriteRecord fc16(int address, std::vector<int> values, int unit = 1) {
 }
 inline WriteRecord fc6(int address, int value) { return {1, 6, address, {value}}; }
 
+/// A register that the device does not have: a read that covers it is refused.
+struct MissingRegister {
+  int function = 3;
+  int address = 0;
+  int exception = 2;  ///< with which it is refused
+};
+
 struct RegisterDevice {
   std::vector<std::uint16_t> holding = std::vector<std::uint16_t>(0x1'0000);
   std::vector<std::uint16_t> input = std::vector<std::uint16_t>(0x1'0000);
@@ -42,7 +49,9 @@ struct RegisterDevice {
   bool ignores_writes = false;  ///< acknowledges, does nothing
   int exception = 0;            ///< answer to every request; -1 = no answer at all
   int unreadable_address = -1;  ///< a read that covers it is not answered
-  int failing_writes = 0;       ///< that many of the next writes are not answered
+  std::vector<MissingRegister> missing;
+  int refused_reads = 0;
+  int failing_writes = 0;  ///< that many of the next writes are not answered
   std::function<void()> before_request = [] {};
   std::function<void(int address, int count)> after_write = [](int, int) {};
 
@@ -62,11 +71,20 @@ class DeviceLink {
 
   Status read(const RegisterSpan& span, std::uint16_t* registers) {
     ++device_.reads;
+    last_exception_ = 0;
     ++counters_.requests;
     device_.before_request();
     if (const Status status = fault(); status != Status::kOk) return status;
-    const int offset = device_.unreadable_address - span.address;
-    if (offset >= 0 && offset < span.count) return Status::kTimeout;
+    const auto is_read = [&](int address) {
+      return address >= span.address && address < span.address + span.count;
+    };
+    if (is_read(device_.unreadable_address)) return Status::kTimeout;
+    for (const MissingRegister& missing : device_.missing) {
+      if (missing.function != span.function || !is_read(missing.address)) continue;
+      ++device_.refused_reads;
+      last_exception_ = missing.exception;
+      return Status::kBusException;
+    }
     const auto& table = span.function == 4 ? device_.input : device_.holding;
     std::copy_n(table.begin() + span.address, span.count, registers);
     return Status::kOk;
@@ -74,6 +92,7 @@ class DeviceLink {
   Status write(std::int32_t unit, std::uint8_t function, std::uint16_t address,
                const std::uint16_t* registers, int count, std::int64_t send_until_ns) {
     ++counters_.requests;
+    last_exception_ = 0;
     device_.before_request();
     if (device_.now_ns > send_until_ns) return Status::kTooLate;
     ++counters_.register_writes;
@@ -89,7 +108,7 @@ class DeviceLink {
     return Status::kOk;
   }
   void close() {}
-  [[nodiscard]] int last_exception() const { return device_.exception > 0 ? device_.exception : 0; }
+  [[nodiscard]] int last_exception() const { return last_exception_; }
   [[nodiscard]] LinkCounters counters() const {
     LinkCounters counters = counters_;
     counters.reconnects = device_.reconnects;
@@ -97,13 +116,15 @@ class DeviceLink {
   }
 
  private:
-  Status fault() const {
+  Status fault() {
     if (device_.exception < 0) return Status::kTimeout;
+    last_exception_ = device_.exception;
     return device_.exception > 0 ? Status::kBusException : Status::kOk;
   }
 
   RegisterDevice& device_;
   LinkCounters counters_;
+  int last_exception_ = 0;
 };
 
 class DeviceClock {

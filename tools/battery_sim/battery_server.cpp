@@ -65,14 +65,15 @@ BatteryServer::~BatteryServer() {
   if (listen_fd_ >= 0) close(listen_fd_);
 }
 
-/// One memory for both tables: the maps give holding and input registers addresses of their own.
+/// Holding and input registers of one address are two things on some devices.
 void BatteryServer::make_registers() {
   registers_.resize(static_cast<std::size_t>(served_addresses(map_)));
+  input_registers_.resize(registers_.size());
   mapping_.nb_registers = static_cast<int>(registers_.size());
   mapping_.tab_registers = registers_.data();
   mapping_.nb_input_registers = has_input_registers(map_) ? mapping_.nb_registers : 0;
-  mapping_.tab_input_registers = registers_.data();
-  image_ = std::make_unique<RegisterImage>(map_, battery_, registers_, registers_);
+  mapping_.tab_input_registers = input_registers_.data();
+  image_ = std::make_unique<RegisterImage>(map_, battery_, registers_, input_registers_);
   if (house_ != nullptr) image_->connect_house(house_->load);
 }
 
@@ -246,9 +247,10 @@ void BatteryServer::change_values(BatteryFault fault) {
     std::int64_t value = 0;
     RegisterBlock block;
     const int address = image_->address_of(index);
-    static_cast<void>(decode(point, &registers_[address], value));
+    auto& registers = point.read_function == 4 ? input_registers_ : registers_;
+    static_cast<void>(decode(point, &registers[address], value));
     if (encode(point, changed(value), Rounding::kNearest, block) != Status::kOk) return;
-    std::copy(block.begin(), block.end(), registers_.begin() + address);
+    std::copy(block.begin(), block.end(), registers.begin() + address);
   };
   if (fault == BatteryFault::kWrongSign) {
     change(map_.is_meter ? "grid_power" : "battery_power",

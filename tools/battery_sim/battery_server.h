@@ -83,7 +83,8 @@ class BatteryServer {
   ScaledClock clock_;
   std::int64_t start_ns_;
   std::unique_ptr<modbus_t, FreeContext> context_;
-  std::vector<std::uint16_t> registers_;
+  std::vector<std::uint16_t> registers_;  ///< holding
+  std::vector<std::uint16_t> input_registers_;
   modbus_mapping_t mapping_{};
   std::unique_ptr<RegisterImage> image_;
   std::unique_ptr<BusReply> reply_;

@@ -22,7 +22,7 @@ class RegisterImage {
   static int address_end(const RegisterMap& map);
 
   /// The registers that the bus serves, at least `address_end` of each kind; both may be the same
-  /// memory when the map gives the two kinds addresses of their own.
+  /// memory when the map gives the two kinds addresses of their own, which sungrow_sh does not.
   RegisterImage(const RegisterMap& map, SimulatedBattery& battery, std::span<std::uint16_t> holding,
                 std::span<std::uint16_t> input);
 

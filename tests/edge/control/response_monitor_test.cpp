@@ -223,15 +223,23 @@ TEST(ResponseMonitor, SurplusSunMayChargeWhereTheMapSaysSo) {
   ResponseSettings settings;
   settings.band.charges_by_itself = true;
   ResponseMonitor monitor{settings};
-  for (int i = 0; i < 4; ++i) {
+  for (int i = 0; i < 8; ++i) {
     monitor.observe(
         {.utc_s = 120 * i,
          .is_driven = true,
-         .ordered_power_w = 0,
+         .ordered_power_w = i < 4 ? 0 : -1'000,
          .order_age_s = 120,
          .measurement = {.soc_e4 = 5'000 + 100 * i, .power_w = 2'500, .capacity_wh = 8'000}});
   }
   EXPECT_EQ(monitor.trip(), Reason::kStudent);
+}
+
+TEST(ResponseMonitor, ButDischargingAgainstAnOrderToChargeIsTheWrongDirectionThereToo) {
+  ResponseSettings settings;
+  settings.band.charges_by_itself = true;
+  Site site{ResponseMonitor{settings}};
+  for (int i = 0; i < 2; ++i) site.step(4'000, -4'000);
+  EXPECT_EQ(site.monitor.trip(), Reason::kWrongDirection);
 }
 
 /// Thirty days of a real battery's habits: 2 % noise, 5 % losses each way, power that falls from 85 %

@@ -49,6 +49,8 @@ TEST(Health, EveryTroubleHasItsReason) {
       {[](HealthInputs& in) { in.price_status = "no_row"; }, HealthLevel::kDegraded, "no_row"},
       {[](HealthInputs& in) { in.unanswered_orders = 6; }, HealthLevel::kDegraded,
        "after 6 orders"},
+      {[](HealthInputs& in) { in.battery_warns = true; }, HealthLevel::kDegraded,
+       "WARN: the battery warns"},
       {[](HealthInputs& in) { in.disk_is_slow = true; }, HealthLevel::kDegraded, "too slow"},
       {[](HealthInputs& in) { in.disk_is_failing = true; }, HealthLevel::kDegraded, "disk full"},
       {[](HealthInputs& in) { in.disk_is_full = true; }, HealthLevel::kDegraded,

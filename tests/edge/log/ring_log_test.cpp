@@ -155,8 +155,9 @@ TEST(RecordCodec, LayoutOnDiskIsFixed) {
   EXPECT_EQ(bytes[250], 1);     // site.has_grid_power
   EXPECT_EQ(bytes[251], 0xD9);  // site.grid_power_w = -39
   EXPECT_EQ(bytes[263], 42);    // site.order_cuts
-  EXPECT_EQ(bytes[268], 14);    // site.limit_status: malformed, the last field
-  for (std::size_t i = 269; i < kRecordBytes - 4; ++i) EXPECT_EQ(bytes[i], 0) << i;
+  EXPECT_EQ(bytes[268], 14);    // site.limit_status: malformed
+  EXPECT_EQ(bytes[269], 1);     // measurement.warning, the last field
+  for (std::size_t i = 270; i < kRecordBytes - 4; ++i) EXPECT_EQ(bytes[i], 0) << i;
 }
 
 /// A ring of the program that ended its records with flash_writes_today: later fields read as 0.
@@ -173,7 +174,7 @@ TEST(RecordCodec, ARecordOfAnOlderLayoutIsRead) {
   expected.throughput = {};
   expected.price_level = {};
   expected.context_class = 0;
-  expected.measurement.order_replaced = expected.is_tripped = false;
+  expected.measurement.order_replaced = expected.measurement.warning = expected.is_tripped = false;
   expected.trip = {.reason = Reason::kStopRequested, .utc_s = 0};  // code 0; counts only if tripped
   expected.weak_answers = expected.replaced_orders = 0;
   expected.price.step_held = false;

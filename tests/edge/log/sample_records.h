@@ -24,7 +24,8 @@ inline CycleRecord full_record(std::int64_t cycle) {
                    .dispatch_active = true,
                    .has_order_power = true,
                    .order_power_w = -8,
-                   .order_replaced = true};
+                   .order_replaced = true,
+                   .warning = true};
   r.price = {.has_row = true,
              .minute_utc_s = 9,
              .price_centi_eur_per_mwh = -10,

@@ -94,12 +94,13 @@ TEST(EdgeConfig, UnitGroupsOfTheMapAreTheOperatorsToSet) {
   EdgeConfig config;
   std::string error;
   ASSERT_TRUE(load_edge_config(folder.write("edge.toml", text), config, error)) << error;
-  EXPECT_EQ(config.map.unit_groups[0].unit, 246);
+  const RegisterPoint& set_point = config.map.points[find_point(config.map, "set_l1")];
+  EXPECT_EQ(config.map.unit_of(set_point), 246);
   EXPECT_EQ(config.map.unit, 100);
   EXPECT_EQ(config.link.port, 502);
   text.replace(text.find("vebus"), 5, "vecan");
   EXPECT_FALSE(load_edge_config(folder.write("edge.toml", text), config, error));
-  EXPECT_THAT(error, HasSubstr("vecan is not a known key here (known: vebus)"));
+  EXPECT_THAT(error, HasSubstr("vecan is not a known key here (known: battery, vebus)"));
 }
 
 TEST(EdgeConfig, ReadsTheSerialLinesSettings) {

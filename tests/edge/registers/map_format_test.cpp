@@ -131,6 +131,40 @@ TEST_F(MapFormat, WideAndDecimalCodedNumbers) {
   EXPECT_EQ(status_, Status::kNotExpressible);
 }
 
+TEST_F(MapFormat, ExtremesAreNoValuesByType) {
+  const std::string head = std::string(kHead).insert(6, "not_implemented = \"extremes\"\n");
+  const std::pair<const char*, std::vector<std::uint64_t>> cases[] = {
+      {"u16", {0xFFFF}},
+      {"s16", {0x8000, 0x7FFF}},
+      {"u32", {0xFFFF'FFFF}},
+      {"s32", {0x8000'0000, 0x7FFF'FFFF}}};
+  for (const auto& [type, nothing] : cases) {
+    RegisterMap map;
+    std::string error;
+    const std::string point =
+        std::string("[[point]]\nname = \"probe\"\naddress = 9\nmin = -9\nmax = ") +
+        "4294967295\ntype = \"" + type + "\"\n";
+    ASSERT_TRUE(load_register_map(
+        folder_.write("map.toml", head + "type = \"s32\"\nmin = -1000\nmax = 1000\n" + point), "",
+        map, error))
+        << error;
+    const auto& found = map.points[find_point(map, "probe")].not_implemented;
+    EXPECT_EQ(std::vector<std::uint64_t>(found.begin(), found.end()), nothing) << type;
+  }
+}
+
+TEST_F(MapFormat, AnOptionalPointIsNoScaleOfAnother) {
+  std::string head = kHead;
+  head.insert(head.find("active ="), "alarms = [\"rare\"]\n");
+  head.insert(head.rfind("[[point]]"),
+              "[[point]]\nname = \"rare\"\naddress = 9\nmin = 0\nmax = 9\noptional = true\n");
+  head += "type = \"s32\"\nmin = -1000\nmax = 1000\n";
+  RegisterMap map;
+  std::string error;
+  EXPECT_TRUE(load_register_map(folder_.write("map.toml", head), "", map, error)) << error;
+  EXPECT_THAT(error_of(head + "clamp_to = \"rare\"\n"), HasSubstr("\"rare\", which is optional"));
+}
+
 TEST_F(MapFormat, TextsAreComparedWithoutTheirPadding) {
   RegisterPoint point;
   point.type = RegisterType::kText;
@@ -291,6 +325,8 @@ TEST_F(MapFormat, EveryMistakeHasItsMend) {
        "eeprom_writes_per_day is missing"},
       {"type = \"s32\"\nmin = -1000", "type = \"s32\"\nmin = -999", "cannot express"},
       {"type = \"s32\"", "type = \"u32\"", "cannot express"},
+      {"type = \"s32\"", "type = \"s32\"\noptional = true", "only alarms, warnings and off_grid"},
+      {"name = \"soc\"", "name = \"soc\"\noptional = true", "\"soc\" is optional: name it in"},
       {"address = 4\n", "address = 0\n", "must lie between 1 and 65535"},
       {"[command]", "[[identity]]\npoint = \"soc\"\nhint = \"x\"\ntext = \"y\"\n[command]",
        "min is missing"},

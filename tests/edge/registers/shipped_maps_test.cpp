@@ -53,11 +53,12 @@ TEST(AlphaEssDriver, OneBlockAndItsRelease) {
   EXPECT_THAT(t.device.take_writes(),
               ElementsAre(fc16(0x0880, {0, 0, 32'000, 0, 32'000, 0, 0, 0, 90, 255, 0}, 85)));
   EXPECT_EQ(t.driver->refresh_interval_s(), 0);
-  t.device.set(0x0440, {2});
   t.device.set(0x011E, {0, 4});
   ASSERT_EQ(t.read(), Status::kOk);
-  EXPECT_TRUE(t.measured.off_grid);
   EXPECT_TRUE(t.measured.alarm);
+  t.device.set(0x0440, {2});
+  ASSERT_EQ(t.read(), Status::kOk);
+  EXPECT_TRUE(t.measured.off_grid);
 }
 
 void fill_fronius(RegisterDevice& device) {

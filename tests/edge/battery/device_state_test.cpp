@@ -1,0 +1,300 @@
+// Where the shipped maps find alarms, warnings and the state of the device, register by register as
+// the sources in their heads name them; what a state must not hinder; what a device need not have.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/register_device.h"
+
+namespace bess {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+enum class Told { kAlarm, kWarning, kOffGrid, kNothing };
+
+struct StateCase {
+  int function, address;
+  std::vector<int> registers;
+  Told told;
+};
+
+Told told_by(const BatteryMeasurement& m) {
+  if (m.off_grid) return Told::kOffGrid;
+  if (m.alarm) return Told::kAlarm;
+  return m.warning ? Told::kWarning : Told::kNothing;
+}
+
+/// Each case alone in a device that `fill` has made well.
+void expect_told(const char* map, const std::function<void(RegisterDevice&)>& fill,
+                 const std::vector<StateCase>& cases) {
+  for (const StateCase& c : cases) {
+    MapUnderTest t(shipped_map(map));
+    fill(t.device);
+    ASSERT_EQ(t.read(), Status::kOk) << map;
+    EXPECT_EQ(told_by(t.measured), Told::kNothing) << map;
+    if (c.function == 4) {
+      t.device.set_input(c.address, c.registers);
+    } else {
+      t.device.set(c.address, c.registers);
+    }
+    ASSERT_EQ(t.read(), Status::kOk) << map << " " << c.address;
+    EXPECT_EQ(told_by(t.measured), c.told) << map << " " << c.address << " " << c.registers[0];
+  }
+}
+
+void fill_alphaess(RegisterDevice& device) {
+  device.set(0x0102, {435});
+  device.set(0x0119, {80});
+  device.set(0x012C, {4'000, 3'500});
+  device.set(0x0440, {1});
+}
+
+TEST(DeviceState, AlphaEss) {
+  expect_told("alphaess", fill_alphaess,
+              {{3, 0x011C, {0, 1}, Told::kWarning},
+               {3, 0x011E, {0x8000, 0}, Told::kAlarm},
+               {3, 0x0436, {0, 1}, Told::kWarning},
+               {3, 0x0438, {1, 0}, Told::kWarning},
+               {3, 0x043A, {0, 1}, Told::kAlarm},
+               {3, 0x043C, {0, 1}, Told::kAlarm},
+               {3, 0x08D4, {0, 1}, Told::kAlarm},
+               {3, 0x08D4, {0xFFFF, 0xFFFF}, Told::kNothing},  // not implemented
+               {3, 0x0440, {2}, Told::kOffGrid}});
+}
+
+TEST(DeviceState, SungrowSh) {
+  const auto fill = [](RegisterDevice& device) {
+    device.set_input(12'999, {0x40, 2});
+    device.set_input(13'021, {1'500, 505});
+    device.set_input(13'024, {215});
+    device.set(33'046, {500, 450});
+    device.set(13'049, {3, 0xAA, 4'000});  // holding: an order, and no alarm
+  };
+  std::vector<StateCase> cases = {{4, 12'999, {0x0100}, Told::kAlarm},
+                                  {4, 12'999, {0x5500}, Told::kAlarm},
+                                  {4, 12'999, {0x1000}, Told::kOffGrid},
+                                  {4, 12'999, {0x9100}, Told::kWarning},
+                                  {4, 12'999, {0x4000}, Told::kNothing}};
+  for (const int address :
+       {13'053, 13'055, 13'057, 13'059, 13'061, 13'063, 13'065, 13'071, 13'073, 13'075}) {
+    cases.push_back({4, address, {1, 0}, Told::kAlarm});
+  }
+  for (const int address : {13'049, 13'051, 13'067, 13'069, 13'077}) {
+    cases.push_back({4, address, {0, 1}, Told::kWarning});
+  }
+  expect_told("sungrow_sh", fill, cases);
+}
+
+TEST(DeviceState, HuaweiLuna2000) {
+  const auto fill = [](RegisterDevice& device) {
+    device.set(32'089, {0x0200});
+    device.set(37'046, {0, 5'000, 0, 4'500});
+    device.set(37'758, {0, 10'000, 505});
+    device.set(37'762, {2});
+  };
+  expect_told("huawei_luna2000", fill,
+              {{3, 32'003, {0, 1}, Told::kOffGrid},
+               {3, 32'003, {0, 2}, Told::kNothing},    // the switch for it
+               {3, 32'008, {0x0002}, Told::kAlarm},    // arc
+               {3, 32'008, {0x0080}, Told::kWarning},  // grid lost
+               {3, 32'008, {0x0010}, Told::kWarning},  // string power
+               {3, 32'009, {0x0010}, Told::kAlarm},    // device fault
+               {3, 32'009, {0x0200}, Told::kAlarm},    // battery abnormal
+               {3, 32'009, {0x0008}, Told::kWarning},  // too warm
+               {3, 32'010, {0x0010}, Told::kAlarm},    // battery reversed
+               {3, 32'010, {0x0001}, Told::kWarning},  // optimiser
+               {3, 32'089, {0x0300}, Told::kAlarm},    // shut down: fault
+               {3, 37'762, {3}, Told::kAlarm},
+               {3, 37'762, {4}, Told::kNothing}});
+}
+
+TEST(DeviceState, FroniusGen24) {
+  const auto fill = [](RegisterDevice& device) {
+    device.set(40'107, {4});
+    device.set(40'253, {160});
+    device.set(40'343, {124});
+    device.set(40'345, {5'000});
+    device.set(40'351, {4'700});
+    device.set(40'365, {0xFFFE});
+    device.set(40'368, {0xFFFE});
+  };
+  expect_told("fronius_gen24", fill,
+              {{3, 40'107, {7}, Told::kAlarm},
+               {3, 40'109, {0, 0x0080}, Told::kAlarm},    // too hot
+               {3, 40'109, {0, 0x0010}, Told::kWarning},  // grid disconnected
+               {3, 40'109, {0xFFFF, 0xFFFF}, Told::kNothing},
+               {3, 40'320, {7}, Told::kAlarm},
+               {3, 40'340, {7}, Told::kAlarm}});
+}
+
+TEST(DeviceState, Sma) {
+  const auto fill = [](RegisterDevice& device) {
+    device.set(30'201, {0, 307});
+    device.set(30'845, {0, 55});
+    device.set(31'391, {0, 307});
+    device.set(40'236, {0, 2'424});
+  };
+  expect_told("sma", fill,
+              {{3, 30'201, {0, 35}, Told::kAlarm},
+               {3, 30'201, {0, 455}, Told::kWarning},
+               {3, 30'201, {0, 303}, Told::kNothing},
+               {3, 31'391, {0, 35}, Told::kAlarm},
+               {3, 31'391, {0, 455}, Told::kWarning},
+               {3, 31'391, {0xFFFF, 0xFFFF}, Told::kNothing}});
+}
+
+TEST(DeviceState, VictronEss3) {
+  const auto fill = [](RegisterDevice& device) {
+    device.set(842, {1'500, 62});
+    device.set(2'902, {1});
+  };
+  std::vector<StateCase> cases = {
+      {3, 29, {240}, Told::kOffGrid}, {3, 31, {2}, Told::kAlarm},   {3, 31, {9}, Told::kNothing},
+      {3, 32, {26}, Told::kAlarm},    {3, 60, {1}, Told::kAlarm},   {3, 42, {2}, Told::kWarning},
+      {3, 43, {2}, Told::kWarning},   {3, 272, {2}, Told::kNothing}};  // low SoC
+  for (const int address : {34, 36, 44, 47, 48, 55, 267, 269, 274, 278, 279, 320, 323, 325}) {
+    cases.push_back({3, address, {2}, Told::kAlarm});
+    cases.push_back({3, address, {1}, Told::kWarning});
+  }
+  expect_told("victron_ess3", fill, cases);
+}
+
+TEST(DeviceState, SunSpec) {
+  const auto chain = [](RegisterDevice& device, std::vector<std::pair<int, int>> models) {
+    device.set(40'000, {0x5375, 0x6E53, 1, 66});
+    int address = 40'070;
+    models.emplace_back(0xFFFF, 0);
+    for (const auto& [model, length] : models) {
+      device.set(address, {model, length});
+      address += 2 + length;
+    }
+  };
+  const auto fill_124 = [&](RegisterDevice& device) {
+    chain(device, {{103, 50}, {124, 24}});
+    device.set(40'070 + 38, {4});
+    device.set(40'122 + 2, {5'000});
+    device.set(40'122 + 8, {62});
+  };
+  expect_told("sunspec_124", fill_124,
+              {{3, 40'070 + 38, {7}, Told::kAlarm},
+               {3, 40'070 + 40, {0, 1}, Told::kAlarm},
+               {3, 40'070 + 40, {0, 0x0400}, Told::kWarning},
+               {3, 40'070 + 40, {0xFFFF, 0xFFFF}, Told::kNothing}});
+  const int bank = 40'070 + 155 + 67;
+  const auto fill_704 = [&](RegisterDevice& device) {
+    chain(device, {{701, 153}, {704, 65}, {802, 62}});
+    device.set(40'070 + 4, {4});
+    device.set(bank + 3, {8'000, 4'000, 3'500});
+    device.set(bank + 11, {50});
+    device.set(bank + 22, {3});
+  };
+  expect_told("sunspec_704", fill_704,
+              {{3, 40'070 + 4, {7}, Told::kAlarm},
+               {3, 40'070 + 6, {1, 0}, Told::kAlarm},  // the maker's own
+               {3, 40'070 + 6, {0, 0x0010}, Told::kWarning},
+               {3, bank + 22, {99}, Told::kAlarm},
+               {3, bank + 26, {0, 1}, Told::kAlarm},  // communication lost
+               {3, bank + 26, {0, 4}, Told::kWarning},
+               {3, bank + 26, {0x0020, 0}, Told::kWarning},         // fan
+               {3, bank + 26, {0x0001, 0xE000}, Told::kNothing}});  // SoC near its limits
+}
+
+/// A battery that the house lives on must be let go by whoever comes back.
+TEST(DeviceState, AStartInBypassCanReleaseALeftoverOrder) {
+  MapUnderTest t(shipped_map("alphaess"));
+  fill_alphaess(t.device);
+  t.device.set(0x0440, {2});
+  t.device.set(0x0880, {1, 0, 28'000, 0, 32'000, 2, 225, 0, 300, 255, 0});
+  ASSERT_EQ(t.read(), Status::kOk);
+  EXPECT_TRUE(t.measured.off_grid);
+  EXPECT_TRUE(t.measured.dispatch_active);
+  ASSERT_EQ(t.driver->release(), Status::kOk);
+  EXPECT_THAT(t.device.take_writes(),
+              ElementsAre(fc16(0x0880, {0, 0, 32'000, 0, 32'000, 0, 0, 0, 90, 255, 0}, 85)));
+  t.device.set(0x0440, {3});
+  MapUnderTest other(shipped_map("alphaess"));
+  EXPECT_EQ(other.read(), Status::kImplausible) << "no such work mode is known";
+}
+
+/// It shows no SoC then: nothing is driven, but an order of an earlier run is taken back.
+TEST(DeviceState, AnSmaBatteryThatSleepsIsStillThisDevice) {
+  MapUnderTest t(shipped_map("sma"));
+  t.device.set(30'845, {0xFFFF, 0xFFFF});
+  t.device.set(40'236, {0, 2'289});
+  EXPECT_EQ(t.read(), Status::kImplausible);
+  ASSERT_EQ(t.driver->release(), Status::kOk);
+  EXPECT_EQ(t.device.holding[40'237], 2'424);
+  MapUnderTest foreign(shipped_map("sma"));
+  foreign.device.set(30'845, {0, 101});
+  EXPECT_EQ(foreign.driver->release(), Status::kImplausible);
+  EXPECT_THAT(foreign.device.writes, IsEmpty());
+}
+
+TEST(DeviceState, TheLowestBatteryPowerIsNoPower) {
+  MapUnderTest t(shipped_map("alphaess"));
+  fill_alphaess(t.device);
+  ASSERT_EQ(t.read(), Status::kOk);
+  t.device.set(0x0126, {0x8000});
+  EXPECT_EQ(t.read(), Status::kImplausible);
+}
+
+TEST(OptionalPoint, ARegisterThatEveryDeviceHasIsNotDoneWithout) {
+  MapUnderTest t(shipped_map("alphaess"));
+  fill_alphaess(t.device);
+  ASSERT_EQ(t.read(), Status::kOk);
+  t.device.missing = {{.address = 0x0126}};
+  EXPECT_EQ(t.read(), Status::kBusException);
+}
+
+/// Behind a GX the battery's service may be absent, as other exceptions say.
+TEST(OptionalPoint, AnAbsentUnitBehindAGatewayIsDoneWithout) {
+  for (const int exception : {2, 10, 11}) {
+    MapUnderTest t(shipped_map("victron_ess3"));
+    t.device.set(842, {1'500, 62});
+    t.device.set(2'902, {1});
+    for (int address = 259; address < 330; ++address) {
+      t.device.missing.push_back({.address = address, .exception = exception});
+    }
+    ASSERT_EQ(t.read(), Status::kOk) << exception;
+    t.device.set(31, {2});
+    ASSERT_EQ(t.read(), Status::kOk) << exception;
+    EXPECT_TRUE(t.measured.alarm) << exception;
+  }
+}
+
+/// Any other answer may pass: the register is not given up for it.
+TEST(OptionalPoint, IsNotGivenUpForAnotherException) {
+  MapUnderTest t(shipped_map("victron_ess3"));
+  t.device.set(842, {1'500, 62});
+  t.device.set(2'902, {1});
+  t.device.missing = {{.address = 267, .exception = 4}};
+  EXPECT_EQ(t.read(), Status::kBusException);
+  t.device.missing.clear();
+  t.device.set(267, {2});
+  ASSERT_EQ(t.read(), Status::kOk);
+  EXPECT_TRUE(t.measured.alarm);
+}
+
+TEST(OptionalPoint, AModelThatIsThereAgainIsReadAgain) {
+  MapUnderTest t(shipped_map("alphaess"));
+  fill_alphaess(t.device);
+  t.device.set(0x08D4, {0, 1});
+  t.device.missing = {{.address = 0x08D4}};
+  ASSERT_EQ(t.read(), Status::kOk);
+  EXPECT_FALSE(t.measured.alarm);
+  t.device.missing.clear();  // it was starting up
+  t.device.pass_s(601);
+  ASSERT_EQ(t.read(), Status::kOk);
+  EXPECT_TRUE(t.measured.alarm);
+}
+
+TEST(ResponseBand, OnlyTheHybridChargesByItself) {
+  for (const MapVariant& variant : kShippedMapVariants) {
+    const bool is_hybrid = std::string_view(variant.map) == "fronius_gen24";
+    EXPECT_EQ(load_shipped_map(variant).response.charges_by_itself, is_hybrid) << variant.map;
+  }
+}
+
+}  // namespace
+}  // namespace bess
