@@ -134,6 +134,36 @@ void expect_in_ring(const Field<CycleRecord>& field, const CycleRecord& record) 
   EXPECT_EQ(field.access.read(back), telling_value(field.access.kind));
 }
 
+/// Becomes any member: an aggregate has as many of them as it can be made of.
+struct AnyMember {
+  template <typename Member>
+  operator Member() const;  // NOLINT: implicit on purpose, never called
+};
+
+template <typename Aggregate, typename... Members>
+consteval std::size_t count_members() {
+  if constexpr (requires { Aggregate{Members{}..., AnyMember{}}; }) {
+    return count_members<Aggregate, Members..., AnyMember>();
+  } else {
+    return sizeof...(Members);
+  }
+}
+
+/// Of a record whose members of these types are records themselves.
+template <typename... Parts>
+consteval std::size_t count_leaves() {
+  return count_members<CycleRecord>() - sizeof...(Parts) + (count_members<Parts>() + ...);
+}
+
+TEST(RecordFields, NoMemberOfTheRecordIsForgotten) {
+  constexpr std::size_t kLeaves =
+      count_leaves<BatteryMeasurement, PriceReport, DayThroughput, BatteryCounters, PriceLevel,
+                   Trip, ReversalHistory, HoldReport, SiteReport>();
+  constexpr std::size_t kElsewhere =
+      2;  // the battery's own grid point: what counts of it is in `site`
+  EXPECT_EQ(std::size(kRecordFields), kLeaves - kElsewhere);
+}
+
 TEST(RecordFields, EachStandsInEveryOutputThatItClaims) {
   for (const auto& field : kRecordFields) {
     SCOPED_TRACE(field.name);
