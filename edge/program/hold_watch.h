@@ -26,7 +26,7 @@ class HoldWatch {
   [[nodiscard]] const HoldMailbox& mailbox() const { return mailbox_; }
 
  private:
-  static constexpr std::size_t kStackBytes = 64 * 1024;  // sanitizers need far more than it does
+  static constexpr std::size_t kStackBytes = 256 * 1024;  // for sanitizers: it uses a few KiB
 
   void run();
 

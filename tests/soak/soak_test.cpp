@@ -208,7 +208,7 @@ void expect_clean(const RunResult& result, int cycles) {
   EXPECT_GT(result.end.resident_kib, 0);
   EXPECT_LT(result.end.resident_kib, 64 * 1'024);
   EXPECT_LE(result.end.resident_kib, result.warm.resident_kib + 1'024);
-  EXPECT_EQ(result.end.threads, 3);  // control, prices, log
+  EXPECT_EQ(result.end.threads, 4);  // control, prices, log, holds
   EXPECT_EQ(result.end.seccomp, 2);
   EXPECT_EQ(value_of(result.arena, "control_thread_calls"), 0);
   EXPECT_EQ(value_of(result.arena, "failures"), 0);
