@@ -3,3 +3,4 @@ set(CMAKE_C_COMPILER clang CACHE STRING "")
 set(CMAKE_CXX_COMPILER clang++ CACHE STRING "")
 set(CMAKE_BUILD_TYPE Debug CACHE STRING "") # quick to build: it is about the warnings
 set(BESS_NATIVE OFF CACHE BOOL "")
+set(BESS_UNITY OFF CACHE BOOL "") # each file by itself: an include that is missing shows

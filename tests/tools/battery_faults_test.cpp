@@ -9,7 +9,7 @@
 namespace bess {
 namespace {
 
-constexpr PowerOrder kCharge{
+constexpr PowerOrder kTrustingOrder{
     .power_w = 4'000, .soc_min_e4 = 1'000, .soc_max_e4 = 10'000, .duration_s = 86'400};
 
 BatteryServerSettings always(BatteryFault fault) {
@@ -31,7 +31,7 @@ TEST(BatteryFaults, WrongSignShowsChargingAsDischarging) {
   LoopbackBattery loopback("block", always(BatteryFault::kWrongSign));
   ModbusBattery battery(loopback.link(1'000), loopback.map, loopback.clock);
   BatteryMeasurement m;
-  ASSERT_EQ(battery.order(kCharge), Status::kOk);
+  ASSERT_EQ(battery.order(kTrustingOrder), Status::kOk);
   ASSERT_EQ(battery.read(m), Status::kOk);
   EXPECT_EQ(m.power_w, -4'000);
   EXPECT_EQ(loopback.stop().power_w(), 4'000);
@@ -51,7 +51,7 @@ TEST(BatteryFaults, FrozenShowsWhatOnceWas) {
   LoopbackBattery loopback("block", settings);
   ModbusBattery battery(loopback.link(1'000), loopback.map, loopback.clock);
   BatteryMeasurement before, after;
-  ASSERT_EQ(battery.order(kCharge), Status::kOk);
+  ASSERT_EQ(battery.order(kTrustingOrder), Status::kOk);
   ASSERT_EQ(battery.read(before), Status::kOk);
   sleep_until_monotonic(clock_ns(CLOCK_MONOTONIC) + kNanosecondsPerSecond);  // 1000 s
   ASSERT_EQ(battery.read(after), Status::kOk);
@@ -65,7 +65,7 @@ TEST(BatteryFaults, EarlyExpiryEndsTheOrderAndIsSeen) {
   LoopbackBattery loopback("block", settings);
   ModbusBattery battery(loopback.link(1'000), loopback.map, loopback.clock);
   BatteryMeasurement m;
-  ASSERT_EQ(battery.order(kCharge), Status::kOk);
+  ASSERT_EQ(battery.order(kTrustingOrder), Status::kOk);
   ASSERT_EQ(battery.read(m), Status::kOk);
   EXPECT_FALSE(m.dispatch_active);
   EXPECT_FALSE(loopback.stop().dispatch_active());

@@ -12,7 +12,7 @@
 namespace bess {
 namespace {
 
-constexpr PowerOrder kCharge{
+constexpr PowerOrder kChargeOrder{
     .power_w = 4'000, .soc_min_e4 = 1'000, .soc_max_e4 = 10'000, .duration_s = 300};
 
 class EveryVariant : public ::testing::TestWithParam<const char*> {};
@@ -22,7 +22,7 @@ TEST_P(EveryVariant, OrdersAreObeyedReadBackAndReleased) {
   ModbusBattery battery(loopback.link(), loopback.map, loopback.clock);
   BatteryMeasurement m;
   for (const std::int32_t power_w : {4'000, 0, -4'000}) {
-    PowerOrder order = kCharge;
+    PowerOrder order = kChargeOrder;
     order.power_w = power_w;
     ASSERT_EQ(battery.order(order), Status::kOk) << power_w;
     ASSERT_EQ(battery.read(m), Status::kOk);
@@ -43,7 +43,7 @@ INSTANTIATE_TEST_SUITE_P(Variants, EveryVariant,
 TEST(ModbusLink, TheWatchdogEndsAnOrderThatIsNotRefreshed) {
   LoopbackBattery loopback("block");
   ModbusBattery battery(loopback.link(), loopback.map, loopback.clock);
-  ASSERT_EQ(battery.order(kCharge), Status::kOk);
+  ASSERT_EQ(battery.order(kChargeOrder), Status::kOk);
   std::this_thread::sleep_for(std::chrono::milliseconds(330));  // 330 s
   BatteryMeasurement m;
   ASSERT_EQ(battery.read(m), Status::kOk);
@@ -56,7 +56,7 @@ TEST(ModbusLink, AcknowledgedButNotAppliedIsSeen) {
   settings.faults = {.faults = {BatteryFault::kAckWithoutEffect}, .every = 1};
   LoopbackBattery loopback("block", settings);
   ModbusBattery battery(loopback.link(), loopback.map, loopback.clock);
-  EXPECT_EQ(battery.order(kCharge), Status::kNotApplied);
+  EXPECT_EQ(battery.order(kChargeOrder), Status::kNotApplied);
 }
 
 TEST(ModbusLink, BusyForEverIsReportedAsBusy) {
@@ -100,7 +100,7 @@ TEST(ModbusLink, SecondClientIsRefusedUntilTheFirstIsGone) {
 TEST(ModbusLink, OrderBeyondTheMapIsRefusedWithoutAWrite) {
   LoopbackBattery loopback("block");
   ModbusBattery battery(loopback.link(), loopback.map, loopback.clock);
-  PowerOrder order = kCharge;
+  PowerOrder order = kChargeOrder;
   order.power_w = 32'001;
   EXPECT_EQ(battery.order(order), Status::kNotExpressible);
   BatteryMeasurement m;

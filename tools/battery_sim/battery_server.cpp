@@ -15,7 +15,6 @@
 namespace bess {
 namespace {
 
-constexpr int kTcpHeaderBytes = 6;
 constexpr int kAddressPage = 0x1000;
 
 /// Addresses are served up to the end of the last point's page: beyond is "illegal data address".

@@ -10,7 +10,6 @@
 namespace bess {
 namespace {
 
-constexpr int kTcpHeaderBytes = 6;
 constexpr int kCrcBytes = 2;
 
 Bytes random_bytes(std::mt19937_64& random) {

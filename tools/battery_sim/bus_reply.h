@@ -16,7 +16,9 @@ namespace bess {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// A request as libmodbus received it, header included (TCP: 6 bytes before the unit; RTU: none).
+inline constexpr int kTcpHeaderBytes = 6;  ///< before the unit; RTU has none
+
+/// A request as libmodbus received it, header included.
 struct BusRequest {
   std::uint8_t bytes[260];
   int size = 0;

@@ -31,7 +31,7 @@ namespace fs = std::filesystem;
 /// The whole chain, learnt anew for each fold.
 constexpr const char* kChainName = "student";
 
-struct Options {
+struct BacktestArguments {
   CommonOptions common;
   std::vector<std::string> prices;
   std::vector<std::string> policies{"rbc-tuned", "tabular",  "mpc",
@@ -43,7 +43,7 @@ struct Options {
 
 /// All that a fold's student depends on, but for the fold.
 std::string identity_of(const RunConfig& config, const MinuteSeries& series,
-                        const Options& options) {
+                        const BacktestArguments& options) {
   return fmt::format("# bess-train {}, prices {:08x}, window {} days, seed {}\n{}", BESS_VERSION,
                      prices_checksum(series), options.window_days, config.train.seed,
                      format_run_config(config));
@@ -120,7 +120,7 @@ void learn_folds(const Folds& folds, RunConfig config, const fs::path& folder) {
   if (failure) std::rethrow_exception(failure);
 }
 
-void run(const Options& options) {
+void run_backtest(const BacktestArguments& options) {
   const RunConfig config = options.common.resolve();
   const fs::path folder = options.out;
   const MinuteSeries series =
@@ -166,7 +166,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_backtest_command(ProgramCommand& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<BacktestArguments>();
   ProgramCommand command =
       app.subcommand("backtest", "Walk forward: fit on a window, trade the next month, roll on");
   command
@@ -191,7 +191,7 @@ void add_backtest_command(ProgramCommand& app) {
       "Examples:\n"
       "  bess-train backtest --prices 2023.csv.gz 2024.csv.gz --out backtests/first\n"
       "  bess-train backtest --prices 2024.csv.gz --window-days 60 --policy rbc sdp --out quick");
-  command.runs([options] { run(*options); });
+  command.runs([options] { run_backtest(*options); });
 }
 
 }  // namespace bess

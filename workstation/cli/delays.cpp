@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kDelays = 4;  // 0 to 3 minutes
 
-struct Options {
+struct DelaysArguments {
   CommonOptions common;
   std::string prices;
   std::vector<std::string> policies = {"rbc-tuned", "tabular", "mpc", "sdp"};
@@ -38,7 +38,7 @@ using Table = std::array<std::array<Cell, kDelays>, kDelays>;
 using Markets = std::vector<MarketSteps>;
 
 Table delay_table(const std::string& name, const Markets& markets, const RunConfig& config,
-                  const Options& options) {
+                  const DelaysArguments& options) {
   Table table{};
   for (int fit = 0; fit < kDelays; ++fit) {
     const std::shared_ptr<Policy> policy = make_policy(name, markets[fit], config.battery);
@@ -72,7 +72,7 @@ void print_table(const std::string& name, const Table& table) {
   }
 }
 
-void print_json(const std::string& name, const Table& table, const Options& options) {
+void print_json(const std::string& name, const Table& table, const DelaysArguments& options) {
   for (int fit = 0; fit < kDelays; ++fit) {
     for (int run = 0; run < kDelays; ++run) {
       const Json json = Json::object(
@@ -88,7 +88,7 @@ void print_json(const std::string& name, const Table& table, const Options& opti
   }
 }
 
-void run(const Options& options) {
+void run_delays(const DelaysArguments& options) {
   RunConfig config = options.common.resolve();
   const MinuteSeries series = read_minute_file(options.prices);
   Markets markets;
@@ -113,7 +113,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_delays_command(ProgramCommand& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<DelaysArguments>();
   ProgramCommand command =
       app.subcommand("delays", "The cost of seeing prices late: fitted at 0-3 min, run at 0-3");
   command.option("--prices", options->prices, "Minute file (.csv or .csv.gz)").required();
@@ -132,7 +132,7 @@ void add_delays_command(ProgramCommand& app) {
       "  bess-train delays --prices market.csv.gz\n"
       "  bess-train delays --prices market.csv.gz --policy rbc mpc student.json --carry-soc "
       "--json");
-  command.runs([options] { run(*options); });
+  command.runs([options] { run_delays(*options); });
 }
 
 }  // namespace bess

@@ -15,7 +15,7 @@
 namespace bess {
 namespace {
 
-struct Options {
+struct DistilArguments {
   CommonOptions common;
   std::string prices;
   std::string teacher;
@@ -28,7 +28,7 @@ struct Options {
   bool json = false;
 };
 
-void print_result(const Options& options, const CorrectionResult& result) {
+void print_result(const DistilArguments& options, const CorrectionResult& result) {
   const Certificate& c = student_of(result.verdict).certificate;
   const std::size_t rounds = result.violations_by_round.size();
   if (options.json) {
@@ -47,7 +47,7 @@ void print_result(const Options& options, const CorrectionResult& result) {
              c.violations_property_3, rounds, rounds == 1 ? "" : "s");
 }
 
-void run(const Options& options) {
+void run_distil(const DistilArguments& options) {
   RunConfig config = options.common.resolve();
   if (options.omega) config.distil.omega = *options.omega;
   if (options.epochs) config.distil.epochs = *options.epochs;
@@ -82,7 +82,7 @@ const ProvedStudent& require_proof(const CorrectionResult& result, CorrectionMet
 }
 
 void add_distil_command(ProgramCommand& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<DistilArguments>();
   ProgramCommand command =
       app.subcommand("distil", "Correct the teacher while distilling it, until proved");
   command.option("--prices", options->prices, "Minute file (.csv or .csv.gz)").required();
@@ -107,7 +107,7 @@ void add_distil_command(ProgramCommand& app) {
       "Examples:\n"
       "  bess-train distil --prices market.csv.gz --teacher teacher.bin --out student.json\n"
       "  bess-train distil --prices market.csv.gz --teacher teacher.bin --plain --out plain.json");
-  command.runs([options] { run(*options); });
+  command.runs([options] { run_distil(*options); });
 }
 
 }  // namespace bess

@@ -20,7 +20,7 @@
 namespace bess {
 namespace {
 
-struct Options {
+struct EvaluateArguments {
   CommonOptions common;
   std::string prices;
   std::vector<std::string> policies;
@@ -89,7 +89,7 @@ void add_difference(Json& json, const Evaluation& e, const Evaluation& first) {
 /// With several policies: also the paired difference to the first and, nested, the same with the SoC
 /// carried over.
 Json evaluation_json(const NamedEvaluation& named, const NamedEvaluation& first,
-                     const NamedEvaluation& foresight, const Options& options) {
+                     const NamedEvaluation& foresight, const EvaluateArguments& options) {
   const EvaluationField field =
       options.carry_soc ? &NamedEvaluation::carried_over : &NamedEvaluation::day_reset;
   const bool several = options.policies.size() > 1;
@@ -143,7 +143,7 @@ void keep_day(const MarketDay& day, const MarketSteps& market, Evaluation& evalu
 
 /// The market as the fitted policies knew it: the training days of --fit, at --fit-delay.
 MarketSteps fitting_market(const MinuteSeries& series, const RunConfig& config,
-                           const Options& options) {
+                           const EvaluateArguments& options) {
   MarketOptions market = config.market;
   market.observation_delay_min = options.fit_delay_min.value_or(market.observation_delay_min);
   return make_market_steps(options.fit.empty() ? series : read_minute_file(options.fit), market);
@@ -156,13 +156,13 @@ struct Trial {
   std::vector<MarketDay> days;
   std::optional<MarketDay> only_day;
   const RunConfig& config;
-  const Options& options;
+  const EvaluateArguments& options;
   Risk risk;
 };
 
 /// In the ways of counting that are wanted; every step goes to `records` when it is given.
 NamedEvaluation evaluate_policy(const std::string& name, const Trial& trial, Records* records) {
-  const Options& options = trial.options;
+  const EvaluateArguments& options = trial.options;
   const RunConfig& config = trial.config;
   const std::shared_ptr<Policy> policy =
       make_policy(name, trial.fitting, config.battery, trial.risk);
@@ -182,13 +182,13 @@ NamedEvaluation evaluate_policy(const std::string& name, const Trial& trial, Rec
 }
 
 /// Asked before the work, so that a wrong name costs nothing.
-void require_outputs_writable(const Options& options) {
+void require_outputs_writable(const EvaluateArguments& options) {
   for (const std::string& path : {options.csv, options.days_out, options.steps_out}) {
     if (!path.empty()) require_writable(path);
   }
 }
 
-void run(const Options& options) {
+void run_evaluate(const EvaluateArguments& options) {
   require_outputs_writable(options);
   const RunConfig config = options.common.resolve();
   const MinuteSeries series = read_minute_file(options.prices);
@@ -227,7 +227,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_evaluate_command(ProgramCommand& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<EvaluateArguments>();
   ProgramCommand command = app.subcommand("evaluate", "What a policy would have earned");
   command.option("--prices", options->prices, "Minute file (.csv or .csv.gz)").required();
   command.option("--policy", options->policies, std::string("One or more of ") + kPolicyHelp)
@@ -273,7 +273,7 @@ void add_evaluate_command(ProgramCommand& app) {
       "  bess-train evaluate --prices market.csv.gz --policy compiled --date widest --steps-out "
       "day.csv\n"
       "  bess-train evaluate --prices market.csv.gz --policy teacher.bin --risk cvar:0.1");
-  command.runs([options] { run(*options); });
+  command.runs([options] { run_evaluate(*options); });
 }
 
 }  // namespace bess

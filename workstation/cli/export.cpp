@@ -13,7 +13,7 @@
 namespace bess {
 namespace {
 
-struct Options {
+struct ExportArguments {
   CommonOptions common;
   std::string student;
   std::string out = "edge/generated/student_weights.h";
@@ -24,7 +24,7 @@ struct Options {
        c.violations(), c.violations_property_1, c.violations_property_2, c.violations_property_3);
 }
 
-void run(const Options& options) {
+void run_export(const ExportArguments& options) {
   const Verdict verdict =
       prove(load_student(options.student), options.common.resolve().train.threads);
   const auto* student = std::get_if<ProvedStudent>(&verdict);
@@ -37,7 +37,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_export_command(ProgramCommand& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ExportArguments>();
   ProgramCommand command =
       app.subcommand("export", "Prove a student and write it as the edge's weight header");
   command.option("--student", options->student, "Student file").required();
@@ -47,7 +47,7 @@ void add_export_command(ProgramCommand& app) {
       "Examples:\n"
       "  bess-train export --student runs/a/student.json\n"
       "  bess-train export --student runs/a/student.json --out build/student/student_weights.h");
-  command.runs([options] { run(*options); });
+  command.runs([options] { run_export(*options); });
 }
 
 }  // namespace bess

@@ -14,12 +14,12 @@
 namespace bess {
 namespace {
 
-struct Options {
+struct PricesFetchArguments {
   std::string from, to, out;
   std::string base_url = kEliaBaseUrl;
 };
 
-void run(const Options& options) {
+void run_prices_fetch(const PricesFetchArguments& options) {
   watch_interruption();
   require_writable(options.out);
   const std::optional<FetchedPrices> fetched = fetch_prices(
@@ -41,7 +41,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_prices_fetch(ProgramCommand& prices) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PricesFetchArguments>();
   ProgramCommand command =
       prices.subcommand("fetch", "Download minute and settled prices from Elia's open data");
   command.option("--from", options->from, "First local day, YYYY-MM-DD").required();
@@ -56,7 +56,7 @@ void add_prices_fetch(ProgramCommand& prices) {
       "Examples:\n"
       "  bess-train prices fetch --from 2023-01-01 --to 2023-12-31 --out 2023.csv.gz\n"
       "  bess-train prices fetch --from 2025-06-01 --to 2025-06-07 --out week.csv");
-  command.runs([options] { run(*options); });
+  command.runs([options] { run_prices_fetch(*options); });
 }
 
 }  // namespace bess

@@ -10,12 +10,12 @@
 namespace bess {
 namespace {
 
-struct Options {
+struct PricesImportArguments {
   std::vector<std::string> files;
   std::string out;
 };
 
-void run(const Options& options) {
+void run_prices_import(const PricesImportArguments& options) {
   MarketRows rows = read_market_files(options.files);
   const std::string attribution = attribution_of(rows.sources);
   const JoinedMarket market = join_market(std::move(rows), options.files.front());
@@ -29,7 +29,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_prices_import(ProgramCommand& prices) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PricesImportArguments>();
   ProgramCommand command =
       prices.subcommand("import", "Join downloaded minute and quarter-hour files to a minute file");
   command
@@ -47,7 +47,7 @@ void add_prices_import(ProgramCommand& prices) {
       "  bess-train prices import ods133.csv ods134.csv --out prices.csv.gz\n"
       "  bess-train prices import today/*.json --out today.csv\n"
       "  bess-train prices import recorded/2025-06-*.csv ods134.csv --out june.csv.gz");
-  command.runs([options] { run(*options); });
+  command.runs([options] { run_prices_import(*options); });
 }
 
 }  // namespace bess

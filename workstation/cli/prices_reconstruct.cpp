@@ -12,13 +12,13 @@
 namespace bess {
 namespace {
 
-struct Options {
+struct PricesReconstructArguments {
   std::vector<std::string> files;
   std::uint64_t seed = 1;
   std::string out;
 };
 
-void run(const Options& options) {
+void run_prices_reconstruct(const PricesReconstructArguments& options) {
   SettledQuarterHours settled = read_quarter_hour_files(options.files);
   std::vector<QuarterHour>& quarter_hours = settled.quarter_hours;
   const std::size_t inferred = infer_missing_imbalances(quarter_hours);
@@ -47,7 +47,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_prices_reconstruct(ProgramCommand& prices) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PricesReconstructArguments>();
   ProgramCommand command = prices.subcommand(
       "reconstruct", "Draw minute prices that converge to real settled quarter-hours");
   command
@@ -64,7 +64,7 @@ void add_prices_reconstruct(ProgramCommand& prices) {
       "  bess-train prices reconstruct --quarter-hours A85_AT.xml --out austria.csv.gz\n"
       "  bess-train prices reconstruct --quarter-hours ods047.csv --seed 3 --out prices.csv.gz\n"
       "  bess-train prices reconstruct --quarter-hours imported.csv.gz --out drawn.csv.gz");
-  command.runs([options] { run(*options); });
+  command.runs([options] { run_prices_reconstruct(*options); });
 }
 
 }  // namespace bess

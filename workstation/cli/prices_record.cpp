@@ -18,7 +18,7 @@
 namespace bess {
 namespace {
 
-struct Options {
+struct PricesRecordArguments {
   std::string out;
   std::string base_url = kEliaBaseUrl;
   double poll_s = 20;
@@ -45,7 +45,7 @@ std::int64_t duration_s(const std::string& text) {
   return static_cast<std::int64_t>(seconds);
 }
 
-std::optional<std::int64_t> end_utc_s(const Options& options) {
+std::optional<std::int64_t> end_utc_s(const PricesRecordArguments& options) {
   if (!options.duration.empty()) return std::time(nullptr) + duration_s(options.duration);
   if (options.until.empty()) return std::nullopt;
   std::int64_t utc_s = 0;
@@ -113,7 +113,7 @@ class Teller {
   bool in_place_ = false;
 };
 
-void print_summary(const RecordSummary& summary, const Options& options) {
+void print_summary(const RecordSummary& summary, const PricesRecordArguments& options) {
   if (options.json) {
     const bool any_seen = summary.lateness.seen > 0;
     Teller::print_json(Json::object({{"event", "end"},
@@ -133,7 +133,7 @@ void print_summary(const RecordSummary& summary, const Options& options) {
              describe_lateness(summary.lateness));
 }
 
-void run(const Options& options) {
+void run_prices_record(const PricesRecordArguments& options) {
   watch_interruption();
   using Steady = std::chrono::steady_clock;
   RecordSummary summary;
@@ -165,7 +165,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_prices_record(ProgramCommand& prices) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PricesRecordArguments>();
   ProgramCommand command = prices.subcommand(
       "record", "Follow live minutes into daily files, each with its time of arrival");
   command.option("--out", options->out, "Folder of the daily files, one a local day").required();
@@ -193,7 +193,7 @@ void add_prices_record(ProgramCommand& prices) {
       "  bess-train prices record --out recorded --for 12h --json\n"
       "  bess-train prices import recorded/*.csv ods134.csv --out recorded.csv.gz\n"
       "  bess-train prices stats recorded/2025-06-15.csv");
-  command.runs([options] { run(*options); });
+  command.runs([options] { run_prices_record(*options); });
 }
 
 }  // namespace bess

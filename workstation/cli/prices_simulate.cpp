@@ -14,14 +14,14 @@
 namespace bess {
 namespace {
 
-struct Options {
+struct PricesSimulateArguments {
   int days = 365;  // every month once
   std::uint64_t seed = 1;
   std::string start = "2023-01-01";
   std::string out;
 };
 
-void run(const Options& options) {
+void run_prices_simulate(const PricesSimulateArguments& options) {
   const LocalDate start = parse_local_date(options.start, "--start");
   const SimulationPeriod period{local_midnight_utc_s(start),
                                 local_midnight_utc_s(add_days(start, options.days))};
@@ -41,7 +41,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_prices_simulate(ProgramCommand& prices) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PricesSimulateArguments>();
   ProgramCommand command =
       prices.subcommand("simulate", "Draw a market with the statistics of Belgium in early 2023");
   command.option("--days", options->days, "Local days").range(1, 7320).with_default();
@@ -52,7 +52,7 @@ void add_prices_simulate(ProgramCommand& prices) {
       "Examples:\n"
       "  bess-train prices simulate --out market.csv.gz\n"
       "  bess-train prices simulate --days 30 --seed 7 --start 2024-03-15 --out spring.csv");
-  command.runs([options] { run(*options); });
+  command.runs([options] { run_prices_simulate(*options); });
 }
 
 }  // namespace bess

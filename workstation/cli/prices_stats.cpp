@@ -14,7 +14,7 @@
 namespace bess {
 namespace {
 
-struct Options {
+struct PricesStatsArguments {
   std::string file;
   std::string plot;
   bool json = false;
@@ -39,7 +39,7 @@ Described describe_download(std::string_view text, const std::string& name) {
   return {statistics_of_quarter_hours(quarter_hours), settled_by_quarter_hour(market.series)};
 }
 
-void run(const Options& options) {
+void run_prices_stats(const PricesStatsArguments& options) {
   if (!options.plot.empty()) require_drawable(options.plot);
   const std::string text = read_file(options.file);
   const Described described = is_minute_csv(text)
@@ -62,7 +62,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_prices_stats(ProgramCommand& prices) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PricesStatsArguments>();
   ProgramCommand command = prices.subcommand(
       "stats", "Quartiles, tails, memory, convergence, gaps and clock changes of a price file");
   command
@@ -78,7 +78,7 @@ void add_prices_stats(ProgramCommand& prices) {
       "Examples:\n"
       "  bess-train prices stats prices.csv.gz\n"
       "  bess-train prices stats ods047.csv --json --plot prices.svg");
-  command.runs([options] { run(*options); });
+  command.runs([options] { run_prices_stats(*options); });
 }
 
 }  // namespace bess

@@ -20,7 +20,7 @@ std::string prices_of_run(const RunFolder& folder) {
       .text("prices");
 }
 
-void run(const std::string& path, const std::string& prices) {
+void run_report(const std::string& path, const std::string& prices) {
   const RunFolder folder{path};
   if (!std::filesystem::exists(folder.config())) {
     fail("{}: holds no run, there is no config.toml in it; make one with 'bess-train run --out {}'",
@@ -56,7 +56,7 @@ void add_report_command(ProgramCommand& app) {
   command.option("--run", *path, "Run folder").required();
   command.option("--prices", *prices, "Minute file, if it moved since the run");
   command.footer("Examples:\n  bess-train report --run runs/first");
-  command.runs([path, prices] { run(*path, *prices); });
+  command.runs([path, prices] { run_report(*path, *prices); });
 }
 
 }  // namespace bess

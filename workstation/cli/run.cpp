@@ -25,7 +25,7 @@ constexpr LocalDate kBuiltInStart{2023, 1, 1};
 constexpr int kBuiltInDays = 365;
 constexpr std::uint64_t kBuiltInSeed = 1;
 
-struct Options {
+struct RunArguments {
   CommonOptions common;
   std::string prices;
   std::string out;
@@ -102,7 +102,7 @@ std::string manifest(const RunResults& run, const std::string& prices) {
       .text();
 }
 
-void run(const Options& options) {
+void run_chain(const RunArguments& options) {
   const RunFolder folder{options.out};
   const RunConfig config = options.common.resolve();
   watch_interruption();
@@ -136,7 +136,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_run_command(ProgramCommand& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<RunArguments>();
   ProgramCommand command = app.subcommand(
       "run", "The whole chain into one folder: train, correct, prove, export, evaluate, report");
   command.option("--prices", options->prices, "Minute file; without it a built-in simulated year");
@@ -148,7 +148,7 @@ void add_run_command(ProgramCommand& app) {
       "Examples:\n"
       "  bess-train run --out runs/first\n"
       "  bess-train run --prices market.csv.gz --config my.toml --seed 7 --out runs/second");
-  command.runs([options] { run(*options); });
+  command.runs([options] { run_chain(*options); });
 }
 
 }  // namespace bess

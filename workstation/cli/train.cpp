@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct TrainArguments {
   CommonOptions common;
   std::string prices;
   std::string out;
@@ -82,7 +82,7 @@ std::string result_json(const std::string& out, Method method, const TrainResult
 }
 
 /// Trains with the configuration's seed, keeping a checkpoint beside `out` until the end.
-TrainResult train_one(const fs::path& out, const Options& options, const RunConfig& config,
+TrainResult train_one(const fs::path& out, const TrainArguments& options, const RunConfig& config,
                       const MinuteSeries& series, const MarketSteps& market) {
   const CheckpointOptions checkpoint{checkpoint_path(out), options.resume,
                                      identity_of(config, series)};
@@ -108,7 +108,8 @@ TrainResult train_one(const fs::path& out, const Options& options, const RunConf
   return result;
 }
 
-void print_seeds(const std::vector<SeedResult>& results, const Options& options, Method method) {
+void print_seeds(const std::vector<SeedResult>& results, const TrainArguments& options,
+                 Method method) {
   const auto column = [&](auto figure) {
     std::vector<double> values;
     for (const SeedResult& r : results) values.push_back(figure(r));
@@ -152,7 +153,7 @@ void print_seeds(const std::vector<SeedResult>& results, const Options& options,
 }
 
 /// Several seeds: every teacher under its seed's name, the best on the validation days under `out`.
-void run_seeds(const Options& options, RunConfig config, const MinuteSeries& series,
+void run_seeds(const TrainArguments& options, RunConfig config, const MinuteSeries& series,
                const MarketSteps& market) {
   const std::vector<MarketDay> test_days = market.days_of(Split::kTest);
   std::vector<SeedResult> results;
@@ -177,7 +178,7 @@ void run_seeds(const Options& options, RunConfig config, const MinuteSeries& ser
   }
 }
 
-void run(const Options& options) {
+void run_train(const TrainArguments& options) {
   RunConfig config = options.common.resolve();
   if (options.method) config.train.method = parse_method(*options.method);
   if (options.steps) config.train.steps = *options.steps;
@@ -226,7 +227,7 @@ void warn_narrow_support(const TrainOptions& options, const TrainResult& result)
 }
 
 void add_train_command(ProgramCommand& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<TrainArguments>();
   ProgramCommand command =
       app.subcommand("train", "Make the teacher: stochastic program, C51 or DQN");
   command.option("--prices", options->prices, "Minute file (.csv or .csv.gz)").required();
@@ -254,7 +255,7 @@ void add_train_command(ProgramCommand& app) {
       "  bess-train train --prices market.csv.gz --seeds 3 --out best.bin\n"
       "  bess-train train --prices market.csv.gz --config workstation/config/paper.toml --out "
       "paper.bin");
-  command.runs([options] { run(*options); });
+  command.runs([options] { run_train(*options); });
 }
 
 }  // namespace bess

@@ -12,7 +12,7 @@
 namespace bess {
 namespace {
 
-struct Options {
+struct VerifyArguments {
   CommonOptions common;
   std::string student;
   bool exhaustive = false;
@@ -52,7 +52,7 @@ void print_text(const std::string& name, const StudentFile& student) {
   fmt::print("{}\n", c.covers_lattice_without_violation() ? "PROVED" : "NOT PROVED");
 }
 
-void run(const Options& options) {
+void run_verify(const VerifyArguments& options) {
   const bool compiled = options.student.empty();
   const std::string name = compiled ? "compiled array" : options.student;
   const Verdict verdict = prove(compiled ? compiled_student() : load_student(options.student),
@@ -72,7 +72,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_verify_command(ProgramCommand& app) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<VerifyArguments>();
   ProgramCommand command = app.subcommand(
       "verify", "Prove an integer student over every input it can see (exit 1 if it fails)");
   command.option("--student", options->student,
@@ -85,7 +85,7 @@ void add_verify_command(ProgramCommand& app) {
       "Examples:\n"
       "  bess-train verify\n"
       "  bess-train verify --student runs/a/student.json --json");
-  command.runs([options] { run(*options); });
+  command.runs([options] { run_verify(*options); });
 }
 
 }  // namespace bess

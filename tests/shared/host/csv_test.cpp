@@ -15,7 +15,7 @@ std::vector<std::string> fields_of(std::string_view line, char separator) {
   return all;
 }
 
-std::string complaint(std::string_view text) {
+std::string csv_complaint(std::string_view text) {
   try {
     const CsvTable table(text, "f.csv");
     static_cast<void>(table.number(0, table.column("price")));
@@ -47,12 +47,13 @@ TEST(Csv, TableIsReadByColumn) {
 }
 
 TEST(Csv, EveryMistakeNamesItsPlace) {
-  EXPECT_EQ(complaint("utc,price\n"), "f.csv: holds no rows");
-  EXPECT_THAT(complaint("utc,price\n1\n"),
+  EXPECT_EQ(csv_complaint("utc,price\n"), "f.csv: holds no rows");
+  EXPECT_THAT(csv_complaint("utc,price\n1\n"),
               testing::StartsWith("f.csv:2: 1 fields, the header has 2"));
-  EXPECT_THAT(complaint("utc,cost\n1,2\n"), testing::HasSubstr("no column \"price\""));
-  EXPECT_THAT(complaint("utc,price\n# gap\nx,y\n"), testing::StartsWith("f.csv:3: price \"y\""));
-  EXPECT_THAT(complaint("utc,price\nx,1\n"), testing::StartsWith("f.csv:2: utc \"x\""));
+  EXPECT_THAT(csv_complaint("utc,cost\n1,2\n"), testing::HasSubstr("no column \"price\""));
+  EXPECT_THAT(csv_complaint("utc,price\n# gap\nx,y\n"),
+              testing::StartsWith("f.csv:3: price \"y\""));
+  EXPECT_THAT(csv_complaint("utc,price\nx,1\n"), testing::StartsWith("f.csv:2: utc \"x\""));
 }
 
 }  // namespace

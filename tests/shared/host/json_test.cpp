@@ -76,7 +76,7 @@ TEST(Json, ValuesAreLookedAtWithoutFear) {
 }
 
 template <typename Read>
-std::string complaint(Read read) {
+std::string json_complaint(Read read) {
   const Json json = Json::parse(R"({"text": "x", "number": 2.5, "list": [1, 200]})");
   const JsonReader reader(json.value(), "some.json", "a student file");
   try {
@@ -90,19 +90,20 @@ std::string complaint(Read read) {
 TEST(JsonReader, NamesFileAndMember) {
   std::int8_t two[2];
   std::int32_t wide[2];
-  EXPECT_EQ(complaint([](const JsonReader& in) { static_cast<void>(in.text("none")); }),
+  EXPECT_EQ(json_complaint([](const JsonReader& in) { static_cast<void>(in.text("none")); }),
             "some.json: not a student file: \"none\" is missing");
-  EXPECT_EQ(complaint([](const JsonReader& in) { static_cast<void>(in.text("number")); }),
+  EXPECT_EQ(json_complaint([](const JsonReader& in) { static_cast<void>(in.text("number")); }),
             "some.json: \"number\" is not a text");
-  EXPECT_EQ(complaint([](const JsonReader& in) { static_cast<void>(in.number("text")); }),
+  EXPECT_EQ(json_complaint([](const JsonReader& in) { static_cast<void>(in.number("text")); }),
             "some.json: \"text\" is not a number");
-  EXPECT_EQ(complaint([](const JsonReader& in) { static_cast<void>(in.whole("number", 0, 9)); }),
-            "some.json: \"number\" is not a whole number in 0..9");
-  EXPECT_EQ(complaint([&](const JsonReader& in) { in.wholes("text", std::span(two)); }),
+  EXPECT_EQ(
+      json_complaint([](const JsonReader& in) { static_cast<void>(in.whole("number", 0, 9)); }),
+      "some.json: \"number\" is not a whole number in 0..9");
+  EXPECT_EQ(json_complaint([&](const JsonReader& in) { in.wholes("text", std::span(two)); }),
             "some.json: \"text\" is not an array of 2 integers");
-  EXPECT_EQ(complaint([&](const JsonReader& in) { in.wholes("list", std::span(two)); }),
+  EXPECT_EQ(json_complaint([&](const JsonReader& in) { in.wholes("list", std::span(two)); }),
             "some.json: \"list\" holds something else than integers of 8 bits");
-  EXPECT_EQ(complaint([&](const JsonReader& in) { in.wholes("list", std::span(wide)); }), "");
+  EXPECT_EQ(json_complaint([&](const JsonReader& in) { in.wholes("list", std::span(wide)); }), "");
   EXPECT_THAT(wide, ElementsAre(1, 200));
 }
 

@@ -45,7 +45,7 @@ DistilOptions tiny_options() {
   return options;
 }
 
-const std::atomic<bool> kRunning{false};
+const std::atomic<bool> kGoesOn{false};
 
 TEST(Distiller, PlainDistillationFollowsTheTeacher) {
   for (const Method method : {Method::kDqn, Method::kC51}) {
@@ -57,7 +57,7 @@ TEST(Distiller, PlainDistillationFollowsTheTeacher) {
     options.omega = 1;
     options.temperature_eur_per_h = 2000;
     Distiller distiller(teacher, visited, options);
-    distiller.run(30, {}, 1, kRunning);
+    distiller.run(30, {}, 1, kGoesOn);
     const auto& curve = distiller.curve();
     ASSERT_EQ(curve.size(), 30U);
     EXPECT_EQ(curve.front().epoch, 1);
@@ -72,7 +72,7 @@ TEST(Distiller, CorrectedLossFalls) {
   const Matrix visited = some_visited(400, 8);
   const DistilOptions options = tiny_options();
   Distiller distiller(teacher, visited, options);
-  distiller.run(30, {}, 1, kRunning);
+  distiller.run(30, {}, 1, kGoesOn);
   const auto& curve = distiller.curve();
   EXPECT_GT(curve.front().correction_loss, 0);
   EXPECT_LT(curve.back().correction_loss, 0.2 * curve.front().correction_loss);
@@ -89,8 +89,8 @@ TEST(Distiller, SameSeedAndThreadsGiveTheSameBits) {
     Parameters results[2];
     for (Parameters& result : results) {
       Distiller distiller(teacher, visited, options);
-      distiller.run(3, {}, 1, kRunning);
-      distiller.run(2, counterexamples, 1.4, kRunning);
+      distiller.run(3, {}, 1, kGoesOn);
+      distiller.run(2, counterexamples, 1.4, kGoesOn);
       result = distiller.parameters();
     }
     EXPECT_TRUE(std::ranges::equal(results[0], results[1]));

@@ -11,8 +11,6 @@
 namespace bess {
 namespace {
 
-constexpr int kDay = kMinutesPerDay;
-
 /// Draws its actions; knows nothing.
 class RandomPolicy final : public Policy {
  public:
@@ -33,7 +31,7 @@ double grid_mwh(const BatteryParameters& battery, double soc_change) {
 }
 
 TEST(Evaluate, ProfitCyclesAndSwitchesRecountedFromTheRecords) {
-  const MinuteSeries series = random_series("2023-01-31T23:00:00Z", 3 * kDay, 5);
+  const MinuteSeries series = random_series("2023-01-31T23:00:00Z", 3 * kMinutesPerDay, 5);
   for (const Settlement settlement : {Settlement::kMinute, Settlement::kStep}) {
     for (const bool carry_soc : {false, true}) {
       const MarketSteps market = make_market_steps(series, {.settlement = settlement});
@@ -74,7 +72,7 @@ TEST(Evaluate, ProfitCyclesAndSwitchesRecountedFromTheRecords) {
 }
 
 TEST(Evaluate, OneKnownStepIsPaidToTheCent) {
-  MinuteSeries series = flat_series("2023-01-31T22:58:00Z", kDay + 2, 100);
+  MinuteSeries series = flat_series("2023-01-31T22:58:00Z", kMinutesPerDay + 2, 100);
   series.indicative.assign(series.size(), 50);
   series.indicative[1] = 200;  // seen by the first step of the day, which then discharges
   series.settled[2] = 90;
@@ -114,20 +112,21 @@ Evaluation foresight_on(const MinuteSeries& series, std::vector<StepRecord>* rec
 TEST(Foresight, AtAConstantPositivePriceItSellsOnceAndNeverBuys) {
   std::vector<StepRecord> records;
   const Evaluation result =
-      foresight_on(flat_series("2023-01-31T22:58:00Z", kDay + 2, 80), &records);
+      foresight_on(flat_series("2023-01-31T22:58:00Z", kMinutesPerDay + 2, 80), &records);
   for (const StepRecord& record : records) ASSERT_LE(record.power_w, 0);
   EXPECT_NEAR(result.days[0].profit_eur, 0.4 * 8 * std::sqrt(0.9) * 80, 1e-3);
   EXPECT_NEAR(result.days[0].soc_end_frac, 0.1, 1e-9);
 }
 
 TEST(Foresight, AtPriceZeroThereIsNothingToEarn) {
-  const Evaluation result = foresight_on(flat_series("2023-01-31T22:58:00Z", kDay + 2, 0));
+  const Evaluation result =
+      foresight_on(flat_series("2023-01-31T22:58:00Z", kMinutesPerDay + 2, 0));
   EXPECT_EQ(result.days[0].profit_eur, 0);
 }
 
 TEST(Foresight, CarriedOverItPlansAcrossMidnight) {
-  MinuteSeries series = flat_series("2023-01-31T22:58:00Z", 2 + 2 * kDay, 0);
-  for (std::size_t m = 2 + kDay; m < series.size(); ++m) series.settled[m] = 100;
+  MinuteSeries series = flat_series("2023-01-31T22:58:00Z", 2 + 2 * kMinutesPerDay, 0);
+  for (std::size_t m = 2 + kMinutesPerDay; m < series.size(); ++m) series.settled[m] = 100;
   const MarketSteps market = make_market_steps(series, {});
   ASSERT_EQ(market.days.size(), 2u);
   ForesightPolicy policy({});
@@ -148,7 +147,7 @@ TEST(Foresight, AtAConstantNegativePriceItEarnsNoMoreThanTheLossesAllow) {
   const double most_eur = 80 * (bought_mwh - given_back_mwh);
   std::vector<StepRecord> records;
   const Evaluation result =
-      foresight_on(flat_series("2023-01-31T22:58:00Z", kDay + 2, -80), &records);
+      foresight_on(flat_series("2023-01-31T22:58:00Z", kMinutesPerDay + 2, -80), &records);
   EXPECT_LE(result.days[0].profit_eur, most_eur);
   EXPECT_GE(result.days[0].profit_eur, 0.97 * most_eur);
   for (const StepRecord& record : records) {

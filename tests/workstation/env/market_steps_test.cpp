@@ -17,8 +17,6 @@ namespace bess {
 namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
-constexpr int kDay = kMinutesPerDay;
-
 /// The indicative price of a minute is its index, so what was observed says which row it was.
 MinuteSeries numbered_series(std::string_view start_utc, int minutes) {
   MinuteSeries series = flat_series(start_utc, minutes, 50);
@@ -32,7 +30,7 @@ std::size_t minute_of(const MinuteSeries& series, const MarketStep& step) {
 
 TEST(MarketSteps, NewestVisibleRowIsTheDecisionMinuteMinusTheDelay) {
   for (const char* start : {"2023-01-31T23:00:00Z", "2023-01-31T23:01:00Z"}) {
-    const MinuteSeries series = numbered_series(start, 2 * kDay);
+    const MinuteSeries series = numbered_series(start, 2 * kMinutesPerDay);
     for (int delay = 0; delay <= 5; ++delay) {
       const MarketSteps market = make_market_steps(series, {.observation_delay_min = delay});
       for (const MarketStep& step : market.steps) {
@@ -46,7 +44,7 @@ TEST(MarketSteps, NewestVisibleRowIsTheDecisionMinuteMinusTheDelay) {
 
 /// The edge refuses such a row, so nobody may learn from it.
 TEST(MarketSteps, ARowBeyondBeliefIsPassedOverAsTheEdgeDoes) {
-  MinuteSeries series = numbered_series("2023-01-31T23:00:00Z", kDay);
+  MinuteSeries series = numbered_series("2023-01-31T23:00:00Z", kMinutesPerDay);
   series.indicative[101] = 15'000.01;
   series.indicative[103] = -15'000;
   series.indicative[105] = -15'000.01;
@@ -60,7 +58,7 @@ TEST(MarketSteps, ARowBeyondBeliefIsPassedOverAsTheEdgeDoes) {
 }
 
 TEST(MarketSteps, UnpublishedMinutesLeaveTheLastKnownPriceAndItsAge) {
-  MinuteSeries series = numbered_series("2023-01-31T23:00:00Z", kDay);
+  MinuteSeries series = numbered_series("2023-01-31T23:00:00Z", kMinutesPerDay);
   for (std::size_t m = 101; m < 108; ++m) series.indicative[m] = kMissing;
   const MarketSteps market = make_market_steps(series, {});
   const struct {
@@ -85,7 +83,7 @@ bool same_knowledge(const MarketStep& a, const MarketStep& b) {
 }
 
 TEST(MarketSteps, RowsLaterThanTheDelayChangeNoDecision) {
-  const MinuteSeries series = random_series("2023-01-31T23:00:00Z", 4 * kDay, 3);
+  const MinuteSeries series = random_series("2023-01-31T23:00:00Z", 4 * kMinutesPerDay, 3);
   Random random(4);
   for (int delay = 0; delay <= 5; ++delay) {
     const MarketOptions options{.observation_delay_min = delay};
@@ -118,7 +116,7 @@ TEST(MarketSteps, RowsLaterThanTheDelayChangeNoDecision) {
 }
 
 TEST(MarketSteps, AStepAcrossTwoQuarterHoursIsPaidAsTheSettlementSays) {
-  MinuteSeries series = flat_series("2023-01-31T23:00:00Z", kDay, 0);
+  MinuteSeries series = flat_series("2023-01-31T23:00:00Z", kMinutesPerDay, 0);
   for (std::size_t m = 0; m < series.size(); ++m) {
     series.settled[m] = static_cast<double>(m / kMinutesPerQuarterHour);
   }
@@ -144,8 +142,8 @@ TEST(MarketSteps, ShortAndLongDaysAreWhole) {
                {"2023-06-09T22:00:00Z", 24 * 60, 720, 96}};
   for (const auto& c : cases) {
     // A day before it, so that its first step has seen a row.
-    MinuteSeries series = numbered_series(c.start_utc, kDay + c.minutes);
-    series.start_utc_s -= std::int64_t{60} * kDay;
+    MinuteSeries series = numbered_series(c.start_utc, kMinutesPerDay + c.minutes);
+    series.start_utc_s -= std::int64_t{60} * kMinutesPerDay;
     const MarketSteps market = make_market_steps(series, {});
     ASSERT_FALSE(market.days.empty());
     const MarketDay& day = market.days.back();
@@ -165,7 +163,7 @@ TEST(MarketSteps, ShortAndLongDaysAreWhole) {
 
 TEST(MarketSteps, DaysAreSplitByLocalDayOfMonth) {
   const MarketSteps market =
-      make_market_steps(flat_series("2023-01-31T23:00:00Z", 28 * kDay, 1), {});
+      make_market_steps(flat_series("2023-01-31T23:00:00Z", 28 * kMinutesPerDay, 1), {});
   ASSERT_EQ(market.days.size(), 28u);
   EXPECT_EQ(market.days[0].date(), "2023-02-01");
   for (const MarketDay& day : market.days) {
@@ -186,9 +184,9 @@ TEST(MarketSteps, DaysUnder690StepsAreDropped) {
     std::size_t days;
   } cases[] = {{0, 2}, {30, 2}, {31, 1}, {720, 1}};
   for (const auto& c : cases) {
-    MinuteSeries series = flat_series("2023-01-31T22:58:00Z", 2 + 2 * kDay, 1);
+    MinuteSeries series = flat_series("2023-01-31T22:58:00Z", 2 + 2 * kMinutesPerDay, 1);
     for (int m = 0; m < 2 * c.missing_steps; ++m) {
-      series.settled[static_cast<std::size_t>(2 + kDay + m)] = kMissing;
+      series.settled[static_cast<std::size_t>(2 + kMinutesPerDay + m)] = kMissing;
     }
     const MarketSteps market = make_market_steps(series, {});
     EXPECT_EQ(market.days.size(), c.days) << c.missing_steps;
@@ -198,7 +196,7 @@ TEST(MarketSteps, DaysUnder690StepsAreDropped) {
 }
 
 TEST(MarketSteps, OptionsOutOfRangeAndPricesWithoutADayAreErrors) {
-  const MinuteSeries day = flat_series("2023-01-31T23:00:00Z", kDay, 1);
+  const MinuteSeries day = flat_series("2023-01-31T23:00:00Z", kMinutesPerDay, 1);
   EXPECT_THROW(make_market_steps(day, {.observation_delay_min = -1}), UserError);
   EXPECT_THROW(make_market_steps(day, {.observation_delay_min = 6}), UserError);
   EXPECT_THROW(make_market_steps(flat_series("2023-01-31T23:00:00Z", 600, 1), {}), UserError);

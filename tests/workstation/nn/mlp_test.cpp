@@ -7,14 +7,14 @@ namespace {
 
 constexpr int kSamples = 9;
 
-struct Case {
+struct MlpCase {
   const char* name;
   MlpShape shape;
 };
 
-void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+void PrintTo(const MlpCase& c, std::ostream* out) { *out << c.name; }
 
-class Mlp : public testing::TestWithParam<Case> {
+class Mlp : public testing::TestWithParam<MlpCase> {
  protected:
   const MlpShape shape = GetParam().shape;
   const Parameters parameters = initial_parameters(shape, 11);
@@ -100,10 +100,10 @@ TEST_P(Mlp, TheLayersFillTheFlatVector) {
   EXPECT_EQ(static_cast<std::size_t>(parameters.size()), reference.head.end());
 }
 
-const Case kTiny{"tiny", {5, 7, 6, 4}};
-const Case kOneOfEach{"one_of_each", {1, 1, 1, 1}};
-const Case kStudent{"student", {5, 64, 32, 3}};
-const Case kTeacher{"teacher", {5, 256, 128, 153}};
+const MlpCase kTiny{"tiny", {5, 7, 6, 4}};
+const MlpCase kOneOfEach{"one_of_each", {1, 1, 1, 1}};
+const MlpCase kStudent{"student", {5, 64, 32, 3}};
+const MlpCase kTeacher{"teacher", {5, 256, 128, 153}};
 const auto name_of = [](const auto& instance) { return instance.param.name; };
 INSTANTIATE_TEST_SUITE_P(Shapes, Mlp, testing::Values(kTiny, kOneOfEach, kStudent, kTeacher),
                          name_of);

@@ -7,18 +7,18 @@
 namespace bess {
 namespace {
 
-struct Case {
+struct DqnCase {
   const char* name;
   double gamma;
   BatchRecipe recipe;
 };
 
-void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+void PrintTo(const DqnCase& c, std::ostream* out) { *out << c.name; }
 
-class DqnGradient : public testing::TestWithParam<Case> {};
+class DqnGradient : public testing::TestWithParam<DqnCase> {};
 
 TEST_P(DqnGradient, OfTheRealShapeIsTheReference) {
-  const Case& c = GetParam();
+  const DqnCase& c = GetParam();
   Learner learner(Method::kDqn, {-1, 1, 2}, c.gamma, 1, 2);
   learner.online() = random_parameters(learner.shape(), 51, 2);
   learner.target() = random_parameters(learner.shape(), 52, 2);
@@ -34,7 +34,7 @@ TEST_P(DqnGradient, OfTheRealShapeIsTheReference) {
 }
 
 TEST_P(DqnGradient, OfASmallShapeInTilesIsTheReference) {
-  const Case& c = GetParam();
+  const DqnCase& c = GetParam();
   constexpr Eigen::Index kTile = 7;
   const MlpShape shape{5, 7, 6, kActionCount};
   const Parameters online_parameters = random_parameters(shape, 54, 2);
@@ -59,11 +59,11 @@ TEST_P(DqnGradient, OfASmallShapeInTilesIsTheReference) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Batches, DqnGradient,
-                         testing::Values(Case{"even", 0.999, {{200, 200, 200}, 2}},
-                                         Case{"uneven", 0.99, {{700, 2, 50}, 2}},
-                                         Case{"no_discharge", 0.9, {{0, 60, 20}, 10}},
-                                         Case{"only_idle", 0.5, {{0, 31, 0}, 1}},
-                                         Case{"all_terminal", 0.9, {{10, 10, 10}, 1, 1.1}}),
+                         testing::Values(DqnCase{"even", 0.999, {{200, 200, 200}, 2}},
+                                         DqnCase{"uneven", 0.99, {{700, 2, 50}, 2}},
+                                         DqnCase{"no_discharge", 0.9, {{0, 60, 20}, 10}},
+                                         DqnCase{"only_idle", 0.5, {{0, 31, 0}, 1}},
+                                         DqnCase{"all_terminal", 0.9, {{10, 10, 10}, 1, 1.1}}),
                          [](const auto& instance) { return instance.param.name; });
 
 TEST(DqnReference, GradientIsTheDifferenceQuotientOfItsLoss) {

@@ -13,15 +13,15 @@ std::vector<double> normal_prices(double mean, double deviation, std::size_t cou
   return prices;
 }
 
-struct Case {
+struct PriceMapCase {
   const char* name;
   std::vector<double> prices;
   bool inside;  ///< all prices lie within the lattice, so the map reaches 0 and 1
 };
 
-void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+void PrintTo(const PriceMapCase& c, std::ostream* out) { *out << c.name; }
 
-class PriceMapOf : public testing::TestWithParam<Case> {
+class PriceMapOf : public testing::TestWithParam<PriceMapCase> {
  protected:
   const PriceMap map = PriceMap::fit(GetParam().prices);
 };
@@ -64,13 +64,15 @@ TEST_P(PriceMapOf, RebuiltFromItsTableIsTheSame) {
 
 INSTANTIATE_TEST_SUITE_P(
     Prices, PriceMapOf,
-    testing::Values(Case{"one_price", {55.5}, true}, Case{"one_price_many_times", {7, 7, 7}, true},
-                    Case{"two_prices", {-20, 300}, true},
-                    Case{"like_a_market", normal_prices(100, 80, 20'000), true},
-                    Case{"narrow", normal_prices(100, 0.001, 5'000), true},
-                    Case{"on_both_ends", {-500, 0, 1500}, true},
-                    Case{"wider_than_the_lattice", normal_prices(300, 3'000, 5'000), false},
-                    Case{"all_above", {2000, 3000}, false}, Case{"all_below", {-900, -700}, false}),
+    testing::Values(PriceMapCase{"one_price", {55.5}, true},
+                    PriceMapCase{"one_price_many_times", {7, 7, 7}, true},
+                    PriceMapCase{"two_prices", {-20, 300}, true},
+                    PriceMapCase{"like_a_market", normal_prices(100, 80, 20'000), true},
+                    PriceMapCase{"narrow", normal_prices(100, 0.001, 5'000), true},
+                    PriceMapCase{"on_both_ends", {-500, 0, 1500}, true},
+                    PriceMapCase{"wider_than_the_lattice", normal_prices(300, 3'000, 5'000), false},
+                    PriceMapCase{"all_above", {2000, 3000}, false},
+                    PriceMapCase{"all_below", {-900, -700}, false}),
     [](const auto& instance) { return instance.param.name; });
 
 TEST(PriceMap, ResolutionLiesWherePricesAre) {

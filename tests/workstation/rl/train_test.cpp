@@ -14,7 +14,7 @@ const MarketSteps& small_market() {
   return market;
 }
 
-struct Case {
+struct TrainCase {
   const char* name;
   Method method;
   Source source;
@@ -22,7 +22,7 @@ struct Case {
   long steps;
 };
 
-void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+void PrintTo(const TrainCase& c, std::ostream* out) { *out << c.name; }
 
 TrainOptions small_options() {
   TrainOptions options;
@@ -34,7 +34,7 @@ TrainOptions small_options() {
   return options;
 }
 
-TrainOptions options_of(const Case& c) {
+TrainOptions options_of(const TrainCase& c) {
   TrainOptions options = small_options();
   options.method = c.method;
   options.source = c.source;
@@ -53,7 +53,7 @@ auto interrupted_after(long steps) {
   return [asked = 0L, steps]() mutable { return asked++ >= steps; };
 }
 
-class TrainTeacher : public testing::TestWithParam<Case> {};
+class TrainTeacher : public testing::TestWithParam<TrainCase> {};
 
 TEST_P(TrainTeacher, RunsAndRepeatsToTheBit) {
   const TrainOptions options = options_of(GetParam());
@@ -111,10 +111,11 @@ TEST_P(TrainTeacher, ResumedItGivesTheSameWeightsToTheBit) {
 
 INSTANTIATE_TEST_SUITE_P(
     Ways, TrainTeacher,
-    testing::Values(Case{"c51", Method::kC51, Source::kCounterfactual, Horizon::kContinuing, 300},
-                    Case{"dqn_days", Method::kDqn, Source::kCounterfactual, Horizon::kDay, 150},
-                    Case{"dqn_replay", Method::kDqn, Source::kReplay, Horizon::kContinuing, 40},
-                    Case{"paper", Method::kC51, Source::kReplay, Horizon::kDay, 40}),
+    testing::Values(
+        TrainCase{"c51", Method::kC51, Source::kCounterfactual, Horizon::kContinuing, 300},
+        TrainCase{"dqn_days", Method::kDqn, Source::kCounterfactual, Horizon::kDay, 150},
+        TrainCase{"dqn_replay", Method::kDqn, Source::kReplay, Horizon::kContinuing, 40},
+        TrainCase{"paper", Method::kC51, Source::kReplay, Horizon::kDay, 40}),
     [](const auto& instance) { return instance.param.name; });
 
 TEST(Train, AnotherSeedIsAnotherTeacher) {

@@ -18,13 +18,13 @@ constexpr std::string_view kHeader =
     "minute_utc,price_eur_mwh,system_imbalance_mw,price_arrived_utc,imbalance_arrived_utc,"
     "quality_status,arrival";
 enum Column : std::size_t {
-  kMinute,
-  kPrice,
-  kImbalance,
-  kPriceArrived,
-  kImbalanceArrived,
-  kQuality,
-  kArrival
+  kMinuteColumn,
+  kPriceColumn,
+  kImbalanceColumn,
+  kPriceArrivedColumn,
+  kImbalanceArrivedColumn,
+  kQualityColumn,
+  kArrivalColumn
 };
 constexpr std::string_view kSeen = "seen";
 constexpr std::string_view kFound = "found";
@@ -55,16 +55,16 @@ std::optional<RecordedValue> recorded_value(const CsvTable& table, std::size_t r
 
 RecordedLine recorded_line(const CsvTable& table, std::size_t row, std::string_view name) {
   RecordedLine line;
-  line.minute_utc_s = table.utc_s(row, kMinute);
-  line.price_eur_per_mwh = recorded_value(table, row, kPrice, kPriceArrived);
-  line.system_imbalance_mw = recorded_value(table, row, kImbalance, kImbalanceArrived);
-  line.quality = std::string_view(table.text(row, kQuality));
-  line.seen = table.text(row, kArrival) == kSeen;
-  if (line.minute_utc_s % 60 != 0 || (!line.seen && table.text(row, kArrival) != kFound)) {
+  line.minute_utc_s = table.utc_s(row, kMinuteColumn);
+  line.price_eur_per_mwh = recorded_value(table, row, kPriceColumn, kPriceArrivedColumn);
+  line.system_imbalance_mw = recorded_value(table, row, kImbalanceColumn, kImbalanceArrivedColumn);
+  line.quality = std::string_view(table.text(row, kQualityColumn));
+  line.seen = table.text(row, kArrivalColumn) == kSeen;
+  if (line.minute_utc_s % 60 != 0 || (!line.seen && table.text(row, kArrivalColumn) != kFound)) {
     fail(
         "{}: the line of {}: not a whole minute, or its arrival is neither {} nor {}; mend the "
         "file",
-        name, table.text(row, kMinute), kSeen, kFound);
+        name, table.text(row, kMinuteColumn), kSeen, kFound);
   }
   return line;
 }
