@@ -157,9 +157,10 @@ inline std::vector<PriceCase> bad_price_files() {
   add("a row of the future", with_line(4319, "2103-01-01T00:00:00Z,5,6"), "40 years");
   std::string early = whole;
   std::string late = whole;
-  for (std::size_t at = 0; (at = early.find("\n202", at)) != early.npos;) early[++at] = '1';
+  for (std::size_t at = 0; (at = early.find("\n202", at)) != early.npos;)
+    early.replace(++at, 3, "197");
   for (std::size_t at = 0; (at = late.find("\n20", at)) != late.npos;) late[at += 2] = '1';
-  add("the year 1023", early, "dates");
+  add("the year 1973", early, "dates");
   add("the year 2123", late, "dates");
   // The text itself.
   add("empty", "", "holds no minutes");

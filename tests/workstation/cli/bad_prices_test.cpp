@@ -131,7 +131,7 @@ TEST_F(BadPrices, ABatteryThatCannotBeMeantIsRefused) {
   } cases[] = {
       {"power_w = 5", 1, "[battery] power_w = 5 is below 100 W; the unit is watt, 5 MW is"},
       {"capacity_wh = 10", 1, "[battery] capacity_wh = 10 is below 100 Wh"},
-      {"power_w = 5000", 1, "power_w = 5000 and capacity_wh = 8e+06 are 0.00062 C"},
+      {"power_w = 5000", 1, "power_w = 5000 and capacity_wh = 8e+06 are 0.00063 C"},
       {"capacity_wh = 8000", 1, "are 5e+02 C; batteries have 0.05 to 20 C"},
       {"power_w = 1e9", 1, "is one of them in kW or MW?"},
       {"charge_efficiency = 0.5", 0, "warning: "},
