@@ -146,12 +146,16 @@ std::string read_file(const fs::path& path) {
     got = gzread(file, contents.data() + size, kChunk);
     contents.resize(size + static_cast<std::size_t>(std::max(got, 0)));
   } while (got > 0);
+  const bool is_plain = gzdirect(file) == 1;
   int status = Z_OK;
   const std::string reason = gzerror(file, &status);
   const int close_status = gzclose(file);
   if (got < 0 || close_status == Z_BUF_ERROR || status == Z_BUF_ERROR) {
     fail("{}: truncated or damaged gzip file ({}); fetch or copy it again", path.string(),
          reason.empty() ? "unexpected end" : reason);
+  }
+  if (is_plain && is_gzip_name(path) && contents.find('\0') != contents.npos) {
+    fail("{}: its name says gzip, its content is not; fetch or copy it again", path.string());
   }
   return contents;
 }

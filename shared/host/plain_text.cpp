@@ -26,6 +26,10 @@ bool is_web_page(std::string_view text) {
 
 std::string_view plain_text(std::string_view text, std::string_view name) {
   using namespace std::string_view_literals;
+  if (text.starts_with("\x1F\x8B")) {
+    fail("{}: gzip data inside (packed twice, or sent without saying so): unpack it with gunzip",
+         name);
+  }
   if (text.starts_with("PK\x03\x04")) fail("{}: a ZIP archive: unzip it first", name);
   if (text.starts_with("\xFF\xFE"sv) || text.starts_with("\xFE\xFF"sv)) {
     fail("{}: UTF-16 text: save it as UTF-8", name);

@@ -16,7 +16,7 @@
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
 #include "workstation/cli/policy_factory.h"
-#include "workstation/market/feed/market_files.h"
+#include "workstation/cli/price_input.h"
 #include "workstation/report/backtest_report.h"
 #include "workstation/report/comparison.h"
 #include "workstation/student/correct_and_prove.h"
@@ -33,6 +33,7 @@ constexpr const char* kChainName = "student";
 
 struct BacktestArguments {
   CommonOptions common;
+  PriceInput price_input;
   std::vector<std::string> prices;
   std::vector<std::string> policies{"rbc-tuned", "tabular",  "mpc",
                                     "sdp",       kChainName, kForesightName};
@@ -123,8 +124,7 @@ void learn_folds(const Folds& folds, RunConfig config, const fs::path& folder) {
 void run_backtest(const BacktestArguments& options) {
   const RunConfig config = options.common.resolve();
   const fs::path folder = options.out;
-  const MinuteSeries series =
-      join_market(read_market_files(options.prices), options.prices.front()).series;
+  const MinuteSeries series = options.price_input.read_joined(options.prices).series;
   const MarketSteps market = make_market_steps(series, config.market);
   const Folds folds = make_folds(market, options.window_days);
   require_writable(folder / "backtest.csv");
@@ -172,6 +172,7 @@ void add_backtest_command(ProgramCommand& app) {
   command
       .option("--prices", options->prices, "Minute files or downloads, which may lie apart in time")
       .required();
+  options->price_input.add(command);
   command.option("--out", options->out, "Folder for results and the folds' students").required();
   command
       .option("--policy", options->policies,

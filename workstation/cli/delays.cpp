@@ -11,6 +11,7 @@
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
 #include "workstation/cli/policy_factory.h"
+#include "workstation/cli/price_input.h"
 #include "workstation/env/evaluate.h"
 #include "workstation/report/comparison.h"
 
@@ -21,6 +22,7 @@ constexpr int kDelays = 4;  // 0 to 3 minutes
 
 struct DelaysArguments {
   CommonOptions common;
+  PriceInput price_input;
   std::string prices;
   std::vector<std::string> policies = {"rbc-tuned", "tabular", "mpc", "sdp"};
   std::string split = "test";
@@ -90,7 +92,7 @@ void print_json(const std::string& name, const Table& table, const DelaysArgumen
 
 void run_delays(const DelaysArguments& options) {
   RunConfig config = options.common.resolve();
-  const MinuteSeries series = read_minute_file(options.prices);
+  const MinuteSeries series = options.price_input.read(options.prices);
   Markets markets;
   for (int delay = 0; delay < kDelays; ++delay) {
     config.market.observation_delay_min = delay;
@@ -117,6 +119,7 @@ void add_delays_command(ProgramCommand& app) {
   ProgramCommand command =
       app.subcommand("delays", "The cost of seeing prices late: fitted at 0-3 min, run at 0-3");
   command.option("--prices", options->prices, "Minute file (.csv or .csv.gz)").required();
+  options->price_input.add(command);
   command.option("--policy", options->policies, std::string("One or more of ") + kPolicyHelp)
       .with_default();
   command

@@ -9,6 +9,7 @@
 #include "workstation/cli/chain_steps.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
+#include "workstation/cli/price_input.h"
 #include "workstation/report/curves.h"
 #include "workstation/student/correct_and_prove.h"
 
@@ -17,6 +18,7 @@ namespace {
 
 struct DistilArguments {
   CommonOptions common;
+  PriceInput price_input;
   std::string prices;
   std::string teacher;
   std::string out;
@@ -55,7 +57,8 @@ void run_distil(const DistilArguments& options) {
   require_writable(options.out);
   Teacher teacher = load_teacher(options.teacher, parse_risk(options.risk));
   if (!teacher.risk.is_mean()) teacher.provenance += ", risk " + options.risk;
-  const MarketSteps market = make_market_steps(read_minute_file(options.prices), config.market);
+  const MarketSteps market =
+      make_market_steps(options.price_input.read(options.prices), config.market);
   watch_interruption();
   const Matrix visited = visited_inputs(teacher, market, config.battery, config.distil);
   const CorrectionResult result =
@@ -86,6 +89,7 @@ void add_distil_command(ProgramCommand& app) {
   ProgramCommand command =
       app.subcommand("distil", "Correct the teacher while distilling it, until proved");
   command.option("--prices", options->prices, "Minute file (.csv or .csv.gz)").required();
+  options->price_input.add(command);
   command.option("--teacher", options->teacher, "Teacher file").required();
   command.option("--out", options->out, "Student file to write").required();
   command

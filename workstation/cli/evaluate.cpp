@@ -14,6 +14,7 @@
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
 #include "workstation/cli/policy_factory.h"
+#include "workstation/cli/price_input.h"
 #include "workstation/env/evaluate.h"
 #include "workstation/report/comparison.h"
 
@@ -22,6 +23,7 @@ namespace {
 
 struct EvaluateArguments {
   CommonOptions common;
+  PriceInput price_input;
   std::string prices;
   std::vector<std::string> policies;
   std::string split = "test";
@@ -146,7 +148,8 @@ MarketSteps fitting_market(const MinuteSeries& series, const RunConfig& config,
                            const EvaluateArguments& options) {
   MarketOptions market = config.market;
   market.observation_delay_min = options.fit_delay_min.value_or(market.observation_delay_min);
-  return make_market_steps(options.fit.empty() ? series : read_minute_file(options.fit), market);
+  return make_market_steps(options.fit.empty() ? series : options.price_input.read(options.fit),
+                           market);
 }
 
 /// What every policy is evaluated on.
@@ -191,7 +194,7 @@ void require_outputs_writable(const EvaluateArguments& options) {
 void run_evaluate(const EvaluateArguments& options) {
   require_outputs_writable(options);
   const RunConfig config = options.common.resolve();
-  const MinuteSeries series = read_minute_file(options.prices);
+  const MinuteSeries series = options.price_input.read(options.prices);
   const MarketSteps market = make_market_steps(series, config.market);
   const MarketSteps fitting = fitting_market(series, config, options);
   Trial trial{market,
@@ -230,6 +233,7 @@ void add_evaluate_command(ProgramCommand& app) {
   auto options = std::make_shared<EvaluateArguments>();
   ProgramCommand command = app.subcommand("evaluate", "What a policy would have earned");
   command.option("--prices", options->prices, "Minute file (.csv or .csv.gz)").required();
+  options->price_input.add(command);
   command.option("--policy", options->policies, std::string("One or more of ") + kPolicyHelp)
       .required();
   command

@@ -7,6 +7,7 @@
 #include "shared/host/file.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
+#include "workstation/cli/price_input.h"
 #include "workstation/cli/prices.h"
 #include "workstation/market/feed/elia_fetch.h"
 #include "workstation/market/feed/market_files.h"
@@ -15,8 +16,11 @@ namespace bess {
 namespace {
 
 struct PricesFetchArguments {
+  PriceInput price_input;
   std::string from, to, out;
   std::string base_url = kEliaBaseUrl;
+  bool strict = true;
+  bool allow_gaps = false;
 };
 
 void run_prices_fetch(const PricesFetchArguments& options) {
@@ -28,6 +32,8 @@ void run_prices_fetch(const PricesFetchArguments& options) {
        .base_url = checked_base_url(options.base_url, "--base-url"),
        .now_utc_s = std::time(nullptr),
        .retry = {},
+       .allow_gaps = options.allow_gaps,
+       .accepted = options.price_input.accepted(),
        .sleep = sleep_unless},
       interruption());
   if (!fetched) {
@@ -47,11 +53,21 @@ void add_prices_fetch(ProgramCommand& prices) {
   command.option("--from", options->from, "First local day, YYYY-MM-DD").required();
   command.option("--to", options->to, "Last local day, included").required();
   command.option("--out", options->out, "Minute file to write (.csv or .csv.gz)").required();
+  command.flag(
+      "--strict", options->strict,
+      "A missing minute or quarter-hour is an error, and no file is written (the default)");
+  command
+      .flag("--allow-gaps", options->allow_gaps,
+            "Write the file also when rows are missing, and say which")
+      .excludes("--strict");
+  options->price_input.add(command);
   command.option("--base-url", options->base_url, "API root, ends in /api/explore/v2.1")
       .with_default();
   command.footer(
       "Interrupted? Run the same command again: finished months are kept in OUT.fetch until the "
       "end.\n"
+      "What came is counted against the calendar and the server's own total. Elia's minutes have "
+      "gaps in some months: --allow-gaps accepts those.\n"
       "Behind a proxy set https_proxy. No key is needed.\n"
       "Examples:\n"
       "  bess-train prices fetch --from 2023-01-01 --to 2023-12-31 --out 2023.csv.gz\n"

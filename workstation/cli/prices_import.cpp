@@ -3,22 +3,22 @@
 
 #include <memory>
 
+#include "workstation/cli/price_input.h"
 #include "workstation/cli/prices.h"
-#include "workstation/market/feed/market_files.h"
-#include "workstation/market/feed/market_join.h"
 
 namespace bess {
 namespace {
 
 struct PricesImportArguments {
+  PriceInput price_input;
   std::vector<std::string> files;
   std::string out;
 };
 
 void run_prices_import(const PricesImportArguments& options) {
-  MarketRows rows = read_market_files(options.files);
-  const std::string attribution = attribution_of(rows.sources);
-  const JoinedMarket market = join_market(std::move(rows), options.files.front());
+  std::set<MarketSource> sources;
+  const JoinedMarket market = options.price_input.read_joined(options.files, &sources);
+  const std::string attribution = attribution_of(sources);
   const std::string description = describe_join(market);
   write_minute_file(options.out, market.series,
                     fmt::format("Imported by bess-train {} from {}\n{}\n{}", BESS_VERSION,
@@ -37,15 +37,18 @@ void add_prices_import(ProgramCommand& prices) {
               "Downloads of ods046, ods047, ods133, ods134, ods161, ods162, ENTSO-E A85 (XML), "
               "days of 'prices record', or minute files; plain or .gz")
       .required();
+  options->price_input.add(command);
   command.option("--out", options->out, "Minute file to write (.csv or .csv.gz)").required();
   command.footer(
-      "Later files win where two have the same minute. Of a recorded day the first price of a "
-      "minute "
-      "counts, the one that could be acted on. ENTSO-E sends a ZIP archive: unzip it "
-      "first.\n"
+      "Of downloads, later files win where two have the same minute; minute files must agree there "
+      "(--accept overlap: later files win). Of a recorded day the first price of a minute counts, "
+      "the one that could be acted on. Semicolons with decimal commas are read too. ENTSO-E sends "
+      "a "
+      "ZIP archive: unzip it first.\n"
       "Examples:\n"
       "  bess-train prices import ods133.csv ods134.csv --out prices.csv.gz\n"
       "  bess-train prices import today/*.json --out today.csv\n"
+      "  bess-train prices import 2023.csv.gz 2024.csv.gz --out both.csv.gz\n"
       "  bess-train prices import recorded/2025-06-*.csv ods134.csv --out june.csv.gz");
   command.runs([options] { run_prices_import(*options); });
 }

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "shared/host/text.h"
+#include "workstation/cli/price_input.h"
 #include "workstation/cli/prices.h"
 #include "workstation/market/feed/market_files.h"
 #include "workstation/market/model/quarter_hours_to_minutes.h"
@@ -13,6 +14,7 @@ namespace bess {
 namespace {
 
 struct PricesReconstructArguments {
+  PriceInput price_input;
   std::vector<std::string> files;
   std::uint64_t seed = 1;
   std::string out;
@@ -21,6 +23,8 @@ struct PricesReconstructArguments {
 void run_prices_reconstruct(const PricesReconstructArguments& options) {
   SettledQuarterHours settled = read_quarter_hour_files(options.files);
   std::vector<QuarterHour>& quarter_hours = settled.quarter_hours;
+  judge_market(join_market({{}, quarter_hours}, options.files.front()).series,
+               settled.report.findings, options.files, options.price_input.accepted());
   const std::size_t inferred = infer_missing_imbalances(quarter_hours);
   const std::string attribution = attribution_of(settled.sources);
   const MinuteSeries series = minutes_on_quarter_hours(quarter_hours, options.seed);
@@ -55,6 +59,7 @@ void add_prices_reconstruct(ProgramCommand& prices) {
               "Settled quarter-hours: ods047 or ods134 (CSV or JSON), tidy CSV, ENTSO-E A85 "
               "(XML), or what 'prices import' wrote; plain or .gz")
       .required();
+  options->price_input.add(command);
   command.option("--seed", options->seed, "Same seed, same minutes").non_negative().with_default();
   command.option("--out", options->out, "Minute file to write (.csv or .csv.gz)").required();
   command.footer(

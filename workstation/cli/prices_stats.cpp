@@ -5,9 +5,10 @@
 
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
+#include "workstation/cli/price_input.h"
 #include "workstation/cli/prices.h"
-#include "workstation/market/feed/market_join.h"
 #include "workstation/market/feed/recorded_day.h"
+#include "workstation/market/series/judged_prices.h"
 #include "workstation/market/statistics/statistics_plot.h"
 #include "workstation/market/statistics/statistics_report.h"
 
@@ -29,12 +30,19 @@ Described describe_minutes(const MinuteSeries& series) {
   return {statistics_of_minutes(series), settled_by_quarter_hour(series)};
 }
 
+Described describe_minute_file(std::string_view text, const std::string& name) {
+  const MinuteSeries series = parse_minute_csv(text, name);
+  judge_minutes(series, {name, text}, AcceptedFindings::all());
+  return describe_minutes(series);
+}
+
 Described describe_download(std::string_view text, const std::string& name) {
   MarketRows rows = parse_market_text(text, name);
   const bool minutes = !rows.minutes.empty();
   JoinReport report;
   const std::vector<QuarterHour> quarter_hours = sorted_quarter_hours(rows.quarter_hours, report);
   const JoinedMarket market = join_market(std::move(rows), name);
+  judge_market(market.series, {}, {name}, AcceptedFindings::all());
   if (minutes) return describe_minutes(market.series);
   return {statistics_of_quarter_hours(quarter_hours), settled_by_quarter_hour(market.series)};
 }
@@ -42,9 +50,8 @@ Described describe_download(std::string_view text, const std::string& name) {
 void run_prices_stats(const PricesStatsArguments& options) {
   if (!options.plot.empty()) require_drawable(options.plot);
   const std::string text = read_file(options.file);
-  const Described described = is_minute_csv(text)
-                                  ? describe_minutes(parse_minute_csv(text, options.file))
-                                  : describe_download(text, options.file);
+  const Described described = is_minute_csv(text) ? describe_minute_file(text, options.file)
+                                                  : describe_download(text, options.file);
   if (options.json) {
     fmt::print("{}\n", format_statistics_json(described.statistics));
   } else {

@@ -9,6 +9,7 @@
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
 #include "workstation/cli/run_report.h"
+#include "workstation/market/series/judged_prices.h"
 
 namespace bess {
 namespace {
@@ -30,7 +31,9 @@ void run_report(const std::string& path, const std::string& prices) {
   common.config_path = folder.config().string();
   const RunConfig config = common.resolve();
   const std::string prices_path = prices.empty() ? prices_of_run(folder) : prices;
-  MarketSteps market = make_market_steps(read_minute_file(prices_path), config.market);
+  // The run accepted what it accepted.
+  MarketSteps market =
+      make_market_steps(read_judged_minutes(prices_path, AcceptedFindings::all()), config.market);
   Teacher teacher = load_teacher(folder.teacher());
   Verdict plain = prove(load_student(folder.plain_student()), config.train.threads);
   Verdict corrected = prove(load_student(folder.student()), config.train.threads);

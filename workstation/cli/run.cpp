@@ -9,6 +9,7 @@
 #include "workstation/cli/chain_steps.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
+#include "workstation/cli/price_input.h"
 #include "workstation/cli/run_folder.h"
 #include "workstation/cli/run_report.h"
 #include "workstation/market/model/quarter_hours_to_minutes.h"
@@ -27,6 +28,7 @@ constexpr std::uint64_t kBuiltInSeed = 1;
 
 struct RunArguments {
   CommonOptions common;
+  PriceInput price_input;
   std::string prices;
   std::string out;
 };
@@ -113,7 +115,8 @@ void run_chain(const RunArguments& options) {
   require_writable(folder.header());
   announce(1, built_in ? "draw the built-in market" : "read " + options.prices);
   MarketSteps market = make_market_steps(
-      built_in ? built_in_market(folder) : read_minute_file(options.prices), config.market);
+      built_in ? built_in_market(folder) : options.price_input.read(options.prices), config.market);
+  warn_untrained_months(market, config.train.context == ContextKind::kMonth);
   write_file(folder.config(), format_run_config(config));
   const RunResults results =
       learn(config, std::move(market), built_in ? "built-in market" : options.prices);
@@ -140,6 +143,7 @@ void add_run_command(ProgramCommand& app) {
   ProgramCommand command = app.subcommand(
       "run", "The whole chain into one folder: train, correct, prove, export, evaluate, report");
   command.option("--prices", options->prices, "Minute file; without it a built-in simulated year");
+  options->price_input.add(command);
   command.option("--out", options->out, "Run folder").required();
   options->common.add_market(command);
   options->common.add_config(command);

@@ -10,6 +10,7 @@
 #include "shared/host/text.h"
 #include "shared/host/toml_document.h"
 #include "shared/host/user_error.h"
+#include "workstation/cli/config_plausibility.h"
 
 namespace bess {
 namespace {
@@ -248,6 +249,7 @@ RunConfig parse_run_config(std::string_view text, const std::string& name) {
   if (!parse_toml_text(text, name, document, error)) throw UserError(error);
   apply_document(document, list.keys());
   check_relations(config, name);
+  require_plausible(config, name);
   return config;
 }
 

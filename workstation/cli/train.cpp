@@ -15,6 +15,7 @@
 #include "workstation/cli/chain_steps.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
+#include "workstation/cli/price_input.h"
 #include "workstation/env/evaluate.h"
 #include "workstation/report/curves.h"
 
@@ -25,6 +26,7 @@ namespace fs = std::filesystem;
 
 struct TrainArguments {
   CommonOptions common;
+  PriceInput price_input;
   std::string prices;
   std::string out;
   std::string curve_out;
@@ -183,8 +185,9 @@ void run_train(const TrainArguments& options) {
   if (options.method) config.train.method = parse_method(*options.method);
   if (options.steps) config.train.steps = *options.steps;
   require_writable(options.out);
-  const MinuteSeries series = read_minute_file(options.prices);
+  const MinuteSeries series = options.price_input.read(options.prices);
   const MarketSteps market = make_market_steps(series, config.market);
+  warn_untrained_months(market, config.train.context == ContextKind::kMonth);
   watch_interruption();
   if (options.seeds > 1) return run_seeds(options, config, series, market);
   const TrainResult result = train_one(options.out, options, config, series, market);
@@ -231,6 +234,7 @@ void add_train_command(ProgramCommand& app) {
   ProgramCommand command =
       app.subcommand("train", "Make the teacher: stochastic program, C51 or DQN");
   command.option("--prices", options->prices, "Minute file (.csv or .csv.gz)").required();
+  options->price_input.add(command);
   command.option("--out", options->out, "Teacher file to write").required();
   command.option("--method", options->method, "sdp (default), c51 or dqn")
       .one_of({"sdp", "c51", "dqn"});

@@ -9,6 +9,7 @@
 #include "shared/local_time.h"
 #include "shared/price_level.h"
 #include "shared/units_and_limits.h"
+#include "shared/utc_text.h"
 
 namespace bess {
 namespace {
@@ -36,6 +37,19 @@ std::vector<std::int64_t> newest_published(const MinuteSeries& series) {
     newest[m] = last;
   }
   return newest;
+}
+
+/// Sums and squares of prices beyond this leave what numbers can hold, and an infinite mean becomes
+/// an index out of range. No currency has such a price for a MWh.
+constexpr double kPaidPriceMaxEurPerMwh = 1e6;
+
+void require_payable(const MinuteSeries& series) {
+  for (std::size_t m = 0; m < series.size(); ++m) {
+    if (std::fabs(series.settled[m]) <= kPaidPriceMaxEurPerMwh || std::isnan(series.settled[m]))
+      continue;
+    fail("the settled price of {}, {:g} EUR/MWh, is none; mend it or leave it empty",
+         utc_text(series.utc_s(m)).view(), series.settled[m]);
+  }
 }
 
 double paid_price(const MinuteSeries& series, std::size_t minute, Settlement settlement) {
@@ -105,6 +119,7 @@ MarketSteps make_market_steps(const MinuteSeries& series, const MarketOptions& o
     fail("observation delay {} min is out of range: use 0 to {}", options.observation_delay_min,
          kObservationDelayMaxMin);
   }
+  require_payable(series);
   const std::vector<std::int64_t> newest = newest_published(series);
   MarketSteps market;
   market.steps.reserve(series.size() / kMinutesPerStep);

@@ -96,7 +96,8 @@ inline constexpr std::size_t kCompleteDaySteps = 690;
 /// Throws UserError when there is nothing to fit on: `count` training days, or prices on them.
 void require_training_days(std::size_t count);
 
-/// Throws UserError when the options are out of range or no complete day remains.
+/// Throws UserError when the options are out of range, a settled price is beyond all sense, or no
+/// complete day remains.
 MarketSteps make_market_steps(const MinuteSeries& series, const MarketOptions& options);
 
 }  // namespace bess

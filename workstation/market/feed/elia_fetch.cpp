@@ -10,28 +10,13 @@
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
 #include "workstation/base/progress.h"
-#include "workstation/market/feed/http_client.h"
+#include "workstation/market/feed/elia_window.h"
 #include "workstation/market/feed/market_files.h"
 
 namespace bess {
 namespace {
 
 namespace fs = std::filesystem;
-using Kind = HttpOutcome::Kind;
-
-std::string window_url(const std::string& base_url, const FetchWindow& window) {
-  // Explicit offsets: the API reads naive times as UTC or local, depending on other parameters.
-  const auto instant = [](std::int64_t utc_s) {
-    std::string text(utc_text(utc_s).view());
-    return text.replace(text.size() - 1, 1, "+00:00");
-  };
-  const std::string where = fmt::format("datetime >= \"{}\" AND datetime < \"{}\"",
-                                        instant(window.from_utc_s), instant(window.until_utc_s));
-  return fmt::format(
-      "{}/catalog/datasets/{}/exports/csv?where={}&order_by=datetime&timezone=UTC"
-      "&delimiter=%3B",
-      base_url, window.dataset, url_encoded(where));
-}
 
 /// Cached windows of another server are never taken for this one's.
 fs::path window_path(const FetchRequest& request, const FetchWindow& window) {
@@ -42,124 +27,15 @@ fs::path window_path(const FetchRequest& request, const FetchWindow& window) {
                                                    server.value());
 }
 
-/// Another try would bring the same rows again.
-struct WindowIgnored : UserError {
-  using UserError::UserError;
-};
-
-struct WindowRows {
-  MarketRows rows;
-  std::size_t received = 0;  ///< before any was dropped
-  std::size_t unended = 0;   ///< dropped: of intervals that had not ended
-};
-
-std::size_t count_of(const MarketRows& rows) {
-  return rows.minutes.size() + rows.quarter_hours.size();
-}
-
-/// Drops the rows whose interval [from, until) `unwanted` names.
-template <typename Unwanted>
-void drop_rows(MarketRows& rows, Unwanted unwanted) {
-  const auto minute = [&](std::int64_t utc_s) { return unwanted(utc_s, utc_s + 60); };
-  const auto quarter_hour = [&](std::int64_t utc_s) {
-    return unwanted(utc_s, utc_s + kSecondsPerQuarterHour);
-  };
-  std::erase_if(rows.minutes, [&](const MinuteRow& row) { return minute(row.utc_s); });
-  std::erase_if(rows.quarter_hours,
-                [&](const QuarterHour& row) { return quarter_hour(row.utc_s); });
-  std::erase_if(rows.dual_priced_minutes, minute);
-  std::erase_if(rows.dual_priced_quarter_hours, quarter_hour);
-}
-
-/// An empty body holds no rows; a server may ignore the window: rows outside it are dropped.
-WindowRows rows_in_window(std::string_view text, const std::string& name, const FetchWindow& window,
-                          std::int64_t now_utc_s) {
-  WindowRows result;
-  if (without_byte_order_mark(text).find_first_not_of(" \t\r\n") == text.npos) return result;
-  result.rows = parse_market_text(text, name);
-  result.received = count_of(result.rows);
-  drop_rows(result.rows, [&window](std::int64_t from_utc_s, std::int64_t) {
-    return from_utc_s < window.from_utc_s || from_utc_s >= window.until_utc_s;
-  });
-  if (result.received > 0 && count_of(result.rows) == 0) {
-    throw WindowIgnored(fmt::format("the server ignored the time window: {} came, none inside it",
-                                    counted(result.received, "row")));
-  }
-  const std::size_t inside = count_of(result.rows);
-  drop_rows(result.rows, [now_utc_s](std::int64_t, std::int64_t until_utc_s) {
-    return until_utc_s > now_utc_s;
-  });
-  result.unended = inside - count_of(result.rows);
-  return result;
-}
-
-/// Seconds until the next attempt; throws when there should be none.
-double next_wait_s(const RetryPolicy& retry, int attempts, const HttpOutcome& outcome,
-                   const std::string& url) {
-  const bool unreachable = outcome.kind == Kind::kUnreachable;
-  const int attempts_max = unreachable ? retry.attempts_unreachable_max : retry.attempts_max;
-  if (outcome.kind == Kind::kRefused || attempts >= attempts_max) {
-    fail(
-        "{}: {} ({}); check --base-url and the network and run the same command again, "
-        "finished windows are kept",
-        url, outcome.reason, counted(static_cast<std::size_t>(attempts), "attempt"));
-  }
-  const double backoff_s = retry.first_wait_s * static_cast<double>(1 << (attempts - 1));
-  const double wait_s = std::max(outcome.wait_s.value_or(0.0), backoff_s);
-  if (wait_s > retry.wait_max_s) {
-    fail(
-        "{}: {}; the server asks to wait {:.0f} minutes: run the same command again then, finished "
-        "windows are kept",
-        url, outcome.reason, wait_s / 60);
-  }
-  return wait_s;
-}
-
-struct Download {
-  std::string text;
-  WindowRows rows;
-};
-
-/// An answer that cannot be read is tried again like a cut connection.
-HttpOutcome get_rows(const FetchRequest& request, const std::string& url, const FetchWindow& window,
-                     const std::atomic<bool>& interrupted, Download& download) {
-  HttpOutcome outcome = http_get(url, interrupted);
-  if (outcome.kind != Kind::kDone) return outcome;
-  try {
-    download.rows = rows_in_window(outcome.body, window.dataset, window, request.now_utc_s);
-    download.text = std::move(outcome.body);
-    return outcome;
-  } catch (const WindowIgnored& error) {
-    return {Kind::kRefused, {}, error.what(), {}};
-  } catch (const UserError& error) {
-    return {Kind::kTransient, {}, fmt::format("cannot read the answer: {}", error.what()), {}};
-  }
-}
-
-/// Nothing when interrupted.
-std::optional<Download> download_window(const FetchRequest& request, const FetchWindow& window,
-                                        const std::atomic<bool>& interrupted) {
-  const std::string url = window_url(request.base_url, window);
-  Download download;
-  for (int attempts = 1; !interrupted; ++attempts) {
-    const HttpOutcome outcome = get_rows(request, url, window, interrupted, download);
-    if (outcome.kind == Kind::kDone) return download;
-    if (outcome.kind == Kind::kInterrupted) break;
-    const double wait_s = next_wait_s(request.retry, attempts, outcome, url);
-    fmt::print(stderr, "{}: {}; next attempt in {:.0f} s\n", window.dataset, outcome.reason,
-               wait_s);
-    request.sleep(wait_s, interrupted);
-  }
-  return std::nullopt;
-}
-
-/// Rows of a window that an earlier run finished; a damaged or empty copy counts as none.
+/// Rows of a window that an earlier run finished; a damaged or empty copy counts as none, and so does
+/// one with a gap unless gaps are allowed: the server may have mended it.
 std::optional<WindowRows> kept_rows(const FetchRequest& request, const FetchWindow& window) {
   const fs::path path = window_path(request, window);
   if (window.settles_later || !fs::exists(path)) return std::nullopt;
   try {
     WindowRows rows = rows_in_window(read_file(path), path.string(), window, request.now_utc_s);
-    if (count_of(rows.rows) > 0) return rows;
+    const bool complete = missing_in(window, rows.rows, request.now_utc_s).empty();
+    if (count_of(rows.rows) > 0 && (complete || request.allow_gaps)) return rows;
   } catch (const UserError&) {
   }
   return std::nullopt;
@@ -168,9 +44,12 @@ std::optional<WindowRows> kept_rows(const FetchRequest& request, const FetchWind
 /// Nothing when interrupted.
 std::optional<WindowRows> fetch_window(const FetchRequest& request, const FetchWindow& window,
                                        const std::atomic<bool>& interrupted) {
-  std::optional<Download> download = download_window(request, window, interrupted);
+  std::optional<WindowDownload> download = download_window(request, window, interrupted);
   if (!download) return std::nullopt;
-  const bool finished = !window.settles_later && count_of(download->rows.rows) > 0;
+  const MarketRows& rows = download->rows.rows;
+  const bool complete = missing_in(window, rows, request.now_utc_s).empty();
+  const bool finished = !window.settles_later && count_of(rows) > 0 && !download->text.empty() &&
+                        (complete || request.allow_gaps);
   if (finished) write_file(window_path(request, window), download->text);
   return std::move(download->rows);
 }
@@ -291,6 +170,72 @@ std::string describe_coverage(const FetchRequest& request, const std::vector<Fet
   return text;
 }
 
+/// Gaps that are none of an end which is still being published: with each window that has any.
+struct WindowGaps {
+  const FetchWindow* window;
+  const WindowRows* rows;
+  std::vector<Gap> gaps;
+};
+
+std::vector<WindowGaps> gaps_of(const FetchRequest& request,
+                                const std::vector<FetchWindow>& windows,
+                                const std::vector<WindowRows>& rows) {
+  std::vector<WindowGaps> all;
+  bool minutes_follow = false;
+  bool quarter_hours_follow = false;
+  for (std::size_t i = windows.size(); i-- > 0;) {
+    const FetchWindow& window = windows[i];
+    bool& follow = holds_minutes(window.dataset) ? minutes_follow : quarter_hours_follow;
+    std::vector<Gap> gaps = missing_in(window, rows[i].rows, request.now_utc_s);
+    const bool ends_open = !follow && window.settles_later && !rows[i].lacks_rows_of_total();
+    const std::int64_t end_utc_s = std::min(window.until_utc_s, request.now_utc_s);
+    if (ends_open && !gaps.empty() &&
+        gaps.back().until_utc_s + kSecondsPerQuarterHour > end_utc_s) {
+      gaps.pop_back();
+    }
+    follow = follow || count_of(rows[i].rows) > 0;
+    if (!gaps.empty()) all.push_back({&window, &rows[i], std::move(gaps)});
+  }
+  std::ranges::reverse(all);
+  return all;
+}
+
+/// "ods046: 2780 of 2880 minutes missing, the first from ... to ...; the server holds no more".
+std::string describe_missing(const WindowGaps& of, std::int64_t now_utc_s) {
+  const bool minutes = holds_minutes(of.window->dataset);
+  const std::int64_t missing_min = minutes_in(of.gaps);
+  std::string text = fmt::format(
+      "{} of {} {} missing in {}, first from {} to {}", minutes ? missing_min : missing_min / 15,
+      expected_rows(*of.window, now_utc_s), minutes ? "minutes" : "quarter-hours",
+      of.window->dataset, utc_text(of.gaps.front().from_utc_s).view(),
+      utc_text(of.gaps.front().until_utc_s).view());
+  const std::optional<std::size_t>& total = of.rows->total;
+  if (of.rows->lacks_rows_of_total()) {
+    text += fmt::format(" (the server counts {} and sent {})", counted(*total, "row"),
+                        of.rows->distinct);
+  } else if (total) {
+    text += " (the server has no more)";
+  } else if (of.window->settles_later) {
+    text += " (refreshed once a day: perhaps tomorrow)";
+  }
+  return text;
+}
+
+void require_no_gaps(const FetchRequest& request, const std::vector<WindowGaps>& gaps) {
+  if (gaps.empty() || request.allow_gaps) return;
+  fail(
+      "{}{}: {}; run again later, or with --allow-gaps for a file that has them",
+      describe_missing(gaps.front(), request.now_utc_s),
+      gaps.size() == 1 ? "" : fmt::format(", and {} with gaps", counted(gaps.size() - 1, "window")),
+      host_of(request.base_url));
+}
+
+std::string describe_allowed(const FetchRequest& request, const std::vector<WindowGaps>& gaps) {
+  std::string text;
+  for (const WindowGaps& of : gaps) text += describe_missing(of, request.now_utc_s) + "\n";
+  return text;
+}
+
 std::string provenance_of(const FetchRequest& request, const std::vector<FetchWindow>& windows) {
   std::string datasets;
   for (const FetchWindow& window : windows) {
@@ -313,9 +258,13 @@ std::optional<FetchedPrices> fetch_prices(const FetchRequest& request,
   MarketRows all;
   for (const WindowRows& of_window : *rows) append_rows(all, of_window.rows);
   if (count_of(all) == 0) fail_without_prices(request, windows.front());
+  const std::vector<WindowGaps> gaps = gaps_of(request, windows, *rows);
+  require_no_gaps(request, gaps);
   FetchedPrices fetched{join_or_forget(request, std::move(all)), {}};
+  judge(implausible(fetched.market.series), request.accepted, {{host_of(request.base_url), {}}});
   fetched.description = describe_join(fetched.market) + describe_windows(windows, *rows) +
-                        describe_coverage(request, windows, *rows, fetched.market.series);
+                        describe_coverage(request, windows, *rows, fetched.market.series) +
+                        describe_allowed(request, gaps);
   write_minute_file(request.out, fetched.market.series,
                     provenance_of(request, windows) + fetched.description);
   remove_kept_windows(request);

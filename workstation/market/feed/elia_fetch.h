@@ -12,6 +12,7 @@
 
 #include "workstation/market/feed/fetch_plan.h"
 #include "workstation/market/feed/market_join.h"
+#include "workstation/market/series/judged_prices.h"
 
 namespace bess {
 
@@ -20,8 +21,9 @@ inline constexpr const char* kEliaBaseUrl = "https://opendata.elia.be/api/explor
 struct RetryPolicy {
   int attempts_max = 6;
   int attempts_unreachable_max = 3;
-  double first_wait_s = 1;  ///< doubled after each attempt
-  double wait_max_s = 900;  ///< a server that asks for longer ends the run, to be resumed
+  int attempts_unreadable_max = 2;  ///< answers that arrive whole and are no data
+  double first_wait_s = 1;          ///< doubled after each attempt
+  double wait_max_s = 900;          ///< a server that asks for longer ends the run, to be resumed
 };
 
 struct FetchRequest {
@@ -30,6 +32,8 @@ struct FetchRequest {
   std::string base_url = kEliaBaseUrl;  ///< the API root that ends in /api/explore/v2.1
   std::int64_t now_utc_s;
   RetryPolicy retry;
+  bool allow_gaps = false;      ///< otherwise missing rows are an error, and no file is written
+  AcceptedFindings accepted{};  ///< about the prices
   /// Between attempts; returns early when interrupted.
   std::function<void(double seconds, const std::atomic<bool>& interrupted)> sleep;
 };

@@ -47,6 +47,10 @@ bool is_near_real_time(std::string_view dataset) {
   return dataset == kToday.minutes || dataset == kToday.quarter_hours;
 }
 
+bool holds_minutes(std::string_view dataset) {
+  return dataset == kOld.minutes || dataset == kNew.minutes || dataset == kToday.minutes;
+}
+
 std::vector<FetchWindow> plan_fetch(const FetchSpan& span, std::int64_t now_utc_s) {
   if (span.to < span.from) {
     fail("--to {} is before --from {}; swap them", format_local_date(span.to),

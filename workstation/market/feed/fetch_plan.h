@@ -32,6 +32,9 @@ struct FetchSpan {
 /// A dataset that is refreshed all day; the others once a day.
 bool is_near_real_time(std::string_view dataset);
 
+/// A dataset of minutes; the others hold quarter-hours.
+bool holds_minutes(std::string_view dataset);
+
 /// Windows in order of time, quarter-hours after their minutes. Days after today are left out.
 /// Throws UserError when nothing is left.
 std::vector<FetchWindow> plan_fetch(const FetchSpan& span, std::int64_t now_utc_s);

@@ -111,7 +111,9 @@ HttpOutcome outcome_of_status(long status, Received received) {
   if (status == 429 || status == 503) {
     return {Kind::kBusy, {}, reason, wait_seconds(told, now_s())};
   }
-  return {status >= 500 || status == 408 ? Kind::kTransient : Kind::kRefused, {}, reason, {}};
+  // 501 and 505: the server cannot do what is asked, now or later.
+  const bool may_pass = status == 408 || (status >= 500 && status != 501 && status != 505);
+  return {may_pass ? Kind::kTransient : Kind::kRefused, {}, reason, {}};
 }
 
 struct Cleanup {

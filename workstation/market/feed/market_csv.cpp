@@ -1,4 +1,6 @@
 // CSV downloads: `;` (portal and API) or `,` (tidy), optional quotes, any column order.
+#include <fmt/core.h>
+
 #include <string>
 
 #include "shared/host/csv.h"
@@ -27,17 +29,17 @@ Columns parse_header(std::string_view line, std::string_view name) {
     columns.fields.push_back(field);
   }
   if (!has_time || !has_price) {
-    fail(
+    throw NotMarketData(fmt::format(
         "{}: no column for the {}; expected a download of ods046, ods047, ods133, ods134, ods161 "
         "or ods162",
-        name, has_time ? "imbalance price" : "time (Datetime)");
+        name, has_time ? "imbalance price" : "time (Datetime)"));
   }
   return columns;
 }
 
 void parse_row(std::string_view line, const Columns& columns, std::string_view place,
                MarketRows& rows) {
-  MarketRowBuilder builder(place);
+  MarketRowBuilder builder(place, columns.separator == ';');
   CsvFields fields(line, columns.separator);
   std::size_t column = 0;
   for (std::string_view text; fields.take(text);) {

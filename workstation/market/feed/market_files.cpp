@@ -4,6 +4,7 @@
 
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
+#include "workstation/market/feed/overlap.h"
 
 namespace bess {
 namespace {
@@ -34,7 +35,13 @@ std::string joined(const std::vector<std::string>& parts, std::string_view separ
 
 MarketRows read_market_files(const std::vector<std::string>& paths) {
   MarketRows all;
-  for (const std::string& path : paths) append_rows(all, parse_market_text(read_file(path), path));
+  Overlap overlap;
+  for (const std::string& path : paths) {
+    const MarketRows rows = parse_market_text(read_file(path), path);
+    if (rows.is_minute_file) overlap.add(path, rows);
+    append_rows(all, rows);
+  }
+  all.findings = overlap.findings();
   return all;
 }
 
@@ -50,6 +57,7 @@ SettledQuarterHours read_quarter_hour_files(const std::vector<std::string>& path
   settled.sources = rows.sources;
   settled.sources.erase(MarketSource::kDrawn);  // of the minutes, which are drawn anew
   settled.minutes_unused = rows.minutes.size();
+  settled.report.findings = std::move(rows.findings);
   settled.report.dual_priced_quarter_hours = rows.dual_priced_quarter_hours.size();
   settled.quarter_hours = sorted_quarter_hours(std::move(rows.quarter_hours), settled.report);
   check_span(settled.quarter_hours.front().utc_s, settled.quarter_hours.back().utc_s,

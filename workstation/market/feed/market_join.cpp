@@ -104,6 +104,7 @@ JoinedMarket join_market(MarketRows rows, std::string_view name) {
       sorted_quarter_hours(std::move(rows.quarter_hours), market.report);
   market.report.dual_priced_minutes = rows.dual_priced_minutes.size();
   market.report.dual_priced_quarter_hours = rows.dual_priced_quarter_hours.size();
+  market.report.findings = std::move(rows.findings);
   market.report.minutes = minutes.size();
   market.report.quarter_hours = quarter_hours.size();
   const auto [from_utc_s, until_utc_s] = span_of(minutes, quarter_hours);

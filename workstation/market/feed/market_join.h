@@ -8,6 +8,7 @@
 
 #include "shared/host/minute_file.h"
 #include "workstation/market/feed/market_rows.h"
+#include "workstation/market/series/plausibility.h"
 
 namespace bess {
 
@@ -16,6 +17,7 @@ struct JoinReport {
   std::size_t duplicates = 0;
   std::size_t duplicates_changed = 0;  ///< with another price: the row read last is kept
   std::size_t dual_priced_minutes = 0, dual_priced_quarter_hours = 0;  ///< two prices: left out
+  std::vector<Finding> findings{};    ///< of the rows: minute files that contradict each other
   bool settled_from_minutes = false;  ///< no quarter-hours were given: minute 14 stands for them
 };
 

@@ -1,5 +1,8 @@
 // Minute files as rows, so that what `prices import` wrote can be joined with more, or its settled
 // prices be the ground of a reconstruction.
+#include <algorithm>
+
+#include "shared/host/csv.h"
 #include "shared/host/minute_file.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
@@ -47,9 +50,30 @@ void add_settled(const MinuteSeries& series, std::size_t minute, std::string_vie
 
 }  // namespace
 
+bool is_spreadsheet_minute_csv(std::string_view text) {
+  std::string header(csv_header(text));
+  if (header.find(';') == header.npos) return false;
+  std::ranges::replace(header, ';', ',');
+  return is_minute_csv(header);
+}
+
+std::string from_spreadsheet(std::string_view text) {
+  std::string converted;
+  for (std::string_view rest = without_byte_order_mark(text); !rest.empty();) {
+    std::string line(take_line(rest));
+    if (!line.starts_with('#')) {
+      std::ranges::replace(line, ',', '.');
+      std::ranges::replace(line, ';', ',');
+    }
+    converted.append(line).append("\n");
+  }
+  return converted;
+}
+
 MarketRows parse_minute_file_rows(std::string_view text, std::string_view name) {
   const MinuteSeries series = parse_minute_csv(text, name);
   MarketRows rows;
+  rows.is_minute_file = true;
   rows.sources = sources_of(without_byte_order_mark(text));
   for (std::size_t m = 0; m < series.size(); ++m) {
     if (is_published(series.indicative[m])) {

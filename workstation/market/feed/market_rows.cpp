@@ -85,9 +85,13 @@ void MarketRowBuilder::set_text(MarketField field, std::string_view text) {
     }
     utc_s_ = utc_s;
   } else {
+    std::string number(text);
+    const std::size_t comma = number.find(',');
+    const bool is_decimal_comma = has_decimal_commas_ && number.find('.') == number.npos;
+    if (comma != number.npos && is_decimal_comma) number[comma] = '.';
     double value = 0;
-    const char* text_end = text.data() + text.size();
-    const auto [end, error] = std::from_chars(text.data(), text_end, value);
+    const char* text_end = number.data() + number.size();
+    const auto [end, error] = std::from_chars(number.data(), text_end, value);
     if (error != std::errc{} || end != text_end || !std::isfinite(value)) {
       fail("{}: \"{}\" is not a number; mend the row or delete it", place_,
            one_line(text, kQuotedMax));
@@ -166,6 +170,9 @@ MarketRows parse_market_text(std::string_view text, std::string_view name) {
   if (first == std::string_view::npos) fail("{}: the file is empty; download it again", name);
   if (looks_like_xml(text)) return parse_entsoe_xml(text, name);
   if (is_minute_csv(text)) return parse_minute_file_rows(text, name);
+  if (is_spreadsheet_minute_csv(text)) {
+    return parse_minute_file_rows(from_spreadsheet(text), name);
+  }
   const bool json = text[first] == '{' || text[first] == '[';
   return json ? parse_market_json(text, name) : parse_market_csv(text, name);
 }

@@ -10,10 +10,13 @@
 #include <cstdint>
 #include <optional>
 #include <set>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "shared/fixed_text.h"
+#include "shared/host/user_error.h"
+#include "workstation/market/series/plausibility.h"
 #include "workstation/market/series/quarter_hour.h"
 
 namespace bess {
@@ -37,6 +40,11 @@ enum class MarketSource {
   kUnknown,    ///< tidy files do not say where they come from
 };
 
+/// Read without trouble, and not what is looked for: another dataset.
+struct NotMarketData : UserError {
+  using UserError::UserError;
+};
+
 /// In the order of the files; duplicates and disorder are the business of join_market().
 struct MarketRows {
   std::vector<MinuteRow> minutes;
@@ -44,6 +52,8 @@ struct MarketRows {
   /// Times of the rows that lost their price because it was not one.
   std::set<std::int64_t> dual_priced_minutes{}, dual_priced_quarter_hours{};
   std::set<MarketSource> sources{};
+  bool is_minute_file = false;      ///< one that this program wrote: its overlaps must agree
+  std::vector<Finding> findings{};  ///< about how the files agree
 };
 
 void append_rows(MarketRows& all, const MarketRows& rows);
@@ -69,7 +79,9 @@ std::optional<MarketField> market_field_of(std::string_view label);
 class MarketRowBuilder {
  public:
   /// `place` names the row in messages, e.g. "prices.csv:17"; it must outlive the builder.
-  explicit MarketRowBuilder(std::string_view place) : place_(place) {}
+  /// `has_decimal_commas`: "-30,258" is a number, as where semicolons separate the fields.
+  explicit MarketRowBuilder(std::string_view place, bool has_decimal_commas = false)
+      : place_(place), has_decimal_commas_(has_decimal_commas) {}
 
   void set_text(MarketField field, std::string_view text);
   void set_number(MarketField field, double value);
@@ -87,6 +99,7 @@ class MarketRowBuilder {
   std::string_view resolution_;
   QualityStatus quality_;
   bool has_quarter_hour_ = false;
+  bool has_decimal_commas_;
 };
 
 /// Reads CSV (`,` or `;`, any column order). `name` is used in messages.
@@ -97,6 +110,10 @@ MarketRows parse_market_json(std::string_view text, std::string_view name);
 /// A minute file's indicative prices as minutes, its settled ones as quarter-hours; its sources are
 /// those that its comments name.
 MarketRows parse_minute_file_rows(std::string_view text, std::string_view name);
+/// True of a minute file that a spreadsheet saved with semicolons, and that file with commas and
+/// decimal points again, row by row.
+bool is_spreadsheet_minute_csv(std::string_view text);
+std::string from_spreadsheet(std::string_view text);
 /// A day of `prices record` as minutes; of a minute that was revised, the first price.
 MarketRows parse_recorded_rows(std::string_view text, std::string_view name);
 /// Any of them or ENTSO-E's XML, told apart by their content.

@@ -28,6 +28,8 @@ class EliaFetch : public testing::Test {
         .base_url = elia.base_url(),
         .now_utc_s = kNow_s,
         .retry = {},
+        .allow_gaps = true,  // most rows of a day are left out, to be quick
+        .accepted = AcceptedFindings::all(),
         .sleep = [this](double seconds, const std::atomic<bool>&) { waits_.push_back(seconds); }};
   }
 
@@ -237,8 +239,8 @@ TEST_F(EliaFetch, AServerThatIgnoresTheWindowIsAnErrorOfItsOwn) {
   EXPECT_THAT(user_error_of([&] {
                 fetched(request(elia, {{2023, 1, 1}, {2023, 1, 1}}));
               }),
-              testing::AllOf(HasSubstr("exports/csv?where="),
-                             HasSubstr("ignored the time window: 1 row came, none inside it")));
+              testing::StartsWith("the server ignored the time window: 1 row came, none inside it: "
+                                  "ods046 of 2023-01-01 to 2023-01-01 from 127.0.0.1:"));
   EXPECT_TRUE(waits_.empty());
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <httplib.h>
 
+#include <algorithm>
 #include <chrono>
 #include <functional>
 #include <map>
@@ -33,6 +34,10 @@ class FakeElia {
                 [this](const httplib::Request& request, httplib::Response& response) {
                   answer(request, response);
                 });
+    server_.Get(R"(/api/explore/v2\.1/catalog/datasets/(ods\d+)/records)",
+                [this](const httplib::Request& request, httplib::Response& response) {
+                  answer_total(request, response);
+                });
     port_ = server_.bind_to_any_port("127.0.0.1");
     thread_ = std::thread([this] { server_.listen_after_bind(); });
     while (!server_.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -61,10 +66,32 @@ class FakeElia {
       const std::lock_guard lock(mutex_);
       number = ++requests_[dataset];
     }
-    if (fault_ && fault_(dataset, number, response)) return;
+    const bool is_faulty = fault_ && fault_(dataset, number, response);
+    {
+      const std::lock_guard lock(mutex_);
+      is_faulty_[dataset] = is_faulty;
+    }
+    if (is_faulty) return;
     // cpp-httplib would spend seconds on packing a month of text.
     response.set_content(rows(dataset, request.get_param_value("where")),
                          served_ == FakeRows::kAll ? "application/csv" : "text/csv; charset=utf-8");
+  }
+
+  /// The number of rows of a window; nobody knows it while the dataset's answers are at fault.
+  void answer_total(const httplib::Request& request, httplib::Response& response) {
+    const std::string dataset = request.matches[1];
+    const std::lock_guard lock(mutex_);
+    if (is_faulty_[dataset]) {
+      response.status = 404;
+      return;
+    }
+    const std::string text = rows(dataset, request.get_param_value("where"));
+    const auto lines = std::count(text.begin(), text.end(), '\n');
+    // without the header and the row too many
+    const bool ends_at_a_row = served_ == FakeRows::kAll || lines > 1;
+    response.set_content(
+        "{\"total_count\":" + std::to_string(lines - (ends_at_a_row ? 2 : 1)) + "}",
+        "application/json");
   }
 
   [[nodiscard]] std::string rows(const std::string& dataset, const std::string& where) const {
@@ -96,6 +123,7 @@ class FakeElia {
   std::thread thread_;
   std::mutex mutex_;
   std::map<std::string, int> requests_;
+  std::map<std::string, bool> is_faulty_;
 };
 
 }  // namespace bess

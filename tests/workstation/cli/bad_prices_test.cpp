@@ -1,0 +1,222 @@
+// Price files that no command may use, each through the program: one clear line that names the file,
+// exit code 1 or 2, and no crash.
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+#include "shared/host/file.h"
+#include "tests/support/child_process.h"
+#include "tests/support/market_test_support.h"
+#include "tests/support/price_cases.h"
+
+namespace bess {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+class BadPrices : public testing::Test {
+ protected:
+  struct Result {
+    int exit_code;
+    std::string output;
+  };
+  static Result run(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), BESS_TRAIN_PROGRAM);
+    ChildProcess program(arguments);
+    std::string output = program.read_all();
+    return {program.wait(), std::move(output)};
+  }
+  [[nodiscard]] std::string path(const std::string& name) const {
+    return (folder_ / name).string();
+  }
+  [[nodiscard]] std::string written(const std::string& name, const std::string& text) const {
+    write_file(folder_ / name, text);
+    return path(name);
+  }
+  [[nodiscard]] Result evaluated(const std::string& text, const std::string& accept = "") const {
+    std::vector<std::string> arguments{
+        "evaluate", "--prices", written("prices.csv", text), "--policy", "rbc", "--split", "all"};
+    if (!accept.empty()) arguments.insert(arguments.end(), {"--accept", accept});
+    return run(arguments);
+  }
+
+  ScratchFolder folder_;
+};
+
+TEST_F(BadPrices, EachIsOneClearLine) {
+  const std::vector<PriceCase> cases = bad_price_files();
+  EXPECT_GE(cases.size(), 100u);
+  for (const PriceCase& c : cases) {
+    SCOPED_TRACE(c.name);
+    const Result result = evaluated(c.text);
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_THAT(result.output, AllOf(HasSubstr("bess-train: "), HasSubstr(c.words)));
+    EXPECT_EQ(std::ranges::count(result.output, '\n'), 1) << result.output;
+    EXPECT_THAT(result.output, Not(HasSubstr("\x1b")));
+  }
+}
+
+TEST_F(BadPrices, TheOrdinaryFileRaisesNothing) {
+  const Result result = evaluated(ordinary_text());
+  EXPECT_EQ(result.exit_code, 0);
+  EXPECT_THAT(result.output, Not(HasSubstr("warning")));
+}
+
+TEST_F(BadPrices, TheRowIsNamed) {
+  EXPECT_THAT(evaluated(with_prices(2000, "1e200", "")).output,
+              HasSubstr("prices.csv:2002: indicative price 1e+200 lies beyond 15000 EUR/MWh, more "
+                        "than any market allows (1 minute); mend it or leave it empty (--accept "
+                        "price-range if it is meant)\n"));
+  EXPECT_THAT(evaluated("# from somewhere\n" + with_prices(2000, "", "-9999")).output,
+              HasSubstr("prices.csv:1998: settled price -9999 stands for"));
+}
+
+TEST_F(BadPrices, WhatIsMeantIsAccepted) {
+  const std::string quiet = scaled_text(0.03);
+  EXPECT_EQ(evaluated(quiet).exit_code, 1);
+  const Result accepted = evaluated(quiet, "gaps,price-unit");
+  EXPECT_EQ(accepted.exit_code, 0);
+  EXPECT_THAT(accepted.output, HasSubstr("prices.csv:2: no settled price exceeds"));
+  EXPECT_THAT(accepted.output, HasSubstr("[price-unit]"));
+  EXPECT_EQ(evaluated(quiet, "price-range").exit_code, 1);
+  const Result unknown = evaluated(quiet, "price-units");
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.output,
+              HasSubstr("no finding is called \"price-units\"; use one or more of"));
+}
+
+TEST_F(BadPrices, WhatNoArithmeticHoldsIsNeverAccepted) {
+  for (const char* policy : {"rbc-tuned", "tabular", "mpc", "sdp", "foresight"}) {
+    const Result result =
+        run({"evaluate", "--prices", written("prices.csv", with_prices(2000, "", "1e200")),
+             "--policy", policy, "--split", "all", "--accept", "price-range"});
+    EXPECT_EQ(result.exit_code, 1) << policy;
+    EXPECT_THAT(result.output,
+                HasSubstr("the settled price of 2023-01-02T08:15:00Z, 1e+200 EUR/MWh, is none"));
+  }
+}
+
+TEST_F(BadPrices, EveryCommandLooks) {
+  const std::string bad = written("bad.csv", with_prices(2000, "", "-9999"));
+  const std::string out = path("out");
+  const std::vector<std::vector<std::string>> commands{
+      {"train", "--prices", bad, "--out", out},
+      {"run", "--prices", bad, "--out", out},
+      {"delays", "--prices", bad},
+      {"backtest", "--prices", bad, "--out", out},
+      {"evaluate", "--prices", written("good.csv", ordinary_text()), "--fit", bad, "--split", "all",
+       "--policy", "rbc-tuned"},
+      {"prices", "import", bad, "--out", out},
+      {"prices", "reconstruct", "--quarter-hours", bad, "--out", out}};
+  for (const std::vector<std::string>& command : commands) {
+    const Result result = run(command);
+    EXPECT_EQ(result.exit_code, 1) << command.front();
+    EXPECT_THAT(result.output, HasSubstr("bad.csv:1997: settled price -9999 stands for"))
+        << command[1];
+    EXPECT_FALSE(std::filesystem::is_regular_file(out));
+  }
+  const Result stats = run({"prices", "stats", bad});
+  EXPECT_EQ(stats.exit_code, 0);
+  EXPECT_THAT(stats.output, HasSubstr("warning: " + bad + ":1997: settled price -9999"));
+}
+
+TEST_F(BadPrices, ABatteryThatCannotBeMeantIsRefused) {
+  const std::string prices = written("prices.csv", ordinary_text());
+  const struct {
+    const char* keys;
+    int exit_code;
+    const char* words;
+  } cases[] = {
+      {"power_w = 5", 1, "[battery] power_w = 5 is below 100 W; the unit is watt, 5 MW is"},
+      {"capacity_wh = 10", 1, "[battery] capacity_wh = 10 is below 100 Wh"},
+      {"power_w = 5000", 1, "power_w = 5000 and capacity_wh = 8e+06 are 0.00063 C"},
+      {"capacity_wh = 8000", 1, "are 5e+02 C; batteries have 0.05 to 20 C"},
+      {"power_w = 1e9", 1, "is one of them in kW or MW?"},
+      {"charge_efficiency = 0.5", 0, "warning: "},
+      {"charge_efficiency = 1\ndischarge_efficiency = 1", 0, "is 1.00 from grid to grid"},
+      {"power_w = 4000\ncapacity_wh = 8000", 0, "rbc"}};
+  for (const auto& c : cases) {
+    const std::string config = written("my.toml", std::string("[battery]\n") + c.keys + "\n");
+    const Result result = run(
+        {"evaluate", "--prices", prices, "--policy", "rbc", "--split", "all", "--config", config});
+    EXPECT_EQ(result.exit_code, c.exit_code) << result.output;
+    EXPECT_THAT(result.output, HasSubstr(c.words));
+  }
+}
+
+TEST_F(BadPrices, MonthsWithoutATrainingDayAreNamed) {
+  const std::string prices = written("prices.csv", ordinary_text());
+  const std::string config = written("my.toml", "[train]\ncontext = \"month\"\n");
+  EXPECT_THAT(
+      run({"train", "--prices", prices, "--config", config, "--out", path("t.bin")}).output,
+      HasSubstr("no training day (local days 1 to 20) in months 02, 03, 04, 05, 06, 07, 08, "
+                "09, 10, 11, 12: "));
+}
+
+std::string minute_file(int from_day, int days, double shift = 0) {
+  return ordinary_text([=](std::size_t m, const OrdinaryRow& r) {
+    const int day = static_cast<int>(m) / 1440;
+    if (day < from_day || day >= from_day + days) return std::string();
+    return row_text(r, fmt::format("{}", r.indicative + shift), fmt::format("{}", r.settled));
+  });
+}
+
+TEST_F(BadPrices, ImportJoinsMinuteFilesThatAgree) {
+  const std::string late = written("late.csv", minute_file(1, 2));
+  const std::string early = written("early.csv.gz", minute_file(0, 2));
+  const Result joined = run({"prices", "import", late, early, "--out", path("both.csv")});
+  EXPECT_EQ(joined.exit_code, 0) << joined.output;
+  const std::string text = read_file(path("both.csv"));
+  EXPECT_EQ(text.substr(text.find("minute_utc")), ordinary_text());
+  const std::string other = written("other.csv", minute_file(1, 2, 1));
+  const Result differing = run({"prices", "import", late, other, "--out", path("none.csv")});
+  EXPECT_EQ(differing.exit_code, 1);
+  EXPECT_THAT(differing.output,
+              AllOf(HasSubstr("late.csv and " + other +
+                              " disagree about 2023-01-01T23:00:00Z: "
+                              "indicative price"),
+                    HasSubstr("(2880 differences in all)"), HasSubstr("--accept overlap")));
+  EXPECT_FALSE(std::filesystem::exists(path("none.csv")));
+  EXPECT_EQ(
+      run({"prices", "import", late, other, "--accept", "overlap", "--out", path("later.csv")})
+          .exit_code,
+      0);
+}
+
+TEST_F(BadPrices, ImportReadsWhatASpreadsheetSaved) {
+  std::string text = ordinary_text();
+  std::ranges::replace(text, ',', ';');
+  std::ranges::replace(text, '.', ',');
+  const std::string file = written("sheet.csv", "\xEF\xBB\xBF" + text);
+  EXPECT_EQ(run({"prices", "import", file, "--out", path("m.csv")}).exit_code, 0);
+  const std::string read = read_file(path("m.csv"));
+  EXPECT_EQ(read.substr(read.find("minute_utc")), ordinary_text());
+  EXPECT_THAT(run({"evaluate", "--prices", file, "--policy", "rbc"}).output,
+              HasSubstr("convert downloads with 'bess-train prices import'"));
+}
+
+TEST_F(BadPrices, GzipIsCalledGzip) {
+  const auto raw = [](const std::string& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(stream), {});
+  };
+  const std::string packed = raw(written("m.csv.gz", ordinary_text()));
+  const auto evaluate = [](const std::string& file) {
+    return run({"evaluate", "--prices", file, "--policy", "rbc", "--split", "all"});
+  };
+  EXPECT_EQ(evaluate(written("packed.csv", packed)).exit_code, 0);  // gzip under another name
+  EXPECT_THAT(evaluate(written("twice.csv.gz", packed)).output,
+              HasSubstr("twice.csv.gz: gzip data inside"));
+  std::ofstream(path("plain.csv.gz")) << ordinary_text();
+  EXPECT_EQ(evaluate(path("plain.csv.gz")).exit_code, 0);
+  std::ofstream(path("none.csv.gz")) << std::string("\x02\0\x03", 3) << packed;
+  EXPECT_THAT(evaluate(path("none.csv.gz")).output,
+              HasSubstr("none.csv.gz: its name says gzip, its content is not"));
+  EXPECT_THAT(evaluate(written("half.csv", packed.substr(0, packed.size() / 2))).output,
+              HasSubstr("truncated or damaged gzip file"));
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,485 @@
+// The download against a server with one quirk at a time: the file is whole, or there is none and one
+// line says why, and what cannot succeed is not asked for again and again.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <fstream>
+#include <iterator>
+
+#include "shared/host/file.h"
+#include "tests/support/market_series.h"
+#include "tests/support/market_test_support.h"
+#include "tests/workstation/market/feed/quirky_elia.h"
+#include "workstation/market/feed/elia_fetch.h"
+
+namespace bess {
+namespace {
+
+using testing::HasSubstr;
+using Quirk = QuirkyElia::Quirk;
+
+/// Two local days, the second of 23 hours.
+constexpr FetchSpan kSpan{{2023, 3, 25}, {2023, 3, 26}};
+constexpr std::size_t kMinutes = 1440 + 1380;
+constexpr const char* kWhole = "";
+
+struct QuirkCase {
+  std::string name;
+  Quirk quirk;
+  std::string error;        ///< words of the line, or kWhole
+  int minute_requests = 0;  ///< that are needed; 0 = not looked at
+};
+
+/// For the minutes' rows alone.
+Quirk on_minutes(const Quirk& quirk) {
+  return [quirk](const Ask& ask, Answer& answer) {
+    if (ask.minutes() && !ask.wants_total) quirk(ask, answer);
+  };
+}
+Quirk once(const Quirk& quirk) {
+  return on_minutes([quirk](const Ask& ask, Answer& answer) {
+    if (ask.number == 1) quirk(ask, answer);
+  });
+}
+/// Rows and their count.
+Quirk on_rows(const std::function<void(std::vector<QuirkyRow>&)>& change) {
+  return [change](const Ask& ask, Answer& answer) {
+    if (ask.minutes()) change(answer.rows);
+  };
+}
+Quirk body(const std::string& text, const std::string& type = "") {
+  return on_minutes([text, type](const Ask&, Answer& answer) {
+    answer.body = text;
+    answer.format = {};
+    if (!type.empty()) answer.headers = "Content-Type: " + type + "\r\n";
+  });
+}
+Quirk status(const std::string& line, const std::string& headers = "") {
+  return on_minutes([line, headers](const Ask&, Answer& answer) {
+    answer.status = line;
+    answer.headers = headers;
+    answer.body = "{\"error\":\"so\"}";
+  });
+}
+using Format = std::function<std::string(const Ask&, const std::vector<QuirkyRow>&)>;
+Quirk formatted(const Format& format) {
+  return on_minutes([format](const Ask&, Answer& answer) { answer.format = format; });
+}
+Quirk at_most(std::size_t count, bool newest_first, bool has_total) {
+  return [=](const Ask& ask, Answer& answer) {
+    if (ask.wants_total) {
+      if (!has_total) answer.status = "404 Not Found";
+      return;
+    }
+    if (newest_first) std::ranges::reverse(answer.rows);
+    answer.rows.resize(std::min(count, answer.rows.size()));
+  };
+}
+void leave_out(std::vector<QuirkyRow>& rows, const char* from, const char* until) {
+  std::erase_if(rows, [=](const QuirkyRow& row) {
+    return row.utc_s >= utc_of(from) && row.utc_s < utc_of(until);
+  });
+}
+std::string replaced(std::string text, const std::string& what, const std::string& with) {
+  for (std::size_t at = 0; (at = text.find(what, at)) != text.npos; at += with.size()) {
+    text.replace(at, what.size(), with);
+  }
+  return text;
+}
+std::string as_json(const Ask& ask, const std::vector<QuirkyRow>& rows, const char* quote) {
+  std::string text = "[";
+  for (const QuirkyRow& row : rows) {
+    text +=
+        fmt::format("{}{{\"datetime\":\"{}\",\"resolutioncode\":\"{}\",\"imbalanceprice\":{}{}{}}}",
+                    text.size() > 1 ? "," : "", utc_text(row.utc_s).view(),
+                    ask.minutes() ? "PT1M" : "PT15M", quote, row.price, quote);
+  }
+  return text + "]";
+}
+std::string chunked(const std::string& text) {
+  std::string chunks;
+  for (std::size_t at = 0; at < text.size(); at += 4'096) {
+    const std::string part = text.substr(at, 4'096);
+    chunks += fmt::format("{:x}\r\n{}\r\n", part.size(), part);
+  }
+  return chunks + "0\r\n\r\n";
+}
+std::string gzipped(const std::string& text) {
+  const std::string path = testing::TempDir() + "bess_quirk.gz";
+  write_file(path, text);
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+Quirk row_price(const char* price) {
+  return on_minutes([price](const Ask&, Answer& answer) {
+    if (answer.rows.size() > 700) answer.rows[700].price = price;
+  });
+}
+
+std::vector<QuirkCase> order_and_number() {
+  std::vector<QuirkCase> cases{
+      {"as it should be", [](const Ask&, Answer&) {}, kWhole, 1},
+      {"newest first", on_rows([](auto& rows) { std::ranges::reverse(rows); }), kWhole, 1},
+      {"no order", on_rows([](auto& rows) {
+         std::ranges::stable_sort(rows, {}, [](const QuirkyRow& r) { return r.utc_s % 3'660; });
+       }),
+       kWhole, 1},
+      {"each row twice", on_rows([](auto& rows) {
+         const std::vector<QuirkyRow> copy = rows;
+         rows.insert(rows.end(), copy.begin(), copy.end());
+       }),
+       kWhole, 1},
+      {"100 rows at a time", at_most(100, false, true), kWhole, 29},
+      {"100 rows at a time, newest first", at_most(100, true, true), kWhole, 29},
+      {"100 rows at a time, no total", at_most(100, false, false), kWhole, 29},
+      {"1000 rows at a time, newest first, no total", at_most(1'000, true, false), kWhole, 3},
+      {"one row too many",
+       [](const Ask& ask, Answer& answer) {
+         answer.rows.push_back({ask.until_utc_s, "1"});
+       },
+       kWhole, 1},
+      {"the day before as well",
+       [](const Ask& ask, Answer& answer) {
+         answer.rows = quirky_rows(ask, ask.from_utc_s - 86'400, ask.until_utc_s);
+       },
+       kWhole, 1},
+      {"rows of other days alone", on_minutes([](const Ask& ask, Answer& answer) {
+         answer.rows = quirky_rows(ask, ask.from_utc_s - 86'400, ask.from_utc_s);
+       }),
+       "the server ignored the time window", 1},
+      {"the same days for every question", on_minutes([](const Ask& ask, Answer& answer) {
+         answer.rows =
+             quirky_rows(ask, utc_of("2023-03-24T23:00:00Z"), utc_of("2023-03-25T23:00:00Z"));
+       }),
+       "1380 of 2820 minutes missing in ods046"},
+      {"an hour is missing, and its count",
+       on_rows([](auto& rows) { leave_out(rows, "2023-03-25T10:00:00Z", "2023-03-25T11:00:00Z"); }),
+       "60 of 2820 minutes missing in ods046, first from 2023-03-25T10:00:00Z to "
+       "2023-03-25T11:00:00Z (the server has no more)",
+       1},
+      {"an hour is missing, but counted", on_minutes([](const Ask&, Answer& answer) {
+         leave_out(answer.rows, "2023-03-25T10:00:00Z", "2023-03-25T11:00:00Z");
+       }),
+       "(the server counts 2820 rows and sent 2760)", 2},
+      {"an hour is missing once", once([](const Ask&, Answer& answer) {
+         leave_out(answer.rows, "2023-03-25T10:00:00Z", "2023-03-25T11:00:00Z");
+       }),
+       kWhole, 2},
+      {"every tenth row is missing once", once([](const Ask&, Answer& answer) {
+         std::erase_if(answer.rows, [](const QuirkyRow& r) { return r.utc_s % 600 == 0; });
+       }),
+       kWhole},
+      {"the hour of the clock change is missing",
+       on_rows([](auto& rows) { leave_out(rows, "2023-03-26T01:00:00Z", "2023-03-26T02:00:00Z"); }),
+       "60 of 2820 minutes missing"},
+      {"the first row is missing",
+       on_rows([](auto& rows) { leave_out(rows, "2023-03-24T23:00:00Z", "2023-03-24T23:01:00Z"); }),
+       "1 of 2820 minutes missing"},
+      {"the last row is missing",
+       on_rows([](auto& rows) { leave_out(rows, "2023-03-26T21:59:00Z", "2023-03-26T22:00:00Z"); }),
+       "1 of 2820 minutes missing"},
+      {"a quarter-hour is missing",
+       [](const Ask& ask, Answer& answer) {
+         if (ask.minutes()) return;
+         leave_out(answer.rows, "2023-03-26T12:00:00Z", "2023-03-26T12:15:00Z");
+       },
+       "1 of 188 quarter-hours missing in ods047"},
+      {"no quarter-hour at all",
+       [](const Ask& ask, Answer& answer) {
+         if (!ask.minutes()) answer.rows.clear();
+       },
+       "188 of 188 quarter-hours missing in ods047"},
+      {"nothing but the names of columns", on_rows([](auto& rows) { rows.clear(); }),
+       "2820 of 2820 minutes missing", 1},
+      {"nothing once", once([](const Ask&, Answer& answer) { answer.rows.clear(); }), kWhole, 2},
+      {"quarter-hours instead of minutes", formatted([](const Ask&, const auto& rows) {
+         std::vector<QuirkyRow> some;
+         for (const QuirkyRow& r : rows)
+           if (r.utc_s % 900 == 0) some.push_back(r);
+         return replaced(quirky_csv({.dataset = "ods046"}, some), "PT1M", "PT15M");
+       }),
+       "2820 of 2820 minutes missing"},
+  };
+  for (const char* total : {"\"many\"", "-1", "1e300", "99999999", "null", "[]", "0.5"}) {
+    cases.push_back({fmt::format("100 rows at a time, total {}", total),
+                     [total](const Ask& ask, Answer& answer) {
+                       at_most(100, false, true)(ask, answer);
+                       if (ask.wants_total)
+                         answer.body = fmt::format("{{\"total_count\":{}}}", total);
+                     },
+                     kWhole});
+  }
+  return cases;
+}
+
+std::vector<QuirkCase> forms() {
+  return {
+      {"times in local offset", formatted([](const Ask& ask, const auto& rows) {
+         std::vector<QuirkyRow> shifted = rows;
+         for (QuirkyRow& row : shifted) row.utc_s += 3'600;
+         return replaced(quirky_csv(ask, shifted), "+00:00", "+01:00");
+       }),
+       kWhole, 1},
+      {"times with Z", formatted([](const Ask& ask, const auto& rows) {
+         return replaced(quirky_csv(ask, rows), "+00:00", "Z");
+       }),
+       kWhole, 1},
+      {"times without offset", formatted([](const Ask& ask, const auto& rows) {
+         return replaced(quirky_csv(ask, rows), "+00:00", "");
+       }),
+       "is not a time with its UTC offset", 2},
+      {"JSON", formatted([](const Ask& ask, const auto& rows) { return as_json(ask, rows, ""); }),
+       kWhole, 1},
+      {"JSON with strings for numbers",
+       formatted([](const Ask& ask, const auto& rows) { return as_json(ask, rows, "\""); }), kWhole,
+       1},
+      {"JSON in results", formatted([](const Ask& ask, const auto& rows) {
+         return "{\"results\":" + as_json(ask, rows, "") + "}";
+       }),
+       kWhole, 1},
+      {"JSON without its end", formatted([](const Ask& ask, const auto& rows) {
+         return as_json(ask, rows, "").substr(0, 5'000);
+       }),
+       "not valid JSON, perhaps cut short", 2},
+      {"commas",
+       formatted([](const Ask& ask, const auto& rows) { return quirky_csv(ask, rows, ","); }),
+       kWhole, 1},
+      {"decimal commas", formatted([](const Ask& ask, const auto& rows) {
+         return replaced(quirky_csv(ask, rows), ".", ",");
+       }),
+       kWhole, 1},
+      {"lines of Windows", formatted([](const Ask& ask, const auto& rows) {
+         return "\xEF\xBB\xBF" + quirky_csv(ask, rows, ";", "\r\n");
+       }),
+       kWhole, 1},
+      {"no last line end", formatted([](const Ask& ask, const auto& rows) {
+         const std::string text = quirky_csv(ask, rows);
+         return text.substr(0, text.size() - 1);
+       }),
+       kWhole, 1},
+      {"labels of the portal", formatted([](const Ask& ask, const auto& rows) {
+         return replaced(quirky_csv(ask, rows), "imbalanceprice", "Imbalance Price");
+       }),
+       kWhole, 1},
+      {"quotes", formatted([](const Ask& ask, const auto& rows) {
+         return replaced(quirky_csv(ask, rows), "PT1M", "\"PT1M\"");
+       }),
+       kWhole, 1},
+      {"another dataset", formatted([](const Ask& ask, const auto& rows) {
+         return replaced(quirky_csv(ask, rows), "imbalanceprice", "windpower");
+       }),
+       "no column for the imbalance price", 1},
+      {"rows of an hour", formatted([](const Ask& ask, const auto& rows) {
+         return replaced(quirky_csv(ask, rows), "PT1M", "PT60M");
+       }),
+       "neither PT1M nor PT15M", 2},
+      {"a price that is text", row_price("high"), "\"high\" is not a number", 2},
+      {"a price of 1e300", row_price("1e300"), "lies beyond 15000 EUR/MWh"},
+      {"a price of -9999", row_price("-9999"), "stands for \"no price\""},
+      {"a row too short", formatted([](const Ask& ask, const auto& rows) {
+         return quirky_csv(ask, rows) + "2023-03-25T10:00:00+00:00;PT1M\n";
+       }),
+       "2 columns where the header has 3", 2},
+      {"prices in EUR/kWh",
+       [](const Ask&, Answer& answer) {
+         for (QuirkyRow& row : answer.rows)
+           row.price = fmt::format("{}", std::stod(row.price) / 1'000);
+       },
+       "multiply by 1000"},
+      {"all prices zero",
+       [](const Ask&, Answer& answer) {
+         for (QuirkyRow& row : answer.rows) row.price = "0";
+       },
+       "every settled price is 0"},
+      {"a web page", body("<html>log in</html>", "text/html"), "a web page, not data", 2},
+      {"a web page once", once(body("<html>log in</html>")), kWhole, 2},
+      {"words", body("try again later\n"), "no column for the time", 1},
+      {"binary", body(std::string("\x01\0\x02\0", 4)), "NUL bytes", 2},
+      {"gzip that says so",
+       formatted([](const Ask& ask, const auto& rows) { return gzipped(quirky_csv(ask, rows)); }),
+       "gzip data inside", 2},
+      {"gzip, announced", on_minutes([](const Ask&, Answer& answer) {
+         answer.headers = "Content-Encoding: gzip\r\n";
+         answer.format = [](const Ask& of, const auto& rows) {
+           return gzipped(quirky_csv(of, rows));
+         };
+       }),
+       kWhole, 1},
+      {"gzip announced, not sent", on_minutes([](const Ask&, Answer& answer) {
+         answer.headers = "Content-Encoding: gzip\r\n";
+       }),
+       "(6 attempts)", 6},
+  };
+}
+
+std::vector<QuirkCase> transport() {
+  const auto without_length = [](Answer& answer, std::size_t sent_max) {
+    answer.has_length = false;
+    answer.sent_max = sent_max;
+  };
+  const std::size_t head = quirky_csv({}, {}).size();
+  const std::size_t line = std::string("2023-03-25T10:00:00+00:00;PT1M;").size();
+  std::vector<QuirkCase> cases{
+      {"cut short", on_minutes([](const Ask&, Answer& a) { a.sent_max = 3'000; }), "(6 attempts)",
+       6},
+      {"cut short once", once([](const Ask&, Answer& a) { a.sent_max = 3'000; }), kWhole, 2},
+      {"no length", on_minutes([=](const Ask&, Answer& a) { without_length(a, a.body.npos); }),
+       kWhole, 1},
+      {"no length, cut in a line once",
+       once([=](const Ask&, Answer& a) { without_length(a, head + line); }), kWhole, 2},
+      {"no length, cut at a line end", on_minutes([=](const Ask&, Answer& a) {
+         without_length(a, a.body.npos);
+         a.rows.resize(std::min<std::size_t>(a.rows.size(), 1'000));
+       }),
+       kWhole, 3},
+      {"no length, nothing", on_minutes([=](const Ask&, Answer& a) { without_length(a, 0); }),
+       "cut short (6 attempts)", 6},
+      {"chunks", on_minutes([=](const Ask&, Answer& a) {
+         without_length(a, a.body.npos);
+         a.headers = "Transfer-Encoding: chunked\r\n";
+         a.format = [](const Ask& of, const auto& rows) { return chunked(quirky_csv(of, rows)); };
+       }),
+       kWhole, 1},
+      {"chunks without their end", on_minutes([=](const Ask&, Answer& a) {
+         without_length(a, 20'000);
+         a.headers = "Transfer-Encoding: chunked\r\n";
+         a.format = [](const Ask& of, const auto& rows) { return chunked(quirky_csv(of, rows)); };
+       }),
+       "(6 attempts)", 6},
+      {"in pieces", on_minutes([](const Ask&, Answer& a) { a.is_slow = true; }), kWhole, 1},
+      {"moved", once([](const Ask& ask, Answer& a) {
+         a.status = "302 Found";
+         a.headers = fmt::format(
+             "Location: "
+             "?where=datetime%20%3E%3D%20%22{}%2B00%3A00%22%20AND%20datetime%20%3C%20%22{}%"
+             "2B00%3A00%22\r\n",
+             utc_text(ask.from_utc_s).view().substr(0, 19),
+             utc_text(ask.until_utc_s).view().substr(0, 19));
+       }),
+       kWhole, 2},
+      {"moved round and round", on_minutes([](const Ask& ask, Answer& a) {
+         a.status = "302 Found";
+         a.headers = fmt::format(
+             "Location: "
+             "?where=datetime%20%3E%3D%20%22{}%2B00%3A00%22%20AND%20datetime%20%3C%20%22{}%"
+             "2B00%3A00%22\r\n",
+             utc_text(ask.from_utc_s).view().substr(0, 19),
+             utc_text(ask.until_utc_s).view().substr(0, 19));
+       }),
+       "redirect", 6},
+      {"quota, to wait 7 s", once(status("429 Too Many", "Retry-After: 7\r\n")), kWhole, 2},
+      {"quota, until a date",
+       once(status("429 Too Many",
+                   "Retry-After: Sun, 06 Nov 1994 08:49:37 "
+                   "GMT\r\n")),
+       kWhole, 2},
+      {"quota, to wait 2 h", status("429 Too Many", "Retry-After: 7200\r\n"), "wait 120 minutes",
+       1},
+  };
+  for (const char* refused : {"400 Bad", "401 No", "403 No", "404 Not Found", "405 No", "410 Gone",
+                              "413 Large", "414 Long", "422 Bad", "451 Law", "204 No Content",
+                              "206 Part", "501 Not Implemented", "505 Version"}) {
+    cases.push_back({refused, status(refused), std::string(refused).substr(0, 3), 1});
+  }
+  for (const char* busy :
+       {"408 Timeout", "429 Many", "500 Error", "502 Gateway", "503 Busy", "504 Gateway"}) {
+    cases.push_back({busy, status(busy), "(6 attempts)", 6});
+    cases.push_back({std::string(busy) + ", once", once(status(busy)), kWhole, 2});
+  }
+  return cases;
+}
+
+class FetchQuirks : public testing::Test {
+ protected:
+  FetchRequest request(const QuirkyElia& elia) {
+    return {.span = kSpan,
+            .out = folder_ / "prices.csv",
+            .base_url = elia.base_url(),
+            .now_utc_s = 1'750'000'000,
+            .retry = {},
+            .sleep = [](double, const std::atomic<bool>&) {}};
+  }
+  static void fetch(const FetchRequest& wanted) {
+    const std::atomic<bool> interrupted{false};
+    ASSERT_TRUE(fetch_prices(wanted, interrupted));
+  }
+  static std::string rows_of(const std::filesystem::path& path) {
+    const std::string text = read_file(path);
+    return text.substr(text.find("minute_utc"));
+  }
+  /// What an ordinary server leads to.
+  std::string whole() {
+    const QuirkyElia elia([](const Ask&, Answer&) {});
+    FetchRequest wanted = request(elia);
+    wanted.out = folder_ / "whole.csv";
+    fetch(wanted);
+    return rows_of(wanted.out);
+  }
+
+  void expect(const std::vector<QuirkCase>& cases) {
+    const std::string reference = whole();
+    ASSERT_EQ(std::ranges::count(reference, '\n'), static_cast<long>(kMinutes) + 1);
+    for (const QuirkCase& c : cases) {
+      SCOPED_TRACE(c.name);
+      const QuirkyElia elia(c.quirk);
+      const FetchRequest wanted = request(elia);
+      if (c.error == kWhole) {
+        EXPECT_NO_THROW(fetch(wanted));
+        ASSERT_TRUE(std::filesystem::exists(wanted.out));
+        EXPECT_TRUE(rows_of(wanted.out) == reference) << "another file";
+      } else {
+        const std::string error = user_error_of([&] { fetch(wanted); });
+        EXPECT_THAT(error, HasSubstr(c.error));
+        EXPECT_THAT(error, testing::Not(HasSubstr("where="))) << "the address is kept short";
+        EXPECT_EQ(error.find('\n'), error.npos);
+        EXPECT_FALSE(std::filesystem::exists(wanted.out));
+      }
+      if (c.minute_requests > 0) {
+        EXPECT_EQ(elia.minute_requests(), c.minute_requests);
+      }
+      std::filesystem::remove(wanted.out);
+      std::filesystem::remove_all(fetch_cache_folder(wanted));
+    }
+  }
+
+  ScratchFolder folder_;
+};
+
+TEST_F(FetchQuirks, OfOrderAndNumber) { expect(order_and_number()); }
+TEST_F(FetchQuirks, OfForm) { expect(forms()); }
+TEST_F(FetchQuirks, OfTransport) { expect(transport()); }
+
+TEST_F(FetchQuirks, AllowedGapsAreWrittenAndSaid) {
+  const QuirkyElia elia(
+      on_rows([](auto& rows) { leave_out(rows, "2023-03-25T10:00:00Z", "2023-03-25T11:00:00Z"); }));
+  FetchRequest wanted = request(elia);
+  EXPECT_THAT(user_error_of([&] { fetch(wanted); }), HasSubstr("--allow-gaps"));
+  wanted.allow_gaps = true;
+  fetch(wanted);
+  const std::string text = read_file(wanted.out);
+  EXPECT_THAT(text,
+              HasSubstr("# 60 of 2820 minutes missing in ods046, first from 2023-03-25T10:00"));
+  EXPECT_THAT(text, HasSubstr("2023-03-25T10:00:00Z,,"));
+}
+
+TEST_F(FetchQuirks, AWindowWithAGapIsAskedForAgain) {
+  std::atomic<bool> broken{true};
+  const QuirkyElia elia([&broken](const Ask& ask, Answer& answer) {
+    if (ask.minutes() && broken)
+      leave_out(answer.rows, "2023-03-25T10:00:00Z", "2023-03-25T11:00:00Z");
+  });
+  const FetchRequest wanted = request(elia);
+  EXPECT_THAT(user_error_of([&] { fetch(wanted); }), HasSubstr("60 of 2820 minutes missing"));
+  broken = false;
+  fetch(wanted);
+  EXPECT_EQ(std::ranges::count(rows_of(wanted.out), '\n'), static_cast<long>(kMinutes) + 1);
+}
+
+TEST_F(FetchQuirks, AreMoreThanForty) {
+  EXPECT_GE(order_and_number().size() + forms().size() + transport().size(), 90u);
+}
+
+}  // namespace
+}  // namespace bess
