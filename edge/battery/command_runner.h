@@ -61,20 +61,24 @@ class CommandRunner {
   /// kNotApplied when a register of the command no longer holds what was read back after it. What the
   /// device counts itself, and what was not read back, proves nothing.
   Status confirm(const CommandSequence& sequence) {
-    const StaticVector<std::int8_t, kPointsMax> points = kept_points(sequence);
+    const auto is_known = [&](int point) {
+      return written_.known[point] && point != map_.watchdog.remaining;
+    };
+    StaticVector<std::int8_t, kPointsMax> points;
+    for_each_read_back(sequence, [&](const BlockWrite&, const WriteValue& value) {
+      const bool counts = value.argument != Argument::kHeartbeat && is_known(value.point);
+      if (counts) points.push_back(value.point);
+    });
     if (points.empty()) return Status::kOk;
     LivePoints now;
     const Status status = read_written(points, now);
     if (status != Status::kOk) return status;
-    for (const BlockWrite& write : sequence.writes) {
-      for (const WriteValue& value : write.values) {
-        const bool counts = std::find(points.begin(), points.end(), value.point) != points.end();
-        if (counts && !is_close(write, value.point, written_.raw[value.point], 0, now)) {
-          return Status::kNotApplied;
-        }
-      }
-    }
-    return Status::kOk;
+    bool holds_all = true;
+    for_each_read_back(sequence, [&](const BlockWrite& write, const WriteValue& value) {
+      if (std::find(points.begin(), points.end(), value.point) == points.end()) return;
+      holds_all = holds_all && is_close(write, value.point, written_.raw[value.point], 0, now);
+    });
+    return holds_all ? Status::kOk : Status::kNotApplied;
   }
 
   Status run(const CommandSequence& sequence, const PowerOrder& order) {
@@ -205,29 +209,24 @@ class CommandRunner {
     return false;
   }
 
-  StaticVector<std::int8_t, kPointsMax> kept_points(const CommandSequence& sequence) const {
-    StaticVector<std::int8_t, kPointsMax> points;
+  /// Calls `visit(write, value)` for every value that the sequence leaves in a register and that can
+  /// be read back: of several writes of one point, the last.
+  template <typename Visit>
+  static void for_each_read_back(const CommandSequence& sequence, const Visit& visit) {
     for (int i = 0; i < sequence.writes.size(); ++i) {
       if (sequence.writes[i].read_back == ReadBack::kNone) continue;
       for (const WriteValue& value : sequence.writes[i].values) {
-        const bool counts = value.argument != Argument::kHeartbeat &&
-                            value.point != map_.watchdog.remaining && written_.known[value.point] &&
-                            !is_written_later(sequence, i, value.point);
-        if (counts) points.push_back(value.point);
+        if (!is_written_later(sequence, i, value.point)) visit(sequence.writes[i], value);
       }
     }
-    return points;
   }
 
   /// Everything that the sequence left in the registers, compared in as few reads as possible.
   Status read_back(const CommandSequence& sequence, const PowerOrder& order) {
     StaticVector<std::int8_t, kPointsMax> wanted;
-    for (int i = 0; i < sequence.writes.size(); ++i) {
-      if (sequence.writes[i].read_back == ReadBack::kNone) continue;
-      for (const WriteValue& value : sequence.writes[i].values) {
-        if (!is_written_later(sequence, i, value.point)) wanted.push_back(value.point);
-      }
-    }
+    for_each_read_back(sequence, [&](const BlockWrite&, const WriteValue& value) {
+      wanted.push_back(value.point);
+    });
     if (wanted.empty()) return Status::kOk;
     if (map_.writes.read_back_delay_ms > 0) bus_.time().sleep_ms(map_.writes.read_back_delay_ms);
     LivePoints now;

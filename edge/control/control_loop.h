@@ -376,10 +376,12 @@ class ControlLoop {
       if (prices_.wait(slice_ns < deadline_ns ? slice_ns : deadline_ns)) break;
     }
     record.price = prices_.latest();
-    if (record.price.has_row) {
-      record.price_age_s =
-          static_cast<std::int32_t>(price_age_s(record.utc_s, record.price.minute_utc_s));
-    }
+    note_price_age(record.utc_s, record);
+  }
+
+  static void note_price_age(std::int64_t utc_s, CycleRecord& record) {
+    if (!record.price.has_row) return;
+    record.price_age_s = static_cast<std::int32_t>(price_age_s(utc_s, record.price.minute_utc_s));
   }
 
   /// Before the decision, so that what is decided is ordered at once. What was late already, a price
@@ -494,10 +496,7 @@ class ControlLoop {
     order_power_w_ = power_w;
     fed_utc_ns_ = clock_.now_utc_ns();
     record.ordered_power_w = power_w;
-    if (record.price.has_row) {
-      record.price_age_s =
-          static_cast<std::int32_t>(price_age_s(now_utc_s(), record.price.minute_utc_s));
-    }
+    note_price_age(now_utc_s(), record);
     soc_floor_e4_ = std::max(settings_.guard.soc_min_e4, reserve_soc_e4_);
     // 0 W is never too late.
     const bool is_bound = power_w != 0;

@@ -7,8 +7,11 @@
 namespace bess {
 namespace {
 
+/// INT32_MIN, which a device may send, has no opposite.
+constexpr std::int32_t opposite(std::int32_t power_w) { return -std::max(power_w, -INT32_MAX); }
+
 constexpr std::int32_t magnitude(std::int32_t power_w) {
-  return power_w < 0 ? -std::max(power_w, -INT32_MAX) : power_w;
+  return power_w < 0 ? opposite(power_w) : power_w;
 }
 
 /// From here to full, and this much above the floor of the orders, a battery may slow down.
@@ -76,7 +79,7 @@ void ResponseMonitor::judge_driven(const Response& now) {
   const std::int32_t ordered_w = magnitude(now.ordered_power_w);
   const bool is_charging = now.ordered_power_w > 0;
   const std::int32_t measured_w =  // positive: as ordered
-      is_charging ? now.measurement.power_w : -std::max(now.measurement.power_w, -INT32_MAX);
+      is_charging ? now.measurement.power_w : opposite(now.measurement.power_w);
   // The sun may outdo an order to discharge: that proves nothing.
   if (!is_charging && measured_w < 0 && settings_.band.charges_by_itself) return;
   if (measured_w < -noise_w()) return count(opposed_, Reason::kWrongDirection);

@@ -31,9 +31,8 @@ struct Response {
   std::int64_t utc_s = 0;
   bool is_driven = false;  ///< false: the battery is in its own mode, which goes any way
   std::int32_t ordered_power_w = 0;
-  std::int32_t order_age_s = 0;  ///< since this power was ordered
-  std::int32_t soc_floor_e4 =
-      1'000;  ///< at which the device itself stops to discharge by that order
+  std::int32_t order_age_s = 0;       ///< since this power was ordered
+  std::int32_t soc_floor_e4 = 1'000;  ///< where the device itself stops to discharge by it
   BatteryMeasurement measurement;
 };
 

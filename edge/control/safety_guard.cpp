@@ -69,34 +69,32 @@ GuardDecision SafetyGuard::find_wish(const GuardInputs& in) const {
     return {.power_w = clamp_to(in.held_power_w, -settings_.power_w, settings_.power_w),
             .reason = Reason::kHeld};
   }
-  const PriceThresholds& thresholds = settings_.thresholds;
-  const bool is_beyond = in.price_centi_eur_per_mwh <= thresholds.low_eur_per_mwh * kCentiPerEur ||
-                         in.price_centi_eur_per_mwh >= thresholds.high_eur_per_mwh * kCentiPerEur;
-  const bool is_full_charge = in.full_charge != FullChargeWish::kNone && !is_beyond;
-  return is_full_charge ? apply_full_charge(in) : apply_thresholds(in);
+  const Action of_price = action_beyond_thresholds(in.price_centi_eur_per_mwh);
+  if (of_price == Action::kIdle) return find_wish_between_thresholds(in);
+  const Reason of_threshold = of_price == Action::kCharge ? Reason::kPriceLow : Reason::kPriceHigh;
+  // Where the student agrees it is no intervention.
+  return {.power_w = power_sign(of_price) * settings_.power_w,
+          .reason = of_price == in.student_action ? Reason::kStudent : of_threshold};
 }
 
-GuardDecision SafetyGuard::apply_full_charge(const GuardInputs& in) const {
+GuardDecision SafetyGuard::find_wish_between_thresholds(const GuardInputs& in) const {
   if (in.full_charge == FullChargeWish::kCharge) {
     return {.power_w = settings_.full_charge_power_w, .reason = Reason::kFullCharge};
   }
-  if (in.student_action == Action::kDischarge) return {.reason = Reason::kFullCharge};
+  if (in.full_charge == FullChargeWish::kNoDischarge && in.student_action == Action::kDischarge) {
+    return {.power_w = 0, .reason = Reason::kFullCharge};
+  }
   return {.power_w = power_sign(in.student_action) * settings_.power_w, .reason = Reason::kStudent};
 }
 
-GuardDecision SafetyGuard::apply_thresholds(const GuardInputs& in) const {
+/// kIdle between the thresholds, where the student is asked.
+Action SafetyGuard::action_beyond_thresholds(std::int32_t price_centi_eur_per_mwh) const {
   const PriceThresholds& thresholds = settings_.thresholds;
-  Action action = in.student_action;
-  Reason reason = Reason::kStudent;
-  if (in.price_centi_eur_per_mwh <= thresholds.low_eur_per_mwh * kCentiPerEur) {
-    action = Action::kCharge;
-    reason = Reason::kPriceLow;
-  } else if (in.price_centi_eur_per_mwh >= thresholds.high_eur_per_mwh * kCentiPerEur) {
-    action = Action::kDischarge;
-    reason = Reason::kPriceHigh;
+  if (price_centi_eur_per_mwh <= thresholds.low_eur_per_mwh * kCentiPerEur) return Action::kCharge;
+  if (price_centi_eur_per_mwh >= thresholds.high_eur_per_mwh * kCentiPerEur) {
+    return Action::kDischarge;
   }
-  if (action == in.student_action) reason = Reason::kStudent;  // it agrees: no intervention
-  return {.power_w = power_sign(action) * settings_.power_w, .reason = reason};
+  return Action::kIdle;
 }
 
 void SafetyGuard::update_soc_latches(std::int32_t soc_e4, std::int32_t reserve_soc_e4) {

@@ -68,8 +68,8 @@ class SafetyGuard {
   [[nodiscard]] bool find_stop_reason(const GuardInputs& in, Reason& reason) const;
   [[nodiscard]] bool find_price_stop_reason(const GuardInputs& in, Reason& reason) const;
   [[nodiscard]] GuardDecision find_wish(const GuardInputs& in) const;
-  [[nodiscard]] GuardDecision apply_full_charge(const GuardInputs& in) const;
-  GuardDecision apply_thresholds(const GuardInputs& in) const;
+  [[nodiscard]] GuardDecision find_wish_between_thresholds(const GuardInputs& in) const;
+  [[nodiscard]] Action action_beyond_thresholds(std::int32_t price_centi_eur_per_mwh) const;
   void update_soc_latches(std::int32_t soc_e4, std::int32_t reserve_soc_e4);
   void apply_ramp(std::int32_t previous_power_w, GuardDecision& decision) const;
   void apply_limits(const GuardInputs& in, GuardDecision& decision) const;
