@@ -1,11 +1,14 @@
 #include "edge/log/whole_file.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+
+#include "shared/file_descriptor.h"
 
 namespace bess {
 namespace {
@@ -33,6 +36,16 @@ bool replace(const char* path, std::string_view text, Durability durability) {
 }
 
 }  // namespace
+
+ssize_t read_beginning(const char* path, std::span<char> text, Links links) {
+  const int follow = links == Links::kRefused ? O_NOFOLLOW : 0;
+  const FileDescriptor file(open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | follow));
+  struct stat facts {};
+  if (file.get() < 0 || fstat(file.get(), &facts) != 0) return -1;
+  if (S_ISREG(facts.st_mode)) return pread(file.get(), text.data(), text.size(), 0);
+  errno = EINVAL;
+  return -1;
+}
 
 int make_afresh(const char* path) {
   constexpr int kFlags = O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;

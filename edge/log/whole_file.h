@@ -3,6 +3,9 @@
 // allocates.
 #pragma once
 
+#include <sys/types.h>
+
+#include <span>
 #include <string_view>
 
 #include "shared/fixed_text.h"
@@ -17,6 +20,13 @@ bool replace_file(const char* path, std::string_view text);
 
 /// The same, and on the disk before it returns: for what must outlast a power cut.
 bool replace_file_durably(const char* path, std::string_view text);
+
+/// Whether a path may lead through a link to what another user pointed it at.
+enum class Links { kRefused, kFollowed };
+
+/// Reads the beginning of a regular file, never what could block (a pipe). Returns the bytes read, at most
+/// `text.size()`; negative with errno set, ENOENT where there is no such file.
+ssize_t read_beginning(const char* path, std::span<char> text, Links links);
 
 /// A new file of that name, for writing and reading: what lies there, a link as well, is removed and not
 /// followed. Negative with errno set.

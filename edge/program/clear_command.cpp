@@ -38,9 +38,8 @@ int run_clear_command(const CommandLine& command_line, const EdgeConfig& config)
     report(JournalLevel::kError, "%s", error.c_str());
     return 1;
   }
-  const bool is_running = holder_of(state_lock_path(config).c_str()) != 0;
   std::printf("cleared    the battery is driven again from the next %s on\n",
-              is_running ? "cycle" : "start");
+              is_controller_running(config) ? "cycle" : "start");
   return 0;
 }
 

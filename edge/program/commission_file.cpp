@@ -19,7 +19,7 @@ namespace bess {
 namespace {
 
 std::string path_of(const EdgeConfig& config) {
-  return std::string(config.state.folder.view()) + "/commissioned.toml";
+  return state_file(config, "commissioned.toml").c_str();
 }
 
 void add_file(const std::string& path, Crc32& crc) {

@@ -22,14 +22,25 @@ TomlTable section(TomlTable& root, std::string_view name) {
   return {root.table(name), root.file(), std::string("[").append(name).append("]"), root.error()};
 }
 
-/// The battery must report the configured capacity, else the address leads to another one.
-void expect_capacity(EdgeConfig& config) {
+struct CapacityRange {
+  std::int64_t least_wh;
+  std::int64_t most_wh;
+};
+
+/// What a battery of the configured capacity reports.
+CapacityRange capacity_range(const EdgeConfig& config) {
   const std::int64_t capacity_wh = config.capacity_wh;
   const std::int64_t tolerance_wh = capacity_wh * config.capacity_tolerance_percent / 100;
+  return {.least_wh = capacity_wh - tolerance_wh, .most_wh = capacity_wh + tolerance_wh};
+}
+
+/// The battery must report the configured capacity, else the address leads to another one.
+void expect_capacity(EdgeConfig& config) {
+  const CapacityRange range = capacity_range(config);
   for (IdentityCheck& check : config.map.identity) {
     if (config.map.points[check.point].name != "capacity") continue;
-    check.value_min = capacity_wh - tolerance_wh;
-    check.value_max = capacity_wh + tolerance_wh;
+    check.value_min = range.least_wh;
+    check.value_max = range.most_wh;
     check.hint = "is [battery] capacity_wh right, or is this another battery?";
   }
 }
@@ -40,10 +51,9 @@ void set_supervision(EdgeConfig& config) {
   supervision.response = {.band = config.map.response,
                           .power_w = config.control.guard.power_w,
                           .capacity_wh = config.capacity_wh};
-  const std::int64_t capacity_wh = config.capacity_wh;
-  const std::int64_t tolerance_wh = capacity_wh * config.capacity_tolerance_percent / 100;
-  supervision.capacity_wh_min = static_cast<std::int32_t>(capacity_wh - tolerance_wh);
-  supervision.capacity_wh_max = static_cast<std::int32_t>(capacity_wh + tolerance_wh);
+  const CapacityRange range = capacity_range(config);
+  supervision.capacity_wh_min = static_cast<std::int32_t>(range.least_wh);
+  supervision.capacity_wh_max = static_cast<std::int32_t>(range.most_wh);
 }
 
 void read_battery(TomlTable table, EdgeConfig& config) {
@@ -298,6 +308,13 @@ bool load_edge_config(const std::string& path, EdgeConfig& config, std::string& 
     config.control.has_watchdog = true;
   }
   return error.empty();
+}
+
+FixedText<639> state_file(const EdgeConfig& config, std::string_view name) {
+  char path[640];
+  std::snprintf(path, sizeof path, "%s/%.*s", config.state.folder.c_str(),
+                static_cast<int>(name.size()), name.data());
+  return {path};
 }
 
 FixedText<159> battery_place(const EdgeConfig& config) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "edge/battery/modbus_wire.h"
 #include "edge/control/control_settings.h"
@@ -47,6 +48,9 @@ struct EdgeConfig {
 /// Reads the file and the register map it names. False with one line ("file:line: what, and the
 /// mend").
 bool load_edge_config(const std::string& path, EdgeConfig& config, std::string& error);
+
+/// Path of a file of this name in the [state] folder.
+FixedText<639> state_file(const EdgeConfig& config, std::string_view name);
 
 /// "127.0.0.1:502 unit 85" or "/dev/ttyUSB0 unit 85": where the battery is looked for.
 FixedText<159> battery_place(const EdgeConfig& config);

@@ -27,8 +27,7 @@ int fail(const char* path, const char* what) {
 }
 
 void print_controller(const EdgeConfig& config) {
-  const bool is_running = holder_of(state_lock_path(config).c_str()) != 0;
-  if (!is_running) {
+  if (!is_controller_running(config)) {
     std::printf(
         "           no bess-edge runs with this configuration: one that starts before then "
         "follows it\n");

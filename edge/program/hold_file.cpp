@@ -1,14 +1,11 @@
 #include "edge/program/hold_file.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <cerrno>
 #include <charconv>
 #include <cstdio>
 
+#include "edge/log/whole_file.h"
 #include "shared/crc32.h"
-#include "shared/file_descriptor.h"
 #include "shared/utc_text.h"
 
 namespace bess {
@@ -52,12 +49,9 @@ Hold parse_hold(std::string_view text) {
 }
 
 Hold read_hold(const char* path) {
-  // Not what blocks (a pipe), nor what another may have pointed elsewhere.
-  const FileDescriptor file(open(path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
-  if (file.get() < 0) return errno == ENOENT ? Hold{} : kUnreadable;
   char text[kHoldFileBytes + 1];  // one more: a longer file is none of ours
-  const ssize_t size = pread(file.get(), text, sizeof text, 0);
-  if (size < 0) return kUnreadable;
+  const ssize_t size = read_beginning(path, text, Links::kRefused);
+  if (size < 0) return errno == ENOENT ? Hold{} : kUnreadable;
   return parse_hold({text, static_cast<std::size_t>(size)});
 }
 

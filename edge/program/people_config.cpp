@@ -62,9 +62,7 @@ ReservePeriod read_period(TomlTable table, const GuardSettings& guard) {
 
 }  // namespace
 
-FixedText<639> hold_path(const EdgeConfig& config) {
-  return {std::string(config.state.folder.view()) + "/hold"};
-}
+FixedText<639> hold_path(const EdgeConfig& config) { return state_file(config, "hold"); }
 
 void read_full_charge(TomlTable& battery, ControlSettings& control) {
   std::int32_t share_e4 = 5'000;

@@ -47,10 +47,10 @@ std::string_view standard_lock_folder() {
   return is_there ? "/run/lock" : "/tmp";
 }
 
-FixedText<639> state_lock_path(const EdgeConfig& config) {
-  char path[640];
-  std::snprintf(path, sizeof path, "%s/lock", config.state.folder.c_str());
-  return {path};
+FixedText<639> state_lock_path(const EdgeConfig& config) { return state_file(config, "lock"); }
+
+bool is_controller_running(const EdgeConfig& config) {
+  return holder_of(state_lock_path(config).c_str()) != 0;
 }
 
 bool lock_battery(const EdgeConfig& config, RunLocks& locks, FileMessage& error) {

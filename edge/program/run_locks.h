@@ -12,6 +12,8 @@ FixedText<639> battery_lock_path(const EdgeConfig& config, std::string_view fold
 std::string_view standard_lock_folder();
 /// Lock of the state folder; held by the controller that writes the status there.
 FixedText<639> state_lock_path(const EdgeConfig& config);
+/// Whether a controller of this configuration holds that lock.
+bool is_controller_running(const EdgeConfig& config);
 
 struct RunLocks {
   InstanceLock battery;

@@ -9,7 +9,7 @@
 
 namespace bess {
 
-FixedText<767> trip_clearance_path(const EdgeConfig& config);
+FixedText<639> trip_clearance_path(const EdgeConfig& config);
 
 /// False with errno set. On the disk before it returns.
 bool clear_trip_of(const char* path, std::int64_t trip_utc_s);
