@@ -10,8 +10,6 @@ namespace {
 
 constexpr int kAnswerMsMax = 10'000;
 
-std::string text_of(JsonValue value) { return value.text() == nullptr ? "" : value.text(); }
-
 /// The same sentence with other numbers is the same trouble, and so is a WARN that became CRITICAL.
 std::string key_of_line(std::string_view line) {
   for (const std::string_view level : {"WARN: ", "CRITICAL: "}) {
@@ -51,10 +49,10 @@ std::vector<Trouble> troubles_of(const ControllerStatus& status) {
   const JsonValue json = status.json.value();
   std::vector<Trouble> troubles;
   for (const JsonValue reason : json["health_reasons"]) {
-    const std::string line = one_line(text_of(reason));
+    const std::string line = one_line(reason.text_or(""));
     // Holding becomes safe while the reason stays: one trouble, named by its reason.
     const bool is_mode = line.starts_with("WARN: mode is ");
-    const std::string why = text_of(json["last"]["reason"]);
+    const std::string why = json["last"]["reason"].text_or("");
     troubles.push_back({.key = is_mode ? "not running: " + why : key_of_line(line), .text = line});
   }
   return troubles;

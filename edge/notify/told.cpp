@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kVersion = 1;
 
-std::string text_of(JsonValue value) { return value.text() == nullptr ? "" : value.text(); }
+std::string text_of(JsonValue value) { return value.text_or(""); }
 
 std::int64_t utc_of(JsonValue value) {
   std::int64_t utc_s = 0;

@@ -8,10 +8,6 @@
 namespace bess {
 namespace {
 
-std::string text_or(JsonValue value, const char* otherwise) {
-  return value.text() == nullptr ? otherwise : value.text();
-}
-
 /// Absent, not 0, where it was not measured.
 void set_scaled(Json& json, const char* key, JsonValue last, const char* name, double divisor,
                 int decimals) {
@@ -95,13 +91,13 @@ std::string topic(const std::string& node, const char* name) {
 std::string state_json(const ControllerStatus& status, std::size_t open_alarms) {
   const JsonValue all = status.json.value();
   const JsonValue last = all["last"];
-  Json json = Json::object({{"health", status.trouble.empty() ? text_or(all["health"], "unknown")
-                                                              : std::string("unknown")},
-                            {"alarms", open_alarms},
-                            {"mode", text_or(last["mode"], "none")},
-                            {"reason", text_or(last["reason"], "none")},
-                            {"in_control", is_true(all["control"])},
-                            {"utc", text_or(last["utc"], "")}});
+  Json json = Json::object(
+      {{"health", status.trouble.empty() ? all["health"].text_or("unknown") : "unknown"},
+       {"alarms", open_alarms},
+       {"mode", last["mode"].text_or("none")},
+       {"reason", last["reason"].text_or("none")},
+       {"in_control", is_true(all["control"])},
+       {"utc", last["utc"].text_or("")}});
   if (is_true(last["has_measurement"])) {
     set_scaled(json, "soc_percent", last, "soc_e4", 100, 1);
     set_scaled(json, "power_w", last, "battery_power_w", 1, 0);
@@ -117,7 +113,7 @@ std::string state_json(const ControllerStatus& status, std::size_t open_alarms) 
   json.set("held", held);
   if (held) {
     set_scaled(json, "hold_w", last, "hold_power_w", 1, 0);
-    json.set("hold_until_utc", text_or(last["hold_until_utc"], ""));
+    json.set("hold_until_utc", last["hold_until_utc"].text_or(""));
   }
   return json.line();
 }

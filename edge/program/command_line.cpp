@@ -35,6 +35,32 @@ struct Duration {
 using Target = std::variant<bool CommandLine::*, std::int64_t CommandLine::*,
                             std::string CommandLine::*, UtcInstant, Duration, SubCommand>;
 
+struct CommandName {
+  std::string_view name;
+  SubCommand command;
+};
+
+constexpr CommandName kCommandNames[] = {
+    {"run", SubCommand::kRun},
+    {"commission", SubCommand::kCommission},
+    {"status", SubCommand::kStatus},
+    {"log", SubCommand::kLog},
+    {"hold", SubCommand::kHold},
+    {"limit", SubCommand::kLimit},
+    {"release", SubCommand::kRelease},
+    {"clear", SubCommand::kClear},
+    {"signature", SubCommand::kSignature},
+};
+
+bool find_command(std::string_view name, SubCommand& command) {
+  for (const CommandName& known : kCommandNames) {
+    if (known.name != name) continue;
+    command = known.command;
+    return true;
+  }
+  return false;
+}
+
 struct Option {
   SubCommand command;
   std::string_view name;
@@ -170,25 +196,7 @@ CommandLineResult parse_command_line(int argc, char** argv, CommandLine& line) {
   int i = 1;
   if (i < argc && argv[i][0] != '-') {
     const std::string_view name = argv[i++];
-    if (name == "status") {
-      line.command = SubCommand::kStatus;
-    } else if (name == "commission") {
-      line.command = SubCommand::kCommission;
-    } else if (name == "release") {
-      line.command = SubCommand::kRelease;
-    } else if (name == "clear") {
-      line.command = SubCommand::kClear;
-    } else if (name == "log") {
-      line.command = SubCommand::kLog;
-    } else if (name == "hold") {
-      line.command = SubCommand::kHold;
-    } else if (name == "signature") {
-      line.command = SubCommand::kSignature;
-    } else if (name == "limit") {
-      line.command = SubCommand::kLimit;
-    } else if (name != "run") {
-      return usage_error("unknown command ", name);
-    }
+    if (!find_command(name, line.command)) return usage_error("unknown command ", name);
   }
   const SubCommand command = line.command;  // --check is an option of run and changes line.command
   for (; i < argc; ++i) {

@@ -70,7 +70,7 @@ double number(JsonValue found) { return found.number().value_or(0); }
 
 long long whole(JsonValue found) { return static_cast<long long>(number(found)); }
 
-const char* text_of(JsonValue found) { return found.text() != nullptr ? found.text() : "none"; }
+const char* text_of(JsonValue found) { return found.text_or("none"); }
 
 bool is_true(JsonValue found) { return found.boolean().value_or(false); }
 

@@ -35,6 +35,9 @@ class JsonValue {
   [[nodiscard]] std::optional<bool> boolean() const;
   [[nodiscard]] std::optional<double> number() const;
   [[nodiscard]] const char* text() const;
+  [[nodiscard]] const char* text_or(const char* otherwise) const {
+    return text() == nullptr ? otherwise : text();
+  }
   /// Of a member: its key.
   [[nodiscard]] std::string_view key() const;
   /// Of an object, by its key.
