@@ -21,7 +21,7 @@
 
 namespace bess {
 
-/// Rows that no logits satisfy together: leave one of them out and the rest can be satisfied.
+/// Rows that no logits satisfy together: leave out any one of them and the others can be satisfied.
 struct RowClash {
   std::vector<std::size_t> rows;   ///< indices into the layer's rows, ascending
   std::vector<std::string> rules;  ///< whose rows they are, each once, in the order of the rows
@@ -52,10 +52,11 @@ class ConstraintLayer {
     std::vector<int> variables;     ///< 2 * state + (v ? 1 : 0)
     std::vector<std::size_t> rows;  ///< equalities first, as the program wants them
     std::unique_ptr<QuadraticProgram> program;
-    Eigen::VectorXd point;
+    Eigen::VectorXd point, gradient;
   };
-  void build_blocks(int states);
-  [[nodiscard]] std::optional<RowClash> project(Block& block, Eigen::VectorXd& differences) const;
+  void add_block(const std::vector<std::size_t>& rows);
+  /// Into block.program->x(); or the rows that leave no point.
+  [[nodiscard]] std::optional<RowClash> project(Block& block) const;
   [[nodiscard]] std::string contradiction(const RowClash& clash) const;
 
   std::vector<DifferenceRow> rows_;

@@ -69,40 +69,46 @@ class QuadraticProgram {
   void backward(const Eigen::VectorXd& gradient_x, Eigen::VectorXd& gradient_g);
 
  private:
-  /// A row in the active set. Its sign is -1 where an equality was violated from above.
+  /// A row in the active set; its sign is -1 where an equality was met from above.
   struct ActiveRow {
     int row;
     double sign;
     double multiplier;
   };
-  enum class Taken { kYes, kContradiction, kNegligible };
+  using Rows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+  enum class Taken { kYes, kContradiction };
+  struct Limit {
+    double step;
+    std::size_t position;  ///< of the active row whose multiplier reaches 0 there
+  };
 
-  QuadraticProgram(const Eigen::MatrixXd& inverse_root, bool is_identity,
-                   LinearConstraints constraints);
-  void scale_rows();
+  QuadraticProgram(LinearConstraints&& constraints, const Eigen::MatrixXd& inverse_root);
+  void scale_rows(const Eigen::MatrixXd& inverse_root);
   void start(const Eigen::VectorXd& g);
-  void image_of(int row, double sign, Eigen::VectorXd& d) const;
+  void measure();
+  void image_of(int row, double sign);
   [[nodiscard]] double slack_of(int row) const;
   [[nodiscard]] int most_violated();
+  [[nodiscard]] Limit limit_by_multipliers() const;
   Taken take_in(int row, double sign);
+  bool hold(int row, double sign);
   void let_go(std::size_t position);
   void keep_clash(int row, double sign);
-  void recompute();
-  [[nodiscard]] bool rebuild();
-  [[nodiscard]] bool hold(int row, double sign);
+  double recompute();
+  void rebuild();
+  void publish_multipliers();
 
-  LinearConstraints given_;
-  Eigen::MatrixXd inverse_root_;  ///< L^-1, empty when G is the identity
-  LinearConstraints unit_;        ///< scaled to |L^-1 a| = 1
-  Eigen::VectorXd row_scale_;     ///< [rows] unit = row_scale * given
+  LinearConstraints rows_;     ///< scaled to |L^-1 a| = 1
+  Eigen::VectorXd row_scale_;  ///< [rows] as solved = row_scale * as given
   ActiveSetFactors factors_;
   std::vector<ActiveRow> active_;
   std::vector<char> is_active_;     ///< [rows]
-  std::vector<char> is_neglected_;  ///< [rows] violated by rounding alone
+  std::vector<char> is_neglected_;  ///< [rows] violated by no more than rounding, and dependent
   std::vector<ClashingRow> clash_;
-  Eigen::VectorXd free_minimum_;  ///< G^-1 g
-  Eigen::VectorXd x_, multipliers_, slacks_, d_, z_, r_;
-  double scale_ = 1;  ///< size of x and bounds, for tolerances
+  Eigen::VectorXd free_minimum_;          ///< G^-1 g [n]
+  Eigen::VectorXd x_, d_, z_, r_;         ///< [n], d to r as in active_set_factors.h
+  Eigen::VectorXd multipliers_, slacks_;  ///< [rows]
+  double scale_ = 1;                      ///< size of the terms of a slack
   int steps_ = 0;
 };
 
