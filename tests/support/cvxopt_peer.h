@@ -5,6 +5,7 @@
 #include <fstream>
 #include <optional>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -74,7 +75,7 @@ class CvxoptPeer {
   }
 
  private:
-  /// What the script printed, when it succeeded.
+  /// What the script printed; throws when it fails.
   [[nodiscard]] std::optional<std::string> run(const std::string& what,
                                                const std::string& count) const {
     std::vector<std::string> words{"/usr/bin/python3",
@@ -83,10 +84,13 @@ class CvxoptPeer {
     if (!count.empty()) words.push_back(count);
     ChildProcess peer(words);
     const std::string printed = peer.read_all();
-    if (peer.wait() != 0) return {};
+    const int code = peer.wait();
+    if (code == kMissing) return {};
+    if (code != 0) throw std::runtime_error(printed);
     return printed;
   }
 
+  static constexpr int kMissing = 77;  ///< qp_cvxopt.py's exit code without cvxopt
   const std::vector<TestProgram>& programs_;
   TemporaryFolder folder_;
 };

@@ -10,7 +10,10 @@ import statistics
 import sys
 import time
 
-from cvxopt import matrix, solvers, spmatrix
+try:
+    from cvxopt import matrix, solvers, spmatrix
+except ImportError:
+    sys.exit(77)
 
 ACCURATE = {"show_progress": False, "abstol": 1e-13, "reltol": 1e-13, "feastol": 1e-11, "maxiters": 200}
 
@@ -30,7 +33,7 @@ def read_program(file):
     linear = -matrix(read(file, "d", n), (n, 1))
     of_row, of_column, factors = read(file, "q", terms), read(file, "q", terms), read(file, "d", terms)
     bounds = matrix(read(file, "d", rows), (rows, 1))
-    normals = spmatrix(factors, of_row, of_column, (rows, n))
+    normals = spmatrix(list(factors), list(of_row), list(of_column), (rows, n))
     problem = [hessian, linear, -normals[equalities:, :], -bounds[equalities:]]
     if equalities:
         problem += [normals[:equalities, :], bounds[:equalities]]

@@ -1,31 +1,48 @@
 #include "workstation/correction/active_set_factors.h"
 
 #include <cmath>
+#include <utility>
 
 namespace bess {
+namespace {
+/// A row of J lies across its columns: reading it takes as long as reading so many columns.
+constexpr Eigen::Index kColumnsPerRow = 8;
+}  // namespace
 
-ActiveSetFactors::ActiveSetFactors(const Eigen::MatrixXd& inverse_root_transposed)
-    : start_(inverse_root_transposed),
-      transposed_(inverse_root_transposed),
+ActiveSetFactors::ActiveSetFactors(const Eigen::MatrixXd& inverse_root)
+    : start_(inverse_root.transpose()),
+      basis_(start_),
       triangle_(start_.rows(), start_.rows()),
-      reflector_(start_.rows()),
-      along_(start_.rows()),
-      rotations_(2, start_.rows()) {}
+      scratch_(start_.rows()) {}
 
 void ActiveSetFactors::reset() {
-  transposed_ = start_;
+  basis_ = start_;
   active_ = 0;
 }
 
+void ActiveSetFactors::image(const Eigen::VectorXd& normal, Eigen::Index terms,
+                             Eigen::VectorXd& d) const {
+  if (terms * kColumnsPerRow > size()) {
+    d.noalias() = basis_.transpose() * normal;
+    return;
+  }
+  d.setZero();
+  for (Eigen::Index i = 0; i < size(); ++i) {
+    if (normal[i] != 0) d += normal[i] * basis_.row(i).transpose();
+  }
+}
+
 void ActiveSetFactors::direction(const Eigen::VectorXd& d, Eigen::VectorXd& z) const {
-  const Eigen::Index free = size() - active_;
-  z.noalias() = transposed_.bottomRows(free).transpose() * d.tail(free);
+  z.setZero();
+  for (Eigen::Index k = active_; k < size(); ++k) {
+    if (d[k] != 0) z += d[k] * basis_.col(k);
+  }
 }
 
 void ActiveSetFactors::project_free(const Eigen::VectorXd& v, Eigen::VectorXd& free) {
   const Eigen::Index count = size() - active_;
-  along_.tail(count).noalias() = transposed_.bottomRows(count) * v;
-  free.noalias() = transposed_.bottomRows(count).transpose() * along_.tail(count);
+  scratch_.tail(count).noalias() = basis_.rightCols(count).transpose() * v;
+  free.noalias() = basis_.rightCols(count) * scratch_.tail(count);
 }
 
 double ActiveSetFactors::independence(const Eigen::VectorXd& d) const {
@@ -34,9 +51,11 @@ double ActiveSetFactors::independence(const Eigen::VectorXd& d) const {
 
 void ActiveSetFactors::solve(const Eigen::VectorXd& d, Eigen::VectorXd& r) const {
   r.head(active_) = d.head(active_);
-  triangle_.topLeftCorner(active_, active_)
-      .triangularView<Eigen::Upper>()
-      .solveInPlace(r.head(active_));
+  for (Eigen::Index j = active_ - 1; j >= 0; --j) {
+    if (r[j] == 0) continue;
+    r[j] /= triangle_(j, j);
+    r.head(j) -= r[j] * triangle_.col(j).head(j);
+  }
 }
 
 void ActiveSetFactors::solve_transposed(Eigen::VectorXd& y) const {
@@ -47,54 +66,52 @@ void ActiveSetFactors::solve_transposed(Eigen::VectorXd& y) const {
 }
 
 void ActiveSetFactors::add_combination(const Eigen::VectorXd& y, Eigen::VectorXd& x) const {
-  x.noalias() += transposed_.topRows(active_).transpose() * y.head(active_);
+  x.noalias() += basis_.leftCols(active_) * y.head(active_);
 }
 
-/// d2 becomes (corner, 0, ..., 0) by I - 2 w w' / w'w with w = d2 - corner e1. J2 w = z - corner J2 e1
-/// is at hand, so that J2 changes by one outer product.
-void ActiveSetFactors::add(const Eigen::VectorXd& d, const Eigen::VectorXd& z) {
-  const Eigen::Index free = size() - active_;
-  const double first = d[active_];
+/// The column that the row meets most becomes the first of J2. Then d2 becomes (corner, 0, ..., 0) by
+/// I - 2 w w' / w'w with w = d2 - corner e1, and J2 changes by the outer product of
+/// J2 w = z - corner J2 e1 and 2 w / w'w: w is 0 where d2 is.
+void ActiveSetFactors::add(Eigen::VectorXd& d, Eigen::VectorXd& z) {
+  Eigen::Index most = 0;
+  d.tail(size() - active_).cwiseAbs().maxCoeff(&most);
+  most += active_;
+  std::swap(d[most], d[active_]);
+  basis_.col(most).swap(basis_.col(active_));
+
+  direction(d, z);
   const double norm = independence(d);
-  const double corner = first > 0 ? -norm : norm;
-  auto w = reflector_.tail(free);
-  w = d.tail(free);
-  w[0] = first - corner;
-  along_ = z - corner * transposed_.row(active_).transpose();
-  w /= norm * (norm + std::fabs(first));  // w'w / 2
-  transposed_.bottomRows(free).noalias() -= w * along_.transpose();
+  const double corner = d[active_] > 0 ? -norm : norm;
+  scratch_ = (z - corner * basis_.col(active_)) / (norm * (norm + std::fabs(d[active_])));
   triangle_.col(active_).head(active_) = d.head(active_);
   triangle_(active_, active_) = corner;
+  d[active_] -= corner;
+  for (Eigen::Index k = active_; k < size(); ++k) {
+    if (d[k] != 0) basis_.col(k) -= d[k] * scratch_;
+  }
   ++active_;
 }
 
 void ActiveSetFactors::drop(Eigen::Index position) {
-  const Eigen::Index last = active_ - 1;
-  for (Eigen::Index j = position; j < last; ++j) {
-    // Column j + 1 has one entry below the diagonal once it stands at j: turned away.
-    triangle_.col(j).head(j + 2) = triangle_.col(j + 1).head(j + 2);
-    for (Eigen::Index k = position; k < j; ++k) {
-      const double upper = triangle_(k, j);
-      const double lower = triangle_(k + 1, j);
-      triangle_(k, j) = rotations_(0, k) * upper + rotations_(1, k) * lower;
-      triangle_(k + 1, j) = rotations_(0, k) * lower - rotations_(1, k) * upper;
-    }
-    const double length = std::hypot(triangle_(j, j), triangle_(j + 1, j));
-    rotations_(0, j) = triangle_(j, j) / length;
-    rotations_(1, j) = triangle_(j + 1, j) / length;
-    triangle_(j, j) = length;
-  }
-  for (Eigen::Index i = 0; i < size(); ++i) {
-    double* column = &transposed_(0, i);
-    double upper = column[position];
-    for (Eigen::Index k = position; k < last; ++k) {
-      const double lower = column[k + 1];
-      column[k] = rotations_(0, k) * upper + rotations_(1, k) * lower;
-      upper = rotations_(0, k) * lower - rotations_(1, k) * upper;
-    }
-    column[last] = upper;
-  }
   --active_;
+  for (Eigen::Index j = position; j < active_; ++j) {
+    triangle_.col(j).head(j + 2) = triangle_.col(j + 1).head(j + 2);
+  }
+  // Each column now has one entry below the diagonal; it is turned away, in J as in the columns behind.
+  for (Eigen::Index j = position; j < active_; ++j) {
+    const double length = std::hypot(triangle_(j, j), triangle_(j + 1, j));
+    const double cosine = triangle_(j, j) / length;
+    const double sine = triangle_(j + 1, j) / length;
+    for (Eigen::Index k = j; k < active_; ++k) {
+      const double upper = triangle_(j, k);
+      const double lower = triangle_(j + 1, k);
+      triangle_(j, k) = cosine * upper + sine * lower;
+      triangle_(j + 1, k) = cosine * lower - sine * upper;
+    }
+    scratch_ = cosine * basis_.col(j) + sine * basis_.col(j + 1);
+    basis_.col(j + 1) = cosine * basis_.col(j + 1) - sine * basis_.col(j);
+    basis_.col(j) = scratch_;
+  }
 }
 
 }  // namespace bess

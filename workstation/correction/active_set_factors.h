@@ -9,8 +9,10 @@
 //   r = R^-1 d1      how the active multipliers fall along it
 //   J2 J2'           the inverse of G on the directions that the active rows leave free
 //
-// A row comes in by one Householder reflection of J2 (the column z is known already, so it is one rank-one
-// update, where Givens rotations would go over J2 column by column), and goes out by Givens rotations.
+// A row comes in by one Householder reflection of the columns of J2 that it meets, and goes out by Givens
+// rotations. Rows of few terms meet few columns: an order between neighbours, whatever is active, meets
+// two, because the reflection begins with a column it meets and so leaves all others as they are. Entries
+// of d that are 0 are therefore passed over everywhere.
 // All memory is taken in the constructor.
 #pragma once
 
@@ -20,16 +22,16 @@ namespace bess {
 
 class ActiveSetFactors {
  public:
-  /// `inverse_root_transposed` is L^-1: the transpose of J for an empty active set, [n x n].
-  explicit ActiveSetFactors(const Eigen::MatrixXd& inverse_root_transposed);
+  /// `inverse_root` is L^-1 [n x n].
+  explicit ActiveSetFactors(const Eigen::MatrixXd& inverse_root);
 
   /// Empties the active set.
   void reset();
-  [[nodiscard]] Eigen::Index size() const { return transposed_.rows(); }
+  [[nodiscard]] Eigen::Index size() const { return basis_.rows(); }
   [[nodiscard]] Eigen::Index active() const { return active_; }
 
-  /// Row i of J as a column [n]: d = sum of n_i * column_of(i).
-  [[nodiscard]] auto column_of(Eigen::Index i) const { return transposed_.col(i); }
+  /// d = J'n for a normal with so many entries that are not 0.
+  void image(const Eigen::VectorXd& normal, Eigen::Index terms, Eigen::VectorXd& d) const;
   /// z = J2 d2.
   void direction(const Eigen::VectorXd& d, Eigen::VectorXd& z) const;
   /// J2 J2' v into `free`; both [n], may not alias.
@@ -43,18 +45,17 @@ class ActiveSetFactors {
   /// x += J1 y.
   void add_combination(const Eigen::VectorXd& y, Eigen::VectorXd& x) const;
 
-  /// The row of `d` becomes the last active one; z = direction(d), and independence(d) is above 0.
-  void add(const Eigen::VectorXd& d, const Eigen::VectorXd& z);
+  /// z = direction(d), and the row of `d` becomes the last active one; independence(d) must be above 0.
+  /// Leaves `d` changed.
+  void add(Eigen::VectorXd& d, Eigen::VectorXd& z);
   /// Active row `position` goes; those behind it move up.
   void drop(Eigen::Index position);
 
  private:
-  Eigen::MatrixXd start_;       ///< L^-1 [n x n]
-  Eigen::MatrixXd transposed_;  ///< J' [n x n]: rows 0..active-1 are J1'
-  Eigen::MatrixXd triangle_;    ///< R in its upper left corner [n x n]
-  Eigen::VectorXd reflector_;   ///< [n]
-  Eigen::VectorXd along_;       ///< [n]
-  Eigen::MatrixXd rotations_;   ///< [2 x n] cosines and sines of a drop
+  Eigen::MatrixXd start_;     ///< J of no active row, L^-T [n x n]
+  Eigen::MatrixXd basis_;     ///< J [n x n]: columns 0..active-1 are J1
+  Eigen::MatrixXd triangle_;  ///< R in its upper left corner [n x n]
+  Eigen::VectorXd scratch_;   ///< [n]
   Eigen::Index active_ = 0;
 };
 

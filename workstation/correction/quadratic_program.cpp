@@ -15,7 +15,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kViolation = 1e-12;     ///< a row is violated by more than this
 constexpr double kContradiction = 1e-9;  ///< rows clash by more than this; below, they just meet
 constexpr double kWeakly = 1e-9;         ///< to the derivative, slacks and multipliers below are 0
-constexpr double kDrift = 1e-11;  ///< active rows this far from tight: the factors have drifted
+constexpr double kDrift = 1e-11;     ///< active rows this far from tight: the factors have drifted
+constexpr double kRounding = 4e-16;  ///< an entry of d, whose length is 1, below this is 0
 /// |d2| of a unit row that depends on the active ones: rounding leaves 1e-13 at 512 variables.
 constexpr double kDependent = 1e-9;
 /// Of the largest: smaller entries of r are rounding, and limit no step.
@@ -47,7 +48,7 @@ QuadraticProgram::QuadraticProgram(LinearConstraints&& constraints,
   const Eigen::Index variables = rows_.normals.cols();
   const Eigen::Index count = rows_.normals.rows();
   for (Eigen::VectorXd* v : {&free_minimum_, &x_, &d_, &z_, &r_}) v->setZero(variables);
-  for (Eigen::VectorXd* v : {&row_scale_, &multipliers_, &slacks_}) v->setZero(count);
+  for (Eigen::VectorXd* v : {&row_scale_, &multipliers_}) v->setZero(count);
   active_.reserve(static_cast<std::size_t>(variables));
   clash_.reserve(static_cast<std::size_t>(variables) + 1);
   is_active_.assign(static_cast<std::size_t>(count), 0);
@@ -122,12 +123,16 @@ void QuadraticProgram::measure() {
   }
 }
 
-/// d = J'n of the row times its sign.
+/// d = J'n of the row times its sign, without the rounding of what is 0.
 void QuadraticProgram::image_of(int row, double sign) {
-  d_.setZero();
+  z_.setZero();
   for (Rows::InnerIterator term(rows_.normals, row); term; ++term) {
-    d_ += sign * term.value() * factors_.column_of(term.col());
+    z_[term.col()] = sign * term.value();
   }
+  const Eigen::Index terms =
+      rows_.normals.outerIndexPtr()[row + 1] - rows_.normals.outerIndexPtr()[row];
+  factors_.image(z_, terms, d_);
+  d_ = (d_.array().abs() < kRounding).select(0.0, d_);
 }
 
 double QuadraticProgram::slack_of(int row) const {
@@ -139,15 +144,15 @@ double QuadraticProgram::slack_of(int row) const {
 }
 
 /// The inequality that x violates most, or -1.
-int QuadraticProgram::most_violated() {
-  slacks_.noalias() = rows_.normals * x_;
-  slacks_ -= rows_.bounds;
+int QuadraticProgram::most_violated() const {
   int worst = -1;
   double least = -kViolation * scale_;
-  for (int i = rows_.equalities; i < slacks_.size(); ++i) {
+  for (int i = rows_.equalities; i < rows_.normals.rows(); ++i) {
     const auto at = static_cast<std::size_t>(i);
-    if (slacks_[i] < least && is_active_[at] == 0 && is_neglected_[at] == 0) {
-      least = slacks_[i];
+    if (is_active_[at] != 0 || is_neglected_[at] != 0) continue;
+    const double slack = slack_of(i);
+    if (slack < least) {
+      least = slack;
       worst = i;
     }
   }
@@ -193,16 +198,17 @@ QuadraticProgram::Taken QuadraticProgram::take_in(int row, double sign) {
       if (other.row >= rows_.equalities) other.multiplier = std::max(0.0, other.multiplier);
     }
     multiplier += step;
-    if (!is_dependent) {
-      factors_.direction(d_, z_);
-      x_ += step * z_;
-    }
     if (full <= limit.step) {
       factors_.add(d_, z_);
+      x_ += step * z_;
       active_.push_back({row, sign, multiplier});
       is_active_[static_cast<std::size_t>(row)] = 1;
       std::ranges::fill(is_neglected_, 0);
       return Taken::kYes;
+    }
+    if (!is_dependent) {
+      factors_.direction(d_, z_);
+      x_ += step * z_;
     }
     let_go(limit.position);
   }
@@ -212,7 +218,6 @@ QuadraticProgram::Taken QuadraticProgram::take_in(int row, double sign) {
 bool QuadraticProgram::hold(int row, double sign) {
   image_of(row, sign);
   if (factors_.independence(d_) <= kDependent) return false;
-  factors_.direction(d_, z_);
   factors_.add(d_, z_);
   is_active_[static_cast<std::size_t>(row)] = 1;
   return true;
@@ -280,8 +285,8 @@ void QuadraticProgram::publish_multipliers() {
 void QuadraticProgram::backward(const Eigen::VectorXd& gradient_x, Eigen::VectorXd& gradient_g) {
   const double weak = kWeakly * scale_;
   // Held: every tight row.
-  for (int row = rows_.equalities; row < slacks_.size(); ++row) {
-    if (is_active_[static_cast<std::size_t>(row)] != 0 || slacks_[row] > weak) continue;
+  for (int row = rows_.equalities; row < rows_.normals.rows(); ++row) {
+    if (is_active_[static_cast<std::size_t>(row)] != 0 || slack_of(row) > weak) continue;
     if (hold(row, 1)) active_.push_back({row, 1, 0});
   }
   factors_.project_free(gradient_x, gradient_g);

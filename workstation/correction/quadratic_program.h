@@ -88,7 +88,7 @@ class QuadraticProgram {
   void measure();
   void image_of(int row, double sign);
   [[nodiscard]] double slack_of(int row) const;
-  [[nodiscard]] int most_violated();
+  [[nodiscard]] int most_violated() const;
   [[nodiscard]] Limit limit_by_multipliers() const;
   Taken take_in(int row, double sign);
   bool hold(int row, double sign);
@@ -105,10 +105,10 @@ class QuadraticProgram {
   std::vector<char> is_active_;     ///< [rows]
   std::vector<char> is_neglected_;  ///< [rows] violated by no more than rounding, and dependent
   std::vector<ClashingRow> clash_;
-  Eigen::VectorXd free_minimum_;          ///< G^-1 g [n]
-  Eigen::VectorXd x_, d_, z_, r_;         ///< [n], d to r as in active_set_factors.h
-  Eigen::VectorXd multipliers_, slacks_;  ///< [rows]
-  double scale_ = 1;                      ///< size of the terms of a slack
+  Eigen::VectorXd free_minimum_;   ///< G^-1 g [n]
+  Eigen::VectorXd x_, d_, z_, r_;  ///< [n], d to r as in active_set_factors.h
+  Eigen::VectorXd multipliers_;    ///< [rows] of the rows as given
+  double scale_ = 1;               ///< size of the terms of a slack
   int steps_ = 0;
 };
 
