@@ -76,9 +76,7 @@ void QuadraticProgram::scale_rows(const Eigen::MatrixXd& inverse_root) {
 QuadraticOutcome QuadraticProgram::solve(const Eigen::VectorXd& g) {
   start(g);
   for (int row = 0; row < rows_.equalities; ++row) {
-    if (take_in(row, slack_of(row) > 0 ? -1 : 1) == Taken::kContradiction) {
-      return QuadraticOutcome::kContradiction;
-    }
+    if (!take_in(row, slack_of(row) > 0 ? -1 : 1)) return QuadraticOutcome::kContradiction;
   }
   const auto steps_max = kStepsMaxPerRow * (rows_.normals.rows() + rows_.normals.cols());
   int rebuilds = 0;
@@ -95,7 +93,7 @@ QuadraticOutcome QuadraticProgram::solve(const Eigen::VectorXd& g) {
         return QuadraticOutcome::kSolved;
       }
     }
-    if (take_in(row, 1) == Taken::kContradiction) return QuadraticOutcome::kContradiction;
+    if (!take_in(row, 1)) return QuadraticOutcome::kContradiction;
   }
   return QuadraticOutcome::kStalled;
 }
@@ -173,8 +171,9 @@ QuadraticProgram::Limit QuadraticProgram::limit_by_multipliers() const {
   return limit;
 }
 
-/// Step 2 of the paper: towards the row until it is tight, letting go of active rows on the way.
-QuadraticProgram::Taken QuadraticProgram::take_in(int row, double sign) {
+/// Step 2 of the paper: towards the row until it is tight, letting go of active rows on the way. False when
+/// the row contradicts the active ones.
+bool QuadraticProgram::take_in(int row, double sign) {
   double multiplier = 0;
   while (true) {
     ++steps_;
@@ -187,10 +186,12 @@ QuadraticProgram::Taken QuadraticProgram::take_in(int row, double sign) {
     const Limit limit = limit_by_multipliers();
     const double step = std::min(full, limit.step);
     if (step == kInfinity) {
+      if (violation > kContradiction * scale_) {
+        keep_clash(row, sign);
+        return false;
+      }
       is_neglected_[static_cast<std::size_t>(row)] = 1;
-      if (violation <= kContradiction * scale_) return Taken::kYes;
-      keep_clash(row, sign);
-      return Taken::kContradiction;
+      return true;
     }
     for (std::size_t k = 0; k < active_.size(); ++k) {
       ActiveRow& other = active_[k];
@@ -204,7 +205,7 @@ QuadraticProgram::Taken QuadraticProgram::take_in(int row, double sign) {
       active_.push_back({row, sign, multiplier});
       is_active_[static_cast<std::size_t>(row)] = 1;
       std::ranges::fill(is_neglected_, 0);
-      return Taken::kYes;
+      return true;
     }
     if (!is_dependent) {
       factors_.direction(d_, z_);

@@ -76,7 +76,6 @@ class QuadraticProgram {
     double multiplier;
   };
   using Rows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
-  enum class Taken { kYes, kContradiction };
   struct Limit {
     double step;
     std::size_t position;  ///< of the active row whose multiplier reaches 0 there
@@ -90,7 +89,7 @@ class QuadraticProgram {
   [[nodiscard]] double slack_of(int row) const;
   [[nodiscard]] int most_violated() const;
   [[nodiscard]] Limit limit_by_multipliers() const;
-  Taken take_in(int row, double sign);
+  [[nodiscard]] bool take_in(int row, double sign);
   bool hold(int row, double sign);
   void let_go(std::size_t position);
   void keep_clash(int row, double sign);
