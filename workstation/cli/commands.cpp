@@ -7,11 +7,11 @@ void add_commands(ProgramCommand& app) {
   add_prices_commands(app);
   add_train_command(app);
   add_distil_command(app);
-  add_omega_sweep_command(app);
   add_verify_command(app);
   add_evaluate_command(app);
   add_backtest_command(app);
   add_delays_command(app);
+  add_omega_sweep_command(app);
   add_export_command(app);
   add_report_command(app);
   add_config_command(app);

@@ -10,11 +10,11 @@ void add_prices_commands(
     ProgramCommand& app);  ///< simulate, reconstruct, import, fetch, record, stats
 void add_train_command(ProgramCommand& app);
 void add_distil_command(ProgramCommand& app);
-void add_omega_sweep_command(ProgramCommand& app);
 void add_verify_command(ProgramCommand& app);
 void add_evaluate_command(ProgramCommand& app);
 void add_backtest_command(ProgramCommand& app);
 void add_delays_command(ProgramCommand& app);
+void add_omega_sweep_command(ProgramCommand& app);
 void add_export_command(ProgramCommand& app);
 void add_report_command(ProgramCommand& app);
 void add_run_command(ProgramCommand& app);

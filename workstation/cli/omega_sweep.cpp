@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include <charconv>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 
@@ -106,6 +107,7 @@ void print_json(const OmegaPoint& point, const Evaluation& teacher) {
        {"gain_over_teacher", Decimals{gain.mean, 4}},
        {"gain_standard_error", Decimals{gain.standard_error, 4}}});
   fmt::print("{}\n", json.line());
+  std::fflush(stdout);  // each takes minutes
 }
 
 void run_omega_sweep(const OmegaSweepArguments& options) {
