@@ -1,9 +1,14 @@
-// The projection: exact isotonic regression with bounds, and NLopt on the same problem where that is bearable.
+// The projection: exact isotonic regression with bounds, and NLopt on the same problem where that is bearable;
+// the general program on an order of so many variables and on rows of any kind, and cvxopt on the same.
+#include <fmt/core.h>
 #include <nlopt.hpp>
 
 #include <algorithm>
+#include <cstdio>
+#include <limits>
 
 #include "tests/bench/registry.h"
+#include "tests/support/cvxopt_peer.h"
 #include "workstation/base/random.h"
 #include "workstation/correction/isotonic.h"
 
@@ -86,6 +91,28 @@ void nlopt_projection(benchmark::State& state, unsigned rows, unsigned columns) 
   }
 }
 
+/// A projection, solved and differentiated; cvxopt only solves.
+void quadratic_program(benchmark::State& state, ProgramKind kind, int variables) {
+  Random random(4);
+  const std::vector<TestProgram> programs{random_program(kind, variables, random)};
+  const TestProgram& program = programs.front();
+  QuadraticProgram solver = program.solver();
+  const Eigen::VectorXd gradient_x = normal_vector(variables, random);
+  Eigen::VectorXd gradient(variables);
+  for (auto _ : state) {
+    if (solver.solve(program.g) != QuadraticOutcome::kSolved) state.SkipWithError("not solved");
+    solver.backward(gradient_x, gradient);
+    benchmark::DoNotOptimize(gradient.data());
+  }
+  constexpr int kPeerSolutions = 15;
+  const std::optional<std::vector<double>> peer = CvxoptPeer(programs).median_us(kPeerSolutions);
+  if (!peer) {
+    std::fprintf(stderr,
+                 "bess-bench: no cvxopt to compare with (tools/setup --test installs it)\n");
+  }
+  report_peer(state, "cvxopt", peer ? peer->front() : std::numeric_limits<double>::quiet_NaN());
+}
+
 }  // namespace
 
 void register_correction_benchmarks() {
@@ -96,6 +123,16 @@ void register_correction_benchmarks() {
                 [](benchmark::State& state) { exact_projection(state, 8, 8); });
   add_benchmark("projection-8x8@nlopt-slsqp", benchmark::kMicrosecond, 1,
                 [](benchmark::State& state) { nlopt_projection(state, 8, 8); });
+  for (const int variables : {24, 64, 128}) {
+    add_benchmark(fmt::format("qp-order-{}", variables), benchmark::kMicrosecond, kRepetitions,
+                  [variables](benchmark::State& state) {
+                    quadratic_program(state, ProgramKind::kOrder, variables);
+                  });
+    add_benchmark(fmt::format("qp-rows-{}", variables), benchmark::kMicrosecond, kRepetitions,
+                  [variables](benchmark::State& state) {
+                    quadratic_program(state, ProgramKind::kSparseRows, variables);
+                  });
+  }
 }
 
 }  // namespace bess

@@ -11,6 +11,7 @@ void add_commands(ProgramCommand& app) {
   add_evaluate_command(app);
   add_backtest_command(app);
   add_delays_command(app);
+  add_omega_sweep_command(app);
   add_export_command(app);
   add_report_command(app);
   add_config_command(app);

@@ -14,6 +14,7 @@ void add_verify_command(ProgramCommand& app);
 void add_evaluate_command(ProgramCommand& app);
 void add_backtest_command(ProgramCommand& app);
 void add_delays_command(ProgramCommand& app);
+void add_omega_sweep_command(ProgramCommand& app);
 void add_export_command(ProgramCommand& app);
 void add_report_command(ProgramCommand& app);
 void add_run_command(ProgramCommand& app);

@@ -34,6 +34,11 @@ struct LatticeAxes {
   std::vector<double> soc;
 };
 
+/// Bounds on x = difference + ramp for a difference that must be at least `lower` at prices <= low and at
+/// most `upper` at prices >= high. The ramp differs inside a row, so the row's strictest cell counts.
+RowBounds ramped_bounds(const CorrectionOptions& options, const LatticeAxes& axes, double lower,
+                        double upper);
+
 class CorrectionLayer {
  public:
   CorrectionLayer(const CorrectionOptions& options, int prices, int socs);
@@ -44,7 +49,6 @@ class CorrectionLayer {
   void backward(const Eigen::MatrixXd& gradient_corrected, Eigen::MatrixXd& gradient_logits);
 
  private:
-  [[nodiscard]] RowBounds bounds_of(const LatticeAxes& axes, double lower, double upper) const;
   void project(const LatticeAxes& axes, IsotonicProjection& projection, const RowBounds& bounds,
                std::vector<double>& difference);
 

@@ -3,8 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "shared/action.h"
-#include "shared/units_and_limits.h"
-#include "workstation/base/random.h"
+#include "tests/support/correction_cases.h"
 
 namespace bess {
 namespace {
@@ -12,41 +11,6 @@ namespace {
 constexpr int kDis = static_cast<int>(Action::kDischarge);
 constexpr int kIdle = static_cast<int>(Action::kIdle);
 constexpr int kCha = static_cast<int>(Action::kCharge);
-
-LatticeAxes even_axes(int prices, int socs) {
-  LatticeAxes axes;
-  for (int i = 0; i < prices; ++i) {
-    const int price = kLatticePriceMinEurPerMwh + i * (kPriceCount - 1) / std::max(1, prices - 1);
-    axes.price_eur_per_mwh.push_back(price);
-    axes.mapped_price.push_back((price - kLatticePriceMinEurPerMwh) / double{kPriceCount - 1});
-  }
-  for (int j = 0; j < socs; ++j) axes.soc.push_back(j / double{std::max(1.0, socs - 1.0)});
-  return axes;
-}
-
-Eigen::MatrixXd random_logits(Eigen::Index columns, Random& random, double spread) {
-  Eigen::MatrixXd logits(kActionCount, columns);
-  for (double& z : logits.reshaped()) z = spread * random.normal();
-  return logits;
-}
-
-struct LayerCase {
-  const char* name;
-  CorrectionOptions options;
-  int prices, socs;
-};
-
-const LayerCase kCases[] = {
-    {"defaults", {}, 16, 8},
-    {"thresholds inside the lattice", {{-120, 640}, 1.0, 0.2, 0.4}, 16, 8},
-    {"thresholds outside the lattice", {{-600, 2000}, 1.0, 0.2, 0.4}, 16, 8},
-    {"one threshold outside", {{-600, 800}, 1.0, 0.2, 0.4}, 12, 5},
-    {"neighbouring thresholds", {{500, 501}, 1.0, 0.2, 0.4}, 11, 4},
-    {"no slope", {{-500, 1500}, 0.5, 0, 0}, 8, 8},
-    {"steep slopes, bounds that would cross", {{-300, 1200}, 0.1, 50, 3}, 9, 6},
-    {"one price", {{-500, 1500}, 1.0, 0.2, 0.4}, 1, 6},
-    {"one SoC", {{-500, 1500}, 1.0, 0.2, 0.4}, 16, 1},
-};
 
 /// Everything the header promises, on every cell.
 void expect_properties(const CorrectionOptions& options, const LatticeAxes& axes,
@@ -88,7 +52,7 @@ void expect_properties(const CorrectionOptions& options, const LatticeAxes& axes
 
 TEST(CorrectionLayer, OutputHasTheProperties) {
   Random random(201);
-  for (const LayerCase& c : kCases) {
+  for (const LayerCase& c : kLayerCases) {
     SCOPED_TRACE(c.name);
     const LatticeAxes axes = even_axes(c.prices, c.socs);
     // One SoC price row cannot be bound from both ends; even_axes(1) holds only -500.
@@ -123,7 +87,7 @@ TEST(CorrectionLayer, FeasibleLogitsStay) {
 
 TEST(CorrectionLayer, TwiceIsOnce) {
   Random random(202);
-  for (const LayerCase& c : kCases) {
+  for (const LayerCase& c : kLayerCases) {
     SCOPED_TRACE(c.name);
     const LatticeAxes axes = even_axes(c.prices, c.socs);
     CorrectionLayer layer(c.options, c.prices, c.socs);
@@ -137,7 +101,7 @@ TEST(CorrectionLayer, TwiceIsOnce) {
 TEST(CorrectionLayer, BackwardIsTheDerivative) {
   constexpr double kStep = 1e-6;
   Random random(203);
-  for (const LayerCase& c : kCases) {
+  for (const LayerCase& c : kLayerCases) {
     SCOPED_TRACE(c.name);
     const LatticeAxes axes = even_axes(c.prices, c.socs);
     const Eigen::Index columns = c.prices * c.socs;

@@ -1,0 +1,63 @@
+# Quadratic programs through cvxopt, an interior-point solver that shares nothing with ours.
+#   /usr/bin/python3 qp_cvxopt.py PROGRAMS ANSWERS      the solutions, as accurate as it gets them
+#   /usr/bin/python3 qp_cvxopt.py PROGRAMS --time N     median microseconds of N solutions of each, at cvxopt's
+#                                                       own tolerances, matrices sparse or dense: the faster
+# min 1/2 x'Px - g'x, first rows a'x = b, others a'x >= b. PROGRAMS is binary, numbers of this machine: how many
+# programs; each: variables, rows, equalities, terms, 1 if a Hessian follows (all 64-bit integers); Hessian;
+# g; the terms' rows, their columns (integers), their factors; bounds (all else double). ANSWERS: doubles.
+import array
+import statistics
+import sys
+import time
+
+try:
+    from cvxopt import matrix, solvers, spmatrix
+except ImportError:
+    sys.exit(77)
+
+ACCURATE = {"show_progress": False, "abstol": 1e-13, "reltol": 1e-13, "feastol": 1e-11, "maxiters": 200}
+
+
+def read(file, kind, count):
+    numbers = array.array(kind)
+    numbers.fromfile(file, count)
+    return numbers
+
+
+def read_program(file):
+    n, rows, equalities, terms, has_hessian = read(file, "q", 5)
+    if has_hessian:
+        hessian = matrix(read(file, "d", n * n), (n, n))
+    else:
+        hessian = spmatrix(1.0, range(n), range(n))
+    linear = -matrix(read(file, "d", n), (n, 1))
+    of_row, of_column, factors = read(file, "q", terms), read(file, "q", terms), read(file, "d", terms)
+    bounds = matrix(read(file, "d", rows), (rows, 1))
+    normals = spmatrix(list(factors), list(of_row), list(of_column), (rows, n))
+    problem = [hessian, linear, -normals[equalities:, :], -bounds[equalities:]]
+    if equalities:
+        problem += [normals[:equalities, :], bounds[:equalities]]
+    return problem
+
+
+def seconds_of(problem):
+    start = time.perf_counter()
+    solvers.qp(*problem, options={"show_progress": False})
+    return time.perf_counter() - start
+
+
+def main():
+    with open(sys.argv[1], "rb") as file:
+        problems = [read_program(file) for _ in range(read(file, "q", 1)[0])]
+    if sys.argv[2] == "--time":
+        for problem in problems:
+            dense = [matrix(part) for part in problem]
+            medians = [statistics.median(seconds_of(p) for _ in range(int(sys.argv[3]))) for p in (problem, dense)]
+            print(1e6 * min(medians))
+        return
+    with open(sys.argv[2], "wb") as file:
+        for problem in problems:
+            array.array("d", solvers.qp(*problem, options=ACCURATE)["x"]).tofile(file)
+
+
+main()

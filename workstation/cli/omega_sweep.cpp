@@ -1,0 +1,175 @@
+// bess-train omega-sweep: the trade-off of the paper's loss, measured.
+#include <fmt/core.h>
+
+#include <charconv>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "shared/host/file.h"
+#include "shared/host/json.h"
+#include "shared/host/user_error.h"
+#include "workstation/cli/commands.h"
+#include "workstation/cli/common_options.h"
+#include "workstation/cli/price_input.h"
+#include "workstation/report/omega_sweep.h"
+#include "workstation/student/correct_and_prove.h"
+#include "workstation/student/student_policy.h"
+
+namespace bess {
+namespace {
+
+constexpr double kOmegaMin = 1e-8;  // as [distil] omega
+constexpr double kOmegaMax = 1;
+constexpr const char* kCsvName = "omega_sweep.csv";
+
+struct OmegaSweepArguments {
+  CommonOptions common;
+  PriceInput price_input;
+  std::string prices;
+  std::string teacher;
+  std::string out;
+  std::vector<std::string> omegas = {"1e-6", "1e-5", "1e-4", "1e-3", "1e-2", "1e-1", "1"};
+  std::optional<int> epochs;
+  bool json = false;
+};
+
+std::vector<double> parse_omegas(const std::vector<std::string>& words) {
+  std::vector<double> omegas;
+  for (const std::string& word : words) {
+    double omega = 0;
+    const char* const end = word.data() + word.size();
+    const auto read = std::from_chars(word.data(), end, omega);
+    if (read.ec != std::errc() || read.ptr != end || !(omega >= kOmegaMin && omega <= kOmegaMax)) {
+      fail("--omega {}: use numbers of {:g} to {:g}", word, kOmegaMin, kOmegaMax);
+    }
+    omegas.push_back(omega);
+  }
+  return omegas;
+}
+
+/// Decides as the teacher and counts how often the student would have decided the same.
+class AgreementCounter final : public Policy {
+ public:
+  AgreementCounter(const Teacher& teacher, const StudentNet& student)
+      : teacher_(teacher), student_(student) {}
+  [[nodiscard]] Action decide(const MarketStep& step, std::size_t index,
+                              double soc_frac) const override {
+    const Action action = teacher_.decide(step, index, soc_frac);
+    ++decisions_;
+    if (student_.decide(step, index, soc_frac) == action) ++agreed_;
+    return action;
+  }
+  [[nodiscard]] double share() const {
+    return static_cast<double>(agreed_) / static_cast<double>(decisions_);
+  }
+
+ private:
+  TeacherPolicy teacher_;
+  StudentPolicy student_;
+  mutable std::int64_t decisions_ = 0;
+  mutable std::int64_t agreed_ = 0;
+};
+
+/// What every student is distilled from and judged on.
+struct Bench {
+  const Teacher& teacher;
+  const Matrix& visited;
+  const MarketSteps& market;
+  std::vector<MarketDay> days;
+  EvaluationOptions evaluation;
+};
+
+OmegaPoint measure(const Bench& bench, const DistilOptions& options) {
+  const CorrectionResult result =
+      correct_and_prove(bench.teacher, bench.visited, options, interruption());
+  if (interruption()) throw Interrupted{};
+  const StudentFile& student = student_of(result.verdict);
+  AgreementCounter counter(bench.teacher, student.net);
+  evaluate(bench.market, bench.days, counter, bench.evaluation);
+  StudentPolicy policy(student.net);
+  return {options.omega, student.certificate, result.curve.back().visited_loss, counter.share(),
+          evaluate(bench.market, bench.days, policy, bench.evaluation)};
+}
+
+void print_json(const OmegaPoint& point, const Evaluation& teacher) {
+  const PairedDifference gain = paired_difference(point.evaluation, teacher);
+  const Json json = Json::object(
+      {{"omega", point.omega},
+       {"states_checked", point.certificate.states_checked},
+       {"violations_property_1", point.certificate.violations_property_1},
+       {"violations_property_2", point.certificate.violations_property_2},
+       {"violations_property_3", point.certificate.violations_property_3},
+       {"divergence_nats", point.divergence_nats},
+       {"agreement", Decimals{point.agreement, 6}},
+       {"profit_eur_per_day_per_mwh", Decimals{point.evaluation.profit_eur_per_day_per_mwh(), 4}},
+       {"standard_error", Decimals{point.evaluation.standard_error(), 4}},
+       {"gain_over_teacher", Decimals{gain.mean, 4}},
+       {"gain_standard_error", Decimals{gain.standard_error, 4}}});
+  fmt::print("{}\n", json.line());
+  std::fflush(stdout);  // each takes minutes
+}
+
+void run_omega_sweep(const OmegaSweepArguments& options) {
+  const std::vector<double> omegas = parse_omegas(options.omegas);
+  RunConfig config = options.common.resolve();
+  config.distil.method = CorrectionMethod::kLayer;
+  config.distil.repair_rounds = 0;
+  if (options.epochs) config.distil.epochs = *options.epochs;
+  const std::filesystem::path out = options.out;
+  require_writable(out / kCsvName);
+  const Teacher teacher = load_teacher(options.teacher);
+  const MarketSteps market =
+      make_market_steps(options.price_input.read(options.prices), config.market);
+  watch_interruption();
+  const Matrix visited = visited_inputs(teacher, market, config.battery, config.distil);
+  const Bench bench{teacher,
+                    visited,
+                    market,
+                    market.days_of(Split::kHeldOut),
+                    {config.battery, config.initial_soc_frac, true}};
+  if (bench.days.empty()) {
+    fail("{}: no complete validation or test day (21 to the end of a month)", options.prices);
+  }
+  TeacherPolicy teacher_policy(teacher);
+  const Evaluation of_teacher = evaluate(market, bench.days, teacher_policy, bench.evaluation);
+  std::vector<OmegaPoint> points;
+  for (const double omega : omegas) {
+    config.distil.omega = omega;
+    points.push_back(measure(bench, config.distil));
+    if (options.json) print_json(points.back(), of_teacher);
+  }
+  write_file(out / kCsvName, omega_csv(points, of_teacher));
+  draw_figure(omega_figure(points, of_teacher), out);
+  if (!options.json) fmt::print("{}", format_omega_table(points, of_teacher));
+}
+
+}  // namespace
+
+void add_omega_sweep_command(ProgramCommand& app) {
+  auto options = std::make_shared<OmegaSweepArguments>();
+  ProgramCommand command = app.subcommand(
+      "omega-sweep", "The layer's trade-off: violations, fidelity and profit for each omega");
+  command.option("--prices", options->prices, "Minute file (.csv or .csv.gz)").required();
+  options->price_input.add(command);
+  command.option("--teacher", options->teacher, "Teacher file").required();
+  command.option("--out", options->out, "Folder for omega_sweep.csv and omega_sweep.svg")
+      .required();
+  command
+      .option("--omega", options->omegas,
+              "One or more trade-offs; each is a distillation through the layer without repair")
+      .with_default();
+  command.option("--epochs", options->epochs, "Of each distillation").positive();
+  command.flag("--json", options->json, "One JSON object a line and omega");
+  options->common.add_market(command);
+  options->common.add_config(command);
+  options->common.add_seed_and_threads(command);
+  command.footer(
+      "Examples:\n"
+      "  bess-train omega-sweep --prices market.csv.gz --teacher teacher.bin --out sweep\n"
+      "  bess-train omega-sweep --prices market.csv.gz --teacher teacher.bin --out sweep --omega "
+      "1e-5 1e-4 1e-3 --epochs 200 --json");
+  command.runs([options] { run_omega_sweep(*options); });
+}
+
+}  // namespace bess

@@ -1,0 +1,117 @@
+#include "workstation/correction/active_set_factors.h"
+
+#include <cmath>
+#include <utility>
+
+namespace bess {
+namespace {
+/// A row of J lies across its columns: reading it takes as long as reading so many columns.
+constexpr Eigen::Index kColumnsPerRow = 8;
+}  // namespace
+
+ActiveSetFactors::ActiveSetFactors(const Eigen::MatrixXd& inverse_root)
+    : start_(inverse_root.transpose()),
+      basis_(start_),
+      triangle_(start_.rows(), start_.rows()),
+      scratch_(start_.rows()) {}
+
+void ActiveSetFactors::reset() {
+  basis_ = start_;
+  active_ = 0;
+}
+
+void ActiveSetFactors::image(const Eigen::VectorXd& normal, Eigen::Index terms,
+                             Eigen::VectorXd& d) const {
+  if (terms * kColumnsPerRow > size()) {
+    d.noalias() = basis_.transpose() * normal;
+    return;
+  }
+  d.setZero();
+  for (Eigen::Index i = 0; i < size(); ++i) {
+    if (normal[i] != 0) d += normal[i] * basis_.row(i).transpose();
+  }
+}
+
+void ActiveSetFactors::direction(const Eigen::VectorXd& d, Eigen::VectorXd& z) const {
+  z.setZero();
+  for (Eigen::Index k = active_; k < size(); ++k) {
+    if (d[k] != 0) z += d[k] * basis_.col(k);
+  }
+}
+
+void ActiveSetFactors::project_free(const Eigen::VectorXd& v, Eigen::VectorXd& free) {
+  const Eigen::Index count = size() - active_;
+  scratch_.tail(count).noalias() = basis_.rightCols(count).transpose() * v;
+  free.noalias() = basis_.rightCols(count) * scratch_.tail(count);
+}
+
+double ActiveSetFactors::independence(const Eigen::VectorXd& d) const {
+  return d.tail(size() - active_).norm();
+}
+
+void ActiveSetFactors::solve(const Eigen::VectorXd& d, Eigen::VectorXd& r) const {
+  r.head(active_) = d.head(active_);
+  for (Eigen::Index j = active_ - 1; j >= 0; --j) {
+    if (r[j] == 0) continue;
+    r[j] /= triangle_(j, j);
+    r.head(j) -= r[j] * triangle_.col(j).head(j);
+  }
+}
+
+void ActiveSetFactors::solve_transposed(Eigen::VectorXd& y) const {
+  triangle_.topLeftCorner(active_, active_)
+      .transpose()
+      .triangularView<Eigen::Lower>()
+      .solveInPlace(y.head(active_));
+}
+
+void ActiveSetFactors::add_combination(const Eigen::VectorXd& y, Eigen::VectorXd& x) const {
+  x.noalias() += basis_.leftCols(active_) * y.head(active_);
+}
+
+/// The column that the row meets most becomes the first of J2. Then d2 becomes (corner, 0, ..., 0) by
+/// I - 2 w w' / w'w with w = d2 - corner e1, and J2 changes by the outer product of
+/// J2 w = z - corner J2 e1 and 2 w / w'w: w is 0 where d2 is.
+void ActiveSetFactors::add(Eigen::VectorXd& d, Eigen::VectorXd& z) {
+  Eigen::Index most = 0;
+  d.tail(size() - active_).cwiseAbs().maxCoeff(&most);
+  most += active_;
+  std::swap(d[most], d[active_]);
+  basis_.col(most).swap(basis_.col(active_));
+
+  direction(d, z);
+  const double norm = independence(d);
+  const double corner = d[active_] > 0 ? -norm : norm;
+  scratch_ = (z - corner * basis_.col(active_)) / (norm * (norm + std::fabs(d[active_])));
+  triangle_.col(active_).head(active_) = d.head(active_);
+  triangle_(active_, active_) = corner;
+  d[active_] -= corner;
+  for (Eigen::Index k = active_; k < size(); ++k) {
+    if (d[k] != 0) basis_.col(k) -= d[k] * scratch_;
+  }
+  ++active_;
+}
+
+void ActiveSetFactors::drop(Eigen::Index position) {
+  --active_;
+  for (Eigen::Index j = position; j < active_; ++j) {
+    triangle_.col(j).head(j + 2) = triangle_.col(j + 1).head(j + 2);
+  }
+  // Each column now has one entry below the diagonal; it is turned away, in J as in the columns behind.
+  for (Eigen::Index j = position; j < active_; ++j) {
+    const double length = std::hypot(triangle_(j, j), triangle_(j + 1, j));
+    const double cosine = triangle_(j, j) / length;
+    const double sine = triangle_(j + 1, j) / length;
+    for (Eigen::Index k = j; k < active_; ++k) {
+      const double upper = triangle_(j, k);
+      const double lower = triangle_(j + 1, k);
+      triangle_(j, k) = cosine * upper + sine * lower;
+      triangle_(j + 1, k) = cosine * lower - sine * upper;
+    }
+    scratch_ = cosine * basis_.col(j) + sine * basis_.col(j + 1);
+    basis_.col(j + 1) = cosine * basis_.col(j + 1) - sine * basis_.col(j);
+    basis_.col(j) = scratch_;
+  }
+}
+
+}  // namespace bess

@@ -1,0 +1,304 @@
+#include "workstation/correction/quadratic_program.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace bess {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Rows have unit length in the metric of G^-1, so slacks and multipliers are distances; all tolerances on
+// them are times the size of the terms that a slack is summed from.
+constexpr double kViolation = 1e-12;     ///< a row is violated by more than this
+constexpr double kContradiction = 1e-9;  ///< rows clash by more than this; below, they just meet
+constexpr double kWeakly = 1e-9;         ///< to the derivative, slacks and multipliers below are 0
+constexpr double kDrift = 1e-11;     ///< active rows this far from tight: the factors have drifted
+constexpr double kRounding = 4e-16;  ///< an entry of d, whose length is 1, below this is 0
+/// |d2| of a unit row that depends on the active ones: rounding leaves 1e-13 at 512 variables.
+constexpr double kDependent = 1e-9;
+/// Of the largest: smaller entries of r are rounding, and limit no step.
+constexpr double kFallingMultiplier = 1e-10;
+constexpr int kRebuildsMax = 3;
+constexpr int kStepsMaxPerRow = 50;
+
+Eigen::MatrixXd inverse_root_of(const Eigen::MatrixXd& hessian) {
+  const Eigen::LLT<Eigen::MatrixXd> factor(hessian);
+  if (factor.info() != Eigen::Success) {
+    throw std::invalid_argument("quadratic program: the Hessian is not positive definite");
+  }
+  return factor.matrixL().solve(Eigen::MatrixXd::Identity(hessian.rows(), hessian.cols()));
+}
+
+}  // namespace
+
+QuadraticProgram::QuadraticProgram(LinearConstraints constraints)
+    : QuadraticProgram(
+          std::move(constraints),
+          Eigen::MatrixXd::Identity(constraints.normals.cols(), constraints.normals.cols())) {}
+
+QuadraticProgram::QuadraticProgram(const Eigen::MatrixXd& hessian, LinearConstraints constraints)
+    : QuadraticProgram(std::move(constraints), inverse_root_of(hessian)) {}
+
+QuadraticProgram::QuadraticProgram(LinearConstraints&& constraints,
+                                   const Eigen::MatrixXd& inverse_root)
+    : rows_(std::move(constraints)), factors_(inverse_root) {
+  const Eigen::Index variables = rows_.normals.cols();
+  const Eigen::Index count = rows_.normals.rows();
+  for (Eigen::VectorXd* v : {&free_minimum_, &x_, &d_, &z_, &r_}) v->setZero(variables);
+  for (Eigen::VectorXd* v : {&row_scale_, &multipliers_}) v->setZero(count);
+  active_.reserve(static_cast<std::size_t>(variables));
+  clash_.reserve(static_cast<std::size_t>(variables) + 1);
+  is_active_.assign(static_cast<std::size_t>(count), 0);
+  is_neglected_.assign(static_cast<std::size_t>(count), 0);
+  scale_rows(inverse_root);
+}
+
+/// A row of zeros stays one: it is satisfied, or clashes by itself.
+void QuadraticProgram::scale_rows(const Eigen::MatrixXd& inverse_root) {
+  rows_.normals.makeCompressed();
+  for (int i = 0; i < rows_.normals.rows(); ++i) {
+    d_.setZero();
+    for (Rows::InnerIterator term(rows_.normals, i); term; ++term) {
+      d_ += term.value() * inverse_root.col(term.col());
+    }
+    const double length = d_.norm();
+    row_scale_[i] = length > 0 ? 1 / length : 1;
+    for (Rows::InnerIterator term(rows_.normals, i); term; ++term) {
+      term.valueRef() *= row_scale_[i];
+    }
+    rows_.bounds[i] *= row_scale_[i];
+  }
+}
+
+QuadraticOutcome QuadraticProgram::solve(const Eigen::VectorXd& g) {
+  start(g);
+  for (int row = 0; row < rows_.equalities; ++row) {
+    if (!take_in(row, slack_of(row) > 0 ? -1 : 1)) return QuadraticOutcome::kContradiction;
+  }
+  const auto steps_max = kStepsMaxPerRow * (rows_.normals.rows() + rows_.normals.cols());
+  int rebuilds = 0;
+  while (steps_ <= steps_max) {
+    int row = most_violated();
+    if (row < 0) {
+      while (recompute() > kDrift * scale_ && rebuilds < kRebuildsMax) {
+        rebuild();
+        ++rebuilds;
+      }
+      row = most_violated();
+      if (row < 0) {
+        publish_multipliers();
+        return QuadraticOutcome::kSolved;
+      }
+    }
+    if (!take_in(row, 1)) return QuadraticOutcome::kContradiction;
+  }
+  return QuadraticOutcome::kStalled;
+}
+
+void QuadraticProgram::start(const Eigen::VectorXd& g) {
+  factors_.reset();
+  active_.clear();
+  clash_.clear();
+  std::ranges::fill(is_active_, 0);
+  std::ranges::fill(is_neglected_, 0);
+  steps_ = 0;
+  factors_.project_free(g, free_minimum_);
+  x_ = free_minimum_;
+  measure();
+}
+
+void QuadraticProgram::measure() {
+  scale_ = std::numeric_limits<double>::min();
+  for (int i = 0; i < rows_.normals.rows(); ++i) {
+    double size = std::fabs(rows_.bounds[i]);
+    for (Rows::InnerIterator term(rows_.normals, i); term; ++term) {
+      size += std::fabs(term.value() * x_[term.col()]);
+    }
+    scale_ = std::max(scale_, size);
+  }
+}
+
+/// d = J'n of the row times its sign, without the rounding of what is 0.
+void QuadraticProgram::image_of(int row, double sign) {
+  z_.setZero();
+  for (Rows::InnerIterator term(rows_.normals, row); term; ++term) {
+    z_[term.col()] = sign * term.value();
+  }
+  const Eigen::Index terms =
+      rows_.normals.outerIndexPtr()[row + 1] - rows_.normals.outerIndexPtr()[row];
+  factors_.image(z_, terms, d_);
+  d_ = (d_.array().abs() < kRounding).select(0.0, d_);
+}
+
+double QuadraticProgram::slack_of(int row) const {
+  double sum = -rows_.bounds[row];
+  for (Rows::InnerIterator term(rows_.normals, row); term; ++term) {
+    sum += term.value() * x_[term.col()];
+  }
+  return sum;
+}
+
+/// The inequality that x violates most, or -1.
+int QuadraticProgram::most_violated() const {
+  int worst = -1;
+  double least = -kViolation * scale_;
+  for (int i = rows_.equalities; i < rows_.normals.rows(); ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    if (is_active_[at] != 0 || is_neglected_[at] != 0) continue;
+    const double slack = slack_of(i);
+    if (slack < least) {
+      least = slack;
+      worst = i;
+    }
+  }
+  return worst;
+}
+
+/// How far the multipliers can follow -r until that of an inequality is 0.
+QuadraticProgram::Limit QuadraticProgram::limit_by_multipliers() const {
+  Limit limit{kInfinity, 0};
+  if (active_.empty()) return limit;
+  const double falling = kFallingMultiplier * r_.head(factors_.active()).cwiseAbs().maxCoeff();
+  for (std::size_t k = 0; k < active_.size(); ++k) {
+    const double fall = r_[static_cast<Eigen::Index>(k)];
+    if (active_[k].row < rows_.equalities || fall <= falling) continue;
+    const double step = active_[k].multiplier / fall;
+    if (step < limit.step) limit = {step, k};
+  }
+  return limit;
+}
+
+/// Step 2 of the paper: towards the row until it is tight, letting go of active rows on the way. False when
+/// the row contradicts the active ones.
+bool QuadraticProgram::take_in(int row, double sign) {
+  double multiplier = 0;
+  while (true) {
+    ++steps_;
+    image_of(row, sign);
+    factors_.solve(d_, r_);
+    const double independence = factors_.independence(d_);
+    const bool is_dependent = independence <= kDependent;
+    const double violation = std::max(0.0, -sign * slack_of(row));
+    const double full = is_dependent ? kInfinity : violation / (independence * independence);
+    const Limit limit = limit_by_multipliers();
+    const double step = std::min(full, limit.step);
+    if (step == kInfinity) {
+      if (violation > kContradiction * scale_) {
+        keep_clash(row, sign);
+        return false;
+      }
+      is_neglected_[static_cast<std::size_t>(row)] = 1;
+      return true;
+    }
+    for (std::size_t k = 0; k < active_.size(); ++k) {
+      ActiveRow& other = active_[k];
+      other.multiplier -= step * r_[static_cast<Eigen::Index>(k)];
+      if (other.row >= rows_.equalities) other.multiplier = std::max(0.0, other.multiplier);
+    }
+    multiplier += step;
+    if (full <= limit.step) {
+      factors_.add(d_, z_);
+      x_ += step * z_;
+      active_.push_back({row, sign, multiplier});
+      is_active_[static_cast<std::size_t>(row)] = 1;
+      std::ranges::fill(is_neglected_, 0);
+      return true;
+    }
+    if (!is_dependent) {
+      factors_.direction(d_, z_);
+      x_ += step * z_;
+    }
+    let_go(limit.position);
+  }
+}
+
+/// Takes the row in as it is, unless it depends on the active ones.
+bool QuadraticProgram::hold(int row, double sign) {
+  image_of(row, sign);
+  if (factors_.independence(d_) <= kDependent) return false;
+  factors_.add(d_, z_);
+  is_active_[static_cast<std::size_t>(row)] = 1;
+  return true;
+}
+
+void QuadraticProgram::let_go(std::size_t position) {
+  factors_.drop(static_cast<Eigen::Index>(position));
+  is_active_[static_cast<std::size_t>(active_[position].row)] = 0;
+  active_.erase(active_.begin() + static_cast<std::ptrdiff_t>(position));
+}
+
+/// The row is the sum of r times active ones, and no r of an inequality is positive: row - sum = 0 while
+/// its bounds sum to the violation. The active rows are independent, so there is no other such sum:
+/// without any one of these rows the others can be satisfied.
+void QuadraticProgram::keep_clash(int row, double sign) {
+  const double least =
+      kFallingMultiplier * std::max(1.0, r_.head(factors_.active()).cwiseAbs().sum());
+  clash_.push_back({row, sign * row_scale_[row]});
+  for (std::size_t k = 0; k < active_.size(); ++k) {
+    const double part = -r_[static_cast<Eigen::Index>(k)];
+    if (std::fabs(part) <= least) continue;
+    const ActiveRow& other = active_[k];
+    clash_.push_back({other.row, part * other.sign * row_scale_[other.row]});
+  }
+}
+
+/// x and multipliers of the active set, from the factors alone:
+///   y = R^-T (b - N'G^-1 g)    x = G^-1 g + J1 y    multipliers = R^-1 y
+/// Returns how far the active rows are from tight.
+double QuadraticProgram::recompute() {
+  x_ = free_minimum_;
+  for (std::size_t k = 0; k < active_.size(); ++k) {
+    d_[static_cast<Eigen::Index>(k)] = -active_[k].sign * slack_of(active_[k].row);
+  }
+  factors_.solve_transposed(d_);
+  factors_.add_combination(d_, x_);
+  factors_.solve(d_, r_);
+  measure();
+  double distance = 0;
+  for (std::size_t k = 0; k < active_.size(); ++k) {
+    ActiveRow& row = active_[k];
+    row.multiplier = r_[static_cast<Eigen::Index>(k)];
+    if (row.row >= rows_.equalities) row.multiplier = std::max(0.0, row.multiplier);
+    distance = std::max(distance, std::fabs(slack_of(row.row)));
+  }
+  return distance;
+}
+
+/// The factors of the active set from the start.
+void QuadraticProgram::rebuild() {
+  factors_.reset();
+  std::erase_if(active_, [this](const ActiveRow& row) {
+    is_active_[static_cast<std::size_t>(row.row)] = 0;
+    return !hold(row.row, row.sign);
+  });
+}
+
+void QuadraticProgram::publish_multipliers() {
+  multipliers_.setZero();
+  for (const ActiveRow& row : active_) {
+    multipliers_[row.row] = row.multiplier * row.sign * row_scale_[row.row];
+  }
+}
+
+void QuadraticProgram::backward(const Eigen::VectorXd& gradient_x, Eigen::VectorXd& gradient_g) {
+  const double weak = kWeakly * scale_;
+  // Held: every tight row.
+  for (int row = rows_.equalities; row < rows_.normals.rows(); ++row) {
+    if (is_active_[static_cast<std::size_t>(row)] != 0 || slack_of(row) > weak) continue;
+    if (hold(row, 1)) active_.push_back({row, 1, 0});
+  }
+  factors_.project_free(gradient_x, gradient_g);
+  // Let go: those without a multiplier.
+  const std::size_t held = active_.size();
+  for (std::size_t k = held; k-- > 0;) {
+    if (active_[k].row >= rows_.equalities && active_[k].multiplier <= weak) let_go(k);
+  }
+  if (active_.size() == held) return;
+  factors_.project_free(gradient_x, z_);
+  gradient_g = (gradient_g + z_) / 2;
+}
+
+}  // namespace bess
