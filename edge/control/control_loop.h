@@ -402,13 +402,16 @@ class ControlLoop {
   void decide(CycleRecord& record) {
     const std::int64_t start_ns = clock_.monotonic_ns();
     take_wishes(record);
+    RuleLimits rules;
     const PriceReport& price = record.price;
     if (price.has_row) price_level_.observe(price.minute_utc_s, price.price_centi_eur_per_mwh);
     if (record.has_measurement && price.has_row) {
       const LocalMinute now = local_minute_of(record.utc_s);
       record.context_class = student_context_class(now, price_level_);
-      record.student_action = decide_with_student(make_lattice_state(
-          now, record.context_class, record.measurement.soc_e4, price.price_centi_eur_per_mwh));
+      const LatticeState state = make_lattice_state(
+          now, record.context_class, record.measurement.soc_e4, price.price_centi_eur_per_mwh);
+      record.student_action = decide_with_student(state);
+      rules = student_rule_limits(now, state, price.price_centi_eur_per_mwh);
       record.has_student_action = true;
     }
     reversal_cap_.advance(record.utc_s);
@@ -432,6 +435,7 @@ class ControlLoop {
          .held_power_w = record.hold.power_w,
          .reserve_soc_e4 = record.reserve_soc_e4,
          .full_charge = full_charge_.wish(price.price_centi_eur_per_mwh, price_level_),
+         .rules = rules,
          .site = site_range(decided_utc_s, Margin::kWhole)});
     record.reason = decision.reason;
     record.ordered_power_w = decision.power_w;

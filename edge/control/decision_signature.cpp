@@ -48,8 +48,10 @@ GuardInputs undisturbed_inputs(std::int64_t now_utc_s, std::int32_t soc_e4, cons
   in.price_minute_utc_s = price_minute_utc_s;
   in.price_centi_eur_per_mwh = price_centi_eur_per_mwh;
   const LocalMinute now = local_minute_of(now_utc_s);
-  in.student_action = decide_with_student(
-      make_lattice_state(now, student_context_class(now, level), soc_e4, price_centi_eur_per_mwh));
+  const LatticeState state =
+      make_lattice_state(now, student_context_class(now, level), soc_e4, price_centi_eur_per_mwh);
+  in.student_action = decide_with_student(state);
+  in.rules = student_rule_limits(now, state, price_centi_eur_per_mwh);
   return in;
 }
 

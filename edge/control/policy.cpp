@@ -12,13 +12,27 @@ std::int16_t student_context_class(const LocalMinute& now, const PriceLevel& lev
 
 Action decide_with_student(const LatticeState& state) { return kExportedStudent.decide(state); }
 
+RuleLimits student_rule_limits(const LocalMinute& now, const LatticeState& state,
+                               std::int32_t price_centi_eur_per_mwh) {
+  return rule_limits_at(kExportedGuardRules,
+                        {.price_eur_per_mwh = whole_price_of(price_centi_eur_per_mwh),
+                         .soc_index = state.soc_index,
+                         .quarter_hour = state.quarter_hour,
+                         .month = static_cast<std::int16_t>(now.month),
+                         .context_class = state.context_class});
+}
+
+int guard_rule_count() { return kExportedGuardRuleCount; }
+
+const char* guard_rule_name(int index) { return exported_guard_rule_name(index); }
+
 int count_student_self_check_failures() { return count_exported_self_check_failures(); }
 
-int student_self_check_count() { return kExportedSelfCheckCount; }
+int student_self_check_count() { return kExportedSelfCheckCount + kExportedRuleCheckCount; }
 
 const char* student_provenance() { return BESS_STUDENT_PROVENANCE; }
 
-std::uint32_t student_hash() { return BESS_STUDENT_WEIGHTS_HASH; }
+std::uint32_t student_hash() { return kExportedHash; }
 
 PriceThresholds student_thresholds() { return kExportedThresholds; }
 

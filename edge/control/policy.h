@@ -5,6 +5,7 @@
 
 #include "shared/action.h"
 #include "shared/context_classes.h"
+#include "shared/decision_rule.h"
 #include "shared/features.h"
 #include "shared/price_level.h"
 #include "shared/price_thresholds.h"
@@ -18,10 +19,18 @@ std::int16_t student_context_class(const LocalMinute& now, const PriceLevel& lev
 /// What the exported student would do.
 Action decide_with_student(const LatticeState& state);
 
+/// What the operator's rules that came with the student leave to decide.
+RuleLimits student_rule_limits(const LocalMinute& now, const LatticeState& state,
+                               std::int32_t price_centi_eur_per_mwh);
+/// Of the rules that the guard enforces.
+int guard_rule_count();
+const char* guard_rule_name(int index);
+
 /// 0 when this machine computes every golden vector of the weight header bit for bit.
 int count_student_self_check_failures();
 int student_self_check_count();
 const char* student_provenance();
+/// Of the weights, and of the rules that the guard enforces where there are any.
 std::uint32_t student_hash();
 /// What the exported student was proved for; the guard's own thresholds may be others.
 PriceThresholds student_thresholds();

@@ -69,6 +69,23 @@ GuardDecision SafetyGuard::find_wish(const GuardInputs& in) const {
     return {.power_w = clamp_to(in.held_power_w, -settings_.power_w, settings_.power_w),
             .reason = Reason::kHeld};
   }
+  GuardDecision decision = find_wish_of_price(in);
+  apply_rules(in.rules, decision);
+  return decision;
+}
+
+/// To the nearest action that the rules leave, and to the power that they leave of it.
+void SafetyGuard::apply_rules(const RuleLimits& rules, GuardDecision& decision) const {
+  const int sign = decision.power_w > 0 ? 1 : decision.power_w < 0 ? -1 : 0;
+  const int allowed = power_sign(nearest_allowed(rules.actions, static_cast<Action>(sign + 1)));
+  const std::int32_t power_w = allowed == sign ? decision.power_w : allowed * settings_.power_w;
+  const auto most_w = static_cast<std::int32_t>(
+      std::int64_t{settings_.power_w} * rules.power_permille_max / kFullPowerPermille);
+  const std::int32_t ruled_w = clamp_to(power_w, -most_w, most_w);
+  if (ruled_w != decision.power_w) decision = {.power_w = ruled_w, .reason = Reason::kRule};
+}
+
+GuardDecision SafetyGuard::find_wish_of_price(const GuardInputs& in) const {
   const Action of_price = action_beyond_thresholds(in.price_centi_eur_per_mwh);
   if (of_price == Action::kIdle) return find_wish_between_thresholds(in);
   const Reason of_threshold = of_price == Action::kCharge ? Reason::kPriceLow : Reason::kPriceHigh;

@@ -1,7 +1,7 @@
 // The guard between student and battery [SPEC 7]: pure integers, no memory but the SoC hysteresis.
 // Precedence: stop reasons (clock, link, alarm, temperature, off-grid, supervision, price) > limits of
-// SoC, reserve, cycles, reversals, power and site > ramp > an operator's hold > price thresholds >
-// full charge > student. Every intervention carries its reason. A hold needs no price: its stop
+// SoC, reserve, cycles, reversals, power and site > ramp > an operator's hold > the operator's rules > price
+// thresholds > full charge > student. Every intervention carries its reason. A hold needs no price: its stop
 // reasons do not count meanwhile.
 #pragma once
 
@@ -10,6 +10,7 @@
 #include "edge/control/control_types.h"
 #include "edge/control/full_charge.h"
 #include "edge/control/site_range.h"
+#include "shared/decision_rule.h"
 #include "shared/price_thresholds.h"
 
 namespace bess {
@@ -45,6 +46,7 @@ struct GuardInputs {
   std::int32_t held_power_w = 0;    ///< of that hold
   std::int32_t reserve_soc_e4 = 0;  ///< kept for a black-out at this hour; 0 = none
   FullChargeWish full_charge = FullChargeWish::kNone;
+  RuleLimits rules{};  ///< of the operator at this state
   SiteRange site{};
 };
 
@@ -68,8 +70,10 @@ class SafetyGuard {
   [[nodiscard]] bool find_stop_reason(const GuardInputs& in, Reason& reason) const;
   [[nodiscard]] bool find_price_stop_reason(const GuardInputs& in, Reason& reason) const;
   [[nodiscard]] GuardDecision find_wish(const GuardInputs& in) const;
+  [[nodiscard]] GuardDecision find_wish_of_price(const GuardInputs& in) const;
   [[nodiscard]] GuardDecision find_wish_between_thresholds(const GuardInputs& in) const;
   [[nodiscard]] Action action_beyond_thresholds(std::int32_t price_centi_eur_per_mwh) const;
+  void apply_rules(const RuleLimits& rules, GuardDecision& decision) const;
   void update_soc_latches(std::int32_t soc_e4, std::int32_t reserve_soc_e4);
   void apply_ramp(std::int32_t previous_power_w, GuardDecision& decision) const;
   void apply_limits(const GuardInputs& in, GuardDecision& decision) const;

@@ -64,7 +64,8 @@ struct StableCodes<Reason> {
                                      Reason::kMeterLost,
                                      Reason::kImportLimit,
                                      Reason::kExportLimit,
-                                     Reason::kQuarterHourPeak};
+                                     Reason::kQuarterHourPeak,
+                                     Reason::kRule};
   static constexpr auto kNameOf = reason_name;
 };
 

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "edge/control/policy.h"
 #include "shared/utc_text.h"
 
 namespace bess {
@@ -27,6 +28,9 @@ std::string wishes_note(const ControlSettings& control, const Hold& hold, std::i
     const std::int16_t now_e4 = reserve_soc_e4_at(control.reserve, local_minute_of(now_utc_s));
     add_line(note, "reserve    SoC %.1f %% at this hour, %d periods in all", now_e4 / 100.0,
              control.reserve.size());
+  }
+  for (int r = 0; r < guard_rule_count(); ++r) {
+    add_line(note, "rule       %s", guard_rule_name(r));
   }
   if (control.full_charge_every_days > 0) {
     add_line(note, "full       every %d days, with %d W", control.full_charge_every_days,

@@ -6,6 +6,9 @@
 
 #include <student_weights.h>
 
+#include <array>
+
+#include "shared/decision_rule.h"
 #include "shared/nn/student_net.h"
 #include "shared/price_thresholds.h"
 
@@ -59,6 +62,52 @@ static_assert(BESS_STUDENT_STATES_CHECKED == kLatticeStateCount &&
                   BESS_STUDENT_VIOLATIONS_PROPERTY_3 == 0,
               "student_weights.h is not proved over the whole lattice: export it again");
 
+/// What the guard enforces of the operator's rules; a header without them has no table.
+#ifdef BESS_STUDENT_GUARD_RULE_COUNT
+inline constexpr int kExportedGuardRuleCount = BESS_STUDENT_GUARD_RULE_COUNT;
+inline constexpr int kExportedRuleCheckCount = BESS_STUDENT_RULE_CHECK_COUNT;
+
+namespace detail {
+constexpr std::array<GuardRule, kExportedGuardRuleCount> assemble_exported_guard_rules() {
+  std::array<GuardRule, kExportedGuardRuleCount> rules{};
+  for (std::size_t r = 0; r < rules.size(); ++r) rules[r] = guard_rule_of(bess_student_guard_rule[r]);
+  return rules;
+}
+}  // namespace detail
+
+inline constexpr auto kExportedGuardRules = detail::assemble_exported_guard_rules();
+static_assert(BESS_STUDENT_RULES_HASH == ruled_hash(BESS_STUDENT_WEIGHTS_HASH, kExportedGuardRules),
+              "the rules of student_weights.h are damaged or were edited by hand: export it again");
+
+constexpr const char* exported_guard_rule_name(int index) {
+  return bess_student_guard_rule_name[index];
+}
+
+/// Number of golden points at which this machine finds other limits than the exporter: must be 0.
+constexpr int count_exported_rule_check_failures() {
+  int failures = 0;
+  for (int i = 0; i < kExportedRuleCheckCount; ++i) {
+    const auto& p = bess_student_rule_check_point[i];
+    const auto& limits = bess_student_rule_check_limits[i];
+    const RulePoint point{p[0], static_cast<std::int16_t>(p[1]), static_cast<std::int16_t>(p[2]),
+                          static_cast<std::int16_t>(p[3]), static_cast<std::int16_t>(p[4])};
+    const RuleLimits expected{static_cast<ActionSet>(limits[0]), limits[1]};
+    if (rule_limits_at(kExportedGuardRules, point) != expected) ++failures;
+  }
+  return failures;
+}
+#else
+inline constexpr int kExportedGuardRuleCount = 0;
+inline constexpr int kExportedRuleCheckCount = 0;
+inline constexpr std::array<GuardRule, 0> kExportedGuardRules{};
+constexpr const char* exported_guard_rule_name(int) { return ""; }
+constexpr int count_exported_rule_check_failures() { return 0; }
+#endif
+
+/// Of the net and of the rules that stand above it.
+inline constexpr std::uint32_t kExportedHash =
+    ruled_hash(BESS_STUDENT_WEIGHTS_HASH, kExportedGuardRules);
+
 inline constexpr int kExportedSelfCheckCount = BESS_STUDENT_SELF_CHECK_COUNT;
 static_assert(kExportedSelfCheckCount > 0, "student_weights.h carries no self-check vectors");
 
@@ -74,9 +123,9 @@ constexpr StudentSelfCheck exported_self_check(int index) {
           .logits = {z[0], z[1], z[2]}};
 }
 
-/// Number of self-check vectors that this machine answers differently from the exporter: must be 0.
+/// Number of self-check vectors, those of the rules included, that this machine answers differently from the exporter: must be 0.
 inline int count_exported_self_check_failures() {
-  int failures = 0;
+  int failures = count_exported_rule_check_failures();
   for (int i = 0; i < kExportedSelfCheckCount; ++i) {
     const StudentSelfCheck check = exported_self_check(i);
     std::int16_t x[kStudentInputs] = {};

@@ -7,6 +7,7 @@ void add_commands(ProgramCommand& app) {
   add_prices_commands(app);
   add_train_command(app);
   add_distil_command(app);
+  add_rules_commands(app);
   add_verify_command(app);
   add_evaluate_command(app);
   add_backtest_command(app);

@@ -10,6 +10,7 @@ void add_prices_commands(
     ProgramCommand& app);  ///< simulate, reconstruct, import, fetch, record, stats
 void add_train_command(ProgramCommand& app);
 void add_distil_command(ProgramCommand& app);
+void add_rules_commands(ProgramCommand& app);  ///< check, price
 void add_verify_command(ProgramCommand& app);
 void add_evaluate_command(ProgramCommand& app);
 void add_backtest_command(ProgramCommand& app);

@@ -10,6 +10,8 @@
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
 #include "workstation/cli/price_input.h"
+#include "workstation/cli/rule_files.h"
+#include "workstation/cli/rule_report.h"
 #include "workstation/report/curves.h"
 #include "workstation/student/correct_and_prove.h"
 
@@ -19,6 +21,7 @@ namespace {
 struct DistilArguments {
   CommonOptions common;
   PriceInput price_input;
+  RuleFiles rule_files;
   std::string prices;
   std::string teacher;
   std::string out;
@@ -34,19 +37,21 @@ void print_result(const DistilArguments& options, const CorrectionResult& result
   const Certificate& c = student_of(result.verdict).certificate;
   const std::size_t rounds = result.violations_by_round.size();
   if (options.json) {
-    const Json json = Json::object({{"student", options.out},
+    Json json = Json::object({{"student", options.out},
                                     {"corrected", !options.plain},
                                     {"rounds", rounds},
                                     {"states_checked", c.states_checked},
                                     {"violations_property_1", c.violations_property_1},
                                     {"violations_property_2", c.violations_property_2},
                                     {"violations_property_3", c.violations_property_3}});
+    add_rule_counts(c, json);
     fmt::print("{}\n", json.line());
     return;
   }
   fmt::print("{}: {} states checked, violations {} / {} / {} after {} round{}\n", options.out,
              c.states_checked, c.violations_property_1, c.violations_property_2,
              c.violations_property_3, rounds, rounds == 1 ? "" : "s");
+  fmt::print("{}", rule_count_lines(c));
 }
 
 void run_distil(const DistilArguments& options) {
@@ -56,6 +61,7 @@ void run_distil(const DistilArguments& options) {
   config.distil.correct = !options.plain;
   require_writable(options.out);
   Teacher teacher = load_teacher(options.teacher, parse_risk(options.risk));
+  options.rule_files.apply(config, teacher.context.kind);
   if (!teacher.risk.is_mean()) teacher.provenance += ", risk " + options.risk;
   const MarketSteps market =
       make_market_steps(options.price_input.read(options.prices), config.market);
@@ -90,6 +96,7 @@ void add_distil_command(ProgramCommand& app) {
       app.subcommand("distil", "Correct the teacher while distilling it, until proved");
   command.option("--prices", options->prices, "Minute file (.csv or .csv.gz)").required();
   options->price_input.add(command);
+  options->rule_files.add(command, "Rule files: your own rules, learnt and proved as well");
   command.option("--teacher", options->teacher, "Teacher file").required();
   command.option("--out", options->out, "Student file to write").required();
   command
@@ -110,6 +117,8 @@ void add_distil_command(ProgramCommand& app) {
   command.footer(
       "Examples:\n"
       "  bess-train distil --prices market.csv.gz --teacher teacher.bin --out student.json\n"
+      "  bess-train distil --prices market.csv.gz --teacher teacher.bin --rules my_rules.toml --out "
+      "student.json\n"
       "  bess-train distil --prices market.csv.gz --teacher teacher.bin --plain --out plain.json");
   command.runs([options] { run_distil(*options); });
 }

@@ -11,6 +11,7 @@
 #include "workstation/cli/common_options.h"
 #include "workstation/cli/price_input.h"
 #include "workstation/cli/run_folder.h"
+#include "workstation/cli/rule_files.h"
 #include "workstation/cli/run_report.h"
 #include "workstation/market/model/quarter_hours_to_minutes.h"
 #include "workstation/market/model/simulated_market.h"
@@ -29,6 +30,7 @@ constexpr std::uint64_t kBuiltInSeed = 1;
 struct RunArguments {
   CommonOptions common;
   PriceInput price_input;
+  RuleFiles rule_files;
   std::string prices;
   std::string out;
 };
@@ -106,7 +108,8 @@ std::string manifest(const RunResults& run, const std::string& prices) {
 
 void run_chain(const RunArguments& options) {
   const RunFolder folder{options.out};
-  const RunConfig config = options.common.resolve();
+  RunConfig config = options.common.resolve();
+  options.rule_files.apply(config, config.train.context);
   watch_interruption();
   const bool built_in = options.prices.empty();
   const std::string prices =
@@ -144,6 +147,7 @@ void add_run_command(ProgramCommand& app) {
       "run", "The whole chain into one folder: train, correct, prove, export, evaluate, report");
   command.option("--prices", options->prices, "Minute file; without it a built-in simulated year");
   options->price_input.add(command);
+  options->rule_files.add(command, "Rule files: your own rules, learnt and proved as well");
   command.option("--out", options->out, "Run folder").required();
   options->common.add_market(command);
   options->common.add_config(command);

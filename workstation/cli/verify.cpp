@@ -7,6 +7,10 @@
 #include "shared/host/user_error.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
+#include "workstation/cli/price_input.h"
+#include "workstation/cli/rule_files.h"
+#include "workstation/cli/rule_report.h"
+#include "workstation/rules/rule_conflicts.h"
 #include "workstation/student/prove.h"
 
 namespace bess {
@@ -14,6 +18,9 @@ namespace {
 
 struct VerifyArguments {
   CommonOptions common;
+  RuleFiles rule_files;
+  PriceInput price_input;
+  std::string prices;
   std::string student;
   bool exhaustive = false;
   bool json = false;
@@ -21,7 +28,7 @@ struct VerifyArguments {
 
 void print_json(const std::string& name, const StudentFile& student, bool exhaustive) {
   const Certificate& c = student.certificate;
-  const Json json =
+  Json json =
       Json::object({{"student", name},
                     {"weights_hash", fmt::format("{:08x}", student_weights_hash(student.net))},
                     {"method", exhaustive ? "exhaustive" : "bounds and enumeration"},
@@ -33,6 +40,7 @@ void print_json(const std::string& name, const StudentFile& student, bool exhaus
                     {"low_price_eur_per_mwh", c.thresholds.low_eur_per_mwh},
                     {"high_price_eur_per_mwh", c.thresholds.high_eur_per_mwh},
                     {"seconds", Decimals{c.seconds, 3}}});
+  add_rule_counts(c, json);
   fmt::print("{}\n", json.line());
 }
 
@@ -49,19 +57,31 @@ void print_text(const std::string& name, const StudentFile& student) {
              guard_alone_note(c.thresholds.high_binds_student()));
   fmt::print("  property 3, monotone in price and SoC:          {} violations\n",
              c.violations_property_3);
+  fmt::print("{}", rule_count_lines(c));
   fmt::print("{}\n", c.covers_lattice_without_violation() ? "PROVED" : "NOT PROVED");
 }
 
 void run_verify(const VerifyArguments& options) {
   const bool compiled = options.student.empty();
   const std::string name = compiled ? "compiled array" : options.student;
-  const Verdict verdict = prove(compiled ? compiled_student() : load_student(options.student),
-                                options.common.resolve().train.threads, options.exhaustive);
+  const RunConfig config = options.common.resolve();
+  StudentFile claimed = compiled ? compiled_student() : load_student(options.student);
+  if (options.rule_files.given()) {
+    claimed.certificate.rules = options.rule_files.read();
+    require_consistent(claimed.certificate.rules, claimed.certificate.thresholds,
+                       claimed.net.context.kind);
+  }
+  const Verdict verdict = prove(std::move(claimed), config.train.threads, options.exhaustive);
   const StudentFile& student = student_of(verdict);
   if (options.json) {
     print_json(name, student, options.exhaustive);
   } else {
     print_text(name, student);
+    MarketSteps market;
+    if (!options.prices.empty()) {
+      market = make_market_steps(options.price_input.read(options.prices), config.market);
+    }
+    fmt::print("{}", broken_rule_lines(student, market, config));
   }
   if (!std::holds_alternative<ProvedStudent>(verdict)) {
     fail("{}: {} violations; distil it again before it is exported", name,
@@ -77,13 +97,20 @@ void add_verify_command(ProgramCommand& app) {
       "verify", "Prove an integer student over every input it can see (exit 1 if it fails)");
   command.option("--student", options->student,
                  "Student file; without it the array compiled into this program");
+  options->rule_files.add(command,
+                          "Rule files: counted in place of the rules that it was trained for");
+  command.option("--prices", options->prices,
+                 "Minute file: tells how much of what is visited a broken rule touches");
+  options->price_input.add(command);
   command.flag("--exhaustive", options->exhaustive,
                "Evaluate every state instead of proving boxes by bounds (minutes)");
   command.flag("--json", options->json, "One JSON object");
+  options->common.add_config(command);
   options->common.add_seed_and_threads(command);
   command.footer(
       "Examples:\n"
       "  bess-train verify\n"
+      "  bess-train verify --rules my_rules.toml --prices market.csv.gz\n"
       "  bess-train verify --student runs/a/student.json --json");
   command.runs([options] { run_verify(*options); });
 }

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "workstation/base/progress.h"
 #include "workstation/correction/policy_loss.h"
+#include "workstation/correction/rule_rows.h"
 
 namespace bess {
 namespace {
@@ -17,11 +19,31 @@ constexpr double kRandomShare = 0.25;  ///< lessons from anywhere, per visited o
 constexpr double kAverageDecay = 0.998;
 constexpr int kBatch = 2048;
 constexpr int kThresholdStates = 64;  ///< per batch and threshold
+constexpr int kRuleStates = 64;       ///< per batch and rule
+constexpr float kForbiddenRegret = 4;  ///< at least, over the temperature, of what a rule forbids
 
 /// 1 inside the linear part, the leak outside.
 void mask_gradient(const Matrix& sum, Matrix& gradient) {
   gradient.array() *= (sum.array() > 0.0F && sum.array() < static_cast<float>(kSaturation))
                           .select(Eigen::ArrayXXf::Ones(sum.rows(), sum.cols()), kLeak);
+}
+
+/// What is left of the teacher's choice when some actions are not allowed.
+void obey(ActionSet allowed, Eigen::Index column, LessonStates& lessons) {
+  if (allowed == kAllActions) return;
+  const Eigen::Vector3f regret = lessons.regret.col(column);
+  float least = std::numeric_limits<float>::max();
+  for (int a = 0; a < kActionCount; ++a) {
+    if (allows(allowed, static_cast<Action>(a))) least = std::min(least, regret[a]);
+  }
+  float sum = 0;
+  for (int a = 0; a < kActionCount; ++a) {
+    const bool is_allowed = allows(allowed, static_cast<Action>(a));
+    const float lost = regret[a] - least;
+    lessons.regret(a, column) = is_allowed ? lost : std::max(lost, kForbiddenRegret);
+    sum += lessons.teacher_frac(a, column) = is_allowed ? std::exp(-lost) : 0.0F;
+  }
+  lessons.teacher_frac.col(column) /= sum;
 }
 
 void saturate(const Matrix& sum, Matrix& activation) {
@@ -64,6 +86,12 @@ LessonStates make_lessons(const Teacher& teacher, const Matrix& visited,
       lessons.regret.col(at + c) = (values.col(c).maxCoeff() - values.col(c).array()).cast<float>();
     }
   }
+  const RuleLessons rules(options.rules, teacher.context.kind);
+  if (options.correct && !rules.empty()) {
+    for (Eigen::Index c = 0; c < lessons.inputs.cols(); ++c) {
+      obey(rules.actions_at(lessons.inputs.col(c).data(), teacher.price_map), c, lessons);
+    }
+  }
   return lessons;
 }
 
@@ -73,7 +101,9 @@ MonotoneDistiller::MonotoneDistiller(const Teacher& teacher, const LessonStates&
       lessons_(lessons),
       options_(options),
       random_(derive_seed(options.seed, kSeedBatches)),
-      bounds_(options.correct ? SignBounds::monotone() : SignBounds::none()),
+      rules_(options.rules, teacher.context.kind),
+      bounds_(options.correct ? SignBounds::monotone(options.rules.directions())
+                              : SignBounds::none()),
       student_(initial_parameters(kStudentShape, derive_seed(options.seed, kSeedStudent))),
       average_(student_),
       adam_(kStudentShape.parameter_count()),
@@ -155,9 +185,10 @@ void MonotoneDistiller::draw_batch(const std::vector<LatticeState>& counterexamp
   const PriceThresholds& thresholds = options_.correction.thresholds;
   w.learnt = kBatch / static_cast<Eigen::Index>(workers_.size());
   w.at_low = options_.correct && thresholds.low_binds_student() ? kThresholdStates : 0;
-  const Eigen::Index at_high =
-      options_.correct && thresholds.high_binds_student() ? kThresholdStates : 0;
-  w.x.resize(kNetworkInputs, w.learnt + w.at_low + at_high);
+  w.at_high = options_.correct && thresholds.high_binds_student() ? kThresholdStates : 0;
+  const std::size_t rules = options_.correct ? rules_.count() : 0;
+  const Eigen::Index hinged = w.at_low + w.at_high;
+  w.x.resize(kNetworkInputs, w.learnt + hinged + static_cast<Eigen::Index>(rules * kRuleStates));
   w.target.resize(kActionCount, w.learnt);
   w.regret.resize(kActionCount, w.learnt);
   for (Eigen::Index c = 0; c < w.learnt; ++c) {
@@ -167,8 +198,19 @@ void MonotoneDistiller::draw_batch(const std::vector<LatticeState>& counterexamp
     w.target.col(c) = lessons_.teacher_frac.col(from);
     w.regret.col(c) = lessons_.regret.col(from);
   }
-  for (Eigen::Index c = 0; c < w.at_low + at_high; ++c) {
+  for (Eigen::Index c = 0; c < hinged; ++c) {
     draw_threshold_state(counterexamples, c < w.at_low, w.x.col(w.learnt + c).data());
+  }
+  w.allowed.clear();
+  for (std::size_t n = 0; n < rules * kRuleStates; ++n) {
+    const HardState hard = rules_.draw(n / kRuleStates, counterexamples, random_);
+    float* x = w.x.col(w.learnt + hinged + static_cast<Eigen::Index>(n)).data();
+    write_input(network_context(hard.state.minute_of_quarter_hour, hard.state.quarter_hour,
+                                hard.state.context_class,
+                                teacher_.price_map(hard.state.price_eur_per_mwh)),
+                0, x);
+    x[3] = scaled_input(hard.state.soc_index, kSocScale);
+    w.allowed.push_back(hard.actions);
   }
 }
 
@@ -197,7 +239,8 @@ void MonotoneDistiller::learn(Worker& w, double scale) const {
     }
   }
   // Properties 1 and 2: hinges on u = charge - idle and v = idle - discharge.
-  for (Eigen::Index c = w.learnt; c < w.z.cols(); ++c) {
+  const Eigen::Index ruled = w.learnt + w.at_low + w.at_high;
+  for (Eigen::Index c = w.learnt; c < ruled; ++c) {
     const bool low = c < w.learnt + w.at_low;
     const float u = w.z(2, c) - w.z(1, c);
     const float v = w.z(1, c) - w.z(0, c);
@@ -206,6 +249,19 @@ void MonotoneDistiller::learn(Worker& w, double scale) const {
     if (low && v < 0) w.dz(1, c) -= push, w.dz(0, c) += push;
     if (!low && v > -margin) w.dz(1, c) += push, w.dz(0, c) -= push;
     if (!low && u > 0) w.dz(2, c) += push, w.dz(1, c) -= push;
+  }
+  for (Eigen::Index c = ruled; c < w.z.cols(); ++c) {
+    const double u = double{w.z(2, c)} - double{w.z(1, c)};
+    const double v = double{w.z(1, c)} - double{w.z(0, c)};
+    const ActionSet allowed = w.allowed[static_cast<std::size_t>(c - ruled)];
+    for (const ScoreRow& row : ScoreRows(allowed, u, v, double{margin})) {
+      if (row.on_u * u + row.on_v * v >= row.at_least) continue;
+      const auto push_u = static_cast<float>(4 * scale * row.on_u);
+      const auto push_v = static_cast<float>(4 * scale * row.on_v);
+      w.dz(2, c) -= push_u;
+      w.dz(1, c) += push_u - push_v;
+      w.dz(0, c) += push_v;
+    }
   }
   const ConstMlp net(kStudentShape, student_.data());
   MutableMlp gradient(kStudentShape, w.gradient.data());

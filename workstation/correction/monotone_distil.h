@@ -14,6 +14,7 @@
 
 #include "shared/price_thresholds.h"
 #include "workstation/correction/distil.h"
+#include "workstation/correction/rule_lessons.h"
 #include "workstation/correction/sign_bounds.h"
 
 namespace bess {
@@ -28,7 +29,8 @@ struct LessonStates {
   Matrix regret;  ///< [3 x states] what an action loses against the best, over the temperature
 };
 
-/// Visited states and, for what no day has shown, states from anywhere in the lattice.
+/// Visited states and, for what no day has shown, states from anywhere in the lattice. Where the teacher would
+/// break one of the options' rules, its next best takes its place.
 LessonStates make_lessons(const Teacher& teacher, const Matrix& visited,
                           const DistilOptions& options);
 
@@ -54,7 +56,9 @@ class MonotoneDistiller {
     Matrix x, target, regret, a1, h1, a2, h2, z, dz, d1, d2;
     Eigen::Index
         learnt;  ///< columns that follow the teacher; the others are held to properties 1 and 2
-    Eigen::Index at_low;  ///< and of those, how many lie at the low threshold
+    Eigen::Index at_low;   ///< and of those, how many lie at the low threshold
+    Eigen::Index at_high;  ///< behind them at the high one; the rest is held to the rules
+    std::vector<ActionSet> allowed;  ///< of that rest
   };
 
   void spread_activations();
@@ -67,6 +71,7 @@ class MonotoneDistiller {
   const LessonStates& lessons_;
   DistilOptions options_;
   Random random_;
+  RuleLessons rules_;
   SignBounds bounds_;
   Parameters student_;
   Parameters average_;  ///< of the student on its way, inside the bounds with it

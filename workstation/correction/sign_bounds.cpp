@@ -12,7 +12,6 @@ enum class Trend { kFalls, kRises, kFree };
 constexpr int kFalling1 = 20;
 constexpr int kRising1 = 20;
 constexpr int kFalling2 = kStudentHidden2 / 2;
-constexpr int kFirstOrderedInput = 3;  ///< SoC and price are the last two inputs
 constexpr float kUnbounded = std::numeric_limits<float>::max();
 
 Trend trend1(int unit) {
@@ -30,14 +29,17 @@ SignBounds SignBounds::none() {
   return bounds;
 }
 
-SignBounds SignBounds::monotone() {
+SignBounds SignBounds::monotone(const std::vector<Direction>& directions) {
   SignBounds bounds = none();
   MutableMlp lower(kStudentShape, bounds.lower_.data());
   MutableMlp upper(kStudentShape, bounds.upper_.data());
   for (int unit = 0; unit < kStudentHidden1; ++unit) {
-    for (int input = kFirstOrderedInput; input < kStudentInputs; ++input) {
-      if (trend1(unit) != Trend::kRises) upper.w1(unit, input) = 0;
-      if (trend1(unit) != Trend::kFalls) lower.w1(unit, input) = 0;
+    for (const Direction& direction : directions) {
+      const int input = static_cast<int>(direction.input);
+      MutableMlp& of_falling = direction.sign < 0 ? upper : lower;
+      MutableMlp& of_rising = direction.sign < 0 ? lower : upper;
+      if (trend1(unit) != Trend::kRises) of_falling.w1(unit, input) = 0;
+      if (trend1(unit) != Trend::kFalls) of_rising.w1(unit, input) = 0;
     }
     if (trend1(unit) == Trend::kFree) continue;
     for (int next = 0; next < kStudentHidden2; ++next) {

@@ -15,7 +15,10 @@
 // exported student has the property too.
 #pragma once
 
+#include <vector>
+
 #include "workstation/nn/mlp.h"
+#include "workstation/rules/rule.h"
 
 namespace bess {
 
@@ -24,8 +27,9 @@ class SignBounds {
  public:
   /// No bound at all.
   static SignBounds none();
-  /// The bounds above.
-  static SignBounds monotone();
+  /// The bounds above, and the same for other inputs: where the action never falls with one, falling units
+  /// rise with it. Free units see no input that has a direction.
+  static SignBounds monotone(const std::vector<Direction>& directions = RuleSet{}.directions());
 
   /// Turns the sign of what lies outside: a start inside with as many weights that matter.
   void reflect(Parameters& parameters) const;

@@ -53,8 +53,9 @@ class Runner {
     for (const MarketStep& step : steps) {
       Action action = policy_.decide(step, index++, soc_frac_);
       if (energy_mwh >= energy_mwh_max) action = Action::kIdle;
-      const BatteryStep moved =
-          battery_step(battery, soc_frac_, power_sign(action) * battery.power_w_max, kHoursPerStep);
+      const double power_w =
+          power_sign(action) * battery.power_w_max * policy_.power_share_max(step, soc_frac_);
+      const BatteryStep moved = battery_step(battery, soc_frac_, power_w, kHoursPerStep);
       const double mwh = moved.power_w / kWattsPerMegawatt * kHoursPerStep;
       const double profit_eur = -exchange_cost_eur(battery, mwh, step.paid_eur_per_mwh);
       result.profit_eur += profit_eur;

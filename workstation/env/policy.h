@@ -34,6 +34,12 @@ class Policy {
   /// Decides one step. `index` counts from the last begin().
   [[nodiscard]] virtual Action decide(const MarketStep& step, std::size_t index,
                                       double soc_frac) const = 0;
+  /// Share of the rated power that may be used for it, 0..1.
+  [[nodiscard]] virtual double power_share_max(const MarketStep& step, double soc_frac) const {
+    (void)step;
+    (void)soc_frac;
+    return 1;
+  }
 };
 
 /// Charges below `low`, discharges above `high`, idles between [Paper, Eq. 13].

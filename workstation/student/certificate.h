@@ -7,6 +7,7 @@
 
 #include "shared/features.h"
 #include "shared/price_thresholds.h"
+#include "workstation/student/rule_proof.h"
 
 namespace bess {
 
@@ -19,13 +20,18 @@ struct Certificate {
   std::int64_t violations_property_3 = 0;
   std::vector<LatticeState> counterexamples = {};  ///< evenly thinned; not kept in files
   double seconds = 0;                              ///< not kept in files
+  RuleSet rules = {};                              ///< the operator's, besides the properties
+  std::vector<RuleCount> rule_counts = {};         ///< of each rule; empty: nobody has looked yet
 
   [[nodiscard]] std::int64_t violations() const {
-    return violations_property_1 + violations_property_2 + violations_property_3;
+    std::int64_t sum = violations_property_1 + violations_property_2 + violations_property_3;
+    for (const RuleCount& count : rule_counts) sum += count.violations;
+    return sum;
   }
   /// Every lattice state was checked and none violates a property.
   [[nodiscard]] bool covers_lattice_without_violation() const {
-    return states_checked == kLatticeStateCount && violations() == 0;
+    return states_checked == kLatticeStateCount && rule_counts.size() == rules.rules.size() &&
+           violations() == 0;
   }
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "shared/host/user_error.h"
 #include "workstation/correction/monotone_distil.h"
 #include "workstation/env/evaluate.h"
 #include "workstation/student/quantise.h"
@@ -39,11 +40,14 @@ struct Candidate {
   double score;
 };
 
-/// Contexts in which a monotone student disobeys a threshold: one state of each tells, the low price at the
-/// highest SoC and the high price at the lowest. Quick, where a proof takes seconds.
+/// Contexts in which a monotone student disobeys a threshold or a rule: one state of each tells, the low price
+/// at the highest SoC, the high price at the lowest, the corners of a rule's box. Quick, where a proof takes
+/// seconds.
 std::vector<LatticeState> disobedient_states(const StudentNet& net,
-                                             const PriceThresholds& thresholds) {
+                                             const PriceThresholds& thresholds,
+                                             const RuleLessons& rules) {
   std::vector<LatticeState> found;
+  std::vector<HardState> corners;
   const auto require = [&](LatticeState state, int soc_index, int price, Action action) {
     state.soc_index = static_cast<std::int16_t>(soc_index);
     state.price_eur_per_mwh = static_cast<std::int16_t>(price);
@@ -55,6 +59,10 @@ std::vector<LatticeState> disobedient_states(const StudentNet& net,
     const LatticeState context = context_at(c);
     if (thresholds.low_binds_student()) require(context, kSocCount - 1, low, Action::kCharge);
     if (thresholds.high_binds_student()) require(context, 0, high, Action::kDischarge);
+    rules.corners(context, corners);
+    for (const HardState& corner : corners) {
+      if (!allows(corner.actions, net.decide(corner.state))) found.push_back(corner.state);
+    }
   }
   return found;
 }
@@ -68,6 +76,7 @@ CorrectionResult construct_and_prove(const Teacher& teacher, const Matrix& visit
   constexpr int kLooks = 16;
   const LessonStates lessons = make_lessons(teacher, visited, options);
   MonotoneDistiller distiller(teacher, lessons, options);
+  const RuleLessons rules(options.rules, teacher.context.kind);
   CorrectionResult result{.verdict = student, .curve = {}, .violations_by_round = {}};
   std::vector<LatticeState> counterexamples;
   const int rounds = options.correct ? 1 + options.repair_rounds : 1;
@@ -87,11 +96,12 @@ CorrectionResult construct_and_prove(const Teacher& teacher, const Matrix& visit
     std::ranges::stable_sort(candidates, std::ranges::greater{}, &Candidate::score);
     if (candidates.empty()) break;  // interrupted
     const auto obedient = std::ranges::find_if(candidates, [&](const Candidate& candidate) {
-      return disobedient_states(candidate.net, options.correction.thresholds).empty();
+      return disobedient_states(candidate.net, options.correction.thresholds, rules).empty();
     });
     const bool is_last = round + 1 == rounds;
     if (obedient == candidates.end() && !is_last) {
-      counterexamples = disobedient_states(candidates.front().net, options.correction.thresholds);
+      counterexamples =
+          disobedient_states(candidates.front().net, options.correction.thresholds, rules);
       result.violations_by_round.push_back(static_cast<std::int64_t>(counterexamples.size()));
       continue;
     }
@@ -128,14 +138,22 @@ CorrectionResult correct_and_prove(const Teacher& teacher, const Matrix& visited
                                    const DistilOptions& options,
                                    const std::atomic<bool>& interrupted,
                                    const StudentScore& score) {
+  require_consistent(options.rules, options.correction.thresholds, teacher.context.kind);
   if (options.method == CorrectionMethod::kConstruction) {
     StudentFile student{};
+    student.certificate.rules = options.rules;
     student.certificate.thresholds = options.correction.thresholds;
     student.provenance = provenance_of(teacher, options);
     return construct_and_prove(teacher, visited, options, interrupted, score, student);
   }
+  if (!options.rules.empty() && options.correct) {
+    fail(
+        "[distil] method = \"layer\" takes no rules: its projection knows the paper's three alone; "
+        "use \"construction\"");
+  }
   Distiller distiller(teacher, visited, options);
   StudentFile student{};
+  student.certificate.rules = options.rules;
   student.certificate.thresholds = options.correction.thresholds;
   student.provenance = provenance_of(teacher, options);
   CorrectionResult result{.verdict = student, .curve = {}, .violations_by_round = {}};

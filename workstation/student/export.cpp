@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "workstation/base/random.h"
+#include "workstation/student/rule_header.h"
 
 namespace bess {
 namespace {
@@ -103,10 +104,10 @@ std::string preamble(const Certificate& c) {
       "of\n"
       "     1  charge at or below {} EUR/MWh{}\n"
       "     2  discharge at or above {} EUR/MWh{}\n"
-      "     3  never a larger action at a higher price or SoC */\n",
+      "     3  never a larger action at a higher price or SoC{} */\n",
       c.states_checked, c.states_evaluated, c.thresholds.low_eur_per_mwh,
       guard_alone_note(c.thresholds.low_binds_student()), c.thresholds.high_eur_per_mwh,
-      guard_alone_note(c.thresholds.high_binds_student()));
+      guard_alone_note(c.thresholds.high_binds_student()), rule_lines(c));
 }
 
 std::string certificate_macros(const Certificate& c) {
@@ -154,6 +155,7 @@ std::string format_weight_header(const ProvedStudent& student) {
   text += matrix("int16_t", "layer3_weight", net.layer3.weight);
   text += vector("int32_t", "layer3_bias", net.layer3.bias);
   text += self_checks(net);
+  text += rule_section(student);
   return text + "/* clang-format on */\n";
 }
 

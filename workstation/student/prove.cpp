@@ -10,9 +10,10 @@ static_assert(std::gcd(kSampleStride, kContextCount) == 1);
 
 Verdict prove(StudentFile student, int threads, bool exhaustive) {
   check_net(student.net, "the student");
-  student.certificate = verify_student(
-      student.net,
-      {.thresholds = student.certificate.thresholds, .exhaustive = exhaustive, .threads = threads});
+  student.certificate = verify_student(student.net, {.thresholds = student.certificate.thresholds,
+                                                     .rules = student.certificate.rules,
+                                                     .exhaustive = exhaustive,
+                                                     .threads = threads});
   if (!student.certificate.covers_lattice_without_violation()) return student;
   return ProvedStudent(std::move(student));
 }
@@ -20,6 +21,7 @@ Verdict prove(StudentFile student, int threads, bool exhaustive) {
 StudentFile sample_violations(StudentFile student, int threads) {
   check_net(student.net, "the student");
   student.certificate = verify_student(student.net, {.thresholds = student.certificate.thresholds,
+                                                     .rules = student.certificate.rules,
                                                      .context_stride = kSampleStride,
                                                      .threads = threads});
   return student;

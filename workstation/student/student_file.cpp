@@ -5,13 +5,15 @@
 #include "shared/host/file.h"
 #include "shared/host/json_reader.h"
 #include "shared/nn/exported_student.h"
+#include "workstation/rules/rule_file.h"
 #include "workstation/student/quantise.h"
 
 namespace bess {
 namespace {
 
 constexpr const char* kFormat = "bess-student";
-constexpr int kFormatVersion = 3;
+constexpr int kFormatVersion = 4;
+constexpr int kVersionWithoutRules = 3;    ///< still written when there are none
 constexpr int kVersionWithoutCounts = 1;   ///< it had the thresholds beside the weights
 constexpr int kVersionWithoutContext = 2;  ///< it, too, was by month
 
@@ -40,8 +42,9 @@ PriceThresholds parse_thresholds(const JsonReader& in, const std::string& name) 
   return thresholds;
 }
 
+constexpr std::int64_t kExactInDouble = std::int64_t{1} << 53;
+
 Certificate parse_certificate(const JsonReader& in, const std::string& name) {
-  constexpr std::int64_t kExactInDouble = std::int64_t{1} << 53;
   const auto count = [&in](const char* key) { return in.whole(key, 0, kExactInDouble); };
   return {.thresholds = parse_thresholds(in, name),
           .states_checked = count("states_checked"),
@@ -64,6 +67,19 @@ ContextClasses parse_context_classes(const JsonReader& in, const std::string& na
     fail("{}: \"level_edge_eur_per_mwh\" must rise strictly by level, and be 0 by month", name);
   }
   return classes;
+}
+
+/// The rules themselves, as a rule file's text. What was counted of them is for people: it is not believed.
+void parse_rule_claims(const JsonReader& in, const std::string& name, Certificate& certificate) {
+  certificate.rules = parse_rules(in.text("rules"), name + ": rules");
+  static_cast<void>(in.whole("violations_of_rules", 0, kExactInDouble));
+}
+
+void add_rule_claims(const Certificate& certificate, Json& json) {
+  std::int64_t violations = 0;
+  for (const RuleCount& count : certificate.rule_counts) violations += count.violations;
+  json.set("rules", format_rules(certificate.rules));
+  json.set("violations_of_rules", violations);
 }
 
 Json certificate_json(const Certificate& c) {
@@ -98,13 +114,15 @@ void check_net(const StudentNet& net, const std::string& name) {
 
 void save_student(const std::filesystem::path& path, const StudentFile& student) {
   check_net(student.net, path.string());
+  const bool has_rules = !student.certificate.rules.empty();
   Json json = Json::object({{"format", kFormat},
-                            {"version", kFormatVersion},
+                            {"version", has_rules ? kFormatVersion : kVersionWithoutRules},
                             {"architecture_hash", student_architecture_hash()},
                             {"weights_hash", student_weights_hash(student.net)},
                             {"provenance", student.provenance},
                             {"certificate", certificate_json(student.certificate)},
                             {"context", context_name(student.net.context.kind)}});
+  if (has_rules) add_rule_claims(student.certificate, json);
   json.set("level_edge_eur_per_mwh", std::span(student.net.context.level_edge_eur_per_mwh));
   visit_arrays(student.net, [&json](const char* key, auto values) { json.set(key, values); });
   write_file(path, json.text());
@@ -122,8 +140,8 @@ StudentFile parse_student(const std::string& text, const std::string& name) {
   const JsonReader in(json.value(), name, "a student file");
   if (in.text("format") != kFormat) fail("{}: \"format\" is not \"{}\"", name, kFormat);
   const double version = in.number("version");
-  if (version != kFormatVersion && version != kVersionWithoutContext &&
-      version != kVersionWithoutCounts) {
+  if (version != kFormatVersion && version != kVersionWithoutRules &&
+      version != kVersionWithoutContext && version != kVersionWithoutCounts) {
     fail("{}: version {}, this program reads {} to {}; distil again", name, version,
          kVersionWithoutCounts, kFormatVersion);
   }
@@ -132,7 +150,7 @@ StudentFile parse_student(const std::string& text, const std::string& name) {
   }
   StudentFile student{};
   visit_arrays(student.net, [&in](const char* key, auto values) { in.wholes(key, values); });
-  if (version == kFormatVersion) student.net.context = parse_context_classes(in, name);
+  if (version >= kVersionWithoutRules) student.net.context = parse_context_classes(in, name);
   check_net(student.net, name);
   if (in.number("weights_hash") != student_weights_hash(student.net)) {
     fail("{}: damaged: the weights do not match their hash; copy it again or distil again", name);
@@ -142,6 +160,7 @@ StudentFile parse_student(const std::string& text, const std::string& name) {
   } else {
     student.certificate = parse_certificate(in.object("certificate"), name);
   }
+  if (version == kFormatVersion) parse_rule_claims(in, name, student.certificate);
   student.provenance = in.text("provenance");
   return student;
 }
@@ -153,6 +172,10 @@ StudentFile compiled_student() {
                          .states_checked = BESS_STUDENT_STATES_CHECKED,
                          .states_evaluated = BESS_STUDENT_STATES_EVALUATED};
   student.provenance = BESS_STUDENT_PROVENANCE;
+#ifdef BESS_STUDENT_RULES
+  student.certificate.rules = parse_rules(BESS_STUDENT_RULES, "compiled rules");
+  student.certificate.rule_counts.resize(student.certificate.rules.rules.size());
+#endif
   return student;
 }
 

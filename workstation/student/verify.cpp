@@ -334,21 +334,31 @@ Certificate verify_student(const StudentNet& net, const VerifyOptions& options) 
     Certificate& part = parts[static_cast<std::size_t>(worker)];
     GridFiller filler(net, bounds);
     GridChecker checker(options, part);
+    RuleChecker rule_checker(options.rules, net.context.kind);
+    std::vector<ActionGrid> neighbours(rule_checker.neighbours_needed().size());
     std::vector<std::int8_t> grid;
     for (int c = worker; c < contexts; c += options.threads) {
       const LatticeState context = context_at(c * options.context_stride);
       part.states_evaluated += filler.fill(context, options.exhaustive, grid);
       checker.check(context, grid);
+      for (std::size_t n = 0; n < neighbours.size(); ++n) {
+        const auto next = next_context(context, rule_checker.neighbours_needed()[n]);
+        neighbours[n].clear();
+        if (next) filler.fill(*next, options.exhaustive, neighbours[n]);
+      }
+      rule_checker.check(context, grid, neighbours);
       part.states_checked += std::int64_t{kSocCount} * kPriceCount;
       const int finished = ++done;
       if (worker == 0) progress.update(finished);
     }
+    part.rule_counts = rule_checker.counts();
   };
   std::vector<std::thread> threads;
   for (int w = 1; w < options.threads; ++w) threads.emplace_back(work, w);
   work(0);
   for (std::thread& thread : threads) thread.join();
-  Certificate total{.thresholds = options.thresholds};
+  Certificate total{.thresholds = options.thresholds, .rules = options.rules};
+  total.rule_counts.resize(options.rules.rules.size());
   for (const Certificate& part : parts) {
     total.states_checked += part.states_checked;
     total.states_evaluated += part.states_evaluated;
@@ -357,8 +367,15 @@ Certificate verify_student(const StudentNet& net, const VerifyOptions& options) 
     total.violations_property_3 += part.violations_property_3;
     total.counterexamples.insert(total.counterexamples.end(), part.counterexamples.begin(),
                                  part.counterexamples.end());
+    for (std::size_t r = 0; r < total.rule_counts.size(); ++r) {
+      total.rule_counts[r].add(part.rule_counts[r]);
+    }
   }
   thin_out(total.counterexamples, options.counterexamples_max);
+  for (const RuleCount& count : total.rule_counts) {
+    total.counterexamples.insert(total.counterexamples.end(), count.counterexamples.begin(),
+                                 count.counterexamples.end());
+  }
   total.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return total;
 }

@@ -24,6 +24,7 @@ namespace bess {
 
 struct VerifyOptions {
   PriceThresholds thresholds = {};
+  RuleSet rules = {};       ///< counted by name (rule_proof.h)
   bool exhaustive = false;  ///< evaluate every state, no bounds
   int context_stride = 1;   ///< check every n-th context only (a quick look, not a proof)
   std::size_t counterexamples_max = 4096;

@@ -49,12 +49,13 @@ layer $w/market/feed                $w/market/feed $w/market/series $w/base shar
 layer $w/market/model               $w/market/model $w/market/series $w/base shared
 layer $w/market/statistics          $w/market/statistics $w/market/series $w/base shared
 layer $w/env                        $w/env $w/market/series $w/base shared
+layer $w/rules                      $w/rules $w/env $w/base shared
 layer $w/planners                   $w/planners $w/env $w/base shared
 layer $w/nn                         $w/nn $w/base shared
 layer $w/backtest                   $w/backtest $w/env $w/market/series $w/base shared
 layer $w/rl                         $w/rl $w/nn $w/planners $w/env $w/base shared
-layer $w/correction                 $w/correction $w/rl $w/nn $w/env $w/base shared
-layer $w/student                    $w/student $w/correction $w/rl $w/nn $w/env $w/base shared student_weights.h
+layer $w/correction                 $w/correction $w/rules $w/rl $w/nn $w/env $w/base shared
+layer $w/student                    $w/student $w/correction $w/rules $w/rl $w/nn $w/env $w/base shared student_weights.h
 layer $w/report                     $w/report $w/backtest $w/student $w/correction $w/rl $w/env $w/market/statistics $w/base shared
 layer $w/cli                        $w shared
 layer $w/main.cpp                   $w shared

@@ -1,0 +1,135 @@
+// A rule of an operator in integers: a box of states, and what may be decided in it. Proof and guard look it
+// up with the same rounding, so that a rule that a student is proved for never makes the guard step in.
+// A rule holds on whole EUR/MWh, not clamped: what lies outside the lattice is the guard's alone.
+#pragma once
+
+#include <cstdint>
+
+#include "shared/action.h"
+#include "shared/crc32.h"
+#include "shared/fixed_point.h"
+#include "shared/price_thresholds.h"
+#include "shared/units_and_limits.h"
+
+namespace bess {
+
+/// Actions as bits 0..2: discharge, idle, charge.
+using ActionSet = std::uint8_t;
+inline constexpr ActionSet kAllActions = (1U << kActionCount) - 1;
+
+constexpr ActionSet action_bit(Action action) {
+  return static_cast<ActionSet>(1U << static_cast<int>(action));
+}
+constexpr bool allows(ActionSet set, Action action) { return (set & action_bit(action)) != 0; }
+
+/// Itself where that is allowed, else the nearest, the lower of two. Idle when nothing is.
+constexpr Action nearest_allowed(ActionSet set, Action action) {
+  const int wanted = static_cast<int>(action);
+  for (int distance = 0; distance < kActionCount; ++distance) {
+    for (const int other : {wanted - distance, wanted + distance}) {
+      if (other < 0 || other >= kActionCount) continue;
+      if (allows(set, static_cast<Action>(other))) return static_cast<Action>(other);
+    }
+  }
+  return Action::kIdle;
+}
+
+inline constexpr std::uint16_t kAllTwelve = (1U << 12) - 1;  ///< of months, or of context classes
+
+/// Where a rule is looked up.
+struct RulePoint {
+  std::int32_t price_eur_per_mwh;  ///< nearest whole one, not clamped
+  std::int16_t soc_index;          ///< of the lattice
+  std::int16_t quarter_hour;       ///< local, 0..95
+  std::int16_t month;              ///< local, 1..12
+  std::int16_t context_class;      ///< 1..12
+};
+
+/// Nearest whole EUR/MWh, halves up, as lattice_price_of() before it clamps.
+constexpr std::int32_t whole_price_of(std::int32_t price_centi_eur_per_mwh) {
+  return rounding_divide(price_centi_eur_per_mwh, kCentiPerEur);
+}
+
+/// All ends belong to the box.
+struct RuleBox {
+  std::int32_t price_min_eur_per_mwh = -kThresholdMaxEurPerMwh;  ///< no price is below
+  std::int32_t price_max_eur_per_mwh = kThresholdMaxEurPerMwh;
+  std::int32_t soc_index_min = 0;
+  std::int32_t soc_index_max = kSocCount - 1;
+  std::int32_t quarter_hour_first = 0;
+  std::int32_t quarter_hour_count = kQuarterHourCount;  ///< from the first on, past midnight
+  std::int32_t months = kAllTwelve;                     ///< bit m - 1
+  std::int32_t context_classes = kAllTwelve;            ///< bit c - 1
+
+  [[nodiscard]] constexpr bool holds_at_hour(int quarter_hour) const {
+    const int since = quarter_hour - quarter_hour_first;
+    return (since < 0 ? since + kQuarterHourCount : since) < quarter_hour_count;
+  }
+  [[nodiscard]] constexpr bool contains(const RulePoint& p) const {
+    return p.price_eur_per_mwh >= price_min_eur_per_mwh &&
+           p.price_eur_per_mwh <= price_max_eur_per_mwh && p.soc_index >= soc_index_min &&
+           p.soc_index <= soc_index_max && holds_at_hour(p.quarter_hour) &&
+           (months >> (p.month - 1) & 1) != 0 &&
+           (context_classes >> (p.context_class - 1) & 1) != 0;
+  }
+  friend constexpr bool operator==(const RuleBox&, const RuleBox&) = default;
+};
+
+inline constexpr std::int32_t kFullPowerPermille = 1'000;
+
+/// What is left to decide at one point.
+struct RuleLimits {
+  ActionSet actions = kAllActions;
+  std::int32_t power_permille_max = kFullPowerPermille;  ///< of the rated power, both directions
+  friend constexpr bool operator==(const RuleLimits&, const RuleLimits&) = default;
+};
+
+/// A rule as the guard enforces it.
+struct GuardRule {
+  RuleBox box;
+  RuleLimits limits;
+  friend constexpr bool operator==(const GuardRule&, const GuardRule&) = default;
+};
+
+/// As a row of the exported header: the fields in their order.
+inline constexpr int kGuardRuleFields = 10;
+
+constexpr GuardRule guard_rule_of(const std::int32_t (&row)[kGuardRuleFields]) {
+  return {{row[0], row[1], row[2], row[3], row[4], row[5], row[6], row[7]},
+          {static_cast<ActionSet>(row[8]), row[9]}};
+}
+
+/// All rules at one point; `Rules` is a range of GuardRule.
+template <typename Rules>
+constexpr RuleLimits rule_limits_at(const Rules& rules, const RulePoint& point) {
+  RuleLimits limits;
+  for (const GuardRule& rule : rules) {
+    if (!rule.box.contains(point)) continue;
+    limits.actions = static_cast<ActionSet>(limits.actions & rule.limits.actions);
+    if (rule.limits.power_permille_max < limits.power_permille_max) {
+      limits.power_permille_max = rule.limits.power_permille_max;
+    }
+  }
+  return limits;
+}
+
+/// Of the net's hash and every field, in order; without rules it is the net's own.
+template <typename Rules>
+constexpr std::uint32_t ruled_hash(std::uint32_t weights_hash, const Rules& rules) {
+  Crc32 crc;
+  bool any = false;
+  crc.add_integer(static_cast<std::int32_t>(weights_hash));
+  for (const GuardRule& rule : rules) {
+    any = true;
+    for (const std::int32_t field :
+         {rule.box.price_min_eur_per_mwh, rule.box.price_max_eur_per_mwh, rule.box.soc_index_min,
+          rule.box.soc_index_max, rule.box.quarter_hour_first, rule.box.quarter_hour_count,
+          rule.box.months, rule.box.context_classes, std::int32_t{rule.limits.actions},
+          rule.limits.power_permille_max}) {
+      crc.add_integer(field);
+    }
+  }
+  return any ? crc.value() : weights_hash;
+}
+
+}  // namespace bess

@@ -1,0 +1,160 @@
+// bess-train rules check: whether rules can be obeyed together and whom they bind; with a policy, how often it
+// breaks them on real days.
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "shared/host/json.h"
+#include "shared/host/user_error.h"
+#include "workstation/cli/common_options.h"
+#include "workstation/cli/policy_factory.h"
+#include "workstation/cli/price_input.h"
+#include "workstation/cli/rule_files.h"
+#include "workstation/cli/rules.h"
+#include "workstation/env/context_fit.h"
+#include "workstation/env/evaluate.h"
+#include "workstation/rl/teacher.h"
+#include "workstation/rules/rule_conflicts.h"
+#include "workstation/rules/rule_watch.h"
+#include "workstation/student/student_file.h"
+
+namespace bess {
+namespace {
+
+struct CheckArguments {
+  CommonOptions common;
+  RuleFiles rule_files;
+  PriceInput price_input;
+  std::string prices;
+  std::string policy;
+  std::string split = "val+test";
+  std::optional<std::string> context;
+  int drawn_per_step = 4;
+  bool json = false;
+};
+
+const char* bound_by(const Rule& rule, ContextKind kind) {
+  if (!binds_student(rule, kind)) return rule.enforce ? "guard" : "guard's own thresholds";
+  return rule.enforce ? "student and guard" : "student";
+}
+
+void print_rules(const RuleSet& rules, ContextKind kind, bool json) {
+  for (const Rule& rule : rules.rules) {
+    if (json) {
+      fmt::print("{}\n", Json::object({{"rule", rule.name},
+                                       {"text", rule.text()},
+                                       {"context", context_name(kind)},
+                                       {"binds_student", binds_student(rule, kind)},
+                                       {"enforced", rule.enforce}})
+                             .line());
+    } else {
+      fmt::print("{:<40}  {:<17}  {}\n", rule.name, bound_by(rule, kind), rule.text());
+    }
+  }
+}
+
+double percent(std::int64_t part, std::int64_t whole) {
+  return whole == 0 ? 0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
+}
+
+void print_watch(const RuleSet& rules, const RuleWatch& watch, const CheckArguments& options) {
+  if (!options.json) {
+    fmt::print(
+        "\n{} breaks, in {} decisions of the {} split and at {} SoCs drawn beside each (seed {}):\n"
+        "{:<40}  {:>10}  {:>8}  {:>10}  {:>8}\n",
+        options.policy, watch.decisions(), options.split, options.drawn_per_step,
+        options.common.seed.value_or(1), "rule", "visited", "%", "drawn", "%");
+  }
+  for (std::size_t r = 0; r < rules.rules.size(); ++r) {
+    const WatchCount& c = watch.counts()[r];
+    if (options.json) {
+      fmt::print("{}\n", Json::object({{"rule", rules.rules[r].name},
+                                       {"policy", options.policy},
+                                       {"decisions", watch.decisions()},
+                                       {"visited", c.visited},
+                                       {"visited_broken", c.visited_broken},
+                                       {"drawn", c.drawn},
+                                       {"drawn_broken", c.drawn_broken}})
+                             .line());
+    } else if (c.visited + c.drawn == 0) {
+      fmt::print("{:<40}  never met in these states\n", rules.rules[r].name);
+    } else {
+      fmt::print("{:<40}  {:>10}  {:>8.3f}  {:>10}  {:>8.3f}\n", rules.rules[r].name,
+                 c.visited_broken, percent(c.visited_broken, watch.decisions()), c.drawn_broken,
+                 percent(c.drawn_broken, watch.decisions() * options.drawn_per_step));
+    }
+  }
+}
+
+void run_rules_check(const CheckArguments& options) {
+  const RunConfig config = options.common.resolve();
+  const RuleSet rules = options.rule_files.read();
+  ContextKind kind = config.train.context;
+  if (options.context) kind = parse_context(*options.context);
+  if (options.policy.empty()) {
+    require_consistent(rules, config.distil.correction.thresholds, kind);
+    return print_rules(rules, kind, options.json);
+  }
+  const MarketSteps market =
+      make_market_steps(options.price_input.read(options.prices), config.market);
+  const ContextClasses classes = context_of_policy(options.policy, market, kind);
+  require_consistent(rules, config.distil.correction.thresholds, classes.kind);
+  if (!options.json) print_rules(rules, classes.kind, false);
+  const std::vector<MarketDay> days = market.days_of(parse_split(options.split));
+  if (days.empty()) fail("{}: no complete day in the {} split", options.prices, options.split);
+  const RuleSet all = with_properties(rules, config.distil.correction.thresholds);
+  RuleWatch watch(make_policy(options.policy, market, config.battery), all, classes,
+                  options.drawn_per_step, config.train.seed);
+  evaluate(market, days, watch, {config.battery, config.initial_soc_frac, true});
+  print_watch(all, watch, options);
+}
+
+}  // namespace
+
+ContextClasses context_of_policy(const std::string& policy, const MarketSteps& market,
+                                 ContextKind otherwise) {
+  if (policy == "compiled") return compiled_student().net.context;
+  if (!std::filesystem::exists(policy)) return fit_context_classes(market, otherwise);
+  if (is_teacher_file(policy)) return load_teacher(policy).context;
+  return load_student(policy).net.context;
+}
+
+void add_rules_check(ProgramCommand& rules) {
+  auto options = std::make_shared<CheckArguments>();
+  ProgramCommand command = rules.subcommand(
+      "check", "Whether rules can be obeyed together, and whom they bind (exit 1 if not)");
+  options->rule_files.add(command, "Rule files (TOML)").required();
+  command
+      .option("--context", options->context,
+              "What the student sees: level or month (default: that of the configuration)")
+      .one_of({"level", "month"});
+  command.option("--policy", options->policy,
+                 std::string("Counts on real days how often it breaks them: ") + kPolicyHelp);
+  command.option("--prices", options->prices, "Minute file, for --policy");
+  options->price_input.add(command);
+  command.option("--split", options->split, "Days of --prices")
+      .one_of({kSplitNames.begin(), kSplitNames.end()})
+      .with_default();
+  command
+      .option("--drawn", options->drawn_per_step,
+              "Other SoCs that are looked at in each decision, drawn evenly")
+      .range(0, 1000)
+      .with_default();
+  command.flag("--json", options->json, "One JSON object a line and rule");
+  options->common.add_market(command);
+  options->common.add_config(command);
+  options->common.add_seed_and_threads(command);
+  command.footer(
+      "Examples:\n"
+      "  bess-train rules check --rules my_rules.toml\n"
+      "  bess-train rules check --rules my_rules.toml --policy teacher.bin --prices market.csv.gz");
+  command.runs([options] {
+    if (!options->policy.empty() && options->prices.empty()) {
+      fail("--policy needs days to look at: add --prices FILE");
+    }
+    run_rules_check(*options);
+  });
+}
+
+}  // namespace bess

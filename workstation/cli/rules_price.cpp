@@ -1,0 +1,193 @@
+// bess-train rules price: what each rule costs or earns a day, alone and all together. First by projecting a
+// policy's decisions, in seconds; then, if a teacher is given, by distilling a student with them and one without.
+#include <fmt/core.h>
+
+#include <memory>
+
+#include "shared/host/json.h"
+#include "shared/host/user_error.h"
+#include "workstation/cli/chain_steps.h"
+#include "workstation/cli/common_options.h"
+#include "workstation/cli/policy_factory.h"
+#include "workstation/cli/price_input.h"
+#include "workstation/cli/rule_files.h"
+#include "workstation/cli/rules.h"
+#include "workstation/env/evaluate.h"
+#include "workstation/rules/ruled_policy.h"
+#include "workstation/student/student_policy.h"
+
+namespace bess {
+namespace {
+
+constexpr const char* kAllTogether = "all together";
+
+struct PriceArguments {
+  CommonOptions common;
+  RuleFiles rule_files;
+  PriceInput price_input;
+  std::string prices;
+  std::string policy = "compiled";
+  std::string teacher;
+  std::string split = "val+test";
+  bool json = false;
+};
+
+/// The same days, each from the configured SoC and chained.
+struct BothWays {
+  Evaluation reset, carried;
+};
+
+class Pricing {
+ public:
+  Pricing(const PriceArguments& options, const RunConfig& config, const MarketSteps& market)
+      : options_(options), config_(config), market_(market) {
+    days_ = market.days_of(parse_split(options.split));
+    if (days_.empty()) fail("{}: no complete day in the {} split", options.prices, options.split);
+  }
+
+  BothWays run(Policy& policy) const {
+    const auto evaluated = [&](bool carry_soc) {
+      return evaluate(market_, days_, policy,
+                      {config_.battery, config_.initial_soc_frac, carry_soc});
+    };
+    return {evaluated(false), evaluated(true)};
+  }
+
+  void print_head(const BothWays& base, const std::string& name) const {
+    if (options_.json) return;
+    fmt::print(
+        "{} split, {} days; {} earns {:.1f} EUR a day per MWh of capacity, with the SoC carried "
+        "over {:.1f}.\nWhat rules change of it, day by day:\n"
+        "{:<40}  {:>7} {:>6}  {:>7} {:>6}  {:>12}\n",
+        options_.split, days_.size(), name, base.reset.profit_eur_per_day_per_mwh(),
+        base.carried.profit_eur_per_day_per_mwh(), "rule", "reset", "s.e.", "carried", "s.e.",
+        "decisions, %");
+  }
+
+  void print_row(const std::string& rule, const std::string& by, const BothWays& base,
+                 const BothWays& ruled, std::optional<double> changed_share) const {
+    const PairedDifference reset = paired_difference(ruled.reset, base.reset);
+    const PairedDifference carried = paired_difference(ruled.carried, base.carried);
+    if (!options_.json) {
+      const std::string changed = changed_share ? fmt::format("{:.2f}", 100 * *changed_share) : "-";
+      fmt::print("{:<40}  {:>+7.2f} {:>6.2f}  {:>+7.2f} {:>6.2f}  {:>12}\n", rule, reset.mean,
+                 reset.standard_error, carried.mean, carried.standard_error, changed);
+      return;
+    }
+    Json json = Json::object(
+        {{"rule", rule},
+         {"by", by},
+         {"split", options_.split},
+         {"days", days_.size()},
+         {"profit_eur_per_day_per_mwh", Decimals{ruled.reset.profit_eur_per_day_per_mwh(), 4}},
+         {"difference", Decimals{reset.mean, 4}},
+         {"standard_error", Decimals{reset.standard_error, 4}},
+         {"carried_difference", Decimals{carried.mean, 4}},
+         {"carried_standard_error", Decimals{carried.standard_error, 4}}});
+    if (changed_share) json.set("decisions_changed", Decimals{*changed_share, 6});
+    fmt::print("{}\n", json.line());
+  }
+
+ private:
+  const PriceArguments& options_;
+  const RunConfig& config_;
+  const MarketSteps& market_;
+  std::vector<MarketDay> days_;
+};
+
+void price_by_projection(const PriceArguments& options, const RunConfig& config,
+                         const MarketSteps& market, const RuleSet& rules) {
+  const Pricing pricing(options, config, market);
+  const ContextClasses classes = context_of_policy(options.policy, market, config.train.context);
+  require_consistent(rules, config.distil.correction.thresholds, classes.kind);
+  const std::shared_ptr<Policy> policy = make_policy(options.policy, market, config.battery);
+  if (policy->sees_future()) {
+    fail(
+        "--policy {}: it plans ahead without the rules; price them on a policy that does not see "
+        "the future",
+        options.policy);
+  }
+  const BothWays base = pricing.run(*policy);
+  pricing.print_head(base, options.policy);
+  const auto price = [&](const std::string& name, const RuleSet& some) {
+    RuledPolicy ruled(policy, some, classes);
+    const BothWays evaluated = pricing.run(ruled);
+    pricing.print_row(name, "projection", base, evaluated, ruled.changed_share());
+  };
+  for (const Rule& rule : rules.rules) {
+    if (can_be_projected(rule)) {
+      price(rule.name, {{rule}});
+    } else if (!options.json) {
+      fmt::print("{:<40}  no demand on single states: give --teacher to see\n", rule.name);
+    }
+  }
+  if (rules.rules.size() > 1) price(kAllTogether, rules);
+}
+
+ProvedStudent distilled(const Teacher& teacher, const Matrix& visited, const RunConfig& config,
+                        const MarketSteps& market) {
+  const CorrectionResult result =
+      correct_and_prove(teacher, visited, config.distil, interruption(),
+                        validation_score(market, config.battery, config.initial_soc_frac));
+  if (interruption()) throw Interrupted{};
+  return require_proof(result, config.distil.method);
+}
+
+void price_by_distilling(const PriceArguments& options, const RunConfig& config,
+                         const MarketSteps& market) {
+  watch_interruption();
+  const Teacher teacher = load_teacher(options.teacher);
+  RunConfig ruled_config = config;
+  options.rule_files.apply(ruled_config, teacher.context.kind);
+  const Matrix visited = visited_inputs(teacher, market, config.battery, config.distil);
+  const ProvedStudent free_student = distilled(teacher, visited, config, market);
+  const ProvedStudent ruled_student = distilled(teacher, visited, ruled_config, market);
+  StudentPolicy free_policy(free_student.net());
+  StudentPolicy ruled_policy(ruled_student.net());
+  const Pricing pricing(options, config, market);
+  const BothWays base = pricing.run(free_policy);
+  if (!options.json) fmt::print("\n");
+  pricing.print_head(base, "a student distilled without them");
+  pricing.print_row(kAllTogether, "distillation", base, pricing.run(ruled_policy), {});
+}
+
+void run_rules_price(const PriceArguments& options) {
+  const RunConfig config = options.common.resolve();
+  const RuleSet rules = options.rule_files.read();
+  const MarketSteps market =
+      make_market_steps(options.price_input.read(options.prices), config.market);
+  price_by_projection(options, config, market, rules);
+  if (!options.teacher.empty()) price_by_distilling(options, config, market);
+}
+
+}  // namespace
+
+void add_rules_price(ProgramCommand& rules) {
+  auto options = std::make_shared<PriceArguments>();
+  ProgramCommand command = rules.subcommand(
+      "price", "What each rule costs or earns a day, alone and together, before it is trained");
+  options->rule_files.add(command, "Rule files (TOML)").required();
+  command.option("--prices", options->prices, "Minute file (.csv or .csv.gz)").required();
+  options->price_input.add(command);
+  command
+      .option("--policy", options->policy,
+              std::string("Whose decisions are projected; one of ") + kPolicyHelp)
+      .with_default();
+  command.option("--teacher", options->teacher,
+                 "Also distil this teacher with all rules and without (minutes)");
+  command.option("--split", options->split, "Days of --prices that are traded")
+      .one_of({kSplitNames.begin(), kSplitNames.end()})
+      .with_default();
+  command.flag("--json", options->json, "One JSON object a line and rule");
+  options->common.add_market(command);
+  options->common.add_config(command);
+  options->common.add_seed_and_threads(command);
+  command.footer(
+      "Examples:\n"
+      "  bess-train rules price --rules my_rules.toml --prices market.csv.gz\n"
+      "  bess-train rules price --rules my_rules.toml --prices market.csv.gz --policy teacher.bin "
+      "--teacher teacher.bin");
+  command.runs([options] { run_rules_price(*options); });
+}
+
+}  // namespace bess

@@ -1,0 +1,89 @@
+// What an operator asks of every decision, as read from a rule file (rule_file.h). A rule has a name, which
+// every report uses, and one demand:
+//
+//   actions    in a box of states only some actions                    predicate of each state
+//   direction  the action never falls, or never rises, with one input  predicate of each pair of neighbours
+//   switches   along the price axis the action changes so often at most  predicate of each row of a box
+//   power      in a box at most so much of the rated power             the guard's alone
+//
+// The student is bound on the lattice alone: by what lies inside it, and by months only if it sees months.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "shared/context_classes.h"
+#include "shared/decision_rule.h"
+#include "shared/features.h"
+#include "shared/price_thresholds.h"
+
+namespace bess {
+
+enum class Demand : std::uint8_t { kActions, kDirection, kSwitches, kPower };
+
+/// Inputs of the student, in its order.
+enum class RuleInput : std::uint8_t { kMinute, kQuarterHour, kContextClass, kSoc, kPrice };
+inline constexpr int kRuleInputCount = 5;
+
+/// How the action may move when an input rises; +1 never falls, -1 never rises, 0 as it likes.
+struct Direction {
+  RuleInput input = RuleInput::kPrice;
+  int sign = 0;
+  friend bool operator==(const Direction&, const Direction&) = default;
+};
+
+struct Rule {
+  std::string name;
+  Demand demand = Demand::kActions;
+  RuleBox box;
+  ActionSet actions = kAllActions;
+  Direction direction{};
+  int switches_max = 0;
+  std::int32_t power_permille_max = kFullPowerPermille;
+  bool enforce = false;       ///< by the guard, whatever the student says
+  bool is_threshold = false;  ///< stands for a threshold of properties 1 and 2
+  std::string place{};        ///< "FILE:LINE", for messages
+
+  [[nodiscard]] Action lowest() const;   ///< of the allowed actions
+  [[nodiscard]] Action highest() const;  ///< of the allowed actions
+  /// Discharging and charging are allowed, and idling is not.
+  [[nodiscard]] bool has_gap() const;
+  /// "17:00-20:00, SoC at most 30 %: the action is at least idle".
+  [[nodiscard]] std::string text() const;
+};
+
+struct RuleSet {
+  std::vector<Rule> rules;
+
+  [[nodiscard]] bool empty() const { return rules.empty(); }
+  /// What is given, each threshold replaced by that of a rule.
+  [[nodiscard]] PriceThresholds thresholds(PriceThresholds otherwise) const;
+  /// Of properties 1 to 3 and the rules: the direction of each input, by RuleInput.
+  [[nodiscard]] std::vector<Direction> directions() const;
+  /// What the guard enforces, in the order of the rules.
+  [[nodiscard]] std::vector<GuardRule> guard_rules() const;
+  [[nodiscard]] std::vector<std::string> guard_rule_names() const;
+};
+
+/// Whether the proof of a student of this context counts the rule; else it is the guard's alone.
+bool binds_student(const Rule& rule, ContextKind kind);
+
+/// A box on the lattice: indices, ends included, and what it says of the context.
+struct LatticeBox {
+  int price_first, price_last;  ///< indices from kLatticePriceMinEurPerMwh
+  int soc_first, soc_last;
+  std::int32_t classes;  ///< bit c - 1, of the student's context
+};
+
+/// The part of a box that a student of this context sees. Precondition: some of it lies on the lattice.
+LatticeBox lattice_box_of(const RuleBox& box, ContextKind kind);
+
+/// Whether the student sees the box at this hour and context class.
+bool holds_in_context(const RuleBox& box, ContextKind kind, int quarter_hour, int context_class);
+
+/// "17:00".
+std::string hour_text(int quarter_hour);
+
+}  // namespace bess

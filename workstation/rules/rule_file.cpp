@@ -1,0 +1,393 @@
+#include "workstation/rules/rule_file.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <map>
+
+#include "shared/host/file.h"
+#include "shared/host/toml_reader.h"
+#include "shared/host/user_error.h"
+
+namespace bess {
+namespace {
+
+constexpr std::string_view kNameCharacters =
+    "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789 -_.,:()%+";
+constexpr int kSocStepsPerOne = kSocCount - 1;
+constexpr std::array<std::string_view, kRuleInputCount> kInputNames{
+    "minute", "quarter_hour", "context_class", "soc", "price"};
+
+/// The keys that make a demand; a rule has one of them.
+constexpr std::array<std::string_view, 10> kDemandKeys{"is",
+                                                       "is_not",
+                                                       "at_least",
+                                                       "at_most",
+                                                       "never_rises_with",
+                                                       "never_falls_with",
+                                                       "switches_max",
+                                                       "power_max",
+                                                       "charge_at_or_below",
+                                                       "discharge_at_or_above"};
+
+bool parse_digits(std::string_view text, int& value) {
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
+  return read.ec == std::errc() && read.ptr == text.data() + text.size();
+}
+
+/// "17:00" as a quarter-hour; "24:00" is the end of the day. False for anything else.
+bool parse_hour(std::string_view text, int& quarter_hour) {
+  int hours = 0;
+  int minutes = 0;
+  if (text.size() != 5 || text[2] != ':' || !parse_digits(text.substr(0, 2), hours) ||
+      !parse_digits(text.substr(3), minutes)) {
+    return false;
+  }
+  if (hours < 0 || minutes < 0 || minutes > 59 || minutes % kMinutesPerQuarterHour != 0) {
+    return false;
+  }
+  quarter_hour = hours * 4 + minutes / kMinutesPerQuarterHour;
+  return quarter_hour <= kQuarterHourCount;
+}
+
+/// Reads one [[rule]].
+class RuleReader {
+ public:
+  explicit RuleReader(TomlTable& table) : table_(table) {}
+
+  Rule read() {
+    read_name();
+    read_hours();
+    const bool has_months = table_.has("months");
+    if (has_months && table_.has("context_classes")) {
+      table_.fail("context_classes", "cannot stand beside months: leave out one of them");
+    }
+    read_members("months", rule_.box.months);
+    read_members("context_classes", rule_.box.context_classes);
+    read_range_of_soc();
+    read_range_of_price();
+    read_demand();
+    table_.boolean("enforce", rule_.enforce);
+    check_enforcement();
+    table_.finish();
+    return rule_;
+  }
+
+ private:
+  void read_name() {
+    table_.require("name");
+    const std::string* name = table_.text("name");
+    if (name == nullptr) return;
+    const bool plain = name->find_first_not_of(kNameCharacters) == std::string::npos;
+    if (name->empty() || name->size() > kNameLengthMax || !plain) {
+      table_.fail("name", fmt::format("must have 1 to {} letters, digits, spaces or -_.,:()%+",
+                                      kNameLengthMax));
+    }
+    rule_.name = *name;
+  }
+
+  void read_hours() {
+    const std::string* text = table_.text("hours");
+    if (text == nullptr) return;
+    const std::size_t dash = text->find('-');
+    int first = 0;
+    int end = 0;
+    if (dash == std::string::npos || !parse_hour(std::string_view(*text).substr(0, dash), first) ||
+        !parse_hour(std::string_view(*text).substr(dash + 1), end) || first == kQuarterHourCount) {
+      return table_.fail("hours", "must be two times in quarter-hours, like \"17:00-20:15\"");
+    }
+    const int count = (end - first + kQuarterHourCount) % kQuarterHourCount;
+    if (count == 0) return table_.fail("hours", "holds the whole day or nothing: leave it out");
+    rule_.box.quarter_hour_first = first;
+    rule_.box.quarter_hour_count = count;
+  }
+
+  void read_members(std::string_view key, std::int32_t& bits) {
+    const TomlArray* list = table_.array(key);
+    if (list == nullptr) return;
+    bits = 0;
+    for (const TomlValue& value : *list) {
+      const auto* member = value.as<std::int64_t>();
+      if (member == nullptr || *member < 1 || *member > 12) {
+        return table_.fail(key, "must list whole numbers from 1 to 12");
+      }
+      bits |= 1 << (*member - 1);
+    }
+    if (bits == 0) table_.fail(key, "is empty: the rule would never hold; leave the key out");
+  }
+
+  void read_soc(std::string_view key, std::int32_t& index) {
+    const TomlValue* node = table_.node(key);
+    if (node == nullptr) return;
+    const auto value = node->number();
+    if (!value || !(*value >= 0 && *value <= 1)) {
+      return table_.fail(key, "must be a fraction between 0 and 1");
+    }
+    const double steps = *value * kSocStepsPerOne;
+    if (std::fabs(steps - std::round(steps)) > 1e-6) {
+      return table_.fail(key, "must be a multiple of 0.005: the student sees no finer SoC");
+    }
+    index = static_cast<std::int32_t>(std::lround(steps));
+  }
+
+  void read_range_of_soc() {
+    read_soc("soc_min", rule_.box.soc_index_min);
+    read_soc("soc_max", rule_.box.soc_index_max);
+    if (rule_.box.soc_index_min > rule_.box.soc_index_max) {
+      table_.fail("soc_max", "is below soc_min: the rule would never hold");
+    }
+  }
+
+  void read_price(std::string_view key, std::int32_t& price) {
+    table_.integer(key, price, -kThresholdMaxEurPerMwh, kThresholdMaxEurPerMwh);
+  }
+
+  void read_range_of_price() {
+    read_price("price_min", rule_.box.price_min_eur_per_mwh);
+    read_price("price_max", rule_.box.price_max_eur_per_mwh);
+    if (rule_.box.price_min_eur_per_mwh > rule_.box.price_max_eur_per_mwh) {
+      table_.fail("price_max", "is below price_min: the rule would never hold");
+    }
+  }
+
+  Action read_action(std::string_view key) {
+    int action = 0;
+    table_.choice(key, action, {"discharge", "idle", "charge"});
+    return static_cast<Action>(action);
+  }
+
+  void read_demand() {
+    std::string_view found;
+    for (const std::string_view key : kDemandKeys) {
+      if (!table_.has(key)) continue;
+      if (!found.empty()) {
+        return table_.fail(key, fmt::format("is a second demand beside {}: make it a rule of its "
+                                            "own",
+                                            found));
+      }
+      found = key;
+    }
+    if (found.empty()) {
+      return table_.fail(
+          "", fmt::format("asks for nothing: add one of {}", fmt::join(kDemandKeys, ", ")));
+    }
+    if (found == "never_rises_with" || found == "never_falls_with") return read_direction(found);
+    if (found == "switches_max") return read_switches();
+    if (found == "power_max") return read_power();
+    if (found == "charge_at_or_below" || found == "discharge_at_or_above") {
+      return read_threshold(found);
+    }
+    read_actions(found);
+  }
+
+  void read_actions(std::string_view key) {
+    const Action action = read_action(key);
+    rule_.demand = Demand::kActions;
+    rule_.actions = 0;
+    for (int a = 0; a < kActionCount; ++a) {
+      const auto other = static_cast<Action>(a);
+      const bool allowed = key == "is"         ? other == action
+                           : key == "is_not"   ? other != action
+                           : key == "at_least" ? other >= action
+                                               : other <= action;
+      if (allowed) rule_.actions = static_cast<ActionSet>(rule_.actions | action_bit(other));
+    }
+    if (rule_.actions == kAllActions) table_.fail(key, "allows every action: it asks for nothing");
+  }
+
+  void read_direction(std::string_view key) {
+    int input = 0;
+    table_.choice(key, input,
+                  {kInputNames[0], kInputNames[1], kInputNames[2], kInputNames[3], kInputNames[4]});
+    rule_.demand = Demand::kDirection;
+    rule_.direction = {static_cast<RuleInput>(input), key == "never_rises_with" ? -1 : 1};
+    if (rule_.box != RuleBox{}) {
+      table_.fail(key, "holds everywhere: leave hours, months, classes, SoC and price out");
+    }
+    const bool is_ordered = input >= static_cast<int>(RuleInput::kSoc);
+    if (is_ordered && rule_.direction.sign > 0) {
+      table_.fail(key, "contradicts property 3: the action never rises with price or SoC");
+    }
+  }
+
+  void read_switches() {
+    rule_.demand = Demand::kSwitches;
+    table_.integer("switches_max", rule_.switches_max, 1, 2);
+  }
+
+  void read_power() {
+    rule_.demand = Demand::kPower;
+    table_.scaled("power_max", rule_.power_permille_max, kFullPowerPermille, 0, 1);
+    if (rule_.power_permille_max == kFullPowerPermille) {
+      table_.fail("power_max", "is all there is: use less than 1");
+    }
+  }
+
+  void read_threshold(std::string_view key) {
+    if (rule_.box != RuleBox{}) {
+      table_.fail(key, "holds at every hour and SoC: use is = with a box for less");
+    }
+    rule_.is_threshold = true;
+    if (key == "charge_at_or_below") {
+      rule_.actions = action_bit(Action::kCharge);
+      read_price(key, rule_.box.price_max_eur_per_mwh);
+    } else {
+      rule_.actions = action_bit(Action::kDischarge);
+      read_price(key, rule_.box.price_min_eur_per_mwh);
+    }
+  }
+
+  void check_enforcement() {
+    if (rule_.demand == Demand::kPower && !rule_.enforce) {
+      table_.fail("power_max", "is for the guard alone: add enforce = true");
+    }
+    if (!rule_.enforce) return;
+    if (rule_.demand == Demand::kDirection || rule_.demand == Demand::kSwitches) {
+      table_.fail("enforce", "needs a demand on single states: the guard sees one state at a time");
+    }
+    if (rule_.is_threshold) {
+      table_.fail("enforce",
+                  "is not for thresholds: the guard has its own, [guard] low_price_eur_per_mwh and "
+                  "high_price_eur_per_mwh of bess-edge.toml");
+    }
+  }
+
+  TomlTable& table_;
+  Rule rule_;
+};
+
+void check_names(const RuleSet& set) {
+  std::map<std::string, const Rule*> seen;
+  for (const Rule& rule : set.rules) {
+    const auto [first, is_new] = seen.emplace(rule.name, &rule);
+    if (!is_new) {
+      fail("{}: the name \"{}\" is that of {} already: rename one", rule.place, rule.name,
+           first->second->place);
+    }
+  }
+}
+
+void check_thresholds(const RuleSet& set) {
+  for (const Action action : {Action::kCharge, Action::kDischarge}) {
+    const Rule* first = nullptr;
+    for (const Rule& rule : set.rules) {
+      if (!rule.is_threshold || rule.lowest() != action) continue;
+      if (first != nullptr) {
+        fail("{}: \"{}\" is a second threshold beside \"{}\" ({}): leave one out", rule.place,
+             rule.name, first->name, first->place);
+      }
+      first = &rule;
+    }
+  }
+}
+
+std::string demand_line(const Rule& rule) {
+  const std::string_view low = action_name(rule.lowest());
+  const std::string_view high = action_name(rule.highest());
+  switch (rule.demand) {
+    case Demand::kActions:
+      if (rule.is_threshold && rule.lowest() == Action::kCharge) {
+        return fmt::format("charge_at_or_below = {}\n", rule.box.price_max_eur_per_mwh);
+      }
+      if (rule.is_threshold) {
+        return fmt::format("discharge_at_or_above = {}\n", rule.box.price_min_eur_per_mwh);
+      }
+      if (rule.has_gap()) return "is_not = \"idle\"\n";
+      if (low == high) return fmt::format("is = \"{}\"\n", low);
+      return rule.highest() == Action::kCharge ? fmt::format("at_least = \"{}\"\n", low)
+                                               : fmt::format("at_most = \"{}\"\n", high);
+    case Demand::kDirection:
+      return fmt::format("never_{}_with = \"{}\"\n", rule.direction.sign > 0 ? "falls" : "rises",
+                         kInputNames[static_cast<std::size_t>(rule.direction.input)]);
+    case Demand::kSwitches:
+      return fmt::format("switches_max = {}\n", rule.switches_max);
+    case Demand::kPower:
+      return fmt::format("power_max = {:g}\n",
+                         rule.power_permille_max / double{kFullPowerPermille});
+  }
+  return {};
+}
+
+std::string members_line(std::string_view key, std::int32_t bits) {
+  if (bits == kAllTwelve) return {};
+  std::vector<int> members;
+  for (int k = 0; k < 12; ++k) {
+    if ((bits >> k & 1) != 0) members.push_back(k + 1);
+  }
+  return fmt::format("{} = [{}]\n", key, fmt::join(members, ", "));
+}
+
+std::string box_lines(const RuleBox& box) {
+  const RuleBox all;
+  std::string text;
+  if (box.quarter_hour_count != all.quarter_hour_count) {
+    const int end = (box.quarter_hour_first + box.quarter_hour_count) % kQuarterHourCount;
+    text += fmt::format("hours = \"{}-{}\"\n", hour_text(box.quarter_hour_first), hour_text(end));
+  }
+  text += members_line("months", box.months);
+  text += members_line("context_classes", box.context_classes);
+  const auto soc = [&text](std::string_view key, int index, int otherwise) {
+    if (index != otherwise)
+      text += fmt::format("{} = {:g}\n", key, index / double{kSocStepsPerOne});
+  };
+  soc("soc_min", box.soc_index_min, all.soc_index_min);
+  soc("soc_max", box.soc_index_max, all.soc_index_max);
+  const auto price = [&text](std::string_view key, int value, int otherwise) {
+    if (value != otherwise) text += fmt::format("{} = {}\n", key, value);
+  };
+  price("price_min", box.price_min_eur_per_mwh, all.price_min_eur_per_mwh);
+  price("price_max", box.price_max_eur_per_mwh, all.price_max_eur_per_mwh);
+  return text;
+}
+
+void append_rules(std::string_view text, const std::string& name, RuleSet& set) {
+  TomlValue document;
+  std::string error;
+  if (!parse_toml_text(text, name, document, error)) throw UserError(error);
+  TomlTable top(&document, name, "", error);
+  const TomlArray* list = top.array("rule");
+  top.finish();
+  if (!error.empty()) throw UserError(error);
+  if (list == nullptr || list->empty()) fail("{}: holds no [[rule]]", name);
+  for (const TomlValue& value : *list) {
+    if (value.as<TomlMembers>() == nullptr) fail("{}: rule must be written as [[rule]]", name);
+    TomlTable table(&value, name, "[[rule]]", error);
+    Rule rule = RuleReader(table).read();
+    if (!error.empty()) throw UserError(error);
+    rule.place = fmt::format("{}:{}", name, value.line);
+    set.rules.push_back(std::move(rule));
+  }
+  check_names(set);
+  check_thresholds(set);
+}
+
+}  // namespace
+
+RuleSet parse_rules(std::string_view text, const std::string& name) {
+  RuleSet set;
+  append_rules(text, name, set);
+  return set;
+}
+
+RuleSet load_rules(const std::vector<std::string>& paths) {
+  RuleSet set;
+  for (const std::string& path : paths) append_rules(read_file(path), path, set);
+  return set;
+}
+
+std::string format_rules(const RuleSet& rules) {
+  std::string text;
+  for (const Rule& rule : rules.rules) {
+    text += fmt::format("{}[[rule]]\nname = \"{}\"\n", text.empty() ? "" : "\n", rule.name);
+    if (!rule.is_threshold) text += box_lines(rule.box);
+    text += demand_line(rule);
+    if (rule.enforce) text += "enforce = true\n";
+  }
+  return text;
+}
+
+}  // namespace bess

@@ -1,0 +1,47 @@
+// A policy that obeys rules: what it would decide, moved to the nearest action that is left. On the lattice that
+// is the nearest of all policies that obey the rules and keep their directions, where the policy has the
+// directions itself, as every proved student has; what is the guard's alone is cut as the guard cuts it.
+// It tells what rules cost before anything is trained. A direction of another input than price and SoC, and a
+// bound on switches, are no demand on single states: they are not projected.
+#pragma once
+
+#include <memory>
+
+#include "workstation/env/policy.h"
+#include "workstation/rules/rule_conflicts.h"
+
+namespace bess {
+
+/// Whether the rule is projected by a RuledPolicy at all.
+bool can_be_projected(const Rule& rule);
+
+class RuledPolicy final : public Policy {
+ public:
+  /// `classes`: what the context classes of the rules mean. The rules must be consistent.
+  RuledPolicy(std::shared_ptr<Policy> policy, const RuleSet& rules, const ContextClasses& classes);
+
+  void begin(std::span<const MarketStep> ahead, double soc_frac) override {
+    policy_->begin(ahead, soc_frac);
+  }
+  [[nodiscard]] Action decide(const MarketStep& step, std::size_t index,
+                              double soc_frac) const override;
+  [[nodiscard]] double power_share_max(const MarketStep& step, double soc_frac) const override;
+
+  /// Of all decisions so far, the share that the rules changed.
+  [[nodiscard]] double changed_share() const {
+    return decisions_ == 0 ? 0 : static_cast<double>(changed_) / static_cast<double>(decisions_);
+  }
+
+ private:
+  std::shared_ptr<Policy> policy_;
+  ContextClasses classes_;
+  ImpliedRanges implied_;
+  std::vector<GuardRule> guard_rules_;
+  mutable std::int64_t decisions_ = 0;
+  mutable std::int64_t changed_ = 0;
+};
+
+/// Where a step is looked up, as the edge would.
+RulePoint rule_point_of(const MarketStep& step, double soc_frac, const ContextClasses& classes);
+
+}  // namespace bess
