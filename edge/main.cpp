@@ -19,12 +19,15 @@
 #include "edge/program/command_line.h"
 #include "edge/program/commission_command.h"
 #include "edge/program/commission_file.h"
+#include "edge/program/exchange_recorder.h"
 #include "edge/program/hold_command.h"
 #include "edge/program/hold_watch.h"
 #include "edge/program/limit_command.h"
 #include "edge/program/limit_file.h"
 #include "edge/program/log_command.h"
+#include "edge/program/map_check_command.h"
 #include "edge/program/people_config.h"
+#include "edge/program/record_command.h"
 #include "edge/program/release_command.h"
 #include "edge/program/run_locks.h"
 #include "edge/program/signature_command.h"
@@ -63,6 +66,18 @@ void release_if_a_check_fails(ModbusBattery& battery) {
   check_handler() = release_after_failed_check;
 }
 
+/// With --record, from the first request on: a replay needs to be identified too.
+bool record_battery(const CommandLine& command_line, const EdgeConfig& config,
+                    ModbusBattery& battery, ExchangeRecorder& recorder, FileMessage& error) {
+  if (command_line.record_path.empty()) return true;
+  if (!recorder.start(command_line.record_path.c_str(), recording_head_of(config), config.map,
+                      config.clock, error)) {
+    return false;
+  }
+  battery.link().tell_exchanges(recorder.listener());
+  return true;
+}
+
 int run_controller(const CommandLine& command_line, const EdgeConfig& config) {
   if (!check_student() || !prepare_memory()) return 1;
   FileMessage error;
@@ -70,6 +85,9 @@ int run_controller(const CommandLine& command_line, const EdgeConfig& config) {
   if (!lock_battery(config, locks, error)) return fail(error.c_str());
   prepare_process();
   static EdgeClock clock(config.clock, config.require_synchronised_clock);
+  if (command_line.command == SubCommand::kRecord) {
+    return run_record_command(command_line, config, clock);
+  }
   static ModbusBattery battery(config.link, config.map, config.clock);
   if (command_line.command == SubCommand::kCommission) {
     if (command_line.yes) release_if_a_check_fails(battery);
@@ -88,6 +106,8 @@ int run_controller(const CommandLine& command_line, const EdgeConfig& config) {
   notify.extend_start(config.start_timeout_s + 60);
   static EventLog log;
   if (!lock_state(config, locks, error)) return fail(error.c_str());
+  static ExchangeRecorder recorder;
+  if (!record_battery(command_line, config, battery, recorder, error)) return fail(error.c_str());
   // A run that is refused leaves the status of the run before as it is.
   if (!reach_battery(config, battery, clock)) return 1;
   std::string refusal;
@@ -123,7 +143,10 @@ int run_controller(const CommandLine& command_line, const EdgeConfig& config) {
   holds.start(hold_path(config).c_str(), config.clock.scale);
   loop.follow_holds(holds.mailbox());
   notify.ready();
-  return run_supervised(loop, command_line.cycles, clock, log, notify, clearance.c_str()) ? 0 : 1;
+  const bool is_released =
+      run_supervised(loop, command_line.cycles, clock, log, notify, clearance.c_str());
+  if (!recorder.finish(error)) return fail(error.c_str());
+  return is_released ? 0 : 1;
 }
 
 }  // namespace
@@ -135,6 +158,9 @@ int main(int argc, char** argv) {
   const CommandLineResult result = parse_command_line(argc, argv, command_line);
   if (result != CommandLineResult::kGo) return result == CommandLineResult::kExitOk ? 0 : 2;
   if (command_line.command == SubCommand::kSignature) return run_signature_command();
+  if (command_line.command == SubCommand::kMapCheck && !command_line.map_path.empty()) {
+    return run_map_check_command(command_line, nullptr);
+  }
   static EdgeConfig config;
   std::string error;
   if (!load_edge_config(command_line.config_path, config, error)) return fail(error.c_str());
@@ -143,6 +169,9 @@ int main(int argc, char** argv) {
   if (command_line.command == SubCommand::kLog) return run_log_command(command_line, config);
   if (command_line.command == SubCommand::kHold) return run_hold_command(command_line, config);
   if (command_line.command == SubCommand::kLimit) return run_limit_command(command_line, config);
+  if (command_line.command == SubCommand::kMapCheck) {
+    return run_map_check_command(command_line, &config);
+  }
   if (command_line.dry_run) config.control.control = false;
   return run_controller(command_line, config);
 }

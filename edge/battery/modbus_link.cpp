@@ -30,6 +30,20 @@ LinkPauses pauses_of(const LinkTiming& timing, const ScaledClock& clock) {
                                clock.wall_ns(milliseconds(timing.quiet_ms)))};
 }
 
+BusOutcome outcome_of(Status status, int exception) {
+  if (exception != 0) return BusOutcome::kException;
+  switch (status) {
+    case Status::kOk:
+      return BusOutcome::kAnswered;
+    case Status::kTimeout:
+      return BusOutcome::kTimeout;
+    case Status::kBadReply:
+      return BusOutcome::kBadReply;
+    default:
+      return BusOutcome::kNotConnected;
+  }
+}
+
 std::int64_t late_reply_ns_max(const LinkTiming& timing, const ScaledClock& clock) {
   return std::max(5 * milliseconds(timing.response_timeout_ms),
                   clock.wall_ns(milliseconds(timing.late_reply_ms_max)));
@@ -73,6 +87,7 @@ Status ModbusLink::request(ModbusRequest request, std::uint16_t* registers,
   last_exception_ = 0;
   if (!request.is_valid()) return Status::kNotExpressible;
   ++counters_.requests;
+  const std::int64_t asked_ns = now();
   Status status = make_ready(request);
   if (status == Status::kOk) {
     request.transaction = ++transaction_;
@@ -80,6 +95,9 @@ Status ModbusLink::request(ModbusRequest request, std::uint16_t* registers,
     if (status != Status::kTooLate) finish(request, status);
   }
   if (status != Status::kOk) ++counters_.failed_requests;
+  if (listener_.tell != nullptr && status != Status::kTooLate) {
+    tell(request, registers, status, asked_ns);
+  }
   return status;
 }
 
@@ -165,6 +183,21 @@ void ModbusLink::finish(const ModbusRequest& request, Status status) {
 void ModbusLink::recover(Status status) {
   if (rtu_ && status != Status::kNotConnected) return state_.on_no_answer(now());
   close();
+}
+
+void ModbusLink::tell(const ModbusRequest& request, const std::uint16_t* registers, Status status,
+                      std::int64_t asked_ns) const {
+  const std::int64_t begin_ns = std::max(asked_ns, sent_ns_);  // gap and connecting are not latency
+  BusExchange exchange{.latency_us = (now() - begin_ns) / 1'000,
+                       .unit = request.unit,
+                       .function = request.function,
+                       .outcome = outcome_of(status, last_exception_),
+                       .exception = last_exception_,
+                       .address = request.address,
+                       .count = static_cast<std::uint16_t>(request.count)};
+  const std::uint16_t* const values = request.is_write() ? request.values : registers;
+  std::copy_n(values, exchange.values().size(), exchange.registers.begin());
+  listener_.tell(listener_.owner, exchange);
 }
 
 /// Time that so many bytes take on a serial line: 11 bits each with parity or a second stop bit.

@@ -19,6 +19,7 @@
 #include "edge/battery/modbus_frame.h"
 #include "edge/battery/modbus_wire.h"
 #include "edge/battery/unanswered_requests.h"
+#include "shared/bus_exchange.h"
 #include "shared/scaled_clock.h"
 
 namespace bess {
@@ -49,6 +50,13 @@ struct LinkCounters {
   std::int64_t register_writes = 0;  ///< write requests that left for the device
 };
 
+/// Is told every request and what came of it, on the thread that asked: it may neither wait nor allocate.
+/// The time of an exchange is left to it.
+struct ExchangeListener {
+  void (*tell)(void* owner, const BusExchange& exchange) = nullptr;
+  void* owner = nullptr;
+};
+
 class ModbusLink {
  public:
   ModbusLink(const BatteryLinkSettings& settings, const LinkTiming& timing,
@@ -62,6 +70,7 @@ class ModbusLink {
   Status write(std::int32_t unit, std::uint8_t function, std::uint16_t address,
                const std::uint16_t* registers, int count, std::int64_t send_until_ns = INT64_MAX);
   void close();
+  void tell_exchanges(const ExchangeListener& listener) { listener_ = listener; }
 
   /// The exception code of the last request, 0 when the device answered none: for register maps
   /// that give a vendor's code a meaning of their own.
@@ -75,6 +84,8 @@ class ModbusLink {
   Status ask(const ModbusRequest& request, std::uint16_t* registers, std::int64_t send_until_ns);
   Status receive_reply(const ModbusRequest& request, std::int64_t deadline_ns, ModbusFrame& reply);
   void finish(const ModbusRequest& request, Status status);
+  void tell(const ModbusRequest& request, const std::uint16_t* registers, Status status,
+            std::int64_t asked_ns) const;
   void recover(Status status);
   [[nodiscard]] std::int64_t line_time_ns(int bytes) const;
 
@@ -91,6 +102,7 @@ class ModbusLink {
   int last_exception_ = 0;
   std::uint16_t transaction_ = 0;
   std::int64_t sent_ns_ = 0;
+  ExchangeListener listener_;
 };
 
 }  // namespace bess

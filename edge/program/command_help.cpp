@@ -6,7 +6,7 @@ namespace {
 constexpr const char* kRunHelp =
     R"(bess-edge: drives a battery on the imbalance price, every two minutes
 
-  bess-edge [--config FILE] [--dry-run] [--cycles N]    run
+  bess-edge [--config FILE] [--dry-run] [--cycles N] [--record FILE]    run
   bess-edge [--config FILE] --check                     what would be done; writes nothing
   bess-edge commission [--config FILE] --yes            check the sign of a new battery, once
   bess-edge release [--config FILE] --yes               end an order that nobody ends any more
@@ -15,6 +15,8 @@ constexpr const char* kRunHelp =
   bess-edge log [--config FILE] ...                     what was decided, and why
   bess-edge hold WATTS --for TIME [--config FILE]       a power until an end, whatever the price
   bess-edge limit [--config FILE] ...                   caps the power for a while
+  bess-edge record --for TIME [--config FILE]           what the battery answers, to a file
+  bess-edge map check --against FILE [--map FILE]       does a register map fit a recorded battery?
   bess-edge signature                                   one number for what this build decides
   bess-edge COMMAND --help                              more on one of them
 
@@ -23,6 +25,8 @@ constexpr const char* kRunHelp =
                  written, read the battery and the newest price once, write nothing, exit
   --dry-run      run, but write nothing, whatever the file says (control = false does the same)
   --cycles N     stop cleanly after N cycles
+  --record FILE  besides, write every request to the battery and its reply to FILE (see bess-edge
+                 record --help): what bess-sim battery --replay plays again
   --help         this text
   --version      version and the student that is built in
 
@@ -178,6 +182,48 @@ Exit codes: 0 done   1 no [limits], or the file cannot be written   2 the comman
   bess-edge limit --clear
 )";
 
+constexpr const char* kRecordHelp =
+    R"(bess-edge record: what a battery answers, written to a file; writes nothing to the battery
+
+  bess-edge record --for DURATION [--every DURATION] [--out FILE] [--config FILE]
+
+  --for DURATION    how long, 1s to 7d: 90s, 1h, 1d12h; Ctrl-C ends it before, and the file is whole
+  --every DURATION  between two readings of what is measured; default 10s. Everything else that the
+                    register map names, and what it would write, is read every 10 minutes
+  --out FILE        default: bess-TIME.jsonl in the current folder
+  --config FILE     the controller's settings; default /etc/bess/edge.toml
+
+One JSON object a line: request, values or error, latency. Hidden (0, of a text X) is what the map marks as
+private, texts beyond what the map's identity check asks for, and every register that the map does not name: the
+file can be given away. It holds neither addresses of the network nor prices. Refused while a bess-edge
+controls the battery: record that one with bess-edge run --record FILE, which has the orders too.
+What is made of it: bess-sim battery --replay FILE, and bess-edge map check --against FILE.
+Exit codes: 0 recorded   1 the file cannot be written, or nobody answered   2 the command line is bad
+
+  bess-edge record --for 1h
+  bess-edge record --for 5m --every 2s --out inverter.jsonl --config /etc/bess/edge.toml
+)";
+
+constexpr const char* kMapCheckHelp =
+    R"(bess-edge map check: does a register map fit what a battery answered? Needs no battery
+
+  bess-edge map check --against FILE [--map FILE [--variant NAME] | --config FILE] [--json] [--accept-cut]
+
+  --against FILE  a recording: bess-edge record, or bess-edge run --record
+  --map FILE      the register map; default: that of the configuration
+  --variant NAME  of the map; default: its first
+  --config FILE   the controller's settings; default /etc/bess/edge.toml
+  --json          one JSON object
+  --accept-cut    take a recording without its last line up to where it was cut
+
+Names every point whose values cannot be true, with what would fit: never answered, outside its range, another
+scale, word order or type; a state of charge that stands still or does not follow the measured power; power that
+flows against the order. For the last three the battery must have moved energy while it was recorded.
+Exit codes: 0 all points are plausible   1 not all, or a file cannot be read   2 the command line is bad
+
+  bess-edge map check --against inverter.jsonl --map edge/maps/sma.toml --variant setpoint
+)";
+
 }  // namespace
 
 const char* help_of(SubCommand command) {
@@ -198,6 +244,10 @@ const char* help_of(SubCommand command) {
       return kHoldHelp;
     case SubCommand::kLimit:
       return kLimitHelp;
+    case SubCommand::kRecord:
+      return kRecordHelp;
+    case SubCommand::kMapCheck:
+      return kMapCheckHelp;
     case SubCommand::kRun:
     case SubCommand::kCheck:
       break;

@@ -50,6 +50,8 @@ constexpr CommandName kCommandNames[] = {
     {"release", SubCommand::kRelease},
     {"clear", SubCommand::kClear},
     {"signature", SubCommand::kSignature},
+    {"record", SubCommand::kRecord},
+    {"map", SubCommand::kMapCheck},
 };
 
 bool find_command(std::string_view name, SubCommand& command) {
@@ -96,6 +98,17 @@ constexpr Option kOptions[] = {
     {SubCommand::kLimit, "--discharge", &CommandLine::discharge_w},
     {SubCommand::kLimit, "--for", Duration{&CommandLine::for_s, "1s"}},
     {SubCommand::kLimit, "--clear", &CommandLine::clear},
+    {SubCommand::kRun, "--record", &CommandLine::record_path},
+    {SubCommand::kRecord, "--config", &CommandLine::config_path},
+    {SubCommand::kRecord, "--for", Duration{&CommandLine::for_s, "1s"}},
+    {SubCommand::kRecord, "--every", Duration{&CommandLine::every_s, "1s"}},
+    {SubCommand::kRecord, "--out", &CommandLine::out_path},
+    {SubCommand::kMapCheck, "--config", &CommandLine::config_path},
+    {SubCommand::kMapCheck, "--map", &CommandLine::map_path},
+    {SubCommand::kMapCheck, "--variant", &CommandLine::variant},
+    {SubCommand::kMapCheck, "--against", &CommandLine::against_path},
+    {SubCommand::kMapCheck, "--accept-cut", &CommandLine::accept_cut},
+    {SubCommand::kMapCheck, "--json", &CommandLine::json},
 };
 
 const Option* find_option(SubCommand command, std::string_view name) {
@@ -158,6 +171,34 @@ bool is_complete_hold(const CommandLine& line) {
   return line.release_hold ? !is_partial : is_order;
 }
 
+/// `map` is said with what is to be done with it; `--help` may stand there as well.
+bool take_map_verb(int argc, char** argv, int& i) {
+  if (i < argc && argv[i] == std::string_view("check")) return ++i, true;
+  return i < argc && argv[i][0] == '-' &&
+         (argv[i] == std::string_view("--help") || argv[i] == std::string_view("-h"));
+}
+
+CommandLineResult settle_config(CommandLine& line) {
+  if (!line.config_path.empty()) return CommandLineResult::kGo;
+  if (access(kDefaultConfigPath, F_OK) != 0) {
+    return usage_error("--config FILE is required, there is no ", kDefaultConfigPath);
+  }
+  line.config_path = kDefaultConfigPath;
+  return CommandLineResult::kGo;
+}
+
+/// A map that is named needs no configuration.
+CommandLineResult settle_map_check(CommandLine& line) {
+  if (line.against_path.empty()) return usage_error("map check needs --against FILE", "");
+  if (!line.map_path.empty() && !line.config_path.empty()) {
+    return usage_error("--map and --config exclude each other", "");
+  }
+  if (line.map_path.empty() && !line.variant.empty()) {
+    return usage_error("--variant needs --map: a configuration says it itself", "");
+  }
+  return line.map_path.empty() ? settle_config(line) : CommandLineResult::kGo;
+}
+
 /// True when the option is complete without a value.
 bool set_switch(const Option& option, CommandLine& line) {
   if (const auto* flag = std::get_if<bool CommandLine::*>(&option.target)) {
@@ -181,15 +222,6 @@ bool print_general(std::string_view argument, SubCommand command) {
   return true;
 }
 
-CommandLineResult settle_config(CommandLine& line) {
-  if (!line.config_path.empty()) return CommandLineResult::kGo;
-  if (access(kDefaultConfigPath, F_OK) != 0) {
-    return usage_error("--config FILE is required, there is no ", kDefaultConfigPath);
-  }
-  line.config_path = kDefaultConfigPath;
-  return CommandLineResult::kGo;
-}
-
 }  // namespace
 
 CommandLineResult parse_command_line(int argc, char** argv, CommandLine& line) {
@@ -197,6 +229,9 @@ CommandLineResult parse_command_line(int argc, char** argv, CommandLine& line) {
   if (i < argc && argv[i][0] != '-') {
     const std::string_view name = argv[i++];
     if (!find_command(name, line.command)) return usage_error("unknown command ", name);
+    if (line.command == SubCommand::kMapCheck && !take_map_verb(argc, argv, i)) {
+      return usage_error("map needs what is to be done: map check --against FILE", "");
+    }
   }
   const SubCommand command = line.command;  // --check is an option of run and changes line.command
   for (; i < argc; ++i) {
@@ -217,6 +252,10 @@ CommandLineResult parse_command_line(int argc, char** argv, CommandLine& line) {
   if (line.command == SubCommand::kLimit && line.clear != (line.for_s == 0)) {
     return usage_error("limit needs either --for DURATION or --clear", "");
   }
+  if (line.command == SubCommand::kRecord && line.for_s == 0) {
+    return usage_error("record needs --for DURATION", "");
+  }
+  if (line.command == SubCommand::kMapCheck) return settle_map_check(line);
   return settle_config(line);
 }
 

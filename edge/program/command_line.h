@@ -19,7 +19,9 @@ enum class SubCommand : std::uint8_t {
   kSignature,
   kClear,
   kHold,
-  kLimit
+  kLimit,
+  kRecord,
+  kMapCheck
 };
 
 struct CommandLine {
@@ -42,6 +44,13 @@ struct CommandLine {
   std::string charge_w;    ///< of limit; empty = any
   std::string discharge_w;
   bool clear = false;
+  std::string record_path;   ///< of run; empty = nothing is recorded
+  std::string out_path;      ///< of record; empty = a name made of the time
+  std::int64_t every_s = 0;  ///< of record; 0 = not given
+  std::string map_path;      ///< of map check, as the next three; empty = the configuration's map
+  std::string variant;
+  std::string against_path;
+  bool accept_cut = false;
 };
 
 enum class CommandLineResult { kGo, kExitOk, kExitUsage };

@@ -191,6 +191,7 @@ void read_point(TomlTable& table, const MapDefaults& defaults, RegisterMap& map)
   table.integer("write_interval_s", point.write_interval_s, 0, 86'400);
   table.integer("max_age_s", point.max_age_s, 0, 86'400);
   table.boolean("optional", point.optional);
+  table.boolean("private", point.is_private);
   point.eeprom = storage == 1;
   if (point.type != RegisterType::kText) {
     table.require("min");

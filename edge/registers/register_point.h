@@ -39,6 +39,7 @@ struct RegisterPoint {
   Rounding rounding = Rounding::kAuto;
   bool eeprom = false;          ///< each write wears memory: only changes are written, and counted
   bool optional = false;        ///< not every device has it: then it is left out, and told nowhere
+  bool is_private = false;      ///< somebody's own, such as a serial number: a recording hides it
   std::int8_t scale_from = -1;  ///< point that holds the decimal exponent
   std::int8_t percent_of = -1;  ///< the register counts per cent of this point
   std::int8_t clamp_to = -1;    ///< written values are cut to +- this point's live value

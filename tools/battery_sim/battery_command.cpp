@@ -14,6 +14,7 @@
 #include "tools/battery_sim/battery_faults.h"
 #include "tools/battery_sim/battery_record.h"
 #include "tools/battery_sim/battery_server.h"
+#include "tools/battery_sim/replay_command.h"
 #include "tools/sim/clock_options.h"
 #include "tools/sim/commands.h"
 #include "tools/sim/stop_signal.h"
@@ -46,6 +47,7 @@ struct BatteryOptions {
   std::string meter_variant;
   BatteryServerSettings meter = meter_defaults();
   std::vector<std::string> meter_fault_names;
+  ReplayOptions replay;
 };
 
 const BatteryFaultInfo* find_fault(const std::string& name) {
@@ -103,6 +105,9 @@ void take_faults(const std::vector<std::string>& names, BatteryServerSettings& s
 }
 
 void run_battery(BatteryOptions& options) {
+  if (!options.replay.path.empty()) {
+    return run_replay(options.replay, options.server, options.clock);
+  }
   const StopSignal stop;
   take_faults(options.fault_names, options.server);
   take_faults(options.meter_fault_names, options.meter);
@@ -159,6 +164,7 @@ std::string footer() {
       "--fault-seed 3 --fault-from-s 600 --fault-to-s 3600\n"
       "  bess-sim battery --port 1502 --house daily --meter-map edge/meters/sunspec.toml "
       "--meter-port 1503\n"
+      "  bess-sim battery --port 1502 --replay inverter.jsonl\n"
       "A serial line on one machine: socat pty,raw,echo=0,link=a pty,raw,echo=0,link=b, then "
       "--serial a here and device = \"b\" at the edge.\n"
       "Faults:\n";
@@ -236,6 +242,15 @@ void add_plant_options(ProgramCommand& command, BatteryOptions& options) {
                  "CSV of energy and SoC per simulated minute, written at exit");
 }
 
+void add_replay_options(ProgramCommand& command, ReplayOptions& replay) {
+  command.option(
+      "--replay", replay.path,
+      "Answer as this recorded device did (bess-edge record), by address and time; no other "
+      "option of battery, house or faults counts then");
+  command.flag("--accept-cut", replay.accept_cut,
+               "Replay a recording without its last line up to where it was cut");
+}
+
 void add_house_options(ProgramCommand& command, BatteryOptions& options) {
   command.option("--house", options.house,
                  "House behind the same meter: daily, watts, or a CSV file (minute_utc,house_w)");
@@ -272,6 +287,7 @@ void add_battery_command(ProgramCommand& app) {
   add_plant_options(command, *options);
   add_house_options(command, *options);
   add_fault_options(command, *options);
+  add_replay_options(command, options->replay);
   command.runs([options] { run_battery(*options); });
 }
 

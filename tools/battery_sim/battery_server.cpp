@@ -156,7 +156,10 @@ void BatteryServer::serve(Client& client) {
     return;
   }
   // Another unit, or a connection that has gone dead: silence, as on a bus.
-  if (request.size == 0 || !serves_unit(map_, request.unit()) || client.half_open) return;
+  const bool is_here = recorded_ != nullptr ? recorded_->serves_unit(request.unit())
+                                            : serves_unit(map_, request.unit());
+  if (request.size == 0 || !is_here || client.half_open) return;
+  if (recorded_ != nullptr) return answer_as_recorded(client, request);
   if (wait(settings_.response_delay_ms)) answer(client, request);
 }
 
@@ -166,6 +169,28 @@ void BatteryServer::answer(Client& client, const BusRequest& request) {
   const BatteryFault fault = plan_.draw(chance, elapsed_s());
   if (fault != BatteryFault::kFrozen) refresh();
   answer_with_fault(client, request, fault);
+}
+
+void BatteryServer::answer_as_recorded(Client& client, const BusRequest& request) {
+  const BusExchange recorded = recorded_->answer(request);
+  if (!wait(recorded_->latency_ms(recorded))) return;
+  switch (recorded.outcome) {
+    case BusOutcome::kTimeout:
+      return;
+    case BusOutcome::kNotConnected:
+      if (!rtu_) close_client(client, false);
+      return;
+    case BusOutcome::kException:
+      return send(client, reply_->exception(request, recorded.exception));
+    case BusOutcome::kBadReply:
+    case BusOutcome::kAnswered:
+      break;
+  }
+  const Bytes bytes = reply_->frame(request, ReplayedBus::content(recorded));
+  const bool is_bad =
+      recorded.outcome == BusOutcome::kBadReply;  // what was wrong with it is not known
+  send(client,
+       is_bad ? reply_->spoil(request, bytes, BatteryFault::kWrongUnit, plan_.random()) : bytes);
 }
 
 void BatteryServer::answer_with_fault(Client& client, const BusRequest& request,

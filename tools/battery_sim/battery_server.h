@@ -16,6 +16,7 @@
 #include "tools/battery_sim/battery_faults.h"
 #include "tools/battery_sim/bus_reply.h"
 #include "tools/battery_sim/register_image.h"
+#include "tools/battery_sim/replayed_bus.h"
 #include "tools/battery_sim/simulated_battery.h"
 
 namespace bess {
@@ -46,6 +47,8 @@ class BatteryServer {
   ~BatteryServer();
 
   [[nodiscard]] int port() const { return port_; }
+  /// From now on every request is answered as recorded; the registers stay as they are.
+  void replay(ReplayedBus& recorded) { recorded_ = &recorded; }
   /// Serves until `stop_fd` becomes readable. Throws UserError when the serial line disappears.
   void run(int stop_fd);
 
@@ -63,6 +66,7 @@ class BatteryServer {
   void accept_client();
   void serve(Client& client);
   void answer(Client& client, const BusRequest& request);
+  void answer_as_recorded(Client& client, const BusRequest& request);
   void answer_with_fault(Client& client, const BusRequest& request, BatteryFault fault);
   Bytes right_answer(const BusRequest& request, bool keep_registers);
   void change_values(BatteryFault fault);
@@ -79,7 +83,8 @@ class BatteryServer {
   bool rtu_;
   const RegisterMap& map_;
   SimulatedBattery& battery_;
-  MeteredHouse* house_;  ///< null: the battery is nobody else's
+  MeteredHouse* house_;              ///< null: the battery is nobody else's
+  ReplayedBus* recorded_ = nullptr;  ///< null: the registers answer
   ScaledClock clock_;
   std::int64_t start_ns_;
   std::unique_ptr<modbus_t, FreeContext> context_;

@@ -43,11 +43,12 @@ class BusReply {
   /// The right answer; a write changes `registers`.
   Bytes answer(const BusRequest& request, _modbus_mapping_t& registers);
   Bytes exception(const BusRequest& request, int code);
+  /// Any answer: unit, function and what follows, framed.
+  Bytes frame(const BusRequest& request, const Bytes& unit_and_pdu);
   /// The right answer changed by a fault of its bytes; others leave it as it is.
   Bytes spoil(const BusRequest& request, Bytes reply, BatteryFault fault, std::mt19937_64& random);
 
  private:
-  Bytes frame(const BusRequest& request, const Bytes& unit_and_pdu);
   Bytes take();
 
   _modbus* context_;

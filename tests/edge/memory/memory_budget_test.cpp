@@ -16,6 +16,7 @@
 #include "edge/memory/static_arena.h"
 #include "edge/program/edge_clock.h"
 #include "edge/program/edge_config.h"
+#include "edge/program/exchange_recorder.h"
 #include "edge/program/hold_watch.h"
 #include "edge/program/limit_file.h"
 
@@ -55,6 +56,7 @@ TEST(MemoryBudget, OfTheReadmeIsTrue) {
       {"ControlLoop", sizeof(Loop)},
       {"EdgeClock", sizeof(EdgeClock)},
       {"HoldWatch", sizeof(HoldWatch)},
+      {"ExchangeRecorder", sizeof(ExchangeRecorder)},
       {"EventLog", sizeof(EventLog)},
   };
   std::map<std::string, std::size_t> budget = read_budget();

@@ -1,0 +1,54 @@
+// A battery's readings held against each other: the state of charge must move as the measured power explains, and
+// power must flow the way that was ordered. Shows wrong signs and scales whose values stay in their ranges. Pure;
+// for recordings, not for the control path (supervision.h judges a battery at work).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+namespace bess {
+
+/// What was read at one time: of each kind the newest value.
+struct EnergyReading {
+  std::int64_t utc_ns = 0;  ///< of the power
+  std::int64_t power_w = 0;
+  std::optional<std::int64_t> soc_e4;
+  std::optional<std::int64_t> order_w;  ///< of the order in force
+  std::int64_t order_age_s = 0;         ///< at least this long
+};
+
+class EnergyEvidence {
+ public:
+  /// `settle_s`: by when power follows an order.
+  explicit EnergyEvidence(std::int32_t settle_s) : settle_s_(settle_s) {}
+
+  void add(const EnergyReading& reading);
+
+  /// How many times as far as the measured power explains the state of charge has moved: 1 where all is right,
+  /// negative where a sign is wrong. Empty when the SoC has changed less than three times. `capacity_wh` above 0.
+  [[nodiscard]] std::optional<double> soc_per_energy(double capacity_wh) const;
+  /// Energy has flowed, and the state of charge has not moved at all.
+  [[nodiscard]] bool soc_stands_still(double capacity_wh) const;
+  [[nodiscard]] double energy_moved_wh() const { return energy_moved_wh_; }
+
+  enum class Answer { kUnknown, kFollows, kOpposite };
+  [[nodiscard]] Answer answer() const;
+  /// Measured by ordered power; empty when nothing could be compared.
+  [[nodiscard]] std::optional<double> power_per_order() const;
+
+ private:
+  void balance(const EnergyReading& reading, double energy_wh);
+  void compare(const EnergyReading& reading);
+
+  std::int32_t settle_s_;
+  std::int64_t last_utc_ns_ = 0;
+  double energy_wh_ = 0;        ///< since the SoC changed last; charging is positive
+  double energy_moved_wh_ = 0;  ///< charged and discharged together
+  std::optional<std::int64_t> soc_e4_;
+  int soc_changes_ = 0;
+  double soc_times_energy_ = 0, energy_squared_ = 0;  ///< sums over the changes
+  int same_way_ = 0, other_way_ = 0;
+  double measured_w_ = 0, ordered_w_ = 0;  ///< sums of sizes
+};
+
+}  // namespace bess

@@ -1,0 +1,275 @@
+// A device is recorded while bess-edge drives it, and replayed: the real programs decide the same against the
+// recording. The map fits the recording, and a map with a mistake does not.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "tests/support/shipped_maps.h"
+#include "tests/support/simulated_site.h"
+
+namespace bess {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr std::int32_t kScale = 120;
+constexpr int kCycles = 8;
+
+struct Outcome {
+  int exit_code;
+  std::string text;
+};
+
+Outcome run(const std::vector<std::string>& arguments) {
+  ChildProcess child(arguments);
+  std::string text = child.read_all();
+  return {child.wait(), text};
+}
+
+/// What a cycle saw and did, without how long it took.
+std::string decisions(const std::string& csv_path) {
+  std::string text;
+  for (const CsvRow& row : read_csv(csv_path)) {
+    for (const char* name :
+         {"utc", "mode", "soc_e4", "battery_power_w", "price_centi_eur_per_mwh", "student_action",
+          "ordered_power_w", "reason", "battery_status", "written"}) {
+      text.append(name).append("=").append(row.at(name)).append(" ");
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+/// A mistake in a map, and the point that must be named.
+struct Mistake {
+  const char* point;
+  const char* keys;
+  const char* finding;
+};
+
+struct Recorded {
+  MapVariant map;
+  std::vector<Mistake> mistakes;
+  friend void PrintTo(const Recorded& r, std::ostream* out) { PrintTo(r.map, out); }
+};
+
+class RecordReplay : public ::testing::TestWithParam<Recorded> {
+ protected:
+  static constexpr const char* kNoSuchRegister = "never asked for";
+
+  [[nodiscard]] std::string battery_keys() const {
+    const MapVariant& m = GetParam().map;
+    return "map = \"" + shipped_map(m.map) + "\"\n" +
+           (*m.variant == '\0' ? "" : std::string("variant = \"") + m.variant + "\"\n") +
+           "response_timeout_ms = 500\nstart_timeout_s = 2\n";
+  }
+  [[nodiscard]] std::vector<std::string> battery_options() const {
+    const MapVariant& m = GetParam().map;
+    std::vector<std::string> options = {"--map", shipped_map(m.map)};
+    if (*m.variant != '\0') options.insert(options.end(), {"--variant", m.variant});
+    return options;
+  }
+  /// Both simulators at the same ports, and the clock from its start on.
+  void start_again(const std::vector<std::string>& options) {
+    if (site_.battery) SimulatedSite::stop(*site_.battery);
+    if (site_.market) SimulatedSite::stop(*site_.market);
+    const int battery_port = site_.battery ? site_.battery_port : 0;
+    const int market_port = site_.market ? site_.market_port : 0;
+    site_.start_clock();
+    site_.start_battery(options, battery_port);
+    site_.start_market({}, SimulatedSite::minute_prices(150), market_port);
+  }
+  /// Drives what is there; its decisions. The sign check is taken over.
+  std::string drive(const std::string& state, const std::vector<std::string>& options = {}) {
+    const std::string folder = site_.folder.file(state);
+    std::filesystem::create_directories(folder);
+    std::filesystem::copy_file(site_.folder.file("state/commissioned.toml"),
+                               folder + "/commissioned.toml",
+                               std::filesystem::copy_options::overwrite_existing);
+    std::vector<std::string> arguments = {
+        BESS_EDGE_PROGRAM, "--config",
+        site_.write_config({.battery_keys = battery_keys(), .state = state}), "--cycles",
+        std::to_string(kCycles)};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    std::filesystem::remove(site_.folder.file("edge.csv"));
+    const Outcome edge = run(arguments);
+    EXPECT_EQ(edge.exit_code, 0) << edge.text;
+    return decisions(site_.folder.file("edge.csv"));
+  }
+  Outcome check(const std::string& map, const std::vector<std::string>& options = {}) const {
+    std::vector<std::string> arguments = {BESS_EDGE_PROGRAM, "map",   "check", "--against",
+                                          recording_,        "--map", map};
+    const char* const variant = GetParam().map.variant;
+    if (*variant != '\0') arguments.insert(arguments.end(), {"--variant", variant});
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return run(arguments);
+  }
+  /// The shipped map with a few keys of a point changed.
+  [[nodiscard]] std::string map_with(const Mistake& mistake) const {
+    std::filesystem::copy_file(shipped_map(GetParam().map.map), site_.folder.file("right.toml"),
+                               std::filesystem::copy_options::overwrite_existing);
+    return site_.folder.write("wrong.toml",
+                              std::string("include = \"right.toml\"\n[[point]]\nname = \"") +
+                                  mistake.point + "\"\n" + mistake.keys + "\n");
+  }
+
+  SimulatedSite site_{kScale};
+  std::string recording_ = site_.folder.file("device.jsonl");
+};
+
+TEST_P(RecordReplay, DecidesTheSameAndTheMapFits) {
+  start_again(battery_options());
+  static_cast<void>(site_.commission({.battery_keys = battery_keys()}));
+  start_again(battery_options());
+  const std::string recorded = drive("recorded", {"--record", recording_});
+  EXPECT_THAT(recorded, AllOf(HasSubstr("ordered_power_w=4000 "), HasSubstr("mode=running")));
+
+  start_again({"--replay", recording_});
+  EXPECT_EQ(drive("replayed"), recorded);
+  site_.battery->signal(SIGTERM);
+  EXPECT_EQ(site_.battery->read_all(), "bess-sim battery: stopped\n")
+      << "it knew an answer to everything";
+
+  const Outcome fits = check(shipped_map(GetParam().map.map));
+  EXPECT_THAT(fits.text, HasSubstr(": 0 of ")) << fits.text;
+  EXPECT_EQ(fits.exit_code, 0);
+  for (const Mistake& mistake : GetParam().mistakes) {
+    SCOPED_TRACE(std::string(mistake.point) + ": " + mistake.keys);
+    const Outcome wrong = check(map_with(mistake));
+    EXPECT_EQ(wrong.exit_code, 1);
+    EXPECT_THAT(wrong.text,
+                ::testing::ContainsRegex(std::string(mistake.point) + " .*" + mistake.finding));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Maps, RecordReplay,
+    ::testing::Values(
+        Recorded{{"alphaess", "block"},
+                 {{"soc", "scale = 1", "moves a 10th as far"},
+                  {"soc", "scale = 1000", "a scale 100 times smaller|a scale 10 times smaller"},
+                  {"battery_power", "sign = 1", "sign"},
+                  {"battery_power", "type = \"u16\"", "type = \"s16\""},
+                  {"capacity", "address = 0x0200", "never asked for"}}},
+        Recorded{
+            {"sunspec_704", ""},
+            {{"battery_power", "sign = 1", "sign"}, {"soc", "scale = 10000", "times smaller"}}},
+        Recorded{{"victron_ess3", "three_phase"}, {{"battery_power", "sign = -1", "sign"}}},
+        Recorded{{"huawei_luna2000", ""},
+                 {{"capacity", "word_order = \"low_first\"", "word_order = \"high_first\""},
+                  {"battery_power", "sign = -1", "sign"}}},
+        Recorded{{"sungrow_sh", "external_ems"}, {{"soc", "scale = 1000", "times smaller"}}},
+        Recorded{{"sma", "bms_mode"},
+                 {{"soc", "word_order = \"low_first\"", "word_order = \"high_first\""}}}),
+    [](const auto& info) {
+      const MapVariant& m = info.param.map;
+      return std::string(m.map) + (*m.variant == '\0' ? "" : std::string("_") + m.variant);
+    });
+
+/// `bess-edge record`, and what becomes of a file that is no longer whole.
+class RecordCommand : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    site_.start_battery();
+    config_ = site_.write_config();
+  }
+  Outcome record(const std::vector<std::string>& options) const {
+    std::vector<std::string> arguments = {BESS_EDGE_PROGRAM, "record", "--config", config_};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return run(arguments);
+  }
+  Outcome check(const std::string& path) const {
+    return run({BESS_EDGE_PROGRAM, "map", "check", "--against", path, "--config", config_});
+  }
+  static std::string text_of(const std::string& path) {
+    std::ifstream file(path);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+
+  SimulatedSite site_{kScale};
+  std::string config_;
+  std::string path_ = site_.folder.file("device.jsonl");
+};
+
+TEST_F(RecordCommand, ReadsWhatTheMapNamesAndWritesNothing) {
+  const Outcome recorded = record({"--for", "10m", "--every", "10s", "--out", path_});
+  EXPECT_EQ(recorded.exit_code, 0) << recorded.text;
+  EXPECT_THAT(recorded.text, HasSubstr(" requests, 0 failed; nothing was written to 127.0.0.1:"));
+  const std::string text = text_of(path_);
+  EXPECT_THAT(text, AllOf(HasSubstr("\"map\":\"alphaess\""), HasSubstr("{\"end\":"),
+                          Not(HasSubstr("\"function\":16")), Not(HasSubstr("\"function\":6")),
+                          Not(HasSubstr("127.0.0.1"))));
+  const Outcome fits = check(path_);
+  EXPECT_EQ(fits.exit_code, 0) << fits.text;
+  EXPECT_THAT(fits.text, HasSubstr("sign and scale of the power cannot be judged"));
+}
+
+TEST_F(RecordCommand, AnInterruptedRecordingIsWhole) {
+  ChildProcess child(
+      {BESS_EDGE_PROGRAM, "record", "--config", config_, "--for", "7d", "--out", path_});
+  while (!std::filesystem::exists(path_ + ".part")) usleep(1'000);
+  usleep(300'000);
+  child.signal(SIGINT);
+  EXPECT_THAT(child.read_all(), HasSubstr("recorded "));
+  EXPECT_EQ(child.wait(), 0);
+  EXPECT_EQ(check(path_).exit_code, 0);
+}
+
+TEST_F(RecordCommand, ADeviceThatAnswersNothingIsOneLine) {
+  SimulatedSite::stop(*site_.battery);
+  const Outcome recorded = record({"--for", "10s", "--out", path_});
+  EXPECT_EQ(recorded.exit_code, 1);
+  EXPECT_THAT(recorded.text, HasSubstr(": answered nothing (are host, port and unit right"));
+}
+
+TEST_F(RecordCommand, ACutOrDamagedRecordingIsOneLineOfEitherProgram) {
+  ASSERT_EQ(record({"--for", "1m", "--out", path_}).exit_code, 0);
+  const std::string whole = text_of(path_);
+  const std::string cut = site_.folder.write("cut.jsonl", whole.substr(0, whole.size() / 2));
+  std::string changed = whole;
+  changed[changed.find("{\"utc\"") + 1] = '?';
+  const std::string damaged = site_.folder.write("damaged.jsonl", changed);
+  const auto replay = [](const std::string& path, const std::vector<std::string>& options = {}) {
+    std::vector<std::string> arguments = {BESS_SIM_PROGRAM, "battery", "--port", "0",
+                                          "--replay",       path};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return arguments;
+  };
+  for (const auto& [path, what] : {std::pair(cut, "the recording was cut here"),
+                                   std::pair(damaged, "damaged.jsonl:2: this is no line")}) {
+    for (const Outcome& outcome : {check(path), run(replay(path))}) {
+      EXPECT_EQ(outcome.exit_code, 1);
+      EXPECT_THAT(outcome.text, HasSubstr(what));
+      EXPECT_EQ(std::count(outcome.text.begin(), outcome.text.end(), '\n'), 1) << outcome.text;
+    }
+  }
+  ChildProcess accepted(replay(cut, {"--accept-cut"}));
+  EXPECT_THAT(accepted.read_line(), HasSubstr("listening on"));
+}
+
+TEST_F(RecordCommand, TheCommandLineIsChecked) {
+  const auto refused = [&](std::vector<std::string> arguments, const std::string& why) {
+    arguments.insert(arguments.begin(), BESS_EDGE_PROGRAM);
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.text;
+    EXPECT_THAT(outcome.text, HasSubstr(why));
+  };
+  refused({"record", "--config", config_}, "record needs --for DURATION");
+  refused({"record", "--config", config_, "--for", "8d"}, "--for needs 1s to 7d");
+  refused({"map", "--against", path_}, "map needs what is to be done");
+  refused({"map", "check", "--config", config_}, "map check needs --against FILE");
+  refused({"map", "check", "--against", path_, "--map", "a", "--config", config_},
+          "exclude each other");
+  for (const char* command : {"record", "map"}) {
+    const Outcome help = run({BESS_EDGE_PROGRAM, command, "--help"});
+    EXPECT_EQ(help.exit_code, 0);
+    EXPECT_THAT(help.text, HasSubstr("Exit codes: 0"));
+  }
+}
+
+}  // namespace
+}  // namespace bess

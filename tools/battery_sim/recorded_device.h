@@ -1,0 +1,69 @@
+// A device as it was recorded (shared/host/bus_recording.h): answers a request as it answered the same one at that
+// time. Two rules, so that a replay takes the course of the recording and is not thrown off by milliseconds:
+//   the same request was recorded   its answers are given in their order, each when its time has come, give or take
+//                                   `kSlackNs`; what nobody asked for in its time is passed over
+//   it was not, a read              each register by itself, as it was last read before this time
+// What was never recorded is answered with exception 2, and told.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "shared/bus_exchange.h"
+#include "shared/host/bus_recording.h"
+
+namespace bess {
+
+class RecordedDevice {
+ public:
+  /// Reads the whole recording. Throws UserError naming file and line.
+  RecordedDevice(const std::string& path, CutRecording cut);
+
+  [[nodiscard]] const RecordingHead& head() const { return head_; }
+  [[nodiscard]] std::int64_t exchanges() const { return std::ssize(entries_); }
+  [[nodiscard]] std::int64_t first_utc_ns() const { return first_utc_ns_; }
+  [[nodiscard]] std::int64_t last_utc_ns() const { return last_utc_ns_; }
+  [[nodiscard]] bool has_unit(std::int32_t unit) const;
+
+  /// Fills outcome, exception, latency and the registers of a read into `request`, which holds all that was asked
+  /// and what was written, at its `utc_ns`. Returns what there is to tell of it, "" when nothing.
+  std::string answer(BusExchange& request);
+
+ private:
+  using Key = std::tuple<std::int32_t, int, int, int>;  ///< unit, function, address, count
+  struct Entry {
+    std::int64_t utc_ns = 0;
+    std::int64_t latency_us = 0;
+    BusOutcome outcome = BusOutcome::kAnswered;
+    std::int32_t exception = 0;
+    std::size_t first_value = 0;  ///< in values_
+    std::size_t value_count = 0;
+  };
+  struct Course {
+    std::vector<std::size_t> entries;  ///< in the order of time
+    std::size_t next = 0;
+  };
+  struct Reading {
+    std::int64_t utc_ns;
+    std::uint16_t value;
+  };
+  using Place = std::tuple<std::int32_t, bool, int>;  ///< unit, input register, address
+
+  void add(const BusExchange& exchange);
+  [[nodiscard]] const Entry& now_in(Course& course, std::int64_t utc_ns) const;
+  void give(const Entry& entry, BusExchange& request) const;
+  [[nodiscard]] std::string difference(const Entry& entry, const BusExchange& request) const;
+  [[nodiscard]] bool assemble(BusExchange& request) const;
+
+  RecordingHead head_;
+  std::int64_t first_utc_ns_ = 0, last_utc_ns_ = 0;
+  std::vector<Entry> entries_;
+  std::vector<std::uint16_t> values_;
+  std::map<Key, Course> courses_;
+  std::map<Place, std::vector<Reading>> readings_;
+};
+
+}  // namespace bess
