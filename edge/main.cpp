@@ -19,6 +19,7 @@
 #include "edge/program/command_line.h"
 #include "edge/program/commission_command.h"
 #include "edge/program/commission_file.h"
+#include "edge/program/history_command.h"
 #include "edge/program/hold_command.h"
 #include "edge/program/hold_watch.h"
 #include "edge/program/limit_command.h"
@@ -27,6 +28,7 @@
 #include "edge/program/people_config.h"
 #include "edge/program/release_command.h"
 #include "edge/program/run_locks.h"
+#include "edge/program/self_test.h"
 #include "edge/program/signature_command.h"
 #include "edge/program/site_check.h"
 #include "edge/program/startup.h"
@@ -135,6 +137,7 @@ int main(int argc, char** argv) {
   const CommandLineResult result = parse_command_line(argc, argv, command_line);
   if (result != CommandLineResult::kGo) return result == CommandLineResult::kExitOk ? 0 : 2;
   if (command_line.command == SubCommand::kSignature) return run_signature_command();
+  if (command_line.command == SubCommand::kHistory) return run_history_command(command_line);
   static EdgeConfig config;
   std::string error;
   if (!load_edge_config(command_line.config_path, config, error)) return fail(error.c_str());
@@ -143,6 +146,7 @@ int main(int argc, char** argv) {
   if (command_line.command == SubCommand::kLog) return run_log_command(command_line, config);
   if (command_line.command == SubCommand::kHold) return run_hold_command(command_line, config);
   if (command_line.command == SubCommand::kLimit) return run_limit_command(command_line, config);
+  if (command_line.command == SubCommand::kSelfTest) return run_self_test(config);
   if (command_line.dry_run) config.control.control = false;
   return run_controller(command_line, config);
 }

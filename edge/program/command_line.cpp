@@ -50,6 +50,7 @@ constexpr CommandName kCommandNames[] = {
     {"release", SubCommand::kRelease},
     {"clear", SubCommand::kClear},
     {"signature", SubCommand::kSignature},
+    {"history", SubCommand::kHistory},
 };
 
 bool find_command(std::string_view name, SubCommand& command) {
@@ -70,6 +71,7 @@ struct Option {
 constexpr Option kOptions[] = {
     {SubCommand::kRun, "--config", &CommandLine::config_path},
     {SubCommand::kRun, "--check", SubCommand::kCheck},
+    {SubCommand::kRun, "--self-test", SubCommand::kSelfTest},
     {SubCommand::kRun, "--dry-run", &CommandLine::dry_run},
     {SubCommand::kRun, "--cycles", &CommandLine::cycles},
     {SubCommand::kCommission, "--config", &CommandLine::config_path},
@@ -96,6 +98,8 @@ constexpr Option kOptions[] = {
     {SubCommand::kLimit, "--discharge", &CommandLine::discharge_w},
     {SubCommand::kLimit, "--for", Duration{&CommandLine::for_s, "1s"}},
     {SubCommand::kLimit, "--clear", &CommandLine::clear},
+    {SubCommand::kHistory, "--json", &CommandLine::json},
+    {SubCommand::kHistory, "--folder", &CommandLine::update_folder},
 };
 
 const Option* find_option(SubCommand command, std::string_view name) {
@@ -213,7 +217,9 @@ CommandLineResult parse_command_line(int argc, char** argv, CommandLine& line) {
   if (line.command == SubCommand::kHold && !is_complete_hold(line)) {
     return usage_error("hold needs a power in W and --for DURATION, or --release alone", "");
   }
-  if (line.command == SubCommand::kSignature) return CommandLineResult::kGo;
+  const bool needs_no_settings =
+      line.command == SubCommand::kSignature || line.command == SubCommand::kHistory;
+  if (needs_no_settings) return CommandLineResult::kGo;
   if (line.command == SubCommand::kLimit && line.clear != (line.for_s == 0)) {
     return usage_error("limit needs either --for DURATION or --clear", "");
   }

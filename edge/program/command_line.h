@@ -6,9 +6,11 @@
 #include <optional>
 #include <string>
 
+#include "edge/program/update_state.h"
+
 namespace bess {
 
-/// `run` is what bess-edge does without a sub-command; --check makes it `check`.
+/// `run` is what bess-edge does without a sub-command; --check and --self-test make it another one.
 enum class SubCommand : std::uint8_t {
   kRun,
   kCheck,
@@ -19,7 +21,9 @@ enum class SubCommand : std::uint8_t {
   kSignature,
   kClear,
   kHold,
-  kLimit
+  kLimit,
+  kSelfTest,
+  kHistory
 };
 
 struct CommandLine {
@@ -42,6 +46,7 @@ struct CommandLine {
   std::string charge_w;    ///< of limit; empty = any
   std::string discharge_w;
   bool clear = false;
+  std::string update_folder = kUpdateFolder;  ///< of history
 };
 
 enum class CommandLineResult { kGo, kExitOk, kExitUsage };
