@@ -9,7 +9,7 @@ endif()
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME bess)
-set(CPACK_PACKAGE_CONTACT "The owner of bess <bess@localhost.localdomain>")
+set(CPACK_PACKAGE_CONTACT "the committer")  # tools/package says who
 set(CPACK_PACKAGE_VENDOR bess)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
@@ -25,19 +25,19 @@ set(CPACK_PROJECT_CONFIG_FILE ${CMAKE_SOURCE_DIR}/tools/packaging/cpack_project.
 
 set(CPACK_DEBIAN_BESS-EDGE_PACKAGE_NAME bess-edge)
 set(CPACK_DEBIAN_BESS-EDGE_DESCRIPTION "battery controller on the imbalance price
- Charges when the imbalance price is low and discharges when it is high, every
- two minutes, over Modbus, by a fixed-point policy that was proved over every
- input. With the notifier bess-notify, register maps, and a supervisor of its
- own upgrades: what does not confirm itself is rolled back.")
+Charges when the imbalance price is low and discharges when it is high, every
+two minutes, over Modbus, by a fixed-point policy that was proved over every
+input. With the notifier bess-notify, register maps, and a supervisor of its
+own upgrades: what does not confirm itself is rolled back.")
 set(package_dir ${CMAKE_SOURCE_DIR}/edge/package)
 set(CPACK_DEBIAN_BESS-EDGE_PACKAGE_CONTROL_EXTRA
     "${package_dir}/preinst;${package_dir}/postinst;${package_dir}/prerm;${package_dir}/postrm;${package_dir}/conffiles")
 set(CPACK_DEBIAN_BESS-EDGE_PACKAGE_CONTROL_STRICT_PERMISSION TRUE)
 set(CPACK_DEBIAN_BESS-WORKSTATION_PACKAGE_NAME bess-workstation)
 set(CPACK_DEBIAN_BESS-WORKSTATION_DESCRIPTION "trains, corrects and proves the policy of bess-edge
- Learns a policy from imbalance prices, corrects it, proves it over every input
- and exports it as a C array (bess-train); plays battery and market so that all
- of it can be tried on one machine (bess-sim).")
+Learns a policy from imbalance prices, corrects it, proves it over every input
+and exports it as a C array (bess-train); plays battery and market so that all
+of it can be tried on one machine (bess-sim).")
 
 include(CPack)
 cpack_add_component_group(bess-edge)
