@@ -20,6 +20,7 @@
 #include "edge/program/commission_command.h"
 #include "edge/program/commission_file.h"
 #include "edge/program/exchange_recorder.h"
+#include "edge/program/history_command.h"
 #include "edge/program/hold_command.h"
 #include "edge/program/hold_watch.h"
 #include "edge/program/limit_command.h"
@@ -30,6 +31,7 @@
 #include "edge/program/record_command.h"
 #include "edge/program/release_command.h"
 #include "edge/program/run_locks.h"
+#include "edge/program/self_test.h"
 #include "edge/program/signature_command.h"
 #include "edge/program/site_check.h"
 #include "edge/program/startup.h"
@@ -161,6 +163,7 @@ int main(int argc, char** argv) {
   if (command_line.command == SubCommand::kMapCheck && !command_line.map_path.empty()) {
     return run_map_check_command(command_line, nullptr);
   }
+  if (command_line.command == SubCommand::kHistory) return run_history_command(command_line);
   static EdgeConfig config;
   std::string error;
   if (!load_edge_config(command_line.config_path, config, error)) return fail(error.c_str());
@@ -172,6 +175,7 @@ int main(int argc, char** argv) {
   if (command_line.command == SubCommand::kMapCheck) {
     return run_map_check_command(command_line, &config);
   }
+  if (command_line.command == SubCommand::kSelfTest) return run_self_test(config);
   if (command_line.dry_run) config.control.control = false;
   return run_controller(command_line, config);
 }

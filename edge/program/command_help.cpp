@@ -17,12 +17,16 @@ constexpr const char* kRunHelp =
   bess-edge limit [--config FILE] ...                   caps the power for a while
   bess-edge record --for TIME [--config FILE]           what the battery answers, to a file
   bess-edge map check --against FILE [--map FILE]       does a register map fit a recorded battery?
+  bess-edge [--config FILE] --self-test                 can this machine run the controller here?
   bess-edge signature                                   one number for what this build decides
+  bess-edge history                                     versions that this machine has run
   bess-edge COMMAND --help                              more on one of them
 
   --config FILE  settings in TOML; edge/bess-edge.toml documents every key; default /etc/bess/edge.toml
   --check        check settings, map, student and sign check, print the registers that would be
                  written, read the battery and the newest price once, write nothing, exit
+  --self-test    try student, signature, memory, seal, clock, certificates, price server, storage and
+                 battery once; a table, nothing is written to the battery
   --dry-run      run, but write nothing, whatever the file says (control = false does the same)
   --cycles N     stop cleanly after N cycles
   --record FILE  besides, write every request to the battery and its reply to FILE (see bess-edge
@@ -36,7 +40,7 @@ reads (--check too), because many batteries serve one connection.
 SIGTERM or Ctrl-C: 0 W is ordered, the battery is released, exit 0. SIGHUP: exit 0 and leave the order
 in force for the next start, which takes over; the battery's own timer ends it if there is none.
 Exit codes: 0 done   1 settings or battery are bad, the sign is not checked, or the battery is in use;
-with --check also: no price, clock not set by NTP   2 the command line is bad
+with --check also: no price, clock not set by NTP; with --self-test: a part fails   2 the command line is bad
 
   bess-edge --config /etc/bess/edge.toml --check
   bess-edge --config /etc/bess/edge.toml --dry-run --cycles 5
@@ -135,6 +139,22 @@ Student and guard replay two recorded days of prices in each month of a year, th
 among them, in integers. The signature is over every order: builds with the same student that print
 different ones do not decide the same. edge/generated/decision_signature.txt holds the expected line.
 Exit codes: 0 done   2 the command line is bad
+)";
+
+constexpr const char* kHistoryHelp =
+    R"(bess-edge history: which versions and weights this machine has run, and what became of them
+
+  bess-edge history [--json] [--folder FOLDER]
+
+  --json           a list of objects: utc, event, version, student, header_sha256, reason
+  --folder FOLDER  where bess-update keeps it; default /var/lib/bess-update
+
+Events: trying (installed, on trial), confirmed, going_back and rolled_back (with the reason), failed (nothing to
+go back to). "certificate" is the begin of the SHA-256 of the exported header.
+Exit codes: 0 done   1 no history   2 the command line is bad
+
+  bess-edge history
+  bess-edge history --json | jq '.[-1].event'
 )";
 
 constexpr const char* kHoldHelp =
@@ -240,6 +260,8 @@ const char* help_of(SubCommand command) {
       return kLogHelp;
     case SubCommand::kSignature:
       return kSignatureHelp;
+    case SubCommand::kHistory:
+      return kHistoryHelp;
     case SubCommand::kHold:
       return kHoldHelp;
     case SubCommand::kLimit:
@@ -250,6 +272,7 @@ const char* help_of(SubCommand command) {
       return kMapCheckHelp;
     case SubCommand::kRun:
     case SubCommand::kCheck:
+    case SubCommand::kSelfTest:
       break;
   }
   return kRunHelp;

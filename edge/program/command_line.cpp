@@ -52,6 +52,7 @@ constexpr CommandName kCommandNames[] = {
     {"signature", SubCommand::kSignature},
     {"record", SubCommand::kRecord},
     {"map", SubCommand::kMapCheck},
+    {"history", SubCommand::kHistory},
 };
 
 bool find_command(std::string_view name, SubCommand& command) {
@@ -72,6 +73,7 @@ struct Option {
 constexpr Option kOptions[] = {
     {SubCommand::kRun, "--config", &CommandLine::config_path},
     {SubCommand::kRun, "--check", SubCommand::kCheck},
+    {SubCommand::kRun, "--self-test", SubCommand::kSelfTest},
     {SubCommand::kRun, "--dry-run", &CommandLine::dry_run},
     {SubCommand::kRun, "--cycles", &CommandLine::cycles},
     {SubCommand::kCommission, "--config", &CommandLine::config_path},
@@ -109,6 +111,8 @@ constexpr Option kOptions[] = {
     {SubCommand::kMapCheck, "--against", &CommandLine::against_path},
     {SubCommand::kMapCheck, "--accept-cut", &CommandLine::accept_cut},
     {SubCommand::kMapCheck, "--json", &CommandLine::json},
+    {SubCommand::kHistory, "--json", &CommandLine::json},
+    {SubCommand::kHistory, "--folder", &CommandLine::update_folder},
 };
 
 const Option* find_option(SubCommand command, std::string_view name) {
@@ -248,7 +252,9 @@ CommandLineResult parse_command_line(int argc, char** argv, CommandLine& line) {
   if (line.command == SubCommand::kHold && !is_complete_hold(line)) {
     return usage_error("hold needs a power in W and --for DURATION, or --release alone", "");
   }
-  if (line.command == SubCommand::kSignature) return CommandLineResult::kGo;
+  const bool needs_no_settings =
+      line.command == SubCommand::kSignature || line.command == SubCommand::kHistory;
+  if (needs_no_settings) return CommandLineResult::kGo;
   if (line.command == SubCommand::kLimit && line.clear != (line.for_s == 0)) {
     return usage_error("limit needs either --for DURATION or --clear", "");
   }

@@ -6,9 +6,11 @@
 #include <optional>
 #include <string>
 
+#include "edge/program/update_state.h"
+
 namespace bess {
 
-/// `run` is what bess-edge does without a sub-command; --check makes it `check`.
+/// `run` is what bess-edge does without a sub-command; --check and --self-test make it another one.
 enum class SubCommand : std::uint8_t {
   kRun,
   kCheck,
@@ -21,7 +23,9 @@ enum class SubCommand : std::uint8_t {
   kHold,
   kLimit,
   kRecord,
-  kMapCheck
+  kMapCheck,
+  kSelfTest,
+  kHistory
 };
 
 struct CommandLine {
@@ -51,6 +55,7 @@ struct CommandLine {
   std::string variant;
   std::string against_path;
   bool accept_cut = false;
+  std::string update_folder = kUpdateFolder;  ///< of history
 };
 
 enum class CommandLineResult { kGo, kExitOk, kExitUsage };

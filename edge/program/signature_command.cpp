@@ -9,12 +9,19 @@
 
 namespace bess {
 
-int run_signature_command() {
+std::string decision_signature_line() {
   set_market_time_zone();
   const DecisionSignature found = replay_recorded_days();
-  std::printf("student=%08" PRIx32 " decisions=%d charging=%d discharging=%d signature=%016" PRIx64
-              "\n",
-              student_hash(), found.decisions, found.charging, found.discharging, found.signature);
+  char line[128];
+  std::snprintf(
+      line, sizeof line,
+      "student=%08" PRIx32 " decisions=%d charging=%d discharging=%d signature=%016" PRIx64,
+      student_hash(), found.decisions, found.charging, found.discharging, found.signature);
+  return line;
+}
+
+int run_signature_command() {
+  std::puts(decision_signature_line().c_str());
   return 0;
 }
 

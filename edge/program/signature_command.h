@@ -2,9 +2,14 @@
 // compilers and versions with each other.
 #pragma once
 
+#include <string>
+
 namespace bess {
 
-/// One line on stdout: the student's hash, what it decided, the signature. Exit code 0.
+/// The student's hash, what it decided, the signature. Sets the market's time zone.
+std::string decision_signature_line();
+
+/// That line on stdout. Exit code 0.
 int run_signature_command();
 
 }  // namespace bess

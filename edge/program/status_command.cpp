@@ -15,6 +15,7 @@
 #include "edge/log/status_keys.h"
 #include "edge/program/file_owner.h"
 #include "edge/program/run_locks.h"
+#include "edge/program/update_state.h"
 #include "shared/host/json.h"
 #include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
@@ -261,7 +262,19 @@ void print_text(const EdgeConfig& config, JsonValue status, const Health& health
     if (whole(field<&T::cycles>(status)) > 0) print_last_cycle(status);
     print_counters(status);
   }
+  const std::string update = update_note(read_update_state(kUpdateFolder));
+  if (!update.empty()) std::printf("update     %s\n", update.c_str());
   print_last_orders(config);
+}
+
+Json update_json(const UpdateState& update) {
+  return Json::object({{"phase", update.phase},
+                       {"version", update.version},
+                       {"previous", update.previous},
+                       {"rolled_back", update.refused},
+                       {"reason", update.reason},
+                       {"good_cycles", update.good_cycles},
+                       {"needed_cycles", update.needed_cycles}});
 }
 
 void print_json(Json status, const Health& health) {
@@ -270,6 +283,8 @@ void print_json(Json status, const Health& health) {
   for (const std::string& reason : health.reasons) reasons.add(reason);
   status.set("health", health_name(health.level));
   status.set("health_reasons", std::move(reasons));
+  const UpdateState update = read_update_state(kUpdateFolder);
+  if (!update.phase.empty()) status.set("update", update_json(update));
   std::fputs(status.text().c_str(), stdout);
 }
 
@@ -281,6 +296,10 @@ bool print_metrics(const EdgeConfig& config) {
     return false;
   }
   std::fputs(text.c_str(), stdout);
+  std::string updates;  // bess-update's own, where this is a package
+  if (read_text((std::string(kUpdateFolder) + "/update.prom").c_str(), updates)) {
+    std::fputs(updates.c_str(), stdout);
+  }
   return true;
 }
 

@@ -1,0 +1,85 @@
+#include "edge/program/storage_health.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <sys/statvfs.h>
+#include <sys/sysmacros.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+#include "edge/log/whole_file.h"
+#include "shared/scaled_clock.h"
+
+namespace bess {
+namespace {
+
+/// The block device, or the one that it is a partition of.
+std::optional<int> used_life_of(const std::string& folder) {
+  struct stat at {};
+  if (stat(folder.c_str(), &at) != 0) return std::nullopt;
+  const std::string device =
+      "/sys/dev/block/" + std::to_string(major(at.st_dev)) + ":" + std::to_string(minor(at.st_dev));
+  for (const char* const place : {"/device/life_time", "/../device/life_time"}) {
+    std::ifstream file(device + place);
+    std::ostringstream text;
+    if (file && text << file.rdbuf()) return used_life_percent(text.str());
+  }
+  return std::nullopt;
+}
+
+/// 0, or an errno.
+int write_and_sync(const std::string& path) {
+  const int fd = make_afresh(path.c_str());
+  if (fd < 0) return errno;
+  const char block[4'096] = {};
+  const bool is_written = write(fd, block, sizeof block) == sizeof block && fdatasync(fd) == 0;
+  const int error = is_written ? 0 : errno;
+  close(fd);
+  unlink(path.c_str());
+  return error;
+}
+
+}  // namespace
+
+std::optional<int> used_life_percent(std::string_view life_time) {
+  int worst = 0;
+  while (!life_time.empty()) {
+    const std::size_t begin = life_time.find("0x");
+    if (begin == std::string_view::npos) break;
+    life_time.remove_prefix(begin + 2);
+    int tenths = 0;
+    const auto [end, error] =
+        std::from_chars(life_time.data(), life_time.data() + life_time.size(), tenths, 16);
+    if (error != std::errc{}) return std::nullopt;
+    life_time.remove_prefix(static_cast<std::size_t>(end - life_time.data()));
+    worst = tenths > worst ? tenths : worst;
+  }
+  if (worst < 1 || worst > 11) return std::nullopt;  // 0: not defined; 11: beyond its life
+  return worst * 10;
+}
+
+StorageHealth look_at_storage(const std::string& folder) {
+  StorageHealth health;
+  mkdir(folder.c_str(), 0755);  // when it fails, the write says why
+  const std::int64_t begin_ns = clock_ns(CLOCK_MONOTONIC);
+  const int error = write_and_sync(folder + "/self-test.new");
+  health.is_writable = error == 0;
+  if (!health.is_writable) {
+    health.error = std::strerror(error);
+    return health;
+  }
+  health.synced_write_ms = static_cast<double>(clock_ns(CLOCK_MONOTONIC) - begin_ns) / 1e6;
+  struct statvfs disk {};
+  if (statvfs(folder.c_str(), &disk) == 0) {
+    health.free_mb = static_cast<double>(disk.f_bavail) * static_cast<double>(disk.f_frsize) / 1e6;
+  }
+  health.used_life_percent = used_life_of(folder);
+  return health;
+}
+
+}  // namespace bess

@@ -1,0 +1,26 @@
+// The disk that the state folder lies on: room, how long a synced write takes, and how worn it is where it says so
+// (eMMC; an SD card does not). For the self-test.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace bess {
+
+/// Used share of its life from an eMMC's life_time file ("0x01 0x03": two kinds of cells, in tenths), the worse one,
+/// as the upper end in percent; none when it does not tell.
+std::optional<int> used_life_percent(std::string_view life_time);
+
+struct StorageHealth {
+  bool is_writable = false;
+  std::string error;  ///< why it is not
+  double free_mb = 0;
+  double synced_write_ms = 0;
+  std::optional<int> used_life_percent;
+};
+
+/// Writes 4 KiB beside what is in `folder` and takes them away again; a folder that is missing is made.
+StorageHealth look_at_storage(const std::string& folder);
+
+}  // namespace bess

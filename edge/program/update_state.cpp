@@ -1,0 +1,82 @@
+#include "edge/program/update_state.h"
+
+#include <array>
+#include <charconv>
+#include <fstream>
+#include <string_view>
+
+namespace bess {
+namespace {
+
+std::int64_t whole_of(std::string_view text) {
+  std::int64_t value = 0;
+  std::from_chars(text.data(), text.data() + text.size(), value);
+  return value;
+}
+
+void take_line(std::string_view line, UpdateState& state) {
+  const std::size_t equals = line.find('=');
+  if (equals == std::string_view::npos) return;
+  const std::string_view key = line.substr(0, equals);
+  const std::string_view value = line.substr(equals + 1);
+  struct Text {
+    std::string_view key;
+    std::string UpdateState::*member;
+  };
+  constexpr Text kTexts[] = {
+      {"phase", &UpdateState::phase},       {"version", &UpdateState::version},
+      {"previous", &UpdateState::previous}, {"refused", &UpdateState::refused},
+      {"reason", &UpdateState::reason},     {"since_utc", &UpdateState::since_utc}};
+  for (const Text& text : kTexts) {
+    if (text.key == key) state.*text.member = value;
+  }
+  if (key == "good") state.good_cycles = whole_of(value);
+  if (key == "needed") state.needed_cycles = whole_of(value);
+}
+
+}  // namespace
+
+UpdateState read_update_state(const std::string& folder) {
+  UpdateState state;
+  std::ifstream file(folder + "/state");
+  for (std::string line; std::getline(file, line);) take_line(line, state);
+  return state;
+}
+
+std::string update_note(const UpdateState& state) {
+  const std::string cycles =
+      std::to_string(state.good_cycles) + " of " + std::to_string(state.needed_cycles);
+  const std::string refused = state.refused + " was rolled back: " + state.reason;
+  if (state.phase.empty()) return "";
+  if (state.phase == "trying") {
+    const std::string way_back =
+        state.previous.empty() ? "no version before it is kept" : "else back to " + state.previous;
+    return state.version + " on trial since " + state.since_utc + ", " + cycles + " good cycles; " +
+           way_back;
+  }
+  if (state.phase == "confirmed") return state.version + " confirmed";
+  if (state.phase == "upgrading") return "a new version is being installed";
+  if (state.phase == "failed") return state.version + " did not confirm: " + state.reason;
+  if (state.phase == "going_back") return state.refused + " is being rolled back: " + state.reason;
+  return state.version + "; " + refused;
+}
+
+std::vector<UpdateEvent> read_update_history(const std::string& folder) {
+  std::vector<UpdateEvent> events;
+  std::ifstream file(folder + "/history");
+  for (std::string line; std::getline(file, line);) {
+    constexpr std::size_t kFields = 6;
+    std::array<std::string, kFields> fields;
+    std::size_t count = 0;
+    std::size_t begin = 0;
+    for (std::size_t end = 0; end != std::string::npos && count < kFields; begin = end + 1) {
+      end = line.find('\t', begin);
+      fields[count++] = line.substr(begin, end == std::string::npos ? end : end - begin);
+    }
+    if (count != kFields || file.eof()) continue;  // without its line end it was torn
+    events.push_back({fields[0], fields[1], fields[2], fields[3], fields[4], fields[5]});
+  }
+  return events;
+}
+
+}  // namespace bess

@@ -1,0 +1,46 @@
+// `bess-edge --self-test` against the simulators: all parts pass, and each of them can fail.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/simulated_site.h"
+
+namespace bess {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ContainsRegex;
+using ::testing::HasSubstr;
+
+struct Said {
+  int exit_code;
+  std::string text;
+};
+
+Said self_test(const std::string& config) {
+  ChildProcess child({BESS_EDGE_PROGRAM, "--config", config, "--self-test"});
+  std::string text = child.read_all();
+  return {child.wait(), std::move(text)};
+}
+
+TEST(SelfTest, PassesWhereTheControllerCanWork) {
+  SimulatedSite site(60);
+  site.start_battery();
+  site.start_market();
+  const Said said = self_test(site.write_config());
+  EXPECT_EQ(said.exit_code, 0) << said.text;
+  EXPECT_THAT(said.text, AllOf(ContainsRegex("student +ok +[0-9]+ of"),
+                               ContainsRegex("signature +ok"), ContainsRegex("arena +ok"),
+                               ContainsRegex("network +ok"), ContainsRegex("storage +ok"),
+                               ContainsRegex("battery +ok"), HasSubstr("self-test  passed")));
+}
+
+TEST(SelfTest, NamesWhatFails) {
+  SimulatedSite site(60);
+  const Said said = self_test(site.write_config());  // nobody listens
+  EXPECT_EQ(said.exit_code, 1);
+  EXPECT_THAT(said.text, AllOf(ContainsRegex("network +FAIL"), ContainsRegex("battery +FAIL"),
+                               HasSubstr("self-test  2 parts failed")));
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,81 @@
+// What `status`, `history` and the self-test read of upgrades and of the disk.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "edge/program/storage_health.h"
+#include "edge/program/update_state.h"
+#include "tests/support/temporary_folder.h"
+
+namespace bess {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+std::string folder_of(const TemporaryFolder& folder) { return folder.file(""); }
+
+TEST(UpdateState, WithoutAPackageThereIsNothingToTell) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(update_note(read_update_state(folder_of(folder))), "");
+  EXPECT_THAT(read_update_history(folder_of(folder)), IsEmpty());
+}
+
+TEST(UpdateState, ATrialTellsItsCyclesAndItsWayBack) {
+  const TemporaryFolder folder;
+  folder.write("state",
+               "phase=trying\nversion=2.0\nprevious=1.0\nsince_utc=2026-11-22T06:00:00Z\n"
+               "good=7\nneeded=15\n");
+  EXPECT_EQ(update_note(read_update_state(folder_of(folder))),
+            "2.0 on trial since 2026-11-22T06:00:00Z, 7 of 15 good cycles; else back to 1.0");
+}
+
+TEST(UpdateState, ARollBackTellsWhatAndWhyAlsoWithAnEqualsSign) {
+  const TemporaryFolder folder;
+  folder.write("state", "phase=rolled_back\nversion=1.0\nrefused=2.0\nreason=map x: unit = 7\n");
+  EXPECT_EQ(update_note(read_update_state(folder_of(folder))),
+            "1.0; 2.0 was rolled back: map x: unit = 7");
+}
+
+TEST(UpdateHistory, OldestFirstAndNotWhatAPowerCutTore) {
+  const TemporaryFolder folder;
+  folder.write("history",
+               "2026-11-22T06:00:00Z\ttrying\t2.0\t45d2cbe3\t72c9\t\n"
+               "2026-11-22T06:09:00Z\trolled_back\t2.0\t45d2cbe3\t72c9\tthe unit failed\n"
+               "2026-11-22T07:00:00Z\ttrying\t3.0\t45d2cbe3\t72c9\thal");
+  const auto events = read_update_history(folder_of(folder));
+  ASSERT_THAT(events, SizeIs(2));
+  EXPECT_EQ(events[0].event, "trying");
+  EXPECT_EQ(events[0].reason, "");
+  EXPECT_EQ(events[1].version, "2.0");
+  EXPECT_EQ(events[1].student, "45d2cbe3");
+  EXPECT_EQ(events[1].header_sha256, "72c9");
+  EXPECT_EQ(events[1].reason, "the unit failed");
+}
+
+TEST(StorageHealth, WearIsTheWorseOfTheTwoKindsOfCells) {
+  EXPECT_EQ(used_life_percent("0x01 0x03\n"), 30);
+  EXPECT_EQ(used_life_percent("0x0a 0x00\n"), 100);
+  EXPECT_EQ(used_life_percent("0x00 0x00\n"), std::nullopt);
+  EXPECT_EQ(used_life_percent("unknown"), std::nullopt);
+}
+
+TEST(StorageHealth, ATrialWriteLeavesNothing) {
+  const TemporaryFolder folder;
+  const StorageHealth health = look_at_storage(folder.file("state"));
+  EXPECT_TRUE(health.is_writable) << health.error;
+  EXPECT_GT(health.free_mb, 0);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.file("state")));
+}
+
+TEST(StorageHealth, AFolderThatCannotBeSaysWhy) {
+  const TemporaryFolder folder;
+  folder.write("file", "");
+  const StorageHealth health = look_at_storage(folder.file("file/state"));
+  EXPECT_FALSE(health.is_writable);
+  EXPECT_EQ(health.error, "Not a directory");
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,80 @@
+# Sourced by the tests of tests/guest: machines with systemd as their first process, in containers (systemd-nspawn):
+# Debian 12 of this processor with the simulators inside, no network but their own loopback. Needs root.
+#   make_base             what all machines start from, once: FOLDER/base
+#   boot NAME             a machine over a copy of it (made when it is not there) is started
+#   on NAME COMMAND       as root inside;  send NAME FILE PLACE
+#   cut_power NAME        every process of the machine is killed at once;  shut_down NAME;  forget NAME
+# They use $folder, $source and $programs (where bess-sim is). The kernel is this machine's: a cut kills all processes
+# of a machine, but what they had written without waiting for the disk is not lost.
+
+die() { echo "${0##*/}: $*" >&2; exit 1; }
+skip() { echo "${0##*/}: skipped: $*"; exit 77; }
+declare -A container first
+
+on() {
+  local name=$1
+  shift
+  nsenter -t "${first[$name]}" -m -u -i -n -p -C -r -w env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 sh -c "$*"
+}
+send() { on "$1" "cat >$3" <"$2"; }
+
+make_base() {
+  local program base=$folder/base
+  for program in systemd-nspawn mmdebstrap nsenter; do
+    command -v $program >/dev/null || skip "$program is not installed; tools/setup --package installs it"
+  done
+  [ "$(id -u)" = 0 ] || skip "machines need root"
+  mkdir -p "$folder"
+  [ ! -d "$base" ] || return 0
+  if [ ! -f "$folder/root.tar" ]; then
+    mmdebstrap -q --variant=minbase --include=systemd,systemd-sysv,udev,dbus,libcurl4,libcjson1,libmodbus5,libmosquitto1,ca-certificates,dpkg-repack,adduser,python3-minimal,iproute2,procps \
+      bookworm "$folder/root.tar" >"$folder/mmdebstrap.log" 2>&1 || skip "no Debian archive: $(tail -n 1 "$folder/mmdebstrap.log")"
+  fi
+  rm -rf "$base.new"
+  mkdir -p "$base.new"
+  tar -C "$base.new" -xf "$folder/root.tar"
+  rm -rf "$base.new"/boot/*
+  mkdir -p "$base.new/opt/bess-site/lib" "$base.new/etc/bess"
+  cp "$programs/bess-sim" "$source/edge/maps/alphaess.toml" "$source/tests/guest/start_site" "$base.new/opt/bess-site/"
+  ldd "$programs/bess-sim" | awk '$3 ~ /^\// {print $3}' | grep -vE '/(libc|libm)\.so' | xargs -I{} cp -L {} "$base.new/opt/bess-site/lib/"
+  awk 'BEGIN { print "minute_utc,indicative_eur_mwh,settled_eur_mwh"
+    for (m = -60; m < 7200; ++m) { p = 100 + 900 * sin(m / 40)
+      printf "%s,%.2f,%.2f\n", strftime("%Y-%m-%dT%H:%M:%SZ", 1679788800 + 60 * m, 1), p, p } }' >"$base.new/opt/bess-site/minutes.csv"
+  cp "$source/tests/guest/edge.toml.in" "$base.new/opt/bess-site/"
+  cp "$source/tests/guest/bess-site.service" "$base.new/etc/systemd/system/"
+  ln -s /etc/systemd/system/bess-site.service "$base.new/etc/systemd/system/multi-user.target.wants/"
+  ln -sf /dev/null "$base.new/etc/systemd/system/time-sync.target"       # simulated time
+  mv "$base.new" "$base"
+}
+
+boot() {
+  local machine=$folder/$1 i
+  if [ ! -d "$machine" ]; then mkdir -p "$machine"/{upper,work,root}; fi
+  mountpoint -q "$machine/root" ||
+    mount -t overlay overlay -o "lowerdir=$folder/base,upperdir=$machine/upper,workdir=$machine/work" "$machine/root" ||
+    skip "no overlay file system here"
+  systemd-nspawn -q -D "$machine/root" -b --machine="bess-$1" --register=no --keep-unit --private-network --console=pipe \
+    </dev/null >"$machine/console" 2>&1 &
+  container[$1]=$!
+  for ((i = 0; i < 600; ++i)); do
+    first[$1]=$(pgrep -P "${container[$1]}" -f systemd 2>/dev/null | head -n 1 || true)
+    echo "${first[$1]}" >"$machine/first"
+    [ -n "${first[$1]}" ] && on "$1" 'systemctl is-system-running 2>/dev/null | grep -qE "running|degraded"' 2>/dev/null && return 0
+    kill -0 "${container[$1]}" 2>/dev/null || skip "a container with systemd does not start here: $(tail -n 1 "$machine/console")"
+    sleep 0.2
+  done
+  die "$1 did not start within two minutes"
+}
+cut_power() {
+  rm -f "$folder/$1/first"
+  kill -9 "${first[$1]}" "${container[$1]}" 2>/dev/null || true
+  wait "${container[$1]}" 2>/dev/null || true
+}
+shut_down() {
+  kill -RTMIN+4 "${first[$1]}" 2>/dev/null || true
+  wait "${container[$1]}" 2>/dev/null || true
+}
+forget() {
+  umount -l "$folder/$1/root" 2>/dev/null || true
+  rm -rf "${folder:?}/$1"
+}

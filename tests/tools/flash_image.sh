@@ -1,0 +1,110 @@
+#!/usr/bin/env bash
+# flash_image.sh SOURCE FOLDER: tools/flash image on made-up images: the two partitions of Raspberry Pi OS with the few
+# files that tell bookworm from trixie (the real images are not here). Needs no root. Exit 77 = skipped.
+set -euo pipefail
+source=$(realpath "$1") folder=$2
+for program in sfdisk mcopy mformat debugfs mke2fs xz dpkg-deb apt-get; do
+  command -v $program >/dev/null || { echo "$program is not installed"; exit 77; }
+done
+rm -rf "$folder"
+mkdir -p "$folder"
+cd "$folder"
+# shellcheck source=tests/tools/made_up_package.sh
+. "$source/tests/tools/made_up_package.sh"
+failures=0
+fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
+
+image_of() {  # image_of NAME CODENAME: FAT from sector 2048, 16 MiB; ext4 behind it, 64 MiB
+  local tree=tree-$1
+  mkdir -p "$tree/usr/lib/raspberrypi-sys-mods" "$tree/usr/bin" "$tree/var/lib/dpkg" "$tree/etc/systemd/system"
+  printf 'ID=debian\nVERSION_CODENAME=%s\n' "$2" >"$tree/usr/lib/os-release"
+  for name in dpkg libc6 libcurl4; do
+    printf 'Package: %s\nStatus: install ok installed\nArchitecture: arm64\nVersion: 9\n\n' $name
+  done >"$tree/var/lib/dpkg/status"
+  [ "${3:-}" != init_config ] || touch "$tree/usr/lib/raspberrypi-sys-mods/init_config"
+  [ "${3:-}" != cloud-init ] || touch "$tree/usr/bin/cloud-init"
+  truncate -s 81M "$1.img"
+  printf 'label: dos\nstart=2048, size=32768, type=c\nstart=34816, size=131072, type=83\n' | sfdisk -q "$1.img"
+  mformat -i "$1.img@@1048576" -T 32768 -h 16 -s 63 ::
+  echo "console=tty1 root=PARTUUID=1-02 rootwait init=/usr/lib/raspberrypi-sys-mods/firstboot" | mcopy -i "$1.img@@1048576" - ::cmdline.txt
+  mke2fs -q -t ext4 -d "$tree" -E offset=$((34816 * 512)) "$1.img" 64M
+}
+image_of bookworm bookworm init_config
+image_of older bookworm
+image_of trixie trixie cloud-init
+image_of bullseye bullseye
+image_of old_trixie trixie
+package=$(made_up_package packages arm64 1.0)
+echo "ssh-ed25519 AAAAC3NzaC1lZDI1NTE5AAAAIHJ1c3Q= ops" >key.pub
+printf 'control = false\n# settings\n' >edge.toml
+echo 'pass "word' >wifi
+
+flash() { "$source/tools/flash" image "$@" --host-name bess1 --user ops --ssh-key key.pub --config edge.toml >said 2>&1; }
+boot_file() { mcopy -n -i "$1@@1048576" "::$2" - 2>/dev/null; }
+root_file() { debugfs -R "cat $2" "$1?offset=$((34816 * 512))" 2>/dev/null; }
+expect() { grep -qF -- "$2" <<<"$1" || fail "$3: \"$2\" is not in: $1"; }
+
+before=$(sha256sum bookworm.img)
+flash bookworm.img --out out.img --package "$package" --wifi "the house" --wifi-password-file wifi --wifi-country BE --ntp be.pool.ntp.org ||
+  fail "bookworm: $(cat said)"
+[ "$before" = "$(sha256sum bookworm.img)" ] || fail "the given image was changed"
+custom=$(boot_file out.img custom.toml)
+for line in 'hostname = "bess1"' 'name = "ops"' 'authorized_keys = ["ssh-ed25519 AAAA' 'timezone = "Europe/Brussels"' \
+  'ssid = "the house"' 'password = "pass \"word"' 'country = "BE"'; do expect "$custom" "$line" "bookworm's custom.toml"; done
+python3 -c 'import tomllib, sys; tomllib.loads(sys.argv[1])' "$custom" || fail "custom.toml is no TOML"
+[ "$(root_file out.img /etc/bess/edge.toml)" = "$(cat edge.toml)" ] || fail "the settings are not inside"
+root_file out.img /var/lib/bess-first-boot/bess-edge_1.0_arm64.deb | cmp -s - "$package" || fail "the package is not inside"
+expect "$(root_file out.img /etc/systemd/timesyncd.conf.d/bess.conf)" "NTP=be.pool.ntp.org" "NTP"
+expect "$(debugfs -R "stat /var/lib/bess-first-boot/install" "out.img?offset=$((34816 * 512))" 2>/dev/null)" "Mode:  0755" "the installer's mode"
+expect "$(debugfs -R "stat /etc/systemd/system/multi-user.target.wants/bess-first-boot.service" "out.img?offset=$((34816 * 512))" 2>/dev/null)" \
+  "symlink" "the unit is enabled"
+
+flash older.img --out out.img --package "$package" || fail "bookworm without custom.toml's reader: $(cat said)"
+expect "$(boot_file out.img firstrun.sh)" "set_hostname 'bess1'" "firstrun.sh"
+expect "$(boot_file out.img cmdline.txt)" "systemd.run=/boot/firmware/firstrun.sh" "cmdline.txt"
+
+xz -k0 trixie.img
+flash trixie.img.xz --out out.img --package "$package" --wifi "the house" --wifi-password-file wifi --wifi-country BE || fail "trixie: $(cat said)"
+expect "$(boot_file out.img user-data)" 'hostname: "bess1"' "trixie's user-data"
+expect "$(boot_file out.img network-config)" '"the house":' "trixie's network-config"
+expect "$(boot_file out.img meta-data)" 'instance-id: bess-' "trixie's meta-data"
+if python3 -c 'import yaml' 2>/dev/null; then
+  boot_file out.img user-data | python3 -c '
+import sys, yaml
+found = yaml.safe_load(sys.stdin)
+assert found["users"][0]["name"] == "ops" and found["timezone"] == "Europe/Brussels", found' || fail "user-data is no YAML of cloud-init"
+fi
+
+refuses() {  # refuses WHAT LINE ARGUMENTS...: exit code 1, one line, nothing left
+  local what=$1 line=$2 code=0
+  shift 2
+  rm -f none.img
+  flash "$@" --out none.img || code=$?
+  [ $code -eq 1 ] || fail "$what: exit code $code"
+  [ "$(wc -l <said)" -eq 1 ] && grep -qF -- "$line" said || fail "$what: $(cat said)"
+  [ ! -e none.img ] && [ ! -e none.img.new ] || fail "$what: something is left"
+}
+head -c 100000 /dev/urandom >noise.img
+head -c $(($(stat -c %s trixie.img.xz) / 2)) trixie.img.xz >cut.img.xz
+cp bookworm.img booted.img
+echo "root=PARTUUID=1-02 rootwait" | mcopy -o -i booted.img@@1048576 - ::cmdline.txt
+refuses "no image" "noise.img: is no disk image" noise.img --package "$package"
+refuses "a truncated .xz" "cut.img.xz: cannot be unpacked, it is damaged or not whole" cut.img.xz --package "$package"
+refuses "a missing image" "absent.img: no such image" absent.img --package "$package"
+refuses "another release" "holds release bullseye" bullseye.img --package "$package"
+refuses "trixie without cloud-init" "trixie without cloud-init" old_trixie.img --package "$package"
+refuses "an image that was booted" "was booted already" booted.img --package "$package"
+refuses "another architecture" "is for armhf, the machine is arm64" bookworm.img --package "$(made_up_package packages armhf 1.0)"
+spoil='echo >>student_weights.h'
+refuses "a header that was not proved" "not what was proved" bookworm.img --package "$(made_up_package spoilt arm64 1.1)"
+spoil='rm certificate.json'
+refuses "no certificate" "a package without a certificate is not installed" bookworm.img --package "$(made_up_package spoilt arm64 1.2)"
+spoil='sed -i "s/PROPERTY_3 0/PROPERTY_3 7/" student_weights.h'
+refuses "violations" "violations of properties 1 / 2 / 3: [0, 0, 7]" bookworm.img --package "$(made_up_package spoilt arm64 1.3)"
+spoil=''
+echo "-----BEGIN OPENSSH PRIVATE KEY-----" >key.pub
+refuses "a private key" "key.pub: is no public ssh key" bookworm.img --package "$package"
+
+[ $failures -eq 0 ] || exit 1
+rm -rf "$folder"
+echo "images: bookworm with custom.toml and with firstrun.sh, trixie with cloud-init; all refusals"

@@ -1,0 +1,73 @@
+#!/usr/bin/env bash
+# repository.sh SOURCE FOLDER: tools/repository with a throw-away key: apt takes what it signed, as many of twenty
+# machines as the phase says upgrade, and a foreign key is refused. Exit 77 = skipped.
+set -euo pipefail
+source=$(realpath "$1") folder=$2
+for program in reprepro gpg apt-get dpkg-deb; do
+  command -v $program >/dev/null || { echo "$program is not installed"; exit 77; }
+done
+rm -rf "$folder"
+mkdir -p "$folder"
+cd "$folder"
+# shellcheck source=tests/tools/made_up_package.sh
+. "$source/tests/tools/made_up_package.sh"
+failures=0
+fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
+GNUPGHOME=$(mktemp -d)  # a short path: gpg's agent listens at a socket in it
+export GNUPGHOME
+trap 'gpgconf --kill gpg-agent; rm -rf "$GNUPGHOME"' EXIT
+for name in first second; do
+  gpg --batch --quiet --pinentry-mode loopback --passphrase '' --quick-generate-key "$name@example.org" ed25519 sign 2>/dev/null
+done
+made_up_package packages amd64 1.0 >/dev/null
+made_up_package packages amd64 2.0 >/dev/null
+export BESS_PACKAGES=$folder/packages
+repository() { "$source/tools/package" --repository repository "$@" >said 2>&1; }
+
+code=0
+repository --key absent@example.org || code=$?
+[ $code -eq 1 ] && grep -q 'gpg has no secret key "absent@example.org"' said || fail "a key that is not there: $(cat said)"
+repository --key first@example.org --phased 30 || fail "a repository: $(cat said)"
+code=0
+repository --key second@example.org || code=$?
+[ $code -eq 1 ] && grep -q "is signed with another key" said || fail "another key: $(cat said)"
+code=0
+repository --key first@example.org --phased 130 || code=$?
+[ $code -eq 2 ] || fail "130 percent: exit code $code"
+
+# A machine that has 1.0, with this machine id; what would apt do?
+mkdir -p apt/{lists/partial,archives/partial,parts}
+printf 'Package: bess-edge\nStatus: install ok installed\nVersion: 1.0\nArchitecture: amd64\nMaintainer: x <x@example.org>\nDescription: x\n\n' >apt/status
+for name in libc6 libcurl4; do
+  printf 'Package: %s\nStatus: install ok installed\nVersion: 9\nArchitecture: amd64\nMaintainer: x <x@example.org>\nDescription: x\n\n' $name >>apt/status
+done
+sources() { echo "deb [signed-by=$folder/$1] file:$folder/repository stable main" >apt/sources.list; }
+apt() {
+  apt-get -o Dir::Etc::SourceList="$folder/apt/sources.list" -o Dir::Etc::SourceParts="$folder/apt/parts" -o Dir::State="$folder/apt" \
+    -o Dir::State::Lists="$folder/apt/lists" -o Dir::State::Status="$folder/apt/status" -o Dir::Cache="$folder/apt" -o APT::Sandbox::User=root \
+    -o Dir::Etc::Preferences=/dev/null -o Dir::Etc::PreferencesParts="$folder/apt/parts" -o APT::Architecture=amd64 "$@"
+}
+gpg --batch --export second@example.org >other.gpg
+sources other.gpg
+if apt update -o APT::Update::Error-Mode=any >said 2>&1; then fail "apt takes a repository of a foreign key"; fi
+sources repository/bess.gpg
+apt update >said 2>&1 || fail "apt does not take the repository: $(tail -n 2 said)"
+upgrades() {  # of twenty machines
+  local number=0 id
+  for id in $(seq 1 20); do
+    if apt upgrade -s -o APT::Machine-ID="$(printf '%032x' "$id")" 2>/dev/null | grep -q '^Inst bess-edge'; then number=$((number + 1)); fi
+  done
+  echo $number
+}
+some=$(upgrades)
+{ [ "$some" -gt 0 ] && [ "$some" -lt 14 ]; } || fail "at 30 % $some of 20 machines upgrade"
+repository --key first@example.org --phased 0 && apt update >said 2>&1
+none=$(upgrades)
+[ "$none" -eq 0 ] || fail "at 0 % $none of 20 machines upgrade"
+repository --key first@example.org && apt update >said 2>&1
+all=$(upgrades)
+[ "$all" -eq 20 ] || fail "at 100 % $all of 20 machines upgrade"
+
+[ $failures -eq 0 ] || exit 1
+cd / && rm -rf "$folder"
+echo "repository: at 0, 30, 100 % $none, $some, $all of 20 machines would upgrade; a foreign key is refused"
