@@ -111,10 +111,27 @@ RuleSet all_shapes() {
   return all;
 }
 
+/// The action falls (sign 1) or rises (-1) with minute, quarter-hour, class and SoC.
+StudentNet tilted_net(int sign) {
+  StudentNet net = LinearNet{.soc_weight = sign, .offset = 4000}.net();
+  for (int input = 0; input < 3; ++input) {
+    net.layer1.weight[input][0] = static_cast<std::int16_t>(sign);
+  }
+  return net;
+}
+
+/// Charges, idles, discharges, idles and charges again as the price rises.
+StudentNet wavy_net() {
+  StudentNet net = LinearNet{.charge_below = 1000, .discharge_from = 4000}.net();
+  net.layer1.weight[4][1] = 1;
+  net.layer1.bias[1] = -5000;
+  net.layer2.weight[1][0] = -3;
+  return net;
+}
+
 TEST(RuleProof, CountsAreThoseOfTheDefinitions) {
   const RuleSet rules = all_shapes();
-  const StudentNet nets[] = {seeded_net(1), adversarial_net(3), LinearNet{}.net(),
-                             LinearNet{.soc_weight = -1, .offset = 3000}.net()};
+  const StudentNet nets[] = {seeded_net(1), tilted_net(1), tilted_net(-1), wavy_net()};
   std::vector<std::int64_t> seen(rules.rules.size());
   for (const StudentNet& by_month : nets) {
     StudentNet net = by_month;
