@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "workstation/correction/monotone_distil.h"
 #include "workstation/env/evaluate.h"
@@ -18,10 +19,13 @@ namespace {
 constexpr double kMarginGrowth = 1.4;
 
 std::string provenance_of(const Teacher& teacher, const DistilOptions& options) {
+  const std::string rules = options.correct && !options.rules.empty()
+                                ? ", " + counted(options.rules.rules.size(), "rule")
+                                : "";
   if (options.method == CorrectionMethod::kConstruction) {
-    return fmt::format("{}; {}, fidelity {:g}, {} epochs, seed {}", teacher.provenance,
+    return fmt::format("{}; {}, fidelity {:g}, {} epochs, seed {}{}", teacher.provenance,
                        options.correct ? "monotone by construction" : "plain", options.fidelity,
-                       options.epochs, options.seed);
+                       options.epochs, options.seed, rules);
   }
   return fmt::format("{}; {} omega {:g}, {} epochs, seed {}", teacher.provenance,
                      options.correct ? "corrected," : "plain,", options.omega, options.epochs,

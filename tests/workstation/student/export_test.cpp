@@ -13,6 +13,8 @@
 #include "tests/support/child_process.h"
 #include "tests/support/proved_students.h"
 #include "tests/support/temporary_folder.h"
+#include "workstation/rules/rule_file.h"
+#include "workstation/student/rule_header.h"
 
 namespace bess {
 namespace {
@@ -228,6 +230,127 @@ TEST(Export, UnprovedHeaderDoesNotCompile) {
   expect_header_is_refused(edited("VIOLATIONS_PROPERTY_3 0", "VIOLATIONS_PROPERTY_3 1"), unproved);
   expect_header_is_refused(edited("STUDENT_VERSION 3", "STUDENT_VERSION 2"),
                            "another format version: export it again");
+}
+
+// An operator's rules in the header.
+
+constexpr const char* kHeaderRules =
+    "[[rule]]\nname = \"no dear charging\"\nprice_min = 301\nat_most = \"idle\"\nenforce = true\n"
+    "[[rule]]\nname = \"winter (17-20)\"\nmonths = [11, 12, 1]\nhours = \"17:00-20:00\"\nsoc_max = "
+    "0.3\n"
+    "price_max = 200\nat_least = \"idle\"\nenforce = true\n"
+    "[[rule]]\nname = \"proved alone\"\nprice_max = 24\nat_least = \"idle\"\n"
+    "[[rule]]\nname = \"cap\"\nhours = \"22:00-06:00\"\npower_max = 0.5\nenforce = true\n"
+    "[[rule]]\nname = \"far\"\nprice_min = 2000\nprice_max = 3000\nis = \"discharge\"\nenforce = "
+    "true\n";
+
+const ProvedStudent& ruled_student() {
+  static const Verdict verdict =
+      prove({crowded_net(),
+             {.thresholds = kCrowdedThresholds, .rules = parse_rules(kHeaderRules, "test.toml")},
+             kCrowdedProvenance},
+            2);
+  return std::get<ProvedStudent>(verdict);
+}
+
+/// Whatever stands behind the rules' first line is added; all before it is the header without rules.
+TEST(Export, RulesAreAddedToTheHeader) {
+  const std::string header = format_weight_header(ruled_student());
+  const std::string plain = format_weight_header(crowded_student());
+  EXPECT_THAT(header,
+              HasSubstr("  -  no dear charging: price at least 301 EUR/MWh: the action is at "
+                        "most idle (the guard's too)\n"));
+  EXPECT_THAT(header,
+              HasSubstr("  -  cap: 22:00-06:00: at most 50 % of the rated power (the guard's "
+                        "alone)\n"));
+  EXPECT_THAT(header,
+              HasSubstr("  -  proved alone: price at most 24 EUR/MWh: the action is at least "
+                        "idle\n"));
+  EXPECT_THAT(header, HasSubstr("#define BESS_STUDENT_GUARD_RULE_COUNT 4\n"));
+  EXPECT_THAT(plain, testing::Not(HasSubstr("RULE")));
+  const std::string_view body = std::string_view(plain).substr(plain.find("#pragma once"));
+  const std::string_view nets = body.substr(0, body.find("/* clang-format on"));
+  EXPECT_THAT(header, HasSubstr(std::string(nets)));
+}
+
+TEST(Export, AHeaderWithRulesIsCAndCppAndAnswersItsGoldenPoints) {
+  const TemporaryFolder folder;
+  write_file(folder.file("student_weights.h"), format_weight_header(ruled_student()));
+  expect_header_compiles(fs::path(folder.file("student_weights.h")).parent_path().string(),
+                         kCrowdedProvenance);
+}
+
+/// A row or an entry of the table that is changed or left out does not compile.
+TEST(Export, DamagedRulesDoNotCompile) {
+  const std::string good = format_weight_header(ruled_student());
+  const std::string damaged = "the rules of student_weights.h are damaged";
+  const auto edited = [&good](const std::string& from, const std::string& to) {
+    std::string header = good;
+    const std::size_t at = header.find(from, header.find("bess_student_guard_rule["));
+    EXPECT_NE(at, std::string::npos) << from;
+    return header.replace(at, from.size(), to);
+  };
+  const std::string first = "{301,15000,0,200,0,96,4095,4095,3,1000},\n";
+  ASSERT_THAT(good, HasSubstr(first));
+  expect_header_is_refused(edited("{301,", "{302,"), damaged);
+  expect_header_is_refused(edited(first, ""), damaged);
+}
+
+/// The points that are shipped tell every field of every rule from its neighbours, so that a machine that looks
+/// rules up otherwise is found out at its start.
+TEST(RuleHeader, TheGoldenPointsTellEveryField) {
+  const std::vector<GuardRule> rules = parse_rules(kHeaderRules, "test.toml").guard_rules();
+  const std::vector<RulePoint> points = rule_check_points(rules);
+  const auto differs = [&](const std::vector<GuardRule>& others) {
+    return std::ranges::any_of(points, [&](const RulePoint& point) {
+      return rule_limits_at(rules, point) != rule_limits_at(others, point);
+    });
+  };
+  EXPECT_FALSE(differs(rules));
+  for (std::size_t r = 0; r < rules.size(); ++r) {
+    std::vector<GuardRule> without = rules;
+    without.erase(without.begin() + static_cast<std::ptrdiff_t>(r));
+    EXPECT_TRUE(differs(without)) << "rule " << r << " left out";
+    std::vector<GuardRule> allowing = rules;
+    allowing[r].limits = {};
+    EXPECT_TRUE(differs(allowing)) << "rule " << r << " allows everything";
+    const auto expect_seen = [&](auto RuleBox::*field, int change) {
+      std::vector<GuardRule> other = rules;
+      other[r].box.*field += change;
+      EXPECT_TRUE(differs(other)) << "rule " << r << " by " << change;
+    };
+    for (const int change : {-1, 1}) {
+      expect_seen(&RuleBox::price_min_eur_per_mwh, change);
+      expect_seen(&RuleBox::price_max_eur_per_mwh, change);
+      expect_seen(&RuleBox::soc_index_min, change);
+      expect_seen(&RuleBox::soc_index_max, change);
+    }
+    if (rules[r].box.quarter_hour_count < kQuarterHourCount) {
+      expect_seen(&RuleBox::quarter_hour_first, -1);
+      expect_seen(&RuleBox::quarter_hour_first, 1);
+      expect_seen(&RuleBox::quarter_hour_count, 1);
+    }
+    expect_seen(&RuleBox::quarter_hour_count, -1);
+    for (int member = 0; member < 12; ++member) {
+      for (auto RuleBox::*field : {&RuleBox::months, &RuleBox::context_classes}) {
+        std::vector<GuardRule> other = rules;
+        other[r].box.*field ^= 1 << member;
+        EXPECT_TRUE(differs(other)) << "rule " << r << " member " << member + 1;
+      }
+    }
+  }
+}
+
+TEST(RuledStudentFile, KeepsItsRulesAndClaimsNothing) {
+  const TemporaryFolder folder;
+  save_student(folder.file("student.json"), ruled_student().file());
+  const StudentFile again = load_student(folder.file("student.json"));
+  EXPECT_EQ(format_rules(again.certificate.rules),
+            format_rules(ruled_student().certificate().rules));
+  EXPECT_FALSE(again.certificate.covers_lattice_without_violation()) << "until it is proved again";
+  save_student(folder.file("plain.json"), crowded_student().file());
+  EXPECT_THAT(read_file(folder.file("plain.json")), testing::Not(HasSubstr("rules")));
+  EXPECT_THAT(read_file(folder.file("plain.json")), HasSubstr("\"version\":\t3"));
 }
 
 // bess-train export. The nets are hand-made, so that the proof over the whole lattice is quick.

@@ -1,0 +1,106 @@
+// bess-train rules, as a user calls it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "shared/host/json.h"
+#include "shared/host/user_error.h"
+#include "tests/support/rule_sets.h"
+#include "tests/support/small_market.h"
+#include "tests/support/temporary_folder.h"
+#include "workstation/cli/commands.h"
+
+namespace bess {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+class RulesCli : public testing::Test {
+ protected:
+  RulesCli() { write_minute_file(prices_, small_series(), ""); }
+
+  /// Standard output of `bess-train rules ARGUMENTS`.
+  static std::string rules_output(const std::string& arguments) {
+    CommandLine command_line("bess-train", "", "");
+    ProgramCommand root = command_line.root();
+    add_rules_commands(root);
+    testing::internal::CaptureStdout();
+    try {
+      command_line.parse("rules " + arguments);
+    } catch (...) {
+      testing::internal::GetCapturedStdout();
+      throw;
+    }
+    return testing::internal::GetCapturedStdout();
+  }
+  [[nodiscard]] std::string rule_file(const std::string& text) const {
+    return folder_.write("rules.toml", text);
+  }
+  [[nodiscard]] std::string with_prices() const { return " --prices " + prices_.string(); }
+
+  TemporaryFolder folder_;
+  std::filesystem::path prices_ = folder_.file("prices.csv.gz");
+};
+
+TEST_F(RulesCli, CheckSaysWhomEachExampleBinds) {
+  std::string files;
+  for (const char* name : kExampleRules) files += " " + example_rule_path(name);
+  const std::string by_level = rules_output("check --rules" + files);
+  EXPECT_THAT(by_level, HasSubstr("quiet hours                               student and guard  "));
+  EXPECT_THAT(by_level, HasSubstr("evening power cap                         guard              "));
+  EXPECT_THAT(by_level, HasSubstr("black-out reserve                         guard              "));
+  EXPECT_THAT(rules_output("check --context month --rules" + files),
+              HasSubstr("black-out reserve                         student and guard  "));
+}
+
+TEST_F(RulesCli, CheckRefusesAContradiction) {
+  const std::string file = rule_file("[[rule]]\nname = \"never sell\"\nat_least = \"idle\"\n");
+  EXPECT_THROW(rules_output("check --rules " + file), UserError);
+  EXPECT_THROW(rules_output("check --rules " + file + " --policy rbc"), UserError) << "no prices";
+}
+
+TEST_F(RulesCli, CheckCountsWhatAPolicyBreaks) {
+  const std::string file = rule_file(
+      "[[rule]]\nname = \"dear\"\nprice_min = 100\nat_least = \"idle\"\nprice_max = 1400\n"
+      "[[rule]]\nname = \"kept\"\nprice_min = 100\nat_most = \"idle\"\n");
+  const std::string text =
+      rules_output("check --rules " + file + " --policy rbc:20:150 --json" + with_prices());
+  std::vector<Json> lines;
+  for (std::size_t at = 0; at < text.size(); at = text.find('\n', at) + 1) {
+    lines.push_back(Json::parse(text.substr(at, text.find('\n', at) - at)));
+  }
+  ASSERT_EQ(lines.size(), 6U) << "properties 1, 2, two directions, two rules";
+  const JsonValue dear = lines[4].value();
+  EXPECT_STREQ(dear["rule"].text(), "dear");
+  EXPECT_GT(dear["visited_broken"].number().value_or(0), 0);
+  EXPECT_LT(dear["visited_broken"].number().value_or(0), dear["visited"].number().value_or(0));
+  EXPECT_GT(dear["drawn"].number().value_or(0), dear["visited"].number().value_or(0));
+  const JsonValue kept = lines[5].value();
+  EXPECT_EQ(kept["visited_broken"].number().value_or(-1), 0);
+  EXPECT_GT(kept["visited"].number().value_or(0), 0);
+}
+
+TEST_F(RulesCli, PriceTellsEachRuleAloneAndAllTogether) {
+  const std::string file = rule_file(
+      "[[rule]]\nname = \"no trade\"\nis = \"idle\"\nprice_min = -499\nprice_max = 1499\n"
+      "[[rule]]\nname = \"far\"\nprice_min = 1400\nat_most = \"idle\"\n"
+      "[[rule]]\nname = \"steady\"\nswitches_max = 2\n");
+  const std::string arguments = "price --rules " + file + " --policy rbc:20:150" + with_prices();
+  const std::string text = rules_output(arguments);
+  EXPECT_THAT(text,
+              AllOf(HasSubstr("no trade "), HasSubstr("far "), HasSubstr("all together "),
+                    HasSubstr("steady                                    no demand on single")));
+  const std::string json = rules_output(arguments + " --json");
+  const Json first = Json::parse(json.substr(0, json.find('\n')));
+  EXPECT_NEAR(first.value()["profit_eur_per_day_per_mwh"].number().value_or(NAN), 0, 1)
+      << "idles wherever these prices go";
+  EXPECT_LT(first.value()["difference"].number().value_or(0), -100);
+  EXPECT_GT(first.value()["standard_error"].number().value_or(0), 0);
+  EXPECT_THROW(rules_output("price --policy foresight --rules " + file + with_prices()), UserError);
+}
+
+}  // namespace
+}  // namespace bess
