@@ -8,28 +8,18 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/guard_inputs.h"
+
 namespace bess {
 namespace {
 
-constexpr std::int64_t kNow = 1'679'875'320;  // minute 2 of a quarter-hour
-static_assert(kNow % 900 == 120);
-
-GuardInputs healthy(Action action = Action::kCharge) {
-  GuardInputs in;
-  in.now_utc_s = kNow;
-  in.clock_ok = in.link_ok = in.has_price = true;
-  in.measurement.soc_e4 = 5'000;
-  in.price_minute_utc_s = kNow - 60;
-  in.price_centi_eur_per_mwh = 5'000;
-  in.student_action = action;
-  return in;
-}
+constexpr std::int64_t kNow = kGuardNowS;
 
 GuardDecision decide_once(const GuardInputs& in) { return SafetyGuard(GuardSettings{}).decide(in); }
 
 TEST(SafetyGuard, PassesTheStudentThroughWhenAllIsWell) {
   for (const Action action : {Action::kDischarge, Action::kIdle, Action::kCharge}) {
-    const GuardDecision decision = decide_once(healthy(action));
+    const GuardDecision decision = decide_once(healthy_inputs(action));
     EXPECT_EQ(decision.reason, Reason::kStudent);
     EXPECT_EQ(decision.power_w, power_sign(action) * 4'000);
   }
@@ -79,7 +69,7 @@ std::vector<Case> cases() {
 /// At a restart the order in force may be another controller's, or a register's nonsense.
 TEST(SafetyGuard, TheRampNeverAllowsMoreThanTheConfiguredPower) {
   SafetyGuard guard({.ramp_w_max = 1'000});
-  GuardInputs in = healthy(Action::kCharge);
+  GuardInputs in = healthy_inputs(Action::kCharge);
   for (const std::int32_t previous_w : {10'000, INT32_MAX, INT32_MIN, -10'000}) {
     in.previous_power_w = previous_w;
     const GuardDecision decision = guard.decide(in);
@@ -89,7 +79,7 @@ TEST(SafetyGuard, TheRampNeverAllowsMoreThanTheConfiguredPower) {
 
 TEST(SafetyGuard, EachReason) {
   for (const Case& c : cases()) {
-    GuardInputs in = healthy(Action::kCharge);
+    GuardInputs in = healthy_inputs(Action::kCharge);
     c.spoil(in);
     const GuardDecision decision = decide_once(in);
     EXPECT_EQ(decision.reason, c.reason) << c.name;
@@ -101,7 +91,7 @@ TEST(SafetyGuard, PrecedenceOfEveryPair) {
   const std::vector<Case> all = cases();
   for (std::size_t high = 0; high < all.size(); ++high) {
     for (std::size_t low = high + 1; low < all.size(); ++low) {
-      GuardInputs in = healthy(Action::kCharge);
+      GuardInputs in = healthy_inputs(Action::kCharge);
       all[low].spoil(in);
       all[high].spoil(in);
       EXPECT_EQ(decide_once(in).reason, all[high].reason) << all[high].name << " " << all[low].name;
@@ -110,7 +100,7 @@ TEST(SafetyGuard, PrecedenceOfEveryPair) {
 }
 
 TEST(SafetyGuard, ThresholdsOverruleTheStudentButNotTheSocLimits) {
-  GuardInputs cheap = healthy(Action::kDischarge);
+  GuardInputs cheap = healthy_inputs(Action::kDischarge);
   cheap.price_centi_eur_per_mwh = -50'000;
   EXPECT_EQ(decide_once(cheap).power_w, 4'000);
   EXPECT_EQ(decide_once(cheap).reason, Reason::kPriceLow);
@@ -118,7 +108,7 @@ TEST(SafetyGuard, ThresholdsOverruleTheStudentButNotTheSocLimits) {
   EXPECT_EQ(decide_once(cheap).power_w, 0);
   EXPECT_EQ(decide_once(cheap).reason, Reason::kSocFull);
 
-  GuardInputs dear = healthy(Action::kIdle);
+  GuardInputs dear = healthy_inputs(Action::kIdle);
   dear.price_centi_eur_per_mwh = 150'000;
   EXPECT_EQ(decide_once(dear).power_w, -4'000);
   EXPECT_EQ(decide_once(dear).reason, Reason::kPriceHigh);
@@ -128,7 +118,7 @@ TEST(SafetyGuard, ThresholdsOverruleTheStudentButNotTheSocLimits) {
 }
 
 TEST(SafetyGuard, ThresholdsAreExactToTheCent) {
-  GuardInputs in = healthy(Action::kIdle);
+  GuardInputs in = healthy_inputs(Action::kIdle);
   in.price_centi_eur_per_mwh = -49'999;
   EXPECT_EQ(decide_once(in).reason, Reason::kStudent);
   in.price_centi_eur_per_mwh = 149'999;
@@ -142,7 +132,7 @@ TEST(SafetyGuard, ThresholdsAreExactToTheCent) {
 }
 
 TEST(SafetyGuard, AgreementIsNotAnIntervention) {
-  GuardInputs in = healthy(Action::kCharge);
+  GuardInputs in = healthy_inputs(Action::kCharge);
   in.price_centi_eur_per_mwh = -60'000;
   EXPECT_EQ(decide_once(in).reason, Reason::kStudent);
   EXPECT_EQ(decide_once(in).power_w, 4'000);
@@ -150,7 +140,7 @@ TEST(SafetyGuard, AgreementIsNotAnIntervention) {
 
 TEST(SafetyGuard, SocHysteresisKeepsAReachedBoundClosed) {
   SafetyGuard guard{GuardSettings{}};
-  GuardInputs in = healthy(Action::kCharge);
+  GuardInputs in = healthy_inputs(Action::kCharge);
   const auto power_at = [&](std::int32_t soc_e4) {
     in.measurement.soc_e4 = soc_e4;
     return guard.decide(in).power_w;
@@ -167,7 +157,7 @@ TEST(SafetyGuard, SocHysteresisKeepsAReachedBoundClosed) {
 
 /// However extreme the price: it is what a source that lies would send.
 TEST(SafetyGuard, AReversalTooManyIsNotFollowedBeyondTheThresholdsEither) {
-  GuardInputs in = healthy(Action::kIdle);
+  GuardInputs in = healthy_inputs(Action::kIdle);
   in.price_centi_eur_per_mwh = 1'000'000;
   in.barred_direction = -1;
   EXPECT_EQ(decide_once(in).power_w, 0);
@@ -181,7 +171,7 @@ TEST(SafetyGuard, AReversalTooManyIsNotFollowedBeyondTheThresholdsEither) {
 }
 
 TEST(SafetyGuard, PriceAgeAndQuarterHour) {
-  GuardInputs in = healthy();
+  GuardInputs in = healthy_inputs();
   in.price_minute_utc_s = kNow - 60 - 240;  // exactly four minutes after its end: still good
   EXPECT_EQ(decide_once(in).reason, Reason::kStudent);
   in.price_minute_utc_s -= 60;
@@ -199,7 +189,7 @@ TEST(SafetyGuard, PriceAgeAndQuarterHour) {
 
 TEST(SafetyGuard, ALostMeterLeavesNeitherDirection) {
   for (const Action action : {Action::kCharge, Action::kDischarge}) {
-    GuardInputs in = healthy(action);
+    GuardInputs in = healthy_inputs(action);
     in.site.forbid(Reason::kMeterLost);
     EXPECT_EQ(decide_once(in).power_w, 0);
     EXPECT_EQ(decide_once(in).reason, Reason::kMeterLost);
@@ -207,7 +197,7 @@ TEST(SafetyGuard, ALostMeterLeavesNeitherDirection) {
 }
 
 TEST(SafetyGuard, ExportIsCutAndNeverTurnedIntoCharging) {
-  GuardInputs in = healthy(Action::kDischarge);
+  GuardInputs in = healthy_inputs(Action::kDischarge);
   in.site.limit_discharge(800, Reason::kExportLimit);
   EXPECT_EQ(decide_once(in).power_w, -800);
   EXPECT_EQ(decide_once(in).reason, Reason::kExportLimit);
@@ -216,7 +206,7 @@ TEST(SafetyGuard, ExportIsCutAndNeverTurnedIntoCharging) {
 }
 
 TEST(SafetyGuard, ReliefIsBoundedByTheBatterysOwnLimits) {
-  GuardInputs in = healthy(Action::kCharge);
+  GuardInputs in = healthy_inputs(Action::kCharge);
   in.site.relief_w = 1'200;
   EXPECT_EQ(decide_once(in).power_w, -1'200);
   EXPECT_EQ(decide_once(in).reason, Reason::kQuarterHourPeak);
@@ -225,7 +215,7 @@ TEST(SafetyGuard, ReliefIsBoundedByTheBatterysOwnLimits) {
   in.measurement.soc_e4 = 1'000;
   EXPECT_EQ(decide_once(in).power_w, 0);
   EXPECT_EQ(decide_once(in).reason, Reason::kSocEmpty);
-  in = healthy(Action::kDischarge);  // the student gives more than that anyway
+  in = healthy_inputs(Action::kDischarge);  // the student gives more than that anyway
   in.site.relief_w = 1'200;
   EXPECT_EQ(decide_once(in).power_w, -4'000);
   EXPECT_EQ(decide_once(in).reason, Reason::kStudent);
@@ -234,7 +224,7 @@ TEST(SafetyGuard, ReliefIsBoundedByTheBatterysOwnLimits) {
 /// Between two ticks an order is only ever taken off.
 TEST(SafetyGuard, ARecheckCutsAndNeverGivesBack) {
   const SafetyGuard guard{GuardSettings{}};
-  GuardInputs in = healthy(Action::kCharge);
+  GuardInputs in = healthy_inputs(Action::kCharge);
   in.previous_power_w = 1'000;
   EXPECT_EQ(guard.recheck(in).power_w, 1'000);
   in.site.limit_charge(300, Reason::kImportLimit);
@@ -244,7 +234,7 @@ TEST(SafetyGuard, ARecheckCutsAndNeverGivesBack) {
 }
 
 TEST(SafetyGuard, NegativeLiveLimitsMeanZero) {
-  GuardInputs in = healthy(Action::kDischarge);
+  GuardInputs in = healthy_inputs(Action::kDischarge);
   in.measurement.discharge_w_max = -5;
   EXPECT_EQ(decide_once(in).power_w, 0);
   EXPECT_EQ(decide_once(in).reason, Reason::kPowerLimit);

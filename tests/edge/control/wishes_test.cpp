@@ -8,11 +8,12 @@
 #include "edge/control/hold.h"
 #include "edge/control/reserve.h"
 #include "edge/control/safety_guard.h"
+#include "tests/support/guard_inputs.h"
 
 namespace bess {
 namespace {
 
-constexpr std::int64_t kNow = 1'679'875'320;
+constexpr std::int64_t kNow = kGuardNowS;
 constexpr std::uint32_t kSoon = kNow + 600;
 
 TEST(Hold, CrossesTheMailboxAsItIs) {
@@ -129,17 +130,6 @@ TEST(FullCharge, DaysAreLocal) {
   EXPECT_EQ(local_day_number(local_minute_of(winter)), winter / 86'400);
 }
 
-GuardInputs healthy(Action action = Action::kCharge) {
-  GuardInputs in;
-  in.now_utc_s = kNow;
-  in.clock_ok = in.link_ok = in.has_price = true;
-  in.measurement.soc_e4 = 5'000;
-  in.price_minute_utc_s = kNow - 60;
-  in.price_centi_eur_per_mwh = 5'000;
-  in.student_action = action;
-  return in;
-}
-
 constexpr GuardSettings kSettings{.full_charge_power_w = 2'000};
 
 GuardDecision decide(const GuardInputs& in, const GuardSettings& settings = kSettings) {
@@ -152,7 +142,7 @@ void expect(const GuardDecision& decision, std::int32_t power_w, Reason reason) 
 }
 
 TEST(GuardOfHolds, StandsForTheStudentTheThresholdsAndTheNeedOfAPrice) {
-  GuardInputs in = healthy();
+  GuardInputs in = healthy_inputs();
   in.held = true;
   in.held_power_w = -1'500;
   expect(decide(in), -1'500, Reason::kHeld);
@@ -170,7 +160,7 @@ TEST(GuardOfHolds, StandsForTheStudentTheThresholdsAndTheNeedOfAPrice) {
 }
 
 TEST(GuardOfHolds, IsWeakerThanEveryStopReasonAndLimit) {
-  GuardInputs in = healthy();
+  GuardInputs in = healthy_inputs();
   in.held = true;
   in.held_power_w = -3'000;
   in.has_price = false;
@@ -200,7 +190,7 @@ TEST(GuardOfHolds, IsWeakerThanEveryStopReasonAndLimit) {
 
 TEST(GuardOfTheReserve, ClosesDischargingBelowItAndOpensAboveItsHysteresis) {
   SafetyGuard guard(kSettings);
-  GuardInputs in = healthy(Action::kDischarge);
+  GuardInputs in = healthy_inputs(Action::kDischarge);
   in.reserve_soc_e4 = 3'000;
   expect(guard.decide(in), -4'000, Reason::kStudent);
   in.measurement.soc_e4 = 3'000;
@@ -223,14 +213,14 @@ TEST(GuardOfTheReserve, ClosesDischargingBelowItAndOpensAboveItsHysteresis) {
 }
 
 TEST(GuardOfTheReserve, SaysEmptyBelowSocMin) {
-  GuardInputs in = healthy(Action::kDischarge);
+  GuardInputs in = healthy_inputs(Action::kDischarge);
   in.reserve_soc_e4 = 3'000;
   in.measurement.soc_e4 = 900;
   expect(decide(in), 0, Reason::kSocEmpty);
 }
 
 TEST(GuardOfFullCharges, StandsForTheStudentBetweenTheThresholds) {
-  GuardInputs in = healthy(Action::kDischarge);
+  GuardInputs in = healthy_inputs(Action::kDischarge);
   in.full_charge = FullChargeWish::kNoDischarge;
   expect(decide(in), 0, Reason::kFullCharge);
   in.student_action = Action::kCharge;
