@@ -35,8 +35,8 @@ Status MeasurementReader::translate(const LivePoints& live, std::int64_t now_ns,
     if (is_true(live, warning)) m.warning = true;
   }
   m.off_grid = map_.off_grid.point >= 0 && is_true(live, map_.off_grid);
-  if (m.off_grid &&
-      m.alarm) {  // most are about the lost grid; an alarm's 0 W would darken the house
+  // Most alarms are about the lost grid, and the 0 W of an alarm would darken the house.
+  if (m.off_grid && m.alarm) {
     m.alarm = false;
     m.warning = true;
   }

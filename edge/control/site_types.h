@@ -18,8 +18,8 @@ struct SiteReport {
   bool has_grid_power = false;  ///< the meter was read, and lately enough to decide by it
   std::int32_t grid_power_w = 0;
   std::int32_t quarter_hour_import_wh = 0;  ///< imported in this quarter-hour, rounded up
-  std::int32_t quarter_hour_battery_wh =
-      0;                              ///< of it, what the battery took and has not given back
+  /// Of it, what the battery took and has not given back.
+  std::int32_t quarter_hour_battery_wh = 0;
   std::int32_t order_cuts = 0;        ///< orders cut between two cycles, since start
   Status meter_status = Status::kOk;  ///< of the last reading
   /// kTimeout: the outside limit has lapsed, kMalformed: it cannot be understood.

@@ -25,10 +25,10 @@ class RingLog {
   RingLog& operator=(const RingLog&) = delete;
   ~RingLog();
 
-  /// For writing. A missing file is made; one of another capacity, of smaller records or without a sound header is set
-  /// aside as "PATH.old", its numbers and newest record are taken over as far as they can be read.
-  /// Where the disk has no room for another one, a sound log goes on at the size that it has. False
-  /// with one line and errno; may be tried again.
+  /// For writing. A missing file is made; one of another capacity, of smaller records or without a
+  /// sound header is set aside as "PATH.old", its numbers and newest record are taken over as far as
+  /// they can be read. Where the disk has no room for another one, a sound log goes on at the size
+  /// that it has. False with one line and errno; may be tried again.
   bool open(const char* path, std::int64_t capacity, FileMessage& error);
   /// For reading, beside a writer.
   bool open_to_read(const char* path, FileMessage& error);

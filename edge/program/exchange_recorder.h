@@ -43,7 +43,7 @@ class ExchangeRecorder {
 
  private:
   static constexpr std::size_t kStackBytes = 256 * 1024;  // for sanitizers: it uses a few KiB
-  static constexpr std::size_t kQueueLength = 256;        // a cycle makes some twenty
+  static constexpr std::size_t kQueueLength = 128;        // a cycle makes some twenty
 
   void push(BusExchange exchange);
   void run();

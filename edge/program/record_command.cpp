@@ -132,7 +132,8 @@ int run_record_command(const CommandLine& command_line, const EdgeConfig& config
       path.c_str(), counters.requests, counters.failed_requests, battery_place(config).c_str());
   if (counters.failed_requests < counters.requests) return 0;
   report(JournalLevel::kError,
-         "battery at %s: answered nothing (are host, port and unit right, does another program "
+         "battery at %s: no request had a good answer (are host, port and unit right, does another "
+         "program "
          "hold its one connection?)",
          battery_place(config).c_str());
   return 1;

@@ -21,6 +21,8 @@
 
 namespace bess {
 
+class JsonValue;
+
 inline constexpr int kRecordingVersion = 1;
 
 struct RecordingHead {
@@ -59,7 +61,7 @@ class BusRecordingReader {
   bool take_line(std::string& line);
   Next refuse(const std::string& what, std::string& error) const;
   Next end_of_file(std::string& error);
-  Next end_line(const class JsonValue& object, std::string& error);
+  Next end_line(const JsonValue& object, std::string& error);
 
   std::ifstream file_;
   std::string path_;

@@ -42,6 +42,8 @@ class CsvTable {
   [[nodiscard]] const std::string& text(std::size_t row, std::size_t column) const {
     return rows_[row].fields[column];
   }
+  /// Of a row in the text, counted from 1: for a message about it.
+  [[nodiscard]] std::size_t line(std::size_t row) const { return rows_[row].line; }
   /// Field as a number, or as a UTC instant in seconds; throws UserError naming file and line.
   [[nodiscard]] double number(std::size_t row, std::size_t column) const;
   [[nodiscard]] std::int64_t utc_s(std::size_t row, std::size_t column) const;

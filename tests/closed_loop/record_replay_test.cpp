@@ -54,6 +54,7 @@ struct Mistake {
 struct Recorded {
   MapVariant map;
   std::vector<Mistake> mistakes;
+  std::vector<std::string> faults = {};  ///< options of the simulator
   friend void PrintTo(const Recorded& r, std::ostream* out) { PrintTo(r.map, out); }
 };
 
@@ -71,6 +72,7 @@ class RecordReplay : public ::testing::TestWithParam<Recorded> {
     const MapVariant& m = GetParam().map;
     std::vector<std::string> options = {"--map", shipped_map(m.map)};
     if (*m.variant != '\0') options.insert(options.end(), {"--variant", m.variant});
+    options.insert(options.end(), GetParam().faults.begin(), GetParam().faults.end());
     return options;
   }
   /// Both simulators at the same ports, and the clock from its start on.
@@ -163,6 +165,8 @@ INSTANTIATE_TEST_SUITE_P(
                  {{"capacity", "word_order = \"low_first\"", "word_order = \"high_first\""},
                   {"battery_power", "sign = -1", "sign"}}},
         Recorded{{"sungrow_sh", "external_ems"}, {{"soc", "scale = 1000", "times smaller"}}},
+        // A device that is busy now and then is as busy when it is replayed.
+        Recorded{{"simulator", ""}, {}, {"--fault", "exception", "--fault-every", "7"}},
         Recorded{{"sma", "bms_mode"},
                  {{"soc", "word_order = \"low_first\"", "word_order = \"high_first\""}}}),
     [](const auto& info) {
@@ -223,7 +227,8 @@ TEST_F(RecordCommand, ADeviceThatAnswersNothingIsOneLine) {
   SimulatedSite::stop(*site_.battery);
   const Outcome recorded = record({"--for", "10s", "--out", path_});
   EXPECT_EQ(recorded.exit_code, 1);
-  EXPECT_THAT(recorded.text, HasSubstr(": answered nothing (are host, port and unit right"));
+  EXPECT_THAT(recorded.text,
+              HasSubstr(": no request had a good answer (are host, port and unit right"));
 }
 
 TEST_F(RecordCommand, ACutOrDamagedRecordingIsOneLineOfEitherProgram) {

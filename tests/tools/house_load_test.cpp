@@ -36,10 +36,11 @@ TEST(HouseLoad, RepeatsAFileFromItsEndOn) {
 
 TEST(HouseLoad, AMistakeNamesItsLine) {
   const std::pair<const char*, const char*> mistakes[] = {
-      {"utc,w\n", "house.csv:1: must be minute_utc,house_w"},
-      {"minute_utc,house_w\n", "house.csv: holds no minute"},
-      {"minute_utc,house_w\n2023-03-26T00:00:00Z\n", "house.csv:2: must be such as"},
-      {"minute_utc,house_w\n2023-03-26T00:00:00Z,nan\n", "house.csv:2: must be such as"},
+      {"utc,w\n", "house.csv:1: the header must be"},
+      {"minute_utc,house_w\n", "house.csv: holds no rows"},
+      {"minute_utc,house_w\n2023-03-26T00:00:00Z\n", "house.csv:2: 1 fields, the header has 2"},
+      {"minute_utc,house_w\n2023-03-26T00:00:00Z,nan\n",
+       "house.csv:2: house_w \"nan\" is not a number"},
       {"minute_utc,house_w\n2023-03-26T00:00:00Z,1\n2023-03-26T00:02:00Z,1\n",
        "house.csv:3: must be one minute after"}};
   for (const auto& [text, message] : mistakes) {

@@ -85,7 +85,7 @@ TEST_F(RecordedDeviceTest, WhoeverAsksMoreOftenHearsTheSameAgainAndWhoAsksLessMi
   load();
   EXPECT_EQ(value_at(0), 0);
   EXPECT_EQ(value_at(20), 0);
-  EXPECT_EQ(value_at(40), 0);
+  EXPECT_EQ(value_at(35), 0);
   EXPECT_EQ(value_at(60), 1);
   EXPECT_EQ(value_at(400), 6);
   EXPECT_EQ(value_at(9'000), 9);

@@ -9,8 +9,8 @@ constexpr unsigned kConnect = static_cast<unsigned>(FaultChance::kConnect);
 constexpr unsigned kRead = static_cast<unsigned>(FaultChance::kRead);
 constexpr unsigned kWrite = static_cast<unsigned>(FaultChance::kWrite);
 constexpr unsigned kAny = kRead | kWrite;
-constexpr unsigned kLasting =
-    0;  ///< struck by nothing: in force from --fault-from-s to --fault-to-s
+/// Struck by nothing: in force from --fault-from-s to --fault-to-s.
+constexpr unsigned kLasting = 0;
 
 constexpr BatteryFaultInfo kFaults[] = {
     {BatteryFault::kSilence, "silence", "no answer", kAny},

@@ -6,9 +6,9 @@
 #include <random>
 #include <span>
 
+#include "shared/host/csv.h"
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
-#include "shared/utc_text.h"
 
 namespace bess {
 namespace {
@@ -74,30 +74,15 @@ HouseLoad HouseLoad::daily(std::uint64_t seed) {
 }
 
 HouseLoad HouseLoad::from_csv(std::string_view text, std::string_view name) {
+  const CsvTable table(text, std::string(name), "minute_utc,house_w");
+  const std::int64_t start_utc_s = table.utc_s(0, 0);
   std::vector<double> minutes;
-  std::int64_t start_utc_s = 0;
-  for (int line = 1; !text.empty(); ++line) {
-    const std::size_t end = text.find('\n');
-    const std::string_view row = text.substr(0, end);
-    text = end == text.npos ? std::string_view() : text.substr(end + 1);
-    if (line == 1) {
-      if (row != "minute_utc,house_w") fail("{}:1: must be minute_utc,house_w", name);
-      continue;
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    if (table.utc_s(row, 0) != start_utc_s + 60 * std::ssize(minutes)) {
+      fail("{}:{}: must be one minute after the row before", name, table.line(row));
     }
-    const std::size_t comma = row.find(',');
-    std::int64_t utc_s = 0;
-    double power_w = 0;
-    if (comma == row.npos || !parse_utc(row.substr(0, comma), utc_s) ||
-        !parse_watts(row.substr(comma + 1), power_w)) {
-      fail("{}:{}: must be such as 2023-03-26T00:00:00Z,350", name, line);
-    }
-    if (minutes.empty()) start_utc_s = utc_s;
-    if (utc_s != start_utc_s + 60 * std::ssize(minutes)) {
-      fail("{}:{}: must be one minute after the row before", name, line);
-    }
-    minutes.push_back(power_w);
+    minutes.push_back(table.number(row, 1));
   }
-  if (minutes.empty()) fail("{}: holds no minute", name);
   return {start_utc_s, std::move(minutes)};
 }
 

@@ -42,7 +42,6 @@ class SimulatedBattery {
 
   /// From now on.
   void set_habits(const BatteryHabits& habits) { habits_ = habits; }
-  [[nodiscard]] const BatteryHabits& habits() const { return habits_; }
 
   [[nodiscard]] bool dispatch_active() const { return dispatch_active_; }
   [[nodiscard]] double soc_frac() const { return soc_frac_; }
