@@ -58,6 +58,7 @@ boot() {
   container[$1]=$!
   for ((i = 0; i < 600; ++i)); do
     first[$1]=$(pgrep -P "${container[$1]}" -f systemd 2>/dev/null | head -n 1 || true)
+    echo "${first[$1]}" >"$machine/first"
     [ -n "${first[$1]}" ] && on "$1" 'systemctl is-system-running 2>/dev/null | grep -qE "running|degraded"' 2>/dev/null && return 0
     kill -0 "${container[$1]}" 2>/dev/null || skip "a container with systemd does not start here: $(tail -n 1 "$machine/console")"
     sleep 0.2
@@ -65,6 +66,7 @@ boot() {
   die "$1 did not start within two minutes"
 }
 cut_power() {
+  rm -f "$folder/$1/first"
   kill -9 "${first[$1]}" "${container[$1]}" 2>/dev/null || true
   wait "${container[$1]}" 2>/dev/null || true
 }
