@@ -68,7 +68,8 @@ echo 'the "last" error	line'
 SH
 stand_in sleep <<'SH'
 #!/bin/sh
-exit 0
+read -r now <"$BESS_ROOT/proc/uptime"
+echo $((${now%.*} + 10)).00 >"$BESS_ROOT/proc/uptime"
 SH
 # The power fails at the n-th write that is waited for.
 stand_in sync <<'SH'
@@ -88,7 +89,8 @@ machine() {  # a machine with version 1.0 confirmed
   mkdir -p "$BESS_ROOT/fake" "$BESS_ROOT/etc/bess" "$BESS_ROOT/etc/apt/preferences.d" "$BESS_ROOT/usr/share/bess"
   printf 'good_cycles = 3   # few\ndeadline_s = 300\n' >"$BESS_ROOT/etc/bess/update.conf"
   printf '{\n "student": "45d2cbe3",\n "header_sha256": "72c9"\n}\n' >"$BESS_ROOT/usr/share/bess/certificate.json"
-  mkdir -p "$BESS_ROOT/var/lib/bess-update"
+  mkdir -p "$BESS_ROOT/var/lib/bess-update" "$BESS_ROOT/proc"
+  echo 100.00 >"$BESS_ROOT/proc/uptime"
   echo header >"$BESS_ROOT/var/lib/bess-update/confirmed_student_weights.h"
   echo 1.0 >"$BESS_ROOT/var/lib/bess-update/confirmed.deb"
   echo new_header >"$BESS_ROOT/usr/share/bess/student_weights.h"
