@@ -3,7 +3,8 @@
 # certificate) in BUILD/package/edge.
 set(package_dir ${CMAKE_SOURCE_DIR}/edge/package)
 install(PROGRAMS ${CMAKE_SOURCE_DIR}/edge/update/bess-update DESTINATION lib/bess COMPONENT edge_package)
-install(FILES ${CMAKE_SOURCE_DIR}/edge/update/update.conf DESTINATION /etc/bess COMPONENT edge_package)
+install(FILES ${CMAKE_SOURCE_DIR}/edge/update/update.conf DESTINATION /etc/bess RENAME update.conf.example
+        COMPONENT edge_package)
 install(FILES ${CMAKE_SOURCE_DIR}/edge/systemd/bess-trial.service ${CMAKE_SOURCE_DIR}/edge/systemd/bess-recover.service
         DESTINATION lib/systemd/system COMPONENT edge_package)
 install(FILES ${package_dir}/bess.tmpfiles DESTINATION lib/tmpfiles.d RENAME bess.conf COMPONENT edge_package)
