@@ -9,8 +9,8 @@
 namespace bess {
 namespace {
 
-struct Site {
-  explicit Site(double soc = 0.3) : battery(clock, soc) {}
+struct CommissionSite {
+  explicit CommissionSite(double soc = 0.3) : battery(clock, soc) {}
   CommissionResult commission(const CommissionSettings& settings = {}) {
     return SignCheck<FakeBattery, FakeClock>(settings, battery, clock).run();
   }
@@ -24,7 +24,7 @@ struct Site {
 };
 
 TEST(Commission, ChargesABatteryThatHasRoom) {
-  Site site(0.3);
+  CommissionSite site(0.3);
   const CommissionResult result = site.commission();
   EXPECT_EQ(result.verdict, CommissionVerdict::kPassed);
   EXPECT_EQ(result.ordered_power_w, 500);
@@ -36,34 +36,34 @@ TEST(Commission, ChargesABatteryThatHasRoom) {
 }
 
 TEST(Commission, DischargesAFullOne) {
-  Site site(1.0);
+  CommissionSite site(1.0);
   const CommissionResult result = site.commission();
   EXPECT_EQ(result.verdict, CommissionVerdict::kPassed);
   EXPECT_EQ(result.measured_power_w, -500);
 }
 
 TEST(Commission, RefusesAWrongSign) {
-  Site site;
+  CommissionSite site;
   site.battery.inverted = true;
   site.expect_refused(CommissionVerdict::kWrongSign);
 }
 
 TEST(Commission, RefusesABatteryThatDoesNothing) {
-  Site site;
+  CommissionSite site;
   site.battery.physics =
       SimulatedBattery({.power_w_max = 1, .capacity_wh = 8'000}, 0.3, site.clock.now_ns);
   site.expect_refused(CommissionVerdict::kDoesNotFollow);
 }
 
 TEST(Commission, RefusesAnAlarmWithoutOrderingAnything) {
-  Site site;
+  CommissionSite site;
   site.battery.alarm = true;
   site.expect_refused(CommissionVerdict::kAlarm);
   EXPECT_TRUE(site.battery.orders.empty());
 }
 
 TEST(Commission, RefusesABatteryThatFollowsSomebodyElse) {
-  Site site;
+  CommissionSite site;
   site.battery.physics.start_dispatch(1'000, 1.0, 3'600);
   EXPECT_EQ(site.commission().verdict, CommissionVerdict::kForeignOrder);
   EXPECT_TRUE(site.battery.orders.empty());
@@ -71,14 +71,14 @@ TEST(Commission, RefusesABatteryThatFollowsSomebodyElse) {
 }
 
 TEST(Commission, RefusesPowerAtRest) {
-  Site site;
+  CommissionSite site;
   site.battery.offset_w = 400;
   site.expect_refused(CommissionVerdict::kNotAtRest);
   EXPECT_EQ(site.battery.orders.size(), 1U);  // only the 0 W
 }
 
 TEST(Commission, SaysWhyTheLinkFailed) {
-  Site site;
+  CommissionSite site;
   site.battery.link = false;
   const CommissionResult result = site.commission();
   EXPECT_EQ(result.verdict, CommissionVerdict::kNoLink);
@@ -86,13 +86,13 @@ TEST(Commission, SaysWhyTheLinkFailed) {
 }
 
 TEST(Commission, AnInterruptReleases) {
-  Site site;
+  CommissionSite site;
   site.clock.stop = true;
   site.expect_refused(CommissionVerdict::kInterrupted);
 }
 
 TEST(Commission, TriesAgainToReleaseAndSaysWhenItCannot) {
-  Site site;
+  CommissionSite site;
   site.battery.failing_releases = 3;
   CommissionResult result = site.commission();
   EXPECT_EQ(result.verdict, CommissionVerdict::kPassed);
@@ -105,7 +105,7 @@ TEST(Commission, TriesAgainToReleaseAndSaysWhenItCannot) {
 }
 
 TEST(Commission, FeedsTheWatchdogMeanwhile) {
-  Site site;
+  CommissionSite site;
   site.battery.refresh_s = 9;
   EXPECT_EQ(site.commission().verdict, CommissionVerdict::kPassed);
   EXPECT_EQ(site.battery.refreshed_ns.size(), 1U + 3U);  // 10 s of rest, 30 s of driving

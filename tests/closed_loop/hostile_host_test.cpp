@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "tests/support/simulated_site.h"
+#include "tests/support/temporary_folder.h"
 
 namespace bess {
 namespace {
@@ -18,11 +19,6 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 constexpr std::int32_t kScale = 900;
-
-std::string text_of(const std::string& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
 
 class HostileHost : public ::testing::Test {
  protected:
@@ -78,7 +74,7 @@ TEST_F(HostileHost, AnotherLockFolderLetsNoSecondControllerIn) {
   const std::string mine = site_.commission();
   const std::string other = site_.commission({.state = "other"});
   fs::create_directory(site_.folder.file("elsewhere"));
-  std::string text = text_of(other);
+  std::string text = text_of_file(other);
   const std::string key = "lock_folder = \"";
   text.insert(text.find(key) + key.size(), site_.folder.file("elsewhere") + "\" #");
   static_cast<void>(site_.folder.write("other.toml", text));

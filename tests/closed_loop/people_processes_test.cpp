@@ -5,9 +5,9 @@
 
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 
 #include "tests/support/simulated_site.h"
+#include "tests/support/temporary_folder.h"
 
 namespace bess {
 namespace {
@@ -15,12 +15,6 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-std::string text_of(const std::string& path) {
-  std::ostringstream text;
-  text << std::ifstream(path).rdbuf();
-  return text.str();
-}
 
 struct Said {
   int exit_code;
@@ -165,7 +159,7 @@ class Notify : public People {
   /// False after half a minute.
   bool is_mailed(const std::string& piece) const {
     for (int i = 0; i < 300; ++i) {
-      if (text_of(site_.folder.file("mails")).find(piece) != std::string::npos) return true;
+      if (text_of_file(site_.folder.file("mails")).find(piece) != std::string::npos) return true;
       usleep(100'000);
     }
     return false;

@@ -16,7 +16,7 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
 
-constexpr const char* kMap = R"(
+constexpr const char* kMapToml = R"(
 [map]
 name = "test"
 unit = 1
@@ -89,7 +89,7 @@ const std::vector<std::pair<std::string, std::string>> kIdentity = {
 class DriverTest : public ::testing::Test {
  protected:
   MapUnderTest& with(const std::vector<std::pair<std::string, std::string>>& changes = {}) {
-    std::string text = kMap;
+    std::string text = kMapToml;
     for (const auto& [before, after] : changes) {
       const std::size_t at = text.find(before);
       EXPECT_NE(at, std::string::npos) << before;

@@ -61,7 +61,7 @@ TEST(ModbusFrame, WhatTheProtocolCannotCarryIsNotValid) {
   EXPECT_FALSE((ModbusRequest{.unit = -1}.is_valid()));
 }
 
-struct Case {
+struct ReplyCase {
   const char* what;
   const ModbusRequest& request;
   Bytes reply;
@@ -70,7 +70,7 @@ struct Case {
 };
 
 TEST(ModbusFrame, ATcpReplyMustRepeatWhatWasAsked) {
-  const Case cases[] = {
+  const ReplyCase cases[] = {
       {"read", kRead, {0x12, 0x34, 0, 0, 0, 7, 85, 3, 4, 1, 2, 3, 4}, Status::kOk},
       {"write one", kWriteOne, {0x12, 0x34, 0, 0, 0, 6, 85, 6, 8, 0x80, 0, 1}, Status::kOk},
       {"write many", kWriteMany, {0x12, 0x34, 0, 0, 0, 6, 85, 16, 8, 0x80, 0, 2}, Status::kOk},
@@ -108,7 +108,7 @@ TEST(ModbusFrame, ATcpReplyMustRepeatWhatWasAsked) {
        Status::kBadReply},
       {"nothing", kRead, {}, Status::kBadReply},
   };
-  for (const Case& c : cases) {
+  for (const ReplyCase& c : cases) {
     std::uint16_t registers[2] = {0xDEAD, 0xDEAD};
     const ReplyCheck check = check_reply(Framing::kTcp, c.request, frame_of(c.reply), registers);
     EXPECT_EQ(check.status, c.status) << c.what;

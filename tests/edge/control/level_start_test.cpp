@@ -7,12 +7,13 @@
 namespace bess {
 namespace {
 
-constexpr std::int64_t kNow = 1'679'788'890;  // 2023-03-26T00:01:30Z
+constexpr std::int64_t kStartUtcS = 1'679'788'890;  // 2023-03-26T00:01:30Z
 constexpr std::int64_t kNewestRow = 1'679'788'800;
-constexpr PriceLevel kLogged{.centi_q16 = 8'420 * 65'536LL, .row_minute_utc_s = kNow - 86'400};
+constexpr PriceLevel kLogged{.centi_q16 = 8'420 * 65'536LL,
+                             .row_minute_utc_s = kStartUtcS - 86'400};
 constexpr PriceLevel kPast{.centi_q16 = 7'000 * 65'536LL, .row_minute_utc_s = kNewestRow - 60};
 
-struct Case {
+struct StartCase {
   const char* name;
   ContextKind kind;
   PriceLevel logged, past;
@@ -25,8 +26,8 @@ TEST(LevelStart, LogThenHistoryThenSettingThenTheFirstPrice) {
   constexpr ContextKind kMonth = ContextKind::kMonth;
   constexpr ContextKind kLevel = ContextKind::kLevel;
   const PriceLevel set = PriceLevel::starting_at(9'000);
-  const PriceLevel foreign{.centi_q16 = INT64_MAX, .row_minute_utc_s = kNow - 120};
-  const Case cases[] = {
+  const PriceLevel foreign{.centi_q16 = INT64_MAX, .row_minute_utc_s = kStartUtcS - 120};
+  const StartCase cases[] = {
       {"kept", kLevel, kLogged, kPast, 9'000, {kLogged, LevelSource::kLog}, false},
       {"kept by month too", kMonth, kLogged, kPast, 9'000, {kLogged, LevelSource::kLog}, false},
       {"fetched", kLevel, {}, kPast, 9'000, {kPast, LevelSource::kHistory}, true},
@@ -36,10 +37,10 @@ TEST(LevelStart, LogThenHistoryThenSettingThenTheFirstPrice) {
       {"refused", kLevel, foreign, kPast, {}, {kPast, LevelSource::kHistory, true}, true},
       {"refused by month", kMonth, foreign, kPast, {}, {{}, LevelSource::kNone, true}, false},
   };
-  for (const Case& c : cases) {
+  for (const StartCase& c : cases) {
     SCOPED_TRACE(c.name);
     int asked = 0;
-    const LevelStart start = find_start_level(c.kind, c.logged, kNow, c.setting, [&] {
+    const LevelStart start = find_start_level(c.kind, c.logged, kStartUtcS, c.setting, [&] {
       ++asked;
       return c.past;
     });
@@ -52,21 +53,21 @@ TEST(LevelStart, LogThenHistoryThenSettingThenTheFirstPrice) {
 
 TEST(LevelFromLog, OutOfTheLatticeIsRefused) {
   for (const std::int64_t centi : {150'000, -50'000}) {
-    const PriceLevel edge{.centi_q16 = centi * 65'536, .row_minute_utc_s = kNow - 120};
-    EXPECT_EQ(level_from_log(edge, kNow), edge);
+    const PriceLevel edge{.centi_q16 = centi * 65'536, .row_minute_utc_s = kStartUtcS - 120};
+    EXPECT_EQ(level_from_log(edge, kStartUtcS), edge);
     const PriceLevel beyond{.centi_q16 = edge.centi_q16 + (centi > 0 ? 1 : -1),
-                            .row_minute_utc_s = kNow - 120};
-    EXPECT_FALSE(level_from_log(beyond, kNow).is_known());
+                            .row_minute_utc_s = kStartUtcS - 120};
+    EXPECT_FALSE(level_from_log(beyond, kStartUtcS).is_known());
   }
-  EXPECT_FALSE(level_from_log({.centi_q16 = 0, .row_minute_utc_s = -60}, kNow).is_known());
+  EXPECT_FALSE(level_from_log({.centi_q16 = 0, .row_minute_utc_s = -60}, kStartUtcS).is_known());
 }
 
 /// Logged while the clock was a year ahead: without the bound no row would count for a year.
 TEST(LevelFromLog, ARowOfTheFutureDoesNotFreezeTheLevel) {
   for (const std::int64_t row :
-       {kNow + std::int64_t{365} * 86'400, kNow + 60, std::int64_t{INT64_MAX}}) {
+       {kStartUtcS + std::int64_t{365} * 86'400, kStartUtcS + 60, std::int64_t{INT64_MAX}}) {
     PriceLevel level =
-        level_from_log({.centi_q16 = kLogged.centi_q16, .row_minute_utc_s = row}, kNow);
+        level_from_log({.centi_q16 = kLogged.centi_q16, .row_minute_utc_s = row}, kStartUtcS);
     EXPECT_EQ(level.centi_q16, kLogged.centi_q16);
     EXPECT_EQ(level.row_minute_utc_s, kNewestRow);
     level.observe(kNewestRow + 60, 8'420 + 720);  // the row of the next tick's minute counts

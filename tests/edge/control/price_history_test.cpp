@@ -8,8 +8,8 @@
 namespace bess {
 namespace {
 
-constexpr std::int64_t kNow = 1'679'788'890;   // 2023-03-26T00:01:30Z, between two ticks
-constexpr std::int64_t kTick = 1'679'788'800;  // the last one, 00:00
+constexpr std::int64_t kBetweenTicks = 1'679'788'890;  // 2023-03-26T00:01:30Z, between two ticks
+constexpr std::int64_t kLastTick = 1'679'788'800;      // the last one, 00:00
 
 /// The level after these rows at successive decisions.
 PriceLevel level_of(const std::vector<std::pair<std::int64_t, std::int32_t>>& rows) {
@@ -19,58 +19,59 @@ PriceLevel level_of(const std::vector<std::pair<std::int64_t, std::int32_t>>& ro
 }
 
 TEST(PriceHistory, IsUnknownWithoutRows) {
-  const PriceHistory history(72, kNow);
+  const PriceHistory history(72, kBetweenTicks);
   EXPECT_FALSE(history.level().is_known());
   EXPECT_EQ(history.rows(), 0);
   EXPECT_EQ(history.hours_covered(), 0);
-  EXPECT_EQ(history.first_minute_utc_s(), kTick - 72 * 3'600);
+  EXPECT_EQ(history.first_minute_utc_s(), kLastTick - 72 * 3'600);
 }
 
 TEST(PriceHistory, TakesTheRowsThatDecisionsSaw) {
-  PriceHistory history(1, kNow);
-  for (int minute = 10; minute >= 1; --minute) history.add(kTick - 60 * minute, 1'000 * minute);
+  PriceHistory history(1, kBetweenTicks);
+  for (int minute = 10; minute >= 1; --minute) history.add(kLastTick - 60 * minute, 1'000 * minute);
   // The ticks were at -8, -6, ... 0 and each saw the row of the minute before it.
-  EXPECT_EQ(history.level(), level_of({{kTick - 540, 9'000},
-                                       {kTick - 420, 7'000},
-                                       {kTick - 300, 5'000},
-                                       {kTick - 180, 3'000},
-                                       {kTick - 60, 1'000}}));
+  EXPECT_EQ(history.level(), level_of({{kLastTick - 540, 9'000},
+                                       {kLastTick - 420, 7'000},
+                                       {kLastTick - 300, 5'000},
+                                       {kLastTick - 180, 3'000},
+                                       {kLastTick - 60, 1'000}}));
   EXPECT_EQ(history.rows(), 10);
   EXPECT_EQ(history.hours_covered(), 1);
 }
 
 TEST(PriceHistory, WhereARowIsMissingTheOneBeforeWasSeen) {
-  PriceHistory history(1, kNow);
-  history.add(kTick - 300, 5'000);
-  history.add(kTick - 240, 4'000);  // seen at -2: the row of -3 is missing
-  history.add(kTick - 60, 1'000);
-  EXPECT_EQ(history.level(),
-            level_of({{kTick - 300, 5'000}, {kTick - 240, 4'000}, {kTick - 60, 1'000}}));
+  PriceHistory history(1, kBetweenTicks);
+  history.add(kLastTick - 300, 5'000);
+  history.add(kLastTick - 240, 4'000);  // seen at -2: the row of -3 is missing
+  history.add(kLastTick - 60, 1'000);
+  EXPECT_EQ(
+      history.level(),
+      level_of({{kLastTick - 300, 5'000}, {kLastTick - 240, 4'000}, {kLastTick - 60, 1'000}}));
 }
 
 TEST(PriceHistory, LeavesToTheLoopWhatNoTickHasSeenYet) {
-  PriceHistory history(1, kNow);
-  history.add(kTick, 9'000);
-  history.add(kTick + 60, 9'000);
+  PriceHistory history(1, kBetweenTicks);
+  history.add(kLastTick, 9'000);
+  history.add(kLastTick + 60, 9'000);
   EXPECT_EQ(history.rows(), 0);
-  history.add(kTick - 3'660, 9'000);  // and what lies before the hours
+  history.add(kLastTick - 3'660, 9'000);  // and what lies before the hours
   history.add(INT64_MIN / 2, 9'000);
   EXPECT_EQ(history.rows(), 0);
-  history.add(kTick - 3'600, 9'000);
-  EXPECT_EQ(history.level(), level_of({{kTick - 3'600, 9'000}}));
+  history.add(kLastTick - 3'600, 9'000);
+  EXPECT_EQ(history.level(), level_of({{kLastTick - 3'600, 9'000}}));
 }
 
 TEST(PriceHistory, ARowThatComesTwiceCountsOnce) {
-  PriceHistory history(1, kNow);
-  history.add(kTick - 60, 1'000);
-  history.add(kTick - 60, 2'000);
+  PriceHistory history(1, kBetweenTicks);
+  history.add(kLastTick - 60, 1'000);
+  history.add(kLastTick - 60, 2'000);
   EXPECT_EQ(history.rows(), 1);
-  EXPECT_EQ(history.level(), level_of({{kTick - 60, 2'000}}));
+  EXPECT_EQ(history.level(), level_of({{kLastTick - 60, 2'000}}));
 }
 
 TEST(PriceHistory, HoldsTheLongestHours) {
-  PriceHistory history(PriceHistory::kHoursMax, kNow);
-  for (int minute = 1; minute <= 100 * 60; ++minute) history.add(kTick - 60 * minute, 12'300);
+  PriceHistory history(PriceHistory::kHoursMax, kBetweenTicks);
+  for (int minute = 1; minute <= 100 * 60; ++minute) history.add(kLastTick - 60 * minute, 12'300);
   EXPECT_EQ(history.rows(), 96 * 60);
   EXPECT_EQ(history.hours_covered(), 96);
   EXPECT_EQ(history.level().centi_eur_per_mwh(), 12'300);

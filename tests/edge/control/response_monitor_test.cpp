@@ -15,7 +15,7 @@ namespace {
 constexpr std::int32_t kStepS = 120;
 
 /// A battery of 4 kW and 8 kWh that is read every two minutes, with what it shows.
-struct Site {
+struct MonitoredSite {
   ResponseMonitor monitor{ResponseSettings{}};
   double soc_frac = 0.5;
   std::int64_t utc_s = 0;
@@ -43,7 +43,7 @@ struct Site {
 
 TEST(ResponseMonitor, TheWrongDirectionIsFoundInTwoReadings) {
   for (const std::int32_t ordered_w : {4'000, -4'000}) {
-    Site site;
+    MonitoredSite site;
     site.step(ordered_w, -ordered_w);
     EXPECT_EQ(site.monitor.trip(), Reason::kStudent);
     site.step(ordered_w, -ordered_w);
@@ -52,7 +52,7 @@ TEST(ResponseMonitor, TheWrongDirectionIsFoundInTwoReadings) {
 }
 
 TEST(ResponseMonitor, IdleBetweenDoesNotForgetTheWrongDirection) {
-  Site site;
+  MonitoredSite site;
   site.step(4'000, -4'000);
   for (int i = 0; i < 5; ++i) site.step(0, 0);
   EXPECT_EQ(site.monitor.trip(), Reason::kStudent);
@@ -61,7 +61,7 @@ TEST(ResponseMonitor, IdleBetweenDoesNotForgetTheWrongDirection) {
 }
 
 TEST(ResponseMonitor, ARightAnswerForgetsAWrongOne) {
-  Site site;
+  MonitoredSite site;
   site.step(4'000, -4'000);
   site.step(4'000, 4'000);
   site.step(4'000, -4'000);
@@ -69,14 +69,14 @@ TEST(ResponseMonitor, ARightAnswerForgetsAWrongOne) {
 }
 
 TEST(ResponseMonitor, DischargingAtZeroIsUncontrolled) {
-  Site site;
+  MonitoredSite site;
   site.step(0, -3'000);
   site.step(0, -3'000);
   EXPECT_EQ(site.monitor.trip(), Reason::kUncontrolledPower);
 }
 
 TEST(ResponseMonitor, TwiceTheOrderIsUncontrolledAlsoWhenItRestsBetween) {
-  Site site;
+  MonitoredSite site;
   for (int i = 0; i < 2; ++i) {
     EXPECT_EQ(site.monitor.trip(), Reason::kStudent);
     site.step(4'000, 8'000);
@@ -86,7 +86,7 @@ TEST(ResponseMonitor, TwiceTheOrderIsUncontrolledAlsoWhenItRestsBetween) {
 }
 
 TEST(ResponseMonitor, LessThanOrderedIsToldButNotStopped) {
-  Site site;
+  MonitoredSite site;
   for (int i = 0; i < 8; ++i) site.step(4'000, 1'200);
   EXPECT_EQ(site.monitor.trip(), Reason::kStudent);
   EXPECT_FALSE(site.monitor.gives_no_answer());
@@ -96,7 +96,7 @@ TEST(ResponseMonitor, LessThanOrderedIsToldButNotStopped) {
 }
 
 TEST(ResponseMonitor, NoPowerInTheMiddleOfTheChargeIsNoAnswer) {
-  Site site;
+  MonitoredSite site;
   site.step(4'000, 0);
   EXPECT_FALSE(site.monitor.gives_no_answer());
   site.step(-4'000, 0);
@@ -121,7 +121,7 @@ TEST(ResponseMonitor, AFullEmptyColdOrLimitedBatteryMayRest) {
            Case{"limited", 0.5, 4'000, [](BatteryMeasurement& m) { m.charge_w_max = 0; }},
            Case{"limited", 0.5, -4'000, [](BatteryMeasurement& m) { m.discharge_w_max = 100; }},
        }) {
-    Site site;
+    MonitoredSite site;
     site.soc_frac = c.soc_frac;
     site.soc_floor_e4 = c.soc_floor_e4;
     for (int i = 0; i < 10; ++i) site.step(c.ordered_w, 0, c.fault);
@@ -132,7 +132,7 @@ TEST(ResponseMonitor, AFullEmptyColdOrLimitedBatteryMayRest) {
 }
 
 TEST(ResponseMonitor, ASocThatStandsStillWhilePowerFlowsIsFound) {
-  Site site;
+  MonitoredSite site;
   site.step(4'000, 4'000);
   const std::int32_t frozen_e4 = site.shown.soc_e4;
   const auto freeze = [&](BatteryMeasurement& m) { m.soc_e4 = frozen_e4; };
@@ -143,7 +143,7 @@ TEST(ResponseMonitor, ASocThatStandsStillWhilePowerFlowsIsFound) {
 }
 
 TEST(ResponseMonitor, ASocThatMovesTheWrongWayIsFound) {
-  Site site;
+  MonitoredSite site;
   site.step(4'000, 4'000);
   const std::int32_t start_e4 = site.shown.soc_e4;
   int readings = 0;
@@ -180,7 +180,7 @@ TEST(ResponseMonitor, AnOrderThatIsCutWithinItsStepHasMovedWhatItMoved) {
 }
 
 TEST(ResponseMonitor, ASocThatJumpsStopsUntilItAgreesAgain) {
-  Site site;
+  MonitoredSite site;
   site.step(4'000, 4'000);
   site.step(4'000, 4'000, [](BatteryMeasurement& m) { m.soc_e4 -= 4'000; });
   EXPECT_TRUE(site.monitor.has_jumped());
@@ -237,7 +237,7 @@ TEST(ResponseMonitor, SurplusSunMayChargeWhereTheMapSaysSo) {
 TEST(ResponseMonitor, ButDischargingAgainstAnOrderToChargeIsTheWrongDirectionThereToo) {
   ResponseSettings settings;
   settings.band.charges_by_itself = true;
-  Site site{ResponseMonitor{settings}};
+  MonitoredSite site{ResponseMonitor{settings}};
   for (int i = 0; i < 2; ++i) site.step(4'000, -4'000);
   EXPECT_EQ(site.monitor.trip(), Reason::kWrongDirection);
 }
@@ -246,7 +246,7 @@ TEST(ResponseMonitor, ButDischargingAgainstAnOrderToChargeIsTheWrongDirectionThe
 /// up and below 25 %, an idle draw, a counter of charge in 0.1 % that lags.
 TEST(ResponseMonitor, ThirtyDaysOfAnHonestBatteryRaiseNothing) {
   for (const double capacity_scale : {0.85, 1.0, 1.15}) {
-    Site site;
+    MonitoredSite site;
     std::mt19937_64 random(1);
     std::normal_distribution<> noise(0, 0.02);
     std::uniform_int_distribution<int> wish(-1, 1);

@@ -8,22 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/guard_inputs.h"
+
 namespace bess {
 namespace {
-
-constexpr std::int64_t kNow = 1'679'875'320;  // minute 2 of a quarter-hour
-static_assert(kNow % 900 == 120);
-
-GuardInputs healthy(Action action = Action::kCharge) {
-  GuardInputs in;
-  in.now_utc_s = kNow;
-  in.clock_ok = in.link_ok = in.has_price = true;
-  in.measurement.soc_e4 = 5'000;
-  in.price_minute_utc_s = kNow - 60;
-  in.price_centi_eur_per_mwh = 5'000;
-  in.student_action = action;
-  return in;
-}
 
 GuardDecision decide_once(const GuardInputs& in) { return SafetyGuard(GuardSettings{}).decide(in); }
 
@@ -35,7 +23,7 @@ TEST(SafetyGuard, PassesTheStudentThroughWhenAllIsWell) {
   }
 }
 
-struct Case {
+struct StopCase {
   const char* name;
   std::function<void(GuardInputs&)> spoil;
   Reason reason;
@@ -43,7 +31,7 @@ struct Case {
 };
 
 /// In order of precedence: a case further up must win over every case below it.
-std::vector<Case> cases() {
+std::vector<StopCase> cases() {
   return {
       {"clock", [](GuardInputs& in) { in.clock_ok = false; }, Reason::kClock, 0},
       {"link", [](GuardInputs& in) { in.link_ok = false; }, Reason::kLink, 0},
@@ -88,7 +76,7 @@ TEST(SafetyGuard, TheRampNeverAllowsMoreThanTheConfiguredPower) {
 }
 
 TEST(SafetyGuard, EachReason) {
-  for (const Case& c : cases()) {
+  for (const StopCase& c : cases()) {
     GuardInputs in = healthy(Action::kCharge);
     c.spoil(in);
     const GuardDecision decision = decide_once(in);
@@ -98,7 +86,7 @@ TEST(SafetyGuard, EachReason) {
 }
 
 TEST(SafetyGuard, PrecedenceOfEveryPair) {
-  const std::vector<Case> all = cases();
+  const std::vector<StopCase> all = cases();
   for (std::size_t high = 0; high < all.size(); ++high) {
     for (std::size_t low = high + 1; low < all.size(); ++low) {
       GuardInputs in = healthy(Action::kCharge);

@@ -8,11 +8,11 @@
 #include "edge/control/hold.h"
 #include "edge/control/reserve.h"
 #include "edge/control/safety_guard.h"
+#include "tests/support/guard_inputs.h"
 
 namespace bess {
 namespace {
 
-constexpr std::int64_t kNow = 1'679'875'320;
 constexpr std::uint32_t kSoon = kNow + 600;
 
 TEST(Hold, CrossesTheMailboxAsItIs) {
@@ -127,17 +127,6 @@ TEST(FullCharge, DaysAreLocal) {
   EXPECT_EQ(local_day_number(local_minute_of(summer)), summer / 86'400 + 1);
   const std::int64_t winter = 1'673'476'200;  // 2023-01-11T22:30:00Z
   EXPECT_EQ(local_day_number(local_minute_of(winter)), winter / 86'400);
-}
-
-GuardInputs healthy(Action action = Action::kCharge) {
-  GuardInputs in;
-  in.now_utc_s = kNow;
-  in.clock_ok = in.link_ok = in.has_price = true;
-  in.measurement.soc_e4 = 5'000;
-  in.price_minute_utc_s = kNow - 60;
-  in.price_centi_eur_per_mwh = 5'000;
-  in.student_action = action;
-  return in;
 }
 
 constexpr GuardSettings kSettings{.full_charge_power_w = 2'000};

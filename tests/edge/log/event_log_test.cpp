@@ -12,7 +12,6 @@
 #include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
 #include <memory>
 
 #include "shared/scaled_clock.h"
@@ -32,11 +31,6 @@ CycleRecord record_of(std::int64_t cycle) {
   record.counters.flash_day = 19'442;
   record.counters.flash_writes_today = static_cast<std::int32_t>(cycle);
   return record;
-}
-
-std::string text_of(const std::string& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 class Log : public ::testing::Test {
@@ -61,14 +55,14 @@ TEST_F(Log, ARecordArrivesEverywhereAndARestartTakesItOver) {
     CycleRecord newest;
     ASSERT_TRUE(log->open(settings(), RunIdentity{}, error_)) << error_.c_str();
     EXPECT_FALSE(log->newest(newest));
-    EXPECT_THAT(text_of(folder_.file("status.json")), HasSubstr("\"cycles\": 0"));
+    EXPECT_THAT(text_of_file(folder_.file("status.json")), HasSubstr("\"cycles\": 0"));
     for (int cycle = 1; cycle <= 100; ++cycle) {
       log->write(record_of(cycle));
       ASSERT_TRUE(log->drain(kDrainNs));
     }
-    EXPECT_THAT(text_of(folder_.file("status.json")), HasSubstr("\"cycles\": 100"));
-    EXPECT_THAT(text_of(folder_.file("metrics.prom")), HasSubstr("bess_cycles_total 100\n"));
-    const std::string csv = text_of(folder_.file("log.csv"));
+    EXPECT_THAT(text_of_file(folder_.file("status.json")), HasSubstr("\"cycles\": 100"));
+    EXPECT_THAT(text_of_file(folder_.file("metrics.prom")), HasSubstr("bess_cycles_total 100\n"));
+    const std::string csv = text_of_file(folder_.file("log.csv"));
     EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 101);
   }
   const auto log = std::make_unique<EventLog>();
@@ -102,7 +96,7 @@ TEST_F(Log, ADiskThatStandsStillNeverHoldsUpTheControlThread) {
   }
   log->write(record_of(kRecords + 1));
   ASSERT_TRUE(log->drain(kDrainNs));
-  const std::string status = text_of(folder_.file("status.json"));
+  const std::string status = text_of_file(folder_.file("status.json"));
   EXPECT_THAT(status, HasSubstr("\"utc\": \"2023-03-27T09:22:00Z\", \"cycle\": 1001"));
   EXPECT_THAT(status, HasSubstr("\"records_dropped\": 9"));  // 9xx: all but queue and pipe
   EXPECT_THAT(status, HasSubstr("\"disk_failures\": 0"));
@@ -118,7 +112,7 @@ TEST_F(Log, AFullDiskIsToldAndDoesNotStopTheStart) {
   const std::string journal = ::testing::internal::GetCapturedStdout();
   ASSERT_TRUE(opened) << error_.c_str();
   EXPECT_THAT(journal, HasSubstr("cannot be written, is the disk full or read-only?"));
-  EXPECT_THAT(text_of(folder_.file("status.json")), HasSubstr("\"disk_is_failing\": true"));
+  EXPECT_THAT(text_of_file(folder_.file("status.json")), HasSubstr("\"disk_is_failing\": true"));
 }
 
 /// What a process makes of a disk that has room for files of this size and no larger ones.
@@ -154,8 +148,8 @@ TEST_F(Log, AStartWithoutAnyRoomGoesOnAndWritesOnceThereIs) {
     return log->drain(kDrainNs) ? 0 : 4;
   });
   EXPECT_EQ(code, 0);
-  EXPECT_THAT(text_of(folder_.file("status.json")), HasSubstr("\"cycles\": 2"));
-  EXPECT_THAT(text_of(folder_.file("log.csv")), ::testing::StartsWith("utc,"));
+  EXPECT_THAT(text_of_file(folder_.file("status.json")), HasSubstr("\"cycles\": 2"));
+  EXPECT_THAT(text_of_file(folder_.file("log.csv")), ::testing::StartsWith("utc,"));
   const auto log = std::make_unique<EventLog>();
   CycleRecord newest;
   ASSERT_TRUE(log->open(settings(), RunIdentity{}, error_)) << error_.c_str();
@@ -210,7 +204,7 @@ TEST_F(Log, AMetricsFolderThatVanishesIsAFailureOfThatFileOnly) {
   const std::size_t told = journal.find("cannot be written, is the disk full or read-only?");
   ASSERT_NE(told, std::string::npos) << journal;  // once, not every cycle
   EXPECT_EQ(journal.find("cannot be written", told + 1), std::string::npos) << journal;
-  const std::string status = text_of(folder_.file("status.json"));
+  const std::string status = text_of_file(folder_.file("status.json"));
   EXPECT_THAT(status, HasSubstr("\"cycles\": 2"));
   EXPECT_THAT(status, HasSubstr("\"disk_is_failing\": true"));
 }

@@ -9,7 +9,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-HealthInputs healthy() {
+HealthInputs healthy_inputs() {
   HealthInputs in;
   in.is_running = in.is_of_this_run = true;
   in.age_ms = 119'000;
@@ -21,7 +21,7 @@ HealthInputs healthy() {
 }
 
 TEST(Health, OkWhenNothingIsAmiss) {
-  const Health health = assess_health(healthy());
+  const Health health = assess_health(healthy_inputs());
   EXPECT_EQ(health.level, HealthLevel::kOk);
   EXPECT_TRUE(health.reasons.empty());
 }
@@ -73,7 +73,7 @@ TEST(Health, EveryTroubleHasItsReason) {
        HealthLevel::kDegraded, "WARN: status.json is 10 cycles behind the log, is the disk full"},
   };
   for (const Case& c : cases) {
-    HealthInputs in = healthy();
+    HealthInputs in = healthy_inputs();
     c.spoil(in);
     const Health health = assess_health(in);
     EXPECT_EQ(health.level, c.level) << c.reason;
@@ -84,7 +84,7 @@ TEST(Health, EveryTroubleHasItsReason) {
 
 /// A controller that hangs on a full disk must not look as if only the disk were full.
 TEST(Health, AgeCountsFromTheNewestCycleInTheLog) {
-  HealthInputs in = healthy();
+  HealthInputs in = healthy_inputs();
   in.cycles_behind = 10;
   in.age_ms = 14 * 120'000 + 1'000;
   const Health health = assess_health(in);
@@ -94,7 +94,7 @@ TEST(Health, AgeCountsFromTheNewestCycleInTheLog) {
 }
 
 TEST(Health, StaleStartsBeyondTwoCadencesWhateverTheTimeScale) {
-  HealthInputs in = healthy();
+  HealthInputs in = healthy_inputs();
   in.cadence_ms = 133;
   in.age_ms = 266;
   EXPECT_EQ(assess_health(in).level, HealthLevel::kOk);

@@ -6,15 +6,15 @@
 namespace bess {
 namespace {
 
-constexpr std::int64_t kTick = 1'679'875'320;  // 2023-03-27T00:02:00Z
-constexpr HoldReport kHeld{.held = true, .power_w = -2'000, .until_utc_s = kTick + 240};
+constexpr std::int64_t kTickUtcS = 1'679'875'320;  // 2023-03-27T00:02:00Z
+constexpr HoldReport kHeld{.held = true, .power_w = -2'000, .until_utc_s = kTickUtcS + 240};
 constexpr HoldReport kUnreadable{.unreadable = true};
 
 struct Journal {
   /// Empty: nothing was worth a line.
   std::string after(int cycle, const HoldReport& hold, bool is_in_control = true) {
     CycleRecord record;
-    record.utc_s = kTick + 120 * cycle;
+    record.utc_s = kTickUtcS + 120 * cycle;
     record.mode = Mode::kRunning;
     record.hold = hold;
     char text[256];

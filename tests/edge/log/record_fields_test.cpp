@@ -44,7 +44,7 @@ std::int64_t telling_value(MemberKind kind) {
 }
 
 template <typename Source>
-std::string text_of(const Field<Source>& field) {
+std::string value_text_of(const Field<Source>& field) {
   const std::int64_t value = telling_value(field.access.kind);
   if (field.access.kind == MemberKind::kUtc) return utc_text(value).c_str();
   return field.access.kind == MemberKind::kName ? field.access.name_of(value)
@@ -54,7 +54,8 @@ std::string text_of(const Field<Source>& field) {
 template <typename Source>
 std::string json_text_of(const Field<Source>& field) {
   if (field.access.kind == MemberKind::kFlag) return "true";
-  return field.access.kind == MemberKind::kNumber ? text_of(field) : '"' + text_of(field) + '"';
+  return field.access.kind == MemberKind::kNumber ? value_text_of(field)
+                                                  : '"' + value_text_of(field) + '"';
 }
 
 std::string status_of(const RunTotals& totals) {
@@ -106,7 +107,7 @@ void expect_in_journal(const Field<CycleRecord>& field, const CycleRecord& recor
   if (field.place_in(&Places::journal) == 0) {
     EXPECT_THAT(journal, Not(HasSubstr(key)));
   } else {
-    EXPECT_THAT(journal, HasSubstr(key + text_of(field) + " "));
+    EXPECT_THAT(journal, HasSubstr(key + value_text_of(field) + " "));
   }
 }
 
@@ -122,7 +123,7 @@ void expect_in_csv(const Field<CycleRecord>& field, const CycleRecord& record) {
   }
   ASSERT_LE(static_cast<std::size_t>(column), names.size()) << "a column was left out";
   EXPECT_EQ(names[static_cast<std::size_t>(column) - 1], field.name_in(&Places::csv));
-  EXPECT_EQ(values[static_cast<std::size_t>(column) - 1], text_of(field));
+  EXPECT_EQ(values[static_cast<std::size_t>(column) - 1], value_text_of(field));
 }
 
 void expect_in_ring(const Field<CycleRecord>& field, const CycleRecord& record) {

@@ -68,11 +68,6 @@ std::string older_ring(std::int64_t capacity, std::int64_t records) {
   return file;
 }
 
-std::string read_file(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 void write_file(const std::string& path, const std::string& bytes) {
   std::ofstream(path, std::ios::binary | std::ios::trunc) << bytes;
 }
@@ -221,7 +216,7 @@ TEST_F(Ring, OneOfAnOlderProgramIsReadAndContinuedInANewFile) {
   EXPECT_FALSE(newest.is_tripped);
   ASSERT_TRUE(ring.append(full_record(4)));
   EXPECT_EQ(cycles(), (std::vector<std::int64_t>{4}));
-  EXPECT_EQ(read_file(path_ + ".old"), older_ring(5, 3));
+  EXPECT_EQ(text_of_file(path_ + ".old"), older_ring(5, 3));
 }
 
 TEST_F(Ring, AnEmptyRingHasNoNewest) {
@@ -234,7 +229,7 @@ TEST_F(Ring, AnEmptyRingHasNoNewest) {
 
 TEST_F(Ring, EveryTornByteOfTheNewestRecordCostsThatRecordOnly) {
   append(5, 1, 7);  // wrapped: 3 to 7, the newest in slot 2
-  const std::string whole = read_file(path_);
+  const std::string whole = text_of_file(path_);
   const std::size_t begin = kHeaderBytes + 2 * kRecordBytes;
   for (std::size_t i = 0; i < kRecordBytes; ++i) {
     std::string torn = whole;
@@ -249,9 +244,9 @@ TEST_F(Ring, EveryTornByteOfTheNewestRecordCostsThatRecordOnly) {
 /// Half of the new record, half of the old one, at every length: what a cut in the middle leaves.
 TEST_F(Ring, ARecordTornInTheMiddleIsSkipped) {
   append(3, 1, 3);
-  const std::string before = read_file(path_);
+  const std::string before = text_of_file(path_);
   append(3, 4, 1);  // number 4 overwrites number 1 in slot 1
-  const std::string after = read_file(path_);
+  const std::string after = text_of_file(path_);
   const std::size_t begin = kHeaderBytes + kRecordBytes;
   for (std::size_t length = 1; length < kRecordBytes; ++length) {
     std::string torn = before;
@@ -264,7 +259,7 @@ TEST_F(Ring, ARecordTornInTheMiddleIsSkipped) {
 
 TEST_F(Ring, AFileCutAtEveryByteOfItsLastRecordStillOpens) {
   append(3, 1, 2);  // slots 1 and 2: the newest is last in the file
-  const std::string whole = read_file(path_);
+  const std::string whole = text_of_file(path_);
   for (std::size_t missing = 1; missing <= kRecordBytes; ++missing) {
     write_file(path_, whole.substr(0, whole.size() - missing));
     ASSERT_EQ(cycles(), (std::vector<std::int64_t>{1})) << missing << " bytes missing";
@@ -284,7 +279,7 @@ TEST_F(Ring, AnotherCapacityOrABrokenHeaderSetsTheFileAsideAndTakesOver) {
   EXPECT_EQ(larger.newest_number(), 5U);
   EXPECT_TRUE(std::filesystem::exists(path_ + ".old"));
 
-  std::string broken = read_file(path_);
+  std::string broken = text_of_file(path_);
   broken[20] = 'x';  // capacity
   write_file(path_, broken);
   RingLog reader;

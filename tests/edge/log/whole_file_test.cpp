@@ -6,7 +6,6 @@
 
 #include <cerrno>
 #include <filesystem>
-#include <fstream>
 
 #include "edge/log/ring_log.h"
 #include "tests/support/temporary_folder.h"
@@ -16,23 +15,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string text_of(const std::string& path) {
-  std::ifstream file(path);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 TEST(WholeFile, APlantedLinkIsNotFollowed) {
   const TemporaryFolder folder;
   const std::string victim = folder.write("victim", "precious");
   const std::string path = folder.file("status.json");
   fs::create_symlink(victim, path + ".new");
   EXPECT_TRUE(replace_file(path.c_str(), "now"));
-  EXPECT_EQ(text_of(victim), "precious");
-  EXPECT_EQ(text_of(path), "now");
+  EXPECT_EQ(text_of_file(victim), "precious");
+  EXPECT_EQ(text_of_file(path), "now");
   EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(path)));
   fs::create_symlink(victim, path + ".new");
   EXPECT_TRUE(replace_file_durably(path.c_str(), "later"));
-  EXPECT_EQ(text_of(victim), "precious");
+  EXPECT_EQ(text_of_file(victim), "precious");
 }
 
 TEST(WholeFile, APlantedLinkDoesNotLeadTheNewLogAway) {
@@ -43,7 +37,7 @@ TEST(WholeFile, APlantedLinkDoesNotLeadTheNewLogAway) {
   RingLog ring;
   FileMessage error;
   ASSERT_TRUE(ring.open(path.c_str(), 5, error)) << error.c_str();
-  EXPECT_EQ(text_of(victim), "precious");
+  EXPECT_EQ(text_of_file(victim), "precious");
 }
 
 TEST(WholeFile, WhatAKilledProgramLeftBesideIsReplaced) {
@@ -51,7 +45,7 @@ TEST(WholeFile, WhatAKilledProgramLeftBesideIsReplaced) {
   const std::string path = folder.file("status.json");
   static_cast<void>(folder.write("status.json.new", "half of a longer te"));
   EXPECT_TRUE(replace_file(path.c_str(), "now"));
-  EXPECT_EQ(text_of(path), "now");
+  EXPECT_EQ(text_of_file(path), "now");
   EXPECT_FALSE(fs::exists(path + ".new"));
 }
 

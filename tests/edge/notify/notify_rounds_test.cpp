@@ -9,9 +9,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <filesystem>
-#include <fstream>
 #include <mutex>
-#include <sstream>
 #include <thread>
 
 #include "edge/log/ring_log.h"
@@ -30,12 +28,6 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 constexpr std::int64_t kNow = 1'679'875'320;  // 2023-03-27T00:02:00Z, 02:02 in Brussels
-
-std::string text_of(const std::string& path) {
-  std::ostringstream text;
-  text << std::ifstream(path).rdbuf();
-  return text.str();
-}
 
 std::size_t count_of(const std::string& text, const std::string& piece) {
   std::size_t count = 0;
@@ -75,7 +67,7 @@ class Rounds : public ::testing::Test {
                            R"(", "mode": "safe", "reason": "no_price"},)" +
                            R"( "totals": {"cycles": 9}})"));
   }
-  [[nodiscard]] std::string mails() const { return text_of(folder_.file("mails")); }
+  [[nodiscard]] std::string mails() const { return text_of_file(folder_.file("mails")); }
 
   const TemporaryFolder folder_;
   NotifySettings settings_;

@@ -13,10 +13,10 @@ std::int64_t utc(std::string_view text) {
   return utc_s;
 }
 
-const std::int64_t kNow = utc("2025-08-17T00:38:00Z");
+const std::int64_t kAsked = utc("2025-08-17T00:38:00Z");
 
 Status parse(std::string_view json, PriceRow& row) {
-  return parse_newest_price(json, PriceFields{}, kNow, row);
+  return parse_newest_price(json, PriceFields{}, kAsked, row);
 }
 
 TEST(PriceJson, TakesTheNewestOfTheApiAnswerInAnyOrder) {
@@ -94,7 +94,7 @@ TEST(PriceJson, FieldNamesAreConfigurable) {
   fields.price = "p";
   PriceRow row;
   EXPECT_EQ(
-      parse_newest_price(R"({"rows":[{"t":"2025-08-17T00:36:00Z","p":2}]})", fields, kNow, row),
+      parse_newest_price(R"({"rows":[{"t":"2025-08-17T00:36:00Z","p":2}]})", fields, kAsked, row),
       Status::kOk);
   EXPECT_EQ(row.price_centi_eur_per_mwh, 200);
 }
@@ -104,11 +104,11 @@ TEST(PriceJson, ADotLeadsIntoInnerObjects) {
   PriceRow row;
   EXPECT_EQ(parse_newest_price(
                 R"({"data":{"rows":[{"at":{"utc":"2025-08-17T00:36:00Z"},"price":{"value":3}}]}})",
-                fields, kNow, row),
+                fields, kAsked, row),
             Status::kOk);
   EXPECT_EQ(row.price_centi_eur_per_mwh, 300);
-  EXPECT_EQ(parse_newest_price(R"({"data":[]})", fields, kNow, row), Status::kMalformed);
-  EXPECT_EQ(parse_newest_price(R"([{"at":"x","price":3}])", fields, kNow, row), Status::kNoRow);
+  EXPECT_EQ(parse_newest_price(R"({"data":[]})", fields, kAsked, row), Status::kMalformed);
+  EXPECT_EQ(parse_newest_price(R"([{"at":"x","price":3}])", fields, kAsked, row), Status::kNoRow);
 }
 
 TEST(PriceJson, TimesMayBeSecondsOrMilliseconds) {

@@ -175,7 +175,7 @@ TEST(EdgeConfig, TheBatterysLockIsNamedByItsPlace) {
   EXPECT_EQ(battery_lock_path(config, "/locks"), direct.view());
 }
 
-struct Mistake {
+struct ConfigMistake {
   std::string before, after;
   int line;
   std::string message;
@@ -183,7 +183,7 @@ struct Mistake {
 
 TEST(EdgeConfig, EveryMistakeIsOneClearLineWithItsPlace) {
   const TemporaryFolder folder;
-  const Mistake mistakes[] = {
+  const ConfigMistake mistakes[] = {
       {"control = true", "controll = true", 1, "controll is not a known key"},
       {"control = true", "control = 1", 1, "control must be true or false"},
       {"power_w = 4000", "power = 4000", 4, "power is not a known key"},
@@ -230,7 +230,7 @@ TEST(EdgeConfig, EveryMistakeIsOneClearLineWithItsPlace) {
       {"[guard]", "[gard]", 7, "gard is not a known key"},
       {"[guard]", "[guard", 7, "not valid TOML"},
   };
-  for (const Mistake& mistake : mistakes) {
+  for (const ConfigMistake& mistake : mistakes) {
     std::string text = valid_text();
     const std::size_t at = text.find(mistake.before);
     ASSERT_NE(at, std::string::npos) << mistake.before;

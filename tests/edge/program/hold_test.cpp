@@ -16,21 +16,21 @@ namespace {
 
 constexpr Hold kHold{.power_w = -2'000, .until_utc_s = 1'679'875'320};
 
-std::string text_of(const Hold& hold) { return std::string(format_hold(hold).view()); }
+std::string line_of(const Hold& hold) { return std::string(format_hold(hold).view()); }
 
 TEST(HoldFile, IsOneLineThatReadsBack) {
-  EXPECT_EQ(text_of(kHold), "bess-hold 1 power_w=-000002000 until=2023-03-27T00:02:00Z crc32=" +
-                                text_of(kHold).substr(64, 8) + "\n");
+  EXPECT_EQ(line_of(kHold), "bess-hold 1 power_w=-000002000 until=2023-03-27T00:02:00Z crc32=" +
+                                line_of(kHold).substr(64, 8) + "\n");
   for (const Hold& hold :
        {kHold, Hold{.power_w = 0, .until_utc_s = 1}, Hold{.power_w = 100'000'000, .until_utc_s = 2},
         Hold{.power_w = -100'000'000, .until_utc_s = UINT32_MAX - 1}}) {
-    EXPECT_EQ(text_of(hold).size(), kHoldFileBytes);
-    EXPECT_EQ(parse_hold(text_of(hold)), hold);
+    EXPECT_EQ(line_of(hold).size(), kHoldFileBytes);
+    EXPECT_EQ(parse_hold(line_of(hold)), hold);
   }
 }
 
 TEST(HoldFile, AnythingElseIsUnreadable) {
-  const std::string good = text_of(kHold);
+  const std::string good = line_of(kHold);
   for (std::size_t i = 0; i < good.size(); ++i) {
     for (const char c : {'\0', '0', '1', '-', 'x', '\n'}) {
       std::string bad = good;
@@ -46,7 +46,7 @@ TEST(HoldFile, AnythingElseIsUnreadable) {
 TEST(HoldFile, NoFileIsNoHoldAndWhatBlocksOrLeadsAwayIsUnreadable) {
   const TemporaryFolder folder;
   EXPECT_EQ(read_hold(folder.file("hold").c_str()), Hold{});
-  EXPECT_EQ(read_hold(folder.write("good", text_of(kHold)).c_str()), kHold);
+  EXPECT_EQ(read_hold(folder.write("good", line_of(kHold)).c_str()), kHold);
   ASSERT_EQ(mkfifo(folder.file("pipe").c_str(), 0600), 0);
   EXPECT_TRUE(read_hold(folder.file("pipe").c_str()).unreadable);
   std::filesystem::create_symlink("good", folder.file("link"));
@@ -67,12 +67,12 @@ bool is_published(const HoldWatch& watch, const Hold& hold) {
 
 TEST(HoldWatch, KnowsTheFileAtOnceAndFollowsIt) {
   const TemporaryFolder folder;
-  const std::string path = folder.write("hold", text_of(kHold));
+  const std::string path = folder.write("hold", line_of(kHold));
   const auto watch = std::make_unique<HoldWatch>();
   watch->start(path.c_str(), 900);
   EXPECT_EQ(watch->mailbox().latest(), kHold);  // before the thread has looked
   const Hold other{.power_w = 3, .until_utc_s = 4};
-  ASSERT_TRUE(replace_file(path.c_str(), text_of(other)));
+  ASSERT_TRUE(replace_file(path.c_str(), line_of(other)));
   EXPECT_TRUE(is_published(*watch, other));
   ASSERT_TRUE(replace_file(path.c_str(), "nonsense"));
   EXPECT_TRUE(is_published(*watch, {.unreadable = true}));

@@ -8,14 +8,14 @@ namespace {
 
 constexpr PriceLevel kLevel{.centi_q16 = -8'420 * 65'536LL, .row_minute_utc_s = 60};
 
-struct Case {
+struct NoteCase {
   const char* name;
   LevelNews news;
   const char* text;
 };
 
 TEST(LevelNote, SaysHowTheLevelWasComeBy) {
-  const Case cases[] = {
+  const NoteCase cases[] = {
       {"log",
        {.start = {kLevel, LevelSource::kLog}, .hours_wanted = 72},
        "price level: -84.20 EUR/MWh, from the decision log"},
@@ -45,7 +45,7 @@ TEST(LevelNote, SaysHowTheLevelWasComeBy) {
        "price level: the log's is out of range; -84.20 EUR/MWh, from level_start_eur_per_mwh; no "
        "history: history_hours = 0"},
   };
-  for (const Case& c : cases) {
+  for (const NoteCase& c : cases) {
     SCOPED_TRACE(c.name);
     EXPECT_EQ(level_note(c.news), c.text);
     const bool is_warning = journal_level_of(c.news) == JournalLevel::kWarning;

@@ -14,26 +14,26 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr const char* kMap = "map = \"" BESS_SOURCE_DIR "/edge/maps/alphaess.toml\"\n";
+constexpr const char* kMapLine = "map = \"" BESS_SOURCE_DIR "/edge/maps/alphaess.toml\"\n";
 
 struct Pieces {
   std::string battery = "", guard = "", rest = "";
 };
 
-std::string text_of(const Pieces& pieces) {
-  return std::string("[battery]\n") + kMap + pieces.battery +
+std::string toml_of(const Pieces& pieces) {
+  return std::string("[battery]\n") + kMapLine + pieces.battery +
          "[price]\nurl = \"http://127.0.0.1:1/records\"\n[guard]\n" + pieces.guard + pieces.rest;
 }
 
-bool load(const Pieces& pieces, EdgeConfig& config, std::string& error) {
+bool load_pieces(const Pieces& pieces, EdgeConfig& config, std::string& error) {
   const TemporaryFolder folder;
-  return load_edge_config(folder.write("edge.toml", text_of(pieces)), config, error);
+  return load_edge_config(folder.write("edge.toml", toml_of(pieces)), config, error);
 }
 
 TEST(PeopleConfig, WithoutKeysNothingIsWanted) {
   EdgeConfig config;
   std::string error;
-  ASSERT_TRUE(load({}, config, error)) << error;
+  ASSERT_TRUE(load_pieces({}, config, error)) << error;
   EXPECT_TRUE(config.control.reserve.empty());
   EXPECT_EQ(config.control.full_charge_every_days, 0);
   EXPECT_EQ(config.control.start_offset_ms, 0);
@@ -42,12 +42,12 @@ TEST(PeopleConfig, WithoutKeysNothingIsWanted) {
 TEST(PeopleConfig, ReadsWhatPeopleWant) {
   EdgeConfig config;
   std::string error;
-  ASSERT_TRUE(load({.battery = "full_charge_every_days = 14\nfull_charge_power = 0.25\n",
-                    .guard = "start_spread_s = 20\n",
-                    .rest = "[[reserve]]\nfrom = \"17:00\"\nto = \"24:00\"\nsoc = 0.3\n"
-                            "[[reserve]]\nfrom = \"22:30\"\nto = \"06:00\"\nsoc = 0.155\n"
-                            "months = [1, 12]\n"},
-                   config, error))
+  ASSERT_TRUE(load_pieces({.battery = "full_charge_every_days = 14\nfull_charge_power = 0.25\n",
+                           .guard = "start_spread_s = 20\n",
+                           .rest = "[[reserve]]\nfrom = \"17:00\"\nto = \"24:00\"\nsoc = 0.3\n"
+                                   "[[reserve]]\nfrom = \"22:30\"\nto = \"06:00\"\nsoc = 0.155\n"
+                                   "months = [1, 12]\n"},
+                          config, error))
       << error;
   EXPECT_EQ(config.control.full_charge_every_days, 14);
   EXPECT_EQ(config.control.guard.full_charge_power_w, 1'000);
@@ -68,7 +68,7 @@ TEST(PeopleConfig, ReadsWhatPeopleWant) {
 TEST(PeopleConfig, TheNotifiersSectionIsNotTheControllersBusiness) {
   EdgeConfig config;
   std::string error;
-  EXPECT_TRUE(load({.rest = "[notify]\nno_such_key = 1\n"}, config, error)) << error;
+  EXPECT_TRUE(load_pieces({.rest = "[notify]\nno_such_key = 1\n"}, config, error)) << error;
 }
 
 TEST(PeopleConfig, EveryMistakeIsOneClearLine) {
@@ -107,7 +107,7 @@ TEST(PeopleConfig, EveryMistakeIsOneClearLine) {
   for (const auto& [pieces, message] : mistakes) {
     EdgeConfig config;
     std::string error;
-    EXPECT_FALSE(load(pieces, config, error)) << message;
+    EXPECT_FALSE(load_pieces(pieces, config, error)) << message;
     EXPECT_THAT(error, HasSubstr(message));
     EXPECT_EQ(error.find('\n'), std::string::npos) << error;
   }

@@ -6,7 +6,7 @@
 namespace bess {
 namespace {
 
-struct Case {
+struct ThresholdCase {
   const char* name;
   PriceThresholds guard, proved;
   bool agree;
@@ -14,7 +14,7 @@ struct Case {
 };
 
 TEST(ThresholdNote, NamesBothAndWhoAnswersBetweenThem) {
-  const Case cases[] = {
+  const ThresholdCase cases[] = {
       {"equal",
        {-120, 640},
        {-120, 640},
@@ -64,7 +64,7 @@ TEST(ThresholdNote, NamesBothAndWhoAnswersBetweenThem) {
        "guard "
        "alone makes it charge"},
   };
-  for (const Case& c : cases) {
+  for (const ThresholdCase& c : cases) {
     SCOPED_TRACE(c.name);
     const ThresholdNote note = compare_thresholds(c.guard, c.proved);
     EXPECT_EQ(note.agree, c.agree);

@@ -290,7 +290,7 @@ TEST_F(MapFormat, MistakesNameTheFileInWhichTheyAre) {
   EXPECT_THAT(error_of("include = \"loop.toml\"\n"), HasSubstr("one level only"));
 }
 
-struct Mistake {
+struct MapMistake {
   std::string before, after, message;
 };
 
@@ -320,7 +320,7 @@ TEST_F(MapFormat, ATimeThatDoesNotFitIsTheWatchdogsMistake) {
 
 TEST_F(MapFormat, EveryMistakeHasItsMend) {
   const std::string good = std::string(kHead) + "type = \"s32\"\nmin = -1000\nmax = 1000\n";
-  const Mistake mistakes[] = {
+  const MapMistake mistakes[] = {
       {"kind = \"none\"", "kind = \"none\"\nduration = 3", "duration is not a known key"},
       {"kind = \"none\"", "kind = \"rewrite\"\nduration_s = 60\nrefresh_s = 31", "at most half"},
       {"kind = \"none\"", "kind = \"duration\"\nduration_s = 60\nrefresh_s = 30", "is not fed"},
@@ -361,7 +361,7 @@ TEST_F(MapFormat, EveryMistakeHasItsMend) {
       {"[command]", "[[identity]]\npoint = \"soc\"\nhint = \"x\"\ntext = \"y\"\n[command]",
        "min is missing"},
   };
-  for (const Mistake& mistake : mistakes) {
+  for (const MapMistake& mistake : mistakes) {
     std::string text = good;
     const std::size_t at = text.find(mistake.before);
     ASSERT_NE(at, std::string::npos) << mistake.before;

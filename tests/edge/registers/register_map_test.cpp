@@ -19,7 +19,7 @@ using ::testing::StartsWith;
 
 const std::string kMapPath = std::string(BESS_SOURCE_DIR) + "/edge/maps/alphaess.toml";
 
-RegisterMap load(std::string_view variant) {
+RegisterMap load_variant(std::string_view variant) {
   RegisterMap map;
   std::string error;
   EXPECT_TRUE(load_register_map(kMapPath, variant, map, error)) << error;
@@ -38,7 +38,7 @@ PowerOrder order_of(std::int32_t power_w) {
 }
 
 TEST(AlphaEss, BlockVariantIsOneWriteOfElevenRegisters) {
-  const RegisterMap map = load("block");
+  const RegisterMap map = load_variant("block");
   ASSERT_EQ(map.sequence(Command::kCharge).writes.size(), 1);
   EXPECT_EQ(map.sequence(Command::kCharge).writes[0].address, 0x0880);
   EXPECT_EQ(map.sequence(Command::kCharge).writes[0].function, 16);
@@ -53,7 +53,7 @@ TEST(AlphaEss, BlockVariantIsOneWriteOfElevenRegisters) {
 }
 
 TEST(AlphaEss, FiveWritesVariantStartsFirstAndSetsTheModeLast) {
-  const RegisterMap map = load("five_writes");
+  const RegisterMap map = load_variant("five_writes");
   const CommandSequence& charge = map.sequence(Command::kCharge);
   ASSERT_EQ(charge.writes.size(), 5);
   const int addresses[] = {0x0880, 0x0881, 0x0887, 0x0886, 0x0885};
@@ -69,7 +69,7 @@ TEST(AlphaEss, FiveWritesVariantStartsFirstAndSetsTheModeLast) {
 }
 
 TEST(AlphaEss, TenAndOneVariantStartsLast) {
-  const RegisterMap map = load("ten_and_one");
+  const RegisterMap map = load_variant("ten_and_one");
   const CommandSequence& charge = map.sequence(Command::kCharge);
   ASSERT_EQ(charge.writes.size(), 2);
   EXPECT_EQ(charge.writes[0].address, 0x0881);
@@ -80,7 +80,7 @@ TEST(AlphaEss, TenAndOneVariantStartsLast) {
 }
 
 TEST(AlphaEss, SocLimitIsRoundedInwards) {
-  const RegisterMap map = load("block");
+  const RegisterMap map = load_variant("block");
   PowerOrder order = order_of(4'000);
   order.soc_max_e4 = 9'550;  // 238.75 counts: a ceiling goes down
   EXPECT_EQ(registers_of(map, Command::kCharge, 0, order)[6], 238);
@@ -90,7 +90,7 @@ TEST(AlphaEss, SocLimitIsRoundedInwards) {
 }
 
 TEST(AlphaEss, PowerBeyondTheRangeIsRefusedAndNeverWraps) {
-  const RegisterMap map = load("block");
+  const RegisterMap map = load_variant("block");
   EXPECT_EQ(check_expressible(map, order_of(32'000)), Status::kOk);
   EXPECT_EQ(check_expressible(map, order_of(32'001)), Status::kNotExpressible);
   EXPECT_EQ(check_expressible(map, order_of(-32'001)), Status::kNotExpressible);
@@ -100,7 +100,7 @@ TEST(AlphaEss, PowerBeyondTheRangeIsRefusedAndNeverWraps) {
 }
 
 TEST(AlphaEss, MeasurementsDecodeToOurSignsAndUnits) {
-  const RegisterMap map = load("block");
+  const RegisterMap map = load_variant("block");
   const auto value_of = [&](std::string_view name, std::vector<std::uint16_t> raw) {
     std::int64_t value = -1;
     EXPECT_TRUE(decode(map.points[find_point(map, name)], raw.data(), value)) << name;
