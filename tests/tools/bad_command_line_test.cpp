@@ -103,16 +103,16 @@ constexpr BadCommandLine kCases[] = {
 
 TEST(BadSimCommandLine, EachIsRefusedInOneLineBeforeAnythingListens) {
   const TemporaryFolder folder;
-  folder.write("GOOD",
-               "minute_utc,indicative_eur_mwh,settled_eur_mwh\n2023-01-01T00:00:00Z,1.0,2.0\n"
-               "2023-01-01T00:01:00Z,1.5,2.0\n");
-  folder.write("EMPTY", "");
-  folder.write("GARBAGE", "\x7f ELF, or something \x01\x02 like that\n");
   std::filesystem::create_directory(folder.file("FOLDER"));
-  std::map<std::string, std::string> files{{"MAPS", BESS_SOURCE_DIR "/edge/maps"}};
-  for (const char* name : {"GOOD", "NONE", "FOLDER", "EMPTY", "GARBAGE"}) {
-    files[name] = folder.file(name);
-  }
+  const std::map<std::string, std::string> files{
+      {"MAPS", BESS_SOURCE_DIR "/edge/maps"},
+      {"GOOD", folder.write("GOOD",
+                            "minute_utc,indicative_eur_mwh,settled_eur_mwh\n"
+                            "2023-01-01T00:00:00Z,1.0,2.0\n2023-01-01T00:01:00Z,1.5,2.0\n")},
+      {"EMPTY", folder.write("EMPTY", "")},
+      {"GARBAGE", folder.write("GARBAGE", "\x7f ELF, or something \x01\x02 like that\n")},
+      {"FOLDER", folder.file("FOLDER")},
+      {"NONE", folder.file("NONE")}};
   EXPECT_GE(std::size(kCases), 80u);
   for (const BadCommandLine& line : kCases) expect_refused(BESS_SIM_PROGRAM, line, files);
 }

@@ -219,10 +219,10 @@ class BadTrainCommandLine : public testing::Test {
   BadTrainCommandLine() {
     write_minute_file(folder_.file("GOOD"), small_series(31), "");
     save_student(folder_.file("STUDENT"), compiled_student());
-    folder_.write("EMPTY", "");
-    folder_.write("GARBAGE", "\x7f ELF, or something \x01\x02 like that\n");
+    files_["EMPTY"] = folder_.write("EMPTY", "");
+    files_["GARBAGE"] = folder_.write("GARBAGE", "\x7f ELF, or something \x01\x02 like that\n");
     std::filesystem::create_directory(folder_.file("FOLDER"));
-    for (const char* name : {"GOOD", "STUDENT", "NONE", "FOLDER", "EMPTY", "GARBAGE", "OUT"}) {
+    for (const char* name : {"GOOD", "STUDENT", "NONE", "FOLDER", "OUT"}) {
       files_[name] = folder_.file(name);
     }
   }
@@ -240,9 +240,8 @@ TEST_F(BadTrainCommandLine, EachIsRefusedInOneLineAndNothingIsWritten) {
 }
 
 TEST_F(BadTrainCommandLine, SoIsEveryMistakeInAConfiguration) {
-  files_["CONFIG"] = folder_.file("bad.toml");
   for (const ConfigMistake& mistake : kConfigMistakes) {
-    folder_.write("bad.toml", mistake.text);
+    files_["CONFIG"] = folder_.write("bad.toml", mistake.text);
     SCOPED_TRACE(mistake.text);
     expect_refused(BESS_TRAIN_PROGRAM, {"config --config CONFIG", 1, mistake.complaint}, files_);
   }
