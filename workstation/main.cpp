@@ -1,16 +1,17 @@
 // bess-train: from prices to a proved, exported student. Each subcommand lives in cli/; this file
 // only wires them together.
-//   exit 0 done   1 the input or its content is bad   2 the command line is bad   3 interrupted
+//   exit 0 done   1 the input or its content is bad   2 the command line is bad   3 interrupted   130 by a second Ctrl-C
+#include "shared/host/build_info.h"
 #include "shared/host/command_line.h"
 #include "shared/local_time.h"
 #include "workstation/cli/commands.h"
-#include "workstation/cli/common_options.h"
+#include "workstation/cli/interruption.h"
 
 int main(int argc, char** argv) {
   bess::set_market_time_zone();
   bess::CommandLine command_line(
       "bess-train", "bess-train: train, correct, prove and export a battery arbitrage policy",
-      BESS_VERSION);
+      "bess-train " BESS_VERSION "\n" + bess::build_line());
   bess::ProgramCommand root = command_line.root();
   bess::add_commands(root);
   bess::end_when_interrupted();

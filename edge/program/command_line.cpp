@@ -10,6 +10,7 @@
 #include "edge/control/policy.h"
 #include "edge/program/command_help.h"
 #include "edge/program/duration_text.h"
+#include "shared/host/build_info.h"
 #include "shared/utc_text.h"
 
 namespace bess {
@@ -221,8 +222,8 @@ bool print_general(std::string_view argument, SubCommand command) {
     return true;
   }
   if (argument != "--version") return false;
-  std::printf("bess-edge %s, student %08x: %s\n", BESS_VERSION, student_hash(),
-              student_provenance());
+  std::printf("bess-edge %s, student %08x: %s\n%s\n", BESS_VERSION, student_hash(),
+              student_provenance(), build_line().c_str());
   return true;
 }
 

@@ -201,6 +201,30 @@ void check_reserve(TomlTable& root, const RegisterMap& map) {
   }
 }
 
+/// The time that goes out with every order: a power that the registers hold is not to be blamed for it.
+void prove_watchdog_duration(TomlTable& root, const RegisterMap& map) {
+  const std::string told = "duration_s = " + std::to_string(map.watchdog.duration_s) + " is ";
+  const LivePoints assumed = assumed_live_points(map, false);
+  for (const CommandSequence& sequence : map.command) {
+    for (const BlockWrite& write : sequence.writes) {
+      for (const WriteValue& value : write.values) {
+        const bool in_minutes = value.argument == Argument::kDurationMinutes;
+        if (!in_minutes && value.argument != Argument::kDuration) continue;
+        const RegisterPoint& p = map.points[value.point];
+        const std::int64_t time =
+            in_minutes ? (map.watchdog.duration_s + 59) / 60 : map.watchdog.duration_s;
+        Scaling scaling;
+        RegisterBlock block;
+        if (!live_scaling(map, assumed, value.point, scaling)) continue;
+        if (encode(p, time, Rounding::kNearest, block, scaling) == Status::kOk) continue;
+        root.fail("watchdog", told + std::to_string(time) + (in_minutes ? " min" : " s") +
+                                  ", which the point " + quoted(p.name.view()) +
+                                  " cannot express (min, max, type)");
+      }
+    }
+  }
+}
+
 /// Nothing may wrap later: both ends of the stated power range are encoded once here.
 void prove_power_range(TomlTable& root, const RegisterMap& map) {
   for (const std::int32_t power_w : {map.charge_w_max, -map.discharge_w_max, 0}) {
@@ -226,7 +250,7 @@ void check_map(TomlTable& root, RegisterMap& map) {
   complete_measure(map);
   if (map.is_meter) return check_meter(root, map);
   for (const auto check : {check_roles, check_optional, check_watchdog, check_saved, check_models,
-                           check_reserve, prove_power_range}) {
+                           check_reserve, prove_watchdog_duration, prove_power_range}) {
     if (root.ok()) check(root, map);
   }
 }

@@ -1,4 +1,5 @@
 // The small phrases inside a map: "point = value", "point has bit".
+#include <bit>
 #include <charconv>
 
 #include "edge/registers/map_reader.h"
@@ -51,6 +52,40 @@ bool parse_value(const RegisterMap& map, int point, std::string_view text, std::
   return parse_number(text, value);
 }
 
+namespace {
+
+/// Bits that can be set in what the point reads as: beyond its mask, registers and range nothing is read.
+std::uint64_t readable_bits(const RegisterPoint& point) {
+  const int width = 16 * point.register_count();
+  const std::uint64_t all = point.mask != 0 ? point.mask >> std::countr_zero(point.mask)
+                            : width >= 64   ? ~0ULL
+                                            : (1ULL << width) - 1;
+  if (point.value_min < 0) return all;  // of a negative number the high ones are
+  return all & (std::bit_ceil(static_cast<std::uint64_t>(point.value_max) + 1) - 1);
+}
+
+/// A condition that no reading can fulfil would look as if nothing were ever wrong.
+bool can_hold(TomlTable& table, const TomlValue& at, const RegisterMap& map,
+              const Condition& condition, std::string_view text) {
+  const RegisterPoint& point = map.points[condition.point];
+  const std::string name = quoted(point.name.view());
+  const std::string range =
+      std::to_string(point.value_min) + " to " + std::to_string(point.value_max);
+  if (condition.test == Condition::Test::kHasBits) {
+    const auto bits = static_cast<std::uint64_t>(condition.value);
+    if (bits != 0 && (bits & ~readable_bits(point)) == 0) return true;
+    table.fail_at(at, quoted(text) + " can never hold: " + name + ", " + range +
+                          (bits == 0 ? ", is asked for no bit" : ", has no such bit"));
+    return false;
+  }
+  const bool is_read = condition.value >= point.value_min && condition.value <= point.value_max;
+  if (condition.test != Condition::Test::kEqual || is_read) return true;
+  table.fail_at(at, quoted(text) + " can never hold: " + name + " reads as " + range);
+  return false;
+}
+
+}  // namespace
+
 bool parse_condition(TomlTable& table, const TomlValue& at, std::string_view text,
                      const RegisterMap& map, Condition& condition) {
   const MapPhrase phrase = split_phrase(text);
@@ -60,7 +95,9 @@ bool parse_condition(TomlTable& table, const TomlValue& at, std::string_view tex
                    : phrase.op == "has" ? Condition::Test::kHasBits
                                         : Condition::Test::kNotEqual;
   if (phrase.op.empty()) return true;  // "point" alone: not 0
-  if (parse_value(map, condition.point, phrase.right, condition.value)) return true;
+  if (parse_value(map, condition.point, phrase.right, condition.value)) {
+    return can_hold(table, at, map, condition, text);
+  }
   table.fail_at(at,
                 quoted(phrase.right) + " is neither a number nor a name of " + quoted(phrase.left));
   return false;

@@ -4,12 +4,17 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <exception>
 #include <optional>
 #include <system_error>
+#include <type_traits>
+
+#include "shared/host/nearest_word.h"
+#include "shared/host/text.h"
 
 namespace bess {
 namespace {
@@ -19,19 +24,74 @@ void complain_of_output(const char* program, int error) {
                std::strerror(error));
 }
 
-/// The first word that names no subcommand where one is due, or an empty text. CLI11 would only say
-/// that a subcommand is missing.
-std::string unknown_subcommand(const CLI::App& app, int argc, const char* const* argv) {
-  const CLI::App* command = &app;
+std::vector<std::string> subcommand_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* sub : app.get_subcommands([](const CLI::App*) { return true; })) {
+    names.push_back(sub->get_name());
+  }
+  return names;
+}
+
+std::vector<std::string> option_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+/// The words that lead to a command: "bess-train prices fetch".
+std::string words_of(const CLI::App& command) {
+  const CLI::App* parent = command.get_parent();
+  return (parent == nullptr ? "" : words_of(*parent) + " ") + command.get_name();
+}
+
+/// The command that was asked for: root, or as deep as subcommands were given.
+const CLI::App& asked_command(const CLI::App& root) {
+  const CLI::App* command = &root;
+  while (!command->get_subcommands().empty()) command = command->get_subcommands().front();
+  return *command;
+}
+
+struct UnknownSubcommand {
+  const CLI::App* command;  ///< whose subcommand it should be
+  std::string word;
+};
+
+/// The first word that names no subcommand where one is due. CLI11 would only say that a subcommand is
+/// missing.
+std::optional<UnknownSubcommand> unknown_subcommand(const CLI::App& root, int argc,
+                                                    const char* const* argv) {
+  const CLI::App* command = &root;
   for (int i = 1; i < argc; ++i) {
-    std::string word = argv[i];
+    const std::string word = argv[i];
     const auto subcommands = command->get_subcommands([](const CLI::App*) { return true; });
     if (subcommands.empty() || word.starts_with('-')) break;
     const auto found = std::ranges::find(subcommands, word, &CLI::App::get_name);
-    if (found == subcommands.end()) return word;
+    if (found == subcommands.end()) return UnknownSubcommand{command, word};
     command = *found;
   }
-  return "";
+  return std::nullopt;
+}
+
+/// What is wrong with the command line. A word that nobody takes comes first: it may be the slip of the
+/// finger for which CLI11 calls another option missing.
+std::string complaint_of(const CLI::ParseError& error, const CLI::App& root) {
+  const CLI::App& command = asked_command(root);
+  const std::vector<std::string> left = root.remaining(true);
+  const auto option = std::ranges::find_if(left, [](const auto& w) { return w.starts_with('-'); });
+  if (option != left.end()) {
+    return "unknown option " + *option + did_you_mean(*option, option_names(command));
+  }
+  if (!left.empty()) return "\"" + left.front() + "\" is one word too many";
+  return error.what();
+}
+
+/// Whoever gives a command nothing wants to know what it takes.
+bool is_bare(const CLI::App& command, int argc) {
+  int words = 0;
+  for (const CLI::App* app = &command; app != nullptr; app = app->get_parent()) ++words;
+  return argc == words;
 }
 
 /// A rule for numbers in words; what is no number at all is CLI11's to refuse. (Its own PositiveNumber
@@ -43,6 +103,13 @@ std::function<std::string(std::string&)> number_rule(std::function<bool(double)>
     const bool is_number = CLI::detail::lexical_cast(given, value);
     return is_number && !holds(value) ? given + " must be " + rule : std::string();
   };
+}
+
+/// Without the digits that std::to_string() would add.
+std::string short_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", value);
+  return text;
 }
 
 }  // namespace
@@ -60,7 +127,9 @@ ProgramOption& ProgramOption::range(int low, int high) {
   return *this;
 }
 ProgramOption& ProgramOption::range(double low, double high) {
-  option_->check(CLI::Range(low, high));
+  const std::string rule = short_text(low) + " to " + short_text(high);
+  option_->check(CLI::Validator(number_rule([=](double x) { return x >= low && x <= high; }, rule),
+                                "[" + rule + "]"));
   return *this;
 }
 ProgramOption& ProgramOption::positive() {
@@ -104,9 +173,42 @@ ProgramCommand ProgramCommand::subcommand(const std::string& name, const std::st
 }
 void ProgramCommand::requires_subcommand() { app_->require_subcommand(1); }
 
+namespace {
+
+/// An empty value is what "$UNSET" leaves behind; CLI11 takes it for 0, or for an option not given.
+std::string refuse_empty(const std::string& given) {
+  return given.empty() ? "needs a value, not an empty text" : "";
+}
+
+/// CLI11 takes what is too large for the largest number that there is.
+template <typename Number>
+std::string refuse_overflow(const std::string& given) {
+  Number number = 0;
+  const auto read = std::from_chars(given.data(), given.data() + given.size(), number);
+  return read.ec == std::errc::result_out_of_range ? one_line(given, 30) + " is too large a number"
+                                                   : "";
+}
+
+template <typename T>
+struct ValueOf {
+  using type = T;
+};
+template <typename T>
+struct ValueOf<std::optional<T>> {
+  using type = T;
+};
+
+}  // namespace
+
 template <typename T>
 ProgramOption ProgramCommand::option(const std::string& name, T& value, const std::string& help) {
-  return ProgramOption(app_->add_option(name, value, help));
+  CLI::Option* option = app_->add_option(name, value, help);
+  option->check(CLI::Validator(refuse_empty, ""));
+  using Value = typename ValueOf<T>::type;
+  if constexpr (std::is_integral_v<Value>) {
+    option->check(CLI::Validator(refuse_overflow<Value>, ""));
+  }
+  return ProgramOption(option);
 }
 #define BESS_OPTION_TYPE(...)                                                     \
   template ProgramOption ProgramCommand::option(const std::string&, __VA_ARGS__&, \
@@ -154,10 +256,15 @@ CommandLine::~CommandLine() = default;
 
 int CommandLine::run(int argc, const char* const* argv) {
   const char* const program = app_->get_name().c_str();
-  if (const std::string word = unknown_subcommand(*app_, argc, argv); !word.empty()) {
-    std::fprintf(stderr, "%s: unknown subcommand \"%s\" (see %s --help)\n", program, word.c_str(),
-                 program);
+  const auto refuse = [&](const CLI::App& command, const std::string& complaint) {
+    std::fprintf(stderr, "%s: %s (see %s --help)\n", program, one_line(complaint).c_str(),
+                 words_of(command).c_str());
     return 2;
+  };
+  if (const auto unknown = unknown_subcommand(*app_, argc, argv)) {
+    return refuse(*unknown->command,
+                  "unknown subcommand \"" + unknown->word + "\"" +
+                      did_you_mean(unknown->word, subcommand_names(*unknown->command)));
   }
   try {
     app_->parse(argc, argv);
@@ -167,8 +274,9 @@ int CommandLine::run(int argc, const char* const* argv) {
     }
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app_->exit(error);  // --help, --version
-    std::fprintf(stderr, "%s: %s (see %s --help)\n", program, error.what(), program);
-    return 2;
+    const CLI::App& command = asked_command(*app_);
+    if (is_bare(command, argc)) std::fprintf(stderr, "%s\n", app_->help().c_str());
+    return refuse(command, complaint_of(error, *app_));
   } catch (const Interrupted&) {
     std::fprintf(stderr, "%s: interrupted\n", program);
     return 3;

@@ -10,7 +10,9 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
+#include <optional>
 
+#include "shared/host/unfinished_files.h"
 #include "shared/host/user_error.h"
 
 namespace bess {
@@ -54,13 +56,6 @@ void remove_stale_parts(const fs::path& target) {
   }
 }
 
-/// A device or a pipe is written to, never replaced.
-bool is_special(const fs::path& path) {
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
-}
-
 /// What a symbolic link leads to: the link itself stays.
 fs::path resolved(const fs::path& path) {
   std::error_code error;
@@ -75,13 +70,15 @@ fs::path resolved(const fs::path& path) {
 class TemporaryFile {
  public:
   explicit TemporaryFile(const fs::path& name) : target_(resolved(name)) {
-    if (is_special(target_)) {
+    if (is_special_file(target_)) {
       fd_ = open(target_.c_str(), O_WRONLY | O_CLOEXEC);
     } else {
       remove_stale_parts(target_);
       beside_ = target_.string() + ".part." + std::to_string(getpid());
       unlink(beside_.c_str());  // whatever was put there, a link as well: never followed
+      unfinished_.emplace(beside_);
       fd_ = open(beside_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0644);
+      unfinished_->made();
     }
     if (fd_ < 0) fail("{}: cannot write here: {}", target_.string(), std::strerror(errno));
     struct stat before {};
@@ -121,10 +118,22 @@ class TemporaryFile {
 
   fs::path target_;
   std::string beside_;  ///< the temporary file; empty for a device, and once committed
+  std::optional<UnfinishedFile> unfinished_;
   int fd_ = -1;
 };
 
+/// What many programs take for their output would become a file of that name.
+void require_a_name(const fs::path& path) {
+  if (path.empty()) fail("the name of the file to write is empty; give one");
+  if (*path.begin() != "-") return;
+  fail(
+      "{}: means the standard output elsewhere; what is written here is renamed once complete, so "
+      "give a file's name (./- for one called -)",
+      path.string());
+}
+
 void create_parent(const fs::path& path) {
+  require_a_name(path);
   if (!path.has_parent_path()) return;
   std::error_code error;
   fs::create_directories(path.parent_path(), error);
@@ -132,6 +141,12 @@ void create_parent(const fs::path& path) {
 }
 
 }  // namespace
+
+bool is_special_file(const fs::path& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
+}
 
 std::string read_file(const fs::path& path) {
   if (fs::is_directory(path)) fail("{}: is a folder, not a file", path.string());
@@ -163,8 +178,8 @@ std::string read_file(const fs::path& path) {
 void require_writable(const fs::path& path) {
   create_parent(path);
   if (fs::is_directory(path)) fail("{}: is a folder, not a file", path.string());
-  if (is_special(path)) return;     // opening a pipe would wait for its reader
-  const TemporaryFile probe(path);  // made and removed again
+  if (is_special_file(path)) return;  // opening a pipe would wait for its reader
+  const TemporaryFile probe(path);    // made and removed again
 }
 
 void write_file(const fs::path& path, std::string_view contents) {

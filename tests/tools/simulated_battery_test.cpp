@@ -137,5 +137,35 @@ TEST_P(RegisterImageTest, ObeysEveryCommandInThisVariant) {
 INSTANTIATE_TEST_SUITE_P(Variants, RegisterImageTest,
                          ::testing::Values("block", "five_writes", "ten_and_one"));
 
+TEST(RegisterImage, ShowsWhatEveryIdentityCheckAsksFor) {
+  for (const MapVariant& shipped : kShippedMapVariants) {
+    RegisterMap map = load_shipped_map(shipped);
+    SCOPED_TRACE(map.name.view());
+    SimulatedBattery battery(kHouse, 0.5, kStartNs);
+    std::vector<std::uint16_t> holding(RegisterImage::kRegisterCount);
+    std::vector<std::uint16_t> input(RegisterImage::kRegisterCount);
+    // The scale factors stay: without them nothing can be told.
+    decltype(map.simulator.initial) factors;
+    for (const auto& assignment : map.simulator.initial) {
+      if (map.points[assignment.point].name.view().ends_with("_sf")) factors.push_back(assignment);
+    }
+    map.simulator.initial = factors;
+    RegisterImage image(map, battery, holding, input);
+    image.refresh(kStartNs);
+    LivePoints live;
+    for (int i = 0; i < map.points.size(); ++i) {
+      const bool is_input = map.points[i].read_function == 4;
+      live.keep(map, i, &(is_input ? input : holding)[image.address_of(i)]);
+    }
+    for (const IdentityCheck& check : map.identity) {
+      if (map.points[check.point].type == RegisterType::kText) continue;
+      std::int64_t value = 0;
+      EXPECT_TRUE(live_value(map, live, check.point, value)) << check.hint.view();
+      EXPECT_GE(value, check.value_min) << check.hint.view();
+      EXPECT_LE(value, check.value_max) << check.hint.view();
+    }
+  }
+}
+
 }  // namespace
 }  // namespace bess

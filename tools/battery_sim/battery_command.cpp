@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "edge/registers/map_file.h"
+#include "shared/host/distinct_files.h"
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
@@ -104,14 +105,37 @@ void take_faults(const std::vector<std::string>& names, BatteryServerSettings& s
   }
 }
 
+void require_span(const char* name, const FaultSchedule& faults) {
+  if (faults.from_s < faults.to_s) return;
+  fail("--{}-from-s {:g}: is not before --{}-to-s {:g}, so that no fault would strike", name,
+       faults.from_s, name, faults.to_s);
+}
+
+/// What would be simulated in vain is said before anything listens.
+void require_consistent(const BatteryOptions& options) {
+  const BatteryParameters& battery = options.battery;
+  if (!(battery.soc_min_frac < battery.soc_max_frac)) {
+    fail("--soc-min {:g}: is not below --soc-max {:g}", battery.soc_min_frac, battery.soc_max_frac);
+  }
+  require_span("fault", options.server.faults);
+  require_span("meter-fault", options.meter.faults);
+  if (!options.meter_map_path.empty() && options.meter.port != 0 &&
+      options.meter.port == options.server.port && options.server.serial_device.empty()) {
+    fail("--meter-port {}: is the battery's own --port; give another", options.meter.port);
+  }
+  require_distinct({{"--record", options.record_path}}, {{"--map", options.map_path},
+                                                         {"--meter-map", options.meter_map_path},
+                                                         {"--house", options.house}});
+}
+
 void run_battery(BatteryOptions& options) {
   if (!options.replay.path.empty()) {
     return run_replay(options.replay, options.server, options.clock);
   }
   const StopSignal stop;
+  require_consistent(options);
   take_faults(options.fault_names, options.server);
   take_faults(options.meter_fault_names, options.meter);
-  if (options.house.empty() && !options.meter_map_path.empty()) fail("--meter-map needs --house");
   const ScaledClock clock = options.clock.clock();
   // Fails before serving rather than after a day.
   if (!options.record_path.empty()) require_writable(options.record_path);
@@ -132,14 +156,14 @@ void run_battery(BatteryOptions& options) {
     house.emplace(HouseLoad::from_option(options.house, options.house_seed));
   }
   BatteryServer server(options.server, map, simulated, clock, house ? &*house : nullptr);
+  std::optional<MeterThread> meter;
+  if (!options.meter_map_path.empty()) meter.emplace(options, simulated, clock, *house);
   const std::string place = options.server.serial_device.empty()
                                 ? fmt::format("{}:{}", options.server.host, server.port())
                                 : options.server.serial_device;
   std::printf("bess-sim battery: listening on %s, unit %d, %s at time scale %d\n", place.c_str(),
               map.unit, utc_text(clock.now_utc_ns() / kNanosecondsPerSecond).c_str(), clock.scale);
-  std::optional<MeterThread> meter;
-  if (!options.meter_map_path.empty()) {
-    meter.emplace(options, simulated, clock, *house);
+  if (meter) {
     std::printf("bess-sim battery: meter listening on %s:%d, unit %d\n", options.meter.host.c_str(),
                 meter->port(), meter->unit());
   }
@@ -182,11 +206,16 @@ void add_bus_options(ProgramCommand& command, BatteryServerSettings& server) {
   command.option("--clients-max", server.clients_max, "More are refused, like the real device")
       .range(1, 32)
       .with_default();
-  command.option("--serial", server.serial_device, "Serve RTU on this serial line instead");
-  command.option("--baud", server.baud, "Of the serial line").with_default();
-  command.choice<char>("--parity", server.parity, {{"none", 'N'}, {"even", 'E'}, {"odd", 'O'}},
-                       "none, even or odd");
-  command.option("--stop-bits", server.stop_bits, "1 or 2").range(1, 2);
+  command.option("--serial", server.serial_device, "Serve RTU on this serial line instead")
+      .excludes("--host")
+      .excludes("--port")
+      .excludes("--clients-max");
+  command.option("--baud", server.baud, "Of the serial line").with_default().needs("--serial");
+  command
+      .choice<char>("--parity", server.parity, {{"none", 'N'}, {"even", 'E'}, {"odd", 'O'}},
+                    "none, even or odd")
+      .needs("--serial");
+  command.option("--stop-bits", server.stop_bits, "1 or 2").range(1, 2).needs("--serial");
   command.option("--response-delay-ms", server.response_delay_ms, "Before every answer")
       .range(0, 60'000);
 }
@@ -201,22 +230,29 @@ void add_fault_options(ProgramCommand& command, BatteryOptions& options) {
       .value_name("NAME");
   command.option("--fault-every", faults.every, "At every Nth chance")
       .range(1, 1'000'000)
-      .with_default();
+      .with_default()
+      .needs("--fault");
   command.option("--fault-probability", faults.probability, "At each chance, instead of every")
-      .range(0.0, 1.0);
-  command.option("--fault-seed", faults.seed, "Of what is random").with_default();
+      .range(0.0, 1.0)
+      .needs("--fault")
+      .excludes("--fault-every");
+  command.option("--fault-seed", faults.seed, "Of what is random").with_default().needs("--fault");
   command.option("--fault-from-s", faults.from_s, "Simulated seconds after the start")
-      .non_negative();
-  command.option("--fault-to-s", faults.to_s, "And until when").non_negative();
+      .non_negative()
+      .needs("--fault");
+  command.option("--fault-to-s", faults.to_s, "And until when").non_negative().needs("--fault");
   command.option("--late-ms", server.late_ms, "Delay of late and byte-gap")
       .range(1, 60'000)
-      .with_default();
+      .with_default()
+      .needs("--fault");
   command.option("--drip-ms", server.drip_ms, "Between the bytes of drip")
       .range(1, 60'000)
-      .with_default();
+      .with_default()
+      .needs("--fault");
   command.option("--exception-code", server.exception_code, "1, 2, 3, 4, 6 or a vendor's")
       .range(1, 255)
-      .with_default();
+      .with_default()
+      .needs("--fault");
 }
 
 void add_plant_options(ProgramCommand& command, BatteryOptions& options) {
@@ -254,25 +290,34 @@ void add_replay_options(ProgramCommand& command, ReplayOptions& replay) {
 void add_house_options(ProgramCommand& command, BatteryOptions& options) {
   command.option("--house", options.house,
                  "House behind the same meter: daily, watts, or a CSV file (minute_utc,house_w)");
-  command.option("--house-seed", options.house_seed, "Of --house daily").with_default();
-  command.option(
-      "--meter-map", options.meter_map_path,
-      "Act the meter of this map too (edge/meters); a battery map's own grid point needs "
-      "none");
-  command.option("--meter-variant", options.meter_variant, "Of the map; default: its first");
+  command.option("--house-seed", options.house_seed, "Of --house daily")
+      .with_default()
+      .needs("--house");
+  command
+      .option("--meter-map", options.meter_map_path,
+              "Act the meter of this map too (edge/meters); a battery map's own grid point needs "
+              "none")
+      .needs("--house");
+  command.option("--meter-variant", options.meter_variant, "Of the map; default: its first")
+      .needs("--meter-map");
   command.option("--meter-port", options.meter.port, "TCP port, 0 = any free one")
       .range(0, 65'535)
-      .with_default();
+      .with_default()
+      .needs("--meter-map");
   command
       .option("--meter-fault", options.meter_fault_names,
               "The meter misbehaves, at every chance: silence, frozen, wrong-sign, drop ...")
       .check(known_fault)
-      .value_name("NAME");
+      .value_name("NAME")
+      .needs("--meter-map");
   command
       .option("--meter-fault-from-s", options.meter.faults.from_s,
               "Simulated seconds after the start")
-      .non_negative();
-  command.option("--meter-fault-to-s", options.meter.faults.to_s, "And until when").non_negative();
+      .non_negative()
+      .needs("--meter-fault");
+  command.option("--meter-fault-to-s", options.meter.faults.to_s, "And until when")
+      .non_negative()
+      .needs("--meter-fault");
 }
 
 }  // namespace

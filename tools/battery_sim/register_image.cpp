@@ -51,13 +51,22 @@ RegisterImage::RegisterImage(const RegisterMap& map, SimulatedBattery& battery,
     if (p.scale_from >= 0) set(p.scale_from, map_.points[p.scale_from].value_min);
   }
   for (const Assignment& assignment : map_.simulator.initial) assign(assignment);
-  for (const IdentityCheck& check : map_.identity) {
-    const RegisterPoint& p = map_.points[check.point];
-    for (std::size_t i = 0; p.type == RegisterType::kText && i < check.text.view().size(); ++i) {
-      const auto character = static_cast<std::uint8_t>(check.text.view()[i]);
-      holding_[address_of(check.point) + i / 2] |=
-          static_cast<std::uint16_t>(i % 2 == 0 ? character << 8 : character);
-    }
+  for (const IdentityCheck& check : map_.identity) identify(check);
+}
+
+/// Shows what the check asks for. What is measured as well is measured afterwards: a capacity may be
+/// another than the device has.
+void RegisterImage::identify(const IdentityCheck& check) {
+  const RegisterPoint& p = map_.points[check.point];
+  if (p.type != RegisterType::kText) {
+    const std::int64_t shown = value(check.point);
+    if (shown < check.value_min || shown > check.value_max) set(check.point, check.value_min);
+    return;
+  }
+  for (std::size_t i = 0; i < check.text.view().size(); ++i) {
+    const auto character = static_cast<std::uint8_t>(check.text.view()[i]);
+    holding_[address_of(check.point) + i / 2] |=
+        static_cast<std::uint16_t>(i % 2 == 0 ? character << 8 : character);
   }
 }
 

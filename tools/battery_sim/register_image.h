@@ -51,6 +51,7 @@ class RegisterImage {
 
   void lay_out_models();
   void find_arguments();
+  void identify(const IdentityCheck& check);
   [[nodiscard]] LivePoints snapshot() const;
   [[nodiscard]] std::int64_t value(int point) const;
   void set(int point, std::int64_t value);

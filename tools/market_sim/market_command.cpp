@@ -77,7 +77,8 @@ void add_market_command(ProgramCommand& app) {
                               "Misbehave now and then");
   command.option("--fault-every", options->server.fault_every, "At every Nth request")
       .range(1, 1'000'000)
-      .with_default();
+      .with_default()
+      .needs("--fault");
   ProgramOption certificate = command.option("--tls-cert", options->server.tls_certificate,
                                              "PEM certificate: serves HTTPS");
   command.option("--tls-key", options->server.tls_key, "Its PEM key").needs("--tls-cert");

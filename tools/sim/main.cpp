@@ -4,6 +4,7 @@
 
 #include <cstdio>
 
+#include "shared/host/build_info.h"
 #include "shared/local_time.h"
 #include "shared/scaled_clock.h"
 #include "tools/sim/commands.h"
@@ -14,7 +15,8 @@ void add_clock_command(bess::ProgramCommand& app) {
   static double in_s = 0;
   bess::ProgramCommand command = app.subcommand(
       "clock", "Print CLOCK_MONOTONIC in ns: the common anchor of several simulated processes");
-  command.option("--in-s", in_s, "Seconds from now, so that all are up before it begins");
+  command.option("--in-s", in_s, "Seconds from now, so that all are up before it begins")
+      .range(0.0, 86'400.0);
   command.runs([] {
     const auto ahead_ns = static_cast<long long>(in_s * 1e9);
     std::printf("%lld\n", static_cast<long long>(bess::clock_ns(CLOCK_MONOTONIC)) + ahead_ns);
@@ -25,8 +27,9 @@ void add_clock_command(bess::ProgramCommand& app) {
 
 int main(int argc, char** argv) {
   bess::set_market_time_zone();
-  bess::CommandLine command_line(
-      "bess-sim", "bess-sim: a simulated battery and a simulated price server", BESS_VERSION);
+  bess::CommandLine command_line("bess-sim",
+                                 "bess-sim: a simulated battery and a simulated price server",
+                                 "bess-sim " BESS_VERSION "\n" + bess::build_line());
   bess::ProgramCommand root = command_line.root();
   bess::add_battery_command(root);
   bess::add_market_command(root);

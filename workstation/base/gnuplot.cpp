@@ -1,11 +1,14 @@
 #include "workstation/base/gnuplot.h"
 
 #include <fmt/core.h>
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <cstdio>
 #include <cstdlib>
 
+#include "shared/file_descriptor.h"
+#include "shared/host/file.h"
 #include "shared/host/user_error.h"
 
 namespace bess {
@@ -15,17 +18,20 @@ namespace fs = std::filesystem;
 
 bool command_succeeds(const char* command) { return std::system(command) == 0; }
 
-fs::path beside(const fs::path& path) {
-  return path.parent_path() /
-         fmt::format(".{}.{}{}", path.stem().string(), getpid(), path.extension().string());
-}
-
-/// True when gnuplot took the whole script and ended well.
-bool run(const std::string& script, const fs::path& path) {
-  std::FILE* gnuplot = popen("gnuplot > /dev/null 2>&1", "w");
+/// What gnuplot writes to its standard output for this script; nothing unless it ended well.
+std::string drawn(const std::string& script, const fs::path& path) {
+  const FileDescriptor file(memfd_create("gnuplot", 0));  // the shell and gnuplot inherit it
+  std::FILE* gnuplot = nullptr;
+  if (pwrite(file.get(), script.data(), script.size(), 0) == static_cast<ssize_t>(script.size())) {
+    gnuplot = popen(fmt::format("gnuplot /dev/fd/{} 2> /dev/null", file.get()).c_str(), "r");
+  }
   if (gnuplot == nullptr) fail("{}: gnuplot cannot be started", path.string());
-  const bool sent = std::fwrite(script.data(), 1, script.size(), gnuplot) == script.size();
-  return pclose(gnuplot) == 0 && sent;
+  std::string picture;
+  char part[1 << 14];
+  for (std::size_t got = 0; (got = std::fread(part, 1, sizeof part, gnuplot)) > 0;) {
+    picture.append(part, got);
+  }
+  return pclose(gnuplot) == 0 ? picture : std::string();
 }
 
 }  // namespace
@@ -42,14 +48,9 @@ void draw_with_gnuplot(const fs::path& path,
     fail("{}: drawing needs gnuplot, which is not installed; apt-get install gnuplot-nox",
          path.string());
   }
-  const fs::path temporary = beside(path);
-  const bool drawn = run(script(temporary), path) && fs::exists(temporary);
-  std::error_code error;
-  if (drawn) fs::rename(temporary, path, error);
-  if (!drawn || error) {
-    fs::remove(temporary, error);
-    fail("{}: gnuplot could not draw; is the folder there and writable?", path.string());
-  }
+  const std::string picture = drawn(script("/dev/stdout"), path);
+  if (picture.empty()) fail("{}: gnuplot could not draw", path.string());
+  write_file(path, picture);
 }
 
 }  // namespace bess

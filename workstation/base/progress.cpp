@@ -1,16 +1,53 @@
 #include "workstation/base/progress.h"
 
 #include <fmt/core.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
+
+#include "shared/host/text.h"
 
 namespace bess {
 namespace {
 constexpr std::chrono::milliseconds kQuietStart{2000};
 constexpr std::chrono::milliseconds kTerminalInterval{250};
-constexpr std::chrono::milliseconds kLogInterval{10'000};
+constexpr std::chrono::milliseconds kLogInterval{60'000};
+constexpr std::size_t kColumns = 80;  // where nobody says how many there are
+constexpr std::size_t kNoteMin = 8;   // less of a note says nothing
+
+/// One less than the terminal has: a full row would make some of them begin the next one.
+std::size_t terminal_columns() {
+  winsize size{};
+  const bool is_known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  return (is_known ? size.ws_col : kColumns) - 1;
+}
+
+std::string duration_text(double seconds) {
+  if (!(seconds < 100 * 3600)) return "days";
+  const auto s = static_cast<std::int64_t>(seconds + 0.5);
+  if (s < 600) return fmt::format("{} s", s);
+  if (s < 6000) return fmt::format("{} min", (s + 30) / 60);
+  return fmt::format("{} h {:02} min", s / 3600, s % 3600 / 60);
+}
+
 }  // namespace
+
+std::string progress_line(std::string_view title, std::string_view unit, const ProgressState& state,
+                          std::string_view note, std::size_t columns) {
+  const double left_s = (state.total - state.done) / state.rate_per_s;
+  const std::string time = state.is_over          ? duration_text(state.elapsed_s)
+                           : state.rate_per_s > 0 ? "ETA " + duration_text(left_s)
+                                                  : "ETA unknown";
+  std::string line = fmt::format("{}: {:.0f}/{:.0f} {} ({:.3g}/s, {})", title, state.done,
+                                 state.total, unit, state.rate_per_s, time);
+  if (!note.empty() && line.size() + 2 + std::min(note.size(), kNoteMin) <= columns) {
+    line.append("  ").append(one_line(note, columns - line.size() - 2));
+  }
+  line.resize(std::min(line.size(), columns));
+  return line;
+}
 
 Progress::Progress(std::string title, std::string unit, double total, double done_before)
     : title_(std::move(title)),
@@ -34,13 +71,11 @@ void Progress::update(double done, std::string_view note) {
 
 void Progress::print(double done, std::string_view note, bool last) {
   const double elapsed_s = std::chrono::duration<double>(Clock::now() - start_).count();
-  const double rate = elapsed_s > 0 ? (done - done_before_) / elapsed_s : 0;
-  const double eta_s = rate > 0 ? (total_ - done) / rate : 0;
-  const std::string time =
-      last ? fmt::format("{:.0f} s", elapsed_s) : fmt::format("ETA {:.0f} s", eta_s);
-  fmt::print(stderr, "{}{}: {:.0f}/{:.0f} {} ({:.3g}/s, {}){}{}{}", terminal_ ? "\r\033[K" : "",
-             title_, done, total_, unit_, rate, time, note.empty() ? "" : "  ", note,
-             terminal_ && !last ? "" : "\n");
+  const double rate_per_s = elapsed_s > 0 ? (done - done_before_) / elapsed_s : 0;
+  const ProgressState state{done, total_, rate_per_s, elapsed_s, last};
+  const std::size_t columns = terminal_ ? terminal_columns() : kColumns;
+  fmt::print(stderr, "{}{}{}", terminal_ ? "\r\033[K" : "",
+             progress_line(title_, unit_, state, note, columns), terminal_ && !last ? "" : "\n");
   std::fflush(stderr);
   printed_ = true;
 }

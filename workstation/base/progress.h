@@ -1,6 +1,5 @@
 // One progress line on stderr for anything that takes more than two seconds: done, rate, ETA.
-// On a terminal it redraws in place; elsewhere it prints a line every ten seconds, so logs stay
-// short.
+// On a terminal it redraws in place, in one row; elsewhere it prints a line a minute, so logs stay short.
 #pragma once
 
 #include <chrono>
@@ -8,6 +7,18 @@
 #include <string_view>
 
 namespace bess {
+
+/// How far something is, at one instant.
+struct ProgressState {
+  double done = 0, total = 0;
+  double rate_per_s = 0;
+  double elapsed_s = 0;
+  bool is_over = false;
+};
+
+/// "TITLE: 12/40 UNIT (3.1/s, ETA 9 s)  NOTE" in at most `columns`: the note gives way first.
+std::string progress_line(std::string_view title, std::string_view unit, const ProgressState& state,
+                          std::string_view note, std::size_t columns);
 
 class Progress {
  public:
@@ -18,7 +29,7 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
   ~Progress();
 
-  /// Shows `done` of the total; cheap to call often. `note` is appended as it is.
+  /// Shows `done` of the total; cheap to call often. `note` is appended, as far as there is room.
   void update(double done, std::string_view note = {});
 
  private:

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <thread>
 
+#include "shared/host/distinct_files.h"
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
 #include "workstation/backtest/walk_forward.h"
@@ -15,6 +16,7 @@
 #include "workstation/cli/chain_steps.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
+#include "workstation/cli/interruption.h"
 #include "workstation/cli/policy_factory.h"
 #include "workstation/cli/price_input.h"
 #include "workstation/report/backtest_report.h"
@@ -67,13 +69,11 @@ void claim_folder(const fs::path& folder, const std::string& identity) {
 StudentFile learn_fold(const Fold& fold, const RunConfig& config) {
   const TrainResult trained =
       train_teacher(fold.market, config.battery, config.train, interruption());
-  if (interruption()) throw Interrupted{};
   const Matrix visited =
       visited_inputs(trained.teacher, fold.market, config.battery, config.distil);
   const CorrectionResult corrected =
       correct_and_prove(trained.teacher, visited, config.distil, interruption(),
                         validation_score(fold.market, config.battery, config.initial_soc_frac));
-  if (interruption()) throw Interrupted{};
   return require_proof(corrected, config.distil.method, fold.month + ": ").file();
 }
 
@@ -124,12 +124,19 @@ void learn_folds(const Folds& folds, RunConfig config, const fs::path& folder) {
 void run_backtest(const BacktestArguments& options) {
   const RunConfig config = options.common.resolve();
   const fs::path folder = options.out;
+  std::vector<GivenPath> inputs = given_paths("--prices", options.prices);
+  inputs.push_back({"--config", options.common.config_path});
+  std::vector<GivenPath> outputs;
+  for (const char* name : {"backtest.csv", "backtest_days.csv", "backtest.json", "backtest.html"}) {
+    outputs.push_back({"--out", folder / name});
+  }
+  require_distinct(outputs, inputs);
   const MinuteSeries series = options.price_input.read_joined(options.prices).series;
   const MarketSteps market = make_market_steps(series, config.market);
   const Folds folds = make_folds(market, options.window_days);
   require_writable(folder / "backtest.csv");
   claim_folder(folder, identity_of(config, series, options));
-  watch_interruption();
+  end_when_interrupted("months that were learnt are kept: the same command goes on");
   if (std::ranges::find(options.policies, kChainName) != options.policies.end()) {
     learn_folds(folds, config, folder);
   }
@@ -143,7 +150,6 @@ void run_backtest(const BacktestArguments& options) {
   Progress progress("trade", "policies", static_cast<double>(options.policies.size()));
   for (const std::string& name : options.policies) {
     const FoldPolicy make = [&](const Fold& fold) {
-      if (interruption()) throw Interrupted{};
       const std::string model = name == kChainName ? student_path(folder, fold).string() : name;
       return make_policy(model, fold.market, config.battery);
     };

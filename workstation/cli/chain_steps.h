@@ -2,8 +2,10 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "shared/host/minute_file.h"
+#include "shared/host/user_error.h"
 #include "workstation/rl/train.h"
 #include "workstation/student/correct_and_prove.h"
 
@@ -18,8 +20,16 @@ void warn_narrow_support(const TrainOptions& options, const TrainResult& result)
 /// CRC-32 of both columns: a checkpoint or a fold belongs to the prices that it was made from.
 std::uint32_t prices_checksum(const MinuteSeries& series);
 
-/// The proved student of `result`. Throws UserError, `where` in front and `note` behind the violations that
-/// are left, naming the mend.
+/// A student that was not proved, whatever was tried.
+struct ProofFailed : UserError {
+  using UserError::UserError;
+};
+/// Violations that are left and those of every round, with the mend; `where` in front and `note` behind
+/// the violations. `violations_by_round` is not empty.
+std::string describe_failed_proof(const std::vector<std::int64_t>& violations_by_round,
+                                  CorrectionMethod method, const std::string& where = "",
+                                  const std::string& note = "");
+/// The proved student of `result`. Throws ProofFailed with the same description.
 const ProvedStudent& require_proof(const CorrectionResult& result, CorrectionMethod method,
                                    const std::string& where = "", const std::string& note = "");
 

@@ -4,6 +4,7 @@ namespace bess {
 
 void add_commands(ProgramCommand& app) {
   add_run_command(app);
+  add_runs_commands(app);
   add_prices_commands(app);
   add_train_command(app);
   add_distil_command(app);

@@ -1,10 +1,5 @@
 #include "workstation/cli/common_options.h"
 
-#include <fmt/core.h>
-#include <unistd.h>
-
-#include <chrono>
-#include <csignal>
 #include <thread>
 
 #include "shared/host/user_error.h"
@@ -31,8 +26,9 @@ void CommonOptions::add_market(ProgramCommand& command) {
   command.option("--initial-soc", initial_soc_frac, "0..1, default 0.5");
 }
 
-RunConfig CommonOptions::resolve() const {
-  RunConfig config = load_run_config(config_path);
+RunConfig CommonOptions::resolve() const { return resolve(load_run_config(config_path)); }
+
+RunConfig CommonOptions::resolve(RunConfig config) const {
   config.set_seed(seed.value_or(1));
   const int cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   config.set_threads(threads.value_or(cores));
@@ -47,38 +43,6 @@ RunConfig CommonOptions::resolve() const {
     config.initial_soc_frac = *initial_soc_frac;
   }
   return config;
-}
-
-std::atomic<bool>& interruption() {
-  static std::atomic<bool> interrupted{false};
-  static_assert(std::atomic<bool>::is_always_lock_free);
-  return interrupted;
-}
-
-void end_when_interrupted() {
-  const auto end = [](int) {
-    constexpr std::string_view kMessage = "\nbess-train: interrupted\n";
-    [[maybe_unused]] const auto written = write(STDERR_FILENO, kMessage.data(), kMessage.size());
-    _exit(3);
-  };
-  std::signal(SIGINT, end);
-  std::signal(SIGTERM, end);
-}
-
-void watch_interruption() {
-  interruption();  // constructed before a signal can come
-  const auto raise_flag = [](int) { interruption() = true; };
-  std::signal(SIGINT, raise_flag);
-  std::signal(SIGTERM, raise_flag);
-}
-
-void sleep_unless(double seconds, const std::atomic<bool>& interrupted) {
-  using Clock = std::chrono::steady_clock;
-  const auto end = Clock::now() + std::chrono::duration<double>(seconds);
-  while (!interrupted && Clock::now() < end) {
-    const std::chrono::duration<double> left = end - Clock::now();
-    std::this_thread::sleep_for(std::min(left, std::chrono::duration<double>(0.1)));
-  }
 }
 
 std::string checked_base_url(std::string url, const std::string& option) {

@@ -3,12 +3,14 @@
 
 #include <memory>
 
+#include "shared/host/distinct_files.h"
 #include "shared/host/file.h"
 #include "shared/host/json.h"
 #include "shared/host/user_error.h"
 #include "workstation/cli/chain_steps.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
+#include "workstation/cli/interruption.h"
 #include "workstation/cli/price_input.h"
 #include "workstation/cli/rule_files.h"
 #include "workstation/cli/rule_report.h"
@@ -59,18 +61,20 @@ void run_distil(const DistilArguments& options) {
   if (options.omega) config.distil.omega = *options.omega;
   if (options.epochs) config.distil.epochs = *options.epochs;
   config.distil.correct = !options.plain;
+  require_distinct({{"--out", options.out}, {"--curve-out", options.curve_out}},
+                   {{"--prices", options.prices},
+                    {"--teacher", options.teacher},
+                    {"--config", options.common.config_path}});
   require_writable(options.out);
   Teacher teacher = load_teacher(options.teacher, parse_risk(options.risk));
   options.rule_files.apply(config, teacher.context.kind);
   if (!teacher.risk.is_mean()) teacher.provenance += ", risk " + options.risk;
   const MarketSteps market =
       make_market_steps(options.price_input.read(options.prices), config.market);
-  watch_interruption();
   const Matrix visited = visited_inputs(teacher, market, config.battery, config.distil);
   const CorrectionResult result =
       correct_and_prove(teacher, visited, config.distil, interruption(),
                         validation_score(market, config.battery, config.initial_soc_frac));
-  if (interruption()) throw Interrupted{};
   if (!options.plain) {
     require_proof(result, config.distil.method, "", ", nothing was written");
   }
@@ -82,12 +86,29 @@ void run_distil(const DistilArguments& options) {
 
 }  // namespace
 
+std::string describe_failed_proof(const std::vector<std::int64_t>& violations_by_round,
+                                  CorrectionMethod method, const std::string& where,
+                                  const std::string& note) {
+  constexpr std::size_t kShown = 20;  // of rounds
+  const std::size_t rounds = violations_by_round.size();
+  const std::size_t first = rounds > kShown ? rounds - kShown : 0;
+  std::string by_round = first > 0 ? "..., " : "";
+  for (std::size_t i = first; i < rounds; ++i) {
+    by_round += fmt::format("{}{}", violations_by_round[i], i + 1 < rounds ? ", " : "");
+  }
+  // A look at the thresholds spares a monotone student that fails there the proof.
+  const char* looks = method == CorrectionMethod::kConstruction && rounds > 1
+                          ? "; without a proof those at the thresholds alone"
+                          : "";
+  return fmt::format("{}{} violations are left after {} rounds (by round {}{}){}; {}", where,
+                     violations_by_round.back(), rounds, by_round, looks, note,
+                     mend_of_failed_proof(method));
+}
+
 const ProvedStudent& require_proof(const CorrectionResult& result, CorrectionMethod method,
                                    const std::string& where, const std::string& note) {
   if (const auto* proved = std::get_if<ProvedStudent>(&result.verdict)) return *proved;
-  fail("{}{} violations are left after {} rounds{}; {}", where,
-       student_of(result.verdict).certificate.violations(), result.violations_by_round.size(), note,
-       mend_of_failed_proof(method));
+  throw ProofFailed(describe_failed_proof(result.violations_by_round, method, where, note));
 }
 
 void add_distil_command(ProgramCommand& app) {

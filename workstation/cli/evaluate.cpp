@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "shared/host/csv.h"
+#include "shared/host/distinct_files.h"
 #include "shared/host/file.h"
 #include "shared/host/json.h"
 #include "shared/host/user_error.h"
@@ -186,6 +187,14 @@ NamedEvaluation evaluate_policy(const std::string& name, const Trial& trial, Rec
 
 /// Asked before the work, so that a wrong name costs nothing.
 void require_outputs_writable(const EvaluateArguments& options) {
+  std::vector<GivenPath> inputs = given_paths("--policy", options.policies);
+  inputs.push_back({"--prices", options.prices});
+  inputs.push_back({"--fit", options.fit});
+  inputs.push_back({"--config", options.common.config_path});
+  require_distinct({{"--csv", options.csv},
+                    {"--days-out", options.days_out},
+                    {"--steps-out", options.steps_out}},
+                   inputs);
   for (const std::string& path : {options.csv, options.days_out, options.steps_out}) {
     if (!path.empty()) require_writable(path);
   }

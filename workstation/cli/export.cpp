@@ -5,10 +5,12 @@
 
 #include <memory>
 
+#include "shared/host/distinct_files.h"
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
+#include "workstation/cli/source_tree.h"
 
 namespace bess {
 namespace {
@@ -16,7 +18,7 @@ namespace {
 struct ExportArguments {
   CommonOptions common;
   std::string student;
-  std::string out = "edge/generated/student_weights.h";
+  std::string out;  ///< empty: the source tree's
 };
 
 [[noreturn]] void refuse(const std::string& name, const Certificate& c) {
@@ -25,13 +27,15 @@ struct ExportArguments {
 }
 
 void run_export(const ExportArguments& options) {
+  const std::string out = options.out.empty() ? header_to_replace().string() : options.out;
+  require_distinct({{"--out", out}}, {{"--student", options.student}});
+  require_writable(out);
   const Verdict verdict =
       prove(load_student(options.student), options.common.resolve().train.threads);
   const auto* student = std::get_if<ProvedStudent>(&verdict);
   if (student == nullptr) refuse(options.student, student_of(verdict).certificate);
-  write_file(options.out, format_weight_header(*student));
-  fmt::print("{}: weights {:08x}, proved, written\n", options.out,
-             student_weights_hash(student->net()));
+  write_file(out, format_weight_header(*student));
+  fmt::print("{}: weights {:08x}, proved, written\n", out, student_weights_hash(student->net()));
 }
 
 }  // namespace
@@ -41,7 +45,9 @@ void add_export_command(ProgramCommand& app) {
   ProgramCommand command =
       app.subcommand("export", "Prove a student and write it as the edge's weight header");
   command.option("--student", options->student, "Student file").required();
-  command.option("--out", options->out, "Header to write").with_default();
+  command.option("--out", options->out,
+                 "Header to write; without it edge/generated/student_weights.h of the source tree "
+                 "around the current folder, or around this program");
   options->common.add_seed_and_threads(command);
   command.footer(
       "Examples:\n"

@@ -7,6 +7,7 @@
 #include "shared/host/file.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
+#include "workstation/cli/interruption.h"
 #include "workstation/cli/price_input.h"
 #include "workstation/cli/prices.h"
 #include "workstation/market/feed/elia_fetch.h"

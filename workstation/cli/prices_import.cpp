@@ -3,6 +3,8 @@
 
 #include <memory>
 
+#include "shared/host/distinct_files.h"
+#include "shared/host/file.h"
 #include "workstation/cli/price_input.h"
 #include "workstation/cli/prices.h"
 
@@ -16,6 +18,8 @@ struct PricesImportArguments {
 };
 
 void run_prices_import(const PricesImportArguments& options) {
+  require_distinct({{"--out", options.out}}, given_paths("files", options.files));
+  require_writable(options.out);
   std::set<MarketSource> sources;
   const JoinedMarket market = options.price_input.read_joined(options.files, &sources);
   const std::string attribution = attribution_of(sources);

@@ -3,6 +3,8 @@
 
 #include <memory>
 
+#include "shared/host/distinct_files.h"
+#include "shared/host/file.h"
 #include "shared/host/text.h"
 #include "workstation/cli/price_input.h"
 #include "workstation/cli/prices.h"
@@ -21,6 +23,8 @@ struct PricesReconstructArguments {
 };
 
 void run_prices_reconstruct(const PricesReconstructArguments& options) {
+  require_distinct({{"--out", options.out}}, given_paths("--quarter-hours", options.files));
+  require_writable(options.out);
   SettledQuarterHours settled = read_quarter_hour_files(options.files);
   std::vector<QuarterHour>& quarter_hours = settled.quarter_hours;
   judge_market(join_market({{}, quarter_hours}, options.files.front()).series,

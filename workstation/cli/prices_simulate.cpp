@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "shared/host/file.h"
 #include "shared/host/minute_file.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
@@ -23,6 +24,7 @@ struct PricesSimulateArguments {
 
 void run_prices_simulate(const PricesSimulateArguments& options) {
   const LocalDate start = parse_local_date(options.start, "--start");
+  require_writable(options.out);
   const SimulationPeriod period{local_midnight_utc_s(start),
                                 local_midnight_utc_s(add_days(start, options.days))};
   const std::vector<QuarterHour> quarter_hours = simulate_quarter_hours(period, options.seed);

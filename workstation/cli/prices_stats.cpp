@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "shared/host/distinct_files.h"
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
 #include "workstation/cli/price_input.h"
@@ -48,6 +49,7 @@ Described describe_download(std::string_view text, const std::string& name) {
 }
 
 void run_prices_stats(const PricesStatsArguments& options) {
+  require_distinct({{"--plot", options.plot}}, {{"the prices", options.file}});
   if (!options.plot.empty()) require_drawable(options.plot);
   const std::string text = read_file(options.file);
   const Described described = is_minute_csv(text) ? describe_minute_file(text, options.file)

@@ -2,51 +2,42 @@
 #include <fmt/core.h>
 
 #include <memory>
+#include <optional>
 
-#include "shared/host/file.h"
-#include "shared/host/json_reader.h"
+#include "shared/host/distinct_files.h"
 #include "shared/host/user_error.h"
 #include "workstation/cli/commands.h"
-#include "workstation/cli/common_options.h"
-#include "workstation/cli/run_report.h"
-#include "workstation/market/series/judged_prices.h"
+#include "workstation/cli/folder_lock.h"
+#include "workstation/cli/price_input.h"
+#include "workstation/cli/run_plan.h"
+#include "workstation/cli/run_stages.h"
 
 namespace bess {
 namespace {
 
-std::string prices_of_run(const RunFolder& folder) {
-  const Json json = Json::parse(read_file(folder.manifest()));
-  return JsonReader(json.value(), folder.manifest().string(),
-                    "a run's manifest (make the run again)")
-      .text("prices");
-}
-
 void run_report(const std::string& path, const std::string& prices) {
   const RunFolder folder{path};
-  if (!std::filesystem::exists(folder.config())) {
-    fail("{}: holds no run, there is no config.toml in it; make one with 'bess-train run --out {}'",
-         path, path);
+  std::optional<RunRecord> record = load_run_record(folder);
+  if (!record) {
+    fail("{}: holds no run, there is no {} in it; make one with 'bess-train run --out {}'", path,
+         run_file::kRecord, path);
   }
-  CommonOptions common;
-  common.config_path = folder.config().string();
-  const RunConfig config = common.resolve();
-  const std::string prices_path = prices.empty() ? prices_of_run(folder) : prices;
+  std::vector<GivenPath> outputs;
+  for (const char* name : run_file::kAll) outputs.push_back({"--run", folder.file(name)});
+  if (record->prices != run_file::kSimulatedPrices) {
+    require_distinct(outputs, {{"--prices", prices}});
+  }
   // The run accepted what it accepted.
-  MarketSteps market =
-      make_market_steps(read_judged_minutes(prices_path, AcceptedFindings::all()), config.market);
-  Teacher teacher = load_teacher(folder.teacher());
-  Verdict plain = prove(load_student(folder.plain_student()), config.train.threads);
-  Verdict corrected = prove(load_student(folder.student()), config.train.threads);
-  const RunResults results{
-      config,
-      std::move(market),
-      std::move(teacher),
-      std::move(plain),
-      std::move(corrected),
-      parse_training_curve_csv(read_file(folder.training_curve()),
-                               folder.training_curve().string()),
-      parse_distil_curve_csv(read_file(folder.distil_curve()), folder.distil_curve().string())};
-  fmt::print("{}\n{}/report.html\n", write_run_report(results, folder), path);
+  const MinuteSeries series = prices.empty() ? prices_of_run(*record, AcceptedFindings::all())
+                                             : read_judged_minutes(prices, AcceptedFindings::all());
+  if (const std::string hash = prices_hash(series); hash != record->value("prices")) {
+    fail("{}: are not the prices of this run: {}, and the run has {}",
+         prices.empty() ? record->prices : prices, hash, record->value("prices"));
+  }
+  const FolderLock lock(folder.path);
+  RunStages stages(folder, std::move(*record), series, stderr);
+  stages.report_again();
+  fmt::print("{}\n{}/report.html\n", stages.summary(), path);
 }
 
 }  // namespace

@@ -4,159 +4,161 @@
 #include <memory>
 
 #include "shared/host/file.h"
-#include "shared/host/json.h"
 #include "shared/host/user_error.h"
 #include "workstation/cli/chain_steps.h"
 #include "workstation/cli/commands.h"
-#include "workstation/cli/common_options.h"
-#include "workstation/cli/price_input.h"
-#include "workstation/cli/run_folder.h"
-#include "workstation/cli/rule_files.h"
-#include "workstation/cli/run_report.h"
-#include "workstation/market/model/quarter_hours_to_minutes.h"
-#include "workstation/market/model/simulated_market.h"
-#include "workstation/market/series/local_date.h"
-#include "workstation/student/correct_and_prove.h"
-#include "workstation/student/export.h"
+#include "workstation/cli/folder_lock.h"
+#include "workstation/cli/interruption.h"
+#include "workstation/cli/run_plan.h"
+#include "workstation/cli/run_seeds.h"
+#include "workstation/cli/run_stages.h"
 
 namespace bess {
 namespace {
 
-/// The built-in market: one local year, so that every month is seen.
-constexpr LocalDate kBuiltInStart{2023, 1, 1};
-constexpr int kBuiltInDays = 365;
-constexpr std::uint64_t kBuiltInSeed = 1;
+namespace fs = std::filesystem;
 
 struct RunArguments {
-  CommonOptions common;
-  PriceInput price_input;
-  RuleFiles rule_files;
-  std::string prices;
+  RunRequest request;
   std::string out;
+  int seeds = 1;
+  bool json = false;
 };
 
-void announce(int stage, const std::string& text) {
-  fmt::print("[{}/6] {}\n", stage, text);
-  std::fflush(stdout);
+/// A teacher that was learnt for another battery or market goes on earning what it learnt: that is told.
+void warn_of_foreign_teacher(const RunRecord& record) {
+  if (record.teacher_file.empty()) return;
+  const fs::path file = record.teacher_file;
+  const auto its_run = load_run_record({file.parent_path()});
+  if (!its_run) return;
+  const auto about_the_world = [](const Entries& identity) {
+    Entries kept;
+    for (const auto& entry : identity) {
+      const std::string& key = entry.first;
+      const bool counts = key == "prices" || key.starts_with("[market]") ||
+                          key.starts_with("[battery]") || key.starts_with("[costs]");
+      if (counts) kept.push_back(entry);
+    }
+    return kept;
+  };
+  const std::string other =
+      differences(about_the_world(its_run->identity), about_the_world(record.identity));
+  if (other.empty()) return;
+  fmt::print(stderr, "bess-train: warning: {} was learnt for other circumstances: {}\n",
+             file.string(), other);
 }
 
-MinuteSeries built_in_market(const RunFolder& folder) {
-  const SimulationPeriod period{local_midnight_utc_s(kBuiltInStart),
-                                local_midnight_utc_s(add_days(kBuiltInStart, kBuiltInDays))};
-  MinuteSeries series =
-      minutes_on_quarter_hours(simulate_quarter_hours(period, kBuiltInSeed), kBuiltInSeed);
-  write_minute_file(folder.simulated_prices(), series,
-                    fmt::format("Simulated, not real: built-in market, seed {}", kBuiltInSeed));
-  return series;
+/// Plans, claims the folder and goes through all stages.
+void run_one(const RunRequest& request, std::FILE* messages) {
+  RunPlan plan = plan_run(request);
+  warn_of_foreign_teacher(plan.record);
+  require_writable(plan.folder.record());
+  const FolderLock lock(plan.folder.path);
+  fmt::print(messages, "[1/6] prices: {} ({} minutes)\n", plan.record.prices_name,
+             plan.series.size());
+  if (!load_run_record(plan.folder)) save_run_record(plan.folder, plan.record);
+  end_when_interrupted(how_to_go_on(plan.folder));
+  RunStages(plan.folder, plan.record, plan.series, messages).finish();
 }
 
-/// Everything is trained and proved before the folder gets a student or a header.
-RunResults learn(const RunConfig& config, MarketSteps market, const std::string& prices_name) {
-  announce(2, fmt::format("train the {} teacher", method_name(config.train.method)));
-  TrainResult trained = train_teacher(market, config.battery, config.train, interruption());
-  if (interruption()) throw Interrupted{};
-  warn_narrow_support(config.train, trained);
-  trained.teacher.provenance = training_provenance(prices_name, config.train, trained);
-  fmt::print("      best at step {}: {:.1f} EUR/day/MWh on validation days, {:.0f} s\n",
-             trained.best_step, trained.best_validation_eur_per_day_per_mwh, trained.seconds);
-
-  announce(3, "distil without correction, for comparison");
-  const Matrix visited = visited_inputs(trained.teacher, market, config.battery, config.distil);
-  DistilOptions plain_options = config.distil;
-  plain_options.correct = false;
-  CorrectionResult plain =
-      correct_and_prove(trained.teacher, visited, plain_options, interruption());
-  if (interruption()) throw Interrupted{};
-  const Certificate& sampled = student_of(plain.verdict).certificate;
-  fmt::print("      {} violations in {} states looked at\n", sampled.violations(),
-             sampled.states_checked);
-
-  announce(4, "correct while distilling, and prove");
-  CorrectionResult corrected =
-      correct_and_prove(trained.teacher, visited, config.distil, interruption(),
-                        validation_score(market, config.battery, config.initial_soc_frac));
-  if (interruption()) throw Interrupted{};
-  const Certificate& certificate = require_proof(corrected, config.distil.method).certificate();
-  fmt::print("      no violation over {} states, {} round{}\n", certificate.states_checked,
-             corrected.violations_by_round.size(),
-             corrected.violations_by_round.size() == 1 ? "" : "s");
-  return {config,
-          std::move(market),
-          std::move(trained.teacher),
-          std::move(plain.verdict),
-          std::move(corrected.verdict),
-          std::move(trained.curve),
-          std::move(corrected.curve)};
+void run_single(const RunArguments& options) {
+  run_one(options.request, options.json ? stderr : stdout);
+  const RunFolder folder{options.request.out};
+  if (options.json) {
+    fmt::print("{}\n", summary_json(load_run_summary(folder)).line());
+  } else {
+    fmt::print("\n{}\n{}: report.html, student_weights.h and everything else of this run\n",
+               read_file(folder.file(run_file::kSummary)), folder.path.string());
+  }
 }
 
-std::string manifest(const RunResults& run, const std::string& prices) {
-  const StudentFile& corrected = student_of(run.corrected);
-  const Certificate& certificate = corrected.certificate;
-  const Certificate& plain = student_of(run.plain).certificate;
-  return Json::object({{"version", BESS_VERSION},
-                       {"prices", prices},
-                       {"seed", run.config.train.seed},
-                       {"threads", run.config.train.threads},
-                       {"provenance", corrected.provenance},
-                       {"weights_hash", fmt::format("{:08x}", student_weights_hash(corrected.net))},
-                       {"states_checked", certificate.states_checked},
-                       {"states_checked_plain", plain.states_checked},
-                       {"violations_plain", plain.violations()},
-                       {"violations_corrected", certificate.violations()}})
-      .text();
+/// Every seed's request; all are planned before the first one writes.
+std::vector<RunRequest> requests_of(const RunArguments& options) {
+  const RunFolder whole{options.request.out};
+  if (fs::exists(whole.record())) {
+    fail("{}: holds a run of one seed; give another --out", whole.path.string());
+  }
+  std::vector<RunRequest> requests;
+  const std::uint64_t first = options.request.common.seed.value_or(1);
+  for (int i = 0; i < options.seeds; ++i) {
+    RunRequest request = options.request;
+    request.common.seed = first + static_cast<std::uint64_t>(i);
+    request.out = seed_folder(options.request.out, *request.common.seed);
+    (void)plan_run(request);
+    requests.push_back(std::move(request));
+  }
+  return requests;
 }
 
-void run_chain(const RunArguments& options) {
-  const RunFolder folder{options.out};
-  RunConfig config = options.common.resolve();
-  options.rule_files.apply(config, config.train.context);
-  watch_interruption();
-  const bool built_in = options.prices.empty();
-  const std::string prices =
-      built_in ? folder.simulated_prices().string()
-               : std::filesystem::absolute(options.prices).lexically_normal().string();
-  require_writable(folder.header());
-  announce(1, built_in ? "draw the built-in market" : "read " + options.prices);
-  MarketSteps market = make_market_steps(
-      built_in ? built_in_market(folder) : options.price_input.read(options.prices), config.market);
-  warn_untrained_months(market, config.train.context == ContextKind::kMonth);
-  write_file(folder.config(), format_run_config(config));
-  const RunResults results =
-      learn(config, std::move(market), built_in ? "built-in market" : options.prices);
-
-  announce(5, "export");
-  save_teacher(folder.teacher(), results.teacher);
-  save_student(folder.plain_student(), student_of(results.plain));
-  save_student(folder.student(), student_of(results.corrected));
-  write_file(folder.training_curve(), training_curve_csv(results.training_curve));
-  write_file(folder.distil_curve(), distil_curve_csv(results.distil_curve));
-  write_file(folder.header(), format_weight_header(std::get<ProvedStudent>(results.corrected)));
-  write_file(folder.manifest(), manifest(results, prices));
-
-  announce(6, "evaluate on test days and report");
-  const std::string table = write_run_report(results, folder);
-  fmt::print("\n{}\n{}: report.html, student_weights.h and everything else of this run\n", table,
-             folder.path.string());
+void run_seeds(const RunArguments& options) {
+  std::vector<RunSummary> finished;
+  std::vector<std::string> failures;
+  for (const RunRequest& request : requests_of(options)) {
+    std::FILE* messages = options.json ? stderr : stdout;
+    fmt::print(messages, "seed {}\n", *request.common.seed);
+    try {
+      run_one(request, messages);
+      finished.push_back(load_run_summary({request.out}));
+    } catch (const ProofFailed& failed) {  // the other seeds may do better
+      failures.push_back(fmt::format("seed {}: {}", *request.common.seed, failed.what()));
+      fmt::print(stderr, "bess-train: {}\n", failures.back());
+    }
+  }
+  if (!finished.empty()) {
+    write_seeds_report(options.request.out, finished);
+    const std::vector<Band> bands = bands_of(finished);
+    if (options.json) {
+      for (const RunSummary& run : finished) fmt::print("{}\n", summary_json(run).line());
+      fmt::print("{}\n", bands_json(bands, finished.size()));
+    } else {
+      fmt::print("\n{}\n{}: seeds.html and seeds.csv, and a folder a seed\n",
+                 format_bands(bands, finished.size()), options.request.out.string());
+    }
+  }
+  if (!failures.empty()) {
+    fail("{} of {} seeds were not proved; the first is {}", failures.size(), options.seeds,
+         failures.front());
+  }
 }
 
 }  // namespace
 
 void add_run_command(ProgramCommand& app) {
   auto options = std::make_shared<RunArguments>();
+  RunRequest& request = options->request;
   ProgramCommand command = app.subcommand(
       "run", "The whole chain into one folder: train, correct, prove, export, evaluate, report");
-  command.option("--prices", options->prices, "Minute file; without it a built-in simulated year");
-  options->price_input.add(command);
-  options->rule_files.add(command, "Rule files: your own rules, learnt and proved as well");
+  command.option("--prices", request.prices, "Minute file; without it a built-in simulated year");
+  request.price_input.add(command);
+  request.rule_files.add(command, "Rule files: your own rules, learnt and proved as well");
   command.option("--out", options->out, "Run folder").required();
-  options->common.add_market(command);
-  options->common.add_config(command);
-  options->common.add_seed_and_threads(command);
+  command.flag("--resume", request.resume,
+               "Go on with the folder's run, to the same bytes; what is not given is the folder's");
+  command.option("--from-teacher", request.from_teacher,
+                 "Start at the correction, with this teacher: its file or its run's folder");
+  command
+      .option("--seeds", options->seeds,
+              "This many runs, from --seed on, in OUT/seed-1 and so on, and their bands")
+      .range(1, 1000);
+  command.flag("--json", options->json,
+               "One JSON object; with --seeds one a line and seed, and bands");
+  request.common.add_market(command);
+  request.common.add_config(command);
+  request.common.add_seed_and_threads(command);
   command.footer(
+      "Each stage is written when it is done: after Ctrl-C, a full disk or a failed proof nothing "
+      "is lost.\n"
       "Examples:\n"
       "  bess-train run --out runs/first\n"
-      "  bess-train run --prices market.csv.gz --config my.toml --seed 7 --out runs/second");
-  command.runs([options] { run_chain(*options); });
+      "  bess-train run --resume --out runs/first\n"
+      "  bess-train run --prices market.csv.gz --config my.toml --seed 7 --out runs/second\n"
+      "  bess-train run --prices market.csv.gz --from-teacher runs/second --config "
+      "other.toml --out runs/third\n"
+      "  bess-train run --prices market.csv.gz --seeds 3 --out runs/seeds");
+  command.runs([options] {
+    options->request.out = options->out;
+    options->seeds > 1 ? run_seeds(*options) : run_single(*options);
+  });
 }
 
 }  // namespace bess

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "shared/host/file.h"
+#include "shared/host/nearest_word.h"
 #include "shared/host/text.h"
 #include "shared/host/toml_document.h"
 #include "shared/host/user_error.h"
@@ -219,20 +220,34 @@ void check_relations(const RunConfig& config, const std::string& name) {
   }
 }
 
+std::vector<std::string> section_names(const std::vector<Key>& keys) {
+  std::vector<std::string> names;
+  for (const Key& key : keys) names.push_back(key.section);
+  return names;
+}
+
+std::vector<std::string> key_names(const std::vector<Key>& keys, std::string_view section) {
+  std::vector<std::string> names;
+  for (const Key& key : keys) {
+    if (key.section == section) names.push_back(key.name);
+  }
+  return names;
+}
+
 void apply_document(const TomlValue& document, const std::vector<Key>& keys) {
   for (const auto& [section, table] : *document.as<TomlMembers>()) {
     const auto* members = table.as<TomlMembers>();
     const bool known = std::ranges::find(keys, section, &Key::section) != keys.end();
     if (members == nullptr || !known) {
-      fail("{}:{}: unknown section or key \"{}\"; 'bess-train config' lists all", *table.file,
-           table.line, one_line(section));
+      fail("{}:{}: unknown section or key \"{}\"{}; 'bess-train config' lists all", *table.file,
+           table.line, one_line(section), did_you_mean(section, section_names(keys)));
     }
     for (const auto& [name, value] : *members) {
       const auto found = std::ranges::find_if(
           keys, [&](const Key& k) { return k.section == section && k.name == name; });
       if (found == keys.end()) {
-        fail("{}:{}: unknown key \"{}\" in [{}]; 'bess-train config' lists all", *value.file,
-             value.line, one_line(name), section);
+        fail("{}:{}: unknown key \"{}\" in [{}]{}; 'bess-train config' lists all", *value.file,
+             value.line, one_line(name), section, did_you_mean(name, key_names(keys, section)));
       }
       found->set({value, fmt::format("[{}] {}", section, name)});
     }
@@ -256,6 +271,16 @@ RunConfig parse_run_config(std::string_view text, const std::string& name) {
 RunConfig load_run_config(const std::filesystem::path& path) {
   if (path.empty()) return {};
   return parse_run_config(read_file(path), path.string());
+}
+
+std::vector<std::pair<std::string, std::string>> config_entries(const RunConfig& config) {
+  RunConfig copy = config;
+  const KeyList list(copy);
+  std::vector<std::pair<std::string, std::string>> entries;
+  for (const Key& key : list.keys()) {
+    entries.emplace_back(fmt::format("[{}] {}", key.section, key.name), key.get());
+  }
+  return entries;
 }
 
 std::string format_run_config(const RunConfig& config) {

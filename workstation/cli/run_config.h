@@ -6,6 +6,8 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "shared/battery_model.h"
 #include "workstation/correction/distil.h"
@@ -29,6 +31,9 @@ struct RunConfig {
 /// Defaults overlaid with the file's keys; an empty path gives the defaults.
 RunConfig load_run_config(const std::filesystem::path& path);
 RunConfig parse_run_config(std::string_view text, const std::string& name);
+
+/// Every key as "[section] name", and its value as TOML writes it.
+std::vector<std::pair<std::string, std::string>> config_entries(const RunConfig& config);
 
 /// The configuration as a commented TOML file that reads back to the same values.
 std::string format_run_config(const RunConfig& config);

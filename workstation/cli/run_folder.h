@@ -8,20 +8,40 @@
 
 namespace bess {
 
+/// Names within the folder.
+namespace run_file {
+inline constexpr const char* kRecord = "run.json";
+inline constexpr const char* kTimes = "times.json";
+inline constexpr const char* kConfig = "config.toml";
+inline constexpr const char* kSimulatedPrices = "prices.csv.gz";
+inline constexpr const char* kTeacher = "teacher.bin";
+inline constexpr const char* kCheckpoint = "teacher.checkpoint";
+inline constexpr const char* kTrainingCurve = "training_curve.csv";
+inline constexpr const char* kPlainStudent = "student_plain.json";
+inline constexpr const char* kPlainViolations = "student_plain_violations.csv";
+inline constexpr const char* kStudent = "student.json";
+inline constexpr const char* kUnprovedStudent = "student_unproved.json";
+inline constexpr const char* kDistilCurve = "distil_curve.csv";
+inline constexpr const char* kProofRounds = "proof_rounds.csv";
+inline constexpr const char* kHeader = "student_weights.h";
+inline constexpr const char* kTable = "evaluation.csv";
+inline constexpr const char* kDays = "evaluation_days.csv";
+inline constexpr const char* kSummary = "summary.txt";
+inline constexpr const char* kReport = "report.html";
+/// All that a run writes, but for the figures.
+inline constexpr const char* kAll[] = {
+    kRecord,          kTimes,      kConfig,          kSimulatedPrices,
+    kTeacher,         kCheckpoint, kTrainingCurve,   kPlainStudent,
+    kPlainViolations, kStudent,    kUnprovedStudent, kDistilCurve,
+    kProofRounds,     kHeader,     kTable,           kDays,
+    kSummary,         kReport};
+}  // namespace run_file
+
 struct RunFolder {
   std::filesystem::path path;
 
-  [[nodiscard]] std::filesystem::path config() const { return path / "config.toml"; }
-  [[nodiscard]] std::filesystem::path manifest() const { return path / "run.json"; }
-  [[nodiscard]] std::filesystem::path simulated_prices() const { return path / "prices.csv.gz"; }
-  [[nodiscard]] std::filesystem::path teacher() const { return path / "teacher.bin"; }
-  [[nodiscard]] std::filesystem::path training_curve() const { return path / "training_curve.csv"; }
-  [[nodiscard]] std::filesystem::path plain_student() const { return path / "student_plain.json"; }
-  [[nodiscard]] std::filesystem::path student() const { return path / "student.json"; }
-  [[nodiscard]] std::filesystem::path distil_curve() const { return path / "distil_curve.csv"; }
-  [[nodiscard]] std::filesystem::path header() const { return path / "student_weights.h"; }
-  [[nodiscard]] std::filesystem::path table() const { return path / "evaluation.csv"; }
-  [[nodiscard]] std::filesystem::path summary() const { return path / "summary.txt"; }
+  [[nodiscard]] std::filesystem::path file(const char* name) const { return path / name; }
+  [[nodiscard]] std::filesystem::path record() const { return file(run_file::kRecord); }
 };
 
 }  // namespace bess

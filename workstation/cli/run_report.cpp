@@ -14,7 +14,6 @@ namespace {
 NamedEvaluation evaluate_both(const std::string& name, Policy& policy, const RunResults& run) {
   EvaluationOptions options{run.config.battery, run.config.initial_soc_frac, false};
   const std::vector<MarketDay> days = run.market.days_of(Split::kTest);
-  if (days.empty()) fail("no test days (local days 26 to the end) in these prices; add some");
   NamedEvaluation named;
   named.name = name;
   named.day_reset = evaluate(run.market, days, policy, options);
@@ -24,6 +23,11 @@ NamedEvaluation evaluate_both(const std::string& name, Policy& policy, const Run
 }
 
 }  // namespace
+
+void require_test_days(const MarketSteps& market) {
+  if (!market.days_of(Split::kTest).empty()) return;
+  fail("no test days (local days 26 to the end) in these prices; add some");
+}
 
 std::vector<NamedEvaluation> evaluate_run(const RunResults& run) {
   std::vector<NamedEvaluation> all;
@@ -36,19 +40,16 @@ std::vector<NamedEvaluation> evaluate_run(const RunResults& run) {
   TeacherPolicy teacher(run.teacher);
   all.push_back(
       evaluate_both(fmt::format("{} teacher", method_name(run.teacher.method)), teacher, run));
-  StudentPolicy plain(student_of(run.plain).net);
+  StudentPolicy plain(run.plain.net);
   all.push_back(evaluate_both("plain student", plain, run));
-  StudentPolicy corrected(student_of(run.corrected).net);
+  StudentPolicy corrected(run.corrected.net);
   all.push_back(evaluate_both("corrected student", corrected, run));
   baseline("foresight");
   return all;
 }
 
-std::string write_run_report(const RunResults& run, const RunFolder& folder) {
-  const std::vector<NamedEvaluation> evaluations = evaluate_run(run);
-  write_file(folder.table(), comparison_csv(evaluations));
-  const StudentFile& plain = student_of(run.plain);
-  const StudentFile& corrected = student_of(run.corrected);
+std::string write_run_report(const RunResults& run, const std::vector<NamedEvaluation>& evaluations,
+                             const RunFolder& folder) {
   const ReportInputs inputs{
       .market = run.market,
       .battery = run.config.battery,
@@ -56,22 +57,23 @@ std::string write_run_report(const RunResults& run, const RunFolder& folder) {
       .training_curve = run.training_curve,
       .distil_curve = run.distil_curve,
       .teacher = &run.teacher,
-      .uncorrected = &plain,
-      .corrected = &corrected,
-      .provenance = corrected.provenance,
+      .uncorrected = &run.plain,
+      .corrected = &run.corrected,
+      .provenance = run.corrected.provenance,
   };
   write_report(inputs, folder.path);
   const auto violations = [](const Certificate& c) {
     return fmt::format("{} / {} / {} in {} states", c.violations_property_1,
                        c.violations_property_2, c.violations_property_3, c.states_checked);
   };
-  std::string summary = format_comparison_table(evaluations) +
-                        fmt::format(
-                            "\nviolations of properties 1 / 2 / 3\n"
-                            "  before correction (plain student)    {}\n"
-                            "  after correction (corrected student) {}\n",
-                            violations(plain.certificate), violations(corrected.certificate));
-  write_file(folder.summary(), summary);
+  std::string summary =
+      format_comparison_table(evaluations) + fmt::format(
+                                                 "\nviolations of properties 1 / 2 / 3\n"
+                                                 "  before correction (plain student)    {}\n"
+                                                 "  after correction (corrected student) {}\n",
+                                                 violations(run.plain.certificate),
+                                                 violations(run.corrected.certificate));
+  write_file(folder.file(run_file::kSummary), summary);
   return summary;
 }
 

@@ -1,5 +1,4 @@
-// The evaluation and the report of one run: shared by `run`, which has everything at hand, and `report`,
-// which reads it back from the run's folder.
+// The evaluation and the report of one run, from what its folder holds.
 #pragma once
 
 #include <string>
@@ -9,25 +8,28 @@
 #include "workstation/cli/run_folder.h"
 #include "workstation/report/curves.h"
 #include "workstation/report/report.h"
-#include "workstation/student/prove.h"
 
 namespace bess {
 
 struct RunResults {
-  RunConfig config;
-  MarketSteps market;
-  Teacher teacher;
-  Verdict plain;
-  Verdict corrected;
+  const RunConfig& config;
+  const MarketSteps& market;
+  const Teacher& teacher;
+  StudentFile plain;  ///< both with the certificate of the proof that the run made
+  StudentFile corrected;
   std::vector<CurvePoint> training_curve;
   std::vector<DistilPoint> distil_curve;
 };
+
+/// Throws UserError: asked before anything is trained.
+void require_test_days(const MarketSteps& market);
 
 /// Test days, day reset and carried over: rule-based first, then the other baselines, the teacher, the
 /// plain and the corrected student, and foresight last.
 std::vector<NamedEvaluation> evaluate_run(const RunResults& run);
 
-/// Writes evaluation.csv, the figures and report.html; returns the closing table for the terminal.
-std::string write_run_report(const RunResults& run, const RunFolder& folder);
+/// Writes the figures, report.html and the summary; returns that, the closing table for the terminal.
+std::string write_run_report(const RunResults& run, const std::vector<NamedEvaluation>& evaluations,
+                             const RunFolder& folder);
 
 }  // namespace bess

@@ -9,12 +9,14 @@
 #include <memory>
 
 #include "shared/crc32.h"
+#include "shared/host/distinct_files.h"
 #include "shared/host/file.h"
 #include "shared/host/json.h"
 #include "shared/host/user_error.h"
 #include "workstation/cli/chain_steps.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
+#include "workstation/cli/interruption.h"
 #include "workstation/cli/price_input.h"
 #include "workstation/env/evaluate.h"
 #include "workstation/report/curves.h"
@@ -88,8 +90,9 @@ TrainResult train_one(const fs::path& out, const TrainArguments& options, const 
                       const MinuteSeries& series, const MarketSteps& market) {
   const CheckpointOptions checkpoint{checkpoint_path(out), options.resume,
                                      identity_of(config, series)};
-  TrainResult result =
-      train_teacher(market, config.battery, config.train, interruption(), checkpoint);
+  end_when_interrupted();  // what an earlier seed was watched for is over
+  TrainResult result = train_teacher(market, config.battery, config.train,
+                                     watched_from_the_first_look(), checkpoint);
   result.teacher.provenance = training_provenance(options.prices, config.train, result);
   if (!result.curve.empty()) {
     save_teacher(out, result.teacher);
@@ -104,6 +107,7 @@ TrainResult train_one(const fs::path& out, const TrainArguments& options, const 
                checkpoint.path.string());
     throw Interrupted{};
   }
+  end_when_interrupted();  // all is saved
   std::error_code error;
   fs::remove(checkpoint.path, error);  // a leftover is only wasted space
   warn_narrow_support(config.train, result);
@@ -184,11 +188,14 @@ void run_train(const TrainArguments& options) {
   RunConfig config = options.common.resolve();
   if (options.method) config.train.method = parse_method(*options.method);
   if (options.steps) config.train.steps = *options.steps;
+  require_distinct({{"--out", options.out},
+                    {"--curve-out", options.curve_out},
+                    {"the checkpoint", checkpoint_path(options.out)}},
+                   {{"--prices", options.prices}, {"--config", options.common.config_path}});
   require_writable(options.out);
   const MinuteSeries series = options.price_input.read(options.prices);
   const MarketSteps market = make_market_steps(series, config.market);
   warn_untrained_months(market, config.train.context == ContextKind::kMonth);
-  watch_interruption();
   if (options.seeds > 1) return run_seeds(options, config, series, market);
   const TrainResult result = train_one(options.out, options, config, series, market);
   if (options.json) {

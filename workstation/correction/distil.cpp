@@ -310,8 +310,8 @@ void Distiller::run(int epochs, const std::vector<LatticeState>& counterexamples
     }
     curve_.push_back(
         {static_cast<int>(curve_.size()) + 1, mean.teacher, mean.correction, mean.visited});
-    progress.update(epoch + 1, fmt::format("teacher KL {:.4f}  correction KL {:.2e}", mean.visited,
-                                           mean.correction));
+    progress.update(epoch + 1,
+                    fmt::format("KL {:.4f}, layer {:.1e}", mean.visited, mean.correction));
   }
 }
 

@@ -223,18 +223,14 @@ std::string comparison_table(const std::string& caption, const std::vector<Compa
 }
 
 std::vector<std::string> proof_cells(const std::string& name, const Certificate& c) {
-  return {name,
-          grouped(c.states_checked),
-          grouped(c.violations_property_1),
-          grouped(c.violations_property_2),
-          grouped(c.violations_property_3),
-          fmt::format("{:.1f}", c.seconds)};
+  return {name, grouped(c.states_checked), grouped(c.violations_property_1),
+          grouped(c.violations_property_2), grouped(c.violations_property_3)};
 }
 
 std::string proof_section(const ReportInputs& in) {
   HtmlTable table{"Violations before and after the correction",
                   {"Student", "States checked", "Not charging when cheap",
-                   "Not discharging when dear", "Pairs out of order", "Seconds"},
+                   "Not discharging when dear", "Pairs out of order"},
                   {}};
   if (in.uncorrected) {
     table.rows.push_back(proof_cells("uncorrected", in.uncorrected->certificate));

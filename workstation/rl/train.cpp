@@ -103,6 +103,27 @@ double cosine_rate(const TrainOptions& options, long step) {
   return options.learning_rate_end + blend * (options.learning_rate - options.learning_rate_end);
 }
 
+struct ValidationStopped {};
+
+/// Decides as another policy; at the beginning of a day it may be stopped.
+class StoppablePolicy final : public Policy {
+ public:
+  StoppablePolicy(Policy& policy, const std::function<bool()>& stop)
+      : policy_(policy), stop_(stop) {}
+  void begin(std::span<const MarketStep> ahead, double soc_frac) override {
+    if (stop_()) throw ValidationStopped{};
+    policy_.begin(ahead, soc_frac);
+  }
+  [[nodiscard]] Action decide(const MarketStep& step, std::size_t index,
+                              double soc_frac) const override {
+    return policy_.decide(step, index, soc_frac);
+  }
+
+ private:
+  Policy& policy_;
+  const std::function<bool()>& stop_;
+};
+
 constexpr std::string_view kCheckpointMagic = "BESSCKPT";
 constexpr std::uint32_t kCheckpointVersion = 1;
 
@@ -133,18 +154,22 @@ class Training {
     if (checkpoint.resume) restore(checkpoint);
     Progress progress(fmt::format("train {}", method_name(options_.method)), "steps",
                       static_cast<double>(options_.steps), static_cast<double>(step_));
-    while (step_ < options_.steps && !interrupted()) {
+    bool stopped = false;
+    const auto validate_and_keep = [&] {
+      stopped = !validate(interrupted);
+      if (!stopped && !checkpoint.path.empty()) save(checkpoint);
+    };
+    if (is_validation_due()) validate_and_keep();  // it was broken off
+    while (!stopped && step_ < options_.steps && !interrupted()) {
       const double loss = learn();
       progress.update(
           static_cast<double>(step_),
           fmt::format(
-              "loss {:.4f}  validation {:.1f} EUR/day/MWh", loss,
+              "loss {:.4f}, earns {:.1f}", loss,
               result_.curve.empty() ? 0.0 : result_.curve.back().validation_eur_per_day_per_mwh));
-      if (step_ % options_.validate_every != 0 && step_ != options_.steps) continue;
-      validate();
-      if (!checkpoint.path.empty()) save(checkpoint);
+      if (is_validation_due()) validate_and_keep();
     }
-    if (step_ < options_.steps && !checkpoint.path.empty()) save(checkpoint);
+    if ((stopped || step_ < options_.steps) && !checkpoint.path.empty()) save(checkpoint);
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
     result_.seconds += taken.count();
   }
@@ -164,22 +189,34 @@ class Training {
     return learned.loss;
   }
 
-  /// Adds a point to the curve and keeps the averaged weights when they earn more than any before.
-  void validate() {
+  [[nodiscard]] bool is_validation_due() const {
+    const bool is_its_step = step_ % options_.validate_every == 0 || step_ == options_.steps;
+    return is_its_step && step_ != (result_.curve.empty() ? 0 : result_.curve.back().step);
+  }
+
+  /// Adds a point to the curve and keeps the averaged weights when they earn more than any before. False
+  /// when it was stopped: nothing has changed then.
+  bool validate(const std::function<bool()>& interrupted) {
     current_.parameters = average_;
-    TeacherPolicy policy(current_);
+    TeacherPolicy teacher(current_);
+    StoppablePolicy policy(teacher, interrupted);
     EvaluationOptions evaluation;
     evaluation.battery = battery_;
-    const double profit =
-        evaluate(market_, validation_, policy, evaluation).profit_eur_per_day_per_mwh();
+    double profit = 0;
+    try {
+      profit = evaluate(market_, validation_, policy, evaluation).profit_eur_per_day_per_mwh();
+    } catch (const ValidationStopped&) {
+      return false;
+    }
     const auto n = static_cast<double>(summed_);
     result_.curve.push_back({step_, sums_.loss / n, profit, sums_.edge_mass_frac / n});
     sums_ = {0, 0};
     summed_ = 0;
-    if (profit <= result_.best_validation_eur_per_day_per_mwh) return;
+    if (profit <= result_.best_validation_eur_per_day_per_mwh) return true;
     result_.best_validation_eur_per_day_per_mwh = profit;
     result_.best_step = step_;
     result_.teacher.parameters = average_;
+    return true;
   }
 
   void save(const CheckpointOptions& checkpoint) const {

@@ -71,7 +71,8 @@ struct CheckpointOptions {
 };
 
 /// Trains on the training days of `market` and selects on its validation days. `interrupted` is asked
-/// before every gradient step: true ends it early with what is best so far. Throws UserError for
+/// before every gradient step and every day of a validation: true ends it early with what is best so far;
+/// a validation that was broken off is the first thing when it is resumed. Throws UserError for
 /// missing days; ranges of the options are checked where they are read (cli/run_config.cpp).
 TrainResult train_teacher(const MarketSteps& market, const BatteryParameters& battery,
                           const TrainOptions& options, const std::function<bool()>& interrupted,

@@ -294,6 +294,30 @@ struct MapMistake {
   std::string before, after, message;
 };
 
+TEST_F(MapFormat, ATimeThatDoesNotFitIsTheWatchdogsMistake) {
+  const auto map_with = [](const std::string& argument, const std::string& max) {
+    std::string text = std::string(kHead) + "type = \"s32\"\nmin = -1000\nmax = 1000\n";
+    const auto put = [&text](std::string_view before, const std::string& after) {
+      text.replace(text.find(before), before.size(), after);
+    };
+    put("kind = \"none\"", "kind = \"duration\"\nduration_s = 601\nrefresh_s = 60");
+    put("\"power = power\"", "\"power = power\", \"time = " + argument + "\"");
+    put("[command]",
+        "[[point]]\nname = \"time\"\naddress = 9\nmin = 0\nmax = " + max + "\n[command]");
+    return text;
+  };
+  EXPECT_THAT(
+      error_of(map_with("duration", "600")),
+      HasSubstr("watchdog duration_s = 601 is 601 s, which the point \"time\" cannot express"));
+  EXPECT_THAT(error_of(map_with("duration_minutes", "10")),
+              HasSubstr("watchdog duration_s = 601 is 11 min, which the point \"time\""));
+  RegisterMap map;
+  std::string error;
+  EXPECT_TRUE(load_register_map(folder_.write("map.toml", map_with("duration_minutes", "11")), "",
+                                map, error))
+      << error;
+}
+
 TEST_F(MapFormat, EveryMistakeHasItsMend) {
   const std::string good = std::string(kHead) + "type = \"s32\"\nmin = -1000\nmax = 1000\n";
   const MapMistake mistakes[] = {
@@ -303,6 +327,12 @@ TEST_F(MapFormat, EveryMistakeHasItsMend) {
       {"kind = \"none\"", "kind = \"rewrite\"", "duration_s is missing"},
       {"active = [\"enable = 1\"]", "active = [\"enable = maybe\"]", "neither a number nor a name"},
       {"active = [\"enable = 1\"]", "active = [\"unable = 1\"]", "no [[point]] is named"},
+      {"active = [\"enable = 1\"]", "alarms = [\"soc has 16384\"]",
+       "\"soc has 16384\" can never hold: \"soc\", 0 to 10000, has no such bit"},
+      {"active = [\"enable = 1\"]", "alarms = [\"enable has 65536\"]", "has no such bit"},
+      {"active = [\"enable = 1\"]", "warnings = [\"enable has 0\"]", "is asked for no bit"},
+      {"active = [\"enable = 1\"]", "off_grid = \"soc = 10001\"",
+       "can never hold: \"soc\" reads as 0 to 10000"},
       {"measure = [\"soc\", ", "measure = [", "must hold a point \"soc\""},
       {"measure = [\"soc\", ", "measure = [\"soc\", \"soc\", ", "holds \"soc\" twice"},
       {"name = \"battery_power\"", "name = \"battery power\"", "must be one word"},

@@ -23,7 +23,6 @@ struct FinishedRun {
     certificate.states_checked = 6'950'033'280;
     certificate.violations_property_3 = 42;
     certificate.counterexamples = {{3, 20, 2, 100, 50}};
-    certificate.seconds = 9.5;
     return certificate;
   }
 
@@ -97,7 +96,7 @@ TEST(Report, TableNumbersAreThoseOfTheEvaluations) {
       in.evaluations[1].day_reset.profit_at_wear_eur_per_day_per_mwh(kReferenceWearEurPerMwh);
   EXPECT_NE(html.find(fmt::format("<td>{:.1f}</td></tr>", at_wear)), std::string::npos);
   EXPECT_NE(html.find("At wear 10: profit of the same decisions"), std::string::npos);
-  EXPECT_NE(html.find("<td>6,950,033,280</td><td>0</td><td>0</td><td>42</td><td>9.5</td>"),
+  EXPECT_NE(html.find("<td>6,950,033,280</td><td>0</td><td>0</td><td>42</td></tr>"),
             std::string::npos);
 }
 

@@ -48,9 +48,10 @@ TrainResult train(const TrainOptions& options) {
   return train_teacher(small_market(), {}, options, interrupted);
 }
 
-/// Answers the question whether a run is interrupted: after so many steps.
-auto interrupted_after(long steps) {
-  return [asked = 0L, steps]() mutable { return asked++ >= steps; };
+/// Answers the question whether a run is interrupted: after so many looks, each before a step or before a
+/// day of a validation.
+auto interrupted_after(long looks) {
+  return [asked = 0L, looks]() mutable { return asked++ >= looks; };
 }
 
 class TrainTeacher : public testing::TestWithParam<TrainCase> {};
@@ -147,7 +148,9 @@ TEST(Train, InterruptedInTheMiddleKeepsTheBestSoFar) {
   TrainOptions options = small_options();
   options.steps = 1'000'000'000;
   options.validate_every = 10;
-  const TrainResult result = train_teacher(small_market(), {}, options, interrupted_after(25));
+  const auto validation_days = static_cast<long>(small_market().days_of(Split::kValidation).size());
+  const TrainResult result =
+      train_teacher(small_market(), {}, options, interrupted_after(25 + 2 * validation_days));
   ASSERT_EQ(result.curve.size(), 2U);
   EXPECT_EQ(result.curve.back().step, 20);
   EXPECT_GT(result.best_step, 0);

@@ -50,14 +50,13 @@ std::string convergence_data(const ConvergenceByMinute& convergence) {
   return data;
 }
 
-}  // namespace
-
-std::string gnuplot_script(const fs::path& output, const MarketStatistics& statistics,
-                           std::span<const double> settled) {
+/// The commands and inline data that gnuplot is fed; the name of `picture` says the format.
+std::string gnuplot_script(const fs::path& picture, const fs::path& output,
+                           const MarketStatistics& statistics, std::span<const double> settled) {
   const std::string convergence =
       statistics.convergence ? convergence_data(*statistics.convergence) : std::string();
   std::string script =
-      fmt::format("set terminal {}\nset output {}\n$prices << EOD\n{}EOD\n", terminal_for(output),
+      fmt::format("set terminal {}\nset output {}\n$prices << EOD\n{}EOD\n", terminal_for(picture),
                   gnuplot_quoted(output.string()), histogram_data(settled));
   if (!convergence.empty()) script += fmt::format("$errors << EOD\n{}EOD\n", convergence);
   script += fmt::format(
@@ -77,6 +76,8 @@ std::string gnuplot_script(const fs::path& output, const MarketStatistics& stati
   return script + "unset multiplot\n";
 }
 
+}  // namespace
+
 void require_drawable(const fs::path& path) {
   (void)terminal_for(path);
   require_writable(path);
@@ -89,8 +90,9 @@ void plot_statistics(const fs::path& path, const MarketStatistics& statistics,
     fail("{}: nothing to draw: no settled price from {} to {} EUR/MWh", path.string(),
          kShownMinEurPerMwh, kShownMaxEurPerMwh);
   }
-  draw_with_gnuplot(
-      path, [&](const fs::path& output) { return gnuplot_script(output, statistics, settled); });
+  draw_with_gnuplot(path, [&](const fs::path& output) {
+    return gnuplot_script(path, output, statistics, settled);
+  });
 }
 
 }  // namespace bess

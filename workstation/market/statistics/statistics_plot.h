@@ -17,8 +17,4 @@ void require_drawable(const std::filesystem::path& path);
 void plot_statistics(const std::filesystem::path& path, const MarketStatistics& statistics,
                      std::span<const double> settled);
 
-/// The commands and inline data that gnuplot is fed.
-std::string gnuplot_script(const std::filesystem::path& output, const MarketStatistics& statistics,
-                           std::span<const double> settled);
-
 }  // namespace bess

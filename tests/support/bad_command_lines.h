@@ -1,0 +1,64 @@
+// Command lines that a program refuses: each with its exit code and words of the one line that says why.
+#pragma once
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/support/child_process.h"
+
+namespace bess {
+
+struct BadCommandLine {
+  const char* words;  ///< after the program's name, split at spaces; '' is an empty word
+  int exit_code;
+  const char* complaint;
+};
+
+/// The words, with what stands for a file replaced by its path.
+inline std::vector<std::string> words_of(const BadCommandLine& line,
+                                         const std::map<std::string, std::string>& files) {
+  std::vector<std::string> words;
+  std::istringstream stream(line.words);
+  for (std::string word; stream >> word;) {
+    for (const auto& [name, path] : files) {
+      if (word.starts_with(name)) word.replace(0, name.size(), path);
+    }
+    words.push_back(word == "''" ? "" : word);
+  }
+  return words;
+}
+
+/// Numbers that nobody reads: what a range of any double would print.
+inline bool has_many_digits(const std::string& text) {
+  int digits = 0;
+  return std::ranges::any_of(text, [&digits](unsigned char c) {
+    digits = std::isdigit(c) != 0 ? digits + 1 : 0;
+    return digits > 24;
+  });
+}
+
+/// A bare command shows its help before that line; every other one that line alone.
+inline void expect_refused(const std::string& program, const BadCommandLine& line,
+                           const std::map<std::string, std::string>& files) {
+  SCOPED_TRACE(line.words);
+  std::vector<std::string> arguments = words_of(line, files);
+  arguments.insert(arguments.begin(), program);
+  ChildProcess child(arguments);
+  const std::string text = child.read_all();
+  EXPECT_EQ(child.wait(), line.exit_code) << text;
+  EXPECT_THAT(text, testing::HasSubstr(line.complaint));
+  const std::size_t last = text.rfind('\n', text.size() - 2);
+  const std::string complaint = last == text.npos ? text : text.substr(last + 1);
+  EXPECT_THAT(complaint, testing::StartsWith(program.substr(program.rfind('/') + 1) + ": "));
+  EXPECT_TRUE(last == text.npos || text.find("Usage: ") != text.npos) << text;
+  EXPECT_FALSE(has_many_digits(text)) << text;
+  EXPECT_TRUE(std::ranges::none_of(text, [](char c) { return c == '\x1b' || c == '\r'; })) << text;
+}
+
+}  // namespace bess

@@ -1,0 +1,121 @@
+// bess-sim refuses what nobody can have meant before it listens: one clear line, exit code 2 for a bad command
+// line and 1 for bad input.
+#include "tests/support/bad_command_lines.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "tests/support/temporary_folder.h"
+
+namespace bess {
+namespace {
+
+// GOOD is a minute file, MAPS the folder of the register maps, NONE nothing, FOLDER a folder, EMPTY and GARBAGE files.
+constexpr BadCommandLine kCases[] = {
+    {"", 2, "subcommand is required (see bess-sim --help)"},
+    {"batery", 2, "did you mean battery? (see bess-sim --help)"},
+    {"markt", 2, "did you mean market?"},
+    {"settel", 2, "did you mean settle?"},
+    {"simulate", 2, "unknown subcommand \"simulate\" (see bess-sim --help)"},
+    {"market", 2, "--prices is required (see bess-sim market --help)"},
+    {"settle", 2, "is required (see bess-sim settle --help)"},
+    {"battery now", 2, "\"now\" is one word too many (see bess-sim battery --help)"},
+    {"battery --prot 1502", 2, "unknown option --prot; did you mean --port? (see bess-sim battery"},
+    {"battery --port", 2, "--port"},
+    {"battery --port -1", 2, "not in range 0 to 65535"},
+    {"battery --port 65536", 2, "not in range 0 to 65535"},
+    {"battery --port http", 2, "not in range 0 to 65535"},
+    {"battery --host localhost", 2, "--host"},
+    {"battery --host 127.0.0.256", 2, "--host"},
+    {"battery --clients-max 0", 2, "not in range 1 to 32"},
+    {"battery --response-delay-ms -1", 2, "not in range 0 to 60000"},
+    {"battery --soc 1.5", 2, "--soc: 1.5 must be 0 to 1"},
+    {"battery --soc nan", 2, "--soc: nan must be 0 to 1"},
+    {"battery --soc 1e300", 2, "--soc: 1e300 must be 0 to 1"},
+    {"battery --soc half", 2, "--soc"},
+    {"battery --power-w 0", 2, "must be above 0"},
+    {"battery --power-w nan", 2, "must be above 0"},
+    {"battery --capacity-wh -8000", 2, "must be above 0"},
+    {"battery --efficiency 0", 2, "must be 0.01 to 1"},
+    {"battery --efficiency 1.1", 2, "must be 0.01 to 1"},
+    {"battery --time-scale 0", 2, "not in range 1 to 100000"},
+    {"battery --parity mark", 2, "--parity"},
+    {"battery --stop-bits 3", 2, "not in range 1 to 2"},
+    {"battery --exception-code 0", 2, "not in range 1 to 255"},
+    {"battery --fault-seed -1", 2, "--fault-seed"},
+    // Options that contradict each other, or wait for one that is not there.
+    {"battery --serial NONE --port 1502", 2, "excludes"},
+    {"battery --serial NONE --host 127.0.0.1", 2, "excludes"},
+    {"battery --baud 9600", 2, "--baud requires --serial"},
+    {"battery --parity even", 2, "--parity requires --serial"},
+    {"battery --stop-bits 2", 2, "--stop-bits requires --serial"},
+    {"battery --fault-every 3", 2, "--fault-every requires --fault"},
+    {"battery --fault-probability 0.1", 2, "--fault-probability requires --fault"},
+    {"battery --fault-seed 3", 2, "--fault-seed requires --fault"},
+    {"battery --fault-from-s 60", 2, "--fault-from-s requires --fault"},
+    {"battery --late-ms 60", 2, "--late-ms requires --fault"},
+    {"battery --fault drop --fault-every 3 --fault-probability 0.1", 2, "excludes"},
+    {"battery --fault drop --fault-from-s 60 --fault-to-s 60", 1, "is not before --fault-to-s 60"},
+    {"battery --fault crc", 2, "there is no fault crc"},
+    {"battery --fault bad-crc", 1, "only on a serial line"},
+    {"battery --soc-min 0.9 --soc-max 0.1", 1, "--soc-min 0.9: is not below --soc-max 0.1"},
+    {"battery --house-seed 3", 2, "--house-seed requires --house"},
+    {"battery --meter-map MAPS/../meters/sunspec.toml", 2, "--meter-map requires --house"},
+    {"battery --house daily --meter-port 1503", 2, "--meter-port requires --meter-map"},
+    {"battery --house daily --meter-fault silence", 2, "--meter-fault requires --meter-map"},
+    {"battery --house daily --meter-map MAPS/alphaess.toml --port 0", 1, "not a meter's map"},
+    {"battery --house daily --meter-map MAPS/../meters/sunspec.toml --port 1502 --meter-port 1502",
+     1, "is the battery's own --port"},
+    {"battery --house always", 1, "always"},
+    {"battery --house NONE", 1, "NONE"},
+    {"battery --time-scale 900", 2, "--time-scale requires --utc-start"},
+    {"battery --anchor-monotonic-ns 5", 2, "--anchor-monotonic-ns requires --utc-start"},
+    {"battery --utc-start yesterday", 1, "not a UTC instant such as"},
+    {"battery --power-w 1e9", 1, "more than the map alphaess can express"},
+    // Files.
+    {"battery --map NONE", 1, "NONE"},
+    {"battery --map EMPTY", 1, "EMPTY"},
+    {"battery --map GARBAGE", 1, "GARBAGE:1: not valid TOML"},
+    {"battery --map MAPS/alphaess.toml --variant next", 1, "next"},
+    {"battery --record FOLDER", 1, "FOLDER: is a folder, not a file"},
+    {"battery --record -", 1, "means the standard output elsewhere"},
+    {"battery --map GARBAGE --record GARBAGE", 1, "would replace the input"},
+    {"battery --serial NONE", 1, "cannot open this serial"},
+    {"market --prices NONE", 1, "NONE: cannot open"},
+    {"market --prices EMPTY", 1, "EMPTY"},
+    {"market --prices GARBAGE", 1, "GARBAGE"},
+    {"market --prices GOOD --fault slow", 2, "--fault"},
+    {"market --prices GOOD --fault-every 3", 2, "--fault-every requires --fault"},
+    {"market --prices GOOD --latency-s -1", 2, "must be 0 to 3600"},
+    {"market --prices GOOD --tls-cert NONE", 2, "--tls-cert requires --tls-key"},
+    {"market --prices GOOD --tls-key NONE", 2, "--tls-key requires --tls-cert"},
+    {"market --prices GOOD --port 0 --tls-cert NONE --tls-key NONE", 1, "NONE"},
+    {"market --prices GOOD --port 0 --host nowhere.invalid", 1, "nowhere.invalid"},
+    {"settle --record NONE --edge-log NONE --prices GOOD", 1, "NONE: cannot open"},
+    {"settle --record GARBAGE --edge-log GARBAGE --prices GOOD", 1, "GARBAGE"},
+    {"settle --record GOOD --edge-log GOOD --prices GOOD", 1, "GOOD"},
+    {"clock --in-s -1", 2, "must be 0 to 86400"},
+    {"clock --in-s nan", 2, "must be 0 to 86400"},
+    {"clock --in-s 1e300", 2, "must be 0 to 86400"},
+    {"clock --in-s soon", 2, "--in-s"},
+};
+
+TEST(BadSimCommandLine, EachIsRefusedInOneLineBeforeAnythingListens) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder.file("FOLDER"));
+  const std::map<std::string, std::string> files{
+      {"MAPS", BESS_SOURCE_DIR "/edge/maps"},
+      {"GOOD", folder.write("GOOD",
+                            "minute_utc,indicative_eur_mwh,settled_eur_mwh\n"
+                            "2023-01-01T00:00:00Z,1.0,2.0\n2023-01-01T00:01:00Z,1.5,2.0\n")},
+      {"EMPTY", folder.write("EMPTY", "")},
+      {"GARBAGE", folder.write("GARBAGE", "\x7f ELF, or something \x01\x02 like that\n")},
+      {"FOLDER", folder.file("FOLDER")},
+      {"NONE", folder.file("NONE")}};
+  EXPECT_GE(std::size(kCases), 80u);
+  for (const BadCommandLine& line : kCases) expect_refused(BESS_SIM_PROGRAM, line, files);
+}
+
+}  // namespace
+}  // namespace bess

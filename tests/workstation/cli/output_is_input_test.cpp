@@ -1,0 +1,70 @@
+// Every command that writes a file refuses to write over one that it reads, before it reads it.
+#include <gmock/gmock.h>
+
+#include <filesystem>
+
+#include "shared/host/file.h"
+#include "shared/host/user_error.h"
+#include "tests/support/temporary_folder.h"
+#include "workstation/cli/commands.h"
+
+namespace bess {
+namespace {
+
+struct Case {
+  const char* name;
+  const char* line;  ///< IN is the file that is read, OUT another name of it
+};
+
+class OutputIsInput : public testing::TestWithParam<Case> {};
+
+TEST_P(OutputIsInput, IsRefusedAndTheFileStays) {
+  const TemporaryFolder folder;
+  // A run's and a backtest's outputs have names of their own: the input is one of them.
+  const std::string in = folder.write("backtest.csv", "precious");
+  const std::string link = folder.file("report.html");
+  std::filesystem::create_symlink(in, link);
+  std::string line = GetParam().line;
+  const auto put = [&line](const std::string& what, const std::string& value) {
+    for (std::size_t at = 0; (at = line.find(what)) != line.npos;)
+      line.replace(at, what.size(), value);
+  };
+  put("IN", in);
+  put("OUT", link);
+  put("FOLDER", folder.file("."));
+  CommandLine command_line("bess-train", "", "");
+  ProgramCommand root = command_line.root();
+  add_commands(root);
+  try {
+    command_line.parse(line);
+    ADD_FAILURE() << "was not refused";
+  } catch (const UserError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("would replace the input"));
+  }
+  EXPECT_EQ(read_file(in), "precious");
+  EXPECT_TRUE(std::filesystem::is_symlink(link));
+}
+
+constexpr Case kCases[] = {
+    {"train", "train --prices IN --out OUT"},
+    {"train_curve", "train --prices IN --out FOLDER/t.bin --curve-out OUT"},
+    {"distil_prices", "distil --prices IN --teacher FOLDER/none --out OUT"},
+    {"distil_teacher", "distil --prices FOLDER/none --teacher IN --out OUT"},
+    {"evaluate_csv", "evaluate --prices IN --policy rbc --csv OUT"},
+    {"evaluate_days", "evaluate --prices IN --policy rbc --days-out OUT"},
+    {"evaluate_steps", "evaluate --prices FOLDER/none --fit IN --policy rbc --steps-out OUT"},
+    {"evaluate_policy", "evaluate --prices FOLDER/none --policy IN --csv OUT"},
+    {"import", "prices import IN --out OUT"},
+    {"reconstruct", "prices reconstruct --quarter-hours IN --out OUT"},
+    {"stats", "prices stats IN --plot OUT"},
+    {"export", "export --student IN --out OUT"},
+    {"backtest", "backtest --prices IN --out FOLDER"},
+    {"run_prices", "run --prices OUT --out FOLDER"},
+    {"run_config", "run --config OUT --out FOLDER"},
+    {"run_teacher", "run --from-teacher OUT --out FOLDER"},
+};
+INSTANTIATE_TEST_SUITE_P(Commands, OutputIsInput, testing::ValuesIn(kCases),
+                         [](const auto& one) { return std::string(one.param.name); });
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,104 @@
+// Finished runs as figures: bands over seeds, the table of runs, and the days that both are made of.
+#include "workstation/cli/run_summary.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "shared/host/file.h"
+#include "shared/host/user_error.h"
+#include "tests/support/temporary_folder.h"
+#include "workstation/cli/run_seeds.h"
+#include "workstation/report/evaluation_days.h"
+
+namespace bess {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+/// Three days of which the first earned `profit_eur`; thirds do not end in binary.
+Evaluation evaluation_of(double profit_eur) {
+  Evaluation evaluation;
+  evaluation.capacity_mwh = BatteryParameters{}.capacity_wh / 1e6;
+  evaluation.days = {{"2023-01-26", profit_eur, 1 / 3.0, 4, 0.5, 2 / 3.0},
+                     {"2023-01-27", -1 / 3.0, 0, 0, 0.1, 0},
+                     {"2023-01-28", 7, 2, 9, 1, 3}};
+  return evaluation;
+}
+
+std::vector<NamedEvaluation> evaluations_of(double profit_eur) {
+  return {{"rbc", evaluation_of(1), evaluation_of(2)},
+          {kExportedPolicy, evaluation_of(profit_eur), evaluation_of(2 * profit_eur)}};
+}
+
+RunSummary run_of(const char* seed, double profit_eur) {
+  RunSummary run{{std::string("runs/seed-") + seed}, {}, evaluations_of(profit_eur)};
+  run.record.identity = {{"prices", "the same"}, {"seed", seed}};
+  run.record.figures = RunFigures{"made by hand", "0123abcd", 1, 2, 0};
+  return run;
+}
+
+TEST(EvaluationDays, ReadBackToTheBit) {
+  const auto written = evaluations_of(10 / 3.0);
+  const std::string text = evaluation_days_csv(written);
+  const auto read = parse_evaluation_days_csv(text, "days.csv", {});
+  EXPECT_EQ(evaluation_days_csv(read), text);
+  EXPECT_EQ(comparison_csv(read), comparison_csv(written));
+  EXPECT_THROW(
+      (void)parse_evaluation_days_csv(text + "rbc,half,2023-01-29,0,0,0,0,0\n", "days.csv", {}),
+      UserError);
+}
+
+TEST(RunSummaries, BandsSpanTheRuns) {
+  const std::vector<Band> bands = bands_of({run_of("1", 24), run_of("2", 48), run_of("3", 72)});
+  ASSERT_EQ(bands.size(), 4U);
+  const Band& band = bands[1];
+  EXPECT_EQ(band.policy, kExportedPolicy);
+  EXPECT_EQ(band.soc, "reset");
+  EXPECT_NEAR(band.high - band.low, 48 / 3.0 / 8, 1e-12);  // EUR a day and MWh of 8
+  EXPECT_NEAR(band.mean, (band.low + band.high) / 2, 1e-12);
+  EXPECT_NEAR(band.deviation, (band.high - band.low) / 2, 1e-12);
+  EXPECT_EQ(bands[0].deviation, 0) << "a baseline knows no seed";
+}
+
+TEST(RunSummaries, BandsAreInTableReportAndJson) {
+  const TemporaryFolder folder;
+  const std::vector<RunSummary> runs{run_of("1", 24), run_of("2", 48)};
+  const std::vector<Band> bands = bands_of(runs);
+  EXPECT_THAT(format_bands(bands, 2), AllOf(HasSubstr("lowest"), HasSubstr(kExportedPolicy)));
+  EXPECT_THAT(bands_json(bands, 2), AllOf(HasSubstr("\"runs\":2"), HasSubstr("\"highest\":")));
+  write_seeds_report(folder.file(""), runs);
+  EXPECT_THAT(read_file(folder.file("seeds.html")),
+              AllOf(HasSubstr("seed-2"), HasSubstr("Highest")));
+  EXPECT_EQ(std::ranges::count(read_file(folder.file("seeds.csv")), '\n'), 1 + 4);
+}
+
+TEST(RunSummaries, TheTableSaysWhatRunsEarnedAndDifferIn) {
+  const std::string table = format_runs_table({run_of("1", 24), run_of("2", 48)});
+  EXPECT_THAT(table, AllOf(HasSubstr("runs/seed-2"), HasSubstr("+2.0"), HasSubstr("seed: 1 | 2"),
+                           Not(HasSubstr("prices: "))));
+}
+
+TEST(RunSummaries, ARunThatIsNotFinishedIsNamedWithTheMend) {
+  const TemporaryFolder folder;
+  const RunFolder run{folder.file("run")};
+  const auto refusal = [&] {
+    try {
+      (void)load_run_summary(run);
+    } catch (const UserError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(refusal(), HasSubstr("holds no run"));
+  RunRecord record;
+  record.stages = {{"teacher", {}, {}, false}};
+  save_run_record(run, record);
+  EXPECT_THAT(refusal(),
+              AllOf(HasSubstr("stopped after the teacher"), HasSubstr("run --resume --out")));
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,192 @@
+// The program itself: a run that is killed again and again, meets a full disk, is interrupted or not proved.
+// Its battery pays so much for every exchange that it idles, which is learnt and proved in seconds.
+#include <gmock/gmock.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+
+#include "shared/host/file.h"
+#include "tests/support/child_process.h"
+#include "tests/support/small_market.h"
+#include "tests/support/temporary_folder.h"
+
+namespace bess {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+using testing::AllOf;
+using testing::HasSubstr;
+
+constexpr std::uint64_t kSeed = 20230401;
+
+constexpr const char* kIdle =
+    "[costs]\nimport_adder_eur_per_mwh = 1000\nimport_percent = 100\n"
+    "export_fee_eur_per_mwh = 1000\nexport_percent = 100\n"
+    "[distil]\nepochs = 16\nlearning_rate = 0.03\nrepair_rounds = 2\nrepair_epochs = 1\n";
+
+class KilledRun : public testing::Test {
+ protected:
+  KilledRun() { write_minute_file(prices_, small_series(31), ""); }
+
+  [[nodiscard]] std::vector<std::string> command(const std::string& out,
+                                                 std::vector<std::string> more = {}) const {
+    std::vector<std::string> words{
+        BESS_TRAIN_PROGRAM, "run", "--prices", prices_, "--config", config_,
+        "--threads",        "2",   "--out",    out};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+
+  /// Whether it has, without taking its exit code.
+  static bool has_ended(pid_t pid) {
+    siginfo_t info{};
+    return waitid(P_PID, static_cast<id_t>(pid), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+           info.si_pid == pid;
+  }
+
+  /// Every file but the times, and whatever was left behind.
+  static std::map<std::string, std::string> contents(const fs::path& folder) {
+    std::map<std::string, std::string> files;
+    for (const auto& entry : fs::directory_iterator(folder)) {
+      const std::string name = entry.path().filename().string();
+      if (name != "times.json") files[name] = read_file(entry.path());
+    }
+    return files;
+  }
+  static void expect_same(const fs::path& folder, const std::map<std::string, std::string>& whole) {
+    const auto files = contents(folder);
+    for (const auto& [name, text] : whole) {
+      ASSERT_TRUE(files.contains(name)) << name << " is missing";
+      EXPECT_TRUE(files.at(name) == text) << name << " differs";
+    }
+    for (const auto& [name, text] : files) EXPECT_TRUE(whole.contains(name)) << name << " is left";
+  }
+
+  TemporaryFolder folder_;
+  std::string prices_ = folder_.file("prices.csv.gz");
+  std::string config_ = folder_.write(
+      "idle.toml",
+      std::string(kIdle) +
+          "[correction]\nlow_price_eur_per_mwh = -501\nhigh_price_eur_per_mwh = 1501\n");
+};
+
+// BESS_KILLS=50 in the environment kills fifty times.
+TEST_F(KilledRun, AtRandomAndOnAFullDiskEndsWithTheSameBytes) {
+  const char* asked = std::getenv("BESS_KILLS");
+  const int kills = asked != nullptr ? std::atoi(asked) : 10;
+  const std::string whole = folder_.file("whole");
+  const auto start = Clock::now();
+  ASSERT_EQ(ChildProcess(command(whole)).wait(), 0);
+  std::chrono::duration<double> longest_s = 0.8 * (Clock::now() - start);
+  const auto expected = contents(whole);
+
+  const std::string out = folder_.file("killed");
+  std::string limited = "trap '' XFSZ; ulimit -f 64; exec";  // no file above 32 KiB
+  for (const std::string& word : command(out)) limited += " '" + word + "'";
+  ChildProcess full({"/bin/sh", "-c", limited});
+  EXPECT_THAT(full.read_all(), HasSubstr("teacher.bin: writing failed"));
+  EXPECT_EQ(full.wait(), 1);
+  EXPECT_FALSE(fs::exists(out + "/teacher.bin"));
+
+  Random random(kSeed);
+  for (int killed = 0, finished = 0; killed < kills;) {
+    ASSERT_LT(finished, 4 * kills) << "it ends before it can be killed";
+    ChildProcess run(command(out, {"--resume"}));
+    const auto end = Clock::now() + random.uniform() * longest_s;
+    while (Clock::now() < end && !has_ended(run.pid())) usleep(2'000);
+    run.signal(SIGKILL);
+    const int exit_code = run.wait();
+    ASSERT_THAT(exit_code, testing::AnyOf(0, 128 + SIGKILL)) << run.read_all();
+    if (exit_code != 0) {
+      ++killed;
+      continue;
+    }
+    ++finished;
+    expect_same(out, expected);
+    fs::remove_all(out);  // begin anew, or the rest of the kills would hit nothing
+    longest_s *= 0.8;     // the machine has become faster, or most of the work was done
+  }
+  ASSERT_EQ(ChildProcess(command(out, {"--resume"})).wait(), 0);
+  expect_same(out, expected);
+
+  // What was tampered with is done again, and it alone; from there on nothing is left to do.
+  write_file(out + "/student_weights.h", "// mine");
+  fs::remove(out + "/evaluation.csv");
+  ChildProcess mended({BESS_TRAIN_PROGRAM, "run", "--resume", "--out", out});
+  EXPECT_THAT(mended.read_all(),
+              AllOf(HasSubstr("teacher: kept"), HasSubstr("plain student: kept"),
+                    HasSubstr("corrected student: kept"), testing::Not(HasSubstr("header: kept")),
+                    testing::Not(HasSubstr("evaluation: kept")), HasSubstr("report: kept")));
+  EXPECT_EQ(mended.wait(), 0);
+  expect_same(out, expected);
+
+  // A configuration that was edited afterwards is not what the run was made with.
+  write_file(out + "/config.toml", "[battery]\npower_w = 5000000\n");
+  ChildProcess report({BESS_TRAIN_PROGRAM, "report", "--run", out});
+  EXPECT_THAT(report.read_all(), HasSubstr("the configuration is missing or was changed since"));
+  EXPECT_EQ(report.wait(), 1);
+
+  ChildProcess compare({BESS_TRAIN_PROGRAM, "runs", "compare", whole, out});
+  EXPECT_THAT(compare.read_all(), AllOf(HasSubstr(whole), HasSubstr(out), HasSubstr("+0.0")));
+  EXPECT_EQ(compare.wait(), 0);
+}
+
+TEST_F(KilledRun, InterruptedItSaysHowToGoOnAndKeepsTheTrainingSoFar) {
+  config_ = folder_.write("long.toml",
+                          "[train]\nmethod = \"c51\"\nsteps = 10000000\nvalidate_every = 1\n"
+                          "batch_size = 16\npotential = \"none\"\ncentre_rewards = false\n");
+  const std::string out = folder_.file("run");
+  ChildProcess run(command(out));
+  for (int i = 0; i < 30'000 && !fs::exists(out + "/teacher.checkpoint"); ++i) usleep(10'000);
+  ASSERT_TRUE(fs::exists(out + "/teacher.checkpoint"));
+  run.signal(SIGINT);
+  EXPECT_THAT(run.read_all(),
+              AllOf(HasSubstr("run --resume --out " + out), HasSubstr("interrupted")));
+  EXPECT_EQ(run.wait(), 3);
+  EXPECT_THAT(read_file(out + "/run.json"), testing::Not(HasSubstr("\"teacher\":	{")));
+  for (const auto& entry : fs::directory_iterator(out)) {
+    EXPECT_THAT(entry.path().string(), testing::Not(HasSubstr(".part."))) << "half-written";
+  }
+}
+
+TEST_F(KilledRun, AFailedProofIsToldWithEveryRoundAndNotDoneTwice) {
+  config_ = folder_.write("fail.toml", std::string(kIdle) +
+                                           "[correction]\nlow_price_eur_per_mwh = 200\n"
+                                           "high_price_eur_per_mwh = 201\n");
+  const std::string out = folder_.file("run");
+  const auto expected = AllOf(HasSubstr("violations are left after 3 rounds (by round "),
+                              HasSubstr("raise [distil] epochs or repair_rounds"),
+                              HasSubstr("--from-teacher " + out + " --config NEW"));
+  ChildProcess run(command(out));
+  EXPECT_THAT(run.read_all(), expected);
+  EXPECT_EQ(run.wait(), 1);
+  EXPECT_EQ(std::ranges::count(read_file(out + "/proof_rounds.csv"), '\n'), 1 + 3);
+  EXPECT_FALSE(fs::exists(out + "/student.json"));
+  const auto before = contents(out);
+  ChildProcess again(command(out, {"--resume"}));
+  EXPECT_THAT(again.read_all(),
+              AllOf(expected, HasSubstr("teacher: kept"), HasSubstr("plain student: kept"),
+                    testing::Not(HasSubstr("distil, monotone"))));
+  EXPECT_EQ(again.wait(), 1);
+  expect_same(out, before);
+
+  // Nothing is lost: with a mended configuration its teacher goes on to a proved student.
+  config_ = folder_.write("mended.toml", std::string(kIdle) +
+                                             "[correction]\nlow_price_eur_per_mwh = -501\n"
+                                             "high_price_eur_per_mwh = 1501\n");
+  const std::string repaired = folder_.file("repaired");
+  ChildProcess mended(command(repaired, {"--from-teacher", out}));
+  EXPECT_THAT(mended.read_all(), AllOf(HasSubstr("take the teacher of " + out + "/teacher.bin"),
+                                       HasSubstr("no violation over")));
+  EXPECT_EQ(mended.wait(), 0);
+  EXPECT_TRUE(read_file(repaired + "/teacher.bin") == read_file(out + "/teacher.bin"));
+  expect_same(out, before);
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,336 @@
+#include "workstation/cli/run_stages.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <chrono>
+#include <ctime>
+
+#include "shared/host/command_line.h"
+#include "shared/host/csv.h"
+#include "shared/host/file.h"
+#include "shared/host/json.h"
+#include "shared/host/user_error.h"
+#include "shared/utc_text.h"
+#include "workstation/cli/built_in_market.h"
+#include "workstation/cli/chain_steps.h"
+#include "workstation/cli/interruption.h"
+#include "workstation/cli/price_input.h"
+#include "workstation/report/evaluation_days.h"
+#include "workstation/student/correct_and_prove.h"
+#include "workstation/student/counterexamples.h"
+#include "workstation/student/export.h"
+
+namespace bess {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace run_file;
+
+constexpr const char* kRoundsHeader = "round,violations";
+constexpr const char* kCorrection = "corrected student";
+constexpr const char* kReporting = "report";
+
+std::string rounds_csv(const std::vector<std::int64_t>& violations_by_round) {
+  std::string text = fmt::format("{}\n", kRoundsHeader);
+  for (std::size_t i = 0; i < violations_by_round.size(); ++i) {
+    text += fmt::format("{},{}\n", i + 1, violations_by_round[i]);
+  }
+  return text;
+}
+
+std::vector<std::int64_t> read_rounds(const fs::path& path) {
+  const CsvTable table(read_file(path), path.string(), kRoundsHeader);
+  std::vector<std::int64_t> rounds;
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    rounds.push_back(static_cast<std::int64_t>(table.number(row, 1)));
+  }
+  return rounds;
+}
+
+/// times.json: seconds and end of each stage, added to or replaced.
+void note_time(const fs::path& path, const std::string& stage, double seconds) {
+  Json times = Json::object();
+  const Json before = fs::exists(path) ? Json::parse(read_file(path)) : Json::object();
+  for (const JsonValue member : before.value()) {
+    const auto took = member["seconds"].number();
+    const char* end = member["finished_utc"].text();
+    if (member.key() == stage || !took || end == nullptr) continue;
+    times.set(std::string(member.key()).c_str(),
+              Json::object({{"seconds", *took}, {"finished_utc", end}}));
+  }
+  times.set(stage.c_str(), Json::object({{"seconds", Decimals{seconds, 2}},
+                                         {"finished_utc", utc_text(std::time(nullptr)).view()}}));
+  write_file(path, times.text());
+}
+
+/// A file's name while it is written (file.cpp), whoever wrote it: the folder is locked.
+bool is_half_written(const std::string& name) {
+  const std::size_t at = name.rfind(".part.");
+  return at != name.npos && name.find_first_not_of("0123456789", at + 6) == name.npos;
+}
+
+}  // namespace
+
+RunStages::RunStages(RunFolder folder, RunRecord record, const MinuteSeries& series,
+                     std::FILE* messages)
+    : folder_(std::move(folder)),
+      record_(std::move(record)),
+      config_(record_.config(folder_)),
+      series_(series),
+      market_(make_market_steps(series, config_.market)),
+      messages_(messages) {}
+
+void RunStages::tell(const std::string& text) const {
+  fmt::print(messages_, "      {}\n", text);
+  std::fflush(messages_);
+}
+
+void RunStages::announce(int number, const std::string& text) const {
+  fmt::print(messages_, "[{}/6] {}\n", number, text);
+  std::fflush(messages_);
+}
+
+void RunStages::stage(const std::string& name, const Names& inputs,
+                      const std::function<Names()>& make) {
+  if (const StageRecord* done = record_.holds(name, inputs, folder_)) {
+    if (done->failed) fail_the_proof();
+    if (name != "configuration") tell(name + ": kept");
+    return;
+  }
+  const auto start = std::chrono::steady_clock::now();
+  StageRecord stage{name, {}, {}, false};
+  for (const std::string& input : inputs) {
+    stage.inputs.emplace_back(input, file_mark(folder_.path / input));
+  }
+  for (const std::string& output : make()) {
+    stage.outputs.emplace_back(output, file_mark(folder_.path / output));
+  }
+  stage.failed = unproved_;
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  note(std::move(stage), taken.count());
+  if (unproved_) fail_the_proof();
+}
+
+void RunStages::note(StageRecord stage, double seconds) {
+  note_time(path(kTimes), stage.name, seconds);
+  const auto before = std::ranges::find(record_.stages, stage.name, &StageRecord::name);
+  if (before == record_.stages.end()) {
+    record_.stages.push_back(std::move(stage));
+  } else {
+    *before = std::move(stage);
+  }
+  save_run_record(folder_, record_);
+}
+
+void RunStages::tidy() const {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder_.path, error)) {
+    if (is_half_written(entry.path().filename().string())) fs::remove(entry.path(), error);
+  }
+  if (record_.holds("teacher", {}, folder_) != nullptr) fs::remove(path(kCheckpoint), error);
+}
+
+void RunStages::finish() {
+  tidy();
+  warn_untrained_months(market_, config_.train.context == ContextKind::kMonth);
+  stage("configuration", {}, [&]() -> Names {
+    write_file(path(kConfig), format_run_config(config_));
+    return {kConfig};
+  });
+  if (record_.prices == kSimulatedPrices) {
+    stage("prices", {}, [&]() -> Names {
+      write_minute_file(path(kSimulatedPrices), series_, built_in_market_provenance());
+      return {kSimulatedPrices};
+    });
+  }
+  if (record_.teacher_file.empty()) {
+    announce(2, fmt::format("train the {} teacher", method_name(config_.train.method)));
+    stage("teacher", {}, [&] { return make_teacher(); });
+  } else {
+    announce(2, "take the teacher of " + record_.teacher_file);
+    stage("teacher", {}, [&] { return take_teacher(); });
+  }
+  announce(3, "distil without correction, for comparison");
+  stage("plain student", {kTeacher}, [&] { return make_plain_student(); });
+  announce(4, "correct while distilling, and prove");
+  stage(kCorrection, {kTeacher}, [&] { return make_corrected_student(); });
+  announce(5, "export");
+  stage("header", {kStudent}, [&] { return make_header(); });
+  announce(6, "evaluate on test days and report");
+  stage("evaluation", {kTeacher, kPlainStudent, kStudent}, [&] { return make_evaluation(); });
+  stage(kReporting,
+        {kTeacher, kPlainStudent, kPlainViolations, kStudent, kTrainingCurve, kDistilCurve, kDays},
+        [&] { return make_report(); });
+  tidy();
+}
+
+void RunStages::report_again() {
+  const std::pair<const char*, Names> needed[] = {{"configuration", {}},
+                                                  {"teacher", {}},
+                                                  {"plain student", {kTeacher}},
+                                                  {kCorrection, {kTeacher}}};
+  for (const auto& [name, inputs] : needed) {
+    const StageRecord* done = record_.holds(name, inputs, folder_);
+    if (done != nullptr && !done->failed) continue;
+    fail(
+        "{}: the {} is missing or was changed since; 'bess-train run --resume --out {}' makes it "
+        "again",
+        folder_.path.string(), name, folder_.path.string());
+  }
+  stage("evaluation", {kTeacher, kPlainStudent, kStudent}, [&] { return make_evaluation(); });
+  std::erase_if(record_.stages, [](const StageRecord& done) { return done.name == kReporting; });
+  stage(kReporting,
+        {kTeacher, kPlainStudent, kPlainViolations, kStudent, kTrainingCurve, kDistilCurve, kDays},
+        [&] { return make_report(); });
+}
+
+std::string RunStages::summary() const { return read_file(path(kSummary)); }
+
+const Teacher& RunStages::teacher() {
+  if (!teacher_) teacher_ = load_teacher(path(kTeacher));
+  return *teacher_;
+}
+
+const Matrix& RunStages::visited() {
+  if (!visited_) visited_ = visited_inputs(teacher(), market_, config_.battery, config_.distil);
+  return *visited_;
+}
+
+RunStages::Names RunStages::make_teacher() {
+  std::string identity;
+  for (const auto& [name, value] : record_.identity)
+    identity += fmt::format("{} {}\n", name, value);
+  const auto train = [&](bool resume) {
+    return train_teacher(market_, config_.battery, config_.train, watched_from_the_first_look(),
+                         {path(kCheckpoint), resume, identity});
+  };
+  const auto train_on = [&] {
+    if (!fs::exists(path(kCheckpoint))) return train(false);
+    try {
+      return train(true);
+    } catch (const UserError&) {  // damaged: it is worth no more than its time
+      fs::remove(path(kCheckpoint));
+      return train(false);
+    }
+  };
+  TrainResult trained = train_on();
+  if (interruption()) {
+    fmt::print(stderr, "{}\n", how_to_go_on(folder_));
+    throw Interrupted{};
+  }
+  end_when_interrupted(how_to_go_on(folder_));
+  warn_narrow_support(config_.train, trained);
+  trained.teacher.provenance = training_provenance(record_.prices_name, config_.train, trained);
+  save_teacher(path(kTeacher), trained.teacher);
+  write_file(path(kTrainingCurve), training_curve_csv(trained.curve));
+  tell(fmt::format("best at step {}: {:.1f} EUR/day/MWh on validation days, {:.0f} s",
+                   trained.best_step, trained.best_validation_eur_per_day_per_mwh,
+                   trained.seconds));
+  return {kTeacher, kTrainingCurve};
+}
+
+RunStages::Names RunStages::take_teacher() const {
+  save_teacher(path(kTeacher), load_teacher(record_.teacher_file));
+  write_file(path(kTrainingCurve), training_curve_csv({}));
+  return {kTeacher, kTrainingCurve};
+}
+
+RunStages::Names RunStages::make_plain_student() {
+  DistilOptions options = config_.distil;
+  options.correct = false;
+  const CorrectionResult plain = correct_and_prove(teacher(), visited(), options, interruption());
+  const StudentFile& student = student_of(plain.verdict);
+  save_student(path(kPlainStudent), student);
+  write_file(path(kPlainViolations), counterexamples_csv(student.certificate.counterexamples));
+  tell(fmt::format("{} violations in {} states looked at", student.certificate.violations(),
+                   student.certificate.states_checked));
+  return {kPlainStudent, kPlainViolations};
+}
+
+RunStages::Names RunStages::make_corrected_student() {
+  const CorrectionResult corrected =
+      correct_and_prove(teacher(), visited(), config_.distil, interruption(),
+                        validation_score(market_, config_.battery, config_.initial_soc_frac));
+  const StudentFile& student = student_of(corrected.verdict);
+  write_file(path(kProofRounds), rounds_csv(corrected.violations_by_round));
+  write_file(path(kDistilCurve), distil_curve_csv(corrected.curve));
+  const auto* proved = std::get_if<ProvedStudent>(&corrected.verdict);
+  unproved_ = proved == nullptr;
+  const char* name = unproved_ ? kUnprovedStudent : kStudent;
+  save_student(path(name), student);
+  if (!unproved_) {
+    const std::size_t rounds = corrected.violations_by_round.size();
+    proved_ = *proved;
+    tell(fmt::format("no violation over {} states, {} round{}", student.certificate.states_checked,
+                     rounds, rounds == 1 ? "" : "s"));
+  }
+  return {name, kDistilCurve, kProofRounds};
+}
+
+void RunStages::fail_the_proof() const {
+  throw ProofFailed(
+      describe_failed_proof(read_rounds(path(kProofRounds)), config_.distil.method) +
+      fmt::format(", and start at the correction: bess-train run --from-teacher {} --config NEW "
+                  "--out ANOTHER",
+                  folder_.path.string()));
+}
+
+RunStages::Names RunStages::make_header() {
+  if (!proved_) {  // in an earlier life of this run; only a proof of now is exported
+    Verdict verdict = prove(load_student(path(kStudent)), config_.train.threads);
+    auto* proved = std::get_if<ProvedStudent>(&verdict);
+    if (proved == nullptr) fail("{}: is not proved", path(kStudent).string());
+    proved_ = std::move(*proved);
+  }
+  write_file(path(kHeader), format_weight_header(*proved_));
+  return {kHeader};
+}
+
+RunResults RunStages::results() {
+  const auto text = [&](const char* name) { return read_file(path(name)); };
+  RunResults results{config_,
+                     market_,
+                     teacher(),
+                     load_student(path(kPlainStudent)),
+                     load_student(path(kStudent)),
+                     parse_training_curve_csv(text(kTrainingCurve), path(kTrainingCurve).string()),
+                     parse_distil_curve_csv(text(kDistilCurve), path(kDistilCurve).string())};
+  results.plain.certificate.counterexamples =
+      parse_counterexamples_csv(text(kPlainViolations), path(kPlainViolations).string());
+  return results;
+}
+
+RunStages::Names RunStages::make_evaluation() {
+  const std::vector<NamedEvaluation> evaluations = evaluate_run(results());
+  write_file(path(kTable), comparison_csv(evaluations));
+  write_file(path(kDays), evaluation_days_csv(evaluations));
+  return {kTable, kDays};
+}
+
+RunStages::Names RunStages::make_report() {
+  const RunResults run = results();
+  const auto evaluations =
+      parse_evaluation_days_csv(read_file(path(kDays)), path(kDays).string(), config_.battery);
+  write_run_report(run, evaluations, folder_);
+  const Certificate& certificate = run.corrected.certificate;
+  record_.figures = {run.corrected.provenance,
+                     fmt::format("{:08x}", student_weights_hash(run.corrected.net)),
+                     certificate.states_checked,
+                     run.plain.certificate.states_checked,
+                     run.plain.certificate.violations(),
+                     certificate.violations()};
+  Names names{kSummary, kReport};
+  for (const auto& entry : fs::directory_iterator(folder_.path)) {
+    if (entry.path().extension() == ".svg") names.push_back(entry.path().filename().string());
+  }
+  std::ranges::sort(names);
+  return names;
+}
+
+std::string how_to_go_on(const RunFolder& folder) {
+  return fmt::format("what is done is kept: bess-train run --resume --out {} goes on",
+                     folder.path.string());
+}
+
+}  // namespace bess

@@ -1,0 +1,173 @@
+#include "workstation/cli/run_summary.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "shared/host/file.h"
+#include "shared/host/user_error.h"
+#include "workstation/report/evaluation_days.h"
+
+namespace bess {
+namespace {
+
+constexpr std::pair<const char*, EvaluationField> kWays[] = {
+    {"reset", &NamedEvaluation::day_reset}, {"carried", &NamedEvaluation::carried_over}};
+
+const NamedEvaluation& exported(const RunSummary& run) {
+  const auto found = std::ranges::find(run.evaluations, kExportedPolicy, &NamedEvaluation::name);
+  if (found == run.evaluations.end()) {
+    fail("{}: has no \"{}\"; make the run again", run.folder.file(run_file::kDays).string(),
+         kExportedPolicy);
+  }
+  return *found;
+}
+
+Json row_json(const ComparisonRow& row, const char* soc) {
+  Json json = Json::object({{"policy", row.name},
+                            {"soc", soc},
+                            {"days", row.days},
+                            {"profit_eur_per_day_per_mwh", Decimals{row.profit, 4}},
+                            {"standard_error", Decimals{row.standard_error, 4}},
+                            {kReferenceWearKey, Decimals{row.profit_at_reference_wear, 4}},
+                            {"worst_day_eur_per_mwh", Decimals{row.worst_day, 4}},
+                            {"cycles_per_day", Decimals{row.cycles_per_day, 4}},
+                            {"switches_per_day", Decimals{row.switches_per_day, 3}}});
+  if (row.difference) {
+    json.set("difference_to_first", Decimals{row.difference->mean, 4});
+    json.set("difference_standard_error", Decimals{row.difference->standard_error, 4});
+  }
+  if (row.foresight_share) json.set("share_of_foresight", Decimals{*row.foresight_share, 5});
+  return json;
+}
+
+/// The gain over another run, when both saw the same days.
+std::optional<PairedDifference> gain(const Evaluation& run, const Evaluation& first) {
+  if (!std::ranges::equal(run.days, first.days, {}, &DayResult::date, &DayResult::date)) return {};
+  return paired_difference(run, first);
+}
+
+std::string error_text(double standard_error) {
+  return std::isnan(standard_error) ? "-" : fmt::format("{:.1f}", standard_error);
+}
+
+/// "KEY: A | B | C" for every key of which the runs have not all the same value.
+std::string what_differs(const std::vector<RunSummary>& runs) {
+  std::string text;
+  for (const auto& [key, value] : runs.front().record.identity) {
+    std::string line = fmt::format("{}: {}", key, value);
+    bool is_same = true;
+    for (std::size_t i = 1; i < runs.size(); ++i) {
+      const std::string other = runs[i].record.value(key);
+      line += fmt::format(" | {}", other.empty() ? "unknown" : other);
+      is_same = is_same && other == value;
+    }
+    if (!is_same) text += line + "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+RunSummary load_run_summary(const RunFolder& folder) {
+  std::optional<RunRecord> record = load_run_record(folder);
+  const std::string name = folder.path.string();
+  if (!record) {
+    fail("{}: holds no run, there is no {} in it; make one with 'bess-train run --out {}'", name,
+         run_file::kRecord, name);
+  }
+  if (!record->figures) {
+    fail("{}: is not finished, but {}; 'bess-train run --resume --out {}' goes on", name,
+         record->state(), name);
+  }
+  const std::string days = folder.file(run_file::kDays).string();
+  const RunConfig config = record->config(folder);
+  return {folder, std::move(*record),
+          parse_evaluation_days_csv(read_file(days), days, config.battery)};
+}
+
+Json summary_json(const RunSummary& run) {
+  const RunRecord& record = run.record;
+  const RunFigures& figures = *record.figures;
+  Json json = Json::object({{"run", run.folder.path.string()},
+                            {"prices", record.prices},
+                            {"seed", record.config(run.folder).train.seed},
+                            {"provenance", figures.provenance},
+                            {"weights_hash", figures.weights_hash},
+                            {"states_checked", figures.states_checked},
+                            {"states_checked_plain", figures.states_checked_plain},
+                            {"violations_plain", figures.violations_plain},
+                            {"violations_corrected", figures.violations_corrected}});
+  Json policies = Json::list();
+  for (const auto& [soc, field] : kWays) {
+    for (const ComparisonRow& row : comparison_rows(run.evaluations, field)) {
+      policies.add(row_json(row, soc));
+    }
+  }
+  json.set("policies", std::move(policies));
+  return json;
+}
+
+std::vector<Band> bands_of(const std::vector<RunSummary>& runs) {
+  std::vector<Band> bands;
+  const auto n = static_cast<double>(runs.size());
+  for (const auto& [soc, field] : kWays) {
+    for (const NamedEvaluation& first : runs.front().evaluations) {
+      std::vector<double> profits;
+      Band band{first.name, soc, 0, 0, 0, 0, 0};
+      for (const RunSummary& run : runs) {
+        const auto same = std::ranges::find(run.evaluations, first.name, &NamedEvaluation::name);
+        if (same == run.evaluations.end()) break;
+        const Evaluation& evaluation = (*same).*field;
+        profits.push_back(evaluation.profit_eur_per_day_per_mwh());
+        band.mean += profits.back() / n;
+        band.mean_at_reference_wear +=
+            evaluation.profit_at_wear_eur_per_day_per_mwh(kReferenceWearEurPerMwh) / n;
+      }
+      if (profits.size() != runs.size()) continue;
+      for (const double p : profits) band.deviation += (p - band.mean) * (p - band.mean);
+      band.deviation = std::sqrt(band.deviation / (n - 1));  // one run has none
+      std::tie(band.low, band.high) =
+          std::pair(std::ranges::min(profits), std::ranges::max(profits));
+      bands.push_back(std::move(band));
+    }
+  }
+  return bands;
+}
+
+std::string format_runs_table(const std::vector<RunSummary>& runs) {
+  std::size_t width = 3;
+  for (const RunSummary& run : runs) width = std::max(width, run.folder.path.string().size());
+  std::string text = fmt::format(
+      "What the {} of each run earned on its test days; EUR per day per MWh of capacity\n"
+      "{:<{}} {:>5} {:>5} {:>8} {:>6} {:>8} {:>6} {:>11} {:>9} {:>8} {:>9}\n",
+      kExportedPolicy, "run", width, "seed", "days", "carried", "s.e.", "gain", "s.e.",
+      wear_column(), "foresight", "reset", "weights");
+  const Evaluation& first = exported(runs.front()).carried_over;
+  for (const RunSummary& run : runs) {
+    const NamedEvaluation& student = exported(run);
+    const auto rows = comparison_rows(run.evaluations, &NamedEvaluation::carried_over);
+    const auto row = std::ranges::find(rows, kExportedPolicy, &ComparisonRow::name);
+    const auto over_first =
+        &run == &runs.front() ? std::nullopt : gain(student.carried_over, first);
+    text += fmt::format(
+        "{:<{}} {:>5} {:>5} {:>8.1f} {:>6} {:>8} {:>6} {:>11.1f} {:>9} {:>8.1f} {:>9}\n",
+        run.folder.path.string(), width, run.record.value("seed"), row->days, row->profit,
+        error_text(row->standard_error),
+        over_first ? fmt::format("{:+.1f}", over_first->mean) : "-",
+        over_first ? error_text(over_first->standard_error) : "-", row->profit_at_reference_wear,
+        row->foresight_share ? fmt::format("{:.1f}", 100 * *row->foresight_share) : "-",
+        student.day_reset.profit_eur_per_day_per_mwh(), run.record.figures->weights_hash);
+  }
+  text +=
+      "\ncarried, reset: SoC carried over from day to day, or the same at the start of each;\n"
+      "gain: day-by-day difference to the first run, where both have the same days; s.e.: its "
+      "standard error\n";
+  const std::string differs = runs.size() > 1 ? what_differs(runs) : "";
+  if (!differs.empty()) text += "\nThe runs differ in\n" + differs;
+  return text;
+}
+
+}  // namespace bess

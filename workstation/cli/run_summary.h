@@ -1,0 +1,39 @@
+// Finished runs as figures: what `run --json` prints, `run --seeds` makes bands of, and `runs compare` lines up.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "shared/host/json.h"
+#include "workstation/cli/run_record.h"
+#include "workstation/report/comparison.h"
+
+namespace bess {
+
+/// The policy that a run is about: what would be exported.
+inline constexpr const char* kExportedPolicy = "corrected student";
+
+struct RunSummary {
+  RunFolder folder;
+  RunRecord record;
+  std::vector<NamedEvaluation> evaluations;
+};
+
+/// Throws UserError when there is no run or it is not finished, saying how to go on.
+RunSummary load_run_summary(const RunFolder& folder);
+
+/// One object: the run, its figures and every policy in both ways of counting.
+Json summary_json(const RunSummary& run);
+
+/// Mean, deviation and range over runs, of one policy in one way of counting; EUR per day per MWh.
+struct Band {
+  std::string policy, soc;
+  double mean, deviation, low, high;
+  double mean_at_reference_wear;
+};
+std::vector<Band> bands_of(const std::vector<RunSummary>& runs);
+
+/// A line a run, and what the runs differ in.
+std::string format_runs_table(const std::vector<RunSummary>& runs);
+
+}  // namespace bess

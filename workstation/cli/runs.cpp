@@ -1,0 +1,70 @@
+// bess-train runs: finished runs side by side.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "shared/host/user_error.h"
+#include "workstation/cli/commands.h"
+#include "workstation/cli/run_summary.h"
+
+namespace bess {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::vector<std::string> folders;
+  bool json = false;
+};
+
+/// A folder of several seeds stands for all of its runs.
+std::vector<RunFolder> runs_in(const std::string& name) {
+  std::vector<RunFolder> runs;
+  if (!fs::exists(RunFolder{name}.record()) && fs::is_directory(name)) {
+    for (const auto& entry : fs::directory_iterator(name)) {
+      const RunFolder run{entry.path()};
+      if (fs::exists(run.record())) runs.push_back(run);
+    }
+  }
+  if (runs.empty()) return {RunFolder{name}};
+  std::ranges::sort(runs, [](const RunFolder& a, const RunFolder& b) {
+    const std::string x = a.path.string();
+    const std::string y = b.path.string();
+    return std::pair(x.size(), x) < std::pair(y.size(), y);  // seed-9 before seed-10
+  });
+  return runs;
+}
+
+void compare(const Options& options) {
+  std::vector<RunSummary> runs;
+  for (const std::string& name : options.folders) {
+    for (const RunFolder& folder : runs_in(name)) runs.push_back(load_run_summary(folder));
+  }
+  if (!options.json) {
+    fmt::print("{}", format_runs_table(runs));
+    return;
+  }
+  for (const RunSummary& run : runs) fmt::print("{}\n", summary_json(run).line());
+}
+
+}  // namespace
+
+void add_runs_commands(ProgramCommand& app) {
+  auto options = std::make_shared<Options>();
+  ProgramCommand runs = app.subcommand("runs", "Finished runs side by side: compare");
+  runs.requires_subcommand();
+  ProgramCommand command = runs.subcommand(
+      "compare", "What the exported policy of each run earned, and what the runs differ in");
+  command.option("folders", options->folders, "Run folders, or folders of 'run --seeds'")
+      .required();
+  command.flag("--json", options->json, "One JSON object a line and run");
+  command.footer(
+      "Gains are over the first, day by day.\n"
+      "Examples:\n"
+      "  bess-train runs compare runs/first runs/second\n"
+      "  bess-train runs compare runs/seeds --json");
+  command.runs([options] { compare(*options); });
+}
+
+}  // namespace bess
