@@ -5,6 +5,7 @@
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
 #include "workstation/cli/policy_factory.h"
+#include "workstation/cli/run_facts.h"
 #include "workstation/env/evaluate.h"
 #include "workstation/student/student_policy.h"
 
@@ -53,6 +54,7 @@ std::string write_run_report(const RunResults& run, const std::vector<NamedEvalu
   const ReportInputs inputs{
       .market = run.market,
       .battery = run.config.battery,
+      .initial_soc_frac = run.config.initial_soc_frac,
       .evaluations = evaluations,
       .training_curve = run.training_curve,
       .distil_curve = run.distil_curve,
@@ -60,6 +62,7 @@ std::string write_run_report(const RunResults& run, const std::vector<NamedEvalu
       .uncorrected = &run.plain,
       .corrected = &run.corrected,
       .provenance = run.corrected.provenance,
+      .facts = run_facts(run.config, run.market, folder),
   };
   write_report(inputs, folder.path);
   const auto violations = [](const Certificate& c) {

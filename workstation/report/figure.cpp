@@ -8,6 +8,7 @@
 #include <pugixml.hpp>
 #include <sstream>
 
+#include "shared/host/file.h"
 #include "shared/host/user_error.h"
 #include "workstation/base/gnuplot.h"
 
@@ -36,21 +37,61 @@ std::string script_of(const Figure& figure, const fs::path& output) {
          style() + figure.commands;
 }
 
-/// gnuplot writes a colour as `rgb( 31,  41,  51)`, `#ffffff` or `black`.
-std::string variable_of(const std::string& colour) {
+constexpr const char* kTitleId = "title-above";
+constexpr int kTitleHeightPx = 40;
+
+/// gnuplot writes a colour as `rgb( 31,  41,  51)`, `#ffffff` or `black`; null when it is not of the palette.
+const Colour* palette_colour(const std::string& colour) {
   std::string hex = colour == "black" ? std::string(kInk.light) : colour;
   unsigned r = 0, g = 0, b = 0;
   if (std::sscanf(colour.c_str(), "rgb(%u,%u,%u)", &r, &g, &b) == 3) {
     hex = fmt::format("#{:02x}{:02x}{:02x}", r, g, b);
   }
   const auto found = std::ranges::find(kPalette, hex, &Colour::light);
-  return found == kPalette.end() ? colour : fmt::format("var(--{})", found->name);
+  return found == kPalette.end() ? nullptr : &*found;
 }
 
-void make_colours_variable(const pugi::xml_node& svg) {
+/// Replaces every colour of the palette by what `written` makes of it.
+template <typename Written>
+void replace_colours(const pugi::xml_node& svg, Written written) {
   for (const pugi::xpath_node& found : svg.select_nodes(".//@fill|.//@stroke|.//@color")) {
-    found.attribute() = variable_of(found.attribute().value()).c_str();
+    const Colour* colour = palette_colour(found.attribute().value());
+    if (colour != nullptr) found.attribute() = written(*colour).c_str();
   }
+}
+
+std::string view_box(const Figure& figure, int above_px) {
+  return fmt::format("0 {} {} {}", -above_px, figure.width_px, figure.height_px + above_px);
+}
+
+/// A strip above the picture, with the title in it.
+void add_title(pugi::xml_node svg, const Figure& figure) {
+  svg.attribute("viewBox") = view_box(figure, kTitleHeightPx).c_str();
+  svg.attribute("height") = figure.height_px + kTitleHeightPx;
+  pugi::xml_node group = svg.insert_child_after("g", svg.child("desc"));
+  group.append_attribute("id") = kTitleId;
+  pugi::xml_node strip = group.append_child("rect");
+  strip.append_attribute("y") = -kTitleHeightPx;
+  strip.append_attribute("width") = figure.width_px;
+  strip.append_attribute("height") = kTitleHeightPx + 1;  // no seam
+  strip.append_attribute("fill") = std::string(kPaper.light).c_str();
+  pugi::xml_node text = group.append_child("text");
+  text.append_attribute("x") = 16;
+  text.append_attribute("y") = -12;
+  text.append_attribute("font-family") = "Helvetica";
+  text.append_attribute("font-size") = 18;
+  text.append_attribute("font-weight") = "bold";
+  text.append_attribute("fill") = std::string(kInk.light).c_str();
+  text.text() = figure.title.c_str();
+}
+
+pugi::xml_node svg_of(pugi::xml_document& document, std::string_view file, const Figure& figure) {
+  const bool parsed = document.load_buffer(file.data(), file.size());
+  const pugi::xml_node svg = document.child("svg");
+  if (!parsed || !svg.child("title") || !svg.child("desc")) {
+    fail("{}.svg: gnuplot drew a picture of another form than that of version 5.4", figure.name);
+  }
+  return svg;
 }
 
 /// Several figures share a page, but an id may occur there only once.
@@ -88,19 +129,33 @@ void describe(pugi::xml_node svg, const Figure& figure) {
 }  // namespace
 
 void draw_figure(const Figure& figure, const fs::path& folder) {
-  draw_with_gnuplot(folder / (figure.name + ".svg"),
-                    [&](const fs::path& output) { return script_of(figure, output); });
+  const fs::path light = folder / (figure.name + ".svg");
+  draw_with_gnuplot(light, [&](const fs::path& output) { return script_of(figure, output); });
+  const std::string drawn = read_file(light);
+  write_file(folder / (figure.name + "_dark.svg"), titled_svg(drawn, figure, true));
+  write_file(light, titled_svg(drawn, figure, false));
+}
+
+std::string titled_svg(std::string_view file, const Figure& figure, bool dark) {
+  pugi::xml_document document;
+  const pugi::xml_node svg = svg_of(document, file, figure);
+  svg.child("title").text() = figure.title.c_str();
+  svg.child("desc").text() = figure.alt.c_str();
+  add_title(svg, figure);
+  if (dark) replace_colours(svg, [](const Colour& colour) { return std::string(colour.dark); });
+  std::ostringstream out;
+  document.save(out, "");
+  return out.str();
 }
 
 std::string inline_svg(std::string_view file, const Figure& figure) {
   pugi::xml_document document;
-  const bool parsed = document.load_buffer(file.data(), file.size());
-  const pugi::xml_node svg = document.child("svg");
-  if (!parsed || !svg.child("title") || !svg.child("desc")) {
-    fail("{}.svg: gnuplot drew a picture of another form than that of version 5.4", figure.name);
+  pugi::xml_node svg = svg_of(document, file, figure);
+  if (svg.remove_child(svg.find_child_by_attribute("id", kTitleId))) {
+    svg.attribute("viewBox") = view_box(figure, 0).c_str();
   }
   prefix_ids(svg, figure.name);
-  make_colours_variable(svg);
+  replace_colours(svg, [](const Colour& colour) { return fmt::format("var(--{})", colour.name); });
   drop_empty_groups(svg);
   describe(svg, figure);
   std::ostringstream out;

@@ -21,10 +21,15 @@ struct Figure {
   std::string commands;  ///< gnuplot, without terminal and output
 };
 
-/// Writes `folder`/`name`.svg, beside and renamed. Throws UserError without gnuplot.
+/// Writes `folder`/`name`.svg and `name`_dark.svg, each with its title above the picture, beside and renamed.
+/// Throws UserError without gnuplot.
 void draw_figure(const Figure& figure, const std::filesystem::path& folder);
 
-/// The SVG element of gnuplot's `file` alone: its ids made unique, its colours made variables of the
+/// gnuplot's `file` as it stands alone: the title above it, its colours for a dark page when asked for. Throws
+/// UserError for a file of another form.
+std::string titled_svg(std::string_view file, const Figure& figure, bool dark);
+
+/// The SVG element of such a file alone, without the title, which the page shows: its ids made unique, its colours made variables of the
 /// page, with title and description for screen readers. Throws UserError for a file of another form.
 std::string inline_svg(std::string_view file, const Figure& figure);
 

@@ -6,46 +6,19 @@
 
 #include "workstation/market/statistics/market_statistics.h"
 #include "workstation/report/figures.h"
+#include "workstation/report/price_histogram.h"
 
 namespace bess {
 namespace {
 
-constexpr double kBinEurPerMwh = 20;
-constexpr double kShownTail = 0.005;  ///< left out on either side
-
-std::vector<double> sorted_observed(const MarketSteps& market, Split split) {
-  std::vector<double> prices;
-  for (const MarketDay& day : market.days_of(split)) {
-    for (const MarketStep& step : market.of(day)) prices.push_back(step.observed_eur_per_mwh);
-  }
-  std::ranges::sort(prices);
-  return prices;
-}
-
-struct Shown {
-  double low, high;  ///< multiples of the bin
-};
-
-Shown shown_range(const std::vector<double>& train, const std::vector<double>& test) {
-  Shown shown{0, 0};
-  for (const auto* prices : {&train, &test}) {
-    if (prices->empty()) continue;
-    shown.low = std::min(shown.low, quantile_of_sorted(*prices, kShownTail));
-    shown.high = std::max(shown.high, quantile_of_sorted(*prices, 1 - kShownTail));
-  }
-  return {std::floor(shown.low / kBinEurPerMwh) * kBinEurPerMwh,
-          std::ceil(shown.high / kBinEurPerMwh) * kBinEurPerMwh + kBinEurPerMwh};
-}
-
 /// "left edge, % of decisions in the bin", for steps.
-std::string histogram(const std::string& name, const std::vector<double>& sorted,
-                      const Shown& shown) {
+std::string histogram_data(const std::string& name, const std::vector<double>& sorted,
+                           const PriceHistogram& shown) {
   std::vector<std::string> rows;
-  for (double edge = shown.low; edge <= shown.high; edge += kBinEurPerMwh) {
-    const auto count = std::ranges::lower_bound(sorted, edge + kBinEurPerMwh) -
-                       std::ranges::lower_bound(sorted, edge);
-    const auto total = static_cast<double>(std::max<std::size_t>(1, sorted.size()));
-    rows.push_back(fmt::format("{} {:.4f}", edge, 100.0 * static_cast<double>(count) / total));
+  double edge = shown.low;
+  for (const double percent : shown.percent_by_bin(sorted)) {
+    rows.push_back(fmt::format("{} {:.4f}", edge, percent));
+    edge += kPriceBinEurPerMwh;
   }
   return data_block(name, rows);
 }
@@ -72,7 +45,7 @@ std::string threshold_line(const Line& line, int tag) {
       line.charges ? "right" : "left", line.charges ? "-0.7" : "0.7");
 }
 
-std::string threshold_lines(const PriceThresholds& student, const Shown& shown) {
+std::string threshold_lines(const PriceThresholds& student, const PriceHistogram& shown) {
   const int low = student.low_eur_per_mwh;
   const int high = student.high_eur_per_mwh;
   const Line lines[] = {
@@ -91,8 +64,8 @@ std::string threshold_lines(const PriceThresholds& student, const Shown& shown) 
   return text;
 }
 
-std::string caption_of(const std::vector<double>& train, const std::vector<double>& test,
-                       const PriceThresholds& student, const Shown& shown) {
+std::string caption_of(const PriceThresholds& student, const PriceHistogram& shown) {
+  const auto& [train, test, low, high] = shown;
   if (train.empty() || test.empty()) return "One of the two splits has no days.";
   const auto percent = [](double share) { return 100 * share; };
   return fmt::format(
@@ -104,16 +77,14 @@ std::string caption_of(const std::vector<double>& train, const std::vector<doubl
       quantile_of_sorted(train, 0.25), quantile_of_sorted(train, 0.75),
       quantile_of_sorted(test, 0.25), quantile_of_sorted(test, 0.75),
       percent(share_below(train, 0)), percent(share_below(test, 0)),
-      percent(share_below(test, shown.low) + 1 - share_below(test, shown.high)),
-      student.low_eur_per_mwh, student.high_eur_per_mwh);
+      percent(share_below(test, low) + 1 - share_below(test, high)), student.low_eur_per_mwh,
+      student.high_eur_per_mwh);
 }
 
 }  // namespace
 
 Figure price_density_figure(const MarketSteps& market, const PriceThresholds& student) {
-  const std::vector<double> train = sorted_observed(market, Split::kTrain);
-  const std::vector<double> test = sorted_observed(market, Split::kTest);
-  const Shown shown = shown_range(train, test);
+  const PriceHistogram shown = price_histogram(market);
   Figure figure;
   figure.name = "price_density";
   figure.title = "Prices of training and test days";
@@ -122,12 +93,12 @@ Figure price_density_figure(const MarketSteps& market, const PriceThresholds& st
       "Histogram of observed prices from {:.0f} to {:.0f} EUR/MWh, training days as an area, test "
       "days as a line, thresholds as dashed lines.",
       shown.low, shown.high);
-  figure.caption = caption_of(train, test, student, shown);
+  figure.caption = caption_of(student, shown);
   const KeyRow key = key_row(figure, 84,
                              {{"training days", kSoft, KeyEntry::Kind::kArea, 0, 0.7},
                               {"test days", kInk, KeyEntry::Kind::kLine, 2}});
   figure.commands =
-      histogram("train", train, shown) + histogram("test", test, shown) +
+      histogram_data("train", shown.train, shown) + histogram_data("test", shown.test, shown) +
       threshold_lines(student, shown) + key.set +
       fmt::format(
           "set lmargin at screen 0.095\nset rmargin at screen 0.96\nset tmargin at screen 0.89\n"
@@ -136,7 +107,7 @@ Figure price_density_figure(const MarketSteps& market, const PriceThresholds& st
           "set ylabel '% of decisions per {:g} EUR/MWh'\n"
           "plot $train using 1:2 with fillsteps fc {} fs solid 0.7, "
           "$test using 1:2 with steps lw 2 lc {}\n",
-          shown.low, shown.high, kBinEurPerMwh, rgb(kSoft), rgb(kInk));
+          shown.low, shown.high, kPriceBinEurPerMwh, rgb(kSoft), rgb(kInk));
   return figure;
 }
 

@@ -2,37 +2,11 @@
 
 #include <fmt/core.h>
 
+#include "workstation/report/page_files.h"
 #include "workstation/report/palette.h"
 
 namespace bess {
 namespace {
-
-constexpr std::string_view kStyle = R"(
-*{box-sizing:border-box}
-body{margin:0;background:var(--paper);color:var(--ink);
- font:16px/1.55 system-ui,-apple-system,"Segoe UI",Roboto,Helvetica,Arial,sans-serif}
-main{max-width:60rem;margin:0 auto;padding:1.5rem 1rem 4rem}
-h1{font-size:1.7rem;line-height:1.2;margin:0 0 .6rem}
-h2{font-size:1.2rem;margin:2.6rem 0 .5rem}
-p{max-width:44rem;margin:.5rem 0}
-.lead{font-size:1.08rem}
-figure{margin:2.6rem 0}
-figure h2{margin:0 0 .6rem}
-figcaption{margin-top:.6rem}
-figcaption,.note{color:var(--muted);font-size:.92rem;max-width:44rem}
-.wide{overflow-x:auto;-webkit-overflow-scrolling:touch}
-svg{display:block;width:100%;min-width:36rem;height:auto}
-svg text{font-family:system-ui,-apple-system,"Segoe UI",Roboto,Helvetica,Arial,sans-serif}
-table{border-collapse:collapse;font-variant-numeric:tabular-nums;font-size:.92rem;margin:1rem 0}
-caption{text-align:left;font-weight:600;padding:.3rem 0}
-th,td{padding:.32rem .45rem;text-align:right;white-space:nowrap;border-bottom:1px solid var(--grid)}
-th:first-child,td:first-child{text-align:left;padding-left:0}
-thead th{white-space:normal;color:var(--muted);font-weight:600;vertical-align:bottom;border-bottom-color:var(--muted)}
-tbody th{font-weight:400}
-pre{font-size:.8rem;white-space:pre-wrap;overflow-wrap:anywhere;color:var(--muted)}
-@media print{main{max-width:none;padding:0}figure,table,.block{break-inside:avoid}h2{break-after:avoid}
- .wide{overflow:visible}svg{min-width:0}body{font-size:11pt}}
-)";
 
 std::string variables(std::string_view Colour::*shade) {
   std::string text;
@@ -48,11 +22,13 @@ std::string colour_scheme() {
       variables(&Colour::light), variables(&Colour::dark));
 }
 
-std::string table_row(const std::vector<std::string>& cells) {
+std::string table_row(const std::vector<std::string>& cells,
+                      const std::vector<std::string>& header) {
   std::string text = "<tr>";
   for (std::size_t i = 0; i < cells.size(); ++i) {
     text += i == 0 ? fmt::format("<th scope=\"row\">{}</th>", html_escaped(cells[i]))
-                   : fmt::format("<td>{}</td>", html_escaped(cells[i]));
+                   : fmt::format("<td data-label=\"{}\">{}</td>", html_escaped(header[i]),
+                                 html_escaped(cells[i]));
   }
   return text + "</tr>\n";
 }
@@ -92,17 +68,21 @@ std::string format_table(const HtmlTable& table) {
     text += fmt::format("<th scope=\"col\">{}</th>", html_escaped(cell));
   }
   text += "</tr></thead>\n<tbody>\n";
-  for (const auto& row : table.rows) text += table_row(row);
+  for (const auto& row : table.rows) text += table_row(row, table.header);
   return text + "</tbody></table></div>\n";
+}
+
+std::string style_sheet() {
+  return colour_scheme() + "\n" + std::string(page_file("document.css"));
 }
 
 std::string format_page(std::string_view title, std::string_view body) {
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n"
-      "<title>{}</title>\n<style>\n{}{}</style>\n</head>\n<body>\n<main>\n{}</main>\n</body>\n"
+      "<title>{}</title>\n<style>\n{}</style>\n</head>\n<body>\n<main>\n{}</main>\n</body>\n"
       "</html>\n",
-      html_escaped(title), colour_scheme(), kStyle, body);
+      html_escaped(title), style_sheet(), body);
 }
 
 }  // namespace bess

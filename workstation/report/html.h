@@ -10,13 +10,17 @@ namespace bess {
 /// & < > " ' become entities.
 std::string html_escaped(std::string_view text);
 
-/// A table whose first column names the row and whose other columns are numbers.
+/// A table whose first column names the row and whose other columns are numbers. Each number bears the head of
+/// its column: a narrow screen shows every row as a list.
 struct HtmlTable {
   std::string caption;
   std::vector<std::string> header;
   std::vector<std::vector<std::string>> rows;
 };
 std::string format_table(const HtmlTable& table);
+
+/// The colours, light and dark, as variables, and page/document.css.
+std::string style_sheet();
 
 /// A complete document: light and dark, phone and print, nothing fetched from outside.
 std::string format_page(std::string_view title, std::string_view body);

@@ -17,11 +17,11 @@ struct Colour {
 inline constexpr Colour kInk{"ink", "#1f2933", "#e4e8eb"};
 inline constexpr Colour kMuted{"muted", "#66727d", "#9aa6b2"};
 inline constexpr Colour kGridLine{"grid", "#dde2e6", "#35404a"};
-inline constexpr Colour kIdle{"idle", "#e9ecef", "#2a333b"};
+inline constexpr Colour kIdle{"idle", "#c3cad1", "#56626d"};
 inline constexpr Colour kCharge{"charge", "#0072b2", "#4ea8dc"};
 inline constexpr Colour kDischarge{"discharge", "#d55e00", "#f08c42"};
 inline constexpr Colour kSoft{"soft", "#9fc3da", "#4d7a97"};
-inline constexpr Colour kMark{"mark", "#000001", "#fffffe"};
+inline constexpr Colour kMark{"mark", "#b3007d", "#ff6ad5"};
 inline constexpr Colour kPaper{"paper", "#ffffff", "#14191e"};
 
 inline constexpr std::array<Colour, 9> kPalette{kInk,       kMuted, kGridLine, kIdle, kCharge,

@@ -1,6 +1,6 @@
-// The report of a run: figures and one HTML page that holds them all, from results that the caller
-// already has. Only what a figure needs and nobody kept is computed here: the rule-based
-// validation profit, the teacher's map, and the records of one test day.
+// The report of a run: one HTML page that needs nothing beside it, and the figures as SVG files, light and dark,
+// from results that the caller already has. Only what nobody kept is computed here: the rule-based validation
+// profit, the teacher's map, and the steps of the test days.
 #pragma once
 
 #include <filesystem>
@@ -10,6 +10,7 @@
 #include "workstation/correction/distil.h"
 #include "workstation/report/comparison.h"
 #include "workstation/report/figures.h"
+#include "workstation/report/provenance.h"
 #include "workstation/rl/train.h"
 #include "workstation/student/student_file.h"
 
@@ -18,6 +19,7 @@ namespace bess {
 struct ReportInputs {
   const MarketSteps& market;  ///< delay and settlement as trained
   BatteryParameters battery = {};
+  double initial_soc_frac = 0.5;                  ///< with which each test day starts
   std::vector<NamedEvaluation> evaluations = {};  ///< on the test days; the first is rule-based
   std::vector<CurvePoint> training_curve = {};    ///< may be empty
   std::vector<DistilPoint> distil_curve = {};     ///< may be empty
@@ -27,11 +29,17 @@ struct ReportInputs {
   std::vector<PolicyContext> maps = {
       {.context_class = 3, .quarter_hour = 48, .minute_of_quarter_hour = 7},
       {.context_class = 9, .quarter_hour = 48, .minute_of_quarter_hour = 7}};
-  std::string provenance = {};  ///< lines, shown as they are
+  std::string provenance = {};   ///< lines, shown as they are
+  std::vector<Fact> facts = {};  ///< when, where, from what and how
 };
 
+/// Of what there is: corrected student's, uncorrected student's, teacher's.
+ContextClasses context_classes_of(const ReportInputs& inputs);
+/// What the students were checked against.
+PriceThresholds thresholds_of(const ReportInputs& inputs);
+
 /// Writes the SVG figures and report.html into `folder`, which is created; each file appears
-/// complete or not at all. Throws UserError without gnuplot or room to write.
+/// complete or not at all. Throws UserError without gnuplot or room to write, or without test days.
 void write_report(const ReportInputs& inputs, const std::filesystem::path& folder);
 
 }  // namespace bess

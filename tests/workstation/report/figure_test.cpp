@@ -17,7 +17,8 @@ Figure figure_named(const std::string& name) {
 }
 
 constexpr const char* kSvg =
-    "<?xml version=\"1.0\"?>\n<svg><title>x</title>\n<desc>Produced by</desc>\n"
+    "<?xml version=\"1.0\"?>\n<svg viewBox='0 0 100 50' "
+    "height='50'><title>x</title>\n<desc>Produced by</desc>\n"
     "<g fill=\"none\" color=\"black\">\n</g>\n"
     "<circle id='gpDot' fill='rgb( 31,  41,  51)'/><use xlink:href='#gpDot'/>\n</svg>\n";
 
@@ -39,6 +40,22 @@ TEST(Figure, OnlyColoursOfThePaletteBecomeVariables) {
             std::string::npos)
       << svg;
   EXPECT_NE(svg.find("<text> black</text>"), std::string::npos) << svg;
+}
+
+TEST(Figure, StandsAloneWithItsTitleLightAndDark) {
+  Figure figure = figure_named("prices");
+  figure.width_px = 100;
+  figure.height_px = 50;
+  const std::string light = titled_svg(kSvg, figure, false);
+  EXPECT_NE(light.find("viewBox=\"0 -40 100 90\" height=\"90\""), std::string::npos) << light;
+  EXPECT_NE(light.find("fill=\"#1f2933\">A &lt; B</text>"), std::string::npos) << light;
+  EXPECT_NE(light.find("rgb( 31,  41,  51)"), std::string::npos) << light;
+  const std::string dark = titled_svg(kSvg, figure, true);
+  EXPECT_NE(dark.find("id=\"gpDot\" fill=\"#e4e8eb\""), std::string::npos) << dark;
+  EXPECT_EQ(dark.find("#1f2933"), std::string::npos) << dark;
+  const std::string inlined = inline_svg(light, figure);
+  EXPECT_EQ(inlined.find("</text>"), std::string::npos) << inlined;
+  EXPECT_NE(inlined.find("viewBox=\"0 0 100 50\""), std::string::npos) << inlined;
 }
 
 TEST(Figure, APictureOfAnotherFormIsRefused) {

@@ -62,7 +62,7 @@ inline std::string first_unbalanced_tag(const std::string& html) {
     const bool closing = html[at + 1] == '/';
     const std::size_t name_at = at + (closing ? 2 : 1);
     const std::string name = html.substr(name_at, html.find_first_of(" \n>", name_at) - name_at);
-    if (name == "meta") continue;
+    if (name == "meta" || name == "input" || name == "br") continue;
     if (!closing) {
       open.push_back(name);
     } else if (open.empty() || open.back() != name) {

@@ -1,0 +1,95 @@
+#include "workstation/report/headline.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace bess {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+/// Days of 2 MWh of capacity that earned `profits_eur` and moved `throughput_mwh` each.
+NamedEvaluation evaluated(const std::string& name, const std::vector<double>& profits_eur,
+                          double throughput_mwh) {
+  NamedEvaluation named{name, {}, {}};
+  named.day_reset.capacity_mwh = 2;
+  for (const double profit_eur : profits_eur) {
+    DayResult day{"2023-01-26", profit_eur, 1, 10, 0.5};
+    day.throughput_mwh = throughput_mwh;
+    named.day_reset.days.push_back(day);
+  }
+  return named;
+}
+
+std::vector<NamedEvaluation> all() {
+  return {evaluated("rbc", {10, 20, 30}, 2), evaluated("rbc-tuned", {60, 80, 100}, 4),
+          evaluated(kPlainName, {101, 119, 141}, 8), evaluated(kCorrectedName, {100, 120, 140}, 6),
+          evaluated(kForesightName, {200, 240, 280}, 9)};
+}
+
+TEST(Headline, IsAboutTheCorrectedStudent) {
+  const Headline headline = headline_of(all()).value();
+  EXPECT_EQ(headline.days, 3u);
+  EXPECT_DOUBLE_EQ(headline.profit, 60);
+  EXPECT_DOUBLE_EQ(headline.foresight_share.value(), 0.5);
+  ASSERT_EQ(headline.gains.size(), 3u);  // who was not evaluated is left out
+  EXPECT_EQ(headline.gains[0].against, kPlainName);
+  EXPECT_EQ(headline.gains[1].against, "rbc-tuned");
+  EXPECT_EQ(headline.gains[2].against, kForesightName);
+}
+
+TEST(Headline, GainsArePairedAndCountWear) {
+  const Headline headline = headline_of(all()).value();
+  EXPECT_DOUBLE_EQ(headline.gains[1].difference[0].mean, 20);
+  EXPECT_DOUBLE_EQ(headline.gains[1].difference[0].standard_error, 0);  // 20 on each of the days
+  EXPECT_DOUBLE_EQ(headline.gains[1].difference[1].mean, 10);           // 2 MWh a day more, at 10
+  EXPECT_DOUBLE_EQ(headline.gains[0].difference[1].mean, headline.gains[0].difference[0].mean + 10);
+}
+
+TEST(Headline, WearReplacesTheConfiguredOne) {
+  NamedEvaluation worn = evaluated("x", {100}, 4);
+  worn.day_reset.wear_eur_per_mwh = 25;
+  EXPECT_DOUBLE_EQ(at_wear(worn.day_reset, 25).days[0].profit_eur, 100);
+  EXPECT_DOUBLE_EQ(at_wear(worn.day_reset, 0).days[0].profit_eur, 200);
+  EXPECT_DOUBLE_EQ(at_wear(worn.day_reset, 10).days[0].profit_eur, 160);
+  EXPECT_DOUBLE_EQ(at_wear(worn.day_reset, 10).profit_eur_per_day_per_mwh(),
+                   worn.day_reset.profit_at_wear_eur_per_day_per_mwh(10));
+}
+
+TEST(Headline, ADifferenceIsClaimedBeyondTwoErrorsOnly) {
+  EXPECT_TRUE(is_shown({-2.1, 1}));
+  EXPECT_FALSE(is_shown({1.9, 1}));
+  EXPECT_FALSE(is_shown({100, std::numeric_limits<double>::quiet_NaN()}));
+}
+
+TEST(Headline, ThePriceOfCorrectionIsInWords) {
+  EXPECT_THAT(headline_html(headline_of(all()).value()),
+              HasSubstr("Price of the correction: none shown ("));
+  std::vector<NamedEvaluation> dear = all();
+  dear[2] = evaluated(kPlainName, {110, 130.2, 149.8}, 8);
+  EXPECT_THAT(headline_html(headline_of(dear).value()), HasSubstr("Price of the correction: 5.0"));
+  dear[2] = evaluated(kPlainName, {90, 110.2, 129.8}, 8);
+  EXPECT_THAT(headline_html(headline_of(dear).value()), HasSubstr("The correction costs nothing"));
+}
+
+TEST(Headline, WithoutACorrectedStudentThereIsNone) {
+  EXPECT_FALSE(headline_of({evaluated("rbc", {1}, 1)}).has_value());
+  NamedEvaluation carried_only = evaluated(kCorrectedName, {1}, 1);
+  std::swap(carried_only.day_reset, carried_only.carried_over);
+  EXPECT_FALSE(headline_of({carried_only}).has_value());
+}
+
+TEST(Headline, OneDayHasNoError) {
+  const Headline headline =
+      headline_of({evaluated("rbc-tuned", {1}, 1), evaluated(kCorrectedName, {3}, 1)}).value();
+  const std::string html = headline_html(headline);
+  EXPECT_THAT(html, HasSubstr(">+1.0</span>"));
+  EXPECT_THAT(html, Not(HasSubstr("nan")));
+}
+
+}  // namespace
+}  // namespace bess

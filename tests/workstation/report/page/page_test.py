@@ -1,0 +1,321 @@
+#!/usr/bin/env python3
+"""page_test.py FIXTURE_PROGRAM: the report's page in a headless Chromium, held against what the C++ says.
+
+Exit code 77 where Chromium is not installed (tools/setup --test installs it).
+"""
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import browser
+
+FIXTURE = sys.argv.pop(1) if len(sys.argv) > 1 else ""
+WIDTHS_PX = (320, 400, 800, 1600)
+COMPLETE = "[...document.querySelectorAll('canvas.map')].every((canvas) => canvas.dataset.complete === 'true')"
+
+
+def luminance(rgb):
+    """WCAG 2 relative luminance of [r, g, b], 0..255."""
+    parts = [c / 255 / 12.92 if c / 255 <= .04045 else ((c / 255 + .055) / 1.055) ** 2.4 for c in rgb]
+    return .2126 * parts[0] + .7152 * parts[1] + .0722 * parts[2]
+
+
+def contrast(a, b):
+    """1 to 21."""
+    low, high = sorted((luminance(a), luminance(b)))
+    return (high + .05) / (low + .05)
+
+
+def of_hex(text):
+    return [int(text[at:at + 2], 16) for at in (1, 3, 5)]
+
+
+class PageTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        subprocess.run([FIXTURE, cls.folder.name], check=True)
+        cls.path = os.path.join(cls.folder.name, "report.html")
+        with open(os.path.join(cls.folder.name, "expected.json"), encoding="utf-8") as file:
+            cls.expected = json.load(file)
+        cls.browser = browser.Browser()
+        cls.page = browser.Page(cls.browser)
+        cls.page.open(cls.path)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.close()
+        cls.folder.cleanup()
+
+    def setUp(self):
+        self.page.resize(1200, 900)
+        self.page.set_dark(False)
+        self.page.run("document.querySelector('[data-window=decisions]').click()")
+
+    def tearDown(self):
+        self.assertEqual(self.page.complaints(), [])
+
+    def show_map(self, context_class, quarter_hour, minute):
+        for name, value in (("context", context_class), ("quarter", quarter_hour), ("minute", minute)):
+            self.page.set_value(name + "-slider", value)
+        self.page.wait(COMPLETE)
+
+    def whole_range(self):
+        self.page.run("document.querySelector('[data-window=all]').click()")
+
+    def pixel_counts(self, map_index):
+        """How often each colour occurs on a map's canvas, as "r,g,b"."""
+        return self.page.run(f"""(() => {{
+          const canvas = document.querySelectorAll("canvas.map")[{map_index}], counts = {{}};
+          const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d", {{willReadFrequently: true}});
+          copy.drawImage(canvas, 0, 0);
+          const bytes = copy.getImageData(0, 0, canvas.width, canvas.height).data;
+          for (let i = 0; i < bytes.length; i += 4) {{
+            const key = [bytes[i], bytes[i + 1], bytes[i + 2]].join();
+            counts[key] = (counts[key] || 0) + 1;
+          }}
+          return counts;
+        }})()""")
+
+    def colours(self):
+        return {name: of_hex(self.page.run(f"colour('{name}')"))
+                for name in ("paper", "ink", "muted", "idle", "charge", "discharge", "mark")}
+
+    # The students are the edge's, bit for bit.
+
+    def test_logits_are_those_of_the_edge(self):
+        for name, student in self.expected["students"].items():
+            wrong = self.page.run(f"""(() => {{
+              const map = page.map.maps.find((map) => map.name === {json.dumps(name)});
+              let wrong = 0;
+              for (const [minute, quarterHour, contextClass, soc, price, ...answer] of {json.dumps(student["answers"])}) {{
+                const action = map.student.decide({{minute, quarterHour, contextClass}}, soc, price);
+                if ([...map.student.logits, action].join() !== answer.join()) ++wrong;
+              }}
+              return wrong;
+            }})()""")
+            self.assertGreaterEqual(len(student["answers"]), 4000)
+            self.assertEqual(wrong, 0, name)
+
+    def test_a_wrong_weight_is_noticed(self):
+        answers = self.expected["students"]["corrected student"]["answers"][:200]
+        wrong = self.page.run(f"""(() => {{
+          const net = structuredClone(page.data.students[0].net);
+          net.layer2.bias[0] += 1 << net.layer2.shift;
+          const student = new Student(net, page.data.lattice);
+          return {json.dumps(answers)}.filter(([minute, quarterHour, contextClass, soc, price, ...answer]) => {{
+            student.decide({{minute, quarterHour, contextClass}}, soc, price);
+            return student.logits.join() !== answer.slice(0, 3).join();
+          }}).length;
+        }})()""")
+        self.assertGreater(wrong, 0)
+
+    def test_sliders_change_the_map_to_that_of_the_edge(self):
+        self.whole_range()
+        seen = set()
+        students = self.expected["students"].items()
+        for at in range(3):
+            wanted = [student["maps"][at] for _, student in students]
+            self.show_map(wanted[0]["context_class"], wanted[0]["quarter_hour"], wanted[0]["minute"])
+            for index, (name, _) in enumerate(students):
+                cells = self.page.run(f"page.map.maps[{index}].grid.join('')")
+                self.assertEqual(cells, wanted[index]["cells"], f"{name}, map {at}")
+                found = self.page.run(f"page.map.maps[{index}].violations.order.length")
+                self.assertEqual(found, wanted[index]["wrong_pairs"], name)
+                seen.add(json.dumps(self.pixel_counts(index)))
+        self.assertEqual(len(seen), 6, "maps of different states look the same")
+
+    def test_labels_follow_the_sliders(self):
+        self.show_map(3, 49, 11)
+        self.assertEqual(self.page.run("document.getElementById('quarter-text').value"), "12:15")
+        self.assertEqual(self.page.run("document.getElementById('minute-text').value"), "12:26")
+        self.assertEqual(self.page.run("document.getElementById('context-text').value"),
+                         self.page.run("page.data.contexts[2]"))
+
+    def test_maps_show_where_decisions_are(self):
+        self.show_map(6, 48, 7)
+        first, last = self.page.run("[page.map.window.first, page.map.window.last]")
+        self.assertLess(last - first, 1000)
+        share = self.page.run("""(() => {
+          const cells = page.map.maps[0].grid;
+          return [0, 1, 2].map((action) => cells.filter((cell) => cell === action).length / cells.length);
+        })()""")
+        self.assertGreater(min(share[0], share[2]), .05, share)
+
+    def test_violations_are_seen_and_found(self):
+        mark = ",".join(str(c) for c in self.colours()["mark"])
+        self.page.run("document.getElementById('next-violation').click()")
+        self.page.wait(COMPLETE)
+        counts = self.page.run("page.map.maps.map((map) => map.violations.order.length)")
+        self.assertEqual(counts[0], 0, "the corrected student")
+        self.assertGreater(counts[1], 0, "the plain one")
+        self.assertNotIn(mark, self.pixel_counts(0))
+        self.assertGreater(self.pixel_counts(1).get(mark, 0), 20)
+        self.assertIn("no violation", self.page.run("page.map.maps[0].found.textContent"))
+        self.assertIn(f"{counts[1]} neighbouring pairs", self.page.run("page.map.maps[1].found.textContent"))
+
+    def test_broken_thresholds_are_violations(self):
+        found = self.page.run("""(() => {
+          const grid = Int8Array.from([1, 1, 0,  2, 1, 1]);  // prices 9, 10, 11 in rows of charge
+          return violationsOf(grid, 3, 9, {low: 9, high: 11});
+        })()""")
+        self.assertEqual(found["threshold"], [{"soc": 0, "column": 0}, {"soc": 1, "column": 2}])
+        self.assertEqual(found["order"], [{"soc": 0, "column": 0, "towards": "soc"},
+                                          {"soc": 0, "column": 2, "towards": "soc"}])
+
+    # Numbers are those of the evaluation.
+
+    def test_steps_add_up_to_the_days(self):
+        days = self.page.run("""page.days.map((day) => ({
+          date: day.date, profits: day.policies.map((policy) => cumulative(policy.profit).at(-1)),
+          energy: day.policies[0].power.reduce((sum, power) => sum + Math.abs(power), 0) / 1e6 / 30}))""")
+        names = self.page.run("page.data.archive.policies")
+        for name in ("corrected student", "plain student"):
+            wanted = self.expected["days"][name]
+            self.assertEqual([day["date"] for day in days], [day["date"] for day in wanted])
+            for day, of_evaluation in zip(days, wanted):
+                self.assertAlmostEqual(day["profits"][names.index(name)], of_evaluation["profit_eur"], places=2)
+        for day, of_evaluation in zip(days, self.expected["days"]["corrected student"]):
+            self.assertAlmostEqual(day["energy"], of_evaluation["throughput_mwh"], places=4)
+
+    def cumulative_of(self, name, wear):
+        capacity, sums, total = self.expected["capacity_mwh"], [], 0
+        for day in self.expected["days"][name]:
+            total += (day["profit_eur"] - wear * day["throughput_mwh"]) / capacity
+            sums.append(total)
+        return sums
+
+    def shown_cumulative(self):
+        return self.page.run("""Object.fromEntries(shownCharts.get("chart-cumulative").chart.data.datasets.map(
+          (line) => [line.label, line.data]))""")
+
+    def test_tear_sheet_with_and_without_wear(self):
+        for choice, wear in (("10", 10), ("configured", 0)):
+            self.page.run(f"document.querySelector('[data-wear=\"{choice}\"]').click()")
+            shown = self.shown_cumulative()
+            self.assertEqual(set(shown), {"corrected student", "rbc-tuned", "sdp", "foresight"})
+            for name, values in shown.items():
+                for value, wanted in zip(values, self.cumulative_of(name, wear), strict=True):
+                    self.assertAlmostEqual(value, wanted, places=6)
+
+    def test_hours_add_up_to_the_mean_day(self):
+        net = self.page.run("page.tearSheet.profitByHour().net")
+        days = self.expected["days"]["corrected student"]
+        mean = sum(day["profit_eur"] for day in days) / len(days) / self.expected["capacity_mwh"]
+        self.assertEqual(len(net), 24)
+        self.assertAlmostEqual(sum(net), mean, places=3)
+
+    def test_drawdown_is_never_above_zero_and_somewhere_below(self):
+        falls = self.page.run("page.tearSheet.drawdowns()")
+        self.assertLess(min(falls), 0)
+        self.assertLessEqual(max(falls), 0)
+
+    def test_headline_is_about_the_corrected_student(self):
+        days = [day["profit_eur"] / self.expected["capacity_mwh"] for day in self.expected["days"]["corrected student"]]
+        self.assertEqual(self.page.run("document.getElementById('headline-profit').textContent"),
+                         f"{sum(days) / len(days):.1f}")
+        plain = [day["profit_eur"] / self.expected["capacity_mwh"] for day in self.expected["days"]["plain student"]]
+        gain = sum(a - b for a, b in zip(days, plain)) / len(days)
+        cells = self.page.run("[...document.querySelectorAll('.gains tbody tr')].map((row) => row.textContent)")
+        self.assertTrue(cells[0].startswith("plain student"), cells)
+        self.assertIn(f"{gain:+.1f}", cells[0])
+
+    def test_worst_days_open(self):
+        dates = self.page.run("[...document.querySelectorAll('#worst-days tbody a')].map((link) => link.textContent)")
+        days = sorted(self.expected["days"]["corrected student"], key=lambda day: day["profit_eur"])
+        self.assertEqual(dates, [day["date"] for day in days[:8]])
+        self.page.run("document.querySelector('#worst-days tbody a').click()")
+        self.assertEqual(self.page.run("page.day.day.date"), dates[0])
+        self.page.run("document.getElementById('day-best').click()")
+        self.assertEqual(self.page.run("document.getElementById('day-select').value"), days[-1]["date"])
+
+    def test_the_day_and_the_map_agree(self):
+        self.page.run("document.getElementById('day-worst').click()")
+        for step in range(0, 720, 80):
+            self.page.set_value("step-slider", step)
+            self.page.run("document.getElementById('step-to-map').click()")
+            self.page.wait(COMPLETE)
+            same = self.page.run(f"""(() => {{
+              const state = page.day.state(), student = page.map.maps[0].student;
+              // As shared/features.cpp rounds hundredths of EUR and of percent to the lattice, halves up.
+              const price = Math.floor((Math.round(100 * state.price) + 50) / 100);
+              const soc = Math.floor((Math.round(1e4 * state.soc) + 25) / 50);
+              const action = student.decide(page.map.context, soc, Math.min(Math.max(price, -500), 1500));
+              return action === page.day.day.policies[0].action[{step}];
+            }})()""")
+            self.assertTrue(same, f"step {step}")
+
+    def test_the_ordinary_scale_is_narrower(self):
+        self.page.run("document.getElementById('day-widest').click()")
+        ranges = []
+        for scale in ("all", "ordinary"):
+            self.page.run(f"document.querySelector('[data-scale={scale}]').click()")
+            ranges.append(self.page.run("(({min, max}) => max - min)(shownCharts.get('chart-price').chart.scales.y)"))
+        self.assertLess(ranges[1], ranges[0])
+
+    # What it looks like.
+
+    def test_nothing_is_off_the_screen(self):
+        for width in WIDTHS_PX:
+            self.page.resize(width, 900)
+            self.page.wait(f"innerWidth === {width}")
+            self.page.run("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+            beyond = self.page.run("""[...document.body.querySelectorAll("*")].filter((element) => {
+              const box = element.getBoundingClientRect();
+              return box.width > 0 && (box.right > innerWidth + .5 || box.left < -.5);
+            }).map((element) => element.tagName + "#" + element.id + "." + element.className).slice(0, 5)""")
+            self.assertEqual(beyond, [], f"{width} px")
+            self.assertLessEqual(self.page.run("document.documentElement.scrollWidth"), width)
+
+    def test_light_and_dark(self):
+        shown = []
+        for dark in (False, True):
+            self.page.set_dark(dark)
+            self.page.run("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+            colours = self.colours()
+            self.assertGreater(contrast(colours["ink"], colours["paper"]), 7)
+            self.assertGreater(contrast(colours["muted"], colours["paper"]), 4.5)
+            self.assertGreater(contrast(colours["idle"], colours["paper"]), 1.5, "idle is the background")
+            background = self.page.run("getComputedStyle(document.querySelector('.card')).backgroundColor")
+            self.assertEqual(background, "rgb({}, {}, {})".format(*colours["paper"]))
+            ticks = self.page.run("shownCharts.get('chart-cumulative').chart.options.scales.x.ticks.color")
+            self.assertEqual(of_hex(ticks), colours["muted"])
+            self.show_map(6, 48, 7)
+            self.assertIn(",".join(str(c) for c in colours["idle"]), self.pixel_counts(0))
+            shown.append(colours)
+        self.assertNotEqual(shown[0]["paper"], shown[1]["paper"])
+
+    def test_nothing_is_fetched(self):
+        fetched = [event["params"]["request"]["url"] for event in self.page.events_of("Network.requestWillBeSent")]
+        self.assertEqual([url for url in fetched if not url.endswith("/report.html")], [])
+
+    def test_every_section_is_there(self):
+        missing = self.page.run("""[...document.querySelectorAll("nav a")].map((link) => link.getAttribute("href"))
+          .filter((target) => !document.querySelector(target))""")
+        self.assertEqual(missing, [])
+
+    def test_a_broken_page_says_so(self):
+        with open(self.path, encoding="utf-8") as file:
+            broken = file.read().replace('"data":"', '"data":"AAAA', 1)
+        path = os.path.join(self.folder.name, "broken.html")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(broken)
+        tab = browser.Page(self.browser)
+        try:
+            tab.call("Page.navigate", {"url": "file://" + path})
+            tab.wait("document.querySelector('.failure')")
+            self.assertIn("could not be shown", tab.run("document.querySelector('.failure').textContent"))
+            self.assertTrue(tab.complaints())
+        finally:
+            tab.close()
+            self.page.bring_to_front()
+
+
+if __name__ == "__main__":
+    if browser.chromium() is None:
+        print("skipped: chromium is not installed (tools/setup --test)")
+        sys.exit(77)
+    unittest.main()

@@ -1,0 +1,19 @@
+// Where a run's page comes from: when, where and by what it was made, and from which prices.
+#pragma once
+
+#include <vector>
+
+#include "workstation/cli/run_config.h"
+#include "workstation/cli/run_folder.h"
+#include "workstation/env/market_steps.h"
+#include "workstation/report/provenance.h"
+
+namespace bess {
+
+/// Reads run.json of `folder` for the prices and, where there is one, times.json for its stages' times. With
+/// SOURCE_DATE_EPOCH in the environment (reproducible-builds.org) that is the date, and what differs from one
+/// making to the next, host, command and times, is left out: the same run gives the same bytes.
+std::vector<Fact> run_facts(const RunConfig& config, const MarketSteps& market,
+                            const RunFolder& folder);
+
+}  // namespace bess

@@ -1,0 +1,171 @@
+#include "workstation/report/headline.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "workstation/report/html.h"
+
+namespace bess {
+namespace {
+
+struct Rival {
+  std::string_view name;
+  std::string_view meaning;
+};
+
+/// In the order of the table; what was not evaluated is left out.
+constexpr std::array kRivals{
+    Rival{kPlainName, "the student without correction"},
+    Rival{"rbc-tuned", "the best pair of thresholds"},
+    Rival{"mpc", "rolling horizon"},
+    Rival{"sdp", "stochastic program"},
+    Rival{kForesightName, "knows every price: a bound, no rival"},
+};
+
+const NamedEvaluation* find(const std::vector<NamedEvaluation>& evaluations,
+                            std::string_view name) {
+  const auto found = std::ranges::find(evaluations, name, &NamedEvaluation::name);
+  return found == evaluations.end() || found->day_reset.days.empty() ? nullptr : &*found;
+}
+
+HeadlineGain gain_over(const NamedEvaluation& exported, const NamedEvaluation& other,
+                       std::string_view meaning) {
+  HeadlineGain gain{other.name, std::string(meaning), {}};
+  for (std::size_t w = 0; w < kHeadlineWears.size(); ++w) {
+    gain.difference[w] = paired_difference(at_wear(exported.day_reset, kHeadlineWears[w]),
+                                           at_wear(other.day_reset, kHeadlineWears[w]));
+  }
+  return gain;
+}
+
+std::string error_of_mean(double standard_error) {
+  return std::isnan(standard_error) ? "" : fmt::format(" \u00b1 {:.1f}", standard_error);
+}
+
+/// "+5.2 ± 1.1", with a true minus; the error of one day is not known.
+std::string difference_text(const PairedDifference& difference) {
+  return fmt::format("{}{:.1f}{}", difference.mean < 0 ? "\u2212" : "+", std::abs(difference.mean),
+                     error_of_mean(difference.standard_error));
+}
+
+/// Half the width of the bars' axis, EUR per day per MWh: foresight is far beyond all others.
+double bar_reach(const Headline& headline) {
+  double reach = 1;
+  for (const HeadlineGain& gain : headline.gains) {
+    if (gain.against == kForesightName) continue;
+    for (const PairedDifference& d : gain.difference) {
+      const double error = std::isnan(d.standard_error) ? 0 : d.standard_error;
+      reach = std::max(reach, std::abs(d.mean) + 2 * error);
+    }
+  }
+  return reach;
+}
+
+/// Mean and two standard errors on an axis whose middle is zero, drawn by the style sheet.
+std::string bar(const PairedDifference& difference, double reach) {
+  const auto percent = [&](double value) { return 50 + 50 * std::clamp(value / reach, -1.0, 1.0); };
+  const double error = std::isnan(difference.standard_error) ? 0 : 2 * difference.standard_error;
+  const char* kind = !is_shown(difference) ? "open" : difference.mean > 0 ? "better" : "worse";
+  return fmt::format(
+      "<span class=\"bar {}\" aria-hidden=\"true\" style=\"--from:{:.1f}%;--to:{:.1f}%;--mean:"
+      "{:.1f}%\"></span>",
+      kind, percent(difference.mean - error), percent(difference.mean + error),
+      percent(difference.mean));
+}
+
+std::string gain_row(const HeadlineGain& gain, double reach) {
+  const bool bound = gain.against == kForesightName;
+  std::string row = fmt::format("<tr{}><th scope=\"row\">{}<small>{}</small></th>",
+                                bound ? " class=\"bound\"" : "", html_escaped(gain.against),
+                                html_escaped(gain.meaning));
+  for (std::size_t w = 0; w < kHeadlineWears.size(); ++w) {
+    row += fmt::format("<td data-label=\"wear {:g}\"><span class=\"number\">{}</span>{}</td>",
+                       kHeadlineWears[w], difference_text(gain.difference[w]),
+                       bound ? "" : bar(gain.difference[w], reach));
+  }
+  return row + "</tr>\n";
+}
+
+/// The price of correction in words; a difference is claimed only beyond two standard errors.
+std::string correction_text(const HeadlineGain& correction) {
+  const PairedDifference& d = correction.difference.front();
+  if (!is_shown(d)) {
+    return fmt::format("Price of the correction: none shown ({} against the plain student)",
+                       difference_text(d));
+  }
+  const std::string size =
+      fmt::format("{:.1f}{}", std::abs(d.mean), error_of_mean(d.standard_error));
+  return d.mean < 0 ? "Price of the correction: " + size
+                    : "The correction costs nothing: it earns " + size + " more";
+}
+
+}  // namespace
+
+Evaluation at_wear(const Evaluation& evaluation, double wear_eur_per_mwh) {
+  Evaluation worn = evaluation;
+  worn.wear_eur_per_mwh = wear_eur_per_mwh;
+  for (DayResult& day : worn.days) {
+    day.profit_eur -= (wear_eur_per_mwh - evaluation.wear_eur_per_mwh) * day.throughput_mwh;
+  }
+  return worn;
+}
+
+bool is_shown(const PairedDifference& difference) {
+  return std::abs(difference.mean) > 2 * difference.standard_error;  // false for NaN
+}
+
+std::optional<Headline> headline_of(const std::vector<NamedEvaluation>& evaluations) {
+  const NamedEvaluation* exported = find(evaluations, kCorrectedName);
+  if (exported == nullptr) return std::nullopt;
+  const Evaluation& days = exported->day_reset;
+  Headline headline{.days = days.days.size(),
+                    .profit = days.profit_eur_per_day_per_mwh(),
+                    .standard_error = days.standard_error(),
+                    .foresight_share = {},
+                    .correction = {},
+                    .gains = {}};
+  for (const Rival& rival : kRivals) {
+    const NamedEvaluation* other = find(evaluations, rival.name);
+    if (other != nullptr) headline.gains.push_back(gain_over(*exported, *other, rival.meaning));
+  }
+  if (find(evaluations, kPlainName) != nullptr) headline.correction = headline.gains.front();
+  if (const NamedEvaluation* bound = find(evaluations, kForesightName)) {
+    const double most = bound->day_reset.profit_eur_per_day_per_mwh();
+    if (most > 0) headline.foresight_share = headline.profit / most;
+  }
+  return headline;
+}
+
+std::string headline_html(const Headline& headline) {
+  std::string text = fmt::format(
+      "<p class=\"figure\"><strong id=\"headline-profit\">{:.1f}</strong><span>EUR per day per MWh "
+      "of capacity{}<br>the corrected student, over {} test days</span></p>\n<ul "
+      "class=\"badges\">\n",
+      headline.profit, error_of_mean(headline.standard_error), headline.days);
+  if (headline.correction) {
+    text += fmt::format("<li id=\"price-of-correction\">{}</li>\n",
+                        html_escaped(correction_text(*headline.correction)));
+  }
+  if (headline.foresight_share) {
+    text += fmt::format("<li>{:.1f} % of what perfect foresight would have earned</li>\n",
+                        100 * *headline.foresight_share);
+  }
+  text += "</ul>\n";
+  if (headline.gains.empty()) return text;
+  text += fmt::format(
+      "<table class=\"gains\">\n<caption>What it earns more than each of these, day by day, EUR "
+      "per day per MWh of capacity, \u00b1 standard error</caption>\n<thead><tr><th "
+      "scope=\"col\">Against</th><th scope=\"col\">No wear</th><th scope=\"col\">Wear {:g} "
+      "EUR/MWh</th></tr></thead>\n<tbody>\n",
+      kHeadlineWears[1]);
+  const double reach = bar_reach(headline);
+  for (const HeadlineGain& gain : headline.gains) text += gain_row(gain, reach);
+  return text +
+         "</tbody></table>\n<p class=\"note\">Wear is counted per MWh charged and per MWh "
+         "discharged. A bar spans two standard errors on either side; one that touches the line "
+         "shows no difference. Every day starts at the same charge.</p>\n";
+}
+
+}  // namespace bess

@@ -1,0 +1,92 @@
+// Charts in the page's colours: drawn with Chart.js, drawn again when the page turns dark or light.
+"use strict";
+
+const shownCharts = new Map();  // canvas id -> {chart, configure}
+
+/** Value of a colour variable of the style sheet. */
+function colour(name) {
+  return getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
+}
+
+/** The colour of each policy, everywhere on the page. */
+function policyColour(name) {
+  const names = {"corrected student": "line-1", "plain student": "line-2", "rbc-tuned": "line-2", "mpc": "line-3",
+                 "sdp": "line-4", "teacher": "line-3", "foresight": "muted"};
+  return colour(names[name] || "muted");
+}
+
+/** An axis of the page's look. */
+function axis(options = {}) {
+  const {ticks, grid, ...rest} = options;
+  return {
+    ...rest,
+    ticks: {color: colour("muted"), maxRotation: 0, autoSkipPadding: 14, ...ticks},
+    grid: {color: colour("grid"), borderColor: colour("muted"), tickLength: 4, ...grid},
+  };
+}
+
+/** Options that every chart has. */
+function baseOptions(options) {
+  return {
+    responsive: true, maintainAspectRatio: false, animation: false, normalized: true,
+    interaction: {mode: "index", intersect: false},
+    ...options,
+    plugins: {
+      legend: {labels: {color: colour("ink"), boxWidth: 14, boxHeight: 10}},
+      ...(options.plugins || {}),
+    },
+  };
+}
+
+/** Draws the chart of a canvas; `configure` makes its configuration, and makes it anew for other colours. */
+function drawChart(id, configure) {
+  const before = shownCharts.get(id);
+  if (before) before.chart.destroy();
+  const config = configure();
+  config.options = baseOptions(config.options || {});
+  const chart = new Chart(document.getElementById(id), config);
+  shownCharts.set(id, {chart, configure});
+  return chart;
+}
+
+function redrawCharts() {
+  for (const [id, {configure}] of [...shownCharts]) drawChart(id, configure);
+}
+
+/** Calls back when light becomes dark or dark light. */
+function onColourScheme(callback) {
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", callback);
+}
+
+/** "+12.3" */
+function signed(value, digits = 1) {
+  return (value >= 0 ? "+" : "\u2212") + Math.abs(value).toFixed(digits);
+}
+
+/** Two digits. */
+function padded(number) {
+  return String(number).padStart(2, "0");
+}
+
+/** "12:07" of a minute of the day. */
+function clockText(minute) {
+  return padded(Math.floor(minute / 60)) + ":" + padded(minute % 60);
+}
+
+/** The buttons of a choice: one is pressed; `chosen` is told its value. */
+function bindChoice(id, key, chosen) {
+  const buttons = [...document.querySelectorAll(`#${id} button`)];
+  for (const button of buttons) {
+    button.addEventListener("click", () => {
+      pressChoice(id, key, button.dataset[key]);
+      chosen(button.dataset[key]);
+    });
+  }
+}
+
+/** Shows `value` as the one that is pressed; none when no button has it. */
+function pressChoice(id, key, value) {
+  for (const button of document.querySelectorAll(`#${id} button`)) {
+    button.setAttribute("aria-pressed", String(button.dataset[key] === value));
+  }
+}

@@ -1,0 +1,51 @@
+// How teacher and student learned, and on which prices.
+"use strict";
+
+/** Lines over numbers; `series`: [name, points, colour, dash] each, points [x, y]. */
+function drawLines(id, series, scales) {
+  drawChart(id, () => ({
+    type: "line",
+    data: {
+      datasets: series.map(([label, points, ink, dash]) => ({
+        label, data: points.map(([x, y]) => ({x, y})), borderColor: colour(ink), backgroundColor: colour(ink),
+        pointRadius: points.length > 40 ? 0 : 2, borderWidth: 2, borderDash: dash || [],
+      })),
+    },
+    options: {parsing: false, scales: {x: axis({type: "linear"}), y: axis(), ...scales()}},
+  }));
+}
+
+function drawTraining({training}) {
+  document.getElementById("training-figure").hidden = training.length < 2;  // a program is fitted, not trained
+  if (training.length < 2) return;
+  drawLines("chart-training", [["validation", training, "line-1"]], () => ({}));
+}
+
+function drawDistillation({distil, by_construction}) {
+  document.getElementById("distil-figure").hidden = distil.length === 0;
+  if (distil.length === 0) return;
+  const column = (c) => distil.map((row) => [row[0], row[c]]);
+  document.getElementById("distil-note").textContent = by_construction
+    ? "loss over passes; its order holds by construction" : "losses over epochs, logarithmic";
+  const visited = ["on the states that the teacher visits", column(3), "line-1"];
+  const losses = [["distance to the teacher", column(1), "line-3"], ["distance to the ordered", column(2), "line-2"], visited];
+  drawLines("chart-distil", by_construction ? [visited] : losses.map(
+    ([name, points, ink]) => [name, points.filter(([, y]) => y > 0), ink]),
+            () => (by_construction ? {} : {y: axis({type: "logarithmic"})}));
+}
+
+function drawPriceHistogram({low, bin, train, test}) {
+  drawChart("chart-prices", () => ({
+    type: "bar",
+    data: {
+      labels: train.map((_, b) => String(low + b * bin)),
+      datasets: [
+        {type: "line", label: "test days", data: test, borderColor: colour("ink"), backgroundColor: colour("ink"),
+         borderWidth: 2, pointRadius: 0, stepped: "middle", order: 0},
+        {label: "training days", data: train, backgroundColor: colour("soft"), barPercentage: 1, categoryPercentage: 1,
+         order: 1},
+      ],
+    },
+    options: {scales: {x: axis(), y: axis()}},
+  }));
+}

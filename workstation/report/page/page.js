@@ -1,0 +1,35 @@
+// Puts the page together: data, charts, day and maps. What goes wrong is told on the page.
+"use strict";
+
+/** Everything that a test or the console may want to look at. */
+const page = {};
+
+async function openPage() {
+  page.data = JSON.parse(document.getElementById("data").textContent);
+  showMapKeys();
+  drawTraining(page.data.learning);
+  drawDistillation(page.data.learning);
+  drawPriceHistogram(page.data.prices);
+  page.map = new PolicyMap(page.data);
+  page.days = await unpackDays(page.data.archive);
+  page.day = new DayView(page.data, page.days, (state) => {
+    page.map.showState(state);
+    document.getElementById("policy").scrollIntoView();
+  });
+  page.day.openAt(page.day.widest());
+  page.tearSheet = new TearSheet(page.data, page.days, (date) => page.day.open(date));
+  page.tearSheet.draw();
+  onColourScheme(() => {
+    redrawCharts();
+    page.map.paint();
+  });
+  document.documentElement.dataset.ready = "true";
+}
+
+openPage().catch((error) => {
+  const text = document.createElement("p");
+  text.className = "failure";
+  text.textContent = `Part of this page could not be shown: ${error.message}. It needs a browser of 2023 or newer.`;
+  document.querySelector("main").prepend(text);
+  throw error;
+});

@@ -1,0 +1,338 @@
+// The students' decisions over price and state of charge, evaluated here by their integers (student.js). Computed in
+// slices between frames: the sliders stay quick, and what stands there when it is done is exact, cell by cell.
+"use strict";
+
+const kSliceMs = 20;
+const kPaintEveryMs = 120;
+const kCoarseRows = 8;       // of the first, quick look
+const kWindowRoundTo = 10;   // EUR/MWh
+const kMargin = {left: 46, right: 8, top: 10, bottom: 38};  // CSS pixels around a map
+const kMarkPx = 3;           // of a violation, at least
+
+/** One student's map: its canvas, and the grid that it shows. */
+class StudentMap {
+  constructor(name, student, host) {
+    this.name = name;
+    this.student = student;
+    const figure = document.createElement("figure"), caption = document.createElement("figcaption");
+    caption.textContent = name;
+    this.canvas = document.createElement("canvas");
+    this.canvas.className = "map";
+    this.canvas.setAttribute("role", "img");
+    this.canvas.setAttribute("aria-label", `Decisions of the ${name} over price and state of charge`);
+    this.found = document.createElement("p");
+    this.found.className = "found";
+    figure.append(caption, this.canvas, this.found);
+    host.append(figure);
+  }
+}
+
+class PolicyMap {
+  constructor(data) {
+    this.data = data;
+    this.lattice = data.lattice;
+    const host = document.getElementById("maps");
+    this.maps = data.students.map(({name, net}) => new StudentMap(name, new Student(net, data.lattice), host));
+    this.context = {contextClass: data.first_map.context_class, quarterHour: data.first_map.quarter_hour,
+                    minute: data.first_map.minute};
+    this.marked = null;
+    this.nextViolation = 0;
+    if (this.maps.length === 0) {
+      document.getElementById("policy").hidden = true;
+      return;
+    }
+    this.decisions = this.decisionWindow(this.maps[0].student);
+    this.window = this.decisions;
+    this.bind();
+    this.show();
+  }
+
+  bind() {
+    const slider = (id, key) => document.getElementById(id).addEventListener("input", (event) => {
+      this.context[key] = Number(event.target.value);
+      this.marked = null;
+      this.show();
+    });
+    slider("context-slider", "contextClass");
+    slider("quarter-slider", "quarterHour");
+    slider("minute-slider", "minute");
+    bindChoice("window-choice", "window", (value) => this.setWindow(
+      value === "all" ? {first: this.lattice.price_min, last: this.lattice.price_max} : this.decisions));
+    for (const id of ["price-from", "price-to"]) {
+      const input = document.getElementById(id);
+      input.min = String(this.lattice.price_min);
+      input.max = String(this.lattice.price_max);
+      input.addEventListener("change", () => this.readWindow());
+    }
+    document.getElementById("next-violation").addEventListener("click", () => this.showViolation());
+    for (const map of this.maps) {
+      map.canvas.addEventListener("pointermove", (event) => this.tell(map, event));
+      map.canvas.addEventListener("pointerdown", (event) => this.tell(map, event));
+    }
+    new ResizeObserver(() => this.paint()).observe(document.getElementById("maps"));
+  }
+
+  /** Prices between which an ordered policy changes its mind, nearly always: over classes, hours and charges. */
+  decisionWindow(student) {
+    const {price_min, price_max, soc_count} = this.lattice;
+    const borders = [];
+    for (let contextClass = 1; contextClass <= 12; ++contextClass) {
+      for (let quarterHour = 0; quarterHour < 96; quarterHour += 8) {
+        for (const share of [.2, .4, .6, .8]) {
+          student.beginRow({contextClass, quarterHour, minute: 7}, Math.round(share * (soc_count - 1)));
+          for (const level of [1, 0]) {  // from which price on is the action at most this
+            let low = price_min, high = price_max;
+            while (low < high) {
+              const middle = (low + high) >> 1;
+              if (student.decideInRow(middle) <= level) high = middle; else low = middle + 1;
+            }
+            borders.push(low);
+          }
+        }
+      }
+    }
+    borders.sort((a, b) => a - b);
+    const at = (share) => borders[Math.round(share * (borders.length - 1))];
+    const room = Math.max(kWindowRoundTo, .1 * (at(.98) - at(.02)));
+    const round = (price) => Math.round(price / kWindowRoundTo) * kWindowRoundTo;
+    return {first: Math.max(price_min, round(at(.02) - room)), last: Math.min(price_max, round(at(.98) + room))};
+  }
+
+  setWindow(window) {
+    this.window = window;
+    this.show();
+  }
+
+  readWindow() {
+    const value = (id) => Math.round(Number(document.getElementById(id).value));
+    const clamp = (price) => Math.min(Math.max(price, this.lattice.price_min), this.lattice.price_max);
+    const first = clamp(value("price-from")), last = clamp(value("price-to"));
+    pressChoice("window-choice", "window", "");
+    this.setWindow(first < last ? {first, last} : this.window);
+  }
+
+  /** A state of the plain student that breaks a property, one after the other. */
+  showViolation() {
+    const [minute, quarterHour, contextClass, soc, price] = this.data.counterexamples[this.nextViolation];
+    this.nextViolation = (this.nextViolation + 1) % this.data.counterexamples.length;
+    this.showState({minute, quarterHour, contextClass, price, soc: soc / (this.lattice.soc_count - 1)});
+  }
+
+  /** Goes to a state, and marks its price and charge. */
+  showState({contextClass, quarterHour, minute, price, soc}) {
+    this.context = {contextClass, quarterHour, minute};
+    this.marked = {price, soc};
+    if (price < this.window.first || price > this.window.last) {
+      const half = Math.round((this.decisions.last - this.decisions.first) / 2);
+      const clamp = (edge) => Math.min(Math.max(edge, this.lattice.price_min), this.lattice.price_max);
+      this.window = {first: clamp(Math.round(price) - half), last: clamp(Math.round(price) + half)};
+      pressChoice("window-choice", "window", "");
+    }
+    this.show();
+  }
+
+  showControls() {
+    const {contextClass, quarterHour, minute} = this.context;
+    const set = (id, value) => { document.getElementById(id).value = String(value); };
+    set("context-slider", contextClass);
+    set("quarter-slider", quarterHour);
+    set("minute-slider", minute);
+    set("context-text", this.data.contexts[contextClass - 1]);
+    set("quarter-text", clockText(quarterHour * 15));
+    set("minute-text", clockText(quarterHour * 15 + minute));
+    set("price-from", this.window.first);
+    set("price-to", this.window.last);
+    const count = this.data.counterexamples.length, button = document.getElementById("next-violation");
+    button.hidden = count === 0;
+    button.textContent = `a violation of the plain student (${this.nextViolation + 1} of ${count} kept)`;
+  }
+
+  show() {
+    this.showControls();
+    this.work = this.maps.map((map) => this.evaluation(map));
+    this.paintedAt = 0;
+    for (const map of this.maps) map.canvas.dataset.complete = "false";
+    if (!this.ticking) this.tick();
+  }
+
+  /** Some work, a picture, and on in the next frame until all is done. */
+  tick() {
+    const end = performance.now() + kSliceMs;
+    while (this.work.length > 0 && performance.now() < end) {
+      if (this.work[0].next().done) this.work.shift();
+    }
+    this.ticking = this.work.length > 0;
+    if (this.ticking) requestAnimationFrame(() => this.tick());
+    if (!this.ticking || end - this.paintedAt > kPaintEveryMs) {
+      this.paintedAt = end;
+      this.paint();
+    }
+  }
+
+  /** Evaluates one map, a row at a time: every eighth first, then all. */
+  *evaluation(map) {
+    const {first, last} = this.window, context = {...this.context}, rows = this.lattice.soc_count;
+    const width = last - first + 1, grid = new Int8Array(rows * width).fill(-1);
+    map.grid = grid;
+    map.window = this.window;
+    map.violations = null;
+    const evaluate = (soc) => {
+      map.student.beginRow(context, soc);
+      for (let column = 0; column < width; ++column) {
+        grid[soc * width + column] = map.student.decideInRow(first + column);
+      }
+    };
+    for (let soc = 0; soc < rows; soc += kCoarseRows) {
+      evaluate(soc);
+      yield;
+    }
+    for (let soc = 0; soc < rows; ++soc) {
+      if (soc % kCoarseRows === 0) continue;
+      evaluate(soc);
+      yield;
+    }
+    map.violations = violationsOf(grid, width, first, this.data.thresholds);
+    this.describe(map);
+    map.canvas.dataset.complete = "true";
+  }
+
+  describe(map) {
+    const {order, threshold} = map.violations;
+    map.found.textContent = order.length + threshold.length === 0
+      ? "no violation in what is shown"
+      : `${order.length} neighbouring pairs out of order, ${threshold.length} states beyond a threshold not obeyed`;
+    map.found.classList.toggle("some", order.length + threshold.length > 0);
+  }
+
+  /** Where prices and charges lie on a canvas. */
+  frame(map) {
+    const width = map.canvas.clientWidth, height = map.canvas.clientHeight;
+    const plot = {x: kMargin.left, y: kMargin.top, w: width - kMargin.left - kMargin.right,
+                  h: height - kMargin.top - kMargin.bottom};
+    const {first, last} = map.window, columns = last - first + 1, rows = this.lattice.soc_count;
+    return {width, height, plot, columns, rows, cellW: plot.w / columns, cellH: plot.h / rows,
+            xOf: (price) => plot.x + (price - first + .5) / columns * plot.w,
+            yOf: (soc) => plot.y + plot.h - (soc + .5) / rows * plot.h};
+  }
+
+  paint() {
+    for (const map of this.maps) if (map.grid && map.canvas.clientWidth > 0) this.paintMap(map);
+  }
+
+  paintMap(map) {
+    const frame = this.frame(map), ratio = devicePixelRatio || 1, canvas = map.canvas;
+    canvas.width = Math.round(frame.width * ratio);
+    canvas.height = Math.round(frame.height * ratio);
+    const ctx = canvas.getContext("2d");
+    ctx.scale(ratio, ratio);
+    this.paintCells(ctx, map, frame);
+    if (map.violations) this.paintViolations(ctx, map, frame);
+    this.paintAxes(ctx, map, frame);
+    if (this.marked) this.paintMarked(ctx, frame);
+  }
+
+  paintCells(ctx, map, {plot, columns, rows}) {
+    const cells = new OffscreenCanvas(columns, rows), image = new ImageData(columns, rows);
+    const pixels = new Uint32Array(image.data.buffer);
+    const inks = kActions.map((name) => pixelOf(colour(name)));
+    for (let soc = 0; soc < rows; ++soc) {
+      const from = map.grid[soc * columns] < 0 ? soc - soc % kCoarseRows : soc;  // a row that was looked at
+      for (let column = 0; column < columns; ++column) {
+        const action = map.grid[from * columns + column];
+        if (action >= 0) pixels[(rows - 1 - soc) * columns + column] = inks[action];
+      }
+    }
+    cells.getContext("2d").putImageData(image, 0, 0);
+    ctx.imageSmoothingEnabled = false;
+    ctx.drawImage(cells, plot.x, plot.y, plot.w, plot.h);
+  }
+
+  paintViolations(ctx, map, {plot, cellW, cellH, rows}) {
+    ctx.save();
+    ctx.beginPath();
+    ctx.rect(plot.x, plot.y, plot.w, plot.h);
+    ctx.clip();
+    ctx.fillStyle = colour("mark");
+    const w = Math.max(cellW, kMarkPx), h = Math.max(cellH, kMarkPx);
+    const fill = (x, y) => ctx.fillRect(x - w / 2, y - h / 2, w, h);
+    const left = (column) => plot.x + column * cellW, top = (soc) => plot.y + (rows - 1 - soc) * cellH;
+    for (const {soc, column, towards} of map.violations.order) {  // on the border between the two
+      fill(left(column) + (towards === "price" ? cellW : cellW / 2), top(soc) + (towards === "soc" ? 0 : cellH / 2));
+    }
+    for (const {soc, column} of map.violations.threshold) fill(left(column) + cellW / 2, top(soc) + cellH / 2);
+    ctx.restore();
+  }
+
+  paintAxes(ctx, map, {plot, xOf, yOf, width}) {
+    ctx.strokeStyle = colour("muted");
+    ctx.lineWidth = 1;
+    ctx.strokeRect(plot.x, plot.y, plot.w, plot.h);
+    ctx.fillStyle = colour("muted");
+    ctx.font = "12px system-ui, sans-serif";
+    ctx.textAlign = "right";
+    ctx.textBaseline = "middle";
+    for (const percent of [0, 25, 50, 75, 100]) ctx.fillText(`${percent} %`, plot.x - 6, yOf(2 * percent));
+    ctx.textAlign = "center";
+    ctx.textBaseline = "top";
+    const {first, last} = map.window, step = niceStep((last - first) / (width / 90));
+    for (let price = Math.ceil(first / step) * step; price <= last; price += step) {
+      ctx.fillText(String(price).replace("-", "\u2212"), xOf(price), plot.y + plot.h + 5);
+      ctx.fillRect(xOf(price) - .5, plot.y + plot.h, 1, 4);
+    }
+    ctx.fillText("price, EUR/MWh", plot.x + plot.w / 2, plot.y + plot.h + 20);
+    ctx.setLineDash([4, 4]);
+    ctx.strokeStyle = colour("ink");
+    const reserve = yOf(this.data.battery.soc_min * (this.lattice.soc_count - 1));
+    ctx.beginPath();
+    ctx.moveTo(plot.x, reserve);
+    ctx.lineTo(plot.x + plot.w, reserve);
+    ctx.stroke();
+    ctx.setLineDash([]);
+  }
+
+  paintMarked(ctx, {xOf, yOf}) {
+    const x = xOf(this.marked.price), y = yOf(this.marked.soc * (this.lattice.soc_count - 1));
+    for (const [ink, width] of [[colour("paper"), 5], [colour("ink"), 2]]) {
+      ctx.strokeStyle = ink;
+      ctx.lineWidth = width;
+      ctx.beginPath();
+      ctx.arc(x, y, 7, 0, 2 * Math.PI);
+      ctx.stroke();
+    }
+  }
+
+  /** What all students do where the pointer is. */
+  tell(map, event) {
+    const {plot, columns, rows} = this.frame(map);
+    const column = Math.floor((event.offsetX - plot.x) / plot.w * columns);
+    const soc = rows - 1 - Math.floor((event.offsetY - plot.y) / plot.h * rows);
+    if (column < 0 || column >= columns || soc < 0 || soc >= rows) return;
+    const price = map.window.first + column;
+    const actions = this.maps.map(
+      ({name, student}) => `${name}: ${kActions[student.decide(this.context, soc, price)]}`);
+    document.getElementById("map-readout").textContent =
+      `${price} EUR/MWh at ${(100 * soc / (rows - 1)).toFixed(1)} %: ${actions.join(", ")}`;
+  }
+}
+
+/** A pixel of an image on a little-endian machine, of "#rrggbb". */
+function pixelOf(hex) {
+  const [red, green, blue] = [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
+  return (255 << 24 | blue << 16 | green << 8 | red) >>> 0;
+}
+
+/** The key of the maps, in the page's colours. */
+function showMapKeys() {
+  const keys = [["charge", "charge"], ["idle", "idle"], ["discharge", "discharge"], ["mark", "violation"],
+                ["", "dotted: charge that the battery keeps"]];
+  document.getElementById("map-keys").replaceChildren(...keys.map(([name, text]) => {
+    const item = document.createElement("li");
+    if (name) {
+      const swatch = document.createElement("i");
+      swatch.style.background = `var(--${name})`;
+      item.append(swatch);
+    }
+    item.append(text);
+    return item;
+  }));
+}

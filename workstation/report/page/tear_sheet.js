@@ -1,0 +1,189 @@
+// The tear sheet: what the exported policy earned over the test days, and beside whom.
+"use strict";
+
+const kReferenceWear = 10;  // EUR/MWh
+const kShownRivals = ["rbc-tuned", "mpc", "sdp", "foresight"];
+const kBars = 14;
+const kWorstDays = 8;
+
+class TearSheet {
+  /** `days`: of unpackDays; `openDay(date)` shows one. */
+  constructor(data, days, openDay) {
+    this.data = data;
+    this.days = days;
+    this.openDay = openDay;
+    this.wear = data.battery.wear_eur_per_mwh;
+    bindChoice("wear-choice", "wear", (value) => {
+      this.wear = value === "configured" ? data.battery.wear_eur_per_mwh : kReferenceWear;
+      this.draw();
+    });
+  }
+
+  /** The exported policy and its rivals, as far as they were evaluated. */
+  policies(names) {
+    return names.map((name) => this.data.policies.find((policy) => policy.name === name)).filter(Boolean);
+  }
+
+  /** EUR per MWh of capacity, by day. */
+  profits(policy) {
+    const {capacity_mwh, wear_eur_per_mwh} = this.data.battery;
+    return policy.profit_eur.map(
+      (eur, d) => (eur - (this.wear - wear_eur_per_mwh) * policy.throughput_mwh[d]) / capacity_mwh);
+  }
+
+  draw() {
+    const exported = this.policies([this.data.exported])[0] || this.data.policies[0];
+    if (exported) {
+      this.drawCumulative(exported);
+      this.drawMonths(exported);
+      this.drawDistribution(exported);
+      this.listWorstDays(exported);
+    }
+    this.drawDrawdown();
+    this.drawHours();
+  }
+
+  drawCumulative(exported) {
+    drawChart("chart-cumulative", () => ({
+      type: "line",
+      data: {
+        labels: this.data.dates,
+        datasets: [exported, ...this.policies(kShownRivals)].map((policy) => ({
+          label: policy.name, data: cumulative(this.profits(policy)), borderColor: policyColour(policy.name),
+          backgroundColor: policyColour(policy.name), pointRadius: 0, pointHitRadius: 8,
+          borderWidth: policy === exported ? 3 : 1.5, hidden: policy.name === this.data.foresight,
+          borderDash: policy.name === this.data.foresight ? [5, 4] : [],
+        })),
+      },
+      options: {scales: {x: axis(), y: axis()}},
+    }));
+  }
+
+  /** By day: the lowest of the running profit minus its peak, from the steps of the days that are here. */
+  drawdowns() {
+    let sum = 0, peak = 0;
+    return this.days.map((day) => {
+      let deepest = 0;
+      for (const eur of day.policies[0].profit) {
+        sum += eur;
+        peak = Math.max(peak, sum);
+        deepest = Math.min(deepest, sum - peak);
+      }
+      return deepest / this.data.battery.capacity_mwh;
+    });
+  }
+
+  drawDrawdown() {
+    const falls = this.drawdowns();
+    drawChart("chart-drawdown", () => ({
+      type: "bar",
+      data: {
+        labels: this.days.map((day) => day.date),
+        datasets: [{label: this.data.archive.policies[0], data: falls, backgroundColor: policyColour("corrected student"),
+                    barPercentage: 1, categoryPercentage: .9}],
+      },
+      options: {scales: {x: axis(), y: axis({max: 0})}, plugins: {legend: {display: false}}},
+    }));
+  }
+
+  drawMonths(exported) {
+    const months = [...new Set(this.data.dates.map((date) => date.slice(0, 7)))];
+    const means = (policy) => {
+      const profits = this.profits(policy);
+      return months.map((month) => {
+        const own = profits.filter((_, d) => this.data.dates[d].startsWith(month));
+        return own.reduce((sum, profit) => sum + profit, 0) / own.length;
+      });
+    };
+    this.drawBars("chart-months", months, [exported, ...this.policies(["rbc-tuned", "mpc"])].map(
+      (policy) => [policy.name, means(policy)]));
+  }
+
+  drawDistribution(exported) {
+    const shown = [exported, ...this.policies(["rbc-tuned"])];
+    const all = shown.map((policy) => this.profits(policy));
+    const low = Math.min(...all.flat()), high = Math.max(...all.flat());
+    const width = niceStep((high - low) / kBars), first = Math.floor(low / width) * width;
+    const count = Math.floor((high - first) / width) + 1;
+    const labels = Array.from({length: count}, (_, b) => String(Math.round(first + b * width)));
+    this.drawBars("chart-days", labels, shown.map((policy, p) => {
+      const bins = new Array(count).fill(0);
+      for (const profit of all[p]) ++bins[Math.floor((profit - first) / width)];
+      return [policy.name, bins];
+    }));
+  }
+
+  /** Means over the days that are here, of the exported policy. */
+  profitByHour() {
+    const charging = new Array(24).fill(0), discharging = new Array(24).fill(0);
+    const share = 1 / (this.days.length * this.data.battery.capacity_mwh);
+    for (const day of this.days) {
+      const {profit, power} = day.policies[0];
+      for (let s = 0; s < day.steps; ++s) {
+        const sums = power[s] > 0 ? charging : discharging;
+        sums[Math.floor(day.localMinute[s] / 60)] += profit[s] * share;
+      }
+    }
+    return {charging, discharging, net: charging.map((eur, h) => eur + discharging[h])};
+  }
+
+  drawHours() {
+    const {charging, discharging, net} = this.profitByHour();
+    drawChart("chart-hours", () => ({
+      data: {
+        labels: charging.map((_, hour) => padded(hour)),
+        datasets: [
+          {type: "line", label: "together", data: net, borderColor: colour("ink"), backgroundColor: colour("ink"),
+           borderWidth: 2, pointRadius: 2, order: 0},
+          {type: "bar", label: "charging", data: charging, backgroundColor: colour("charge"), stack: "eur", order: 1},
+          {type: "bar", label: "discharging", data: discharging, backgroundColor: colour("discharge"), stack: "eur",
+           order: 1},
+        ],
+      },
+      options: {scales: {x: axis({stacked: true}), y: axis({stacked: true})}},
+    }));
+  }
+
+  /** Bars side by side; `series`: [name, values] each. */
+  drawBars(id, labels, series) {
+    drawChart(id, () => ({
+      type: "bar",
+      data: {
+        labels,
+        datasets: series.map(([name, values]) => ({label: name, data: values, backgroundColor: policyColour(name)})),
+      },
+      options: {scales: {x: axis(), y: axis({ticks: {precision: 0}})}},
+    }));
+  }
+
+  listWorstDays(exported) {
+    const shown = [exported, ...this.policies(["rbc-tuned", "foresight"])];
+    const profits = shown.map((policy) => this.profits(policy));
+    const order = this.data.dates.map((_, d) => d).sort((a, b) => profits[0][a] - profits[0][b]);
+    const table = document.getElementById("worst-days");
+    const row = (cells, kind) => {
+      const tr = document.createElement("tr");
+      cells.forEach((content, c) => {
+        const cell = document.createElement(c === 0 ? "th" : kind);
+        if (c > 0) cell.dataset.label = c <= shown.length ? shown[c - 1].name : "cycles";
+        cell.append(content);
+        tr.append(cell);
+      });
+      return tr;
+    };
+    table.tHead.replaceChildren(row(["Day", ...shown.map((policy) => policy.name), "cycles"], "th"));
+    table.tBodies[0].replaceChildren(...order.slice(0, kWorstDays).map((d) => {
+      const link = document.createElement("a");
+      link.href = "#day";
+      link.textContent = this.data.dates[d];
+      link.addEventListener("click", () => this.openDay(this.data.dates[d]));
+      return row([link, ...profits.map((of) => of[d].toFixed(1)), exported.cycles[d].toFixed(2)], "td");
+    }));
+  }
+}
+
+/** 1, 2 or 5 times a power of ten, not less than `rough`. */
+function niceStep(rough) {
+  const power = 10 ** Math.floor(Math.log10(Math.max(rough, 1e-9)));
+  return [1, 2, 5, 10].map((factor) => factor * power).find((step) => step >= rough * (1 - 1e-12));
+}

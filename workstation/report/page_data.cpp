@@ -1,0 +1,235 @@
+#include "workstation/report/page_data.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string_view>
+
+#include "workstation/env/context_fit.h"
+#include "workstation/report/headline.h"
+#include "workstation/report/price_histogram.h"
+#include "workstation/report/shown_policies.h"
+#include "workstation/report/step_archive.h"
+
+namespace bess {
+namespace {
+
+constexpr double kWattHoursPerMegawattHour = 1e6;
+constexpr std::size_t kCounterexamplesShown = 200;
+constexpr int kNoonQuarterHour = 48;
+constexpr int kMiddleMinute = 7;
+
+Json numbers(const std::vector<double>& values) {
+  Json list = Json::list();
+  for (const double value : values) list.add(value);
+  return list;
+}
+
+template <typename Field>
+Json of_days(const Evaluation& evaluation, Field field) {
+  Json list = Json::list();
+  for (const DayResult& day : evaluation.days) list.add(field(day));
+  return list;
+}
+
+Json policies_json(const std::vector<NamedEvaluation>& evaluations) {
+  Json list = Json::list();
+  for (const NamedEvaluation& named : evaluations) {
+    const Evaluation& days = named.day_reset;
+    if (days.days.empty()) continue;
+    Json policy = Json::object({{"name", named.name}});
+    policy.set("profit_eur", of_days(days, [](const DayResult& d) { return d.profit_eur; }));
+    policy.set("throughput_mwh",
+               of_days(days, [](const DayResult& d) { return d.throughput_mwh; }));
+    policy.set("cycles", of_days(days, [](const DayResult& d) { return Decimals{d.cycles, 3}; }));
+    list.add(std::move(policy));
+  }
+  return list;
+}
+
+/// The exported policy first.
+std::vector<PolicySteps> all_steps(const ReportInputs& in, const std::vector<MarketDay>& days) {
+  std::vector<PolicySteps> all;
+  for (const ShownPolicy& shown : shown_policies(in)) {
+    PolicySteps steps{shown.name, {}};
+    evaluate(in.market, days, *shown.policy, {in.battery, in.initial_soc_frac, false},
+             &steps.records);
+    all.push_back(std::move(steps));
+  }
+  return all;
+}
+
+std::vector<double> profits_by_day(const std::vector<MarketDay>& days, const PolicySteps& policy) {
+  std::vector<double> profits;
+  auto record = policy.records.begin();
+  for (const MarketDay& day : days) {
+    double profit_eur = 0;
+    for (std::size_t s = 0; s < day.step_count; ++s) profit_eur += (record++)->profit_eur;
+    profits.push_back(profit_eur);
+  }
+  return profits;
+}
+
+Json archive_json(const ReportInputs& in, const std::vector<MarketDay>& days) {
+  const std::vector<PolicySteps> policies = all_steps(in, days);
+  const auto kept = days_with_steps(profits_by_day(days, policies.front()), kDaysWithSteps);
+  Json archive = step_archive(in.market, days, policies, kept, context_classes_of(in));
+  archive.set("days_left_out", days.size() - kept.size());
+  return archive;
+}
+
+template <int kInputs, int kOutputs>
+Json layer_json(const Affine<kInputs, kOutputs>& layer) {
+  Json weight = Json::list();
+  for (const auto& row : layer.weight) {
+    for (const std::int16_t w : row) weight.add(w);
+  }
+  Json json = Json::object();
+  json.set("weight", std::move(weight));
+  json.set("bias", std::span(layer.bias));
+  return json;
+}
+
+Json students_json(const ReportInputs& in) {
+  Json students = Json::list();
+  const auto add = [&](const char* name, const StudentFile* student) {
+    if (student == nullptr) return;
+    Json json = Json::object({{"name", name}});
+    json.set("net", student_json(student->net));
+    students.add(std::move(json));
+  };
+  add(kCorrectedName, in.corrected);
+  add(kPlainName, in.uncorrected);
+  return students;
+}
+
+Json counterexamples_json(const ReportInputs& in) {
+  Json list = Json::list();
+  if (in.uncorrected == nullptr) return list;
+  const auto& found = in.uncorrected->certificate.counterexamples;
+  const std::size_t stride = found.size() / kCounterexamplesShown + 1;
+  for (std::size_t i = 0; i < found.size(); i += stride) {
+    const LatticeState& s = found[i];
+    const std::int16_t state[] = {s.minute_of_quarter_hour, s.quarter_hour, s.context_class,
+                                  s.soc_index, s.price_eur_per_mwh};
+    list.add(std::span(state));
+  }
+  return list;
+}
+
+/// The class that most steps of the test days are in, at noon: what the map shows first.
+Json first_map_json(const ReportInputs& in, const std::vector<MarketDay>& days) {
+  const ContextClasses classes = context_classes_of(in);
+  std::array<std::size_t, kContextClassCount + 1> steps{};
+  for (const MarketDay& day : days) {
+    for (const MarketStep& step : in.market.of(day)) {
+      ++steps[static_cast<std::size_t>(classes.class_of(step.month, step.level_centi_eur_per_mwh))];
+    }
+  }
+  const auto most = std::max_element(steps.begin() + 1, steps.end()) - steps.begin();
+  return Json::object(
+      {{"context_class", most}, {"quarter_hour", kNoonQuarterHour}, {"minute", kMiddleMinute}});
+}
+
+Json contexts_json(const ContextClasses& classes) {
+  Json contexts = Json::list();
+  for (int c = 1; c <= kContextClassCount; ++c) contexts.add(context_text(classes, c));
+  return contexts;
+}
+
+Json learning_json(const ReportInputs& in) {
+  Json training = Json::list();
+  for (const CurvePoint& p : in.training_curve) {
+    training.add(numbers({static_cast<double>(p.step), p.validation_eur_per_day_per_mwh}));
+  }
+  Json distil = Json::list();
+  bool by_construction = !in.distil_curve.empty();
+  for (const DistilPoint& p : in.distil_curve) {
+    distil.add(
+        numbers({static_cast<double>(p.epoch), p.teacher_loss, p.correction_loss, p.visited_loss}));
+    by_construction = by_construction && p.is_by_construction();
+  }
+  Json json = Json::object({{"by_construction", by_construction}});
+  json.set("training", std::move(training));
+  json.set("distil", std::move(distil));
+  return json;
+}
+
+Json prices_json(const MarketSteps& market) {
+  const PriceHistogram histogram = price_histogram(market);
+  Json json = Json::object({{"low", histogram.low}, {"bin", kPriceBinEurPerMwh}});
+  json.set("train", numbers(histogram.percent_by_bin(histogram.train)));
+  json.set("test", numbers(histogram.percent_by_bin(histogram.test)));
+  return json;
+}
+
+Json battery_json(const BatteryParameters& battery) {
+  return Json::object({{"capacity_mwh", battery.capacity_wh / kWattHoursPerMegawattHour},
+                       {"power_w", battery.power_w_max},
+                       {"soc_min", battery.soc_min_frac},
+                       {"soc_max", battery.soc_max_frac},
+                       {"wear_eur_per_mwh", battery.wear_eur_per_mwh}});
+}
+
+Json thresholds_json(const PriceThresholds& thresholds) {
+  return Json::object({{"low", thresholds.low_eur_per_mwh}, {"high", thresholds.high_eur_per_mwh}});
+}
+
+}  // namespace
+
+std::vector<std::size_t> days_with_steps(const std::vector<double>& profit_eur, std::size_t most) {
+  std::vector<std::size_t> order(profit_eur.size());
+  std::iota(order.begin(), order.end(), 0);
+  if (order.size() <= most) return order;
+  std::ranges::stable_sort(order, {}, [&](std::size_t day) { return profit_eur[day]; });
+  const auto newest = order.begin() + static_cast<long>(std::min(kWorstDaysKept, most));
+  std::sort(newest, order.end(), std::greater<>());
+  order.resize(most);
+  std::ranges::sort(order);
+  return order;
+}
+
+Json student_json(const StudentNet& net) {
+  Json layer1 = layer_json(net.layer1);
+  layer1.set("shift", net.relu1.shift);
+  Json layer2 = layer_json(net.layer2);
+  layer2.set("shift", net.relu2.shift);
+  Json json = Json::object();
+  json.set("price_map", std::span(net.price_map));
+  json.set("layer1", std::move(layer1));
+  json.set("layer2", std::move(layer2));
+  json.set("layer3", layer_json(net.layer3));
+  return json;
+}
+
+Json lattice_json() {
+  return Json::object({{"minute_scale", kMinuteOfQuarterHourScale},
+                       {"quarter_hour_scale", kQuarterHourScale},
+                       {"context_scale", kContextClassScale},
+                       {"soc_scale", kSocScale},
+                       {"soc_count", kSocCount},
+                       {"price_min", kLatticePriceMinEurPerMwh},
+                       {"price_max", kLatticePriceMaxEurPerMwh}});
+}
+
+Json page_data(const ReportInputs& in) {
+  const std::vector<MarketDay> days = in.market.days_of(Split::kTest);
+  Json dates = Json::list();
+  for (const MarketDay& day : days) dates.add(day.date());
+  Json data = Json::object({{"exported", kCorrectedName}, {"foresight", kForesightName}});
+  data.set("battery", battery_json(in.battery));
+  data.set("dates", std::move(dates));
+  data.set("policies", policies_json(in.evaluations));
+  data.set("archive", archive_json(in, days));
+  data.set("lattice", lattice_json());
+  data.set("contexts", contexts_json(context_classes_of(in)));
+  data.set("thresholds", thresholds_json(thresholds_of(in)));
+  data.set("students", students_json(in));
+  data.set("counterexamples", counterexamples_json(in));
+  data.set("first_map", first_map_json(in, days));
+  data.set("learning", learning_json(in));
+  data.set("prices", prices_json(in.market));
+  return data;
+}
+
+}  // namespace bess

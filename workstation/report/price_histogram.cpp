@@ -1,0 +1,49 @@
+#include "workstation/report/price_histogram.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "workstation/market/statistics/market_statistics.h"
+
+namespace bess {
+namespace {
+
+constexpr double kShownTail = 0.005;  ///< left out on either side
+
+std::vector<double> sorted_observed(const MarketSteps& market, Split split) {
+  std::vector<double> prices;
+  for (const MarketDay& day : market.days_of(split)) {
+    for (const MarketStep& step : market.of(day)) prices.push_back(step.observed_eur_per_mwh);
+  }
+  std::ranges::sort(prices);
+  return prices;
+}
+
+}  // namespace
+
+std::vector<double> PriceHistogram::percent_by_bin(const std::vector<double>& sorted) const {
+  std::vector<double> percent;
+  const auto total = static_cast<double>(std::max<std::size_t>(1, sorted.size()));
+  for (double edge = low; edge <= high; edge += kPriceBinEurPerMwh) {
+    const auto count = std::ranges::lower_bound(sorted, edge + kPriceBinEurPerMwh) -
+                       std::ranges::lower_bound(sorted, edge);
+    percent.push_back(100.0 * static_cast<double>(count) / total);
+  }
+  return percent;
+}
+
+PriceHistogram price_histogram(const MarketSteps& market) {
+  PriceHistogram histogram{sorted_observed(market, Split::kTrain),
+                           sorted_observed(market, Split::kTest), 0, 0};
+  for (const auto* prices : {&histogram.train, &histogram.test}) {
+    if (prices->empty()) continue;
+    histogram.low = std::min(histogram.low, quantile_of_sorted(*prices, kShownTail));
+    histogram.high = std::max(histogram.high, quantile_of_sorted(*prices, 1 - kShownTail));
+  }
+  histogram.low = std::floor(histogram.low / kPriceBinEurPerMwh) * kPriceBinEurPerMwh;
+  histogram.high =
+      std::ceil(histogram.high / kPriceBinEurPerMwh) * kPriceBinEurPerMwh + kPriceBinEurPerMwh;
+  return histogram;
+}
+
+}  // namespace bess

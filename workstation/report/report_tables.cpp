@@ -1,0 +1,119 @@
+#include "workstation/report/report_tables.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+
+#include "workstation/report/html.h"
+
+namespace bess {
+namespace {
+
+constexpr const char* kNotThere = "\u2013";
+
+std::string text_or_dash(bool present, const std::string& text) {
+  return present ? text : kNotThere;
+}
+
+std::string error_text(double standard_error) {
+  return text_or_dash(!std::isnan(standard_error), fmt::format("{:.1f}", standard_error));
+}
+
+std::vector<std::string> comparison_cells(const ComparisonRow& row) {
+  const PairedDifference d = row.difference.value_or(PairedDifference{0, 0});
+  return {row.name,
+          fmt::format("{:.1f}", row.profit),
+          error_text(row.standard_error),
+          text_or_dash(row.difference.has_value(), fmt::format("{:+.1f}", d.mean)),
+          text_or_dash(row.difference.has_value(), error_text(d.standard_error)),
+          fmt::format("{:.1f}", row.worst_day),
+          fmt::format("{:.2f}", row.cycles_per_day),
+          fmt::format("{:.1f}", row.switches_per_day),
+          text_or_dash(row.foresight_share.has_value(),
+                       fmt::format("{:.1f}", 100 * row.foresight_share.value_or(0))),
+          fmt::format("{:.1f}", row.profit_at_reference_wear)};
+}
+
+std::string comparison_table(const std::string& caption, const std::vector<ComparisonRow>& rows) {
+  if (rows.empty()) return {};
+  HtmlTable table{
+      fmt::format("{}, {} days", caption, rows.front().days),
+      {"Policy", "EUR/day/MWh", "s.e.", "Gain", "s.e.", "Worst day", "Cycles/day", "Switches/day",
+       "% of foresight", fmt::format("At wear {:g}", kReferenceWearEurPerMwh)},
+      {}};
+  for (const ComparisonRow& row : rows) table.rows.push_back(comparison_cells(row));
+  return format_table(table);
+}
+
+std::vector<std::string> proof_cells(const std::string& name, const Certificate& c) {
+  return {name, grouped(c.states_checked), grouped(c.violations_property_1),
+          grouped(c.violations_property_2), grouped(c.violations_property_3)};
+}
+
+}  // namespace
+
+std::string grouped(std::int64_t count) {
+  const std::string digits = fmt::format("{}", count);
+  std::string text;
+  for (std::size_t i = 0; i < digits.size(); ++i) {
+    if (i > 0 && (digits.size() - i) % 3 == 0) text += ',';
+    text += digits[i];
+  }
+  return text;
+}
+
+std::string comparison_html(const std::vector<NamedEvaluation>& evaluations) {
+  const auto reset = comparison_rows(evaluations, &NamedEvaluation::day_reset);
+  const auto carried = comparison_rows(evaluations, &NamedEvaluation::carried_over);
+  if (reset.empty() && carried.empty()) return {};
+  return fmt::format(
+      "{}{}<p class=\"note\">Money in EUR per day per MWh of capacity. Gain: mean day-by-day "
+      "difference to {}; s.e.: standard error of the mean to its left. A gain under two standard "
+      "errors shows nothing. Cycles: energy through the battery over twice its capacity; switches: "
+      "changes of the order. At wear {:g}: {}.</p>\n",
+      comparison_table("Each day starts at the same charge", reset),
+      comparison_table("Charge carried over from day to day", carried),
+      html_escaped(evaluations.front().name), kReferenceWearEurPerMwh,
+      html_escaped(reference_wear_meaning(configured_wear_eur_per_mwh(evaluations))));
+}
+
+std::string proof_html(const Certificate* uncorrected, const Certificate* corrected) {
+  HtmlTable table{"Violations before and after the correction",
+                  {"Student", "States checked", "Not charging when cheap",
+                   "Not discharging when dear", "Pairs out of order"},
+                  {}};
+  if (uncorrected != nullptr) table.rows.push_back(proof_cells("uncorrected", *uncorrected));
+  if (corrected != nullptr) table.rows.push_back(proof_cells("corrected", *corrected));
+  if (table.rows.empty()) return {};
+  const PriceThresholds t = (corrected != nullptr ? corrected : uncorrected)->thresholds;
+  return fmt::format(
+      "{}<p class=\"note\">Checked over the lattice of minute, quarter-hour, context class, charge "
+      "and price that the edge can meet: charge at {} EUR/MWh and below{}, discharge at {} and "
+      "above{}, and never a larger action at a higher price or a fuller battery.</p>\n",
+      format_table(table), t.low_eur_per_mwh, guard_alone_note(t.low_binds_student()),
+      t.high_eur_per_mwh, guard_alone_note(t.high_binds_student()));
+}
+
+std::string proof_sentence(const Certificate& c) {
+  if (c.violations() != 0) {
+    return fmt::format(
+        "Not proved: it still breaks its constraints {} times and may not be exported",
+        grouped(c.violations()));
+  }
+  return fmt::format("{}: no violation in {} states",
+                     c.covers_lattice_without_violation() ? "Proved" : "Looked at in part",
+                     grouped(c.states_checked));
+}
+
+std::string provenance_html(const std::vector<Fact>& facts, const std::string& lines) {
+  std::string text = "<dl class=\"facts\">\n";
+  for (const Fact& fact : facts) {
+    text +=
+        fmt::format("<dt>{}</dt><dd>{}</dd>\n", html_escaped(fact.name), html_escaped(fact.value));
+  }
+  text += "</dl>\n";
+  if (!lines.empty()) text += fmt::format("<pre>{}</pre>\n", html_escaped(lines));
+  return text;
+}
+
+}  // namespace bess

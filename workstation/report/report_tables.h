@@ -1,0 +1,27 @@
+// The tables of the report's page: what each policy earned, what was proved, where it comes from.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "workstation/report/comparison.h"
+#include "workstation/report/provenance.h"
+#include "workstation/student/certificate.h"
+
+namespace bess {
+
+/// Both ways of counting, each left out when nothing was evaluated that way; with what the columns mean.
+std::string comparison_html(const std::vector<NamedEvaluation>& evaluations);
+
+/// Violations before and after; either may be null.
+std::string proof_html(const Certificate* uncorrected, const Certificate* corrected);
+/// "Proved: ..." or why the student may not be exported.
+std::string proof_sentence(const Certificate& certificate);
+
+/// Names and values, and below them `lines` as they are.
+std::string provenance_html(const std::vector<Fact>& facts, const std::string& lines);
+
+/// 6,950,033,280
+std::string grouped(std::int64_t count);
+
+}  // namespace bess

@@ -1,0 +1,25 @@
+#include "workstation/report/shown_policies.h"
+
+#include "workstation/report/headline.h"
+#include "workstation/student/student_policy.h"
+
+namespace bess {
+
+std::vector<ShownPolicy> shown_policies(const ReportInputs& in) {
+  std::vector<ShownPolicy> policies;
+  if (in.corrected) {
+    policies.push_back({kCorrectedName, std::make_unique<StudentPolicy>(in.corrected->net)});
+  }
+  if (in.uncorrected) {
+    policies.push_back({kPlainName, std::make_unique<StudentPolicy>(in.uncorrected->net)});
+  }
+  if (in.teacher) policies.push_back({"teacher", std::make_unique<TeacherPolicy>(*in.teacher)});
+  if (policies.empty()) {
+    policies.push_back(
+        {"rule-based controller",
+         std::make_unique<RuleBasedPolicy>(kPaperRuleLowEurPerMwh, kPaperRuleHighEurPerMwh)});
+  }
+  return policies;
+}
+
+}  // namespace bess

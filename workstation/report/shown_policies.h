@@ -1,0 +1,21 @@
+// The policies of a run's own chain, whose steps the report shows: corrected student, plain student, teacher.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "workstation/report/report.h"
+
+namespace bess {
+
+struct ShownPolicy {
+  std::string name;
+  std::unique_ptr<Policy> policy;
+};
+
+/// Those that there are, the last link of the chain first; without any, the paper's rule. `inputs` must outlive
+/// them.
+std::vector<ShownPolicy> shown_policies(const ReportInputs& inputs);
+
+}  // namespace bess

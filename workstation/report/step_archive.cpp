@@ -1,0 +1,116 @@
+#include "workstation/report/step_archive.h"
+
+#include <zlib.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <stdexcept>
+
+namespace bess {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "the page's arrays are little-endian");
+
+constexpr double kMilliPerEur = 1000;
+constexpr int kSecondsPerMinute = 60;
+
+/// One array: `value` of each item.
+template <typename Number, typename Items, typename Value>
+void append(const Items& items, Value value, std::string& bytes) {
+  for (const auto& item : items) {
+    const auto number = static_cast<Number>(value(item));
+    bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
+  }
+}
+
+std::int32_t milli_of(double eur_per_mwh) {
+  return static_cast<std::int32_t>(std::lround(eur_per_mwh * kMilliPerEur));
+}
+
+void append_market(std::span<const MarketStep> steps, const ContextClasses& classes,
+                   std::string& bytes) {
+  using Step = const MarketStep&;
+  append<std::int32_t>(
+      steps, [](Step s) { return s.utc_s / kSecondsPerMinute; }, bytes);
+  append<std::int32_t>(
+      steps, [](Step s) { return price_centi_of(s.observed_eur_per_mwh); }, bytes);
+  append<std::int32_t>(
+      steps, [](Step s) { return milli_of(s.paid_eur_per_mwh); }, bytes);
+  append<std::int16_t>(
+      steps,
+      [](Step s) { return s.quarter_hour * kMinutesPerQuarterHour + s.minute_of_quarter_hour; },
+      bytes);
+  append<std::int8_t>(
+      steps, [&](Step s) { return classes.class_of(s.month, s.level_centi_eur_per_mwh); }, bytes);
+}
+
+void append_policy(std::span<const StepRecord> records, std::string& bytes) {
+  using Record = const StepRecord&;
+  append<float>(
+      records, [](Record r) { return r.profit_eur; }, bytes);
+  append<float>(
+      records, [](Record r) { return r.power_w; }, bytes);
+  append<std::int16_t>(
+      records, [](Record r) { return std::lround(r.soc_frac * kSocFullE4); }, bytes);
+  append<std::int8_t>(
+      records, [](Record r) { return r.action; }, bytes);
+}
+
+std::string deflated(const std::string& bytes) {
+  uLongf size = compressBound(bytes.size());
+  std::string packed(size, '\0');
+  if (compress2(reinterpret_cast<Bytef*>(packed.data()), &size,
+                reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(),
+                Z_BEST_COMPRESSION) != Z_OK) {
+    throw std::runtime_error("zlib could not compress the steps of the days");
+  }
+  packed.resize(size);
+  return packed;
+}
+
+}  // namespace
+
+std::string base64(std::string_view bytes) {
+  constexpr std::string_view kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t group = 0;
+    for (std::size_t b = 0; b < 3; ++b) {
+      group = group << 8 | (b < count ? static_cast<std::uint8_t>(bytes[i + b]) : 0u);
+    }
+    for (std::size_t d = 0; d < 4; ++d) {
+      text += d <= count ? kDigits[group >> (18 - 6 * d) & 63] : '=';
+    }
+  }
+  return text;
+}
+
+Json step_archive(const MarketSteps& market, const std::vector<MarketDay>& days,
+                  const std::vector<PolicySteps>& policies, const std::vector<std::size_t>& kept,
+                  const ContextClasses& classes) {
+  std::vector<std::size_t> first_record{0};  // of each day
+  for (const MarketDay& day : days) first_record.push_back(first_record.back() + day.step_count);
+  std::string bytes;
+  Json index = Json::list();
+  for (const std::size_t d : kept) {
+    const MarketDay& day = days[d];
+    append_market(market.of(day), classes, bytes);
+    for (const PolicySteps& policy : policies) {
+      append_policy({policy.records.data() + first_record[d], day.step_count}, bytes);
+    }
+    index.add(Json::object({{"date", day.date()}, {"steps", day.step_count}}));
+  }
+  Json names = Json::list();
+  for (const PolicySteps& policy : policies) names.add(policy.name);
+  Json archive = Json::object();
+  archive.set("policies", std::move(names));
+  archive.set("days", std::move(index));
+  archive.set("data", base64(deflated(bytes)));
+  return archive;
+}
+
+}  // namespace bess

@@ -1,0 +1,34 @@
+// The steps of many days, small enough for a page: what was published and paid, and what each policy did.
+// page/archive.js unpacks it. A day is one block of little-endian arrays, one after the other:
+//
+//   minute int32 (UTC, since 1970) | observed int32 (hundredths of EUR/MWh, as the edge reads it)
+//   | paid int32 (thousandths: a mean of two) | local minute of the day int16 | context class int8
+//   and for each policy  profit float32 (EUR) | power float32 (W) | SoC int16 (1e-4, before) | action int8
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "shared/context_classes.h"
+#include "shared/host/json.h"
+#include "workstation/env/evaluate.h"
+
+namespace bess {
+
+/// Every step of one policy on the days, in order.
+struct PolicySteps {
+  std::string name;
+  std::vector<StepRecord> records;
+};
+
+/// {"policies": [...], "days": [{"date", "steps"}...], "data": base64 of the zlib stream}. The policies' records
+/// are of all `days`, one after the other; `kept` are the indices of the days to pack, ascending.
+Json step_archive(const MarketSteps& market, const std::vector<MarketDay>& days,
+                  const std::vector<PolicySteps>& policies, const std::vector<std::size_t>& kept,
+                  const ContextClasses& classes);
+
+/// RFC 4648, with padding.
+std::string base64(std::string_view bytes);
+
+}  // namespace bess
