@@ -31,7 +31,10 @@ constexpr const char* kIdle =
 
 class KilledRun : public testing::Test {
  protected:
-  KilledRun() { write_minute_file(prices_, small_series(31), ""); }
+  KilledRun() {
+    setenv("SOURCE_DATE_EPOCH", "1700000000", 1);  // or the page tells when it was made
+    write_minute_file(prices_, small_series(31), "");
+  }
 
   [[nodiscard]] std::vector<std::string> command(const std::string& out,
                                                  std::vector<std::string> more = {}) const {
