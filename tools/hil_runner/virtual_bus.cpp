@@ -76,9 +76,12 @@ Status VirtualBus::send(const ModbusFrame& frame) {
   const bool is_heard =
       device_.serves_unit(request.unit()) && !is_half_open_ && !time_.battery_is_paused();
   if (!is_heard) return Status::kOk;
-  const std::int64_t now_ns = time_.monotonic_ns() + line_ns(frame.size);
+  // One after the other, as a device does that has one thread.
+  const std::int64_t heard_ns = time_.monotonic_ns() + line_ns(frame.size);
+  const std::int64_t begun_ns =
+      pending_.empty() ? heard_ns : std::max(heard_ns, pending_.back().due_ns);
   pending.fault = device_.on_request(request, time_.utc_ns());
-  pending.due_ns = now_ns + scenario_.battery.response_delay_ms * kMillisecondNs;
+  pending.due_ns = begun_ns + scenario_.battery.response_delay_ms * kMillisecondNs;
   if (pending.fault == BatteryFault::kLate) {
     pending.due_ns += scenario_.battery_fault.late_ms * kMillisecondNs;
   }
