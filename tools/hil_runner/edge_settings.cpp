@@ -55,8 +55,8 @@ std::string edge_settings(const Scenario& scenario, const MinuteSeries& prices,
   if (const PriceLevel level = level_before(prices, scenario.start_utc_s); level.is_known()) {
     text += fmt::format("level_start_eur_per_mwh = {:.2f}\n", level.centi_eur_per_mwh() / 100.0);
   }
-  text += fmt::format("{}\n[guard]\n{}\n[state]\nfolder = \"state\"\nlock_folder = \".\"\n",
-                      scenario.edge_price, scenario.edge_guard);
+  text += fmt::format("{}\n[guard]\n{}\n[state]\nfolder = \"state\"\n", scenario.edge_price,
+                      scenario.edge_guard);
   text += fmt::format("[log]\ncsv = \"edge.csv\"\n{}\n", scenario.edge_other);
   if (places.anchor_monotonic_ns != 0) {
     text += fmt::format(

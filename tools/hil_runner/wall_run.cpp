@@ -7,9 +7,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
+#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <optional>
+#include <thread>
 
 #include "edge/battery/commission.h"
 #include "edge/control/control_types.h"
@@ -27,7 +30,11 @@ namespace bess {
 namespace {
 
 constexpr std::int64_t kStartUpNs = 1'200'000'000;  ///< wall, for all processes to be up
-constexpr double kLateS = 0.25;  ///< wall seconds that a busy machine may be late by
+// Wall seconds that an order may need, and how much later it may be for what this machine oversleeps.
+constexpr double kLateS = 0.15;
+constexpr double kLateFactor = 2;
+constexpr double kSlackMaxS =
+    60;  ///< simulated: later, an order would be judged by the next cycle's price
 constexpr int kSmallDiskBytes = 1'024 * 1'024;
 
 /// A program whose output goes to a file: a pipe that nobody reads would stop it.
@@ -78,6 +85,33 @@ class SmallDisk {
   std::string folder_;
 };
 
+/// How late this machine wakes whoever sleeps, at worst.
+class Lateness {
+ public:
+  Lateness() : thread_([this] { run(); }) {}
+  Lateness(const Lateness&) = delete;
+  Lateness& operator=(const Lateness&) = delete;
+  ~Lateness() {
+    is_ending_ = true;
+    thread_.join();
+  }
+  [[nodiscard]] double worst_s() const { return static_cast<double>(worst_ns_) / 1e9; }
+
+ private:
+  void run() {
+    constexpr std::int64_t kTickNs = 5'000'000;
+    while (!is_ending_) {
+      const std::int64_t due_ns = clock_ns(CLOCK_MONOTONIC) + kTickNs;
+      while (clock_ns(CLOCK_MONOTONIC) < due_ns) sleep_until_monotonic(due_ns);
+      worst_ns_ = std::max(worst_ns_.load(), clock_ns(CLOCK_MONOTONIC) - due_ns);
+    }
+  }
+
+  std::atomic<std::int64_t> worst_ns_ = 0;
+  std::atomic<bool> is_ending_ = false;
+  std::thread thread_;
+};
+
 class WallRun {
  public:
   WallRun(const Scenario& scenario, const MinuteSeries& prices, const WallPrograms& programs,
@@ -86,6 +120,18 @@ class WallRun {
     using enum ScenarioEvent::Does;
     if (std::ranges::any_of(scenario.events, [](const auto& e) { return e.does == kDiskFull; })) {
       disk_.emplace(folder.file("state"));
+    }
+  }
+
+  WallRun(const WallRun&) = delete;
+  WallRun& operator=(const WallRun&) = delete;
+  /// What a killed edge leaves where all of a machine lock their batteries.
+  ~WallRun() {
+    std::error_code ignored;
+    const std::string prefix = fmt::format("bess-127.0.0.1_{}_", battery_port_);
+    for (const auto& file : std::filesystem::directory_iterator("/run/lock", ignored)) {
+      const bool is_ours = file.path().filename().string().starts_with(prefix);
+      if (is_ours) std::filesystem::remove(file.path(), ignored);
     }
   }
 
@@ -281,7 +327,15 @@ class WallRun {
     evidence.edge_last_line = last_line(folder_.file("edge.log"));
     const bool has_battery = end_simulator(battery_);
     evidence.is_alive_at_end = end_simulator(market_) && has_battery;
-    evidence.slack_s = 2 + kLateS * scenario_.time_scale;
+    const double late_s = kLateS + kLateFactor * lateness_.worst_s();
+    evidence.slack_s = 2 + late_s * scenario_.time_scale;
+    if (evidence.slack_s > kSlackMaxS) {
+      fail(
+          "not judged: this machine was late by {:.2f} s, at time scale {} too late for a cycle of "
+          "120 s; "
+          "fewer --jobs, or a smaller time_scale",
+          lateness_.worst_s(), scenario_.time_scale);
+    }
     read_orders(evidence);
     read_minutes(evidence);
     read_log(evidence);
@@ -289,7 +343,9 @@ class WallRun {
   }
 
   void read_orders(Evidence& evidence) const {
-    const CsvTable table = read_table("orders.csv");
+    const std::string text = read_file(folder_.file("orders.csv"));
+    if (std::ranges::count(text, '\n') < 2) return;  // it was never given an order
+    const CsvTable table(text, "orders.csv");
     const std::size_t utc = table.column("utc_ms"), event = table.column("event");
     const std::size_t power = table.column("power_w"), duration = table.column("duration_s");
     const std::size_t soc = table.column("soc");
@@ -329,16 +385,19 @@ class WallRun {
     const std::size_t student = column("student_action"), context = column("context_class");
     const std::size_t ordered = column("ordered_power_w"), power = column("battery_power_w");
     const std::size_t reason = column("reason"), written = column("written");
+    const auto is_known = [&](std::size_t r, std::size_t c) {
+      return !table.text(r, c).empty() && table.text(r, c) != "none";
+    };
     const auto whole = [&](std::size_t r, std::size_t c) {
-      return table.text(r, c).empty() ? 0 : static_cast<std::int32_t>(table.number(r, c));
+      return is_known(r, c) ? static_cast<std::int32_t>(table.number(r, c)) : 0;
     };
     for (std::size_t r = 0; r < table.row_count(); ++r) {
       LoggedCycle cycle;
       cycle.utc_s = table.utc_s(r, utc);
       cycle.mode = by_name<Mode>(table.text(r, mode), kModeCount, mode_name);
-      cycle.has_measurement = !table.text(r, soc).empty();
+      cycle.has_measurement = is_known(r, soc);
       cycle.soc_e4 = whole(r, soc);
-      cycle.has_price = !table.text(r, price).empty();
+      cycle.has_price = is_known(r, minute);
       if (cycle.has_price) cycle.price_minute_utc_s = table.utc_s(r, minute);
       cycle.price_centi_eur_per_mwh = whole(r, price);
       cycle.has_student_action = whole(r, context) != 0;
@@ -360,6 +419,7 @@ class WallRun {
   const MinuteSeries& prices_;
   const WallPrograms& programs_;
   const WorkFolder& folder_;
+  Lateness lateness_;
   std::optional<SmallDisk> disk_;
   std::optional<PtyBridge> line_;
   EdgeConfig config_;
