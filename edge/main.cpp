@@ -37,6 +37,7 @@
 #include "edge/program/startup.h"
 #include "edge/program/status_command.h"
 #include "edge/program/supervised_loop.h"
+#include "edge/program/take_over.h"
 
 namespace bess {
 namespace {
@@ -133,14 +134,8 @@ int run_controller(const CommandLine& command_line, const EdgeConfig& config) {
   }
   static const auto clearance = trip_clearance_path(config);
   const bool is_cleared = is_trip_cleared(clearance.c_str(), before.trip.utc_s);
-  loop.take_over(
-      {.throughput = before.throughput,
-       .price_level = level_at_start(config, before.price_level, greeting, prices, clock),
-       .trip = before.is_tripped && !is_cleared ? before.trip : Trip{},
-       .reversals = before.reversals,
-       .last_full_day = last_full_day_of(before.utc_s, before.days_since_full),
-       .site = before.site,
-       .utc_s = before.utc_s});
+  const PriceLevel level = level_at_start(config, before.price_level, greeting, prices, clock);
+  loop.take_over(take_over_of(before, level, is_cleared));
   static HoldWatch holds;
   holds.start(hold_path(config).c_str(), config.clock.scale);
   loop.follow_holds(holds.mailbox());

@@ -30,6 +30,12 @@ struct ScaledClock {
     return anchor_utc_s * kNanosecondsPerSecond +
            (clock_ns(CLOCK_MONOTONIC) - anchor_monotonic_ns) * scale;
   }
+  /// Of whoever starts now: not before the anchor, at which simulated time begins.
+  [[nodiscard]] std::int64_t start_utc_ns() const {
+    const std::int64_t anchor_utc_ns = anchor_utc_s * kNanosecondsPerSecond;
+    const std::int64_t now_ns = now_utc_ns();
+    return !is_real_time() && now_ns < anchor_utc_ns ? anchor_utc_ns : now_ns;
+  }
   /// CLOCK_MONOTONIC instant at which the simulated clock shows `utc_ns`.
   [[nodiscard]] std::int64_t monotonic_ns_at(std::int64_t utc_ns) const {
     if (is_real_time()) return clock_ns(CLOCK_MONOTONIC) + utc_ns - clock_ns(CLOCK_REALTIME);

@@ -27,7 +27,7 @@ PriceFeed::PriceFeed(const PriceFeedSettings& settings, const ScaledClock& clock
     : settings_(settings),
       clock_(clock),
       http_(settings.http),
-      step_hold_(settings.step_flag_centi_eur_per_mwh, settings.hold_flagged_step) {
+      newest_(settings.step_flag_centi_eur_per_mwh, settings.hold_flagged_step) {
   thread_.start(
       [](void* feed) -> void* {
         static_cast<PriceFeed*>(feed)->run();
@@ -65,7 +65,7 @@ bool PriceFeed::wait(std::int64_t until_monotonic_ns) {
 
 PriceReport PriceFeed::latest() {
   const std::lock_guard lock(mutex_);
-  return report_;
+  return newest_.report();
 }
 
 void PriceFeed::run() {
@@ -109,34 +109,7 @@ bool PriceFeed::pause_until(std::int64_t until_ns) {
 void PriceFeed::publish(Status status, const PriceRow& row, std::int64_t start_ns) {
   const std::int64_t now_ns = clock_ns(CLOCK_MONOTONIC);
   const std::lock_guard lock(mutex_);
-  report_.status = status;
-  if (status != Status::kOk) return;
-  // An older row than the one known is a stale cache talking.
-  if (report_.has_row && row.minute_utc_s < report_.minute_utc_s) return;
-  const bool is_newer = !report_.has_row || row.minute_utc_s > report_.minute_utc_s;
-  if (!accept(row) || !is_newer) return;
-  report_.received_monotonic_ns = now_ns;
-  report_.fetch_us = static_cast<std::int32_t>((now_ns - start_ns) / 1'000);
-}
-
-/// A newer minute, or the same one: a duplicate changes nothing, a correction replaces the price. False
-/// when the row before stays: this one is a duplicate, or is held.
-bool PriceFeed::accept(const PriceRow& row) {
-  const PriceRow before{.minute_utc_s = report_.minute_utc_s,
-                        .price_centi_eur_per_mwh = report_.price_centi_eur_per_mwh};
-  const bool is_duplicate = report_.has_row && row.minute_utc_s == before.minute_utc_s &&
-                            row.price_centi_eur_per_mwh == before.price_centi_eur_per_mwh;
-  if (is_duplicate) return false;
-  const StepHold::Verdict verdict = step_hold_.judge(report_.has_row ? before : row, row);
-  report_.step_held = step_hold_.has_held();
-  report_.held_centi_eur_per_mwh =
-      report_.step_held ? step_hold_.held().price_centi_eur_per_mwh : 0;
-  if (!verdict.is_taken) return false;
-  report_.large_step = verdict.is_large_step;
-  report_.has_row = true;
-  report_.minute_utc_s = row.minute_utc_s;
-  report_.price_centi_eur_per_mwh = row.price_centi_eur_per_mwh;
-  return true;
+  newest_.publish(status, row, now_ns, static_cast<std::int32_t>((now_ns - start_ns) / 1'000));
 }
 
 Status PriceFeed::fetch_once(PriceRow& row) {

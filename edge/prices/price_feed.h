@@ -13,8 +13,8 @@
 #include "edge/control/control_types.h"
 #include "edge/memory/static_thread.h"
 #include "edge/prices/http_client.h"
+#include "edge/prices/newest_row.h"
 #include "edge/prices/price_json.h"
-#include "edge/prices/step_hold.h"
 #include "shared/scaled_clock.h"
 
 namespace bess {
@@ -66,7 +66,6 @@ class PriceFeed {
   void run();
   void serve(const Job& job);
   void publish(Status status, const PriceRow& row, std::int64_t start_ns);
-  [[nodiscard]] bool accept(const PriceRow& row);
   bool pause_until(std::int64_t until_ns);
 
   PriceFeedSettings settings_;
@@ -78,8 +77,7 @@ class PriceFeed {
   Job job_;
   std::int64_t served_number_ = 0;
   bool stopping_ = false;
-  PriceReport report_;
-  StepHold step_hold_;
+  NewestRow newest_;
   StaticThread<kStackBytes> thread_;
 };
 

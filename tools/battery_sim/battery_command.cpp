@@ -39,6 +39,7 @@ struct BatteryOptions {
   std::vector<std::string> fault_names;
   std::string map_variant;
   std::string record_path;
+  std::string events_path;
   double soc_frac = 0.5;
   BatteryParameters battery{.power_w_max = 4'000, .capacity_wh = 8'000};
   double round_trip_efficiency = 0.9;
@@ -139,6 +140,7 @@ void run_battery(BatteryOptions& options) {
   const ScaledClock clock = options.clock.clock();
   // Fails before serving rather than after a day.
   if (!options.record_path.empty()) require_writable(options.record_path);
+  if (!options.events_path.empty()) require_writable(options.events_path);
   static RegisterMap map;
   std::string error;
   if (!load_register_map(options.map_path, options.map_variant, map, error)) {
@@ -173,6 +175,7 @@ void run_battery(BatteryOptions& options) {
   if (!options.record_path.empty()) {
     write_battery_record(options.record_path, simulated, house ? &house->load : nullptr);
   }
+  if (!options.events_path.empty()) write_dispatch_events(options.events_path, simulated);
   std::printf("bess-sim battery: stopped at SoC %.2f %%\n", 100 * simulated.soc_frac());
 }
 
@@ -276,6 +279,8 @@ void add_plant_options(ProgramCommand& command, BatteryOptions& options) {
       .with_default();
   command.option("--record", options.record_path,
                  "CSV of energy and SoC per simulated minute, written at exit");
+  command.option("--events", options.events_path,
+                 "CSV of every order, and of how each ended, written at exit");
 }
 
 void add_replay_options(ProgramCommand& command, ReplayOptions& replay) {

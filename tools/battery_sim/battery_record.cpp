@@ -23,4 +23,16 @@ void write_battery_record(const std::string& path, const SimulatedBattery& batte
   write_file(path, text);
 }
 
+void write_dispatch_events(const std::string& path, const SimulatedBattery& battery) {
+  std::string text = "utc_ms,event,power_w,duration_s,soc\n";
+  for (const DispatchEvent& e : battery.dispatch_events()) {
+    const char* const name = e.kind == DispatchEvent::Kind::kOrder  ? "order"
+                             : e.kind == DispatchEvent::Kind::kStop ? "stop"
+                                                                    : "expiry";
+    text += fmt::format("{},{},{:.0f},{},{:.8f}\n", e.utc_ns / 1'000'000, name, e.power_w,
+                        e.duration_s, e.soc_frac);
+  }
+  write_file(path, text);
+}
+
 }  // namespace bess

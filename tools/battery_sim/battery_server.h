@@ -1,4 +1,4 @@
-// The bus side of the simulated battery, TCP or a serial line: takes requests, lets the registers
+// The bus side of the simulated battery, TCP or a serial line: takes requests, lets the device
 // answer, and misbehaves by schedule. One client at a time like the real device, unless told
 // otherwise.
 #pragma once
@@ -7,17 +7,15 @@
 
 #include <cstdint>
 #include <memory>
-#include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "edge/registers/register_map.h"
 #include "shared/scaled_clock.h"
 #include "tools/battery_sim/battery_faults.h"
-#include "tools/battery_sim/bus_reply.h"
-#include "tools/battery_sim/register_image.h"
+#include "tools/battery_sim/faulty_device.h"
 #include "tools/battery_sim/replayed_bus.h"
-#include "tools/battery_sim/simulated_battery.h"
 
 namespace bess {
 
@@ -62,39 +60,22 @@ class BatteryServer {
   };
   void listen_tcp();
   void open_serial();
-  void make_registers();
   void accept_client();
   void serve(Client& client);
-  void answer(Client& client, const BusRequest& request);
   void answer_as_recorded(Client& client, const BusRequest& request);
   void answer_with_fault(Client& client, const BusRequest& request, BatteryFault fault);
-  Bytes right_answer(const BusRequest& request, bool keep_registers);
-  void change_values(BatteryFault fault);
-  void apply_lasting_faults();
   void send(Client& client, const Bytes& bytes);
   void drip(Client& client, const Bytes& bytes);
   void close_client(Client& client, bool reset);
   [[nodiscard]] bool wait(std::int32_t ms) const;
-  [[nodiscard]] double elapsed_s() const;
-  [[nodiscard]] std::unique_lock<std::mutex> hold_plant() const;
-  void refresh();
 
   BatteryServerSettings settings_;
   bool rtu_;
   const RegisterMap& map_;
-  SimulatedBattery& battery_;
-  MeteredHouse* house_;              ///< null: the battery is nobody else's
   ReplayedBus* recorded_ = nullptr;  ///< null: the registers answer
   ScaledClock clock_;
-  std::int64_t start_ns_;
   std::unique_ptr<modbus_t, FreeContext> context_;
-  std::vector<std::uint16_t> registers_;  ///< holding
-  std::vector<std::uint16_t> input_registers_;
-  modbus_mapping_t mapping_{};
-  std::unique_ptr<RegisterImage> image_;
-  std::unique_ptr<BusReply> reply_;
-  FaultPlan plan_;
-  std::int64_t next_foreign_order_ns_ = 0;  ///< UTC; 0 = no other master yet
+  std::optional<FaultyDevice> device_;
   std::vector<Client> clients_;
   int listen_fd_ = -1;
   int stop_fd_ = -1;

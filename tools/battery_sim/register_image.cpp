@@ -128,8 +128,8 @@ void RegisterImage::refresh(std::int64_t utc_ns) {
     show_power(map_.grid_power, std::llround(house_->power_w(utc_s_) + battery_.power_w()));
   }
   set("capacity", p.capacity_wh * display_.capacity_factor);
-  set("charge_power_max", p.power_w_max);
-  set("discharge_power_max", p.power_w_max);
+  set("charge_power_max", p.power_w_max * battery_.derating());
+  set("discharge_power_max", p.power_w_max * battery_.derating());
   set("temperature_min", kRoomTemperatureDeciC);
   set("temperature_max", kRoomTemperatureDeciC);
   if (map_.alive.point >= 0) {

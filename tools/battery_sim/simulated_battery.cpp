@@ -27,7 +27,10 @@ void SimulatedBattery::advance(std::int64_t utc_ns) {
     if (now_ns_ < change_ns_) end_ns = std::min(end_ns, change_ns_);
     if (habits_.slows_near_limits) end_ns = std::min(end_ns, now_ns_ + kNanosecondsPerSecond);
     integrate_segment(end_ns);
-    if (dispatch_active_ && now_ns_ >= dispatch_end_ns_) dispatch_active_ = false;
+    if (dispatch_active_ && now_ns_ >= dispatch_end_ns_) {
+      dispatch_active_ = false;
+      note(DispatchEvent::Kind::kExpiry);
+    }
   }
 }
 
@@ -48,6 +51,7 @@ void SimulatedBattery::integrate_segment(std::int64_t end_ns) {
 
 BatteryParameters SimulatedBattery::limited() const {
   BatteryParameters p = parameters_;
+  p.power_w_max *= derating_;
   if (!dispatch_active_) return p;
   p.power_w_max *= std::max(habits_.gain, 1.0) * (1 + 5 * habits_.noise_frac);
   if (power_w_ == 0 && habits_.idle_power_w != 0) {
@@ -88,6 +92,20 @@ void SimulatedBattery::start_dispatch(double power_w, double soc_limit_frac,
   power_w_ = power_w;
   soc_limit_frac_ = soc_limit_frac;
   dispatch_end_ns_ = now_ns_ + duration_s * kNanosecondsPerSecond;
+  note(DispatchEvent::Kind::kOrder, power_w, duration_s);
+}
+
+void SimulatedBattery::stop_dispatch() {
+  if (dispatch_active_) note(DispatchEvent::Kind::kStop);
+  dispatch_active_ = false;
+}
+
+void SimulatedBattery::note(DispatchEvent::Kind kind, double power_w, std::int64_t duration_s) {
+  events_.push_back({.utc_ns = now_ns_,
+                     .kind = kind,
+                     .power_w = power_w,
+                     .duration_s = duration_s,
+                     .soc_frac = soc_frac_});
 }
 
 double SimulatedBattery::power_w() const {

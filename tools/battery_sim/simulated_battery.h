@@ -18,6 +18,20 @@ struct MinuteRecord {
   double commanded_power_w;  ///< at the end of the minute; 0 without a dispatch
 };
 
+/// One thing that happened to the order in force.
+struct DispatchEvent {
+  enum class Kind : std::uint8_t {
+    kOrder,   ///< was written, or written again
+    kStop,    ///< was given back by whoever gave it
+    kExpiry,  ///< ran out: nobody fed it in time
+  };
+  std::int64_t utc_ns = 0;
+  Kind kind = Kind::kOrder;
+  double power_w = 0;           ///< grid side, charge positive; 0 unless an order
+  std::int64_t duration_s = 0;  ///< until it runs out; 0 unless an order
+  double soc_frac = 0;
+};
+
 /// How a battery follows its orders. The defaults are a model's; real ones are slower, noisier, or broken.
 struct BatteryHabits {
   double gain = 1;                 ///< of the ordered power that flows
@@ -38,10 +52,13 @@ class SimulatedBattery {
   /// until `duration_s` is over; then the battery's own mode, modelled as 0 W. Call `advance`
   /// first.
   void start_dispatch(double power_w, double soc_limit_frac, std::int64_t duration_s);
-  void stop_dispatch() { dispatch_active_ = false; }
+  void stop_dispatch();
 
   /// From now on.
   void set_habits(const BatteryHabits& habits) { habits_ = habits; }
+  /// The share of its rated power that it can give, by heat or cold; it shows that. From now on.
+  void set_derating(double power_frac) { derating_ = power_frac; }
+  [[nodiscard]] double derating() const { return derating_; }
 
   [[nodiscard]] bool dispatch_active() const { return dispatch_active_; }
   [[nodiscard]] double soc_frac() const { return soc_frac_; }
@@ -52,8 +69,11 @@ class SimulatedBattery {
 
   /// Completed minutes, and the one under way as the last.
   [[nodiscard]] std::vector<MinuteRecord> record() const;
+  /// Every order, stop and expiry since the start, in their order.
+  [[nodiscard]] const std::vector<DispatchEvent>& dispatch_events() const { return events_; }
 
  private:
+  void note(DispatchEvent::Kind kind, double power_w = 0, std::int64_t duration_s = 0);
   [[nodiscard]] BatteryParameters limited() const;
   [[nodiscard]] double wanted_power_w() const;
   [[nodiscard]] double noise_factor() const;
@@ -65,6 +85,7 @@ class SimulatedBattery {
   std::int64_t now_ns_;
   bool dispatch_active_ = false;
   BatteryHabits habits_{};
+  double derating_ = 1;
   double power_w_ = 0;
   double power_before_w_ = 0;  ///< flows until `change_ns_`
   std::int64_t change_ns_ = 0;
@@ -72,6 +93,7 @@ class SimulatedBattery {
   std::int64_t dispatch_end_ns_ = 0;
   double minute_energy_wh_ = 0;
   std::vector<MinuteRecord> minutes_;
+  std::vector<DispatchEvent> events_;
 };
 
 }  // namespace bess

@@ -68,16 +68,23 @@ void add_market_command(ProgramCommand& app) {
               "Simulated seconds from the end of a minute until its row is readable")
       .range(0.0, 3'600.0)
       .with_default();
-  command.choice<MarketFault>("--fault", options->server.fault,
+  command.choice<MarketFault>("--fault", options->server.faults.fault,
                               {{"null", MarketFault::kNull},
                                {"http-500", MarketFault::kHttp500},
                                {"stale", MarketFault::kStale},
                                {"garbage", MarketFault::kGarbage},
                                {"all", MarketFault::kAll}},
                               "Misbehave now and then");
-  command.option("--fault-every", options->server.fault_every, "At every Nth request")
+  command.option("--fault-every", options->server.faults.every, "At every Nth request")
       .range(1, 1'000'000)
       .with_default()
+      .needs("--fault");
+  command
+      .option("--fault-from-s", options->server.faults.from_s, "Simulated seconds after the start")
+      .non_negative()
+      .needs("--fault");
+  command.option("--fault-to-s", options->server.faults.to_s, "And until when")
+      .non_negative()
       .needs("--fault");
   ProgramOption certificate = command.option("--tls-cert", options->server.tls_certificate,
                                              "PEM certificate: serves HTTPS");

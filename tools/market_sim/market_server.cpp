@@ -11,7 +11,6 @@ namespace bess {
 namespace {
 
 constexpr const char* kJson = "application/json";
-constexpr std::int64_t kStaleNs = 600 * kNanosecondsPerSecond;
 
 /// The API's own limits: limit 1..100, offset + limit at most 10,000.
 bool parse_number(const httplib::Request& request, const char* name, int min, int max, int& value) {
@@ -49,7 +48,12 @@ std::unique_ptr<httplib::Server> make_server(const MarketServerSettings& setting
 
 MarketServer::MarketServer(const MarketServerSettings& settings, const MarketView& view,
                            const ScaledClock& clock)
-    : settings_(settings), view_(view), clock_(clock), server_(make_server(settings)) {
+    : settings_(settings),
+      view_(view),
+      clock_(clock),
+      start_utc_ns_(clock.start_utc_ns()),
+      server_(make_server(settings)),
+      faults_(settings.faults) {
   // Without this override the library sets SO_REUSEPORT and two servers would share a port
   // unnoticed.
   server_->set_socket_options([](socket_t socket) {
@@ -87,25 +91,15 @@ void MarketServer::run() { server_->listen_after_bind(); }
 
 void MarketServer::stop() { server_->stop(); }
 
-MarketFault MarketServer::next_fault() {
-  if (settings_.fault == MarketFault::kNone) return MarketFault::kNone;
-  const std::int64_t request = ++requests_;
-  if (request % settings_.fault_every != 0) return MarketFault::kNone;
-  ++faults_;
-  if (settings_.fault != MarketFault::kAll) return settings_.fault;
-  constexpr MarketFault kTurns[] = {MarketFault::kNull, MarketFault::kHttp500, MarketFault::kStale,
-                                    MarketFault::kGarbage};
-  return kTurns[request / settings_.fault_every % std::ssize(kTurns)];
-}
-
 void MarketServer::answer(Dataset dataset, const httplib::Request& request,
                           httplib::Response& response) {
-  const MarketFault fault = next_fault();
+  const double at_s = static_cast<double>(clock_.now_utc_ns() - start_utc_ns_) / 1e9;
+  const MarketFault fault = faults_.next(at_s);
   if (fault == MarketFault::kHttp500) {
     response.status = 500;
     return response.set_content(Json::object({{"message", "simulated fault"}}).line(), kJson);
   }
-  if (fault == MarketFault::kGarbage) return response.set_content("{\"results\": [{\"dat", kJson);
+  if (fault == MarketFault::kGarbage) return response.set_content(kGarbageAnswer, kJson);
   RecordsQuery query{.dataset = dataset, .hide_newest_price = fault == MarketFault::kNull};
   std::string problem;
   if (!parse_query(request, query, problem)) {
@@ -115,7 +109,7 @@ void MarketServer::answer(Dataset dataset, const httplib::Request& request,
     return response.set_content(refusal.line(), kJson);
   }
   std::int64_t now_ns = clock_.now_utc_ns();
-  if (fault == MarketFault::kStale) now_ns -= kStaleNs;
+  if (fault == MarketFault::kStale) now_ns -= kStaleAnswerS * kNanosecondsPerSecond;
   response.set_content(view_.records(query, now_ns), kJson);
 }
 

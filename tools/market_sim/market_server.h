@@ -2,12 +2,12 @@
 // faults.
 #pragma once
 
-#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <string>
 
 #include "shared/scaled_clock.h"
+#include "tools/market_sim/market_fault.h"
 #include "tools/market_sim/market_view.h"
 
 namespace httplib {
@@ -18,21 +18,11 @@ struct Response;
 
 namespace bess {
 
-enum class MarketFault : std::uint8_t {
-  kNone,
-  kNull,     ///< the newest row's price is null
-  kHttp500,  ///< internal server error
-  kStale,    ///< the answer is ten minutes old
-  kGarbage,  ///< not JSON
-  kAll,      ///< each of them in turn
-};
-
 struct MarketServerSettings {
   std::string host = "127.0.0.1";
   std::int32_t port = 8080;  ///< 0 = any free one
-  MarketFault fault = MarketFault::kNone;
-  std::int32_t fault_every = 10;  ///< every Nth request
-  std::string tls_certificate;    ///< PEM files; empty = plain HTTP
+  MarketFaultSchedule faults;
+  std::string tls_certificate;  ///< PEM files; empty = plain HTTP
   std::string tls_key;
   bool close_each = false;  ///< one request a connection: a handshake for every price
 };
@@ -45,21 +35,20 @@ class MarketServer {
   ~MarketServer();
 
   [[nodiscard]] int port() const { return port_; }
-  void run();                                                    ///< serves until `stop`
-  void stop();                                                   ///< from another thread
-  [[nodiscard]] std::int64_t faults() const { return faults_; }  ///< answers spoilt so far
+  void run();                                                             ///< serves until `stop`
+  void stop();                                                            ///< from another thread
+  [[nodiscard]] std::int64_t faults() const { return faults_.faults(); }  ///< answers spoilt so far
 
  private:
-  [[nodiscard]] MarketFault next_fault();
   void answer(Dataset dataset, const httplib::Request& request, httplib::Response& response);
 
   MarketServerSettings settings_;
   const MarketView& view_;
   ScaledClock clock_;
+  std::int64_t start_utc_ns_;
   std::unique_ptr<httplib::Server> server_;
   int port_ = 0;
-  std::atomic<std::int64_t> requests_ = 0;
-  std::atomic<std::int64_t> faults_ = 0;
+  MarketFaultPlan faults_;
 };
 
 }  // namespace bess

@@ -41,6 +41,8 @@ layer tools/battery_sim             tools edge/registers edge/base shared
 layer tools/market_sim              tools shared
 layer tools/settle                  tools shared
 layer tools/sim                     tools shared
+# Beside the real programs it runs the edge's own objects in virtual time.
+layer tools/hil_runner              tools edge shared
 # The workstation, in the order in which data flows.
 w=workstation
 layer $w/base                       $w/base shared
@@ -68,7 +70,7 @@ only curl/   'edge/prices/|edge/notify/webhook.cpp:'
 only mosquitto.h edge/notify/mqtt_client.cpp: 'edge shared workstation tools'
 only cjson/  'edge/prices/|shared/host/json.cpp:' 'edge shared workstation tools'
 only toml++/ shared/host/toml_document.cpp: 'edge shared workstation tools'
-only pugixml 'workstation/(market/feed/entsoe_xml.cpp|report/figure.cpp):' 'edge shared workstation tools'
+only pugixml '(workstation/(market/feed/entsoe_xml|report/figure)|tools/hil_runner/junit).cpp:' 'edge shared workstation tools'
 
 # The control layer knows neither files, sockets, threads nor signals.
 io='<(sys/|arpa/|net|poll|unistd|fcntl|pthread|signal|semaphore|cstdio|stdio|fstream|iostream|thread|mutex)'

@@ -1,4 +1,4 @@
-#include "workstation/base/gnuplot.h"
+#include "shared/host/gnuplot.h"
 
 #include <fmt/core.h>
 #include <sys/mman.h>

@@ -1,0 +1,88 @@
+// A program that is run by another one: started with arguments, its output read line by line, stopped by signal.
+#pragma once
+
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <string>
+#include <vector>
+
+extern char** environ;
+
+namespace bess {
+
+class ChildProcess {
+ public:
+  /// Standard output and error arrive together.
+  explicit ChildProcess(std::vector<std::string> arguments) {
+    int ends[2];
+    if (pipe2(ends, O_CLOEXEC) != 0) return;
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
+    posix_spawn_file_actions_adddup2(&actions, ends[1], STDERR_FILENO);
+    std::vector<char*> argv;
+    for (std::string& argument : arguments) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    if (posix_spawn(&pid_, argv[0], &actions, nullptr, argv.data(), environ) != 0) pid_ = -1;
+    posix_spawn_file_actions_destroy(&actions);
+    close(ends[1]);
+    output_ = fdopen(ends[0], "r");
+  }
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
+  ~ChildProcess() {
+    if (pid_ > 0) kill(pid_, SIGKILL);
+    wait();
+    if (output_ != nullptr) fclose(output_);
+  }
+
+  /// Next line of output without its end; empty at the end of the output.
+  std::string read_line() {
+    std::string line;
+    for (int c = fgetc(output_); c != EOF && c != '\n'; c = fgetc(output_)) {
+      line += static_cast<char>(c);
+    }
+    return line;
+  }
+  std::string read_all() {
+    std::string text;
+    for (int c = fgetc(output_); c != EOF; c = fgetc(output_)) text += static_cast<char>(c);
+    return text;
+  }
+  [[nodiscard]] pid_t pid() const { return pid_; }
+  /// Waits until it has a handler for this signal; false when a minute passes before.
+  [[nodiscard]] bool catches(int number) const {
+    for (int ms = 0; ms < 60'000; ++ms) {
+      std::ifstream status("/proc/" + std::to_string(pid_) + "/status");
+      for (std::string line; std::getline(status, line);) {
+        if (!line.starts_with("SigCgt:")) continue;
+        if (std::stoull(line.substr(7), nullptr, 16) >> (number - 1) & 1) return true;
+      }
+      usleep(1'000);
+    }
+    return false;
+  }
+  void signal(int number) const { kill(pid_, number); }
+  /// Exit code, or 128 + signal.
+  int wait() {
+    if (pid_ > 0) {
+      int status = 0;
+      waitpid(pid_, &status, 0);
+      exit_code_ = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+      pid_ = -1;
+    }
+    return exit_code_;
+  }
+
+ private:
+  pid_t pid_ = -1;
+  FILE* output_ = nullptr;
+  int exit_code_ = -1;
+};
+
+}  // namespace bess

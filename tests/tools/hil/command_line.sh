@@ -1,0 +1,35 @@
+#!/bin/sh
+# command_line.sh PROGRAM SCENARIOS: what bess-hil says and returns, for people and for machines.
+program=$1
+scenarios=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+complain() { echo "$*"; exit 1; }
+
+"$program" run --help | grep -q 'bess-hil run tests/scenarios --time both' || complain "no example in --help"
+"$program" run "$scenarios" --list | grep -q '^quiet_hour .*An hour in which nothing goes wrong' || complain "--list"
+"$program" run "$scenarios/quiet_hour.toml" --json --junit "$work/a.xml" >"$work/a.json" || complain "quiet_hour failed"
+grep -q '"passed": *1' "$work/a.json" || complain "--json: $(cat "$work/a.json")"
+grep -q '<testcase classname="virtual" name="quiet_hour"' "$work/a.xml" || complain "--junit: $(cat "$work/a.xml")"
+
+# A run repeats to the bit.
+signature() { sed 's/.*"signature": *"\([0-9a-f]*\)".*/\1/'; }
+first=$(signature <"$work/a.json")
+second=$("$program" run "$scenarios/quiet_hour.toml" --json | signature)
+[ "$first" = "$second" ] || complain "two runs differ: $first $second"
+
+# A scenario that fails says what was expected, what was seen and when, in one line; exit code 1.
+{ cat "$scenarios/quiet_hour.toml"; printf '\n[[expect]]\nfrom_min = 10\ncommand = "none"\n'; } >"$work/wrong.toml"
+"$program" run "$work/wrong.toml" --junit "$work/b.xml" >"$work/wrong.txt" 2>"$work/wrong.err" && complain "wrong.toml passed"
+grep -q '^FAIL .*expect 1: expected no order in force, seen .* W, at 2023-03-26T00:10:25Z (minute 10.4)' "$work/wrong.txt" ||
+  complain "$(cat "$work/wrong.txt")"
+grep -q '<failure message="expect 1: expected no order' "$work/b.xml" || complain "$(cat "$work/b.xml")"
+
+# A file that cannot be read: one line with file, line and the mend; a wrong option: 2.
+printf 'title = "x"\nminuts = 3\n' >"$work/bad.toml"
+"$program" run "$work/bad.toml" >/dev/null 2>"$work/bad.err" && complain "bad.toml was taken"
+grep -q 'bad.toml:2: .*minuts' "$work/bad.err" || complain "$(cat "$work/bad.err")"
+[ "$(wc -l <"$work/bad.err")" -eq 1 ] || complain "more than one line: $(cat "$work/bad.err")"
+"$program" run --tim both 2>/dev/null
+[ $? -eq 2 ] || complain "a wrong option is not exit code 2"
+exit 0

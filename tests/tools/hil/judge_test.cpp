@@ -1,0 +1,191 @@
+// The judge: each invariant finds what breaks it in a record made by hand, and finds nothing in a good one.
+#include <gtest/gtest.h>
+
+#include "shared/scaled_clock.h"
+#include "tools/hil_runner/edge_settings.h"
+#include "tools/hil_runner/invariants.h"
+#include "tools/hil_runner/work_folder.h"
+
+namespace bess {
+namespace {
+
+constexpr std::int64_t kStartS = 1'679'788'800;
+
+/// Twenty minutes at 0 W, then given back: nothing to object to.
+struct HandMade {
+  Scenario scenario;
+  MinuteSeries prices;
+  EdgeConfig config;
+  Evidence evidence;
+
+  HandMade() {
+    scenario.name = scenario.path = "by hand";
+    scenario.start_utc_s = kStartS;
+    scenario.minutes = 20;
+    scenario.battery.map = BESS_SOURCE_DIR "/edge/maps/alphaess.toml";
+    scenario.prices.steps = {{0, 100}};
+    for (const InvariantInfo& info : invariants()) scenario.invariants.emplace_back(info.name);
+    for (int minute = 0; minute < 20; minute += 2) order(minute, 0);
+    evidence.orders.push_back(
+        {.utc_ns = at_ns(20, 1), .kind = DispatchEvent::Kind::kStop, .soc_frac = 0.5});
+    for (int minute = 0; minute < 20; ++minute) {
+      evidence.minutes.push_back({.minute_utc_s = kStartS + 60 * minute,
+                                  .energy_wh = 0,
+                                  .soc_frac = 0.5,
+                                  .commanded_power_w = 0});
+    }
+    LoggedCycle stopping;
+    stopping.utc_s = kStartS + 1'200;
+    stopping.mode = Mode::kStopping;
+    evidence.log.push_back(stopping);
+    evidence.is_alive_at_end = true;
+    evidence.order_duration_s = 300;
+  }
+  static std::int64_t at_ns(int minute, int second = 0) {
+    return (kStartS + 60 * minute + second) * kNanosecondsPerSecond;
+  }
+  void order(int minute, double power_w, int second = 1) {
+    evidence.orders.push_back({.utc_ns = at_ns(minute, second),
+                               .kind = DispatchEvent::Kind::kOrder,
+                               .power_w = power_w,
+                               .duration_s = 300,
+                               .soc_frac = 0.5});
+  }
+  DispatchEvent& order_of(int minute) {
+    return evidence.orders[static_cast<std::size_t>(minute / 2)];
+  }
+
+  /// The rules that are broken, in one text.
+  std::string broken() {
+    prices = scenario_prices(scenario);
+    const WorkFolder folder;
+    config = load_edge_settings(folder.file("edge.toml"), edge_settings(scenario, prices, {}));
+    std::string rules;
+    for (const Finding& f : judge({scenario, prices, config, evidence})) {
+      rules += (rules.empty() ? "" : " ") + f.rule;
+    }
+    return rules;
+  }
+};
+
+TEST(Judge, FindsNothingInAGoodRecord) { EXPECT_EQ(HandMade().broken(), ""); }
+
+TEST(Judge, SeesASocOutsideTheWindow) {
+  HandMade run;
+  for (MinuteRecord& m : run.evidence.minutes) m.soc_frac = 0.09;
+  run.scenario.battery.soc_frac = 0.09;
+  EXPECT_EQ(run.broken(), "soc_window");
+}
+
+TEST(Judge, SeesTooLargeAnOrder) {
+  HandMade run;
+  run.order_of(8).power_w = 4'100;
+  EXPECT_EQ(run.broken(), "power_limit");
+}
+
+TEST(Judge, SeesPowerOnAStalePrice) {
+  HandMade run;
+  run.scenario.prices.missing = {{.from_min = 4, .to_min = 20}};
+  EXPECT_EQ(run.broken(), "");
+  run.order_of(14).power_w = 2'000;
+  EXPECT_EQ(run.broken(), "fresh_price");
+}
+
+TEST(Judge, SeesAThresholdThatIsNotFollowed) {
+  HandMade run;
+  run.scenario.prices.steps = {{0, 100}, {7, -600}, {9, 100}};
+  EXPECT_EQ(run.broken(), "thresholds");
+  run.order_of(8).power_w = 4'000;
+  EXPECT_EQ(run.broken(), "");
+}
+
+TEST(Judge, SeesAnOrderThatComesTooLate) {
+  HandMade run;
+  run.order_of(8) = {.utc_ns = HandMade::at_ns(9, 30),
+                     .kind = DispatchEvent::Kind::kOrder,
+                     .power_w = 2'000,
+                     .duration_s = 300,
+                     .soc_frac = 0.5};
+  EXPECT_EQ(run.broken(), "in_time");
+}
+
+TEST(Judge, SeesAnOrderThatRanOut) {
+  HandMade run;
+  run.order_of(8).kind = DispatchEvent::Kind::kExpiry;
+  EXPECT_EQ(run.broken(), "in_control fed");
+}
+
+TEST(Judge, SeesAReleaseWithoutAHold) {
+  HandMade run;
+  run.order_of(8).power_w = 2'000;
+  run.order_of(10).kind = DispatchEvent::Kind::kStop;
+  EXPECT_EQ(run.broken(), "held in_control");
+}
+
+TEST(Judge, SeesAnOrderThatIsLeftAtTheEnd) {
+  HandMade run;
+  run.evidence.orders.pop_back();
+  EXPECT_EQ(run.broken(), "released");
+}
+
+TEST(Judge, SeesPowerAfterTheLinkIsLost) {
+  HandMade run;
+  run.scenario.battery_fault.schedule.faults = {BatteryFault::kSilence};
+  run.scenario.battery_fault.schedule.every = 1;
+  run.scenario.battery_fault.schedule.from_s = 60;
+  run.scenario.battery_fault.schedule.to_s = 1'200;
+  EXPECT_EQ(run.broken(), "");
+  run.order_of(10).power_w = 2'000;
+  EXPECT_EQ(run.broken(), "safe_state");
+}
+
+TEST(Judge, SeesEnergyThatTheSocDoesNotKnow) {
+  HandMade run;
+  run.evidence.minutes[3].energy_wh = 60;
+  EXPECT_EQ(run.broken(), "energy");
+}
+
+TEST(Judge, HoldsTheLogAgainstMarketBatteryAndStudent) {
+  HandMade run;
+  LoggedCycle cycle;
+  cycle.utc_s = kStartS + 480;
+  cycle.mode = Mode::kRunning;
+  cycle.has_measurement = cycle.has_price = cycle.written = true;
+  cycle.soc_e4 = 5'000;
+  cycle.price_minute_utc_s = kStartS + 420;
+  cycle.price_centi_eur_per_mwh = 10'000;
+  cycle.reason = "price_age";
+  run.evidence.log.insert(run.evidence.log.begin(), cycle);
+  EXPECT_EQ(run.broken(), "");
+  run.evidence.log[0].ordered_power_w = 4'000;
+  EXPECT_EQ(run.broken(), "order");
+  run.evidence.log[0] = cycle;
+  run.evidence.log[0].price_centi_eur_per_mwh = 10'010;
+  EXPECT_EQ(run.broken(), "inputs");
+  run.evidence.log[0] = cycle;
+  run.evidence.log[0].soc_e4 = 5'600;
+  EXPECT_EQ(run.broken(), "inputs");
+  run.evidence.log[0] = cycle;
+  run.evidence.log[0].has_student_action = true;  // of no context class
+  EXPECT_EQ(run.broken(), "decision");
+}
+
+TEST(Judge, HoldsTheRunAgainstWhatTheScenarioExpects) {
+  HandMade run;
+  Expectation expectation;
+  expectation.span = {.from_min = 4, .to_min = 10};
+  expectation.command = Expectation::Command::kZero;
+  run.scenario.expectations = {expectation};
+  EXPECT_EQ(run.broken(), "");
+  run.scenario.expectations[0].command = Expectation::Command::kCharge;
+  EXPECT_EQ(run.broken(), "expect 1");
+  run.scenario.expectations[0].command = Expectation::Command::kAny;
+  run.scenario.expectations[0].reason = "alarm";
+  EXPECT_EQ(run.broken(), "expect 1");
+  run.scenario.expectations.clear();
+  run.evidence.edge_exit_code = 1;
+  EXPECT_EQ(run.broken(), "end");
+}
+
+}  // namespace
+}  // namespace bess

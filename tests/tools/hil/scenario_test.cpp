@@ -1,0 +1,121 @@
+// Scenario files: what is read, what is refused with one clear line, and that the shipped ones leave no
+// fault, no map and no event of the list out.
+#include "tools/hil_runner/scenario.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <set>
+
+#include "shared/host/user_error.h"
+#include "tests/support/shipped_maps.h"
+#include "tests/support/temporary_folder.h"
+#include "tools/battery_sim/battery_faults.h"
+
+namespace bess {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::vector<Scenario> shipped() {
+  std::vector<Scenario> all;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(BESS_SOURCE_DIR "/tests/scenarios")) {
+    if (entry.path().extension() == ".toml") all.push_back(read_scenario(entry.path().string()));
+  }
+  return all;
+}
+
+std::string refusal(const std::string& text) {
+  const TemporaryFolder folder;
+  try {
+    static_cast<void>(read_scenario(folder.write("s.toml", text)));
+  } catch (const UserError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Scenarios, AtLeastThirtyAreShippedEachWithATitle) {
+  const std::vector<Scenario> all = shipped();
+  EXPECT_GE(all.size(), 30U);
+  for (const Scenario& s : all) EXPECT_FALSE(s.title.empty()) << s.name;
+}
+
+TEST(Scenarios, EveryFaultOfTheBatteryIsInOneOnEachBusThatHasIt) {
+  std::set<std::pair<BatteryFault, bool>> tried;
+  for (const Scenario& s : shipped()) {
+    for (const BatteryFault fault : s.battery_fault.schedule.faults) {
+      tried.insert({fault, s.battery.rtu});
+    }
+  }
+  for (const BatteryFaultInfo& info : battery_faults()) {
+    // What the battery does, not what the bus makes of it, is the same on both.
+    const bool is_of_bus = info.fault <= BatteryFault::kBadCrc;
+    const bool over_tcp = tried.contains({info.fault, false}) || !info.tcp;
+    const bool over_rtu = tried.contains({info.fault, true}) || !info.rtu || !is_of_bus;
+    EXPECT_TRUE(over_tcp && over_rtu) << info.name;
+  }
+}
+
+TEST(Scenarios, EveryFaultOfThePricesIsInOne) {
+  std::set<MarketFault> tried;
+  for (const Scenario& s : shipped()) tried.insert(s.price_fault.fault);
+  EXPECT_EQ(tried.size(), 6U) << "none, null, http-500, stale, garbage, all";
+}
+
+TEST(Scenarios, EveryEventIsInOne) {
+  std::set<ScenarioEvent::Does> tried;
+  for (const Scenario& s : shipped()) {
+    for (const ScenarioEvent& event : s.events) tried.insert(event.does);
+  }
+  for (int i = 0; i <= static_cast<int>(ScenarioEvent::Does::kDiskFull); ++i) {
+    const auto does = static_cast<ScenarioEvent::Does>(i);
+    EXPECT_TRUE(tried.contains(does)) << event_name(does);
+  }
+}
+
+TEST(Scenarios, EveryShippedMapIsInOne) {
+  std::set<std::string> tried;
+  for (const Scenario& s : shipped()) {
+    tried.insert(std::filesystem::path(s.battery.map).stem().string() + " " + s.battery.variant);
+  }
+  for (const MapVariant& wanted : kShippedMapVariants) {
+    const std::string name = wanted.map;
+    const bool is_default = name == "alphaess" && std::string(wanted.variant) == "block";
+    EXPECT_TRUE(tried.contains(name + " " + (is_default ? "" : wanted.variant)))
+        << name << " " << wanted.variant;
+  }
+}
+
+TEST(Scenarios, WhatIsWrongIsSaidWithItsLine) {
+  EXPECT_THAT(refusal("minutes = 60\n"), HasSubstr("title"));
+  EXPECT_THAT(refusal("title = \"x\"\nminuts = 3\n"), HasSubstr("s.toml:2: "));
+  EXPECT_THAT(refusal("title = \"x\"\nminutes = 600\n"), HasSubstr("time = \"virtual\" alone"));
+  EXPECT_THAT(refusal("title = \"x\"\nstart_utc = \"2023-03-26T00:01:00Z\"\n"),
+              HasSubstr("at an even minute"));
+  EXPECT_THAT(refusal("title = \"x\"\n[battery]\nmap = \"nobody\"\n"),
+              HasSubstr("no register map"));
+  EXPECT_THAT(refusal("title = \"x\"\n[battery_fault]\nkinds = [\"silense\"]\n"),
+              HasSubstr("s.toml:3: [battery_fault] no fault of the battery"));
+  EXPECT_THAT(refusal("title = \"x\"\n[battery]\ntransport = \"rtu\"\n[battery_fault]\nkinds = "
+                      "[\"drop\"]\n"),
+              HasSubstr("only without a serial line"));
+  EXPECT_THAT(
+      refusal("title = \"x\"\n[battery_fault]\nkinds = [\"drop\"]\nfrom_min = 5\nto_min = 5\n"),
+      HasSubstr("must be later than from_min"));
+  EXPECT_THAT(refusal("title = \"x\"\n[[event]]\nat_min = 1\ndoes = \"edge_die\"\n"),
+              HasSubstr("must be one of: edge_kill"));
+  EXPECT_THAT(refusal("title = \"x\"\n[[event]]\nat_min = 1\ndoes = \"clock_step\"\nseconds = 3\n"),
+              HasSubstr("must be \"virtual\""));
+  EXPECT_THAT(refusal("title = \"x\"\n[[expect]]\nreason = \"mood\"\n"),
+              HasSubstr("no reason of the guard"));
+  EXPECT_THAT(refusal("title = \"x\"\n[judge]\nall_but = [\"everything\"]\n"),
+              HasSubstr("no invariant"));
+  EXPECT_THAT(refusal("title = \"x\"\n[prices]\nsteps = [[3, 1], [2, 1]]\n"),
+              HasSubstr("in the order of time"));
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,52 @@
+// The trial week: paired losses, and a week of the yardstick with everything on.
+#include "tools/hil_runner/trial_week.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "shared/host/user_error.h"
+
+namespace bess {
+namespace {
+
+TEST(TrialWeek, ALossIsPairedWeekByWeek) {
+  std::vector<TrialWeek> weeks(4);
+  const double plain[] = {40, 60, 50, 50};
+  const double lost[] = {2, 3, 2, 3};
+  for (std::size_t i = 0; i < weeks.size(); ++i) {
+    weeks[i].plain_eur = plain[i];
+    weeks[i].loop_eur[1] = plain[i] - lost[i];
+  }
+  const TrialLoss loss = loss_of(weeks, 1);
+  EXPECT_NEAR(loss.percent, 5.0, 1e-9);
+  // The differences' own spread, 1/3, and not that of the weeks.
+  EXPECT_NEAR(loss.percent_error, 100 * std::sqrt((1.0 / 3) / 4) / 50, 1e-9);
+}
+
+TEST(TrialWeek, TheLoopCostsLittleAndEverythingTogetherCostsMore) {
+  const MinuteSeries prices =
+      read_minute_file(BESS_SOURCE_DIR "/tests/data/benchmark_minutes_2023.csv.gz");
+  int told = 0;
+  const std::vector<TrialWeek> weeks = run_trial(prices, 1, [&](int, int) { ++told; });
+  ASSERT_EQ(weeks.size(), 1U);
+  EXPECT_EQ(told, 1);
+  EXPECT_GT(weeks[0].plain_eur, 10);
+  for (const Finding& f : weeks[0].findings)
+    ADD_FAILURE() << f.rule << " " << f.expected << " " << f.seen;
+  EXPECT_NEAR(loss_of(weeks, 0).percent, 0, 2) << "the loop alone";
+  EXPECT_GT(loss_of(weeks, 5).percent, loss_of(weeks, 0).percent);
+}
+
+TEST(TrialWeek, MoreWeeksThanTheFileHoldsAreRefused) {
+  const MinuteSeries prices =
+      read_minute_file(BESS_SOURCE_DIR "/tests/data/benchmark_minutes_2023.csv.gz");
+  try {
+    static_cast<void>(run_trial(prices, 100, [](int, int) {}));
+    FAIL() << "they were taken";
+  } catch (const UserError& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("17 times 8 days, 100 were asked for"));
+  }
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,77 @@
+#include "tools/hil_runner/edge_settings.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+
+#include "edge/control/price_history.h"
+#include "shared/host/file.h"
+#include "shared/host/user_error.h"
+#include "shared/utc_text.h"
+
+namespace bess {
+namespace {
+
+constexpr int kHistoryHours = 72;  ///< as the edge asks for
+
+/// Of a wall-clock run: what is a second on the device passes in a fraction of one.
+constexpr std::int32_t kWallTimeoutMs = 200;
+
+std::string battery_keys(const Scenario& scenario, const EdgePlaces& places) {
+  const ScenarioBattery& battery = scenario.battery;
+  std::string text =
+      fmt::format("map = \"{}\"\npower_w = {:.0f}\ncapacity_wh = {:.0f}\nport = {}\n", battery.map,
+                  battery.physics.power_w_max, battery.physics.capacity_wh, places.battery_port);
+  if (!battery.variant.empty()) text += fmt::format("variant = \"{}\"\n", battery.variant);
+  if (battery.rtu) {
+    text += fmt::format("transport = \"rtu\"\ndevice = \"{}\"\nbaud = 115200\n",
+                        places.serial_device.empty() ? "/dev/null" : places.serial_device);
+  }
+  const bool is_wall = places.anchor_monotonic_ns != 0;
+  const bool has_timeout = scenario.edge_battery.find("response_timeout_ms") != std::string::npos;
+  if (is_wall && !has_timeout) text += fmt::format("response_timeout_ms = {}\n", kWallTimeoutMs);
+  return text + scenario.edge_battery;
+}
+
+}  // namespace
+
+PriceLevel level_before(const MinuteSeries& prices, std::int64_t start_utc_s) {
+  PriceHistory history(kHistoryHours, start_utc_s);
+  for (std::size_t m = 0; m < prices.size() && prices.utc_s(m) < start_utc_s; ++m) {
+    if (std::isnan(prices.indicative[m])) continue;
+    history.add(prices.utc_s(m),
+                static_cast<std::int32_t>(std::lround(100 * prices.indicative[m])));
+  }
+  return history.level();
+}
+
+std::string edge_settings(const Scenario& scenario, const MinuteSeries& prices,
+                          const EdgePlaces& places) {
+  std::string text = fmt::format("control = true\n[battery]\n{}\n", battery_keys(scenario, places));
+  text += fmt::format(
+      "[price]\nurl = \"http://127.0.0.1:{}/api/explore/v2.1/catalog/datasets/ods161/records"
+      "?order_by=datetime%20desc&limit=20\"\nhistory_hours = 0\n",
+      places.market_port);
+  if (const PriceLevel level = level_before(prices, scenario.start_utc_s); level.is_known()) {
+    text += fmt::format("level_start_eur_per_mwh = {:.2f}\n", level.centi_eur_per_mwh() / 100.0);
+  }
+  text += fmt::format("{}\n[guard]\n{}\n[state]\nfolder = \"state\"\n", scenario.edge_price,
+                      scenario.edge_guard);
+  text += fmt::format("[log]\ncsv = \"edge.csv\"\n{}\n", scenario.edge_other);
+  if (places.anchor_monotonic_ns != 0) {
+    text += fmt::format(
+        "[simulation]\ntime_scale = {}\nutc_start = \"{}\"\nanchor_monotonic_ns = {}\n",
+        scenario.time_scale, utc_text(scenario.start_utc_s).view(), places.anchor_monotonic_ns);
+  }
+  return text;
+}
+
+EdgeConfig load_edge_settings(const std::string& path, const std::string& text) {
+  write_file(path, text);
+  EdgeConfig config;
+  std::string error;
+  if (!load_edge_config(path, config, error)) fail("[edge] of the scenario: {}", error);
+  return config;
+}
+
+}  // namespace bess

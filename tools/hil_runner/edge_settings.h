@@ -1,0 +1,32 @@
+// The edge's configuration of a scenario: a file for the real reader, in both times.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "edge/control/control_settings.h"
+#include "edge/program/edge_config.h"
+#include "shared/host/minute_file.h"
+#include "shared/price_level.h"
+#include "tools/hil_runner/scenario.h"
+
+namespace bess {
+
+/// Where battery and market are, and the clock; zero and empty: virtual time.
+struct EdgePlaces {
+  int battery_port = 1;
+  std::string serial_device;
+  int market_port = 1;
+  std::int64_t anchor_monotonic_ns = 0;
+};
+
+/// The price level that the days before the start have led to.
+PriceLevel level_before(const MinuteSeries& prices, std::int64_t start_utc_s);
+
+std::string edge_settings(const Scenario& scenario, const MinuteSeries& prices,
+                          const EdgePlaces& places);
+
+/// Writes the text into the folder and reads it as bess-edge does. Throws UserError.
+EdgeConfig load_edge_settings(const std::string& path, const std::string& text);
+
+}  // namespace bess

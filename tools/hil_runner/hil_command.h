@@ -1,0 +1,11 @@
+// bess-hil's command line: which scenarios, in which time, told how.
+#pragma once
+
+#include "shared/host/command_line.h"
+
+namespace bess {
+
+void add_run_command(ProgramCommand& app);
+void add_trial_command(ProgramCommand& app);
+
+}  // namespace bess

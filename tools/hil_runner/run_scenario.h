@@ -1,0 +1,12 @@
+// One scenario, run and judged.
+#pragma once
+
+#include "tools/hil_runner/outcome.h"
+#include "tools/hil_runner/wall_run.h"
+
+namespace bess {
+
+/// Never throws for what the scenario does: that is an outcome.
+Outcome run_scenario(const Scenario& scenario, bool in_virtual_time, const WallPrograms& programs);
+
+}  // namespace bess

@@ -1,0 +1,138 @@
+// A scenario: which battery, which prices, what goes wrong and when, what is expected of the edge. Read
+// from a commented TOML file (tests/scenarios/README.md is the format); times are simulated minutes
+// since the start.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "shared/battery_model.h"
+#include "tools/battery_sim/battery_faults.h"
+#include "tools/market_sim/market_fault.h"
+
+namespace bess {
+
+inline constexpr double kNeverMin = std::numeric_limits<double>::infinity();
+
+/// From a minute up to, not including, another.
+struct MinuteSpan {
+  double from_min = 0;
+  double to_min = kNeverMin;
+};
+
+struct ScenarioBattery {
+  std::string map;      ///< path of the register map
+  std::string variant;  ///< empty: the map's first
+  bool rtu = false;
+  double soc_frac = 0.5;
+  /// Its own limits are wider than the edge's, so that what the edge lets happen shows.
+  BatteryParameters physics{
+      .power_w_max = 4'000, .capacity_wh = 8'000, .soc_min_frac = 0, .soc_max_frac = 1};
+  std::int32_t response_delay_ms = 20;
+};
+
+struct ScenarioPrices {
+  struct Step {
+    double from_min;
+    double eur_per_mwh;
+  };
+  std::string file;         ///< a minute file; empty: `steps`, or a wave
+  std::vector<Step> steps;  ///< each price until the next
+  double wave_mean_eur_per_mwh = 100;
+  double wave_amplitude_eur_per_mwh = 400;
+  double wave_period_min = 44;
+  double latency_s = 2;             ///< from the end of a minute until its row is readable
+  std::vector<MinuteSpan> missing;  ///< rows that are never published
+};
+
+struct BatteryFaultWindow {
+  FaultSchedule schedule;  ///< its span in seconds; no faults: nothing goes wrong
+  std::int32_t late_ms = 1'500;
+  std::int32_t drip_ms = 100;
+  std::int32_t exception_code = 6;
+  [[nodiscard]] bool strikes_always() const {
+    return !schedule.faults.empty() && schedule.every == 1 && schedule.probability == 0;
+  }
+};
+
+struct PriceFaultWindow {
+  MarketFault fault = MarketFault::kNone;
+  std::int32_t every = 1;
+  MinuteSpan span;
+};
+
+/// What happens to a process, its clock or its disk.
+struct ScenarioEvent {
+  enum class Does : std::uint8_t {
+    kEdgeKill,         ///< SIGKILL
+    kEdgeStop,         ///< SIGTERM
+    kEdgeHandOver,     ///< SIGHUP
+    kEdgeStart,        ///< with the same configuration and state
+    kEdgePause,        ///< SIGSTOP
+    kEdgeContinue,     ///< SIGCONT
+    kBatteryPause,     ///< of the simulators' processes
+    kBatteryContinue,  //
+    kMarketPause,
+    kMarketContinue,
+    kMarketKill,
+    kMarketStart,
+    kClockStep,            ///< the edge's UTC, by `seconds`
+    kClockUnsynchronised,  ///< NTP says that it is not to be trusted
+    kClockSynchronised,
+    kDiskFull,  ///< of the edge's state folder
+  };
+  double at_min = 0;
+  Does does = Does::kEdgeStop;
+  double seconds = 0;
+};
+std::string_view event_name(ScenarioEvent::Does does);
+
+struct Expectation {
+  enum class Command : std::uint8_t {
+    kAny,
+    kCharge,
+    kDischarge,
+    kZero,       ///< the battery is held at 0 W
+    kNone,       ///< it is in its own mode
+    kDriven,     ///< it follows an order, whichever
+    kNotDriven,  ///< 0 W or its own mode
+  };
+  MinuteSpan span;
+  Command command =
+      Command::kAny;      ///< of every cycle that begins in the span, by the battery's record
+  std::string reason;     ///< that the edge logs at least once in the span; empty = any
+  std::string no_reason;  ///< that it never logs in the span
+};
+
+struct Scenario {
+  std::string name;  ///< of the file
+  std::string path;
+  std::string title;
+  std::int64_t start_utc_s = 0;
+  double minutes = 60;
+  bool runs_virtual = true;
+  bool runs_wall = true;
+  std::int32_t time_scale = 120;  ///< of wall time
+  ScenarioBattery battery;
+  ScenarioPrices prices;
+  // Lines of TOML for the edge's configuration, by its tables; `edge_other` is whole tables.
+  std::string edge_battery, edge_price, edge_guard, edge_other;
+  BatteryFaultWindow battery_fault;
+  PriceFaultWindow price_fault;
+  std::vector<ScenarioEvent> events;  ///< in the order of time
+  std::vector<Expectation> expectations;
+  std::vector<std::string> invariants;  ///< that are judged
+  double recovery_min = 12;             ///< after a fault, until the edge must drive again
+  std::int32_t exit_code = 0;           ///< of the edge that runs last
+
+  [[nodiscard]] std::int64_t utc_ns_at(double minute) const;
+  [[nodiscard]] std::int64_t end_utc_ns() const { return utc_ns_at(minutes); }
+};
+
+/// Throws UserError naming file and line.
+Scenario read_scenario(const std::string& path);
+
+}  // namespace bess

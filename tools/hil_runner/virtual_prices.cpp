@@ -1,0 +1,101 @@
+#include "tools/hil_runner/virtual_prices.h"
+
+#include <algorithm>
+
+#include "shared/scaled_clock.h"
+
+namespace bess {
+namespace {
+
+constexpr std::int64_t kMillisecondNs = 1'000'000;
+constexpr std::int64_t kFetchNs = 30 * kMillisecondNs;  ///< of one answer
+constexpr int kRowsAsked = 20;  ///< as the edge's example configuration does
+
+}  // namespace
+
+VirtualPrices::VirtualPrices(const PriceFeedSettings& settings, const MarketView& market,
+                             MarketFaultPlan& faults, const Scenario& scenario, VirtualTime& time)
+    : settings_(settings),
+      market_(market),
+      faults_(faults),
+      scenario_(scenario),
+      time_(time),
+      newest_(settings.step_flag_centi_eur_per_mwh, settings.hold_flagged_step) {}
+
+void VirtualPrices::request(std::int64_t minute_utc_s, std::int64_t start_monotonic_ns,
+                            std::int64_t deadline_monotonic_ns) {
+  minute_utc_s_ = minute_utc_s;
+  start_ns_ = start_monotonic_ns;
+  deadline_ns_ = deadline_monotonic_ns;
+  requests_ = 0;
+  is_asking_ = is_served_ = false;
+}
+
+bool VirtualPrices::wait(std::int64_t until_monotonic_ns) {
+  while (!is_served_) {
+    if (!is_asking_ && !begin_next()) break;
+    const std::int64_t next_ns = answer_.begun_ns > time_.monotonic_ns() || answer_.done_ns == 0
+                                     ? answer_.begun_ns
+                                     : answer_.done_ns;
+    if (next_ns > until_monotonic_ns) {
+      time_.advance_to(until_monotonic_ns);
+      return false;
+    }
+    time_.advance_to(next_ns);
+    if (answer_.done_ns == 0) {
+      fetch();
+      continue;
+    }
+    is_asking_ = false;
+    newest_.publish(answer_.status, answer_.row, time_.monotonic_ns(),
+                    static_cast<std::int32_t>((answer_.done_ns - answer_.begun_ns) / 1'000));
+    is_served_ = answer_.status == Status::kOk && answer_.row.minute_utc_s >= minute_utc_s_;
+  }
+  return true;
+}
+
+/// Spread over the wait like PriceFeed's; false when the cycle's requests are used up.
+bool VirtualPrices::begin_next() {
+  const std::int64_t spacing_ns =
+      settings_.wait_s * kNanosecondsPerSecond / settings_.requests_per_cycle;
+  const std::int64_t begin_ns = start_ns_ + requests_ * spacing_ns;
+  if (requests_ >= settings_.requests_per_cycle || (requests_ > 0 && begin_ns >= deadline_ns_)) {
+    is_served_ = true;
+    return false;
+  }
+  ++requests_;
+  is_asking_ = true;
+  answer_ = {.begun_ns = std::max(begin_ns, time_.monotonic_ns())};
+  return true;
+}
+
+void VirtualPrices::fetch() {
+  answer_.done_ns = time_.monotonic_ns() + kFetchNs;
+  if (time_.market() == VirtualTime::Market::kPaused) {
+    answer_.status = Status::kTimeout;
+    answer_.done_ns = time_.monotonic_ns() + settings_.http.timeout_ms * kMillisecondNs;
+    return;
+  }
+  if (time_.market() == VirtualTime::Market::kDead) {
+    answer_.status = Status::kNotConnected;
+    return;
+  }
+  const double at_s = static_cast<double>(time_.utc_ns() - scenario_.utc_ns_at(0)) / 1e9;
+  const MarketFault fault = faults_.next(at_s);
+  if (fault == MarketFault::kHttp500) {
+    answer_.status = Status::kHttpError;
+    return;
+  }
+  const std::int64_t market_ns =
+      time_.utc_ns() - (fault == MarketFault::kStale ? kStaleAnswerS * kNanosecondsPerSecond : 0);
+  const std::string text = fault == MarketFault::kGarbage
+                               ? std::string(kGarbageAnswer)
+                               : market_.records({.dataset = Dataset::kMinutes,
+                                                  .limit = kRowsAsked,
+                                                  .hide_newest_price = fault == MarketFault::kNull},
+                                                 market_ns);
+  answer_.status = parse_newest_price(text, settings_.fields,
+                                      time_.edge_utc_ns() / kNanosecondsPerSecond, answer_.row);
+}
+
+}  // namespace bess

@@ -1,0 +1,52 @@
+// The control loop's price source in virtual time: the answers of the simulated market, read by the edge's
+// own parser into its own newest row. Asks as often as the edge's PriceFeed would, without its thread.
+#pragma once
+
+#include <cstdint>
+
+#include "edge/prices/newest_row.h"
+#include "edge/prices/price_feed.h"
+#include "tools/hil_runner/scenario.h"
+#include "tools/hil_runner/virtual_time.h"
+#include "tools/market_sim/market_fault.h"
+#include "tools/market_sim/market_view.h"
+
+namespace bess {
+
+class VirtualPrices {
+ public:
+  /// All but the settings must outlive this object; the plan goes on over restarts of the edge.
+  VirtualPrices(const PriceFeedSettings& settings, const MarketView& market,
+                MarketFaultPlan& faults, const Scenario& scenario, VirtualTime& time);
+
+  void request(std::int64_t minute_utc_s, std::int64_t start_monotonic_ns,
+               std::int64_t deadline_monotonic_ns);
+  bool wait(std::int64_t until_monotonic_ns);
+  [[nodiscard]] PriceReport latest() const { return newest_.report(); }
+
+ private:
+  struct Answer {
+    Status status = Status::kTimeout;
+    PriceRow row{};
+    std::int64_t begun_ns = 0;
+    std::int64_t done_ns = 0;
+  };
+  [[nodiscard]] bool begin_next();
+  void fetch();
+
+  PriceFeedSettings settings_;
+  const MarketView& market_;
+  MarketFaultPlan& faults_;
+  const Scenario& scenario_;
+  VirtualTime& time_;
+  NewestRow newest_;
+  std::int64_t minute_utc_s_ = 0;
+  std::int64_t start_ns_ = 0;
+  std::int64_t deadline_ns_ = 0;
+  std::int32_t requests_ = 0;  ///< begun in this cycle
+  bool is_asking_ = false;
+  bool is_served_ = true;
+  Answer answer_;
+};
+
+}  // namespace bess

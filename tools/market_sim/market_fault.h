@@ -1,0 +1,54 @@
+// What the simulated price server can do wrong, and when.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <iterator>
+#include <limits>
+
+namespace bess {
+
+enum class MarketFault : std::uint8_t {
+  kNone,
+  kNull,     ///< the newest row's price is null
+  kHttp500,  ///< internal server error
+  kStale,    ///< the answer is ten minutes old
+  kGarbage,  ///< not JSON
+  kAll,      ///< each of them in turn
+};
+
+inline constexpr std::int64_t kStaleAnswerS = 600;
+inline constexpr const char* kGarbageAnswer = "{\"results\": [{\"dat";
+
+struct MarketFaultSchedule {
+  MarketFault fault = MarketFault::kNone;
+  std::int32_t every = 10;  ///< every Nth request
+  double from_s = 0;        ///< simulated seconds since the server's start
+  double to_s = std::numeric_limits<double>::infinity();
+};
+
+/// Which request is answered how. Several threads may ask.
+class MarketFaultPlan {
+ public:
+  explicit MarketFaultPlan(const MarketFaultSchedule& schedule) : schedule_(schedule) {}
+
+  MarketFault next(double at_s) {
+    const bool is_in_span = at_s >= schedule_.from_s && at_s < schedule_.to_s;
+    if (schedule_.fault == MarketFault::kNone || !is_in_span) return MarketFault::kNone;
+    const std::int64_t request = ++requests_;
+    if (request % schedule_.every != 0) return MarketFault::kNone;
+    ++faults_;
+    if (schedule_.fault != MarketFault::kAll) return schedule_.fault;
+    constexpr MarketFault kTurns[] = {MarketFault::kNull, MarketFault::kHttp500,
+                                      MarketFault::kStale, MarketFault::kGarbage};
+    return kTurns[request / schedule_.every % std::ssize(kTurns)];
+  }
+  [[nodiscard]] std::int64_t faults() const { return faults_; }  ///< answers spoilt so far
+
+ private:
+  MarketFaultSchedule schedule_;
+  std::atomic<std::int64_t> requests_ = 0;
+  std::atomic<std::int64_t> faults_ = 0;
+};
+
+}  // namespace bess
