@@ -54,7 +54,8 @@ class ProgramCommand {
   /// One of the subcommands must be given.
   void requires_subcommand();
   /// A name without dashes is a positional argument. Text, whole and decimal numbers, each also
-  /// std::optional (stays empty unless given), and lists of text.
+  /// std::optional (stays empty unless given), and lists of text. An empty value, and a number too large to
+  /// hold, are refused.
   template <typename T>
   ProgramOption option(const std::string& name, T& value, const std::string& help);
   ProgramOption flag(const std::string& name, bool& value, const std::string& help);
@@ -88,8 +89,9 @@ class CommandLine {
   CommandLine& operator=(const CommandLine&) = delete;
 
   [[nodiscard]] ProgramCommand root() { return ProgramCommand(app_.get()); }
-  /// Parses, runs the command's action, and turns every error into one line on stderr. Returns the
-  /// exit code.
+  /// Parses, runs the command's action, and turns every error into one line on stderr, which names the
+  /// nearest known word and the help of the command that was asked for; a command that is given nothing
+  /// shows that help as well. Returns the exit code.
   int run(int argc, const char* const* argv);
   /// Parses one line and runs its action; errors are thrown. For tests.
   void parse(const std::string& line);
