@@ -1,7 +1,8 @@
 #include "workstation/report/page_data.h"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
+#include <functional>
 #include <numeric>
 #include <string_view>
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <stdlib.h>
 
+#include <algorithm>
+
 #include "tests/support/temporary_folder.h"
 #include "tests/workstation/report/report_test_support.h"
 

@@ -184,7 +184,7 @@ class DayView {
       text("price", `observed ${day.observed[step].toFixed(1)}, paid ${day.paid[step].toFixed(1)} EUR/MWh`),
       ...day.policies.map((policy, p) => text(
         this.data.archive.policies[p],
-        `${kActions[policy.action[step]]}, ${(policy.power[step] / 1e6).toPrecision(3)} MW at ` +
+        `${kActions[policy.action[step]]}, ${(Math.abs(policy.power[step]) / 1e6).toPrecision(3)} MW at ` +
         `${(100 * policy.soc[step]).toFixed(1)} %, ${signed(this.earnings[p][step], 1)} EUR so far`)));
     for (const id of kDayCharts) shownCharts.get(id).chart.draw();
   }

@@ -324,7 +324,7 @@ function pixelOf(hex) {
 /** The key of the maps, in the page's colours. */
 function showMapKeys() {
   const keys = [["charge", "charge"], ["idle", "idle"], ["discharge", "discharge"], ["mark", "violation"],
-                ["", "dotted: charge that the battery keeps"]];
+                ["", "dashed: charge that the battery keeps"]];
   document.getElementById("map-keys").replaceChildren(...keys.map(([name, text]) => {
     const item = document.createElement("li");
     if (name) {
