@@ -5,6 +5,7 @@
 #include "edge/prices/price_json.h"
 #include "shared/scaled_clock.h"
 #include "shared/utc_text.h"
+#include "tools/market_sim/market_fault.h"
 #include "tools/market_sim/market_view.h"
 
 namespace bess {
@@ -23,6 +24,15 @@ std::int64_t utc_ns(std::string_view text) {
   std::int64_t utc_s = 0;
   EXPECT_TRUE(parse_utc(text, utc_s)) << text;
   return utc_s * kNanosecondsPerSecond;
+}
+
+TEST(MarketFaultPlan, StrikesEveryNthRequestWithinItsSpan) {
+  MarketFaultPlan plan({.fault = MarketFault::kHttp500, .every = 2, .from_s = 10, .to_s = 20});
+  EXPECT_EQ(plan.next(9), MarketFault::kNone);
+  EXPECT_EQ(plan.next(10), MarketFault::kNone);
+  EXPECT_EQ(plan.next(19.9), MarketFault::kHttp500);
+  EXPECT_EQ(plan.next(20), MarketFault::kNone);
+  EXPECT_EQ(plan.faults(), 1);
 }
 
 TEST(MarketView, RowIsVisibleAtTheEndOfItsMinutePlusLatency) {

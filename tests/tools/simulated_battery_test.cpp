@@ -22,6 +22,34 @@ constexpr std::int64_t after_s(double seconds) {
   return kStartNs + static_cast<std::int64_t>(seconds * 1e9);
 }
 
+TEST(SimulatedBattery, TellsOfEveryOrderAndOfHowItEnded) {
+  using enum DispatchEvent::Kind;
+  SimulatedBattery battery(kHouse, 0.5, kStartNs);
+  battery.start_dispatch(1'000, 1.0, 300);
+  battery.advance(after_s(60));
+  battery.start_dispatch(-2'000, 0.1, 300);
+  battery.stop_dispatch();
+  battery.stop_dispatch();  // nothing is left to stop
+  battery.advance(after_s(120));
+  battery.start_dispatch(500, 1.0, 30);
+  battery.advance(after_s(600));
+  const std::vector<DispatchEvent>& events = battery.dispatch_events();
+  ASSERT_EQ(events.size(), 5U);
+  const DispatchEvent::Kind kinds[] = {kOrder, kOrder, kStop, kOrder, kExpiry};
+  for (std::size_t i = 0; i < events.size(); ++i) EXPECT_EQ(events[i].kind, kinds[i]) << i;
+  EXPECT_EQ(events[1].power_w, -2'000);
+  EXPECT_EQ(events[1].duration_s, 300);
+  EXPECT_EQ(events[4].utc_ns, after_s(150));
+}
+
+TEST(SimulatedBattery, GivesAndShowsNoMoreThanTheWeatherLeaves) {
+  SimulatedBattery battery(kHouse, 0.5, kStartNs);
+  battery.set_derating(0.5);
+  battery.start_dispatch(4'000, 1.0, 300);
+  EXPECT_EQ(battery.power_w(), 2'000);
+  EXPECT_EQ(battery.commanded_power_w(), 4'000);
+}
+
 TEST(SimulatedBattery, IntegratesTheSameInOneStepAndInMany) {
   SimulatedBattery coarse(kHouse, 0.5, kStartNs);
   SimulatedBattery fine(kHouse, 0.5, kStartNs);

@@ -418,9 +418,10 @@ class Judge {
     double unknown_wh = 0.5;
     double before_wh = 0;
     for (const MinuteRecord& m : evidence_.minutes) {
-      // Of a minute that was charged and discharged in, the record knows the sum.
+      // Of a minute that was charged and discharged in, the record knows the sum; the slowest battery that
+      // is simulated turns 5 s after its order.
       if (m.energy_wh * before_wh < 0) {
-        unknown_wh += p.power_w_max * evidence_.slack_s / 3'600 *
+        unknown_wh += p.power_w_max * (6 + evidence_.slack_s) / 3'600 *
                       (1 / p.discharge_efficiency - p.charge_efficiency);
       }
       before_wh = m.energy_wh;

@@ -28,7 +28,7 @@ enum class Times : std::uint8_t { kVirtual, kWall, kBoth };
 struct RunOptions {
   std::vector<std::string> places;
   Times times = Times::kVirtual;
-  int jobs = 3;
+  int jobs = 8;
   bool list = false;
   bool list_invariants = false;
   bool json = false;

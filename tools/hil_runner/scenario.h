@@ -115,7 +115,7 @@ struct Scenario {
   double minutes = 60;
   bool runs_virtual = true;
   bool runs_wall = true;
-  std::int32_t time_scale = 120;  ///< of wall time
+  std::int32_t time_scale = 60;  ///< of wall time
   ScenarioBattery battery;
   ScenarioPrices prices;
   // Lines of TOML for the edge's configuration, by its tables; `edge_other` is whole tables.

@@ -112,7 +112,7 @@ TEST(Judge, SeesAnOrderThatComesTooLate) {
 TEST(Judge, SeesAnOrderThatRanOut) {
   HandMade run;
   run.order_of(8).kind = DispatchEvent::Kind::kExpiry;
-  EXPECT_EQ(run.broken(), "in_control fed");
+  EXPECT_EQ(run.broken(), "fed in_control");
 }
 
 TEST(Judge, SeesAReleaseWithoutAHold) {

@@ -98,7 +98,7 @@ TEST(Scenarios, WhatIsWrongIsSaidWithItsLine) {
   EXPECT_THAT(refusal("title = \"x\"\n[battery]\nmap = \"nobody\"\n"),
               HasSubstr("no register map"));
   EXPECT_THAT(refusal("title = \"x\"\n[battery_fault]\nkinds = [\"silense\"]\n"),
-              HasSubstr("s.toml:3: [battery_fault] no fault of the battery"));
+              HasSubstr("s.toml:3: no fault of the battery (see bess-sim battery --help)"));
   EXPECT_THAT(refusal("title = \"x\"\n[battery]\ntransport = \"rtu\"\n[battery_fault]\nkinds = "
                       "[\"drop\"]\n"),
               HasSubstr("only without a serial line"));
