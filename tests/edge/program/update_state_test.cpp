@@ -24,26 +24,29 @@ TEST(UpdateState, WithoutAPackageThereIsNothingToTell) {
 
 TEST(UpdateState, ATrialTellsItsCyclesAndItsWayBack) {
   const TemporaryFolder folder;
-  folder.write("state",
-               "phase=trying\nversion=2.0\nprevious=1.0\nsince_utc=2026-11-22T06:00:00Z\n"
-               "good=7\nneeded=15\n");
+  static_cast<void>(
+      folder.write("state",
+                   "phase=trying\nversion=2.0\nprevious=1.0\nsince_utc=2026-11-22T06:00:00Z\n"
+                   "good=7\nneeded=15\n"));
   EXPECT_EQ(update_note(read_update_state(folder_of(folder))),
             "2.0 on trial since 2026-11-22T06:00:00Z, 7 of 15 good cycles; else back to 1.0");
 }
 
 TEST(UpdateState, ARollBackTellsWhatAndWhyAlsoWithAnEqualsSign) {
   const TemporaryFolder folder;
-  folder.write("state", "phase=rolled_back\nversion=1.0\nrefused=2.0\nreason=map x: unit = 7\n");
+  static_cast<void>(folder.write(
+      "state", "phase=rolled_back\nversion=1.0\nrefused=2.0\nreason=map x: unit = 7\n"));
   EXPECT_EQ(update_note(read_update_state(folder_of(folder))),
             "1.0; 2.0 was rolled back: map x: unit = 7");
 }
 
 TEST(UpdateHistory, OldestFirstAndNotWhatAPowerCutTore) {
   const TemporaryFolder folder;
-  folder.write("history",
-               "2026-11-22T06:00:00Z\ttrying\t2.0\t45d2cbe3\t72c9\t\n"
-               "2026-11-22T06:09:00Z\trolled_back\t2.0\t45d2cbe3\t72c9\tthe unit failed\n"
-               "2026-11-22T07:00:00Z\ttrying\t3.0\t45d2cbe3\t72c9\thal");
+  static_cast<void>(
+      folder.write("history",
+                   "2026-11-22T06:00:00Z\ttrying\t2.0\t45d2cbe3\t72c9\t\n"
+                   "2026-11-22T06:09:00Z\trolled_back\t2.0\t45d2cbe3\t72c9\tthe unit failed\n"
+                   "2026-11-22T07:00:00Z\ttrying\t3.0\t45d2cbe3\t72c9\thal"));
   const auto events = read_update_history(folder_of(folder));
   ASSERT_THAT(events, SizeIs(2));
   EXPECT_EQ(events[0].event, "trying");
@@ -71,7 +74,7 @@ TEST(StorageHealth, ATrialWriteLeavesNothing) {
 
 TEST(StorageHealth, AFolderThatCannotBeSaysWhy) {
   const TemporaryFolder folder;
-  folder.write("file", "");
+  static_cast<void>(folder.write("file", ""));
   const StorageHealth health = look_at_storage(folder.file("file/state"));
   EXPECT_FALSE(health.is_writable);
   EXPECT_EQ(health.error, "Not a directory");
