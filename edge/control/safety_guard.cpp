@@ -79,8 +79,8 @@ void SafetyGuard::apply_rules(const RuleLimits& rules, GuardDecision& decision) 
   const int sign = decision.power_w > 0 ? 1 : decision.power_w < 0 ? -1 : 0;
   const int allowed = power_sign(nearest_allowed(rules.actions, static_cast<Action>(sign + 1)));
   const std::int32_t power_w = allowed == sign ? decision.power_w : allowed * settings_.power_w;
-  const auto most_w = static_cast<std::int32_t>(
-      std::int64_t{settings_.power_w} * rules.power_permille_max / kFullPowerPermille);
+  const auto most_w = static_cast<std::int32_t>(std::int64_t{settings_.power_w} *
+                                                rules.power_permille_max / kFullPowerPermille);
   const std::int32_t ruled_w = clamp_to(power_w, -most_w, most_w);
   if (ruled_w != decision.power_w) decision = {.power_w = ruled_w, .reason = Reason::kRule};
 }

@@ -70,7 +70,8 @@ inline constexpr int kExportedRuleCheckCount = BESS_STUDENT_RULE_CHECK_COUNT;
 namespace detail {
 constexpr std::array<GuardRule, kExportedGuardRuleCount> assemble_exported_guard_rules() {
   std::array<GuardRule, kExportedGuardRuleCount> rules{};
-  for (std::size_t r = 0; r < rules.size(); ++r) rules[r] = guard_rule_of(bess_student_guard_rule[r]);
+  for (std::size_t r = 0; r < rules.size(); ++r)
+    rules[r] = guard_rule_of(bess_student_guard_rule[r]);
   return rules;
 }
 }  // namespace detail

@@ -40,12 +40,12 @@ void print_result(const DistilArguments& options, const CorrectionResult& result
   const std::size_t rounds = result.violations_by_round.size();
   if (options.json) {
     Json json = Json::object({{"student", options.out},
-                                    {"corrected", !options.plain},
-                                    {"rounds", rounds},
-                                    {"states_checked", c.states_checked},
-                                    {"violations_property_1", c.violations_property_1},
-                                    {"violations_property_2", c.violations_property_2},
-                                    {"violations_property_3", c.violations_property_3}});
+                              {"corrected", !options.plain},
+                              {"rounds", rounds},
+                              {"states_checked", c.states_checked},
+                              {"violations_property_1", c.violations_property_1},
+                              {"violations_property_2", c.violations_property_2},
+                              {"violations_property_3", c.violations_property_3}});
     add_rule_counts(c, json);
     fmt::print("{}\n", json.line());
     return;
@@ -138,7 +138,8 @@ void add_distil_command(ProgramCommand& app) {
   command.footer(
       "Examples:\n"
       "  bess-train distil --prices market.csv.gz --teacher teacher.bin --out student.json\n"
-      "  bess-train distil --prices market.csv.gz --teacher teacher.bin --rules my_rules.toml --out "
+      "  bess-train distil --prices market.csv.gz --teacher teacher.bin --rules my_rules.toml "
+      "--out "
       "student.json\n"
       "  bess-train distil --prices market.csv.gz --teacher teacher.bin --plain --out plain.json");
   command.runs([options] { run_distil(*options); });

@@ -28,7 +28,7 @@ struct DistilOptions {
   CorrectionMethod method = CorrectionMethod::kConstruction;
   bool correct = true;  ///< false: plain distillation, for comparison
   CorrectionOptions correction;
-  RuleSet rules = {};  ///< the operator's, consistent with the thresholds; construction alone
+  RuleSet rules = {};   ///< the operator's, consistent with the thresholds; construction alone
   double fidelity = 1;  ///< construction: of the cross-entropy beside the expected regret
   /// Construction: deviation of what is added to a visited day's prices.
   double level_shift_eur_per_mwh = 60;

@@ -18,8 +18,8 @@ constexpr float kLeak = 0.05F;  ///< of the gradient through a saturated unit: i
 constexpr double kRandomShare = 0.25;  ///< lessons from anywhere, per visited one
 constexpr double kAverageDecay = 0.998;
 constexpr int kBatch = 2048;
-constexpr int kThresholdStates = 64;  ///< per batch and threshold
-constexpr int kRuleStates = 64;       ///< per batch and rule
+constexpr int kThresholdStates = 64;   ///< per batch and threshold
+constexpr int kRuleStates = 64;        ///< per batch and rule
 constexpr float kForbiddenRegret = 4;  ///< at least, over the temperature, of what a rule forbids
 
 /// 1 inside the linear part, the leak outside.
@@ -205,10 +205,10 @@ void MonotoneDistiller::draw_batch(const std::vector<LatticeState>& counterexamp
   for (std::size_t n = 0; n < rules * kRuleStates; ++n) {
     const HardState hard = rules_.draw(n / kRuleStates, counterexamples, random_);
     float* x = w.x.col(w.learnt + hinged + static_cast<Eigen::Index>(n)).data();
-    write_input(network_context(hard.state.minute_of_quarter_hour, hard.state.quarter_hour,
-                                hard.state.context_class,
-                                teacher_.price_map(hard.state.price_eur_per_mwh)),
-                0, x);
+    write_input(
+        network_context(hard.state.minute_of_quarter_hour, hard.state.quarter_hour,
+                        hard.state.context_class, teacher_.price_map(hard.state.price_eur_per_mwh)),
+        0, x);
     x[3] = scaled_input(hard.state.soc_index, kSocScale);
     w.allowed.push_back(hard.actions);
   }

@@ -56,8 +56,8 @@ class MonotoneDistiller {
     Matrix x, target, regret, a1, h1, a2, h2, z, dz, d1, d2;
     Eigen::Index
         learnt;  ///< columns that follow the teacher; the others are held to properties 1 and 2
-    Eigen::Index at_low;   ///< and of those, how many lie at the low threshold
-    Eigen::Index at_high;  ///< behind them at the high one; the rest is held to the rules
+    Eigen::Index at_low;             ///< and of those, how many lie at the low threshold
+    Eigen::Index at_high;            ///< behind them at the high one; the rest is held to the rules
     std::vector<ActionSet> allowed;  ///< of that rest
   };
 
