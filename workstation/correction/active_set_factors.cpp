@@ -4,10 +4,6 @@
 #include <utility>
 
 namespace bess {
-namespace {
-/// A row of J lies across its columns: reading it takes as long as reading so many columns.
-constexpr Eigen::Index kColumnsPerRow = 8;
-}  // namespace
 
 ActiveSetFactors::ActiveSetFactors(const Eigen::MatrixXd& inverse_root)
     : start_(inverse_root.transpose()),
@@ -18,18 +14,6 @@ ActiveSetFactors::ActiveSetFactors(const Eigen::MatrixXd& inverse_root)
 void ActiveSetFactors::reset() {
   basis_ = start_;
   active_ = 0;
-}
-
-void ActiveSetFactors::image(const Eigen::VectorXd& normal, Eigen::Index terms,
-                             Eigen::VectorXd& d) const {
-  if (terms * kColumnsPerRow > size()) {
-    d.noalias() = basis_.transpose() * normal;
-    return;
-  }
-  d.setZero();
-  for (Eigen::Index i = 0; i < size(); ++i) {
-    if (normal[i] != 0) d += normal[i] * basis_.row(i).transpose();
-  }
 }
 
 void ActiveSetFactors::direction(const Eigen::VectorXd& d, Eigen::VectorXd& z) const {

@@ -30,8 +30,16 @@ class ActiveSetFactors {
   [[nodiscard]] Eigen::Index size() const { return basis_.rows(); }
   [[nodiscard]] Eigen::Index active() const { return active_; }
 
-  /// d = J'n for a normal with so many entries that are not 0.
-  void image(const Eigen::VectorXd& normal, Eigen::Index terms, Eigen::VectorXd& d) const;
+  /// d += factor * row i of J: d = J'n term by term, for normals of few terms.
+  void add_image(Eigen::Index i, double factor, Eigen::VectorXd& d) const {
+    d += factor * basis_.row(i).transpose();
+  }
+  /// d = J'n at once, for others.
+  void image(const Eigen::VectorXd& normal, Eigen::VectorXd& d) const {
+    d.noalias() = basis_.transpose() * normal;
+  }
+  /// A row of J lies across its columns: reading one takes as long as reading eight columns.
+  [[nodiscard]] bool prefers_whole_normals(Eigen::Index terms) const { return 8 * terms > size(); }
   /// z = J2 d2.
   void direction(const Eigen::VectorXd& d, Eigen::VectorXd& z) const;
   /// J2 J2' v into `free`; both [n], may not alias.

@@ -48,7 +48,7 @@ QuadraticProgram::QuadraticProgram(LinearConstraints&& constraints,
   const Eigen::Index variables = rows_.normals.cols();
   const Eigen::Index count = rows_.normals.rows();
   for (Eigen::VectorXd* v : {&free_minimum_, &x_, &d_, &z_, &r_}) v->setZero(variables);
-  for (Eigen::VectorXd* v : {&row_scale_, &multipliers_}) v->setZero(count);
+  for (Eigen::VectorXd* v : {&row_scale_, &multipliers_, &slacks_}) v->setZero(count);
   active_.reserve(static_cast<std::size_t>(variables));
   clash_.reserve(static_cast<std::size_t>(variables) + 1);
   is_active_.assign(static_cast<std::size_t>(count), 0);
@@ -71,6 +71,7 @@ void QuadraticProgram::scale_rows(const Eigen::MatrixXd& inverse_root) {
     }
     rows_.bounds[i] *= row_scale_[i];
   }
+  columns_ = rows_.normals;
 }
 
 QuadraticOutcome QuadraticProgram::solve(const Eigen::VectorXd& g) {
@@ -107,10 +108,11 @@ void QuadraticProgram::start(const Eigen::VectorXd& g) {
   steps_ = 0;
   factors_.project_free(g, free_minimum_);
   x_ = free_minimum_;
-  measure();
+  measure_scale();
+  measure_slacks();
 }
 
-void QuadraticProgram::measure() {
+void QuadraticProgram::measure_scale() {
   scale_ = std::numeric_limits<double>::min();
   for (int i = 0; i < rows_.normals.rows(); ++i) {
     double size = std::fabs(rows_.bounds[i]);
@@ -123,13 +125,19 @@ void QuadraticProgram::measure() {
 
 /// d = J'n of the row times its sign, without the rounding of what is 0.
 void QuadraticProgram::image_of(int row, double sign) {
-  z_.setZero();
-  for (Rows::InnerIterator term(rows_.normals, row); term; ++term) {
-    z_[term.col()] = sign * term.value();
+  const auto terms = rows_.normals.outerIndexPtr()[row + 1] - rows_.normals.outerIndexPtr()[row];
+  if (factors_.prefers_whole_normals(terms)) {
+    z_.setZero();
+    for (Rows::InnerIterator term(rows_.normals, row); term; ++term) {
+      z_[term.col()] = sign * term.value();
+    }
+    factors_.image(z_, d_);
+  } else {
+    d_.setZero();
+    for (Rows::InnerIterator term(rows_.normals, row); term; ++term) {
+      factors_.add_image(term.col(), sign * term.value(), d_);
+    }
   }
-  const Eigen::Index terms =
-      rows_.normals.outerIndexPtr()[row + 1] - rows_.normals.outerIndexPtr()[row];
-  factors_.image(z_, terms, d_);
   d_ = (d_.array().abs() < kRounding).select(0.0, d_);
 }
 
@@ -141,18 +149,32 @@ double QuadraticProgram::slack_of(int row) const {
   return sum;
 }
 
+void QuadraticProgram::measure_slacks() {
+  for (int row = 0; row < slacks_.size(); ++row) slacks_[row] = slack_of(row);
+}
+
+/// x += step z; slacks follow where x moves. Their rounding is gone when they are measured at the end.
+void QuadraticProgram::move(double step) {
+  for (Eigen::Index i = 0; i < x_.size(); ++i) {
+    if (z_[i] == 0) continue;
+    const double by = step * z_[i];
+    x_[i] += by;
+    for (Columns::InnerIterator term(columns_, i); term; ++term) {
+      slacks_[term.row()] += by * term.value();
+    }
+  }
+}
+
 /// The inequality that x violates most, or -1.
 int QuadraticProgram::most_violated() const {
   int worst = -1;
   double least = -kViolation * scale_;
-  for (int i = rows_.equalities; i < rows_.normals.rows(); ++i) {
+  for (int i = rows_.equalities; i < slacks_.size(); ++i) {
+    if (slacks_[i] >= least) continue;
     const auto at = static_cast<std::size_t>(i);
     if (is_active_[at] != 0 || is_neglected_[at] != 0) continue;
-    const double slack = slack_of(i);
-    if (slack < least) {
-      least = slack;
-      worst = i;
-    }
+    least = slacks_[i];
+    worst = i;
   }
   return worst;
 }
@@ -201,7 +223,7 @@ bool QuadraticProgram::take_in(int row, double sign) {
     multiplier += step;
     if (full <= limit.step) {
       factors_.add(d_, z_);
-      x_ += step * z_;
+      move(step);
       active_.push_back({row, sign, multiplier});
       is_active_[static_cast<std::size_t>(row)] = 1;
       std::ranges::fill(is_neglected_, 0);
@@ -209,7 +231,7 @@ bool QuadraticProgram::take_in(int row, double sign) {
     }
     if (!is_dependent) {
       factors_.direction(d_, z_);
-      x_ += step * z_;
+      move(step);
     }
     let_go(limit.position);
   }
@@ -256,13 +278,14 @@ double QuadraticProgram::recompute() {
   factors_.solve_transposed(d_);
   factors_.add_combination(d_, x_);
   factors_.solve(d_, r_);
-  measure();
+  measure_scale();
+  measure_slacks();
   double distance = 0;
   for (std::size_t k = 0; k < active_.size(); ++k) {
     ActiveRow& row = active_[k];
     row.multiplier = r_[static_cast<Eigen::Index>(k)];
     if (row.row >= rows_.equalities) row.multiplier = std::max(0.0, row.multiplier);
-    distance = std::max(distance, std::fabs(slack_of(row.row)));
+    distance = std::max(distance, std::fabs(slacks_[row.row]));
   }
   return distance;
 }
@@ -286,8 +309,8 @@ void QuadraticProgram::publish_multipliers() {
 void QuadraticProgram::backward(const Eigen::VectorXd& gradient_x, Eigen::VectorXd& gradient_g) {
   const double weak = kWeakly * scale_;
   // Held: every tight row.
-  for (int row = rows_.equalities; row < rows_.normals.rows(); ++row) {
-    if (is_active_[static_cast<std::size_t>(row)] != 0 || slack_of(row) > weak) continue;
+  for (int row = rows_.equalities; row < slacks_.size(); ++row) {
+    if (is_active_[static_cast<std::size_t>(row)] != 0 || slacks_[row] > weak) continue;
     if (hold(row, 1)) active_.push_back({row, 1, 0});
   }
   factors_.project_free(gradient_x, gradient_g);

@@ -76,6 +76,7 @@ class QuadraticProgram {
     double multiplier;
   };
   using Rows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+  using Columns = Eigen::SparseMatrix<double, Eigen::ColMajor>;
   struct Limit {
     double step;
     std::size_t position;  ///< of the active row whose multiplier reaches 0 there
@@ -84,7 +85,9 @@ class QuadraticProgram {
   QuadraticProgram(LinearConstraints&& constraints, const Eigen::MatrixXd& inverse_root);
   void scale_rows(const Eigen::MatrixXd& inverse_root);
   void start(const Eigen::VectorXd& g);
-  void measure();
+  void measure_scale();
+  void measure_slacks();
+  void move(double step);
   void image_of(int row, double sign);
   [[nodiscard]] double slack_of(int row) const;
   [[nodiscard]] int most_violated() const;
@@ -98,6 +101,7 @@ class QuadraticProgram {
   void publish_multipliers();
 
   LinearConstraints rows_;     ///< scaled to |L^-1 a| = 1
+  Columns columns_;            ///< the same normals, by variable
   Eigen::VectorXd row_scale_;  ///< [rows] as solved = row_scale * as given
   ActiveSetFactors factors_;
   std::vector<ActiveRow> active_;
@@ -107,6 +111,7 @@ class QuadraticProgram {
   Eigen::VectorXd free_minimum_;   ///< G^-1 g [n]
   Eigen::VectorXd x_, d_, z_, r_;  ///< [n], d to r as in active_set_factors.h
   Eigen::VectorXd multipliers_;    ///< [rows] of the rows as given
+  Eigen::VectorXd slacks_;         ///< [rows] of the scaled rows at x
   double scale_ = 1;               ///< size of the terms of a slack
   int steps_ = 0;
 };
