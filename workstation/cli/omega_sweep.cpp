@@ -11,6 +11,7 @@
 #include "shared/host/user_error.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
+#include "workstation/cli/interruption.h"
 #include "workstation/cli/price_input.h"
 #include "workstation/report/omega_sweep.h"
 #include "workstation/student/correct_and_prove.h"
@@ -83,7 +84,6 @@ struct Bench {
 OmegaPoint measure(const Bench& bench, const DistilOptions& options) {
   const CorrectionResult result =
       correct_and_prove(bench.teacher, bench.visited, options, interruption());
-  if (interruption()) throw Interrupted{};
   const StudentFile& student = student_of(result.verdict);
   AgreementCounter counter(bench.teacher, student.net);
   evaluate(bench.market, bench.days, counter, bench.evaluation);
@@ -121,7 +121,6 @@ void run_omega_sweep(const OmegaSweepArguments& options) {
   const Teacher teacher = load_teacher(options.teacher);
   const MarketSteps market =
       make_market_steps(options.price_input.read(options.prices), config.market);
-  watch_interruption();
   const Matrix visited = visited_inputs(teacher, market, config.battery, config.distil);
   const Bench bench{teacher,
                     visited,

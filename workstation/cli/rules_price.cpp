@@ -8,6 +8,7 @@
 #include "shared/host/user_error.h"
 #include "workstation/cli/chain_steps.h"
 #include "workstation/cli/common_options.h"
+#include "workstation/cli/interruption.h"
 #include "workstation/cli/policy_factory.h"
 #include "workstation/cli/price_input.h"
 #include "workstation/cli/rule_files.h"
@@ -129,13 +130,11 @@ ProvedStudent distilled(const Teacher& teacher, const Matrix& visited, const Run
   const CorrectionResult result =
       correct_and_prove(teacher, visited, config.distil, interruption(),
                         validation_score(market, config.battery, config.initial_soc_frac));
-  if (interruption()) throw Interrupted{};
   return require_proof(result, config.distil.method);
 }
 
 void price_by_distilling(const PriceArguments& options, const RunConfig& config,
                          const MarketSteps& market) {
-  watch_interruption();
   const Teacher teacher = load_teacher(options.teacher);
   RunConfig ruled_config = config;
   options.rule_files.apply(ruled_config, teacher.context.kind);

@@ -19,7 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kRules = "rules";  ///< in `identity`: the text of a rule file, if there are any
+constexpr const char* kRules =
+    "rules";  ///< in `identity`: the text of a rule file, if there are any
 constexpr const char* kKind = "a run's record; make the run again in another folder";
 
 Entries::const_iterator find(const Entries& entries, const std::string& name) {

@@ -48,6 +48,8 @@ class CorrectionLayer {
   /// dL/dlogits from dL/dcorrected for the last forward.
   void backward(const Eigen::MatrixXd& gradient_corrected, Eigen::MatrixXd& gradient_logits);
 
+  [[nodiscard]] const CorrectionOptions& options() const { return options_; }
+
  private:
   void project(const LatticeAxes& axes, IsotonicProjection& projection, const RowBounds& bounds,
                std::vector<double>& difference);

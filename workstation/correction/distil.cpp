@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 #include "shared/host/user_error.h"
 #include "workstation/base/progress.h"
+#include "workstation/correction/lattice_rule_rows.h"
 #include "workstation/correction/policy_loss.h"
 #include "workstation/rl/transition.h"
 
@@ -19,6 +21,15 @@ constexpr double kVisitedExploration = 0.1;
 /// How far the axes of a counterexample's lattice reach: rows in EUR/MWh and columns in SoC steps.
 constexpr int kCounterexamplePriceReach = 40;
 constexpr int kCounterexampleSocReach = 10;
+
+/// With rules: half as many prices and SoCs, four times as many lattices, as many states.
+DistilOptions with_room_for_rules(DistilOptions options) {
+  if (options.rules.empty()) return options;
+  options.lattice_prices = std::max(8, options.lattice_prices / 2);
+  options.lattice_socs = std::max(6, options.lattice_socs / 2);
+  options.lattices_per_epoch *= 4;
+  return options;
+}
 
 int clamped(int value, int low, int high) { return std::clamp(value, low, high); }
 
@@ -99,7 +110,7 @@ Eigen::MatrixXd teacher_logits(const Teacher& teacher, const DistilOptions& opti
 Distiller::Distiller(const Teacher& teacher, const Matrix& visited, const DistilOptions& options)
     : teacher_(teacher),
       visited_(visited),
-      options_(options),
+      options_(with_room_for_rules(options)),
       random_(derive_seed(options.seed, kSeedLattices)),
       student_(initial_parameters(kStudentShape, derive_seed(options.seed, kSeedStudent))),
       adam_(kStudentShape.parameter_count()),
@@ -200,6 +211,20 @@ void Distiller::backward_student(Worker& worker) const {
   backward_hidden(student, worker.x, worker.student_tile, gradient);
 }
 
+/// Nothing where no rule names a state of the lattice.
+std::optional<ConstraintLayer> Distiller::layer_with_rules(
+    const Lattice& lattice, const CorrectionOptions& correction) const {
+  LatticeState context{};
+  context.minute_of_quarter_hour = static_cast<std::int16_t>(lattice.minute_of_quarter_hour);
+  context.quarter_hour = static_cast<std::int16_t>(lattice.quarter_hour);
+  context.context_class = static_cast<std::int16_t>(lattice.context_class);
+  std::vector<DifferenceRow> rows = lattice_rule_rows(
+      options_.rules, teacher_.context.kind, context, lattice.axes, correction.logit_margin);
+  if (rows.empty()) return {};
+  std::ranges::move(property_rows(correction, lattice.axes), std::back_inserter(rows));
+  return ConstraintLayer(std::move(rows), options_.lattice_prices * options_.lattice_socs);
+}
+
 void Distiller::learn_lattice(const Lattice& lattice, CorrectionLayer& layer, double weight,
                               Worker& worker) {
   const ConstMlp student(kStudentShape, student_.data());
@@ -216,14 +241,16 @@ void Distiller::learn_lattice(const Lattice& lattice, CorrectionLayer& layer, do
     return;
   }
   Eigen::MatrixXd corrected, through_layer;
-  layer.forward(lattice.axes, logits, corrected);
+  std::optional<ConstraintLayer> general = layer_with_rules(lattice, layer.options());
+  general ? general->forward(logits, corrected) : layer.forward(lattice.axes, logits, corrected);
   const Eigen::MatrixXd log_corrected = log_softmax(corrected);
   worker.losses.teacher += weight * kl_divergence(log_corrected, log_mu);
   worker.losses.correction += weight * kl_divergence(log_student, log_corrected);
   const Eigen::MatrixXd gradient_corrected =
       options_.omega * kl_gradient_first(log_corrected, log_mu) +
       kl_gradient_second(log_student, log_corrected);
-  layer.backward(gradient_corrected, through_layer);
+  general ? general->backward(gradient_corrected, through_layer)
+          : layer.backward(gradient_corrected, through_layer);
   worker.dz =
       (weight * (through_layer + kl_gradient_first(log_student, log_corrected))).cast<float>();
   backward_student(worker);
@@ -256,8 +283,12 @@ Distiller::Losses Distiller::step(const std::vector<Lattice>& lattices,
     worker.gradient.setZero(kStudentShape.parameter_count());
     worker.losses = {};
     const auto team = static_cast<std::size_t>(team_.size());
-    for (auto l = static_cast<std::size_t>(index); l < lattices.size(); l += team) {
-      learn_lattice(lattices[l], layers[static_cast<std::size_t>(index)], lattice_weight, worker);
+    try {
+      for (auto l = static_cast<std::size_t>(index); l < lattices.size(); l += team) {
+        learn_lattice(lattices[l], layers[static_cast<std::size_t>(index)], lattice_weight, worker);
+      }
+    } catch (const UserError& error) {  // contradicting rows; a job of the team must not throw
+      worker.complaint = error.what();
     }
     const std::size_t share = (visited.size() + team - 1) / team;
     const std::size_t begin = std::min(visited.size(), share * static_cast<std::size_t>(index));
@@ -270,6 +301,7 @@ Distiller::Losses Distiller::step(const std::vector<Lattice>& lattices,
   });
   Losses losses;
   for (std::size_t w = 0; w < workers_.size(); ++w) {
+    if (!workers_[w].complaint.empty()) fail("{}", workers_[w].complaint);
     if (w > 0) workers_[0].gradient += workers_[w].gradient;
     losses.teacher += workers_[w].losses.teacher;
     losses.correction += workers_[w].losses.correction;

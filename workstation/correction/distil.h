@@ -5,11 +5,14 @@
 #pragma once
 
 #include <atomic>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "shared/battery_model.h"
 #include "shared/features.h"
 #include "workstation/base/random.h"
+#include "workstation/correction/constraint_layer.h"
 #include "workstation/correction/correction_layer.h"
 #include "workstation/nn/adam.h"
 #include "workstation/nn/thread_team.h"
@@ -28,7 +31,7 @@ struct DistilOptions {
   CorrectionMethod method = CorrectionMethod::kConstruction;
   bool correct = true;  ///< false: plain distillation, for comparison
   CorrectionOptions correction;
-  RuleSet rules = {};   ///< the operator's, consistent with the thresholds; construction alone
+  RuleSet rules = {};   ///< the operator's, consistent with the thresholds
   double fidelity = 1;  ///< construction: of the cross-entropy beside the expected regret
   /// Construction: deviation of what is added to a visited day's prices.
   double level_shift_eur_per_mwh = 60;
@@ -75,7 +78,8 @@ struct DistilPoint {
 
 class Distiller {
  public:
-  /// Keeps references: `teacher` and `visited` must outlive it.
+  /// Keeps references: `teacher` and `visited` must outlive it. With rules that name states the general layer
+  /// projects where they hold; its time grows with the cube of a lattice, so lattices are smaller and more.
   Distiller(const Teacher& teacher, const Matrix& visited, const DistilOptions& options);
 
   /// Trains for `epochs`. Half of the lattices are laid around `counterexamples` when there are
@@ -100,6 +104,7 @@ class Distiller {
     Losses losses;
     MlpTile teacher_tile, student_tile;
     Matrix x, z, dz;
+    std::string complaint;  ///< of the constraint layer, for the user
   };
 
   Lattice draw_lattice(const std::vector<LatticeState>& counterexamples, bool near_counterexample);
@@ -107,6 +112,8 @@ class Distiller {
   void lattice_inputs(const Lattice& lattice, Matrix& x) const;
   Eigen::MatrixXd teacher_log_policy(Worker& worker) const;
   void backward_student(Worker& worker) const;
+  [[nodiscard]] std::optional<ConstraintLayer> layer_with_rules(
+      const Lattice& lattice, const CorrectionOptions& correction) const;
   void learn_lattice(const Lattice& lattice, CorrectionLayer& layer, double weight, Worker& worker);
   void learn_visited(const std::vector<Eigen::Index>& columns, double weight, Worker& worker);
   Losses step(const std::vector<Lattice>& lattices, std::vector<CorrectionLayer>& layers,

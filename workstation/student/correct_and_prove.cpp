@@ -150,11 +150,6 @@ CorrectionResult correct_and_prove(const Teacher& teacher, const Matrix& visited
     student.provenance = provenance_of(teacher, options);
     return construct_and_prove(teacher, visited, options, interrupted, score, student);
   }
-  if (!options.rules.empty() && options.correct) {
-    fail(
-        "[distil] method = \"layer\" takes no rules: its projection knows the paper's three alone; "
-        "use \"construction\"");
-  }
   Distiller distiller(teacher, visited, options);
   StudentFile student{};
   student.certificate.rules = options.rules;

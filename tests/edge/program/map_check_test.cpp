@@ -14,7 +14,7 @@ namespace {
 using ::testing::HasSubstr;
 
 /// A battery of 8 kWh: SoC at 0 in 0.1 %, power at 1 (+ charge), capacity at 2 in two registers (Wh), the order at 10.
-constexpr const char* kMap = R"([map]
+constexpr const char* kPlainMap = R"([map]
 name = "plain"
 unit = 1
 
@@ -92,7 +92,7 @@ max = 65535
 class MapCheckTest : public ::testing::Test {
  protected:
   void load(const std::string& from = "", const std::string& to = "") {
-    std::string text = kMap;
+    std::string text = kPlainMap;
     if (!from.empty()) {
       ASSERT_NE(text.find(from), std::string::npos) << from;
       text.replace(text.find(from), from.size(), to);

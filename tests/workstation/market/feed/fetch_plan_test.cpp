@@ -10,11 +10,11 @@
 namespace bess {
 namespace {
 
-constexpr std::int64_t kNow_s = 1'750'000'000;  // 15 June 2025, 17:06 local
+constexpr std::int64_t kFetchTime_s = 1'750'000'000;  // 15 June 2025, 17:06 local
 
 std::vector<std::string> described(const FetchSpan& span) {
   std::vector<std::string> lines;
-  for (const FetchWindow& window : plan_fetch(span, kNow_s)) {
+  for (const FetchWindow& window : plan_fetch(span, kFetchTime_s)) {
     const auto hour = [](std::int64_t utc_s) {
       return std::string(utc_text(utc_s).view().substr(0, 13));
     };
@@ -50,29 +50,29 @@ TEST(FetchPlan, DaysThatMayStillBeFillingAreAWindowOfTheirOwn) {
 }
 
 TEST(FetchPlan, AYearIsTwelveWindowsOfEachKind) {
-  EXPECT_EQ(plan_fetch({{2023, 1, 1}, {2023, 12, 31}}, kNow_s).size(), 24u);
+  EXPECT_EQ(plan_fetch({{2023, 1, 1}, {2023, 12, 31}}, kFetchTime_s).size(), 24u);
 }
 
 TEST(FetchPlan, RefusesEmptySpans) {
   EXPECT_THAT(user_error_of([] {
-                (void)plan_fetch({{2023, 2, 1}, {2023, 1, 1}}, kNow_s);
+                (void)plan_fetch({{2023, 2, 1}, {2023, 1, 1}}, kFetchTime_s);
               }),
               testing::HasSubstr("swap them"));
   EXPECT_THAT(user_error_of([] {
-                (void)plan_fetch({{2026, 2, 1}, {2026, 3, 1}}, kNow_s);
+                (void)plan_fetch({{2026, 2, 1}, {2026, 3, 1}}, kFetchTime_s);
               }),
               testing::HasSubstr("in the future"));
 }
 
 TEST(WaitSeconds, EveryFormServersUse) {
   EXPECT_EQ(wait_seconds("120", 1e9), 120);
-  EXPECT_EQ(wait_seconds("1750000030", kNow_s), 30);
-  EXPECT_EQ(wait_seconds("2025-06-15 15:07:00+00:00", kNow_s), 20);
-  EXPECT_EQ(wait_seconds("Sun, 15 Jun 2025 15:07:00 GMT", kNow_s), 20);
-  EXPECT_EQ(wait_seconds("Sun, 15 Jun 2025 15:00:00 GMT", kNow_s), 0);
-  EXPECT_EQ(wait_seconds("-5", kNow_s), 0);
-  EXPECT_EQ(wait_seconds("soon", kNow_s), std::nullopt);
-  EXPECT_EQ(wait_seconds("", kNow_s), std::nullopt);
+  EXPECT_EQ(wait_seconds("1750000030", kFetchTime_s), 30);
+  EXPECT_EQ(wait_seconds("2025-06-15 15:07:00+00:00", kFetchTime_s), 20);
+  EXPECT_EQ(wait_seconds("Sun, 15 Jun 2025 15:07:00 GMT", kFetchTime_s), 20);
+  EXPECT_EQ(wait_seconds("Sun, 15 Jun 2025 15:00:00 GMT", kFetchTime_s), 0);
+  EXPECT_EQ(wait_seconds("-5", kFetchTime_s), 0);
+  EXPECT_EQ(wait_seconds("soon", kFetchTime_s), std::nullopt);
+  EXPECT_EQ(wait_seconds("", kFetchTime_s), std::nullopt);
 }
 
 TEST(Redirects, NeverLeadFromHttpsToHttp) {
