@@ -132,6 +132,10 @@ class Judge {
     if (from_ns >= 0) add(list, from_ns, INT64_MAX);
   }
 
+  /// Between a tick and the instant at which its order is looked for.
+  [[nodiscard]] bool is_disturbed_in_cycle(std::int64_t tick_ns) const {
+    return is_disturbed(tick_ns) || is_disturbed(settled_ns(tick_ns));
+  }
   [[nodiscard]] bool is_disturbed(std::int64_t ns) const {
     return std::ranges::any_of(
         disturbed_, [&](const Window& w) { return ns >= w.from_ns - slack_ns() && ns < w.to_ns; });
@@ -210,7 +214,7 @@ class Judge {
 
   void judge_fresh_price() {
     each_tick([&](std::int64_t tick_ns) {
-      if (fresh_row(tick_ns) || is_disturbed(tick_ns)) return;
+      if (fresh_row(tick_ns) || is_disturbed_in_cycle(tick_ns)) return;
       const CommandInForce command = commands_.at(settled_ns(tick_ns));
       if (command.power_w == 0) return;
       const auto row = publication_.newest(tick_ns);
@@ -226,7 +230,7 @@ class Judge {
     const GuardSettings& guard = config_.control.guard;
     each_tick([&](std::int64_t tick_ns) {
       const auto row = fresh_row(tick_ns);
-      if (!row || is_disturbed(tick_ns)) return;
+      if (!row || is_disturbed_in_cycle(tick_ns)) return;
       const double price = row->eur_per_mwh;
       const bool is_low = price <= guard.thresholds.low_eur_per_mwh;
       const bool is_high = price >= guard.thresholds.high_eur_per_mwh;
@@ -335,7 +339,7 @@ class Judge {
 
   void judge_in_control() {
     each_tick([&](std::int64_t tick_ns) {
-      if (!fresh_row(tick_ns) || is_disturbed(tick_ns)) return;
+      if (!fresh_row(tick_ns) || is_disturbed_in_cycle(tick_ns)) return;
       if (commands_.at(settled_ns(tick_ns)).is_driven) return;
       find(settled_ns(tick_ns), "an order in force", "no order");
     });
