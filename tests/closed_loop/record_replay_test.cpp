@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "tests/support/pty_bridge.h"
 #include "tests/support/shipped_maps.h"
 #include "tests/support/simulated_site.h"
 
@@ -221,6 +222,37 @@ TEST_F(RecordCommand, AnInterruptedRecordingIsWhole) {
   EXPECT_THAT(child.read_all(), HasSubstr("recorded "));
   EXPECT_EQ(child.wait(), 0);
   EXPECT_EQ(check(path_).exit_code, 0);
+}
+
+TEST_F(RecordCommand, ASerialLineIsRecordedAndReplayedAsWell) {
+  const PtyBridge line;
+  const auto serve = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> arguments = {BESS_SIM_PROGRAM,
+                                          "battery",
+                                          "--serial",
+                                          line.device(0),
+                                          "--utc-start",
+                                          std::string(utc_text(SimulatedSite::kStartS).view()),
+                                          "--time-scale",
+                                          std::to_string(kScale),
+                                          "--anchor-monotonic-ns",
+                                          std::to_string(site_.anchor_ns())};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    auto simulator = std::make_unique<ChildProcess>(arguments);
+    EXPECT_THAT(simulator->read_line(), HasSubstr("listening on " + line.device(0)));
+    return simulator;
+  };
+  config_ = site_.write_config({.battery_keys = SimulatedSite::alphaess_keys(500) +
+                                                "transport = \"rtu\"\ndevice = \"" +
+                                                line.device(1) + "\"\n"});
+  auto simulator = serve({"--soc", "0.43"});
+  ASSERT_EQ(record({"--for", "2m", "--out", path_}).exit_code, 0);
+  SimulatedSite::stop(*simulator);
+  EXPECT_THAT(text_of(path_), HasSubstr("\"transport\":\"rtu\""));
+  simulator = serve({"--replay", path_});
+  const Outcome seen = run({BESS_EDGE_PROGRAM, "--config", config_, "--check"});
+  EXPECT_THAT(seen.text, HasSubstr(" unit 85: SoC 43.0 %, 0 W, 8000 Wh, dispatch off"));
+  EXPECT_EQ(SimulatedSite::stop(*simulator), 0);
 }
 
 TEST_F(RecordCommand, ADeviceThatAnswersNothingIsOneLine) {
