@@ -1,0 +1,60 @@
+#include "workstation/report/omega_sweep.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/temporary_folder.h"
+
+namespace bess {
+namespace {
+
+using testing::HasSubstr;
+
+/// Two days of these profits, 1 MWh.
+Evaluation two_days(double first_eur, double second_eur) {
+  Evaluation evaluation;
+  evaluation.capacity_mwh = 1;
+  evaluation.days = {{"2023-01-21", first_eur, 1, 2, 0.5}, {"2023-01-22", second_eur, 1, 2, 0.5}};
+  return evaluation;
+}
+
+OmegaPoint point(double omega, std::int64_t order_violations, double agreement,
+                 const Evaluation& evaluation) {
+  OmegaPoint p{omega, {}, 0.25, agreement, evaluation};
+  p.certificate.states_checked = 1000;
+  p.certificate.violations_property_3 = order_violations;
+  return p;
+}
+
+TEST(OmegaSweep, TableAndCsvCountTheSame) {
+  const Evaluation teacher = two_days(90, 110);
+  const std::vector<OmegaPoint> points{point(1e-6, 0, 0.75, two_days(80, 112)),
+                                       point(1, 421, 0.875, two_days(95, 115))};
+  EXPECT_EQ(omega_csv(points, teacher),
+            "omega,states_checked,violations_property_1,violations_property_2,violations_property_"
+            "3,divergence_nats,agreement,profit_eur_per_day_per_mwh,standard_error,gain_over_"
+            "teacher,gain_standard_error\n"
+            "1e-06,1000,0,0,0,0.25,0.750000,96.0000,16.0000,-4.0000,6.0000\n"
+            "1,1000,0,0,421,0.25,0.875000,105.0000,10.0000,5.0000,0.0000\n");
+  const std::string table = format_omega_table(points, teacher);
+  EXPECT_THAT(table, HasSubstr("violations in 1000 states"));
+  EXPECT_THAT(table, HasSubstr("    -4.0    6.0\n"));
+  EXPECT_THAT(table, HasSubstr("87.50 %    105.0   10.0     +5.0    0.0\n"));
+}
+
+TEST(OmegaSweep, FigureShowsNoneOnItsLogarithmicAxis) {
+  const Evaluation teacher = two_days(90, 110);
+  const Figure figure =
+      omega_figure({point(1e-6, 0, 0.75, two_days(80, 112)), point(1e-3, 7, 0.8, two_days(90, 112)),
+                    point(1, 421, 0.875, two_days(95, 115))},
+                   teacher);
+  EXPECT_THAT(figure.commands, HasSubstr("1e-06 0.3 0.3 0.3 75.0000 -4.0000 6.0000"));
+  EXPECT_THAT(figure.commands, HasSubstr("1 0.3 0.3 421 87.5000 5.0000 0.0000"));
+  EXPECT_THAT(figure.caption, HasSubstr("at omega 1 it is 87.5 % and 421"));
+  const TemporaryFolder folder;
+  draw_figure(figure, folder.file("."));
+  EXPECT_TRUE(std::filesystem::exists(folder.file("omega_sweep.svg")));
+}
+
+}  // namespace
+}  // namespace bess
