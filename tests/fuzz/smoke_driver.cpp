@@ -68,8 +68,8 @@ int main(int argc, char** argv) {
   for (int i = 1; i < argc; ++i) {
     if (!fs::is_directory(argv[i])) seeds.push_back(read(argv[i]));
     std::error_code not_a_folder;
-    for (const auto& entry : fs::directory_iterator(argv[i], not_a_folder)) {
-      seeds.push_back(read(entry.path()));
+    for (const auto& entry : fs::recursive_directory_iterator(argv[i], not_a_folder)) {
+      if (entry.is_regular_file()) seeds.push_back(read(entry.path()));
     }
   }
   if (seeds.size() < 2) {

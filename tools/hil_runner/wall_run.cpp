@@ -217,20 +217,23 @@ class WallRun {
     for (const BatteryFault kind : fault.schedule.faults) {
       add("--fault", battery_faults()[static_cast<std::size_t>(kind) - 1].name);
     }
-    if (!fault.schedule.faults.empty()) add_schedule(fault.schedule, add);
-    add("--late-ms", std::to_string(fault.late_ms));
-    add("--drip-ms", std::to_string(fault.drip_ms));
-    add("--exception-code", std::to_string(fault.exception_code));
+    if (!fault.schedule.faults.empty()) add_faults(fault, add);
     const std::string log = folder_.file("battery.log");
     battery_ = start_logged(arguments, log);
     battery_port_ = std::max(1, port_of(wait_for_listening(log, *battery_)));
   }
 
   template <typename Add>
-  static void add_schedule(const FaultSchedule& schedule, const Add& add) {
-    add("--fault-every", std::to_string(schedule.every));
-    if (schedule.probability > 0)
+  static void add_faults(const BatteryFaultWindow& fault, const Add& add) {
+    const FaultSchedule& schedule = fault.schedule;
+    if (schedule.probability > 0) {
       add("--fault-probability", fmt::format("{}", schedule.probability));
+    } else {
+      add("--fault-every", std::to_string(schedule.every));
+    }
+    add("--late-ms", std::to_string(fault.late_ms));
+    add("--drip-ms", std::to_string(fault.drip_ms));
+    add("--exception-code", std::to_string(fault.exception_code));
     add("--fault-seed", std::to_string(schedule.seed));
     add("--fault-from-s", fmt::format("{}", schedule.from_s));
     if (schedule.to_s != kNeverMin) add("--fault-to-s", fmt::format("{}", schedule.to_s));

@@ -323,7 +323,7 @@ void Distiller::run(int epochs, const std::vector<LatticeState>& counterexamples
   const int steps = options_.steps_per_epoch;
   const int lattices_per_step = std::max(1, options_.lattices_per_epoch / steps);
   const int visited_per_step = std::max(1, options_.visited_per_epoch / steps);
-  Progress progress(options_.correct ? "correct and distil" : "distil", "epochs", epochs);
+  Progress progress(options_.correct ? "correct, distil" : "distil", "epochs", epochs);
   for (int epoch = 0; epoch < epochs && !interrupted; ++epoch) {
     const double blend = 0.5 * (1 + std::cos(std::numbers::pi * epoch / epochs));
     const double rate = options_.learning_rate * (0.1 + 0.9 * blend);
