@@ -81,6 +81,7 @@ void test_arena(Table& table) {
            static_cast<double>(kArenaBytes) / 1048576, static_cast<long long>(arena.failures)));
 }
 
+#ifndef BESS_SANITIZED
 /// In a child, because a seal is for good.
 enum class SealExit : int { kHeld, kNoSeccomp, kMemoryGiven, kProcessGiven };
 
@@ -93,6 +94,7 @@ enum class SealExit : int { kHeld, kNoSeccomp, kMemoryGiven, kProcessGiven };
   if (child == 0) _exit(0);
   _exit(static_cast<int>(child > 0 ? SealExit::kProcessGiven : SealExit::kHeld));
 }
+#endif
 
 void test_seal(Table& table) {
 #ifdef BESS_SANITIZED

@@ -8,6 +8,7 @@ fail() { tail -n 20 "$folder/said"; echo "$*"; exit 1; }
 rm -rf "$folder"
 mkdir -p "$folder/build"
 for part in CMakeLists.txt edge shared toolchains; do cp -r "$source/$part" "$folder"; done
+mkdir "$folder/tools" && cp -r "$source/tools/packaging" "$folder/tools"
 cd "$folder" || exit 1
 cmake -G Ninja -C toolchains/release.cmake -DBESS_WORKSTATION=OFF -DBESS_TESTS=OFF -DBESS_NOTIFY=OFF -S . -B build >said 2>&1 ||
   fail "cannot be configured"
