@@ -237,12 +237,18 @@ class Listener {
     mosquitto_connect_callback_set(client_, [](mosquitto* client, void* self, int) {
       mosquitto_subscribe(client, nullptr, static_cast<Listener*>(self)->pattern_, 1);
     });
+    mosquitto_subscribe_callback_set(client_, [](mosquitto*, void* self, int, int, const int*) {
+      static_cast<Listener*>(self)->begin();
+    });
     mosquitto_message_callback_set(client_,
                                    [](mosquitto*, void* self, const mosquitto_message* message) {
                                      static_cast<Listener*>(self)->take(*message);
                                    });
     mosquitto_loop_start(client_);
     mosquitto_connect_async(client_, "127.0.0.1", port, 60);
+    // What is not retained reaches only who listens already.
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, std::chrono::seconds(30), [&] { return is_listening_; });
   }
   Listener(const Listener&) = delete;
   Listener& operator=(const Listener&) = delete;
@@ -274,6 +280,11 @@ class Listener {
   }
 
  private:
+  void begin() {
+    const std::lock_guard lock(mutex_);
+    is_listening_ = true;
+    changed_.notify_all();
+  }
   void take(const mosquitto_message& message) {
     const std::lock_guard lock(mutex_);
     messages_.emplace_back(message.topic,
@@ -284,6 +295,7 @@ class Listener {
 
   const char* pattern_;
   mosquitto* client_;
+  bool is_listening_ = false;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::vector<std::pair<std::string, std::string>> messages_;
