@@ -2,15 +2,12 @@
 # flash_device.sh SOURCE FOLDER: tools/flash device onto a loop device, and what it refuses. Exit 77 = skipped.
 set -euo pipefail
 source=$(realpath "$1") folder=$2
-for program in sfdisk bmaptool losetup mke2fs lsblk; do
-  command -v $program >/dev/null || { echo "$program is not installed"; exit 77; }
-done
+# shellcheck source=tests/tools/script_test.sh
+. "$source/tests/tools/script_test.sh"
+need sfdisk bmaptool losetup mke2fs lsblk
 [ "$(id -u)" = 0 ] || { echo "loop devices need root"; exit 77; }
-rm -rf "$folder"
-mkdir -p "$folder/mounted"
-cd "$folder"
-failures=0
-fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
+enter_folder
+mkdir mounted
 truncate -s 24M os.img
 printf 'label: dos\nstart=2048, size=8192, type=c\nstart=10240, type=83\n' | sfdisk -q os.img
 mke2fs -q -t ext4 -E offset=$((10240 * 512)) os.img 16M

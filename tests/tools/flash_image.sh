@@ -3,16 +3,12 @@
 # files that tell bookworm from trixie (the real images are not here). Needs no root. Exit 77 = skipped.
 set -euo pipefail
 source=$(realpath "$1") folder=$2
-for program in sfdisk mcopy mformat debugfs mke2fs xz dpkg-deb apt-get; do
-  command -v $program >/dev/null || { echo "$program is not installed"; exit 77; }
-done
-rm -rf "$folder"
-mkdir -p "$folder"
-cd "$folder"
+# shellcheck source=tests/tools/script_test.sh
+. "$source/tests/tools/script_test.sh"
+need sfdisk mcopy mformat debugfs mke2fs xz dpkg-deb apt-get
+enter_folder
 # shellcheck source=tests/tools/made_up_package.sh
 . "$source/tests/tools/made_up_package.sh"
-failures=0
-fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
 
 image_of() {  # image_of NAME CODENAME: FAT from sector 2048, 16 MiB; ext4 behind it, 64 MiB
   local tree=tree-$1

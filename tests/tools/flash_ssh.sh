@@ -3,14 +3,13 @@
 # before anything is installed. Exit 77 = skipped.
 set -euo pipefail
 source=$(realpath "$1") folder=$2
-command -v dpkg-deb >/dev/null || { echo "dpkg-deb is not installed"; exit 77; }
-rm -rf "$folder"
-mkdir -p "$folder/bin"
-cd "$folder"
+# shellcheck source=tests/tools/script_test.sh
+. "$source/tests/tools/script_test.sh"
+need dpkg-deb
+enter_folder
+mkdir bin
 # shellcheck source=tests/tools/made_up_package.sh
 . "$source/tests/tools/made_up_package.sh"
-failures=0
-fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
 stand_in() { cat >"bin/$1" && chmod 755 "bin/$1"; }
 export MACHINE=$folder/machine
 mkdir -p "$MACHINE"

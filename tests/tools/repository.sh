@@ -3,16 +3,12 @@
 # machines as the phase says upgrade, and a foreign key is refused. Exit 77 = skipped.
 set -euo pipefail
 source=$(realpath "$1") folder=$2
-for program in reprepro gpg apt-get dpkg-deb; do
-  command -v $program >/dev/null || { echo "$program is not installed"; exit 77; }
-done
-rm -rf "$folder"
-mkdir -p "$folder"
-cd "$folder"
+# shellcheck source=tests/tools/script_test.sh
+. "$source/tests/tools/script_test.sh"
+need reprepro gpg apt-get dpkg-deb
+enter_folder
 # shellcheck source=tests/tools/made_up_package.sh
 . "$source/tests/tools/made_up_package.sh"
-failures=0
-fail() { echo "FAILED: $*"; failures=$((failures + 1)); }
 GNUPGHOME=$(mktemp -d)  # a short path: gpg's agent listens at a socket in it
 export GNUPGHOME
 trap 'gpgconf --kill gpg-agent; rm -rf "$GNUPGHOME"' EXIT
