@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "tests/support/peer_programs.h"
 #include "tests/support/shipped_maps.h"
 #include "tests/support/simulated_site.h"
 
@@ -15,18 +16,13 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr const char* kPython = "/usr/bin/python3";
-constexpr const char* kMbpoll = "/usr/bin/mbpoll";
 constexpr double kTolerance = 0.001;
 
 class BatteryPeers : public ::testing::Test {
  protected:
   void SetUp() override {
-    for (const char* program : {kPython, kMbpoll}) {
-      if (access(program, X_OK) != 0) GTEST_SKIP() << program << " is not installed";
-    }
-    ChildProcess probe({kPython, "-c", "import pymodbus"});
-    if (probe.wait() != 0) GTEST_SKIP() << "pymodbus is not installed";
+    const std::string missing = missing_peer("pymodbus", {kMbpoll});
+    if (!missing.empty()) GTEST_SKIP() << missing;
   }
   static std::vector<std::string> map_options(const MapVariant& m) {
     std::vector<std::string> options = {"--map", shipped_map(m.map), "--clients-max", "4"};

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "tests/support/peer_programs.h"
 #include "tests/support/simulated_site.h"
 
 namespace bess {
@@ -11,14 +12,11 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr const char* kPython = "/usr/bin/python3";
-
 class MeterPeers : public ::testing::TestWithParam<const char*> {
  protected:
   void SetUp() override {
-    if (access(kPython, X_OK) != 0) GTEST_SKIP() << kPython << " is not installed";
-    ChildProcess probe({kPython, "-c", "import pymodbus"});
-    if (probe.wait() != 0) GTEST_SKIP() << "pymodbus is not installed";
+    const std::string missing = missing_peer("pymodbus");
+    if (!missing.empty()) GTEST_SKIP() << missing;
   }
 };
 

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "tests/support/peer_programs.h"
 #include "tests/support/simulated_site.h"
 
 namespace bess {
@@ -20,9 +21,6 @@ using ::testing::HasSubstr;
 
 constexpr std::int32_t kScale = 60;  // a cycle takes 2 s: time to kill the edge between two orders
 constexpr std::int32_t kBreakdownScale = 240;
-constexpr const char* kPython = "/usr/bin/python3";
-constexpr const char* kMbpoll = "/usr/bin/mbpoll";
-constexpr const char* kSocat = "/usr/bin/socat";
 
 struct Setup {
   bool rtu;
@@ -59,11 +57,8 @@ std::vector<std::string> writes_of(const std::vector<int>& d, const std::string&
 class Peers : public ::testing::TestWithParam<Setup> {
  protected:
   void SetUp() override {
-    for (const char* program : {kPython, kMbpoll, kSocat}) {
-      if (access(program, X_OK) != 0) GTEST_SKIP() << program << " is not installed";
-    }
-    ChildProcess probe({kPython, "-c", "import pymodbus, serial_asyncio"});
-    if (probe.wait() != 0) GTEST_SKIP() << "pymodbus or serial_asyncio is not installed";
+    const std::string missing = missing_peer("pymodbus, serial_asyncio", {kMbpoll, kSocat});
+    if (!missing.empty()) GTEST_SKIP() << missing;
     if (GetParam().rtu) start_line();
   }
 
@@ -211,8 +206,8 @@ std::string breakdown_name(const ::testing::TestParamInfo<Breakdown>& info) {
 class PeersBreakdown : public ::testing::TestWithParam<Breakdown> {
  protected:
   void SetUp() override {
-    ChildProcess probe({kPython, "-c", "import pymodbus, serial_asyncio"});
-    if (probe.wait() != 0) GTEST_SKIP() << "pymodbus or serial_asyncio is not installed";
+    const std::string missing = missing_peer("pymodbus, serial_asyncio");
+    if (!missing.empty()) GTEST_SKIP() << missing;
     site_.start_clock();
     site_.battery = std::make_unique<ChildProcess>(std::vector<std::string>{
         kPython, BESS_SOURCE_DIR "/tests/peers/alphaess_peer.py", "--soc", "435", "--scale",
