@@ -10,7 +10,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "tests/support/pty_bridge.h"
+#include "shared/host/pty_bridge.h"
 #include "tests/support/simulated_site.h"
 #include "tests/support/toml_mistakes.h"
 

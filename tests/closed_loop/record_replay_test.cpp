@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "tests/support/pty_bridge.h"
+#include "shared/host/pty_bridge.h"
 #include "tests/support/shipped_maps.h"
 #include "tests/support/simulated_site.h"
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/child_process.h"
+#include "shared/host/child_process.h"
 
 namespace bess {
 

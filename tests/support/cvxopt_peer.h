@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/support/child_process.h"
+#include "shared/host/child_process.h"
 #include "tests/support/random_programs.h"
 #include "tests/support/temporary_folder.h"
 

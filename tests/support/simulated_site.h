@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "shared/host/child_process.h"
 #include "shared/scaled_clock.h"
 #include "shared/utc_text.h"
-#include "tests/support/child_process.h"
 #include "tests/support/csv_rows.h"
 #include "tests/support/temporary_folder.h"
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "tests/support/child_process.h"
+#include "shared/host/child_process.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bess {

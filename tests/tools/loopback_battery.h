@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "edge/battery/modbus_link.h"
-#include "tests/support/pty_bridge.h"
+#include "shared/host/pty_bridge.h"
 #include "tests/support/shipped_maps.h"
 #include "tools/battery_sim/battery_server.h"
 

@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "shared/host/file.h"
+#include "shared/host/gnuplot.h"
 #include "shared/host/user_error.h"
-#include "workstation/base/gnuplot.h"
 
 namespace bess {
 namespace {

@@ -3,22 +3,16 @@
 
 #include "edge/control/policy.h"
 #include "edge/control/safety_guard.h"
+#include "tests/support/guard_inputs.h"
 
 namespace bess {
 namespace {
 
-constexpr std::int64_t kNow = 1'679'875'320;
 constexpr ActionSet kNoCharge = action_bit(Action::kDischarge) | action_bit(Action::kIdle);
 constexpr ActionSet kNoDischarge = action_bit(Action::kCharge) | action_bit(Action::kIdle);
 
 GuardInputs ruled(Action action, const RuleLimits& rules) {
-  GuardInputs in;
-  in.now_utc_s = kNow;
-  in.clock_ok = in.link_ok = in.has_price = true;
-  in.measurement.soc_e4 = 5'000;
-  in.price_minute_utc_s = kNow - 60;
-  in.price_centi_eur_per_mwh = 5'000;
-  in.student_action = action;
+  GuardInputs in = healthy(action);
   in.rules = rules;
   return in;
 }

@@ -14,9 +14,9 @@
 
 #include "edge/log/ring_log.h"
 #include "edge/notify/notifier.h"
+#include "shared/host/child_process.h"
 #include "shared/local_time.h"
 #include "shared/utc_text.h"
-#include "tests/support/child_process.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/test_server.h"
 

@@ -4,8 +4,8 @@
 
 #include <fstream>
 
+#include "shared/host/child_process.h"
 #include "shared/host/file.h"
-#include "tests/support/child_process.h"
 #include "tests/support/market_test_support.h"
 #include "tests/support/price_cases.h"
 

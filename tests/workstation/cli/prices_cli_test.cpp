@@ -1,8 +1,8 @@
 // The prices commands as a user runs them.
 #include <gmock/gmock.h>
 
+#include "shared/host/child_process.h"
 #include "shared/host/file.h"
-#include "tests/support/child_process.h"
 #include "tests/support/market_test_support.h"
 
 namespace bess {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "tests/support/child_process.h"
+#include "shared/host/child_process.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/toml_mistakes.h"
 

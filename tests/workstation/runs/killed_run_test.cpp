@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <map>
 
+#include "shared/host/child_process.h"
 #include "shared/host/file.h"
-#include "tests/support/child_process.h"
 #include "tests/support/small_market.h"
 #include "tests/support/temporary_folder.h"
 

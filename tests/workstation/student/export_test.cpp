@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <regex>
 
+#include "shared/host/child_process.h"
 #include "shared/host/file.h"
-#include "tests/support/child_process.h"
 #include "tests/support/proved_students.h"
 #include "tests/support/temporary_folder.h"
 #include "workstation/rules/rule_file.h"

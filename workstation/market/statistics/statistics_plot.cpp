@@ -5,9 +5,9 @@
 #include <map>
 
 #include "shared/host/file.h"
+#include "shared/host/gnuplot.h"
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
-#include "workstation/base/gnuplot.h"
 
 namespace bess {
 namespace {

@@ -10,8 +10,8 @@
 #include <mutex>
 #include <thread>
 
+#include "shared/host/child_process.h"
 #include "shared/host/file.h"
-#include "tests/support/child_process.h"
 #include "tests/support/market_test_support.h"
 #include "tests/workstation/market/feed/fake_elia.h"
 #include "workstation/base/random.h"

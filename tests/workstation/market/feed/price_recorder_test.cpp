@@ -8,9 +8,9 @@
 
 #include <fstream>
 
+#include "shared/host/child_process.h"
 #include "shared/host/file.h"
 #include "shared/host/text.h"
-#include "tests/support/child_process.h"
 #include "tests/support/market_test_support.h"
 #include "tests/workstation/market/feed/live_elia.h"
 #include "workstation/market/feed/market_files.h"

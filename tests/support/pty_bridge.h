@@ -1,4 +1,0 @@
-// Where tests look for it; the class itself is used by tools/hil_runner as well.
-#pragma once
-
-#include "shared/host/pty_bridge.h"
