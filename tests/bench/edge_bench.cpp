@@ -68,7 +68,7 @@ void edge_cycle(benchmark::State& state, const CycleSetup& setup) {
                                        "\"\nread_lead_s = 60\n"});
   for (auto _ : state) {
     ChildProcess edge(
-        {BESS_EDGE_PROGRAM, "--config", config, "--cycles", std::to_string(setup.cycles)});
+        {edge_program(), "--config", config, "--cycles", std::to_string(setup.cycles)});
     edge.read_all();
     const std::vector<CsvRow> log = read_csv(site.folder.file("edge.csv"));
     const std::vector<double> total_us = sorted_column(log, "total_us");

@@ -28,7 +28,7 @@ class HostileHost : public ::testing::Test {
   }
   /// What a command of bess-edge says, and its exit code.
   std::string run(std::vector<std::string> arguments, int expected_exit_code) {
-    arguments.insert(arguments.begin(), BESS_EDGE_PROGRAM);
+    arguments.insert(arguments.begin(), edge_program());
     ChildProcess child(arguments);
     std::string text = child.read_all();
     EXPECT_EQ(child.wait(), expected_exit_code) << text;
@@ -78,7 +78,7 @@ TEST_F(HostileHost, AnotherLockFolderLetsNoSecondControllerIn) {
   const std::string key = "lock_folder = \"";
   text.insert(text.find(key) + key.size(), site_.folder.file("elsewhere") + "\" #");
   static_cast<void>(site_.folder.write("other.toml", text));
-  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", mine});
+  ChildProcess edge({edge_program(), "--config", mine});
   for (std::string line; line != "started: in control";) {
     line = edge.read_line();
     ASSERT_NE(line, "") << "it did not start";
@@ -140,7 +140,7 @@ TEST_F(HostileHost, AFullDiskForbidsNoRestart) {
   fs::remove(site_.folder.file("state/decisions.ring"));
   fs::remove(site_.folder.file("state/status.json"));
   disk.fill();
-  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", config});
+  ChildProcess edge({edge_program(), "--config", config});
   for (std::string line; line.find("mode=running") == std::string::npos;) {
     line = edge.read_line();
     ASSERT_NE(line, "") << "it did not start";

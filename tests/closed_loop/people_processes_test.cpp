@@ -28,7 +28,7 @@ Said run(std::vector<std::string> arguments) {
 }
 
 Said edge(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), BESS_EDGE_PROGRAM);
+  arguments.insert(arguments.begin(), edge_program());
   return run(std::move(arguments));
 }
 
@@ -55,7 +55,7 @@ class People : public ::testing::Test {
 
 TEST_F(People, AHoldIsFollowedByTheRunningControllerUntilItIsReleased) {
   start_site();
-  ChildProcess controller({BESS_EDGE_PROGRAM, "--config", config_});
+  ChildProcess controller({edge_program(), "--config", config_});
   ASSERT_NE(await_line(controller, "mode=running"), "");
   const Said hold = edge({"hold", "-1000", "--for", "6h", "--config", config_});
   EXPECT_EQ(hold.exit_code, 0);
@@ -154,7 +154,7 @@ class Notify : public People {
     ASSERT_EQ(chmod(mailer.c_str(), 0755), 0);
     std::ofstream(config_, std::ios::app)
         << "[notify]\nnode = \"garage\"\nevery_s = 1\nafter_s = 1\nmail_to = \"a@b.example\"\n"
-        << "sendmail = \"" << mailer << "\"\nprogram = \"" BESS_EDGE_PROGRAM "\"\n";
+        << "sendmail = \"" << mailer << "\"\nprogram = \"" edge_program() "\"\n";
   }
   /// False after half a minute.
   bool is_mailed(const std::string& piece) const {
@@ -170,7 +170,7 @@ class Notify : public People {
 TEST_F(Notify, StuckOrKilledItHasNoEffectOnControl) {
   start_site();
   use_mail();
-  ChildProcess controller({BESS_EDGE_PROGRAM, "--config", config_, "--cycles", "60"});
+  ChildProcess controller({edge_program(), "--config", config_, "--cycles", "60"});
   for (int i = 0; i < 6; ++i) {
     ChildProcess notify({BESS_NOTIFY_PROGRAM, "--config", config_});
     usleep(static_cast<useconds_t>(300'000 + 37'000 * i));
@@ -196,13 +196,13 @@ TEST_F(Notify, AKilledControllerIsToldOnceAndThatItIsBack) {
   use_mail();
   ChildProcess notify({BESS_NOTIFY_PROGRAM, "--config", config_});
   {
-    ChildProcess controller({BESS_EDGE_PROGRAM, "--config", config_});
+    ChildProcess controller({edge_program(), "--config", config_});
     ASSERT_NE(await_line(controller, "mode=running"), "");
     controller.signal(SIGKILL);
     controller.wait();
   }
   EXPECT_TRUE(is_mailed("ALARM: CRITICAL: no bess-edge runs with this configuration"));
-  ChildProcess controller({BESS_EDGE_PROGRAM, "--config", config_});
+  ChildProcess controller({edge_program(), "--config", config_});
   EXPECT_TRUE(is_mailed("over: CRITICAL: no bess-edge runs with this configuration"));
   EXPECT_EQ(SimulatedSite::stop(notify), 0);
   EXPECT_EQ(SimulatedSite::stop(controller), 0);

@@ -63,7 +63,7 @@ class Processes : public ::testing::Test {
 
 TEST_F(Processes, TheBatterysOwnRecordAgreesWithTheEdgesLog) {
   start_simulators();
-  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", site_.commission(), "--cycles", "45"});
+  ChildProcess edge({edge_program(), "--config", site_.commission(), "--cycles", "45"});
   EXPECT_THAT(edge.read_all(), HasSubstr("stopped: battery released"));
   EXPECT_EQ(edge.wait(), 0);
   EXPECT_EQ(SimulatedSite::stop(*site_.battery), 0);
@@ -95,7 +95,7 @@ TEST_F(Processes, TheBatterysOwnRecordAgreesWithTheEdgesLog) {
 
 TEST_F(Processes, SigtermOrdersZeroReleasesAndExitsWithZero) {
   start_simulators();
-  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", site_.commission()});
+  ChildProcess edge({edge_program(), "--config", site_.commission()});
   EXPECT_EQ(line_after_notes(edge), "started: in control");
   ASSERT_THAT(line_with_power(edge), HasSubstr("mode=running"));
   edge.signal(SIGTERM);
@@ -113,14 +113,14 @@ TEST_F(Processes, TwoControllersCannotShareABattery) {
   start_simulators();
   const std::string mine = site_.commission();
   const std::string other = site_.commission({.state = "other"});
-  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", mine});
+  ChildProcess edge({edge_program(), "--config", mine});
   EXPECT_EQ(line_after_notes(edge), "started: in control");
   const std::string in_use = "unit 85 is in use by another bess-edge (process ";
   ChildProcess ways[] = {
-      ChildProcess({BESS_EDGE_PROGRAM, "--config", other}),
-      ChildProcess({BESS_EDGE_PROGRAM, "--config", other, "--check"}),
-      ChildProcess({BESS_EDGE_PROGRAM, "--config", other, "--dry-run"}),
-      ChildProcess({BESS_EDGE_PROGRAM, "release", "--config", other, "--yes"}),
+      ChildProcess({edge_program(), "--config", other}),
+      ChildProcess({edge_program(), "--config", other, "--check"}),
+      ChildProcess({edge_program(), "--config", other, "--dry-run"}),
+      ChildProcess({edge_program(), "release", "--config", other, "--yes"}),
   };  // together: each waits a second for the lock
   for (ChildProcess& second : ways) {
     const std::string text = second.read_all();
@@ -132,7 +132,7 @@ TEST_F(Processes, TwoControllersCannotShareABattery) {
   EXPECT_THAT(edge.read_line(), HasSubstr("mode=running"));
   edge.signal(SIGKILL);
   edge.wait();
-  ChildProcess successor({BESS_EDGE_PROGRAM, "--config", other, "--cycles", "1"});
+  ChildProcess successor({edge_program(), "--config", other, "--cycles", "1"});
   EXPECT_THAT(successor.read_all(), HasSubstr("stopped: battery released"));
   EXPECT_EQ(successor.wait(), 0);
 }
@@ -140,11 +140,11 @@ TEST_F(Processes, TwoControllersCannotShareABattery) {
 /// Two batteries, one state folder: the logs would overwrite each other.
 TEST_F(Processes, TwoControllersCannotShareAStateFolder) {
   start_simulators();
-  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", site_.commission()});
+  ChildProcess edge({edge_program(), "--config", site_.commission()});
   EXPECT_EQ(line_after_notes(edge), "started: in control");
   const auto first_battery = std::move(site_.battery);
   site_.start_battery();
-  ChildProcess second({BESS_EDGE_PROGRAM, "--config", site_.write_config()});
+  ChildProcess second({edge_program(), "--config", site_.write_config()});
   EXPECT_THAT(second.read_all(), HasSubstr("/state is in use by another bess-edge (process " +
                                            std::to_string(edge.pid())));
   EXPECT_EQ(second.wait(), 1);
@@ -154,7 +154,7 @@ TEST_F(Processes, StatusAndLogShowWhatTheRunningControllerDoes) {
   start_simulators();
   const std::string config = site_.commission();
   const auto run = [&](std::vector<std::string> arguments, int expected_exit_code) {
-    arguments.insert(arguments.begin(), BESS_EDGE_PROGRAM);
+    arguments.insert(arguments.begin(), edge_program());
     arguments.insert(arguments.end(), {"--config", config});
     ChildProcess child(arguments);
     std::string text = child.read_all();
@@ -165,25 +165,25 @@ TEST_F(Processes, StatusAndLogShowWhatTheRunningControllerDoes) {
   EXPECT_THAT(run({"log"}, 1), HasSubstr("decisions.ring: cannot open the log: No such file"));
   EXPECT_THAT(run({"status", "--prometheus"}, 1), HasSubstr("no metrics here"));
   {
-    ChildProcess edge({BESS_EDGE_PROGRAM, "--config", config});
+    ChildProcess edge({edge_program(), "--config", config});
     EXPECT_EQ(line_after_notes(edge), "started: in control");
     for (int i = 0; i < 15; ++i) edge.read_line();
     // A loaded machine may be late with a cycle of 133 ms: ok and degraded are both honest here.
-    ChildProcess status({BESS_EDGE_PROGRAM, "status", "--config", config});
+    ChildProcess status({edge_program(), "status", "--config", config});
     const std::string text = status.read_all();
     EXPECT_LE(status.wait(), 1) << text;
     EXPECT_THAT(text, HasSubstr("in control, process " + std::to_string(edge.pid())));
     EXPECT_THAT(text, HasSubstr("state      running at 2023-03-26T0"));
     EXPECT_THAT(text, HasSubstr("alphaess, variant block"));
     EXPECT_THAT(text, HasSubstr("EUR/MWh"));
-    ChildProcess json({BESS_EDGE_PROGRAM, "status", "--json", "--config", config});
+    ChildProcess json({edge_program(), "status", "--json", "--config", config});
     EXPECT_THAT(json.read_all(), HasSubstr("\"health\":"));
-    ChildProcess metrics({BESS_EDGE_PROGRAM, "status", "--prometheus", "--config", config});
+    ChildProcess metrics({edge_program(), "status", "--prometheus", "--config", config});
     EXPECT_THAT(metrics.read_all(), HasSubstr("bess_state{state=\"running\"} 1\n"));
     EXPECT_EQ(SimulatedSite::stop(edge), 0);
   }
   EXPECT_THAT(run({"status"}, 3), HasSubstr("state      stopping at "));
-  ChildProcess follower({BESS_EDGE_PROGRAM, "status", "--follow", "--config", config});
+  ChildProcess follower({edge_program(), "status", "--follow", "--config", config});
   for (int views = 0; views < 2;) {
     const std::string line = follower.read_line();
     ASSERT_FALSE(line.empty());
@@ -211,7 +211,7 @@ TEST_F(Processes, StatusShowsLevelAndClassWhereTheyAreTheContext) {
             ", "
             "\"context_class\": " +
             std::to_string(context_class) + "}, \"totals\": {\"cycles\": 7}}\n"));
-    ChildProcess status({BESS_EDGE_PROGRAM, "status", "--config", config});
+    ChildProcess status({edge_program(), "status", "--config", config});
     const std::string text = status.read_all();
     EXPECT_EQ(status.wait(), 3) << text;  // nobody runs
     const std::size_t begin = text.find("\nlevel ");
@@ -237,7 +237,7 @@ TEST_F(Processes, SystemdIsToldOfStartCyclesAndStop) {
   start_simulators();
   const std::string config = site_.commission();
   setenv("NOTIFY_SOCKET", name.c_str(), 1);
-  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", config, "--cycles", "3"});
+  ChildProcess edge({edge_program(), "--config", config, "--cycles", "3"});
   unsetenv("NOTIFY_SOCKET");
   edge.read_all();
   EXPECT_EQ(edge.wait(), 0);
@@ -263,10 +263,10 @@ TEST_F(Processes, EachCommandHasItsHelp) {
     std::vector<std::string> arguments;
     const char* says;
   };
-  const Help helps[] = {{{BESS_EDGE_PROGRAM, "--help"}, "bess-edge --config /etc/bess/edge.toml"},
-                        {{BESS_EDGE_PROGRAM, "status", "--help"}, "3 not running"},
-                        {{BESS_EDGE_PROGRAM, "log", "-h"}, "--since UTC"},
-                        {{BESS_EDGE_PROGRAM, "--version"}, ", student "}};
+  const Help helps[] = {{{edge_program(), "--help"}, "bess-edge --config /etc/bess/edge.toml"},
+                        {{edge_program(), "status", "--help"}, "3 not running"},
+                        {{edge_program(), "log", "-h"}, "--since UTC"},
+                        {{edge_program(), "--version"}, ", student "}};
   for (const Help& help : helps) {
     ChildProcess child(help.arguments);
     EXPECT_THAT(child.read_all(), HasSubstr(help.says));
@@ -276,7 +276,7 @@ TEST_F(Processes, EachCommandHasItsHelp) {
 
 TEST_F(Processes, AKilledEdgesOrderIsEndedByTheBatterysWatchdog) {
   start_simulators();
-  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", site_.commission()});
+  ChildProcess edge({edge_program(), "--config", site_.commission()});
   ASSERT_THAT(line_with_power(edge), HasSubstr("mode=running"));
   edge.signal(SIGKILL);
   EXPECT_EQ(edge.wait(), 128 + SIGKILL);
@@ -290,7 +290,7 @@ TEST_F(Processes, MarketFaultsDoNotStopTheLoop) {
     site_.start_clock();
     start_simulators({"--fault", fault, "--fault-every", "3"});
     std::filesystem::remove(site_.folder.file("edge.csv"));
-    ChildProcess edge({BESS_EDGE_PROGRAM, "--config", site_.commission(), "--cycles", "10"});
+    ChildProcess edge({edge_program(), "--config", site_.commission(), "--cycles", "10"});
     edge.read_all();
     EXPECT_EQ(edge.wait(), 0) << fault;
     int running = 0;
@@ -315,7 +315,7 @@ TEST_F(Processes, TheSameOverASerialLine) {
       site_.commission({.battery_keys = SimulatedSite::alphaess_keys() +
                                         "transport = \"rtu\"\nbaud = 115200\ndevice = \"" +
                                         line.device(1) + "\"\n"});
-  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", config, "--cycles", "15"});
+  ChildProcess edge({edge_program(), "--config", config, "--cycles", "15"});
   EXPECT_THAT(edge.read_all(), HasSubstr("stopped: battery released"));
   EXPECT_EQ(edge.wait(), 0);
   int written = 0;
@@ -348,7 +348,7 @@ TEST_F(Processes, BusFaultsCostCyclesButNeverGiveAWrongOrder) {
                         "4",
                         "--fault-from-s",
                         "400"});
-  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", site_.commission(), "--cycles", "40"});
+  ChildProcess edge({edge_program(), "--config", site_.commission(), "--cycles", "40"});
   edge.read_all();
   EXPECT_EQ(edge.wait(), 0);
   EXPECT_EQ(SimulatedSite::stop(*site_.battery), 0);
@@ -375,10 +375,10 @@ TEST_F(Processes, BusFaultsCostCyclesButNeverGiveAWrongOrder) {
 TEST_F(Processes, CheckReportsAndReadsButWritesNothing) {
   start_simulators();
   sleep_until_monotonic(site_.anchor_ns());
-  ChildProcess early({BESS_EDGE_PROGRAM, "--config", site_.write_config(), "--check"});
+  ChildProcess early({edge_program(), "--config", site_.write_config(), "--check"});
   EXPECT_THAT(early.read_all(), HasSubstr("the battery's sign has not been checked"));
   EXPECT_EQ(early.wait(), 1);  // as the start would
-  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", site_.commission(), "--check"});
+  ChildProcess edge({edge_program(), "--config", site_.commission(), "--check"});
   const std::string text = edge.read_all();
   EXPECT_EQ(edge.wait(), 0) << text;
   EXPECT_THAT(text, HasSubstr("\ncontext    "));
@@ -400,15 +400,15 @@ TEST_F(Processes, ThresholdsOtherThanTheProvedOnesAreSaidAtStart) {
   const std::string warning =
       "bess-edge: note: [guard] high_price_eur_per_mwh = 450, the student is proved for 1500: "
       "between them the guard alone makes it discharge\n";
-  ChildProcess check({BESS_EDGE_PROGRAM, "--config", narrow, "--check"});
+  ChildProcess check({edge_program(), "--config", narrow, "--check"});
   const std::string checked = check.read_all();
   EXPECT_THAT(checked, HasSubstr(warning));
   EXPECT_THAT(checked, Not(HasSubstr("guard      ")));
   EXPECT_EQ(check.wait(), 0) << checked;
-  ChildProcess warned({BESS_EDGE_PROGRAM, "--config", narrow, "--cycles", "1"});
+  ChildProcess warned({edge_program(), "--config", narrow, "--cycles", "1"});
   EXPECT_THAT(warned.read_all(), AllOf(HasSubstr("started: in control"), HasSubstr(warning)));
   EXPECT_EQ(warned.wait(), 0);
-  ChildProcess agreed({BESS_EDGE_PROGRAM, "--config", site_.commission(), "--cycles", "1"});
+  ChildProcess agreed({edge_program(), "--config", site_.commission(), "--cycles", "1"});
   EXPECT_THAT(agreed.read_all(),
               HasSubstr("\nguard: charge at or below -500, discharge at or above "
                         "1500 EUR/MWh, as the student is proved for\n"));
@@ -425,24 +425,24 @@ TEST_F(Processes, BadStartsEndWithOneClearLine) {
     const char* message;
   };
   const Start starts[] = {
-      {{BESS_EDGE_PROGRAM, "--config", config}, 1, "battery at 127.0.0.1:1 unit 85: no connection"},
-      {{BESS_EDGE_PROGRAM, "--config", "/nonexistent"}, 1, "cannot open"},
-      {{BESS_EDGE_PROGRAM, "--confg", config}, 2, "unknown option --confg"},
-      {{BESS_EDGE_PROGRAM, "--config", config, "--cycles", "x"}, 2, "needs a whole number"},
-      {{BESS_EDGE_PROGRAM, "--config", ""}, 2, "--config needs a file, not an empty text"},
-      {{BESS_EDGE_PROGRAM, "stat"}, 2, "unknown command stat"},
-      {{BESS_EDGE_PROGRAM, "status", "--csv"}, 2, "unknown option --csv"},
-      {{BESS_EDGE_PROGRAM, "status", "--json", "--prometheus"}, 2, "exclude each other"},
-      {{BESS_EDGE_PROGRAM, "log", "--last"}, 2, "a value is missing after --last"},
-      {{BESS_EDGE_PROGRAM, "log", "--since", "today"}, 2, "needs an instant such as"},
-      {{BESS_EDGE_PROGRAM, "log", "--config", "/nonexistent"}, 1, "cannot open"},
-      {{BESS_SIM_PROGRAM, "batery"}, 2, "unknown subcommand \"batery\""},
-      {{BESS_SIM_PROGRAM, "market", "--prices", "/nonexistent"}, 1, "cannot open"},
-      {{BESS_SIM_PROGRAM, "battery", "--soc", "2"}, 2, "--soc"},
-      {{BESS_SIM_PROGRAM, "battery", "--host", "battery"}, 2, "--host"},
-      {{BESS_SIM_PROGRAM, "battery", "--fault", "crc"}, 2, "--fault"},
-      {{BESS_SIM_PROGRAM, "battery", "--fault", "bad-crc"}, 1, "bad-crc: only on a serial line"},
-      {{BESS_SIM_PROGRAM, "battery", "--serial", "/nonexistent"}, 1, "cannot open this serial"},
+      {{edge_program(), "--config", config}, 1, "battery at 127.0.0.1:1 unit 85: no connection"},
+      {{edge_program(), "--config", "/nonexistent"}, 1, "cannot open"},
+      {{edge_program(), "--confg", config}, 2, "unknown option --confg"},
+      {{edge_program(), "--config", config, "--cycles", "x"}, 2, "needs a whole number"},
+      {{edge_program(), "--config", ""}, 2, "--config needs a file, not an empty text"},
+      {{edge_program(), "stat"}, 2, "unknown command stat"},
+      {{edge_program(), "status", "--csv"}, 2, "unknown option --csv"},
+      {{edge_program(), "status", "--json", "--prometheus"}, 2, "exclude each other"},
+      {{edge_program(), "log", "--last"}, 2, "a value is missing after --last"},
+      {{edge_program(), "log", "--since", "today"}, 2, "needs an instant such as"},
+      {{edge_program(), "log", "--config", "/nonexistent"}, 1, "cannot open"},
+      {{sim_program(), "batery"}, 2, "unknown subcommand \"batery\""},
+      {{sim_program(), "market", "--prices", "/nonexistent"}, 1, "cannot open"},
+      {{sim_program(), "battery", "--soc", "2"}, 2, "--soc"},
+      {{sim_program(), "battery", "--host", "battery"}, 2, "--host"},
+      {{sim_program(), "battery", "--fault", "crc"}, 2, "--fault"},
+      {{sim_program(), "battery", "--fault", "bad-crc"}, 1, "bad-crc: only on a serial line"},
+      {{sim_program(), "battery", "--serial", "/nonexistent"}, 1, "cannot open this serial"},
   };
   for (const Start& start : starts) {
     ChildProcess child(start.arguments);
@@ -459,9 +459,9 @@ TEST_F(Processes, BrokenTomlEndsWithOneClearLine) {
     const std::string broken = site_.folder.write("broken.toml", mistake.text);
     const std::string config = site_.folder.write(
         "edge.toml", "[battery]\nmap = \"broken.toml\"\n[price]\nurl = \"http://a\"\n");
-    const std::vector<std::string> starts[] = {{BESS_EDGE_PROGRAM, "--check", "--config", broken},
-                                               {BESS_EDGE_PROGRAM, "--check", "--config", config},
-                                               {BESS_SIM_PROGRAM, "battery", "--map", broken}};
+    const std::vector<std::string> starts[] = {{edge_program(), "--check", "--config", broken},
+                                               {edge_program(), "--check", "--config", config},
+                                               {sim_program(), "battery", "--map", broken}};
     for (const std::vector<std::string>& start : starts) {
       ChildProcess child(start);
       const std::string text = child.read_all();
@@ -476,7 +476,7 @@ TEST_F(Processes, BrokenTomlEndsWithOneClearLine) {
 TEST_F(Processes, WithoutAConfigurationTheInstalledOneIsMeant) {
   if (access("/etc/bess/edge.toml", R_OK) == 0) GTEST_SKIP() << "bess-edge is installed here";
   for (const char* command : {"status", "log", "run"}) {
-    ChildProcess child({BESS_EDGE_PROGRAM, command});
+    ChildProcess child({edge_program(), command});
     EXPECT_THAT(child.read_all(),
                 HasSubstr("--config FILE is required, there is no /etc/bess/edge.toml"));
     EXPECT_EQ(child.wait(), 2);
@@ -486,13 +486,13 @@ TEST_F(Processes, WithoutAConfigurationTheInstalledOneIsMeant) {
 TEST_F(Processes, ABatteryWhoseSignWasNeverCheckedIsNotControlled) {
   start_simulators();
   const std::string config = site_.write_config();
-  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", config});
+  ChildProcess edge({edge_program(), "--config", config});
   EXPECT_THAT(edge.read_all(), HasSubstr("run once: bess-edge commission --config FILE --yes"));
   EXPECT_EQ(edge.wait(), 1);
-  ChildProcess hesitant({BESS_EDGE_PROGRAM, "commission", "--config", config});
+  ChildProcess hesitant({edge_program(), "commission", "--config", config});
   EXPECT_THAT(hesitant.read_all(), HasSubstr("charge or discharge 500 W for 30 s"));
   EXPECT_EQ(hesitant.wait(), 2);
-  ChildProcess reader({BESS_EDGE_PROGRAM, "--config", config, "--dry-run", "--cycles", "1"});
+  ChildProcess reader({edge_program(), "--config", config, "--dry-run", "--cycles", "1"});
   const std::string read_only = reader.read_all();
   EXPECT_THAT(read_only, HasSubstr("started: read-only"));
   EXPECT_THAT(read_only, HasSubstr("stopped: read-only, nothing was written"));
@@ -506,7 +506,7 @@ TEST_F(Processes, ABatteryWhoseSignWasNeverCheckedIsNotControlled) {
 TEST_F(Processes, ARefusedStartLeavesTheStatusOfTheRunBefore) {
   start_simulators();
   const std::string config = site_.commission();
-  ChildProcess({BESS_EDGE_PROGRAM, "--config", config, "--cycles", "2"}).wait();
+  ChildProcess({edge_program(), "--config", config, "--cycles", "2"}).wait();
   const auto status = [&] {
     std::ifstream file(site_.folder.file("state/status.json"));
     return std::string(std::istreambuf_iterator<char>(file), {});
@@ -514,7 +514,7 @@ TEST_F(Processes, ARefusedStartLeavesTheStatusOfTheRunBefore) {
   const std::string before = status();
   ASSERT_THAT(before, HasSubstr("\"reason\": \"stop_requested\""));
   std::filesystem::remove(site_.folder.file("state/commissioned.toml"));
-  ChildProcess refused({BESS_EDGE_PROGRAM, "--config", config});
+  ChildProcess refused({edge_program(), "--config", config});
   EXPECT_EQ(refused.wait(), 1);
   EXPECT_EQ(status(), before);
 }
@@ -526,12 +526,12 @@ TEST_F(Processes, AHandOverKeepsThePowerAndARestartGoesOn) {
   site.start_battery();
   site.start_market();
   const std::string config = site.commission();
-  ChildProcess before({BESS_EDGE_PROGRAM, "--config", config});
+  ChildProcess before({edge_program(), "--config", config});
   ASSERT_THAT(line_with_power(before), HasSubstr("mode=running"));
   before.signal(SIGHUP);
   EXPECT_THAT(before.read_all(), HasSubstr("stopped: handed over, the order stays in force"));
   EXPECT_EQ(before.wait(), 0);
-  ChildProcess after({BESS_EDGE_PROGRAM, "--config", config, "--cycles", "3"});
+  ChildProcess after({edge_program(), "--config", config, "--cycles", "3"});
   EXPECT_THAT(after.read_all(), HasSubstr("stopped: battery released"));
   EXPECT_EQ(after.wait(), 0);
   int first_cycles = 0;
@@ -549,15 +549,15 @@ TEST_F(Processes, ReleaseEndsAnOrderThatNobodyEndsAnyMore) {
   site.start_battery();
   site.start_market();
   const std::string config = site.commission();
-  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", config});
+  ChildProcess edge({edge_program(), "--config", config});
   const std::string order = line_with_power(edge);
   ASSERT_THAT(order, ::testing::StartsWith("utc="));
   edge.signal(SIGKILL);
   edge.wait();
-  ChildProcess hesitant({BESS_EDGE_PROGRAM, "release", "--config", config});
+  ChildProcess hesitant({edge_program(), "release", "--config", config});
   EXPECT_THAT(hesitant.read_all(), HasSubstr("add --yes"));
   EXPECT_EQ(hesitant.wait(), 2);
-  ChildProcess release({BESS_EDGE_PROGRAM, "release", "--config", config, "--yes"});
+  ChildProcess release({edge_program(), "release", "--config", config, "--yes"});
   EXPECT_THAT(release.read_all(), HasSubstr("is in its own mode"));
   EXPECT_EQ(release.wait(), 0);
   const std::int64_t ordered_utc_s = utc_of(order.substr(4, order.find(' ') - 4));
@@ -574,7 +574,7 @@ TEST_F(Processes, ReleaseEndsAnOrderThatNobodyEndsAnyMore) {
 TEST_F(Processes, TheWrongBatteryIsRefusedBeforeAnythingIsWritten) {
   site_.start_battery({"--capacity-wh", "12000"});
   site_.market_port = 1;
-  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", site_.write_config()});
+  ChildProcess edge({edge_program(), "--config", site_.write_config()});
   EXPECT_THAT(edge.read_all(), HasSubstr("capacity reads 12000, not 6000 to 10000"));
   EXPECT_EQ(edge.wait(), 1);
 }

@@ -94,7 +94,7 @@ class RecordReplay : public ::testing::TestWithParam<Recorded> {
                                folder + "/commissioned.toml",
                                std::filesystem::copy_options::overwrite_existing);
     std::vector<std::string> arguments = {
-        BESS_EDGE_PROGRAM, "--config",
+        edge_program(), "--config",
         site_.write_config({.battery_keys = battery_keys(), .state = state}), "--cycles",
         std::to_string(kCycles)};
     arguments.insert(arguments.end(), options.begin(), options.end());
@@ -104,8 +104,8 @@ class RecordReplay : public ::testing::TestWithParam<Recorded> {
     return decisions(site_.folder.file("edge.csv"));
   }
   Outcome check(const std::string& map, const std::vector<std::string>& options = {}) const {
-    std::vector<std::string> arguments = {BESS_EDGE_PROGRAM, "map",   "check", "--against",
-                                          recording_,        "--map", map};
+    std::vector<std::string> arguments = {edge_program(), "map",   "check", "--against",
+                                          recording_,     "--map", map};
     const char* const variant = GetParam().map.variant;
     if (*variant != '\0') arguments.insert(arguments.end(), {"--variant", variant});
     arguments.insert(arguments.end(), options.begin(), options.end());
@@ -183,12 +183,12 @@ class RecordCommand : public ::testing::Test {
     config_ = site_.write_config();
   }
   Outcome record(const std::vector<std::string>& options) const {
-    std::vector<std::string> arguments = {BESS_EDGE_PROGRAM, "record", "--config", config_};
+    std::vector<std::string> arguments = {edge_program(), "record", "--config", config_};
     arguments.insert(arguments.end(), options.begin(), options.end());
     return run(arguments);
   }
   Outcome check(const std::string& path) const {
-    return run({BESS_EDGE_PROGRAM, "map", "check", "--against", path, "--config", config_});
+    return run({edge_program(), "map", "check", "--against", path, "--config", config_});
   }
   static std::string text_of(const std::string& path) {
     std::ifstream file(path);
@@ -215,7 +215,7 @@ TEST_F(RecordCommand, ReadsWhatTheMapNamesAndWritesNothing) {
 
 TEST_F(RecordCommand, AnInterruptedRecordingIsWhole) {
   ChildProcess child(
-      {BESS_EDGE_PROGRAM, "record", "--config", config_, "--for", "7d", "--out", path_});
+      {edge_program(), "record", "--config", config_, "--for", "7d", "--out", path_});
   while (!std::filesystem::exists(path_ + ".part")) usleep(1'000);
   usleep(300'000);
   child.signal(SIGINT);
@@ -227,7 +227,7 @@ TEST_F(RecordCommand, AnInterruptedRecordingIsWhole) {
 TEST_F(RecordCommand, ASerialLineIsRecordedAndReplayedAsWell) {
   const PtyBridge line;
   const auto serve = [&](const std::vector<std::string>& options) {
-    std::vector<std::string> arguments = {BESS_SIM_PROGRAM,
+    std::vector<std::string> arguments = {sim_program(),
                                           "battery",
                                           "--serial",
                                           line.device(0),
@@ -250,7 +250,7 @@ TEST_F(RecordCommand, ASerialLineIsRecordedAndReplayedAsWell) {
   SimulatedSite::stop(*simulator);
   EXPECT_THAT(text_of(path_), HasSubstr("\"transport\":\"rtu\""));
   simulator = serve({"--replay", path_});
-  const Outcome seen = run({BESS_EDGE_PROGRAM, "--config", config_, "--check"});
+  const Outcome seen = run({edge_program(), "--config", config_, "--check"});
   EXPECT_THAT(seen.text, HasSubstr(" unit 85: SoC 43.0 %, 0 W, 8000 Wh, dispatch off"));
   EXPECT_EQ(SimulatedSite::stop(*simulator), 0);
 }
@@ -271,8 +271,8 @@ TEST_F(RecordCommand, ACutOrDamagedRecordingIsOneLineOfEitherProgram) {
   changed[changed.find("{\"utc\"") + 1] = '?';
   const std::string damaged = site_.folder.write("damaged.jsonl", changed);
   const auto replay = [](const std::string& path, const std::vector<std::string>& options = {}) {
-    std::vector<std::string> arguments = {BESS_SIM_PROGRAM, "battery", "--port", "0",
-                                          "--replay",       path};
+    std::vector<std::string> arguments = {sim_program(), "battery",  "--port",
+                                          "0",           "--replay", path};
     arguments.insert(arguments.end(), options.begin(), options.end());
     return arguments;
   };
@@ -290,7 +290,7 @@ TEST_F(RecordCommand, ACutOrDamagedRecordingIsOneLineOfEitherProgram) {
 
 TEST_F(RecordCommand, TheCommandLineIsChecked) {
   const auto refused = [&](std::vector<std::string> arguments, const std::string& why) {
-    arguments.insert(arguments.begin(), BESS_EDGE_PROGRAM);
+    arguments.insert(arguments.begin(), edge_program());
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.exit_code, 2) << outcome.text;
     EXPECT_THAT(outcome.text, HasSubstr(why));
@@ -302,7 +302,7 @@ TEST_F(RecordCommand, TheCommandLineIsChecked) {
   refused({"map", "check", "--against", path_, "--map", "a", "--config", config_},
           "exclude each other");
   for (const char* command : {"record", "map"}) {
-    const Outcome help = run({BESS_EDGE_PROGRAM, command, "--help"});
+    const Outcome help = run({edge_program(), command, "--help"});
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_THAT(help.text, HasSubstr("Exit codes: 0"));
   }

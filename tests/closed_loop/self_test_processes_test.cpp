@@ -17,7 +17,7 @@ struct Said {
 };
 
 Said self_test(const std::string& config) {
-  ChildProcess child({BESS_EDGE_PROGRAM, "--config", config, "--self-test"});
+  ChildProcess child({edge_program(), "--config", config, "--self-test"});
   std::string text = child.read_all();
   return {child.wait(), std::move(text)};
 }

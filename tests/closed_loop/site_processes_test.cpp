@@ -39,7 +39,7 @@ class SiteProcesses : public ::testing::Test {
   }
   /// Runs a controller to its end; its log.
   std::vector<CsvRow> run(const std::string& config, int cycles) {
-    ChildProcess edge({BESS_EDGE_PROGRAM, "--config", config, "--cycles", std::to_string(cycles)});
+    ChildProcess edge({edge_program(), "--config", config, "--cycles", std::to_string(cycles)});
     edge.read_all();
     EXPECT_EQ(edge.wait(), 0);
     return read_csv(site_.folder.file("edge.csv"));
@@ -81,14 +81,14 @@ TEST_F(SiteProcesses, ASilentMeterLeavesTheBatteryIdleAndHealthSaysSo) {
   options.insert(options.end(), {"--meter-fault", "silence", "--meter-fault-from-s", "360"});
   start(options);
   const std::string config = commission(meter_section("import_w_max = 3000\n"));
-  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", config});
+  ChildProcess edge({edge_program(), "--config", config});
   std::string line;
   do line = edge.read_line();
   while (!line.empty() && line.find(" reason=meter_lost ") == std::string::npos);
   EXPECT_THAT(line, HasSubstr(" ordered_power_w=0 "));
   EXPECT_THAT(line, HasSubstr(" meter=timeout"));
   EXPECT_THAT(line, HasSubstr(" mode=running "));
-  ChildProcess status({BESS_EDGE_PROGRAM, "status", "--config", config});
+  ChildProcess status({edge_program(), "status", "--config", config});
   EXPECT_THAT(status.read_all(), HasSubstr("WARN: meter: "));
   EXPECT_EQ(status.wait(), 1);
   EXPECT_EQ(SimulatedSite::stop(edge), 0);
@@ -98,7 +98,7 @@ TEST_F(SiteProcesses, ALimitIsObeyedUntilItIsCleared) {
   start({});
   const std::string config = commission("[limits]\nfile = \"limit\"\n");
   const auto limit = [&](std::vector<std::string> options) {
-    options.insert(options.begin(), {BESS_EDGE_PROGRAM, "limit", "--config", config});
+    options.insert(options.begin(), {edge_program(), "limit", "--config", config});
     ChildProcess command(options);
     const std::string said = command.read_all();
     EXPECT_EQ(command.wait(), 0) << said;
@@ -106,7 +106,7 @@ TEST_F(SiteProcesses, ALimitIsObeyedUntilItIsCleared) {
   };
   EXPECT_THAT(limit({"--charge", "700", "--for", "2h"}),
               HasSubstr("charge 700 W, discharge any W, until 2023-03-26T"));
-  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", config});
+  ChildProcess edge({edge_program(), "--config", config});
   const auto line_with = [&](const std::string& text) {
     std::string line;
     do line = edge.read_line();
@@ -125,7 +125,7 @@ TEST_F(SiteProcesses, TheCommandLineOfALimitIsChecked) {
   start({});
   const std::string without = site_.write_config();
   const auto exit_code = [](std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), BESS_EDGE_PROGRAM);
+    arguments.insert(arguments.begin(), edge_program());
     ChildProcess command(arguments);
     command.read_all();
     return command.wait();
@@ -143,7 +143,7 @@ TEST_F(SiteProcesses, TheCommandLineOfALimitIsChecked) {
 TEST_F(SiteProcesses, CheckShowsGridAndHouse) {
   start(own_meter());
   const std::string config = commission(meter_section(""));
-  ChildProcess check({BESS_EDGE_PROGRAM, "--config", config, "--check"});
+  ChildProcess check({edge_program(), "--config", config, "--check"});
   EXPECT_THAT(check.read_all(),
               HasSubstr("meter      grid 1500 W (import is positive), house 1500 W"));
   EXPECT_EQ(check.wait(), 0);

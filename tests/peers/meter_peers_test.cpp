@@ -33,7 +33,7 @@ TEST_P(MeterPeers, CheckReadsWhatTheMeterShows) {
         {.guard_keys = "[meter]\nmap = \"" BESS_SOURCE_DIR "/edge/meters/" +
                        std::string(GetParam()) + ".toml\"\nhost = \"127.0.0.1\"\nport = " +
                        ready.substr(ready.find_last_of(':') + 1) + "\n"});
-    ChildProcess check({BESS_EDGE_PROGRAM, "--config", config, "--check", "--dry-run"});
+    ChildProcess check({edge_program(), "--config", config, "--check", "--dry-run"});
     EXPECT_THAT(check.read_all(), HasSubstr("meter      grid " + std::to_string(watts) + " W"));
     check.wait();
     meter.signal(SIGKILL);

@@ -99,7 +99,7 @@ class Peers : public ::testing::TestWithParam<Setup> {
         .amplitude_eur_per_mwh = 0};
     site_.start_market({}, SimulatedSite::minute_prices(60, flat));
     const std::string config = site_.commission({.battery_keys = battery_keys()});
-    ChildProcess edge({BESS_EDGE_PROGRAM, "--config", config});
+    ChildProcess edge({edge_program(), "--config", config});
     std::string line;
     do line = edge.read_line();
     while (!line.empty() && line.find(" written=1") == std::string::npos);
@@ -234,7 +234,7 @@ class PeersBreakdown : public ::testing::TestWithParam<Breakdown> {
   }
 
   std::string command(const std::vector<std::string>& words) const {
-    std::vector<std::string> arguments = {BESS_EDGE_PROGRAM};
+    std::vector<std::string> arguments = {edge_program()};
     arguments.insert(arguments.end(), words.begin(), words.end());
     arguments.insert(arguments.end(), {"--config", config_});
     ChildProcess child(arguments);
@@ -247,7 +247,7 @@ class PeersBreakdown : public ::testing::TestWithParam<Breakdown> {
 
 TEST_P(PeersBreakdown, IsNoticedAndDrivenNoFurther) {
   constexpr int kGoodCycles = 2;
-  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", config_});
+  ChildProcess edge({edge_program(), "--config", config_});
   const std::string reason = std::string("reason=") + GetParam().reason + " ";
   const int noticed = cycle_with(edge, reason, 12);
   EXPECT_GT(noticed, kGoodCycles);
@@ -274,12 +274,12 @@ class PeersTrip : public PeersBreakdown {};
 TEST_P(PeersTrip, StaysOverRestartsUntilAPersonClearsIt) {
   const std::string reason = std::string("reason=") + GetParam().reason + " ";
   {
-    ChildProcess edge({BESS_EDGE_PROGRAM, "--config", config_});
+    ChildProcess edge({edge_program(), "--config", config_});
     ASSERT_GT(cycle_with(edge, reason, 12), 0);
     edge.signal(SIGKILL);
     edge.wait();
   }
-  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", config_});
+  ChildProcess edge({edge_program(), "--config", config_});
   EXPECT_EQ(cycle_with(edge, reason, 3), 1);
   EXPECT_THAT(command({"status"}), HasSubstr("CRITICAL: tripped"));
   EXPECT_THAT(command({"clear"}), HasSubstr("add --yes"));

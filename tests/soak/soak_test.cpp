@@ -173,7 +173,7 @@ RunResult Soak::run(int cycles, Market market) {
                         .price_server = "https://" + name_,
                         .price_keys = "ca_file = \"" + bundle_ +
                                       "\"\ntimeout_ms = 500\nwait_s = 40\nresolve_every_s = 1\n"});
-  ChildProcess edge({BESS_EDGE_PROGRAM, "--config", config, "--cycles", std::to_string(cycles)});
+  ChildProcess edge({edge_program(), "--config", config, "--cycles", std::to_string(cycles)});
   follow(edge, proxy, cycles, result);
   result.exit_code = edge.wait();
   result.connections = proxy.connections();

@@ -1,6 +1,6 @@
 // bess-sim battery and bess-sim market on free ports, in scaled time, and the configuration with
 // which bess-edge drives the one on the prices of the other. Where closed_loop/, soak/ and peers/
-// start the real programs. Needs BESS_SIM_PROGRAM and BESS_EDGE_PROGRAM.
+// start the real programs.
 #pragma once
 
 #include <cmath>
@@ -15,6 +15,7 @@
 #include "shared/scaled_clock.h"
 #include "shared/utc_text.h"
 #include "tests/support/csv_rows.h"
+#include "tests/support/programs_under_test.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bess {
@@ -118,7 +119,7 @@ class SimulatedSite {
   /// The configuration after the sign check that control needs.
   [[nodiscard]] std::string commission(const ConfigOptions& options) const {
     const std::string config = write_config(options);
-    ChildProcess check({BESS_EDGE_PROGRAM, "commission", "--config", config, "--yes"});
+    ChildProcess check({edge_program(), "commission", "--config", config, "--yes"});
     const std::string text = check.read_all();
     if (check.wait() != 0 || text.find("the sign is right") == std::string::npos) {
       throw std::runtime_error("the sign check failed: " + text);
@@ -142,7 +143,7 @@ class SimulatedSite {
  private:
   std::unique_ptr<ChildProcess> start_simulator(std::vector<std::string> arguments,
                                                 const std::vector<std::string>& options) const {
-    arguments.insert(arguments.begin(), BESS_SIM_PROGRAM);
+    arguments.insert(arguments.begin(), sim_program());
     for (const std::string& option :
          {std::string("--utc-start"), std::string(utc_text(kStartS).view()),
           std::string("--time-scale"), std::to_string(time_scale_),

@@ -1,0 +1,21 @@
+// The programs that the tests of processes start: those of this build, or those of another one, whose compiler or
+// sanitizer looks at the programs alone (BESS_EDGE_UNDER_TEST, BESS_SIM_UNDER_TEST: paths).
+#pragma once
+
+#include <cstdlib>
+#include <string>
+
+namespace bess {
+
+inline std::string program_under_test(const char* variable, const char* built) {
+  const char* other = std::getenv(variable);
+  return other != nullptr ? other : built;
+}
+inline std::string edge_program() {
+  return program_under_test("BESS_EDGE_UNDER_TEST", BESS_EDGE_PROGRAM);
+}
+inline std::string sim_program() {
+  return program_under_test("BESS_SIM_UNDER_TEST", BESS_SIM_PROGRAM);
+}
+
+}  // namespace bess
