@@ -27,12 +27,13 @@
 #include "edge/control/cycle_budget.h"
 #include "edge/control/full_charge.h"
 #include "edge/control/hold.h"
+#include "edge/control/order_in_force.h"
 #include "edge/control/policy.h"
-#include "edge/control/power_order.h"
 #include "edge/control/reserve.h"
 #include "edge/control/safety_guard.h"
 #include "edge/control/site_limits.h"
 #include "edge/control/supervision.h"
+#include "edge/control/tick.h"
 #include "shared/local_time.h"
 #include "shared/scaled_clock.h"
 #include "shared/units_and_limits.h"
@@ -50,10 +51,6 @@ struct TakeOver {
   std::int64_t utc_s = 0;  ///< of that log's newest record
 };
 
-constexpr std::int64_t next_tick_utc_s(std::int64_t now_utc_s) {
-  return (now_utc_s / kSecondsPerStep + 1) * kSecondsPerStep;
-}
-
 template <typename Battery, typename PriceSource, typename Clock, typename Site = NoSite>
 class ControlLoop {
  public:
@@ -69,7 +66,7 @@ class ControlLoop {
         reversal_cap_(settings.reversals_per_hour_max),
         full_charge_(settings.full_charge_every_days),
         supervision_(settings.supervision),
-        soc_floor_e4_(settings.guard.soc_min_e4) {}
+        order_(settings_, battery, clock) {}
 
   void take_over(const TakeOver& before) {
     cycle_budget_.restore(before.throughput);
@@ -92,7 +89,7 @@ class ControlLoop {
     std::int64_t tick_utc_s = 0;
     if (!await_next_tick(tick_utc_s)) return false;
     count_missed_ticks(tick_utc_s);
-    bind_orders(tick_utc_s);
+    order_.bind(tick_utc_s);
     record = CycleRecord{.utc_s = tick_utc_s, .cycle = ++cycle_};
     request_price(tick_utc_s);  // before the battery is read: a slow bus must not cost the price
     read_battery(record);
@@ -115,14 +112,14 @@ class ControlLoop {
   /// link pauses between two connects.
   void stop(CycleRecord& record) {
     record = final_record(Reason::kStopRequested);
-    if (settings_.control && !looked_for_order_) {
+    if (settings_.control && !order_.has_looked()) {
       read_battery(record);  // of the run before
       record.battery_status = Status::kOk;
     }
-    if (!settings_.control || !has_ordered_) return;
+    if (!settings_.control || !order_.exists()) return;
     const std::int64_t last_ns = clock_.now_utc_ns() + kStopPatienceNs;
     Status released = give_back(record);
-    while (has_ordered_ && !settings_.has_watchdog && clock_.now_utc_ns() < last_ns) {
+    while (order_.exists() && !settings_.has_watchdog && clock_.now_utc_ns() < last_ns) {
       clock_.pause_ns(kStopPauseNs);
       released = give_back(record);
     }
@@ -138,9 +135,9 @@ class ControlLoop {
   /// Ends without touching the battery, for the next run to take over; its watchdog ends the order
   /// if none comes. False when it has none, or no order is in force: then stop.
   bool hand_over(CycleRecord& record) {
-    if (!settings_.has_watchdog || !has_ordered_) return false;
+    if (!settings_.has_watchdog || !order_.exists()) return false;
     record = final_record(Reason::kHandOver);
-    record.ordered_power_w = order_power_w_;
+    record.ordered_power_w = order_.power_w();
     return true;
   }
 
@@ -149,7 +146,7 @@ class ControlLoop {
   static constexpr std::int64_t kStopPauseNs = 5 * kNanosecondsPerSecond;
 
   Status give_back(CycleRecord& record) {
-    write_order(0, record, write_until_ns_);
+    write_order(0, record, order_.write_until_ns());
     const Status zero_status = record.battery_status;
     write_release(record);
     if (record.battery_status == Status::kOk) record.battery_status = zero_status;
@@ -188,32 +185,18 @@ class ControlLoop {
   bool sleep_until_ns(std::int64_t until_ns) {
     while (true) {
       const std::int64_t before_ns = clock_.now_utc_ns();
-      const std::int64_t refresh_ns = refresh_due_utc_ns();
+      const std::int64_t refresh_ns = order_.refresh_due_utc_ns();
       const std::int64_t check_ns = site_due_utc_ns();
       const std::int64_t due_ns = refresh_ns < check_ns ? refresh_ns : check_ns;
       if (due_ns >= until_ns) return clock_.sleep_until_utc_ns(until_ns);
       if (!clock_.sleep_until_utc_ns(due_ns)) return false;
       if (refresh_ns == due_ns) {
-        refresh();
+        order_.refresh();
       } else {
         check_site();
       }
       if (clock_.now_utc_ns() < before_ns) return true;
     }
-  }
-
-  std::int64_t refresh_due_utc_ns() const {
-    const std::int32_t interval_s = battery_.refresh_interval_s();
-    if (!settings_.control || !has_ordered_ || interval_s <= 0) return INT64_MAX;
-    const std::int64_t now_ns = clock_.now_utc_ns();
-    if (fed_utc_ns_ > now_ns) return now_ns;  // the clock was stepped back meanwhile
-    return fed_utc_ns_ + interval_s * kNanosecondsPerSecond;
-  }
-
-  void refresh() {
-    // A failure shows in the counters, and the next order finds out what is wrong.
-    static_cast<void>(battery_.refresh());
-    fed_utc_ns_ = clock_.now_utc_ns();
   }
 
   std::int64_t site_due_utc_ns() const {
@@ -239,9 +222,9 @@ class ControlLoop {
     BatteryMeasurement measurement;
     bool is_read = site_.needs_battery() && battery_.read(measurement) == Status::kOk;
     observe_site(is_read, measurement);
-    if (!settings_.control || !has_ordered_ || mode_ != Mode::kRunning) return;
+    if (!settings_.control || !order_.exists() || mode_ != Mode::kRunning) return;
     const BatteryMeasurement& known = is_read ? measurement : measured_;
-    if (bearable_power_w(known, Margin::kHalf) == order_power_w_ && !cut_failed_) return;
+    if (bearable_power_w(known, Margin::kHalf) == order_.power_w() && !cut_failed_) return;
     const std::int32_t power_w = bearable_power_w(known, Margin::kWhole);
     if (!site_.needs_battery()) is_read = battery_.read(measurement) == Status::kOk;
     // What follows somebody else's order is for the tick to see, and not to be hidden by ours.
@@ -257,7 +240,7 @@ class ControlLoop {
         .recheck({.measurement = measurement,
                   .cycle_budget_spent = cycle_budget_.is_spent(),
                   .barred_direction = reversal_cap_.barred_direction(),
-                  .previous_power_w = order_power_w_,
+                  .previous_power_w = order_.power_w(),
                   .reserve_soc_e4 = reserve_soc_e4_,
                   .site = site_range(now_utc_s(), margin)})
         .power_w;
@@ -265,18 +248,19 @@ class ControlLoop {
 
   /// What flowed under the order until now would be taken for the next one's at the next reading.
   void account_until_cut(const BatteryMeasurement& measurement) {
-    const Response now = response_of(measurement);
+    const Response now = order_.response(measurement);
     count_cycles(now.utc_s, measurement);
     supervision_.note_power(now);
   }
 
   /// As fresh as the readings that it follows from, and never longer than its cycle's order.
   void cut_order(std::int32_t power_w) {
-    if (power_w != order_power_w_) ++order_cuts_;
+    if (power_w != order_.power_w()) ++order_cuts_;
     CycleRecord between;  // the next cycle's record says what became of it
-    write_order(power_w, between,
-                std::min(feed_until_ns_, clock_.monotonic_ns() +
-                                             settings_.order_deadline_s * kNanosecondsPerSecond));
+    write_order(
+        power_w, between,
+        std::min(order_.feed_until_ns(),
+                 clock_.monotonic_ns() + settings_.order_deadline_s * kNanosecondsPerSecond));
     cut_failed_ = !between.written;
     reversal_cap_.note(power_w);
   }
@@ -298,69 +282,27 @@ class ControlLoop {
       return;
     }
     measured_ = record.measurement;
-    find_order_in_force(record.measurement);
+    order_.find(record.measurement);
     count_cycles(record.utc_s, record.measurement);
     full_charge_.update(local_day_number(local_minute_of(record.utc_s)), record.measurement.soc_e4);
     if (settings_.control) {
-      supervision_.observe(response_of(record.measurement), !has_ordered_);
+      supervision_.observe(order_.response(record.measurement), !order_.exists());
     }
   }
 
   void count_cycles(std::int64_t utc_s, const BatteryMeasurement& measurement) {
-    const bool is_driven = has_ordered_ && order_power_w_ != 0;
-    cycle_budget_.update(local_day_of(local_minute_of(utc_s)), measurement.soc_e4, is_driven);
-  }
-
-  /// Only the order that the battery really follows can be answered: one that it refused, or that
-  /// has run out, leaves it in its own mode, which goes any way.
-  [[nodiscard]] Response response_of(const BatteryMeasurement& m) const {
-    const std::int64_t read_utc_s = now_utc_s();
-    const bool is_known = m.has_order_power || order_is_confirmed_;
-    return {.utc_s = read_utc_s,
-            .is_driven = has_ordered_ && m.dispatch_active && is_known && !m.order_replaced,
-            .ordered_power_w = m.has_order_power ? m.order_power_w : order_power_w_,
-            .order_age_s = static_cast<std::int32_t>(read_utc_s - ordered_since_utc_s_),
-            .soc_floor_e4 = soc_floor_e4_,
-            .measurement = m};
-  }
-
-  /// After a restart the battery may still follow the order of the run before: it goes on until the
-  /// first decision, and from now on it is this run's to hold and to release.
-  void find_order_in_force(const BatteryMeasurement& measurement) {
-    if (looked_for_order_) return;
-    looked_for_order_ = true;
-    order_found_ = settings_.control && measurement.dispatch_active;
-    if (!order_found_) return;
-    has_ordered_ = true;
-    ordered_since_utc_s_ = now_utc_s();
-    if (measurement.has_order_power) order_power_w_ = measurement.order_power_w;
-  }
-
-  /// An order belongs to its tick: a process that was stopped and goes on later neither writes it nor
-  /// feeds it, for the price that it was decided on is gone.
-  void bind_orders(std::int64_t tick_utc_s) {
-    const std::int32_t write_s = settings_.order_deadline_s;
-    const std::int32_t feed_s = kSecondsPerStep + settings_.price_wait_s + write_s;
-    write_until_ns_ = bounded_ns(tick_utc_s + write_s, write_s + settings_.read_lead_s);
-    feed_until_ns_ = bounded_ns(tick_utc_s + feed_s, feed_s + settings_.read_lead_s);
-  }
-
-  /// The instant in monotonic time, at most `longest_s` from now: to a clock that was stepped back
-  /// the tick lies far ahead.
-  std::int64_t bounded_ns(std::int64_t utc_s, std::int64_t longest_s) const {
-    const std::int64_t longest_ns = clock_.now_utc_ns() + longest_s * kNanosecondsPerSecond;
-    const std::int64_t utc_ns = utc_s * kNanosecondsPerSecond;
-    return clock_.monotonic_ns_at(utc_ns < longest_ns ? utc_ns : longest_ns);
+    cycle_budget_.update(local_day_of(local_minute_of(utc_s)), measurement.soc_e4, order_.drives());
   }
 
   std::int64_t price_deadline_ns(std::int64_t tick_utc_s) const {
-    return bounded_ns(tick_utc_s + settings_.price_wait_s,
-                      settings_.price_wait_s + settings_.read_lead_s);
+    return bounded_monotonic_ns(clock_, tick_utc_s + settings_.price_wait_s,
+                                settings_.price_wait_s + settings_.read_lead_s);
   }
 
   void request_price(std::int64_t tick_utc_s) {
     request_ns_ = clock_.monotonic_ns();
-    prices_.request(tick_utc_s - 60, bounded_ns(tick_utc_s, settings_.read_lead_s),
+    prices_.request(tick_utc_s - 60,
+                    bounded_monotonic_ns(clock_, tick_utc_s, settings_.read_lead_s),
                     price_deadline_ns(tick_utc_s));
   }
 
@@ -371,7 +313,7 @@ class ControlLoop {
     while (!clock_.stop_requested()) {
       const std::int64_t now_ns = clock_.monotonic_ns();
       if (now_ns >= deadline_ns) break;
-      if (clock_.now_utc_ns() >= refresh_due_utc_ns()) refresh();
+      if (clock_.now_utc_ns() >= order_.refresh_due_utc_ns()) order_.refresh();
       const std::int64_t slice_ns = now_ns + kSliceNs;
       if (prices_.wait(slice_ns < deadline_ns ? slice_ns : deadline_ns)) break;
     }
@@ -426,7 +368,7 @@ class ControlLoop {
          .supervision = supervision_.stop_reason(),
          .cycle_budget_spent = cycle_budget_.is_spent(),
          .barred_direction = reversal_cap_.barred_direction(),
-         .previous_power_w = order_power_w_,
+         .previous_power_w = order_.power_w(),
          .has_price = record.price.has_row,
          .price_minute_utc_s = record.price.minute_utc_s,
          .price_centi_eur_per_mwh = record.price.price_centi_eur_per_mwh,
@@ -458,14 +400,14 @@ class ControlLoop {
                               .stop_reason = is_stop_reason(record.reason),
                               .hold_elapsed = hold_elapsed,
                               .release_now = is_better_released(record.reason),
-                              .order_found = order_found_});
+                              .order_found = order_.was_found()});
     if (mode_ == Mode::kHolding && before != Mode::kHolding) hold_start_utc_s_ = record.utc_s;
     record.mode = mode_;
   }
 
   void act(CycleRecord& record) {
     if (!settings_.control) {
-      order_power_w_ = record.ordered_power_w;  // what would be in force: the ramp goes from there
+      order_.imagine(record.ordered_power_w);
       return;
     }
     const std::int64_t start_ns = clock_.monotonic_ns();
@@ -473,14 +415,14 @@ class ControlLoop {
     cut_failed_ = false;
     switch (mode_) {
       case Mode::kRunning:
-        write_order(record.ordered_power_w, record, write_until_ns_);
+        write_order(record.ordered_power_w, record, order_.write_until_ns());
         if (record.has_measurement) supervision_.on_ordered(now_utc_s(), record.battery_status);
         break;
       case Mode::kHolding:
-        write_order(0, record, write_until_ns_);
+        write_order(0, record, order_.write_until_ns());
         break;
       case Mode::kSafe:
-        if (has_ordered_) write_release(record);
+        if (order_.exists()) write_release(record);
         break;
       case Mode::kStart:
       case Mode::kStopping:
@@ -495,31 +437,16 @@ class ControlLoop {
   }
 
   void write_order(std::int32_t power_w, CycleRecord& record, std::int64_t write_until_ns) {
-    if (!has_ordered_ || power_w != order_power_w_) ordered_since_utc_s_ = now_utc_s();
-    has_ordered_ = true;  // even when it fails: the battery may have understood
-    order_power_w_ = power_w;
-    fed_utc_ns_ = clock_.now_utc_ns();
-    record.ordered_power_w = power_w;
     note_price_age(now_utc_s(), record);
-    soc_floor_e4_ = std::max(settings_.guard.soc_min_e4, reserve_soc_e4_);
-    // 0 W is never too late.
-    const bool is_bound = power_w != 0;
-    record.battery_status =
-        battery_.order({.power_w = power_w,
-                        .soc_min_e4 = soc_floor_e4_,
-                        .soc_max_e4 = settings_.guard.soc_max_e4,
-                        .duration_s = settings_.order_duration_s,
-                        .write_until_ns = is_bound ? write_until_ns : INT64_MAX,
-                        .feed_until_ns = is_bound ? feed_until_ns_ : INT64_MAX});
-    record.written = order_is_confirmed_ = record.battery_status == Status::kOk;
+    record.ordered_power_w = power_w;
+    record.battery_status = order_.write(power_w, reserve_soc_e4_, write_until_ns);
+    record.written = record.battery_status == Status::kOk;
   }
 
   void write_release(CycleRecord& record) {
     record.ordered_power_w = 0;
-    order_power_w_ = 0;
-    record.battery_status = battery_.release();
+    record.battery_status = order_.release();
     record.written = record.battery_status == Status::kOk;
-    if (record.written) has_ordered_ = false;
   }
 
   /// Late is an order that was needed and not in force `order_deadline_s` after its tick.
@@ -571,20 +498,11 @@ class ControlLoop {
   std::int64_t request_ns_ = 0;  ///< when this cycle asked for its price
   std::int32_t missed_ticks_ = 0;
   std::int32_t deadline_misses_ = 0;
-  BatteryMeasurement measured_;           ///< the last that was read at a tick
-  std::int64_t site_utc_ns_ = 0;          ///< when the site was last looked at
-  std::int32_t order_cuts_ = 0;           ///< since start, between two ticks
-  bool cut_failed_ = false;               ///< since this tick: the battery may still follow more
-  std::int64_t fed_utc_ns_ = 0;           ///< when the battery last got an order or a refresh
-  bool has_ordered_ = false;              ///< an order may be in force at the battery
-  std::int32_t order_power_w_ = 0;        ///< of that order
-  bool order_is_confirmed_ = false;       ///< it was read back
-  std::int64_t ordered_since_utc_s_ = 0;  ///< when that power was ordered first
-  std::int32_t soc_floor_e4_;             ///< at which the device itself stops to discharge by it
-  std::int64_t write_until_ns_ = 0;       ///< monotonic, of this cycle's order
-  std::int64_t feed_until_ns_ = 0;
-  bool looked_for_order_ = false;  ///< the first reading tells what an earlier run left in force
-  bool order_found_ = false;
+  BatteryMeasurement measured_;   ///< the last that was read at a tick
+  std::int64_t site_utc_ns_ = 0;  ///< when the site was last looked at
+  std::int32_t order_cuts_ = 0;   ///< since start, between two ticks
+  bool cut_failed_ = false;       ///< since this tick: the battery may still follow more
+  OrderInForce<Battery, Clock> order_;
 };
 
 }  // namespace bess

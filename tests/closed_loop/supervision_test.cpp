@@ -13,6 +13,7 @@
 #include "edge/control/control_loop.h"
 #include "shared/utc_text.h"
 #include "tests/support/image_device.h"
+#include "tests/support/thorough.h"
 #include "tools/battery_sim/house_load.h"
 
 namespace bess {
@@ -20,9 +21,9 @@ namespace {
 
 constexpr std::int32_t kRatedW = 4'000;
 #ifdef BESS_SANITIZED
-constexpr int kMonthDays = 3;  // many times slower
+const int kMonthDays = 3;  // many times slower
 #else
-constexpr int kMonthDays = 30;
+const int kMonthDays = few_or_all(6, 30);
 #endif
 
 /// The device's time as the loop's clock; `every_half_minute` runs while the loop sleeps.
@@ -239,8 +240,8 @@ TEST_P(EveryMapSupervised, LessThanOrderedIsToldWithinTwoCycles) {
   EXPECT_FALSE(is_stop_reason(record.reason)) << reason_name(record.reason);
 }
 
-TEST_P(EveryMapSupervised, AMonthOfASlowNoisyThrottledBatteryRaisesNothing) {
-  constexpr int kDays = kMonthDays;
+TEST_P(EveryMapSupervised, DaysOfASlowNoisyThrottledBatteryRaisesNothing) {
+  const int kDays = kMonthDays;
   SupervisedSite site(GetParam());
   set_habits(site, {.delay_s = 5, .noise_frac = 0.02, .slows_near_limits = true});
   std::mt19937_64 random(3);
@@ -263,7 +264,7 @@ TEST_P(EveryMapSupervised, AMonthOfASlowNoisyThrottledBatteryRaisesNothing) {
 
 /// Operators hold, a reserve is kept, it is filled on every other day, and a meter cuts orders between cycles.
 TEST_P(EveryMapSupervised, DaysOfHoldsReserveAndCutOrdersRaiseNothing) {
-  constexpr int kDays = kMonthDays / 3;
+  const int kDays = kMonthDays / 3;
   set_market_time_zone();
   ControlSettings settings;
   settings.reserve.push_back({.from_minute = 16 * 60, .to_minute = 22 * 60, .soc_e4 = 6'000});

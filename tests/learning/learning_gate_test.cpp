@@ -1,4 +1,4 @@
-// The gate on learning: the C51 teacher, trained on the yardstick for half the steps that `bess-train
+// The gate on learning: the C51 teacher, trained on the yardstick for a quarter of the steps that `bess-train
 // train` takes by default, earns more than the rule-based controller and no less than tabular value iteration, on
 // days that it was not trained on. The seed is fixed and training repeats to the bit, so the verdict
 // on a build is the same every time.
@@ -33,7 +33,7 @@ TEST(LearningGate, TheTeacherIsAboveTheRuleAndLevelWithTabular) {
   set_market_time_zone();
   RunConfig config = load_run_config("");
   config.train.method = Method::kC51;
-  config.train.steps /= 2;
+  config.train.steps /= 4;
   const MarketSteps market = make_market_steps(read_yardstick(), config.market);
   const TrainResult training = train_by_default(market, config);
   TeacherPolicy teacher(training.teacher);

@@ -56,6 +56,13 @@ TEST(Wear, LowersTheLearnersRewardInBothDirections) {
   }
 }
 
+/// Plans under a limit of cycles are dear to make: two days of them.
+std::vector<MarketDay> limited_days(const MarketSteps& market) {
+  auto days = market.days_of(Split::kTest);
+  days.resize(2);
+  return days;
+}
+
 TEST(CycleLimit, NoOrderAfterItIsReachedUntilMidnight) {
   const MarketSteps market = make_market_steps(small_series(), {});
   BatteryParameters battery;
@@ -64,8 +71,8 @@ TEST(CycleLimit, NoOrderAfterItIsReachedUntilMidnight) {
   for (const char* name : {"rbc:60:140", "tabular", "mpc", "foresight"}) {
     const auto policy = make_policy(name, market, battery);
     for (const bool carry_soc : {false, true}) {
-      const auto days = market.days_of(Split::kTest);
-      const Evaluation e = evaluate(market, days, *policy, {battery, 0.5, carry_soc});
+      const Evaluation e =
+          evaluate(market, limited_days(market), *policy, {battery, 0.5, carry_soc});
       for (const DayResult& day : e.days) {
         EXPECT_LT(day.cycles, 1.5 + step_cycles) << name << ' ' << day.date;
       }
@@ -78,22 +85,21 @@ TEST(CycleLimit, PlannersSaveTheirCyclesForTheBestHours) {
   const MarketSteps market = make_market_steps(small_series(), {});
   BatteryParameters battery;
   battery.cycles_per_day_max = 0.5;
-  const auto days = market.days_of(Split::kTest);
+  const auto days = limited_days(market);
   const auto profit = [&](Policy& policy) {
     return evaluate(market, days, policy, {battery, 0.5, false}).profit_eur_per_day_per_mwh();
   };
   const double foresight = profit(*make_policy("foresight", market, battery));
-  for (const char* name : {"rbc:60:140", "rbc-tuned", "tabular", "mpc"}) {
+  for (const char* name : {"rbc:60:140", "rbc-tuned", "tabular"}) {
     EXPECT_LT(profit(*make_policy(name, market, battery)), foresight) << name;
   }
+  const double rolling = profit(*make_policy("mpc", market, battery));
+  EXPECT_LT(rolling, foresight);
   // Fitted without knowing of the limit they run into it before the evening.
   BatteryParameters unlimited = battery;
   unlimited.cycles_per_day_max = 0;
-  for (const char* name : {"mpc", "foresight"}) {
-    EXPECT_GT(profit(*make_policy(name, market, battery)),
-              profit(*make_policy(name, market, unlimited)))
-        << name;
-  }
+  EXPECT_GT(rolling, profit(*make_policy("mpc", market, unlimited)));
+  EXPECT_GT(foresight, profit(*make_policy("foresight", market, unlimited)));
 }
 
 TEST(TunedRule, DoesNothingWhereNoSpreadPaysForTheWear) {
