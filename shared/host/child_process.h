@@ -67,7 +67,15 @@ class ChildProcess {
     }
     return false;
   }
-  void signal(int number) const { kill(pid_, number); }
+  /// False when there is nobody to take it any more: pid -1 would be every process of this user.
+  bool signal(int number) const { return pid_ > 0 && kill(pid_, number) == 0; }
+  /// Without waiting.
+  [[nodiscard]] bool has_ended() const {
+    siginfo_t info{};
+    return pid_ <= 0 ||
+           (waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+            info.si_pid != 0);
+  }
   /// Exit code, or 128 + signal.
   int wait() {
     if (pid_ > 0) {

@@ -10,8 +10,15 @@
 #include <cstring>
 
 #include "shared/host/user_error.h"
+#include "tools/battery_sim/serial_request.h"
 
 namespace bess {
+namespace {
+
+constexpr int kByteTimeoutMs = 500;  ///< of a frame on a serial line, as libmodbus has it
+
+}  // namespace
+
 BatteryServer::BatteryServer(const BatteryServerSettings& settings, const RegisterMap& map,
                              SimulatedBattery& battery, const ScaledClock& clock,
                              MeteredHouse* house)
@@ -48,7 +55,7 @@ void BatteryServer::listen_tcp() {
 }
 
 void BatteryServer::open_serial() {
-  modbus_set_slave(context_.get(), map_.unit);  // requests to other units are not even seen
+  modbus_set_slave(context_.get(), map_.unit);  // libmodbus wants one; all are served
   if (modbus_connect(context_.get()) != 0) {
     fail("{}: cannot open this serial line: {}", settings_.serial_device, std::strerror(errno));
   }
@@ -89,23 +96,27 @@ void BatteryServer::close_client(Client& client, bool reset) {
   client.fd = -1;
 }
 
-void BatteryServer::serve(Client& client) {
-  BusRequest request{};
-  request.header = rtu_ ? 0 : kTcpHeaderBytes;
+/// False: nothing to answer.
+bool BatteryServer::receive(Client& client, BusRequest& request) {
+  if (rtu_) {
+    const SerialRead read = read_serial_request(client.fd, kByteTimeoutMs, request);
+    if (read == SerialRead::kGone) fail("{}: the serial line is gone", settings_.serial_device);
+    return read == SerialRead::kRequest;
+  }
+  request.header = kTcpHeaderBytes;
   modbus_set_socket(context_.get(), client.fd);
   request.size = modbus_receive(context_.get(), request.bytes);
-  if (request.size < 0) {
-    if (!rtu_) return close_client(client, false);
-    if (errno == EIO || errno == EBADF || errno == ECONNRESET) {
-      fail("{}: the serial line is gone", settings_.serial_device);
-    }
-    modbus_flush(context_.get());
-    return;
-  }
+  if (request.size < 0) close_client(client, false);
+  return request.size > 0;
+}
+
+void BatteryServer::serve(Client& client) {
+  BusRequest request{};
+  if (!receive(client, request)) return;
   // Another unit, or a connection that has gone dead: silence, as on a bus.
   const bool is_here = recorded_ != nullptr ? recorded_->serves_unit(request.unit())
                                             : device_->serves_unit(request.unit());
-  if (request.size == 0 || !is_here || client.half_open) return;
+  if (!is_here || client.half_open) return;
   if (recorded_ != nullptr) return answer_as_recorded(client, request);
   if (!wait(settings_.response_delay_ms)) return;
   answer_with_fault(client, request, device_->on_request(request, clock_.now_utc_ns()));

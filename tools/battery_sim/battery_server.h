@@ -61,6 +61,7 @@ class BatteryServer {
   void listen_tcp();
   void open_serial();
   void accept_client();
+  [[nodiscard]] bool receive(Client& client, BusRequest& request);
   void serve(Client& client);
   void answer_as_recorded(Client& client, const BusRequest& request);
   void answer_with_fault(Client& client, const BusRequest& request, BatteryFault fault);

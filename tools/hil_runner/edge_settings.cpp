@@ -20,9 +20,11 @@ constexpr std::int32_t kWallTimeoutMs = 200;
 std::string battery_keys(const Scenario& scenario, const EdgePlaces& places) {
   const ScenarioBattery& battery = scenario.battery;
   std::string text =
-      fmt::format("map = \"{}\"\npower_w = {:.0f}\ncapacity_wh = {:.0f}\nport = {}\n", battery.map,
-                  battery.physics.power_w_max, battery.physics.capacity_wh, places.battery_port);
+      fmt::format("map = \"{}\"\npower_w = {:.0f}\ncapacity_wh = {:.0f}\n", battery.map,
+                  battery.physics.power_w_max, battery.physics.capacity_wh);
   if (!battery.variant.empty()) text += fmt::format("variant = \"{}\"\n", battery.variant);
+  if (!places.battery_link.empty()) return text + places.battery_link + scenario.edge_battery;
+  text += fmt::format("port = {}\n", places.battery_port);
   if (battery.rtu) {
     text += fmt::format("transport = \"rtu\"\ndevice = \"{}\"\nbaud = 115200\n",
                         places.serial_device.empty() ? "/dev/null" : places.serial_device);

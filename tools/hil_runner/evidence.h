@@ -26,7 +26,7 @@ struct LoggedCycle {
   std::int16_t context_class = 0;
   std::int32_t ordered_power_w = 0;
   std::int32_t battery_power_w = 0;
-  std::string reason;
+  std::string reason{};
   bool written = false;
 
   friend bool operator==(const LoggedCycle&, const LoggedCycle&) = default;

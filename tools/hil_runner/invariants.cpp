@@ -76,6 +76,11 @@ class Judge {
   [[nodiscard]] std::int64_t settled_ns(std::int64_t tick_ns) const {
     return tick_ns + (config_.control.price_wait_s + 5) * kSecondNs + slack_ns();
   }
+  /// The same where the bus or a process is disturbed: requests are repeated until the order's deadline.
+  [[nodiscard]] std::int64_t settled_at_worst_ns(std::int64_t tick_ns) const {
+    if (!is_disturbed_in_cycle(tick_ns)) return settled_ns(tick_ns);
+    return tick_ns + config_.control.order_deadline_s * kSecondNs + slack_ns();
+  }
   [[nodiscard]] std::int64_t start_ns() const { return scenario_.utc_ns_at(0); }
   /// After the first orders, until the end.
   template <typename Visit>
@@ -299,15 +304,15 @@ class Judge {
   void judge_orders() {
     for (const LoggedCycle& cycle : evidence_.log) {
       const std::int64_t tick_ns = cycle.utc_s * kSecondNs;
+      const std::int64_t by_ns = settled_at_worst_ns(tick_ns);
       const bool counts = cycle.mode == Mode::kRunning && cycle.written &&
-                          settled_ns(tick_ns) < scenario_.end_utc_ns() && !is_lost(tick_ns);
+                          by_ns < scenario_.end_utc_ns() && !is_lost(tick_ns);
       if (!counts) continue;
-      const CommandInForce command = commands_.at(settled_ns(tick_ns));
+      const CommandInForce command = commands_.at(by_ns);
       const bool is_same =
           command.is_driven && std::abs(command.power_w - cycle.ordered_power_w) <= 2;
       if (!is_same)
-        find(settled_ns(tick_ns), fmt::format("{} W, as logged", cycle.ordered_power_w),
-             watts(command));
+        find(by_ns, fmt::format("{} W, as logged", cycle.ordered_power_w), watts(command));
     }
   }
 

@@ -1,5 +1,6 @@
 // bess-hil run: scenarios in one or both times, a line each.
 #include <fmt/core.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -15,8 +16,10 @@
 #include "shared/utc_text.h"
 #include "tools/hil_runner/hil_command.h"
 #include "tools/hil_runner/junit.h"
+#include "tools/hil_runner/real_options.h"
 #include "tools/hil_runner/report_page.h"
 #include "tools/hil_runner/run_scenario.h"
+#include "tools/hil_runner/stop_request.h"
 
 namespace bess {
 namespace {
@@ -33,6 +36,7 @@ struct RunOptions {
   bool list_invariants = false;
   bool json = false;
   std::string junit, report, edge, simulators;
+  RealOptions real;
 };
 
 /// Files as they are; of a folder, its scenarios by name.
@@ -97,39 +101,79 @@ class Runner {
  public:
   explicit Runner(const RunOptions& options)
       : options_(options),
-        programs_{.edge = program(options.edge, "bess-edge"),
-                  .simulators = program(options.simulators, "bess-sim")} {
+        site_{.edge = program(options.edge, "bess-edge"),
+              .simulators = program(options.simulators, "bess-sim"),
+              .battery = real_battery(options.real)} {
     for (const std::string& file : scenario_files(options.places)) {
       scenarios_.push_back(read_scenario(file));
     }
+    if (site_.battery) refuse_unsuited();
   }
 
   [[nodiscard]] const std::vector<Scenario>& scenarios() const { return scenarios_; }
 
   std::vector<Outcome> run() {
+    watch_for_stop();
+    if (site_.battery) {
+      run_on_real_battery();
+      return std::move(outcomes_);
+    }
     if (options_.times != Times::kWall) {
-      for (const Scenario& scenario : scenarios_) take(run_scenario(scenario, true, programs_));
+      for (const Scenario& scenario : scenarios_) take(run_scenario(scenario, true, site_));
     }
     if (options_.times != Times::kVirtual) run_in_wall_time();
     return std::move(outcomes_);
   }
 
  private:
+  /// Of a folder, those that may not are passed over; one that was named is a mistake.
+  void refuse_unsuited() const {
+    for (const Scenario& scenario : scenarios_) {
+      const bool was_named =
+          std::ranges::find(options_.places, scenario.path) != options_.places.end();
+      const std::string why = why_not_real(scenario, *site_.battery);
+      if (was_named && !why.empty()) {
+        fail("{}: not for a real battery: {} (--list names those that are)", scenario.path, why);
+      }
+    }
+  }
+
+  /// One after the other; what cannot be run to its end ends them all.
+  void run_on_real_battery() {
+    require_programs();
+    for (const Scenario& scenario : scenarios_) {
+      take(run_scenario(scenario, false, site_));
+      if (!outcomes_.back().error.empty()) return;
+    }
+  }
+
+  void require_programs() const {
+    for (const std::string& path : {site_.edge, site_.simulators}) {
+      if (access(path.c_str(), X_OK) != 0) {
+        fail("{}: {}; build it, or say where it is (see --help)", path,
+             fs::exists(path) ? "no program that this user may run" : "not there");
+      }
+    }
+  }
+
   /// Most of it is waiting: several beside each other.
   void run_in_wall_time() {
-    for (const std::string& path : {programs_.edge, programs_.simulators}) {
-      if (!fs::exists(path)) fail("{}: not there; build it, or say where it is (see --help)", path);
-    }
+    require_programs();
     std::atomic<std::size_t> next = 0;
     std::vector<std::thread> threads;
     for (int i = 0; i < options_.jobs; ++i) {
       threads.emplace_back([&] {
         for (std::size_t s = next++; s < scenarios_.size(); s = next++) {
-          take(run_scenario(scenarios_[s], false, programs_));
+          try {
+            take(run_scenario(scenarios_[s], false, site_));
+          } catch (const Interrupted&) {
+            return;
+          }
         }
       });
     }
     for (std::thread& thread : threads) thread.join();
+    throw_if_stopped();
   }
 
   void take(Outcome outcome) {
@@ -139,7 +183,7 @@ class Runner {
   }
 
   const RunOptions& options_;
-  WallPrograms programs_;
+  WallSite site_;
   std::vector<Scenario> scenarios_;
   std::mutex mutex_;
   std::vector<Outcome> outcomes_;
@@ -148,7 +192,8 @@ class Runner {
 void list_scenarios(const std::vector<Scenario>& scenarios) {
   for (const Scenario& s : scenarios) {
     const char* const times = !s.runs_wall ? "virtual" : s.runs_virtual ? "both" : "wall";
-    fmt::print("{:32} {:7} {:5.0f} min  {}\n", s.name, times, s.minutes, s.title);
+    const char* const real = why_not_real(s).empty() ? "real" : "-";
+    fmt::print("{:32} {:7} {:4} {:5.0f} min  {}\n", s.name, times, real, s.minutes, s.title);
   }
 }
 
@@ -195,7 +240,12 @@ void add_run_command(ProgramCommand& app) {
       "  bess-hil run tests/scenarios --time both --junit build/hil.xml\n"
       "  bess-hil run mine.toml --report mine.html\n"
       "  bess-hil run tests/scenarios --list\n"
-      "Exit codes: 0 all passed, 1 one failed or a file is bad, 2 the command line is bad.");
+      "  bess-hil run tests/scenarios/quiet_hour.toml --real 192.168.1.20:502 "
+      "--yes-drive-real-battery\n"
+      "      --real-map alphaess --real-capacity-wh 8000 --real-power-w 500 --real-soc-min 0.3 "
+      "--real-soc-max 0.7\n"
+      "Exit codes: 0 all passed, 1 one failed or a file is bad, 2 the command line is bad, 3 "
+      "interrupted.");
   command.option("scenarios", options->places, "Scenario files, or folders of them")
       .value_name("SCENARIO...");
   command.choice<Times>(
@@ -206,7 +256,8 @@ void add_run_command(ProgramCommand& app) {
   command.option("--jobs", options->jobs, "Scenarios beside each other, in wall time")
       .range(1, 64)
       .with_default();
-  command.flag("--list", options->list, "Only name the scenarios");
+  command.flag("--list", options->list,
+               "Only name the scenarios, their times, and which may drive a real battery");
   command.flag("--invariants", options->list_invariants, "Only name what is judged");
   command.flag("--json", options->json, "One JSON object instead of lines");
   command.option("--junit", options->junit, "Write JUnit XML here");
@@ -214,6 +265,7 @@ void add_run_command(ProgramCommand& app) {
   command.option("--edge", options->edge, "bess-edge; default: the one beside this program");
   command.option("--simulators", options->simulators,
                  "bess-sim; default: the one beside this program");
+  add_real_options(command, options->real);
   command.runs([options] { run(*options); });
 }
 

@@ -17,7 +17,7 @@ namespace {
 constexpr const char* kChargeColour = "#0072b2";
 constexpr const char* kDischargeColour = "#d55e00";
 constexpr const char* kRestColour = "#8a8f98";
-constexpr std::size_t kPointsMax = 3'000;  ///< a picture is 900 pixels wide
+constexpr std::size_t kDrawnPointsMax = 3'000;  ///< a picture is 900 pixels wide
 
 std::string svg_of(const std::string& commands, int height_px) {
   const WorkFolder folder;
@@ -40,7 +40,7 @@ std::string svg_of(const std::string& commands, int height_px) {
 template <typename Row>
 std::string block(const char* name, std::size_t count, const Row& row) {
   std::string text = fmt::format("${} << EOD\n", name);
-  const std::size_t stride = std::max<std::size_t>(1, count / kPointsMax);
+  const std::size_t stride = std::max<std::size_t>(1, count / kDrawnPointsMax);
   for (std::size_t i = 0; i < count; i += stride) text += row(i);
   return text + "EOD\n";
 }

@@ -47,13 +47,13 @@ std::uint64_t signature_of(const Evidence& evidence) {
   return signature.value();
 }
 
-void run_and_judge(const Scenario& scenario, const WallPrograms& programs, Outcome& outcome,
+void run_and_judge(const Scenario& scenario, const WallSite& site, Outcome& outcome,
                    WorkFolder& folder) {
   outcome.prices = scenario_prices(scenario);
   const EdgeConfig config =
       load_edge_settings(folder.file("judge.toml"), edge_settings(scenario, outcome.prices, {}));
   outcome.evidence = outcome.is_virtual ? run_virtual(scenario, outcome.prices, config)
-                                        : run_wall(scenario, outcome.prices, programs, folder);
+                                        : run_wall(scenario, outcome.prices, site, folder);
   outcome.evidence.order_ends_by_itself = config.control.has_watchdog;
   outcome.evidence.order_duration_s = config.map.watchdog.duration_s;
   if (outcome.is_virtual) outcome.signature = signature_of(outcome.evidence);
@@ -73,18 +73,22 @@ std::string complaint(const Outcome& outcome) {
                      first.expected, first.seen, utc_text(first.utc_s).view(), minute, more);
 }
 
-Outcome run_scenario(const Scenario& scenario, bool in_virtual_time, const WallPrograms& programs) {
+Outcome run_scenario(const Scenario& scenario, bool in_virtual_time, const WallSite& site) {
   Outcome outcome;
-  outcome.scenario = scenario;
+  outcome.scenario = site.battery ? on_real_battery(scenario, *site.battery) : scenario;
   outcome.is_virtual = in_virtual_time;
+  outcome.is_real = site.battery.has_value();
   if (in_virtual_time && !scenario.runs_virtual) outcome.skipped = "for wall time";
   if (!in_virtual_time && !scenario.runs_wall) outcome.skipped = "for virtual time";
+  if (site.battery && outcome.skipped.empty()) {
+    outcome.skipped = why_not_real(scenario, *site.battery);
+  }
   if (!in_virtual_time && outcome.skipped.empty()) outcome.skipped = why_not_wall(scenario);
   if (!outcome.skipped.empty()) return outcome;
   const auto begin = std::chrono::steady_clock::now();
   WorkFolder folder;
   try {
-    run_and_judge(scenario, programs, outcome, folder);
+    run_and_judge(outcome.scenario, site, outcome, folder);
   } catch (const std::exception& error) {
     outcome.error = error.what();
   }

@@ -6,7 +6,7 @@
 
 namespace bess {
 
-/// Never throws for what the scenario does: that is an outcome.
-Outcome run_scenario(const Scenario& scenario, bool in_virtual_time, const WallPrograms& programs);
+/// Never throws for what the scenario does, that is an outcome; throws Interrupted when a stop was requested.
+Outcome run_scenario(const Scenario& scenario, bool in_virtual_time, const WallSite& site);
 
 }  // namespace bess

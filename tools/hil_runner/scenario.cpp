@@ -64,17 +64,13 @@ void pairs(TomlTable& table, std::string_view key, const Take& take) {
   }
 }
 
-/// A map is named as in edge/maps, or by its path.
-std::string map_path(const std::string& name, const fs::path& folder) {
-  if (name.find('/') == std::string::npos && !name.ends_with(".toml")) {
-    return std::string(BESS_MAP_DIR) + "/" + name + ".toml";
-  }
-  return (folder / name).lexically_normal().string();
-}
-
 void read_battery(TomlTable table, const fs::path& folder, ScenarioBattery& battery) {
   std::string map = "alphaess";
   assign(table, "map", map);
+  battery.names_map = table.has("map");
+  for (const char* key : {"soc", "power_w", "capacity_wh", "soc_floor", "soc_ceiling"}) {
+    battery.sets_state = battery.sets_state || table.has(key);
+  }
   battery.map = map_path(map, folder);
   if (table.ok() && !fs::exists(battery.map)) {
     table.fail("map", "names no register map: " + battery.map);
@@ -280,6 +276,13 @@ void each(TomlTable& table, std::string_view key, const Read& read) {
 }
 
 }  // namespace
+
+std::string map_path(const std::string& name, const fs::path& folder) {
+  if (name.find('/') == std::string::npos && !name.ends_with(".toml")) {
+    return std::string(BESS_MAP_DIR) + "/" + name + ".toml";
+  }
+  return (folder / name).lexically_normal().string();
+}
 
 std::string_view event_name(ScenarioEvent::Does does) {
   return kEventNames[static_cast<std::size_t>(does)];

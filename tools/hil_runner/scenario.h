@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -32,6 +33,8 @@ struct ScenarioBattery {
   BatteryParameters physics{
       .power_w_max = 4'000, .capacity_wh = 8'000, .soc_min_frac = 0, .soc_max_frac = 1};
   std::int32_t response_delay_ms = 20;
+  bool names_map = false;   ///< the scenario is about this map
+  bool sets_state = false;  ///< SoC, size or limits are the scenario's, not just any
 };
 
 struct ScenarioPrices {
@@ -131,6 +134,9 @@ struct Scenario {
   [[nodiscard]] std::int64_t utc_ns_at(double minute) const;
   [[nodiscard]] std::int64_t end_utc_ns() const { return utc_ns_at(minutes); }
 };
+
+/// A map is named as in edge/maps, or by its path, relative to `folder`.
+std::string map_path(const std::string& name, const std::filesystem::path& folder);
 
 /// Throws UserError naming file and line.
 Scenario read_scenario(const std::string& path);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "shared/scaled_clock.h"
+#include "tools/hil_runner/stop_request.h"
 
 namespace bess {
 namespace {
@@ -47,6 +48,7 @@ bool VirtualTime::has_event_until(std::int64_t monotonic_ns) const {
 }
 
 void VirtualTime::advance_to(std::int64_t monotonic_ns) {
+  throw_if_stopped();
   while (has_event_until(monotonic_ns) || (edge_is_paused_ && next_event_ns_ != INT64_MAX)) {
     const ScenarioEvent& event = events_[next_event_];
     now_ns_ = std::max(now_ns_, next_event_ns_);

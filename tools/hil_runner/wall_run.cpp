@@ -25,6 +25,7 @@
 #include "shared/scaled_clock.h"
 #include "shared/utc_text.h"
 #include "tools/hil_runner/edge_settings.h"
+#include "tools/hil_runner/stop_request.h"
 
 namespace bess {
 namespace {
@@ -37,11 +38,13 @@ constexpr double kSlackMaxS =
     60;  ///< simulated: later, an order would be judged by the next cycle's price
 constexpr int kSmallDiskBytes = 1'024 * 1'024;
 
-/// A program whose output goes to a file: a pipe that nobody reads would stop it.
+/// A program whose output goes to a file: a pipe that nobody reads would stop it. It ends with this one, however
+/// that ends.
 std::unique_ptr<ChildProcess> start_logged(std::vector<std::string> arguments,
                                            const std::string& log) {
-  arguments.insert(arguments.begin(),
-                   {"/bin/sh", "-c", "log=$0; exec \"$@\" >>\"$log\" 2>&1", log});
+  arguments.insert(
+      arguments.begin(),
+      {"/bin/sh", "-c", "log=$0; exec setpriv --pdeathsig TERM \"$@\" >>\"$log\" 2>&1", log});
   return std::make_unique<ChildProcess>(arguments);
 }
 
@@ -114,9 +117,9 @@ class Lateness {
 
 class WallRun {
  public:
-  WallRun(const Scenario& scenario, const MinuteSeries& prices, const WallPrograms& programs,
+  WallRun(const Scenario& scenario, const MinuteSeries& prices, const WallSite& site,
           const WorkFolder& folder)
-      : scenario_(scenario), prices_(prices), programs_(programs), folder_(folder) {
+      : scenario_(scenario), prices_(prices), site_(site), folder_(folder) {
     using enum ScenarioEvent::Does;
     if (std::ranges::any_of(scenario.events, [](const auto& e) { return e.does == kDiskFull; })) {
       disk_.emplace(folder.file("state"));
@@ -138,19 +141,36 @@ class WallRun {
   Evidence run() {
     write_minute_file(folder_.file("minutes.csv"), prices_, "");
     anchor_ns_ = clock_ns(CLOCK_MONOTONIC) + kStartUpNs;
-    if (scenario_.battery.rtu) line_.emplace();
-    start_battery();
+    if (!site_.battery) {
+      if (scenario_.battery.rtu) line_.emplace();
+      start_battery();
+      return run_edge();
+    }
+    key_.emplace();
+    try {
+      commission();
+      anchor_ns_ = clock_ns(CLOCK_MONOTONIC) + kStartUpNs;
+      return run_edge();
+    } catch (...) {
+      if (edge_ != nullptr || !recordings_.empty()) give_back();
+      throw;
+    }
+  }
+
+ private:
+  [[nodiscard]] std::string settings() const {
+    return edge_settings(scenario_, prices_,
+                         {.battery_port = battery_port_,
+                          .serial_device = line_ ? line_->device(1) : "",
+                          .battery_link = site_.battery ? link_keys(*site_.battery) : "",
+                          .market_port = market_port_,
+                          .anchor_monotonic_ns = anchor_ns_});
+  }
+
+  Evidence run_edge() {
     start_market();
-    const EdgePlaces places{.battery_port = battery_port_,
-                            .serial_device = line_ ? line_->device(1) : "",
-                            .market_port = market_port_,
-                            .anchor_monotonic_ns = anchor_ns_};
-    config_ =
-        load_edge_settings(folder_.file("edge.toml"), edge_settings(scenario_, prices_, places));
-    std::string error;
-    const CommissionResult passed{.verdict = CommissionVerdict::kPassed};
-    if (!write_commission_file(config_, passed, scenario_.start_utc_s, error))
-      throw UserError(error);
+    config_ = load_edge_settings(folder_.file("edge.toml"), settings());
+    if (!site_.battery) pretend_commissioned();
     start_edge();
     for (const ScenarioEvent& event : scenario_.events) {
       sleep_until_minute(event.at_min);
@@ -160,15 +180,83 @@ class WallRun {
     return end();
   }
 
- private:
-  void sleep_until_minute(double minute) const {
+  /// The sign of a simulated battery is known.
+  void pretend_commissioned() const {
+    std::string error;
+    const CommissionResult passed{.verdict = CommissionVerdict::kPassed};
+    if (!write_commission_file(config_, passed, scenario_.start_utc_s, error))
+      throw UserError(error);
+  }
+
+  void sleep_until_minute(double minute) {
+    constexpr std::int64_t kLookNs = 50'000'000;
     const auto wall_ns = static_cast<std::int64_t>(minute * 60e9 / scenario_.time_scale);
     const std::int64_t until_ns = anchor_ns_ + wall_ns;
-    while (clock_ns(CLOCK_MONOTONIC) < until_ns) sleep_until_monotonic(until_ns);
+    for (std::int64_t now_ns = 0; (now_ns = clock_ns(CLOCK_MONOTONIC)) < until_ns;) {
+      look();
+      sleep_until_monotonic(std::min(until_ns, now_ns + kLookNs));
+    }
+  }
+
+  // --- a real battery -----------------------------------------------------------------------------
+  /// Throws when it is to end.
+  void look() {
+    if (key_ && key_->is_pressed()) request_stop();
+    throw_if_stopped();
+    if (!site_.battery || clock_ns(CLOCK_MONOTONIC) < next_look_ns_) return;
+    next_look_ns_ = clock_ns(CLOCK_MONOTONIC) + kNanosecondsPerSecond;
+    Evidence so_far;
+    try {
+      read_log(so_far);
+    } catch (const UserError&) {
+      return;  // its last row is being written
+    }
+    if (so_far.log.empty()) return;
+    const LoggedCycle& cycle = so_far.log.back();
+    tell(cycle);
+    const std::string broken = beyond_limits(cycle, *site_.battery);
+    if (!broken.empty()) fail("stopped: {}, beyond the limits of --real", broken);
+  }
+
+  void tell(const LoggedCycle& cycle) const {
+    if (isatty(STDERR_FILENO) == 0) return;
+    fmt::print(stderr,
+               "\r{}: minute {} of {:.0f}, {} W ordered, {} W measured, SoC {:.1f} %; Q ends it  ",
+               scenario_.name, (cycle.utc_s - scenario_.start_utc_s) / 60, scenario_.minutes,
+               cycle.ordered_power_w, cycle.battery_power_w, cycle.soc_e4 / 100.0);
+  }
+
+  /// The edge's own check of the sign: half a minute of a small order.
+  void commission() {
+    config_ = load_edge_settings(folder_.file("edge.toml"), settings());
+    start_edge_with({"commission", "--config", folder_.file("edge.toml"), "--yes"});
+    while (!edge_->has_ended()) {
+      if (key_->is_pressed()) request_stop();
+      throw_if_stopped();
+      usleep(50'000);
+    }
+    const int code = edge_->wait();
+    edge_.reset();
+    if (code != 0) fail("{}", last_line(edge_log_));
+  }
+
+  /// Stops the edge, which releases the battery; where it did not, says so and tries it once more.
+  void give_back() {
+    end_edge(SIGTERM);
+    const std::string said = std::filesystem::exists(edge_log_) ? read_file(edge_log_) : "";
+    for (const char* const done : {"stopped: battery released", "stopped: no order was in force"}) {
+      if (said.find(done) == std::string::npos) continue;
+      return fmt::print(stderr, "{}: {}\n", scenario_.name, done);
+    }
+    start_edge_with({"release", "--config", folder_.file("edge.toml"), "--yes"});
+    const int code = edge_->wait();
+    edge_.reset();
+    fmt::print(stderr, "{}: {}\n", scenario_.name, last_line(edge_log_));
+    if (code != 0) fmt::print(stderr, "{}: NOT RELEASED, look after the battery\n", scenario_.name);
   }
 
   [[nodiscard]] std::vector<std::string> simulator(const std::string& name) const {
-    return {programs_.simulators,    name,
+    return {site_.simulators,        name,
             "--utc-start",           std::string(utc_text(scenario_.start_utc_s).view()),
             "--time-scale",          std::to_string(scenario_.time_scale),
             "--anchor-monotonic-ns", std::to_string(anchor_ns_)};
@@ -262,8 +350,17 @@ class WallRun {
   }
 
   void start_edge() {
-    edge_ = start_logged({programs_.edge, "--config", folder_.file("edge.toml")},
-                         folder_.file("edge.log"));
+    std::vector<std::string> arguments = {"--config", folder_.file("edge.toml")};
+    if (site_.battery) {
+      recordings_.push_back(folder_.file(fmt::format("bus-{}.jsonl", recordings_.size() + 1)));
+      arguments.insert(arguments.end(), {"--record", recordings_.back()});
+    }
+    start_edge_with(arguments);
+  }
+  void start_edge_with(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), site_.edge);
+    edge_log_ = folder_.file(fmt::format("edge-{}.log", ++edges_));
+    edge_ = start_logged(arguments, edge_log_);
   }
 
   void apply(const ScenarioEvent& event) {
@@ -323,11 +420,14 @@ class WallRun {
   }
 
   Evidence end() {
-    end_edge(SIGTERM);
-    // What was left in force may still run out: the battery's record goes on for one timer.
+    if (site_.battery) {
+      give_back();
+    } else {
+      end_edge(SIGTERM);
+    }
     Evidence evidence;
     evidence.edge_exit_code = exit_code_;
-    evidence.edge_last_line = last_line(folder_.file("edge.log"));
+    evidence.edge_last_line = last_line(edge_log_);
     const bool has_battery = end_simulator(battery_);
     evidence.is_alive_at_end = end_simulator(market_) && has_battery;
     const double late_s = kLateS + kLateFactor * lateness_.worst_s();
@@ -339,9 +439,14 @@ class WallRun {
           "fewer --jobs, or a smaller time_scale",
           lateness_.worst_s(), scenario_.time_scale);
     }
-    read_orders(evidence);
-    read_minutes(evidence);
     read_log(evidence);
+    if (site_.battery) {
+      evidence.orders = orders_on_the_bus(recordings_, config_.map, scenario_.end_utc_ns());
+      evidence.minutes = measured_minutes(evidence.log);
+    } else {
+      read_orders(evidence);
+      read_minutes(evidence);
+    }
     return evidence;
   }
 
@@ -420,25 +525,30 @@ class WallRun {
 
   const Scenario& scenario_;
   const MinuteSeries& prices_;
-  const WallPrograms& programs_;
+  const WallSite& site_;
   const WorkFolder& folder_;
   Lateness lateness_;
   std::optional<SmallDisk> disk_;
   std::optional<PtyBridge> line_;
+  std::optional<AbortKey> key_;
+  std::vector<std::string> recordings_;  ///< of a real battery's bus, one of each edge that ran
+  std::int64_t next_look_ns_ = 0;
   EdgeConfig config_;
   std::int64_t anchor_ns_ = 0;
   int battery_port_ = 1;
   int market_port_ = 0;
   int markets_ = 0;
+  int edges_ = 0;
+  std::string edge_log_;  ///< of the one that was started last
   int exit_code_ = 0;
   std::unique_ptr<ChildProcess> battery_, market_, edge_;
 };
 
 }  // namespace
 
-Evidence run_wall(const Scenario& scenario, const MinuteSeries& prices,
-                  const WallPrograms& programs, const WorkFolder& folder) {
-  return WallRun(scenario, prices, programs, folder).run();
+Evidence run_wall(const Scenario& scenario, const MinuteSeries& prices, const WallSite& site,
+                  const WorkFolder& folder) {
+  return WallRun(scenario, prices, site, folder).run();
 }
 
 std::string why_not_wall(const Scenario& scenario) {
