@@ -72,7 +72,7 @@ make_arm64_base() {
 # libraries_of PROGRAM FOLDER: what it needs beyond the C library, and what they need, out of the sysroot.
 libraries_of() {
   local name file
-  for name in $(aarch64-linux-gnu-objdump -p "$1" | awk '$1 == "NEEDED" {print $2}' | grep -vE '^(libc|libm|ld-linux)'); do
+  for name in $(aarch64-linux-gnu-objdump -p "$1" | awk '$1 == "NEEDED" {print $2}' | grep -vE '^(libc|libm)\.so|^ld-linux'); do
     [ ! -e "$2/$name" ] || continue
     file=$(find "$sysroot/usr/lib/aarch64-linux-gnu" "$sysroot/lib/aarch64-linux-gnu/" -maxdepth 1 -name "$name" | head -n 1)
     [ -n "$file" ] || die "$name, which ${1##*/} needs, is not in $sysroot"
