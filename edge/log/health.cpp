@@ -83,6 +83,9 @@ Health assess_health(const HealthInputs& in) {
     check_cycle(in, health.reasons);
   }
   if (in.is_of_this_run) check_age(in, health.reasons);
+  if (!in.update_trouble.empty()) {
+    health.reasons.push_back("WARN: update: " + std::string(in.update_trouble));
+  }
   if (in.disk_is_slow)
     health.reasons.emplace_back("WARN: records not logged, the disk is too slow");
   const std::int64_t cycles_behind_max = in.is_of_this_run ? 1 : 0;

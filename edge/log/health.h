@@ -32,6 +32,7 @@ struct HealthInputs {
   bool price_step_held = false;
   double held_eur_per_mwh = 0;  ///< price of the row that waits for the next
   bool hold_is_unreadable = false;
+  std::string_view update_trouble;  ///< what the last upgrade ended badly with; empty = none
 };
 
 enum class HealthLevel { kOk = 0, kDegraded = 1, kNotRunning = 3 };  ///< also the exit codes

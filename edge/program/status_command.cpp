@@ -111,11 +111,13 @@ int controller_of(const EdgeConfig& config, JsonValue status, bool no_lock) {
   return holder == kHolderHidden ? living_writer_of(status) : holder;
 }
 
-Health health_of(const EdgeConfig& config, JsonValue status, bool no_lock) {
+Health health_of(const EdgeConfig& config, JsonValue status, bool no_lock,
+                 const std::string& update_trouble) {
   const int holder = controller_of(config, status, no_lock);
   HealthInputs in;
   in.is_running = holder != 0;
   in.disk_is_full = disk_is_full(config);
+  in.update_trouble = update_trouble;
   if (!status.exists()) return assess_health(in);
   in.is_of_this_run = holder == whole(status["pid"]);
   in.age_ms = age_ms_of(status);
@@ -249,7 +251,8 @@ void print_last_orders(const EdgeConfig& config) {
   }
 }
 
-void print_text(const EdgeConfig& config, JsonValue status, const Health& health) {
+void print_text(const EdgeConfig& config, JsonValue status, const Health& health,
+                const UpdateState& update) {
   print_health(health);
   if (status.exists()) {
     std::printf("controller %s, process %lld since %s, version %s, student %s\n",
@@ -262,8 +265,8 @@ void print_text(const EdgeConfig& config, JsonValue status, const Health& health
     if (whole(field<&T::cycles>(status)) > 0) print_last_cycle(status);
     print_counters(status);
   }
-  const std::string update = update_note(read_update_state(kUpdateFolder));
-  if (!update.empty()) std::printf("update     %s\n", update.c_str());
+  const std::string note = update_note(update);
+  if (!note.empty()) std::printf("update     %s\n", note.c_str());
   print_last_orders(config);
 }
 
@@ -277,13 +280,12 @@ Json update_json(const UpdateState& update) {
                        {"needed_cycles", update.needed_cycles}});
 }
 
-void print_json(Json status, const Health& health) {
+void print_json(Json status, const Health& health, const UpdateState& update) {
   if (!status.value().is_object()) status = Json::object();
   Json reasons = Json::list();
   for (const std::string& reason : health.reasons) reasons.add(reason);
   status.set("health", health_name(health.level));
   status.set("health_reasons", std::move(reasons));
-  const UpdateState update = read_update_state(kUpdateFolder);
   if (!update.phase.empty()) status.set("update", update_json(update));
   std::fputs(status.text().c_str(), stdout);
 }
@@ -305,13 +307,15 @@ bool print_metrics(const EdgeConfig& config) {
 
 int print_once(const CommandLine& command_line, const EdgeConfig& config) {
   Json status = read_status(config);
-  const Health health = health_of(config, status.value(), command_line.no_lock);
+  const UpdateState update = read_update_state(kUpdateFolder);
+  const Health health =
+      health_of(config, status.value(), command_line.no_lock, update_trouble(update));
   if (command_line.prometheus) {
     if (!print_metrics(config)) return 1;
   } else if (command_line.json) {
-    print_json(std::move(status), health);
+    print_json(std::move(status), health, update);
   } else {
-    print_text(config, status.value(), health);
+    print_text(config, status.value(), health, update);
   }
   std::fflush(stdout);
   return static_cast<int>(health.level);

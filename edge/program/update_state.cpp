@@ -61,6 +61,12 @@ std::string update_note(const UpdateState& state) {
   return state.version + "; " + refused;
 }
 
+std::string update_trouble(const UpdateState& state) {
+  const bool ended_badly =
+      state.phase == "failed" || state.phase == "going_back" || state.phase == "rolled_back";
+  return ended_badly ? update_note(state) : "";
+}
+
 std::vector<UpdateEvent> read_update_history(const std::string& folder) {
   std::vector<UpdateEvent> events;
   std::ifstream file(folder + "/history");

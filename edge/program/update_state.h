@@ -28,6 +28,9 @@ UpdateState read_update_state(const std::string& folder);
 /// For people, in one line; empty without phase.
 std::string update_note(const UpdateState& state);
 
+/// What health says of the last upgrade, until the next one or `bess-update dismiss`; empty when it did not end badly.
+std::string update_trouble(const UpdateState& state);
+
 /// One line of the history.
 struct UpdateEvent {
   std::string utc;

@@ -7,6 +7,8 @@
 # They use $folder, $source and $programs (where bess-sim is). The kernel is this machine's: a cut kills all processes
 # of a machine, but what they had written without waiting for the disk is not lost.
 
+# shellcheck source=tests/guest/site.sh
+. "$source/tests/guest/site.sh"
 die() { echo "${0##*/}: $*" >&2; exit 1; }
 skip() { echo "${0##*/}: skipped: $*"; exit 77; }
 declare -A container first
@@ -34,16 +36,8 @@ make_base() {
   mkdir -p "$base.new"
   tar -C "$base.new" -xf "$folder/root.tar"
   rm -rf "$base.new"/boot/*
-  mkdir -p "$base.new/opt/bess-site/lib" "$base.new/etc/bess"
-  cp "$programs/bess-sim" "$source/edge/maps/alphaess.toml" "$source/tests/guest/start_site" "$base.new/opt/bess-site/"
+  site_into "$base.new"
   ldd "$programs/bess-sim" | awk '$3 ~ /^\// {print $3}' | grep -vE '/(libc|libm)\.so' | xargs -I{} cp -L {} "$base.new/opt/bess-site/lib/"
-  awk 'BEGIN { print "minute_utc,indicative_eur_mwh,settled_eur_mwh"
-    for (m = -60; m < 7200; ++m) { p = 100 + 900 * sin(m / 40)
-      printf "%s,%.2f,%.2f\n", strftime("%Y-%m-%dT%H:%M:%SZ", 1679788800 + 60 * m, 1), p, p } }' >"$base.new/opt/bess-site/minutes.csv"
-  cp "$source/tests/guest/edge.toml.in" "$base.new/opt/bess-site/"
-  cp "$source/tests/guest/bess-site.service" "$base.new/etc/systemd/system/"
-  ln -s /etc/systemd/system/bess-site.service "$base.new/etc/systemd/system/multi-user.target.wants/"
-  ln -sf /dev/null "$base.new/etc/systemd/system/time-sync.target"       # simulated time
   mv "$base.new" "$base"
 }
 

@@ -86,6 +86,8 @@ cp bookworm.img booted.img
 echo "root=PARTUUID=1-02 rootwait" | mcopy -o -i booted.img@@1048576 - ::cmdline.txt
 refuses "no image" "noise.img: is no disk image" noise.img --package "$package"
 refuses "a truncated .xz" "cut.img.xz: cannot be unpacked, it is damaged or not whole" cut.img.xz --package "$package"
+head -c 20000000 bookworm.img >cut.img
+refuses "a truncated image" "cut.img: is not whole" cut.img --package "$package"
 refuses "a missing image" "absent.img: no such image" absent.img --package "$package"
 refuses "another release" "holds release bullseye" bullseye.img --package "$package"
 refuses "trixie without cloud-init" "trixie without cloud-init" old_trixie.img --package "$package"
@@ -98,6 +100,29 @@ refuses "no certificate" "a package without a certificate is not installed" book
 spoil='sed -i "s/PROPERTY_3 0/PROPERTY_3 7/" student_weights.h'
 refuses "violations" "violations of properties 1 / 2 / 3: [0, 0, 7]" bookworm.img --package "$(made_up_package spoilt arm64 1.3)"
 spoil=''
+printf 'control = = true\n' >edge.toml
+refuses "settings that are no TOML" "edge.toml: Invalid value (at line 1" bookworm.img --package "$package"
+echo "control = false" >edge.toml
+cp bookworm.img none.img
+before=$(sha256sum none.img)
+code=0
+flash none.img --out none.img --package "$package" || code=$?
+[ $code -eq 1 ] && grep -q "is the image that was given" said && [ "$before" = "$(sha256sum none.img)" ] ||
+  fail "an image over itself, exit code $code: $(cat said)"
+code=0
+flash bookworm.img --out absent/out.img --package "$package" || code=$?
+[ $code -eq 1 ] && grep -q "absent/out.img: there is no such folder" said || fail "no folder for the image: $(cat said)"
+# The archive out of reach; apt still asks, and is told no at once by a port that nobody serves.
+sed -i '/^Package: libcurl4$/,/^$/d' tree-bookworm/var/lib/dpkg/status
+image_of lacking bookworm init_config 2>/dev/null || true
+debugfs -w -R "rm /var/lib/dpkg/status" "lacking.img?offset=$((34816 * 512))" 2>/dev/null
+debugfs -w -R "write tree-bookworm/var/lib/dpkg/status /var/lib/dpkg/status" "lacking.img?offset=$((34816 * 512))" 2>/dev/null
+export http_proxy=http://127.0.0.1:9
+code=0
+flash lacking.img --out none2.img --package "$package" || code=$?
+unset http_proxy
+[ $code -eq 1 ] && grep -q "Debian's archive does not answer: E: .*--debs FOLDER" said || fail "no network, exit code $code: $(cat said)"
+[ ! -e none2.img ] && [ ! -e none2.img.new ] || fail "no network: something is left"
 echo "-----BEGIN OPENSSH PRIVATE KEY-----" >key.pub
 refuses "a private key" "key.pub: is no public ssh key" bookworm.img --package "$package"
 

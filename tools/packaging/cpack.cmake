@@ -4,6 +4,9 @@
 include(${CMAKE_SOURCE_DIR}/edge/package/install.cmake)
 if(TARGET bess-train)
   install(TARGETS bess-train bess-sim DESTINATION bin COMPONENT workstation)
+  # Its own copies: on a workstation bess-edge need not be installed, and may be.
+  install(DIRECTORY ${CMAKE_SOURCE_DIR}/edge/maps ${CMAKE_SOURCE_DIR}/edge/meters DESTINATION share/bess-workstation
+          COMPONENT workstation FILES_MATCHING PATTERN *.toml)
   install(DIRECTORY ${CMAKE_BINARY_DIR}/package/workstation/ DESTINATION . COMPONENT workstation)
 endif()
 

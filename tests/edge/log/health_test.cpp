@@ -37,6 +37,8 @@ TEST(Health, EveryTroubleHasItsReason) {
       {[](HealthInputs& in) { in.is_of_this_run = false; }, HealthLevel::kDegraded, "no cycle has"},
       {[](HealthInputs& in) { in.cycles = 0; }, HealthLevel::kDegraded, "no cycle has"},
       {[](HealthInputs& in) { in.age_ms = 240'001; }, HealthLevel::kDegraded, "WARN: the last"},
+      {[](HealthInputs& in) { in.update_trouble = "1.0; 2.0 was rolled back: it hangs"; },
+       HealthLevel::kDegraded, "WARN: update: 1.0; 2.0 was rolled back: it hangs"},
       {[](HealthInputs& in) { in.meter_status = "timeout"; }, HealthLevel::kDegraded,
        "WARN: meter: timeout"},
       {[](HealthInputs& in) { in.limit_status = "timeout"; }, HealthLevel::kDegraded,

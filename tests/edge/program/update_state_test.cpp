@@ -40,6 +40,21 @@ TEST(UpdateState, ARollBackTellsWhatAndWhyAlsoWithAnEqualsSign) {
             "1.0; 2.0 was rolled back: map x: unit = 7");
 }
 
+TEST(UpdateState, OnlyWhatEndedBadlyIsTroubleForHealth) {
+  const TemporaryFolder folder;
+  const auto trouble_of = [&](const std::string& phase) {
+    static_cast<void>(
+        folder.write("state", "phase=" + phase + "\nversion=1.0\nrefused=2.0\nreason=it hangs\n"));
+    return update_trouble(read_update_state(folder_of(folder)));
+  };
+  EXPECT_EQ(trouble_of("rolled_back"), "1.0; 2.0 was rolled back: it hangs");
+  EXPECT_EQ(trouble_of("going_back"), "2.0 is being rolled back: it hangs");
+  EXPECT_EQ(trouble_of("failed"), "1.0 did not confirm: it hangs");
+  for (const char* const phase : {"upgrading", "trying", "confirmed", ""}) {
+    EXPECT_EQ(trouble_of(phase), "") << phase;
+  }
+}
+
 TEST(UpdateHistory, OldestFirstAndNotWhatAPowerCutTore) {
   const TemporaryFolder folder;
   static_cast<void>(

@@ -157,6 +157,11 @@ touch dpkg_fails
 run supervise
 expect phase rolled_back "dpkg was busy at the first attempt"
 expect_version 1.0 "dpkg was busy at the first attempt"
+run dismiss || fail "a dismissal: $(cat said)"
+expect phase confirmed "a dismissal"
+! grep -q rolled_back "$BESS_ROOT/var/lib/bess-update/update.prom" || fail "the metrics tell of what was dismissed"
+[ -e "$BESS_ROOT/etc/apt/preferences.d/bess-edge-rolled-back.pref" ] || fail "apt may bring again what was dismissed"
+! run dismiss || fail "dismissed twice"
 
 # The version after one that failed: its way back is the version that works, and it may confirm.
 upgrade 3.0
@@ -182,6 +187,7 @@ rm -f "$BESS_ROOT/var/lib/bess-update/confirmed.deb"
 echo 1.0 >crashes
 run supervise
 expect phase failed "a first installation that does not work"
+grep -q 'bess_update_failed{version="1.0"' "$BESS_ROOT/var/lib/bess-update/update.prom" || fail "a failure is not in the metrics"
 expect_version 1.0 "a first installation that does not work"
 
 machine
