@@ -6,8 +6,8 @@
 namespace bess {
 
 void add_rules_commands(ProgramCommand& app) {
-  ProgramCommand rules =
-      app.subcommand("rules", "Your own rules: whom they bind, who breaks them, what they cost and change");
+  ProgramCommand rules = app.subcommand(
+      "rules", "Your own rules: whom they bind, who breaks them, what they cost and change");
   rules.requires_subcommand();
   add_rules_check(rules);
   add_rules_price(rules);
