@@ -11,12 +11,15 @@ ProgramOption RuleFiles::add(ProgramCommand& command, const std::string& help) {
 
 RuleSet RuleFiles::read() const { return load_rules(paths_); }
 
-void RuleFiles::apply(RunConfig& config, ContextKind kind) const {
-  if (!given()) return;
-  config.distil.rules = read();
+void use_rules(RunConfig& config, const RuleSet& rules, ContextKind kind) {
   PriceThresholds& thresholds = config.distil.correction.thresholds;
-  require_consistent(config.distil.rules, thresholds, kind);
-  thresholds = config.distil.rules.thresholds(thresholds);
+  require_consistent(rules, thresholds, kind);
+  config.distil.rules = rules;
+  thresholds = rules.thresholds(thresholds);
+}
+
+void RuleFiles::apply(RunConfig& config, ContextKind kind) const {
+  if (given()) use_rules(config, read(), kind);
 }
 
 }  // namespace bess

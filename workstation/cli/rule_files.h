@@ -10,6 +10,10 @@
 
 namespace bess {
 
+/// Into a distillation: the rules, with their thresholds in place of the configured ones. Throws UserError when
+/// they contradict each other.
+void use_rules(RunConfig& config, const RuleSet& rules, ContextKind kind);
+
 class RuleFiles {
  public:
   /// Declares --rules.
@@ -18,8 +22,7 @@ class RuleFiles {
   [[nodiscard]] bool given() const { return !paths_.empty(); }
   /// None when the option was not given.
   [[nodiscard]] RuleSet read() const;
-  /// Into a distillation: the rules, with their thresholds in place of the configured ones. Throws UserError
-  /// when they contradict each other.
+  /// use_rules() of read(); nothing when the option was not given.
   void apply(RunConfig& config, ContextKind kind) const;
 
  private:

@@ -2,25 +2,23 @@
 // policy's decisions, in seconds; then, if a teacher is given, by distilling a student with them and one without.
 #include <fmt/core.h>
 
+#include <cstdio>
 #include <memory>
 
 #include "shared/host/json.h"
 #include "shared/host/user_error.h"
-#include "workstation/cli/chain_steps.h"
 #include "workstation/cli/common_options.h"
-#include "workstation/cli/interruption.h"
+#include "workstation/cli/distilled_prices.h"
 #include "workstation/cli/policy_factory.h"
 #include "workstation/cli/price_input.h"
 #include "workstation/cli/rule_files.h"
 #include "workstation/cli/rules.h"
 #include "workstation/env/evaluate.h"
+#include "workstation/rules/rule_conflicts.h"
 #include "workstation/rules/ruled_policy.h"
-#include "workstation/student/student_policy.h"
 
 namespace bess {
 namespace {
-
-constexpr const char* kAllTogether = "all together";
 
 struct PriceArguments {
   CommonOptions common;
@@ -29,13 +27,11 @@ struct PriceArguments {
   std::string prices;
   std::string policy = "compiled";
   std::string teacher;
+  std::string keep;
   std::string split = "val+test";
+  int seeds = 1;
+  bool alone = false;
   bool json = false;
-};
-
-/// The same days, each from the configured SoC and chained.
-struct BothWays {
-  Evaluation reset, carried;
 };
 
 class Pricing {
@@ -46,13 +42,8 @@ class Pricing {
     if (days_.empty()) fail("{}: no complete day in the {} split", options.prices, options.split);
   }
 
-  BothWays run(Policy& policy) const {
-    const auto evaluated = [&](bool carry_soc) {
-      return evaluate(market_, days_, policy,
-                      {config_.battery, config_.initial_soc_frac, carry_soc});
-    };
-    return {evaluated(false), evaluated(true)};
-  }
+  BothWays run(Policy& policy) const { return run_both_ways(policy, days_, config_, market_); }
+  [[nodiscard]] const std::vector<MarketDay>& days() const { return days_; }
 
   void print_head(const BothWays& base, const std::string& name) const {
     if (options_.json) return;
@@ -65,27 +56,26 @@ class Pricing {
         "decisions, %");
   }
 
-  void print_row(const std::string& rule, const std::string& by, const BothWays& base,
-                 const BothWays& ruled, std::optional<double> changed_share) const {
+  void print_row(const std::string& rule, const BothWays& base, const BothWays& ruled,
+                 double changed_share) const {
     const PairedDifference reset = paired_difference(ruled.reset, base.reset);
     const PairedDifference carried = paired_difference(ruled.carried, base.carried);
     if (!options_.json) {
-      const std::string changed = changed_share ? fmt::format("{:.2f}", 100 * *changed_share) : "-";
-      fmt::print("{:<40}  {:>+7.2f} {:>6.2f}  {:>+7.2f} {:>6.2f}  {:>12}\n", rule, reset.mean,
-                 reset.standard_error, carried.mean, carried.standard_error, changed);
+      fmt::print("{:<40}  {:>+7.2f} {:>6.2f}  {:>+7.2f} {:>6.2f}  {:>12.2f}\n", rule, reset.mean,
+                 reset.standard_error, carried.mean, carried.standard_error, 100 * changed_share);
       return;
     }
-    Json json = Json::object(
+    const Json json = Json::object(
         {{"rule", rule},
-         {"by", by},
+         {"by", "projection"},
          {"split", options_.split},
          {"days", days_.size()},
          {"profit_eur_per_day_per_mwh", Decimals{ruled.reset.profit_eur_per_day_per_mwh(), 4}},
          {"difference", Decimals{reset.mean, 4}},
          {"standard_error", Decimals{reset.standard_error, 4}},
          {"carried_difference", Decimals{carried.mean, 4}},
-         {"carried_standard_error", Decimals{carried.standard_error, 4}}});
-    if (changed_share) json.set("decisions_changed", Decimals{*changed_share, 6});
+         {"carried_standard_error", Decimals{carried.standard_error, 4}},
+         {"decisions_changed", Decimals{changed_share, 6}}});
     fmt::print("{}\n", json.line());
   }
 
@@ -97,8 +87,7 @@ class Pricing {
 };
 
 void price_by_projection(const PriceArguments& options, const RunConfig& config,
-                         const MarketSteps& market, const RuleSet& rules) {
-  const Pricing pricing(options, config, market);
+                         const MarketSteps& market, const RuleSet& rules, const Pricing& pricing) {
   const ContextClasses classes = context_of_policy(options.policy, market, config.train.context);
   require_consistent(rules, config.distil.correction.thresholds, classes.kind);
   const std::shared_ptr<Policy> policy = make_policy(options.policy, market, config.battery);
@@ -113,7 +102,7 @@ void price_by_projection(const PriceArguments& options, const RunConfig& config,
   const auto price = [&](const std::string& name, const RuleSet& some) {
     RuledPolicy ruled(policy, some, classes);
     const BothWays evaluated = pricing.run(ruled);
-    pricing.print_row(name, "projection", base, evaluated, ruled.changed_share());
+    pricing.print_row(name, base, evaluated, ruled.changed_share());
   };
   for (const Rule& rule : rules.rules) {
     if (can_be_projected(rule)) {
@@ -125,38 +114,22 @@ void price_by_projection(const PriceArguments& options, const RunConfig& config,
   if (rules.rules.size() > 1) price(kAllTogether, rules);
 }
 
-ProvedStudent distilled(const Teacher& teacher, const Matrix& visited, const RunConfig& config,
-                        const MarketSteps& market) {
-  const CorrectionResult result =
-      correct_and_prove(teacher, visited, config.distil, interruption(),
-                        validation_score(market, config.battery, config.initial_soc_frac));
-  return require_proof(result, config.distil.method);
-}
-
-void price_by_distilling(const PriceArguments& options, const RunConfig& config,
-                         const MarketSteps& market) {
-  const Teacher teacher = load_teacher(options.teacher);
-  RunConfig ruled_config = config;
-  options.rule_files.apply(ruled_config, teacher.context.kind);
-  const Matrix visited = visited_inputs(teacher, market, config.battery, config.distil);
-  const ProvedStudent free_student = distilled(teacher, visited, config, market);
-  const ProvedStudent ruled_student = distilled(teacher, visited, ruled_config, market);
-  StudentPolicy free_policy(free_student.net());
-  StudentPolicy ruled_policy(ruled_student.net());
-  const Pricing pricing(options, config, market);
-  const BothWays base = pricing.run(free_policy);
-  if (!options.json) fmt::print("\n");
-  pricing.print_head(base, "a student distilled without them");
-  pricing.print_row(kAllTogether, "distillation", base, pricing.run(ruled_policy), {});
-}
-
 void run_rules_price(const PriceArguments& options) {
   const RunConfig config = options.common.resolve();
   const RuleSet rules = options.rule_files.read();
   const MarketSteps market =
       make_market_steps(options.price_input.read(options.prices), config.market);
-  price_by_projection(options, config, market, rules);
-  if (!options.teacher.empty()) price_by_distilling(options, config, market);
+  const Pricing pricing(options, config, market);
+  price_by_projection(options, config, market, rules, pricing);
+  if (options.teacher.empty()) return;
+  std::fflush(stdout);  // what follows takes minutes
+  price_by_distilling({.rules = rules,
+                       .days = pricing.days(),
+                       .seeds = options.seeds,
+                       .alone = options.alone,
+                       .keep = options.keep,
+                       .json = options.json},
+                      load_teacher(options.teacher), config, market);
 }
 
 }  // namespace
@@ -174,6 +147,13 @@ void add_rules_price(ProgramCommand& rules) {
       .with_default();
   command.option("--teacher", options->teacher,
                  "Also distil this teacher with all rules and without (minutes)");
+  command
+      .option("--seeds", options->seeds,
+              "With --teacher: so many students of each kind, and how far they are apart")
+      .range(1, 100)
+      .with_default();
+  command.flag("--alone", options->alone, "With --teacher: distil each rule alone as well");
+  command.option("--keep", options->keep, "With --teacher: folder for the students");
   command.option("--split", options->split, "Days of --prices that are traded")
       .one_of({kSplitNames.begin(), kSplitNames.end()})
       .with_default();
@@ -185,8 +165,16 @@ void add_rules_price(ProgramCommand& rules) {
       "Examples:\n"
       "  bess-train rules price --rules my_rules.toml --prices market.csv.gz\n"
       "  bess-train rules price --rules my_rules.toml --prices market.csv.gz --policy teacher.bin "
-      "--teacher teacher.bin");
-  command.runs([options] { run_rules_price(*options); });
+      "--teacher teacher.bin\n"
+      "  bess-train rules price --rules a.toml b.toml --prices market.csv.gz --policy teacher.bin "
+      "--teacher teacher.bin --alone --seeds 3 --keep students");
+  command.runs([options] {
+    if (options->teacher.empty() &&
+        (options->alone || options->seeds > 1 || !options->keep.empty())) {
+      fail("--alone, --seeds and --keep are about distilling: add --teacher FILE");
+    }
+    run_rules_price(*options);
+  });
 }
 
 }  // namespace bess

@@ -1,12 +1,15 @@
 // Policy heat maps side by side [Paper, policy figures before and after correction].
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "workstation/env/context_fit.h"
 #include "workstation/report/figures.h"
 
 namespace bess {
 namespace {
 
+constexpr double kOutlineWidth = 2.5;
 constexpr double kPercentPerSocIndex = 100.0 / (kSocCount - 1);
 
 /// Edge below a cell: half an index before its point.
@@ -66,6 +69,21 @@ std::string panel(const NamedPolicyMap& map, std::size_t index) {
                     index, rgb(kCharge), rgb(kDischarge), rgb(kMark));
 }
 
+/// In every panel, on the edges of the cells.
+std::string outline_objects(const std::vector<RuleOutline>& outlines) {
+  constexpr int kFirstObject = 200;
+  std::string text;
+  int object = kFirstObject;
+  for (const auto& [name, box] : outlines) {
+    text +=
+        fmt::format("set object {} rectangle from {},{} to {},{} front fs empty border {} lw {}\n",
+                    object++, price_edge(box.price_first), std::max(0.0, soc_edge(box.soc_bottom)),
+                    price_edge(box.price_last + 1), std::min(100.0, soc_edge(box.soc_top + 1)),
+                    rgb(kInk), kOutlineWidth);
+  }
+  return text;
+}
+
 std::string frame(std::size_t panels, const BatteryParameters& battery) {
   const double right = panels == 1 ? 0.55 : panels == 2 ? 0.82 : 0.97;
   return fmt::format(
@@ -88,7 +106,8 @@ std::string clock_text(const PolicyContext& context) {
 }
 
 std::string caption_of(const PolicyContext& context, const ContextClasses& classes,
-                       const std::vector<NamedPolicyMap>& maps, const BatteryParameters& battery,
+                       const std::vector<NamedPolicyMap>& maps,
+                       const std::vector<RuleOutline>& outlines, const BatteryParameters& battery,
                        const std::string& note) {
   std::string text = note;
   text += fmt::format(
@@ -103,14 +122,19 @@ std::string caption_of(const PolicyContext& context, const ContextClasses& class
   }
   text += fmt::format("{}. Below the dotted line at {:.0f} % lies charge that the battery keeps.",
                       maps.empty() ? "" : ")", 100 * battery.soc_min_frac);
+  for (std::size_t i = 0; i < outlines.size(); ++i) {
+    text += fmt::format("{}{}", i == 0 ? " Outlined: where rules hold: " : ", ", outlines[i].name);
+  }
+  if (!outlines.empty()) text += ".";
   return text;
 }
 
 }  // namespace
 
 Figure policy_map_figure(const PolicyContext& context, const ContextClasses& classes,
-                         const std::vector<NamedPolicyMap>& maps, const BatteryParameters& battery,
-                         const std::string& note) {
+                         const std::vector<NamedPolicyMap>& maps, const RuleSet& rules,
+                         const BatteryParameters& battery, const std::string& note) {
+  const std::vector<RuleOutline> outlines = rule_outlines(rules, classes.kind, context);
   Figure figure;
   figure.name = fmt::format("policy_map_{:02}_{:02}{:02}", context.context_class,
                             context.quarter_hour / 4, minute_of(context));
@@ -122,13 +146,16 @@ Figure policy_map_figure(const PolicyContext& context, const ContextClasses& cla
       "Maps of {} policies, price from -500 to 1500 EUR/MWh across and state of charge from 0 to "
       "100 % upwards: charge at low prices, discharge at high prices, idle between.",
       maps.size());
-  figure.caption = caption_of(context, classes, maps, battery, note);
-  const KeyRow key = key_row(figure, 80,
-                             {{"charge", kCharge},
-                              {"idle", kIdle},
-                              {"discharge", kDischarge},
-                              {"out of order", kMark, KeyEntry::Kind::kLine, 3}});
-  figure.commands = key.set + frame(maps.size(), battery);
+  figure.caption = caption_of(context, classes, maps, outlines, battery, note);
+  std::vector<KeyEntry> entries{{"charge", kCharge},
+                                {"idle", kIdle},
+                                {"discharge", kDischarge},
+                                {"out of order", kMark, KeyEntry::Kind::kLine, 3}};
+  if (!outlines.empty()) {
+    entries.push_back({"where a rule holds", kInk, KeyEntry::Kind::kLine, kOutlineWidth});
+  }
+  const KeyRow key = key_row(figure, 80, entries);
+  figure.commands = key.set + frame(maps.size(), battery) + outline_objects(outlines);
   for (std::size_t i = 0; i < maps.size(); ++i) {
     figure.commands += panel(maps[i], i) + (i == 0 ? key.unset : "");
   }

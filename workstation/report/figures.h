@@ -20,10 +20,11 @@ Figure learning_figure(const std::vector<CurvePoint>& curve,
 /// The three losses over epochs; `curve` not empty.
 Figure distillation_figure(const std::vector<DistilPoint>& curve);
 
-/// One to three policies side by side over price and SoC; `note` opens the caption.
+/// One to three policies side by side over price and SoC, the boxes of the rules that hold then outlined;
+/// `note` opens the caption.
 Figure policy_map_figure(const PolicyContext& context, const ContextClasses& classes,
-                         const std::vector<NamedPolicyMap>& maps, const BatteryParameters& battery,
-                         const std::string& note);
+                         const std::vector<NamedPolicyMap>& maps, const RuleSet& rules,
+                         const BatteryParameters& battery, const std::string& note);
 
 /// Distribution of observed prices on training and on test days, with the prices at which the student
 /// and the paper's rule must act.

@@ -82,6 +82,18 @@ std::vector<GridRectangle> rectangles_of(const ActionGrid& grid, Action action) 
   return closed;
 }
 
+std::vector<RuleOutline> rule_outlines(const RuleSet& rules, ContextKind kind,
+                                       const PolicyContext& context) {
+  std::vector<RuleOutline> outlines;
+  for (const Rule& rule : rules.rules) {
+    if (rule.demand == Demand::kDirection || !binds_student(rule, kind)) continue;
+    if (!holds_in_context(rule.box, kind, context.quarter_hour, context.context_class)) continue;
+    const LatticeBox box = lattice_box_of(rule.box, kind);
+    outlines.push_back({rule.name, {box.price_first, box.price_last, box.soc_first, box.soc_last}});
+  }
+  return outlines;
+}
+
 std::vector<WrongBorder> wrong_borders_of(const ActionGrid& grid) {
   std::vector<WrongBorder> borders;
   for (int soc = 0; soc + 1 < kSocCount; ++soc) {

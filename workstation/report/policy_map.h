@@ -9,6 +9,7 @@
 
 #include "shared/nn/student_net.h"
 #include "workstation/rl/teacher.h"
+#include "workstation/rules/rule.h"
 
 namespace bess {
 
@@ -40,6 +41,14 @@ struct WrongBorder {
   std::int64_t pairs = 1;  ///< neighbour pairs that it joins
 };
 std::vector<WrongBorder> wrong_borders_of(const ActionGrid& grid);
+
+/// The boxes of the rules that bind a student of this kind in this context, by name; directions have none.
+struct RuleOutline {
+  std::string name;
+  GridRectangle box;
+};
+std::vector<RuleOutline> rule_outlines(const RuleSet& rules, ContextKind kind,
+                                       const PolicyContext& context);
 
 struct NamedPolicyMap {
   std::string name;

@@ -38,6 +38,11 @@ std::vector<NamedPolicyMap> policy_maps(const ReportInputs& in, const PolicyCont
   return maps;
 }
 
+/// What the corrected student was distilled for, besides the properties.
+RuleSet rules_of(const ReportInputs& in) {
+  return in.corrected ? in.corrected->certificate.rules : RuleSet{};
+}
+
 /// Where the uncorrected student's counterexamples are most frequent; none without any.
 std::optional<PolicyContext> worst_context(const ReportInputs& in) {
   if (in.uncorrected == nullptr) return std::nullopt;
@@ -67,7 +72,7 @@ void add_policy_map(const ReportInputs& in, const PolicyContext& context, const 
   if (maps.empty()) return;
   const ContextClasses classes = context_classes_of(in);
   figures.push_back(
-      policy_map_figure(context, classes, maps, in.battery,
+      policy_map_figure(context, classes, maps, rules_of(in), in.battery,
                         note + context_note(in.market, classes, context.context_class)));
 }
 

@@ -27,8 +27,8 @@ struct ReportInputs {
   const StudentFile* uncorrected = nullptr;  ///< both students with the prover's certificate
   const StudentFile* corrected = nullptr;
   std::vector<PolicyContext> maps = {
-      {.context_class = 3, .quarter_hour = 48, .minute_of_quarter_hour = 7},
-      {.context_class = 9, .quarter_hour = 48, .minute_of_quarter_hour = 7}};
+      {.context_class = 11, .quarter_hour = 40, .minute_of_quarter_hour = 0},
+      {.context_class = 1, .quarter_hour = 80, .minute_of_quarter_hour = 0}};
   std::string provenance = {};   ///< lines, shown as they are
   std::vector<Fact> facts = {};  ///< when, where, from what and how
 };

@@ -4,12 +4,16 @@
 
 #include <filesystem>
 
+#include "shared/host/file.h"
 #include "shared/host/json.h"
 #include "shared/host/user_error.h"
 #include "tests/support/rule_sets.h"
 #include "tests/support/small_market.h"
+#include "tests/support/student_nets.h"
 #include "tests/support/temporary_folder.h"
 #include "workstation/cli/commands.h"
+#include "workstation/cli/distilled_prices.h"
+#include "workstation/student/student_file.h"
 
 namespace bess {
 namespace {
@@ -100,6 +104,59 @@ TEST_F(RulesCli, PriceTellsEachRuleAloneAndAllTogether) {
   EXPECT_LT(first.value()["difference"].number().value_or(0), -100);
   EXPECT_GT(first.value()["standard_error"].number().value_or(0), 0);
   EXPECT_THROW(rules_output("price --policy foresight --rules " + file + with_prices()), UserError);
+}
+
+TEST_F(RulesCli, WhatIsAboutDistillingNeedsATeacher) {
+  const std::string arguments =
+      "price --policy rbc --rules " + example_rule_path("quiet_hours") + with_prices();
+  for (const char* option : {" --alone", " --seeds 3", " --keep students"}) {
+    EXPECT_THROW(rules_output(arguments + option), UserError) << option;
+  }
+}
+
+Evaluation two_days(double first_eur, double second_eur) {
+  return {.days = {{"a", first_eur, 0, 0, 0}, {"b", second_eur, 0, 0, 0}}, .capacity_mwh = 2};
+}
+
+/// Two seeds whose differences are 1, 3 and 3, 5 EUR on two days of 2 MWh: means 1 and 2 a MWh; over seeds 2, 4
+/// EUR a day.
+TEST(DistilledPrices, TheErrorIsOverDaysAndTheSpreadOverSeeds) {
+  const std::vector<Evaluation> without{two_days(10, 20), two_days(30, 40)};
+  const std::vector<Evaluation> with{two_days(11, 23), two_days(33, 45)};
+  const SeededDifference difference = seeded_difference(with, without);
+  EXPECT_NEAR(difference.mean, 1.5, 1e-12);
+  EXPECT_NEAR(difference.standard_error, 0.5, 1e-12);
+  EXPECT_NEAR(difference.spread, std::sqrt(0.5), 1e-12);
+  EXPECT_TRUE(std::isnan(seeded_difference({with[0]}, {without[0]}).spread)) << "one seed";
+}
+
+TEST_F(RulesCli, MapsShowStudentsSideBySideWithTheirRules) {
+  StudentFile student{.net = LinearNet{}.net(), .certificate = {}, .provenance = ""};
+  save_student(folder_.file("before.json"), student);
+  student.certificate.rules = one_rule("price_min = 300\nat_most = \"idle\"", "dear");
+  save_student(folder_.file("after.json"), student);
+  const std::string before = folder_.file("before.json");
+  const std::string after = folder_.file("after.json");
+  const std::string out = folder_.file("maps");
+  const std::string said =
+      rules_output("map --student " + before + " " + after + " --out " + out + " --at 2@23:59");
+  EXPECT_THAT(said, AllOf(HasSubstr("policy_map_02_2359.svg"), HasSubstr("in February"),
+                          HasSubstr("Outlined: where rules hold: dear.")));
+  const std::string svg = read_file(folder_.file("maps/policy_map_02_2359.svg"));
+  EXPECT_THAT(svg, AllOf(HasSubstr("student without rules"), HasSubstr("with 'dear'"),
+                         HasSubstr("where a rule holds")));
+  rules_output("map --student " + before + " --out " + out + " --at 2@12:00");
+  EXPECT_THAT(read_file(folder_.file("maps/policy_map_02_1200.svg")),
+              Not(HasSubstr("where a rule holds")));
+  for (const char* at : {"0@12:00", "13@12:00", "2@24:00", "2@12:60", "2@12", "2@12:00h", "noon"}) {
+    EXPECT_THROW(rules_output("map --student " + before + " --out " + out + " --at " + at),
+                 UserError)
+        << at;
+  }
+  EXPECT_THROW(rules_output("map --out " + out + " --student " + before + " " + before + " " +
+                            after + " " + after),
+               UserError)
+      << "four maps";
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "workstation/report/policy_map.h"
 
+#include "tests/support/rule_sets.h"
 #include "tests/workstation/report/report_test_support.h"
 #include "workstation/student/verify.h"
 
@@ -60,6 +61,31 @@ TEST(PolicyMap, GridsAreThePoliciesThemselves) {
     }
   }
   EXPECT_LE(disagreements, 1);
+}
+
+/// Midnight lies inside the first rule's hours; the second is of another month, the third a direction, the fourth
+/// beyond the lattice and the guard's alone.
+TEST(PolicyMap, OutlinesAreTheBoxesOfTheRulesThatHoldThen) {
+  const RuleSet rules = parse_rules(
+      "[[rule]]\nname = \"night\"\nhours = \"23:00-06:00\"\nprice_min = -100\nprice_max = 400\n"
+      "soc_max = 0.5\nis = \"idle\"\n"
+      "[[rule]]\nname = \"winter\"\nmonths = [12]\nprice_min = 300\nat_most = \"idle\"\n"
+      "[[rule]]\nname = \"slope\"\nnever_rises_with = \"price\"\n"
+      "[[rule]]\nname = \"far\"\nprice_min = 2000\nat_most = \"idle\"\nenforce = true\n",
+      "test.toml");
+  const PolicyContext night{.context_class = 1, .quarter_hour = 2, .minute_of_quarter_hour = 0};
+  const std::vector<RuleOutline> outlines = rule_outlines(rules, ContextKind::kMonth, night);
+  ASSERT_EQ(outlines.size(), 1u);
+  EXPECT_EQ(outlines[0].name, "night");
+  const GridRectangle& box = outlines[0].box;
+  EXPECT_EQ(kLatticePriceMinEurPerMwh + box.price_first, -100);
+  EXPECT_EQ(kLatticePriceMinEurPerMwh + box.price_last, 400);
+  EXPECT_EQ(box.soc_bottom, 0);
+  EXPECT_EQ(box.soc_top, 100);
+  EXPECT_TRUE(rule_outlines(rules, ContextKind::kMonth, kContext).empty()) << "at noon";
+  const PolicyContext winter{.context_class = 12, .quarter_hour = 48, .minute_of_quarter_hour = 0};
+  EXPECT_EQ(rule_outlines(rules, ContextKind::kMonth, winter).size(), 1u);
+  EXPECT_TRUE(rule_outlines(rules, ContextKind::kLevel, winter).empty()) << "months are not seen";
 }
 
 TEST(PolicyMap, WrongBordersJoinNeighbouringPairs) {

@@ -66,7 +66,7 @@ TEST(Report, FiguresLieBesideThePageLightAndDark) {
   const FinishedRun run;
   write_report(run.inputs(), folder.file("run"));
   for (const std::string name :
-       {"learning_curve", "distillation_curve", "policy_map_03_1207", "policy_map_09_1207",
+       {"learning_curve", "distillation_curve", "policy_map_11_1000", "policy_map_01_2000",
         "policy_map_02_0503", "price_density", "test_day"}) {
     const std::string light = read_file(folder.file("run/" + name + ".svg"));
     const std::string dark = read_file(folder.file("run/" + name + "_dark.svg"));

@@ -1,0 +1,186 @@
+#include "workstation/cli/distilled_prices.h"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <limits>
+
+#include "shared/host/json.h"
+#include "shared/host/user_error.h"
+#include "workstation/cli/interruption.h"
+#include "workstation/cli/rules.h"
+#include "workstation/rules/rule_conflicts.h"
+#include "workstation/student/correct_and_prove.h"
+#include "workstation/student/student_policy.h"
+
+namespace bess {
+namespace {
+
+/// Of one set of rules: what its students earn, by seed, and what their proofs counted.
+struct Students {
+  std::vector<Evaluation> reset, carried;
+  std::int64_t states = 0, violations = 0;
+};
+
+Evaluation mean_of(const std::vector<Evaluation>& seeds) {
+  Evaluation mean = seeds.front();
+  for (std::size_t d = 0; d < mean.days.size(); ++d) {
+    double sum = 0;
+    for (const Evaluation& seed : seeds) sum += seed.days[d].profit_eur;
+    mean.days[d].profit_eur = sum / static_cast<double>(seeds.size());
+  }
+  return mean;
+}
+
+class Distillery {
+ public:
+  Distillery(const DistilledPriceOptions& options, const Teacher& teacher, const RunConfig& config,
+             const MarketSteps& market)
+      : options_(options), teacher_(teacher), config_(config), market_(market) {}
+
+  [[nodiscard]] Students students(const std::string& name, const RuleSet& rules) const {
+    RunConfig config = config_;
+    use_rules(config, rules, teacher_.context.kind);
+    Students students;
+    for (int s = 0; s < options_.seeds; ++s) {
+      config.set_seed(config_.distil.seed + static_cast<std::uint64_t>(s));
+      const Matrix visited = visited_inputs(teacher_, market_, config.battery, config.distil);
+      const CorrectionResult result =
+          correct_and_prove(teacher_, visited, config.distil, interruption(),
+                            validation_score(market_, config.battery, config.initial_soc_frac));
+      const StudentFile& student = student_of(result.verdict);
+      students.states += student.certificate.states_checked;
+      students.violations += student.certificate.violations();
+      StudentPolicy policy(student.net);
+      const BothWays earned = run_both_ways(policy, options_.days, config, market_);
+      students.reset.push_back(earned.reset);
+      students.carried.push_back(earned.carried);
+      if (options_.keep.empty()) continue;
+      save_student(std::filesystem::path(options_.keep) /
+                       fmt::format("{}.seed-{}.json", name, config.distil.seed),
+                   student);
+    }
+    return students;
+  }
+
+ private:
+  const DistilledPriceOptions& options_;
+  const Teacher& teacher_;
+  const RunConfig& config_;
+  const MarketSteps& market_;
+};
+
+std::string amount(double value, const char* format) {
+  return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "-";
+}
+
+void print_head(const DistilledPriceOptions& options, const Students& base) {
+  if (options.json) return;
+  fmt::print(
+      "\n{} student{} distilled without them: {:.1f} EUR a day per MWh of capacity, with the SoC "
+      "carried over {:.1f}; {} violations.\nWhat learning rules changes, day by day:\n"
+      "{:<30} {:>10} {:>8} {:>6} {:>7}  {:>8} {:>6} {:>7}\n",
+      options.seeds, options.seeds == 1 ? "" : "s",
+      mean_of(base.reset).profit_eur_per_day_per_mwh(),
+      mean_of(base.carried).profit_eur_per_day_per_mwh(), base.violations, "rule", "violations",
+      "reset", "s.e.", "spread", "carried", "s.e.", "spread");
+}
+
+void print_row(const DistilledPriceOptions& options, const std::string& name, const Students& base,
+               const Students& ruled) {
+  const SeededDifference reset = seeded_difference(ruled.reset, base.reset);
+  const SeededDifference carried = seeded_difference(ruled.carried, base.carried);
+  if (!options.json) {
+    fmt::print("{:<30} {:>10} {:>+8.1f} {:>6.1f} {:>7}  {:>+8.1f} {:>6.1f} {:>7}\n", name,
+               ruled.violations, reset.mean, reset.standard_error, amount(reset.spread, "{:.1f}"),
+               carried.mean, carried.standard_error, amount(carried.spread, "{:.1f}"));
+  } else {
+    const auto profit = [](const std::vector<Evaluation>& seeds) {
+      return Decimals{mean_of(seeds).profit_eur_per_day_per_mwh(), 4};
+    };
+    Json json = Json::object({{"rule", name},
+                              {"by", "distillation"},
+                              {"days", options.days.size()},
+                              {"seeds", options.seeds},
+                              {"states_checked", ruled.states},
+                              {"violations", ruled.violations},
+                              {"profit_eur_per_day_per_mwh", profit(ruled.reset)},
+                              {"without_eur_per_day_per_mwh", profit(base.reset)},
+                              {"difference", Decimals{reset.mean, 4}},
+                              {"standard_error", Decimals{reset.standard_error, 4}},
+                              {"carried_profit_eur_per_day_per_mwh", profit(ruled.carried)},
+                              {"carried_without_eur_per_day_per_mwh", profit(base.carried)},
+                              {"carried_difference", Decimals{carried.mean, 4}},
+                              {"carried_standard_error", Decimals{carried.standard_error, 4}}});
+    if (options.seeds > 1) {
+      json.set("spread", Decimals{reset.spread, 4});
+      json.set("carried_spread", Decimals{carried.spread, 4});
+    }
+    fmt::print("{}\n", json.line());
+  }
+  std::fflush(stdout);  // each takes minutes
+}
+
+/// The rule, with the thresholds that the other rules set: some rules contradict the configured ones.
+RuleSet alone(const Rule& rule, const RuleSet& all) {
+  RuleSet some{{rule}};
+  for (const Rule& other : all.rules) {
+    if (other.is_threshold && other.name != rule.name) some.rules.push_back(other);
+  }
+  return some;
+}
+
+}  // namespace
+
+BothWays run_both_ways(Policy& policy, const std::vector<MarketDay>& days, const RunConfig& config,
+                       const MarketSteps& market) {
+  const auto evaluated = [&](bool carry_soc) {
+    return evaluate(market, days, policy, {config.battery, config.initial_soc_frac, carry_soc});
+  };
+  return {evaluated(false), evaluated(true)};
+}
+
+SeededDifference seeded_difference(const std::vector<Evaluation>& with,
+                                   const std::vector<Evaluation>& without) {
+  const PairedDifference over_days = paired_difference(mean_of(with), mean_of(without));
+  double squares = 0;
+  for (std::size_t s = 0; s < with.size(); ++s) {
+    const double off = paired_difference(with[s], without[s]).mean - over_days.mean;
+    squares += off * off;
+  }
+  const double spread = with.size() > 1 ? std::sqrt(squares / static_cast<double>(with.size() - 1))
+                                        : std::numeric_limits<double>::quiet_NaN();
+  return {over_days.mean, over_days.standard_error, spread};
+}
+
+void price_by_distilling(const DistilledPriceOptions& options, const Teacher& teacher,
+                         const RunConfig& config, const MarketSteps& market) {
+  const ContextKind kind = teacher.context.kind;
+  const Distillery distillery(options, teacher, config, market);
+  const Students base = distillery.students("without rules", {});
+  print_head(options, base);
+  std::int64_t violations = base.violations;
+  const auto price = [&](const std::string& name, const RuleSet& rules) {
+    const Students ruled = distillery.students(name, rules);
+    print_row(options, name, base, ruled);
+    violations += ruled.violations;
+  };
+  const std::vector<Rule>& rules = options.rules.rules;
+  for (const Rule& rule : rules) {
+    if (!options.alone || rules.size() == 1) break;
+    if (binds_student(rule, kind)) {
+      price(rule.name, alone(rule, options.rules));
+    } else if (!options.json) {
+      fmt::print("{:<30} the guard's alone: a student by {} does not see where it holds\n",
+                 rule.name, context_name(kind));
+    }
+  }
+  price(rules.size() == 1 ? rules.front().name : kAllTogether, options.rules);
+  if (violations > 0) {
+    fail("{} violations are left; {}", violations, mend_of_failed_proof(config.distil.method));
+  }
+}
+
+}  // namespace bess
