@@ -328,7 +328,6 @@ class WallRun {
   }
 
   void start_market() {
-    constexpr const char* kNames[] = {"", "null", "http-500", "stale", "garbage", "all"};
     const PriceFaultWindow& fault = scenario_.price_fault;
     std::vector<std::string> arguments = simulator("market");
     const auto add = [&](const char* name, const std::string& value) {
@@ -338,7 +337,7 @@ class WallRun {
     add("--port", std::to_string(market_port_));
     add("--latency-s", fmt::format("{}", scenario_.prices.latency_s));
     if (fault.fault != MarketFault::kNone) {
-      add("--fault", kNames[static_cast<int>(fault.fault)]);
+      add("--fault", kMarketFaultNames[static_cast<int>(fault.fault)]);
       add("--fault-every", std::to_string(fault.every));
       add("--fault-from-s", fmt::format("{}", 60 * fault.span.from_min));
       if (fault.span.to_min != kNeverMin)

@@ -25,6 +25,14 @@ grep -q '^FAIL .*expect 1: expected no order in force, seen .* W, at 2023-03-26T
   complain "$(cat "$work/wrong.txt")"
 grep -q '<failure message="expect 1: expected no order' "$work/b.xml" || complain "$(cat "$work/b.xml")"
 
+# A page with pictures: what went wrong by its name, the axis in UTC.
+if command -v gnuplot >/dev/null; then
+  "$program" run "$scenarios/bus_silence.toml" "$scenarios/edge_killed.toml" --report "$work/page.html" >/dev/null || complain "--report"
+  for text in 'battery: silence' 'edge_kill' 'UTC, from 2023-03-26T00:00:00Z' 'power, W' 'SoC, %' 'EUR/MWh'; do
+    grep -q "$text" "$work/page.html" || complain "no \"$text\" on the page"
+  done
+fi
+
 # A file that cannot be read: one line with file, line and the mend; a wrong option: 2.
 printf 'title = "x"\nminuts = 3\n' >"$work/bad.toml"
 "$program" run "$work/bad.toml" >/dev/null 2>"$work/bad.err" && complain "bad.toml was taken"
