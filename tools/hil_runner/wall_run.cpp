@@ -169,7 +169,7 @@ class WallRun {
 
   Evidence run_edge() {
     start_market();
-    config_ = load_edge_settings(folder_.file("edge.toml"), settings());
+    config_ = load_edge_settings(scenario_, folder_.file("edge.toml"), settings());
     if (!site_.battery) pretend_commissioned();
     start_edge();
     for (const ScenarioEvent& event : scenario_.events) {
@@ -228,7 +228,7 @@ class WallRun {
 
   /// The edge's own check of the sign: half a minute of a small order.
   void commission() {
-    config_ = load_edge_settings(folder_.file("edge.toml"), settings());
+    config_ = load_edge_settings(scenario_, folder_.file("edge.toml"), settings());
     start_edge_with({"commission", "--config", folder_.file("edge.toml"), "--yes"});
     while (!edge_->has_ended()) {
       if (key_->is_pressed()) request_stop();

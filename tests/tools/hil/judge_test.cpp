@@ -59,7 +59,8 @@ struct HandMade {
   std::string broken() {
     prices = scenario_prices(scenario);
     const WorkFolder folder;
-    config = load_edge_settings(folder.file("edge.toml"), edge_settings(scenario, prices, {}));
+    config =
+        load_edge_settings(scenario, folder.file("edge.toml"), edge_settings(scenario, prices, {}));
     std::string rules;
     for (const Finding& f : judge({scenario, prices, config, evidence})) {
       rules += (rules.empty() ? "" : " ") + f.rule;
