@@ -171,6 +171,26 @@ TEST(Judge, HoldsTheLogAgainstMarketBatteryAndStudent) {
   EXPECT_EQ(run.broken(), "decision");
 }
 
+/// Half a minute late: a bus with a fault may take so long, one without may not.
+TEST(Judge, GivesAnOrderUntilItsDeadlineWhereTheBusIsDisturbed) {
+  HandMade run;
+  LoggedCycle cycle;
+  cycle.utc_s = kStartS + 480;
+  cycle.mode = Mode::kRunning;
+  cycle.written = true;
+  cycle.ordered_power_w = 2'000;
+  cycle.reason = "price_age";
+  run.evidence.log.insert(run.evidence.log.begin(), cycle);
+  run.order_of(8).power_w = 2'000;
+  run.order_of(8).utc_ns = HandMade::at_ns(8, 40);
+  run.scenario.invariants = {"order"};
+  EXPECT_EQ(run.broken(), "order");
+  run.scenario.battery_fault.schedule = {.faults = {BatteryFault::kByteGap}, .every = 5};
+  EXPECT_EQ(run.broken(), "");
+  run.order_of(8).utc_ns = HandMade::at_ns(9, 10);
+  EXPECT_EQ(run.broken(), "order");
+}
+
 TEST(Judge, HoldsTheRunAgainstWhatTheScenarioExpects) {
   HandMade run;
   Expectation expectation;
