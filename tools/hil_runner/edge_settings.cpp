@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "edge/control/price_history.h"
@@ -68,12 +69,15 @@ std::string edge_settings(const Scenario& scenario, const MinuteSeries& prices,
   return text;
 }
 
-EdgeConfig load_edge_settings(const std::string& path, const std::string& text) {
+EdgeConfig load_edge_settings(const Scenario& scenario, const std::string& path,
+                              const std::string& text) {
   write_file(path, text);
   EdgeConfig config;
   std::string error;
-  if (!load_edge_config(path, config, error)) fail("[edge] of the scenario: {}", error);
-  return config;
+  if (load_edge_config(path, config, error)) return config;
+  // The file is not the user's, nor are its lines.
+  if (error.starts_with(path)) error = error.substr(std::min(error.size(), error.find(": ") + 2));
+  fail("{}: [edge], read as bess-edge's settings: {}", scenario.path, error);
 }
 
 }  // namespace bess

@@ -28,7 +28,9 @@ PriceLevel level_before(const MinuteSeries& prices, std::int64_t start_utc_s);
 std::string edge_settings(const Scenario& scenario, const MinuteSeries& prices,
                           const EdgePlaces& places);
 
-/// Writes the text into the folder and reads it as bess-edge does. Throws UserError.
-EdgeConfig load_edge_settings(const std::string& path, const std::string& text);
+/// Writes the text to `path` and reads it as bess-edge does. Throws UserError that names the scenario: its [edge] is
+/// what can be wrong.
+EdgeConfig load_edge_settings(const Scenario& scenario, const std::string& path,
+                              const std::string& text);
 
 }  // namespace bess

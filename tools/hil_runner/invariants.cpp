@@ -78,8 +78,9 @@ class Judge {
   }
   /// The same where the bus or a process is disturbed: requests are repeated until the order's deadline.
   [[nodiscard]] std::int64_t settled_at_worst_ns(std::int64_t tick_ns) const {
-    if (!is_disturbed_in_cycle(tick_ns)) return settled_ns(tick_ns);
-    return tick_ns + config_.control.order_deadline_s * kSecondNs + slack_ns();
+    return is_disturbed_in_cycle(tick_ns)
+               ? tick_ns + config_.control.order_deadline_s * kSecondNs + slack_ns()
+               : settled_ns(tick_ns);
   }
   [[nodiscard]] std::int64_t start_ns() const { return scenario_.utc_ns_at(0); }
   /// After the first orders, until the end.
@@ -307,12 +308,13 @@ class Judge {
       const std::int64_t by_ns = settled_at_worst_ns(tick_ns);
       const bool counts = cycle.mode == Mode::kRunning && cycle.written &&
                           by_ns < scenario_.end_utc_ns() && !is_lost(tick_ns);
-      if (!counts) continue;
-      const CommandInForce command = commands_.at(by_ns);
-      const bool is_same =
-          command.is_driven && std::abs(command.power_w - cycle.ordered_power_w) <= 2;
-      if (!is_same)
-        find(by_ns, fmt::format("{} W, as logged", cycle.ordered_power_w), watts(command));
+      const auto is_in_force = [&](std::int64_t utc_ns) {
+        const CommandInForce command = commands_.at(utc_ns);
+        return command.is_driven && std::abs(command.power_w - cycle.ordered_power_w) <= 2;
+      };
+      if (!counts || is_in_force(settled_ns(tick_ns)) || is_in_force(by_ns)) continue;
+      find(by_ns, fmt::format("{} W, as logged", cycle.ordered_power_w),
+           watts(commands_.at(by_ns)));
     }
   }
 

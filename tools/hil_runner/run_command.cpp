@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -156,9 +157,12 @@ class Runner {
     }
   }
 
-  /// Most of it is waiting: several beside each other.
+  /// Most of it is waiting: several beside each other, the longest first, so that none is left at the end.
   void run_in_wall_time() {
     require_programs();
+    std::ranges::stable_sort(scenarios_, std::greater<>(), [](const Scenario& s) {
+      return s.runs_wall ? s.minutes / s.time_scale : 0;
+    });
     std::atomic<std::size_t> next = 0;
     std::vector<std::thread> threads;
     for (int i = 0; i < options_.jobs; ++i) {

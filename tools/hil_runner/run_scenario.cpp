@@ -50,8 +50,8 @@ std::uint64_t signature_of(const Evidence& evidence) {
 void run_and_judge(const Scenario& scenario, const WallSite& site, Outcome& outcome,
                    WorkFolder& folder) {
   outcome.prices = scenario_prices(scenario);
-  const EdgeConfig config =
-      load_edge_settings(folder.file("judge.toml"), edge_settings(scenario, outcome.prices, {}));
+  const EdgeConfig config = load_edge_settings(scenario, folder.file("judge.toml"),
+                                               edge_settings(scenario, outcome.prices, {}));
   outcome.evidence = outcome.is_virtual ? run_virtual(scenario, outcome.prices, config)
                                         : run_wall(scenario, outcome.prices, site, folder);
   outcome.evidence.order_ends_by_itself = config.control.has_watchdog;

@@ -85,6 +85,9 @@ void read_battery(TomlTable table, const fs::path& folder, ScenarioBattery& batt
   decimal(table, "soc_floor", battery.physics.soc_min_frac, 0, 1);
   decimal(table, "soc_ceiling", battery.physics.soc_max_frac, 0, 1);
   table.integer("response_delay_ms", battery.response_delay_ms, 0, 60'000);
+  if (table.ok() && battery.physics.soc_min_frac >= battery.physics.soc_max_frac) {
+    table.fail("soc_floor", "must be below soc_ceiling");
+  }
   table.finish();
 }
 
@@ -252,6 +255,20 @@ void read_time(TomlTable& table, Scenario& scenario) {
   }
 }
 
+/// What begins after the end would never be, and the scenario would pass without it.
+void check_beginnings(TomlTable& table, const Scenario& scenario) {
+  const auto begins = [&](const char* where, double minute) {
+    if (!table.error().empty() || minute < scenario.minutes) return;
+    table.error() = fmt::format("{}: {} begins at minute {:g}, after the end of {:g} minutes",
+                                scenario.path, where, minute, scenario.minutes);
+  };
+  for (const ScenarioEvent& event : scenario.events) begins("[[event]]", event.at_min);
+  for (const Expectation& e : scenario.expectations) begins("[[expect]]", e.span.from_min);
+  begins("[battery_fault]", scenario.battery_fault.schedule.from_s / 60);
+  begins("[price_fault]", scenario.price_fault.span.from_min);
+  for (const MinuteSpan& gap : scenario.prices.missing) begins("[prices] missing", gap.from_min);
+}
+
 /// What only one of the two times can do.
 void check_events(TomlTable& table, const Scenario& scenario) {
   using enum ScenarioEvent::Does;
@@ -316,6 +333,7 @@ Scenario read_scenario(const std::string& path) {
   read_edge(sub("edge"), scenario);
   read_judge(sub("judge"), scenario);
   check_events(table, scenario);
+  check_beginnings(table, scenario);
   table.finish();
   if (!error.empty()) throw UserError(error);
   std::ranges::stable_sort(scenario.events, {}, &ScenarioEvent::at_min);

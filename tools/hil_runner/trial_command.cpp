@@ -86,11 +86,13 @@ void run(const TrialOptions& options) {
   if (!options.report.empty()) {
     write_file(
         options.report,
-        html_page("The trial week",
-                  "<pre>" + html_text(text) + "</pre>\n<h2>Four hours, everything on</h2>\n" +
-                      trial_picture(prices) +
-                      "<p>Measured power of each minute in the colour of its order: blue charge, "
-                      "orange discharge, grey none.</p>\n"));
+        html_page(
+            "The trial week",
+            "<div class=\"picture\"><pre>" + html_text(text) +
+                "</pre></div>\n<h2>Four hours, everything on</h2>\n<div class=\"picture\">" +
+                trial_picture(prices) +
+                "</div>\n<p>Measured power of each minute in the colour of its order: blue charge, "
+                "orange discharge, grey none.</p>\n"));
   }
   for (const TrialWeek& week : weeks) {
     if (week.findings.empty()) continue;

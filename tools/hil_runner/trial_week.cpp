@@ -123,8 +123,8 @@ WeekRun run_week(const MinuteSeries& prices, std::int64_t start_utc_s, const Dis
       .scenario = trial_scenario(start_utc_s, on), .prices = prices, .config = {}, .evidence = {}};
   if (on.missing) lose_rows(run.scenario, run.prices);
   const WorkFolder folder;
-  run.config =
-      load_edge_settings(folder.file("edge.toml"), edge_settings(run.scenario, run.prices, {}));
+  run.config = load_edge_settings(run.scenario, folder.file("edge.toml"),
+                                  edge_settings(run.scenario, run.prices, {}));
   run.evidence =
       run_virtual(run.scenario, run.prices, run.config, on.temperature ? cold_nights : nullptr);
   run.evidence.order_ends_by_itself = run.config.control.has_watchdog;

@@ -169,7 +169,7 @@ class WallRun {
 
   Evidence run_edge() {
     start_market();
-    config_ = load_edge_settings(folder_.file("edge.toml"), settings());
+    config_ = load_edge_settings(scenario_, folder_.file("edge.toml"), settings());
     if (!site_.battery) pretend_commissioned();
     start_edge();
     for (const ScenarioEvent& event : scenario_.events) {
@@ -228,7 +228,7 @@ class WallRun {
 
   /// The edge's own check of the sign: half a minute of a small order.
   void commission() {
-    config_ = load_edge_settings(folder_.file("edge.toml"), settings());
+    config_ = load_edge_settings(scenario_, folder_.file("edge.toml"), settings());
     start_edge_with({"commission", "--config", folder_.file("edge.toml"), "--yes"});
     while (!edge_->has_ended()) {
       if (key_->is_pressed()) request_stop();
@@ -328,7 +328,6 @@ class WallRun {
   }
 
   void start_market() {
-    constexpr const char* kNames[] = {"", "null", "http-500", "stale", "garbage", "all"};
     const PriceFaultWindow& fault = scenario_.price_fault;
     std::vector<std::string> arguments = simulator("market");
     const auto add = [&](const char* name, const std::string& value) {
@@ -338,7 +337,7 @@ class WallRun {
     add("--port", std::to_string(market_port_));
     add("--latency-s", fmt::format("{}", scenario_.prices.latency_s));
     if (fault.fault != MarketFault::kNone) {
-      add("--fault", kNames[static_cast<int>(fault.fault)]);
+      add("--fault", kMarketFaultNames[static_cast<int>(fault.fault)]);
       add("--fault-every", std::to_string(fault.every));
       add("--fault-from-s", fmt::format("{}", 60 * fault.span.from_min));
       if (fault.span.to_min != kNeverMin)

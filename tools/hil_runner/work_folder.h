@@ -4,6 +4,8 @@
 
 #include <stdlib.h>
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <string>
 
@@ -14,8 +16,13 @@ namespace bess {
 class WorkFolder {
  public:
   WorkFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "bess-hil-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) fail("{}: cannot make this folder", name);
+    std::error_code error;
+    const std::filesystem::path place = std::filesystem::temp_directory_path(error);
+    if (error) fail("no folder for temporary files: set TMPDIR to one");
+    std::string name = (place / "bess-hil-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) {
+      fail("{}: cannot make a folder here for the run: {}", place.string(), std::strerror(errno));
+    }
     path_ = name;
   }
   WorkFolder(const WorkFolder&) = delete;

@@ -17,6 +17,9 @@ enum class MarketFault : std::uint8_t {
   kAll,      ///< each of them in turn
 };
 
+inline constexpr const char* kMarketFaultNames[] = {"none",  "null",    "http-500",
+                                                    "stale", "garbage", "all"};
+
 inline constexpr std::int64_t kStaleAnswerS = 600;
 inline constexpr const char* kGarbageAnswer = "{\"results\": [{\"dat";
 

@@ -25,11 +25,32 @@ grep -q '^FAIL .*expect 1: expected no order in force, seen .* W, at 2023-03-26T
   complain "$(cat "$work/wrong.txt")"
 grep -q '<failure message="expect 1: expected no order' "$work/b.xml" || complain "$(cat "$work/b.xml")"
 
+# A page with pictures: what went wrong by its name, the axis in UTC.
+if command -v gnuplot >/dev/null; then
+  "$program" run "$scenarios/bus_silence.toml" "$scenarios/edge_killed.toml" --report "$work/page.html" >/dev/null || complain "--report"
+  for text in 'battery: silence' 'edge_kill' 'UTC, from 2023-03-26T00:00:00Z' 'power, W' 'SoC, %' 'EUR/MWh'; do
+    grep -q "$text" "$work/page.html" || complain "no \"$text\" on the page"
+  done
+fi
+
 # A file that cannot be read: one line with file, line and the mend; a wrong option: 2.
 printf 'title = "x"\nminuts = 3\n' >"$work/bad.toml"
 "$program" run "$work/bad.toml" >/dev/null 2>"$work/bad.err" && complain "bad.toml was taken"
 grep -q 'bad.toml:2: .*minuts' "$work/bad.err" || complain "$(cat "$work/bad.err")"
 [ "$(wc -l <"$work/bad.err")" -eq 1 ] || complain "more than one line: $(cat "$work/bad.err")"
+printf 'title = "x"\n[edge]\nguard = "soc_minn = 0.2"\n' >"$work/edge.toml"
+"$program" run "$work/edge.toml" 2>/dev/null | grep -q 'edge.toml: \[edge\], read as .*: \[guard\] soc_minn' || complain "[edge]'s mistake"
+TMPDIR=/nowhere "$program" run "$scenarios/quiet_hour.toml" 2>&1 | grep -q 'set TMPDIR' || complain "no TMPDIR"
+
+# Ctrl-C: exit code 3, and nothing is left.
+mkdir "$work/tmp"
+TMPDIR=$work/tmp "$program" run "$scenarios/a_week_of_2023.toml" "$scenarios" >/dev/null 2>"$work/stop.err" & run=$!
+while [ -z "$(ls "$work/tmp")" ] && kill -0 $run; do sleep 0.01; done
+kill -INT $run
+wait $run
+[ $? -eq 3 ] || complain "interrupted: not exit code 3: $(cat "$work/stop.err")"
+[ -z "$(ls "$work/tmp")" ] || complain "left behind: $(ls "$work/tmp")"
+
 "$program" run --tim both 2>/dev/null
 [ $? -eq 2 ] || complain "a wrong option is not exit code 2"
 exit 0

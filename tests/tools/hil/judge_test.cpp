@@ -59,7 +59,8 @@ struct HandMade {
   std::string broken() {
     prices = scenario_prices(scenario);
     const WorkFolder folder;
-    config = load_edge_settings(folder.file("edge.toml"), edge_settings(scenario, prices, {}));
+    config =
+        load_edge_settings(scenario, folder.file("edge.toml"), edge_settings(scenario, prices, {}));
     std::string rules;
     for (const Finding& f : judge({scenario, prices, config, evidence})) {
       rules += (rules.empty() ? "" : " ") + f.rule;
@@ -168,6 +169,26 @@ TEST(Judge, HoldsTheLogAgainstMarketBatteryAndStudent) {
   run.evidence.log[0] = cycle;
   run.evidence.log[0].has_student_action = true;  // of no context class
   EXPECT_EQ(run.broken(), "decision");
+}
+
+/// Half a minute late: a bus with a fault may take so long, one without may not.
+TEST(Judge, GivesAnOrderUntilItsDeadlineWhereTheBusIsDisturbed) {
+  HandMade run;
+  LoggedCycle cycle;
+  cycle.utc_s = kStartS + 480;
+  cycle.mode = Mode::kRunning;
+  cycle.written = true;
+  cycle.ordered_power_w = 2'000;
+  cycle.reason = "price_age";
+  run.evidence.log.insert(run.evidence.log.begin(), cycle);
+  run.order_of(8).power_w = 2'000;
+  run.order_of(8).utc_ns = HandMade::at_ns(8, 40);
+  run.scenario.invariants = {"order"};
+  EXPECT_EQ(run.broken(), "order");
+  run.scenario.battery_fault.schedule = {.faults = {BatteryFault::kByteGap}, .every = 5};
+  EXPECT_EQ(run.broken(), "");
+  run.order_of(8).utc_ns = HandMade::at_ns(9, 10);
+  EXPECT_EQ(run.broken(), "order");
 }
 
 TEST(Judge, HoldsTheRunAgainstWhatTheScenarioExpects) {

@@ -109,6 +109,10 @@ TEST(Scenarios, WhatIsWrongIsSaidWithItsLine) {
               HasSubstr("must be one of: edge_kill"));
   EXPECT_THAT(refusal("title = \"x\"\n[[event]]\nat_min = 1\ndoes = \"clock_step\"\nseconds = 3\n"),
               HasSubstr("must be \"virtual\""));
+  EXPECT_THAT(refusal("title = \"x\"\n[[event]]\nat_min = 60\ndoes = \"edge_kill\"\n"),
+              HasSubstr("s.toml: [[event]] begins at minute 60, after the end of 60 minutes"));
+  EXPECT_THAT(refusal("title = \"x\"\n[battery]\nsoc_floor = 0.8\nsoc_ceiling = 0.2\n"),
+              HasSubstr("below soc_ceiling"));
   EXPECT_THAT(refusal("title = \"x\"\n[[expect]]\nreason = \"mood\"\n"),
               HasSubstr("no reason of the guard"));
   EXPECT_THAT(refusal("title = \"x\"\n[judge]\nall_but = [\"everything\"]\n"),
