@@ -34,7 +34,7 @@ as_root_of_arm64() {
 }
 
 make_arm64_base() {
-  local base=$folder/arm64 program file name
+  local base=$folder/arm64 program
   for program in qemu-system-aarch64 qemu-aarch64-static mmdebstrap depmod cpio ssh; do
     command -v $program >/dev/null || skip "$program is not installed; tools/setup --package installs it"
   done
@@ -57,9 +57,7 @@ make_arm64_base() {
   cp -a "$sysroot/boot/modules" "$base.new/lib/"
   depmod -b "$base.new" "$(ls "$sysroot/boot/modules")"
   printf '[Match]\nName=en* eth*\n[Network]\nDHCP=ipv4\n' >"$base.new/etc/systemd/network/80-dhcp.network"
-  for name in systemd-networkd.service; do
-    ln -sf /lib/systemd/system/$name "$base.new/etc/systemd/system/multi-user.target.wants/"
-  done
+  ln -sf /lib/systemd/system/systemd-networkd.service "$base.new/etc/systemd/system/multi-user.target.wants/"
   echo "/dev/vda2 / ext4 defaults 0 1" >"$base.new/etc/fstab"
   install -d -m 700 "$base.new/root/.ssh"
   install -m 600 "$folder/key.pub" "$base.new/root/.ssh/authorized_keys"
