@@ -154,7 +154,7 @@ class Notify : public People {
     ASSERT_EQ(chmod(mailer.c_str(), 0755), 0);
     std::ofstream(config_, std::ios::app)
         << "[notify]\nnode = \"garage\"\nevery_s = 1\nafter_s = 1\nmail_to = \"a@b.example\"\n"
-        << "sendmail = \"" << mailer << "\"\nprogram = \"" edge_program() "\"\n";
+        << "sendmail = \"" << mailer << "\"\nprogram = \"" << edge_program() << "\"\n";
   }
   /// False after half a minute.
   bool is_mailed(const std::string& piece) const {
