@@ -93,7 +93,7 @@ class RunPicture {
         "set ylabel 'SoC, %'\nset yrange [0:100]\nset ytics 25\nplot $minutes using "
         "1:(100*$3) with lines lw 2 lc rgb '#009e73' notitle\n";
     text += fmt::format(
-        "set ylabel 'mode'\nset format x '{}'\nset xlabel 'UTC{}'\nset yrange "
+        "set ylabel 'mode'\nset format x \"{}\"\nset xlabel 'UTC{}'\nset yrange "
         "[-0.5:4.5]\nset ytics ('start' 0, 'running' 1, 'holding' 2, 'safe' 3, 'stopping' 4)\n"
         "plot $modes using 1:2 with steps lw 2 lc rgb '#333333' notitle\nunset multiplot\n",
         is_long ? "%d %b\\n%H:%M" : "%H:%M",
