@@ -75,10 +75,10 @@ class RunPicture {
     std::string text = data();
     text += fmt::format(
         "set xdata time\nset timefmt '%s'\nset xrange ['{}':'{}']\n{}"
-        "set multiplot layout 4,1 margins 0.10,0.975,0.085,0.90 spacing 0.04\nset format x ''\n"
+        "set multiplot layout 4,1 margins 0.10,0.975,{},0.90 spacing 0.04\nset format x ''\n"
         "set tics font ',11'\nset key at graph 1,1.02 right bottom horizontal samplen 1.5 font "
         "',11'\n",
-        utc_s_of(from_min_), utc_s_of(to_min_), bands());
+        utc_s_of(from_min_), utc_s_of(to_min_), bands(), is_long ? 0.13 : 0.085);
     text += fmt::format(
         "{}set ylabel 'EUR/MWh' offset 1\nset ytics {}\n"
         "plot $prices using 1:2 with steps lc rgb '#333333' notitle\nunset label\n",
