@@ -1,6 +1,7 @@
 """Options of the tests on places, and the place itself."""
 import base64
 import shlex
+import shutil
 from pathlib import Path
 
 import pytest
@@ -10,7 +11,7 @@ TREE = Path(__file__).resolve().parents[2]
 
 def pytest_addoption(parser):
     group = parser.getgroup("bess", "where the edge runs, and whether a real battery is driven")
-    group.addoption("--place", choices=("local", "guest", "pi"), default="local")
+    group.addoption("--place", choices=("local", "emulated", "guest", "pi"), default="local")
     group.addoption("--programs", help="folder of bess-edge and bess-sim, in place of places.yaml's")
     group.addoption("--real", metavar="CONFIG", help="settings of bess-edge for a real battery, a path on the place")
     group.addoption("--yes-drive-real-battery", action="store_true", help="without it a real battery is only read")
@@ -68,6 +69,8 @@ class Place:
 def place(env, pytestconfig):
     name = pytestconfig.getoption("--place")
     target = env.get_target(name)
+    if name == "emulated" and shutil.which("qemu-aarch64-static") is None:
+        pytest.skip("qemu-aarch64-static is not installed: tools/setup --cross installs it")
     if name == "guest":
         kernel = env.config.get_image_path("kernel")
         if not Path(kernel).exists() or not (TREE / "build-aarch64/guest/initramfs.cpio").exists():

@@ -138,10 +138,12 @@ std::vector<MinuteRecord> measured_minutes(const std::vector<LoggedCycle>& log) 
   std::vector<MinuteRecord> minutes;
   for (const LoggedCycle& cycle : log) {
     if (!cycle.has_measurement) continue;
-    minutes.push_back({.minute_utc_s = cycle.utc_s / 60 * 60 - 60,
-                       .energy_wh = cycle.battery_power_w / 60.0,
-                       .soc_frac = cycle.soc_e4 / 1e4,
-                       .commanded_power_w = static_cast<double>(cycle.ordered_power_w)});
+    for (std::int64_t before_s = kSecondsPerStep; before_s > 0; before_s -= 60) {
+      minutes.push_back({.minute_utc_s = cycle.utc_s / 60 * 60 - before_s,
+                         .energy_wh = cycle.battery_power_w / 60.0,
+                         .soc_frac = cycle.soc_e4 / 1e4,
+                         .commanded_power_w = 0});
+    }
   }
   return minutes;
 }

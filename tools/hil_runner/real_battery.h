@@ -46,7 +46,7 @@ std::string link_keys(const RealBattery& battery);
 /// that until `end_utc_ns`. Throws UserError when one is damaged.
 std::vector<DispatchEvent> orders_on_the_bus(const std::vector<std::string>& recordings,
                                              const RegisterMap& map, std::int64_t end_utc_ns);
-/// What it measured, in the edge's log: a row a cycle.
+/// What it measured, in the edge's log: each reading stands for the cycle that it ends. Commanded power is not known.
 std::vector<MinuteRecord> measured_minutes(const std::vector<LoggedCycle>& log);
 
 /// What breaks the limits, in words; empty: nothing does. It stands beside the edge's own guard.

@@ -75,10 +75,10 @@ class RunPicture {
     std::string text = data();
     text += fmt::format(
         "set xdata time\nset timefmt '%s'\nset xrange ['{}':'{}']\n{}"
-        "set multiplot layout 4,1 margins 0.10,0.975,0.085,0.90 spacing 0.04\nset format x ''\n"
+        "set multiplot layout 4,1 margins 0.10,0.975,{},0.90 spacing 0.04\nset format x ''\n"
         "set tics font ',11'\nset key at graph 1,1.02 right bottom horizontal samplen 1.5 font "
         "',11'\n",
-        utc_s_of(from_min_), utc_s_of(to_min_), bands());
+        utc_s_of(from_min_), utc_s_of(to_min_), bands(), is_long ? 0.13 : 0.085);
     text += fmt::format(
         "{}set ylabel 'EUR/MWh' offset 1\nset ytics {}\n"
         "plot $prices using 1:2 with steps lc rgb '#333333' notitle\nunset label\n",
@@ -93,7 +93,7 @@ class RunPicture {
         "set ylabel 'SoC, %'\nset yrange [0:100]\nset ytics 25\nplot $minutes using "
         "1:(100*$3) with lines lw 2 lc rgb '#009e73' notitle\n";
     text += fmt::format(
-        "set ylabel 'mode'\nset format x '{}'\nset xlabel 'UTC{}'\nset yrange "
+        "set ylabel 'mode'\nset format x \"{}\"\nset xlabel 'UTC{}'\nset yrange "
         "[-0.5:4.5]\nset ytics ('start' 0, 'running' 1, 'holding' 2, 'safe' 3, 'stopping' 4)\n"
         "plot $modes using 1:2 with steps lw 2 lc rgb '#333333' notitle\nunset multiplot\n",
         is_long ? "%d %b\\n%H:%M" : "%H:%M",

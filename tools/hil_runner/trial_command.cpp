@@ -13,6 +13,7 @@
 #include "shared/utc_text.h"
 #include "tools/hil_runner/hil_command.h"
 #include "tools/hil_runner/report_page.h"
+#include "tools/hil_runner/stop_request.h"
 #include "tools/hil_runner/trial_week.h"
 
 namespace bess {
@@ -74,6 +75,7 @@ void tell_progress(std::chrono::steady_clock::time_point begin, int done, int al
 
 void run(const TrialOptions& options) {
   if (!options.report.empty()) require_writable(options.report);
+  watch_for_stop();
   const MinuteSeries prices = read_minute_file(options.prices);
   const auto begin = std::chrono::steady_clock::now();
   const std::vector<TrialWeek> weeks =

@@ -492,6 +492,7 @@ class WallRun {
     const std::size_t student = column("student_action"), context = column("context_class");
     const std::size_t ordered = column("ordered_power_w"), power = column("battery_power_w");
     const std::size_t reason = column("reason"), written = column("written");
+    const std::size_t battery_status = column("battery_status");
     const auto is_known = [&](std::size_t r, std::size_t c) {
       return !table.text(r, c).empty() && table.text(r, c) != "none";
     };
@@ -502,8 +503,9 @@ class WallRun {
       LoggedCycle cycle;
       cycle.utc_s = table.utc_s(r, utc);
       cycle.mode = by_name<Mode>(table.text(r, mode), kModeCount, mode_name);
-      cycle.has_measurement = is_known(r, soc);
       cycle.soc_e4 = whole(r, soc);
+      // The log has 0 where nothing was measured.
+      cycle.has_measurement = cycle.soc_e4 != 0 || table.text(r, battery_status) == "ok";
       cycle.has_price = is_known(r, minute);
       if (cycle.has_price) cycle.price_minute_utc_s = table.utc_s(r, minute);
       cycle.price_centi_eur_per_mwh = whole(r, price);

@@ -74,6 +74,17 @@ TEST(RealBattery, LimitsAreBrokenByOrderByFlowAndBySoc) {
   EXPECT_EQ(beyond_limits(cycle, battery()), "");
 }
 
+TEST(RealBattery, AReadingStandsForTheCycleThatItEnds) {
+  const LoggedCycle cycle{
+      .utc_s = 1'200, .has_measurement = true, .soc_e4 = 5'000, .battery_power_w = 600};
+  const std::vector<MinuteRecord> minutes = measured_minutes({cycle, {.utc_s = 1'320}});
+  ASSERT_EQ(minutes.size(), 2U);
+  EXPECT_EQ(minutes[0].minute_utc_s, 1'080);
+  EXPECT_EQ(minutes[1].minute_utc_s, 1'140);
+  EXPECT_EQ(minutes[1].energy_wh, 10);
+  EXPECT_EQ(minutes[1].soc_frac, 0.5);
+}
+
 constexpr const char* kHead =
     R"({"bess_recording":1,"version":"0.1.0","map":"alphaess","variant":"block","unit":85,"units":{},)"
     R"("transport":"tcp","begin":"2023-03-26T00:00:00Z","time_scale":1})"
