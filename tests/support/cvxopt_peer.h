@@ -63,7 +63,7 @@ class CvxoptPeer {
     return answers;
   }
 
-  /// Median microseconds of each program; nothing where cvxopt is missing.
+  /// Median CPU microseconds of each program; nothing where cvxopt is missing.
   [[nodiscard]] std::optional<std::vector<double>> median_us(int repetitions) const {
     const std::optional<std::string> printed = run("--time", std::to_string(repetitions));
     if (!printed) return {};

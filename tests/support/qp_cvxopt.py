@@ -1,15 +1,18 @@
 # Quadratic programs through cvxopt, an interior-point solver that shares nothing with ours.
 #   /usr/bin/python3 qp_cvxopt.py PROGRAMS ANSWERS      the solutions, as accurate as it gets them
-#   /usr/bin/python3 qp_cvxopt.py PROGRAMS --time N     median microseconds of N solutions of each, at cvxopt's
-#                                                       own tolerances, matrices sparse or dense: the faster
+#   /usr/bin/python3 qp_cvxopt.py PROGRAMS --time N     median CPU microseconds of N solutions of each, on one
+#                                                       thread, at cvxopt's own tolerances, matrices sparse or
+#                                                       dense: the faster
 # min 1/2 x'Px - g'x, first rows a'x = b, others a'x >= b. PROGRAMS is binary, numbers of this machine: how many
 # programs; each: variables, rows, equalities, terms, 1 if a Hessian follows (all 64-bit integers); Hessian;
 # g; the terms' rows, their columns (integers), their factors; bounds (all else double). ANSWERS: doubles.
 import array
+import os
 import statistics
 import sys
 import time
 
+os.environ["OPENBLAS_NUM_THREADS"] = "1"
 try:
     from cvxopt import matrix, solvers, spmatrix
 except ImportError:
@@ -41,9 +44,9 @@ def read_program(file):
 
 
 def seconds_of(problem):
-    start = time.perf_counter()
+    start = time.process_time()
     solvers.qp(*problem, options={"show_progress": False})
-    return time.perf_counter() - start
+    return time.process_time() - start
 
 
 def main():

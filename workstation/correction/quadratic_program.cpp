@@ -22,6 +22,8 @@ constexpr double kDependent = 1e-9;
 /// Of the largest: smaller entries of r are rounding, and limit no step.
 constexpr double kFallingMultiplier = 1e-10;
 constexpr int kRebuildsMax = 3;
+/// From this share of factors that are not 0 on, rows are taken for dense: products then run over all.
+constexpr double kDenseShare = 0.2;
 constexpr int kStepsMaxPerRow = 50;
 
 Eigen::MatrixXd inverse_root_of(const Eigen::MatrixXd& hessian) {
@@ -52,7 +54,11 @@ QuadraticProgram::QuadraticProgram(LinearConstraints&& constraints,
   active_.reserve(static_cast<std::size_t>(variables));
   clash_.reserve(static_cast<std::size_t>(variables) + 1);
   is_active_.assign(static_cast<std::size_t>(count), 0);
-  is_neglected_.assign(static_cast<std::size_t>(count), 0);
+  neglected_.reserve(static_cast<std::size_t>(count));
+  passed_over_.setZero(count);
+  is_met_.resize(static_cast<std::size_t>(variables));
+  candidates_.reserve(static_cast<std::size_t>(count));
+  is_projection_ = inverse_root.isIdentity(0);
   scale_rows(inverse_root);
 }
 
@@ -71,11 +77,17 @@ void QuadraticProgram::scale_rows(const Eigen::MatrixXd& inverse_root) {
     }
     rows_.bounds[i] *= row_scale_[i];
   }
-  columns_ = rows_.normals;
+  const auto factors = static_cast<double>(rows_.normals.nonZeros());
+  if (factors > kDenseShare * static_cast<double>(rows_.normals.size())) {
+    dense_ = rows_.normals;
+  } else {
+    columns_ = rows_.normals;
+  }
 }
 
 QuadraticOutcome QuadraticProgram::solve(const Eigen::VectorXd& g) {
   start(g);
+  if (is_projection_ && rows_.equalities == 0) take_in_disjoint_rows();
   for (int row = 0; row < rows_.equalities; ++row) {
     if (!take_in(row, slack_of(row) > 0 ? -1 : 1)) return QuadraticOutcome::kContradiction;
   }
@@ -104,12 +116,45 @@ void QuadraticProgram::start(const Eigen::VectorXd& g) {
   active_.clear();
   clash_.clear();
   std::ranges::fill(is_active_, 0);
-  std::ranges::fill(is_neglected_, 0);
+  neglected_.clear();
+  passed_over_.setZero();
   steps_ = 0;
   factors_.project_free(g, free_minimum_);
   x_ = free_minimum_;
   measure_scale();
   measure_slacks();
+}
+
+/// Rows that share no variable do not feel each other: at the start of a projection each is met by itself, the
+/// most violated first. The dearer steps, which look at all active rows, begin with these.
+void QuadraticProgram::take_in_disjoint_rows() {
+  candidates_.clear();
+  for (int row = 0; row < slacks_.size(); ++row) {
+    if (slacks_[row] < -kViolation * scale_) candidates_.push_back(row);
+  }
+  std::ranges::sort(candidates_, std::ranges::less{}, [this](int row) { return slacks_[row]; });
+  std::ranges::fill(is_met_, 0);
+  for (const int row : candidates_) {
+    if (!is_disjoint(row)) continue;
+    image_of(row, 1);
+    if (factors_.independence(d_) <= kDependent) continue;  // a row of zeros
+    const double violation = -slacks_[row];
+    factors_.add(d_, z_);
+    move(violation);
+    activate(row, 1, violation);
+    ++steps_;
+  }
+}
+
+/// Whether no variable of the row was met before; now they are.
+bool QuadraticProgram::is_disjoint(int row) {
+  for (Rows::InnerIterator term(rows_.normals, row); term; ++term) {
+    if (is_met_[static_cast<std::size_t>(term.col())] != 0) return false;
+  }
+  for (Rows::InnerIterator term(rows_.normals, row); term; ++term) {
+    is_met_[static_cast<std::size_t>(term.col())] = 1;
+  }
+  return true;
 }
 
 void QuadraticProgram::measure_scale() {
@@ -150,11 +195,22 @@ double QuadraticProgram::slack_of(int row) const {
 }
 
 void QuadraticProgram::measure_slacks() {
+  if (dense_.size() > 0) {
+    slacks_ = -rows_.bounds;
+    slacks_.noalias() += dense_ * x_;
+    return;
+  }
   for (int row = 0; row < slacks_.size(); ++row) slacks_[row] = slack_of(row);
 }
 
 /// x += step z; slacks follow where x moves. Their rounding is gone when they are measured at the end.
 void QuadraticProgram::move(double step) {
+  if (dense_.size() > 0) {
+    z_ *= step;
+    x_ += z_;
+    slacks_.noalias() += dense_ * z_;
+    return;
+  }
   for (Eigen::Index i = 0; i < x_.size(); ++i) {
     if (z_[i] == 0) continue;
     const double by = step * z_[i];
@@ -167,15 +223,12 @@ void QuadraticProgram::move(double step) {
 
 /// The inequality that x violates most, or -1.
 int QuadraticProgram::most_violated() const {
-  int worst = -1;
-  double least = -kViolation * scale_;
-  for (int i = rows_.equalities; i < slacks_.size(); ++i) {
-    if (slacks_[i] >= least) continue;
-    const auto at = static_cast<std::size_t>(i);
-    if (is_active_[at] != 0 || is_neglected_[at] != 0) continue;
-    least = slacks_[i];
-    worst = i;
-  }
+  const Eigen::Index inequalities = slacks_.size() - rows_.equalities;
+  if (inequalities == 0) return -1;
+  const double least = (slacks_ + passed_over_).tail(inequalities).minCoeff();
+  if (!(least < -kViolation * scale_)) return -1;
+  int worst = rows_.equalities;
+  while (slacks_[worst] + passed_over_[worst] != least) ++worst;
   return worst;
 }
 
@@ -212,7 +265,8 @@ bool QuadraticProgram::take_in(int row, double sign) {
         keep_clash(row, sign);
         return false;
       }
-      is_neglected_[static_cast<std::size_t>(row)] = 1;
+      neglected_.push_back(row);
+      passed_over_[row] = kInfinity;
       return true;
     }
     for (std::size_t k = 0; k < active_.size(); ++k) {
@@ -224,9 +278,9 @@ bool QuadraticProgram::take_in(int row, double sign) {
     if (full <= limit.step) {
       factors_.add(d_, z_);
       move(step);
-      active_.push_back({row, sign, multiplier});
-      is_active_[static_cast<std::size_t>(row)] = 1;
-      std::ranges::fill(is_neglected_, 0);
+      activate(row, sign, multiplier);
+      for (const int other : neglected_) passed_over_[other] = 0;
+      neglected_.clear();
       return true;
     }
     if (!is_dependent) {
@@ -237,18 +291,26 @@ bool QuadraticProgram::take_in(int row, double sign) {
   }
 }
 
+void QuadraticProgram::activate(int row, double sign, double multiplier) {
+  active_.push_back({row, sign, multiplier});
+  is_active_[static_cast<std::size_t>(row)] = 1;
+  passed_over_[row] = kInfinity;
+}
+
 /// Takes the row in as it is, unless it depends on the active ones.
 bool QuadraticProgram::hold(int row, double sign) {
   image_of(row, sign);
   if (factors_.independence(d_) <= kDependent) return false;
   factors_.add(d_, z_);
   is_active_[static_cast<std::size_t>(row)] = 1;
+  passed_over_[row] = kInfinity;
   return true;
 }
 
 void QuadraticProgram::let_go(std::size_t position) {
   factors_.drop(static_cast<Eigen::Index>(position));
   is_active_[static_cast<std::size_t>(active_[position].row)] = 0;
+  passed_over_[active_[position].row] = 0;
   active_.erase(active_.begin() + static_cast<std::ptrdiff_t>(position));
 }
 
@@ -295,6 +357,7 @@ void QuadraticProgram::rebuild() {
   factors_.reset();
   std::erase_if(active_, [this](const ActiveRow& row) {
     is_active_[static_cast<std::size_t>(row.row)] = 0;
+    passed_over_[row.row] = 0;
     return !hold(row.row, row.sign);
   });
 }

@@ -85,9 +85,12 @@ class QuadraticProgram {
   QuadraticProgram(LinearConstraints&& constraints, const Eigen::MatrixXd& inverse_root);
   void scale_rows(const Eigen::MatrixXd& inverse_root);
   void start(const Eigen::VectorXd& g);
+  void take_in_disjoint_rows();
+  [[nodiscard]] bool is_disjoint(int row);
   void measure_scale();
   void measure_slacks();
   void move(double step);
+  void activate(int row, double sign, double multiplier);
   void image_of(int row, double sign);
   [[nodiscard]] double slack_of(int row) const;
   [[nodiscard]] int most_violated() const;
@@ -101,12 +104,17 @@ class QuadraticProgram {
   void publish_multipliers();
 
   LinearConstraints rows_;     ///< scaled to |L^-1 a| = 1
-  Columns columns_;            ///< the same normals, by variable
+  Columns columns_;            ///< the same normals, by variable; empty when dense_ is not
+  Eigen::MatrixXd dense_;      ///< the same normals, where many of their factors are not 0
+  bool is_projection_;         ///< G is the identity
   Eigen::VectorXd row_scale_;  ///< [rows] as solved = row_scale * as given
   ActiveSetFactors factors_;
   std::vector<ActiveRow> active_;
-  std::vector<char> is_active_;     ///< [rows]
-  std::vector<char> is_neglected_;  ///< [rows] violated by no more than rounding, and dependent
+  std::vector<char> is_active_;  ///< [rows]
+  std::vector<int> neglected_;   ///< rows violated by no more than rounding, and dependent
+  Eigen::VectorXd passed_over_;  ///< [rows] infinite for active and neglected rows, else 0
+  std::vector<char> is_met_;     ///< [n] variables of the disjoint rows
+  std::vector<int> candidates_;  ///< violated rows at the start
   std::vector<ClashingRow> clash_;
   Eigen::VectorXd free_minimum_;   ///< G^-1 g [n]
   Eigen::VectorXd x_, d_, z_, r_;  ///< [n], d to r as in active_set_factors.h

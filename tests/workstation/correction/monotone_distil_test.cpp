@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/rule_sets.h"
 #include "tests/support/small_market.h"
 #include "tests/support/student_nets.h"
 #include "workstation/env/context_fit.h"
@@ -60,6 +61,41 @@ TEST(Lessons, TellWhatTheTeacherWouldDoAndWhatOthersLose) {
     EXPECT_EQ(lessons.teacher_frac.col(c).maxCoeff(), lessons.teacher_frac(best, c));
     EXPECT_GE(lessons.inputs.col(c).minCoeff(), 0);
     EXPECT_LE(lessons.inputs.col(c).maxCoeff(), 1);
+  }
+}
+
+/// States in which the lesson's first choice is against the rules.
+int broken_lessons(const Teacher& teacher, const RuleSet& rules, const DistilOptions& options) {
+  const RuleLessons asked(rules, teacher.context.kind);
+  const LessonStates lessons = make_lessons(teacher, school().visited, options);
+  int broken = 0;
+  for (Eigen::Index c = 0; c < lessons.inputs.cols(); ++c) {
+    const ActionSet left = asked.actions_at(lessons.inputs.col(c).data(), teacher.price_map);
+    Eigen::Index first = 0;
+    lessons.teacher_frac.col(c).maxCoeff(&first);
+    broken += allows(left, static_cast<Action>(first)) ? 0 : 1;
+  }
+  return broken;
+}
+
+TEST(Lessons, ObeyTheRulesWhateverTheTeacher) {
+  const RuleSet rules = load_rules({example_rule_path("quiet_hours")});
+  for (const Method method : {Method::kSdp, Method::kC51, Method::kDqn}) {
+    SCOPED_TRACE(method_name(method));
+    Teacher teacher = school().teacher;
+    if (method != Method::kSdp) {
+      const Support support{.v_min = -15, .v_max = 15, .count = 51};
+      const MlpShape shape = teacher_shape(method, support);
+      teacher.method = method;
+      teacher.support = support;
+      teacher.shape = shape;
+      teacher.parameters = initial_parameters(shape, 1);
+      teacher.program = nullptr;
+    }
+    DistilOptions options = school().options;
+    EXPECT_GT(broken_lessons(teacher, rules, options), 1000) << "the teacher knows no rules";
+    options.rules = rules;
+    EXPECT_EQ(broken_lessons(teacher, rules, options), 0);
   }
 }
 
