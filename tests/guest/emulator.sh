@@ -45,7 +45,7 @@ make_arm64_base() {
   [ ! -d "$base" ] || return 0
   if [ ! -f "$folder/arm64.tar" ]; then
     as_root_of_arm64 mmdebstrap -q --format=tar --mode=root --arch=arm64 --skip=check/qemu --variant=minbase \
-      --include=systemd,systemd-sysv,udev,dbus,openssh-server,iproute2,procps,adduser,kmod bookworm "$folder/arm64.tar.new" \
+      --include=systemd,systemd-sysv,udev,dbus,openssh-server,iproute2,procps,adduser,kmod,ca-certificates bookworm "$folder/arm64.tar.new" \
       >"$folder/mmdebstrap.log" 2>&1 || skip "no Debian arm64 can be made here: $(tail -n 1 "$folder/mmdebstrap.log")"
     mv "$folder/arm64.tar.new" "$folder/arm64.tar"
   fi
