@@ -1,15 +1,33 @@
 #include "workstation/correction/active_set_factors.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 namespace bess {
+namespace {
+
+void rotate(Eigen::MatrixXd::ColXpr first, Eigen::MatrixXd::ColXpr second, double cosine,
+            double sine) {
+  double* const __restrict a = first.data();
+  double* const __restrict b = second.data();
+  for (Eigen::Index i = 0; i < first.size(); ++i) {
+    const double upper = a[i];
+    const double lower = b[i];
+    a[i] = cosine * upper + sine * lower;
+    b[i] = cosine * lower - sine * upper;
+  }
+}
+
+}  // namespace
 
 ActiveSetFactors::ActiveSetFactors(const Eigen::MatrixXd& inverse_root)
     : start_(inverse_root.transpose()),
       basis_(start_),
       triangle_(start_.rows(), start_.rows()),
-      scratch_(start_.rows()) {}
+      scratch_(start_.rows()),
+      cosines_(start_.rows()),
+      sines_(start_.rows()) {}
 
 void ActiveSetFactors::reset() {
   basis_ = start_;
@@ -78,23 +96,25 @@ void ActiveSetFactors::add(Eigen::VectorXd& d, Eigen::VectorXd& z) {
 
 void ActiveSetFactors::drop(Eigen::Index position) {
   --active_;
-  for (Eigen::Index j = position; j < active_; ++j) {
-    triangle_.col(j).head(j + 2) = triangle_.col(j + 1).head(j + 2);
-  }
-  // Each column now has one entry below the diagonal; it is turned away, in J as in the columns behind.
-  for (Eigen::Index j = position; j < active_; ++j) {
-    const double length = std::hypot(triangle_(j, j), triangle_(j + 1, j));
-    const double cosine = triangle_(j, j) / length;
-    const double sine = triangle_(j + 1, j) / length;
-    for (Eigen::Index k = j; k < active_; ++k) {
-      const double upper = triangle_(j, k);
-      const double lower = triangle_(j + 1, k);
-      triangle_(j, k) = cosine * upper + sine * lower;
-      triangle_(j + 1, k) = cosine * lower - sine * upper;
+  // Each column behind moves up and has one entry below its diagonal, which is turned away: in it by the
+  // rotations of the columns before and one of its own, and in J by all of them.
+  for (Eigen::Index k = position; k < active_; ++k) {
+    const double* const from = triangle_.col(k + 1).data();
+    double* const to = triangle_.col(k).data();
+    std::copy_n(from, position, to);
+    double upper = from[position];
+    for (Eigen::Index j = position; j < k; ++j) {
+      const double lower = from[j + 1];
+      to[j] = cosines_[j] * upper + sines_[j] * lower;
+      upper = cosines_[j] * lower - sines_[j] * upper;
     }
-    scratch_ = cosine * basis_.col(j) + sine * basis_.col(j + 1);
-    basis_.col(j + 1) = cosine * basis_.col(j + 1) - sine * basis_.col(j);
-    basis_.col(j) = scratch_;
+    const double lower = from[k + 1];
+    to[k] = std::hypot(upper, lower);
+    cosines_[k] = upper / to[k];
+    sines_[k] = lower / to[k];
+  }
+  for (Eigen::Index j = position; j < active_; ++j) {
+    rotate(basis_.col(j), basis_.col(j + 1), cosines_[j], sines_[j]);
   }
 }
 

@@ -60,10 +60,11 @@ class ActiveSetFactors {
   void drop(Eigen::Index position);
 
  private:
-  Eigen::MatrixXd start_;     ///< J of no active row, L^-T [n x n]
-  Eigen::MatrixXd basis_;     ///< J [n x n]: columns 0..active-1 are J1
-  Eigen::MatrixXd triangle_;  ///< R in its upper left corner [n x n]
-  Eigen::VectorXd scratch_;   ///< [n]
+  Eigen::MatrixXd start_;            ///< J of no active row, L^-T [n x n]
+  Eigen::MatrixXd basis_;            ///< J [n x n]: columns 0..active-1 are J1
+  Eigen::MatrixXd triangle_;         ///< R in its upper left corner [n x n]
+  Eigen::VectorXd scratch_;          ///< [n]
+  Eigen::VectorXd cosines_, sines_;  ///< rotations of one drop [n]
   Eigen::Index active_ = 0;
 };
 
