@@ -42,15 +42,15 @@ std::string violations_panel() {
 std::string agreement_panel() {
   return fmt::format(
       "set tmargin at screen 0.575\nset bmargin at screen 0.37\nunset logscale y\n"
-      "set yrange [*:*]\nset ytics auto\nset ylabel \"agrees with\\nteacher, %\"\n"
+      "set yrange [*:*]\nset ytics auto\nset ylabel 'agreement, %'\n"
       "plot $sweep using 1:5 with linespoints lw 2.5 pt 7 ps 0.6 lc {}\n",
       rgb(kInk));
 }
 
 std::string gain_panel() {
   return fmt::format(
-      "set tmargin at screen 0.345\nset bmargin at screen 0.13\nset ylabel \"gain "
-      "over\\nteacher\"\n"
+      "set tmargin at screen 0.345\nset bmargin at screen 0.13\nset ylabel 'gain, "
+      "EUR/day'\n"
       "set format x '1e%T'\nset xlabel 'omega'\nset xzeroaxis lt 1 lw 1 lc {0}\n"
       "plot $sweep using 1:6:7 with yerrorbars lw 1.5 pt 7 ps 0.6 lc {1}, "
       "$sweep using 1:6 with lines lw 2 lc {1}\n",
