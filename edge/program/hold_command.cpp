@@ -6,8 +6,8 @@
 #include <cerrno>
 #include <cstdio>
 
-#include "edge/control/control_loop.h"
 #include "edge/control/hold.h"
+#include "edge/control/tick.h"
 #include "edge/log/journal.h"
 #include "edge/log/whole_file.h"
 #include "edge/program/hold_file.h"

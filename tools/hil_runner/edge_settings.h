@@ -16,8 +16,7 @@ namespace bess {
 struct EdgePlaces {
   int battery_port = 1;
   std::string serial_device;
-  std::string
-      battery_link;  ///< lines of TOML that lead to a real one; empty: a simulated one of this machine
+  std::string battery_link;  ///< TOML that leads to a real one; empty: a simulated one, here
   int market_port = 1;
   std::int64_t anchor_monotonic_ns = 0;
 };

@@ -25,8 +25,7 @@ struct RealBattery {
   double power_w = 0;  ///< no order is larger
   double soc_min_frac = 0;
   double soc_max_frac = 0;
-  std::int32_t time_scale =
-      1;  ///< another for a simulated battery that somebody serves at that scale
+  std::int32_t time_scale = 1;  ///< another where bess-sim stands for it at that scale
 
   [[nodiscard]] bool is_serial() const { return address.starts_with('/'); }
 };

@@ -91,8 +91,7 @@ std::optional<RealBattery> real_battery(const RealOptions& options) {
   if (!map.models.empty()) {
     fail(
         "--real-map {}: where a SunSpec device has its models is not known beforehand, so that "
-        "what it was "
-        "told could not be judged",
+        "what it was told could not be judged",
         options.map);
   }
   return battery;

@@ -59,9 +59,8 @@ std::string html_page(std::string_view title, const std::string& body) {
 std::string report_page(const std::vector<Outcome>& outcomes) {
   std::string body =
       "<p>Power is positive when it charges; SoC and measured power are by the battery's own "
-      "record, of a "
-      "real one by what it shows. "
-      "Bands: faults of the battery (orange) and of the prices (grey); dashed: what happens to a "
+      "record, of a real one by what it shows. Bands: faults of the battery (orange) and of the "
+      "prices (grey); dashed: what happens to a "
       "process, its clock or its disk.</p>\n";
   for (const Outcome& outcome : outcomes) body += section(outcome);
   return html_page("bess-hil", body);

@@ -199,10 +199,15 @@ class WallRun {
   }
 
   // --- a real battery -----------------------------------------------------------------------------
-  /// Throws when it is to end.
-  void look() {
+  /// Throws when somebody asked for the end.
+  void heed_stop() const {
     if (key_ && key_->is_pressed()) request_stop();
     throw_if_stopped();
+  }
+
+  /// Throws when it is to end.
+  void look() {
+    heed_stop();
     if (!site_.battery || clock_ns(CLOCK_MONOTONIC) < next_look_ns_) return;
     next_look_ns_ = clock_ns(CLOCK_MONOTONIC) + kNanosecondsPerSecond;
     Evidence so_far;
@@ -231,8 +236,7 @@ class WallRun {
     config_ = load_edge_settings(scenario_, folder_.file("edge.toml"), settings());
     start_edge_with({"commission", "--config", folder_.file("edge.toml"), "--yes"});
     while (!edge_->has_ended()) {
-      if (key_->is_pressed()) request_stop();
-      throw_if_stopped();
+      heed_stop();
       usleep(50'000);
     }
     const int code = edge_->wait();

@@ -38,18 +38,23 @@ class Distillery {
  public:
   Distillery(const DistilledPriceOptions& options, const Teacher& teacher, const RunConfig& config,
              const MarketSteps& market)
-      : options_(options), teacher_(teacher), config_(config), market_(market) {}
+      : options_(options), teacher_(teacher), config_(config), market_(market) {
+    RunConfig seeded = config;
+    for (int s = 0; s < options.seeds; ++s) {
+      seeded.set_seed(seed_of(s));
+      visited_.push_back(visited_inputs(teacher, market, seeded.battery, seeded.distil));
+    }
+  }
 
   [[nodiscard]] Students students(const std::string& name, const RuleSet& rules) const {
     RunConfig config = config_;
     use_rules(config, rules, teacher_.context.kind);
     Students students;
     for (int s = 0; s < options_.seeds; ++s) {
-      config.set_seed(config_.distil.seed + static_cast<std::uint64_t>(s));
-      const Matrix visited = visited_inputs(teacher_, market_, config.battery, config.distil);
-      const CorrectionResult result =
-          correct_and_prove(teacher_, visited, config.distil, interruption(),
-                            validation_score(market_, config.battery, config.initial_soc_frac));
+      config.set_seed(seed_of(s));
+      const CorrectionResult result = correct_and_prove(
+          teacher_, visited_[static_cast<std::size_t>(s)], config.distil, interruption(),
+          validation_score(market_, config.battery, config.initial_soc_frac));
       const StudentFile& student = student_of(result.verdict);
       students.states += student.certificate.states_checked;
       students.violations += student.certificate.violations();
@@ -66,14 +71,19 @@ class Distillery {
   }
 
  private:
+  [[nodiscard]] std::uint64_t seed_of(int student) const {
+    return config_.distil.seed + static_cast<std::uint64_t>(student);
+  }
+
   const DistilledPriceOptions& options_;
   const Teacher& teacher_;
   const RunConfig& config_;
   const MarketSteps& market_;
+  std::vector<Matrix> visited_;  ///< by seed: where the teacher goes does not depend on the rules
 };
 
-std::string amount(double value, const char* format) {
-  return std::isfinite(value) ? fmt::format(fmt::runtime(format), value) : "-";
+std::string amount(double value) {
+  return std::isfinite(value) ? fmt::format("{:.1f}", value) : "-";
 }
 
 void print_head(const DistilledPriceOptions& options, const Students& base) {
@@ -94,8 +104,8 @@ void print_row(const DistilledPriceOptions& options, const std::string& name, co
   const SeededDifference carried = seeded_difference(ruled.carried, base.carried);
   if (!options.json) {
     fmt::print("{:<30} {:>10} {:>+8.1f} {:>6.1f} {:>7}  {:>+8.1f} {:>6.1f} {:>7}\n", name,
-               ruled.violations, reset.mean, reset.standard_error, amount(reset.spread, "{:.1f}"),
-               carried.mean, carried.standard_error, amount(carried.spread, "{:.1f}"));
+               ruled.violations, reset.mean, reset.standard_error, amount(reset.spread),
+               carried.mean, carried.standard_error, amount(carried.spread));
   } else {
     const auto profit = [](const std::vector<Evaluation>& seeds) {
       return Decimals{mean_of(seeds).profit_eur_per_day_per_mwh(), 4};

@@ -56,7 +56,7 @@ QuadraticProgram::QuadraticProgram(LinearConstraints&& constraints,
   is_active_.assign(static_cast<std::size_t>(count), 0);
   neglected_.reserve(static_cast<std::size_t>(count));
   passed_over_.setZero(count);
-  is_met_.resize(static_cast<std::size_t>(variables));
+  is_claimed_.resize(static_cast<std::size_t>(variables));
   candidates_.reserve(static_cast<std::size_t>(count));
   is_projection_ = inverse_root.isIdentity(0);
   scale_rows(inverse_root);
@@ -133,9 +133,9 @@ void QuadraticProgram::take_in_disjoint_rows() {
     if (slacks_[row] < -kViolation * scale_) candidates_.push_back(row);
   }
   std::ranges::sort(candidates_, std::ranges::less{}, [this](int row) { return slacks_[row]; });
-  std::ranges::fill(is_met_, 0);
+  std::ranges::fill(is_claimed_, 0);
   for (const int row : candidates_) {
-    if (!is_disjoint(row)) continue;
+    if (!claim_variables(row)) continue;
     image_of(row, 1);
     if (factors_.independence(d_) <= kDependent) continue;  // a row of zeros
     const double violation = -slacks_[row];
@@ -146,13 +146,13 @@ void QuadraticProgram::take_in_disjoint_rows() {
   }
 }
 
-/// Whether no variable of the row was met before; now they are.
-bool QuadraticProgram::is_disjoint(int row) {
+/// False, and nothing is claimed, when another row has one of the row's variables already.
+bool QuadraticProgram::claim_variables(int row) {
   for (Rows::InnerIterator term(rows_.normals, row); term; ++term) {
-    if (is_met_[static_cast<std::size_t>(term.col())] != 0) return false;
+    if (is_claimed_[static_cast<std::size_t>(term.col())] != 0) return false;
   }
   for (Rows::InnerIterator term(rows_.normals, row); term; ++term) {
-    is_met_[static_cast<std::size_t>(term.col())] = 1;
+    is_claimed_[static_cast<std::size_t>(term.col())] = 1;
   }
   return true;
 }
@@ -293,8 +293,13 @@ bool QuadraticProgram::take_in(int row, double sign) {
 
 void QuadraticProgram::activate(int row, double sign, double multiplier) {
   active_.push_back({row, sign, multiplier});
-  is_active_[static_cast<std::size_t>(row)] = 1;
-  passed_over_[row] = kInfinity;
+  mark(row, true);
+}
+
+/// Who is active is not looked for among the violated.
+void QuadraticProgram::mark(int row, bool active) {
+  is_active_[static_cast<std::size_t>(row)] = active ? 1 : 0;
+  passed_over_[row] = active ? kInfinity : 0;
 }
 
 /// Takes the row in as it is, unless it depends on the active ones.
@@ -302,15 +307,13 @@ bool QuadraticProgram::hold(int row, double sign) {
   image_of(row, sign);
   if (factors_.independence(d_) <= kDependent) return false;
   factors_.add(d_, z_);
-  is_active_[static_cast<std::size_t>(row)] = 1;
-  passed_over_[row] = kInfinity;
+  mark(row, true);
   return true;
 }
 
 void QuadraticProgram::let_go(std::size_t position) {
   factors_.drop(static_cast<Eigen::Index>(position));
-  is_active_[static_cast<std::size_t>(active_[position].row)] = 0;
-  passed_over_[active_[position].row] = 0;
+  mark(active_[position].row, false);
   active_.erase(active_.begin() + static_cast<std::ptrdiff_t>(position));
 }
 
@@ -356,8 +359,7 @@ double QuadraticProgram::recompute() {
 void QuadraticProgram::rebuild() {
   factors_.reset();
   std::erase_if(active_, [this](const ActiveRow& row) {
-    is_active_[static_cast<std::size_t>(row.row)] = 0;
-    passed_over_[row.row] = 0;
+    mark(row.row, false);
     return !hold(row.row, row.sign);
   });
 }

@@ -86,7 +86,8 @@ class QuadraticProgram {
   void scale_rows(const Eigen::MatrixXd& inverse_root);
   void start(const Eigen::VectorXd& g);
   void take_in_disjoint_rows();
-  [[nodiscard]] bool is_disjoint(int row);
+  [[nodiscard]] bool claim_variables(int row);
+  void mark(int row, bool active);
   void measure_scale();
   void measure_slacks();
   void move(double step);
@@ -110,11 +111,11 @@ class QuadraticProgram {
   Eigen::VectorXd row_scale_;  ///< [rows] as solved = row_scale * as given
   ActiveSetFactors factors_;
   std::vector<ActiveRow> active_;
-  std::vector<char> is_active_;  ///< [rows]
-  std::vector<int> neglected_;   ///< rows violated by no more than rounding, and dependent
-  Eigen::VectorXd passed_over_;  ///< [rows] infinite for active and neglected rows, else 0
-  std::vector<char> is_met_;     ///< [n] variables of the disjoint rows
-  std::vector<int> candidates_;  ///< violated rows at the start
+  std::vector<char> is_active_;   ///< [rows]
+  std::vector<int> neglected_;    ///< rows violated by no more than rounding, and dependent
+  Eigen::VectorXd passed_over_;   ///< [rows] infinite for active and neglected rows, else 0
+  std::vector<char> is_claimed_;  ///< [n] variables of the disjoint rows
+  std::vector<int> candidates_;   ///< violated rows at the start
   std::vector<ClashingRow> clash_;
   Eigen::VectorXd free_minimum_;   ///< G^-1 g [n]
   Eigen::VectorXd x_, d_, z_, r_;  ///< [n], d to r as in active_set_factors.h

@@ -71,24 +71,29 @@ refused "fault.toml: not for a real battery: only a simulated battery has the fa
 grep -q '^ok    real    short' "$work/run.txt" || complain "no verdict"
 grep -q 'stopped: battery released' "$work/run.txt" || complain "not told that it was released"
 
+# await TEXT: until the edge of the run that goes on has logged it.
+await() {
+  for _ in {1..1200}; do grep -qs -e "$1" "$TMPDIR"/bess-hil-*/edge-*.log && return; sleep 0.05; done
+  complain "the edge never logged \"$1\""
+}
 ends_released() {  # ends_released CODE TEXT: what ended it, and how
   [ "$1" -eq 3 ] || complain "$2: exit code $1"
   grep -q 'stopped: battery released' "$work/run.txt" || complain "$2: not told that it was released"
 }
 # A signal ends it at once; so does the key, at a terminal.
 "$hil" run "$work/long.toml" "${real[@]}" >"$work/run.txt" 2>&1 & run=$!
-sleep 3
+await 'mode=running'
 kill -INT $run
 wait $run
 ends_released $? "Ctrl-C"
-(sleep 3; printf q) | setsid script -qec "$hil run $work/long.toml ${real[*]}" /dev/null >"$work/run.txt" 2>&1
+(await 'mode=running' >&2; printf q) | setsid script -qec "$hil run $work/long.toml ${real[*]}" /dev/null >"$work/run.txt" 2>&1
 ends_released $? "the key"
 # Killed, it takes the edge along, which releases the battery.
 "$hil" run "$work/long.toml" "${real[@]}" >"$work/run.txt" 2>&1 & run=$!
-sleep 3
+await 'mode=running'
 kill -KILL $run
 wait $run 2>/dev/null
-sleep 1
+await 'stopped: battery released'
 kill -TERM $battery
 wait $battery
 

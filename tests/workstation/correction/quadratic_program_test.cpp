@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <nlopt.hpp>
 #include <stdexcept>
 
 #include "tests/support/count_allocations.h"
 #include "tests/support/cvxopt_peer.h"
 #include "tests/support/random_programs.h"
+#include "tests/support/thorough.h"
 
 namespace bess {
 namespace {
@@ -220,18 +220,11 @@ TEST(QuadraticProgram, AgreesWithSlsqp) {
   }
 }
 
-/// How many programs are held against cvxopt, every day and in the long test.
-int programs_for_the_peer() {
-  const char* asked = std::getenv("BESS_PROGRAMS");
-  return asked == nullptr ? 100 : std::atoi(asked);
-}
-
 /// The second peer: an interior-point method. Of 1,000 programs five have 512 variables.
 TEST(QuadraticProgram, AgreesWithCvxopt) {
   Random random(304);
   std::vector<TestProgram> programs;
-  const int count = programs_for_the_peer();
-  ASSERT_GT(count, 0) << "BESS_PROGRAMS is no number";
+  const int count = few_or_all(100, 1'000);
   for (int round = 0; round < count; ++round) {
     int variables = 2 + static_cast<int>(random.index(30));
     if (round % 10 == 9) variables = 32 + static_cast<int>(random.index(97));

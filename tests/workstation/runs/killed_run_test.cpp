@@ -46,13 +46,6 @@ class KilledRun : public testing::Test {
     return words;
   }
 
-  /// Whether it has, without taking its exit code.
-  static bool has_ended(pid_t pid) {
-    siginfo_t info{};
-    return waitid(P_PID, static_cast<id_t>(pid), &info, WEXITED | WNOHANG | WNOWAIT) == 0 &&
-           info.si_pid == pid;
-  }
-
   /// Every file but the times, and whatever was left behind.
   static std::map<std::string, std::string> contents(const fs::path& folder) {
     std::map<std::string, std::string> files;
@@ -102,7 +95,7 @@ TEST_F(KilledRun, AtRandomAndOnAFullDiskEndsWithTheSameBytes) {
     ASSERT_LT(finished, 4 * kills) << "it ends before it can be killed";
     ChildProcess run(command(out, {"--resume"}));
     const auto end = Clock::now() + random.uniform() * longest_s;
-    while (Clock::now() < end && !has_ended(run.pid())) usleep(2'000);
+    while (Clock::now() < end && !run.has_ended()) usleep(2'000);
     run.signal(SIGKILL);
     const int exit_code = run.wait();
     ASSERT_THAT(exit_code, testing::AnyOf(0, 128 + SIGKILL)) << run.read_all();
