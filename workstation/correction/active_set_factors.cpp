@@ -7,6 +7,9 @@
 namespace bess {
 namespace {
 
+constexpr double kRounding = 4e-16;  ///< an entry of d, whose length is at most 1, below this is 0
+constexpr int kTogether = 8;         ///< columns of R that drop() turns at a time
+
 void rotate(Eigen::MatrixXd::ColXpr first, Eigen::MatrixXd::ColXpr second, double cosine,
             double sine) {
   double* const __restrict a = first.data();
@@ -21,6 +24,10 @@ void rotate(Eigen::MatrixXd::ColXpr first, Eigen::MatrixXd::ColXpr second, doubl
 
 }  // namespace
 
+RowImage::RowImage(Eigen::Index variables) : d(Eigen::VectorXd::Zero(variables)) {
+  free.reserve(static_cast<std::size_t>(variables));
+}
+
 ActiveSetFactors::ActiveSetFactors(const Eigen::MatrixXd& inverse_root)
     : start_(inverse_root.transpose()),
       basis_(start_),
@@ -34,21 +41,33 @@ void ActiveSetFactors::reset() {
   active_ = 0;
 }
 
-void ActiveSetFactors::direction(const Eigen::VectorXd& d, Eigen::VectorXd& z) const {
-  z.setZero();
+void ActiveSetFactors::finish(RowImage& image) const {
+  image.d = (image.d.array().abs() < kRounding).select(0.0, image.d);
+  // Without a branch: which are 0 follows no pattern.
+  image.free.resize(static_cast<std::size_t>(size()));
+  std::size_t count = 0;
   for (Eigen::Index k = active_; k < size(); ++k) {
-    if (d[k] != 0) z += d[k] * basis_.col(k);
+    image.free[count] = static_cast<int>(k);
+    count += image.d[k] != 0 ? 1 : 0;
   }
+  image.free.resize(count);
+  image.independence = image.d.tail(size() - active_).norm();
+}
+
+void ActiveSetFactors::direction(const RowImage& image, Eigen::VectorXd& z) const {
+  const Eigen::Index count = size() - active_;
+  if (2 * static_cast<Eigen::Index>(image.free.size()) > count) {
+    z.noalias() = basis_.rightCols(count) * image.d.tail(count);
+    return;
+  }
+  z.setZero();
+  for (const int k : image.free) z += image.d[k] * basis_.col(k);
 }
 
 void ActiveSetFactors::project_free(const Eigen::VectorXd& v, Eigen::VectorXd& free) {
   const Eigen::Index count = size() - active_;
   scratch_.tail(count).noalias() = basis_.rightCols(count).transpose() * v;
   free.noalias() = basis_.rightCols(count) * scratch_.tail(count);
-}
-
-double ActiveSetFactors::independence(const Eigen::VectorXd& d) const {
-  return d.tail(size() - active_).norm();
 }
 
 void ActiveSetFactors::solve(const Eigen::VectorXd& d, Eigen::VectorXd& r) const {
@@ -74,23 +93,22 @@ void ActiveSetFactors::add_combination(const Eigen::VectorXd& y, Eigen::VectorXd
 /// The column that the row meets most becomes the first of J2. Then d2 becomes (corner, 0, ..., 0) by
 /// I - 2 w w' / w'w with w = d2 - corner e1, and J2 changes by the outer product of
 /// J2 w = z - corner J2 e1 and 2 w / w'w: w is 0 where d2 is.
-void ActiveSetFactors::add(Eigen::VectorXd& d, Eigen::VectorXd& z) {
-  Eigen::Index most = 0;
-  d.tail(size() - active_).cwiseAbs().maxCoeff(&most);
-  most += active_;
-  std::swap(d[most], d[active_]);
-  basis_.col(most).swap(basis_.col(active_));
-
-  direction(d, z);
-  const double norm = independence(d);
+void ActiveSetFactors::add(RowImage& image, Eigen::VectorXd& z) {
+  Eigen::VectorXd& d = image.d;
+  int& most = *std::ranges::max_element(image.free, {}, [&d](int k) { return std::fabs(d[k]); });
+  if (most != active_) {
+    std::swap(d[most], d[active_]);
+    basis_.col(most).swap(basis_.col(active_));
+    if (image.free.front() != active_) most = static_cast<int>(active_);
+  }
+  direction(image, z);
+  const double norm = image.independence;
   const double corner = d[active_] > 0 ? -norm : norm;
   scratch_ = (z - corner * basis_.col(active_)) / (norm * (norm + std::fabs(d[active_])));
   triangle_.col(active_).head(active_) = d.head(active_);
   triangle_(active_, active_) = corner;
   d[active_] -= corner;
-  for (Eigen::Index k = active_; k < size(); ++k) {
-    if (d[k] != 0) basis_.col(k) -= d[k] * scratch_;
-  }
+  for (const int k : image.free) basis_.col(k) -= d[k] * scratch_;
   ++active_;
 }
 
@@ -98,23 +116,42 @@ void ActiveSetFactors::drop(Eigen::Index position) {
   --active_;
   // Each column behind moves up and has one entry below its diagonal, which is turned away: in it by the
   // rotations of the columns before and one of its own, and in J by all of them.
-  for (Eigen::Index k = position; k < active_; ++k) {
-    const double* const from = triangle_.col(k + 1).data();
-    double* const to = triangle_.col(k).data();
-    std::copy_n(from, position, to);
-    double upper = from[position];
-    for (Eigen::Index j = position; j < k; ++j) {
-      const double lower = from[j + 1];
-      to[j] = cosines_[j] * upper + sines_[j] * lower;
-      upper = cosines_[j] * lower - sines_[j] * upper;
-    }
-    const double lower = from[k + 1];
-    to[k] = std::hypot(upper, lower);
-    cosines_[k] = upper / to[k];
-    sines_[k] = lower / to[k];
-  }
+  Eigen::Index k = position;
+  for (; k + kTogether <= active_; k += kTogether) move_up<kTogether>(position, k);
+  for (; k < active_; ++k) move_up<1>(position, k);
   for (Eigen::Index j = position; j < active_; ++j) {
     rotate(basis_.col(j), basis_.col(j + 1), cosines_[j], sines_[j]);
+  }
+}
+
+/// Columns k + 1 to k + Count of R become k to k + Count - 1. Each rotation of a column waits for the one
+/// before it, so the columns go through the rotations that all of them need side by side.
+template <int Count>
+void ActiveSetFactors::move_up(Eigen::Index position, Eigen::Index k) {
+  double* const __restrict cosines = cosines_.data();
+  double* const __restrict sines = sines_.data();
+  double* columns[Count + 1];
+  double upper[Count];
+  for (int c = 0; c <= Count; ++c) columns[c] = triangle_.col(k + c).data();
+  for (int c = 0; c < Count; ++c) {
+    std::copy_n(columns[c + 1], position, columns[c]);
+    upper[c] = columns[c + 1][position];
+  }
+  const auto turn = [&](int c, Eigen::Index j) {
+    const double lower = columns[c + 1][j + 1];
+    columns[c][j] = cosines[j] * upper[c] + sines[j] * lower;
+    upper[c] = cosines[j] * lower - sines[j] * upper[c];
+  };
+  for (Eigen::Index j = position; j < k; ++j) {
+    for (int c = 0; c < Count; ++c) turn(c, j);
+  }
+  for (int c = 0; c < Count; ++c) {
+    for (Eigen::Index j = k; j < k + c; ++j) turn(c, j);
+    const double lower = columns[c + 1][k + c + 1];
+    const double length = std::sqrt(upper[c] * upper[c] + lower * lower);
+    columns[c][k + c] = length;
+    cosines[k + c] = upper[c] / length;
+    sines[k + c] = lower / length;
   }
 }
 

@@ -11,14 +11,24 @@
 //
 // A row comes in by one Householder reflection of the columns of J2 that it meets, and goes out by Givens
 // rotations. Rows of few terms meet few columns: an order between neighbours, whatever is active, meets
-// two, because the reflection begins with a column it meets and so leaves all others as they are. Entries
-// of d that are 0 are therefore passed over everywhere.
-// All memory is taken in the constructor.
+// two, because the reflection begins with a column it meets and so leaves all others as they are. An image
+// therefore lists the columns of J2 that its row meets, and all work is on these.
+// All memory is taken in the constructors.
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 namespace bess {
+
+/// What the factors make of a row's normal n, until they change.
+struct RowImage {
+  explicit RowImage(Eigen::Index variables);
+
+  Eigen::VectorXd d;        ///< J'n [n]
+  std::vector<int> free;    ///< columns of J2 whose d is not 0, rising
+  double independence = 0;  ///< |d2|: how far n lies from the span of the active ones, by G^-1
+};
 
 class ActiveSetFactors {
  public:
@@ -30,22 +40,23 @@ class ActiveSetFactors {
   [[nodiscard]] Eigen::Index size() const { return basis_.rows(); }
   [[nodiscard]] Eigen::Index active() const { return active_; }
 
-  /// d += factor * row i of J: d = J'n term by term, for normals of few terms.
-  void add_image(Eigen::Index i, double factor, Eigen::VectorXd& d) const {
-    d += factor * basis_.row(i).transpose();
+  /// d += factor * row i of J: d = J'n term by term, for normals of few terms. Both of the columns from
+  /// `from` on: 0, or active() for what is beyond the active rows alone.
+  void add_image(Eigen::Index i, double factor, Eigen::Index from, RowImage& image) const {
+    image.d.tail(size() - from) += factor * basis_.row(i).tail(size() - from).transpose();
   }
   /// d = J'n at once, for others.
-  void image(const Eigen::VectorXd& normal, Eigen::VectorXd& d) const {
-    d.noalias() = basis_.transpose() * normal;
+  void image_of(const Eigen::VectorXd& normal, Eigen::Index from, RowImage& image) const {
+    image.d.tail(size() - from).noalias() = basis_.rightCols(size() - from).transpose() * normal;
   }
+  /// The rest of an image whose d is whole: d without the rounding of what is 0, for a row of length 1.
+  void finish(RowImage& image) const;
   /// A row of J lies across its columns: reading one takes as long as reading eight columns.
   [[nodiscard]] bool prefers_whole_normals(Eigen::Index terms) const { return 8 * terms > size(); }
   /// z = J2 d2.
-  void direction(const Eigen::VectorXd& d, Eigen::VectorXd& z) const;
+  void direction(const RowImage& image, Eigen::VectorXd& z) const;
   /// J2 J2' v into `free`; both [n], may not alias.
   void project_free(const Eigen::VectorXd& v, Eigen::VectorXd& free);
-  /// |d2|: how far the row of d lies from the span of the active ones, in the metric of G^-1.
-  [[nodiscard]] double independence(const Eigen::VectorXd& d) const;
   /// head(active) of `r` = R^-1 d1.
   void solve(const Eigen::VectorXd& d, Eigen::VectorXd& r) const;
   /// head(active) of `y` becomes R^-T y.
@@ -53,13 +64,16 @@ class ActiveSetFactors {
   /// x += J1 y.
   void add_combination(const Eigen::VectorXd& y, Eigen::VectorXd& x) const;
 
-  /// z = direction(d), and the row of `d` becomes the last active one; independence(d) must be above 0.
-  /// Leaves `d` changed.
-  void add(Eigen::VectorXd& d, Eigen::VectorXd& z);
+  /// z = direction(image), and its row becomes the last active one; its independence must be above 0.
+  /// Leaves the image changed.
+  void add(RowImage& image, Eigen::VectorXd& z);
   /// Active row `position` goes; those behind it move up.
   void drop(Eigen::Index position);
 
  private:
+  template <int Count>
+  void move_up(Eigen::Index position, Eigen::Index k);
+
   Eigen::MatrixXd start_;            ///< J of no active row, L^-T [n x n]
   Eigen::MatrixXd basis_;            ///< J [n x n]: columns 0..active-1 are J1
   Eigen::MatrixXd triangle_;         ///< R in its upper left corner [n x n]

@@ -15,8 +15,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kViolation = 1e-12;     ///< a row is violated by more than this
 constexpr double kContradiction = 1e-9;  ///< rows clash by more than this; below, they just meet
 constexpr double kWeakly = 1e-9;         ///< to the derivative, slacks and multipliers below are 0
-constexpr double kDrift = 1e-11;     ///< active rows this far from tight: the factors have drifted
-constexpr double kRounding = 4e-16;  ///< an entry of d, whose length is 1, below this is 0
+constexpr double kDrift = 1e-11;  ///< active rows this far from tight: the factors have drifted
 /// |d2| of a unit row that depends on the active ones: rounding leaves 1e-13 at 512 variables.
 constexpr double kDependent = 1e-9;
 /// Of the largest: smaller entries of r are rounding, and limit no step.
@@ -46,10 +45,11 @@ QuadraticProgram::QuadraticProgram(const Eigen::MatrixXd& hessian, LinearConstra
 
 QuadraticProgram::QuadraticProgram(LinearConstraints&& constraints,
                                    const Eigen::MatrixXd& inverse_root)
-    : rows_(std::move(constraints)), factors_(inverse_root) {
+    : rows_(std::move(constraints)), factors_(inverse_root), image_(inverse_root.rows()) {
   const Eigen::Index variables = rows_.normals.cols();
   const Eigen::Index count = rows_.normals.rows();
-  for (Eigen::VectorXd* v : {&free_minimum_, &x_, &d_, &z_, &r_}) v->setZero(variables);
+  for (Eigen::VectorXd* v : {&free_minimum_, &x_, &z_, &r_}) v->setZero(variables);
+  active_multipliers_.setZero(variables);
   for (Eigen::VectorXd* v : {&row_scale_, &multipliers_, &slacks_}) v->setZero(count);
   active_.reserve(static_cast<std::size_t>(variables));
   clash_.reserve(static_cast<std::size_t>(variables) + 1);
@@ -66,11 +66,11 @@ QuadraticProgram::QuadraticProgram(LinearConstraints&& constraints,
 void QuadraticProgram::scale_rows(const Eigen::MatrixXd& inverse_root) {
   rows_.normals.makeCompressed();
   for (int i = 0; i < rows_.normals.rows(); ++i) {
-    d_.setZero();
+    z_.setZero();
     for (Rows::InnerIterator term(rows_.normals, i); term; ++term) {
-      d_ += term.value() * inverse_root.col(term.col());
+      z_ += term.value() * inverse_root.col(term.col());
     }
-    const double length = d_.norm();
+    const double length = z_.norm();
     row_scale_[i] = length > 0 ? 1 / length : 1;
     for (Rows::InnerIterator term(rows_.normals, i); term; ++term) {
       term.valueRef() *= row_scale_[i];
@@ -121,8 +121,7 @@ void QuadraticProgram::start(const Eigen::VectorXd& g) {
   steps_ = 0;
   factors_.project_free(g, free_minimum_);
   x_ = free_minimum_;
-  measure_scale();
-  measure_slacks();
+  measure();
 }
 
 /// Rows that share no variable do not feel each other: at the start of a projection each is met by itself, the
@@ -137,9 +136,9 @@ void QuadraticProgram::take_in_disjoint_rows() {
   for (const int row : candidates_) {
     if (!claim_variables(row)) continue;
     image_of(row, 1);
-    if (factors_.independence(d_) <= kDependent) continue;  // a row of zeros
+    if (image_.independence <= kDependent) continue;  // a row of zeros
     const double violation = -slacks_[row];
-    factors_.add(d_, z_);
+    factors_.add(image_, z_);
     move(violation);
     activate(row, 1, violation);
     ++steps_;
@@ -157,33 +156,48 @@ bool QuadraticProgram::claim_variables(int row) {
   return true;
 }
 
-void QuadraticProgram::measure_scale() {
+/// Slacks at x, and the size of their terms.
+void QuadraticProgram::measure() {
   scale_ = std::numeric_limits<double>::min();
-  for (int i = 0; i < rows_.normals.rows(); ++i) {
-    double size = std::fabs(rows_.bounds[i]);
-    for (Rows::InnerIterator term(rows_.normals, i); term; ++term) {
-      size += std::fabs(term.value() * x_[term.col()]);
+  if (dense_.size() > 0) {
+    slacks_ = rows_.bounds.cwiseAbs();
+    for (Eigen::Index i = 0; i < x_.size(); ++i) {
+      slacks_ += std::fabs(x_[i]) * dense_.col(i).cwiseAbs();
     }
+    if (slacks_.size() > 0) scale_ = std::max(scale_, slacks_.maxCoeff());
+    slacks_ = -rows_.bounds;
+    slacks_.noalias() += dense_ * x_;
+    return;
+  }
+  for (int row = 0; row < slacks_.size(); ++row) {
+    double slack = -rows_.bounds[row];
+    double size = std::fabs(slack);
+    for (Rows::InnerIterator term(rows_.normals, row); term; ++term) {
+      const double part = term.value() * x_[term.col()];
+      slack += part;
+      size += std::fabs(part);
+    }
+    slacks_[row] = slack;
     scale_ = std::max(scale_, size);
   }
 }
 
-/// d = J'n of the row times its sign, without the rounding of what is 0.
-void QuadraticProgram::image_of(int row, double sign) {
+/// Of the row times its sign; d from column `from` on.
+void QuadraticProgram::image_of(int row, double sign, Eigen::Index from) {
   const auto terms = rows_.normals.outerIndexPtr()[row + 1] - rows_.normals.outerIndexPtr()[row];
   if (factors_.prefers_whole_normals(terms)) {
     z_.setZero();
     for (Rows::InnerIterator term(rows_.normals, row); term; ++term) {
       z_[term.col()] = sign * term.value();
     }
-    factors_.image(z_, d_);
+    factors_.image_of(z_, from, image_);
   } else {
-    d_.setZero();
+    image_.d.setZero();
     for (Rows::InnerIterator term(rows_.normals, row); term; ++term) {
-      factors_.add_image(term.col(), sign * term.value(), d_);
+      factors_.add_image(term.col(), sign * term.value(), from, image_);
     }
   }
-  d_ = (d_.array().abs() < kRounding).select(0.0, d_);
+  factors_.finish(image_);
 }
 
 double QuadraticProgram::slack_of(int row) const {
@@ -192,15 +206,6 @@ double QuadraticProgram::slack_of(int row) const {
     sum += term.value() * x_[term.col()];
   }
   return sum;
-}
-
-void QuadraticProgram::measure_slacks() {
-  if (dense_.size() > 0) {
-    slacks_ = -rows_.bounds;
-    slacks_.noalias() += dense_ * x_;
-    return;
-  }
-  for (int row = 0; row < slacks_.size(); ++row) slacks_[row] = slack_of(row);
 }
 
 /// x += step z; slacks follow where x moves. Their rounding is gone when they are measured at the end.
@@ -232,18 +237,29 @@ int QuadraticProgram::most_violated() const {
   return worst;
 }
 
+Eigen::Index QuadraticProgram::active_equalities() const {
+  const auto is_equality = [this](const ActiveRow& row) { return row.row < rows_.equalities; };
+  return std::ranges::partition_point(active_, is_equality) - active_.begin();
+}
+
 /// How far the multipliers can follow -r until that of an inequality is 0.
 QuadraticProgram::Limit QuadraticProgram::limit_by_multipliers() const {
   Limit limit{kInfinity, 0};
-  if (active_.empty()) return limit;
-  const double falling = kFallingMultiplier * r_.head(factors_.active()).cwiseAbs().maxCoeff();
-  for (std::size_t k = 0; k < active_.size(); ++k) {
-    const double fall = r_[static_cast<Eigen::Index>(k)];
-    if (active_[k].row < rows_.equalities || fall <= falling) continue;
-    const double step = active_[k].multiplier / fall;
-    if (step < limit.step) limit = {step, k};
+  const Eigen::Index active = factors_.active();
+  if (active == 0) return limit;
+  const double falling = kFallingMultiplier * r_.head(active).cwiseAbs().maxCoeff();
+  for (Eigen::Index k = active_equalities(); k < active; ++k) {
+    if (r_[k] <= falling || active_multipliers_[k] >= limit.step * r_[k]) continue;
+    limit = {active_multipliers_[k] / r_[k], static_cast<std::size_t>(k)};
   }
   return limit;
+}
+
+/// Multipliers of inequalities are not negative, whatever rounding says.
+void QuadraticProgram::keep_signs() {
+  const Eigen::Index equalities = active_equalities();
+  auto signed_ones = active_multipliers_.segment(equalities, factors_.active() - equalities);
+  signed_ones = signed_ones.cwiseMax(0);
 }
 
 /// Step 2 of the paper: towards the row until it is tight, letting go of active rows on the way. False when
@@ -253,8 +269,8 @@ bool QuadraticProgram::take_in(int row, double sign) {
   while (true) {
     ++steps_;
     image_of(row, sign);
-    factors_.solve(d_, r_);
-    const double independence = factors_.independence(d_);
+    factors_.solve(image_.d, r_);
+    const double independence = image_.independence;
     const bool is_dependent = independence <= kDependent;
     const double violation = std::max(0.0, -sign * slack_of(row));
     const double full = is_dependent ? kInfinity : violation / (independence * independence);
@@ -269,14 +285,11 @@ bool QuadraticProgram::take_in(int row, double sign) {
       passed_over_[row] = kInfinity;
       return true;
     }
-    for (std::size_t k = 0; k < active_.size(); ++k) {
-      ActiveRow& other = active_[k];
-      other.multiplier -= step * r_[static_cast<Eigen::Index>(k)];
-      if (other.row >= rows_.equalities) other.multiplier = std::max(0.0, other.multiplier);
-    }
+    active_multipliers_.head(factors_.active()) -= step * r_.head(factors_.active());
+    keep_signs();
     multiplier += step;
     if (full <= limit.step) {
-      factors_.add(d_, z_);
+      factors_.add(image_, z_);
       move(step);
       activate(row, sign, multiplier);
       for (const int other : neglected_) passed_over_[other] = 0;
@@ -284,7 +297,7 @@ bool QuadraticProgram::take_in(int row, double sign) {
       return true;
     }
     if (!is_dependent) {
-      factors_.direction(d_, z_);
+      factors_.direction(image_, z_);
       move(step);
     }
     let_go(limit.position);
@@ -292,7 +305,8 @@ bool QuadraticProgram::take_in(int row, double sign) {
 }
 
 void QuadraticProgram::activate(int row, double sign, double multiplier) {
-  active_.push_back({row, sign, multiplier});
+  active_multipliers_[static_cast<Eigen::Index>(active_.size())] = multiplier;
+  active_.push_back({row, sign});
   mark(row, true);
 }
 
@@ -304,9 +318,10 @@ void QuadraticProgram::mark(int row, bool active) {
 
 /// Takes the row in as it is, unless it depends on the active ones.
 bool QuadraticProgram::hold(int row, double sign) {
+  image_of(row, sign, factors_.active());  // most rows that come here depend on the others
+  if (image_.independence <= kDependent) return false;
   image_of(row, sign);
-  if (factors_.independence(d_) <= kDependent) return false;
-  factors_.add(d_, z_);
+  factors_.add(image_, z_);
   mark(row, true);
   return true;
 }
@@ -315,6 +330,8 @@ void QuadraticProgram::let_go(std::size_t position) {
   factors_.drop(static_cast<Eigen::Index>(position));
   mark(active_[position].row, false);
   active_.erase(active_.begin() + static_cast<std::ptrdiff_t>(position));
+  const auto multiplier = active_multipliers_.begin() + static_cast<std::ptrdiff_t>(position);
+  std::copy(multiplier + 1, active_multipliers_.end(), multiplier);
 }
 
 /// The row is the sum of r times active ones, and no r of an inequality is positive: row - sum = 0 while
@@ -338,20 +355,16 @@ void QuadraticProgram::keep_clash(int row, double sign) {
 double QuadraticProgram::recompute() {
   x_ = free_minimum_;
   for (std::size_t k = 0; k < active_.size(); ++k) {
-    d_[static_cast<Eigen::Index>(k)] = -active_[k].sign * slack_of(active_[k].row);
+    z_[static_cast<Eigen::Index>(k)] = -active_[k].sign * slack_of(active_[k].row);
   }
-  factors_.solve_transposed(d_);
-  factors_.add_combination(d_, x_);
-  factors_.solve(d_, r_);
-  measure_scale();
-  measure_slacks();
+  factors_.solve_transposed(z_);
+  factors_.add_combination(z_, x_);
+  factors_.solve(z_, r_);
+  measure();
+  active_multipliers_.head(factors_.active()) = r_.head(factors_.active());
+  keep_signs();
   double distance = 0;
-  for (std::size_t k = 0; k < active_.size(); ++k) {
-    ActiveRow& row = active_[k];
-    row.multiplier = r_[static_cast<Eigen::Index>(k)];
-    if (row.row >= rows_.equalities) row.multiplier = std::max(0.0, row.multiplier);
-    distance = std::max(distance, std::fabs(slacks_[row.row]));
-  }
+  for (const ActiveRow& row : active_) distance = std::max(distance, std::fabs(slacks_[row.row]));
   return distance;
 }
 
@@ -366,8 +379,9 @@ void QuadraticProgram::rebuild() {
 
 void QuadraticProgram::publish_multipliers() {
   multipliers_.setZero();
-  for (const ActiveRow& row : active_) {
-    multipliers_[row.row] = row.multiplier * row.sign * row_scale_[row.row];
+  for (std::size_t k = 0; k < active_.size(); ++k) {
+    const auto& [row, sign] = active_[k];
+    multipliers_[row] = active_multipliers_[static_cast<Eigen::Index>(k)] * sign * row_scale_[row];
   }
 }
 
@@ -376,13 +390,13 @@ void QuadraticProgram::backward(const Eigen::VectorXd& gradient_x, Eigen::Vector
   // Held: every tight row.
   for (int row = rows_.equalities; row < slacks_.size(); ++row) {
     if (is_active_[static_cast<std::size_t>(row)] != 0 || slacks_[row] > weak) continue;
-    if (hold(row, 1)) active_.push_back({row, 1, 0});
+    if (hold(row, 1)) activate(row, 1, 0);
   }
   factors_.project_free(gradient_x, gradient_g);
   // Let go: those without a multiplier.
   const std::size_t held = active_.size();
-  for (std::size_t k = held; k-- > 0;) {
-    if (active_[k].row >= rows_.equalities && active_[k].multiplier <= weak) let_go(k);
+  for (Eigen::Index k = factors_.active(); k-- > active_equalities();) {
+    if (active_multipliers_[k] <= weak) let_go(static_cast<std::size_t>(k));
   }
   if (active_.size() == held) return;
   factors_.project_free(gradient_x, z_);

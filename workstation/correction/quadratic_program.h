@@ -73,7 +73,6 @@ class QuadraticProgram {
   struct ActiveRow {
     int row;
     double sign;
-    double multiplier;
   };
   using Rows = Eigen::SparseMatrix<double, Eigen::RowMajor>;
   using Columns = Eigen::SparseMatrix<double, Eigen::ColMajor>;
@@ -88,14 +87,15 @@ class QuadraticProgram {
   void take_in_disjoint_rows();
   [[nodiscard]] bool claim_variables(int row);
   void mark(int row, bool active);
-  void measure_scale();
-  void measure_slacks();
+  void measure();
+  [[nodiscard]] Eigen::Index active_equalities() const;
   void move(double step);
   void activate(int row, double sign, double multiplier);
-  void image_of(int row, double sign);
+  void image_of(int row, double sign, Eigen::Index from = 0);
   [[nodiscard]] double slack_of(int row) const;
   [[nodiscard]] int most_violated() const;
   [[nodiscard]] Limit limit_by_multipliers() const;
+  void keep_signs();
   [[nodiscard]] bool take_in(int row, double sign);
   bool hold(int row, double sign);
   void let_go(std::size_t position);
@@ -110,18 +110,20 @@ class QuadraticProgram {
   bool is_projection_;         ///< G is the identity
   Eigen::VectorXd row_scale_;  ///< [rows] as solved = row_scale * as given
   ActiveSetFactors factors_;
-  std::vector<ActiveRow> active_;
-  std::vector<char> is_active_;   ///< [rows]
-  std::vector<int> neglected_;    ///< rows violated by no more than rounding, and dependent
-  Eigen::VectorXd passed_over_;   ///< [rows] infinite for active and neglected rows, else 0
-  std::vector<char> is_claimed_;  ///< [n] variables of the disjoint rows
-  std::vector<int> candidates_;   ///< violated rows at the start
+  RowImage image_;                      ///< of the row that is looked at
+  std::vector<ActiveRow> active_;       ///< equalities first
+  Eigen::VectorXd active_multipliers_;  ///< [n] of the active rows, in their order
+  std::vector<char> is_active_;         ///< [rows]
+  std::vector<int> neglected_;          ///< rows violated by no more than rounding, and dependent
+  Eigen::VectorXd passed_over_;         ///< [rows] infinite for active and neglected rows, else 0
+  std::vector<char> is_claimed_;        ///< [n] variables of the disjoint rows
+  std::vector<int> candidates_;         ///< violated rows at the start
   std::vector<ClashingRow> clash_;
-  Eigen::VectorXd free_minimum_;   ///< G^-1 g [n]
-  Eigen::VectorXd x_, d_, z_, r_;  ///< [n], d to r as in active_set_factors.h
-  Eigen::VectorXd multipliers_;    ///< [rows] of the rows as given
-  Eigen::VectorXd slacks_;         ///< [rows] of the scaled rows at x
-  double scale_ = 1;               ///< size of the terms of a slack
+  Eigen::VectorXd free_minimum_;  ///< G^-1 g [n]
+  Eigen::VectorXd x_, z_, r_;     ///< [n], z and r as in active_set_factors.h
+  Eigen::VectorXd multipliers_;   ///< [rows] of the rows as given
+  Eigen::VectorXd slacks_;        ///< [rows] of the scaled rows at x
+  double scale_ = 1;              ///< size of the terms of a slack
   int steps_ = 0;
 };
 
