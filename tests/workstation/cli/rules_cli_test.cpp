@@ -26,19 +26,33 @@ class RulesCli : public testing::Test {
  protected:
   RulesCli() { write_minute_file(prices_, small_series(), ""); }
 
-  /// Standard output of `bess-train rules ARGUMENTS`.
-  static std::string rules_output(const std::string& arguments) {
+  /// Standard output of `bess-train WORDS`.
+  static std::string output(const std::string& words) {
     CommandLine command_line("bess-train", "", "");
     ProgramCommand root = command_line.root();
-    add_rules_commands(root);
+    add_commands(root);
     testing::internal::CaptureStdout();
     try {
-      command_line.parse("rules " + arguments);
+      command_line.parse(words);
     } catch (...) {
       testing::internal::GetCapturedStdout();
       throw;
     }
     return testing::internal::GetCapturedStdout();
+  }
+  static std::string rules_output(const std::string& arguments) {
+    return output("rules " + arguments);
+  }
+  /// Of the JSON lines in `text`, one each.
+  static std::vector<Json> json_lines(const std::string& text) {
+    std::vector<Json> lines;
+    for (std::size_t at = 0; at < text.size(); at = text.find('\n', at) + 1) {
+      lines.push_back(Json::parse(text.substr(at, text.find('\n', at) - at)));
+    }
+    return lines;
+  }
+  static double number(const Json& json, const char* key) {
+    return json.value()[key].number().value_or(NAN);
   }
   [[nodiscard]] std::string rule_file(const std::string& text) const {
     return folder_.write("rules.toml", text);
@@ -70,21 +84,17 @@ TEST_F(RulesCli, CheckCountsWhatAPolicyBreaks) {
   const std::string file = rule_file(
       "[[rule]]\nname = \"dear\"\nprice_min = 100\nat_least = \"idle\"\nprice_max = 1400\n"
       "[[rule]]\nname = \"kept\"\nprice_min = 100\nat_most = \"idle\"\n");
-  const std::string text =
-      rules_output("check --rules " + file + " --policy rbc:20:150 --json" + with_prices());
-  std::vector<Json> lines;
-  for (std::size_t at = 0; at < text.size(); at = text.find('\n', at) + 1) {
-    lines.push_back(Json::parse(text.substr(at, text.find('\n', at) - at)));
-  }
+  const std::vector<Json> lines = json_lines(
+      rules_output("check --rules " + file + " --policy rbc:20:150 --json" + with_prices()));
   ASSERT_EQ(lines.size(), 6U) << "properties 1, 2, two directions, two rules";
-  const JsonValue dear = lines[4].value();
-  EXPECT_STREQ(dear["rule"].text(), "dear");
-  EXPECT_GT(dear["visited_broken"].number().value_or(0), 0);
-  EXPECT_LT(dear["visited_broken"].number().value_or(0), dear["visited"].number().value_or(0));
-  EXPECT_GT(dear["drawn"].number().value_or(0), dear["visited"].number().value_or(0));
-  const JsonValue kept = lines[5].value();
-  EXPECT_EQ(kept["visited_broken"].number().value_or(-1), 0);
-  EXPECT_GT(kept["visited"].number().value_or(0), 0);
+  const Json& dear = lines[4];
+  EXPECT_STREQ(dear.value()["rule"].text(), "dear");
+  EXPECT_GT(number(dear, "visited_broken"), 0);
+  EXPECT_LT(number(dear, "visited_broken"), number(dear, "visited"));
+  EXPECT_GT(number(dear, "drawn"), number(dear, "visited"));
+  const Json& kept = lines[5];
+  EXPECT_EQ(number(kept, "visited_broken"), 0);
+  EXPECT_GT(number(kept, "visited"), 0);
 }
 
 TEST_F(RulesCli, PriceTellsEachRuleAloneAndAllTogether) {
@@ -97,13 +107,57 @@ TEST_F(RulesCli, PriceTellsEachRuleAloneAndAllTogether) {
   EXPECT_THAT(text,
               AllOf(HasSubstr("no trade "), HasSubstr("far "), HasSubstr("all together "),
                     HasSubstr("steady                                    no demand on single")));
-  const std::string json = rules_output(arguments + " --json");
-  const Json first = Json::parse(json.substr(0, json.find('\n')));
-  EXPECT_NEAR(first.value()["profit_eur_per_day_per_mwh"].number().value_or(NAN), 0, 1)
+  const std::vector<Json> lines = json_lines(rules_output(arguments + " --json"));
+  const Json& first = lines.front();
+  EXPECT_NEAR(number(first, "profit_eur_per_day_per_mwh"), 0, 1)
       << "idles wherever these prices go";
-  EXPECT_LT(first.value()["difference"].number().value_or(0), -100);
-  EXPECT_GT(first.value()["standard_error"].number().value_or(0), 0);
+  EXPECT_LT(number(first, "difference"), -100);
+  EXPECT_GT(number(first, "standard_error"), 0);
   EXPECT_THROW(rules_output("price --policy foresight --rules " + file + with_prices()), UserError);
+}
+
+using RulesLearnt = RulesCli;
+
+/// Two seeds of three kinds of student, all of them proved; what is told of them, `evaluate` tells of those kept.
+TEST_F(RulesLearnt, EachIsPricedAloneAndAllTogetherByStudentsThatStay) {
+  const std::string config = " --config " + folder_.write("a.toml", "[distil]\nepochs = 60\n");
+  const std::string teacher = folder_.file("teacher.bin");
+  output("train --out " + teacher + with_prices() + config);
+  const std::string files =
+      example_rule_path("quiet_hours") + " " + example_rule_path("no_dear_charging");
+  const std::filesystem::path kept = folder_.file("kept");
+  std::vector<Json> lines;
+  for (Json& json : json_lines(rules_output("price --alone --seeds 2 --json --rules " + files +
+                                            " --policy " + teacher + " --teacher " + teacher +
+                                            " --keep " + kept.string() + with_prices() + config))) {
+    const char* const by = json.value()["by"].text();
+    if (by != nullptr && std::string_view(by) == "distillation") lines.push_back(std::move(json));
+  }
+  ASSERT_EQ(lines.size(), 3U);
+  const auto earned = [&](const std::string& name) {
+    double sum = 0;
+    for (const char* seed : {"1", "2"}) {
+      const std::string student = (kept / (name + ".seed-" + seed + ".json")).string();
+      const std::string line = output("evaluate --json --split val+test --policy '" + student +
+                                      "'" + with_prices() + config);
+      sum += number(Json::parse(line), "profit_eur_per_day_per_mwh");
+    }
+    return sum / 2;
+  };
+  const double without = earned("without rules");
+  const char* const names[] = {"quiet hours", "no dear charging", "all together"};
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    SCOPED_TRACE(names[i]);
+    EXPECT_STREQ(lines[i].value()["rule"].text(), names[i]);
+    EXPECT_EQ(number(lines[i], "violations"), 0);
+    EXPECT_GT(number(lines[i], "states_checked"), 1e9);
+    const double with = earned(names[i]);
+    EXPECT_NEAR(number(lines[i], "profit_eur_per_day_per_mwh"), with, 1e-3);
+    EXPECT_NEAR(number(lines[i], "without_eur_per_day_per_mwh"), without, 1e-3);
+    EXPECT_NEAR(number(lines[i], "difference"), with - without, 1e-3);
+    EXPECT_GE(number(lines[i], "spread"), 0);
+  }
+  EXPECT_LT(number(lines[0], "difference"), -50) << "a third of the day is quiet";
 }
 
 TEST_F(RulesCli, WhatIsAboutDistillingNeedsATeacher) {
