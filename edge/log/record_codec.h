@@ -22,8 +22,8 @@ using RecordBytes = std::array<std::uint8_t, kRecordBytes>;
 void encode_record(const CycleRecord& record, std::uint64_t sequence, RecordBytes& bytes);
 
 /// False when the bytes are not a whole record: torn, never written, or of a later program.
-/// `bytes`: kRecordBytes, or kOlderRecordBytes.
-bool decode_record(std::span<const std::uint8_t> bytes, CycleRecord& record,
+/// `stored`: kRecordBytes, or kOlderRecordBytes.
+bool decode_record(std::span<const std::uint8_t> stored, CycleRecord& record,
                    std::uint64_t& sequence);
 
 }  // namespace bess

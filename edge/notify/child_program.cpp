@@ -12,8 +12,6 @@
 
 #include "shared/scaled_clock.h"
 
-extern char** environ;
-
 namespace bess {
 namespace {
 

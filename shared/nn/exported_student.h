@@ -56,10 +56,10 @@ inline constexpr PriceThresholds kExportedThresholds{BESS_STUDENT_LOW_PRICE_EUR_
                                                      BESS_STUDENT_HIGH_PRICE_EUR_PER_MWH};
 static_assert(kExportedThresholds.are_ordered());
 static_assert(kExportedStudent.context.is_valid());
-static_assert(BESS_STUDENT_STATES_CHECKED == kLatticeStateCount &&
-                  BESS_STUDENT_VIOLATIONS_PROPERTY_1 == 0 &&
-                  BESS_STUDENT_VIOLATIONS_PROPERTY_2 == 0 &&
-                  BESS_STUDENT_VIOLATIONS_PROPERTY_3 == 0,
+inline constexpr std::int64_t kExportedViolations = BESS_STUDENT_VIOLATIONS_PROPERTY_1 +
+                                                    BESS_STUDENT_VIOLATIONS_PROPERTY_2 +
+                                                    BESS_STUDENT_VIOLATIONS_PROPERTY_3;
+static_assert(BESS_STUDENT_STATES_CHECKED == kLatticeStateCount && kExportedViolations == 0,
               "student_weights.h is not proved over the whole lattice: export it again");
 
 /// What the guard enforces of the operator's rules; a header without them has no table.
