@@ -10,6 +10,8 @@ namespace {
 constexpr double kRounding = 4e-16;  ///< an entry of d, whose length is at most 1, below this is 0
 constexpr int kTogether = 8;         ///< columns of R that drop() turns at a time
 
+double without_rounding(double d) { return std::fabs(d) < kRounding ? 0 : d; }
+
 void rotate(Eigen::MatrixXd::ColXpr first, Eigen::MatrixXd::ColXpr second, double cosine,
             double sine) {
   double* const __restrict a = first.data();
@@ -41,17 +43,46 @@ void ActiveSetFactors::reset() {
   active_ = 0;
 }
 
-void ActiveSetFactors::finish(RowImage& image) const {
-  image.d = (image.d.array().abs() < kRounding).select(0.0, image.d);
+/// d[k] = value(k), without the rounding of what is 0, and what follows from it.
+template <typename Value>
+void ActiveSetFactors::fill(Eigen::Index from, RowImage& image, const Value& value) const {
+  for (Eigen::Index k = from; k < active_; ++k) image.d[k] = without_rounding(value(k));
   // Without a branch: which are 0 follows no pattern.
   image.free.resize(static_cast<std::size_t>(size()));
   std::size_t count = 0;
+  double squares = 0;
   for (Eigen::Index k = active_; k < size(); ++k) {
+    const double d = without_rounding(value(k));
+    image.d[k] = d;
     image.free[count] = static_cast<int>(k);
-    count += image.d[k] != 0 ? 1 : 0;
+    count += d != 0 ? 1 : 0;
+    squares += d * d;
   }
   image.free.resize(count);
-  image.independence = image.d.tail(size() - active_).norm();
+  image.independence = std::sqrt(squares);
+}
+
+void ActiveSetFactors::image_of(const Eigen::VectorXd& normal, Eigen::Index from,
+                                RowImage& image) const {
+  const Eigen::Index count = size() - from;
+  image.d.tail(count).noalias() = basis_.rightCols(count).transpose() * normal;
+  fill(from, image, [&](Eigen::Index k) { return image.d[k]; });
+}
+
+void ActiveSetFactors::image_of(std::span<const int> variables, std::span<const double> factors,
+                                double sign, Eigen::Index from, RowImage& image) const {
+  const auto term = [&](std::size_t t, Eigen::Index k) {
+    return sign * factors[t] * basis_(variables[t], k);
+  };
+  if (variables.size() == 2) {  // an order between two, which most rows are
+    fill(from, image, [&](Eigen::Index k) { return term(0, k) + term(1, k); });
+    return;
+  }
+  fill(from, image, [&](Eigen::Index k) {
+    double sum = 0;
+    for (std::size_t t = 0; t < variables.size(); ++t) sum += term(t, k);
+    return sum;
+  });
 }
 
 void ActiveSetFactors::direction(const RowImage& image, Eigen::VectorXd& z) const {

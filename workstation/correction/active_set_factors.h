@@ -17,6 +17,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 #include <vector>
 
 namespace bess {
@@ -40,17 +41,11 @@ class ActiveSetFactors {
   [[nodiscard]] Eigen::Index size() const { return basis_.rows(); }
   [[nodiscard]] Eigen::Index active() const { return active_; }
 
-  /// d += factor * row i of J: d = J'n term by term, for normals of few terms. Both of the columns from
-  /// `from` on: 0, or active() for what is beyond the active rows alone.
-  void add_image(Eigen::Index i, double factor, Eigen::Index from, RowImage& image) const {
-    image.d.tail(size() - from) += factor * basis_.row(i).tail(size() - from).transpose();
-  }
-  /// d = J'n at once, for others.
-  void image_of(const Eigen::VectorXd& normal, Eigen::Index from, RowImage& image) const {
-    image.d.tail(size() - from).noalias() = basis_.rightCols(size() - from).transpose() * normal;
-  }
-  /// The rest of an image whose d is whole: d without the rounding of what is 0, for a row of length 1.
-  void finish(RowImage& image) const;
+  /// The image of a normal [n], or of the one with `factors` at `variables` and 0 elsewhere. Its length is 1,
+  /// by G^-1. d is filled from column `from` on: 0, or active() when what the active rows lack is enough.
+  void image_of(const Eigen::VectorXd& normal, Eigen::Index from, RowImage& image) const;
+  void image_of(std::span<const int> variables, std::span<const double> factors, double sign,
+                Eigen::Index from, RowImage& image) const;
   /// A row of J lies across its columns: reading one takes as long as reading eight columns.
   [[nodiscard]] bool prefers_whole_normals(Eigen::Index terms) const { return 8 * terms > size(); }
   /// z = J2 d2.
@@ -71,6 +66,8 @@ class ActiveSetFactors {
   void drop(Eigen::Index position);
 
  private:
+  template <typename Value>
+  void fill(Eigen::Index from, RowImage& image, const Value& value) const;
   template <int Count>
   void move_up(Eigen::Index position, Eigen::Index k);
 

@@ -182,22 +182,20 @@ void QuadraticProgram::measure() {
   }
 }
 
-/// Of the row times its sign; d from column `from` on.
+/// The image of the row times its sign; d from column `from` on.
 void QuadraticProgram::image_of(int row, double sign, Eigen::Index from) {
-  const auto terms = rows_.normals.outerIndexPtr()[row + 1] - rows_.normals.outerIndexPtr()[row];
-  if (factors_.prefers_whole_normals(terms)) {
-    z_.setZero();
-    for (Rows::InnerIterator term(rows_.normals, row); term; ++term) {
-      z_[term.col()] = sign * term.value();
-    }
-    factors_.image_of(z_, from, image_);
-  } else {
-    image_.d.setZero();
-    for (Rows::InnerIterator term(rows_.normals, row); term; ++term) {
-      factors_.add_image(term.col(), sign * term.value(), from, image_);
-    }
+  const auto begin = static_cast<std::size_t>(rows_.normals.outerIndexPtr()[row]);
+  const auto end = static_cast<std::size_t>(rows_.normals.outerIndexPtr()[row + 1]);
+  if (!factors_.prefers_whole_normals(static_cast<Eigen::Index>(end - begin))) {
+    factors_.image_of({rows_.normals.innerIndexPtr() + begin, end - begin},
+                      {rows_.normals.valuePtr() + begin, end - begin}, sign, from, image_);
+    return;
   }
-  factors_.finish(image_);
+  z_.setZero();
+  for (Rows::InnerIterator term(rows_.normals, row); term; ++term) {
+    z_[term.col()] = sign * term.value();
+  }
+  factors_.image_of(z_, from, image_);
 }
 
 double QuadraticProgram::slack_of(int row) const {
