@@ -52,13 +52,13 @@ void RecordingMask::keep_text(const BusExchange& exchange, int point, int offset
   const int asked = asked_characters(map_, point);
   for (int i = 0; i < p.register_count(); ++i) {
     const int word = p.word_order == WordOrder::kHighFirst ? i : p.register_count() - 1 - i;
-    const std::uint16_t raw = exchange.registers[static_cast<std::size_t>(offset + word)];
+    const auto at = static_cast<std::size_t>(offset) + static_cast<std::size_t>(word);
+    const std::uint16_t raw = exchange.registers[at];
     auto high = static_cast<std::uint16_t>(raw >> 8);
     auto low = static_cast<std::uint16_t>(raw & 0xFF);
     if (2 * i >= asked) high = hidden_character(high);
     if (2 * i + 1 >= asked) low = hidden_character(low);
-    kept.registers[static_cast<std::size_t>(offset + word)] =
-        static_cast<std::uint16_t>(high << 8 | low);
+    kept.registers[at] = static_cast<std::uint16_t>(high << 8 | low);
   }
 }
 

@@ -73,7 +73,7 @@ std::string RecordedDevice::answer(BusExchange& request) {
       courses_.find({request.unit, request.function, request.address, request.count});
   if (course != courses_.end()) {
     const Entry& entry = now_in(course->second, request.utc_ns);
-    const std::string told = difference(entry, request);
+    std::string told = difference(entry, request);
     give(entry, request);
     return told;
   }

@@ -62,7 +62,7 @@ class VirtualEdge {
         weather_(weather),
         clock_(config.clock, config.require_synchronised_clock),
         battery_(config.link, config.map, config.clock),
-        prices_(std::move(prices)),
+        prices_(prices),
         loop_(config.control, battery_, prices_, clock_) {}
 
   /// From its start to its end; the exit code.

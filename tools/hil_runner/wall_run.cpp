@@ -272,7 +272,7 @@ class WallRun {
     constexpr std::int64_t kWaitNs = 20 * kNanosecondsPerSecond;
     const std::int64_t until_ns = clock_ns(CLOCK_MONOTONIC) + kWaitNs;
     while (clock_ns(CLOCK_MONOTONIC) < until_ns) {
-      const std::string line = last_line(log);
+      std::string line = last_line(log);
       if (line.find("listening on ") != std::string::npos) return line;
       if (kill(process.pid(), 0) != 0) break;
       usleep(2'000);
@@ -281,7 +281,8 @@ class WallRun {
   }
   static int port_of(const std::string& line) {
     const std::size_t colon = line.find(':', line.find("127.0.0.1"));
-    return colon == std::string::npos ? 0 : std::atoi(line.c_str() + colon + 1);
+    if (colon == std::string::npos) return 0;
+    return static_cast<int>(std::strtol(line.c_str() + colon + 1, nullptr, 10));
   }
 
   void start_battery() {

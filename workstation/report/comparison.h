@@ -44,10 +44,10 @@ struct ComparisonRow {
 using EvaluationField = Evaluation NamedEvaluation::*;
 
 /// One row per policy that has this evaluation, in order. Shares are of the policy named foresight
-/// or, when it is not among them, of `foresight`.
+/// or, when it is not among them, of `given`.
 std::vector<ComparisonRow> comparison_rows(const std::vector<NamedEvaluation>& evaluations,
                                            EvaluationField field,
-                                           const NamedEvaluation* foresight = nullptr);
+                                           const NamedEvaluation* given = nullptr);
 
 /// Aligned columns for the terminal: a block per way of counting, the missing one left out.
 std::string format_comparison_table(const std::vector<NamedEvaluation>& evaluations,

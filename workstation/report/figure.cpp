@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <cstdlib>
+#include <cstring>
 #include <pugixml.hpp>
 #include <sstream>
 
@@ -43,9 +44,14 @@ constexpr int kTitleHeightPx = 40;
 /// gnuplot writes a colour as `rgb( 31,  41,  51)`, `#ffffff` or `black`; null when it is not of the palette.
 const Colour* palette_colour(const std::string& colour) {
   std::string hex = colour == "black" ? std::string(kInk.light) : colour;
-  unsigned r = 0, g = 0, b = 0;
-  if (std::sscanf(colour.c_str(), "rgb(%u,%u,%u)", &r, &g, &b) == 3) {
-    hex = fmt::format("#{:02x}{:02x}{:02x}", r, g, b);
+  if (colour.starts_with("rgb(")) {
+    hex = "#";
+    const char* before = std::strchr(colour.c_str(), '(');
+    for (int channel = 0; channel < 3 && *before != '\0'; ++channel) {
+      char* end = nullptr;
+      hex += fmt::format("{:02x}", std::strtoul(before + 1, &end, 10));
+      before = end;
+    }
   }
   const auto found = std::ranges::find(kPalette, hex, &Colour::light);
   return found == kPalette.end() ? nullptr : &*found;

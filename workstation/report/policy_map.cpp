@@ -6,7 +6,9 @@
 namespace bess {
 namespace {
 
-std::size_t cell(int soc, int price) { return static_cast<std::size_t>(soc * kPriceCount + price); }
+std::size_t cell(int soc, int price) {
+  return static_cast<std::size_t>(soc) * kPriceCount + static_cast<std::size_t>(price);
+}
 
 /// Runs of `action` in one row become rectangles, or lengthen those of the row below.
 void add_row(const ActionGrid& grid, Action action, int soc, std::vector<GridRectangle>& open,

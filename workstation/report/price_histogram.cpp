@@ -24,7 +24,9 @@ std::vector<double> sorted_observed(const MarketSteps& market, Split split) {
 std::vector<double> PriceHistogram::percent_by_bin(const std::vector<double>& sorted) const {
   std::vector<double> percent;
   const auto total = static_cast<double>(std::max<std::size_t>(1, sorted.size()));
-  for (double edge = low; edge <= high; edge += kPriceBinEurPerMwh) {
+  const auto bins = static_cast<int>((high - low) / kPriceBinEurPerMwh) + 1;
+  for (int bin = 0; bin < bins; ++bin) {
+    const double edge = low + bin * kPriceBinEurPerMwh;
     const auto count = std::ranges::lower_bound(sorted, edge + kPriceBinEurPerMwh) -
                        std::ranges::lower_bound(sorted, edge);
     percent.push_back(100.0 * static_cast<double>(count) / total);

@@ -29,7 +29,9 @@ void CategoricalProjection::project(int row, float scale, float reward, float di
   const auto slope = static_cast<float>(shrink);
 
   result.setZero();
-  for (double d = nearest; d <= furthest; ++d) {  // b_j - i = shift - d - shrink (i - d)
+  const auto count = static_cast<int>(std::max(0.0, furthest - nearest + 1));
+  for (int n = 0; n < count; ++n) {  // b_j - i = shift - d - shrink (i - d)
+    const double d = nearest + n;
     const Eigen::Map<const Eigen::ArrayXf> moved(p - static_cast<Eigen::Index>(d), padded_);
     const auto offset = static_cast<float>(shift - d + shrink * d);
     result += moved * (1 - (offset - slope * index_).abs()).max(0.0F);
