@@ -10,6 +10,7 @@
 #include "shared/host/json.h"
 #include "shared/host/user_error.h"
 #include "workstation/cli/interruption.h"
+#include "workstation/cli/rule_files.h"
 #include "workstation/cli/rules.h"
 #include "workstation/rules/rule_conflicts.h"
 #include "workstation/student/correct_and_prove.h"

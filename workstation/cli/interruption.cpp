@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
-#include <cstring>
 #include <string_view>
 #include <thread>
 
@@ -43,7 +42,7 @@ void end_when_interrupted(const std::string& note) {
   const std::string line = note.empty() ? "" : note + "\n";
   note_size = 0;
   const std::size_t size = std::min(line.size(), sizeof note_text);
-  std::memcpy(note_text, line.data(), size);
+  std::copy_n(line.data(), size, note_text);
   note_size = size;
   handle_with([](int) { end_now(kExitInterrupted); });
 }

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <ctime>
 #include <memory>
 
@@ -34,12 +35,10 @@ constexpr double kDurationMax_s = 3650 * 86'400.0;
 std::int64_t duration_s(const std::string& text) {
   const std::string_view units = "smhd";
   constexpr double kSeconds[] = {1, 60, 3600, 86'400};
-  char unit = 0;
-  double number = 0;
-  char rest = 0;
-  const int taken = std::sscanf(text.c_str(), "%lf%c%c", &number, &unit, &rest);
-  const std::size_t at = units.find(unit);
-  const double seconds = taken == 2 && at != units.npos ? number * kSeconds[at] : 0;
+  char* unit = nullptr;
+  const double number = std::strtod(text.c_str(), &unit);
+  const std::size_t at = *unit == '\0' || unit[1] != '\0' ? units.npos : units.find(*unit);
+  const double seconds = at != units.npos ? number * kSeconds[at] : 0;
   if (!(seconds >= 1 && seconds <= kDurationMax_s)) {
     fail("--for \"{}\" is not a duration; write it as 90s, 30m, 12h or 7d", one_line(text, 40));
   }

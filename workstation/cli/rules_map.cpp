@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <charconv>
 #include <filesystem>
 #include <memory>
 
@@ -30,10 +31,17 @@ struct MapArguments {
 
 /// "11@10:00": class, local hour and minute.
 PolicyContext parse_context_at(const std::string& word) {
-  int context_class = 0, hour = 0, minute = 0, read = 0;
-  const int found =
-      std::sscanf(word.c_str(), "%2d@%2d:%2d%n", &context_class, &hour, &minute, &read);
-  if (found != 3 || static_cast<std::size_t>(read) != word.size() || context_class < 1 ||
+  int context_class = 0, hour = 0, minute = 0;
+  const char* next = word.data();
+  const char* const end = next + word.size();
+  const auto take = [&](int& number, char after) {  // and what stands after it; 0: the end
+    const auto [rest, error] = std::from_chars(next, end, number);
+    const bool fits =
+        error == std::errc() && (after == 0 ? rest == end : rest != end && *rest == after);
+    next = rest + (fits && after != 0 ? 1 : 0);
+    return fits;
+  };
+  if (!take(context_class, '@') || !take(hour, ':') || !take(minute, 0) || context_class < 1 ||
       context_class > kContextClassCount || hour < 0 || hour > 23 || minute < 0 || minute > 59) {
     fail("--at {}: use month or context class, and the local time, as in 11@10:00", word);
   }

@@ -243,8 +243,10 @@ void apply_document(const TomlValue& document, const std::vector<Key>& keys) {
            table.line, one_line(section), did_you_mean(section, section_names(keys)));
     }
     for (const auto& [name, value] : *members) {
-      const auto found = std::ranges::find_if(
-          keys, [&](const Key& k) { return k.section == section && k.name == name; });
+      const auto is_it = [&section = section, &name = name](const Key& key) {
+        return key.section == section && key.name == name;
+      };
+      const auto found = std::ranges::find_if(keys, is_it);
       if (found == keys.end()) {
         fail("{}:{}: unknown key \"{}\" in [{}]{}; 'bess-train config' lists all", *value.file,
              value.line, one_line(name), section, did_you_mean(name, key_names(keys, section)));

@@ -72,7 +72,7 @@ std::string stage_times(const fs::path& path) {
 /// What differs from one making of the same page to the next.
 void add_making(const RunFolder& folder, std::vector<Fact>& facts) {
   if (const char* epoch = std::getenv("SOURCE_DATE_EPOCH")) {
-    facts.push_back({"date", std::string(utc_text(std::atoll(epoch)).view())});
+    facts.push_back({"date", std::string(utc_text(std::strtoll(epoch, nullptr, 10)).view())});
     return;
   }
   facts.push_back({"date", std::string(utc_text(std::time(nullptr)).view())});

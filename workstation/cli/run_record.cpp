@@ -90,7 +90,8 @@ RunConfig RunRecord::config(const RunFolder& folder) const {
   }
   RunConfig config = parse_run_config(toml, folder.record().string());
   config.set_seed(std::strtoull(value("seed").c_str(), nullptr, 10));
-  config.set_threads(std::max(1, std::atoi(value("threads").c_str())));
+  config.set_threads(
+      std::max(1, static_cast<int>(std::strtol(value("threads").c_str(), nullptr, 10))));
   if (const std::string rules = value(kRules); !rules.empty()) {
     config.distil.rules = parse_rules(rules, folder.record().string() + ": rules");
   }

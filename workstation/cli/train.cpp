@@ -219,7 +219,7 @@ std::uint32_t prices_checksum(const MinuteSeries& series) {
 
 std::string training_provenance(const std::string& prices, const TrainOptions& options,
                                 const TrainResult& result) {
-  const std::string text =
+  std::string text =
       fmt::format("bess-train {} {} on {}, by {}", BESS_VERSION, method_name(options.method),
                   fs::path(prices).filename().string(), context_name(options.context));
   if (options.method == Method::kSdp) return text;  // there is no chance in it, and no step

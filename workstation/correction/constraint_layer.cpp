@@ -66,8 +66,8 @@ ConstraintLayer::ConstraintLayer(std::vector<DifferenceRow> rows, int states)
 
 void ConstraintLayer::add_block(const std::vector<std::size_t>& rows) {
   Block block{.variables = {}, .rows = rows, .program = nullptr, .point = {}, .gradient = {}};
-  const auto inequalities = std::ranges::stable_partition(
-      block.rows, [&](std::size_t i) { return rows_[i].is_equality; });
+  const auto inequalities = std::stable_partition(
+      block.rows.begin(), block.rows.end(), [&](std::size_t i) { return rows_[i].is_equality; });
   std::map<int, int> column_of;
   for (const std::size_t i : rows) {
     for (const DifferenceTerm& term : rows_[i].terms) column_of[variable_of(term)] = 0;
@@ -81,7 +81,7 @@ void ConstraintLayer::add_block(const std::vector<std::size_t>& rows) {
   LinearConstraints constraints;
   constraints.normals.resize(count, variables);
   constraints.bounds.resize(count);
-  constraints.equalities = static_cast<int>(inequalities.begin() - block.rows.begin());
+  constraints.equalities = static_cast<int>(inequalities - block.rows.begin());
   std::vector<Eigen::Triplet<double>> entries;
   for (int i = 0; i < count; ++i) {
     const DifferenceRow& row = rows_[block.rows[static_cast<std::size_t>(i)]];

@@ -73,7 +73,7 @@ HardState RuleLessons::draw(std::size_t index, const std::vector<LatticeState>& 
   }
   if (!asked.has_corners) {
     const auto between = [&random](int first, int last) {
-      return first + static_cast<int>(random.index(static_cast<std::size_t>(last - first + 1)));
+      return first + static_cast<int>(random.index(static_cast<std::size_t>(last - first) + 1));
     };
     context.soc_index = static_cast<std::int16_t>(between(asked.box.soc_first, asked.box.soc_last));
     context.price_eur_per_mwh = static_cast<std::int16_t>(

@@ -160,8 +160,8 @@ std::optional<std::size_t> server_total(const FetchRequest& request, const Fetch
   if (outcome.kind != Kind::kDone) return std::nullopt;
   const Json json = Json::parse(outcome.body);
   const std::optional<double> total = json.value()["total_count"].number();
-  const auto most = static_cast<double>((window.until_utc_s - window.from_utc_s) / step_of(window));
-  if (!total || !(*total >= 0 && *total <= most)) return std::nullopt;
+  const std::int64_t most = (window.until_utc_s - window.from_utc_s) / step_of(window);
+  if (!total || !(*total >= 0 && *total <= static_cast<double>(most))) return std::nullopt;
   return static_cast<std::size_t>(*total);
 }
 
@@ -221,11 +221,11 @@ class Pager {
     ++pages_;
     std::optional<WindowDownload> page = get_page(request_, part, interrupted_);
     if (!page) return false;
-    take(part, std::move(*page));
+    take(part, *page);
     return true;
   }
 
-  void take(const FetchWindow& part, WindowDownload page) {
+  void take(const FetchWindow& part, const WindowDownload& page) {
     WindowRows& rows = download_.rows;
     append_rows(rows.rows, page.rows.rows);
     times_.merge(times_of(window_, page.rows.rows));
