@@ -9,20 +9,7 @@ namespace {
 
 constexpr double kRounding = 4e-16;  ///< an entry of d, whose length is at most 1, below this is 0
 constexpr int kTogether = 8;         ///< columns of R that drop() turns at a time
-
-double without_rounding(double d) { return std::fabs(d) < kRounding ? 0 : d; }
-
-void rotate(Eigen::MatrixXd::ColXpr first, Eigen::MatrixXd::ColXpr second, double cosine,
-            double sine) {
-  double* const __restrict a = first.data();
-  double* const __restrict b = second.data();
-  for (Eigen::Index i = 0; i < first.size(); ++i) {
-    const double upper = a[i];
-    const double lower = b[i];
-    a[i] = cosine * upper + sine * lower;
-    b[i] = cosine * lower - sine * upper;
-  }
-}
+constexpr int kRowsTogether = 32;    ///< and rows of J
 
 }  // namespace
 
@@ -43,30 +30,26 @@ void ActiveSetFactors::reset() {
   active_ = 0;
 }
 
-/// d[k] = value(k), without the rounding of what is 0, and what follows from it.
-template <typename Value>
-void ActiveSetFactors::fill(Eigen::Index from, RowImage& image, const Value& value) const {
-  for (Eigen::Index k = from; k < active_; ++k) image.d[k] = without_rounding(value(k));
-  // Without a branch: which are 0 follows no pattern.
+/// d without the rounding of what is 0, and what follows from it. Without branches: which are 0 follows no
+/// pattern.
+void ActiveSetFactors::finish(Eigen::Index from, RowImage& image) const {
+  auto d = image.d.tail(size() - from);
+  d = (d.array().abs() < kRounding).select(0.0, d);
   image.free.resize(static_cast<std::size_t>(size()));
   std::size_t count = 0;
-  double squares = 0;
   for (Eigen::Index k = active_; k < size(); ++k) {
-    const double d = without_rounding(value(k));
-    image.d[k] = d;
     image.free[count] = static_cast<int>(k);
-    count += d != 0 ? 1 : 0;
-    squares += d * d;
+    count += image.d[k] != 0 ? 1 : 0;
   }
   image.free.resize(count);
-  image.independence = std::sqrt(squares);
+  image.independence = image.d.tail(size() - active_).norm();
 }
 
 void ActiveSetFactors::image_of(const Eigen::VectorXd& normal, Eigen::Index from,
                                 RowImage& image) const {
   const Eigen::Index count = size() - from;
   image.d.tail(count).noalias() = basis_.rightCols(count).transpose() * normal;
-  fill(from, image, [&](Eigen::Index k) { return image.d[k]; });
+  finish(from, image);
 }
 
 void ActiveSetFactors::image_of(std::span<const int> variables, std::span<const double> factors,
@@ -75,14 +58,15 @@ void ActiveSetFactors::image_of(std::span<const int> variables, std::span<const 
     return sign * factors[t] * basis_(variables[t], k);
   };
   if (variables.size() == 2) {  // an order between two, which most rows are
-    fill(from, image, [&](Eigen::Index k) { return term(0, k) + term(1, k); });
-    return;
+    for (Eigen::Index k = from; k < size(); ++k) image.d[k] = term(0, k) + term(1, k);
+  } else {
+    for (Eigen::Index k = from; k < size(); ++k) {
+      double sum = 0;
+      for (std::size_t t = 0; t < variables.size(); ++t) sum += term(t, k);
+      image.d[k] = sum;
+    }
   }
-  fill(from, image, [&](Eigen::Index k) {
-    double sum = 0;
-    for (std::size_t t = 0; t < variables.size(); ++t) sum += term(t, k);
-    return sum;
-  });
+  finish(from, image);
 }
 
 void ActiveSetFactors::direction(const RowImage& image, Eigen::VectorXd& z) const {
@@ -150,9 +134,22 @@ void ActiveSetFactors::drop(Eigen::Index position) {
   Eigen::Index k = position;
   for (; k + kTogether <= active_; k += kTogether) move_up<kTogether>(position, k);
   for (; k < active_; ++k) move_up<1>(position, k);
+  Eigen::Index row = 0;
+  for (; row + kRowsTogether <= size(); row += kRowsTogether) rotate<kRowsTogether>(position, row);
+  for (; row < size(); ++row) rotate<1>(position, row);
+}
+
+/// Count rows of J through all rotations of a drop: what one hands to the next stays in registers.
+template <int Count>
+void ActiveSetFactors::rotate(Eigen::Index position, Eigen::Index row) {
+  using Rows = Eigen::Array<double, Count, 1>;
+  Rows carried = basis_.col(position).segment<Count>(row);
   for (Eigen::Index j = position; j < active_; ++j) {
-    rotate(basis_.col(j), basis_.col(j + 1), cosines_[j], sines_[j]);
+    const Rows next = basis_.col(j + 1).segment<Count>(row);
+    basis_.col(j).segment<Count>(row) = cosines_[j] * carried + sines_[j] * next;
+    carried = cosines_[j] * next - sines_[j] * carried;
   }
+  basis_.col(active_).segment<Count>(row) = carried;
 }
 
 /// Columns k + 1 to k + Count of R become k to k + Count - 1. Each rotation of a column waits for the one

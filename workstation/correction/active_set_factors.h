@@ -66,10 +66,11 @@ class ActiveSetFactors {
   void drop(Eigen::Index position);
 
  private:
-  template <typename Value>
-  void fill(Eigen::Index from, RowImage& image, const Value& value) const;
+  void finish(Eigen::Index from, RowImage& image) const;
   template <int Count>
   void move_up(Eigen::Index position, Eigen::Index k);
+  template <int Count>
+  void rotate(Eigen::Index position, Eigen::Index row);
 
   Eigen::MatrixXd start_;            ///< J of no active row, L^-T [n x n]
   Eigen::MatrixXd basis_;            ///< J [n x n]: columns 0..active-1 are J1
