@@ -32,16 +32,16 @@ struct MapArguments {
 /// "11@10:00": class, local hour and minute.
 PolicyContext parse_context_at(const std::string& word) {
   int context_class = 0, hour = 0, minute = 0;
-  const char* next = word.data();
+  const char* next = word.c_str();
   const char* const end = next + word.size();
-  const auto take = [&](int& number, char after) {  // and what stands after it; 0: the end
-    const auto [rest, error] = std::from_chars(next, end, number);
-    const bool fits =
-        error == std::errc() && (after == 0 ? rest == end : rest != end && *rest == after);
-    next = rest + (fits && after != 0 ? 1 : 0);
-    return fits;
+  const auto take = [&](int& number,
+                        char behind) {  // one or two characters, and what is behind them
+    const auto [rest, error] = std::from_chars(next, std::min(next + 2, end), number);
+    if (error != std::errc() || *rest != behind) return false;
+    next = rest + 1;
+    return true;
   };
-  if (!take(context_class, '@') || !take(hour, ':') || !take(minute, 0) || context_class < 1 ||
+  if (!take(context_class, '@') || !take(hour, ':') || !take(minute, '\0') || context_class < 1 ||
       context_class > kContextClassCount || hour < 0 || hour > 23 || minute < 0 || minute > 59) {
     fail("--at {}: use month or context class, and the local time, as in 11@10:00", word);
   }

@@ -160,7 +160,7 @@ bool QuadraticProgram::claim_variables(int row) {
 void QuadraticProgram::measure() {
   scale_ = std::numeric_limits<double>::min();
   if (dense_.size() > 0) {
-    slacks_ = rows_.bounds.cwiseAbs();
+    slacks_ = rows_.bounds.cwiseAbs();  // for now the sizes
     for (Eigen::Index i = 0; i < x_.size(); ++i) {
       slacks_ += std::fabs(x_[i]) * dense_.col(i).cwiseAbs();
     }
@@ -314,13 +314,12 @@ void QuadraticProgram::mark(int row, bool active) {
   passed_over_[row] = active ? kInfinity : 0;
 }
 
-/// Takes the row in as it is, unless it depends on the active ones.
+/// Takes the row into the factors, unless it depends on the active ones.
 bool QuadraticProgram::hold(int row, double sign) {
   image_of(row, sign, factors_.active());  // most rows that come here depend on the others
   if (image_.independence <= kDependent) return false;
   image_of(row, sign);
   factors_.add(image_, z_);
-  mark(row, true);
   return true;
 }
 
@@ -370,8 +369,9 @@ double QuadraticProgram::recompute() {
 void QuadraticProgram::rebuild() {
   factors_.reset();
   std::erase_if(active_, [this](const ActiveRow& row) {
-    mark(row.row, false);
-    return !hold(row.row, row.sign);
+    const bool held = hold(row.row, row.sign);
+    mark(row.row, held);
+    return !held;
   });
 }
 
@@ -393,7 +393,8 @@ void QuadraticProgram::backward(const Eigen::VectorXd& gradient_x, Eigen::Vector
   factors_.project_free(gradient_x, gradient_g);
   // Let go: those without a multiplier.
   const std::size_t held = active_.size();
-  for (Eigen::Index k = factors_.active(); k-- > active_equalities();) {
+  const Eigen::Index equalities = active_equalities();
+  for (Eigen::Index k = factors_.active(); k-- > equalities;) {
     if (active_multipliers_[k] <= weak) let_go(static_cast<std::size_t>(k));
   }
   if (active_.size() == held) return;

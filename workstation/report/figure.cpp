@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <cstring>
 #include <pugixml.hpp>
 #include <sstream>
 
@@ -46,12 +44,10 @@ const Colour* palette_colour(const std::string& colour) {
   std::string hex = colour == "black" ? std::string(kInk.light) : colour;
   if (colour.starts_with("rgb(")) {
     hex = "#";
-    const char* before = std::strchr(colour.c_str(), '(');
-    for (int channel = 0; channel < 3 && *before != '\0'; ++channel) {
-      char* end = nullptr;
-      hex += fmt::format("{:02x}", std::strtoul(before + 1, &end, 10));
-      before = end;
-    }
+    std::istringstream channels(colour.substr(4));
+    unsigned channel = 0;
+    char behind = 0;
+    while (channels >> channel >> behind) hex += fmt::format("{:02x}", channel);
   }
   const auto found = std::ranges::find(kPalette, hex, &Colour::light);
   return found == kPalette.end() ? nullptr : &*found;

@@ -202,7 +202,8 @@ TEST_F(RulesCli, MapsShowStudentsSideBySideWithTheirRules) {
   rules_output("map --student " + before + " --out " + out + " --at 2@12:00");
   EXPECT_THAT(read_file(folder_.file("maps/policy_map_02_1200.svg")),
               Not(HasSubstr("where a rule holds")));
-  for (const char* at : {"0@12:00", "13@12:00", "2@24:00", "2@12:60", "2@12", "2@12:00h", "noon"}) {
+  for (const char* at : {"0@12:00", "13@12:00", "2@24:00", "2@12:60", "2@12", "2@12:00h", "noon",
+                         "002@12:00", "2@12:000", "2@:00"}) {
     EXPECT_THROW(rules_output("map --student " + before + " --out " + out + " --at " + at),
                  UserError)
         << at;
