@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "tests/bench/registry.h"
 
@@ -15,6 +16,17 @@ constexpr const char* kRate = "items_per_second";
 double median(std::vector<double> values) {
   std::ranges::sort(values);
   return values[values.size() / 2];
+}
+
+/// How much better than its peer: a rate by its size, a time by its shortness. Each repetition is beside the
+/// peer's of the same moment, so that a machine that changes its pace disturbs both; then the median.
+double median_ratio(const std::vector<double>& values, const std::vector<double>& peers,
+                    bool is_rate) {
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    ratios.push_back(is_rate ? values[i] / peers[i] : peers[i] / values[i]);
+  }
+  return median(std::move(ratios));
 }
 
 /// Name without Google Benchmark's suffixes ("/repeats:5", "/real_time").
@@ -67,14 +79,18 @@ void JsonLineReporter::Finalize() {
     const auto peer = std::ranges::find_if(
         order_, [&](const std::string& other) { return other.starts_with(name + "@"); });
     if (peer != order_.end()) {
-      const double peer_value = median(results_[*peer].values);
-      const bool rate = results_[name].unit == "million/s";
+      const std::vector<double>& peers = results_[*peer].values;
+      const double peer_value = median(peers);
+      const bool is_rate = results_[name].unit == "million/s";
+      // A peer that was run after it, by itself, may have been run less often.
+      const double ratio = peers.size() == results_[name].values.size()
+                               ? median_ratio(results_[name].values, peers, is_rate)
+                               : median_ratio({value}, {peer_value}, is_rate);
       if (std::isnan(peer_value)) {
         fmt::print(R"(, "peer": null)");
       } else {
         fmt::print(R"(, "peer": "{}", "peer_value": {:.6g}, "ratio": {:.4g})",
-                   peer->substr(name.size() + 1), peer_value,
-                   rate ? value / peer_value : peer_value / value);
+                   peer->substr(name.size() + 1), peer_value, ratio);
       }
     }
     fmt::print("}}\n");

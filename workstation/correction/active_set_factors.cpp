@@ -8,26 +8,60 @@ namespace bess {
 namespace {
 
 constexpr double kRounding = 4e-16;  ///< an entry of d, whose length is at most 1, below this is 0
-constexpr int kTogether = 8;         ///< columns of R that drop() turns at a time
-constexpr int kRowsTogether = 32;    ///< and rows of J
+/// A row of J lies across its columns: reading one takes as long as reading eight columns.
+constexpr std::size_t kColumnsARow = 8;
+constexpr int kTogether = 8;       ///< columns of R that drop() turns at a time
+constexpr int kRowsTogether = 32;  ///< and rows of J
 
 }  // namespace
 
-RowImage::RowImage(Eigen::Index variables) : d(Eigen::VectorXd::Zero(variables)) {
-  free.reserve(static_cast<std::size_t>(variables));
+RowImage::RowImage(Eigen::Index size) : d(Eigen::VectorXd::Zero(size)) {
+  for (std::vector<int>* list : {&groups, &held, &free}) {
+    list->reserve(static_cast<std::size_t>(size));
+  }
 }
 
 ActiveSetFactors::ActiveSetFactors(const Eigen::MatrixXd& inverse_root)
     : start_(inverse_root.transpose()),
       basis_(start_),
       triangle_(start_.rows(), start_.rows()),
+      groups_(inverse_root),
       scratch_(start_.rows()),
       cosines_(start_.rows()),
-      sines_(start_.rows()) {}
+      sines_(start_.rows()) {
+  places_.reserve(static_cast<std::size_t>(start_.rows()));
+}
 
 void ActiveSetFactors::reset() {
   basis_ = start_;
+  groups_.reset();
   active_ = 0;
+}
+
+void ActiveSetFactors::image_of(std::span<const int> variables, std::span<const double> factors,
+                                double sign, RowImage& image, bool of_free) {
+  const Eigen::Index from = of_free ? active_ : 0;
+  groups_.find(variables, image.groups);
+  groups_.list_columns(image.groups, from, active_, image.held);
+  groups_.list_columns(image.groups, active_, size(), image.free);
+  const Eigen::Index count = size() - from;
+  if (kColumnsARow * variables.size() > static_cast<std::size_t>(size())) {
+    scratch_.setZero();
+    for (std::size_t t = 0; t < variables.size(); ++t) scratch_[variables[t]] = sign * factors[t];
+    image.d.tail(count).noalias() = basis_.rightCols(count).transpose() * scratch_;
+  } else {
+    image.d.tail(count).setZero();
+    for (const std::vector<int>* columns : {&image.held, &image.free}) {
+      for (const int k : *columns) {
+        double sum = 0;
+        for (std::size_t t = 0; t < variables.size(); ++t) {
+          sum += factors[t] * basis_(variables[t], k);
+        }
+        image.d[k] = sign * sum;
+      }
+    }
+  }
+  finish(from, image);
 }
 
 /// d without the rounding of what is 0, and what follows from it. Without branches: which are 0 follows no
@@ -35,38 +69,13 @@ void ActiveSetFactors::reset() {
 void ActiveSetFactors::finish(Eigen::Index from, RowImage& image) const {
   auto d = image.d.tail(size() - from);
   d = (d.array().abs() < kRounding).select(0.0, d);
-  image.free.resize(static_cast<std::size_t>(size()));
   std::size_t count = 0;
-  for (Eigen::Index k = active_; k < size(); ++k) {
-    image.free[count] = static_cast<int>(k);
+  for (const int k : image.free) {
+    image.free[count] = k;
     count += image.d[k] != 0 ? 1 : 0;
   }
   image.free.resize(count);
   image.independence = image.d.tail(size() - active_).norm();
-}
-
-void ActiveSetFactors::image_of(const Eigen::VectorXd& normal, Eigen::Index from,
-                                RowImage& image) const {
-  const Eigen::Index count = size() - from;
-  image.d.tail(count).noalias() = basis_.rightCols(count).transpose() * normal;
-  finish(from, image);
-}
-
-void ActiveSetFactors::image_of(std::span<const int> variables, std::span<const double> factors,
-                                double sign, Eigen::Index from, RowImage& image) const {
-  const auto term = [&](std::size_t t, Eigen::Index k) {
-    return sign * factors[t] * basis_(variables[t], k);
-  };
-  if (variables.size() == 2) {  // an order between two, which most rows are
-    for (Eigen::Index k = from; k < size(); ++k) image.d[k] = term(0, k) + term(1, k);
-  } else {
-    for (Eigen::Index k = from; k < size(); ++k) {
-      double sum = 0;
-      for (std::size_t t = 0; t < variables.size(); ++t) sum += term(t, k);
-      image.d[k] = sum;
-    }
-  }
-  finish(from, image);
 }
 
 void ActiveSetFactors::direction(const RowImage& image, Eigen::VectorXd& z) const {
@@ -85,13 +94,20 @@ void ActiveSetFactors::project_free(const Eigen::VectorXd& v, Eigen::VectorXd& f
   free.noalias() = basis_.rightCols(count) * scratch_.tail(count);
 }
 
-void ActiveSetFactors::solve(const Eigen::VectorXd& d, Eigen::VectorXd& r) const {
-  r.head(active_) = d.head(active_);
-  for (Eigen::Index j = active_ - 1; j >= 0; --j) {
-    if (r[j] == 0) continue;
-    r[j] /= triangle_(j, j);
-    r.head(j) -= r[j] * triangle_.col(j).head(j);
+void ActiveSetFactors::solve(const RowImage& image, Eigen::VectorXd& r) const {
+  r.head(active_) = image.d.head(active_);
+  for (std::size_t i = image.held.size(); i-- > 0;) {
+    const int k = image.held[i];
+    if (r[k] == 0) continue;
+    r[k] /= triangle_(k, k);
+    r.head(k) -= r[k] * triangle_.col(k).head(k);
   }
+}
+
+void ActiveSetFactors::solve(Eigen::VectorXd& y) const {
+  triangle_.topLeftCorner(active_, active_)
+      .triangularView<Eigen::Upper>()
+      .solveInPlace(y.head(active_));
 }
 
 void ActiveSetFactors::solve_transposed(Eigen::VectorXd& y) const {
@@ -114,6 +130,7 @@ void ActiveSetFactors::add(RowImage& image, Eigen::VectorXd& z) {
   if (most != active_) {
     std::swap(d[most], d[active_]);
     basis_.col(most).swap(basis_.col(active_));
+    groups_.swap_columns(most, active_);
     if (image.free.front() != active_) most = static_cast<int>(active_);
   }
   direction(image, z);
@@ -124,63 +141,88 @@ void ActiveSetFactors::add(RowImage& image, Eigen::VectorXd& z) {
   triangle_(active_, active_) = corner;
   d[active_] -= corner;
   for (const int k : image.free) basis_.col(k) -= d[k] * scratch_;
+  groups_.tie(image.groups);
   ++active_;
 }
 
-void ActiveSetFactors::drop(Eigen::Index position) {
-  --active_;
-  // Each column behind moves up and has one entry below its diagonal, which is turned away: in it by the
-  // rotations of the columns before and one of its own, and in J by all of them.
-  Eigen::Index k = position;
-  for (; k + kTogether <= active_; k += kTogether) move_up<kTogether>(position, k);
-  for (; k < active_; ++k) move_up<1>(position, k);
+/// The columns of the group behind the row's own each have one entry more than they should when they take the
+/// place of the one before. It is turned away, in a column by the rotations of those before and one of its
+/// own, and in J by all of them. Other groups' columns do not feel it. What remains is the place of the last
+/// one, which is free now and goes behind the active ones.
+std::span<const int> ActiveSetFactors::drop(Eigen::Index position) {
+  const int group[] = {groups_.of_column(position)};
+  groups_.list_columns(group, position, active_, places_);
+  std::size_t k = 1;
+  for (; k + kTogether <= places_.size(); k += kTogether) turn_columns<kTogether>(k);
+  for (; k < places_.size(); ++k) turn_columns<1>(k);
   Eigen::Index row = 0;
-  for (; row + kRowsTogether <= size(); row += kRowsTogether) rotate<kRowsTogether>(position, row);
-  for (; row < size(); ++row) rotate<1>(position, row);
+  for (; row + kRowsTogether <= size(); row += kRowsTogether) turn_rows<kRowsTogether>(row);
+  for (; row < size(); ++row) turn_rows<1>(row);
+  const int last = places_.back();
+  close_gap(last);
+  --active_;
+  for (int behind = last + 1; behind <= active_; ++behind) places_.push_back(behind);
+  return places_;
 }
 
 /// Count rows of J through all rotations of a drop: what one hands to the next stays in registers.
 template <int Count>
-void ActiveSetFactors::rotate(Eigen::Index position, Eigen::Index row) {
+void ActiveSetFactors::turn_rows(Eigen::Index row) {
   using Rows = Eigen::Array<double, Count, 1>;
-  Rows carried = basis_.col(position).segment<Count>(row);
-  for (Eigen::Index j = position; j < active_; ++j) {
-    const Rows next = basis_.col(j + 1).segment<Count>(row);
-    basis_.col(j).segment<Count>(row) = cosines_[j] * carried + sines_[j] * next;
-    carried = cosines_[j] * next - sines_[j] * carried;
+  Rows carried = basis_.col(places_.front()).segment<Count>(row);
+  for (std::size_t k = 1; k < places_.size(); ++k) {
+    const double cosine = cosines_[static_cast<Eigen::Index>(k)];
+    const double sine = sines_[static_cast<Eigen::Index>(k)];
+    const Rows next = basis_.col(places_[k]).segment<Count>(row);
+    basis_.col(places_[k - 1]).segment<Count>(row) = cosine * carried + sine * next;
+    carried = cosine * next - sine * carried;
   }
-  basis_.col(active_).segment<Count>(row) = carried;
+  basis_.col(places_.back()).segment<Count>(row) = carried;
 }
 
-/// Columns k + 1 to k + Count of R become k to k + Count - 1. Each rotation of a column waits for the one
-/// before it, so the columns go through the rotations that all of them need side by side.
+/// The columns of R at places k to k + Count - 1, k > 0, move to the places before. Each rotation of a column
+/// waits for the one before it, so the columns go through the rotations that all of them need side by side.
 template <int Count>
-void ActiveSetFactors::move_up(Eigen::Index position, Eigen::Index k) {
-  double* const __restrict cosines = cosines_.data();
-  double* const __restrict sines = sines_.data();
+void ActiveSetFactors::turn_columns(std::size_t k) {
+  const int first = places_.front();
   double* columns[Count + 1];
   double upper[Count];
-  for (int c = 0; c <= Count; ++c) columns[c] = triangle_.col(k + c).data();
+  for (std::size_t c = 0; c <= Count; ++c) columns[c] = triangle_.col(places_[k + c - 1]).data();
   for (int c = 0; c < Count; ++c) {
-    std::copy_n(columns[c + 1], position, columns[c]);
-    upper[c] = columns[c + 1][position];
+    std::copy_n(columns[c + 1], first, columns[c]);
+    upper[c] = columns[c + 1][first];
   }
-  const auto turn = [&](int c, Eigen::Index j) {
-    const double lower = columns[c + 1][j + 1];
-    columns[c][j] = cosines[j] * upper[c] + sines[j] * lower;
-    upper[c] = cosines[j] * lower - sines[j] * upper[c];
+  const auto turn = [&](int c, std::size_t rotation) {
+    const double cosine = cosines_[static_cast<Eigen::Index>(rotation)];
+    const double sine = sines_[static_cast<Eigen::Index>(rotation)];
+    const double lower = columns[c + 1][places_[rotation]];
+    columns[c][places_[rotation - 1]] = cosine * upper[c] + sine * lower;
+    upper[c] = cosine * lower - sine * upper[c];
   };
-  for (Eigen::Index j = position; j < k; ++j) {
-    for (int c = 0; c < Count; ++c) turn(c, j);
+  for (std::size_t rotation = 1; rotation < k; ++rotation) {
+    for (int c = 0; c < Count; ++c) turn(c, rotation);
   }
   for (int c = 0; c < Count; ++c) {
-    for (Eigen::Index j = k; j < k + c; ++j) turn(c, j);
-    const double lower = columns[c + 1][k + c + 1];
+    const std::size_t own = k + static_cast<std::size_t>(c);
+    for (std::size_t rotation = k; rotation < own; ++rotation) turn(c, rotation);
+    const double lower = columns[c + 1][places_[own]];
     const double length = std::sqrt(upper[c] * upper[c] + lower * lower);
-    columns[c][k + c] = length;
-    cosines[k + c] = upper[c] / length;
-    sines[k + c] = lower / length;
+    columns[c][places_[own - 1]] = length;
+    cosines_[static_cast<Eigen::Index>(own)] = upper[c] / length;
+    sines_[static_cast<Eigen::Index>(own)] = lower / length;
   }
+}
+
+/// Column `gap` of J, which no row of R belongs to any more, goes behind the active ones, which move up.
+void ActiveSetFactors::close_gap(Eigen::Index gap) {
+  for (Eigen::Index column = gap; column + 1 < active_; ++column) {
+    basis_.col(column).swap(basis_.col(column + 1));
+    double* const to = triangle_.col(column).data();
+    const double* const from = triangle_.col(column + 1).data();
+    std::copy_n(from, gap, to);
+    std::copy(from + gap + 1, from + column + 2, to + gap);
+  }
+  groups_.move_column_back(gap, active_ - 1);
 }
 
 }  // namespace bess

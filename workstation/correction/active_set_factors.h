@@ -10,9 +10,9 @@
 //   J2 J2'           the inverse of G on the directions that the active rows leave free
 //
 // A row comes in by one Householder reflection of the columns of J2 that it meets, and goes out by Givens
-// rotations. Rows of few terms meet few columns: an order between neighbours, whatever is active, meets
-// two, because the reflection begins with a column it meets and so leaves all others as they are. An image
-// therefore lists the columns of J2 that its row meets, and all work is on these.
+// rotations. It meets columns of the groups that its variables belong to (variable_groups.h), and of J2 often
+// fewer: an order between neighbours, whatever is active, meets two, because the reflection begins with a
+// column it meets and so leaves all others as they are. An image lists these columns, and all work is on them.
 // All memory is taken in the constructors.
 #pragma once
 
@@ -20,13 +20,17 @@
 #include <span>
 #include <vector>
 
+#include "workstation/correction/variable_groups.h"
+
 namespace bess {
 
 /// What the factors make of a row's normal n, until they change.
 struct RowImage {
-  explicit RowImage(Eigen::Index variables);
+  explicit RowImage(Eigen::Index size);
 
-  Eigen::VectorXd d;        ///< J'n [n]
+  Eigen::VectorXd d;        ///< J'n [n], 0 outside of the row's groups
+  std::vector<int> groups;  ///< those of the row's variables
+  std::vector<int> held;    ///< their columns of J1, rising
   std::vector<int> free;    ///< columns of J2 whose d is not 0, rising
   double independence = 0;  ///< |d2|: how far n lies from the span of the active ones, by G^-1
 };
@@ -41,20 +45,22 @@ class ActiveSetFactors {
   [[nodiscard]] Eigen::Index size() const { return basis_.rows(); }
   [[nodiscard]] Eigen::Index active() const { return active_; }
 
-  /// The image of a normal [n], or of the one with `factors` at `variables` and 0 elsewhere. Its length is 1,
-  /// by G^-1. d is filled from column `from` on: 0, or active() when what the active rows lack is enough.
-  void image_of(const Eigen::VectorXd& normal, Eigen::Index from, RowImage& image) const;
+  /// The image of the normal with `factors` at `variables` and 0 elsewhere. Its length is 1, by G^-1. Nothing
+  /// of J1 is looked at, and no `held` listed, when `of_free` alone is asked for: what the active rows lack.
   void image_of(std::span<const int> variables, std::span<const double> factors, double sign,
-                Eigen::Index from, RowImage& image) const;
-  /// A row of J lies across its columns: reading one takes as long as reading eight columns.
-  [[nodiscard]] bool prefers_whole_normals(Eigen::Index terms) const { return 8 * terms > size(); }
+                RowImage& image, bool of_free = false);
+  /// The variables that the row can move, rising; `list` must hold n without growing.
+  void list_variables(const RowImage& image, std::vector<int>& list) const {
+    groups_.list_variables(image.groups, list);
+  }
   /// z = J2 d2.
   void direction(const RowImage& image, Eigen::VectorXd& z) const;
   /// J2 J2' v into `free`; both [n], may not alias.
   void project_free(const Eigen::VectorXd& v, Eigen::VectorXd& free);
-  /// head(active) of `r` = R^-1 d1.
-  void solve(const Eigen::VectorXd& d, Eigen::VectorXd& r) const;
-  /// head(active) of `y` becomes R^-T y.
+  /// head(active) of `r` = R^-1 d1: 0 but for the held columns of the image.
+  void solve(const RowImage& image, Eigen::VectorXd& r) const;
+  /// head(active) of `y` becomes R^-1 y, or R^-T y.
+  void solve(Eigen::VectorXd& y) const;
   void solve_transposed(Eigen::VectorXd& y) const;
   /// x += J1 y.
   void add_combination(const Eigen::VectorXd& y, Eigen::VectorXd& x) const;
@@ -62,21 +68,25 @@ class ActiveSetFactors {
   /// z = direction(image), and its row becomes the last active one; its independence must be above 0.
   /// Leaves the image changed.
   void add(RowImage& image, Eigen::VectorXd& z);
-  /// Active row `position` goes; those behind it move up.
-  void drop(Eigen::Index position);
+  /// Active row `position` goes. Of the places returned, rising from `position` on, each row moves into the
+  /// place before its own: first the group's, then those behind the last of these. Valid until the next call.
+  std::span<const int> drop(Eigen::Index position);
 
  private:
   void finish(Eigen::Index from, RowImage& image) const;
   template <int Count>
-  void move_up(Eigen::Index position, Eigen::Index k);
+  void turn_columns(std::size_t first);
   template <int Count>
-  void rotate(Eigen::Index position, Eigen::Index row);
+  void turn_rows(Eigen::Index row);
+  void close_gap(Eigen::Index column);
 
-  Eigen::MatrixXd start_;            ///< J of no active row, L^-T [n x n]
-  Eigen::MatrixXd basis_;            ///< J [n x n]: columns 0..active-1 are J1
-  Eigen::MatrixXd triangle_;         ///< R in its upper left corner [n x n]
+  Eigen::MatrixXd start_;     ///< J of no active row, L^-T [n x n]
+  Eigen::MatrixXd basis_;     ///< J [n x n]: columns 0..active-1 are J1
+  Eigen::MatrixXd triangle_;  ///< R in its upper left corner [n x n]
+  VariableGroups groups_;
   Eigen::VectorXd scratch_;          ///< [n]
   Eigen::VectorXd cosines_, sines_;  ///< rotations of one drop [n]
+  std::vector<int> places_;          ///< of one drop
   Eigen::Index active_ = 0;
 };
 

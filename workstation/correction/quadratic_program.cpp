@@ -58,6 +58,7 @@ QuadraticProgram::QuadraticProgram(LinearConstraints&& constraints,
   passed_over_.setZero(count);
   is_claimed_.resize(static_cast<std::size_t>(variables));
   candidates_.reserve(static_cast<std::size_t>(count));
+  moved_.reserve(static_cast<std::size_t>(variables));
   is_projection_ = inverse_root.isIdentity(0);
   scale_rows(inverse_root);
 }
@@ -182,20 +183,12 @@ void QuadraticProgram::measure() {
   }
 }
 
-/// The image of the row times its sign; d from column `from` on.
-void QuadraticProgram::image_of(int row, double sign, Eigen::Index from) {
+/// The image of the row times its sign.
+void QuadraticProgram::image_of(int row, double sign, bool of_free) {
   const auto begin = static_cast<std::size_t>(rows_.normals.outerIndexPtr()[row]);
   const auto end = static_cast<std::size_t>(rows_.normals.outerIndexPtr()[row + 1]);
-  if (!factors_.prefers_whole_normals(static_cast<Eigen::Index>(end - begin))) {
-    factors_.image_of({rows_.normals.innerIndexPtr() + begin, end - begin},
-                      {rows_.normals.valuePtr() + begin, end - begin}, sign, from, image_);
-    return;
-  }
-  z_.setZero();
-  for (Rows::InnerIterator term(rows_.normals, row); term; ++term) {
-    z_[term.col()] = sign * term.value();
-  }
-  factors_.image_of(z_, from, image_);
+  factors_.image_of({rows_.normals.innerIndexPtr() + begin, end - begin},
+                    {rows_.normals.valuePtr() + begin, end - begin}, sign, image_, of_free);
 }
 
 double QuadraticProgram::slack_of(int row) const {
@@ -206,7 +199,7 @@ double QuadraticProgram::slack_of(int row) const {
   return sum;
 }
 
-/// x += step z; slacks follow where x moves. Their rounding is gone when they are measured at the end.
+/// x += step z, z being the direction of the image; slacks follow where x moves. Their rounding is gone when they are measured at the end.
 void QuadraticProgram::move(double step) {
   if (dense_.size() > 0) {
     z_ *= step;
@@ -214,8 +207,8 @@ void QuadraticProgram::move(double step) {
     slacks_.noalias() += dense_ * z_;
     return;
   }
-  for (Eigen::Index i = 0; i < x_.size(); ++i) {
-    if (z_[i] == 0) continue;
+  factors_.list_variables(image_, moved_);
+  for (const int i : moved_) {
     const double by = step * z_[i];
     x_[i] += by;
     for (Columns::InnerIterator term(columns_, i); term; ++term) {
@@ -243,11 +236,13 @@ Eigen::Index QuadraticProgram::active_equalities() const {
 /// How far the multipliers can follow -r until that of an inequality is 0.
 QuadraticProgram::Limit QuadraticProgram::limit_by_multipliers() const {
   Limit limit{kInfinity, 0};
-  const Eigen::Index active = factors_.active();
-  if (active == 0) return limit;
-  const double falling = kFallingMultiplier * r_.head(active).cwiseAbs().maxCoeff();
-  for (Eigen::Index k = active_equalities(); k < active; ++k) {
-    if (r_[k] <= falling || active_multipliers_[k] >= limit.step * r_[k]) continue;
+  if (image_.held.empty()) return limit;
+  const double falling = kFallingMultiplier * r_.head(factors_.active()).cwiseAbs().maxCoeff();
+  const Eigen::Index equalities = active_equalities();
+  for (const int k : image_.held) {
+    // Seldom the first; the second is as likely as not.
+    if (!(active_multipliers_[k] < limit.step * r_[k]) || r_[k] <= falling || k < equalities)
+      continue;
     limit = {active_multipliers_[k] / r_[k], static_cast<std::size_t>(k)};
   }
   return limit;
@@ -267,7 +262,7 @@ bool QuadraticProgram::take_in(int row, double sign) {
   while (true) {
     ++steps_;
     image_of(row, sign);
-    factors_.solve(image_.d, r_);
+    factors_.solve(image_, r_);
     const double independence = image_.independence;
     const bool is_dependent = independence <= kDependent;
     const double violation = std::max(0.0, -sign * slack_of(row));
@@ -316,7 +311,7 @@ void QuadraticProgram::mark(int row, bool active) {
 
 /// Takes the row into the factors, unless it depends on the active ones.
 bool QuadraticProgram::hold(int row, double sign) {
-  image_of(row, sign, factors_.active());  // most rows that come here depend on the others
+  image_of(row, sign, true);  // most rows that come here depend on the others
   if (image_.independence <= kDependent) return false;
   image_of(row, sign);
   factors_.add(image_, z_);
@@ -324,11 +319,13 @@ bool QuadraticProgram::hold(int row, double sign) {
 }
 
 void QuadraticProgram::let_go(std::size_t position) {
-  factors_.drop(static_cast<Eigen::Index>(position));
   mark(active_[position].row, false);
-  active_.erase(active_.begin() + static_cast<std::ptrdiff_t>(position));
-  const auto multiplier = active_multipliers_.begin() + static_cast<std::ptrdiff_t>(position);
-  std::copy(multiplier + 1, active_multipliers_.end(), multiplier);
+  const std::span<const int> places = factors_.drop(static_cast<Eigen::Index>(position));
+  for (std::size_t k = 1; k < places.size(); ++k) {
+    active_[static_cast<std::size_t>(places[k - 1])] = active_[static_cast<std::size_t>(places[k])];
+    active_multipliers_[places[k - 1]] = active_multipliers_[places[k]];
+  }
+  active_.pop_back();
 }
 
 /// The row is the sum of r times active ones, and no r of an inequality is positive: row - sum = 0 while
@@ -356,9 +353,9 @@ double QuadraticProgram::recompute() {
   }
   factors_.solve_transposed(z_);
   factors_.add_combination(z_, x_);
-  factors_.solve(z_, r_);
+  factors_.solve(z_);
   measure();
-  active_multipliers_.head(factors_.active()) = r_.head(factors_.active());
+  active_multipliers_.head(factors_.active()) = z_.head(factors_.active());
   keep_signs();
   double distance = 0;
   for (const ActiveRow& row : active_) distance = std::max(distance, std::fabs(slacks_[row.row]));

@@ -91,7 +91,7 @@ class QuadraticProgram {
   [[nodiscard]] Eigen::Index active_equalities() const;
   void move(double step);
   void activate(int row, double sign, double multiplier);
-  void image_of(int row, double sign, Eigen::Index from = 0);
+  void image_of(int row, double sign, bool of_free = false);
   [[nodiscard]] double slack_of(int row) const;
   [[nodiscard]] int most_violated() const;
   [[nodiscard]] Limit limit_by_multipliers() const;
@@ -118,6 +118,7 @@ class QuadraticProgram {
   Eigen::VectorXd passed_over_;         ///< [rows] infinite for active and neglected rows, else 0
   std::vector<char> is_claimed_;        ///< [n] variables of the disjoint rows
   std::vector<int> candidates_;         ///< violated rows at the start
+  std::vector<int> moved_;              ///< variables
   std::vector<ClashingRow> clash_;
   Eigen::VectorXd free_minimum_;  ///< G^-1 g [n]
   Eigen::VectorXd x_, z_, r_;     ///< [n], z and r as in active_set_factors.h
