@@ -10,8 +10,16 @@ namespace {
 constexpr double kRounding = 4e-16;  ///< an entry of d, whose length is at most 1, below this is 0
 /// A row of J lies across its columns: reading one takes as long as reading eight columns.
 constexpr std::size_t kColumnsARow = 8;
-constexpr int kTogether = 8;       ///< columns of R that drop() turns at a time
-constexpr int kRowsTogether = 32;  ///< and rows of J
+constexpr int kTogether = 8;  ///< columns of R that drop() turns at a time
+
+/// Calls `visit.operator()<Count>(row)` for rows of J in bundles that fit into registers.
+template <typename Visit>
+void for_bundles_of_rows(Eigen::Index size, Visit visit) {
+  Eigen::Index row = 0;
+  for (; row + 32 <= size; row += 32) visit.template operator()<32>(row);
+  for (; row + 8 <= size; row += 8) visit.template operator()<8>(row);
+  for (; row < size; ++row) visit.template operator()<1>(row);
+}
 
 }  // namespace
 
@@ -140,7 +148,10 @@ void ActiveSetFactors::add(RowImage& image, Eigen::VectorXd& z) {
   triangle_.col(active_).head(active_) = d.head(active_);
   triangle_(active_, active_) = corner;
   d[active_] -= corner;
-  for (const int k : image.free) basis_.col(k) -= d[k] * scratch_;
+  for_bundles_of_rows(size(), [&]<int Count>(Eigen::Index row) {
+    const Eigen::Array<double, Count, 1> by = scratch_.segment<Count>(row);
+    for (const int k : image.free) basis_.col(k).segment<Count>(row).array() -= d[k] * by;
+  });
   groups_.tie(image.groups);
   ++active_;
 }
@@ -155,9 +166,7 @@ std::span<const int> ActiveSetFactors::drop(Eigen::Index position) {
   std::size_t k = 1;
   for (; k + kTogether <= places_.size(); k += kTogether) turn_columns<kTogether>(k);
   for (; k < places_.size(); ++k) turn_columns<1>(k);
-  Eigen::Index row = 0;
-  for (; row + kRowsTogether <= size(); row += kRowsTogether) turn_rows<kRowsTogether>(row);
-  for (; row < size(); ++row) turn_rows<1>(row);
+  for_bundles_of_rows(size(), [&]<int Count>(Eigen::Index row) { turn_rows<Count>(row); });
   const int last = places_.back();
   close_gap(last);
   --active_;
