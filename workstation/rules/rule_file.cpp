@@ -172,6 +172,9 @@ class RuleReader {
       found = key;
     }
     if (found.empty()) {
+      for (const std::string_view key : kDemandKeys) table_.node(key);
+      table_.node("enforce");
+      table_.finish();  // a demand that is misspelt is told by its name
       return table_.fail(
           "", fmt::format("asks for nothing: add one of {}", fmt::join(kDemandKeys, ", ")));
     }
