@@ -75,10 +75,10 @@ class ActiveSetFactors {
  private:
   void finish(Eigen::Index from, RowImage& image) const;
   template <int Count>
-  void turn_columns(std::size_t first);
+  void turn_columns(std::size_t k);
   template <int Count>
   void turn_rows(Eigen::Index row);
-  void close_gap(Eigen::Index column);
+  void close_gap(Eigen::Index gap);
 
   Eigen::MatrixXd start_;     ///< J of no active row, L^-T [n x n]
   Eigen::MatrixXd basis_;     ///< J [n x n]: columns 0..active-1 are J1
