@@ -199,7 +199,8 @@ double QuadraticProgram::slack_of(int row) const {
   return sum;
 }
 
-/// x += step z, z being the direction of the image; slacks follow where x moves. Their rounding is gone when they are measured at the end.
+/// x += step z, where z is the direction of the image; slacks follow where x moves. Their rounding is gone when
+/// they are measured at the end.
 void QuadraticProgram::move(double step) {
   if (dense_.size() > 0) {
     z_ *= step;
@@ -240,10 +241,11 @@ QuadraticProgram::Limit QuadraticProgram::limit_by_multipliers() const {
   const double falling = kFallingMultiplier * r_.head(factors_.active()).cwiseAbs().maxCoeff();
   const Eigen::Index equalities = active_equalities();
   for (const int k : image_.held) {
-    // Seldom the first; the second is as likely as not.
-    if (!(active_multipliers_[k] < limit.step * r_[k]) || r_[k] <= falling || k < equalities)
-      continue;
-    limit = {active_multipliers_[k] / r_[k], static_cast<std::size_t>(k)};
+    // First what seldom holds: whether r falls is as likely as not.
+    const bool is_nearer = active_multipliers_[k] < limit.step * r_[k];
+    if (is_nearer && r_[k] > falling && k >= equalities) {
+      limit = {active_multipliers_[k] / r_[k], static_cast<std::size_t>(k)};
+    }
   }
   return limit;
 }

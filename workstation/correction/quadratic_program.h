@@ -118,7 +118,7 @@ class QuadraticProgram {
   Eigen::VectorXd passed_over_;         ///< [rows] infinite for active and neglected rows, else 0
   std::vector<char> is_claimed_;        ///< [n] variables of the disjoint rows
   std::vector<int> candidates_;         ///< violated rows at the start
-  std::vector<int> moved_;              ///< variables
+  std::vector<int> moved_;              ///< variables that a step moves
   std::vector<ClashingRow> clash_;
   Eigen::VectorXd free_minimum_;  ///< G^-1 g [n]
   Eigen::VectorXd x_, z_, r_;     ///< [n], z and r as in active_set_factors.h
