@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstddef>
 #include <filesystem>
 #include <memory>
 
@@ -36,7 +37,8 @@ PolicyContext parse_context_at(const std::string& word) {
   const char* const end = next + word.size();
   const auto take = [&](int& number,
                         char behind) {  // one or two characters, and what is behind them
-    const auto [rest, error] = std::from_chars(next, std::min(next + 2, end), number);
+    const auto [rest, error] =
+        std::from_chars(next, next + std::min<std::ptrdiff_t>(2, end - next), number);
     if (error != std::errc() || *rest != behind) return false;
     next = rest + 1;
     return true;

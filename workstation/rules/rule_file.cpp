@@ -70,8 +70,8 @@ class RuleReader {
     read_members("context_classes", rule_.box.context_classes);
     read_range_of_soc();
     read_range_of_price();
-    read_demand();
     table_.boolean("enforce", rule_.enforce);
+    read_demand();
     check_enforcement();
     table_.finish();
     return rule_;
@@ -163,7 +163,7 @@ class RuleReader {
   void read_demand() {
     std::string_view found;
     for (const std::string_view key : kDemandKeys) {
-      if (!table_.has(key)) continue;
+      if (table_.node(key) == nullptr) continue;
       if (!found.empty()) {
         return table_.fail(key, fmt::format("is a second demand beside {}: make it a rule of its "
                                             "own",
@@ -172,8 +172,6 @@ class RuleReader {
       found = key;
     }
     if (found.empty()) {
-      for (const std::string_view key : kDemandKeys) table_.node(key);
-      table_.node("enforce");
       table_.finish();  // a demand that is misspelt is told by its name
       return table_.fail(
           "", fmt::format("asks for nothing: add one of {}", fmt::join(kDemandKeys, ", ")));
