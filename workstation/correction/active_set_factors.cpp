@@ -58,16 +58,16 @@ void ActiveSetFactors::image_of(std::span<const int> variables, std::span<const 
     for (std::size_t t = 0; t < variables.size(); ++t) scratch_[variables[t]] = sign * factors[t];
     image.d.tail(count).noalias() = basis_.rightCols(count).transpose() * scratch_;
   } else {
-    image.d.tail(count).setZero();
-    for (const std::vector<int>* columns : {&image.held, &image.free}) {
-      for (const int k : *columns) {
-        double sum = 0;
-        for (std::size_t t = 0; t < variables.size(); ++t) {
-          sum += factors[t] * basis_(variables[t], k);
-        }
-        image.d[k] = sign * sum;
+    const auto entry = [&](int k) {
+      double sum = 0;
+      for (std::size_t t = 0; t < variables.size(); ++t) {
+        sum += factors[t] * basis_(variables[t], k);
       }
-    }
+      return sign * sum;
+    };
+    image.d.tail(count).setZero();
+    for (const int k : image.held) image.d[k] = entry(k);
+    for (const int k : image.free) image.d[k] = entry(k);
   }
   finish(from, image);
 }

@@ -81,6 +81,7 @@ void QuadraticProgram::scale_rows(const Eigen::MatrixXd& inverse_root) {
   const auto factors = static_cast<double>(rows_.normals.nonZeros());
   if (factors > kDenseShare * static_cast<double>(rows_.normals.size())) {
     dense_ = rows_.normals;
+    sizes_.setZero(rows_.normals.rows());
   } else {
     columns_ = rows_.normals;
   }
@@ -161,13 +162,13 @@ bool QuadraticProgram::claim_variables(int row) {
 void QuadraticProgram::measure() {
   scale_ = std::numeric_limits<double>::min();
   if (dense_.size() > 0) {
-    slacks_ = rows_.bounds.cwiseAbs();  // for now the sizes
-    for (Eigen::Index i = 0; i < x_.size(); ++i) {
-      slacks_ += std::fabs(x_[i]) * dense_.col(i).cwiseAbs();
-    }
-    if (slacks_.size() > 0) scale_ = std::max(scale_, slacks_.maxCoeff());
     slacks_ = -rows_.bounds;
     slacks_.noalias() += dense_ * x_;
+    sizes_ = rows_.bounds.cwiseAbs();
+    for (Eigen::Index i = 0; i < x_.size(); ++i) {
+      sizes_ += std::fabs(x_[i]) * dense_.col(i).cwiseAbs();
+    }
+    scale_ = std::max(scale_, sizes_.maxCoeff());
     return;
   }
   for (int row = 0; row < slacks_.size(); ++row) {

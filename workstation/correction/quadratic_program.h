@@ -124,7 +124,8 @@ class QuadraticProgram {
   Eigen::VectorXd x_, z_, r_;     ///< [n], z and r as in active_set_factors.h
   Eigen::VectorXd multipliers_;   ///< [rows] of the rows as given
   Eigen::VectorXd slacks_;        ///< [rows] of the scaled rows at x
-  double scale_ = 1;              ///< size of the terms of a slack
+  Eigen::VectorXd sizes_;         ///< [rows] and of their terms, together; empty when dense_ is
+  double scale_ = 1;              ///< the largest of these sizes
   int steps_ = 0;
 };
 

@@ -72,8 +72,9 @@ void VariableGroups::enumerate(std::span<const int> groups, const Words& members
   std::size_t count = 0;
   for (std::size_t at = from; at < end; at += kBits - at % kBits) {
     std::uint64_t left = 0;
-    for (const int group : groups)
+    for (const int group : groups) {
       left |= members[static_cast<std::size_t>(group) * words_ + at / kBits];
+    }
     left &= ~std::uint64_t{0} << at % kBits;
     const std::size_t first = at - at % kBits;
     if (end - first < kBits) left &= ~(~std::uint64_t{0} << (end - first));
@@ -85,7 +86,6 @@ void VariableGroups::enumerate(std::span<const int> groups, const Words& members
 }
 
 void VariableGroups::tie(std::span<const int> groups) {
-  if (groups.empty()) return;
   const int one = groups.front();
   count_ -= static_cast<int>(groups.size()) - 1;
   for (const int other : groups.subspan(1)) {

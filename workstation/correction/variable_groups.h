@@ -34,7 +34,7 @@ class VariableGroups {
     return of_column_[static_cast<std::size_t>(column)];
   }
 
-  /// Makes one group of these.
+  /// Makes one group of these, which are one or more.
   void tie(std::span<const int> groups);
   /// Two columns change places.
   void swap_columns(Eigen::Index one, Eigen::Index other);
