@@ -1,0 +1,40 @@
+// Faults that come and go: a bad reading weighs three times what a good one forgives.
+//
+//   level <- min(level + 3, 6) on a bad reading,  max(level - 1, 0) on a good one;  found: level >= 5
+//
+//   every reading bad       3 6                found by the 2nd bad one, after 2 readings
+//   every other one         3 2 5              found by the 2nd, after 3
+//   every third one         3 2 1 4 3 2 5      found by the 3rd, after 7
+//   every fourth or rarer   3 2 1 0 3 ...      never: three good readings forgive a bad one
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+namespace bess {
+
+struct LeakyCount {
+  static constexpr std::int16_t kBadWeight = 3;
+  static constexpr std::int16_t kFound = 5;
+  /// What was bad for a day is forgiven as soon as what was bad twice.
+  static constexpr std::int16_t kMost = 2 * kBadWeight;
+
+  constexpr void bad() {
+    level = std::min<std::int16_t>(static_cast<std::int16_t>(level + kBadWeight), kMost);
+  }
+  constexpr void good() {
+    if (level > 0) --level;
+  }
+  [[nodiscard]] constexpr bool is_found() const { return level >= kFound; }
+  constexpr void forget() { level = 0; }
+  /// Of an earlier run, by what it wrote down: whatever stands there, the level is one that can be.
+  constexpr void restore(std::int16_t logged) {
+    level = std::clamp<std::int16_t>(logged, 0, kMost);
+  }
+
+  std::int16_t level = 0;
+
+  friend constexpr bool operator==(const LeakyCount&, const LeakyCount&) = default;
+};
+
+}  // namespace bess
