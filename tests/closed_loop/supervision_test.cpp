@@ -10,11 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "edge/control/control_loop.h"
 #include "shared/utc_text.h"
-#include "tests/support/image_device.h"
+#include "tests/support/supervised_site.h"
 #include "tests/support/thorough.h"
-#include "tools/battery_sim/house_load.h"
 
 namespace bess {
 namespace {
@@ -26,103 +24,6 @@ const int kMonthDays = 3;  // many times slower
 const int kMonthDays = few_or_all(6, 30);
 #endif
 
-/// The device's time as the loop's clock; `every_half_minute` runs while the loop sleeps.
-struct MovedClock {
-  explicit MovedClock(SimulatedDevice& d) : device(d) {}
-
-  [[nodiscard]] std::int64_t now_utc_ns() const { return device.utc_ns(); }
-  [[nodiscard]] std::int64_t monotonic_ns() const { return device.test.device.now_ns; }
-  [[nodiscard]] std::int64_t monotonic_ns_at(std::int64_t utc_ns) const {
-    return monotonic_ns() + utc_ns - now_utc_ns();
-  }
-  bool sleep_until_utc_ns(std::int64_t utc_ns) {
-    constexpr std::int64_t kHalfMinuteNs = 30 * kNanosecondsPerSecond;
-    while (now_utc_ns() < utc_ns) {
-      const std::int64_t next_ns = (now_utc_ns() / kHalfMinuteNs + 1) * kHalfMinuteNs;
-      device.test.device.now_ns += std::min(next_ns, utc_ns) - now_utc_ns();
-      if (now_utc_ns() == next_ns) every_half_minute();
-    }
-    return true;
-  }
-  void pause_ns(std::int64_t ns) const { device.test.device.now_ns += ns; }
-  [[nodiscard]] static bool stop_requested() { return false; }
-  [[nodiscard]] static bool is_synchronised() { return true; }
-
-  SimulatedDevice& device;
-  std::function<void()> every_half_minute = [] {};
-};
-
-struct PromptPrices {
-  void request(std::int64_t minute_utc_s, std::int64_t, std::int64_t) {
-    report = {.has_row = true,
-              .minute_utc_s = minute_utc_s,
-              .price_centi_eur_per_mwh = price(minute_utc_s),
-              .status = Status::kOk};
-  }
-  static bool wait(std::int64_t) { return true; }
-  [[nodiscard]] PriceReport latest() const { return report; }
-
-  PriceReport report;
-  std::function<std::int32_t(std::int64_t)> price = [](std::int64_t) { return 0; };
-};
-
-/// A house behind the same meter.
-struct HouseMeter {
-  Status read(std::int32_t& grid_power_w) {
-    device.battery.advance(device.utc_ns());
-    const double house_w = house.power_w(device.utc_ns() / kNanosecondsPerSecond);
-    grid_power_w = static_cast<std::int32_t>(std::lround(house_w + device.battery.power_w()));
-    return Status::kOk;
-  }
-  SimulatedDevice& device;
-  HouseLoad house = HouseLoad::daily(3);
-};
-
-struct NoOutsideLimits {
-  static Status read(OutsideLimit&, bool&) { return Status::kOk; }
-};
-
-class SupervisedSite {
- public:
-  using Site = SiteLimits<HouseMeter, NoOutsideLimits>;
-  using Loop = ControlLoop<DeviceDriver, PromptPrices, MovedClock, Site>;
-
-  explicit SupervisedSite(const MapVariant& variant, ControlSettings settings = {},
-                          const SiteSettings& site = {})
-      : device(variant.map, variant.variant), clock(device) {
-    settings.control = true;
-    settings.order_duration_s = device.test.map.watchdog.duration_s;
-    settings.has_watchdog = device.test.map.watchdog.duration_s > 0;
-    settings.supervision.response.band = device.test.map.response;
-    settings.supervision.capacity_wh_min = 6'000;
-    settings.supervision.capacity_wh_max = 10'000;
-    loop = std::make_unique<Loop>(settings, *device.test.driver, prices, clock,
-                                  Site(site, &meter, nullptr));
-  }
-
-  CycleRecord cycle() {
-    CycleRecord record;
-    EXPECT_TRUE(loop->run_cycle(record));
-    return record;
-  }
-
-  /// Energy that has flowed otherwise than the order in force asked for, as the battery knows it.
-  double energy_against_order_wh() {
-    device.battery.advance(clock.now_utc_ns());
-    double sum_wh = 0;
-    for (const MinuteRecord& minute : device.battery.record()) {
-      sum_wh += std::abs(minute.energy_wh - minute.commanded_power_w / 60);
-    }
-    return sum_wh;
-  }
-
-  SimulatedDevice device;
-  HouseMeter meter{device};
-  MovedClock clock;
-  PromptPrices prices;
-  std::unique_ptr<Loop> loop;
-};
-
 /// What breaks, and what it must be called.
 struct Fault {
   const char* name;
@@ -130,16 +31,6 @@ struct Fault {
   Reason reason;
   bool rests = false;  ///< 0 W is ordered when it breaks
 };
-
-void set_habits(SupervisedSite& site, const BatteryHabits& habits) {
-  site.device.battery.advance(site.clock.now_utc_ns());
-  site.device.battery.set_habits(habits);
-}
-
-void set_display(SupervisedSite& site, const RegisterImage::Display& display) {
-  site.device.image.refresh(site.clock.now_utc_ns());
-  site.device.image.set_display(display);
-}
 
 const std::vector<Fault> kFaults = {
     {"goes the other way", [](SupervisedSite& s) { set_habits(s, {.gain = -1}); },
