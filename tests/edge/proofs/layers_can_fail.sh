@@ -4,6 +4,7 @@
 tree=$1 copy=$2
 proof=$tree/tests/edge/proofs/layers.sh
 rm -rf "$copy" && mkdir -p "$copy" && cp -R "$tree/edge" "$tree/shared" "$tree/tools" "$tree/workstation" "$copy" || exit 1
+mkdir "$copy/tests" && cp -R "$tree/tests/trial" "$copy/tests" || exit 1
 sh "$proof" "$copy" || { echo "layers.sh complains about a right copy"; exit 1; }
 wrong() {  # wrong FILE LINE
   cp "$copy/$1" "$copy/kept"
@@ -49,6 +50,7 @@ wrong workstation/correction/distil.cpp '#include "workstation/student/verify.h"
 wrong workstation/student/verify.cpp '#include "workstation/report/figure.h"'
 wrong workstation/report/html.cpp '#include "workstation/cli/commands.h"'
 wrong tools/battery_sim/bus_reply.cpp '#include "edge/battery/modbus_frame.h"'
+wrong tests/trial/trial_battery.h '#include "tools/battery_sim/simulated_battery.h"'
 rm -rf "$copy/edge/log"
 ! sh "$proof" "$copy" >/dev/null || { echo "layers.sh passed a tree without edge/log"; exit 1; }
 rm -rf "$copy"

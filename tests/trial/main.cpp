@@ -1,0 +1,155 @@
+// Prints what the supervision makes of every fault and of every honest battery of the trial, as tables
+// of Markdown or as CSV. Measures and asserts nothing: trial_test does.
+//
+//   supervision_trial faults         each fault at SoC 45 %, constant and intermittent
+//   supervision_trial ends           each fault near full and near empty
+//   supervision_trial honest [DAYS]  each variant of a healthy battery
+//   supervision_trial csv            every fault, schedule, kind of orders and SoC
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include "tests/trial/trial_run.h"
+
+namespace bess::trial {
+namespace {
+
+struct Schedule {
+  const char* name;
+  FaultTimes times;
+};
+constexpr Schedule kSchedules[] = {{"always", {.every = 1}},
+                                   {"every 2nd", {.every = 2}},
+                                   {"every 3rd", {.every = 3}},
+                                   {"at random 0.3", {.probability = 0.3}}};
+
+std::string cell(const FaultResult& r) {
+  char text[120];
+  if (r.reason == Reason::kStudent) {
+    std::snprintf(text, sizeof text, "- %.0f/%.0f Wh%s", r.against_order_wh, r.moved_wh,
+                  r.weak_answers >= 2 ? " weak" : "");
+  } else {
+    std::snprintf(text, sizeof text, "%d %s%s %.0f/%.0f Wh, then %d", r.cycles,
+                  reason_name(r.reason).data(), r.is_trip ? "" : "*", r.against_order_wh,
+                  r.moved_wh, r.driven_after);
+  }
+  return text;
+}
+
+void print_header(const char* first) {
+  std::printf("| %s |", first);
+  for (const Orders orders : kAllOrders) std::printf(" %s |", orders_name(orders).data());
+  std::printf("\n|---|");
+  for (std::size_t i = 0; i < std::size(kAllOrders); ++i) std::printf("---|");
+  std::printf("\n");
+}
+
+void print_row(const std::string& name, FaultCase c) {
+  std::printf("| %s |", name.c_str());
+  for (const Orders orders : kAllOrders) {
+    c.orders = orders;
+    std::printf(" %s |", cell(try_fault(c)).c_str());
+  }
+  std::printf("\n");
+}
+
+constexpr const char* kLegend =
+    "Cycles until it was found, as what (* a pause, else a trip), energy against the order / moved "
+    "until then, cycles "
+    "driven\nof the next 30. \"-\": not found in 60 cycles (real day: 720); \"weak\": told as weak "
+    "answers.\n\n";
+
+void print_faults() {
+  std::printf("%s", kLegend);
+  for (const Schedule& schedule : kSchedules) {
+    print_header((std::string("SoC 45 %, ") + schedule.name).c_str());
+    for (const TrialFault& fault : trial_faults()) {
+      print_row(fault.name, {.fault = &fault, .times = schedule.times});
+    }
+    std::printf("\n");
+  }
+}
+
+void print_ends() {
+  std::printf("%s", kLegend);
+  for (const double soc : {0.09, 0.12, 0.85, 0.97}) {
+    char head[40];
+    std::snprintf(head, sizeof head, "SoC %.0f %%, always", soc * 100);
+    print_header(head);
+    for (const TrialFault& fault : trial_faults()) {
+      print_row(fault.name, {.fault = &fault, .soc_frac = soc});
+    }
+    std::printf("\n");
+  }
+}
+
+void print_honest(int days) {
+  std::printf("%d days each of real prices.\n\n", days);
+  std::printf("| variant | trips | cycles lost | by reason | driven | weak | seen of it |\n");
+  std::printf("|---|---|---|---|---|---|---|\n");
+  for (const HonestVariant& variant : honest_variants()) {
+    const HonestDays r = live_honest_days(variant, days);
+    std::string reasons;
+    for (int i = 0; i < kReasonCount; ++i) {
+      if (r.lost[i] == 0) continue;
+      reasons +=
+          std::string(reason_name(static_cast<Reason>(i))) + " " + std::to_string(r.lost[i]) + " ";
+    }
+    std::string trips = std::to_string(r.trips);
+    if (r.trips > 0) {
+      trips += " (" + std::string(reason_name(r.first_trip)) + " first in cycle " +
+               std::to_string(r.first_trip_cycle) + ")";
+    }
+    const Oddities& o = r.oddities;
+    std::printf("| %s | %s | %d of %d | %s| %d | %d | ", variant.name, trips.c_str(),
+                r.lost_in_all(), r.cycles, reasons.c_str(), r.driven, r.weak_cycles);
+    std::printf(
+        "calibrations %d restarts %d late %d derated %.0f h forced %.1f h balancing %.1f h |\n",
+        o.calibrations, o.restarts, o.late_answers, static_cast<double>(o.derated_s) / 3'600,
+        static_cast<double>(o.forced_charge_s) / 3'600, static_cast<double>(o.balancing_s) / 3'600);
+  }
+}
+
+void print_csv() {
+  std::printf(
+      "fault,schedule,orders,soc,cycles,reason,trip,against_order_wh,moved_wh,driven_after,"
+      "moved_after_wh,weak_answers,soc_end\n");
+  for (const double soc : {0.09, 0.12, 0.45, 0.85, 0.97}) {
+    for (const Schedule& schedule : kSchedules) {
+      for (const TrialFault& fault : trial_faults()) {
+        for (const Orders orders : kAllOrders) {
+          const FaultResult r = try_fault(
+              {.fault = &fault, .times = schedule.times, .orders = orders, .soc_frac = soc});
+          std::printf("%s,%s,%s,%.2f,%d,%s,%d,%.0f,%.0f,%d,%.0f,%d,%.3f\n", fault.name,
+                      schedule.name, orders_name(orders).data(), soc, r.cycles,
+                      r.reason == Reason::kStudent ? "" : reason_name(r.reason).data(), r.is_trip,
+                      r.against_order_wh, r.moved_wh, r.driven_after, r.moved_after_wh,
+                      r.weak_answers, r.soc_frac);
+        }
+      }
+    }
+  }
+}
+
+int run(int argc, char** argv) {
+  const std::string_view what = argc > 1 ? argv[1] : "";
+  if (what == "faults") {
+    print_faults();
+  } else if (what == "ends") {
+    print_ends();
+  } else if (what == "honest") {
+    print_honest(argc > 2 ? std::atoi(argv[2]) : 30);
+  } else if (what == "csv") {
+    print_csv();
+  } else {
+    std::fprintf(stderr, "usage: supervision_trial faults|ends|honest [DAYS]|csv\n");
+    return 2;
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace bess::trial
+
+int main(int argc, char** argv) { return bess::trial::run(argc, argv); }

@@ -1,0 +1,165 @@
+#include "tests/trial/trial_run.h"
+
+#include <cmath>
+#include <numeric>
+
+#include "shared/local_time.h"
+
+namespace bess::trial {
+namespace {
+
+constexpr std::int32_t kDearCentiEur = 160'000;
+constexpr std::int32_t kCheapCentiEur = -60'000;
+constexpr std::int64_t kDayS = 86'400;
+/// Days into the yardstick at which the trial begins: 1 February 2023.
+constexpr std::int64_t kFirstDay = 31;
+
+bool charges_at(Orders orders, std::int64_t cycle) {
+  switch (orders) {
+    case Orders::kCharge:
+      return true;
+    case Orders::kAlternating:
+      return cycle % 2 == 0;
+    case Orders::kPairs:
+      return cycle / 2 % 2 == 0;
+    case Orders::kDischarge:
+    case Orders::kZero:
+    case Orders::kRealDay:
+      break;
+  }
+  return false;
+}
+
+std::int32_t real_price_centi(std::int64_t minute_utc_s) {
+  const MinuteSeries& prices = real_prices();
+  const std::int64_t minute = (minute_utc_s - prices.start_utc_s) / 60;
+  const double price = prices.indicative[static_cast<std::size_t>(minute)];
+  return std::isnan(price) ? 0 : static_cast<std::int32_t>(std::lround(price * 100));
+}
+
+}  // namespace
+
+std::string_view orders_name(Orders orders) {
+  constexpr std::string_view kNames[] = {"charge",      "discharge", "0 W",
+                                         "alternating", "pairs",     "real day"};
+  return kNames[static_cast<int>(orders)];
+}
+
+TrialSite::TrialSite(const BatteryNature& nature, double soc_frac, const ControlSettings& settings,
+                     std::uint64_t seed)
+    : clock{.now_ns = (real_prices().start_utc_s + kFirstDay * kDayS) * kNanosecondsPerSecond},
+      battery(clock, nature, soc_frac, seed),
+      loop(settings, battery, prices, clock) {
+  loop.follow_holds(holds);
+}
+
+std::int64_t TrialSite::next_tick_utc_s() const { return bess::next_tick_utc_s(clock.now_utc_s()); }
+
+CycleRecord TrialSite::cycle(Orders orders) {
+  if (orders == Orders::kZero) return cycle_held(0);
+  holds.publish({});
+  prices.price_centi_eur_per_mwh =
+      orders == Orders::kRealDay ? real_price_centi(next_tick_utc_s() - 60)
+                                 : (charges_at(orders, cycles_) ? kCheapCentiEur : kDearCentiEur);
+  return run();
+}
+
+CycleRecord TrialSite::cycle_held(std::int32_t power_w) {
+  holds.publish(
+      {.power_w = power_w, .until_utc_s = static_cast<std::uint32_t>(next_tick_utc_s() + 600)});
+  return run();
+}
+
+CycleRecord TrialSite::run() {
+  ++cycles_;
+  CycleRecord record;
+  loop.run_cycle(record);
+  return record;
+}
+
+ControlSettings trial_settings(const HonestVariant& variant) {
+  const BatteryNature& nature = variant.nature;
+  ControlSettings settings;
+  settings.control = true;
+  settings.has_watchdog = true;
+  settings.guard.power_w = static_cast<std::int32_t>(nature.rated_w);
+  settings.supervision.response.power_w = settings.guard.power_w;
+  settings.supervision.response.capacity_wh = static_cast<std::int32_t>(nature.shown_capacity_wh);
+  settings.supervision.response.band.charges_by_itself = variant.charges_by_itself;
+  settings.supervision.response.band.soc_step_e4 =
+      variant.told_soc_step_e4 > 0 ? variant.told_soc_step_e4 : nature.soc_step_e4;
+  return settings;
+}
+
+FaultResult try_fault(const FaultCase& c) {
+  ControlSettings settings = trial_settings({.name = "", .nature = c.nature});
+  if (c.orders != Orders::kRealDay) settings.reversals_per_hour_max = 0;
+  TrialSite site(c.nature, c.soc_frac, settings, c.seed);
+  // In balance, so that the fault begins where it was wanted.
+  for (int i = 0; i < 3; ++i) site.cycle(Orders::kZero);
+  if (c.soc_frac > 0.2) {
+    for (int i = 0; i < 2; ++i) site.cycle(i == 0 ? Orders::kDischarge : Orders::kCharge);
+  }
+  site.battery.begin_fault(*c.fault, c.times, site.next_tick_utc_s());
+  const EnergyAccount before = site.battery.energy();
+  FaultResult result;
+  while (result.reason == Reason::kStudent && result.cycles < fault_cycles_max(c.orders)) {
+    const CycleRecord record = site.cycle(c.orders);
+    ++result.cycles;
+    result.weak_answers = std::max(result.weak_answers, record.weak_answers);
+    if (is_stop_reason(record.reason)) result.reason = record.reason;
+    result.is_trip = record.is_tripped;
+  }
+  const EnergyAccount found = site.battery.energy();
+  result.against_order_wh = found.against_order_wh - before.against_order_wh;
+  result.moved_wh = found.moved_wh - before.moved_wh;
+  result.soc_frac = site.battery.charge_frac();
+  if (result.reason == Reason::kStudent) return result;
+  for (int i = 0; i < kCyclesAfter; ++i) {
+    result.driven_after += site.cycle(c.orders).ordered_power_w != 0 ? 1 : 0;
+  }
+  result.moved_after_wh = site.battery.energy().moved_wh - found.moved_wh;
+  return result;
+}
+
+int HonestDays::lost_in_all() const { return std::accumulate(std::begin(lost), std::end(lost), 0); }
+
+/// Real prices, but full by night and empty in the evening, each with two hours of rest.
+CycleRecord cycle_of_day(TrialSite& site, std::int32_t night_charge_power_w) {
+  const std::int64_t minute = site.next_tick_utc_s() / 60 % (24 * 60);
+  const auto is_between = [&](int from, int to) { return minute >= from && minute < to; };
+  if (is_between(60, 240)) return site.cycle_held(night_charge_power_w);
+  if (is_between(240, 360) || is_between(1'110, 1'230)) return site.cycle(Orders::kZero);
+  return site.cycle(is_between(1'020, 1'110) ? Orders::kDischarge : Orders::kRealDay);
+}
+
+HonestDays live_honest_days(const HonestVariant& variant, int days) {
+  TrialSite site(variant.nature, 0.5, trial_settings(variant), 1);
+  HonestDays result;
+  for (int i = 0; i < days * kStepsPerDay; ++i) {
+    const CycleRecord record = cycle_of_day(site, variant.night_charge_power_w);
+    ++result.cycles;
+    result.driven += record.ordered_power_w != 0 ? 1 : 0;
+    result.weak_cycles += record.weak_answers >= 2 ? 1 : 0;
+    if (is_stop_reason(record.reason)) ++result.lost[static_cast<int>(record.reason)];
+    if (!record.is_tripped) continue;
+    if (result.trips++ == 0) {
+      result.first_trip = record.trip.reason;
+      result.first_trip_cycle = i;
+    }
+    site.loop.clear_trip();
+  }
+  result.oddities = site.battery.oddities();
+  result.moved_wh = site.battery.energy().moved_wh;
+  return result;
+}
+
+const MinuteSeries& real_prices() {
+  static const MinuteSeries prices = [] {
+    set_market_time_zone();
+    return read_minute_file(BESS_SOURCE_DIR "/tests/data/benchmark_minutes_2023.csv.gz");
+  }();
+  return prices;
+}
+
+}  // namespace bess::trial

@@ -1,0 +1,114 @@
+// The control loop against the battery of the trial, in moved time: orders from prices or from a hold,
+// a fault that begins at a tick, and what came of it.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "edge/control/control_loop.h"
+#include "shared/host/minute_file.h"
+#include "tests/trial/trial_battery.h"
+
+namespace bess::trial {
+
+/// What the prices, or a hold, make the controller order.
+enum class Orders : std::uint8_t { kCharge, kDischarge, kZero, kAlternating, kPairs, kRealDay };
+inline constexpr Orders kAllOrders[] = {Orders::kCharge,      Orders::kDischarge, Orders::kZero,
+                                        Orders::kAlternating, Orders::kPairs,     Orders::kRealDay};
+std::string_view orders_name(Orders orders);
+
+struct TrialPrices {
+  void request(std::int64_t minute_utc_s, std::int64_t, std::int64_t) {
+    wanted_utc_s = minute_utc_s;
+  }
+  static bool wait(std::int64_t) { return true; }
+  [[nodiscard]] PriceReport latest() const {
+    return {.has_row = true,
+            .minute_utc_s = wanted_utc_s,
+            .price_centi_eur_per_mwh = price_centi_eur_per_mwh,
+            .status = Status::kOk};
+  }
+  std::int64_t wanted_utc_s = 0;
+  std::int32_t price_centi_eur_per_mwh = 0;
+};
+
+class TrialSite {
+ public:
+  using Loop = ControlLoop<TrialBattery, TrialPrices, TrialClock>;
+
+  TrialSite(const BatteryNature& nature, double soc_frac, const ControlSettings& settings,
+            std::uint64_t seed);
+  TrialSite(const TrialSite&) = delete;
+  TrialSite& operator=(const TrialSite&) = delete;
+
+  /// The cycle of the next tick, with such orders.
+  CycleRecord cycle(Orders orders);
+  /// With an operator's hold.
+  CycleRecord cycle_held(std::int32_t power_w);
+  [[nodiscard]] std::int64_t next_tick_utc_s() const;
+
+  TrialClock clock;
+  TrialBattery battery;
+  TrialPrices prices;
+  HoldMailbox holds;
+  Loop loop;
+
+ private:
+  CycleRecord run();
+
+  std::int64_t cycles_ = 0;
+};
+
+/// The settings of a controller of such a battery.
+ControlSettings trial_settings(const HonestVariant& variant);
+
+struct FaultCase {
+  const TrialFault* fault = nullptr;
+  FaultTimes times{};
+  Orders orders = Orders::kCharge;
+  double soc_frac = 0.45;
+  BatteryNature nature{};
+  std::uint64_t seed = 1;
+};
+
+/// A fault is found when the battery is stopped for it.
+struct FaultResult {
+  int cycles = 0;                    ///< begun since the fault, that which finds it included
+  Reason reason = Reason::kStudent;  ///< kStudent: not found
+  bool is_trip = false;
+  double against_order_wh = 0;  ///< until it was found
+  double moved_wh = 0;
+  int driven_after = 0;       ///< of the next thirty cycles, those with an order that is not 0 W
+  double moved_after_wh = 0;  ///< in the next thirty cycles
+  int weak_answers = 0;       ///< the most that were told
+  double soc_frac = 0;        ///< of the cells when it was found, or in the end
+};
+
+/// Two hours; of real prices a day.
+constexpr int fault_cycles_max(Orders orders) { return orders == Orders::kRealDay ? 720 : 60; }
+inline constexpr int kCyclesAfter = 30;
+
+FaultResult try_fault(const FaultCase& c);
+
+struct HonestDays {
+  int cycles = 0;
+  int driven = 0;  ///< with an order that is not 0 W
+  int trips = 0;   ///< each cleared at once
+  Reason first_trip = Reason::kStudent;
+  int first_trip_cycle = 0;
+  int lost[kReasonCount] = {};  ///< cycles that were stopped, by reason
+  int weak_cycles = 0;          ///< that told of two weak answers or more
+  Oddities oddities{};
+  double moved_wh = 0;
+
+  [[nodiscard]] int lost_in_all() const;
+};
+
+HonestDays live_honest_days(const HonestVariant& variant, int days);
+
+/// The yardstick of tests/data.
+const MinuteSeries& real_prices();
+
+}  // namespace bess::trial
