@@ -43,8 +43,9 @@ class BatteryDriver {
     const Status status = reader_.translate(bus_.live(), bus_.time().now_ns(), measurement);
     if (status != Status::kOk) return status;
     note_order_in_force(measurement);
-    if (in_force_ && is_replaced()) give_up_replaced_order();
-    measurement.order_replaced = was_replaced_;
+    watch_order(measurement.dispatch_active);
+    measurement.order_replaced = loss_ == Loss::kReplaced;
+    measurement.order_ended = loss_ == Loss::kEnded;
     return Status::kOk;
   }
 
@@ -97,7 +98,7 @@ class BatteryDriver {
     const Status status = runner_.run(map_.sequence(Command::kRelease), PowerOrder{});
     lose_order();
     if (status == Status::kOk) runner_.saved().forget();
-    was_replaced_ = was_replaced_ && status != Status::kOk;
+    if (status == Status::kOk) loss_ = Loss::kNone;
     was_ordered_ = was_ordered_ || status == Status::kOk;
     return status;
   }
@@ -152,6 +153,13 @@ class BatteryDriver {
   [[nodiscard]] Link& link() { return bus_.link(); }
 
  private:
+  /// How an order went that was in force and ought to be.
+  enum class Loss : std::uint8_t {
+    kNone,
+    kReplaced,  ///< its registers hold what somebody else wrote
+    kEnded      ///< the device follows none, and nothing in the registers says who ended it
+  };
+
   static constexpr std::int64_t kLiveAgeNs = 180 * kNanosecondsPerSecond;
   static constexpr std::int64_t kIdentityAgeNs = 600 * kNanosecondsPerSecond;
 
@@ -183,7 +191,7 @@ class BatteryDriver {
     const bool fed = in_force_ && (map_.watchdog.kind == Watchdog::Kind::kNone ||
                                    bus_.time().now_ns() - fed_ns_ <
                                        map_.watchdog.duration_s * kNanosecondsPerSecond);
-    const bool visible = !map_.active.empty() && map_.watchdog.expiry_visible;
+    const bool visible = shows_end();
     const bool active = live_all(map_, map_.active, bus_.live());
     // An order of a process that was killed: whether it has run out cannot be seen, but what it
     // switched over stays until it is given back.
@@ -193,23 +201,64 @@ class BatteryDriver {
     m.has_order_power = m.dispatch_active && !left_behind &&
                         live_power(map_, map_.order_power, bus_.live(), power_w);
     if (m.has_order_power) m.order_power_w = clamp_to_int32(power_w);
-    if (in_force_ && !m.dispatch_active) lose_order();
     std::int64_t left_s = 0;
     const int remaining = map_.watchdog.remaining;
     runs_out_ = in_force_ && remaining >= 0 && live_value(map_, bus_.live(), remaining, left_s) &&
                 left_s < map_.watchdog.refresh_s;
   }
 
-  /// Somebody else wrote: a register of the order has another value than the one read back after it.
-  [[nodiscard]] bool is_replaced() {
-    return runner_.confirm(map_.sequence(command_)) == Status::kNotApplied;
+  /// An order in force is looked for where it was written. `active`: the device says that it follows
+  /// one, as far as it can say so.
+  void watch_order(bool active) {
+    if (!in_force_) return;
+    if (!active && !is_within_its_time()) return lose_order();  // nobody has fed it: nobody's fault
+    OrderTrace trace = OrderTrace::kOurs;  // also where it cannot be read just now
+    static_cast<void>(runner_.trace(command_, trace));
+    if (trace == OrderTrace::kForeign || (active && trace == OrderTrace::kAtRest)) {
+      give_up_lost_order(Loss::kReplaced);
+    } else if (!active && (trace == OrderTrace::kAtRest || has_settled())) {
+      give_up_lost_order(Loss::kEnded);
+    }
+  }
+
+  /// Before it is fed: false when it is not there any more, which is remembered.
+  [[nodiscard]] bool is_still_there() {
+    OrderTrace trace = OrderTrace::kOurs;
+    if (runner_.trace(command_, trace) != Status::kOk || trace == OrderTrace::kOurs) return true;
+    // Only a fresh reading tells an end from a hand that wrote just as much.
+    const bool is_end = trace == OrderTrace::kAtRest && shows_end() &&
+                        read_registers() == Status::kOk &&
+                        !live_all(map_, map_.active, bus_.live());
+    if (is_end && !is_within_its_time()) {
+      lose_order();
+    } else {
+      give_up_lost_order(is_end ? Loss::kEnded : Loss::kReplaced);
+    }
+    return false;
   }
 
   /// All of it is written again with the next order, unless control yields. Not before: two masters
   /// that outdo each other would swing the power.
-  void give_up_replaced_order() {
-    was_replaced_ = true;
+  void give_up_lost_order(Loss loss) {
+    loss_ = loss;
     lose_order();
+  }
+
+  /// The device tells by its registers whether it follows an order.
+  [[nodiscard]] bool shows_end() const {
+    return !map_.active.empty() && map_.watchdog.expiry_visible;
+  }
+
+  /// Fed so recently that only somebody's will can have ended it; clocks that are a tenth apart agree.
+  [[nodiscard]] bool is_within_its_time() const {
+    if (map_.watchdog.kind == Watchdog::Kind::kNone) return true;
+    const std::int64_t duration_ns = map_.watchdog.duration_s * kNanosecondsPerSecond;
+    return bus_.time().now_ns() - fed_ns_ < duration_ns - duration_ns / 10;
+  }
+
+  /// Some devices show an order later than they confirm it.
+  [[nodiscard]] bool has_settled() const {
+    return bus_.time().now_ns() - since_ns_ >= map_.response.settle_s * kNanosecondsPerSecond;
   }
 
   /// Feeding at half the interval: nothing is lost when one feeding comes late.
@@ -220,10 +269,7 @@ class BatteryDriver {
   }
 
   Status feed() {
-    if (is_replaced()) {
-      give_up_replaced_order();
-      return Status::kNotApplied;
-    }
+    if (!is_still_there()) return Status::kNotApplied;
     const CommandSequence& refresh = map_.sequence(Command::kRefresh);
     const CommandSequence& sequence = refresh.writes.empty() ? map_.sequence(command_) : refresh;
     PowerOrder order = order_;
@@ -299,11 +345,11 @@ class BatteryDriver {
   }
 
   void take_into_force(Command command, const PowerOrder& order) {
-    was_replaced_ = false;
+    loss_ = Loss::kNone;
     in_force_ = was_ordered_ = true;
     command_ = command;
     order_ = order;
-    fed_ns_ = bus_.time().now_ns();
+    since_ns_ = fed_ns_ = bus_.time().now_ns();
     runs_out_ = false;
   }
 
@@ -324,11 +370,12 @@ class BatteryDriver {
   std::int64_t identified_connections_ = 0;
   bool was_ordered_ = false;  ///< what the device holds is ours, or was given back by us
   bool enabled_ = false;
-  bool was_replaced_ = false;  ///< the newest order was, by somebody else
-  bool in_force_ = false;      ///< the order below was read back and nothing has ended it since
-  bool runs_out_ = false;      ///< the device's timer shows less than one refresh interval
+  Loss loss_ = Loss::kNone;  ///< of the newest order
+  bool in_force_ = false;    ///< the order below was read back and nothing has ended it since
+  bool runs_out_ = false;    ///< the device's timer shows less than one refresh interval
   Command command_ = Command::kIdle;
   PowerOrder order_;
+  std::int64_t since_ns_ = 0;  ///< when it was written whole
   std::int64_t fed_ns_ = 0;
   std::int64_t unchanged_orders_ = 0;
 };

@@ -13,6 +13,13 @@
 
 namespace bess {
 
+/// What stands where an order was written.
+enum class OrderTrace : std::uint8_t {
+  kOurs,
+  kAtRest,  ///< what shows an order's end is as after a release, the rest is ours
+  kForeign
+};
+
 template <typename Link, typename Time>
 class CommandRunner {
  public:
@@ -58,27 +65,24 @@ class CommandRunner {
     return true;
   }
 
-  /// kNotApplied when a register of the command no longer holds what was read back after it. What the
-  /// device counts itself, and what was not read back, proves nothing.
-  Status confirm(const CommandSequence& sequence) {
-    const auto is_known = [&](int point) {
-      return written_.known[point] && point != map_.watchdog.remaining;
-    };
+  /// What stands in the registers of an order that was read back. What the device counts itself, and
+  /// what was not read back, proves nothing.
+  Status trace(Command command, OrderTrace& found) {
+    found = OrderTrace::kOurs;
     StaticVector<std::int8_t, kPointsMax> points;
-    for_each_read_back(sequence, [&](const BlockWrite&, const WriteValue& value) {
-      const bool counts = value.argument != Argument::kHeartbeat && is_known(value.point);
-      if (counts) points.push_back(value.point);
+    for_each_of_order(command, [&](const BlockWrite&, int point) {
+      points.push_back(static_cast<std::int8_t>(point));
     });
     if (points.empty()) return Status::kOk;
     LivePoints now;
     const Status status = read_written(points, now);
     if (status != Status::kOk) return status;
-    bool holds_all = true;
-    for_each_read_back(sequence, [&](const BlockWrite& write, const WriteValue& value) {
-      if (std::find(points.begin(), points.end(), value.point) == points.end()) return;
-      holds_all = holds_all && is_close(write, value.point, written_.raw[value.point], 0, now);
+    for_each_of_order(command, [&](const BlockWrite& write, int point) {
+      if (is_close(write, point, written_.raw[point], 0, now)) return;
+      const bool rests = shows_end(point) && is_as_released(point, now);
+      found = std::max(found, rests ? OrderTrace::kAtRest : OrderTrace::kForeign);
     });
-    return holds_all ? Status::kOk : Status::kNotApplied;
+    return Status::kOk;
   }
 
   Status run(const CommandSequence& sequence, const PowerOrder& order) {
@@ -219,6 +223,44 @@ class CommandRunner {
         if (!is_written_later(sequence, i, value.point)) visit(sequence.writes[i], value);
       }
     }
+  }
+
+  /// Calls `visit(write, point)` for what is known to have been left in the registers by an order and by
+  /// what enabled it.
+  template <typename Visit>
+  void for_each_of_order(Command command, const Visit& visit) {
+    const auto visit_known = [&](const BlockWrite& write, const WriteValue& value) {
+      const bool counts = value.argument != Argument::kHeartbeat && written_.known[value.point] &&
+                          value.point != map_.watchdog.remaining;
+      if (counts) visit(write, value.point);
+    };
+    const CommandSequence& sequence = map_.sequence(command);
+    for_each_read_back(sequence, visit_known);
+    for_each_read_back(map_.sequence(Command::kEnable),
+                       [&](const BlockWrite& write, const WriteValue& value) {
+                         if (!is_written_later(sequence, -1, value.point))
+                           visit_known(write, value);
+                       });
+  }
+
+  /// A device that ends an order by itself writes here.
+  [[nodiscard]] bool shows_end(int point) const {
+    const auto is_this = [point](const auto& shown) { return shown.point == point; };
+    return std::any_of(map_.active.begin(), map_.active.end(), is_this) ||
+           std::any_of(map_.simulator.at_expiry.begin(), map_.simulator.at_expiry.end(), is_this);
+  }
+
+  [[nodiscard]] bool is_as_released(int point, const LivePoints& now) const {
+    for (const BlockWrite& write : map_.sequence(Command::kRelease).writes) {
+      RegisterBlock block;
+      if (encode(write, PowerOrder{}, block) != Status::kOk) continue;
+      int offset = 0;
+      for (const WriteValue& value : write.values) {
+        if (value.point == point && holds(now, point, block.data(), offset)) return true;
+        offset += map_.points[value.point].register_count();
+      }
+    }
+    return false;
   }
 
   /// Everything that the sequence left in the registers, compared in as few reads as possible.

@@ -45,6 +45,7 @@ struct TakeOver {
   DayThroughput throughput{};
   PriceLevel price_level{};
   Trip trip{};
+  LostOrderHistory lost_orders{};
   ReversalHistory reversals{};
   std::int32_t last_full_day = 0;  ///< full_charge.h
   SiteReport site{};
@@ -72,6 +73,7 @@ class ControlLoop {
     cycle_budget_.restore(before.throughput);
     price_level_ = before.price_level;
     supervision_.restore(before.trip);
+    supervision_.restore(before.lost_orders, before.utc_s);
     reversal_cap_.restore(before.reversals, before.utc_s);
     full_charge_.restore(before.last_full_day);
     site_.take_over(before.utc_s, before.site);
@@ -227,8 +229,8 @@ class ControlLoop {
     if (bearable_power_w(known, Margin::kHalf) == order_.power_w() && !cut_failed_) return;
     const std::int32_t power_w = bearable_power_w(known, Margin::kWhole);
     if (!site_.needs_battery()) is_read = battery_.read(measurement) == Status::kOk;
-    // What follows somebody else's order is for the tick to see, and not to be hidden by ours.
-    if (is_read && measurement.order_replaced) return;
+    // What became of our order is for the tick to see, and not to be hidden by the next one.
+    if (is_read && (measurement.order_replaced || measurement.order_ended)) return;
     if (is_read) account_until_cut(measurement);
     cut_order(power_w);
   }
@@ -462,7 +464,9 @@ class ControlLoop {
     record.deadline_misses = deadline_misses_;
     record.unanswered_orders = supervision_.response().unanswered_orders();
     record.weak_answers = supervision_.response().weak_answers();
-    record.replaced_orders = supervision_.replaced_orders();
+    record.replaced_orders = supervision_.lost_orders().replaced();
+    record.ended_orders = supervision_.lost_orders().ended();
+    record.lost_orders = supervision_.lost_orders().history();
     record.is_tripped = supervision_.trip().is_set();
     record.trip = supervision_.trip();
     record.throughput = cycle_budget_.today();

@@ -12,6 +12,7 @@
 #include "edge/base/status.h"
 #include "edge/control/cycle_budget.h"
 #include "edge/control/hold.h"
+#include "edge/control/lost_order_history.h"
 #include "edge/control/mode.h"
 #include "edge/control/reversal_cap.h"
 #include "edge/control/site_types.h"
@@ -34,6 +35,7 @@ struct BatteryMeasurement {
   bool has_order_power = false;  ///< the map can read back the power of the order in force
   std::int32_t order_power_w = 0;
   bool order_replaced = false;    ///< a register of our order holds what somebody else wrote
+  bool order_ended = false;       ///< our order is gone before its end, and nobody's hand shows
   bool has_grid_power = false;    ///< the map has a grid point, and it was asked for
   std::int32_t grid_power_w = 0;  ///< import is positive
   bool warning = false;           ///< the device warns and goes on: told, stops nothing
@@ -203,6 +205,8 @@ struct CycleRecord {
   std::int16_t reserve_soc_e4 = 0;   ///< that held at the tick; 0 = none
   std::int16_t days_since_full = 0;  ///< local days since the SoC was last full
   SiteReport site{};
+  std::int32_t ended_orders = 0;  ///< since start: gone before their end, by no hand that shows
+  LostOrderHistory lost_orders{};
 };
 
 }  // namespace bess

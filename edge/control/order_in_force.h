@@ -73,6 +73,7 @@ class OrderInForce {
                                           .write_until_ns = is_bound ? write_until_ns : INT64_MAX,
                                           .feed_until_ns = is_bound ? feed_until_ns_ : INT64_MAX});
     is_confirmed_ = status == Status::kOk;
+    if (is_confirmed_) ++number_;
     return status;
   }
 
@@ -107,10 +108,13 @@ class OrderInForce {
     const std::int64_t read_utc_s = now_utc_s();
     const bool is_known = m.has_order_power || is_confirmed_;
     return {.utc_s = read_utc_s,
-            .is_driven = exists_ && m.dispatch_active && is_known && !m.order_replaced,
+            .is_driven =
+                exists_ && m.dispatch_active && is_known && !m.order_replaced && !m.order_ended,
+            .order_number = number_,
             .ordered_power_w = m.has_order_power ? m.order_power_w : power_w_,
             .order_age_s = static_cast<std::int32_t>(read_utc_s - since_utc_s_),
             .soc_floor_e4 = soc_floor_e4_,
+            .soc_ceiling_e4 = settings_.guard.soc_max_e4,
             .measurement = m};
   }
 
@@ -125,6 +129,7 @@ class OrderInForce {
   bool exists_ = false;
   std::int32_t power_w_ = 0;
   bool is_confirmed_ = false;     ///< it was read back
+  std::int64_t number_ = 0;       ///< of the orders that were
   std::int64_t since_utc_s_ = 0;  ///< when that power was ordered first
   std::int64_t fed_utc_ns_ = 0;   ///< when the battery last got an order or a refresh
   std::int32_t soc_floor_e4_;     ///< at which the device itself stops to discharge by it

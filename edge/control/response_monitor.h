@@ -29,10 +29,12 @@ struct ResponseSettings {
 /// One reading, and the order that the battery followed when it was taken.
 struct Response {
   std::int64_t utc_s = 0;
-  bool is_driven = false;  ///< false: the battery is in its own mode, which goes any way
+  bool is_driven = false;         ///< false: the battery is in its own mode, which goes any way
+  std::int64_t order_number = 0;  ///< every order that was read back has its own
   std::int32_t ordered_power_w = 0;
-  std::int32_t order_age_s = 0;       ///< since this power was ordered
-  std::int32_t soc_floor_e4 = 1'000;  ///< where the device itself stops to discharge by it
+  std::int32_t order_age_s = 0;          ///< since this power was ordered
+  std::int32_t soc_floor_e4 = 1'000;     ///< where the device itself stops to discharge by it
+  std::int32_t soc_ceiling_e4 = 10'000;  ///< and to charge
   BatteryMeasurement measurement;
 };
 

@@ -10,6 +10,7 @@
 #include <cstdint>
 
 #include "edge/control/control_types.h"
+#include "edge/control/lost_orders.h"
 #include "edge/control/response_monitor.h"
 
 namespace bess {
@@ -51,10 +52,9 @@ struct SupervisionSettings {
 class Supervision {
  public:
   static constexpr std::int32_t kFailedOrdersToPause = 3;
-  static constexpr std::int32_t kLostOrdersToYield = 2;
 
   explicit Supervision(const SupervisionSettings& settings)
-      : settings_(settings), response_(settings.response) {}
+      : settings_(settings), response_(settings.response), lost_(settings.response) {}
 
   /// Every reading of a battery that is under control. `holds_nothing`: what it follows is not ours.
   void observe(const Response& now, bool holds_nothing) {
@@ -67,7 +67,7 @@ class Supervision {
       trip_ = {.reason = response_.trip(), .utc_s = now.utc_s};
     } else if (response_.gives_no_answer()) {
       pause(now.utc_s, Reason::kNoAnswer);
-    } else if (response_.has_answered() && lost_orders_ == 0 && failed_orders_ == 0) {
+    } else if (response_.has_answered() && lost_.has_settled() && failed_orders_ == 0) {
       pause_.on_success();
     }
   }
@@ -99,34 +99,30 @@ class Supervision {
     response_.forget();
   }
   [[nodiscard]] const ResponseMonitor& response() const { return response_; }
-  /// Since start: orders of ours that somebody else replaced or ended.
-  [[nodiscard]] std::int32_t replaced_orders() const { return replaced_orders_; }
+  [[nodiscard]] const LostOrders& lost_orders() const { return lost_; }
+  /// Of an earlier run, by its log of then.
+  void restore(const LostOrderHistory& orders, std::int64_t utc_s) { lost_.restore(orders, utc_s); }
 
  private:
   void pause(std::int64_t utc_s, Reason reason) {
     pause_.begin(utc_s, reason);
-    lost_orders_ = failed_orders_ = 0;
+    lost_.forget_findings();
+    failed_orders_ = 0;
     response_.forget();
   }
   void end_pause(std::int64_t utc_s) {
     if (pause_.reason() != Reason::kStudent && pause_.is_over(utc_s)) pause_.end();
   }
 
-  /// A register of ours that another value stands in, twice running, is somebody's intention.
+  /// Where it insists, what others order while nothing is in force is none of its business.
   void observe_orders(const Response& now, bool holds_nothing) {
-    const BatteryMeasurement& m = now.measurement;
-    const bool is_foreign = holds_nothing && m.dispatch_active;
-    if (m.order_replaced) ++replaced_orders_;
-    if (is_foreign && pause_.reason() == Reason::kOtherMaster) {
-      pause_.prolong(now.utc_s);
-    } else if (m.order_replaced || is_foreign) {
-      ++lost_orders_;
-    } else if (now.is_driven) {
-      lost_orders_ = 0;
+    const bool yields = settings_.yields_to_other_master;
+    const bool follows_another = yields && holds_nothing && now.measurement.dispatch_active;
+    if (follows_another && pause_.reason() == Reason::kOtherMaster) {
+      return pause_.prolong(now.utc_s);
     }
-    if (settings_.yields_to_other_master && lost_orders_ >= kLostOrdersToYield) {
-      pause(now.utc_s, Reason::kOtherMaster);
-    }
+    lost_.observe(now, follows_another);
+    if (lost_.is_to_be_given_up(now.utc_s, yields)) pause(now.utc_s, lost_.reason());
   }
 
   [[nodiscard]] bool is_right_capacity(std::int32_t capacity_wh) const {
@@ -139,9 +135,8 @@ class Supervision {
   Trip trip_;
   Pause pause_;
   bool capacity_fits_ = true;
+  LostOrders lost_;
   std::int32_t failed_orders_ = 0;
-  std::int32_t lost_orders_ = 0;
-  std::int32_t replaced_orders_ = 0;
 };
 
 }  // namespace bess

@@ -30,6 +30,11 @@ std::string held_row(double eur_per_mwh) {
   return text;
 }
 
+/// Every third of them; one in four is forgiven, as in leaky_count.h.
+bool are_orders_lost(const HealthInputs& in) {
+  return in.lost_orders >= 2 && 10 * in.lost_orders >= 3 * in.judged_orders;
+}
+
 void check_cycle(const HealthInputs& in, std::vector<std::string>& reasons) {
   if (in.trip != "none") {
     reasons.push_back("CRITICAL: tripped, " + std::string(in.trip) +
@@ -50,6 +55,12 @@ void check_cycle(const HealthInputs& in, std::vector<std::string>& reasons) {
   if (in.weak_answers > kWeakAnswersMax) {
     reasons.push_back("WARN: less power than ordered in " + std::to_string(in.weak_answers) +
                       " readings: is power_w right, does the battery limit itself?");
+  }
+  if (are_orders_lost(in)) {
+    reasons.push_back("WARN: " + std::to_string(in.lost_orders) + " of the last " +
+                      std::to_string(in.judged_orders) +
+                      " orders were replaced or ended before their time: who else writes to the "
+                      "battery, or does it end them?");
   }
   if (in.price_status != "ok") {
     reasons.push_back("WARN: prices: " + std::string(in.price_status));

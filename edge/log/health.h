@@ -17,7 +17,9 @@ struct HealthInputs {
   std::int64_t cycles = 0;
   std::int64_t unanswered_orders = 0;  ///< in a row
   std::int64_t weak_answers = 0;       ///< in a row
-  std::string_view trip = "none";      ///< the reason's name
+  std::int64_t lost_orders = 0;        ///< of the newest `judged_orders`
+  std::int64_t judged_orders = 0;
+  std::string_view trip = "none";  ///< the reason's name
   std::string_view mode;
   std::string_view reason;
   std::string_view battery_status;

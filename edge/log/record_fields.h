@@ -21,6 +21,7 @@ consteval auto make_record_fields() {
   using V = ReversalHistory;
   using H = HoldReport;
   using S = SiteReport;
+  using O = LostOrderHistory;
   return std::to_array<Field<CycleRecord>>({
       {utc_member<&R::utc_s>(),
        "utc",
@@ -197,6 +198,20 @@ consteval auto make_record_fields() {
        "warning",
        {.last = 34, .metrics = {24, "bess_battery_warning"}},
        {"1 while the battery warns: see its own display."}},
+      {member<&R::measurement, &B::order_ended>()},
+      {member<&R::ended_orders>(),
+       "ended_orders",
+       {.csv = 48, .totals = 28, .metrics = {25, "bess_ended_orders_total"}},
+       {"Orders that were gone before their end, with nothing written in their place."}},
+      {member<&R::lost_orders, &O::orders>()},
+      {member<&R::lost_orders, &O::judged>(),
+       "judged_orders",
+       {.csv = 49, .last = 182, .metrics = {27, "bess_judged_orders"}},
+       {"How many orders bess_lost_orders looks back on, 30 at most."}},
+      {member<&R::lost_orders, &O::lost>(),
+       "lost_orders",
+       {.csv = 50, .last = 181, .metrics = {26, "bess_lost_orders"}},
+       {"Of the newest orders, those replaced or ended before their time."}},
   });
 }
 

@@ -131,6 +131,8 @@ Health health_of(const EdgeConfig& config, JsonValue status, bool no_lock,
   in.limit_status = text_of(field<&R::site, &S::limit_status>(status));
   in.unanswered_orders = whole(field<&R::unanswered_orders>(status));
   in.weak_answers = whole(field<&R::weak_answers>(status));
+  in.lost_orders = whole(field<&R::lost_orders, &LostOrderHistory::lost>(status));
+  in.judged_orders = whole(field<&R::lost_orders, &LostOrderHistory::judged>(status));
   in.trip = text_of(field<&R::trip, &Trip::reason>(status));
   in.battery_warns = is_true(field<&R::measurement, &B::warning>(status));
   in.disk_is_slow = is_true(field<&T::disk_is_slow>(status));

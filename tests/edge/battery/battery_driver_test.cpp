@@ -188,6 +188,120 @@ TEST_F(DriverTest, AnotherMastersValueIsSeenAndNotFedAgainst) {
   EXPECT_FALSE(t.measured.order_replaced);
 }
 
+/// Device registers: 10 enable, 11 power, 12 time.
+TEST_F(DriverTest, AnOrderThatIsGoneBeforeItsEndIsToldByWhatItLeaves) {
+  struct Case {
+    const char* name;
+    std::vector<std::pair<int, int>> registers;
+    bool replaced, ended;
+  };
+  const Case cases[] = {
+      {"stopped, or ended by the device", {{10, 0}}, false, true},
+      {"released by somebody", {{10, 0}, {11, 0}}, true, false},
+      {"another power", {{11, 777}}, true, false},
+      {"another time", {{12, 30}}, true, false},
+      {"another power that has run out", {{10, 0}, {11, 777}}, true, false},
+      {"as ordered", {}, false, false},
+  };
+  for (const Case& c : cases) {
+    SCOPED_TRACE(c.name);
+    for (const bool fed : {false, true}) {  // found by the reading, or by the feeding before it
+      MapUnderTest& t = with();
+      ASSERT_EQ(t.order(1'000), Status::kOk);
+      t.device.pass_s(110);
+      for (const auto& [address, value] : c.registers) t.device.set(address, {value});
+      if (fed) {
+        const bool lost = c.replaced || c.ended;
+        EXPECT_EQ(t.driver->refresh(), lost ? Status::kNotApplied : Status::kOk);
+      }
+      for (int i = 0; i < 2; ++i) {  // told until it is ordered again
+        ASSERT_EQ(t.read(), Status::kOk);
+        EXPECT_EQ(t.measured.order_replaced, c.replaced);
+        EXPECT_EQ(t.measured.order_ended, c.ended);
+      }
+      ASSERT_EQ(t.order(1'000), Status::kOk);
+      ASSERT_EQ(t.read(), Status::kOk);
+      EXPECT_FALSE(t.measured.order_replaced || t.measured.order_ended);
+      EXPECT_TRUE(t.measured.dispatch_active);
+    }
+  }
+}
+
+TEST_F(DriverTest, AnotherModeThanTheReleasesIsSomebodysIntention) {
+  MapUnderTest& t = with({{"order = [", "enable = [\"mode = 3\"]\norder = ["},
+                          {"release = [", "release = [\"mode = 1\", "},
+                          {"active = [", "active = [\"mode = 3\", "}});
+  for (const auto& [mode, replaced] : {std::pair{2, true}, {1, false}}) {
+    t.device.set(20, {1});
+    ASSERT_EQ(t.order(1'000), Status::kOk);
+    t.device.pass_s(110);
+    t.device.set(20, {mode});
+    ASSERT_EQ(t.read(), Status::kOk);
+    EXPECT_EQ(t.measured.order_replaced, replaced) << mode;
+    EXPECT_EQ(t.measured.order_ended, !replaced) << mode;
+    t.device.day += 1;  // another day's writes to the flash
+  }
+}
+
+/// Where the end of an order shows nowhere, what enabled it still does.
+TEST_F(DriverTest, AModeThatEnabledTheOrderIsLookedAfter) {
+  MapUnderTest& t = with({{"order = [", "enable = [\"mode = 3\"]\norder = ["},
+                          {"refresh_s = 120", "refresh_s = 120\nexpiry_visible = false"}});
+  ASSERT_EQ(t.order(1'000), Status::kOk);
+  t.device.pass_s(110);
+  t.device.set(20, {1});
+  ASSERT_EQ(t.read(), Status::kOk);
+  EXPECT_TRUE(t.measured.order_replaced);
+}
+
+TEST_F(DriverTest, AnOrderWhoseTimeIsOverWasNotLost) {
+  for (const double passed_s : {271.0, 3'600.0}) {
+    for (const bool fed : {false, true}) {
+      MapUnderTest& t = with();
+      ASSERT_EQ(t.order(1'000), Status::kOk);
+      t.device.pass_s(passed_s);  // the process was stopped, the link away
+      t.device.set(10, {0});
+      if (fed) {
+        EXPECT_EQ(t.driver->refresh(), Status::kNotApplied);
+      }
+      ASSERT_EQ(t.read(), Status::kOk);
+      EXPECT_FALSE(t.measured.order_replaced || t.measured.order_ended) << passed_s;
+    }
+  }
+}
+
+TEST_F(DriverTest, AnOrderThatShowsLateIsNotLost) {
+  MapUnderTest& t = with({{"active = [\"enable = 1\"]", "active = [\"status = ready\"]"}});
+  ASSERT_EQ(t.order(1'000), Status::kOk);
+  t.device.pass_s(10);
+  ASSERT_EQ(t.read(), Status::kOk);
+  EXPECT_FALSE(t.measured.dispatch_active);
+  EXPECT_FALSE(t.measured.order_ended);
+  t.device.set(21, {7});
+  ASSERT_EQ(t.read(), Status::kOk);
+  EXPECT_TRUE(t.measured.dispatch_active);
+  t.device.set(21, {0});
+  t.device.pass_s(10);
+  ASSERT_EQ(t.read(), Status::kOk);
+  EXPECT_TRUE(t.measured.order_ended);
+}
+
+TEST_F(DriverTest, WhatWeGiveBackOrCannotFeedWasNotLost) {
+  MapUnderTest& t = with();
+  ASSERT_EQ(t.order(1'000), Status::kOk);
+  ASSERT_EQ(t.driver->release(), Status::kOk);
+  ASSERT_EQ(t.read(), Status::kOk);
+  EXPECT_FALSE(t.measured.order_replaced || t.measured.order_ended);
+  ASSERT_EQ(t.order(1'000), Status::kOk);
+  t.device.pass_s(100);
+  t.device.exception = -1;
+  EXPECT_EQ(t.driver->refresh(), Status::kTimeout);
+  t.device.exception = 0;
+  t.device.set(10, {0});
+  ASSERT_EQ(t.read(), Status::kOk);
+  EXPECT_FALSE(t.measured.order_replaced || t.measured.order_ended);
+}
+
 TEST_F(DriverTest, NothingOfAnOrderIsWrittenAfterItsTime) {
   MapUnderTest& t = with();
   ASSERT_EQ(t.read(), Status::kOk);

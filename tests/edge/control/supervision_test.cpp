@@ -22,6 +22,7 @@ Response reading(std::int64_t utc_s, std::int32_t ordered_w, std::int32_t measur
 Response replaced(std::int64_t utc_s) {
   Response now = reading(utc_s, 4'000, -4'500);
   now.is_driven = false;
+  now.order_number = utc_s;
   now.measurement.order_replaced = true;
   return now;
 }
@@ -100,7 +101,7 @@ TEST(Supervision, YieldsToAnotherMasterForAsLongAsItOrders) {
   EXPECT_EQ(supervision.stop_reason(), Reason::kStudent);
   supervision.observe(replaced(240), false);
   EXPECT_EQ(supervision.stop_reason(), Reason::kOtherMaster);
-  EXPECT_EQ(supervision.replaced_orders(), 2);
+  EXPECT_EQ(supervision.lost_orders().replaced(), 2);
   std::int64_t utc_s = 240;
   Response foreign = reading(utc_s, -4'500, -4'500);
   foreign.is_driven = false;
@@ -121,7 +122,7 @@ TEST(Supervision, InsistsOnItsOrdersWhereItIsTold) {
   Supervision supervision(settings);
   for (int i = 1; i <= 10; ++i) supervision.observe(replaced(120 * i), false);
   EXPECT_EQ(supervision.stop_reason(), Reason::kStudent);
-  EXPECT_EQ(supervision.replaced_orders(), 10);
+  EXPECT_EQ(supervision.lost_orders().replaced(), 10);
 }
 
 TEST(Supervision, AnotherCapacityStopsForAsLongAsItIsRead) {

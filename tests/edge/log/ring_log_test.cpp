@@ -151,8 +151,13 @@ TEST(RecordCodec, LayoutOnDiskIsFixed) {
   EXPECT_EQ(bytes[251], 0xD9);  // site.grid_power_w = -39
   EXPECT_EQ(bytes[263], 42);    // site.order_cuts
   EXPECT_EQ(bytes[268], 14);    // site.limit_status: malformed
-  EXPECT_EQ(bytes[269], 1);     // measurement.warning, the last field
-  for (std::size_t i = 270; i < kRecordBytes - 4; ++i) EXPECT_EQ(bytes[i], 0) << i;
+  EXPECT_EQ(bytes[269], 1);     // measurement.warning
+  EXPECT_EQ(bytes[270], 1);     // measurement.order_ended
+  EXPECT_EQ(bytes[271], 43);    // ended_orders
+  EXPECT_EQ(bytes[275], 44);    // lost_orders.orders
+  EXPECT_EQ(bytes[279], 45);    // lost_orders.judged
+  EXPECT_EQ(bytes[281], 46);    // lost_orders.lost, the last field
+  for (std::size_t i = 283; i < kRecordBytes - 4; ++i) EXPECT_EQ(bytes[i], 0) << i;
 }
 
 /// A ring of the program that ended its records with flash_writes_today: later fields read as 0.
@@ -178,6 +183,9 @@ TEST(RecordCodec, ARecordOfAnOlderLayoutIsRead) {
   expected.hold = {};
   expected.reserve_soc_e4 = expected.days_since_full = 0;
   expected.site = {};
+  expected.measurement.order_ended = false;
+  expected.ended_orders = 0;
+  expected.lost_orders = {};
   EXPECT_EQ(bytes_of(back, 42), bytes_of(expected, 42));
 }
 

@@ -25,6 +25,7 @@ inline CycleRecord full_record(std::int64_t cycle) {
                    .has_order_power = true,
                    .order_power_w = -8,
                    .order_replaced = true,
+                   .order_ended = true,
                    .warning = true};
   r.price = {.has_row = true,
              .minute_utc_s = 9,
@@ -73,6 +74,8 @@ inline CycleRecord full_record(std::int64_t cycle) {
             .order_cuts = 42,
             .meter_status = Status::kBadReply,
             .limit_status = Status::kMalformed};
+  r.ended_orders = 43;
+  r.lost_orders = {.orders = 44, .judged = 45, .lost = 46};
   return r;
 }
 
@@ -102,7 +105,8 @@ inline CycleRecord longest_record() {
   r.price_level = {.centi_q16 = INT64_MIN, .row_minute_utc_s = INT64_MIN};
   r.context_class = INT16_MIN;
   r.trip = {.reason = Reason::kUncontrolledPower, .utc_s = 4'102'444'800};
-  r.weak_answers = r.replaced_orders = INT32_MIN;
+  r.weak_answers = r.replaced_orders = r.ended_orders = INT32_MIN;
+  r.lost_orders = {.orders = UINT32_MAX, .judged = INT16_MIN, .lost = INT16_MIN};
   r.reversals = {.steps = UINT32_MAX, .direction = INT16_MIN, .in_hour = INT16_MIN};
   r.hold = {.held = true, .power_w = INT32_MIN, .until_utc_s = UINT32_MAX};
   r.reserve_soc_e4 = r.days_since_full = INT16_MIN;
