@@ -57,6 +57,8 @@ constexpr BadCommandLine kCases[] = {
     {"battery --late-ms 60", 2, "--late-ms requires --fault"},
     {"battery --fault drop --fault-every 3 --fault-probability 0.1", 2, "excludes"},
     {"battery --fault drop --fault-from-s 60 --fault-to-s 60", 1, "is not before --fault-to-s 60"},
+    {"battery --fault drop --fault-on-s 60", 1, "needs --fault-off-s"},
+    {"battery --fault drop --fault-off-s 60", 2, "--fault-off-s requires --fault-on-s"},
     {"battery --fault crc", 2, "there is no fault crc"},
     {"battery --fault bad-crc", 1, "only on a serial line"},
     {"battery --soc-min 0.9 --soc-max 0.1", 1, "--soc-min 0.9: is not below --soc-max 0.1"},

@@ -107,6 +107,9 @@ void take_faults(const std::vector<std::string>& names, BatteryServerSettings& s
 }
 
 void require_span(const char* name, const FaultSchedule& faults) {
+  if (faults.on_s > 0 && faults.off_s == 0) {
+    fail("--{}-on-s {:g}: needs --{}-off-s, so long it is away", name, faults.on_s, name);
+  }
   if (faults.from_s < faults.to_s) return;
   fail("--{}-from-s {:g}: is not before --{}-to-s {:g}, so that no fault would strike", name,
        faults.from_s, name, faults.to_s);
@@ -244,6 +247,12 @@ void add_fault_options(ProgramCommand& command, BatteryOptions& options) {
       .non_negative()
       .needs("--fault");
   command.option("--fault-to-s", faults.to_s, "And until when").non_negative().needs("--fault");
+  command.option("--fault-on-s", faults.on_s, "Comes and goes: so long it may strike")
+      .positive()
+      .needs("--fault");
+  command.option("--fault-off-s", faults.off_s, "And then so long not")
+      .positive()
+      .needs("--fault-on-s");
   command.option("--late-ms", server.late_ms, "Delay of late and byte-gap")
       .range(1, 60'000)
       .with_default()

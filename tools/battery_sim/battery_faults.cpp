@@ -1,6 +1,7 @@
 #include "tools/battery_sim/battery_faults.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace bess {
 namespace {
@@ -54,6 +55,24 @@ constexpr BatteryFaultInfo kFaults[] = {
     {BatteryFault::kOtherCapacity, "other-capacity", "lasts: shows 5 times its capacity", kLasting},
     {BatteryFault::kOtherMaster, "other-master",
      "lasts: every 30 s somebody else orders the rated discharge", kLasting},
+    {BatteryFault::kInverted, "inverted", "lasts: what is ordered flows the other way", kLasting},
+    {BatteryFault::kEcho, "echo", "lasts: shows the order as its power, and nothing flows",
+     kLasting},
+    {BatteryFault::kHalfFlow, "half-flow",
+     "lasts: shows the order as its power, and half of it flows", kLasting},
+    {BatteryFault::kHiddenDrain, "hidden-drain",
+     "lasts: a quarter of the rating leaves its cells besides, and is not shown", kLasting},
+    {BatteryFault::kSocInverted, "soc-inverted",
+     "lasts: the state of charge falls when it is charged", kLasting},
+    {BatteryFault::kSocRecalibrates, "soc-recalibrates",
+     "lasts: no fault, a habit: the state of charge is set 6 % higher, at once", kLasting},
+    {BatteryFault::kForcedCharge, "forced-charge",
+     "lasts: no fault, a habit: below 10 % it charges itself to 11 %, whatever is ordered",
+     kLasting},
+    {BatteryFault::kBalancing, "balancing",
+     "lasts: no fault, a habit: while it is full 450 W flow, whatever is ordered", kLasting},
+    {BatteryFault::kSlowRamp, "slow-ramp",
+     "lasts: no fault, a habit: its power changes by 30 W in a second", kLasting},
 };
 
 }  // namespace
@@ -67,6 +86,12 @@ FaultPlan::FaultPlan(const FaultSchedule& schedule, bool rtu)
       if (info.fault == fault && (rtu ? info.rtu : info.tcp)) possible_.push_back(info);
     }
   }
+}
+
+bool FaultPlan::in_span(double at_s) const {
+  if (at_s < schedule_.from_s || at_s >= schedule_.to_s) return false;
+  const double period_s = schedule_.on_s + schedule_.off_s;
+  return schedule_.off_s == 0 || std::fmod(at_s - schedule_.from_s, period_s) < schedule_.on_s;
 }
 
 BatteryFault FaultPlan::draw(FaultChance chance, double at_s) {

@@ -47,6 +47,15 @@ enum class BatteryFault : std::uint8_t {
   kSocStuck,
   kOtherCapacity,
   kOtherMaster,
+  kInverted,
+  kEcho,
+  kHalfFlow,
+  kHiddenDrain,
+  kSocInverted,
+  kSocRecalibrates,
+  kForcedCharge,
+  kBalancing,
+  kSlowRamp,
 };
 
 /// A moment at which a fault may strike.
@@ -71,6 +80,9 @@ struct FaultSchedule {
   std::uint64_t seed = 1;
   double from_s = 0;  ///< simulated seconds since the simulator's start
   double to_s = std::numeric_limits<double>::infinity();
+  /// Within its span it comes and goes: so long it may strike, then so long not. 0 = it stays.
+  double on_s = 0;
+  double off_s = 0;
 };
 
 class FaultPlan {
@@ -84,9 +96,7 @@ class FaultPlan {
   std::mt19937_64& random() { return random_; }
 
  private:
-  [[nodiscard]] bool in_span(double at_s) const {
-    return at_s >= schedule_.from_s && at_s < schedule_.to_s;
-  }
+  [[nodiscard]] bool in_span(double at_s) const;
 
   FaultSchedule schedule_;
   std::vector<BatteryFaultInfo> possible_;

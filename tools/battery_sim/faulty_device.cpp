@@ -1,6 +1,7 @@
 #include "tools/battery_sim/faulty_device.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "edge/registers/codec.h"
 #include "shared/scaled_clock.h"
@@ -84,6 +85,19 @@ void FaultyDevice::refresh(std::int64_t utc_ns) {
   image_->refresh(utc_ns);
 }
 
+/// Of the ordered power that flows.
+double FaultyDevice::gain(std::int64_t utc_ns) const {
+  constexpr std::pair<BatteryFault, double> kGains[] = {{BatteryFault::kPartPower, 0.3},
+                                                        {BatteryFault::kExcessPower, 2.0},
+                                                        {BatteryFault::kInverted, -1.0},
+                                                        {BatteryFault::kEcho, 0.0},
+                                                        {BatteryFault::kHalfFlow, 0.5}};
+  for (const auto& [fault, gain] : kGains) {
+    if (plan_.lasts(fault, elapsed_s(utc_ns))) return gain;
+  }
+  return 1;
+}
+
 /// From the request after --fault-from-s on; what another master did between two requests is done late.
 void FaultyDevice::apply_lasting_faults(std::int64_t utc_ns) {
   if (map_.is_meter) return;
@@ -91,15 +105,21 @@ void FaultyDevice::apply_lasting_faults(std::int64_t utc_ns) {
   const auto lasts = [&](BatteryFault fault) { return plan_.lasts(fault, elapsed_s(utc_ns)); };
   const double rated_w = battery_.parameters().power_w_max;
   battery_.advance(utc_ns);
-  battery_.set_habits({.gain = lasts(BatteryFault::kPartPower)     ? 0.3
-                               : lasts(BatteryFault::kExcessPower) ? 2.0
-                                                                   : 1.0,
+  battery_.set_habits({.gain = gain(utc_ns),
                        .idle_power_w = lasts(BatteryFault::kIdleDischarge) ? -0.75 * rated_w : 0.0,
                        .delay_s = lasts(BatteryFault::kSlowAndNoisy) ? 5.0 : 0.0,
                        .noise_frac = lasts(BatteryFault::kSlowAndNoisy) ? 0.02 : 0.0,
-                       .slows_near_limits = lasts(BatteryFault::kThrottle)});
-  image_->set_display({.soc_stands_still = lasts(BatteryFault::kSocStuck),
-                       .capacity_factor = lasts(BatteryFault::kOtherCapacity) ? 5.0 : 1.0});
+                       .slows_near_limits = lasts(BatteryFault::kThrottle),
+                       .ramp_w_per_s = lasts(BatteryFault::kSlowRamp) ? 30.0 : 0.0,
+                       .hidden_drain_w = lasts(BatteryFault::kHiddenDrain) ? 0.25 * rated_w : 0.0,
+                       .forced_charge_w = lasts(BatteryFault::kForcedCharge) ? rated_w / 8 : 0.0,
+                       .balancing_w = lasts(BatteryFault::kBalancing) ? 450.0 : 0.0});
+  image_->set_display(
+      {.soc_stands_still = lasts(BatteryFault::kSocStuck),
+       .soc_is_inverted = lasts(BatteryFault::kSocInverted),
+       .soc_offset_frac = lasts(BatteryFault::kSocRecalibrates) ? 0.06 : 0.0,
+       .capacity_factor = lasts(BatteryFault::kOtherCapacity) ? 5.0 : 1.0,
+       .order_as_power = lasts(BatteryFault::kEcho) || lasts(BatteryFault::kHalfFlow)});
   if (!lasts(BatteryFault::kOtherMaster)) return;
   constexpr std::int64_t kForeignIntervalNs = 30 * kNanosecondsPerSecond;
   if (utc_ns < next_foreign_order_ns_) return;

@@ -48,6 +48,7 @@ class FaultyDevice {
   [[nodiscard]] std::unique_lock<std::mutex> hold_plant() const;
   void refresh(std::int64_t utc_ns);
   void apply_lasting_faults(std::int64_t utc_ns);
+  [[nodiscard]] double gain(std::int64_t utc_ns) const;
   Bytes right_answer(const BusRequest& request, bool keep_registers);
   void change_values(BatteryFault fault, std::int64_t utc_ns);
   [[nodiscard]] double elapsed_s(std::int64_t utc_ns) const {

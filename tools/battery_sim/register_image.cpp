@@ -122,8 +122,10 @@ void RegisterImage::refresh(std::int64_t utc_ns) {
   if (is_running_ && !battery_.dispatch_active()) show_expiry();
   is_running_ = battery_.dispatch_active();
   const BatteryParameters& p = battery_.parameters();
-  if (!display_.soc_stands_still) set("soc", battery_.soc_frac() * 1e4);
-  show_power(map_.measured_power, std::llround(battery_.power_w()));
+  show_soc();
+  const double shown_w =
+      display_.order_as_power ? battery_.commanded_power_w() : battery_.power_w();
+  show_power(map_.measured_power, std::llround(shown_w));
   if (house_ != nullptr) {
     show_power(map_.grid_power, std::llround(house_->power_w(utc_s_) + battery_.power_w()));
   }
@@ -139,6 +141,18 @@ void RegisterImage::refresh(std::int64_t utc_ns) {
   if (map_.watchdog.remaining >= 0) {
     set(map_.watchdog.remaining, is_running_ ? std::max<std::int64_t>(end_utc_s_ - utc_s_, 0) : 0);
   }
+}
+
+void RegisterImage::set_display(const Display& display) {
+  if (display.soc_is_inverted && !display_.soc_is_inverted) mirror_soc_frac_ = battery_.soc_frac();
+  display_ = display;
+}
+
+void RegisterImage::show_soc() {
+  if (display_.soc_stands_still) return;
+  const double soc_frac = battery_.soc_frac();
+  const double shown_frac = display_.soc_is_inverted ? 2 * mirror_soc_frac_ - soc_frac : soc_frac;
+  set("soc", std::clamp(shown_frac + display_.soc_offset_frac, 0.0, 1.0) * 1e4);
 }
 
 /// One register with a sign (of several phases the first), one for each direction, or a size whose

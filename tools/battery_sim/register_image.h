@@ -37,9 +37,12 @@ class RegisterImage {
   /// Values that are shown otherwise than they are.
   struct Display {
     bool soc_stands_still = false;
+    bool soc_is_inverted = false;  ///< mirrored at where it was when this began
+    double soc_offset_frac = 0;
     double capacity_factor = 1;
+    bool order_as_power = false;  ///< what was ordered, not what flows
   };
-  void set_display(const Display& display) { display_ = display; }
+  void set_display(const Display& display);
   /// From now on the map's grid point shows this house and the battery.
   void connect_house(const HouseLoad& house) { house_ = &house; }
 
@@ -56,6 +59,7 @@ class RegisterImage {
   [[nodiscard]] std::int64_t value(int point) const;
   void set(int point, std::int64_t value);
   void set(std::string_view name, double value);
+  void show_soc();
   void show_power(const StaticVector<PowerCase, 4>& cases, std::int64_t power_w);
   void assign(const Assignment& assignment);
   [[nodiscard]] bool covers(int address, int count, int point) const;
@@ -76,6 +80,7 @@ class RegisterImage {
   bool timer_counts_minutes_ = false;
   int soc_limit_ = -1, soc_min_ = -1, soc_max_ = -1;
   Display display_{};
+  double mirror_soc_frac_ = 0;
   bool is_running_ = false;  ///< an order, at the last refresh or write
   std::int64_t utc_s_ = 0;
   std::int64_t end_utc_s_ = 0;  ///< of the order under way

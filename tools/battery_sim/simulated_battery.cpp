@@ -13,6 +13,9 @@ constexpr std::int64_t kMinuteNs = 60 * kNanosecondsPerSecond;
 constexpr double kNanosecondsPerHour = 3.6e12;
 constexpr double kThrottledFraction = 0.25;
 constexpr double kThrottledSocFrac = 0.05;  ///< this close to a limit
+constexpr double kForcedBelowFrac = 0.10;
+constexpr double kForcedUntilFrac = 0.11;
+constexpr double kFullFrac = 0.995;
 
 }  // namespace
 
@@ -25,7 +28,7 @@ void SimulatedBattery::advance(std::int64_t utc_ns) {
     std::int64_t end_ns = std::min(utc_ns, (now_ns_ / kMinuteNs + 1) * kMinuteNs);
     if (dispatch_active_) end_ns = std::min(end_ns, dispatch_end_ns_);
     if (now_ns_ < change_ns_) end_ns = std::min(end_ns, change_ns_);
-    if (habits_.slows_near_limits) end_ns = std::min(end_ns, now_ns_ + kNanosecondsPerSecond);
+    if (changes_by_the_second()) end_ns = std::min(end_ns, now_ns_ + kNanosecondsPerSecond);
     integrate_segment(end_ns);
     if (dispatch_active_ && now_ns_ >= dispatch_end_ns_) {
       dispatch_active_ = false;
@@ -37,9 +40,12 @@ void SimulatedBattery::advance(std::int64_t utc_ns) {
 void SimulatedBattery::integrate_segment(std::int64_t end_ns) {
   const double hours = static_cast<double>(end_ns - now_ns_) / kNanosecondsPerHour;
   if (hours > 0) {
+    follow_habits(hours * 3'600);
+    const double burnt_wh = burnt_w() * hours;
     const BatteryStep step = battery_step(limited(), soc_frac_, wanted_power_w(), hours);
-    minute_energy_wh_ += step.power_w * hours;
-    soc_frac_ = step.soc_frac;
+    minute_energy_wh_ += step.power_w * hours + burnt_wh;
+    const double drained_frac = habits_.hidden_drain_w * hours / parameters_.capacity_wh;
+    soc_frac_ = std::max(step.soc_frac - drained_frac, 0.0);
   }
   now_ns_ = end_ns;
   if (now_ns_ % kMinuteNs == 0 && hours > 0) {
@@ -49,10 +55,24 @@ void SimulatedBattery::integrate_segment(std::int64_t end_ns) {
   }
 }
 
+bool SimulatedBattery::changes_by_the_second() const {
+  return habits_.slows_near_limits || habits_.ramp_w_per_s > 0 || habits_.forced_charge_w > 0 ||
+         habits_.balancing_w > 0;
+}
+
+/// What does not follow from the order alone, brought forward by a segment.
+void SimulatedBattery::follow_habits(double seconds) {
+  if (soc_frac_ < kForcedBelowFrac) is_charging_itself_ = true;
+  if (soc_frac_ >= kForcedUntilFrac || habits_.forced_charge_w == 0) is_charging_itself_ = false;
+  const double reach_w = habits_.ramp_w_per_s > 0 ? habits_.ramp_w_per_s * seconds : INFINITY;
+  const double wanted_w = dispatch_active_ ? ordered_flow_w() : 0;
+  ramped_w_ = std::clamp(wanted_w, ramped_w_ - reach_w, ramped_w_ + reach_w);
+}
+
 BatteryParameters SimulatedBattery::limited() const {
   BatteryParameters p = parameters_;
   p.power_w_max *= derating_;
-  if (!dispatch_active_) return p;
+  if (!dispatch_active_ || is_charging_itself_) return p;
   p.power_w_max *= std::max(habits_.gain, 1.0) * (1 + 5 * habits_.noise_frac);
   if (power_w_ == 0 && habits_.idle_power_w != 0) {
     p.soc_min_frac = 0;
@@ -68,7 +88,18 @@ BatteryParameters SimulatedBattery::limited() const {
 }
 
 double SimulatedBattery::wanted_power_w() const {
+  if (is_charging_itself_) return habits_.forced_charge_w;
   if (!dispatch_active_) return 0;
+  return habits_.ramp_w_per_s > 0 ? ramped_w_ : ordered_flow_w();
+}
+
+/// At the grid side, and into no cell.
+double SimulatedBattery::burnt_w() const {
+  const bool is_full = soc_frac_ >= kFullFrac * parameters_.soc_max_frac;
+  return is_full && commanded_power_w() >= 0 ? habits_.balancing_w : 0;
+}
+
+double SimulatedBattery::ordered_flow_w() const {
   const double ordered_w = now_ns_ < change_ns_ ? power_before_w_ : power_w_;
   if (ordered_w == 0) return habits_.idle_power_w;
   return ordered_w * habits_.gain * noise_factor();
@@ -110,7 +141,7 @@ void SimulatedBattery::note(DispatchEvent::Kind kind, double power_w, std::int64
 
 double SimulatedBattery::power_w() const {
   constexpr double kOneSecondHours = 1.0 / 3'600.0;
-  return battery_step(limited(), soc_frac_, wanted_power_w(), kOneSecondHours).power_w;
+  return battery_step(limited(), soc_frac_, wanted_power_w(), kOneSecondHours).power_w + burnt_w();
 }
 
 MinuteRecord SimulatedBattery::current_minute() const {

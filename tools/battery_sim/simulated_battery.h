@@ -39,6 +39,10 @@ struct BatteryHabits {
   double delay_s = 0;              ///< from a new order to its power
   double noise_frac = 0;           ///< standard deviation of the power, another draw each minute
   bool slows_near_limits = false;  ///< a quarter of the power within 5 % of a limit
+  double ramp_w_per_s = 0;         ///< of its power while it follows orders; 0 = at once
+  double hidden_drain_w = 0;       ///< leaves its cells besides, through no meter
+  double forced_charge_w = 0;      ///< flows from below 10 % up to 11 %, whatever is ordered
+  double balancing_w = 0;          ///< burnt in its resistors while it is full
 };
 
 class SimulatedBattery {
@@ -75,7 +79,11 @@ class SimulatedBattery {
  private:
   void note(DispatchEvent::Kind kind, double power_w = 0, std::int64_t duration_s = 0);
   [[nodiscard]] BatteryParameters limited() const;
+  [[nodiscard]] bool changes_by_the_second() const;
+  void follow_habits(double seconds);
   [[nodiscard]] double wanted_power_w() const;
+  [[nodiscard]] double ordered_flow_w() const;
+  [[nodiscard]] double burnt_w() const;
   [[nodiscard]] double noise_factor() const;
   [[nodiscard]] MinuteRecord current_minute() const;
   void integrate_segment(std::int64_t end_ns);
@@ -89,6 +97,8 @@ class SimulatedBattery {
   double power_w_ = 0;
   double power_before_w_ = 0;  ///< flows until `change_ns_`
   std::int64_t change_ns_ = 0;
+  double ramped_w_ = 0;              ///< where the ramp has come to
+  bool is_charging_itself_ = false;  ///< forced
   double soc_limit_frac_ = 1;
   std::int64_t dispatch_end_ns_ = 0;
   double minute_energy_wh_ = 0;

@@ -123,6 +123,12 @@ void read_battery_fault(TomlTable table, bool rtu, BatteryFaultWindow& fault) {
   fault.schedule.to_s = 60 * window.to_min;
   table.integer("every", fault.schedule.every, 1, 1'000'000);
   decimal(table, "probability", fault.schedule.probability, 0, 1);
+  decimal(table, "on_s", fault.schedule.on_s, 1, 86'400);
+  decimal(table, "off_s", fault.schedule.off_s, 1, 86'400);
+  if (table.ok() && (fault.schedule.on_s > 0) != (fault.schedule.off_s > 0)) {
+    table.fail(fault.schedule.on_s > 0 ? "on_s" : "off_s",
+               "comes with the other of on_s and off_s");
+  }
   std::int64_t seed = 1;
   table.integer("seed", seed, 0, INT64_MAX);
   fault.schedule.seed = static_cast<std::uint64_t>(seed);

@@ -57,7 +57,8 @@ struct BatteryFaultWindow {
   std::int32_t drip_ms = 100;
   std::int32_t exception_code = 6;
   [[nodiscard]] bool strikes_always() const {
-    return !schedule.faults.empty() && schedule.every == 1 && schedule.probability == 0;
+    return !schedule.faults.empty() && schedule.every == 1 && schedule.probability == 0 &&
+           schedule.off_s == 0;
   }
 };
 

@@ -330,6 +330,9 @@ class WallRun {
     add("--fault-seed", std::to_string(schedule.seed));
     add("--fault-from-s", fmt::format("{}", schedule.from_s));
     if (schedule.to_s != kNeverMin) add("--fault-to-s", fmt::format("{}", schedule.to_s));
+    if (schedule.off_s == 0) return;
+    add("--fault-on-s", fmt::format("{}", schedule.on_s));
+    add("--fault-off-s", fmt::format("{}", schedule.off_s));
   }
 
   void start_market() {
