@@ -1,5 +1,5 @@
 // An operator's rules as rows of the constraint layer, on one context lattice: for each state in a rule's box
-// what ScoreRows asks of u and v. Rules on directions and switches say nothing of one state, and "not idle"
+// what ScoreRows asks of u and v. Rules on directions say nothing of one state, and "not idle"
 // is not convex: they give no rows, and are the proof's to find.
 #pragma once
 

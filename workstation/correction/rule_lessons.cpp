@@ -7,8 +7,6 @@
 namespace bess {
 namespace {
 
-constexpr ActionSet kNotIdle = action_bit(Action::kDischarge) | action_bit(Action::kCharge);
-
 int lattice_value(float input, int scale) {
   return static_cast<int>(std::lround(double{input} * kInputOne / scale));
 }
@@ -26,16 +24,8 @@ int class_at(std::int32_t classes, std::size_t k) {
 RuleLessons::RuleLessons(const RuleSet& rules, ContextKind kind)
     : kind_(kind), implied_(rules, kind) {
   for (const Rule& rule : rules.rules) {
-    if (!binds_student(rule, kind)) continue;
-    Asked asked{rule, lattice_box_of(rule.box, kind), true};
-    if (rule.demand == Demand::kSwitches && rule.switches_max == 1) {
-      // A monotone student changes at most twice, and once if it never idles between.
-      asked.rule.actions = kNotIdle;
-    } else if (rule.demand != Demand::kActions) {
-      continue;
-    }
-    asked.has_corners = !asked.rule.has_gap();
-    asked_.push_back(std::move(asked));
+    if (!binds_student(rule, kind) || rule.demand != Demand::kActions) continue;
+    asked_.push_back({rule, lattice_box_of(rule.box, kind), !rule.has_gap()});
   }
 }
 

@@ -93,9 +93,6 @@ std::string Rule::text() const {
     case Demand::kDirection:
       return fmt::format("the action never {} with {}", direction.sign > 0 ? "falls" : "rises",
                          input_text(direction.input));
-    case Demand::kSwitches:
-      return fmt::format("{}: along the price the action changes at most {}", box_text(box),
-                         switches_max == 1 ? "once" : "twice");
     case Demand::kPower:
       return fmt::format("{}: at most {:g} % of the rated power", box_text(box),
                          power_permille_max / 10.0);

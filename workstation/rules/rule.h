@@ -3,7 +3,6 @@
 //
 //   actions    in a box of states only some actions                    predicate of each state
 //   direction  the action never falls, or never rises, with one input  predicate of each pair of neighbours
-//   switches   along the price axis the action changes so often at most  predicate of each row of a box
 //   power      in a box at most so much of the rated power             the guard's alone
 //
 // The student is bound on the lattice alone: by what lies inside it, and by months only if it sees months.
@@ -21,7 +20,7 @@
 
 namespace bess {
 
-enum class Demand : std::uint8_t { kActions, kDirection, kSwitches, kPower };
+enum class Demand : std::uint8_t { kActions, kDirection, kPower };
 
 /// Inputs of the student, in its order.
 enum class RuleInput : std::uint8_t { kMinute, kQuarterHour, kContextClass, kSoc, kPrice };
@@ -40,7 +39,6 @@ struct Rule {
   RuleBox box;
   ActionSet actions = kAllActions;
   Direction direction{};
-  int switches_max = 0;
   std::int32_t power_permille_max = kFullPowerPermille;
   bool enforce = false;       ///< by the guard, whatever the student says
   bool is_threshold = false;  ///< stands for a threshold of properties 1 and 2

@@ -23,16 +23,15 @@ constexpr std::array<std::string_view, kRuleInputCount> kInputNames{
     "minute", "quarter_hour", "context_class", "soc", "price"};
 
 /// The keys that make a demand; a rule has one of them.
-constexpr std::array<std::string_view, 10> kDemandKeys{"is",
-                                                       "is_not",
-                                                       "at_least",
-                                                       "at_most",
-                                                       "never_rises_with",
-                                                       "never_falls_with",
-                                                       "switches_max",
-                                                       "power_max",
-                                                       "charge_at_or_below",
-                                                       "discharge_at_or_above"};
+constexpr std::array<std::string_view, 9> kDemandKeys{"is",
+                                                      "is_not",
+                                                      "at_least",
+                                                      "at_most",
+                                                      "never_rises_with",
+                                                      "never_falls_with",
+                                                      "power_max",
+                                                      "charge_at_or_below",
+                                                      "discharge_at_or_above"};
 
 bool parse_digits(std::string_view text, int& value) {
   const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -161,6 +160,7 @@ class RuleReader {
   }
 
   void read_demand() {
+    if (table_.node("switches_max") != nullptr) return refuse_switches();
     std::string_view found;
     for (const std::string_view key : kDemandKeys) {
       if (table_.node(key) == nullptr) continue;
@@ -177,7 +177,6 @@ class RuleReader {
           "", fmt::format("asks for nothing: add one of {}", fmt::join(kDemandKeys, ", ")));
     }
     if (found == "never_rises_with" || found == "never_falls_with") return read_direction(found);
-    if (found == "switches_max") return read_switches();
     if (found == "power_max") return read_power();
     if (found == "charge_at_or_below" || found == "discharge_at_or_above") {
       return read_threshold(found);
@@ -215,9 +214,13 @@ class RuleReader {
     }
   }
 
-  void read_switches() {
-    rule_.demand = Demand::kSwitches;
-    table_.integer("switches_max", rule_.switches_max, 1, 2);
+  /// It was documented once, and no student was ever proved with it.
+  void refuse_switches() {
+    table_.fail("switches_max",
+                "is no rule any more: an action that never rises with the price (property 3) "
+                "changes at most twice as it is; for once, without a rest between charging and "
+                "discharging, write is_not = \"idle\"; against to and fro keep a dead band, is = "
+                "\"idle\" with price_min and price_max");
   }
 
   void read_power() {
@@ -247,7 +250,7 @@ class RuleReader {
       table_.fail("power_max", "is for the guard alone: add enforce = true");
     }
     if (!rule_.enforce) return;
-    if (rule_.demand == Demand::kDirection || rule_.demand == Demand::kSwitches) {
+    if (rule_.demand == Demand::kDirection) {
       table_.fail("enforce", "needs a demand on single states: the guard sees one state at a time");
     }
     if (rule_.is_threshold) {
@@ -304,8 +307,6 @@ std::string demand_line(const Rule& rule) {
     case Demand::kDirection:
       return fmt::format("never_{}_with = \"{}\"\n", rule.direction.sign > 0 ? "falls" : "rises",
                          kInputNames[static_cast<std::size_t>(rule.direction.input)]);
-    case Demand::kSwitches:
-      return fmt::format("switches_max = {}\n", rule.switches_max);
     case Demand::kPower:
       return fmt::format("power_max = {:g}\n",
                          rule.power_permille_max / double{kFullPowerPermille});

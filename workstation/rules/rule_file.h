@@ -8,7 +8,6 @@
 //   price_min = 301, price_max = 1000           whole EUR/MWh, -15000..15000, ends included
 //   is | is_not | at_least | at_most = "idle"   one demand: the action; discharge < idle < charge
 //   never_rises_with | never_falls_with = "price"   or: its direction; minute, quarter_hour, context_class, soc, price
-//   switches_max = 1                            or: changes along the price axis, 1 or 2
 //   power_max = 0.5                             or: of the rated power; the guard's alone
 //   charge_at_or_below | discharge_at_or_above = 0  or: a threshold of property 1 or 2, EUR/MWh
 //   enforce = true                              by the guard too, whatever the student says

@@ -102,9 +102,6 @@ void RuleChecker::check(const LatticeState& context, const ActionGrid& grid,
       case Demand::kDirection:
         check_direction(rule, context, grid, neighbours, counts_[i]);
         break;
-      case Demand::kSwitches:
-        check_switches(rule, context, grid, counts_[i]);
-        break;
       case Demand::kPower:
         break;
     }
@@ -156,21 +153,6 @@ void RuleChecker::check_direction(const Rule& rule, const LatticeState& context,
   if (next.empty()) return;
   for (int s = 0; s < kSocCount; ++s) {
     count_pairs(s, kPriceCount, row_of(grid, s), row_of(next, s));
-  }
-}
-
-void RuleChecker::check_switches(const Rule& rule, const LatticeState& context,
-                                 const ActionGrid& grid, RuleCount& count) const {
-  const LatticeBox box = lattice_box_of(rule.box, kind_);
-  Tally tally(context, count);
-  for (int s = box.soc_first; s <= box.soc_last; ++s) {
-    const std::int8_t* row = row_of(grid, s);
-    ++count.states;
-    int switches = 0;
-    for (int p = box.price_first; p < box.price_last; ++p) {
-      if (row[p + 1] == row[p]) continue;
-      if (++switches > rule.switches_max) tally.add(s, p + 1);
-    }
   }
 }
 

@@ -2,7 +2,6 @@
 // verify.h fills.
 //   actions    states of the box whose action is not allowed
 //   direction  pairs of neighbours along the input between which the action moves the wrong way
-//   switches   of each price row of the box, the changes of the action beyond those that are allowed
 #pragma once
 
 #include <cstdint>
@@ -47,8 +46,6 @@ class RuleChecker {
                      RuleCount& count) const;
   void check_direction(const Rule& rule, const LatticeState& context, const ActionGrid& grid,
                        const std::vector<ActionGrid>& neighbours, RuleCount& count) const;
-  void check_switches(const Rule& rule, const LatticeState& context, const ActionGrid& grid,
-                      RuleCount& count) const;
 
   const RuleSet& rules_;
   ContextKind kind_;

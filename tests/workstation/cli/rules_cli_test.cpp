@@ -101,7 +101,7 @@ TEST_F(RulesCli, PriceTellsEachRuleAloneAndAllTogether) {
   const std::string file = rule_file(
       "[[rule]]\nname = \"no trade\"\nis = \"idle\"\nprice_min = -499\nprice_max = 1499\n"
       "[[rule]]\nname = \"far\"\nprice_min = 1400\nat_most = \"idle\"\n"
-      "[[rule]]\nname = \"steady\"\nswitches_max = 2\n");
+      "[[rule]]\nname = \"steady\"\nnever_rises_with = \"minute\"\n");
   const std::string arguments = "price --rules " + file + " --policy rbc:20:150" + with_prices();
   const std::string text = rules_output(arguments);
   EXPECT_THAT(text,

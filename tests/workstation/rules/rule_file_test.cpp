@@ -50,8 +50,6 @@ TEST(RuleFile, EveryDemandIsReadAndSaid) {
       {"never_rises_with = \"soc\"", Demand::kDirection, "the action never rises with the SoC"},
       {"never_falls_with = \"context_class\"", Demand::kDirection,
        "the action never falls with the context class"},
-      {"switches_max = 1", Demand::kSwitches,
-       "always: along the price the action changes at most once"},
       {"hours = \"18:00-24:00\"\npower_max = 0.25\nenforce = true", Demand::kPower,
        "18:00-00:00: at most 25 % of the rated power"},
       {"context_classes = [2, 1]\nat_most = \"idle\"", Demand::kActions,
@@ -68,7 +66,6 @@ TEST(RuleFile, EveryDemandIsReadAndSaid) {
     EXPECT_EQ(again.rules[0].box, set.rules[0].box);
     EXPECT_EQ(again.rules[0].actions, set.rules[0].actions);
     EXPECT_EQ(again.rules[0].direction, set.rules[0].direction);
-    EXPECT_EQ(again.rules[0].switches_max, set.rules[0].switches_max);
     EXPECT_EQ(again.rules[0].power_permille_max, set.rules[0].power_permille_max);
     EXPECT_EQ(again.rules[0].enforce, set.rules[0].enforce);
     EXPECT_EQ(again.rules[0].is_threshold, set.rules[0].is_threshold);
@@ -109,7 +106,9 @@ TEST(RuleFile, AMistakeNamesLineKeyAndMend) {
       {"never_rises_with = \"weather\"", "never_rises_with must be one of"},
       {"never_rises_with = \"price\"\nprice_min = 3", "holds everywhere"},
       {"never_rises_with = \"price\"\nenforce = true", "enforce needs a demand on single states"},
-      {"switches_max = 3", "switches_max must lie between 1 and 2"},
+      {"switches_max = 1", "switches_max is no rule any more"},
+      {"switches_max = 2\nhours = \"17:00-18:00\"", "against to and fro keep a dead band"},
+      {"is = \"idle\"\nswitches_max = 7", "write is_not = \"idle\""},
       {"power_max = 0.5", "is for the guard alone: add enforce = true"},
       {"power_max = 1\nenforce = true", "is all there is"},
       {"power_max = 2\nenforce = true", "power_max must lie between 0 and 1"},
@@ -187,7 +186,6 @@ TEST(Rules, OnlyWhatAStudentSeesBindsIt) {
       {"price_max = -501\nat_least = \"idle\"", false, false},
       {"months = [1]\nat_most = \"idle\"", false, true},
       {"power_max = 0.5\nenforce = true", false, false},
-      {"switches_max = 1", true, true},
       {"discharge_at_or_above = 2000", false, false},
   };
   for (const BindingCase& c : cases) {

@@ -68,7 +68,6 @@ TEST(RuledPolicy, APowerCapHalvesTheEnergyOfAStep) {
 TEST(RuledPolicy, OnlyDemandsOnSingleStatesAreProjected) {
   EXPECT_TRUE(can_be_projected(one_rule("is = \"idle\"").rules[0]));
   EXPECT_TRUE(can_be_projected(one_rule("power_max = 0.5\nenforce = true").rules[0]));
-  EXPECT_FALSE(can_be_projected(one_rule("switches_max = 1").rules[0]));
   EXPECT_FALSE(can_be_projected(one_rule("never_rises_with = \"minute\"").rules[0]));
 }
 

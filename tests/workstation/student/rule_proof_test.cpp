@@ -50,19 +50,12 @@ class Actions {
 std::int64_t brute_force(const Rule& rule, const Actions& actions, const LatticeState& context) {
   std::int64_t found = 0;
   for (int soc = 0; soc < kSocCount; ++soc) {
-    int switches = 0;
     for (int price = kLatticePriceMinEurPerMwh; price <= kLatticePriceMaxEurPerMwh; ++price) {
       const RulePoint point{price, static_cast<std::int16_t>(soc), context.quarter_hour, 1,
                             context.context_class};
       if (!rule.box.contains(point)) continue;
       const Action action = actions.at(soc, price);
       if (rule.demand == Demand::kActions) found += allows(rule.actions, action) ? 0 : 1;
-      if (rule.demand == Demand::kSwitches) {
-        RulePoint next = point;
-        ++next.price_eur_per_mwh;
-        if (price == kLatticePriceMaxEurPerMwh || !rule.box.contains(next)) continue;
-        if (actions.at(soc, price + 1) != action && ++switches > rule.switches_max) ++found;
-      }
       if (rule.demand != Demand::kDirection) continue;
       const RuleInput input = rule.direction.input;
       std::optional<Action> after = actions.beside(input, soc, price);
@@ -96,8 +89,6 @@ std::vector<const char*> rule_shapes() {
           "never_falls_with = \"quarter_hour\"",
           "never_rises_with = \"context_class\"",
           "never_falls_with = \"context_class\"",
-          "switches_max = 1",
-          "switches_max = 2\nsoc_min = 0.2\nprice_max = 1200",
           "charge_at_or_below = -100",
           "discharge_at_or_above = 700"};
 }
