@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <limits>
+#include <memory>
 
 #include "shared/host/json.h"
 #include "shared/host/user_error.h"
@@ -14,7 +15,7 @@
 #include "workstation/cli/rules.h"
 #include "workstation/rules/rule_conflicts.h"
 #include "workstation/student/correct_and_prove.h"
-#include "workstation/student/student_policy.h"
+#include "workstation/student/exported_policy.h"
 
 namespace bess {
 namespace {
@@ -59,8 +60,8 @@ class Distillery {
       const StudentFile& student = student_of(result.verdict);
       students.states += student.certificate.states_checked;
       students.violations += student.certificate.violations();
-      StudentPolicy policy(student.net);
-      const BothWays earned = run_both_ways(policy, options_.days, config, market_);
+      const std::unique_ptr<Policy> policy = exported_policy(student);
+      const BothWays earned = run_both_ways(*policy, options_.days, config, market_);
       students.reset.push_back(earned.reset);
       students.carried.push_back(earned.carried);
       if (options_.keep.empty()) continue;

@@ -11,8 +11,7 @@
 #include "workstation/planners/stochastic_program.h"
 #include "workstation/planners/tabular.h"
 #include "workstation/planners/tuned_rule.h"
-#include "workstation/student/student_file.h"
-#include "workstation/student/student_policy.h"
+#include "workstation/student/exported_policy.h"
 
 namespace bess {
 namespace {
@@ -32,8 +31,13 @@ std::shared_ptr<Policy> owning(Model model, View view) {
 }
 
 std::shared_ptr<Policy> student_policy(StudentFile student) {
-  return owning<StudentFile, StudentPolicy>(
-      std::move(student), [](const StudentFile& file) -> const StudentNet& { return file.net; });
+  struct Holder {
+    StudentFile student;
+    std::unique_ptr<Policy> policy;
+  };
+  const auto holder = std::make_shared<Holder>(std::move(student), nullptr);
+  holder->policy = exported_policy(holder->student);
+  return {holder, holder->policy.get()};
 }
 
 std::shared_ptr<Policy> model_policy(const std::string& path, const Risk& risk) {

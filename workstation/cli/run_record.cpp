@@ -19,8 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kRules =
-    "rules";  ///< in `identity`: the text of a rule file, if there are any
 constexpr const char* kKind = "a run's record; make the run again in another folder";
 
 Entries::const_iterator find(const Entries& entries, const std::string& name) {
@@ -61,6 +59,16 @@ Entries marks_of(const std::vector<std::string>& names, const RunFolder& folder)
 
 }  // namespace
 
+Json demands_json(const std::vector<DemandFigures>& demands) {
+  Json list = Json::list();
+  for (const DemandFigures& d : demands) {
+    list.add(Json::object({{"demand", d.demand},
+                           {"violations_plain", d.violations_plain},
+                           {"violations_corrected", d.violations_corrected}}));
+  }
+  return list;
+}
+
 std::string file_mark(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file || !fs::is_regular_file(path)) return {};
@@ -92,7 +100,7 @@ RunConfig RunRecord::config(const RunFolder& folder) const {
   config.set_seed(std::strtoull(value("seed").c_str(), nullptr, 10));
   config.set_threads(
       std::max(1, static_cast<int>(std::strtol(value("threads").c_str(), nullptr, 10))));
-  if (const std::string rules = value(kRules); !rules.empty()) {
+  if (const std::string rules = value(kRulesKey); !rules.empty()) {
     config.distil.rules = parse_rules(rules, folder.record().string() + ": rules");
   }
   return config;
@@ -125,7 +133,7 @@ Entries identity_of(const RunConfig& config, const std::string& prices_hash,
                    {"teacher", teacher_hash.empty() ? "of this run" : teacher_hash}};
   for (auto& entry : config_entries(config)) identity.push_back(std::move(entry));
   const RuleSet& rules = config.distil.rules;
-  if (!rules.empty()) identity.emplace_back(kRules, format_rules(rules));
+  if (!rules.empty()) identity.emplace_back(kRulesKey, format_rules(rules));
   return identity;
 }
 
@@ -168,6 +176,14 @@ std::optional<RunRecord> load_run_record(const RunFolder& folder) {
     record.figures = {figures.text("provenance"), figures.text("weights_hash"),
                       count("states_checked"),    count("states_checked_plain"),
                       count("violations_plain"),  count("violations_corrected")};
+    for (const JsonValue demand : json.value()["figures"]["demands"]) {
+      const JsonReader of(demand, name, kKind);
+      const auto violations = [&](const char* key) {
+        return of.whole(key, 0, std::int64_t{1} << 52);
+      };
+      record.figures->demands.push_back(
+          {of.text("demand"), violations("violations_plain"), violations("violations_corrected")});
+    }
   }
   return record;
 }
@@ -186,12 +202,14 @@ void save_run_record(const RunFolder& folder, const RunRecord& record) {
   json.set("stages", std::move(stages));
   if (record.figures) {
     const RunFigures& f = *record.figures;
-    json.set("figures", Json::object({{"provenance", f.provenance},
-                                      {"weights_hash", f.weights_hash},
-                                      {"states_checked", f.states_checked},
-                                      {"states_checked_plain", f.states_checked_plain},
-                                      {"violations_plain", f.violations_plain},
-                                      {"violations_corrected", f.violations_corrected}}));
+    Json figures = Json::object({{"provenance", f.provenance},
+                                 {"weights_hash", f.weights_hash},
+                                 {"states_checked", f.states_checked},
+                                 {"states_checked_plain", f.states_checked_plain},
+                                 {"violations_plain", f.violations_plain},
+                                 {"violations_corrected", f.violations_corrected}});
+    figures.set("demands", demands_json(f.demands));
+    json.set("figures", std::move(figures));
   }
   write_file(folder.record(), json.text());
 }

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "shared/host/json.h"
 #include "workstation/cli/run_config.h"
 #include "workstation/cli/run_folder.h"
 
@@ -28,6 +29,16 @@ struct StageRecord {
   bool failed = false;  ///< it ran to its end and the student was not proved
 };
 
+/// What one property or rule came to: its label, and its violations in the plain and in the corrected student.
+struct DemandFigures {
+  std::string demand;
+  std::int64_t violations_plain = 0;
+  std::int64_t violations_corrected = 0;
+};
+
+/// A list of objects.
+Json demands_json(const std::vector<DemandFigures>& demands);
+
 /// What a finished run comes to.
 struct RunFigures {
   std::string provenance;
@@ -36,7 +47,11 @@ struct RunFigures {
   std::int64_t states_checked_plain = 0;  ///< fewer: it is only looked at
   std::int64_t violations_plain = 0;
   std::int64_t violations_corrected = 0;
+  std::vector<DemandFigures> demands = {};  ///< of which the violations are the sums
 };
+
+/// In `identity`: the text of a rule file, if there are any rules.
+inline constexpr const char* kRulesKey = "rules";
 
 struct RunRecord {
   std::string prices;        ///< the minute file; without a folder when it is the run's own

@@ -7,6 +7,10 @@
 #include "workstation/cli/policy_factory.h"
 #include "workstation/cli/run_facts.h"
 #include "workstation/env/evaluate.h"
+#include "workstation/report/rule_prices.h"
+#include "workstation/rules/ruled_policy.h"
+#include "workstation/student/demand_counts.h"
+#include "workstation/student/exported_policy.h"
 #include "workstation/student/student_policy.h"
 
 namespace bess {
@@ -21,6 +25,33 @@ NamedEvaluation evaluate_both(const std::string& name, Policy& policy, const Run
   options.carry_soc = true;
   named.carried_over = evaluate(run.market, days, policy, options);
   return named;
+}
+
+/// Before and after the correction: the properties in one line each, and a line a rule.
+std::string violations_text(const Certificate& plain, const Certificate& corrected) {
+  const auto properties = [](const Certificate& c) {
+    return fmt::format("{} / {} / {} in {} states", c.violations_property_1,
+                       c.violations_property_2, c.violations_property_3, c.states_checked);
+  };
+  std::string text = fmt::format(
+      "\nviolations of properties 1 / 2 / 3\n"
+      "  before correction (plain student)    {}\n"
+      "  after correction (corrected student) {}\n",
+      properties(plain), properties(corrected));
+  const std::vector<DemandCount> before = demand_counts(plain);
+  const std::vector<DemandCount> after = demand_counts(corrected);
+  for (std::size_t d = kPropertyCount; d < after.size(); ++d) {
+    text += fmt::format("violations of rule \"{}\" ({})\n", after[d].name, after[d].text);
+    if (!after[d].binds_student) {
+      text += "  the guard's alone: no student is held to it\n";
+      continue;
+    }
+    text += fmt::format(
+        "  before correction (plain student)    {} in {} states\n"
+        "  after correction (corrected student) {} in {} states\n",
+        before[d].violations, before[d].states, after[d].violations, after[d].states);
+  }
+  return text;
 }
 
 }  // namespace
@@ -41,10 +72,20 @@ std::vector<NamedEvaluation> evaluate_run(const RunResults& run) {
   TeacherPolicy teacher(run.teacher);
   all.push_back(
       evaluate_both(fmt::format("{} teacher", method_name(run.teacher.method)), teacher, run));
-  StudentPolicy plain(run.plain.net);
-  all.push_back(evaluate_both("plain student", plain, run));
-  StudentPolicy corrected(run.corrected.net);
-  all.push_back(evaluate_both("corrected student", corrected, run));
+  const auto plain = std::make_shared<StudentPolicy>(run.plain.net);
+  all.push_back(evaluate_both(kPlainName, *plain, run));
+  const auto under = [&](const std::string& name, const RuleSet& rules) {
+    RuledPolicy ruled(plain, rules, run.plain.net.context);
+    all.push_back(evaluate_both(name, ruled, run));
+  };
+  RuleSet projected;
+  for (const Rule& rule : run.corrected.certificate.rules.rules) {
+    if (!can_be_projected(rule)) continue;
+    projected.rules.push_back(rule);
+    under(under_rule_name(rule.name), {{rule}});
+  }
+  if (!projected.empty()) under(kUnderAllRules, projected);
+  all.push_back(evaluate_both(kCorrectedName, *exported_policy(run.corrected), run));
   baseline("foresight");
   return all;
 }
@@ -65,17 +106,9 @@ std::string write_run_report(const RunResults& run, const std::vector<NamedEvalu
       .facts = run_facts(run.config, run.market, folder),
   };
   write_report(inputs, folder.path);
-  const auto violations = [](const Certificate& c) {
-    return fmt::format("{} / {} / {} in {} states", c.violations_property_1,
-                       c.violations_property_2, c.violations_property_3, c.states_checked);
-  };
-  std::string summary =
-      format_comparison_table(evaluations) + fmt::format(
-                                                 "\nviolations of properties 1 / 2 / 3\n"
-                                                 "  before correction (plain student)    {}\n"
-                                                 "  after correction (corrected student) {}\n",
-                                                 violations(run.plain.certificate),
-                                                 violations(run.corrected.certificate));
+  std::string summary = format_comparison_table(evaluations) +
+                        violations_text(run.plain.certificate, run.corrected.certificate);
+  if (const auto prices = rule_prices_of(evaluations)) summary += "\n" + rule_prices_text(*prices);
   write_file(folder.file(run_file::kSummary), summary);
   return summary;
 }

@@ -7,6 +7,7 @@
 #include "shared/host/csv.h"
 #include "shared/host/file.h"
 #include "workstation/report/html.h"
+#include "workstation/report/rule_prices.h"
 
 namespace bess {
 namespace {
@@ -28,7 +29,7 @@ std::string bands_html(const std::vector<Band>& bands, std::string_view soc,
                        const std::string& caption) {
   HtmlTable table{caption, {"Policy", "Mean", "s.d.", "Lowest", "Highest", "Mean at wear 10"}, {}};
   for (const Band& b : bands) {
-    if (b.soc != soc) continue;
+    if (b.soc != soc || is_under_rules(b.policy)) continue;
     table.rows.push_back({b.policy, number(b.mean), number(b.deviation), number(b.low),
                           number(b.high), number(b.mean_at_reference_wear)});
   }
@@ -55,6 +56,7 @@ std::string format_bands(const std::vector<Band>& bands, std::size_t runs) {
   std::string text;
   std::string soc;
   for (const Band& b : bands) {
+    if (is_under_rules(b.policy)) continue;
     if (b.soc != soc) {
       soc = b.soc;
       text += fmt::format(

@@ -19,6 +19,7 @@
 #include "workstation/report/evaluation_days.h"
 #include "workstation/student/correct_and_prove.h"
 #include "workstation/student/counterexamples.h"
+#include "workstation/student/demand_counts.h"
 #include "workstation/student/export.h"
 
 namespace bess {
@@ -62,6 +63,18 @@ void note_time(const fs::path& path, const std::string& stage, double seconds) {
   times.set(stage.c_str(), Json::object({{"seconds", Decimals{seconds, 2}},
                                          {"finished_utc", utc_text(std::time(nullptr)).view()}}));
   write_file(path, times.text());
+}
+
+std::vector<DemandFigures> demand_figures(const Certificate& plain, const Certificate& corrected) {
+  const std::vector<DemandCount> before = demand_counts(plain);
+  const std::vector<DemandCount> after = demand_counts(corrected);
+  std::vector<DemandFigures> figures;
+  for (std::size_t d = 0; d < after.size(); ++d) {
+    if (!after[d].binds_student) continue;
+    figures.push_back(
+        {after[d].label(), d < before.size() ? before[d].violations : 0, after[d].violations});
+  }
+  return figures;
 }
 
 /// A file's name while it is written (file.cpp), whoever wrote it: the folder is locked.
@@ -243,8 +256,9 @@ RunStages::Names RunStages::make_plain_student() {
   const StudentFile& student = student_of(plain.verdict);
   save_student(path(kPlainStudent), student);
   write_file(path(kPlainViolations), counterexamples_csv(student.certificate.counterexamples));
-  tell(fmt::format("{} violations in {} states looked at", student.certificate.violations(),
-                   student.certificate.states_checked));
+  const std::string broken = broken_text(demand_counts(student.certificate));
+  tell(fmt::format("{} violations in {} states looked at{}", student.certificate.violations(),
+                   student.certificate.states_checked, broken.empty() ? "" : ": " + broken));
   return {kPlainStudent, kPlainViolations};
 }
 
@@ -319,7 +333,8 @@ RunStages::Names RunStages::make_report() {
                      certificate.states_checked,
                      run.plain.certificate.states_checked,
                      run.plain.certificate.violations(),
-                     certificate.violations()};
+                     certificate.violations(),
+                     demand_figures(run.plain.certificate, certificate)};
   Names names{kSummary, kReport};
   for (const auto& entry : fs::directory_iterator(folder_.path)) {
     if (entry.path().extension() == ".svg") names.push_back(entry.path().filename().string());

@@ -7,8 +7,11 @@
 #include <optional>
 
 #include "shared/host/file.h"
+#include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "workstation/report/evaluation_days.h"
+#include "workstation/report/rule_prices.h"
+#include "workstation/rules/rule_file.h"
 
 namespace bess {
 namespace {
@@ -53,20 +56,59 @@ std::string error_text(double standard_error) {
   return std::isnan(standard_error) ? "-" : fmt::format("{:.1f}", standard_error);
 }
 
-/// "KEY: A | B | C" for every key of which the runs have not all the same value.
-std::string what_differs(const std::vector<RunSummary>& runs) {
+/// The value of a key for people, in one line; rules by what they say.
+std::string value_text(const RunRecord& record, const std::string& key) {
+  const std::string value = record.value(key);
+  if (key != kRulesKey) return value.empty() ? "unknown" : one_line(value);
+  if (value.empty()) return "none";
   std::string text;
-  for (const auto& [key, value] : runs.front().record.identity) {
-    std::string line = fmt::format("{}: {}", key, value);
-    bool is_same = true;
-    for (std::size_t i = 1; i < runs.size(); ++i) {
-      const std::string other = runs[i].record.value(key);
-      line += fmt::format(" | {}", other.empty() ? "unknown" : other);
-      is_same = is_same && other == value;
-    }
-    if (!is_same) text += line + "\n";
+  for (const Rule& rule : parse_rules(value, "run.json: rules").rules) {
+    text += fmt::format("{}\"{}\" ({}{})", text.empty() ? "" : "; ", rule.name, rule.text(),
+                        rule.enforce ? "; the guard's too" : "");
   }
   return text;
+}
+
+/// "KEY: A | B | C" for every key, of any run, of which the runs have not all the same value.
+std::string what_differs(const std::vector<RunSummary>& runs) {
+  std::vector<std::string> keys;
+  for (const RunSummary& run : runs) {
+    for (const auto& [key, value] : run.record.identity) {
+      if (std::ranges::find(keys, key) == keys.end()) keys.push_back(key);
+    }
+  }
+  std::string text;
+  for (const std::string& key : keys) {
+    std::string line;
+    bool is_same = true;
+    for (const RunSummary& run : runs) {
+      line += fmt::format("{}{}", line.empty() ? "" : " | ", value_text(run.record, key));
+      is_same = is_same && run.record.value(key) == runs.front().record.value(key);
+    }
+    if (!is_same) text += fmt::format("{}: {}\n", key, line);
+  }
+  return text;
+}
+
+/// Numbers that are compared are those that the run wrote.
+void require_unchanged(const RunRecord& record, const RunFolder& folder) {
+  for (const StageRecord& stage : record.stages) {
+    for (const auto& [file, mark] : stage.outputs) {
+      if (file != run_file::kDays) continue;
+      const std::string now = file_mark(folder.file(run_file::kDays));
+      if (now == mark) return;
+      fail(
+          "{}: is not what the run wrote ({} in {}, now {}); 'bess-train report --run {}' makes it "
+          "again",
+          folder.file(run_file::kDays).string(), mark, run_file::kRecord,
+          now.empty() ? "missing" : now, folder.path.string());
+    }
+  }
+}
+
+std::size_t rules_of(const RunSummary& run) {
+  const std::string rules = run.record.value(kRulesKey);
+  return rules.empty() ? 0 : parse_rules(rules, "run.json: rules").rules.size();
 }
 
 }  // namespace
@@ -82,6 +124,7 @@ RunSummary load_run_summary(const RunFolder& folder) {
     fail("{}: is not finished, but {}; 'bess-train run --resume --out {}' goes on", name,
          record->state(), name);
   }
+  require_unchanged(*record, folder);
   const std::string days = folder.file(run_file::kDays).string();
   const RunConfig config = record->config(folder);
   return {folder, std::move(*record),
@@ -100,6 +143,10 @@ Json summary_json(const RunSummary& run) {
                             {"states_checked_plain", figures.states_checked_plain},
                             {"violations_plain", figures.violations_plain},
                             {"violations_corrected", figures.violations_corrected}});
+  json.set("demands", demands_json(figures.demands));
+  if (const auto prices = rule_prices_of(run.evaluations)) {
+    json.set("price_of_correction", rule_prices_json(*prices));
+  }
   Json policies = Json::list();
   for (const auto& [soc, field] : kWays) {
     for (const ComparisonRow& row : comparison_rows(run.evaluations, field)) {
@@ -142,8 +189,8 @@ std::string format_runs_table(const std::vector<RunSummary>& runs) {
   for (const RunSummary& run : runs) width = std::max(width, run.folder.path.string().size());
   std::string text = fmt::format(
       "What the {} of each run earned on its test days; EUR per day per MWh of capacity\n"
-      "{:<{}} {:>5} {:>5} {:>8} {:>6} {:>8} {:>6} {:>11} {:>9} {:>8} {:>9}\n",
-      kExportedPolicy, "run", width, "seed", "days", "carried", "s.e.", "gain", "s.e.",
+      "{:<{}} {:>5} {:>5} {:>5} {:>8} {:>6} {:>8} {:>6} {:>11} {:>9} {:>8} {:>9}\n",
+      kExportedPolicy, "run", width, "seed", "rules", "days", "carried", "s.e.", "gain", "s.e.",
       wear_column(), "foresight", "reset", "weights");
   const Evaluation& first = exported(runs.front()).carried_over;
   for (const RunSummary& run : runs) {
@@ -153,9 +200,9 @@ std::string format_runs_table(const std::vector<RunSummary>& runs) {
     const auto over_first =
         &run == &runs.front() ? std::nullopt : gain(student.carried_over, first);
     text += fmt::format(
-        "{:<{}} {:>5} {:>5} {:>8.1f} {:>6} {:>8} {:>6} {:>11.1f} {:>9} {:>8.1f} {:>9}\n",
-        run.folder.path.string(), width, run.record.value("seed"), row->days, row->profit,
-        error_text(row->standard_error),
+        "{:<{}} {:>5} {:>5} {:>5} {:>8.1f} {:>6} {:>8} {:>6} {:>11.1f} {:>9} {:>8.1f} {:>9}\n",
+        run.folder.path.string(), width, run.record.value("seed"), rules_of(run), row->days,
+        row->profit, error_text(row->standard_error),
         over_first ? fmt::format("{:+.1f}", over_first->mean) : "-",
         over_first ? error_text(over_first->standard_error) : "-", row->profit_at_reference_wear,
         row->foresight_share ? fmt::format("{:.1f}", 100 * *row->foresight_share) : "-",

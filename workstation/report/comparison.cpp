@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "shared/host/csv.h"
+#include "workstation/report/rule_prices.h"
 
 namespace bess {
 namespace {
@@ -100,8 +101,11 @@ std::vector<ComparisonRow> comparison_rows(const std::vector<NamedEvaluation>& e
 
 std::string format_comparison_table(const std::vector<NamedEvaluation>& evaluations,
                                     const NamedEvaluation* foresight) {
-  const auto reset = comparison_rows(evaluations, &NamedEvaluation::day_reset, foresight);
-  const auto carried = comparison_rows(evaluations, &NamedEvaluation::carried_over, foresight);
+  auto reset = comparison_rows(evaluations, &NamedEvaluation::day_reset, foresight);
+  auto carried = comparison_rows(evaluations, &NamedEvaluation::carried_over, foresight);
+  for (auto* rows : {&reset, &carried}) {
+    std::erase_if(*rows, [](const ComparisonRow& row) { return is_under_rules(row.name); });
+  }
   std::string text;
   if (!reset.empty()) text += table_block("Each day starts at the same SoC", reset);
   if (!reset.empty() && !carried.empty()) text += "\n";

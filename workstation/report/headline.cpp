@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "workstation/report/html.h"
+#include "workstation/report/rule_prices.h"
 
 namespace bess {
 namespace {
@@ -30,24 +31,8 @@ const NamedEvaluation* find(const std::vector<NamedEvaluation>& evaluations,
   return found == evaluations.end() || found->day_reset.days.empty() ? nullptr : &*found;
 }
 
-HeadlineGain gain_over(const NamedEvaluation& exported, const NamedEvaluation& other,
-                       std::string_view meaning) {
-  HeadlineGain gain{other.name, std::string(meaning), {}};
-  for (std::size_t w = 0; w < kHeadlineWears.size(); ++w) {
-    gain.difference[w] = paired_difference(at_wear(exported.day_reset, kHeadlineWears[w]),
-                                           at_wear(other.day_reset, kHeadlineWears[w]));
-  }
-  return gain;
-}
-
 std::string error_of_mean(double standard_error) {
   return std::isnan(standard_error) ? "" : fmt::format(" \u00b1 {:.1f}", standard_error);
-}
-
-/// "+5.2 ± 1.1", with a true minus; the error of one day is not known.
-std::string difference_text(const PairedDifference& difference) {
-  return fmt::format("{}{:.1f}{}", difference.mean < 0 ? "\u2212" : "+", std::abs(difference.mean),
-                     error_of_mean(difference.standard_error));
 }
 
 /// Half the width of the bars' axis, EUR per day per MWh: foresight is far beyond all others.
@@ -92,13 +77,21 @@ std::string gain_row(const HeadlineGain& gain, double reach) {
 std::string correction_text(const HeadlineGain& correction) {
   const PairedDifference& d = correction.difference.front();
   if (!is_shown(d)) {
-    return fmt::format("Price of the correction: none shown ({} against the plain student)",
-                       difference_text(d));
+    return fmt::format("Price of the correction: none shown ({} against the {})",
+                       difference_text(d), correction.against);
   }
   const std::string size =
       fmt::format("{:.1f}{}", std::abs(d.mean), error_of_mean(d.standard_error));
   return d.mean < 0 ? "Price of the correction: " + size
                     : "The correction costs nothing: it earns " + size + " more";
+}
+
+/// A price is what is lost: the change with its sign turned round.
+std::string rules_text(const HeadlineGain& rules) {
+  const PairedDifference& d = rules.difference.front();
+  if (!is_shown(d)) return fmt::format("none shown ({})", difference_text(d));
+  return d.mean < 0 ? fmt::format("{:.1f}{}", -d.mean, error_of_mean(d.standard_error))
+                    : "none, they earn " + difference_text(d);
 }
 
 }  // namespace
@@ -110,6 +103,21 @@ Evaluation at_wear(const Evaluation& evaluation, double wear_eur_per_mwh) {
     day.profit_eur -= (wear_eur_per_mwh - evaluation.wear_eur_per_mwh) * day.throughput_mwh;
   }
   return worn;
+}
+
+HeadlineGain gain_over(const NamedEvaluation& exported, const NamedEvaluation& other,
+                       std::string_view meaning) {
+  HeadlineGain gain{other.name, std::string(meaning), {}};
+  for (std::size_t w = 0; w < kHeadlineWears.size(); ++w) {
+    gain.difference[w] = paired_difference(at_wear(exported.day_reset, kHeadlineWears[w]),
+                                           at_wear(other.day_reset, kHeadlineWears[w]));
+  }
+  return gain;
+}
+
+std::string difference_text(const PairedDifference& difference) {
+  return fmt::format("{}{:.1f}{}", difference.mean < 0 ? "\u2212" : "+", std::abs(difference.mean),
+                     error_of_mean(difference.standard_error));
 }
 
 bool is_shown(const PairedDifference& difference) {
@@ -125,12 +133,18 @@ std::optional<Headline> headline_of(const std::vector<NamedEvaluation>& evaluati
                     .standard_error = days.standard_error(),
                     .foresight_share = {},
                     .correction = {},
+                    .rules = {},
                     .gains = {}};
   for (const Rival& rival : kRivals) {
     const NamedEvaluation* other = find(evaluations, rival.name);
     if (other != nullptr) headline.gains.push_back(gain_over(*exported, *other, rival.meaning));
   }
-  if (find(evaluations, kPlainName) != nullptr) headline.correction = headline.gains.front();
+  if (const auto prices = rule_prices_of(evaluations)) {
+    headline.correction = prices->correction;
+    headline.rules = prices->together;
+  } else if (find(evaluations, kPlainName) != nullptr) {
+    headline.correction = headline.gains.front();
+  }
   if (const NamedEvaluation* bound = find(evaluations, kForesightName)) {
     const double most = bound->day_reset.profit_eur_per_day_per_mwh();
     if (most > 0) headline.foresight_share = headline.profit / most;
@@ -147,6 +161,10 @@ std::string headline_html(const Headline& headline) {
   if (headline.correction) {
     text += fmt::format("<li id=\"price-of-correction\">{}</li>\n",
                         html_escaped(correction_text(*headline.correction)));
+  }
+  if (headline.rules) {
+    text += fmt::format("<li id=\"price-of-rules\">Price of the rules: {}</li>\n",
+                        html_escaped(rules_text(*headline.rules)));
   }
   if (headline.foresight_share) {
     text += fmt::format("<li>{:.1f} % of what perfect foresight would have earned</li>\n",

@@ -5,6 +5,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "workstation/report/comparison.h"
@@ -25,14 +26,19 @@ struct HeadlineGain {
   std::array<PairedDifference, kHeadlineWears.size()> difference;
 };
 
+/// `exported` minus `other`, each day from the same SoC.
+HeadlineGain gain_over(const NamedEvaluation& exported, const NamedEvaluation& other,
+                       std::string_view meaning);
+
 struct Headline {
   std::size_t days;
   double profit;  ///< EUR per day per MWh of capacity, net of the configured wear
   double standard_error;
   std::optional<double> foresight_share;
   std::optional<HeadlineGain>
-      correction;                   ///< against the plain student: the price of correction, negated
-  std::vector<HeadlineGain> gains;  ///< the plain student first, foresight last
+      correction;  ///< against the plain student under the rules: the price of correction, negated
+  std::optional<HeadlineGain> rules;  ///< what they change of the plain student; none without any
+  std::vector<HeadlineGain> gains;    ///< the plain student first, foresight last
 };
 
 /// The same decisions, had wear cost this much instead.
@@ -43,6 +49,9 @@ std::optional<Headline> headline_of(const std::vector<NamedEvaluation>& evaluati
 
 /// Beyond two standard errors; never of one day.
 bool is_shown(const PairedDifference& difference);
+
+/// "+5.2 ± 1.1", with a true minus; the error of one day is not known.
+std::string difference_text(const PairedDifference& difference);
 
 /// The head of the page: the figure, the badges, the gains. Escaped.
 std::string headline_html(const Headline& headline);

@@ -9,6 +9,7 @@
 #include "workstation/env/context_fit.h"
 #include "workstation/report/headline.h"
 #include "workstation/report/price_histogram.h"
+#include "workstation/report/rule_prices.h"
 #include "workstation/report/shown_policies.h"
 #include "workstation/report/step_archive.h"
 
@@ -37,7 +38,7 @@ Json policies_json(const std::vector<NamedEvaluation>& evaluations) {
   Json list = Json::list();
   for (const NamedEvaluation& named : evaluations) {
     const Evaluation& days = named.day_reset;
-    if (days.days.empty()) continue;
+    if (days.days.empty() || is_under_rules(named.name)) continue;
     Json policy = Json::object({{"name", named.name}});
     policy.set("profit_eur", of_days(days, [](const DayResult& d) { return d.profit_eur; }));
     policy.set("throughput_mwh",

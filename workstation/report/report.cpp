@@ -112,7 +112,7 @@ std::string battery_text(const BatteryParameters& battery) {
 std::string head_of(const ReportInputs& in) {
   std::string text;
   if (in.corrected) {
-    const bool proved = in.corrected->certificate.violations() == 0;
+    const bool proved = in.corrected->certificate.covers_lattice_without_violation();
     text += fmt::format("<p class=\"verdict {}\">{}</p>\n", proved ? "proved" : "unproved",
                         proof_sentence(in.corrected->certificate));
   }
@@ -134,11 +134,16 @@ const Certificate* certificate_of(const StudentFile* student) {
 std::string page_of(const ReportInputs& in) {
   std::vector<Fact> facts = in.facts;
   facts.push_back({"battery", battery_text(in.battery)});
+  const std::optional<RulePrices> prices = rule_prices_of(in.evaluations);
   return format_report_page(
       {{"title", kPageTitle},
        {"head", head_of(in)},
        {"comparison",
         section_of("comparison", "What each policy earned", comparison_html(in.evaluations))},
+       {"rules", section_of("rules", "Rules",
+                            rules_html(certificate_of(in.uncorrected), certificate_of(in.corrected),
+                                       prices ? &*prices : nullptr))},
+       {"rules_link", rules_of(in).empty() ? "" : "<li><a href=\"#rules\">Rules</a></li>\n"},
        {"proof",
         section_of("proof", "The proof",
                    proof_html(certificate_of(in.uncorrected), certificate_of(in.corrected)))},

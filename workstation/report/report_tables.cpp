@@ -2,9 +2,12 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "shared/host/text.h"
 #include "workstation/report/html.h"
+#include "workstation/student/demand_counts.h"
 
 namespace bess {
 namespace {
@@ -34,7 +37,8 @@ std::vector<std::string> comparison_cells(const ComparisonRow& row) {
           fmt::format("{:.1f}", row.profit_at_reference_wear)};
 }
 
-std::string comparison_table(const std::string& caption, const std::vector<ComparisonRow>& rows) {
+std::string comparison_table(const std::string& caption, std::vector<ComparisonRow> rows) {
+  std::erase_if(rows, [](const ComparisonRow& row) { return is_under_rules(row.name); });
   if (rows.empty()) return {};
   HtmlTable table{
       fmt::format("{}, {} days", caption, rows.front().days),
@@ -48,6 +52,53 @@ std::string comparison_table(const std::string& caption, const std::vector<Compa
 std::vector<std::string> proof_cells(const std::string& name, const Certificate& c) {
   return {name, grouped(c.states_checked), grouped(c.violations_property_1),
           grouped(c.violations_property_2), grouped(c.violations_property_3)};
+}
+
+std::string held_by(const DemandCount& count, bool is_enforced) {
+  if (!count.binds_student) return "guard";
+  return is_enforced ? "student, guard" : "student";
+}
+
+std::string percent_broken(const DemandCount& count) {
+  if (!count.binds_student || count.states == 0) return kNotThere;
+  return fmt::format(
+      "{:.2f}", 100.0 * static_cast<double>(count.violations) / static_cast<double>(count.states));
+}
+
+std::string rules_table(const Certificate* uncorrected, const Certificate& corrected) {
+  HtmlTable table{
+      "Rules, and how often they are broken",
+      {"Rule", "Held to it", "States", "Plain student breaks, %", "Corrected student breaks"},
+      {}};
+  const std::vector<DemandCount> after = demand_counts(corrected);
+  const std::vector<DemandCount> before =
+      uncorrected == nullptr ? std::vector<DemandCount>{} : demand_counts(*uncorrected);
+  for (std::size_t d = kPropertyCount; d < after.size(); ++d) {
+    const bool is_bound = after[d].binds_student;
+    table.rows.push_back({fmt::format("{} \u2013 {}", after[d].name, after[d].text),
+                          held_by(after[d], corrected.rules.rules[d - kPropertyCount].enforce),
+                          text_or_dash(is_bound, grouped(after[d].states)),
+                          d < before.size() ? percent_broken(before[d]) : kNotThere,
+                          text_or_dash(is_bound, grouped(after[d].violations))});
+  }
+  return format_table(table);
+}
+
+std::string rule_prices_table(const RulePrices& prices) {
+  HtmlTable table{
+      "What they change",
+      {"Of what the plain student earns", "No wear", fmt::format("Wear {:g}", kHeadlineWears[1])},
+      {}};
+  const auto add = [&table](const std::string& name, const HeadlineGain& gain) {
+    std::vector<std::string> cells{name};
+    for (const PairedDifference& d : gain.difference) cells.push_back(difference_text(d));
+    table.rows.push_back(std::move(cells));
+  };
+  for (const HeadlineGain& rule : prices.rules) add(rule.meaning + ", alone", rule);
+  for (const HeadlineGain* part : {&prices.together, &prices.correction, &prices.total}) {
+    add(part->meaning, *part);
+  }
+  return format_table(table);
 }
 
 }  // namespace
@@ -94,15 +145,34 @@ std::string proof_html(const Certificate* uncorrected, const Certificate* correc
       t.high_eur_per_mwh, guard_alone_note(t.high_binds_student()));
 }
 
+std::string rules_html(const Certificate* uncorrected, const Certificate* corrected,
+                       const RulePrices* prices) {
+  if (corrected == nullptr || corrected->rules.empty()) return {};
+  std::string text = rules_table(uncorrected, *corrected);
+  if (prices != nullptr) text += rule_prices_table(*prices);
+  return text +
+         "<p class=\"note\">Money in EUR per day per MWh of capacity, \u00b1 standard error, every "
+         "day from the same charge. What a rule changes is counted on the plain student: each "
+         "decision is moved to the nearest one that the rule leaves, and the days are run again, "
+         "one rule at a time and all together. What lies between that and the corrected student is "
+         "the correction. A direction of time or context cannot be counted so: it is in the "
+         "correction. The plain student is looked at in part, the corrected one everywhere.</p>\n";
+}
+
 std::string proof_sentence(const Certificate& c) {
   if (c.violations() != 0) {
-    return fmt::format(
-        "Not proved: it still breaks its constraints {} times and may not be exported",
-        grouped(c.violations()));
+    const std::string broken =
+        c.rules.empty() ? "its constraints"
+                        : fmt::format("its constraints ({})", broken_text(demand_counts(c)));
+    return fmt::format("Not proved: it still breaks {} {} times and may not be exported", broken,
+                       grouped(c.violations()));
   }
-  return fmt::format("{}: no violation in {} states",
-                     c.covers_lattice_without_violation() ? "Proved" : "Looked at in part",
-                     grouped(c.states_checked));
+  const auto bound = std::ranges::count_if(c.rule_counts, &RuleCount::binds_student);
+  return fmt::format(
+      "{}: no violation {}in {} states",
+      c.covers_lattice_without_violation() ? "Proved" : "Looked at in part",
+      bound == 0 ? "" : fmt::format("of the properties and {} ", counted(bound, "rule")),
+      grouped(c.states_checked));
 }
 
 std::string provenance_html(const std::vector<Fact>& facts, const std::string& lines) {

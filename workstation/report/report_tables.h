@@ -6,6 +6,7 @@
 
 #include "workstation/report/comparison.h"
 #include "workstation/report/provenance.h"
+#include "workstation/report/rule_prices.h"
 #include "workstation/student/certificate.h"
 
 namespace bess {
@@ -17,6 +18,11 @@ std::string comparison_html(const std::vector<NamedEvaluation>& evaluations);
 std::string proof_html(const Certificate* uncorrected, const Certificate* corrected);
 /// "Proved: ..." or why the student may not be exported.
 std::string proof_sentence(const Certificate& certificate);
+
+/// The operator's rules: what each asks, who is held to it, who breaks it how often, and what it costs. Empty without
+/// rules; `prices` may be null.
+std::string rules_html(const Certificate* uncorrected, const Certificate* corrected,
+                       const RulePrices* prices);
 
 /// Names and values, and below them `lines` as they are.
 std::string provenance_html(const std::vector<Fact>& facts, const std::string& lines);

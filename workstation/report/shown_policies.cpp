@@ -1,6 +1,7 @@
 #include "workstation/report/shown_policies.h"
 
 #include "workstation/report/headline.h"
+#include "workstation/student/exported_policy.h"
 #include "workstation/student/student_policy.h"
 
 namespace bess {
@@ -8,7 +9,7 @@ namespace bess {
 std::vector<ShownPolicy> shown_policies(const ReportInputs& in) {
   std::vector<ShownPolicy> policies;
   if (in.corrected) {
-    policies.push_back({kCorrectedName, std::make_unique<StudentPolicy>(in.corrected->net)});
+    policies.push_back({kCorrectedName, exported_policy(*in.corrected)});
   }
   if (in.uncorrected) {
     policies.push_back({kPlainName, std::make_unique<StudentPolicy>(in.uncorrected->net)});

@@ -1,5 +1,6 @@
 #include "workstation/student/student_file.h"
 
+#include <numeric>
 #include <span>
 
 #include "shared/host/file.h"
@@ -69,17 +70,50 @@ ContextClasses parse_context_classes(const JsonReader& in, const std::string& na
   return classes;
 }
 
-/// The rules themselves, as a rule file's text. What was counted of them is for people: it is not believed.
-void parse_rule_claims(const JsonReader& in, const std::string& name, Certificate& certificate) {
+std::vector<std::int64_t> parse_counts(const JsonValue& file, const char* key, std::size_t count,
+                                       const std::string& name) {
+  std::vector<std::int64_t> counts;
+  for (const JsonValue item : file[key]) {
+    const double number = item.number().value_or(-1);
+    if (!(number >= 0 && number <= static_cast<double>(kExactInDouble))) break;
+    counts.push_back(static_cast<std::int64_t>(number));
+  }
+  if (counts.size() != count || file[key].size() != count) {
+    fail("{}: \"{}\" is not an array of {} counts", name, key, count);
+  }
+  return counts;
+}
+
+/// The rules themselves, as a rule file's text, and what was counted of each. A file of before has the sum alone:
+/// when that is 0 so is each count, and else nobody knows which is not.
+void parse_rule_claims(const JsonValue& file, const JsonReader& in, const std::string& name,
+                       ContextKind kind, Certificate& certificate) {
   certificate.rules = parse_rules(in.text("rules"), name + ": rules");
-  static_cast<void>(in.whole("violations_of_rules", 0, kExactInDouble));
+  const std::int64_t sum = in.whole("violations_of_rules", 0, kExactInDouble);
+  const bool has_counts = file["rule_violations"].exists();
+  if (!has_counts && sum > 0) return;
+  const std::size_t rules = certificate.rules.rules.size();
+  const std::vector<std::int64_t> none(rules);
+  const auto states = has_counts ? parse_counts(file, "rule_states", rules, name) : none;
+  const auto violations = has_counts ? parse_counts(file, "rule_violations", rules, name) : none;
+  for (std::size_t r = 0; r < rules; ++r) {
+    certificate.rule_counts.push_back(
+        {binds_student(certificate.rules.rules[r], kind), states[r], violations[r]});
+  }
 }
 
 void add_rule_claims(const Certificate& certificate, Json& json) {
-  std::int64_t violations = 0;
-  for (const RuleCount& count : certificate.rule_counts) violations += count.violations;
+  std::vector<std::int64_t> states;
+  std::vector<std::int64_t> violations;
+  for (const RuleCount& count : certificate.rule_counts) {
+    states.push_back(count.states);
+    violations.push_back(count.violations);
+  }
   json.set("rules", format_rules(certificate.rules));
-  json.set("violations_of_rules", violations);
+  json.set("violations_of_rules", std::accumulate(violations.begin(), violations.end(), 0LL));
+  if (violations.empty()) return;  // nobody has looked
+  json.set("rule_states", std::span<const std::int64_t>(states));
+  json.set("rule_violations", std::span<const std::int64_t>(violations));
 }
 
 Json certificate_json(const Certificate& c) {
@@ -160,7 +194,9 @@ StudentFile parse_student(const std::string& text, const std::string& name) {
   } else {
     student.certificate = parse_certificate(in.object("certificate"), name);
   }
-  if (version == kFormatVersion) parse_rule_claims(in, name, student.certificate);
+  if (version == kFormatVersion) {
+    parse_rule_claims(json.value(), in, name, student.net.context.kind, student.certificate);
+  }
   student.provenance = in.text("provenance");
   return student;
 }
@@ -174,7 +210,9 @@ StudentFile compiled_student() {
   student.provenance = BESS_STUDENT_PROVENANCE;
 #ifdef BESS_STUDENT_RULES
   student.certificate.rules = parse_rules(BESS_STUDENT_RULES, "compiled rules");
-  student.certificate.rule_counts.resize(student.certificate.rules.rules.size());
+  for (const Rule& rule : student.certificate.rules.rules) {
+    student.certificate.rule_counts.push_back({binds_student(rule, student.net.context.kind)});
+  }
 #endif
   return student;
 }

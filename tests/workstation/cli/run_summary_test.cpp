@@ -10,6 +10,7 @@
 #include "tests/support/temporary_folder.h"
 #include "workstation/cli/run_seeds.h"
 #include "workstation/report/evaluation_days.h"
+#include "workstation/report/rule_prices.h"
 
 namespace bess {
 namespace {
@@ -79,6 +80,70 @@ TEST(RunSummaries, TheTableSaysWhatRunsEarnedAndDifferIn) {
   const std::string table = format_runs_table({run_of("1", 24), run_of("2", 48)});
   EXPECT_THAT(table, AllOf(HasSubstr("runs/seed-2"), HasSubstr("+2.0"), HasSubstr("seed: 1 | 2"),
                            Not(HasSubstr("prices: "))));
+}
+
+/// Rules are said, not printed as the file's text; a key that only a later run has is a difference too.
+TEST(RunSummaries, RulesOfEitherRunAreADifference) {
+  const char* const rules = "[[rule]]\nname = \"rest\"\nhours = \"23:00-06:00\"\nis = \"idle\"\n";
+  for (const bool first_has_them : {true, false}) {
+    std::vector<RunSummary> runs{run_of("1", 24), run_of("2", 48)};
+    Entries& identity = runs[first_has_them ? 0 : 1].record.identity;
+    identity.emplace_back(kRulesKey, rules);
+    identity.emplace_back("[new] key", "7");
+    const std::string table = format_runs_table(runs);
+    const std::string said = "\"rest\" (23:00-06:00: the action is idle)";
+    EXPECT_THAT(table, HasSubstr(first_has_them ? "rules: " + said + " | none\n"
+                                                : "rules: none | " + said + "\n"));
+    EXPECT_THAT(
+        table, HasSubstr(first_has_them ? "[new] key: 7 | unknown\n" : "[new] key: unknown | 7\n"));
+    EXPECT_THAT(table, Not(HasSubstr("[[rule]]")));
+  }
+}
+
+/// What each rule cost is a part of a price, no rival; violations are told apart by demand.
+TEST(RunSummaries, ARunWithRulesTellsWhatEachOneCostAndWhoBrokeIt) {
+  RunSummary run = run_of("1", 24);
+  run.evaluations.insert(run.evaluations.begin() + 1,
+                         {{kPlainName, evaluation_of(48), evaluation_of(48)},
+                          {under_rule_name("rest"), evaluation_of(40), evaluation_of(40)},
+                          {kUnderAllRules, evaluation_of(40), evaluation_of(40)}});
+  run.record.figures->demands = {{"property 3", 7, 0}, {"rule \"rest\"", 68'924'057, 0}};
+  const std::string json = summary_json(run).line();
+  EXPECT_THAT(json, AllOf(HasSubstr("{\"demand\":\"property 3\",\"violations_plain\":7,"),
+                          HasSubstr("\"violations_plain\":68924057,\"violations_corrected\":0}"),
+                          HasSubstr("{\"part\":\"rule\",\"rule\":\"rest\","),
+                          HasSubstr("{\"part\":\"correction\",")));
+  EXPECT_THAT(format_bands(bands_of({run, run}), 2), Not(HasSubstr("under")));
+  EXPECT_THAT(format_comparison_table(run.evaluations), Not(HasSubstr("under")));
+  const RulePrices prices = rule_prices_of(run.evaluations).value();
+  ASSERT_EQ(prices.rules.size(), 1U);
+  EXPECT_EQ(prices.rules[0].meaning, "rest");
+  // Of three days one differs, by EUR a day over 8 MWh.
+  EXPECT_NEAR(prices.rules[0].difference[0].mean, -8 / 3.0 / 8, 1e-12);
+  EXPECT_NEAR(prices.correction.difference[0].mean, -16 / 3.0 / 8, 1e-12);
+  EXPECT_NEAR(prices.total.difference[0].mean, -24 / 3.0 / 8, 1e-12);
+}
+
+TEST(RunSummaries, AnEvaluationThatWasEditedIsNotBelieved) {
+  const TemporaryFolder folder;
+  const RunFolder run{folder.file("run")};
+  const std::string days = evaluation_days_csv(evaluations_of(24));
+  write_file(run.file(run_file::kDays), days);
+  RunRecord record = run_of("1", 24).record;
+  record.stages = {
+      {"evaluation", {}, {{run_file::kDays, file_mark(run.file(run_file::kDays))}}, false}};
+  save_run_record(run, record);
+  EXPECT_EQ(load_run_summary(run).evaluations.size(), 2U);
+  for (const std::string& other : {days + "rbc,reset,2023-01-29,1e9,0,0,0,0\n", std::string()}) {
+    write_file(run.file(run_file::kDays), other);
+    try {
+      (void)load_run_summary(run);
+      ADD_FAILURE() << "believed";
+    } catch (const UserError& error) {
+      EXPECT_THAT(error.what(), AllOf(HasSubstr("is not what the run wrote"),
+                                      HasSubstr("bess-train report --run")));
+    }
+  }
 }
 
 TEST(RunSummaries, ARunThatIsNotFinishedIsNamedWithTheMend) {

@@ -7,6 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "workstation/report/rule_prices.h"
+
 namespace bess {
 namespace {
 
@@ -75,6 +77,18 @@ TEST(Headline, ThePriceOfCorrectionIsInWords) {
   EXPECT_THAT(headline_html(headline_of(dear).value()), HasSubstr("Price of the correction: 5.0"));
   dear[2] = evaluated(kPlainName, {90, 110.2, 129.8}, 8);
   EXPECT_THAT(headline_html(headline_of(dear).value()), HasSubstr("The correction costs nothing"));
+}
+
+/// A run with rules: what they cost is not the correction's.
+TEST(Headline, ThePriceIsSplitBetweenRulesAndCorrection) {
+  std::vector<NamedEvaluation> ruled = all();
+  ruled[2] = evaluated(kPlainName, {300, 320.2, 339.8}, 8);
+  ruled.push_back(evaluated(under_rule_name("rest"), {110, 130.2, 149.8}, 8));
+  ruled.push_back(evaluated(kUnderAllRules, {110, 130.2, 149.8}, 8));
+  EXPECT_THAT(headline_html(headline_of(ruled).value()),
+              testing::AllOf(HasSubstr("Price of the correction: 5.0"),
+                             HasSubstr("Price of the rules: 95.0")));
+  EXPECT_THAT(headline_html(headline_of(all()).value()), Not(HasSubstr("Price of the rules")));
 }
 
 TEST(Headline, WithoutACorrectedStudentThereIsNone) {

@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "tests/support/rule_sets.h"
 #include "workstation/report/page_files.h"
 #include "workstation/report/report_tables.h"
 
@@ -43,6 +44,40 @@ TEST(ReportTables, AProofIsClaimedOfTheWholeLatticeOnly) {
   certificate.violations_property_1 = 1;
   EXPECT_EQ(proof_sentence(certificate),
             "Not proved: it still breaks its constraints 1 times and may not be exported");
+}
+
+/// Two rules, one of them the guard's alone.
+Certificate ruled_certificate(std::int64_t violations) {
+  Certificate certificate;
+  certificate.states_checked = kLatticeStateCount;
+  certificate.rules = one_rule("price_min = 0\nprice_max = 9\nis = \"idle\"", "rest");
+  certificate.rules.rules.push_back(one_rule("power_max = 0.5\nenforce = true", "cap").rules[0]);
+  certificate.rule_counts = {{true, 1234, violations}, {}};
+  return certificate;
+}
+
+TEST(ReportTables, AProofIncludesTheRules) {
+  EXPECT_EQ(proof_sentence(ruled_certificate(0)),
+            "Proved: no violation of the properties and 1 rule in 6,950,033,280 states");
+  EXPECT_EQ(proof_sentence(ruled_certificate(7)),
+            "Not proved: it still breaks its constraints (rule \"rest\": 7) 7 times and may not be "
+            "exported");
+}
+
+TEST(ReportTables, RulesAreShownWithWhoIsHeldToThemAndWhoBreaksThem) {
+  const Certificate plain = ruled_certificate(1000);
+  const Certificate corrected = ruled_certificate(0);
+  RulePrices prices{};
+  prices.rules.push_back({"", "rest", {PairedDifference{-109.5, 2}, PairedDifference{-80, 3}}});
+  const std::string html = rules_html(&plain, &corrected, &prices);
+  for (const char* said :
+       {"rest \u2013 price 0 to 9 EUR/MWh: the action is idle</th>", ">81.04</td>", ">1,234</td>",
+        ">0</td>", ">student</td>", ">guard</td>", ">rest, alone</th>", "\u2212109.5 \u00b1 2.0"}) {
+    EXPECT_NE(html.find(said), std::string::npos) << said;
+  }
+  EXPECT_EQ(rules_html(&plain, nullptr, nullptr), "");
+  const Certificate without;
+  EXPECT_EQ(rules_html(&without, &without, nullptr), "");
 }
 
 TEST(ReportTables, FactsAreEscaped) {

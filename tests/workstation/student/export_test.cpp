@@ -341,13 +341,20 @@ TEST(RuleHeader, TheGoldenPointsTellEveryField) {
   }
 }
 
-TEST(RuledStudentFile, KeepsItsRulesAndClaimsNothing) {
+/// A claim, as of the properties: export and header prove once more.
+TEST(RuledStudentFile, KeepsItsRulesAndWhatWasCountedOfThem) {
   const TemporaryFolder folder;
   save_student(folder.file("student.json"), ruled_student().file());
   const StudentFile again = load_student(folder.file("student.json"));
   EXPECT_EQ(format_rules(again.certificate.rules),
             format_rules(ruled_student().certificate().rules));
-  EXPECT_FALSE(again.certificate.covers_lattice_without_violation()) << "until it is proved again";
+  EXPECT_TRUE(again.certificate.covers_lattice_without_violation());
+  const Certificate& proved = ruled_student().certificate();
+  ASSERT_EQ(again.certificate.rule_counts.size(), proved.rule_counts.size());
+  for (std::size_t r = 0; r < proved.rule_counts.size(); ++r) {
+    EXPECT_EQ(again.certificate.rule_counts[r].states, proved.rule_counts[r].states);
+    EXPECT_EQ(again.certificate.rule_counts[r].binds_student, proved.rule_counts[r].binds_student);
+  }
   save_student(folder.file("plain.json"), crowded_student().file());
   EXPECT_THAT(read_file(folder.file("plain.json")), testing::Not(HasSubstr("rules")));
   EXPECT_THAT(read_file(folder.file("plain.json")), HasSubstr("\"version\":\t3"));

@@ -10,8 +10,10 @@
 
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
+#include "tests/support/rule_sets.h"
 #include "tests/support/student_nets.h"
 #include "tests/support/temporary_folder.h"
+#include "workstation/student/demand_counts.h"
 
 namespace bess {
 namespace {
@@ -78,6 +80,48 @@ TEST(StudentFile, RoundTrip) {
     EXPECT_EQ(again.certificate.violations_property_2, 20);
     EXPECT_EQ(again.certificate.violations_property_3, 3'000'000'000);
     EXPECT_EQ(again.provenance, student.provenance);
+  }
+}
+
+/// A rule of the student, one of the guard alone, and what a proof counted of both.
+StudentFile ruled_student(std::int64_t violations) {
+  StudentFile student = seeded_student();
+  student.certificate = {.thresholds = {-450, 1200}, .states_checked = kLatticeStateCount};
+  student.certificate.rules = one_rule("is = \"idle\"\nprice_min = 0\nprice_max = 9", "rest");
+  student.certificate.rules.rules.push_back(one_rule("power_max = 0.5\nenforce = true").rules[0]);
+  student.certificate.rule_counts = {{true, 4711, violations}, {}};
+  return student;
+}
+
+/// A run reads its students from their files: what it shows of the rules comes from there.
+TEST(StudentFile, CountsOfRulesRoundTrip) {
+  const TemporaryFolder folder;
+  for (const std::int64_t violations : {0, 23'994}) {
+    save_student(folder.file("student.json"), ruled_student(violations));
+    const Certificate again = load_student(folder.file("student.json")).certificate;
+    EXPECT_EQ(again.covers_lattice_without_violation(), violations == 0);
+    const std::vector<DemandCount> counts = demand_counts(again);
+    ASSERT_EQ(counts.size(), kPropertyCount + 2);
+    EXPECT_EQ(counts[3].label(), "rule \"rest\"");
+    EXPECT_EQ(counts[3].text, "price 0 to 9 EUR/MWh: the action is idle");
+    EXPECT_EQ(counts[3].states, 4711);
+    EXPECT_EQ(counts[3].violations, violations);
+    EXPECT_TRUE(counts[3].binds_student);
+    EXPECT_FALSE(counts[4].binds_student);
+    EXPECT_EQ(broken_text(counts), violations == 0 ? "" : "rule \"rest\": 23994");
+  }
+}
+
+/// They had the sum of all rules alone.
+TEST(StudentFile, FilesWithoutCountsOfEachRuleAreStillRead) {
+  const TemporaryFolder folder;
+  for (const std::int64_t violations : {0, 5}) {
+    save_student(folder.file("student.json"), ruled_student(violations));
+    std::string text = read_file(folder.file("student.json"));
+    text = without(without(text, "rule_states"), "rule_violations");
+    const Certificate again = parse_student(text, "old.json").certificate;
+    EXPECT_EQ(again.covers_lattice_without_violation(), violations == 0);
+    EXPECT_EQ(again.rule_counts.size(), violations == 0 ? 2U : 0U) << "nobody knows which";
   }
 }
 
