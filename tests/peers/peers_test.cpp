@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "edge/control/control_types.h"
 #include "tests/support/peer_programs.h"
 #include "tests/support/simulated_site.h"
 
@@ -193,14 +194,19 @@ struct Breakdown {
   int cycles_until_noticed;  ///< from the order with which it breaks
   const char* guard_keys = "";
   int exit_code = 0;
+  int every = 1;  ///< in every so manieth two minutes
+  int soc_permille = 435;
+  int price_eur_per_mwh = -600;
 };
 
 void PrintTo(const Breakdown& b, std::ostream* out) { *out << b.fault; }
 
 std::string breakdown_name(const ::testing::TestParamInfo<Breakdown>& info) {
-  std::string name = info.param.fault;
+  const Breakdown& b = info.param;
+  std::string name = b.fault;
   std::replace(name.begin(), name.end(), '-', '_');
-  return name;
+  if (b.every > 1) name.append("_at_every_").append(std::to_string(b.every));
+  return name.append("_from_").append(std::to_string(b.soc_permille));
 }
 
 class PeersBreakdown : public ::testing::TestWithParam<Breakdown> {
@@ -210,12 +216,15 @@ class PeersBreakdown : public ::testing::TestWithParam<Breakdown> {
     if (!missing.empty()) GTEST_SKIP() << missing;
     site_.start_clock();
     site_.battery = std::make_unique<ChildProcess>(std::vector<std::string>{
-        kPython, BESS_SOURCE_DIR "/tests/peers/alphaess_peer.py", "--soc", "435", "--scale",
-        std::to_string(kBreakdownScale), "--fault", GetParam().fault});
+        kPython, BESS_SOURCE_DIR "/tests/peers/alphaess_peer.py", "--soc",
+        std::to_string(GetParam().soc_permille), "--scale", std::to_string(kBreakdownScale),
+        "--fault", GetParam().fault, "--every", std::to_string(GetParam().every)});
     const std::string ready = site_.battery->read_line();
     site_.battery_port = std::stoi(ready.substr(ready.find_last_of(':') + 1));
-    const SimulatedSite::PriceWave cheap{.mean_eur_per_mwh = -600, .amplitude_eur_per_mwh = 0};
-    site_.start_market({}, SimulatedSite::minute_prices(600, cheap));
+    const SimulatedSite::PriceWave flat{
+        .mean_eur_per_mwh = static_cast<double>(GetParam().price_eur_per_mwh),
+        .amplitude_eur_per_mwh = 0};
+    site_.start_market({}, SimulatedSite::minute_prices(600, flat));
     config_ = site_.commission(
         {.battery_keys = SimulatedSite::alphaess_keys(2'000), .guard_keys = GetParam().guard_keys});
   }
@@ -249,7 +258,7 @@ TEST_P(PeersBreakdown, IsNoticedAndDrivenNoFurther) {
   constexpr int kGoodCycles = 2;
   ChildProcess edge({edge_program(), "--config", config_});
   const std::string reason = std::string("reason=") + GetParam().reason + " ";
-  const int noticed = cycle_with(edge, reason, 12);
+  const int noticed = cycle_with(edge, reason, kGoodCycles + 2 + GetParam().cycles_until_noticed);
   EXPECT_GT(noticed, kGoodCycles);
   EXPECT_LE(noticed, kGoodCycles + 1 + GetParam().cycles_until_noticed);
   edge.signal(SIGTERM);
@@ -263,7 +272,8 @@ INSTANTIATE_TEST_SUITE_P(
         Breakdown{"reversed", "wrong_direction", 2}, Breakdown{"twice", "uncontrolled_power", 2},
         Breakdown{"idle-discharge", "uncontrolled_power", 2, "soc_max = 0.3\n"},
         Breakdown{"soc-stuck", "soc_mismatch", 3}, Breakdown{"dead", "no_answer", 2},
-        Breakdown{"capacity", "capacity", 1}, Breakdown{"other-master", "other_master", 2},
+        Breakdown{"echo", "soc_mismatch", 3}, Breakdown{"capacity", "capacity", 1},
+        Breakdown{"other-master", "other_master", 2},
         // An order that fails is taken back at once: three of them are no danger. Nor can the
         // release be confirmed.
         Breakdown{"wrong-echo", "orders_fail", 3, "", 1}),
@@ -292,6 +302,43 @@ TEST_P(PeersTrip, StaysOverRestartsUntilAPersonClearsIt) {
 INSTANTIATE_TEST_SUITE_P(Bus, PeersTrip,
                          ::testing::Values(Breakdown{"twice", "uncontrolled_power", 2}),
                          breakdown_name);
+
+/// Lag, ramp, noise and taper, and whatever else a healthy battery does, for two hours of its time.
+class PeersHealthy : public ::testing::TestWithParam<Breakdown> {
+ protected:
+  void SetUp() override {
+    const std::string missing = missing_peer("pymodbus, serial_asyncio");
+    if (!missing.empty()) GTEST_SKIP() << missing;
+  }
+};
+
+TEST_P(PeersHealthy, IsDrivenOn) {
+  constexpr int kCycles = 60;
+  SimulatedSite site(kBreakdownScale);
+  site.start_clock();
+  site.battery = std::make_unique<ChildProcess>(std::vector<std::string>{
+      kPython, BESS_SOURCE_DIR "/tests/peers/alphaess_peer.py", "--soc",
+      std::to_string(GetParam().soc_permille), "--scale", std::to_string(kBreakdownScale),
+      "--habits", "--fault", GetParam().fault});
+  const std::string ready = site.battery->read_line();
+  site.battery_port = std::stoi(ready.substr(ready.find_last_of(':') + 1));
+  site.start_market({}, SimulatedSite::minute_prices(600, {}));
+  const std::string config = site.commission({.battery_keys = SimulatedSite::alphaess_keys(2'000)});
+  ChildProcess edge({edge_program(), "--config", config, "--cycles", std::to_string(kCycles)});
+  int driven = 0;
+  for (std::string line = edge.read_line(); !line.empty(); line = edge.read_line()) {
+    driven += line.find("mode=running") != std::string::npos ? 1 : 0;
+    for (const Reason trip :
+         {Reason::kWrongDirection, Reason::kUncontrolledPower, Reason::kSocMismatch}) {
+      EXPECT_THAT(line, ::testing::Not(HasSubstr("reason=" + std::string(reason_name(trip)))));
+    }
+  }
+  EXPECT_EQ(edge.wait(), 0);
+  EXPECT_GT(driven, kCycles / 2);
+}
+
+INSTANTIATE_TEST_SUITE_P(Bus, PeersHealthy, ::testing::Values(Breakdown{"", "", 0}),
+                         [](const auto&) { return "slow_and_noisy"; });
 
 std::string setup_name(const ::testing::TestParamInfo<Setup>& info) {
   return std::string(info.param.rtu ? "rtu_" : "tcp_") + info.param.variant;
