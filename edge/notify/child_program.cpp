@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 
@@ -66,18 +67,30 @@ pid_t spawn(const std::vector<std::string>& arguments, const Pipe& in, const Pip
   return errno == 0 ? pid : -1;
 }
 
+/// Until when a program may run.
+struct Patience {
+  std::int64_t deadline_ns;
+  const std::stop_token& stop;
+
+  [[nodiscard]] int left_ms() const {
+    const std::int64_t left_ms = (deadline_ns - clock_ns(CLOCK_MONOTONIC)) / 1'000'000;
+    return stop.stop_requested() || left_ms <= 0 ? 0 : static_cast<int>(left_ms);
+  }
+};
+
 /// Feeds and reads until the program closes its output; false when the time is over or it says too much.
-bool exchange(Pipe& in, Pipe& out, std::string_view input, std::int64_t deadline_ns,
+bool exchange(Pipe& in, Pipe& out, std::string_view input, const Patience& patience,
               std::string& output) {
+  constexpr int kLookMs = 100;
   fcntl(in.ends[1], F_SETFL, O_NONBLOCK);
   if (input.empty()) in.close_end(1);
   char buffer[4'096];
   while (output.size() < kOutputBytesMax) {
-    const std::int64_t left_ms = (deadline_ns - clock_ns(CLOCK_MONOTONIC)) / 1'000'000;
-    if (left_ms <= 0) return false;
+    const int left_ms = patience.left_ms();
+    if (left_ms == 0) return false;
     pollfd waiting[] = {{.fd = out.ends[0], .events = POLLIN, .revents = 0},
                         {.fd = in.ends[1], .events = POLLOUT, .revents = 0}};
-    if (poll(waiting, 2, static_cast<int>(left_ms)) < 0 && errno != EINTR) return false;
+    if (poll(waiting, 2, std::min(left_ms, kLookMs)) < 0 && errno != EINTR) return false;
     if (waiting[1].revents != 0) {
       const ssize_t written = write(in.ends[1], input.data(), input.size());
       if (written > 0) input.remove_prefix(static_cast<std::size_t>(written));
@@ -92,12 +105,11 @@ bool exchange(Pipe& in, Pipe& out, std::string_view input, std::int64_t deadline
 }
 
 /// Its output may be closed before it ends. False when the time is over.
-bool reap(pid_t pid, std::int64_t deadline_ns, int& status) {
+bool reap(pid_t pid, const Patience& patience, int& status) {
   constexpr std::int64_t kSliceNs = 2'000'000;
   while (waitpid(pid, &status, WNOHANG) == 0) {
-    const std::int64_t now_ns = clock_ns(CLOCK_MONOTONIC);
-    if (now_ns >= deadline_ns) return false;
-    sleep_until_monotonic(now_ns + kSliceNs);
+    if (patience.left_ms() == 0) return false;
+    sleep_until_monotonic(clock_ns(CLOCK_MONOTONIC) + kSliceNs);
   }
   return true;
 }
@@ -105,9 +117,9 @@ bool reap(pid_t pid, std::int64_t deadline_ns, int& status) {
 }  // namespace
 
 ProgramResult run_program(const std::vector<std::string>& arguments, std::string_view input,
-                          int time_ms_max) {
+                          int time_ms_max, const std::stop_token& stop) {
   ProgramResult result;
-  const std::int64_t deadline_ns = clock_ns(CLOCK_MONOTONIC) + time_ms_max * 1'000'000LL;
+  const Patience patience{clock_ns(CLOCK_MONOTONIC) + time_ms_max * 1'000'000LL, stop};
   Pipe in;
   Pipe out;
   const pid_t pid = in.ends[0] < 0 || out.ends[0] < 0 ? -1 : spawn(arguments, in, out);
@@ -119,7 +131,7 @@ ProgramResult run_program(const std::vector<std::string>& arguments, std::string
   out.close_end(1);
   int status = 0;
   const bool in_time =
-      exchange(in, out, input, deadline_ns, result.output) && reap(pid, deadline_ns, status);
+      exchange(in, out, input, patience, result.output) && reap(pid, patience, status);
   if (!in_time) {
     kill(-pid, SIGKILL);
     waitpid(pid, &status, 0);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "shared/local_time.h"
 #include "shared/units_and_limits.h"
 
 namespace bess {
@@ -39,6 +40,27 @@ double DayAccount::full_cycles() const { return soc_moved_e4_ / (2.0 * kSocFullE
 
 int DayAccount::interventions() const {
   return cycles_ - cycles_by_reason_[static_cast<std::size_t>(Reason::kStudent)];
+}
+
+std::int64_t DayAccount::start_utc_s() const {
+  const std::int64_t wall_s = utc_from_civil({.year = local_day_ / 10'000,
+                                              .month = local_day_ / 100 % 100,
+                                              .day = local_day_ % 100,
+                                              .hour = 0,
+                                              .minute = 0,
+                                              .second = 0});
+  std::int64_t utc_s = wall_s;
+  for (int i = 0; i < 2; ++i) {  // the first guess lies up to some hours off, the second nowhere
+    const LocalMinute local = local_minute_of(utc_s);
+    const std::int64_t local_s = utc_from_civil({.year = local.year,
+                                                 .month = local.month,
+                                                 .day = local.day,
+                                                 .hour = local.minute_of_day / 60,
+                                                 .minute = local.minute_of_day % 60,
+                                                 .second = 0});
+    utc_s -= local_s - wall_s;
+  }
+  return utc_s;
 }
 
 std::string DayAccount::date() const {

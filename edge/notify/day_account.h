@@ -30,6 +30,8 @@ class DayAccount {
   [[nodiscard]] double full_cycles() const;
   [[nodiscard]] int cycles() const { return cycles_; }
   [[nodiscard]] int interventions() const;
+  /// Local midnight, at which the day begins; 23, 24 or 25 hours before the next.
+  [[nodiscard]] std::int64_t start_utc_s() const;
   /// "2023-11-26".
   [[nodiscard]] std::string date() const;
   [[nodiscard]] std::string line() const;

@@ -17,15 +17,15 @@ std::string mail_text(const NotifySettings& settings, const Message& message) {
   if (message.since_utc_s != 0) {
     text += "since " + std::string(utc_text(message.since_utc_s).view()) + "\n";
   }
-  text += "told at " + std::string(utc_text(message.utc_s).view()) + " by bess-notify on " +
+  text += "seen at " + std::string(utc_text(message.utc_s).view()) + " by bess-notify on " +
           settings.node + "\nmore: bess-edge status, bess-edge log --last 20\n";
   return text;
 }
 
-std::string send_mail(const NotifySettings& settings, const Message& message) {
-  constexpr int kMailerMsMax = 60'000;
-  const ProgramResult result =
-      run_program({settings.sendmail, "-t", "-i"}, mail_text(settings, message), kMailerMsMax);
+std::string send_mail(const NotifySettings& settings, const Message& message,
+                      const std::stop_token& stop) {
+  const ProgramResult result = run_program(
+      {settings.sendmail, "-t", "-i"}, mail_text(settings, message), settings.mailer_ms_max, stop);
   if (!result.trouble.empty() || result.exit_code == 0) return result.trouble;
   return settings.sendmail + " failed with exit code " + std::to_string(result.exit_code);
 }

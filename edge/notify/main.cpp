@@ -1,17 +1,22 @@
 // bess-notify: calls for help. A program of its own, outside the control process: it asks `bess-edge status`
 // and reads the decision log, and tells what is wrong by mail, webhook and MQTT. Killed, stuck or absent,
 // it changes nothing for the controller.
+#include <poll.h>
 #include <signal.h>
+#include <sys/signalfd.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <string>
 
 #include "edge/notify/journal_line.h"
 #include "edge/notify/notifier.h"
+#include "edge/notify/notify_lock.h"
 #include "edge/notify/notify_settings.h"
 #include "edge/notify/webhook.h"
+#include "shared/file_descriptor.h"
 #include "shared/local_time.h"
 #include "shared/scaled_clock.h"
 
@@ -30,9 +35,12 @@ constexpr const char* kHelp =
   --help         this text
   --version      the version
 
-Each alarm is told once, and its end once, also over restarts. It reads what bess-edge publishes and takes no
-lock: the controller does not know that it exists.
-Exit codes: 0 done   1 the settings are bad, or a test message was not taken   2 the command line is bad
+Each alarm is told once, and its end once, also over restarts. Every way has a queue and a thread of its own: one
+that hangs holds up neither the others nor the next look. It reads what bess-edge publishes and takes no lock of
+it: the controller does not know that it exists. One bess-notify to one [notify] folder: a second one is refused;
+--test and --check may run beside it.
+Exit codes: 0 done   1 the settings are bad, another bess-notify runs, or a test message was not taken
+2 the command line is bad
 )";
 
 enum class Task { kWatch, kOnce, kTest, kCheck };
@@ -93,10 +101,35 @@ sigset_t block_stop_signals() {
   return signals;
 }
 
+/// Until an instant of the monotonic clock; false when it is to end before.
+bool wait_until(std::int64_t until_ns, int stop_fd, Notifier& notifier) {
+  pollfd waiting[] = {{.fd = stop_fd, .events = POLLIN, .revents = 0},
+                      {.fd = notifier.bell(), .events = POLLIN, .revents = 0}};
+  while (true) {
+    const std::int64_t left_ns = until_ns - clock_ns(CLOCK_MONOTONIC);
+    if (left_ns <= 0) return true;
+    if (poll(waiting, 2, static_cast<int>(left_ns / 1'000'000 + 1)) <= 0) continue;
+    if (waiting[0].revents != 0) return false;
+    if (waiting[1].revents != 0) notifier.keep();
+  }
+}
+
+/// Rounds begin at fixed times, whatever the ways are at. One that is late is left out.
 void watch(Notifier& notifier, std::int32_t every_s, const sigset_t& stop_signals) {
-  const timespec pause{.tv_sec = every_s, .tv_nsec = 0};
-  do notifier.run_round(now_utc_s());
-  while (sigtimedwait(&stop_signals, nullptr, &pause) < 0);
+  const FileDescriptor stop(signalfd(-1, &stop_signals, SFD_CLOEXEC | SFD_NONBLOCK));
+  std::int64_t next_ns = clock_ns(CLOCK_MONOTONIC);
+  do {
+    notifier.run_round(now_utc_s());
+    do next_ns += every_s * kNanosecondsPerSecond;
+    while (next_ns <= clock_ns(CLOCK_MONOTONIC));
+  } while (wait_until(next_ns, stop.get(), notifier));
+}
+
+int run_once(Notifier& notifier) {
+  constexpr std::chrono::minutes kPatience(2);  // a mailer's time, and as much again
+  notifier.run_round(now_utc_s());
+  static_cast<void>(notifier.wait_for_ways(kPatience));
+  return 0;
 }
 
 int run(const Options& options) {
@@ -116,9 +149,16 @@ int run(const Options& options) {
   signal(SIGPIPE, SIG_IGN);
   set_market_time_zone();
   prepare_webhooks();
+  if (options.task == Task::kTest) {  // beside one that watches
+    return Notifier(settings, MqttPresence::kVisits).send_test(now_utc_s()) ? 0 : 1;
+  }
+  NotifyLock lock;
+  if (!lock.take(settings.lock, error)) {
+    say(JournalLevel::kError, error);
+    return 1;
+  }
   Notifier notifier(settings);
-  if (options.task == Task::kTest) return notifier.send_test(now_utc_s()) ? 0 : 1;
-  if (options.task == Task::kOnce) return notifier.run_round(now_utc_s()), 0;
+  if (options.task == Task::kOnce) return run_once(notifier);
   say(JournalLevel::kNotice, "started");
   watch(notifier, settings.every_s, stop_signals);
   say(JournalLevel::kNotice, "stopped");

@@ -8,7 +8,7 @@ namespace bess {
 namespace {
 
 constexpr MessageKind kKinds[] = {MessageKind::kAlarm, MessageKind::kOver, MessageKind::kDay,
-                                  MessageKind::kTest};
+                                  MessageKind::kTest, MessageKind::kDropped};
 
 bool is_about_alarm(MessageKind kind) {
   return kind == MessageKind::kAlarm || kind == MessageKind::kOver;
@@ -24,6 +24,8 @@ const char* kind_name(MessageKind kind) {
       return "over";
     case MessageKind::kDay:
       return "day";
+    case MessageKind::kDropped:
+      return "dropped";
     case MessageKind::kTest:
       break;
   }
@@ -46,6 +48,8 @@ std::string headline(const Message& message) {
       return "over: " + text;
     case MessageKind::kDay:
       return "day " + text;
+    case MessageKind::kDropped:
+      return "NOTE: " + text;
     case MessageKind::kTest:
       break;
   }

@@ -6,17 +6,17 @@
 
 namespace bess {
 
-enum class MessageKind { kAlarm, kOver, kDay, kTest };
+enum class MessageKind { kAlarm, kOver, kDay, kTest, kDropped };
 
 struct Message {
   MessageKind kind = MessageKind::kTest;
-  std::string key{};   ///< of the alarm; of the day, its date
-  std::string text{};  ///< one line
-  std::int64_t utc_s = 0;
+  std::string key{};             ///< of the alarm; of the day, its date
+  std::string text{};            ///< one line
+  std::int64_t utc_s = 0;        ///< when it was observed; it may be delivered much later
   std::int64_t since_utc_s = 0;  ///< of an alarm and its end
 };
 
-/// "alarm", "over", "day", "test".
+/// "alarm", "over", "day", "test", "dropped".
 const char* kind_name(MessageKind kind);
 MessageKind kind_of(const std::string& name);
 

@@ -1,9 +1,11 @@
 #include "edge/notify/mqtt_client.h"
 
 #include <mosquitto.h>
+#include <unistd.h>
 
-#include <chrono>
+#include <algorithm>
 
+#include "edge/notify/connection_trouble.h"
 #include "edge/notify/topics.h"
 
 namespace bess {
@@ -11,9 +13,14 @@ namespace {
 
 constexpr int kQos = 1;
 constexpr int kKeepAliveS = 60;
-constexpr std::chrono::seconds kWait(5);
+constexpr std::string_view kOffline = "offline";
 
 const char* text_or_null(const std::string& text) { return text.empty() ? nullptr : text.c_str(); }
+
+std::string client_name(const std::string& node, MqttPresence presence) {
+  const std::string name = "bess-notify-" + node;
+  return presence == MqttPresence::kStays ? name : name + "-" + std::to_string(getpid());
+}
 
 int publish(mosquitto* client, int* id, const std::string& topic, const std::string& payload,
             bool retained) {
@@ -23,18 +30,24 @@ int publish(mosquitto* client, int* id, const std::string& topic, const std::str
 
 }  // namespace
 
-MqttClient::MqttClient(const MqttSettings& settings, const std::string& node)
-    : status_topic_(topic(node, "status")) {
+MqttClient::MqttClient(const MqttSettings& settings, const std::string& node, MqttPresence presence)
+    : settings_(settings), presence_(presence), status_topic_(topic(node, "status")) {
   mosquitto_lib_init();
-  client_ = mosquitto_new(("bess-notify-" + node).c_str(), true, this);
+  client_ = mosquitto_new(client_name(node, presence).c_str(), true, this);
   if (client_ == nullptr) {
     trouble_ = "mqtt: no memory";
     return;
   }
-  set_up(settings);
+  set_up();
 }
 
-void MqttClient::set_up(const MqttSettings& settings) {
+int MqttClient::leave_will() {
+  if (presence_ == MqttPresence::kVisits) return MOSQ_ERR_SUCCESS;
+  return mosquitto_will_set(client_, status_topic_.c_str(), kOffline.size(), kOffline.data(), kQos,
+                            true);
+}
+
+void MqttClient::set_up() {
   mosquitto_connect_callback_set(client_, [](mosquitto*, void* self, int code) {
     static_cast<MqttClient*>(self)->on_connect(code);
   });
@@ -44,17 +57,17 @@ void MqttClient::set_up(const MqttSettings& settings) {
   mosquitto_publish_callback_set(client_, [](mosquitto*, void* self, int id) {
     static_cast<MqttClient*>(self)->on_published(id);
   });
-  constexpr std::string_view kOffline = "offline";
-  int code = mosquitto_will_set(client_, status_topic_.c_str(), kOffline.size(), kOffline.data(),
-                                kQos, true);
-  if (code == MOSQ_ERR_SUCCESS && !settings.user.empty()) {
+  int code = leave_will();
+  if (code == MOSQ_ERR_SUCCESS && !settings_.user.empty()) {
+    code = mosquitto_username_pw_set(client_, settings_.user.c_str(),
+                                     text_or_null(settings_.password));
+  }
+  if (code == MOSQ_ERR_SUCCESS && !settings_.ca_file.empty()) {
     code =
-        mosquitto_username_pw_set(client_, settings.user.c_str(), text_or_null(settings.password));
+        mosquitto_tls_set(client_, settings_.ca_file.c_str(), nullptr, nullptr, nullptr, nullptr);
   }
-  if (code == MOSQ_ERR_SUCCESS && !settings.ca_file.empty()) {
-    code = mosquitto_tls_set(client_, settings.ca_file.c_str(), nullptr, nullptr, nullptr, nullptr);
-  }
-  mosquitto_reconnect_delay_set(client_, 1, 60, true);
+  constexpr unsigned kReconnectSMax = 5;
+  mosquitto_reconnect_delay_set(client_, 1, kReconnectSMax, true);
   // Begins without a broker, too: the thread tries again for ever.
   if (code == MOSQ_ERR_SUCCESS) code = mosquitto_loop_start(client_);
   if (code != MOSQ_ERR_SUCCESS) {
@@ -62,14 +75,18 @@ void MqttClient::set_up(const MqttSettings& settings) {
     return;
   }
   static_cast<void>(
-      mosquitto_connect_async(client_, settings.host.c_str(), settings.port, kKeepAliveS));
+      mosquitto_connect_async(client_, settings_.host.c_str(), settings_.port, kKeepAliveS));
 }
 
 MqttClient::~MqttClient() {
   if (client_ != nullptr) {
-    if (is_connected()) static_cast<void>(send(status_topic_, "offline"));
+    const bool was_connected = is_connected();
+    if (was_connected && presence_ == MqttPresence::kStays) {
+      static_cast<void>(send(status_topic_, std::string(kOffline), {}));
+    }
     mosquitto_disconnect(client_);
-    mosquitto_loop_stop(client_, false);
+    // Without a connection its thread may sit in a connect, or a look-up, of minutes.
+    mosquitto_loop_stop(client_, !was_connected);
     mosquitto_destroy(client_);
   }
   mosquitto_lib_cleanup();
@@ -78,22 +95,57 @@ MqttClient::~MqttClient() {
 void MqttClient::retain(const std::string& topic, const std::string& payload) {
   const std::lock_guard lock(mutex_);
   retained_[topic] = payload;
-  if (is_connected_) publish(client_, nullptr, topic, payload, true);
+  if (is_connected_) publish_retained(topic, payload);
 }
 
-std::string MqttClient::send(const std::string& topic, const std::string& payload) {
-  std::unique_lock lock(mutex_);
-  if (!changed_.wait_for(lock, kWait, [&] { return is_connected_; })) {
-    return std::string("mqtt: no connection to the broker") +
-           (refusal_ == 0 ? "" : std::string(": ") + mosquitto_connack_string(refusal_));
-  }
+void MqttClient::publish_retained(const std::string& topic, const std::string& payload) {
   int id = 0;
-  published_ids_.clear();
-  const bool retained = topic == status_topic_;
-  const int code = publish(client_, &id, topic, payload, retained);
-  if (code != MOSQ_ERR_SUCCESS) return std::string("mqtt: ") + mosquitto_strerror(code);
-  const bool has_it = changed_.wait_for(lock, kWait, [&] { return published_ids_.contains(id); });
-  return has_it ? "" : "mqtt: the broker does not acknowledge";
+  const int code = publish(client_, &id, topic, payload, true);
+  if (code == MOSQ_ERR_SUCCESS) unacknowledged_.insert(id);
+}
+
+bool MqttClient::wait_until_retained(std::chrono::milliseconds patience) {
+  const std::chrono::milliseconds patience_max(settings_.wait_ms_max);
+  std::unique_lock lock(mutex_);
+  return changed_.wait_for(lock, std::min(patience, patience_max),
+                           [&] { return is_connected_ && unacknowledged_.empty(); });
+}
+
+std::string MqttClient::send(const std::string& topic, const std::string& payload,
+                             const std::stop_token& stop) {
+  const std::chrono::milliseconds patience(settings_.wait_ms_max);
+  std::unique_lock lock(mutex_);
+  if (!changed_.wait_for(lock, stop, patience, [&] { return is_connected_; })) {
+    lock.unlock();
+    return "mqtt: no connection to the broker: " + why_not_connected(stop);
+  }
+  if (on_its_way_.id < 0 || on_its_way_.payload != payload) {
+    on_its_way_ = {.payload = payload};
+    const bool retained = topic == status_topic_;
+    const int code = publish(client_, &on_its_way_.id, topic, payload, retained);
+    if (code != MOSQ_ERR_SUCCESS) {
+      on_its_way_ = {};
+      return std::string("mqtt: ") + mosquitto_strerror(code);
+    }
+  }
+  if (!changed_.wait_for(lock, stop, patience, [&] { return on_its_way_.is_acknowledged; })) {
+    return "mqtt: the broker does not acknowledge: is it overloaded, is the line bad?";
+  }
+  on_its_way_ = {};
+  return "";
+}
+
+std::string MqttClient::why_not_connected(const std::stop_token& stop) {
+  const std::string trouble =
+      probe_connection({settings_.host, settings_.port, settings_.ca_file},
+                       "mqtt_ca_file must hold the one that signed it", stop);
+  if (!trouble.empty()) return trouble;
+  const std::lock_guard lock(mutex_);
+  if (refusal_ != 0) {
+    return std::string(mosquitto_connack_string(refusal_)) +
+           " see mqtt_user, mqtt_password_file and the broker's log";
+  }
+  return "it can be reached, but does not let us in: does it speak MQTT there?";
 }
 
 bool MqttClient::is_connected() {
@@ -105,9 +157,10 @@ void MqttClient::on_connect(int code) {
   const std::lock_guard lock(mutex_);
   refusal_ = code;
   is_connected_ = code == 0;
-  if (is_connected_) {
-    publish(client_, nullptr, status_topic_, "online", true);
-    for (const auto& [topic, payload] : retained_) publish(client_, nullptr, topic, payload, true);
+  if (is_connected_ && presence_ == MqttPresence::kStays) {
+    unacknowledged_.clear();
+    publish_retained(status_topic_, "online");
+    for (const auto& [topic, payload] : retained_) publish_retained(topic, payload);
   }
   changed_.notify_all();
 }
@@ -119,7 +172,8 @@ void MqttClient::on_disconnect() {
 
 void MqttClient::on_published(int message_id) {
   const std::lock_guard lock(mutex_);
-  published_ids_.insert(message_id);
+  unacknowledged_.erase(message_id);
+  if (message_id == on_its_way_.id) on_its_way_.is_acknowledged = true;
   changed_.notify_all();
 }
 

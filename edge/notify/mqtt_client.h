@@ -2,10 +2,12 @@
 // values are published as they come and again after each connect.
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <map>
 #include <mutex>
 #include <set>
+#include <stop_token>
 #include <string>
 
 #include "edge/notify/notify_settings.h"
@@ -14,10 +16,13 @@ struct mosquitto;
 
 namespace bess {
 
+/// A visitor leaves neither `status` nor a will, and takes no name that the watching notifier has.
+enum class MqttPresence { kStays, kVisits };
+
 class MqttClient {
  public:
-  /// Leaves `status` as the last will. Nothing is sent yet.
-  MqttClient(const MqttSettings& settings, const std::string& node);
+  /// Nothing is sent yet; who stays leaves `status` as the last will.
+  MqttClient(const MqttSettings& settings, const std::string& node, MqttPresence presence);
   MqttClient(const MqttClient&) = delete;
   MqttClient& operator=(const MqttClient&) = delete;
   /// Says offline, and goes.
@@ -28,8 +33,12 @@ class MqttClient {
 
   /// Held by the broker for whoever comes later. Kept here as well, for the next connect.
   void retain(const std::string& topic, const std::string& payload);
-  /// Once; waits up to five seconds until the broker has it. Empty, or why it has it not.
-  std::string send(const std::string& topic, const std::string& payload);
+  /// Until the broker has all that is retained; false when it has not within that time, nor within the settings'.
+  bool wait_until_retained(std::chrono::milliseconds patience);
+  /// Waits for a connection, then until the broker has it, each as long as the settings say. Empty, or why it has it
+  /// not: then the next call with the same payload waits for this one, so that it comes once.
+  std::string send(const std::string& topic, const std::string& payload,
+                   const std::stop_token& stop);
 
   // Called by libmosquitto's thread.
   void on_connect(int code);
@@ -37,18 +46,31 @@ class MqttClient {
   void on_published(int message_id);
 
  private:
-  void set_up(const MqttSettings& settings);
-  bool is_connected();
+  /// What was handed to libmosquitto, which sends it again after each connect until it is acknowledged.
+  struct OnItsWay {
+    int id = -1;  ///< -1: nothing
+    std::string payload{};
+    bool is_acknowledged = false;
+  };
 
+  int leave_will();
+  void set_up();
+  std::string why_not_connected(const std::stop_token& stop);
+  bool is_connected();
+  void publish_retained(const std::string& topic, const std::string& payload);
+
+  const MqttSettings settings_;
+  const MqttPresence presence_;
   mosquitto* client_ = nullptr;
   std::string status_topic_;
   std::string trouble_;
   std::mutex mutex_;
-  std::condition_variable changed_;
+  std::condition_variable_any changed_;
   bool is_connected_ = false;
-  int refusal_ = 0;              ///< the broker's answer to the last connect
-  std::set<int> published_ids_;  ///< acknowledged since the last `send` began
+  int refusal_ = 0;  ///< the broker's answer to the last connect
+  OnItsWay on_its_way_{};
   std::map<std::string, std::string> retained_;
+  std::set<int> unacknowledged_;  ///< retained values of this connection
 };
 
 }  // namespace bess

@@ -16,25 +16,21 @@
 namespace bess {
 namespace {
 
-constexpr std::int64_t kPatienceS = 3 * 86'400;
-constexpr std::size_t kPendingMax = 200;
 constexpr int kDaysMax = 7;  ///< told at once, after the notifier was away
+constexpr std::int64_t kKeepEnergyEveryS = 3'600;
 
 std::int32_t local_day_at(std::int64_t utc_s) { return local_day_of(local_minute_of(utc_s)); }
 
-/// The days before `today` that were not told, oldest first, from the newest records backwards.
-std::vector<DayAccount> accounts_of_days(const std::string& ring_path, std::int32_t told_day,
-                                         std::int32_t today) {
-  RingLog ring;
-  FileMessage ignored;
+/// The days from `first_day` to `last_day`, oldest first, from the newest records backwards.
+std::vector<DayAccount> accounts_of_days(const RingLog& ring, std::int32_t first_day,
+                                         std::int32_t last_day) {
   std::map<std::int32_t, DayAccount> days;
-  if (!ring.open_to_read(ring_path.c_str(), ignored)) return {};
   CycleRecord record;
   for (std::uint64_t n = ring.newest_number(); n >= ring.oldest_number() && n > 0; --n) {
     if (!ring.read(n, record)) continue;
     const std::int32_t day = local_day_at(record.utc_s);
-    if (day <= told_day) break;
-    if (day < today) days.try_emplace(day, day).first->second.add(record);
+    if (day < first_day) break;
+    if (day <= last_day) days.try_emplace(day, day).first->second.add(record);
   }
   std::vector<DayAccount> accounts;
   for (const auto& [day, account] : days) {
@@ -42,6 +38,15 @@ std::vector<DayAccount> accounts_of_days(const std::string& ring_path, std::int3
   }
   if (accounts.size() > kDaysMax) accounts.erase(accounts.begin(), accounts.end() - kDaysMax);
   return accounts;
+}
+
+/// 0 when no cycle has ended yet.
+std::int64_t newest_utc_of(const ControllerStatus& status) {
+  std::int64_t utc_s = 0;
+  const JsonValue all = status.json.value();
+  const char* const text = all["last"]["utc"].text();
+  const bool has_cycles = all["totals"]["cycles"].number().value_or(0) > 0;
+  return has_cycles && text != nullptr && parse_utc(text, utc_s) ? utc_s : 0;
 }
 
 std::string duration_text(std::int64_t seconds) {
@@ -52,45 +57,76 @@ std::string duration_text(std::int64_t seconds) {
 
 }  // namespace
 
-Notifier::Notifier(const NotifySettings& settings)
+Notifier::Notifier(const NotifySettings& settings, MqttPresence presence)
     : settings_(settings),
       told_(read_told(settings.memory)),
-      book_(settings.after_s, told_.alarms) {
+      energy_(told_.energy),
+      book_(settings.after_s, told_.alarms),
+      kept_(told_text(told_)) {
   if (!settings_.mail_to.empty()) {
-    ways_["mail"] = [this](const Message& message) { return send_mail(settings_, message); };
+    open_lane("mail", [this](const Message& message, const std::stop_token& stop) {
+      return send_mail(settings_, message, stop);
+    });
   }
   if (!settings_.webhook_url.empty()) {
-    ways_["webhook"] = [this](const Message& message) { return post_webhook(settings_, message); };
+    open_lane("webhook", [this](const Message& message, const std::stop_token& stop) {
+      return post_webhook(settings_, message, stop);
+    });
   }
-  if (settings_.mqtt.host.empty()) return;
-  mqtt_ = std::make_unique<MqttClient>(settings_.mqtt, settings_.node);
+  if (!settings_.mqtt.host.empty()) open_mqtt(presence);
+}
+
+void Notifier::open_mqtt(MqttPresence presence) {
+  mqtt_ = std::make_unique<MqttClient>(settings_.mqtt, settings_.node, presence);
   if (!settings_.mqtt.discovery_prefix.empty()) {
     mqtt_->retain(discovery_topic(settings_), discovery_json(settings_, BESS_VERSION));
   }
-  ways_["mqtt"] = [this](const Message& message) {
+  open_lane("mqtt", [this](const Message& message, const std::stop_token& stop) {
     if (!mqtt_->trouble().empty()) return mqtt_->trouble();
-    return mqtt_->send(topic(settings_.node, "event"), message_json(settings_.node, message));
-  };
+    return mqtt_->send(topic(settings_.node, "event"), message_json(settings_.node, message), stop);
+  });
+}
+
+void Notifier::open_lane(const char* name, Way way) {
+  lanes_.try_emplace(name, name, std::move(way), std::move(told_.owed[name]), taken_);
+}
+
+Notifier::~Notifier() {
+  constexpr std::chrono::seconds kGrace(2);
+  static_cast<void>(wait_for_ways(kGrace));
+  for (auto& [name, lane] : lanes_) lane.stop();
+  keep();
 }
 
 void Notifier::run_round(std::int64_t now_utc_s) {
   const ControllerStatus status = ask_controller(settings_.program, settings_.config_path);
   tell_events(book_.observe(troubles_of(status), now_utc_s), now_utc_s);
-  tell_days(status, now_utc_s);
+  read_log(newest_utc_of(status), now_utc_s);
   publish(status);
   keep();  // before it is sent: killed in between, a message is sent late and not never
-  const std::size_t pending = told_.pending.size();
-  deliver(now_utc_s);
-  if (told_.pending.size() != pending) keep();
+  for (auto& [name, lane] : lanes_) lane.begin_round(now_utc_s);
+}
+
+bool Notifier::wait_for_ways(std::chrono::milliseconds patience) {
+  using std::chrono::steady_clock;
+  const auto deadline = steady_clock::now() + patience;
+  const auto left = [&] {
+    return duration_cast<std::chrono::milliseconds>(deadline - steady_clock::now());
+  };
+  bool are_done = true;
+  for (const auto& [name, lane] : lanes_) are_done = lane.wait_until_done(left()) && are_done;
+  if (mqtt_ != nullptr) static_cast<void>(mqtt_->wait_until_retained(left()));
+  keep();
+  return are_done;
 }
 
 bool Notifier::send_test(std::int64_t now_utc_s) {
   bool all = true;
-  for (const auto& [name, way] : ways_) {
-    const std::string trouble = way({.kind = MessageKind::kTest,
-                                     .key = "test",
-                                     .text = "bess-notify can reach you by " + name,
-                                     .utc_s = now_utc_s});
+  for (const auto& [name, lane] : lanes_) {
+    const std::string trouble = lane.send_now({.kind = MessageKind::kTest,
+                                               .key = "test",
+                                               .text = "bess-notify can reach you by " + name,
+                                               .utc_s = now_utc_s});
     all = all && trouble.empty();
     say(trouble.empty() ? JournalLevel::kInfo : JournalLevel::kError,
         trouble.empty() ? name + ": sent" : trouble);
@@ -101,9 +137,7 @@ bool Notifier::send_test(std::int64_t now_utc_s) {
 void Notifier::tell(const Message& message) {
   say(message.kind == MessageKind::kAlarm ? JournalLevel::kWarning : JournalLevel::kNotice,
       headline(message));
-  for (const auto& [name, way] : ways_) told_.pending.push_back({name, message});
-  if (told_.pending.size() <= kPendingMax) return;
-  told_.pending.erase(told_.pending.begin(), told_.pending.end() - kPendingMax);
+  for (auto& [name, lane] : lanes_) lane.add(message);
 }
 
 void Notifier::tell_events(const std::vector<AlarmEvent>& events, std::int64_t now_utc_s) {
@@ -113,52 +147,39 @@ void Notifier::tell_events(const std::vector<AlarmEvent>& events, std::int64_t n
                     .text = alarm.text,
                     .utc_s = now_utc_s,
                     .since_utc_s = alarm.since_utc_s};
-    if (is_over) {
-      message.text += " (lasted " + duration_text(alarm.seen_utc_s - alarm.since_utc_s) + ")";
-    }
+    // It began up to a round before it was first seen, and ended up to a round after the last time.
+    const std::int64_t lasted_s = alarm.seen_utc_s - alarm.since_utc_s + settings_.every_s;
+    if (is_over) message.text += " (lasted " + duration_text(lasted_s) + ")";
     tell(message);
   }
 }
 
+/// Only behind a new cycle: to look for the newest record costs a reading of the whole log.
+void Notifier::read_log(std::int64_t newest_utc_s, std::int64_t now_utc_s) {
+  RingLog ring;
+  FileMessage ignored;
+  const bool is_new = newest_utc_s != 0 && newest_utc_s != read_up_to_utc_s_;
+  if (!is_new || !ring.open_to_read(settings_.ring.c_str(), ignored)) return;
+  read_up_to_utc_s_ = newest_utc_s;
+  energy_.count_new(ring);
+  const std::int32_t today = local_day_at(newest_utc_s);
+  const std::vector<DayAccount> accounts = accounts_of_days(ring, today, today);
+  today_ = accounts.empty() ? DayAccount(today) : accounts.front();
+  if (settings_.daily) tell_days(ring, newest_utc_s, now_utc_s);
+}
+
 /// By the controller's own time: its newest record begins the new day.
-void Notifier::tell_days(const ControllerStatus& status, std::int64_t now_utc_s) {
-  const char* const newest = status.json.value()["last"]["utc"].text();
-  std::int64_t newest_utc_s = 0;
-  if (!settings_.daily || newest == nullptr || !parse_utc(newest, newest_utc_s)) return;
-  const bool has_cycles = status.json.value()["totals"]["cycles"].number().value_or(0) > 0;
-  if (!has_cycles || newest_utc_s == 0) return;
+void Notifier::tell_days(const RingLog& ring, std::int64_t newest_utc_s, std::int64_t now_utc_s) {
   const std::int32_t today = local_day_at(newest_utc_s);
   const std::int32_t yesterday = local_day_at(newest_utc_s - 86'400);
   if (told_.local_day == 0) told_.local_day = yesterday;     // the days before were not watched
   if (told_.local_day > today) told_.local_day = yesterday;  // told while the clock was wrong
   if (told_.local_day >= yesterday) return;
-  for (const DayAccount& day : accounts_of_days(settings_.ring, told_.local_day, today)) {
+  for (const DayAccount& day : accounts_of_days(ring, told_.local_day + 1, yesterday)) {
     tell({.kind = MessageKind::kDay, .key = day.date(), .text = day.line(), .utc_s = now_utc_s});
     if (mqtt_ != nullptr) mqtt_->retain(topic(settings_.node, "day"), day_json(day));
   }
   told_.local_day = yesterday;
-}
-
-void Notifier::deliver(std::int64_t now_utc_s) {
-  std::vector<Pending> left;
-  std::map<std::string, std::string> troubles;
-  for (Pending& pending : told_.pending) {
-    const auto way = ways_.find(pending.way);
-    const bool is_too_old = now_utc_s - pending.message.utc_s > kPatienceS;
-    if (way == ways_.end() || is_too_old) continue;
-    // A way that has just failed would only cost its time-out again.
-    const bool has_failed = troubles.contains(pending.way);
-    const std::string trouble = has_failed ? troubles[pending.way] : way->second(pending.message);
-    if (trouble.empty()) continue;
-    troubles[pending.way] = trouble;
-    left.push_back(std::move(pending));
-  }
-  told_.pending = std::move(left);
-  for (const auto& [name, trouble] : troubles) {
-    if (trouble_of_way_[name] == trouble) continue;
-    say(JournalLevel::kWarning, trouble + "; tried again every round");
-  }
-  trouble_of_way_ = std::move(troubles);
 }
 
 void Notifier::publish(const ControllerStatus& status) {
@@ -166,18 +187,29 @@ void Notifier::publish(const ControllerStatus& status) {
   const std::vector<Alarm>& alarms = book_.alarms();
   const auto told =
       std::count_if(alarms.begin(), alarms.end(), [](const Alarm& alarm) { return alarm.is_told; });
-  mqtt_->retain(topic(settings_.node, "state"), state_json(status, static_cast<std::size_t>(told)));
+  mqtt_->retain(topic(settings_.node, "state"),
+                state_json(status, static_cast<std::size_t>(told), {energy_, today_}));
   mqtt_->retain(topic(settings_.node, "alarms"), alarms_json(alarms));
 }
 
 void Notifier::keep() {
+  taken_.hush();
   told_.alarms = book_.alarms();
+  told_.owed.clear();  // of ways that are not configured any more
+  for (const auto& [name, lane] : lanes_) told_.owed[name] = lane.owed();
+  // Its growth can be counted again from the log: alone it is not worth a write to the card.
+  const bool is_energy_due =
+      energy_.counted_utc_s - told_.energy.counted_utc_s >= kKeepEnergyEveryS;
+  if (!is_energy_due && told_text(told_) == kept_ && !is_memory_failing_) return;
+  told_.energy = energy_;
+  const std::string text = told_text(told_);
   std::string error;
-  const bool is_kept = write_told(settings_.memory, told_, error);
+  const bool is_kept = write_told(settings_.memory, text, error);
   if (!is_kept && !is_memory_failing_) {
     say(JournalLevel::kWarning, error + "; a restart will tell again what was told");
   }
   is_memory_failing_ = !is_kept;
+  kept_ = text;
 }
 
 }  // namespace bess

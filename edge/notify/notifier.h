@@ -1,16 +1,20 @@
-// One round of the notifier: ask, compare with what was told, tell the rest by every way.
-//   bess-edge status, decision log --> AlarmBook, DayAccount --> messages --> mail, webhook, MQTT
-// It reads files and asks a program; nothing here holds what the controller needs. What a way does not take
-// is tried again every round, for three days.
+// One round of the notifier: ask, compare with what was told, hand the rest to every way's lane.
+//   bess-edge status, decision log --> AlarmBook, DayAccount --> messages --> lanes: mail, webhook, MQTT
+// It reads files and asks a program; nothing here holds what the controller needs. A round waits for no way: what
+// a way does not take is tried again every round, for three days, in its own lane.
 #pragma once
 
-#include <functional>
 #include <map>
 #include <memory>
 #include <string>
 
+#include "edge/log/ring_log.h"
 #include "edge/notify/alarm_book.h"
+#include "edge/notify/bell.h"
 #include "edge/notify/controller_status.h"
+#include "edge/notify/day_account.h"
+#include "edge/notify/energy_totals.h"
+#include "edge/notify/lane.h"
 #include "edge/notify/message.h"
 #include "edge/notify/mqtt_client.h"
 #include "edge/notify/notify_settings.h"
@@ -18,33 +22,45 @@
 
 namespace bess {
 
-/// Empty when a message was taken; else why not.
-using Way = std::function<std::string(const Message&)>;
-using Ways = std::map<std::string, Way>;
-
 class Notifier {
  public:
   /// Opens the ways that the settings name.
-  explicit Notifier(const NotifySettings& settings);
+  Notifier(const NotifySettings& settings, MqttPresence presence = MqttPresence::kStays);
+  Notifier(const Notifier&) = delete;
+  Notifier& operator=(const Notifier&) = delete;
+  /// Lets the ways end what they are at, for two seconds; what is cut then is told after the next start.
+  ~Notifier();
 
   void run_round(std::int64_t now_utc_s);
+  /// Readable when a way has taken something: `keep` is due.
+  [[nodiscard]] int bell() const { return taken_.fd(); }
+  /// Writes down what was told and what is owed, where that has changed.
+  void keep();
+  /// Until every way has taken what is owed, or has failed, and a broker that is there has the newest values; then
+  /// keeps it. False when the patience ends before.
+  bool wait_for_ways(std::chrono::milliseconds patience);
   /// A message by every way, once. False when one did not take it.
   bool send_test(std::int64_t now_utc_s);
 
  private:
+  void open_mqtt(MqttPresence presence);
+  void open_lane(const char* name, Way way);
   void tell(const Message& message);
   void tell_events(const std::vector<AlarmEvent>& events, std::int64_t now_utc_s);
-  void tell_days(const ControllerStatus& status, std::int64_t now_utc_s);
-  void deliver(std::int64_t now_utc_s);
+  void read_log(std::int64_t newest_utc_s, std::int64_t now_utc_s);
+  void tell_days(const RingLog& ring, std::int64_t newest_utc_s, std::int64_t now_utc_s);
   void publish(const ControllerStatus& status);
-  void keep();
 
-  NotifySettings settings_;
-  Told told_;
+  const NotifySettings settings_;
+  Told told_;  ///< as it was kept last
+  EnergyTotals energy_;
+  DayAccount today_{0};                ///< of the newest record
+  std::int64_t read_up_to_utc_s_ = 0;  ///< the cycle behind which the log was read last
   AlarmBook book_;
+  Bell taken_;
   std::unique_ptr<MqttClient> mqtt_;
-  Ways ways_;
-  std::map<std::string, std::string> trouble_of_way_;  ///< said once, not every round
+  std::map<std::string, Lane> lanes_;  ///< after what their threads use
+  std::string kept_;                   ///< the text that was written last
   bool is_memory_failing_ = false;
 };
 

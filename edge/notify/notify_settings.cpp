@@ -32,6 +32,13 @@ std::string resolved(const TomlTable& table, const std::string& path) {
   return (std::filesystem::path(table.file()).parent_path() / path).string();
 }
 
+/// `name`, the value of `key`, as a path.
+std::string readable_file(TomlTable& table, std::string_view key, const std::string& name) {
+  const std::string path = resolved(table, name);
+  if (access(path.c_str(), R_OK) != 0) table.fail(key, "= " + path + " cannot be read");
+  return path;
+}
+
 std::string host_name() {
   char name[65] = {};
   return gethostname(name, sizeof name - 1) == 0 && *name != '\0' ? name : "bess";
@@ -74,12 +81,16 @@ void read_webhook(TomlTable& table, NotifySettings& settings) {
   std::string header_file;
   read_text(table, "webhook_url", settings.webhook_url);
   read_text(table, "webhook_header_file", header_file);
+  read_text(table, "webhook_ca_file", settings.webhook_ca_file);
   if (settings.webhook_url.empty() || !table.ok()) return;
   if (!is_allowed_webhook(settings.webhook_url)) {
     return table.fail("webhook_url",
                       "must start with https://, or lead to this machine: http://127.0.0.1");
   }
-  if (header_file.empty()) return;
+  if (!settings.webhook_ca_file.empty()) {
+    settings.webhook_ca_file = readable_file(table, "webhook_ca_file", settings.webhook_ca_file);
+  }
+  if (header_file.empty() || !table.ok()) return;
   FixedText<2047> headers;
   if (!load_http_headers(resolved(table, header_file).c_str(), headers, table.error())) return;
   settings.webhook_headers = headers.view();
@@ -123,12 +134,7 @@ void read_mqtt(TomlTable& table, MqttSettings& mqtt) {
   read_text(table, "mqtt_discovery_prefix", mqtt.discovery_prefix);
   if (mqtt.host.empty() || !table.ok()) return;
   if (mqtt.port == 0) mqtt.port = mqtt.ca_file.empty() ? 1883 : 8883;
-  if (!mqtt.ca_file.empty()) {
-    mqtt.ca_file = resolved(table, mqtt.ca_file);
-    if (access(mqtt.ca_file.c_str(), R_OK) != 0) {
-      table.fail("mqtt_ca_file", "= " + mqtt.ca_file + " cannot be read");
-    }
-  }
+  if (!mqtt.ca_file.empty()) mqtt.ca_file = readable_file(table, "mqtt_ca_file", mqtt.ca_file);
   if (password_file.empty()) return;
   if (mqtt.user.empty()) table.fail("mqtt_password_file", "needs mqtt_user");
   if (mqtt.ca_file.empty() && !is_loopback(mqtt.host)) {
@@ -160,6 +166,7 @@ void read_notify(TomlTable table, NotifySettings& settings) {
   table.finish();
   settings.program = resolved(table, settings.program);
   settings.memory = resolved(table, folder) + "/told.json";
+  settings.lock = resolved(table, folder) + "/lock";
 }
 
 }  // namespace

@@ -14,7 +14,8 @@ struct MqttSettings {
   std::string ca_file;  ///< empty: in clear
   std::string user;
   std::string password;
-  std::string discovery_prefix;  ///< of Home Assistant; empty: no discovery
+  std::string discovery_prefix;      ///< of Home Assistant; empty: no discovery
+  std::int32_t wait_ms_max = 5'000;  ///< for a connection, and for an acknowledgement
 };
 
 struct NotifySettings {
@@ -22,6 +23,7 @@ struct NotifySettings {
   std::string program;  ///< bess-edge
   std::string ring;     ///< the decision log
   std::string memory;   ///< file of what was told
+  std::string lock;     ///< file that the one notifier of this memory holds
   std::string node;
   std::int32_t every_s = 30;
   std::int32_t after_s = 300;
@@ -31,6 +33,9 @@ struct NotifySettings {
   std::string sendmail;
   std::string webhook_url;      ///< empty: no webhook
   std::string webhook_headers;  ///< one "Name: value" a line
+  std::string webhook_ca_file;  ///< empty: the system's
+  std::int32_t webhook_ms_max = 20'000;
+  std::int32_t mailer_ms_max = 60'000;
   MqttSettings mqtt;
 
   [[nodiscard]] bool has_a_way() const {

@@ -26,6 +26,7 @@ struct Entity {
   const char* device_class = "";
   const char* unit = "";
   const char* state_class = "";
+  const char* last_reset = "";  ///< template, of what begins again at 0
 };
 
 constexpr Entity kEntities[] = {
@@ -50,6 +51,13 @@ constexpr Entity kEntities[] = {
     {"binary_sensor", "held", "Held", "{{ 'ON' if value_json.held else 'OFF' }}"},
     {"binary_sensor", "problem", "Problem", "{{ 'OFF' if value_json.health == 'ok' else 'ON' }}",
      "problem"},
+    {"sensor", "energy_charged", "Energy charged", "{{ value_json.charged_kwh | default('None') }}",
+     "energy", "kWh", "total_increasing"},
+    {"sensor", "energy_discharged", "Energy discharged",
+     "{{ value_json.discharged_kwh | default('None') }}", "energy", "kWh", "total_increasing"},
+    {"sensor", "earned_today", "Earned today (estimate)",
+     "{{ value_json.earned_today_eur | default('None') }}", "monetary", "EUR", "total",
+     "{{ value_json.today_since_utc }}"},
 };
 
 Json entity_json(const NotifySettings& settings, const std::string& id, const Entity& entity) {
@@ -60,9 +68,11 @@ Json entity_json(const NotifySettings& settings, const std::string& id, const En
                             {"value_template", entity.value},
                             {"availability_topic", topic(settings.node, "status")},
                             {"expire_after", settings.every_s * 10}});
-  const std::pair<const char*, const char*> others[] = {{"device_class", entity.device_class},
-                                                        {"unit_of_measurement", entity.unit},
-                                                        {"state_class", entity.state_class}};
+  const std::pair<const char*, const char*> others[] = {
+      {"device_class", entity.device_class},
+      {"unit_of_measurement", entity.unit},
+      {"state_class", entity.state_class},
+      {"last_reset_value_template", entity.last_reset}};
   for (const auto& [key, value] : others) {
     if (*value != '\0') json.set(key, value);
   }
@@ -88,7 +98,8 @@ std::string topic(const std::string& node, const char* name) {
   return "bess/v1/" + node + "/" + name;
 }
 
-std::string state_json(const ControllerStatus& status, std::size_t open_alarms) {
+std::string state_json(const ControllerStatus& status, std::size_t open_alarms,
+                       const Ledger& ledger) {
   const JsonValue all = status.json.value();
   const JsonValue last = all["last"];
   Json json = Json::object(
@@ -114,6 +125,14 @@ std::string state_json(const ControllerStatus& status, std::size_t open_alarms) 
   if (held) {
     set_scaled(json, "hold_w", last, "hold_power_w", 1, 0);
     json.set("hold_until_utc", last["hold_until_utc"].text_or(""));
+  }
+  if (ledger.energy.has_begun()) {
+    json.set("charged_kwh", Decimals{ledger.energy.charged_kwh(), 3});
+    json.set("discharged_kwh", Decimals{ledger.energy.discharged_kwh(), 3});
+  }
+  if (!ledger.today.is_empty()) {
+    json.set("earned_today_eur", Decimals{ledger.today.earned_eur(), 2});
+    json.set("today_since_utc", utc_text(ledger.today.start_utc_s()).view());
   }
   return json.line();
 }

@@ -13,6 +13,7 @@
 #include "edge/notify/alarm_book.h"
 #include "edge/notify/controller_status.h"
 #include "edge/notify/day_account.h"
+#include "edge/notify/energy_totals.h"
 #include "edge/notify/notify_settings.h"
 
 namespace bess {
@@ -20,7 +21,14 @@ namespace bess {
 /// "bess/v1/NODE/NAME".
 std::string topic(const std::string& node, const char* name);
 
-std::string state_json(const ControllerStatus& status, std::size_t open_alarms);
+/// What the decision log adds up to.
+struct Ledger {
+  const EnergyTotals& energy;
+  const DayAccount& today;  ///< empty: no cycle has ended yet
+};
+
+std::string state_json(const ControllerStatus& status, std::size_t open_alarms,
+                       const Ledger& ledger);
 std::string alarms_json(const std::vector<Alarm>& alarms);
 std::string day_json(const DayAccount& day);
 

@@ -15,6 +15,7 @@
 #include "edge/notify/told.h"
 #include "edge/notify/topics.h"
 #include "edge/notify/webhook.h"
+#include "shared/local_time.h"
 #include "tests/support/golden_file.h"
 #include "tests/support/temporary_folder.h"
 
@@ -195,7 +196,7 @@ TEST(Mail, IsWholeAndNothingInAStatusBecomesAHeader) {
             "Auto-Submitted: auto-generated\nMIME-Version: 1.0\n"
             "Content-Type: text/plain; charset=UTF-8\n\n"
             "WARN: mode is safe, reason link Bcc: evil@example.org\n\n"
-            "since 2023-03-26T23:57:00Z\ntold at 2023-03-27T00:02:00Z by bess-notify on garage\n"
+            "since 2023-03-26T23:57:00Z\nseen at 2023-03-27T00:02:00Z by bess-notify on garage\n"
             "more: bess-edge status, bess-edge log --last 20\n");
 }
 
@@ -224,16 +225,22 @@ ControllerStatus sample_status() {
 
 /// What stands in the broker is an interface: a difference moves what users have built upon.
 TEST(Topics, AreTheseToTheLetter) {
+  set_market_time_zone();
   NotifySettings settings;
   settings.node = "garage";
   settings.mqtt.discovery_prefix = "homeassistant";
   DayAccount day(20'231'126);
   day.add({});
+  EnergyTotals energy;
+  energy.charged_ws = 44'442'000;
+  energy.discharged_ws = 36'000'000'000;
+  energy.counted_utc_s = kAlarm.utc_s;
   std::string text =
       "# generator notify_test, no seed, command: BESS_UPDATE_GOLDEN=1 notify_test "
       "--gtest_filter=Topics.*\n";
-  text += topic("garage", "state") + " " + state_json(sample_status(), 2) + "\n";
-  text += topic("garage", "state") + " " + state_json({.trouble = "x"}, 0) + "\n";
+  text += topic("garage", "state") + " " + state_json(sample_status(), 2, {energy, day}) + "\n";
+  text +=
+      topic("garage", "state") + " " + state_json({.trouble = "x"}, 0, {{}, DayAccount(0)}) + "\n";
   text += topic("garage", "alarms") + " " +
           alarms_json({{.key = "k", .text = "t", .since_utc_s = 0, .is_told = true},
                        {.key = "not told yet"}}) +
@@ -250,9 +257,14 @@ TEST(Told, OutlastsARestart) {
   Told told;
   told.local_day = 20'231'126;
   told.alarms = {{.key = "k", .text = "t", .since_utc_s = 60, .seen_utc_s = 120, .is_told = true}};
-  told.pending = {{.way = "mail", .message = kAlarm}};
+  told.owed["mail"].messages = {kAlarm};
+  told.owed["mqtt"].dropped = {.count = 3, .first_utc_s = 60, .last_utc_s = 180};
+  told.energy.charged_ws = 9'000'000'000'000;
+  told.energy.discharged_ws = 7;
+  told.energy.counted_number = 25'200;
+  told.energy.counted_utc_s = 1'679'875'320;
   std::string error;
-  ASSERT_TRUE(write_told(path, told, error)) << error;
+  ASSERT_TRUE(write_told(path, told_text(told), error)) << error;
   const Told read = read_told(path);
   EXPECT_EQ(read.local_day, 20'231'126);
   ASSERT_EQ(read.alarms.size(), 1U);
@@ -260,11 +272,14 @@ TEST(Told, OutlastsARestart) {
   EXPECT_EQ(read.alarms[0].since_utc_s, 60);
   EXPECT_EQ(read.alarms[0].seen_utc_s, 120);
   EXPECT_TRUE(read.alarms[0].is_told);
-  ASSERT_EQ(read.pending.size(), 1U);
-  EXPECT_EQ(read.pending[0].way, "mail");
-  EXPECT_EQ(read.pending[0].message.kind, MessageKind::kAlarm);
-  EXPECT_EQ(read.pending[0].message.text, kAlarm.text);
-  EXPECT_EQ(read.pending[0].message.utc_s, kAlarm.utc_s);
+  ASSERT_EQ(read.owed.at("mail").messages.size(), 1U);
+  const Message& message = read.owed.at("mail").messages.front();
+  EXPECT_EQ(message.kind, MessageKind::kAlarm);
+  EXPECT_EQ(message.text, kAlarm.text);
+  EXPECT_EQ(message.utc_s, kAlarm.utc_s);
+  EXPECT_EQ(read.owed.at("mqtt").dropped.count, 3);
+  EXPECT_EQ(read.owed.at("mqtt").dropped.last_utc_s, 180);
+  EXPECT_EQ(told_text(read), told_text(told));
 }
 
 TEST(Told, ADamagedFileIsAsIfNothingWasTold) {
@@ -276,7 +291,7 @@ TEST(Told, ADamagedFileIsAsIfNothingWasTold) {
     EXPECT_TRUE(told.alarms.empty());
   }
   std::string error;
-  EXPECT_FALSE(write_told("/proc/nowhere/told.json", {}, error));
+  EXPECT_FALSE(write_told("/proc/nowhere/told.json", "{}", error));
   EXPECT_THAT(error, HasSubstr("cannot be written"));
 }
 

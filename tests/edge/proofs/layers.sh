@@ -68,7 +68,7 @@ layer $w/main.cpp                   $w shared
 # OWNERS include <HEADER>.
 only() { blame "$(includes "<$1" "${3:-edge shared}" | grep -vE "^($2)")" "only $2 knows $1"; }
 only modbus/ edge/battery/modbus_wire.cpp:
-only curl/   'edge/prices/|edge/notify/webhook.cpp:'
+only curl/   'edge/prices/|edge/notify/curl_handle.h:'
 only mosquitto.h edge/notify/mqtt_client.cpp: 'edge shared workstation tools'
 only cjson/  'edge/prices/|shared/host/json.cpp:' 'edge shared workstation tools'
 only toml++/ shared/host/toml_document.cpp: 'edge shared workstation tools'

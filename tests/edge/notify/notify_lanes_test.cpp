@@ -1,0 +1,245 @@
+// Ways that hang, beside ways that do not: the whole program with a mailer that sleeps, servers that are silent or
+// drip, and a broker that comes and goes. What is told, when, how often, and what of it outlasts a kill.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "shared/host/child_process.h"
+#include "shared/scaled_clock.h"
+#include "tests/edge/notify/notify_site.h"
+#include "tests/support/test_server.h"
+
+namespace bess {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+double seconds_now() { return static_cast<double>(clock_ns(CLOCK_MONOTONIC)) / 1e9; }
+
+/// One byte of an endless answer now and then, until the client goes.
+bool drip(TestConnection& connection, const std::string&) {
+  if (!connection.send("HTTP/1.1 200 OK\r\nContent-Length: 1000000\r\n\r\n")) return false;
+  while (connection.send("x")) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  return false;
+}
+
+class Lanes : public Mqtt {
+ protected:
+  void SetUp() override {
+    Mqtt::SetUp();
+    settings_.every_s = 1;
+  }
+  void use_stuck_mailer() {
+    settings_.mail_to = "a@b.example";
+    settings_.sendmail =
+        write_script("stuck", "echo x >>" + folder_.file("mailer_began") + "; sleep 1000");
+  }
+  void use_webhook(const TestServer& server) {
+    settings_.webhook_url = "http://127.0.0.1:" + std::to_string(server.port()) + "/hook";
+  }
+  /// The same settings as a file.
+  std::string config() {
+    std::string text =
+        "[notify]\nnode = \"garage\"\nevery_s = 1\nafter_s = " + std::to_string(settings_.after_s) +
+        "\nprogram = \"" + settings_.program + "\"\n";
+    if (!settings_.mail_to.empty()) {
+      text +=
+          "mail_to = \"" + settings_.mail_to + "\"\nsendmail = \"" + settings_.sendmail + "\"\n";
+    }
+    if (!settings_.webhook_url.empty()) text += "webhook_url = \"" + settings_.webhook_url + "\"\n";
+    text += "mqtt_host = \"127.0.0.1\"\nmqtt_port = " + std::to_string(port()) + "\n";
+    return folder_.write("edge.toml", text);
+  }
+  /// Waits until a file has this many lines; false after half a minute.
+  bool await_lines(const std::string& name, std::size_t count) const {
+    for (int i = 0; i < 600; ++i) {
+      if (count_of(text_of_file(folder_.file(name)), "\n") >= count) return true;
+      usleep(50'000);
+    }
+    return false;
+  }
+};
+
+/// Stuck ways cost 80 s a round when all were served one after the other: alarms that came and went were never
+/// told, and the others far too late.
+TEST_F(Lanes, AnAlarmReachesTheGoodWayWithinARoundWhateverTheOthersAreAt) {
+  Broker broker(folder_, port());
+  Listener all(port(), "bess/#");
+  TestServer silent([&silent](TestConnection&, const std::string&) {
+    silent.wait_for_end();
+    return false;
+  });
+  use_stuck_mailer();
+  use_webhook(silent);
+  ChildProcess notify({BESS_NOTIFY_PROGRAM, "--config", config()});
+  ASSERT_EQ(all.await("/status", "online"), "online");
+  set_status("degraded", R"("WARN: the first")");
+  ASSERT_NE(all.await("/event", "the first"), "");
+  ASSERT_TRUE(await_lines("mailer_began", 1));  // and it stays at it
+  double slowest_s = 0;
+  for (const char* name : {"the second", "the third", "the fourth"}) {
+    const double begin_s = seconds_now();
+    set_status("degraded", std::string(R"("WARN: )") + name + "\"");
+    ASSERT_NE(all.await("/event", std::string("WARN: ") + name), "");
+    slowest_s = std::max(slowest_s, seconds_now() - begin_s);
+  }
+  EXPECT_LT(slowest_s, 1 + 5) << "a round, and what a busy machine adds";
+  notify.signal(SIGTERM);
+  const double begin_s = seconds_now();
+  EXPECT_EQ(notify.wait(), 0);
+  EXPECT_LT(seconds_now() - begin_s, 10);
+  EXPECT_EQ(all.await("/status", "offline"), "offline");
+}
+
+/// Two rounds of margin for a busy machine: told with stuck ways it had been five seconds, whatever it was.
+TEST_F(Lanes, AnOutageIsToldAsLongAsItWas) {
+  Broker broker(folder_, port());
+  Listener all(port(), "bess/#");
+  TestServer dripping(drip);
+  use_stuck_mailer();
+  use_webhook(dripping);
+  ChildProcess notify({BESS_NOTIFY_PROGRAM, "--config", config()});
+  ASSERT_EQ(all.await("/status", "online"), "online");
+  set_status("degraded", R"("WARN: an outage")");
+  ASSERT_NE(all.await("/event", "an outage"), "");
+  const double begin_s = seconds_now();
+  std::this_thread::sleep_for(std::chrono::seconds(7));
+  set_status("ok");
+  const double lasted_s = seconds_now() - begin_s;
+  const std::string over = all.await("/event", "lasted");
+  const std::size_t at = over.find("(lasted ");
+  ASSERT_NE(at, over.npos) << over;
+  EXPECT_NEAR(std::stod(over.substr(at + 8)), lasted_s, 3) << over;
+}
+
+/// In moved time, exactly: seen from 5 to 45 s, it lasted between 40 and 50 s.
+TEST_F(Lanes, FortyFiveSecondsAreFortyFiveSeconds) {
+  Broker broker(folder_, port());
+  Listener all(port(), "bess/#");
+  settings_.every_s = 5;
+  Notifier notifier(settings_);
+  whole_round(notifier, kNow);
+  set_status("degraded", R"("WARN: an outage")");
+  for (int s = 5; s <= 45; s += 5) whole_round(notifier, kNow + s);
+  set_status("ok");
+  whole_round(notifier, kNow + 50);
+  EXPECT_THAT(all.await("/event", "over"), HasSubstr("an outage (lasted 45 s)"));
+}
+
+/// The broker stands still for longer than a delivery waits, goes away, and is there again: each event comes once and
+/// in order, and the mail goes out meanwhile.
+TEST_F(Lanes, ABrokerThatComesAndGoesIsToldEverythingOnce) {
+  Broker broker(folder_, port());
+  auto all = std::make_unique<Listener>(port(), "bess/#");
+  use_mail();
+  ChildProcess notify({BESS_NOTIFY_PROGRAM, "--config", config()});
+  ASSERT_EQ(all->await("/status", "online"), "online");
+  broker.freeze();
+  set_status("degraded", R"("WARN: one")");
+  ASSERT_TRUE(await_lines("mails", 1));
+  EXPECT_THAT(mails(), HasSubstr("ALARM: WARN: one"));
+  std::this_thread::sleep_for(std::chrono::seconds(6));  // several tries
+  broker.thaw();
+  ASSERT_NE(all->await("/event", "WARN: one"), "");
+  broker.stop();
+  set_status("ok");
+  for (int i = 0; i < 600 && count_of(mails(), "over: WARN: one") == 0; ++i) usleep(50'000);
+  EXPECT_THAT(mails(), HasSubstr("over: WARN: one"));
+  broker.start();
+  all = std::make_unique<Listener>(port(), "bess/#");
+  ASSERT_NE(all->await("/event", "over"), "");
+  set_status("degraded", R"("WARN: two")");
+  ASSERT_NE(all->await("/event", "WARN: two"), "");
+  EXPECT_EQ(all->count("/event"), 2U);  // since it is there again
+}
+
+/// Killed again and again while its mailer takes its time: no alarm is lost, and the file is whole each time.
+TEST_F(Lanes, AKillLosesNothing) {
+  settings_.mail_to = "a@b.example";
+  settings_.sendmail = write_script("slow", "echo x >>" + folder_.file("mailer_began") +
+                                                "; sleep 0.3; cat >>" + folder_.file("mails"));
+  const std::string file = config();
+  constexpr int kKills = 12;
+  for (int i = 0; i < kKills; ++i) {
+    set_status("degraded",
+               "\"WARN: trouble of kind " + std::string(1, static_cast<char>('A' + i)) + "\"");
+    ChildProcess notify({BESS_NOTIFY_PROGRAM, "--config", file});
+    ASSERT_TRUE(await_lines("mailer_began", static_cast<std::size_t>(i) + 1));
+    usleep(static_cast<useconds_t>(37'000 * i));
+    notify.signal(SIGKILL);
+    notify.wait();
+  }
+  ChildProcess notify({BESS_NOTIFY_PROGRAM, "--config", file});
+  for (int i = 0; i < kKills; ++i) {
+    const std::string headline =
+        "ALARM: WARN: trouble of kind " + std::string(1, static_cast<char>('A' + i));
+    for (int wait = 0; wait < 600 && count_of(mails(), headline) == 0; ++wait) usleep(50'000);
+    EXPECT_GE(count_of(mails(), headline), 1U) << headline;
+  }
+  EXPECT_EQ(notify.signal(SIGTERM), true);
+  EXPECT_EQ(notify.wait(), 0);
+  EXPECT_EQ(count_of(text_of_file(folder_.file("notify/told.json")), "\"version\""), 1U);
+}
+
+/// What the program says on one run.
+struct Said {
+  int exit_code;
+  std::string text;
+};
+
+Said run(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), BESS_NOTIFY_PROGRAM);
+  ChildProcess child(std::move(arguments));
+  std::string text = child.read_all();
+  return {child.wait(), std::move(text)};
+}
+
+TEST_F(Lanes, ASecondNotifierOfOneMemoryIsRefused) {
+  Broker broker(folder_, port());
+  Listener all(port(), "bess/#");
+  const std::string file = config();
+  {
+    ChildProcess first({BESS_NOTIFY_PROGRAM, "--config", file});
+    ASSERT_EQ(all.await("/status", "online"), "online");
+    for (const std::vector<std::string>& task :
+         {std::vector<std::string>{}, std::vector<std::string>{"--once"}}) {
+      std::vector<std::string> arguments = {"--config", file};
+      arguments.insert(arguments.end(), task.begin(), task.end());
+      const Said second = run(arguments);
+      EXPECT_EQ(second.exit_code, 1);
+      EXPECT_THAT(
+          second.text,
+          AllOf(HasSubstr("another bess-notify watches with this [notify] folder (process " +
+                          std::to_string(first.pid()) + ", lock "),
+                HasSubstr("notify/lock"), HasSubstr("stop that one")));
+    }
+    // These may, and leave what the first one published.
+    EXPECT_EQ(run({"--config", file, "--check"}).exit_code, 0);
+    EXPECT_THAT(run({"--config", file, "--test"}).text, HasSubstr("mqtt: sent"));
+    EXPECT_NE(all.await("/event", "can reach you"), "");
+    Listener later(port(), "bess/v1/garage/status");
+    EXPECT_EQ(later.await("/status", "o"), "online");
+    EXPECT_EQ(all.count("/status"), 1U);
+    first.signal(SIGKILL);
+    first.wait();
+  }
+  EXPECT_EQ(run({"--config", file, "--once"}).exit_code, 0);  // a killed one holds nothing
+}
+
+/// Where nothing can be kept, something must be told all the same.
+TEST_F(Lanes, ANotifierThatCannotLockStillTells) {
+  const std::string file =
+      folder_.write("edge.toml", "[notify]\nfolder = \"/proc/nowhere\"\nafter_s = 0\nprogram = \"" +
+                                     settings_.program + "\"\n");
+  set_status("degraded", R"("WARN: a trouble")");
+  const Said said = run({"--config", file, "--once"});
+  EXPECT_EQ(said.exit_code, 0);
+  EXPECT_THAT(said.text, AllOf(HasSubstr("a second notifier is not noticed"),
+                               HasSubstr("ALARM: WARN: a trouble")));
+}
+
+}  // namespace
+}  // namespace bess
