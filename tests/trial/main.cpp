@@ -1,7 +1,8 @@
 // Prints what the supervision makes of every fault and of every honest battery of the trial, as tables
 // of Markdown or as CSV. Measures and asserts nothing: trial_test does.
 //
-//   supervision_trial faults         each fault at SoC 45 %, constant and intermittent
+//   supervision_trial faults         each fault at SoC 45 %: constant, at some ticks, the SoC in whole
+//                                    percent, the controller killed after each cycle
 //   supervision_trial ends           each fault near full and near empty
 //   supervision_trial honest [DAYS]  each variant of a healthy battery
 //   supervision_trial csv            every fault, schedule, kind of orders and SoC
@@ -60,27 +61,28 @@ constexpr const char* kLegend =
     "driven\nof the next 30. \"-\": not found in 60 cycles (real day: 720); \"weak\": told as weak "
     "answers.\n\n";
 
+void print_table(const std::string& title, FaultCase c) {
+  print_header(title.c_str());
+  for (const TrialFault& fault : trial_faults()) {
+    c.fault = &fault;
+    print_row(fault.name, c);
+  }
+  std::printf("\n");
+}
+
 void print_faults() {
   std::printf("%s", kLegend);
   for (const Schedule& schedule : kSchedules) {
-    print_header((std::string("SoC 45 %, ") + schedule.name).c_str());
-    for (const TrialFault& fault : trial_faults()) {
-      print_row(fault.name, {.fault = &fault, .times = schedule.times});
-    }
-    std::printf("\n");
+    print_table(std::string("SoC 45 %, ") + schedule.name, {.times = schedule.times});
   }
+  print_table("SoC 45 % in whole percent", {.nature = {.soc_step_e4 = 100}});
+  print_table("SoC 45 %, controller killed after each cycle", {.is_killed = true});
 }
 
 void print_ends() {
   std::printf("%s", kLegend);
-  for (const double soc : {0.09, 0.12, 0.85, 0.97}) {
-    char head[40];
-    std::snprintf(head, sizeof head, "SoC %.0f %%, always", soc * 100);
-    print_header(head);
-    for (const TrialFault& fault : trial_faults()) {
-      print_row(fault.name, {.fault = &fault, .soc_frac = soc});
-    }
-    std::printf("\n");
+  for (const int percent : {9, 12, 85, 97}) {
+    print_table("SoC " + std::to_string(percent) + " %, always", {.soc_frac = percent / 100.0});
   }
 }
 

@@ -49,8 +49,19 @@ TrialSite::TrialSite(const BatteryNature& nature, double soc_frac, const Control
                      std::uint64_t seed)
     : clock{.now_ns = (real_prices().start_utc_s + kFirstDay * kDayS) * kNanosecondsPerSecond},
       battery(clock, nature, soc_frac, seed),
-      loop(settings, battery, prices, clock) {
-  loop.follow_holds(holds);
+      settings_(settings) {
+  start();
+}
+
+void TrialSite::start() {
+  loop_.emplace(settings_, battery, prices, clock);
+  loop_->follow_holds(holds);
+}
+
+void TrialSite::kill_and_restart() {
+  clock.pause_ns(45 * kNanosecondsPerSecond);
+  start();
+  loop_->take_over(take_over_of(newest_, newest_.price_level, false));
 }
 
 std::int64_t TrialSite::next_tick_utc_s() const { return bess::next_tick_utc_s(clock.now_utc_s()); }
@@ -72,9 +83,8 @@ CycleRecord TrialSite::cycle_held(std::int32_t power_w) {
 
 CycleRecord TrialSite::run() {
   ++cycles_;
-  CycleRecord record;
-  loop.run_cycle(record);
-  return record;
+  loop_->run_cycle(newest_);
+  return newest_;
 }
 
 ControlSettings trial_settings(const HonestVariant& variant) {
@@ -109,6 +119,7 @@ FaultResult try_fault(const FaultCase& c) {
     result.weak_answers = std::max(result.weak_answers, record.weak_answers);
     if (is_stop_reason(record.reason)) result.reason = record.reason;
     result.is_trip = record.is_tripped;
+    if (c.is_killed) site.kill_and_restart();
   }
   const EnergyAccount found = site.battery.energy();
   result.against_order_wh = found.against_order_wh - before.against_order_wh;
@@ -147,7 +158,7 @@ HonestDays live_honest_days(const HonestVariant& variant, int days) {
       result.first_trip = record.trip.reason;
       result.first_trip_cycle = i;
     }
-    site.loop.clear_trip();
+    site.clear_trip();
   }
   result.oddities = site.battery.oddities();
   result.moved_wh = site.battery.energy().moved_wh;

@@ -3,11 +3,11 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
+#include <optional>
 #include <string_view>
-#include <vector>
 
 #include "edge/control/control_loop.h"
+#include "edge/program/take_over.h"
 #include "shared/host/minute_file.h"
 #include "tests/trial/trial_battery.h"
 
@@ -53,11 +53,18 @@ class TrialSite {
   TrialBattery battery;
   TrialPrices prices;
   HoldMailbox holds;
-  Loop loop;
+
+  /// Killed between two cycles, and started again with what its newest record kept.
+  void kill_and_restart();
+  void clear_trip() { loop_->clear_trip(); }
 
  private:
   CycleRecord run();
+  void start();
 
+  ControlSettings settings_;
+  std::optional<Loop> loop_;
+  CycleRecord newest_;
   std::int64_t cycles_ = 0;
 };
 
@@ -71,6 +78,7 @@ struct FaultCase {
   double soc_frac = 0.45;
   BatteryNature nature{};
   std::uint64_t seed = 1;
+  bool is_killed = false;  ///< the controller, after each cycle
 };
 
 /// A fault is found when the battery is stopped for it.

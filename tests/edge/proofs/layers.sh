@@ -42,7 +42,7 @@ layer tools/market_sim              tools shared
 layer tools/settle                  tools shared
 layer tools/sim                     tools shared
 # Independent of the simulators, whose mistakes it must not share.
-layer tests/trial                   tests/trial tests/support/thorough.h edge/control edge/base shared
+layer tests/trial                   tests/trial tests/support/thorough.h edge/program/take_over.h edge/control edge/base shared
 # Beside the real programs it runs the edge's own objects in virtual time.
 layer tools/hil_runner              tools edge shared
 # The workstation, in the order in which data flows.
