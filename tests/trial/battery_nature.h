@@ -33,12 +33,15 @@ struct BatteryNature {
   bool is_cold = false;  ///< 2 to 12 degC; a fifth of the charging power below 8
 
   std::int32_t soc_step_e4 = 10;  ///< of its display
+  bool soc_flickers = false;      ///< between two steps of its display
+  double settles_frac = 0;        ///< its count falls by so much in the half hour after a charge
   double counted_frac = 1;        ///< of what flows its management counts so much
   Calibration calibration = Calibration::kNone;
   double calibration_min_frac = 0;  ///< how far its count is off when it is set right
   double calibration_max_frac = 0;
 
-  std::int32_t refresh_s = 0;  ///< its registers are brought up to date so seldom; 0 = always
+  std::int32_t refresh_s = 0;      ///< its registers are brought up to date so seldom; 0 = always
+  std::int32_t soc_refresh_s = 0;  ///< and its SoC
   double restarts_per_day = 0;
   double restart_s = 0;        ///< not reachable, then without any order
   double late_per_answer = 0;  ///< share of its answers that come late

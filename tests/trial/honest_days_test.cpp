@@ -40,7 +40,19 @@ TEST_P(HonestBattery, TripsNothing) {
               days.cycles, kDays);
   EXPECT_EQ(days.trips, 0) << reason_name(days.first_trip) << " in cycle " << days.first_trip_cycle;
   EXPECT_GT(days.driven, days.cycles / 3);
-  EXPECT_GT(days.moved_wh, kDays * 10'000);
+  EXPECT_GT(days.moved_wh, kDays * GetParam().nature.capacity_wh);
+}
+
+TEST_P(HonestBattery, TripsNothingAmongKills) {
+  if (std::ranges::find(kTakenForFaults, GetParam().name) != std::end(kTakenForFaults)) {
+    GTEST_SKIP() << "known: tripped as a fault";
+  }
+  for (const int every : {1, 7}) {
+    const HonestDays days = live_honest_days(GetParam(), (kDays + 2) / 3, every);
+    EXPECT_EQ(days.trips, 0) << reason_name(days.first_trip) << " in cycle "
+                             << days.first_trip_cycle << ", killed after every " << every;
+    EXPECT_GT(days.driven, days.cycles / 3);
+  }
 }
 
 std::string variant_name(const ::testing::TestParamInfo<HonestVariant>& info) {

@@ -164,7 +164,7 @@ void TrialBattery::follow_command() {
 }
 
 double TrialBattery::counted_frac() const {
-  return std::clamp(charge_frac_ + count_error_frac_, 0.0, 1.0);
+  return std::clamp(charge_frac_ + count_error_frac_ + surface_frac_, 0.0, 1.0);
 }
 
 double TrialBattery::temperature_c() const {
@@ -237,6 +237,9 @@ void TrialBattery::count_charge() {
   // Its voltage says that it is full, or empty: what is missing is made up for by and by.
   const bool is_at_end = charge_frac_ > 0.995 || charge_frac_ < 0.02;
   if (is_at_end) count_error_frac_ -= std::clamp(count_error_frac_, -kCreep, kCreep);
+  constexpr double kSettleS = 600;
+  const double surface_frac = flow_w_ > 500 ? nature_.settles_frac : 0;
+  surface_frac_ += (surface_frac - surface_frac_) / kSettleS;
   resting_s_ = std::abs(flow_w_) < 50 ? resting_s_ + 1 : 0;
   if (nature_.calibration != Calibration::kNone) calibrate();
 }
@@ -288,10 +291,17 @@ void TrialBattery::note_fault_begin() {
   shown_at_fault_ = shown_;
 }
 
-BatteryMeasurement TrialBattery::honest_display() const {
+std::int32_t TrialBattery::shown_soc_e4() {
+  if (nature_.soc_refresh_s > 0 && now_s_ % nature_.soc_refresh_s != 0) return shown_.soc_e4;
+  double steps = counted_frac() * 1e4 / nature_.soc_step_e4;
+  if (nature_.soc_flickers) steps += std::uniform_real_distribution<>(-0.5, 0.5)(random_);
+  const auto soc_e4 = static_cast<std::int32_t>(std::lround(steps)) * nature_.soc_step_e4;
+  return std::clamp(soc_e4, 0, 10'000);
+}
+
+BatteryMeasurement TrialBattery::honest_display() {
   BatteryMeasurement m;
-  const double steps = counted_frac() * 1e4 / nature_.soc_step_e4;
-  m.soc_e4 = static_cast<std::int32_t>(std::lround(steps)) * nature_.soc_step_e4;
+  m.soc_e4 = shown_soc_e4();
   m.power_w = to_watts(flow_w_ * nature_.meter_gain + nature_.meter_offset_w);
   m.capacity_wh = to_watts(nature_.shown_capacity_wh);
   if (nature_.shows_derating) {

@@ -73,7 +73,8 @@ class TrialBattery {
   [[nodiscard]] bool is_faulty();
   void note_fault_begin();
   void show();
-  [[nodiscard]] BatteryMeasurement honest_display() const;
+  [[nodiscard]] std::int32_t shown_soc_e4();
+  [[nodiscard]] BatteryMeasurement honest_display();
   bool answers_late();
 
   TrialClock& clock_;
@@ -86,6 +87,7 @@ class TrialBattery {
   double target_error_frac_ = 0;
   int calibration_day_ = -1;
   std::int64_t resting_s_ = 0;
+  double surface_frac_ = 0;  ///< counted too much since the last charge, settling at rest
 
   bool is_dispatched_ = false;
   double ordered_w_ = 0;

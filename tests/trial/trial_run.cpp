@@ -144,7 +144,7 @@ CycleRecord cycle_of_day(TrialSite& site, std::int32_t night_charge_power_w) {
   return site.cycle(is_between(1'020, 1'110) ? Orders::kDischarge : Orders::kRealDay);
 }
 
-HonestDays live_honest_days(const HonestVariant& variant, int days) {
+HonestDays live_honest_days(const HonestVariant& variant, int days, int kill_every) {
   TrialSite site(variant.nature, 0.5, trial_settings(variant), 1);
   HonestDays result;
   for (int i = 0; i < days * kStepsPerDay; ++i) {
@@ -153,6 +153,7 @@ HonestDays live_honest_days(const HonestVariant& variant, int days) {
     result.driven += record.ordered_power_w != 0 ? 1 : 0;
     result.weak_cycles += record.weak_answers >= 2 ? 1 : 0;
     if (is_stop_reason(record.reason)) ++result.lost[static_cast<int>(record.reason)];
+    if (kill_every > 0 && (i + 1) % kill_every == 0) site.kill_and_restart();
     if (!record.is_tripped) continue;
     if (result.trips++ == 0) {
       result.first_trip = record.trip.reason;

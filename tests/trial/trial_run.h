@@ -114,7 +114,8 @@ struct HonestDays {
   [[nodiscard]] int lost_in_all() const;
 };
 
-HonestDays live_honest_days(const HonestVariant& variant, int days);
+/// `kill_every`: the controller, after so many cycles; 0 = never.
+HonestDays live_honest_days(const HonestVariant& variant, int days, int kill_every = 0);
 
 /// The yardstick of tests/data.
 const MinuteSeries& real_prices();
