@@ -1,6 +1,6 @@
 // A rule of an operator in integers: a box of states, and what may be decided in it. Proof and guard look it
 // up with the same rounding, so that a rule that a student is proved for never makes the guard step in.
-// A rule holds on whole EUR/MWh, not clamped: what lies outside the lattice is the guard's alone.
+// A rule holds on whole EUR/MWh, not clamped to the lattice: what lies outside it is the guard's alone.
 #pragma once
 
 #include <cstdint>
@@ -38,21 +38,23 @@ inline constexpr std::uint16_t kAllTwelve = (1U << 12) - 1;  ///< of months, or 
 
 /// Where a rule is looked up.
 struct RulePoint {
-  std::int32_t price_eur_per_mwh;  ///< nearest whole one, not clamped
+  std::int32_t price_eur_per_mwh;  ///< nearest whole one, as whole_price_of() has it
   std::int16_t soc_index;          ///< of the lattice
   std::int16_t quarter_hour;       ///< local, 0..95
   std::int16_t month;              ///< local, 1..12
   std::int16_t context_class;      ///< 1..12
 };
 
-/// Nearest whole EUR/MWh, halves up, as lattice_price_of() before it clamps.
+/// Nearest whole EUR/MWh, halves up, as lattice_price_of() before it clamps; a price beyond all ends that a
+/// rule may have is at that end, so that a rule without an end there holds for it.
 constexpr std::int32_t whole_price_of(std::int32_t price_centi_eur_per_mwh) {
-  return rounding_divide(price_centi_eur_per_mwh, kCentiPerEur);
+  return clamp_to(rounding_divide(price_centi_eur_per_mwh, kCentiPerEur), -kThresholdMaxEurPerMwh,
+                  kThresholdMaxEurPerMwh);
 }
 
 /// All ends belong to the box.
 struct RuleBox {
-  std::int32_t price_min_eur_per_mwh = -kThresholdMaxEurPerMwh;  ///< no price is below
+  std::int32_t price_min_eur_per_mwh = -kThresholdMaxEurPerMwh;  ///< no end: what is below counts
   std::int32_t price_max_eur_per_mwh = kThresholdMaxEurPerMwh;
   std::int32_t soc_index_min = 0;
   std::int32_t soc_index_max = kSocCount - 1;

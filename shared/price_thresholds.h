@@ -14,9 +14,9 @@
 
 namespace bess {
 
-/// Thresholds are as plausible as any price: within +- this many EUR/MWh.
-inline constexpr std::int32_t kThresholdMaxEurPerMwh =
-    kPlausiblePriceMaxCentiEurPerMwh / kCentiPerEur;
+/// Thresholds and the ends of rules lie within +- this many EUR/MWh: further out nobody has one, and a price
+/// beyond is beyond each of them.
+inline constexpr std::int32_t kThresholdMaxEurPerMwh = kUnusualPriceMaxEurPerMwh;
 
 struct PriceThresholds {
   std::int32_t low_eur_per_mwh = kLatticePriceMinEurPerMwh;   ///< property 1: charge at or below

@@ -34,8 +34,13 @@ inline constexpr double kWattsPerMegawatt = 1e6;  ///< prices are per MWh, power
 
 // --- Prices as the edge counts them: integer hundredths of EUR/MWh [SPEC 7] --------------------
 inline constexpr std::int32_t kCentiPerEur = 100;
-/// Prices outside +-15,000 EUR/MWh are refused as implausible.
-inline constexpr std::int32_t kPlausiblePriceMaxCentiEurPerMwh = 15'000 * kCentiPerEur;
+/// Prices outside +-100,000 EUR/MWh are refused as implausible: no bid of a European balancing market may
+/// pass +-99,999, and one of them settled at 25,907.54 in January 2026.
+inline constexpr std::int32_t kPlausiblePriceMaxEurPerMwh = 100'000;
+inline constexpr std::int32_t kPlausiblePriceMaxCentiEurPerMwh =
+    kPlausiblePriceMaxEurPerMwh * kCentiPerEur;
+/// Beyond +-15,000 a price is told.
+inline constexpr std::int32_t kUnusualPriceMaxEurPerMwh = 15'000;
 
 // --- SoC as the edge counts it: integer hundredths of a percent --------------------------------
 inline constexpr std::int32_t kSocFullE4 = 10'000;  ///< 100 %

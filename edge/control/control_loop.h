@@ -25,6 +25,7 @@
 #include "edge/control/control_settings.h"
 #include "edge/control/control_types.h"
 #include "edge/control/cycle_budget.h"
+#include "edge/control/frozen_price.h"
 #include "edge/control/full_charge.h"
 #include "edge/control/hold.h"
 #include "edge/control/order_in_force.h"
@@ -49,6 +50,7 @@ struct TakeOver {
   ReversalHistory reversals{};
   std::int32_t last_full_day = 0;  ///< full_charge.h
   SiteReport site{};
+  StandingPrice standing_price{};
   std::int64_t utc_s = 0;  ///< of that log's newest record
 };
 
@@ -66,6 +68,7 @@ class ControlLoop {
         cycle_budget_(settings.cycles_per_day_max_e4),
         reversal_cap_(settings.reversals_per_hour_max),
         full_charge_(settings.full_charge_every_days),
+        frozen_price_(settings.frozen_price),
         supervision_(settings.supervision),
         order_(settings_, battery, clock) {}
 
@@ -77,6 +80,7 @@ class ControlLoop {
     reversal_cap_.restore(before.reversals, before.utc_s);
     full_charge_.restore(before.last_full_day);
     site_.take_over(before.utc_s, before.site);
+    frozen_price_.restore(before.standing_price);
   }
 
   /// Follows the holds that are published there, which outlives the loop.
@@ -348,7 +352,7 @@ class ControlLoop {
     take_wishes(record);
     RuleLimits rules;
     const PriceReport& price = record.price;
-    if (price.has_row) price_level_.observe(price.minute_utc_s, price.price_centi_eur_per_mwh);
+    if (price.has_row) note_price(price);
     if (record.has_measurement && price.has_row) {
       const LocalMinute now = local_minute_of(record.utc_s);
       record.context_class = student_context_class(now, price_level_);
@@ -374,6 +378,7 @@ class ControlLoop {
          .has_price = record.price.has_row,
          .price_minute_utc_s = record.price.minute_utc_s,
          .price_centi_eur_per_mwh = record.price.price_centi_eur_per_mwh,
+         .price_is_frozen = frozen_price_.is_no_price(),
          .student_action = record.student_action,
          .held = record.hold.held,
          .held_power_w = record.hold.power_w,
@@ -386,6 +391,11 @@ class ControlLoop {
     reversal_cap_.note(decision.power_w);
     advance_mode(record);
     record.decision_us = elapsed_us(start_ns);
+  }
+
+  void note_price(const PriceReport& price) {
+    price_level_.observe(price.minute_utc_s, price.price_centi_eur_per_mwh);
+    frozen_price_.observe(price.minute_utc_s, price.price_centi_eur_per_mwh);
   }
 
   /// The tick, unless more than the wait for the price has passed since: a process that was
@@ -472,6 +482,8 @@ class ControlLoop {
     record.throughput = cycle_budget_.today();
     record.reversals = reversal_cap_.history();
     record.price_level = price_level_;
+    record.standing_price = frozen_price_.price();
+    record.price_frozen = frozen_price_.is_told();
     record.days_since_full = full_charge_.days_since_full();
     record.site = site_.report(record.utc_s);
     record.site.order_cuts = order_cuts_;
@@ -494,6 +506,7 @@ class ControlLoop {
   const HoldMailbox* holds_ = nullptr;
   std::int32_t reserve_soc_e4_ = 0;  ///< of this hour; 0 = none
   PriceLevel price_level_;
+  FrozenPrice frozen_price_;
   Supervision supervision_;
   Mode mode_ = Mode::kStart;
   std::int64_t cycle_ = 0;

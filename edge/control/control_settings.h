@@ -3,6 +3,7 @@
 
 #include <cstdint>
 
+#include "edge/control/frozen_price.h"
 #include "edge/control/reserve.h"
 #include "edge/control/safety_guard.h"
 #include "edge/control/supervision.h"
@@ -19,6 +20,7 @@ struct ControlSettings {
   std::int32_t read_lead_s = 3;
   std::int32_t order_deadline_s = 60;  ///< an order in force later than this after its tick is late
   SupervisionSettings supervision{};
+  FrozenPriceSettings frozen_price{};
   // What a price source that lies can do to the battery in a day and in an hour. Measured on 22 November 2026
   // on the yardstick (142 days of 2023, the shipped student at C/2): at most 5.73 cycles a day and 17
   // reversals in any hour, 13 in 99.9 % of them.

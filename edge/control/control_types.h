@@ -11,6 +11,7 @@
 
 #include "edge/base/status.h"
 #include "edge/control/cycle_budget.h"
+#include "edge/control/frozen_price.h"
 #include "edge/control/hold.h"
 #include "edge/control/lost_order_history.h"
 #include "edge/control/mode.h"
@@ -85,7 +86,8 @@ enum class Reason : std::uint8_t {
   kNoPrice,
   kPriceAge,
   kPriceQuarterHour,
-  kLastStopReason = kPriceQuarterHour,  ///< up to here: the battery must not be driven
+  kFrozenPrice,
+  kLastStopReason = kFrozenPrice,  ///< up to here: the battery must not be driven
   kSocFull,
   kSocEmpty,
   kReserve,
@@ -135,6 +137,7 @@ constexpr std::string_view reason_name(Reason reason) {
                                          "no_price",
                                          "price_age",
                                          "price_qh",
+                                         "frozen_price",
                                          "soc_full",
                                          "soc_empty",
                                          "reserve",
@@ -207,6 +210,8 @@ struct CycleRecord {
   SiteReport site{};
   std::int32_t ended_orders = 0;  ///< since start: gone before their end, by no hand that shows
   LostOrderHistory lost_orders{};
+  StandingPrice standing_price{};
+  bool price_frozen = false;  ///< it has stood for longer than is told
 };
 
 }  // namespace bess

@@ -61,6 +61,10 @@ bool SafetyGuard::find_price_stop_reason(const GuardInputs& in, Reason& reason) 
     reason = Reason::kPriceQuarterHour;
     return true;
   }
+  if (in.price_is_frozen) {
+    reason = Reason::kFrozenPrice;
+    return true;
+  }
   return false;
 }
 

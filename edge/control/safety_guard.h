@@ -41,6 +41,7 @@ struct GuardInputs {
   bool has_price = false;
   std::int64_t price_minute_utc_s = 0;
   std::int32_t price_centi_eur_per_mwh = 0;
+  bool price_is_frozen = false;  ///< for so long that it is none
   Action student_action = Action::kIdle;
   bool held = false;                ///< an operator's hold is in force
   std::int32_t held_power_w = 0;    ///< of that hold

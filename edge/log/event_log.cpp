@@ -24,10 +24,17 @@ bool append_line(int fd, const char* text, std::size_t size) {
   return ::write(fd, line, size + 1) == static_cast<ssize_t>(size + 1);
 }
 
+bool is_unusual(const PriceReport& price) {
+  constexpr std::int32_t kUsualCenti = kUnusualPriceMaxEurPerMwh * kCentiPerEur;
+  return price.has_row && (price.price_centi_eur_per_mwh > kUsualCenti ||
+                           price.price_centi_eur_per_mwh < -kUsualCenti);
+}
+
 JournalLevel level_of(const CycleRecord& record) {
   const bool is_ordered_stop = record.reason == Reason::kStopRequested;
   const bool is_trouble = is_stop_reason(record.reason) && !is_ordered_stop;
   const bool is_well = record.battery_status == Status::kOk && !record.price.step_held &&
+                       !record.price_frozen && !is_unusual(record.price) &&
                        record.site.meter_status == Status::kOk &&
                        record.site.limit_status == Status::kOk;
   return is_trouble || !is_well ? JournalLevel::kWarning : JournalLevel::kInfo;

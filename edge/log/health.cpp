@@ -1,6 +1,9 @@
 #include "edge/log/health.h"
 
+#include <cmath>
 #include <cstdio>
+
+#include "shared/units_and_limits.h"
 
 namespace bess {
 namespace {
@@ -35,6 +38,35 @@ bool are_orders_lost(const HealthInputs& in) {
   return in.lost_orders >= 2 && 10 * in.lost_orders >= 3 * in.judged_orders;
 }
 
+std::string frozen_price(const HealthInputs& in) {
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "WARN: prices: frozen_price, %.2f EUR/MWh has not moved for %lld minutes under new "
+                "stamps: does the source hang? (frozen_price_s)",
+                in.price_eur_per_mwh, static_cast<long long>(in.price_unchanged_s / 60));
+  return text;
+}
+
+std::string unusual_price(double eur_per_mwh) {
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "WARN: prices: %.2f EUR/MWh lies beyond %d: rare, and possible; the guard's "
+                "thresholds decide",
+                eur_per_mwh, kUnusualPriceMaxEurPerMwh);
+  return text;
+}
+
+void check_prices(const HealthInputs& in, std::vector<std::string>& reasons) {
+  if (in.price_status != "ok") {
+    reasons.push_back("WARN: prices: " + std::string(in.price_status));
+  }
+  if (in.price_step_held) reasons.push_back(held_row(in.held_eur_per_mwh));
+  if (in.price_frozen) reasons.push_back(frozen_price(in));
+  if (in.has_price && std::fabs(in.price_eur_per_mwh) > kUnusualPriceMaxEurPerMwh) {
+    reasons.push_back(unusual_price(in.price_eur_per_mwh));
+  }
+}
+
 void check_cycle(const HealthInputs& in, std::vector<std::string>& reasons) {
   if (in.trip != "none") {
     reasons.push_back("CRITICAL: tripped, " + std::string(in.trip) +
@@ -62,10 +94,7 @@ void check_cycle(const HealthInputs& in, std::vector<std::string>& reasons) {
                       " orders were replaced or ended before their time: who else writes to the "
                       "battery, or does it end them?");
   }
-  if (in.price_status != "ok") {
-    reasons.push_back("WARN: prices: " + std::string(in.price_status));
-  }
-  if (in.price_step_held) reasons.push_back(held_row(in.held_eur_per_mwh));
+  check_prices(in, reasons);
   if (in.hold_is_unreadable) {
     reasons.emplace_back("WARN: the hold file is not readable and not followed: bess-edge hold");
   }

@@ -33,6 +33,10 @@ struct HealthInputs {
   bool disk_is_full = false;       ///< of the state folder, or it is read-only
   bool price_step_held = false;
   double held_eur_per_mwh = 0;  ///< price of the row that waits for the next
+  bool has_price = false;
+  double price_eur_per_mwh = 0;
+  bool price_frozen = false;           ///< it has not moved, under new stamps
+  std::int64_t price_unchanged_s = 0;  ///< for so long
   bool hold_is_unreadable = false;
   std::string_view update_trouble;  ///< what the last upgrade ended badly with; empty = none
 };

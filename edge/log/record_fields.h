@@ -22,6 +22,7 @@ consteval auto make_record_fields() {
   using H = HoldReport;
   using S = SiteReport;
   using O = LostOrderHistory;
+  using N = StandingPrice;
   return std::to_array<Field<CycleRecord>>({
       {utc_member<&R::utc_s>(),
        "utc",
@@ -212,6 +213,13 @@ consteval auto make_record_fields() {
        "lost_orders",
        {.csv = 50, .last = 181, .metrics = {26, "bess_lost_orders"}},
        {"Of the newest orders, those replaced or ended before their time."}},
+      {member<&R::standing_price, &N::minute_utc_s>()},
+      {member<&R::standing_price, &N::centi_eur_per_mwh>()},
+      {member<&R::standing_price, &N::unchanged_s>().given<&R::price, &P::has_row>(),
+       "price_unchanged_s",
+       {.csv = 51, .last = 45, .metrics = {28, "bess_price_unchanged_seconds"}},
+       {"Time that the price has not moved, under new stamps."}},
+      {member<&R::price_frozen>(), "price_frozen", {.journal = 24, .csv = 52, .last = 56}},
   });
 }
 

@@ -65,7 +65,8 @@ struct StableCodes<Reason> {
                                      Reason::kImportLimit,
                                      Reason::kExportLimit,
                                      Reason::kQuarterHourPeak,
-                                     Reason::kRule};
+                                     Reason::kRule,
+                                     Reason::kFrozenPrice};
   static constexpr auto kNameOf = reason_name;
 };
 

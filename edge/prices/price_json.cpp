@@ -3,6 +3,7 @@
 #include <cjson/cJSON.h>
 
 #include <cmath>
+#include <cstring>
 #include <memory>
 
 #include "shared/units_and_limits.h"
@@ -17,15 +18,47 @@ constexpr double kLastMilliseconds = 1e14;
 
 using Json = std::unique_ptr<cJSON, decltype(&cJSON_Delete)>;
 
-/// The item at "a.b.c" below an object; null when there is none.
-const cJSON* item_at(const cJSON* item, std::string_view path) {
-  while (item != nullptr && !path.empty()) {
+/// The whole text as one document; null when it is none, or when more than blanks follow it, which
+/// cJSON would pass over.
+Json parse_document(std::string_view json) {
+  const char* end = nullptr;
+  Json root(cJSON_ParseWithLengthOpts(json.data(), json.size(), &end, 0), &cJSON_Delete);
+  if (root == nullptr) return root;
+  const std::string_view rest = json.substr(static_cast<std::size_t>(end - json.data()));
+  if (rest.find_first_not_of(" \t\r\n") != std::string_view::npos) root.reset();
+  return root;
+}
+
+struct Found {
+  const cJSON* item = nullptr;  ///< null: there is none
+  bool is_twice = false;        ///< in its object
+};
+
+/// cJSON keeps members of one name and gives the first.
+Found member_of(const cJSON* object, const char* name) {
+  Found found;
+  if (!cJSON_IsObject(object)) return found;
+  const cJSON* member = nullptr;
+  cJSON_ArrayForEach(member, object) {
+    if (std::strcmp(member->string, name) != 0) continue;
+    found.is_twice = found.item != nullptr;
+    if (found.is_twice) return found;
+    found.item = member;
+  }
+  return found;
+}
+
+/// The item at "a.b.c" below an object.
+Found item_at(const cJSON* object, std::string_view path) {
+  Found found{.item = object};
+  while (found.item != nullptr && !path.empty()) {
     const std::size_t dot = path.find('.');
     const FixedText<63> name(path.substr(0, dot));
-    item = cJSON_GetObjectItemCaseSensitive(item, name.c_str());
+    found = member_of(found.item, name.c_str());
+    if (found.is_twice) return found;
     path = dot == std::string_view::npos ? std::string_view{} : path.substr(dot + 1);
   }
-  return item;
+  return found;
 }
 
 bool parse_time(const cJSON* time, std::int64_t& utc_s) {
@@ -46,12 +79,23 @@ bool parse_price(const cJSON* price, std::int32_t& centi_eur_per_mwh) {
   return true;
 }
 
-bool parse_row(const cJSON* item, const PriceFields& fields, std::int64_t now_utc_s,
-               PriceRow& row) {
-  if (!parse_time(item_at(item, fields.time.view()), row.minute_utc_s)) return false;
-  if (!parse_price(item_at(item, fields.price.view()), row.price_centi_eur_per_mwh)) return false;
-  if (row.minute_utc_s % 60 != 0) return false;                  // not the start of a minute
-  return row.minute_utc_s + 60 <= now_utc_s + kClockToleranceS;  // else it cannot exist yet
+/// kNoRow: it is passed over.
+Status parse_row(const cJSON* item, const PriceFields& fields, std::int64_t now_utc_s,
+                 PriceRow& row) {
+  const Found time = item_at(item, fields.time.view());
+  const Found price = item_at(item, fields.price.view());
+  if (time.is_twice || price.is_twice) return Status::kMalformed;
+  const bool is_row = parse_time(time.item, row.minute_utc_s) &&
+                      parse_price(price.item, row.price_centi_eur_per_mwh) &&
+                      row.minute_utc_s % 60 == 0 &&  // the start of a minute
+                      row.minute_utc_s + 60 <= now_utc_s + kClockToleranceS;  // that has ended
+  return is_row ? Status::kOk : Status::kNoRow;
+}
+
+/// The list of rows; null when there is none.
+const cJSON* rows_of(const cJSON* root, const PriceFields& fields) {
+  const Found rows = cJSON_IsObject(root) ? item_at(root, fields.rows.view()) : Found{.item = root};
+  return !rows.is_twice && cJSON_IsArray(rows.item) ? rows.item : nullptr;
 }
 
 }  // namespace
@@ -59,17 +103,21 @@ bool parse_row(const cJSON* item, const PriceFields& fields, std::int64_t now_ut
 Status parse_prices(std::string_view json, const PriceFields& fields, std::int64_t now_utc_s,
                     const PriceRowTaker& taker, int& items) {
   items = 0;
-  const Json root(cJSON_ParseWithLength(json.data(), json.size()), &cJSON_Delete);
-  if (root == nullptr) return Status::kMalformed;
-  const cJSON* rows = root.get();
-  if (cJSON_IsObject(rows)) rows = item_at(rows, fields.rows.view());
-  if (!cJSON_IsArray(rows)) return Status::kMalformed;
-  bool found = false;
+  const Json root = parse_document(json);
+  const cJSON* const rows = rows_of(root.get(), fields);
+  if (rows == nullptr) return Status::kMalformed;
   const cJSON* item = nullptr;
+  cJSON_ArrayForEach(item, rows) {  // one of them may spoil them all: before any is given away
+    PriceRow ignored;
+    if (parse_row(item, fields, now_utc_s, ignored) == Status::kMalformed) {
+      return Status::kMalformed;
+    }
+  }
+  bool found = false;
   cJSON_ArrayForEach(item, rows) {
     ++items;
     PriceRow row;
-    if (!parse_row(item, fields, now_utc_s, row)) continue;
+    if (parse_row(item, fields, now_utc_s, row) != Status::kOk) continue;
     taker.take(taker.self, row);
     found = true;
   }

@@ -149,7 +149,9 @@ void read_price(TomlTable table, EdgeConfig& config) {
   table.integer("resolve_every_s", price.http.resolve_every_s, 1, 86'400);
   table.integer("requests_per_cycle", price.requests_per_cycle, 1, 4);
   table.integer("wait_s", price.wait_s, 1, 60);
-  table.scaled("step_flag_eur_per_mwh", price.step_flag_centi_eur_per_mwh, 100, 0, 20'000);
+  table.scaled("step_flag_eur_per_mwh", price.step_flag_centi_eur_per_mwh, kCentiPerEur, 0,
+               2 * kPlausiblePriceMaxEurPerMwh);
+  table.integer("frozen_price_s", config.control.frozen_price.told_s, 0, 86'400);
   read_history(table, config);
   table.boolean("allow_http", transport.allow_http);
   table.boolean("hold_flagged_step", price.hold_flagged_step);
@@ -197,6 +199,7 @@ void read_guard(TomlTable table, EdgeConfig& config) {
   table.scaled("soc_max", guard.soc_max_e4, 10'000, 0, 1);
   table.scaled("soc_hysteresis", guard.soc_hysteresis_e4, 10'000, 0, 0.2);
   table.integer("price_age_s_max", guard.price_age_s_max, 60, 1'800);
+  table.integer("frozen_price_s_max", config.control.frozen_price.stop_s, 0, 86'400);
   table.scaled("temperature_min_c", guard.temperature_min_deci_c, 10, -50, 100);
   table.scaled("temperature_max_c", guard.temperature_max_deci_c, 10, -50, 100);
   table.integer("hold_s", config.control.hold_s, 0, 3'600);

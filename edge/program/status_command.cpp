@@ -139,6 +139,11 @@ Health health_of(const EdgeConfig& config, JsonValue status, bool no_lock,
   in.disk_is_failing = is_true(field<&T::disk_is_failing>(status));
   in.price_step_held = is_true(field<&R::price, &P::step_held>(status));
   in.held_eur_per_mwh = number(field<&R::price, &P::held_centi_eur_per_mwh>(status)) / kCentiPerEur;
+  in.has_price = is_true(field<&R::price, &P::has_row>(status));
+  in.price_eur_per_mwh =
+      number(field<&R::price, &P::price_centi_eur_per_mwh>(status)) / kCentiPerEur;
+  in.price_frozen = is_true(field<&R::price_frozen>(status));
+  in.price_unchanged_s = whole(field<&R::standing_price, &StandingPrice::unchanged_s>(status));
   in.hold_is_unreadable = is_true(field<&R::hold, &H::unreadable>(status));
   // Of an earlier run: the disk was full at this one's start, and the log is all that it could write.
   if (in.is_running && in.cycles > 0) in.cycles_behind = cycles_behind(config, status);

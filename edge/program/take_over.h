@@ -14,6 +14,7 @@ inline TakeOver take_over_of(const CycleRecord& before, const PriceLevel& level,
           .reversals = before.reversals,
           .last_full_day = last_full_day_of(before.utc_s, before.days_since_full),
           .site = before.site,
+          .standing_price = before.standing_price,
           .utc_s = before.utc_s};
 }
 

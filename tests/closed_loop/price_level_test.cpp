@@ -121,7 +121,7 @@ class Replay {
   [[nodiscard]] bool was_stale(std::int64_t tick_utc_s) const {
     return std::count(stale_ticks.begin(), stale_ticks.end(), tick_utc_s) > 0;
   }
-  static bool is_published(double price) { return std::abs(price) <= 15'000; }
+  static bool is_published(double price) { return std::abs(price) <= 100'000; }
 
   std::vector<std::int64_t> stale_ticks;
   std::vector<CycleRecord> records;
@@ -208,7 +208,7 @@ void disturb(MinuteSeries& series, std::uint64_t seed) {
       series.indicative[begin + i] = series.settled[begin + i] = kNaN;
   }
   for (const double price :
-       {1'500.0, 1'500.01, 2'548.0, 14'999.99, 15'000.0, 15'000.01, 40'000.0}) {
+       {1'500.0, 1'500.01, 2'548.0, 15'000.01, 25'907.54, 100'000.0, 100'000.01, 140'000.0}) {
     for (int i = 0; i < 20; ++i) {
       series.indicative[at(1)] = price;
       series.indicative[at(1)] = -price;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "edge/control/control_loop.h"
+#include "edge/program/take_over.h"
 #include "tests/support/fake_plant.h"
 
 namespace bess {
@@ -85,6 +86,61 @@ TEST(PriceLies, WithoutACapEveryReversalIsFollowed) {
   Loop loop({.control = true, .guard = {}, .reversals_per_hour_max = 0}, liar.battery, liar.prices,
             liar.clock);
   EXPECT_GT(most_reversals_in_an_hour(liar.run(loop, 2 * kStepsPerHour)), 25);
+}
+
+/// The loop before a source that hangs: the same price under new stamps.
+struct Hung {
+  Hung() : battery(clock, 0.5), prices(clock) {
+    prices.price = [this](std::int64_t) { return centi; };
+  }
+  FakeClock clock;
+  FakeBattery battery;
+  FakePrices prices;
+  std::int32_t centi = 9'000;
+};
+
+TEST(PriceLies, APriceThatStandsStillIsToldAndIsNoneAfterThreeHours) {
+  Hung hung;
+  Loop loop({.control = true, .guard = {}}, hung.battery, hung.prices, hung.clock);
+  CycleRecord record;
+  for (int cycle = 0; cycle < 92; ++cycle) {
+    ASSERT_TRUE(loop.run_cycle(record));
+    EXPECT_EQ(record.standing_price.unchanged_s, cycle * kSecondsPerStep);
+    EXPECT_EQ(record.price_frozen, cycle >= 15) << cycle;
+    EXPECT_EQ(record.reason == Reason::kFrozenPrice, cycle >= 90) << cycle;
+    if (cycle >= 90) {
+      EXPECT_EQ(record.ordered_power_w, 0);
+    }
+  }
+  EXPECT_EQ(record.mode, Mode::kHolding);
+  hung.centi += 1;
+  ASSERT_TRUE(loop.run_cycle(record));
+  EXPECT_EQ(record.mode, Mode::kRunning);
+  EXPECT_FALSE(record.price_frozen);
+  EXPECT_EQ(record.standing_price.unchanged_s, 0);
+}
+
+/// 20 runs of ten minutes: each takes over what the one before logged.
+TEST(PriceLies, ARestartDoesNotThawAFrozenPrice) {
+  Hung hung;
+  CycleRecord record;
+  for (int run = 0; run < 20; ++run) {
+    Loop loop({.control = true, .guard = {}}, hung.battery, hung.prices, hung.clock);
+    loop.take_over(take_over_of(record, record.price_level, false));
+    for (int cycle = 0; cycle < 5; ++cycle) ASSERT_TRUE(loop.run_cycle(record));
+    EXPECT_EQ(record.reason == Reason::kFrozenPrice, run >= 18) << run;
+    if (run % 2 == 0) loop.stop(record);  // else killed
+  }
+}
+
+TEST(PriceLies, SwitchedOffAFrozenPriceIsTradedOn) {
+  Hung hung;
+  Loop loop({.control = true, .guard = {}, .frozen_price = {.told_s = 0, .stop_s = 0}},
+            hung.battery, hung.prices, hung.clock);
+  CycleRecord record;
+  for (int cycle = 0; cycle < 120; ++cycle) ASSERT_TRUE(loop.run_cycle(record));
+  EXPECT_FALSE(record.price_frozen);
+  EXPECT_EQ(record.mode, Mode::kRunning);
 }
 
 }  // namespace

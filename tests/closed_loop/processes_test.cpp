@@ -286,7 +286,7 @@ TEST_F(Processes, AKilledEdgesOrderIsEndedByTheBatterysWatchdog) {
 }
 
 TEST_F(Processes, MarketFaultsDoNotStopTheLoop) {
-  for (const char* fault : {"null", "http-500", "stale", "garbage"}) {
+  for (const char* fault : {"null", "http-500", "stale", "garbage", "trailing", "twice"}) {
     site_.start_clock();
     start_simulators({"--fault", fault, "--fault-every", "3"});
     std::filesystem::remove(site_.folder.file("edge.csv"));
@@ -305,6 +305,78 @@ TEST_F(Processes, MarketFaultsDoNotStopTheLoop) {
     ASSERT_NE(count, std::string::npos) << end;
     EXPECT_GE(std::stoi(end.substr(count + 14)), 2) << fault;
   }
+}
+
+/// A minute file of ten hours with one price, from an hour before the start on.
+std::string one_price(const char* price) {
+  std::string text = "minute_utc,indicative_eur_mwh,settled_eur_mwh\n";
+  for (int minute = -60; minute < 540; ++minute) {
+    text += utc_text(SimulatedSite::kStartS + 60 * minute).c_str();
+    text.append(",").append(price).append(",").append(price).append("\n");
+  }
+  return text;
+}
+
+/// What markets have settled at and where bids end: on the wire, in journal, CSV, ring, status, metrics.
+TEST_F(Processes, ExtremePricesAreExactWhereverTheyAreTold) {
+  for (const char* const price : {"25907.54", "-25907.54", "99999.00", "-99999.00"}) {
+    site_.start_clock();
+    site_.start_battery();
+    site_.start_market({}, one_price(price));
+    std::filesystem::remove_all(site_.folder.file("state"));
+    std::filesystem::remove(site_.folder.file("edge.csv"));
+    const std::string config = site_.commission();
+    const auto said = [&](std::vector<std::string> arguments) {
+      arguments.insert(arguments.begin(), edge_program());
+      arguments.insert(arguments.end(), {"--config", config});
+      ChildProcess child(arguments);
+      return child.read_all();
+    };
+    std::string centi(price);
+    centi.erase(centi.find('.'), 1);
+    char metric[80];
+    std::snprintf(metric, sizeof metric, "bess_price_eur_per_mwh %.10g\n", std::stod(price));
+    ChildProcess edge({edge_program(), "--config", config});
+    EXPECT_THAT(line_with_power(edge), HasSubstr(" price_centi=" + centi + " "));
+    EXPECT_THAT(said({"status", "--json"}), HasSubstr(centi + ",\n"));
+    const std::string status = said({"status"});
+    EXPECT_THAT(status, HasSubstr("price      " + std::string(price) + " EUR/MWh"));
+    EXPECT_THAT(status, HasSubstr("WARN: prices: " + std::string(price) + " EUR/MWh lies beyond"));
+    EXPECT_THAT(said({"status", "--prometheus"}), HasSubstr(metric));
+    EXPECT_EQ(SimulatedSite::stop(edge), 0);
+    EXPECT_THAT(said({"log", "--csv"}), HasSubstr("," + centi + ","));
+    int trading = 0;
+    for (const CsvRow& row : read_csv(site_.folder.file("edge.csv"))) {
+      if (row.at("mode") != "running") continue;
+      ++trading;
+      EXPECT_EQ(row.at("price_centi_eur_per_mwh"), centi);
+      EXPECT_EQ(row.at("ordered_power_w"), *price == '-' ? "4000" : "-4000");
+    }
+    EXPECT_GT(trading, 0);
+    EXPECT_EQ(SimulatedSite::stop(*site_.battery), 0);
+    EXPECT_EQ(SimulatedSite::stop(*site_.market), 0);
+  }
+}
+
+TEST_F(Processes, AFrozenPriceIsToldAndEndsTheTrade) {
+  site_.start_battery();
+  site_.start_market({"--fault", "frozen", "--fault-every", "1"});
+  SimulatedSite::ConfigOptions options;
+  options.price_keys = "frozen_price_s = 600\n";
+  options.guard_keys = "frozen_price_s_max = 1800\n";
+  const std::string config = site_.commission(options);
+  ChildProcess edge({edge_program(), "--config", config});
+  std::string line = edge.read_line();
+  while (!line.empty() && line.find("price_frozen=1") == std::string::npos) line = edge.read_line();
+  EXPECT_THAT(line, HasSubstr(" mode=running "));
+  ChildProcess told({edge_program(), "status", "--config", config});
+  EXPECT_THAT(told.read_all(), HasSubstr("WARN: prices: frozen_price, "));
+  EXPECT_EQ(told.wait(), 1);
+  while (!line.empty() && line.find("reason=frozen_price") == std::string::npos) {
+    line = edge.read_line();
+  }
+  EXPECT_THAT(line, AllOf(HasSubstr(" mode=holding "), HasSubstr(" ordered_power_w=0 ")));
+  EXPECT_EQ(SimulatedSite::stop(edge), 0);
 }
 
 TEST_F(Processes, TheSameOverASerialLine) {

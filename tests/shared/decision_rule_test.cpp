@@ -68,6 +68,8 @@ TEST(WholePrice, IsTheLatticePriceWithoutItsEnds) {
     }
   }
   EXPECT_EQ(whole_price_of(-1'500'000), -15'000);
+  EXPECT_EQ(whole_price_of(2'590'754), 15'000) << "beyond every end of a rule";
+  EXPECT_EQ(whole_price_of(-9'999'900), -15'000);
 }
 
 TEST(RuleLimits, AllRulesCountWhereTheyHold) {

@@ -98,11 +98,12 @@ inline std::vector<PriceCase> bad_price_files() {
   const std::string whole = ordinary_text();
   // A price that is none, in either column, early and late.
   for (const std::size_t at : {std::size_t{0}, std::size_t{2000}, std::size_t{4319}}) {
-    for (const char* price : {"1e300", "-1e300", "1e200", "1e100", "1e10", "15000.01", "-15001"}) {
+    for (const char* price :
+         {"1e300", "-1e300", "1e200", "1e100", "1e10", "100000.01", "-100001"}) {
       add(fmt::format("settled {} at {}", price, at), with_prices(at, "", price), "price-range");
       add(fmt::format("indicative {} at {}", price, at), with_prices(at, price, ""), "price-range");
     }
-    for (const char* price : {"-9999", "9999", "-999", "-9999.99", "99999"}) {
+    for (const char* price : {"-9999", "9999", "-9999.99", "9999.99"}) {
       add(fmt::format("settled {} at {}", price, at), with_prices(at, "", price), "sentinel");
       add(fmt::format("indicative {} at {}", price, at), with_prices(at, price, ""), "sentinel");
     }

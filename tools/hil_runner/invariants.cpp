@@ -158,6 +158,25 @@ class Judge {
         quarter_hour_of(tick_utc_s) - quarter_hour_of(row->minute_utc_s) <= 1;
     return is_fresh ? row : std::nullopt;
   }
+  /// That its price was the only one for so long before it, as far as the edge can have seen.
+  [[nodiscard]] bool has_stood(const Publication::Row& row, std::int64_t for_s) const {
+    const std::int64_t first_utc_s = row.minute_utc_s - for_s;
+    if (first_utc_s < scenario_.start_utc_s - 60) return false;
+    for (std::int64_t utc_s = first_utc_s; utc_s < row.minute_utc_s; utc_s += 60) {
+      const auto price = publication_.price_of(utc_s);
+      if (price && *price != row.eur_per_mwh) return false;
+    }
+    return true;
+  }
+  /// By then it may count as none: from one row on or from the next, as the edge met them.
+  [[nodiscard]] bool may_be_frozen(const Publication::Row& row) const {
+    const std::int32_t stop_s = config_.control.frozen_price.stop_s;
+    return stop_s > 0 && has_stood(row, stop_s);
+  }
+  [[nodiscard]] bool must_be_frozen(const Publication::Row& row) const {
+    const std::int32_t stop_s = config_.control.frozen_price.stop_s;
+    return stop_s > 0 && has_stood(row, stop_s + 2 * kSecondsPerStep);
+  }
   [[nodiscard]] double soc_at(std::int64_t utc_ns) const {
     const std::int64_t minute_utc_s = utc_ns / kSecondNs / 60 * 60;
     const auto& minutes = evidence_.minutes;
@@ -220,7 +239,8 @@ class Judge {
 
   void judge_fresh_price() {
     each_tick([&](std::int64_t tick_ns) {
-      if (fresh_row(tick_ns) || is_disturbed_in_cycle(tick_ns)) return;
+      const auto fresh = fresh_row(tick_ns);
+      if ((fresh && !must_be_frozen(*fresh)) || is_disturbed_in_cycle(tick_ns)) return;
       const CommandInForce command = commands_.at(settled_ns(tick_ns));
       if (command.power_w == 0) return;
       const auto row = publication_.newest(tick_ns);
@@ -236,7 +256,7 @@ class Judge {
     const GuardSettings& guard = config_.control.guard;
     each_tick([&](std::int64_t tick_ns) {
       const auto row = fresh_row(tick_ns);
-      if (!row || is_disturbed_in_cycle(tick_ns)) return;
+      if (!row || may_be_frozen(*row) || is_disturbed_in_cycle(tick_ns)) return;
       const double price = row->eur_per_mwh;
       const bool is_low = price <= guard.thresholds.low_eur_per_mwh;
       const bool is_high = price >= guard.thresholds.high_eur_per_mwh;
@@ -346,7 +366,8 @@ class Judge {
 
   void judge_in_control() {
     each_tick([&](std::int64_t tick_ns) {
-      if (!fresh_row(tick_ns) || is_disturbed_in_cycle(tick_ns)) return;
+      const auto row = fresh_row(tick_ns);
+      if (!row || may_be_frozen(*row) || is_disturbed_in_cycle(tick_ns)) return;
       if (commands_.at(settled_ns(tick_ns)).is_driven) return;
       find(settled_ns(tick_ns), "an order in force", "no order");
     });

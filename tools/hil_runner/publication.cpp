@@ -65,7 +65,9 @@ MinuteSeries scenario_prices(const Scenario& scenario) {
 Publication::Publication(const Scenario& scenario, const MinuteSeries& prices)
     : scenario_(scenario), prices_(prices) {
   const PriceFaultWindow& fault = scenario.price_fault;
-  const bool is_dumb = fault.fault == MarketFault::kHttp500 || fault.fault == MarketFault::kGarbage;
+  constexpr MarketFault kDumb[] = {MarketFault::kHttp500, MarketFault::kGarbage,
+                                   MarketFault::kTrailing, MarketFault::kTwice};
+  const bool is_dumb = std::ranges::find(kDumb, fault.fault) != std::end(kDumb);
   if (is_dumb && fault.every == 1) silent_.push_back(fault.span);
   double from_min = -1;
   for (const ScenarioEvent& event : scenario.events) {

@@ -99,8 +99,9 @@ void read_prices(TomlTable table, const fs::path& folder, ScenarioPrices& prices
   });
   if (const TomlValue* const node = table.table("wave")) {
     TomlTable wave(node, table.file(), "[prices] wave", table.error());
-    decimal(wave, "mean", prices.wave_mean_eur_per_mwh, -15'000, 15'000);
-    decimal(wave, "amplitude", prices.wave_amplitude_eur_per_mwh, 0, 15'000);
+    decimal(wave, "mean", prices.wave_mean_eur_per_mwh, -kPlausiblePriceMaxEurPerMwh,
+            kPlausiblePriceMaxEurPerMwh);
+    decimal(wave, "amplitude", prices.wave_amplitude_eur_per_mwh, 0, kPlausiblePriceMaxEurPerMwh);
     decimal(wave, "period_min", prices.wave_period_min, 2, kMinutesMax);
     wave.finish();
   }
@@ -159,9 +160,10 @@ void read_price_fault(TomlTable table, PriceFaultWindow& fault) {
   table.integer("every", fault.every, 1, 1'000'000);
   int kind = 0;
   table.require("kind");
-  table.choice("kind", kind, {"null", "http-500", "stale", "garbage", "all"});
-  constexpr MarketFault kKinds[] = {MarketFault::kNull, MarketFault::kHttp500, MarketFault::kStale,
-                                    MarketFault::kGarbage, MarketFault::kAll};
+  table.choice("kind", kind, {"null", "http-500", "stale", "garbage", "trailing", "twice", "all"});
+  constexpr MarketFault kKinds[] = {
+      MarketFault::kNull,     MarketFault::kHttp500, MarketFault::kStale, MarketFault::kGarbage,
+      MarketFault::kTrailing, MarketFault::kTwice,   MarketFault::kAll};
   fault.fault = kKinds[kind];
   table.finish();
 }

@@ -88,12 +88,11 @@ void VirtualPrices::fetch() {
   }
   const std::int64_t market_ns =
       time_.utc_ns() - (fault == MarketFault::kStale ? kStaleAnswerS * kNanosecondsPerSecond : 0);
-  const std::string text = fault == MarketFault::kGarbage
-                               ? std::string(kGarbageAnswer)
-                               : market_.records({.dataset = Dataset::kMinutes,
-                                                  .limit = kRowsAsked,
-                                                  .hide_newest_price = fault == MarketFault::kNull},
-                                                 market_ns);
+  const std::string text =
+      spoilt(fault, market_.records({.dataset = Dataset::kMinutes,
+                                     .limit = kRowsAsked,
+                                     .hide_newest_price = fault == MarketFault::kNull},
+                                    market_ns));
   answer_.status = parse_newest_price(text, settings_.fields,
                                       time_.edge_utc_ns() / kNanosecondsPerSecond, answer_.row);
 }

@@ -73,6 +73,9 @@ void add_market_command(ProgramCommand& app) {
                                {"http-500", MarketFault::kHttp500},
                                {"stale", MarketFault::kStale},
                                {"garbage", MarketFault::kGarbage},
+                               {"trailing", MarketFault::kTrailing},
+                               {"twice", MarketFault::kTwice},
+                               {"frozen", MarketFault::kFrozen},
                                {"all", MarketFault::kAll}},
                               "Misbehave now and then");
   command.option("--fault-every", options->server.faults.every, "At every Nth request")

@@ -5,23 +5,41 @@
 #include <cstdint>
 #include <iterator>
 #include <limits>
+#include <string>
+#include <string_view>
 
 namespace bess {
 
 enum class MarketFault : std::uint8_t {
   kNone,
-  kNull,     ///< the newest row's price is null
-  kHttp500,  ///< internal server error
-  kStale,    ///< the answer is ten minutes old
-  kGarbage,  ///< not JSON
-  kAll,      ///< each of them in turn
+  kNull,      ///< the newest row's price is null
+  kHttp500,   ///< internal server error
+  kStale,     ///< the answer is ten minutes old
+  kGarbage,   ///< not JSON
+  kTrailing,  ///< more than one document
+  kTwice,     ///< each row has its price twice
+  kAll,       ///< each of them in turn
+  kFrozen,    ///< the price of the fault's begin, under new stamps
 };
 
-inline constexpr const char* kMarketFaultNames[] = {"none",  "null",    "http-500",
-                                                    "stale", "garbage", "all"};
+inline constexpr const char* kMarketFaultNames[] = {
+    "none", "null", "http-500", "stale", "garbage", "trailing", "twice", "all", "frozen"};
 
 inline constexpr std::int64_t kStaleAnswerS = 600;
 inline constexpr const char* kGarbageAnswer = "{\"results\": [{\"dat";
+
+/// An answer as the faults leave it that change its text; any other stays as it is.
+inline std::string spoilt(MarketFault fault, std::string answer) {
+  if (fault == MarketFault::kGarbage) return kGarbageAnswer;
+  if (fault == MarketFault::kTrailing) return answer + answer;
+  if (fault != MarketFault::kTwice) return answer;
+  constexpr std::string_view kPrice = "\"imbalanceprice\":";
+  constexpr std::string_view kTwice = "\"imbalanceprice\":-500.0,\"imbalanceprice\":";
+  for (std::size_t at = 0; (at = answer.find(kPrice, at)) != answer.npos; at += kTwice.size()) {
+    answer.replace(at, kPrice.size(), kTwice);
+  }
+  return answer;
+}
 
 struct MarketFaultSchedule {
   MarketFault fault = MarketFault::kNone;
@@ -42,8 +60,9 @@ class MarketFaultPlan {
     if (request % schedule_.every != 0) return MarketFault::kNone;
     ++faults_;
     if (schedule_.fault != MarketFault::kAll) return schedule_.fault;
-    constexpr MarketFault kTurns[] = {MarketFault::kNull, MarketFault::kHttp500,
-                                      MarketFault::kStale, MarketFault::kGarbage};
+    constexpr MarketFault kTurns[] = {MarketFault::kNull,     MarketFault::kHttp500,
+                                      MarketFault::kStale,    MarketFault::kGarbage,
+                                      MarketFault::kTrailing, MarketFault::kTwice};
     return kTurns[request / schedule_.every % std::ssize(kTurns)];
   }
   [[nodiscard]] std::int64_t faults() const { return faults_; }  ///< answers spoilt so far

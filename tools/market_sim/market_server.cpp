@@ -99,7 +99,6 @@ void MarketServer::answer(Dataset dataset, const httplib::Request& request,
     response.status = 500;
     return response.set_content(Json::object({{"message", "simulated fault"}}).line(), kJson);
   }
-  if (fault == MarketFault::kGarbage) return response.set_content(kGarbageAnswer, kJson);
   RecordsQuery query{.dataset = dataset, .hide_newest_price = fault == MarketFault::kNull};
   std::string problem;
   if (!parse_query(request, query, problem)) {
@@ -110,7 +109,11 @@ void MarketServer::answer(Dataset dataset, const httplib::Request& request,
   }
   std::int64_t now_ns = clock_.now_utc_ns();
   if (fault == MarketFault::kStale) now_ns -= kStaleAnswerS * kNanosecondsPerSecond;
-  response.set_content(view_.records(query, now_ns), kJson);
+  if (fault == MarketFault::kFrozen) {
+    query.frozen_utc_s =
+        start_utc_ns_ / kNanosecondsPerSecond + static_cast<std::int64_t>(settings_.faults.from_s);
+  }
+  response.set_content(spoilt(fault, view_.records(query, now_ns)), kJson);
 }
 
 }  // namespace bess

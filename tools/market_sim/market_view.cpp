@@ -50,6 +50,18 @@ std::vector<MarketView::Row> MarketView::visible_minutes(Dataset dataset,
   return rows;
 }
 
+/// Ascending rows, of which those from `frozen_utc_s` on have the last price before it.
+void MarketView::freeze(std::int64_t frozen_utc_s, std::vector<Row>& rows) {
+  double price = std::nan("");
+  for (Row& row : rows) {
+    if (row.utc_s < frozen_utc_s) {
+      price = row.price;
+    } else if (!std::isnan(price)) {
+      row.price = price;
+    }
+  }
+}
+
 std::vector<MarketView::Row> MarketView::visible_quarter_hours(std::int64_t now_utc_ns) const {
   std::vector<Row> rows;
   const auto [begin, end] = window(Dataset::kQuarterHours, now_utc_ns);
@@ -65,6 +77,7 @@ std::string MarketView::records(const RecordsQuery& query, std::int64_t now_utc_
   const bool minutes = query.dataset != Dataset::kQuarterHours;
   std::vector<Row> rows =
       minutes ? visible_minutes(query.dataset, now_utc_ns) : visible_quarter_hours(now_utc_ns);
+  freeze(query.frozen_utc_s, rows);
   if (query.hide_newest_price && !rows.empty()) rows.back().price = std::nan("");
   if (query.newest_first) std::reverse(rows.begin(), rows.end());
   const std::size_t first = std::min(rows.size(), static_cast<std::size_t>(query.offset));

@@ -22,7 +22,8 @@ struct RecordsQuery {
   bool newest_first = true;
   int limit = 10;
   int offset = 0;
-  bool hide_newest_price = false;  ///< fault: the newest row's price is null
+  bool hide_newest_price = false;         ///< fault: the newest row's price is null
+  std::int64_t frozen_utc_s = INT64_MAX;  ///< fault: minutes from here on have the price before it
 };
 
 class MarketView {
@@ -41,6 +42,7 @@ class MarketView {
     std::int64_t utc_s;
     double price;
   };
+  static void freeze(std::int64_t frozen_utc_s, std::vector<Row>& rows);
   [[nodiscard]] std::vector<Row> visible_minutes(Dataset dataset, std::int64_t now_utc_ns) const;
   [[nodiscard]] std::vector<Row> visible_quarter_hours(std::int64_t now_utc_ns) const;
   [[nodiscard]] std::pair<std::size_t, std::size_t> window(Dataset dataset,

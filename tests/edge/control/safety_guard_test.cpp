@@ -185,6 +185,19 @@ TEST(SafetyGuard, PriceAgeAndQuarterHour) {
   EXPECT_EQ(SafetyGuard(patient).decide(in).reason, Reason::kPriceQuarterHour);
 }
 
+TEST(SafetyGuard, AFrozenPriceIsNoneWhateverItSays) {
+  for (const std::int32_t centi : {0, 9'000, 9'999'900, -9'999'900}) {
+    GuardInputs in = healthy(Action::kCharge);
+    in.price_centi_eur_per_mwh = centi;
+    in.price_is_frozen = true;
+    EXPECT_EQ(decide_once(in).reason, Reason::kFrozenPrice) << centi;
+    EXPECT_EQ(decide_once(in).power_w, 0) << centi;
+    in.held = true;
+    in.held_power_w = 2'000;
+    EXPECT_EQ(decide_once(in).reason, Reason::kHeld) << "a hold needs no price";
+  }
+}
+
 TEST(SafetyGuard, ALostMeterLeavesNeitherDirection) {
   for (const Action action : {Action::kCharge, Action::kDischarge}) {
     GuardInputs in = healthy(action);

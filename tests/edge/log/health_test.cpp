@@ -69,6 +69,17 @@ TEST(Health, EveryTroubleHasItsReason) {
          in.held_eur_per_mwh = 9'000;
        },
        HealthLevel::kDegraded, "a row of 9000.00 EUR/MWh lies further"},
+      {[](HealthInputs& in) {
+         in.has_price = in.price_frozen = true;
+         in.price_eur_per_mwh = 55.5;
+         in.price_unchanged_s = 1'800;
+       },
+       HealthLevel::kDegraded, "frozen_price, 55.50 EUR/MWh has not moved for 30 minutes"},
+      {[](HealthInputs& in) {
+         in.has_price = true;
+         in.price_eur_per_mwh = -25'907.54;
+       },
+       HealthLevel::kDegraded, "-25907.54 EUR/MWh lies beyond 15000: rare, and possible"},
       {[](HealthInputs& in) {  // it started on a full disk: the log alone tells of it
          in.is_of_this_run = false;
          in.cycles_behind = 1;

@@ -156,8 +156,12 @@ TEST(RecordCodec, LayoutOnDiskIsFixed) {
   EXPECT_EQ(bytes[271], 43);    // ended_orders
   EXPECT_EQ(bytes[275], 44);    // lost_orders.orders
   EXPECT_EQ(bytes[279], 45);    // lost_orders.judged
-  EXPECT_EQ(bytes[281], 46);    // lost_orders.lost, the last field
-  for (std::size_t i = 283; i < kRecordBytes - 4; ++i) EXPECT_EQ(bytes[i], 0) << i;
+  EXPECT_EQ(bytes[281], 46);    // lost_orders.lost
+  EXPECT_EQ(bytes[283], 47);    // standing_price.minute_utc_s
+  EXPECT_EQ(bytes[291], 0xD0);  // standing_price.centi_eur_per_mwh = -48
+  EXPECT_EQ(bytes[295], 49);    // standing_price.unchanged_s
+  EXPECT_EQ(bytes[299], 1);     // price_frozen, the last field
+  for (std::size_t i = 300; i < kRecordBytes - 4; ++i) EXPECT_EQ(bytes[i], 0) << i;
 }
 
 /// A ring of the program that ended its records with flash_writes_today: later fields read as 0.
@@ -186,6 +190,8 @@ TEST(RecordCodec, ARecordOfAnOlderLayoutIsRead) {
   expected.measurement.order_ended = false;
   expected.ended_orders = 0;
   expected.lost_orders = {};
+  expected.standing_price = {};
+  expected.price_frozen = false;
   EXPECT_EQ(bytes_of(back, 42), bytes_of(expected, 42));
 }
 

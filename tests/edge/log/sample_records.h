@@ -76,6 +76,8 @@ inline CycleRecord full_record(std::int64_t cycle) {
             .limit_status = Status::kMalformed};
   r.ended_orders = 43;
   r.lost_orders = {.orders = 44, .judged = 45, .lost = 46};
+  r.standing_price = {.minute_utc_s = 47, .centi_eur_per_mwh = -48, .unchanged_s = 49};
+  r.price_frozen = true;
   return r;
 }
 
@@ -117,6 +119,7 @@ inline CycleRecord longest_record() {
             .order_cuts = INT32_MIN,
             .meter_status = Status::kNotExpressible,
             .limit_status = Status::kNotExpressible};
+  r.standing_price = {INT64_MIN, INT32_MIN, INT32_MIN};
   r.counters = {INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT32_MIN};
   r.counters.requests = 0;  // requests - failed_requests must not overflow
   r.counters.failed_requests = INT64_MAX;

@@ -1,6 +1,9 @@
 // The price answer: real shapes, nulls, disorder, the future, nonsense.
 #include <gtest/gtest.h>
 
+#include <string>
+#include <vector>
+
 #include "edge/prices/price_json.h"
 #include "shared/utc_text.h"
 
@@ -54,14 +57,117 @@ TEST(PriceJson, RefusesRowsOfTheFutureAndImplausiblePrices) {
   EXPECT_EQ(parse(R"([{"datetime":"2025-08-17T00:38:00Z","imbalanceprice":1}])", row),
             Status::kNoRow);
   EXPECT_EQ(parse(R"([{"datetime":"2025-08-17T00:37:00Z","imbalanceprice":1}])", row), Status::kOk);
-  EXPECT_EQ(parse(R"([{"datetime":"2025-08-17T00:36:00Z","imbalanceprice":15000.01}])", row),
+  EXPECT_EQ(parse(R"([{"datetime":"2025-08-17T00:36:00Z","imbalanceprice":100000.01}])", row),
             Status::kNoRow);
   EXPECT_EQ(parse(R"([{"datetime":"2025-08-17T00:36:00Z","imbalanceprice":-1e300}])", row),
             Status::kNoRow);
   EXPECT_EQ(parse(R"([{"datetime":"2025-08-17T00:36:00Z","imbalanceprice":1e999}])", row),
             Status::kNoRow);
-  EXPECT_EQ(parse(R"([{"datetime":"2025-08-17T00:36:00Z","imbalanceprice":-15000}])", row),
+  EXPECT_EQ(parse(R"([{"datetime":"2025-08-17T00:36:00Z","imbalanceprice":-100000}])", row),
             Status::kOk);
+}
+
+/// What markets have settled at, what may be bid, and the limit itself: each to the cent.
+TEST(PriceJson, PricesAreExactToTheLimit) {
+  const struct {
+    const char* text;
+    std::int32_t centi;
+  } cases[] = {{"25907.54", 2'590'754},
+               {"-25907.54", -2'590'754},
+               {"99999", 9'999'900},
+               {"-99999", -9'999'900},
+               {"99999.99", 9'999'999},
+               {"1e5", 10'000'000},
+               {"-1.0E+5", -10'000'000},
+               {"-999", -99'900},
+               {"15000.01", 1'500'001},
+               {"2.590754e4", 2'590'754},
+               {"-0", 0},
+               {"-0.004", 0},
+               {"0.005", 1},
+               {"-9999", -999'900},
+               {"1e-300", 0}};
+  for (const auto& c : cases) {
+    PriceRow row{.price_centi_eur_per_mwh = 7};
+    const std::string text =
+        std::string(R"([{"datetime":"2025-08-17T00:36:00Z","imbalanceprice":)") + c.text + "}]";
+    EXPECT_EQ(parse(text, row), Status::kOk) << c.text;
+    EXPECT_EQ(row.price_centi_eur_per_mwh, c.centi) << c.text;
+  }
+}
+
+TEST(PriceJson, WhatIsNoNumberIsNoPrice) {
+  const auto status_of = [](const std::string& price) {
+    PriceRow row;
+    return parse(R"([{"datetime":"2025-08-17T00:36:00Z","imbalanceprice":)" + price + "}]", row);
+  };
+  for (const char* price : {"\"25907.54\"", "\"\"", "true", "[5]", "{}", "null", "1e6", "100001",
+                            "-1e300", "1e999", "-1e999", "100000.01"}) {
+    EXPECT_EQ(status_of(price), Status::kNoRow) << price;
+  }
+  for (const char* price : {"NaN", "Infinity", "-", "+5", ".5", "0x10", "1,5", "1e", "5 6", "--5",
+                            "1.2.3", "", "'5'"}) {
+    EXPECT_EQ(status_of(price), Status::kMalformed) << price;
+  }
+}
+
+TEST(PriceJson, NothingMayFollowTheDocument) {
+  const std::string whole = R"([{"datetime":"2025-08-17T00:36:00Z","imbalanceprice":5}])";
+  PriceRow row;
+  for (const std::string& rest : std::vector<std::string>{"", " ", "\r\n\t \n"}) {
+    EXPECT_EQ(parse(whole + rest, row), Status::kOk);
+  }
+  for (const std::string& rest :
+       {whole, std::string("]"), std::string("<html>"), std::string(" x"), std::string("\n{}"),
+        std::string(1, '\0'), std::string(",{}"), std::string("// a comment")}) {
+    EXPECT_EQ(parse(whole + rest, row), Status::kMalformed) << rest;
+  }
+  EXPECT_EQ(parse("\xEF\xBB\xBF" + whole + "\n", row), Status::kOk) << "a byte order mark";
+  EXPECT_EQ(parse("x" + whole, row), Status::kMalformed);
+}
+
+TEST(PriceJson, AFieldThatStandsTwiceIsRefusedWhereverItCounts) {
+  PriceRow row;
+  const std::string good = R"({"datetime":"2025-08-17T00:36:00Z","imbalanceprice":5})";
+  for (
+      const std::string& twice :
+      {std::string(
+           R"([{"datetime":"2025-08-17T00:36:00Z","imbalanceprice":5,"imbalanceprice":9}])"),
+       std::string(
+           R"([{"imbalanceprice":5,"datetime":"2025-08-17T00:36:00Z","imbalanceprice":5}])"),
+       std::string(
+           R"([{"datetime":"2025-08-17T00:36:00Z","imbalanceprice":null,"imbalanceprice":5}])"),
+       std::string(
+           R"([{"datetime":"2025-08-17T00:36:00Z","datetime":"2025-08-17T00:35:00Z","imbalanceprice":5}])"),
+       std::string(
+           R"([{"datetime":"2025-08-17T00:36:00Z","imbalanceprice":5,"imbalancepric\u0065":9}])"),
+       R"({"results":[],"results":[)" + good + "]}",
+       R"({"results":[)" + good + R"(],"results":[]})",
+       "[" + good + R"(,{"datetime":"x","datetime":"y","imbalanceprice":null}])"}) {
+    EXPECT_EQ(parse(twice, row), Status::kMalformed) << twice;
+  }
+  EXPECT_EQ(parse(R"({"a":1,"a":2,"results":[)" + good + "]}", row), Status::kOk)
+      << "what is not asked for may be as it likes";
+  const PriceFields fields{.rows = "data.rows", .time = "at.utc", .price = "p"};
+  EXPECT_EQ(
+      parse_newest_price(
+          R"({"data":{"rows":[{"at":{"utc":"2025-08-17T00:36:00Z","utc":"2025-08-17T00:35:00Z"},"p":3}]}})",
+          fields, kAsked, row),
+      Status::kMalformed);
+}
+
+/// What came before the row that spoils an answer has not been given away either.
+TEST(PriceJson, ARefusedAnswerGivesNoRows) {
+  const std::string text =
+      R"([{"datetime":"2025-08-17T00:36:00Z","imbalanceprice":5},)"
+      R"({"datetime":"2025-08-17T00:35:00Z","imbalanceprice":5,"imbalanceprice":6}])";
+  int taken = 0;
+  int items = 7;
+  const PriceRowTaker taker{&taken,
+                            [](void* self, const PriceRow&) { ++*static_cast<int*>(self); }};
+  EXPECT_EQ(parse_prices(text, PriceFields{}, kAsked, taker, items), Status::kMalformed);
+  EXPECT_EQ(taken, 0);
+  EXPECT_EQ(items, 0);
 }
 
 TEST(PriceJson, SkipsRowsThatAreNotRows) {

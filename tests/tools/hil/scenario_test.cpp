@@ -62,7 +62,7 @@ TEST(Scenarios, EveryFaultOfTheBatteryIsInOneOnEachBusThatHasIt) {
 TEST(Scenarios, EveryFaultOfThePricesIsInOne) {
   std::set<MarketFault> tried;
   for (const Scenario& s : shipped()) tried.insert(s.price_fault.fault);
-  EXPECT_EQ(tried.size(), 6U) << "none, null, http-500, stale, garbage, all";
+  EXPECT_EQ(tried.size(), 8U) << "none, null, http-500, stale, garbage, trailing, twice, all";
 }
 
 TEST(Scenarios, EveryEventIsInOne) {

@@ -66,7 +66,7 @@ TEST_F(BadPrices, TheOrdinaryFileRaisesNothing) {
 
 TEST_F(BadPrices, TheRowIsNamed) {
   EXPECT_THAT(evaluated(with_prices(2000, "1e200", "")).output,
-              HasSubstr("prices.csv:2002: indicative price 1e+200 lies beyond 15000 EUR/MWh, more "
+              HasSubstr("prices.csv:2002: indicative price 1e+200 lies beyond 100000 EUR/MWh, more "
                         "than any market allows (1 minute); mend it or leave it empty (--accept "
                         "price-range if it is meant)\n"));
   EXPECT_THAT(evaluated("# from somewhere\n" + with_prices(2000, "", "-9999")).output,
@@ -120,6 +120,36 @@ TEST_F(BadPrices, EveryCommandLooks) {
   const Result stats = run({"prices", "stats", bad});
   EXPECT_EQ(stats.exit_code, 0);
   EXPECT_THAT(stats.output, HasSubstr("warning: " + bad + ":1997: settled price -9999"));
+}
+
+/// What Belgium settled at, what another country did, and where bids end: in every command, to the digit.
+TEST_F(BadPrices, ExtremePricesPassThroughEveryCommand) {
+  const struct {
+    const char* price;
+    bool is_told;
+  } cases[] = {
+      {"-999", false}, {"25907.54", true}, {"-25907.54", true}, {"99999", true}, {"-99999", true}};
+  for (const auto& c : cases) {
+    SCOPED_TRACE(c.price);
+    const std::string file = written("extreme.csv", with_prices(2000, c.price, c.price));
+    const std::string imported = path("imported.csv");
+    const std::string drawn = path("drawn.csv");
+    const std::vector<std::vector<std::string>> commands{
+        {"prices", "import", file, "--out", imported},
+        {"prices", "reconstruct", "--quarter-hours", file, "--out", drawn},
+        {"prices", "stats", file, "--plot", path("stats.svg")},
+        {"evaluate", "--prices", file, "--policy", "rbc", "foresight", "compiled", "--split",
+         "all"}};
+    for (const std::vector<std::string>& command : commands) {
+      const Result result = run(command);
+      EXPECT_EQ(result.exit_code, 0) << command[0] << ": " << result.output;
+      EXPECT_THAT(result.output, Not(HasSubstr("[sentinel]")));
+      const std::string told = fmt::format("price {} lies beyond 15000 EUR/MWh", c.price);
+      EXPECT_EQ(result.output.find(told) != result.output.npos, c.is_told) << result.output;
+    }
+    EXPECT_THAT(read_file(imported), HasSubstr(fmt::format(",{0},{0}\n", c.price)));
+    EXPECT_THAT(read_file(drawn), HasSubstr(fmt::format(",{0},{0}\n", c.price)));
+  }
 }
 
 TEST_F(BadPrices, ABatteryThatCannotBeMeantIsRefused) {

@@ -45,15 +45,15 @@ TEST(MarketSteps, NewestVisibleRowIsTheDecisionMinuteMinusTheDelay) {
 /// The edge refuses such a row, so nobody may learn from it.
 TEST(MarketSteps, ARowBeyondBeliefIsPassedOverAsTheEdgeDoes) {
   MinuteSeries series = numbered_series("2023-01-31T23:00:00Z", kMinutesPerDay);
-  series.indicative[101] = 15'000.01;
-  series.indicative[103] = -15'000;
-  series.indicative[105] = -15'000.01;
+  series.indicative[101] = 100'000.01;
+  series.indicative[103] = -100'000;
+  series.indicative[105] = -100'000.01;
   const MarketSteps market = make_market_steps(series, {});
   const auto observed_at = [&](std::size_t minute) {
     return market.steps[minute / 2 - 1].observed_eur_per_mwh;
   };
   EXPECT_EQ(observed_at(102), 100);
-  EXPECT_EQ(observed_at(104), -15'000);
+  EXPECT_EQ(observed_at(104), -100'000);
   EXPECT_EQ(observed_at(106), 104);
 }
 

@@ -16,9 +16,9 @@
 namespace bess {
 namespace {
 
-/// Elia's price limits, and those of the edge.
-constexpr double kPriceMaxEurPerMwh =
-    static_cast<double>(kPlausiblePriceMaxCentiEurPerMwh) / kCentiPerEur;
+/// As the edge refuses and tells them.
+constexpr double kPriceMaxEurPerMwh = kPlausiblePriceMaxEurPerMwh;
+constexpr double kUsualPriceMaxEurPerMwh = kUnusualPriceMaxEurPerMwh;
 /// No day of a balancing market stays within it; every one does when counted in EUR/kWh.
 constexpr double kUnitLowMax = 5;
 /// The median of no market; that of every market in cents.
@@ -28,9 +28,13 @@ constexpr std::int64_t kGapWorthNaming_min = 60;
 constexpr double kGapShareMax = 0.05;
 constexpr std::int64_t kEarliest_s = 946'684'800;  // 2000-01-01
 constexpr std::int64_t kLatest_s = 4'102'444'800;  // 2100-01-01
-/// What databases and instruments write where there is no value.
-constexpr std::array kSentinels{-999.0,   -9'999.0,  9'999.0, -9'999.99,
-                                9'999.99, -99'999.0, 99'999.0};
+/// What databases and instruments write where there is no value, and what no market has settled at or
+/// limits its bids to.
+constexpr std::array kSentinels{-9'999.0, 9'999.0, -9'999.99, 9'999.99};
+/// What they write as well, and what is a price: seven quarter-hours of Belgium's 2025 were settled at -999,
+/// and bids end at +-99,999. Only many of them together are suspect.
+constexpr std::array kAlsoPrices{-999.0, -99'999.0, 99'999.0};
+constexpr double kAlsoPricesShareMax = 0.01;  ///< -999 had 0.02 % of 2025
 
 struct Column {
   const char* name;
@@ -88,8 +92,10 @@ class Judge {
     for_columns(&Judge::check_row_step);
     for_columns(&Judge::check_constant);
     for_columns(&Judge::check_sentinels);
+    for_columns(&Judge::check_frequent_sentinels);
     for_columns(&Judge::check_unit);
     for_columns(&Judge::check_range);
+    for_columns(&Judge::check_unusual);
     check_settled_changes();
     for_columns(&Judge::check_frozen);
     check_copied();
@@ -177,8 +183,24 @@ class Judge {
     const auto [count, first] = matches(column.prices, is_sentinel);
     if (count == 0) return;
     error("sentinel", first,
-          fmt::format("{} price {:g} stands for \"no price\" ({}); leave the field empty instead",
+          fmt::format("{} price {} stands for \"no price\" ({}); leave the field empty if your "
+                      "source says so",
                       column.name, column.prices[first], counted(count, "minute")));
+  }
+
+  void check_frequent_sentinels(const Column& column) {
+    const std::size_t prices = summary_of(column).count;
+    if (prices < kJudgedMin) return;
+    for (const double wanted : kAlsoPrices) {
+      const auto [count, first] =
+          matches(column.prices, [wanted](double price) { return price == wanted; });
+      const double share = static_cast<double>(count) / static_cast<double>(prices);
+      if (share <= kAlsoPricesShareMax) continue;
+      warning("sentinel", series_.utc_s(first),
+              fmt::format("{} price {} in {:.1f} % of the minutes: is it what your source writes "
+                          "for \"no price\"? then leave the field empty",
+                          column.name, wanted, 100 * share));
+    }
   }
 
   void check_unit(const Column& column) {
@@ -205,10 +227,24 @@ class Judge {
     const auto [count, first] = matches(column.prices, is_beyond);
     if (count == 0) return;
     error("price-range", first,
-          fmt::format("{} price {:g} lies beyond {:g} EUR/MWh, more than any market allows ({}); "
+          fmt::format("{} price {} lies beyond {:.0f} EUR/MWh, more than any market allows ({}); "
                       "mend it or leave it empty",
                       column.name, column.prices[first], kPriceMaxEurPerMwh,
                       counted(count, "minute")));
+  }
+
+  /// Nothing is done about them: the dearest minutes of a year are what a battery is for.
+  void check_unusual(const Column& column) {
+    const auto is_unusual = [](double price) {
+      return std::fabs(price) > kUsualPriceMaxEurPerMwh && std::fabs(price) <= kPriceMaxEurPerMwh;
+    };
+    const auto [count, first] = matches(column.prices, is_unusual);
+    if (count == 0) return;
+    warning("unusual-price", series_.utc_s(first),
+            fmt::format("{} price {} lies beyond {:.0f} EUR/MWh ({}): taken as it is, markets have "
+                        "settled there",
+                        column.name, column.prices[first], kUsualPriceMaxEurPerMwh,
+                        counted(count, "minute")));
   }
 
   /// The settled price belongs to the quarter-hour; when the other column keeps still instead, the

@@ -16,10 +16,10 @@
 namespace bess {
 
 /// Every name that a finding may have; errors first.
-inline constexpr std::array<std::string_view, 13> kFindingNames{
-    "dates",       "row-step",      "constant",        "sentinel", "price-unit",
-    "price-range", "cut-end",       "settled-changes", "overlap",  "gaps",
-    "frozen",      "copied-column", "untrained-months"};
+inline constexpr std::array<std::string_view, 14> kFindingNames{
+    "dates",       "row-step",      "constant",         "sentinel",     "price-unit",
+    "price-range", "cut-end",       "settled-changes",  "overlap",      "gaps",
+    "frozen",      "copied-column", "untrained-months", "unusual-price"};
 
 struct Finding {
   std::string_view name;                ///< of kFindingNames

@@ -276,7 +276,7 @@ std::vector<QuirkCase> forms() {
        }),
        "neither PT1M nor PT15M", 2},
       {"a price that is text", row_price("high"), "\"high\" is not a number", 2},
-      {"a price of 1e300", row_price("1e300"), "lies beyond 15000 EUR/MWh"},
+      {"a price of 1e300", row_price("1e300"), "lies beyond 100000 EUR/MWh"},
       {"a price of -9999", row_price("-9999"), "stands for \"no price\""},
       {"a row too short", formatted([](const Ask& ask, const auto& rows) {
          return quirky_csv(ask, rows) + "2023-03-25T10:00:00+00:00;PT1M\n";

@@ -36,12 +36,60 @@ TEST(Plausibility, RealDownloadsRaiseNothing) {
   BESS_SKIP_WITHOUT("elia_quarter_hour_2023-01_2023-05.csv.gz");
   for (const char* name :
        {"elia_quarter_hour_2023-01_2023-05.csv.gz", "elia_quarter_hour_2024-05_2024-12.csv.gz",
-        "elia_minute_2024-09-06.csv.gz", "elia_minute_2025-04-08.csv.gz",
-        "raw/ods047_head3000.csv.gz", "raw/ods161_2024-09-06.csv.gz",
-        "raw/ods161_2025-04-08.csv.gz", "benchmark_minutes_2023.csv.gz"}) {
+        "elia_quarter_hour_2025-01_2025-06.csv.gz", "elia_minute_2024-09-06.csv.gz",
+        "elia_minute_2025-04-08.csv.gz", "raw/ods047_head3000.csv.gz",
+        "raw/ods161_2024-09-06.csv.gz", "raw/ods161_2025-04-08.csv.gz",
+        "benchmark_minutes_2023.csv.gz"}) {
     const JoinedMarket market = join_market(read_market_files({real_sample(name).string()}), name);
     EXPECT_THAT(names_of(implausible(market.series)), IsEmpty()) << name;
   }
+}
+
+/// Belgium settled seven quarter-hours of 2025 at -999.
+TEST(Plausibility, ASettledPriceOfMinus999IsOne) {
+  BESS_SKIP_WITHOUT("elia_quarter_hour_2025-01_2025-06.csv.gz");
+  const std::string path = real_sample("elia_quarter_hour_2025-01_2025-06.csv.gz").string();
+  const JoinedMarket market = join_market(read_market_files({path}), "2025");
+  EXPECT_EQ(std::ranges::count(market.series.settled, -999.0), 3 * kMinutesPerQuarterHour);
+  EXPECT_THAT(names_of(implausible(market.series)), IsEmpty());
+}
+
+MinuteSeries with_settled(double eur_per_mwh, std::size_t quarter_hours) {
+  MinuteSeries series = ordinary();
+  for (std::size_t i = 0; i < quarter_hours; ++i) {
+    std::fill_n(series.settled.begin() + static_cast<std::ptrdiff_t>(7 + 11 * i) * 15, 15,
+                eur_per_mwh);
+  }
+  return series;
+}
+
+TEST(Plausibility, ExtremesThatMarketsHaveHadAreTakenAndTold) {
+  for (const double price : {-999.0, 9'998.0, 15'000.0, -15'000.0}) {
+    EXPECT_THAT(names_of(implausible(with_settled(price, 1))), IsEmpty()) << price;
+  }
+  for (const double price : {25'907.54, -25'907.54, 99'999.0, -99'999.0, 100'000.0}) {
+    const std::vector<Finding> findings = implausible(with_settled(price, 1));
+    ASSERT_EQ(findings.size(), 1u) << price;
+    EXPECT_EQ(findings[0].name, "unusual-price");
+    EXPECT_FALSE(findings[0].is_error);
+    EXPECT_THAT(findings[0].what, HasSubstr(fmt::format("settled price {} lies", price)));
+  }
+  for (const double price : {100'000.01, -1e6}) {
+    const std::vector<Finding> findings = implausible(with_settled(price, 1));
+    ASSERT_FALSE(findings.empty()) << price;
+    EXPECT_EQ(findings[0].name, "price-range");
+    EXPECT_TRUE(findings[0].is_error);
+  }
+}
+
+/// Minus 999 again and again is what an instrument writes: said, and still taken.
+TEST(Plausibility, ManyOfWhatMayAlsoStandForNoPriceAreToldAndTaken) {
+  EXPECT_THAT(names_of(implausible(with_settled(-999, 2))), IsEmpty());
+  const std::vector<Finding> findings = implausible(with_settled(-999, 8));
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_EQ(findings[0].name, "sentinel");
+  EXPECT_FALSE(findings[0].is_error);
+  EXPECT_THAT(findings[0].what, HasSubstr("settled price -999 in 2.8 % of the minutes"));
 }
 
 TEST(Plausibility, GapsAreCounted) {

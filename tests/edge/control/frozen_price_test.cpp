@@ -1,0 +1,102 @@
+// A price that stands still under new stamps: what counts as standing still, and what does not.
+#include "edge/control/frozen_price.h"
+
+#include <gtest/gtest.h>
+
+namespace bess {
+namespace {
+
+constexpr std::int64_t kFirstMinute = 1'679'875'200;
+
+/// One row every two minutes, as a controller sees them.
+class Rows {
+ public:
+  explicit Rows(const FrozenPriceSettings& settings = {}) : frozen(settings) {}
+  void add(int rows, std::int32_t centi) {
+    for (int i = 0; i < rows; ++i) frozen.observe(minute_utc_s += kSecondsPerStep, centi);
+  }
+
+  FrozenPrice frozen;
+  std::int64_t minute_utc_s = kFirstMinute;
+};
+
+TEST(FrozenPrice, IsToldAfterHalfAnHourAndNoPriceAfterThree) {
+  Rows rows;
+  rows.add(15, 5'550);
+  EXPECT_EQ(rows.frozen.price().unchanged_s, 28 * 60);
+  EXPECT_FALSE(rows.frozen.is_told());
+  rows.add(1, 5'550);
+  EXPECT_TRUE(rows.frozen.is_told()) << "30 minutes from stamp to stamp";
+  rows.add(74, 5'550);
+  EXPECT_FALSE(rows.frozen.is_no_price());
+  rows.add(1, 5'550);
+  EXPECT_TRUE(rows.frozen.is_no_price());
+  rows.add(1, 5'551);  // a cent is enough
+  EXPECT_EQ(rows.frozen.price().unchanged_s, 0);
+  EXPECT_FALSE(rows.frozen.is_told() || rows.frozen.is_no_price());
+}
+
+TEST(FrozenPrice, ZeroAndTheEndsOfTheRangeArePricesLikeOthers) {
+  for (const std::int32_t centi : {0, -1, 9'999'900, -9'999'900, 10'000'000, -10'000'000}) {
+    Rows rows;
+    rows.add(16, centi);
+    EXPECT_TRUE(rows.frozen.is_told()) << centi;
+  }
+}
+
+TEST(FrozenPrice, TheSameRowAgainIsNoNewStamp) {
+  Rows rows;
+  rows.add(1, 700);
+  for (int i = 0; i < 100; ++i) rows.frozen.observe(rows.minute_utc_s, 700);
+  EXPECT_EQ(rows.frozen.price().unchanged_s, 0);
+}
+
+/// A source that hangs and drops rows besides: no outage thaws it, and none counts as its hours.
+TEST(FrozenPrice, AnOutageCountsAsOneStepAndAFewMinutes) {
+  Rows rows;
+  rows.add(2, 700);
+  rows.minute_utc_s += 9 * 3'600;
+  rows.add(1, 700);
+  EXPECT_EQ(rows.frozen.price().unchanged_s, 6 * 60);
+  for (int i = 0; i < 7; ++i) {
+    rows.minute_utc_s += 3'600;
+    rows.add(1, 700);
+  }
+  EXPECT_TRUE(rows.frozen.is_told());
+}
+
+TEST(FrozenPrice, ARestartDoesNotThawIt) {
+  Rows rows;
+  for (int run = 0; run < 6; ++run) {
+    FrozenPrice next{FrozenPriceSettings{}};
+    next.restore(rows.frozen.price());
+    rows.frozen = next;
+    rows.add(3, 700);
+  }
+  EXPECT_TRUE(rows.frozen.is_told());
+  EXPECT_EQ(rows.frozen.price().unchanged_s, 17 * kSecondsPerStep);
+  FrozenPrice moved{FrozenPriceSettings{}};
+  moved.restore(rows.frozen.price());
+  moved.observe(rows.minute_utc_s + 120, 701);
+  EXPECT_EQ(moved.price().unchanged_s, 0);
+}
+
+/// A clock that was wrong left a stamp of the future behind.
+TEST(FrozenPrice, AStampOfTheFutureNeitherCountsNorOverflows) {
+  FrozenPrice frozen{FrozenPriceSettings{}};
+  frozen.restore(
+      {.minute_utc_s = INT64_MAX / 2, .centi_eur_per_mwh = 700, .unchanged_s = INT32_MAX});
+  frozen.observe(kFirstMinute, 700);
+  EXPECT_EQ(frozen.price().unchanged_s, INT32_MAX);
+  frozen.observe(kFirstMinute + 120, 700);
+  EXPECT_EQ(frozen.price().unchanged_s, INT32_MAX);
+}
+
+TEST(FrozenPrice, BothTimesCanBeSwitchedOff) {
+  Rows rows({.told_s = 0, .stop_s = 0});
+  rows.add(2'000, 0);
+  EXPECT_FALSE(rows.frozen.is_told() || rows.frozen.is_no_price());
+}
+
+}  // namespace
+}  // namespace bess
