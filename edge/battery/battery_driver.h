@@ -35,10 +35,15 @@ class BatteryDriver {
   BatteryDriver(const BatteryDriver&) = delete;
   BatteryDriver& operator=(const BatteryDriver&) = delete;
 
-  /// Connects if needed and reads everything that the map measures.
+  /// Connects if needed and reads everything that the map measures. Where an identity check finds another
+  /// capacity, that is all there is of the measurement.
   Status read(BatteryMeasurement& measurement) {
     measurement = BatteryMeasurement{};
-    if (const Status status = identify(); status != Status::kOk) return status;
+    IdentityFailure failure;
+    if (const Status status = identify(failure); status != Status::kOk) {
+      if (status == Status::kImplausible) note_capacity(failure, measurement);
+      return status;
+    }
     if (const Status status = read_registers(); status != Status::kOk) return status;
     const Status status = reader_.translate(bus_.live(), bus_.time().now_ns(), measurement);
     if (status != Status::kOk) return status;
@@ -163,13 +168,23 @@ class BatteryDriver {
   static constexpr std::int64_t kLiveAgeNs = 180 * kNanosecondsPerSecond;
   static constexpr std::int64_t kIdentityAgeNs = 600 * kNanosecondsPerSecond;
 
-  /// Behind a new connection there may be another device, and one that stays may be changed.
   Status identify() {
+    IdentityFailure failure;
+    return identify(failure);
+  }
+
+  /// Behind a new connection there may be another device, and one that stays may be changed.
+  Status identify(IdentityFailure& failure) {
     const bool same_connection = bus_.link().counters().reconnects == identified_connections_;
     const bool is_recent = bus_.time().now_ns() - identified_ns_ < kIdentityAgeNs;
     if (identified_ && same_connection && is_recent) return Status::kOk;
-    IdentityFailure failure;
     return check_identity(failure);
+  }
+
+  void note_capacity(const IdentityFailure& failure, BatteryMeasurement& measurement) const {
+    const bool is_checked = failure.check < map_.identity.size();
+    if (!is_checked || map_.points[map_.identity[failure.check].point].name != "capacity") return;
+    measurement.capacity_wh = clamp_to_int32(failure.value);
   }
 
   Status read_registers() {

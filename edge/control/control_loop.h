@@ -283,6 +283,8 @@ class ControlLoop {
     record.battery_status = battery_.read(record.measurement);
     record.has_measurement = record.battery_status == Status::kOk;
     if (!record.has_measurement) {
+      const std::int32_t capacity_wh = record.measurement.capacity_wh;
+      if (settings_.control && capacity_wh > 0) supervision_.note_capacity(capacity_wh);
       record.measurement = BatteryMeasurement{};
       cycle_budget_.forget_soc();
       return;
@@ -386,7 +388,7 @@ class ControlLoop {
          .full_charge = full_charge_.wish(price.price_centi_eur_per_mwh, price_level_),
          .rules = rules,
          .site = site_range(decided_utc_s, Margin::kWhole)});
-    record.reason = decision.reason;
+    record.reason = cause_of(decision.reason, record.battery_status);
     record.ordered_power_w = decision.power_w;
     reversal_cap_.note(decision.power_w);
     advance_mode(record);
@@ -396,6 +398,14 @@ class ControlLoop {
   void note_price(const PriceReport& price) {
     price_level_.observe(price.minute_utc_s, price.price_centi_eur_per_mwh);
     frozen_price_.observe(price.minute_utc_s, price.price_centi_eur_per_mwh);
+  }
+
+  /// A device that answers, but no longer as the right one, was stopped for what it is, and not because it could not
+  /// be read.
+  [[nodiscard]] Reason cause_of(Reason reason, Status battery_status) const {
+    const Reason found = supervision_.stop_reason();
+    const bool is_known = battery_status == Status::kImplausible && is_stop_reason(found);
+    return reason == Reason::kLink && is_known ? found : reason;
   }
 
   /// The tick, unless more than the wait for the price has passed since: a process that was

@@ -58,7 +58,7 @@ class Supervision {
 
   /// Every reading of a battery that is under control. `holds_nothing`: what it follows is not ours.
   void observe(const Response& now, bool holds_nothing) {
-    capacity_fits_ = is_right_capacity(now.measurement.capacity_wh);
+    note_capacity(now.measurement.capacity_wh);
     end_pause(now.utc_s);
     if (trip_.is_set()) return;
     observe_orders(now, holds_nothing);
@@ -71,6 +71,9 @@ class Supervision {
       pause_.on_success();
     }
   }
+
+  /// What a battery reports, also where it could not be read any further; 0 or less: it does not say.
+  void note_capacity(std::int32_t capacity_wh) { capacity_fits_ = is_right_capacity(capacity_wh); }
 
   /// A reading in the middle of a step, just before the order changes: nothing is judged by it.
   void note_power(const Response& now) { response_.note_power(now); }

@@ -118,6 +118,34 @@ TEST_P(EveryMapSupervised, EveryFaultIsNoticedWithinTwoCyclesAndDrivenNoFurther)
   }
 }
 
+/// The identity checks that are made every ten minutes know the capacity too, and end the reading: whichever of the
+/// two finds it first, what is told is the cause, as long as it lasts. Then the battery is driven again.
+TEST_P(EveryMapSupervised, AnotherCapacityStaysTheReasonThatIsTold) {
+  for (int phase = 0; phase < 5; ++phase) {
+    SupervisedSite site(GetParam());
+    RegisterMap& map = site.device.test.map;
+    if (!shows_capacity(map)) continue;
+    for (IdentityCheck& check : map.identity) {  // as the configuration narrows it
+      if (map.points[check.point].name != "capacity") continue;
+      check.value_min = 6'000;
+      check.value_max = 10'000;
+    }
+    site.prices.price = [](std::int64_t) { return -60'000; };
+    for (int i = 0; i < 6 + phase; ++i) ASSERT_FALSE(is_stop_reason(site.cycle().reason));
+    set_display(site, {.capacity_factor = 5});
+    site.cycle();
+    for (int i = 0; i < 20; ++i) {
+      const CycleRecord record = site.cycle();
+      EXPECT_EQ(reason_name(record.reason), "capacity") << "phase " << phase << ", cycle " << i;
+      EXPECT_EQ(record.mode, Mode::kSafe);
+      EXPECT_FALSE(record.measurement.dispatch_active);
+    }
+    set_display(site, {});
+    for (int i = 0; i < 6; ++i) site.cycle();
+    EXPECT_EQ(site.cycle().mode, Mode::kRunning);
+  }
+}
+
 TEST_P(EveryMapSupervised, LessThanOrderedIsToldWithinTwoCycles) {
   SupervisedSite site(GetParam());
   site.prices.price = [](std::int64_t minute_utc_s) {
