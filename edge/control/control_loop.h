@@ -51,6 +51,7 @@ struct TakeOver {
   std::int32_t last_full_day = 0;  ///< full_charge.h
   SiteReport site{};
   StandingPrice standing_price{};
+  std::int32_t ordered_power_w = 0;
   std::int64_t utc_s = 0;  ///< of that log's newest record
 };
 
@@ -72,6 +73,16 @@ class ControlLoop {
         supervision_(settings.supervision),
         order_(settings_, battery, clock) {}
 
+  /// A cycle of an earlier run, oldest first and before `take_over`: what supervision has found by then,
+  /// short of a trip, is found again. Who kills the program between two readings hides nothing.
+  void recall(const CycleRecord& record) {
+    if (!settings_.control || !record.has_measurement) return;
+    supervision_.recall(recalled_response(record));
+    if (record.mode == Mode::kRunning) {
+      supervision_.on_ordered(record.utc_s, record.battery_status);
+    }
+  }
+
   void take_over(const TakeOver& before) {
     cycle_budget_.restore(before.throughput);
     price_level_ = before.price_level;
@@ -81,6 +92,7 @@ class ControlLoop {
     full_charge_.restore(before.last_full_day);
     site_.take_over(before.utc_s, before.site);
     frozen_price_.restore(before.standing_price);
+    order_.expect(before.ordered_power_w, before.utc_s);
   }
 
   /// Follows the holds that are published there, which outlives the loop.
@@ -262,6 +274,7 @@ class ControlLoop {
   /// As fresh as the readings that it follows from, and never longer than its cycle's order.
   void cut_order(std::int32_t power_w) {
     if (power_w != order_.power_w()) ++order_cuts_;
+    was_cut_ = true;
     CycleRecord between;  // the next cycle's record says what became of it
     write_order(
         power_w, between,
@@ -279,6 +292,15 @@ class ControlLoop {
     last_tick_utc_s_ = tick_utc_s;
   }
 
+  [[nodiscard]] Response recalled_response(const CycleRecord& record) const {
+    return {.utc_s = record.utc_s - settings_.read_lead_s,
+            .is_driven = record.followed.is_judged,
+            .ordered_power_w = record.followed.power_w,
+            .order_age_s = record.followed.age_s,
+            .soc_floor_e4 = record.followed.soc_floor_e4,
+            .measurement = record.measurement};
+  }
+
   void read_battery(CycleRecord& record) {
     record.battery_status = battery_.read(record.measurement);
     record.has_measurement = record.battery_status == Status::kOk;
@@ -293,9 +315,14 @@ class ControlLoop {
     order_.find(record.measurement);
     count_cycles(record.utc_s, record.measurement);
     full_charge_.update(local_day_number(local_minute_of(record.utc_s)), record.measurement.soc_e4);
-    if (settings_.control) {
-      supervision_.observe(order_.response(record.measurement), !order_.exists());
-    }
+    if (!settings_.control) return;
+    const Response response = order_.response(record.measurement);
+    supervision_.observe(response, !order_.exists());
+    record.followed = {.is_judged = response.is_driven && !was_cut_,
+                       .power_w = response.ordered_power_w,
+                       .age_s = response.order_age_s,
+                       .soc_floor_e4 = static_cast<std::int16_t>(response.soc_floor_e4)};
+    was_cut_ = false;
   }
 
   void count_cycles(std::int64_t utc_s, const BatteryMeasurement& measurement) {
@@ -484,6 +511,7 @@ class ControlLoop {
     record.deadline_misses = deadline_misses_;
     record.unanswered_orders = supervision_.response().unanswered_orders();
     record.weak_answers = supervision_.response().weak_answers();
+    record.findings = supervision_.response().findings();
     record.replaced_orders = supervision_.lost_orders().replaced();
     record.ended_orders = supervision_.lost_orders().ended();
     record.lost_orders = supervision_.lost_orders().history();
@@ -529,6 +557,7 @@ class ControlLoop {
   std::int64_t site_utc_ns_ = 0;  ///< when the site was last looked at
   std::int32_t order_cuts_ = 0;   ///< since start, between two ticks
   bool cut_failed_ = false;       ///< since this tick: the battery may still follow more
+  bool was_cut_ = false;          ///< since the last tick's reading
   OrderInForce<Battery, Clock> order_;
 };
 

@@ -81,6 +81,7 @@ enum class Reason : std::uint8_t {
   kOtherMaster,
   kOrdersFail,
   kNoAnswer,
+  kBatteryCare,
   kCapacity,
   kSocJump,
   kNoPrice,
@@ -132,6 +133,7 @@ constexpr std::string_view reason_name(Reason reason) {
                                          "other_master",
                                          "orders_fail",
                                          "no_answer",
+                                         "battery_care",
                                          "capacity",
                                          "soc_jump",
                                          "no_price",
@@ -165,6 +167,21 @@ struct Trip {
   Reason reason = Reason::kStudent;  ///< kStudent: none
   std::int64_t utc_s = 0;
   [[nodiscard]] constexpr bool is_set() const { return reason != Reason::kStudent; }
+};
+
+/// The order that the battery followed when it was read, for a later run to judge the reading again by.
+struct FollowedOrder {
+  bool is_judged = false;  ///< it was followed since the reading before, unchanged by a limit
+  std::int32_t power_w = 0;
+  std::int32_t age_s = 0;
+  std::int16_t soc_floor_e4 = 0;
+};
+
+/// What supervision finds in the battery's answers short of a reason to stop; 0: nothing.
+struct ResponseFindings {
+  std::int16_t energy_share_percent = 0;  ///< of the measured energy shows in the SoC
+  std::int32_t rest_loss_w = 0;           ///< lost at 0 W; negative: gained
+  std::int32_t ramp_w_per_s = 0;          ///< too slow for what its map says
 };
 
 struct GuardDecision {
@@ -212,6 +229,8 @@ struct CycleRecord {
   LostOrderHistory lost_orders{};
   StandingPrice standing_price{};
   bool price_frozen = false;  ///< it has stood for longer than is told
+  ResponseFindings findings{};
+  FollowedOrder followed{};
 };
 
 }  // namespace bess

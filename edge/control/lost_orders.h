@@ -14,7 +14,7 @@
 
 #include "edge/control/leaky_count.h"
 #include "edge/control/lost_order_history.h"
-#include "edge/control/response_monitor.h"
+#include "edge/control/response.h"
 #include "shared/units_and_limits.h"
 
 namespace bess {

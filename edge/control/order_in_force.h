@@ -8,7 +8,7 @@
 #include "edge/control/control_settings.h"
 #include "edge/control/control_types.h"
 #include "edge/control/power_order.h"
-#include "edge/control/response_monitor.h"
+#include "edge/control/response.h"
 #include "edge/control/tick.h"
 
 namespace bess {
@@ -44,7 +44,17 @@ class OrderInForce {
     if (!was_found_) return;
     exists_ = true;
     since_utc_s_ = now_utc_s();
-    if (measurement.has_order_power) power_w_ = measurement.order_power_w;
+    if (!measurement.has_order_power) return;
+    power_w_ = measurement.order_power_w;
+    const bool is_expected = power_w_ == expected_power_w_ && expected_utc_s_ <= since_utc_s_ &&
+                             since_utc_s_ - expected_utc_s_ <= settings_.order_duration_s;
+    if (is_expected) since_utc_s_ = expected_utc_s_;
+  }
+
+  /// The newest order of the run before, by its log: found in force, it is that old, and its answer counts.
+  void expect(std::int32_t power_w, std::int64_t utc_s) {
+    expected_power_w_ = power_w;
+    expected_utc_s_ = utc_s;
   }
 
   /// An order belongs to its tick: a process that was stopped and goes on later neither writes it nor
@@ -135,6 +145,8 @@ class OrderInForce {
   std::int32_t soc_floor_e4_;     ///< at which the device itself stops to discharge by it
   std::int64_t write_until_ns_ = 0;
   std::int64_t feed_until_ns_ = 0;
+  std::int32_t expected_power_w_ = 0;
+  std::int64_t expected_utc_s_ = INT64_MIN / 2;
   bool has_looked_ = false;
   bool was_found_ = false;
 };

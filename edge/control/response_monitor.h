@@ -5,109 +5,106 @@
 //
 //   what is seen                                      what follows
 //   opposite direction; more power than ordered       trip: a person has to look
-//   SoC that stands still or runs apart from power    trip
+//   SoC that stands still or runs apart from power    trip (soc_monitor.h)
 //   no power in the middle of the SoC                 pause: given back, tried again later
+//   charging by itself near empty, balancing at full  pause: a battery looks after itself
 //   SoC that jumps                                    stop until readings agree again
-//   less power than ordered, with no reason for it    told, not stopped
-// Two readings make a finding. One that could not show a fault leaves its count as it is: a battery
-// that goes the wrong way at every other order, with idle between, is found as well.
+//   less power than ordered, energy that does not     told, not stopped
+//   arrive, loss at 0 W, a slow ramp
+// Each kind of fault has counts of its own (leaky_count.h), so that one that comes and goes is found. A
+// reading that could not show a fault leaves its count as it is: a
+// battery that goes the wrong way at every other order, with idle between, is found as well.
 #pragma once
 
 #include <cstdint>
 
-#include "edge/base/response_band.h"
-#include "edge/control/control_types.h"
+#include "edge/control/leaky_count.h"
+#include "edge/control/response.h"
+#include "edge/control/soc_monitor.h"
 
 namespace bess {
 
-struct ResponseSettings {
-  ResponseBand band;
-  std::int32_t power_w = 4'000;      ///< rated
-  std::int32_t capacity_wh = 8'000;  ///< where the device tells none
-};
+/// Of a fault that may be of orders of one sign alone: right answers to the others do not forgive it.
+class DirectedCount {
+ public:
+  void bad(bool is_charging) {
+    of_all_.bad();
+    of(is_charging).bad();
+  }
+  void good(bool is_charging) {
+    of_all_.good();
+    of(is_charging).good();
+  }
+  [[nodiscard]] bool is_found() const {
+    return of_all_.is_found() || of_charging_.is_found() || of_discharging_.is_found();
+  }
 
-/// One reading, and the order that the battery followed when it was taken.
-struct Response {
-  std::int64_t utc_s = 0;
-  bool is_driven = false;         ///< false: the battery is in its own mode, which goes any way
-  std::int64_t order_number = 0;  ///< every order that was read back has its own
-  std::int32_t ordered_power_w = 0;
-  std::int32_t order_age_s = 0;          ///< since this power was ordered
-  std::int32_t soc_floor_e4 = 1'000;     ///< where the device itself stops to discharge by it
-  std::int32_t soc_ceiling_e4 = 10'000;  ///< and to charge
-  BatteryMeasurement measurement;
+ private:
+  LeakyCount& of(bool is_charging) { return is_charging ? of_charging_ : of_discharging_; }
+
+  LeakyCount of_all_;
+  LeakyCount of_charging_;
+  LeakyCount of_discharging_;
 };
 
 class ResponseMonitor {
  public:
-  static constexpr std::int32_t kReadingsToFind = 2;
-
-  explicit ResponseMonitor(const ResponseSettings& settings) : settings_(settings) {}
+  explicit ResponseMonitor(const ResponseSettings& settings)
+      : settings_(settings), soc_(settings) {}
 
   void observe(const Response& now);
   /// Between two readings that are judged, just before an order changes: counts what has flowed.
-  void note_power(const Response& now);
+  void note_power(const Response& now) { soc_.note_power(now); }
 
   /// kWrongDirection, kUncontrolledPower or kSocMismatch once it is found; kStudent: nothing.
   [[nodiscard]] Reason trip() const { return trip_; }
-  [[nodiscard]] bool gives_no_answer() const { return unexplained_ >= kReadingsToFind; }
-  [[nodiscard]] bool has_jumped() const { return unsettled_readings_ > 0; }
+  [[nodiscard]] bool gives_no_answer() const { return unexplained_.is_found(); }
+  /// It charges although it is nearly empty and was not told to, or balances its full cells.
+  [[nodiscard]] bool looks_after_itself() const { return care_.is_found(); }
+  /// The newest reading has shown that it does not.
+  [[nodiscard]] bool needs_no_care() const { return needs_no_care_; }
+  [[nodiscard]] bool has_jumped() const { return soc_.has_jumped(); }
   /// The newest reading showed power that an order asked for.
   [[nodiscard]] bool has_answered() const { return answers_; }
   /// Driven readings in a row with less power than ordered, and no reason for it.
   [[nodiscard]] std::int32_t weak_answers() const { return weak_answers_; }
   /// Driven readings in a row without any answer, explained or not.
   [[nodiscard]] std::int32_t unanswered_orders() const { return unanswered_orders_; }
+  /// Found, and short of a reason to stop.
+  [[nodiscard]] ResponseFindings findings() const;
 
   /// A person has looked, or a pause is over: counted anew from here.
-  void forget();
+  void forget() { *this = ResponseMonitor(settings_); }
 
  private:
-  /// What flows within a span of time, in 1e-4 of the capacity, before losses.
-  struct SocRange {
-    std::int64_t least_e4 = 0;
-    std::int64_t most_e4 = 0;
-  };
-
   void judge_power(const Response& now);
-  void judge_idle(std::int32_t measured_w);
+  void judge_idle(const Response& now);
   void judge_driven(const Response& now);
-  void judge_soc(const Response& now);
-  void judge_standstill(std::int32_t soc_e4, std::int64_t moved_e4);
-  void judge_sum(std::int32_t soc_e4, const SocRange& range, std::int64_t slack_e4);
-  void begin_standstill();
-  void begin_sum(std::int32_t soc_e4);
-  void count(std::int32_t& readings, Reason reason);
-  [[nodiscard]] std::int32_t noise_w() const;
-  [[nodiscard]] std::int32_t tolerance_w(std::int32_t power_w) const;
+  void judge_answer(const Response& now, std::int32_t measured_w);
+  void trip_if(bool is_found, Reason reason);
+  bool note_ramp(const Response& now, std::int32_t from_w);
+  [[nodiscard]] bool is_care(const BatteryMeasurement& m) const;
   [[nodiscard]] std::int32_t reachable_power_w(const Response& now) const;
   [[nodiscard]] bool may_be_less(const Response& now) const;
-  [[nodiscard]] std::int64_t flowed_ws(const Response& now) const;
 
   ResponseSettings settings_;
+  SocMonitor soc_;
   Reason trip_ = Reason::kStudent;
   bool answers_ = false;
-  std::int32_t opposed_ = 0;
-  std::int32_t excessive_idle_ = 0;
-  std::int32_t excessive_driven_ = 0;
-  std::int32_t unexplained_ = 0;
+  bool needs_no_care_ = false;
+  DirectedCount opposed_;
+  DirectedCount excessive_driven_;
+  DirectedCount unexplained_;
+  LeakyCount excessive_idle_;
+  LeakyCount care_;
+  LeakyCount slow_;
+  std::int32_t ramp_w_per_s_ = 0;  ///< of the newest answer that was still on its way
   std::int32_t weak_answers_ = 0;
   std::int32_t unanswered_orders_ = 0;
-  std::int32_t unsettled_readings_ = 0;
-
   bool has_before_ = false;
-  Response before_;
-  std::int64_t flowed_ws_ = 0;  ///< from then until `flow_utc_s_`, with `flow_power_w_` at its end
-  std::int64_t flow_utc_s_ = 0;
-  std::int32_t flow_power_w_ = 0;
-  /// Moved by the measured power since the SoC last changed: now, and how far it went.
-  SocRange still_range_;
-  std::int64_t still_e4_ = 0;
-  std::int32_t still_readings_ = 0;
-  std::int32_t sum_soc_e4_ = 0;  ///< where the sum of the next two began
-  SocRange sum_;
-  std::int32_t sum_readings_ = 0;
-  std::int32_t sum_apart_ = 0;
+  std::int64_t before_utc_s_ = 0;
+  std::int32_t before_power_w_ = 0;
+  std::int32_t before_ordered_w_ = 0;
 };
 
 }  // namespace bess

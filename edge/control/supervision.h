@@ -2,7 +2,8 @@
 // it is tried again, longer each time. The controller believes nothing that it has not seen.
 //
 //   trip    wrong direction, uncontrolled power, SoC against power   until `bess-edge clear`
-//   pause   no answer, orders that fail, another master              10 min, doubling to 6 h
+//   pause   no answer, orders that fail, another master, a battery   10 min, doubling to 6 h
+//           that looks after itself (a trip if it never ends)
 //   stop    capacity of another battery, SoC that jumps              while it is seen
 #pragma once
 
@@ -52,6 +53,8 @@ struct SupervisionSettings {
 class Supervision {
  public:
   static constexpr std::int32_t kFailedOrdersToPause = 3;
+  /// No battery needs that long to save itself, or to balance its cells.
+  static constexpr std::int64_t kCareWithoutEndS = 24 * 3'600;
 
   explicit Supervision(const SupervisionSettings& settings)
       : settings_(settings), response_(settings.response), lost_(settings.response) {}
@@ -62,14 +65,13 @@ class Supervision {
     end_pause(now.utc_s);
     if (trip_.is_set()) return;
     observe_orders(now, holds_nothing);
-    response_.observe(now);
-    if (response_.trip() != Reason::kStudent) {
-      trip_ = {.reason = response_.trip(), .utc_s = now.utc_s};
-    } else if (response_.gives_no_answer()) {
-      pause(now.utc_s, Reason::kNoAnswer);
-    } else if (response_.has_answered() && lost_.has_settled() && failed_orders_ == 0) {
-      pause_.on_success();
-    }
+    judge(now);
+  }
+
+  /// A reading of an earlier run, by its log, oldest first: what was found by then is found again.
+  void recall(const Response& then) {
+    end_pause(then.utc_s);
+    if (!trip_.is_set()) judge(then);
   }
 
   /// What a battery reports, also where it could not be read any further; 0 or less: it does not say.
@@ -107,11 +109,32 @@ class Supervision {
   void restore(const LostOrderHistory& orders, std::int64_t utc_s) { lost_.restore(orders, utc_s); }
 
  private:
+  void judge(const Response& now) {
+    response_.observe(now);
+    if (response_.needs_no_care()) care_since_utc_s_ = 0;
+    if (response_.trip() != Reason::kStudent) {
+      trip_ = {.reason = response_.trip(), .utc_s = now.utc_s};
+    } else if (response_.gives_no_answer()) {
+      pause(now.utc_s, Reason::kNoAnswer);
+    } else if (response_.looks_after_itself()) {
+      pause_for_care(now.utc_s);
+    } else if (response_.has_answered() && lost_.has_settled() && failed_orders_ == 0) {
+      pause_.on_success();
+    }
+  }
   void pause(std::int64_t utc_s, Reason reason) {
     pause_.begin(utc_s, reason);
     lost_.forget_findings();
     failed_orders_ = 0;
     response_.forget();
+  }
+  /// Tried again soon, as often as it takes: the price may want it meanwhile.
+  void pause_for_care(std::int64_t utc_s) {
+    pause_.on_success();
+    pause(utc_s, Reason::kBatteryCare);
+    if (care_since_utc_s_ == 0) care_since_utc_s_ = utc_s;
+    if (utc_s - care_since_utc_s_ < kCareWithoutEndS) return;
+    trip_ = {.reason = Reason::kUncontrolledPower, .utc_s = utc_s};
   }
   void end_pause(std::int64_t utc_s) {
     if (pause_.reason() != Reason::kStudent && pause_.is_over(utc_s)) pause_.end();
@@ -139,6 +162,7 @@ class Supervision {
   Pause pause_;
   bool capacity_fits_ = true;
   LostOrders lost_;
+  std::int64_t care_since_utc_s_ = 0;  ///< without an honest reading since; 0 = it needs none
   std::int32_t failed_orders_ = 0;
 };
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 
 #include "shared/units_and_limits.h"
 
@@ -67,6 +68,32 @@ void check_prices(const HealthInputs& in, std::vector<std::string>& reasons) {
   }
 }
 
+/// What the supervision of the battery's answers tells without stopping.
+void check_findings(const HealthInputs& in, std::vector<std::string>& reasons) {
+  if (in.unanswered_orders > kUnansweredOrdersMax) {
+    reasons.push_back("WARN: no power flows after " + std::to_string(in.unanswered_orders) +
+                      " orders: is the battery full, empty or cold, or does it not listen?");
+  }
+  if (in.weak_answers > kWeakAnswersMax) {
+    reasons.push_back("WARN: less power than ordered in " + std::to_string(in.weak_answers) +
+                      " readings: is power_w right, does the battery limit itself?");
+  }
+  if (in.energy_share_percent != 0) {
+    reasons.push_back("WARN: the SoC shows about " + std::to_string(in.energy_share_percent) +
+                      " % of the measured energy: is capacity_wh right, does the power arrive?");
+  }
+  if (in.rest_loss_w != 0) {
+    reasons.push_back("WARN: at 0 W the battery " +
+                      std::string(in.rest_loss_w > 0 ? "loses" : "gains") + " about " +
+                      std::to_string(std::abs(in.rest_loss_w)) + " W: what else drives it?");
+  }
+  if (in.ramp_w_per_s != 0) {
+    reasons.push_back("WARN: the battery follows at " + std::to_string(in.ramp_w_per_s) +
+                      " W/s, slower than its map says: raise settle_s of [response] there; "
+                      "bess-edge commission measures it");
+  }
+}
+
 void check_cycle(const HealthInputs& in, std::vector<std::string>& reasons) {
   if (in.trip != "none") {
     reasons.push_back("CRITICAL: tripped, " + std::string(in.trip) +
@@ -80,14 +107,7 @@ void check_cycle(const HealthInputs& in, std::vector<std::string>& reasons) {
     reasons.push_back("WARN: battery: " + std::string(in.battery_status));
   }
   if (in.battery_warns) reasons.emplace_back("WARN: the battery warns, see its own display");
-  if (in.unanswered_orders > kUnansweredOrdersMax) {
-    reasons.push_back("WARN: no power flows after " + std::to_string(in.unanswered_orders) +
-                      " orders: is the battery full, empty or cold, or does it not listen?");
-  }
-  if (in.weak_answers > kWeakAnswersMax) {
-    reasons.push_back("WARN: less power than ordered in " + std::to_string(in.weak_answers) +
-                      " readings: is power_w right, does the battery limit itself?");
-  }
+  check_findings(in, reasons);
   if (are_orders_lost(in)) {
     reasons.push_back("WARN: " + std::to_string(in.lost_orders) + " of the last " +
                       std::to_string(in.judged_orders) +

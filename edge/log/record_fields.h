@@ -23,6 +23,8 @@ consteval auto make_record_fields() {
   using S = SiteReport;
   using O = LostOrderHistory;
   using N = StandingPrice;
+  using F = ResponseFindings;
+  using W = FollowedOrder;
   return std::to_array<Field<CycleRecord>>({
       {utc_member<&R::utc_s>(),
        "utc",
@@ -220,6 +222,23 @@ consteval auto make_record_fields() {
        {.csv = 51, .last = 45, .metrics = {28, "bess_price_unchanged_seconds"}},
        {"Time that the price has not moved, under new stamps."}},
       {member<&R::price_frozen>(), "price_frozen", {.journal = 24, .csv = 52, .last = 56}},
+      {member<&R::findings, &F::energy_share_percent>(),
+       "energy_share_percent",
+       {.csv = 53, .totals = 81, .metrics = {30, "bess_energy_share_ratio"}},
+       {"Share of the measured energy that the state of charge shows; 0: nothing is wrong with it.",
+        100}},
+      {member<&R::findings, &F::rest_loss_w>(),
+       "rest_loss_w",
+       {.csv = 54, .totals = 82, .metrics = {29, "bess_rest_loss_watts"}},
+       {"Power that is lost at 0 W, where it is more than own consumption; else 0."}},
+      {member<&R::findings, &F::ramp_w_per_s>(),
+       "ramp_w_per_s",
+       {.csv = 55, .totals = 83, .metrics = {20, "bess_slow_ramp_watts_per_second"}},
+       {"Rate at which the battery follows, where it is too slow for its register map; else 0."}},
+      {member<&R::followed, &W::is_judged>()},
+      {member<&R::followed, &W::power_w>()},
+      {member<&R::followed, &W::age_s>()},
+      {member<&R::followed, &W::soc_floor_e4>()},
   });
 }
 

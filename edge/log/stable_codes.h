@@ -66,7 +66,9 @@ struct StableCodes<Reason> {
                                      Reason::kExportLimit,
                                      Reason::kQuarterHourPeak,
                                      Reason::kRule,
-                                     Reason::kFrozenPrice};
+                                     Reason::kFrozenPrice,
+
+                                     Reason::kBatteryCare};
   static constexpr auto kNameOf = reason_name;
 };
 

@@ -29,6 +29,7 @@ using P = PriceReport;
 using C = BatteryCounters;
 using L = PriceLevel;
 using S = SiteReport;
+using F = ResponseFindings;
 using T = RunTotals;
 using H = HoldReport;
 
@@ -133,6 +134,9 @@ Health health_of(const EdgeConfig& config, JsonValue status, bool no_lock,
   in.weak_answers = whole(field<&R::weak_answers>(status));
   in.lost_orders = whole(field<&R::lost_orders, &LostOrderHistory::lost>(status));
   in.judged_orders = whole(field<&R::lost_orders, &LostOrderHistory::judged>(status));
+  in.energy_share_percent = whole(field<&R::findings, &F::energy_share_percent>(status));
+  in.rest_loss_w = whole(field<&R::findings, &F::rest_loss_w>(status));
+  in.ramp_w_per_s = whole(field<&R::findings, &F::ramp_w_per_s>(status));
   in.trip = text_of(field<&R::trip, &Trip::reason>(status));
   in.battery_warns = is_true(field<&R::measurement, &B::warning>(status));
   in.disk_is_slow = is_true(field<&T::disk_is_slow>(status));

@@ -60,12 +60,67 @@ TEST(ResponseMonitor, IdleBetweenDoesNotForgetTheWrongDirection) {
   EXPECT_EQ(site.monitor.trip(), Reason::kWrongDirection);
 }
 
-TEST(ResponseMonitor, ARightAnswerForgetsAWrongOne) {
+TEST(ResponseMonitor, ThreeRightAnswersForgetAWrongOne) {
   MonitoredSite site;
-  site.step(4'000, -4'000);
-  site.step(4'000, 4'000);
-  site.step(4'000, -4'000);
-  EXPECT_EQ(site.monitor.trip(), Reason::kStudent);
+  for (int i = 0; i < 8; ++i) {
+    const std::int32_t ordered_w = i / 4 % 2 == 0 ? 4'000 : -4'000;
+    site.step(ordered_w, -ordered_w);
+    for (int good = 0; good < 3; ++good) site.step(ordered_w, ordered_w);
+    EXPECT_EQ(site.monitor.trip(), Reason::kStudent) << i;
+  }
+}
+
+/// A fault at every `every`th reading, the others honest, orders by `ordered_w(i)`.
+struct Intermittent {
+  const char* name;
+  int every;
+  int readings_max;
+  std::function<std::int32_t(int)> ordered_w;
+};
+
+int readings_until_trip(const Intermittent& c, const std::function<double(std::int32_t)>& fault) {
+  MonitoredSite site;
+  for (int i = 0; i < 60; ++i) {
+    const std::int32_t ordered_w = c.ordered_w(i);
+    const double flowing_w = i % c.every == 0 ? fault(ordered_w) : ordered_w;
+    // The charge is kept in the middle: what is meant is found by power.
+    site.soc_frac = 0.5;
+    site.shown.soc_e4 = 5'000;
+    site.monitor.observe({.utc_s = site.utc_s += kStepS,
+                          .is_driven = true,
+                          .ordered_power_w = ordered_w,
+                          .order_age_s = kStepS,
+                          .measurement = {.soc_e4 = 5'000 + i % 2,
+                                          .power_w = static_cast<std::int32_t>(flowing_w),
+                                          .capacity_wh = 8'000}});
+    if (site.monitor.trip() != Reason::kStudent) return i + 1;
+  }
+  return 99;
+}
+
+TEST(ResponseMonitor, WhatComesAndGoesIsFoundWhateverTheOrders) {
+  const auto charge = [](int) { return 4'000; };
+  const auto discharge = [](int) { return -4'000; };
+  const auto alternating = [](int i) { return i % 2 == 0 ? 4'000 : -4'000; };
+  const auto blocks = [](int i) { return i / 3 % 2 == 0 ? -4'000 : 4'000; };
+  for (const auto& [orders, name] :
+       std::initializer_list<std::pair<std::function<std::int32_t(int)>, const char*>>{
+           {charge, "charge"},
+           {discharge, "discharge"},
+           {alternating, "alternating"},
+           {blocks, "blocks"}}) {
+    for (const auto& [every, readings_max] : {std::pair{1, 3}, {2, 6}, {3, 9}}) {
+      const Intermittent c{name, every, readings_max, orders};
+      EXPECT_LE(readings_until_trip(c, [](std::int32_t w) { return -w; }), readings_max)
+          << "inverted, " << name << ", every " << every;
+      EXPECT_LE(readings_until_trip(c, [](std::int32_t w) { return 2 * w; }), readings_max)
+          << "twice, " << name << ", every " << every;
+    }
+  }
+  for (const auto& [every, readings_max] : {std::pair{1, 3}, {2, 6}, {3, 9}}) {
+    const Intermittent rest{"rest", every, readings_max, [](int) { return 0; }};
+    EXPECT_LE(readings_until_trip(rest, [](std::int32_t) { return 3'000; }), readings_max) << every;
+  }
 }
 
 TEST(ResponseMonitor, DischargingAtZeroIsUncontrolled) {

@@ -160,8 +160,15 @@ TEST(RecordCodec, LayoutOnDiskIsFixed) {
   EXPECT_EQ(bytes[283], 47);    // standing_price.minute_utc_s
   EXPECT_EQ(bytes[291], 0xD0);  // standing_price.centi_eur_per_mwh = -48
   EXPECT_EQ(bytes[295], 49);    // standing_price.unchanged_s
-  EXPECT_EQ(bytes[299], 1);     // price_frozen, the last field
-  for (std::size_t i = 300; i < kRecordBytes - 4; ++i) EXPECT_EQ(bytes[i], 0) << i;
+  EXPECT_EQ(bytes[299], 1);     // price_frozen
+  EXPECT_EQ(bytes[300], 50);    // findings.energy_share_percent
+  EXPECT_EQ(bytes[302], 0xCD);  // findings.rest_loss_w = -51
+  EXPECT_EQ(bytes[306], 52);    // findings.ramp_w_per_s
+  EXPECT_EQ(bytes[310], 1);     // followed.is_judged
+  EXPECT_EQ(bytes[311], 0xCB);  // followed.power_w = -53
+  EXPECT_EQ(bytes[315], 54);    // followed.age_s
+  EXPECT_EQ(bytes[319], 55);    // followed.soc_floor_e4, the last field
+  for (std::size_t i = 321; i < kRecordBytes - 4; ++i) EXPECT_EQ(bytes[i], 0) << i;
 }
 
 /// A ring of the program that ended its records with flash_writes_today: later fields read as 0.
@@ -192,6 +199,8 @@ TEST(RecordCodec, ARecordOfAnOlderLayoutIsRead) {
   expected.lost_orders = {};
   expected.standing_price = {};
   expected.price_frozen = false;
+  expected.findings = {};
+  expected.followed = {};
   EXPECT_EQ(bytes_of(back, 42), bytes_of(expected, 42));
 }
 

@@ -1,0 +1,242 @@
+// The state of charge against measured power: what is found, how soon, and what an honest count may do.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include "edge/control/response_monitor.h"
+
+namespace bess {
+namespace {
+
+constexpr std::int32_t kReadingS = 120;
+using Orders = std::function<std::int32_t(int)>;
+
+std::int32_t charge(int) { return 4'000; }
+std::int32_t discharge(int) { return -4'000; }
+std::int32_t rest(int) { return 0; }
+std::int32_t alternating(int i) { return i % 2 == 0 ? 4'000 : -4'000; }
+
+/// 4 kW and 8 kWh, read 3 s before every tick: what is stored, what the SoC says, what the meter says.
+struct CountedBattery {
+  explicit CountedBattery(double soc_frac, std::int32_t shown_step_e4 = 10)
+      : monitor({.band = {.soc_step_e4 = shown_step_e4}}),
+        stored_frac(soc_frac),
+        step_e4(shown_step_e4) {}
+
+  ResponseMonitor monitor;
+  double stored_frac;
+  std::int32_t step_e4;
+  std::int64_t utc_s = 0;
+  int readings = 0;
+  /// What flows, what the SoC shows of what is stored, what the meter shows of what flows.
+  std::function<double(double)> flow = [](double ordered_w) { return ordered_w; };
+  std::function<double(double)> count = [](double frac) { return frac; };
+  std::function<double(double, double)> meter = [](double, double flowing_w) { return flowing_w; };
+
+  void step(std::int32_t ordered_w) {
+    const double flowing_w = flow(ordered_w);
+    stored_frac = std::clamp(stored_frac + flowing_w * kReadingS / 3'600.0 / 8'000, 0.0, 1.0);
+    utc_s += kReadingS;
+    ++readings;
+    const double shown_e4 = std::clamp(count(stored_frac), 0.0, 1.0) * 1e4;
+    monitor.observe(
+        {.utc_s = utc_s,
+         .is_driven = true,
+         .ordered_power_w = ordered_w,
+         .order_age_s = kReadingS - 3,
+         .measurement = {
+             .soc_e4 = static_cast<std::int32_t>(std::lround(shown_e4 / step_e4)) * step_e4,
+             .power_w = static_cast<std::int32_t>(std::lround(meter(ordered_w, flowing_w))),
+             .capacity_wh = 8'000}});
+  }
+
+  /// Honest readings at rest first: the fault has a reading before it.
+  int readings_until(const std::function<bool(const ResponseMonitor&)>& is_found,
+                     const Orders& orders) {
+    for (int i = 0; i < 100; ++i) {
+      step(orders(i));
+      if (is_found(monitor)) return i + 1;
+    }
+    return 1'000;
+  }
+};
+
+bool has_tripped(const ResponseMonitor& monitor) { return monitor.trip() == Reason::kSocMismatch; }
+bool has_told_share(const ResponseMonitor& monitor) {
+  return monitor.findings().energy_share_percent != 0;
+}
+bool has_told_loss(const ResponseMonitor& monitor) { return monitor.findings().rest_loss_w != 0; }
+
+TEST(SocMonitor, AFrozenSocIsFoundInThreeReadingsAnywhere) {
+  for (const double soc : {0.09, 0.11, 0.3, 0.5, 0.8, 0.93, 0.95, 0.97, 1.0}) {
+    for (const Orders& orders : {Orders{charge}, Orders{discharge}}) {
+      const bool charges = orders(0) > 0;
+      // Charging at the upper end and discharging at the lower are excused; for how long: below.
+      if ((soc >= 0.95 && charges) || (soc <= 0.10 && !charges)) continue;
+      CountedBattery battery(0.5);
+      battery.count = [soc](double) { return soc; };
+      battery.step(0);
+      EXPECT_LE(battery.readings_until(has_tripped, orders), 3) << soc << ' ' << orders(0);
+    }
+  }
+}
+
+TEST(SocMonitor, ASocThatMovesTheWrongWayIsFoundInThreeReadingsAnywhere) {
+  for (const double soc : {0.09, 0.3, 0.5, 0.8, 0.97}) {
+    for (const Orders& orders : {Orders{charge}, Orders{discharge}}) {
+      CountedBattery battery(0.5);
+      battery.count = [soc](double stored) { return soc - (stored - 0.5); };
+      battery.step(0);
+      EXPECT_LE(battery.readings_until(has_tripped, orders), 3) << soc << ' ' << orders(0);
+    }
+  }
+}
+
+TEST(SocMonitor, AnEndExcusesNoMoreThanACountCanBeWrongBy) {
+  CountedBattery full(0.5);
+  full.count = [](double) { return 0.97; };
+  full.step(0);
+  const int readings = full.readings_until(has_tripped, charge);
+  EXPECT_GT(readings, 8);
+  EXPECT_LE(readings, 25);
+  CountedBattery empty(0.5);
+  empty.count = [](double) { return 0.06; };
+  empty.step(0);
+  EXPECT_LE(empty.readings_until(has_tripped, discharge), 25);
+}
+
+TEST(SocMonitor, ASocThatClingsToItsEndsAndIsSetRightThereIsHonest) {
+  for (const double error : {-0.08, -0.04, 0.04, 0.08}) {
+    CountedBattery battery(0.5);
+    double wrong = 0;  // how far the count is off by now
+    battery.count = [&](double stored) { return std::clamp(stored + wrong, 0.05, 0.99); };
+    battery.flow = [&](double ordered_w) {
+      const double room =
+          ordered_w > 0 ? (1 - battery.stored_frac) / 0.05 : (battery.stored_frac - 0.05) / 0.05;
+      return ordered_w * std::clamp(room, 0.0, 1.0);
+    };
+    for (int turn = 0; turn < 6; ++turn) {
+      for (int i = 0; i < 60; ++i) {
+        wrong += error / 40;  // drifts with what flows, and is set right at both ends
+        if (battery.stored_frac > 0.98 || battery.stored_frac < 0.06) wrong = 0;
+        battery.step(turn % 2 == 0 ? 4'000 : -4'000);
+        ASSERT_EQ(battery.monitor.trip(), Reason::kStudent)
+            << error << " turn " << turn << " " << i;
+      }
+    }
+  }
+}
+
+TEST(SocMonitor, ABatteryThatEchoesItsOrdersIsFound) {
+  for (const std::int32_t step_e4 : {1, 10, 50, 100}) {
+    for (const Orders& orders : {Orders{charge}, Orders{discharge}, Orders{alternating}}) {
+      CountedBattery battery(0.5, step_e4);
+      battery.flow = [](double) { return 0.0; };
+      battery.meter = [](double ordered_w, double) { return ordered_w; };
+      battery.step(0);
+      const bool alternates = orders(0) != orders(1);
+      EXPECT_LE(battery.readings_until(has_tripped, orders), alternates ? 20 : 3)
+          << step_e4 << ' ' << orders(0);
+    }
+  }
+}
+
+TEST(SocMonitor, HalfOfTheEnergyIsToldWithAnEstimate) {
+  for (const std::int32_t step_e4 : {1, 10, 50, 100}) {
+    for (const Orders& orders : {Orders{charge}, Orders{discharge}, Orders{alternating}}) {
+      // To and fro by 0.8 % under a display of 1 % shows whatever the rounding makes of it.
+      if (step_e4 > 10 && orders(0) != orders(1)) continue;
+      CountedBattery battery(0.5, step_e4);
+      battery.flow = [](double ordered_w) { return 0.5 * ordered_w; };
+      battery.meter = [](double ordered_w, double) { return ordered_w; };
+      battery.step(0);
+      EXPECT_LE(battery.readings_until(has_told_share, orders), 20) << step_e4 << ' ' << orders(0);
+      EXPECT_NEAR(battery.monitor.findings().energy_share_percent, 50, 12) << step_e4;
+      EXPECT_EQ(battery.monitor.trip(), Reason::kStudent);
+    }
+  }
+}
+
+TEST(SocMonitor, AnotherCapacityIsFoundBothWays) {
+  for (const double factor : {0.2, 5.0}) {
+    for (const Orders& orders : {Orders{charge}, Orders{discharge}, Orders{alternating}}) {
+      CountedBattery battery(0.5);
+      battery.count = [factor](double stored) { return 0.5 + (stored - 0.5) * factor; };
+      battery.step(0);
+      const auto is_found = [](const ResponseMonitor& m) {
+        return has_tripped(m) || has_told_share(m) || m.has_jumped();
+      };
+      EXPECT_LE(battery.readings_until(is_found, orders), 10) << factor << ' ' << orders(0);
+    }
+  }
+}
+
+TEST(SocMonitor, ALossAtRestIsToldShownOrHidden) {
+  CountedBattery hidden(0.6);
+  hidden.flow = [](double) { return -1'000.0; };
+  hidden.meter = [](double, double) { return 0.0; };
+  hidden.step(0);
+  EXPECT_LE(hidden.readings_until(has_told_loss, rest), 8);
+  EXPECT_NEAR(hidden.monitor.findings().rest_loss_w, 1'000, 150);
+  EXPECT_LE(hidden.readings_until(has_tripped, rest), 50);
+
+  CountedBattery shown(0.6);
+  shown.flow = [](double) { return -390.0; };
+  shown.step(0);
+  EXPECT_LE(shown.readings_until(has_told_loss, rest), 12);
+  EXPECT_NEAR(shown.monitor.findings().rest_loss_w, 390, 40);
+  EXPECT_EQ(shown.monitor.trip(), Reason::kStudent);
+
+  CountedBattery standby(0.6, 100);
+  standby.flow = [](double) { return -90.0; };
+  standby.meter = [](double, double) { return 0.0; };
+  EXPECT_EQ(standby.readings_until(has_told_loss, rest), 1'000);
+}
+
+TEST(SocMonitor, SetRightAtRestIsAJumpWhateverItsSize) {
+  for (const double jump : {0.03, 0.04, 0.05, 0.06, 0.08, 0.09, 0.12, 0.3}) {
+    for (const double sign : {-1.0, 1.0}) {
+      for (const std::int32_t step_e4 : {10, 100}) {
+        CountedBattery battery(0.5, step_e4);
+        double wrong = 0;
+        battery.count = [&](double stored) { return stored + wrong; };
+        for (int i = 0; i < 20; ++i) battery.step(i < 10 ? alternating(i) : 0);
+        wrong = sign * jump;
+        battery.step(0);
+        EXPECT_TRUE(battery.monitor.has_jumped()) << jump << ' ' << step_e4;
+        for (int i = 0; i < 3; ++i) battery.step(0);
+        EXPECT_FALSE(battery.monitor.has_jumped());
+        for (int i = 0; i < 60; ++i) battery.step(i < 20 ? 0 : alternating(i));
+        EXPECT_EQ(battery.monitor.trip(), Reason::kStudent) << sign * jump << ' ' << step_e4;
+        EXPECT_EQ(battery.monitor.findings().rest_loss_w, 0) << sign * jump << ' ' << step_e4;
+      }
+    }
+  }
+}
+
+TEST(SocMonitor, AJumpUnderPowerIsNoTripUnlessItIsOneAfterTheOther) {
+  for (const double jump : {0.03, 0.05, 0.07, 0.1, 0.3}) {
+    CountedBattery battery(0.3);
+    double wrong = 0;
+    battery.count = [&](double stored) { return stored + wrong; };
+    for (int i = 0; i < 5; ++i) battery.step(4'000);
+    wrong = jump;
+    for (int i = 0; i < 20; ++i) battery.step(4'000);
+    EXPECT_EQ(battery.monitor.trip(), Reason::kStudent) << jump;
+  }
+  CountedBattery restless(0.5);
+  double wrong = 0;
+  restless.count = [&](double stored) { return stored + wrong; };
+  const auto is_found = [&](const ResponseMonitor& m) {
+    if (!m.has_jumped()) wrong = wrong > 0 ? 0 : 0.2;
+    return has_tripped(m);
+  };
+  const auto stopped_when_told = [&](int) { return restless.monitor.has_jumped() ? 0 : 4'000; };
+  EXPECT_LE(restless.readings_until(is_found, stopped_when_told), 30);
+}
+
+}  // namespace
+}  // namespace bess
