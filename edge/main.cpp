@@ -135,6 +135,7 @@ int run_controller(const CommandLine& command_line, const EdgeConfig& config) {
   static const auto clearance = trip_clearance_path(config);
   const bool is_cleared = is_trip_cleared(clearance.c_str(), before.trip.utc_s);
   const PriceLevel level = level_at_start(config, before.price_level, greeting, prices, clock);
+  recall_cycles(log, clock.now_utc_ns() / kNanosecondsPerSecond, loop);
   loop.take_over(take_over_of(before, level, is_cleared));
   static HoldWatch holds;
   holds.start(hold_path(config).c_str(), config.clock.scale);

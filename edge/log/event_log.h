@@ -41,6 +41,12 @@ class EventLog {
   /// The newest record of earlier runs, for counters that a restart must take over; false = none.
   /// Only before the first `write`.
   bool newest(CycleRecord& record) const { return ring_.newest(record); }
+  /// The record that many before the newest; false = there is none, or it is torn. As `newest`.
+  bool read_back(std::int64_t records, CycleRecord& record) const {
+    const std::uint64_t newest = ring_.newest_number();
+    const auto back = static_cast<std::uint64_t>(records);
+    return back < newest && ring_.read(newest - back, record);
+  }
 
   /// From the control thread; never waits.
   void write(const CycleRecord& record);

@@ -1,4 +1,4 @@
-// What a run takes over from the newest record of the run before, which is empty where there is none.
+// What a run takes over from the log of the runs before, which may be empty.
 #pragma once
 
 #include "edge/control/control_loop.h"
@@ -15,7 +15,26 @@ inline TakeOver take_over_of(const CycleRecord& before, const PriceLevel& level,
           .last_full_day = last_full_day_of(before.utc_s, before.days_since_full),
           .site = before.site,
           .standing_price = before.standing_price,
+          .ordered_power_w = before.ordered_power_w,
           .utc_s = before.utc_s};
+}
+
+/// Supervision judges at a start what it has judged in the last hours, so that a kill between two readings
+/// hides no finding. A trip ends what is recalled: it is taken over by itself, or a person has looked.
+/// `Log`: bool read_back(std::int64_t records, CycleRecord&), 0 = the newest, false = not readable.
+template <typename Log, typename Loop>
+void recall_cycles(const Log& log, std::int64_t now_utc_s, Loop& loop) {
+  constexpr std::int64_t kRecalledS = 8 * 3'600;  // the longest pause, and what led to it
+  constexpr std::int64_t kCyclesMax = kRecalledS / kSecondsPerStep;
+  CycleRecord record;
+  std::int64_t cycles = 0;
+  for (; cycles < kCyclesMax; ++cycles) {
+    if (!log.read_back(cycles, record)) continue;
+    if (record.is_tripped || now_utc_s - record.utc_s > kRecalledS) break;
+  }
+  while (cycles-- > 0) {
+    if (log.read_back(cycles, record)) loop.recall(record);
+  }
 }
 
 }  // namespace bess

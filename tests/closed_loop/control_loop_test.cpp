@@ -283,6 +283,61 @@ TEST(ClosedLoop, ABatteryThatGoesTheOtherWayIsLeftAlone) {
   EXPECT_EQ(plant.battery.releases, 1);
 }
 
+/// Cycles from one run to the next, killed after each, until one finds what `fault` did to the battery.
+int runs_until_trip(int cycles_per_run, const std::function<void(FakeBattery&, int)>& fault) {
+  Plant plant;
+  plant.prices.price = [](std::int64_t) { return -60'000; };
+  std::vector<CycleRecord> log;
+  for (int run = 1; run <= 20; ++run) {
+    Loop loop(in_control(), plant.battery, plant.prices, plant.clock);
+    for (const CycleRecord& record : log) loop.recall(record);
+    if (!log.empty()) {
+      const CycleRecord& newest = log.back();
+      loop.take_over({.trip = newest.is_tripped ? newest.trip : Trip{},
+                      .ordered_power_w = newest.ordered_power_w,
+                      .utc_s = newest.utc_s});
+    }
+    for (int i = 0; i < cycles_per_run; ++i) {
+      fault(plant.battery, static_cast<int>(log.size()));
+      CycleRecord record;
+      EXPECT_TRUE(loop.run_cycle(record));
+      log.push_back(record);
+      if (record.is_tripped) return static_cast<int>(log.size());
+    }
+  }
+  return 99;
+}
+
+TEST(ClosedLoop, WhoKillsItAfterEachCycleHidesNoFault) {
+  const auto inverted = [](FakeBattery& battery, int) { battery.inverted = true; };
+  const auto every_other = [](FakeBattery& battery, int cycle) {
+    battery.inverted = cycle % 2 == 1;
+  };
+  EXPECT_EQ(runs_until_trip(20, inverted), 3);
+  EXPECT_EQ(runs_until_trip(1, inverted), 3);  // the order that it finds is as old as the log says
+  EXPECT_EQ(runs_until_trip(2, inverted), 3);
+  EXPECT_LE(runs_until_trip(1, every_other), 6);
+}
+
+TEST(ClosedLoop, WhatWasRecalledIsWhatWasFound) {
+  Plant plant;
+  plant.prices.price = [](std::int64_t) { return -60'000; };
+  plant.battery.inverted = true;
+  std::vector<CycleRecord> log;
+  for (int i = 0; i < 2; ++i) log.push_back(plant.cycle());
+  ASSERT_FALSE(log.back().is_tripped);  // short of it by one reading
+  Loop next(in_control(), plant.battery, plant.prices, plant.clock);
+  Loop forgetful(in_control(), plant.battery, plant.prices, plant.clock);
+  for (const CycleRecord& record : log) next.recall(record);
+  CycleRecord record;
+  ASSERT_TRUE(next.run_cycle(record));
+  EXPECT_FALSE(record.is_tripped);  // an order of unknown age proves nothing
+  ASSERT_TRUE(next.run_cycle(record));
+  EXPECT_TRUE(record.is_tripped);
+  ASSERT_TRUE(forgetful.run_cycle(record));
+  EXPECT_FALSE(record.is_tripped);
+}
+
 TEST(ClosedLoop, AFailedReadingKeepsItsCauseThoughTheOrderSucceeds) {
   Plant plant;
   plant.prices.price = [](std::int64_t) { return -60'000; };

@@ -3,6 +3,8 @@
 #include <pthread.h>
 #include <signal.h>
 
+#include <deque>
+
 #include "edge/battery/modbus_battery.h"
 #include "edge/control/control_loop.h"
 #include "edge/control/level_start.h"
@@ -47,9 +49,22 @@ LoggedCycle logged(const CycleRecord& record) {
 }
 
 /// What bess-edge keeps on its disk between two runs.
-struct EdgeState {
-  CycleRecord newest;
-  bool has_record = false;
+class EdgeState {
+ public:
+  void add(const CycleRecord& record) {
+    records_.push_back(record);
+    if (records_.size() > kRecordsMax) records_.pop_front();
+  }
+  [[nodiscard]] bool read_back(std::int64_t records, CycleRecord& record) const {
+    const auto size = static_cast<std::int64_t>(records_.size());
+    if (records >= size) return false;
+    record = records_[static_cast<std::size_t>(size - 1 - records)];
+    return true;
+  }
+
+ private:
+  static constexpr std::size_t kRecordsMax = 720;  // a day: more than a start reads again
+  std::deque<CycleRecord> records_;
 };
 
 class VirtualEdge {
@@ -83,7 +98,7 @@ class VirtualEdge {
 
  private:
   static void keep(const CycleRecord& record, EdgeState& state, Evidence& evidence) {
-    state = {.newest = record, .has_record = true};
+    state.add(record);
     evidence.log.push_back(logged(record));
   }
 
@@ -99,13 +114,14 @@ class VirtualEdge {
   }
 
   void take_over(const EdgeState& state) {
-    const CycleRecord& before = state.newest;
-    if (state.has_record) {
+    CycleRecord before;
+    if (state.read_back(0, before)) {
       battery_.restore_flash_writes(before.counters.flash_day, before.counters.flash_writes_today);
     }
     const LevelStart start = find_start_level(
         student_context().kind, before.price_level, clock_.now_utc_ns() / kNanosecondsPerSecond,
         config_.level_start_centi_eur_per_mwh, [] { return PriceLevel{}; });
+    recall_cycles(state, clock_.now_utc_ns() / kNanosecondsPerSecond, loop_);
     loop_.take_over(take_over_of(before, start.level, false));
   }
 
