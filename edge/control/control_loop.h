@@ -226,7 +226,9 @@ class ControlLoop {
   }
 
   void observe_site(bool is_read, const BatteryMeasurement& measurement) {
-    site_.observe(now_utc_s(), is_read, measurement);
+    const Response now = order_.response(measurement);
+    site_.observe(now_utc_s(), is_read, measurement,
+                  {.is_driven = is_read && now.is_driven, .age_s = now.order_age_s});
     site_utc_ns_ = clock_.now_utc_ns();
   }
 

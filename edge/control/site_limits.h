@@ -8,13 +8,16 @@
 // Between two ticks the loop looks again every `check_every_s` and cuts an order that has become too
 // large; it never gives back before the next tick, so that reading and order cannot chase each
 // other. A tick's order leaves `margin_w` free; one in force is cut when half of that is used up, so
-// that a refrigerator costs no write.
+// that a refrigerator costs no write. A meter that does not step with the battery is as good as lost
+// (meter_witness.h).
 #pragma once
 
 #include <algorithm>
 #include <cstdint>
 
 #include "edge/control/connection_guard.h"
+#include "edge/control/house_watch.h"
+#include "edge/control/meter_witness.h"
 #include "edge/control/outside_limit.h"
 #include "edge/control/site_range.h"
 
@@ -35,6 +38,8 @@ struct SiteSettings {
   std::int32_t age_s_max = 30;     ///< an older reading is no reading
   std::int32_t check_every_s = 10;
   ConnectionSettings connection;
+  MeterWitnessSettings witness;
+  std::int32_t pv_w_max = 0;  ///< of panels behind the meter; kAnyPowerW: not known
   bool has_outside_limits = false;
   bool idle_after_timeout = false;  ///< false: a limit that has lapsed, or none, limits nothing
 };
@@ -44,7 +49,7 @@ struct NoSite {
   void take_over(std::int64_t, const SiteReport&) {}
   [[nodiscard]] std::int32_t check_every_s() const { return 0; }
   [[nodiscard]] bool needs_battery() const { return false; }
-  void observe(std::int64_t, bool, const BatteryMeasurement&) {}
+  void observe(std::int64_t, bool, const BatteryMeasurement&, const SeenOrder&) {}
   [[nodiscard]] SiteRange range(std::int64_t, std::int32_t, Margin) const { return {}; }
   [[nodiscard]] SiteReport report(std::int64_t) const { return {}; }
 };
@@ -57,6 +62,7 @@ class SiteLimits {
       : settings_(settings),
         meter_(meter),
         outside_(outside),
+        witness_(settings.witness),
         energy_(settings.connection.peak_w_max == kAnyPowerW ? 0 : settings.connection.peak_w_max,
                 settings.age_s_max) {
     settings_.connection.order_stands_s = settings.age_s_max;
@@ -65,6 +71,7 @@ class SiteLimits {
   /// What an earlier run had counted when it wrote its last record.
   void take_over(std::int64_t utc_s, const SiteReport& before) {
     energy_.restore(utc_s, before.quarter_hour_import_wh, before.quarter_hour_battery_wh);
+    witness_.restore(before.trust);
   }
 
   /// 0: there is nothing to look at between two ticks.
@@ -74,8 +81,10 @@ class SiteLimits {
   /// The house's load cannot be known without the battery's power of the same time.
   [[nodiscard]] bool needs_battery() const { return has_meter(); }
 
-  /// Reads meter and outside limits; `battery` was read just before, `is_read` says whether well.
-  void observe(std::int64_t utc_s, bool is_read, const BatteryMeasurement& battery) {
+  /// Reads meter and outside limits; `battery` was read just before, `is_read` says whether well,
+  /// `order` what it followed.
+  void observe(std::int64_t utc_s, bool is_read, const BatteryMeasurement& battery,
+               const SeenOrder& order) {
     read_outside_limits();
     if (!has_meter()) return;
     std::int32_t grid_w = 0;
@@ -85,6 +94,8 @@ class SiteLimits {
     grid_w_ = grid_w;
     battery_w_ = battery.power_w;
     energy_.add(utc_s, grid_w_, battery_w_);
+    house_watch_.observe(is_plausible_house(grid_w_, battery_w_, settings_.pv_w_max));
+    witness_.observe({.utc_s = utc_s, .grid_w = grid_w_, .battery_w = battery_w_, .order = order});
   }
 
   /// How far an order may go from `now_utc_s` on; `relief_w_max` is what the battery can discharge.
@@ -93,7 +104,9 @@ class SiteLimits {
     SiteRange range;
     limit_from_outside(now_utc_s, range);
     if (!has_meter()) return range;
+    if (witness_.is_mismatch() && !settings_.idle_without_meter) return range;
     if (is_recent(now_utc_s)) {
+      const std::int32_t trusted_w = limit_by_trust(now_utc_s, range);
       const std::int32_t margin_w = settings_.connection.margin_w;
       limit_at_connection(settings_.connection, margin == Margin::kWhole ? margin_w : margin_w / 2,
                           {.grid_w = grid_w_,
@@ -101,6 +114,7 @@ class SiteLimits {
                            .relief_w_max = relief_w_max,
                            .quarter_hour = energy_.at(now_utc_s)},
                           range);
+      if (trusted_w != kAnyPowerW) range.relief_w = 0;
     } else if (settings_.idle_without_meter) {
       range.forbid(Reason::kMeterLost);
     }
@@ -115,6 +129,8 @@ class SiteLimits {
     const QuarterHourEnergy::Sums sums = energy_.at(now_utc_s);
     report.quarter_hour_import_wh = watt_hours(sums.import_ws);
     report.quarter_hour_battery_wh = watt_hours(sums.battery_ws);
+    report.house_is_implausible = house_watch_.is_implausible();
+    report.trust = witness_.trust();
     return report;
   }
 
@@ -125,6 +141,15 @@ class SiteLimits {
     const std::int64_t wh =
         (watt_seconds + QuarterHourEnergy::kWsPerWh - 1) / QuarterHourEnergy::kWsPerWh;
     return static_cast<std::int32_t>(std::min<std::int64_t>(wh, INT32_MAX));
+  }
+
+  /// To what may be ordered as far as the meter is believed; returns that.
+  std::int32_t limit_by_trust(std::int64_t now_utc_s, SiteRange& range) const {
+    const std::int32_t power_w =
+        settings_.idle_without_meter ? witness_.power_w_max(now_utc_s) : kAnyPowerW;
+    range.limit_charge(power_w, Reason::kMeterMismatch);
+    range.limit_discharge(power_w, Reason::kMeterMismatch);
+    return power_w;
   }
 
   /// A clock that was stepped back makes readings of the future: those are no readings either.
@@ -161,6 +186,8 @@ class SiteLimits {
   SiteSettings settings_;
   Meter* meter_;
   OutsideLimits* outside_;
+  MeterWitness witness_;
+  HouseWatch house_watch_;
   QuarterHourEnergy energy_;
   std::int64_t read_utc_s_ = INT64_MIN / 2;  ///< of the newest good reading
   std::int32_t grid_w_ = 0;

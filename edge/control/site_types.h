@@ -13,6 +13,19 @@ namespace bess {
 /// Where a limit in W is not set.
 inline constexpr std::int32_t kAnyPowerW = INT32_MAX;
 
+/// How far the meter is believed, and why (meter_witness.h). All zero: nothing speaks against it.
+struct MeterTrust {
+  bool is_mismatch = false;            ///< found: it does not step with the battery
+  std::int32_t doubt = 0;              ///< points, 9 are a finding
+  std::int64_t pause_until_utc_s = 0;  ///< of the last finding
+  std::int32_t pause_s = 0;
+  /// Sums over the last steps, in permille of the battery's rating: its steps, the meter's errors.
+  std::int32_t steps = 0;
+  std::int64_t step_squares = 0;
+  std::int64_t error_products = 0;
+  std::int64_t error_squares = 0;
+};
+
 /// The site's part of one cycle, for the log. All zero where neither meter nor limits are configured.
 struct SiteReport {
   bool has_grid_power = false;  ///< the meter was read, and lately enough to decide by it
@@ -24,6 +37,8 @@ struct SiteReport {
   Status meter_status = Status::kOk;  ///< of the last reading
   /// kTimeout: the outside limit has lapsed, kMalformed: it cannot be understood.
   Status limit_status = Status::kOk;
+  bool house_is_implausible = false;  ///< house_watch.h
+  MeterTrust trust{};
 };
 
 }  // namespace bess

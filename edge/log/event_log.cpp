@@ -35,7 +35,7 @@ JournalLevel level_of(const CycleRecord& record) {
   const bool is_trouble = is_stop_reason(record.reason) && !is_ordered_stop;
   const bool is_well = record.battery_status == Status::kOk && !record.price.step_held &&
                        !record.price_frozen && !is_unusual(record.price) &&
-                       record.site.meter_status == Status::kOk &&
+                       record.site.meter_status == Status::kOk && !record.site.trust.is_mismatch &&
                        record.site.limit_status == Status::kOk;
   return is_trouble || !is_well ? JournalLevel::kWarning : JournalLevel::kInfo;
 }
@@ -141,6 +141,7 @@ void EventLog::keep(const CycleRecord& record) {
   const std::size_t size = format_log_line(record, line);
   if (!append_to_ring(record)) ++totals_.disk_failures;
   tell_of_hold(record);
+  tell_of_meter(record);
   write_journal_line(level_of(record), {line, size});
   tell_of_trip(record);
   if (!append_to_csv(record)) ++totals_.disk_failures;
@@ -198,6 +199,20 @@ void EventLog::tell_of_hold(const CycleRecord& record) {
   if (!hold_lines_.add_line(record, identity_.control, line)) return;
   write_journal_line(record.hold.unreadable ? JournalLevel::kWarning : JournalLevel::kNotice,
                      line.view());
+}
+
+void EventLog::tell_of_meter(const CycleRecord& record) {
+  char text[320];
+  TextBuffer trust(text);
+  if (meter_lines_.add_trust_line(record, trust)) {
+    const bool is_trouble = record.site.trust.is_mismatch;
+    write_journal_line(is_trouble ? JournalLevel::kWarning : JournalLevel::kNotice, trust.view());
+  }
+  TextBuffer house(text);
+  if (meter_lines_.add_house_line(record, house)) {
+    const bool is_trouble = record.site.house_is_implausible;
+    write_journal_line(is_trouble ? JournalLevel::kWarning : JournalLevel::kNotice, house.view());
+  }
 }
 
 bool EventLog::publish_metrics() {

@@ -11,6 +11,7 @@
 #include "edge/control/control_types.h"
 #include "edge/log/handover_queue.h"
 #include "edge/log/hold_lines.h"
+#include "edge/log/meter_lines.h"
 #include "edge/log/ring_log.h"
 #include "edge/log/run_status.h"
 #include "edge/log/whole_file.h"
@@ -71,6 +72,7 @@ class EventLog {
   [[nodiscard]] bool publish_status();
   void tell_of_disk(bool is_failing);
   void tell_of_hold(const CycleRecord& record);
+  void tell_of_meter(const CycleRecord& record);
 
   EventLogSettings settings_;
   RunIdentity identity_;
@@ -81,6 +83,7 @@ class EventLog {
   bool csv_has_head_ = false;
   bool was_failing_ = false;
   HoldLines hold_lines_;
+  MeterLines meter_lines_;
   HandoverQueue<CycleRecord, kQueueRecords> queue_;
   std::int64_t handed_over_ = 0;
   std::atomic<std::int64_t> kept_{0};

@@ -121,6 +121,15 @@ void check_cycle(const HealthInputs& in, std::vector<std::string>& reasons) {
   if (in.meter_status != "ok") {
     reasons.push_back("WARN: meter: " + std::string(in.meter_status));
   }
+  if (in.meter_is_mismatch) {
+    reasons.emplace_back(
+        "WARN: meter: it does not step with the battery, and is not believed: frozen, inverted, of "
+        "another phase or ratio? Or is the battery's own power wrong?");
+  }
+  if (in.house_is_implausible) {
+    reasons.push_back("WARN: meter: house " + std::to_string(in.house_w) +
+                      " W: a sign, the phase or the meter's place is wrong, or [meter] pv_w_max");
+  }
   if (in.limit_status == "timeout") {
     reasons.emplace_back(
         "WARN: the outside limit has lapsed or was never set: 0 W until a new one");

@@ -29,6 +29,9 @@ struct HealthInputs {
   std::string_view price_status;
   bool battery_warns = false;
   std::string_view meter_status = "ok";  ///< also where there is no meter
+  bool meter_is_mismatch = false;
+  bool house_is_implausible = false;
+  std::int64_t house_w = 0;  ///< of the last cycle
   std::string_view limit_status = "ok";
   bool disk_is_slow = false;
   bool disk_is_failing = false;

@@ -8,7 +8,7 @@
 
 namespace bess {
 
-inline constexpr std::size_t kLogLineBytes = 768;
+inline constexpr std::size_t kLogLineBytes = 1'024;
 
 // Each returns the length, without a line end.
 std::size_t format_log_line(const CycleRecord& record, char (&line)[kLogLineBytes]);

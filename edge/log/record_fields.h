@@ -25,6 +25,7 @@ consteval auto make_record_fields() {
   using N = StandingPrice;
   using F = ResponseFindings;
   using W = FollowedOrder;
+  using M = MeterTrust;
   return std::to_array<Field<CycleRecord>>({
       {utc_member<&R::utc_s>(),
        "utc",
@@ -239,6 +240,27 @@ consteval auto make_record_fields() {
       {member<&R::followed, &W::power_w>()},
       {member<&R::followed, &W::age_s>()},
       {member<&R::followed, &W::soc_floor_e4>()},
+      {member<&R::site, &S::trust, &M::is_mismatch>(),
+       "meter_mismatch",
+       {.csv = 56, .last = 173, .metrics = {54, "bess_meter_mismatch"}},
+       {"1 while the meter at the connection does not step with the battery."}},
+      {member<&R::site, &S::trust, &M::doubt>(),
+       "meter_doubt",
+       {.csv = 57, .last = 174, .metrics = {55, "bess_meter_doubt"}},
+       {"Points against that meter; 10 are a mismatch."}},
+      {utc_member<&R::site, &S::trust, &M::pause_until_utc_s>()
+           .given<&R::site, &S::trust, &M::is_mismatch>(),
+       "meter_pause_until_utc",
+       {.last = 175}},
+      {member<&R::site, &S::trust, &M::pause_s>()},
+      {member<&R::site, &S::trust, &M::steps>()},
+      {member<&R::site, &S::trust, &M::step_squares>()},
+      {member<&R::site, &S::trust, &M::error_products>()},
+      {member<&R::site, &S::trust, &M::error_squares>()},
+      {member<&R::site, &S::house_is_implausible>(),
+       "house_implausible",
+       {.csv = 58, .last = 176, .metrics = {56, "bess_house_implausible"}},
+       {"1 while grid less battery is no load that the house can have."}},
   });
 }
 

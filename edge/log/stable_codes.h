@@ -67,8 +67,8 @@ struct StableCodes<Reason> {
                                      Reason::kQuarterHourPeak,
                                      Reason::kRule,
                                      Reason::kFrozenPrice,
-
-                                     Reason::kBatteryCare};
+                                     Reason::kBatteryCare,
+                                     Reason::kMeterMismatch};
   static constexpr auto kNameOf = reason_name;
 };
 

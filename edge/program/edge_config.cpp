@@ -56,6 +56,15 @@ void set_supervision(EdgeConfig& config) {
   supervision.capacity_wh_max = static_cast<std::int32_t>(range.most_wh);
 }
 
+/// What the meter is held against: this battery's steps.
+void set_site(EdgeConfig& config) {
+  SiteSettings& site = config.site.settings;
+  site.witness.power_w = config.control.guard.power_w;
+  site.witness.settle_s = config.map.response.settle_s;
+  // A hybrid inverter has panels of its own, and its map does not know how large they are.
+  if (config.map.response.charges_by_itself && site.pv_w_max == 0) site.pv_w_max = kAnyPowerW;
+}
+
 void read_battery(TomlTable table, EdgeConfig& config) {
   FixedText<255> map_file("maps/alphaess.toml");
   RegisterName variant;
@@ -306,6 +315,7 @@ bool load_edge_config(const std::string& path, EdgeConfig& config, std::string& 
   root.finish();
   config.control.price_wait_s = config.price.wait_s;
   set_supervision(config);
+  set_site(config);
   if (config.map.watchdog.duration_s > 0) {
     config.control.order_duration_s = config.map.watchdog.duration_s;
     config.control.has_watchdog = true;

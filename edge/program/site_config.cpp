@@ -82,6 +82,8 @@ void read_meter(TomlTable table, MeteredBattery battery, SiteConfig& site) {
   table.choice("on_loss", on_loss, {"idle", "ignore"});
   table.integer("age_s_max", settings.age_s_max, 5, 300);
   table.integer("check_every_s", settings.check_every_s, 2, 60);
+  table.boolean("judged", settings.witness.judges);
+  table.integer("pv_w_max", settings.pv_w_max, 0, kConnectionWMax);
   table.finish();
   settings.idle_without_meter = on_loss == 0;
   check_connection(table, settings.connection);

@@ -30,6 +30,7 @@ using C = BatteryCounters;
 using L = PriceLevel;
 using S = SiteReport;
 using F = ResponseFindings;
+using M = MeterTrust;
 using T = RunTotals;
 using H = HoldReport;
 
@@ -129,6 +130,10 @@ Health health_of(const EdgeConfig& config, JsonValue status, bool no_lock,
   in.battery_status = text_of(field<&R::battery_status>(status));
   in.price_status = text_of(field<&R::price, &P::status>(status));
   in.meter_status = text_of(field<&R::site, &S::meter_status>(status));
+  in.meter_is_mismatch = is_true(field<&R::site, &S::trust, &M::is_mismatch>(status));
+  in.house_is_implausible = is_true(field<&R::site, &S::house_is_implausible>(status));
+  in.house_w = whole(field<&R::site, &S::grid_power_w>(status)) -
+               whole(field<&R::measurement, &B::power_w>(status));
   in.limit_status = text_of(field<&R::site, &S::limit_status>(status));
   in.unanswered_orders = whole(field<&R::unanswered_orders>(status));
   in.weak_answers = whole(field<&R::weak_answers>(status));

@@ -102,7 +102,7 @@ struct SiteUnderTest {
   void observe(std::int64_t utc_s, bool is_read = true, std::int32_t battery_w = 0) {
     BatteryMeasurement m;
     m.power_w = battery_w;
-    site.observe(utc_s, is_read, m);
+    site.observe(utc_s, is_read, m, {});
   }
   StubMeter meter;
   StubLimits limits;
@@ -166,10 +166,10 @@ TEST(SiteLimits, TheBatterysOwnGridPointServesAsWell) {
   BatteryMeasurement m;
   m.has_grid_power = true;
   m.grid_power_w = 1'000;
-  t.site.observe(kQuarter, true, m);
+  t.site.observe(kQuarter, true, m, {});
   EXPECT_EQ(t.site.range(kQuarter, 4'000, Margin::kWhole).charge_w_max, 4'000);
   m.has_grid_power = false;
-  t.site.observe(kQuarter + 40, true, m);
+  t.site.observe(kQuarter + 40, true, m, {});
   EXPECT_EQ(t.site.range(kQuarter + 40, 4'000, Margin::kWhole).charge_reason, Reason::kMeterLost);
 }
 

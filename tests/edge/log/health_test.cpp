@@ -41,6 +41,13 @@ TEST(Health, EveryTroubleHasItsReason) {
        HealthLevel::kDegraded, "WARN: update: 1.0; 2.0 was rolled back: it hangs"},
       {[](HealthInputs& in) { in.meter_status = "timeout"; }, HealthLevel::kDegraded,
        "WARN: meter: timeout"},
+      {[](HealthInputs& in) { in.meter_is_mismatch = true; }, HealthLevel::kDegraded,
+       "WARN: meter: it does not step with the battery"},
+      {[](HealthInputs& in) {
+         in.house_is_implausible = true;
+         in.house_w = -631;
+       },
+       HealthLevel::kDegraded, "WARN: meter: house -631 W: a sign"},
       {[](HealthInputs& in) { in.limit_status = "timeout"; }, HealthLevel::kDegraded,
        "outside limit has lapsed"},
       {[](HealthInputs& in) { in.limit_status = "malformed"; }, HealthLevel::kDegraded,

@@ -159,8 +159,8 @@ consteval std::size_t count_leaves() {
 TEST(RecordFields, NoMemberOfTheRecordIsForgotten) {
   constexpr std::size_t kLeaves =
       count_leaves<BatteryMeasurement, PriceReport, DayThroughput, BatteryCounters, PriceLevel,
-                   Trip, ReversalHistory, HoldReport, SiteReport, LostOrderHistory, StandingPrice,
-                   ResponseFindings, FollowedOrder>();
+                   Trip, ReversalHistory, HoldReport, SiteReport, MeterTrust, LostOrderHistory,
+                   StandingPrice, ResponseFindings, FollowedOrder>();
   constexpr std::size_t kElsewhere =
       2;  // the battery's own grid point: what counts of it is in `site`
   EXPECT_EQ(std::size(kRecordFields), kLeaves - kElsewhere);

@@ -167,8 +167,17 @@ TEST(RecordCodec, LayoutOnDiskIsFixed) {
   EXPECT_EQ(bytes[310], 1);     // followed.is_judged
   EXPECT_EQ(bytes[311], 0xCB);  // followed.power_w = -53
   EXPECT_EQ(bytes[315], 54);    // followed.age_s
-  EXPECT_EQ(bytes[319], 55);    // followed.soc_floor_e4, the last field
-  for (std::size_t i = 321; i < kRecordBytes - 4; ++i) EXPECT_EQ(bytes[i], 0) << i;
+  EXPECT_EQ(bytes[319], 55);    // followed.soc_floor_e4
+  EXPECT_EQ(bytes[321], 1);     // site.trust.is_mismatch
+  EXPECT_EQ(bytes[322], 49);    // site.trust.doubt
+  EXPECT_EQ(bytes[326], 50);    // site.trust.pause_until_utc_s
+  EXPECT_EQ(bytes[334], 51);    // site.trust.pause_s
+  EXPECT_EQ(bytes[338], 52);    // site.trust.steps
+  EXPECT_EQ(bytes[342], 53);    // site.trust.step_squares
+  EXPECT_EQ(bytes[350], 0xCA);  // site.trust.error_products = -54
+  EXPECT_EQ(bytes[358], 55);    // site.trust.error_squares
+  EXPECT_EQ(bytes[366], 1);     // site.house_is_implausible, the last field
+  for (std::size_t i = 367; i < kRecordBytes - 4; ++i) EXPECT_EQ(bytes[i], 0) << i;
 }
 
 /// A ring of the program that ended its records with flash_writes_today: later fields read as 0.

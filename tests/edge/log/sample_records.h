@@ -73,7 +73,16 @@ inline CycleRecord full_record(std::int64_t cycle) {
             .quarter_hour_battery_wh = 41,
             .order_cuts = 42,
             .meter_status = Status::kBadReply,
-            .limit_status = Status::kMalformed};
+            .limit_status = Status::kMalformed,
+            .house_is_implausible = true,
+            .trust = {.is_mismatch = true,
+                      .doubt = 49,
+                      .pause_until_utc_s = 50,
+                      .pause_s = 51,
+                      .steps = 52,
+                      .step_squares = 53,
+                      .error_products = -54,
+                      .error_squares = 55}};
   r.ended_orders = 43;
   r.lost_orders = {.orders = 44, .judged = 45, .lost = 46};
   r.standing_price = {.minute_utc_s = 47, .centi_eur_per_mwh = -48, .unchanged_s = 49};
@@ -120,7 +129,16 @@ inline CycleRecord longest_record() {
             .quarter_hour_battery_wh = INT32_MIN,
             .order_cuts = INT32_MIN,
             .meter_status = Status::kNotExpressible,
-            .limit_status = Status::kNotExpressible};
+            .limit_status = Status::kNotExpressible,
+            .house_is_implausible = true,
+            .trust = {.is_mismatch = true,
+                      .doubt = INT32_MIN,
+                      .pause_until_utc_s = INT64_MIN,
+                      .pause_s = INT32_MIN,
+                      .steps = INT32_MIN,
+                      .step_squares = INT64_MIN,
+                      .error_products = INT64_MIN,
+                      .error_squares = INT64_MIN}};
   r.standing_price = {INT64_MIN, INT32_MIN, INT32_MIN};
   r.counters = {INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT64_MIN, INT32_MIN};
   r.counters.requests = 0;  // requests - failed_requests must not overflow

@@ -1,0 +1,108 @@
+// Does the meter at the connection see what the battery does? The controller steps its battery by
+// kilowatts every few cycles, and grid = house + battery: each such step must show on the meter.
+// One that is frozen, inverted, on another phase, late or of a wrong ratio would be believed else.
+// Pure integers, fed with every pair of readings.
+//
+// Only what has settled is compared: the last readings under one order with the first ones under the
+// next, `settle_s` after it, so that neither a ramp nor a register that lags counts. The house moves
+// meanwhile, by kilowatts at times. Therefore
+//   - what is missing of a step must be more than 40 % of it, and more than twice what the house itself
+//     moves by lately, between readings under one order (its second largest move, fading);
+//   - one such step is a doubt and no finding. It is answered at once by 0 W until the next tick,
+//     which is the same experiment again, backwards, at an instant that the house did not choose;
+//   - contradictions weigh 3, what follows forgives 1, and so do ten minutes: four in a row are a
+//     finding, and a meter that lies at every other or third step is found as well;
+//   - ratios between 0.6 and 1, and above, are found by the sums over the last steps: the error is
+//     more than a quarter and goes with the step (correlation above 0.7), which the house's own moves
+//     do not do for long;
+//   - a step that shows on the meter later, with the battery standing still, is the meter's and not
+//     the house's, and so is a sign that turns around.
+// A finding ends by itself, for no person can see from afar either whether a meter is right, and a
+// battery that rests gives no evidence: after a pause (10 min, doubling to 6 h) it is tested with an
+// eighth of the power, in every other cycle, as far as prices ask for any, and only until each step
+// has shown. Six steps that agree, alone and in sum, end it; a contradiction is the next pause. The
+// pause keeps its length until a day without a finding: it cannot flap.
+//
+// What it cannot see: an offset (steps are right: house_watch.h looks at the level), a meter that lies
+// while the battery rests. Something else that holds the grid at a value (a second battery, curtailed
+// sun) takes the steps away: `judged = false`. A battery whose measured power is not true looks the
+// same: one of the two is wrong, and neither may be relied on.
+#pragma once
+
+#include <cstdint>
+
+#include "edge/control/site_types.h"
+
+namespace bess {
+
+struct MeterWitnessSettings {
+  bool judges = true;
+  std::int32_t power_w = 4'000;  ///< rated, of the battery
+  std::int32_t settle_s = 20;    ///< from an order to the power that answers it
+};
+
+/// The order that the battery follows while meter and battery are read.
+struct SeenOrder {
+  bool is_driven = false;  ///< false: its own mode, which goes any way
+  std::int32_t age_s = 0;  ///< since its power was ordered
+};
+
+struct WitnessReading {
+  std::int64_t utc_s = 0;
+  std::int32_t grid_w = 0;
+  std::int32_t battery_w = 0;
+  SeenOrder order{};
+};
+
+class MeterWitness {
+ public:
+  explicit MeterWitness(const MeterWitnessSettings& settings) : settings_(settings) {}
+
+  void observe(const WitnessReading& now);
+
+  /// What an earlier run had found out.
+  void restore(const MeterTrust& trust) { trust_ = trust; }
+  [[nodiscard]] const MeterTrust& trust() const { return trust_; }
+
+  /// Found: the meter's value must not decide.
+  [[nodiscard]] bool is_mismatch() const { return trust_.is_mismatch; }
+  /// Power, of either sign, that may be ordered as things stand; kAnyPowerW: nothing is wrong.
+  [[nodiscard]] std::int32_t power_w_max(std::int64_t now_utc_s) const;
+
+ private:
+  /// Between two settled readings with an order's change between them; along the battery's step.
+  struct Step {
+    std::int64_t size_w;   ///< of the battery, above 0
+    std::int64_t along_w;  ///< of the meter, positive: the same way
+  };
+
+  void fade_doubt(std::int64_t utc_s);
+  void note_house(const WitnessReading& now);
+  void judge_step(const WitnessReading& now);
+  void judge_excess(const WitnessReading& now);
+  [[nodiscard]] Step step_to(const WitnessReading& now) const;
+  [[nodiscard]] bool turns_around(std::int64_t from_w, std::int64_t to_w) const;
+  [[nodiscard]] bool is_late_answer(std::int64_t house_step_w, std::int64_t utc_s) const;
+  [[nodiscard]] bool contradicts(const Step& step) const;
+  void on_contradiction(const WitnessReading& now, std::int32_t points);
+  void judge_trial(const Step& step, std::int64_t utc_s);
+  void end_trial(std::int64_t utc_s);
+  void add_to_sums(const Step& step);
+  [[nodiscard]] bool is_wrong_ratio() const;
+  [[nodiscard]] std::int32_t trial_power_w(std::int64_t now_utc_s) const;
+  [[nodiscard]] bool is_paused(std::int64_t now_utc_s) const;
+  void find(std::int64_t utc_s);
+
+  MeterWitnessSettings settings_;
+  MeterTrust trust_;
+  bool has_before_ = false;
+  WitnessReading before_;     ///< the last settled one
+  std::int64_t noise_w_ = 0;  ///< the house's second largest move of late, fading
+  std::int64_t largest_move_w_ = 0;
+  std::int64_t faded_utc_s_ = 0;  ///< when time last forgave
+  std::int64_t missed_w_ = 0;     ///< the battery's last step that did not show, with its sign
+  std::int64_t missed_utc_s_ = 0;
+  std::int64_t retreat_until_utc_s_ = 0;
+};
+
+}  // namespace bess
