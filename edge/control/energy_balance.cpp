@@ -15,6 +15,8 @@ constexpr std::int64_t kContradictedBelow = 40;
 constexpr std::int64_t kContradictedAbove = 250;
 constexpr int kIntervalsToTell = 6;
 constexpr int kIntervalsToContradict = 2;
+/// So many of them, and delays have had their share as well.
+constexpr int kIntervalsBeyondDelay = 15;
 constexpr int kIntervalsOfRest = 5;        ///< until what is lost unmeasured is told
 constexpr int kIntervalsOfShownRest = 10;  ///< until what is measured at 0 W is
 
@@ -77,6 +79,17 @@ std::int64_t lack(std::int64_t percent, std::int64_t energy_e4, std::int64_t soc
   return (percent * energy_e4 - kPercent * soc_e4) * energy_e4;
 }
 
+/// As above, against the least of an honest battery. Where the order has changed, what was late cannot be
+/// told from what is missing: then only what is beyond any delay counts, and nothing speaks against it.
+std::int64_t lack_beyond_delay(const EnergyInterval& interval) {
+  const std::int64_t energy = interval.energy_e4;
+  const std::int64_t late = interval.late_energy_e4;
+  if (late == energy) return lack(kContradictedBelow, energy, interval.soc_e4);
+  const bool turns = (late < 0) != (energy < 0);
+  const std::int64_t least = (turns ? kToldAbove : kContradictedBelow) * late;
+  return std::max<std::int64_t>((least - kPercent * interval.soc_e4) * energy, 0);
+}
+
 }  // namespace
 
 void EnergyBalance::add(const EnergyInterval& interval) {
@@ -85,39 +98,40 @@ void EnergyBalance::add(const EnergyInterval& interval) {
   count_ = std::min(count_ + 1, kIntervals);
 }
 
-void EnergyBalance::observe(const EnergyInterval& interval, std::int32_t soc_step_e4) {
+void EnergyBalance::observe(const EnergyInterval& interval, std::int32_t soc_span_e4) {
   add(interval);
   findings_ = Findings{};
-  const std::int64_t step = soc_step_e4;
-  const std::int64_t soc_variance = step * step / 12 + kSocErrorE4 * kSocErrorE4;
+  const std::int64_t span = soc_span_e4;
+  const std::int64_t soc_variance = span * span / 12 + kSocErrorE4 * kSocErrorE4;
   judge_flow(soc_variance);
   judge_rest(soc_variance);
 }
 
 void EnergyBalance::judge_flow(std::int64_t soc_variance) {
-  Evidence little, much, far_too_little, far_too_much;
-  Roughness roughness, late_roughness;
+  Evidence little, much, far_too_little, far_too_little_so_far, far_too_much;
+  Roughness roughness;
   std::int64_t explained = 0, shown = 0;  // the share is shown / explained
   int flowing = 0;
   for (std::size_t i = 0; i < count_; ++i) {
     const EnergyInterval& interval = back(i);
     const bool flows = interval.kind == Kind::kFlowing;
     const std::int64_t energy = flows ? interval.energy_e4 : 0;
-    const std::int64_t late = flows ? interval.late_energy_e4 : 0;
     roughness.add(energy);
-    late_roughness.add(late);
     if (!flows) continue;
     ++flowing;
     little.add(lack(kToldBelow, energy, interval.soc_e4));
     much.add(-lack(kToldAbove, energy, interval.soc_e4));
-    far_too_little.add(lack(kContradictedBelow, late, interval.soc_e4));
+    far_too_little.add(lack_beyond_delay(interval));
+    far_too_little_so_far.add(lack(kContradictedBelow, energy, interval.soc_e4));
     far_too_much.add(-lack(kContradictedAbove, energy, interval.soc_e4));
     explained += energy * energy;
     shown += energy * interval.soc_e4;
     const std::int64_t noise = kPercent * square_root(soc_variance * roughness.sum());
-    const std::int64_t late_noise = kPercent * square_root(soc_variance * late_roughness.sum());
     if (flowing >= kIntervalsToContradict &&
-        (far_too_little.contradicts(late_noise) || far_too_much.contradicts(noise))) {
+        (far_too_little.contradicts(noise) || far_too_much.contradicts(noise))) {
+      findings_.contradicts = true;
+    }
+    if (flowing >= kIntervalsBeyondDelay && far_too_little_so_far.contradicts(noise)) {
       findings_.contradicts = true;
     }
     if (flowing >= kIntervalsToTell && (little.tells(noise) || much.tells(noise))) {

@@ -28,7 +28,8 @@ struct EnergyInterval {
   };
   Kind kind = Kind::kUnknown;
   std::int16_t energy_e4 = 0;  ///< measured; charging is positive
-  /// The same, had the battery followed its order as late as it may: less after a reversal.
+  /// The same, had the battery followed its order, and the SoC the battery, as late as they may: less where
+  /// the order has changed, and of the other sign after a reversal.
   std::int16_t late_energy_e4 = 0;
   std::int16_t soc_e4 = 0;  ///< by how much the SoC rose
   std::int16_t seconds = 0;
@@ -56,8 +57,8 @@ class EnergyBalance {
 
   explicit EnergyBalance(const EnergyBalanceSettings& settings) : settings_(settings) {}
 
-  /// The newest interval; `soc_step_e4`: the smallest change that the SoC shows.
-  void observe(const EnergyInterval& interval, std::int32_t soc_step_e4);
+  /// The newest interval; `soc_span_e4`: how far two readings of the same SoC may lie apart.
+  void observe(const EnergyInterval& interval, std::int32_t soc_span_e4);
   /// Between the intervals before and the next nothing is known.
   void interrupt() { add(EnergyInterval{}); }
 

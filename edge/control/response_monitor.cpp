@@ -111,7 +111,8 @@ void ResponseMonitor::judge_answer(const Response& now, std::int32_t measured_w)
     if (answers_) slow_.good();
     return;
   }
-  note_ramp(now, before_power_w_);
+  // What stands at 0 W is not on its way through it.
+  if (measured_w > noise_w && note_ramp(now, before_power_w_)) return;
   if (!answers_) unexplained_.bad(is_charging);
   ++weak_answers_;
 }

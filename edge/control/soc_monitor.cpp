@@ -21,9 +21,9 @@ constexpr std::int32_t kShownEmptyE4 = 10;
 constexpr std::int64_t kReadingGapMaxS = 300;  ///< beyond: what flowed between is not known
 constexpr std::int32_t kReadingsUntilSettled = 3;
 constexpr std::int32_t kStillReadings = 2;
+constexpr std::int32_t kUsualRefreshS = 60;
 
 constexpr std::int64_t kSocErrorE4 = 100;  ///< of any count of charge from one reading to the next
-constexpr std::int64_t kClingE4 = 40;      ///< a count leaves an end later than elsewhere
 constexpr std::int32_t kUnknownStepE4 = 100;
 
 bool is_high(std::int32_t soc_e4) { return soc_e4 >= kSocEndHighE4; }
@@ -55,7 +55,7 @@ void SocMonitor::observe(const Response& now) {
   judge_standstill(now, flow, excused);
   EnergyInterval interval = interval_of(now, flow);
   if (excused) interval.kind = EnergyInterval::Kind::kUnknown;
-  balance_.observe(interval, soc_step_e4());
+  balance_.observe(interval, soc_span_e4());
   contradicts_ = contradicts_ || balance_.findings().contradicts;
   before_ = now;
   note_power(now);
@@ -88,16 +88,17 @@ std::int64_t SocMonitor::flowed_ws(const Response& now, std::int64_t delay_s) co
          std::int64_t{flow_power_w_} * (seconds - of_order_s);
 }
 
-/// One that has reached its order may have done so as late as its map allows; one that has not is on
-/// its way there all the time.
+/// As if the battery had followed its order as late as its map allows, and its SoC shown it as late. One that
+/// has not reached its order is on its way there all the time.
 std::int64_t SocMonitor::late_ws(const Response& now) const {
+  const std::int64_t late_ws =
+      flowed_ws(now, settings_.band.settle_s + settings_.band.soc_refresh_s);
   const std::int32_t power_w = now.measurement.power_w;
   const std::int64_t apart_w = std::int64_t{power_w} - now.ordered_power_w;
-  if (std::abs(apart_w) <= settings_.tolerance_w(now.ordered_power_w)) {
-    return flowed_ws(now, settings_.band.settle_s);
-  }
+  if (std::abs(apart_w) <= settings_.tolerance_w(now.ordered_power_w)) return late_ws;
   const std::int64_t seconds = std::max<std::int64_t>(now.utc_s - flow_utc_s_, 0);
-  return (std::int64_t{power_w} + flow_power_w_) * seconds / 2;
+  const std::int64_t ramp_ws = (std::int64_t{power_w} + flow_power_w_) * seconds / 2;
+  return power_w > 0 ? std::min(late_ws, ramp_ws) : std::max(late_ws, ramp_ws);
 }
 
 std::int64_t SocMonitor::e4_of(std::int64_t energy_ws) const {
@@ -124,6 +125,13 @@ bool SocMonitor::rests(const Response& reading) const {
 std::int32_t SocMonitor::soc_step_e4() const {
   const std::int32_t shown_e4 = shown_step_e4_ > 0 ? shown_step_e4_ : kUnknownStepE4;
   return std::max(settings_.band.soc_step_e4, std::min(shown_e4, kUnknownStepE4));
+}
+
+/// One that is refreshed seldom lags by what flows meanwhile.
+std::int32_t SocMonitor::soc_span_e4() const {
+  const std::int64_t lag_s = settings_.band.soc_refresh_s - kUsualRefreshS;
+  const std::int64_t lag_ws = std::int64_t{settings_.power_w} * std::max<std::int64_t>(lag_s, 0);
+  return soc_step_e4() + static_cast<std::int32_t>(e4_of(lag_ws));
 }
 
 /// Charging at the upper end and discharging at the lower: it may stand still, or go on at once.
@@ -191,6 +199,13 @@ EnergyInterval SocMonitor::interval_of(const Response& now, const Flow& flow) co
           .power_w = now.measurement.power_w};
 }
 
+/// Whenever the battery followed its order: nothing where it may have gone either way.
+std::int64_t SocMonitor::surely_moved_e4(const Flow& flow) {
+  if ((flow.energy_e4 < 0) != (flow.late_energy_e4 < 0)) return 0;
+  return flow.energy_e4 < 0 ? std::max(flow.energy_e4, flow.late_energy_e4)
+                            : std::min(flow.energy_e4, flow.late_energy_e4);
+}
+
 void SocMonitor::judge_standstill(const Response& now, const Flow& flow, bool excused) {
   const std::int32_t soc_e4 = now.measurement.soc_e4;
   const bool is_known = now.is_driven && before_.is_driven;
@@ -199,13 +214,12 @@ void SocMonitor::judge_standstill(const Response& now, const Flow& flow, bool ex
     still_readings_ = 0;
     return;
   }
-  if (!excused) still_e4_ += flow.late_energy_e4;
+  if (!excused) still_e4_ += surely_moved_e4(flow);
   still_least_e4_ = std::min(still_least_e4_, still_e4_);
   still_most_e4_ = std::max(still_most_e4_, still_e4_);
   ++still_readings_;
-  const bool is_at_an_end = is_high(soc_e4) || is_low(soc_e4);
-  const std::int64_t must_show_e4 = soc_step_e4() * 6 / 5 + 50 + (is_at_an_end ? kClingE4 : 0);
-  const std::int64_t moved_at_least_e4 = (still_most_e4_ - still_least_e4_) * 3 / 4;
+  const std::int64_t must_show_e4 = soc_span_e4() * 6 / 5 + 50;
+  const std::int64_t moved_at_least_e4 = (still_most_e4_ - still_least_e4_) * 4 / 5;
   if (still_readings_ >= kStillReadings && moved_at_least_e4 > must_show_e4) contradicts_ = true;
 }
 

@@ -36,7 +36,7 @@ class SocMonitor {
   /// What the power of an interval may have moved, in 1e-4 of the capacity.
   struct Flow {
     std::int64_t energy_e4 = 0;       ///< each reading's power since its order
-    std::int64_t late_energy_e4 = 0;  ///< the battery having followed it as late as it may
+    std::int64_t late_energy_e4 = 0;  ///< followed, and shown, as late as it may be
     std::int64_t least_e4 = 0;  ///< change of the SoC that losses and a rounded capacity leave
     std::int64_t most_e4 = 0;
   };
@@ -48,6 +48,8 @@ class SocMonitor {
   [[nodiscard]] std::int64_t e4_of(std::int64_t energy_ws) const;
   [[nodiscard]] bool rests(const Response& reading) const;
   [[nodiscard]] std::int32_t soc_step_e4() const;
+  [[nodiscard]] std::int32_t soc_span_e4() const;
+  [[nodiscard]] static std::int64_t surely_moved_e4(const Flow& flow);
   bool is_excused(const Response& now, const Flow& flow, std::int64_t change_e4);
   bool is_beyond_its_end(std::int32_t soc_e4, const Flow& flow, std::int64_t change_e4);
   bool judge_jump(const Response& now, const Flow& flow, std::int64_t change_e4);

@@ -56,6 +56,7 @@ void read_response(TomlTable& root, RegisterMap& map) {
   table.integer("tolerance_percent", map.response.tolerance_percent, 1, 50);
   table.integer("tolerance_w", map.response.tolerance_w, 1, 1'000'000);
   table.integer("soc_step_e4", map.response.soc_step_e4, 1, 1'000);
+  table.integer("soc_refresh_s", map.response.soc_refresh_s, 1, 600);
   table.boolean("charges_by_itself", map.response.charges_by_itself);
   table.finish();
 }
