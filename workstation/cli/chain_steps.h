@@ -24,12 +24,7 @@ std::uint32_t prices_checksum(const MinuteSeries& series);
 struct ProofFailed : UserError {
   using UserError::UserError;
 };
-/// Violations that are left and those of every round, with the mend; `where` in front and `note` behind
-/// the violations. `violations_by_round` is not empty.
-std::string describe_failed_proof(const std::vector<std::int64_t>& violations_by_round,
-                                  CorrectionMethod method, const std::string& where = "",
-                                  const std::string& note = "");
-/// The proved student of `result`. Throws ProofFailed with the same description.
+/// The proved student of `result`. Throws ProofFailed with what describe_failed_proof says.
 const ProvedStudent& require_proof(const CorrectionResult& result, CorrectionMethod method,
                                    const std::string& where = "", const std::string& note = "");
 

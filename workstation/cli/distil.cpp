@@ -1,6 +1,7 @@
 // bess-train distil: teacher in, corrected and proved integer student out.
 #include <fmt/core.h>
 
+#include <filesystem>
 #include <memory>
 
 #include "shared/host/distinct_files.h"
@@ -16,6 +17,7 @@
 #include "workstation/cli/rule_report.h"
 #include "workstation/report/curves.h"
 #include "workstation/student/correct_and_prove.h"
+#include "workstation/student/failed_proof.h"
 
 namespace bess {
 namespace {
@@ -37,7 +39,7 @@ struct DistilArguments {
 
 void print_result(const DistilArguments& options, const CorrectionResult& result) {
   const Certificate& c = student_of(result.verdict).certificate;
-  const std::size_t rounds = result.violations_by_round.size();
+  const std::size_t rounds = result.rounds.size();
   if (options.json) {
     Json json = Json::object({{"student", options.out},
                               {"corrected", !options.plain},
@@ -54,6 +56,12 @@ void print_result(const DistilArguments& options, const CorrectionResult& result
              c.states_checked, c.violations_property_1, c.violations_property_2,
              c.violations_property_3, rounds, rounds == 1 ? "" : "s");
   fmt::print("{}", rule_count_lines(c));
+}
+
+/// "student.json" becomes "student_unproved.json", beside it.
+std::filesystem::path unproved_path(const std::filesystem::path& out) {
+  std::filesystem::path path = out;
+  return path.replace_filename(out.stem().string() + "_unproved" + out.extension().string());
 }
 
 void run_distil(const DistilArguments& options) {
@@ -74,11 +82,16 @@ void run_distil(const DistilArguments& options) {
   const Matrix visited = visited_inputs(teacher, market, config.battery, config.distil);
   const CorrectionResult result =
       correct_and_prove(teacher, visited, config.distil, interruption(),
-                        validation_score(market, config.battery, config.initial_soc_frac));
-  if (!options.plain) {
-    require_proof(result, config.distil.method, "", ", nothing was written");
-  }
+                        validation_score(market, config.battery, config.initial_soc_frac),
+                        [&](const ProofRound& round, const RoundsState& state) {
+                          if (!options.plain) fmt::print(stderr, "{}\n", round_line(round, state));
+                        });
   const StudentFile& student = student_of(result.verdict);
+  if (!options.plain && !std::holds_alternative<ProvedStudent>(result.verdict)) {
+    const std::filesystem::path kept = unproved_path(options.out);
+    save_student(kept, student);
+    require_proof(result, config.distil.method, "", "; the student is kept as " + kept.string());
+  }
   save_student(options.out, student);
   if (!options.curve_out.empty()) write_file(options.curve_out, distil_curve_csv(result.curve));
   print_result(options, result);
@@ -86,29 +99,11 @@ void run_distil(const DistilArguments& options) {
 
 }  // namespace
 
-std::string describe_failed_proof(const std::vector<std::int64_t>& violations_by_round,
-                                  CorrectionMethod method, const std::string& where,
-                                  const std::string& note) {
-  constexpr std::size_t kShown = 20;  // of rounds
-  const std::size_t rounds = violations_by_round.size();
-  const std::size_t first = rounds > kShown ? rounds - kShown : 0;
-  std::string by_round = first > 0 ? "..., " : "";
-  for (std::size_t i = first; i < rounds; ++i) {
-    by_round += fmt::format("{}{}", violations_by_round[i], i + 1 < rounds ? ", " : "");
-  }
-  // A look at the thresholds spares a monotone student that fails there the proof.
-  const char* looks = method == CorrectionMethod::kConstruction && rounds > 1
-                          ? "; without a proof those at the thresholds alone"
-                          : "";
-  return fmt::format("{}{} violations are left after {} rounds (by round {}{}){}; {}", where,
-                     violations_by_round.back(), rounds, by_round, looks, note,
-                     mend_of_failed_proof(method));
-}
-
 const ProvedStudent& require_proof(const CorrectionResult& result, CorrectionMethod method,
                                    const std::string& where, const std::string& note) {
   if (const auto* proved = std::get_if<ProvedStudent>(&result.verdict)) return *proved;
-  throw ProofFailed(describe_failed_proof(result.violations_by_round, method, where, note));
+  throw ProofFailed(
+      describe_failed_proof(student_of(result.verdict), result.rounds, method, where, note));
 }
 
 void add_distil_command(ProgramCommand& app) {

@@ -16,6 +16,7 @@
 #include "workstation/rules/rule_conflicts.h"
 #include "workstation/student/correct_and_prove.h"
 #include "workstation/student/exported_policy.h"
+#include "workstation/student/failed_proof.h"
 
 namespace bess {
 namespace {
@@ -24,6 +25,7 @@ namespace {
 struct Students {
   std::vector<Evaluation> reset, carried;
   std::int64_t states = 0, violations = 0;
+  std::string failure{};  ///< of the first that was not proved
 };
 
 Evaluation mean_of(const std::vector<Evaluation>& seeds) {
@@ -60,6 +62,11 @@ class Distillery {
       const StudentFile& student = student_of(result.verdict);
       students.states += student.certificate.states_checked;
       students.violations += student.certificate.violations();
+      if (student.certificate.violations() > 0 && students.failure.empty()) {
+        students.failure =
+            describe_failed_proof(student, result.rounds, config.distil.method,
+                                  fmt::format("\"{}\", seed {}: ", name, config.distil.seed));
+      }
       const std::unique_ptr<Policy> policy = exported_policy(student);
       const BothWays earned = run_both_ways(*policy, options_.days, config, market_);
       students.reset.push_back(earned.reset);
@@ -173,11 +180,11 @@ void price_by_distilling(const DistilledPriceOptions& options, const Teacher& te
   const Distillery distillery(options, teacher, config, market);
   const Students base = distillery.students("without rules", {});
   print_head(options, base);
-  std::int64_t violations = base.violations;
+  std::string failure = base.failure;
   const auto price = [&](const std::string& name, const RuleSet& rules) {
     const Students ruled = distillery.students(name, rules);
     print_row(options, name, base, ruled);
-    violations += ruled.violations;
+    if (failure.empty()) failure = ruled.failure;
   };
   const std::vector<Rule>& rules = options.rules.rules;
   for (const Rule& rule : rules) {
@@ -190,9 +197,7 @@ void price_by_distilling(const DistilledPriceOptions& options, const Teacher& te
     }
   }
   price(rules.size() == 1 ? rules.front().name : kAllTogether, options.rules);
-  if (violations > 0) {
-    fail("{} violations are left; {}", violations, mend_of_failed_proof(config.distil.method));
-  }
+  if (!failure.empty()) fail("{}", failure);
 }
 
 }  // namespace bess

@@ -11,6 +11,7 @@
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
 #include "workstation/cli/source_tree.h"
+#include "workstation/student/demand_counts.h"
 
 namespace bess {
 namespace {
@@ -22,8 +23,8 @@ struct ExportArguments {
 };
 
 [[noreturn]] void refuse(const std::string& name, const Certificate& c) {
-  fail("{}: refused: {} violations over the lattice ({} / {} / {}); distil it again", name,
-       c.violations(), c.violations_property_1, c.violations_property_2, c.violations_property_3);
+  fail("{}: refused: {} violations over the lattice ({}); distil it again", name, c.violations(),
+       broken_text(demand_counts(c)));
 }
 
 void run_export(const ExportArguments& options) {

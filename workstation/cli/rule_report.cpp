@@ -6,20 +6,10 @@
 
 #include "workstation/env/evaluate.h"
 #include "workstation/rules/rule_watch.h"
+#include "workstation/student/failed_proof.h"
 #include "workstation/student/student_policy.h"
 
 namespace bess {
-namespace {
-
-std::string state_text(const LatticeState& s, ContextKind kind) {
-  return fmt::format("{} {}, {}, minute {}, SoC {:g} %, {} EUR/MWh",
-                     kind == ContextKind::kMonth ? "month" : "context class", s.context_class,
-                     hour_text(s.quarter_hour), s.minute_of_quarter_hour,
-                     s.soc_index * 100.0 / (kSocCount - 1), s.price_eur_per_mwh);
-}
-
-}  // namespace
-
 std::string rule_count_lines(const Certificate& certificate) {
   std::string text;
   for (std::size_t r = 0; r < certificate.rule_counts.size(); ++r) {

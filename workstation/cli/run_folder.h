@@ -21,6 +21,7 @@ inline constexpr const char* kPlainStudent = "student_plain.json";
 inline constexpr const char* kPlainViolations = "student_plain_violations.csv";
 inline constexpr const char* kStudent = "student.json";
 inline constexpr const char* kUnprovedStudent = "student_unproved.json";
+inline constexpr const char* kUnprovedViolations = "student_unproved_violations.csv";
 inline constexpr const char* kDistilCurve = "distil_curve.csv";
 inline constexpr const char* kProofRounds = "proof_rounds.csv";
 inline constexpr const char* kHeader = "student_weights.h";
@@ -29,12 +30,25 @@ inline constexpr const char* kDays = "evaluation_days.csv";
 inline constexpr const char* kSummary = "summary.txt";
 inline constexpr const char* kReport = "report.html";
 /// All that a run writes, but for the figures.
-inline constexpr const char* kAll[] = {
-    kRecord,          kTimes,      kConfig,          kSimulatedPrices,
-    kTeacher,         kCheckpoint, kTrainingCurve,   kPlainStudent,
-    kPlainViolations, kStudent,    kUnprovedStudent, kDistilCurve,
-    kProofRounds,     kHeader,     kTable,           kDays,
-    kSummary,         kReport};
+inline constexpr const char* kAll[] = {kRecord,
+                                       kTimes,
+                                       kConfig,
+                                       kSimulatedPrices,
+                                       kTeacher,
+                                       kCheckpoint,
+                                       kTrainingCurve,
+                                       kPlainStudent,
+                                       kPlainViolations,
+                                       kStudent,
+                                       kUnprovedStudent,
+                                       kUnprovedViolations,
+                                       kDistilCurve,
+                                       kProofRounds,
+                                       kHeader,
+                                       kTable,
+                                       kDays,
+                                       kSummary,
+                                       kReport};
 }  // namespace run_file
 
 struct RunFolder {

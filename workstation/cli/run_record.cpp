@@ -120,8 +120,8 @@ const StageRecord* RunRecord::holds(const std::string& stage,
 std::string RunRecord::state() const {
   if (figures) return "finished";
   if (stages.empty()) return "just begun";
-  return stages.back().failed ? "ended without a proof"
-                              : fmt::format("stopped after the {}", stages.back().name);
+  const bool failed = std::ranges::any_of(stages, &StageRecord::failed);
+  return failed ? "ended without a proof" : fmt::format("stopped after the {}", stages.back().name);
 }
 
 Entries identity_of(const RunConfig& config, const std::string& prices_hash,

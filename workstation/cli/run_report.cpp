@@ -102,6 +102,7 @@ std::string write_run_report(const RunResults& run, const std::vector<NamedEvalu
       .teacher = &run.teacher,
       .uncorrected = &run.plain,
       .corrected = &run.corrected,
+      .broken = broken_demands(run.corrected, run.config.distil.method),
       .provenance = run.corrected.provenance,
       .facts = run_facts(run.config, run.market, folder),
   };

@@ -21,6 +21,7 @@
 #include "workstation/student/counterexamples.h"
 #include "workstation/student/demand_counts.h"
 #include "workstation/student/export.h"
+#include "workstation/student/failed_proof.h"
 
 namespace bess {
 namespace {
@@ -28,26 +29,8 @@ namespace {
 namespace fs = std::filesystem;
 using namespace run_file;
 
-constexpr const char* kRoundsHeader = "round,violations";
 constexpr const char* kCorrection = "corrected student";
 constexpr const char* kReporting = "report";
-
-std::string rounds_csv(const std::vector<std::int64_t>& violations_by_round) {
-  std::string text = fmt::format("{}\n", kRoundsHeader);
-  for (std::size_t i = 0; i < violations_by_round.size(); ++i) {
-    text += fmt::format("{},{}\n", i + 1, violations_by_round[i]);
-  }
-  return text;
-}
-
-std::vector<std::int64_t> read_rounds(const fs::path& path) {
-  const CsvTable table(read_file(path), path.string(), kRoundsHeader);
-  std::vector<std::int64_t> rounds;
-  for (std::size_t row = 0; row < table.row_count(); ++row) {
-    rounds.push_back(static_cast<std::int64_t>(table.number(row, 1)));
-  }
-  return rounds;
-}
 
 /// times.json: seconds and end of each stage, added to or replaced.
 void note_time(const fs::path& path, const std::string& stage, double seconds) {
@@ -119,10 +102,11 @@ void RunStages::stage(const std::string& name, const Names& inputs,
   for (const std::string& output : make()) {
     stage.outputs.emplace_back(output, file_mark(folder_.path / output));
   }
-  stage.failed = unproved_;
+  stage.failed = name == kCorrection && unproved_;
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  const bool failed = stage.failed;
   note(std::move(stage), taken.count());
-  if (unproved_) fail_the_proof();
+  if (failed) fail_the_proof();
 }
 
 void RunStages::note(StageRecord stage, double seconds) {
@@ -265,29 +249,55 @@ RunStages::Names RunStages::make_plain_student() {
 RunStages::Names RunStages::make_corrected_student() {
   const CorrectionResult corrected =
       correct_and_prove(teacher(), visited(), config_.distil, interruption(),
-                        validation_score(market_, config_.battery, config_.initial_soc_frac));
+                        validation_score(market_, config_.battery, config_.initial_soc_frac),
+                        [&](const ProofRound& round, const RoundsState& state) {
+                          if (state.done > 1 || round.violations() > 0)
+                            tell(round_line(round, state));
+                        });
   const StudentFile& student = student_of(corrected.verdict);
-  write_file(path(kProofRounds), rounds_csv(corrected.violations_by_round));
+  write_file(path(kProofRounds), proof_rounds_csv(corrected.rounds));
   write_file(path(kDistilCurve), distil_curve_csv(corrected.curve));
   const auto* proved = std::get_if<ProvedStudent>(&corrected.verdict);
   unproved_ = proved == nullptr;
-  const char* name = unproved_ ? kUnprovedStudent : kStudent;
-  save_student(path(name), student);
-  if (!unproved_) {
-    const std::size_t rounds = corrected.violations_by_round.size();
-    proved_ = *proved;
-    tell(fmt::format("no violation over {} states, {} round{}", student.certificate.states_checked,
-                     rounds, rounds == 1 ? "" : "s"));
+  if (unproved_) {
+    save_student(path(kUnprovedStudent), student);
+    write_file(path(kUnprovedViolations), counterexamples_csv(student.certificate.counterexamples));
+    return {kUnprovedStudent, kUnprovedViolations, kDistilCurve, kProofRounds};
   }
-  return {name, kDistilCurve, kProofRounds};
+  save_student(path(kStudent), student);
+  const std::size_t rounds = corrected.rounds.size();
+  proved_ = *proved;
+  tell(fmt::format("no violation over {} states, {} round{}", student.certificate.states_checked,
+                   rounds, rounds == 1 ? "" : "s"));
+  return {kStudent, kDistilCurve, kProofRounds};
 }
 
-void RunStages::fail_the_proof() const {
-  throw ProofFailed(
-      describe_failed_proof(read_rounds(path(kProofRounds)), config_.distil.method) +
-      fmt::format(", and start at the correction: bess-train run --from-teacher {} --config NEW "
-                  "--out ANOTHER",
-                  folder_.path.string()));
+StudentFile RunStages::unproved_student() const {
+  StudentFile student = load_student(path(kUnprovedStudent));
+  student.certificate.counterexamples = parse_counterexamples_csv(
+      read_file(path(kUnprovedViolations)), path(kUnprovedViolations).string());
+  return student;
+}
+
+void RunStages::fail_the_proof() {
+  announce(6, "report where the proof failed");
+  stage("report of the failed proof", {kTeacher, kPlainStudent, kPlainViolations, kUnprovedStudent},
+        [&] { return make_failure_report(); });
+  const std::string rounds = path(kProofRounds).string();
+  throw ProofFailed(describe_failed_proof(unproved_student(),
+                                          parse_proof_rounds_csv(read_file(rounds), rounds),
+                                          config_.distil.method) +
+                    fmt::format("\n  {} shows where; then start at the correction: bess-train run "
+                                "--from-teacher {} --config NEW --out ANOTHER",
+                                path(kReport).string(), folder_.path.string()));
+}
+
+/// The same page, of a student that nobody may export.
+RunStages::Names RunStages::make_failure_report() {
+  const RunResults run = results(unproved_student());
+  const std::vector<NamedEvaluation> evaluations = evaluate_run(run);
+  write_run_report(run, evaluations, folder_);
+  return {kSummary, kReport};
 }
 
 RunStages::Names RunStages::make_header() {
@@ -301,13 +311,13 @@ RunStages::Names RunStages::make_header() {
   return {kHeader};
 }
 
-RunResults RunStages::results() {
+RunResults RunStages::results(StudentFile corrected) {
   const auto text = [&](const char* name) { return read_file(path(name)); };
   RunResults results{config_,
                      market_,
                      teacher(),
                      load_student(path(kPlainStudent)),
-                     load_student(path(kStudent)),
+                     std::move(corrected),
                      parse_training_curve_csv(text(kTrainingCurve), path(kTrainingCurve).string()),
                      parse_distil_curve_csv(text(kDistilCurve), path(kDistilCurve).string())};
   results.plain.certificate.counterexamples =
@@ -316,14 +326,15 @@ RunResults RunStages::results() {
 }
 
 RunStages::Names RunStages::make_evaluation() {
-  const std::vector<NamedEvaluation> evaluations = evaluate_run(results());
+  const std::vector<NamedEvaluation> evaluations =
+      evaluate_run(results(load_student(path(kStudent))));
   write_file(path(kTable), comparison_csv(evaluations));
   write_file(path(kDays), evaluation_days_csv(evaluations));
   return {kTable, kDays};
 }
 
 RunStages::Names RunStages::make_report() {
-  const RunResults run = results();
+  const RunResults run = results(load_student(path(kStudent)));
   const auto evaluations =
       parse_evaluation_days_csv(read_file(path(kDays)), path(kDays).string(), config_.battery);
   write_run_report(run, evaluations, folder_);

@@ -43,7 +43,9 @@ class RunStages {
   Names take_teacher() const;
   Names make_plain_student();
   Names make_corrected_student();
-  [[noreturn]] void fail_the_proof() const;
+  [[noreturn]] void fail_the_proof();
+  [[nodiscard]] StudentFile unproved_student() const;
+  Names make_failure_report();
   Names make_header();
   Names make_evaluation();
   Names make_report();
@@ -51,7 +53,7 @@ class RunStages {
   [[nodiscard]] std::filesystem::path path(const char* name) const { return folder_.file(name); }
   const Teacher& teacher();
   const Matrix& visited();
-  RunResults results();
+  RunResults results(StudentFile corrected);
 
   RunFolder folder_;
   RunRecord record_;

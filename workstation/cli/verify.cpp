@@ -11,6 +11,7 @@
 #include "workstation/cli/rule_files.h"
 #include "workstation/cli/rule_report.h"
 #include "workstation/rules/rule_conflicts.h"
+#include "workstation/student/demand_counts.h"
 #include "workstation/student/prove.h"
 
 namespace bess {
@@ -84,8 +85,8 @@ void run_verify(const VerifyArguments& options) {
     fmt::print("{}", broken_rule_lines(student, market, config));
   }
   if (!std::holds_alternative<ProvedStudent>(verdict)) {
-    fail("{}: {} violations; distil it again before it is exported", name,
-         student.certificate.violations());
+    fail("{}: {} violations ({}); distil it again before it is exported", name,
+         student.certificate.violations(), broken_text(demand_counts(student.certificate)));
   }
 }
 

@@ -16,6 +16,7 @@ namespace bess {
 struct HardState {
   LatticeState state;
   ActionSet actions;
+  std::size_t rule = 0;  ///< index in the set
 };
 
 /// Which states of a rule decide it, for the hinges and for a quick look before a proof. Rules that do not bind
@@ -40,6 +41,7 @@ class RuleLessons {
 
  private:
   struct Asked {
+    std::size_t index;  ///< in the set
     Rule rule;
     LatticeBox box;
     bool has_corners;  ///< else any state of the box may be the worst

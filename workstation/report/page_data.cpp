@@ -107,8 +107,9 @@ Json students_json(const ReportInputs& in) {
 
 Json counterexamples_json(const ReportInputs& in) {
   Json list = Json::list();
-  if (in.uncorrected == nullptr) return list;
-  const auto& found = in.uncorrected->certificate.counterexamples;
+  const StudentFile* wrong = shown_as_wrong(in);
+  if (wrong == nullptr) return list;
+  const auto& found = wrong->certificate.counterexamples;
   const std::size_t stride = found.size() / kCounterexamplesShown + 1;
   for (std::size_t i = 0; i < found.size(); i += stride) {
     const LatticeState& s = found[i];

@@ -43,11 +43,12 @@ RuleSet rules_of(const ReportInputs& in) {
   return in.corrected ? in.corrected->certificate.rules : RuleSet{};
 }
 
-/// Where the uncorrected student's counterexamples are most frequent; none without any.
+/// Where counterexamples are most frequent; none without any.
 std::optional<PolicyContext> worst_context(const ReportInputs& in) {
-  if (in.uncorrected == nullptr) return std::nullopt;
+  const StudentFile* wrong = shown_as_wrong(in);
+  if (wrong == nullptr) return std::nullopt;
   std::map<PolicyContext, int> count;
-  for (const LatticeState& s : in.uncorrected->certificate.counterexamples) {
+  for (const LatticeState& s : wrong->certificate.counterexamples) {
     ++count[{.context_class = s.context_class,
              .quarter_hour = s.quarter_hour,
              .minute_of_quarter_hour = s.minute_of_quarter_hour}];
@@ -80,7 +81,11 @@ void add_policy_maps(const ReportInputs& in, std::vector<Figure>& figures) {
   for (const PolicyContext& context : in.maps) add_policy_map(in, context, "", figures);
   const std::optional<PolicyContext> worst = worst_context(in);
   if (!worst || std::ranges::find(in.maps, *worst) != in.maps.end()) return;
-  add_policy_map(in, *worst, "The time at which the uncorrected student erred most. ", figures);
+  const bool is_plain = shown_as_wrong(in) == in.uncorrected;
+  add_policy_map(in, *worst,
+                 fmt::format("The time at which the {} student erred most. ",
+                             is_plain ? "uncorrected" : "corrected"),
+                 figures);
 }
 
 Figure widest_day_figure(const ReportInputs& in, const MarketDay& day) {
@@ -138,6 +143,7 @@ std::string page_of(const ReportInputs& in) {
   return format_report_page(
       {{"title", kPageTitle},
        {"head", head_of(in)},
+       {"failure", section_of("failure", "Where the proof failed", failure_html(in.broken))},
        {"comparison",
         section_of("comparison", "What each policy earned", comparison_html(in.evaluations))},
        {"rules", section_of("rules", "Rules",
@@ -153,6 +159,13 @@ std::string page_of(const ReportInputs& in) {
 }
 
 }  // namespace
+
+const StudentFile* shown_as_wrong(const ReportInputs& in) {
+  if (in.corrected != nullptr && !in.corrected->certificate.counterexamples.empty()) {
+    return in.corrected;
+  }
+  return in.uncorrected;
+}
 
 ContextClasses context_classes_of(const ReportInputs& in) {
   if (in.corrected) return in.corrected->net.context;

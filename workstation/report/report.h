@@ -12,6 +12,7 @@
 #include "workstation/report/figures.h"
 #include "workstation/report/provenance.h"
 #include "workstation/rl/train.h"
+#include "workstation/student/failed_proof.h"
 #include "workstation/student/student_file.h"
 
 namespace bess {
@@ -26,6 +27,7 @@ struct ReportInputs {
   const Teacher* teacher = nullptr;  ///< each pointer may be null: what it shows is left out
   const StudentFile* uncorrected = nullptr;  ///< both students with the prover's certificate
   const StudentFile* corrected = nullptr;
+  std::vector<BrokenDemand> broken = {};  ///< of a corrected student that was not proved
   std::vector<PolicyContext> maps = {
       {.context_class = 11, .quarter_hour = 40, .minute_of_quarter_hour = 0},
       {.context_class = 1, .quarter_hour = 80, .minute_of_quarter_hour = 0}};
@@ -37,6 +39,9 @@ struct ReportInputs {
 ContextClasses context_classes_of(const ReportInputs& inputs);
 /// What the students were checked against.
 PriceThresholds thresholds_of(const ReportInputs& inputs);
+
+/// Whose counterexamples are shown: the corrected student's when it has any, else the uncorrected one's; may be null.
+const StudentFile* shown_as_wrong(const ReportInputs& inputs);
 
 /// Writes the SVG figures and report.html into `folder`, which is created; each file appears
 /// complete or not at all. Throws UserError without gnuplot or room to write, or without test days.

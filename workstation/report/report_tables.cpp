@@ -159,13 +159,30 @@ std::string rules_html(const Certificate* uncorrected, const Certificate* correc
          "correction. The plain student is looked at in part, the corrected one everywhere.</p>\n";
 }
 
+std::string failure_html(const std::vector<BrokenDemand>& broken) {
+  if (broken.empty()) return {};
+  std::string text = "<dl class=\"facts\" id=\"broken\">\n";
+  for (const BrokenDemand& demand : broken) {
+    const std::string example =
+        demand.example.empty() ? "" : fmt::format("; its action is {}", demand.example);
+    text += fmt::format("<dt>{}</dt><dd>{}: <strong>{} violations</strong>{}. To mend: {}.</dd>\n",
+                        html_escaped(demand.count.label()), html_escaped(demand.count.text),
+                        grouped(demand.count.violations), html_escaped(example),
+                        html_escaped(demand.advice));
+  }
+  return text +
+         "</dl>\n<p class=\"note\">The student below is the best of the last round. Nothing may be "
+         "exported of it; the button over its map goes through the states where it is "
+         "wrong.</p>\n";
+}
+
 std::string proof_sentence(const Certificate& c) {
   if (c.violations() != 0) {
-    const std::string broken =
-        c.rules.empty() ? "its constraints"
-                        : fmt::format("its constraints ({})", broken_text(demand_counts(c)));
-    return fmt::format("Not proved: it still breaks {} {} times and may not be exported", broken,
-                       grouped(c.violations()));
+    const std::string which =
+        c.rules.empty() ? "" : fmt::format(" ({})", broken_text(demand_counts(c)));
+    return fmt::format(
+        "Not proved: it still breaks its constraints {} times{} and may not be exported",
+        grouped(c.violations()), which);
   }
   const auto bound = std::ranges::count_if(c.rule_counts, &RuleCount::binds_student);
   return fmt::format(

@@ -8,6 +8,7 @@
 #include "workstation/report/provenance.h"
 #include "workstation/report/rule_prices.h"
 #include "workstation/student/certificate.h"
+#include "workstation/student/failed_proof.h"
 
 namespace bess {
 
@@ -16,6 +17,8 @@ std::string comparison_html(const std::vector<NamedEvaluation>& evaluations);
 
 /// Violations before and after; either may be null.
 std::string proof_html(const Certificate* uncorrected, const Certificate* corrected);
+/// Where a proof failed, demand by demand; empty when none is broken.
+std::string failure_html(const std::vector<BrokenDemand>& broken);
 /// "Proved: ..." or why the student may not be exported.
 std::string proof_sentence(const Certificate& certificate);
 

@@ -262,4 +262,39 @@ void require_consistent(const RuleSet& rules, const PriceThresholds& thresholds,
   }
 }
 
+std::optional<Opposite> nearest_opposite(const RuleSet& rules, const PriceThresholds& thresholds,
+                                         ContextKind kind, const Rule& rule) {
+  const RuleSet all = with_thresholds(rules, thresholds);
+  const ImpliedRanges implied(all, kind);
+  using Claim = ImpliedRanges::Claim;
+  using Side = ImpliedRanges::Side;
+  const auto is_asked = [&](const Claim& claim) {
+    const Rule& other = all.rules[claim.rule];
+    return other.box == rule.box && other.actions == rule.actions && other.demand == rule.demand;
+  };
+  const auto meet_in_time = [](const Claim& a, const Claim& b) {
+    if ((a.box.classes & b.box.classes) == 0) return false;
+    for (std::size_t q = 0; q < a.quarter_hours.size(); ++q) {
+      if (a.quarter_hours[q] && b.quarter_hours[q]) return true;
+    }
+    return false;
+  };
+  std::optional<Opposite> nearest;
+  for (const Claim& least : implied.claims_) {
+    for (const Claim& most : implied.claims_) {
+      if (least.side != Side::kAtLeast || most.side != Side::kAtMost ||
+          least.action <= most.action || is_asked(least) == is_asked(most) ||
+          !meet_in_time(least, most)) {
+        continue;
+      }
+      const Rule& other = all.rules[is_asked(least) ? most.rule : least.rule];
+      const Opposite found{other.name, std::max(0, most.box.price_first - least.box.price_last),
+                           std::max(0, most.box.soc_first - least.box.soc_last)};
+      const auto distance = [](const Opposite& o) { return o.price_gap_eur_per_mwh + o.soc_gap; };
+      if (!nearest || distance(found) < distance(*nearest)) nearest = found;
+    }
+  }
+  return nearest;
+}
+
 }  // namespace bess

@@ -6,6 +6,9 @@
 // allows. What the guard enforces is held against the bare boxes.
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "workstation/rules/rule.h"
 
 namespace bess {
@@ -13,6 +16,17 @@ namespace bess {
 /// Throws UserError naming the rules and one state when they contradict each other or the thresholds of
 /// properties 1 and 2, or when a rule binds nobody: neither a student of this context nor the guard.
 void require_consistent(const RuleSet& rules, const PriceThresholds& thresholds, ContextKind kind);
+
+/// The demand nearest to a rule that asks the opposite in some hour and class of both, and how far off it is: of
+/// what lies between, a student must turn from one to the other.
+struct Opposite {
+  std::string name;
+  int price_gap_eur_per_mwh = 0;  ///< 0: they meet in price, and lie apart in charge
+  int soc_gap = 0;                ///< in lattice steps; 0: they meet in charge
+};
+/// None for a rule without an opposite. `rule` is one of the set or a threshold.
+std::optional<Opposite> nearest_opposite(const RuleSet& rules, const PriceThresholds& thresholds,
+                                         ContextKind kind, const Rule& rule);
 
 /// The actions that are left at a lattice state when all rules that bind a student are obeyed, and the action
 /// keeps its directions: `lowest` to `highest`, without idling where `has_gap`.
@@ -34,6 +48,8 @@ class ImpliedRanges {
 
  private:
   friend void require_consistent(const RuleSet&, const PriceThresholds&, ContextKind);
+  friend std::optional<Opposite> nearest_opposite(const RuleSet&, const PriceThresholds&,
+                                                  ContextKind, const Rule&);
 
   enum class Side : std::uint8_t { kAtLeast, kAtMost, kNotIdle };
   /// One side of a demand with all states that it reaches.

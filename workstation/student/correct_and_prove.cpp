@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <chrono>
 
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
@@ -44,48 +45,97 @@ struct Candidate {
   double score;
 };
 
+/// What a look at the states that decide a monotone student found.
+struct Look {
+  std::vector<LatticeState> states;  ///< in which it disobeys
+  ProofRound round;                  ///< how many of which demand
+};
+
 /// Contexts in which a monotone student disobeys a threshold or a rule: one state of each tells, the low price
 /// at the highest SoC, the high price at the lowest, the corners of a rule's box. Quick, where a proof takes
 /// seconds.
-std::vector<LatticeState> disobedient_states(const StudentNet& net,
-                                             const PriceThresholds& thresholds,
-                                             const RuleLessons& rules) {
-  std::vector<LatticeState> found;
+Look look_at_corners(const StudentNet& net, const DistilOptions& options,
+                     const RuleLessons& rules) {
+  const PriceThresholds& thresholds = options.correction.thresholds;
+  Certificate found{.thresholds = thresholds, .rules = options.rules};
+  for (const Rule& rule : options.rules.rules) {
+    found.rule_counts.push_back({binds_student(rule, net.context.kind)});
+  }
+  Look look;
   std::vector<HardState> corners;
-  const auto require = [&](LatticeState state, int soc_index, int price, Action action) {
+  const auto require = [&](LatticeState state, int soc_index, int price, Action action,
+                           std::int64_t& violations) {
     state.soc_index = static_cast<std::int16_t>(soc_index);
     state.price_eur_per_mwh = static_cast<std::int16_t>(price);
-    if (net.decide(state) != action) found.push_back(state);
+    if (net.decide(state) == action) return;
+    look.states.push_back(state);
+    ++violations;
   };
   const auto low = std::min(thresholds.low_eur_per_mwh, kLatticePriceMaxEurPerMwh);
   const auto high = std::max(thresholds.high_eur_per_mwh, kLatticePriceMinEurPerMwh);
   for (int c = 0; c < kContextCount; ++c) {
     const LatticeState context = context_at(c);
-    if (thresholds.low_binds_student()) require(context, kSocCount - 1, low, Action::kCharge);
-    if (thresholds.high_binds_student()) require(context, 0, high, Action::kDischarge);
+    if (thresholds.low_binds_student()) {
+      require(context, kSocCount - 1, low, Action::kCharge, found.violations_property_1);
+    }
+    if (thresholds.high_binds_student()) {
+      require(context, 0, high, Action::kDischarge, found.violations_property_2);
+    }
     rules.corners(context, corners);
     for (const HardState& corner : corners) {
-      if (!allows(corner.actions, net.decide(corner.state))) found.push_back(corner.state);
+      if (allows(corner.actions, net.decide(corner.state))) continue;
+      look.states.push_back(corner.state);
+      ++found.rule_counts[corner.rule].violations;
     }
   }
-  return found;
+  look.round = round_of(found);
+  look.round.is_whole = false;
+  return look;
 }
+
+/// Tells of each round how long the others may take.
+class RoundTeller {
+ public:
+  RoundTeller(const DistilOptions& options, const RoundWatch& watch)
+      : watch_(watch),
+        most_(options.correct ? 1 + static_cast<std::size_t>(options.repair_rounds) : 1),
+        repair_share_(std::min(
+            1.0, static_cast<double>(options.repair_epochs) / std::max(1, options.epochs))) {}
+
+  [[nodiscard]] std::size_t most() const { return most_; }
+  void add(ProofRound round, std::vector<ProofRound>& rounds) {
+    const auto now = std::chrono::steady_clock::now();
+    const double took_s = std::chrono::duration<double>(now - start_).count();
+    start_ = now;
+    rounds.push_back(std::move(round));
+    const double next_s = rounds.size() == 1 ? took_s * repair_share_ : took_s;
+    const auto left = static_cast<double>(most_ - rounds.size());
+    if (watch_) watch_(rounds.back(), {rounds.size(), most_, left * next_s});
+  }
+
+ private:
+  const RoundWatch& watch_;
+  std::size_t most_;
+  double repair_share_;  ///< of the first round's time that a repair takes
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
 
 /// Monotone by construction: the proof can only fail at the thresholds.
 CorrectionResult construct_and_prove(const Teacher& teacher, const Matrix& visited,
                                      const DistilOptions& options,
                                      const std::atomic<bool>& interrupted,
-                                     const StudentScore& score, StudentFile student) {
+                                     const StudentScore& score, const RoundWatch& watch,
+                                     StudentFile student) {
   constexpr double kFirstLook = 0.5;  ///< share of the epochs after which students are worth a look
   constexpr int kLooks = 16;
   const LessonStates lessons = make_lessons(teacher, visited, options);
   MonotoneDistiller distiller(teacher, lessons, options);
   const RuleLessons rules(options.rules, teacher.context.kind);
-  CorrectionResult result{.verdict = student, .curve = {}, .violations_by_round = {}};
+  CorrectionResult result{.verdict = student, .curve = {}, .rounds = {}};
   std::vector<LatticeState> counterexamples;
-  const int rounds = options.correct ? 1 + options.repair_rounds : 1;
+  RoundTeller teller(options, watch);
   const bool chooses = score && options.correct;
-  for (int round = 0; round < rounds && !interrupted; ++round) {
+  for (std::size_t round = 0; round < teller.most() && !interrupted; ++round) {
     std::vector<Candidate> candidates;
     double next_look = kFirstLook;
     distiller.run(round == 0 ? options.epochs : options.repair_epochs, counterexamples, interrupted,
@@ -100,19 +150,19 @@ CorrectionResult construct_and_prove(const Teacher& teacher, const Matrix& visit
     std::ranges::stable_sort(candidates, std::ranges::greater{}, &Candidate::score);
     if (candidates.empty()) break;  // interrupted
     const auto obedient = std::ranges::find_if(candidates, [&](const Candidate& candidate) {
-      return disobedient_states(candidate.net, options.correction.thresholds, rules).empty();
+      return look_at_corners(candidate.net, options, rules).states.empty();
     });
-    const bool is_last = round + 1 == rounds;
+    const bool is_last = round + 1 == teller.most();
     if (obedient == candidates.end() && !is_last) {
-      counterexamples =
-          disobedient_states(candidates.front().net, options.correction.thresholds, rules);
-      result.violations_by_round.push_back(static_cast<std::int64_t>(counterexamples.size()));
+      Look look = look_at_corners(candidates.front().net, options, rules);
+      counterexamples = std::move(look.states);
+      teller.add(std::move(look.round), result.rounds);
       continue;
     }
     student.net = (obedient == candidates.end() ? candidates.front() : *obedient).net;
     result.verdict = judge(student, options);
     counterexamples = student_of(result.verdict).certificate.counterexamples;
-    result.violations_by_round.push_back(student_of(result.verdict).certificate.violations());
+    teller.add(round_of(student_of(result.verdict).certificate), result.rounds);
     if (std::holds_alternative<ProvedStudent>(result.verdict)) break;
   }
   result.curve = distiller.curve();
@@ -120,13 +170,6 @@ CorrectionResult construct_and_prove(const Teacher& teacher, const Matrix& visit
 }
 
 }  // namespace
-
-std::string_view mend_of_failed_proof(CorrectionMethod method) {
-  return method == CorrectionMethod::kConstruction
-             ? "raise [distil] epochs or repair_rounds, or move the thresholds of [correction] "
-               "apart"
-             : "raise [correction] price_slope and soc_slope or [distil] repair_rounds";
-}
 
 StudentScore validation_score(const MarketSteps& market, const BatteryParameters& battery,
                               double initial_soc_frac) {
@@ -140,32 +183,32 @@ StudentScore validation_score(const MarketSteps& market, const BatteryParameters
 
 CorrectionResult correct_and_prove(const Teacher& teacher, const Matrix& visited,
                                    const DistilOptions& options,
-                                   const std::atomic<bool>& interrupted,
-                                   const StudentScore& score) {
+                                   const std::atomic<bool>& interrupted, const StudentScore& score,
+                                   const RoundWatch& watch) {
   require_consistent(options.rules, options.correction.thresholds, teacher.context.kind);
   if (options.method == CorrectionMethod::kConstruction) {
     StudentFile student{};
     student.certificate.rules = options.rules;
     student.certificate.thresholds = options.correction.thresholds;
     student.provenance = provenance_of(teacher, options);
-    return construct_and_prove(teacher, visited, options, interrupted, score, student);
+    return construct_and_prove(teacher, visited, options, interrupted, score, watch, student);
   }
   Distiller distiller(teacher, visited, options);
   StudentFile student{};
   student.certificate.rules = options.rules;
   student.certificate.thresholds = options.correction.thresholds;
   student.provenance = provenance_of(teacher, options);
-  CorrectionResult result{.verdict = student, .curve = {}, .violations_by_round = {}};
+  CorrectionResult result{.verdict = student, .curve = {}, .rounds = {}};
   double margin_scale = 1;
-  const int rounds = options.correct ? 1 + options.repair_rounds : 1;
-  for (int round = 0; round < rounds && !interrupted; ++round) {
+  RoundTeller teller(options, watch);
+  for (std::size_t round = 0; round < teller.most() && !interrupted; ++round) {
     const int epochs = round == 0 ? options.epochs : options.repair_epochs;
     distiller.run(epochs, student_of(result.verdict).certificate.counterexamples, margin_scale,
                   interrupted);
     student.net = quantise_student(distiller.parameters(), teacher.price_map);
     student.net.context = teacher.context;
     result.verdict = judge(student, options);
-    result.violations_by_round.push_back(student_of(result.verdict).certificate.violations());
+    teller.add(round_of(student_of(result.verdict).certificate), result.rounds);
     if (std::holds_alternative<ProvedStudent>(result.verdict)) break;
     margin_scale *= kMarginGrowth;
   }

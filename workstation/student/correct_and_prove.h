@@ -5,10 +5,10 @@
 
 #include <atomic>
 #include <functional>
-#include <string_view>
 #include <vector>
 
 #include "workstation/correction/distil.h"
+#include "workstation/student/proof_rounds.h"
 #include "workstation/student/prove.h"
 
 namespace bess {
@@ -16,22 +16,19 @@ namespace bess {
 struct CorrectionResult {
   Verdict verdict;  ///< of the last round: a proved student, or the one with what is left
   std::vector<DistilPoint> curve;
-  std::vector<std::int64_t> violations_by_round;  ///< empty when interrupted before the first proof
+  std::vector<ProofRound> rounds;  ///< empty when interrupted before the first proof
 };
-
-/// What to change when violations are left, for a message.
-std::string_view mend_of_failed_proof(CorrectionMethod method);
 
 /// What a student earns on validation days.
 using StudentScore = std::function<double(const StudentNet&)>;
 
 /// Never throws for a failed proof: the verdict says it. With options.correct false there is one
 /// round, no repair and no proof: violations are counted in a sample of the contexts. By construction the best by `score` is taken of the students on the way that
-/// are proved; without it, and through the layer, the last one.
+/// are proved; without it, and through the layer, the last one. `watch` is told of each round.
 CorrectionResult correct_and_prove(const Teacher& teacher, const Matrix& visited,
                                    const DistilOptions& options,
                                    const std::atomic<bool>& interrupted,
-                                   const StudentScore& score = {});
+                                   const StudentScore& score = {}, const RoundWatch& watch = {});
 
 /// Profit on the validation days of `market`, SoC carried over: a day that begins anew flatters a student
 /// that empties the battery every night.

@@ -120,7 +120,7 @@ TEST(Distiller, InterruptionReturns) {
   EXPECT_TRUE(distiller.curve().empty());
   EXPECT_EQ(distiller.parameters(), before);
   const CorrectionResult result = correct_and_prove(teacher, visited, options, interrupted);
-  EXPECT_TRUE(result.violations_by_round.empty()) << "no proof after an interruption";
+  EXPECT_TRUE(result.rounds.empty()) << "no proof after an interruption";
   EXPECT_FALSE(std::holds_alternative<ProvedStudent>(result.verdict));
 }
 

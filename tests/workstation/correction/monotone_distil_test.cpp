@@ -8,6 +8,7 @@
 #include "tests/support/student_nets.h"
 #include "workstation/env/context_fit.h"
 #include "workstation/student/correct_and_prove.h"
+#include "workstation/student/demand_counts.h"
 #include "workstation/student/student_policy.h"
 
 namespace bess {
@@ -145,6 +146,51 @@ TEST(CorrectAndProve, APlainStudentIsSampledAndNeverProved) {
   EXPECT_LT(certificate.states_checked, kLatticeStateCount / (kSampleStride - 1));
 }
 
+/// What is left of the rules by a student that is learnt with them quickly.
+std::vector<DemandCount> counts_with_rules(const std::vector<const char*>& rules) {
+  DistilOptions options = school().options;
+  options.epochs = 60;
+  options.repair_epochs = 30;
+  options.repair_rounds = 3;
+  int n = 0;
+  for (const char* lines : rules) {
+    options.rules.rules.push_back(one_rule(lines, "rule " + std::to_string(++n)).rules[0]);
+  }
+  options.correction.thresholds = options.rules.thresholds(options.correction.thresholds);
+  const CorrectionResult result =
+      correct_and_prove(school().teacher, school().visited, options, kRunning);
+  const std::vector<DemandCount> counts = demand_counts(student_of(result.verdict).certificate);
+  EXPECT_TRUE(std::holds_alternative<ProvedStudent>(result.verdict)) << broken_text(counts);
+  EXPECT_EQ(counts.size(), kPropertyCount + rules.size());
+  for (const DemandCount& count : counts) {
+    EXPECT_EQ(count.states > 0, count.binds_student) << count.text;
+  }
+  return counts;
+}
+
+// Every kind of rule that the README documents.
+
+TEST(CorrectAndProve, DemandsOnStatesAreLearntAndProved) {
+  const auto counts = counts_with_rules(
+      {"is = \"idle\"\nprice_min = 80\nprice_max = 100\nhours = \"01:00-05:00\"",
+       "is_not = \"charge\"\nprice_min = 300",
+       "is_not = \"discharge\"\nprice_max = 20\nsoc_max = 0.5",
+       "at_least = \"idle\"\nhours = \"17:00-20:00\"\nsoc_max = 0.3\nprice_max = 600",
+       "at_most = \"idle\"\nprice_min = 400\ncontext_classes = [11, 12]",
+       "charge_at_or_below = -200", "discharge_at_or_above = 900",
+       "power_max = 0.5\nhours = \"18:00-21:00\"\nenforce = true"});
+  EXPECT_FALSE(counts.back().binds_student) << "a power is the guard's alone";
+}
+
+TEST(CorrectAndProve, DirectionsAreLearntAndProved) {
+  counts_with_rules({"never_rises_with = \"minute\"", "never_falls_with = \"context_class\"",
+                     "never_falls_with = \"quarter_hour\"", "never_rises_with = \"soc\""});
+}
+
+TEST(CorrectAndProve, ToChargeOrDischargeWithoutARestIsLearntAndProved) {
+  counts_with_rules({"is_not = \"idle\"\nhours = \"17:00-20:00\""});
+}
+
 /// Thresholds inside the market's prices, where the teacher would often do something else.
 TEST(CorrectAndProve, ByConstructionTheThresholdsAreLearntAndTheStudentEarns) {
   DistilOptions options = school().options;
@@ -155,7 +201,7 @@ TEST(CorrectAndProve, ByConstructionTheThresholdsAreLearntAndTheStudentEarns) {
       correct_and_prove(school().teacher, school().visited, options, kRunning,
                         validation_score(school().market, {}, 0.5));
   ASSERT_TRUE(std::holds_alternative<ProvedStudent>(result.verdict));
-  EXPECT_LE(result.violations_by_round.size(), 3U);
+  EXPECT_LE(result.rounds.size(), 3U);
   const StudentNet& net = student_of(result.verdict).net;
   EXPECT_EQ(net.context, school().teacher.context);
   Random random(3);

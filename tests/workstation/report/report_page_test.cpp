@@ -60,7 +60,7 @@ TEST(ReportTables, AProofIncludesTheRules) {
   EXPECT_EQ(proof_sentence(ruled_certificate(0)),
             "Proved: no violation of the properties and 1 rule in 6,950,033,280 states");
   EXPECT_EQ(proof_sentence(ruled_certificate(7)),
-            "Not proved: it still breaks its constraints (rule \"rest\": 7) 7 times and may not be "
+            "Not proved: it still breaks its constraints 7 times (rule \"rest\": 7) and may not be "
             "exported");
 }
 
@@ -78,6 +78,19 @@ TEST(ReportTables, RulesAreShownWithWhoIsHeldToThemAndWhoBreaksThem) {
   EXPECT_EQ(rules_html(&plain, nullptr, nullptr), "");
   const Certificate without;
   EXPECT_EQ(rules_html(&without, &without, nullptr), "");
+}
+
+TEST(ReportTables, AFailedProofNamesDemandStateAndMend) {
+  const BrokenDemand broken{{"rest", "always: the action is idle", true, true, 10, 1'234},
+                            "charge at class 3 <",
+                            "leave more room"};
+  const std::string html = failure_html({broken});
+  for (const char* said :
+       {"rule &quot;rest&quot;", "always: the action is idle", "1,234 violations",
+        "its action is charge at class 3 &lt;", "To mend: leave more room"}) {
+    EXPECT_NE(html.find(said), std::string::npos) << said;
+  }
+  EXPECT_EQ(failure_html({}), "");
 }
 
 TEST(ReportTables, FactsAreEscaped) {

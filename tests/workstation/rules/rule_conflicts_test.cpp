@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <bit>
+
 #include "shared/host/user_error.h"
 #include "tests/support/rule_sets.h"
 #include "workstation/base/random.h"
@@ -119,6 +121,157 @@ TEST(Conflicts, OppositeDirectionsAreRefused) {
 }
 
 /// Straight from the definition: a state's range is bound by every rule whose box holds a comparable state.
+// Any set is decided beforehand: those that pass have a policy, those that are refused have none.
+
+/// Rules of few boxes, so that all states of a box of the grid below are alike.
+class Cells {
+ public:
+  static constexpr int kPrices[] = {-500, -499, -100, 100,
+                                    300,  1500, 1501};  ///< begins, and the end
+  static constexpr int kSocs[] = {0, 50, 100, 201};
+  static constexpr int kHours = 4;    ///< six hours each
+  static constexpr int kClasses = 3;  ///< four classes each
+  static constexpr int kPriceCells = std::size(kPrices) - 1;
+  static constexpr int kSocCells = std::size(kSocs) - 1;
+
+  explicit Cells(const RuleSet& rules) {
+    for (const Rule& rule : rules.rules) {
+      if (rule.demand == Demand::kDirection) continue;
+      for (int at = 0; at < kCount; ++at) {
+        if (rule.box.contains(point_of(at))) left_[at] = left_[at] & rule.actions;
+      }
+    }
+    for (const Direction& direction : rules.directions()) {
+      if (direction.input != RuleInput::kMinute) directions_.push_back(direction);
+    }
+  }
+
+  /// Sets of a chain and its order: when nothing more can be struck out, what is left can be chosen from.
+  [[nodiscard]] bool have_a_policy() {
+    for (bool changed = true; changed;) {
+      changed = false;
+      for (int at = 0; at < kCount; ++at) {
+        for (const Direction& direction : directions_) {
+          const int next = at + kStride[static_cast<int>(direction.input)];
+          if (index_of(at, direction.input) + 1 == count_of(direction.input)) continue;
+          const auto [low, high] = direction.sign < 0 ? std::pair(next, at)
+                                                      : std::pair(at, next);  // action: low <= high
+          changed = keep_at_most(low, highest(high)) || keep_at_least(high, lowest(low)) || changed;
+        }
+        if (left_[at] == 0) return false;
+      }
+    }
+    return true;
+  }
+
+ private:
+  static constexpr int kCount = kPriceCells * kSocCells * kHours * kClasses;
+  /// By RuleInput; of the minute nothing depends.
+  static constexpr int kStride[] = {0, kPriceCells* kSocCells, kPriceCells* kSocCells* kHours,
+                                    kPriceCells, 1};
+  static int count_of(RuleInput input) {
+    constexpr int kCounts[] = {1, kHours, kClasses, kSocCells, kPriceCells};
+    return kCounts[static_cast<int>(input)];
+  }
+  static int index_of(int at, RuleInput input) {
+    return at / kStride[static_cast<int>(input)] % count_of(input);
+  }
+  static RulePoint point_of(int at) {
+    return {
+        .price_eur_per_mwh = kPrices[index_of(at, RuleInput::kPrice)],
+        .soc_index = static_cast<std::int16_t>(kSocs[index_of(at, RuleInput::kSoc)]),
+        .quarter_hour = static_cast<std::int16_t>(24 * index_of(at, RuleInput::kQuarterHour)),
+        .month = 1,
+        .context_class = static_cast<std::int16_t>(1 + 4 * index_of(at, RuleInput::kContextClass))};
+  }
+  [[nodiscard]] int lowest(int at) const { return std::countr_zero(unsigned{left_[at]}); }
+  [[nodiscard]] int highest(int at) const {
+    return static_cast<int>(std::bit_width(unsigned{left_[at]})) - 1;
+  }
+  bool keep(int at, unsigned actions) {
+    const unsigned before = left_[at];
+    left_[at] = static_cast<ActionSet>(before & actions);
+    return left_[at] != before;
+  }
+  bool keep_at_most(int at, int action) { return keep(at, (1U << (action + 1)) - 1); }
+  bool keep_at_least(int at, int action) { return keep(at, ~((1U << action) - 1)); }
+
+  std::vector<ActionSet> left_ = std::vector<ActionSet>(kCount, kAllActions);
+  std::vector<Direction> directions_;
+};
+
+Rule random_rule(Random& random, int number) {
+  const auto one_of = [&random](auto... texts) {
+    const char* const all[] = {texts...};
+    return std::string(all[random.index(sizeof...(texts))]);
+  };
+  std::string lines =
+      one_of("is = \"charge\"\n", "is = \"idle\"\n", "is = \"discharge\"\n", "is_not = \"idle\"\n",
+             "at_least = \"idle\"\n", "at_most = \"idle\"\n", "is_not = \"idle\"\n",
+             "never_falls_with = \"quarter_hour\"\n", "never_rises_with = \"context_class\"\n");
+  if (!lines.starts_with("never")) {
+    lines +=
+        one_of("", "price_min = -100\n", "price_min = 100\nprice_max = 299\n", "price_min = 300\n",
+               "price_max = 299\n", "price_max = 99\n", "price_min = 300\nprice_max = 1499\n");
+    lines += one_of("", "soc_min = 0.25\n", "soc_max = 0.245\n", "soc_min = 0.5\n");
+    lines += one_of("", "hours = \"00:00-06:00\"\n", "hours = \"12:00-18:00\"\n",
+                    "hours = \"18:00-06:00\"\n");
+    lines += one_of("", "", "context_classes = [1, 2, 3, 4]\n",
+                    "context_classes = [5, 6, 7, 8, 9, 10, 11, 12]\n");
+  }
+  return one_rule(lines, "rule " + std::to_string(number)).rules[0];
+}
+
+TEST(Conflicts, ASetPassesIfAndOnlyIfSomePolicyObeysIt) {
+  Random random(11);
+  int passed = 0;
+  constexpr int kSets = 3000;
+  for (int n = 0; n < kSets; ++n) {
+    RuleSet rules;
+    for (int r = 0; r < 1 + n % 4; ++r) rules.rules.push_back(random_rule(random, r));
+    RuleSet with_thresholds = rules;
+    with_thresholds.rules.push_back(one_rule("charge_at_or_below = -500").rules[0]);
+    with_thresholds.rules.push_back(one_rule("discharge_at_or_above = 1500").rules[0]);
+    bool is_taken = true;
+    std::string said;
+    try {
+      require_consistent(rules, {-500, 1500}, ContextKind::kLevel);
+    } catch (const UserError& error) {
+      is_taken = false;
+      said = error.what();
+    }
+    ASSERT_EQ(is_taken, Cells(with_thresholds).have_a_policy()) << said << '\n'
+                                                                << format_rules(rules);
+    passed += is_taken ? 1 : 0;
+  }
+  EXPECT_GT(passed, kSets / 10);
+  EXPECT_LT(passed, kSets - kSets / 10);
+}
+
+TEST(Opposites, TheNearestIsNamedWithTheRoomThatItLeaves) {
+  const RuleSet rules = parse_rules(
+      named("buy", "price_max = 100\nhours = \"10:00-14:00\"\nis = \"charge\"") +
+          named("sell", "price_min = 104\nhours = \"12:00-13:00\"\nis = \"discharge\"") +
+          named("other hours", "price_min = 101\nhours = \"15:00-16:00\"\nis = \"discharge\"") +
+          named("full",
+                "soc_min = 0.6\nprice_min = 90\nhours = \"20:00-21:00\"\nis = \"discharge\"") +
+          named("empty",
+                "soc_max = 0.55\nhours = \"20:00-21:00\"\nprice_max = 95\nis = \"charge\""),
+      "test.toml");
+  const auto opposite = [&](int rule) {
+    return nearest_opposite(rules, {-500, 1500}, ContextKind::kLevel, rules.rules[rule]).value();
+  };
+  EXPECT_EQ(opposite(0).name, "sell");
+  EXPECT_EQ(opposite(0).price_gap_eur_per_mwh, 4);
+  EXPECT_EQ(opposite(0).soc_gap, 0);
+  EXPECT_EQ(opposite(1).name, "buy");
+  EXPECT_EQ(opposite(3).name, "empty");
+  EXPECT_EQ(opposite(3).price_gap_eur_per_mwh, 0);
+  EXPECT_EQ(opposite(3).soc_gap, 10);
+  EXPECT_FALSE(nearest_opposite(rules, {-501, 1501}, ContextKind::kLevel,
+                                one_rule("never_rises_with = \"minute\"").rules[0]));
+}
+
 TEST(ImpliedRanges, AreWhatComparableStatesSay) {
   const RuleSet set = parse_rules(
       named("a",

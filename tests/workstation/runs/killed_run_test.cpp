@@ -157,12 +157,19 @@ TEST_F(KilledRun, AFailedProofIsToldWithEveryRoundAndNotDoneTwice) {
                                            "high_price_eur_per_mwh = 201\n");
   const std::string out = folder_.file("run");
   const auto expected = AllOf(HasSubstr("violations are left after 3 rounds (by round "),
+                              HasSubstr("property 2 (discharge at or above 201 EUR/MWh): "),
+                              HasSubstr(" violations, its action is "), HasSubstr(" minute "),
+                              HasSubstr("leave more than 1 EUR/MWh to \"[correction] low_price"),
                               HasSubstr("raise [distil] epochs or repair_rounds"),
+                              HasSubstr(out + "/report.html shows where"),
                               HasSubstr("--from-teacher " + out + " --config NEW"));
   ChildProcess run(command(out));
-  EXPECT_THAT(run.read_all(), expected);
+  EXPECT_THAT(run.read_all(), AllOf(expected, HasSubstr("round 1 of at most 3: property ")));
   EXPECT_EQ(run.wait(), 1);
-  EXPECT_EQ(std::ranges::count(read_file(out + "/proof_rounds.csv"), '\n'), 1 + 3);
+  EXPECT_EQ(std::ranges::count(read_file(out + "/proof_rounds.csv"), '\n'), 1 + 3 * 3);
+  EXPECT_THAT(read_file(out + "/report.html"),
+              AllOf(HasSubstr("Where the proof failed"), HasSubstr("Not proved: it still breaks"),
+                    HasSubstr("discharge at or above 201 EUR/MWh: <strong>")));
   EXPECT_FALSE(fs::exists(out + "/student.json"));
   const auto before = contents(out);
   ChildProcess again(command(out, {"--resume"}));

@@ -384,7 +384,7 @@ TEST(ExportCommand, RefusesViolations) {
       run({BESS_TRAIN_PROGRAM, "export", "--student", student, "--out", header});
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.output, HasSubstr(student + ": refused: 3473280 violations over the lattice "
-                                                  "(3473280 / 0 / 0); distil it again"));
+                                                  "(property 1: 3473280); distil it again"));
   EXPECT_TRUE(fs::is_empty(folder.file("out"))) << "made to see whether it can be";
 }
 

@@ -1,0 +1,148 @@
+#include "workstation/student/failed_proof.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "workstation/rules/rule_conflicts.h"
+#include "workstation/rules/rule_watch.h"
+#include "workstation/student/demand_counts.h"
+
+namespace bess {
+namespace {
+
+constexpr double kPercentPerSocIndex = 100.0 / (kSocCount - 1);
+constexpr const char* kMoreEffort = "raise [distil] epochs or repair_rounds";
+
+bool holds_at(const Rule& rule, ContextKind kind, const LatticeState& s) {
+  const LatticeBox box = lattice_box_of(rule.box, kind);
+  const int price = s.price_eur_per_mwh - kLatticePriceMinEurPerMwh;
+  return holds_in_context(rule.box, kind, s.quarter_hour, s.context_class) &&
+         price >= box.price_first && price <= box.price_last && s.soc_index >= box.soc_first &&
+         s.soc_index <= box.soc_last;
+}
+
+/// The neighbour along the input; none after the last value.
+std::optional<LatticeState> next_state(LatticeState state, RuleInput input) {
+  if (input == RuleInput::kSoc) {
+    if (++state.soc_index == kSocCount) return {};
+    return state;
+  }
+  if (input == RuleInput::kPrice) {
+    if (++state.price_eur_per_mwh > kLatticePriceMaxEurPerMwh) return {};
+    return state;
+  }
+  return next_context(state, input);
+}
+
+std::string example_of(const StudentFile& student, const Rule& rule) {
+  const StudentNet& net = student.net;
+  const ContextKind kind = net.context.kind;
+  RuleCount known;
+  std::ranges::copy_if(student.certificate.counterexamples,
+                       std::back_inserter(known.counterexamples),
+                       [&](const LatticeState& s) { return holds_at(rule, kind, s); });
+  if (rule.demand == Demand::kActions) {
+    const auto worst = worst_state(net, rule, known);
+    if (!worst) return {};
+    return fmt::format("{} at {}", action_name(worst->action), state_text(worst->state, kind));
+  }
+  for (const LatticeState& state : known.counterexamples) {
+    const auto next = next_state(state, rule.direction.input);
+    if (!next) continue;
+    const Action here = net.decide(state);
+    const Action there = net.decide(*next);
+    if (rule.direction.sign < 0 ? there <= here : there >= here) continue;
+    return fmt::format("{} at {}, and {} at {}", action_name(here), state_text(state, kind),
+                       action_name(there), state_text(*next, kind));
+  }
+  return {};
+}
+
+/// The rules that a demand stands for: of property 3 two directions.
+std::vector<Rule> rules_of(const Certificate& certificate, std::size_t demand) {
+  const RuleSet all = with_properties(certificate.rules, certificate.thresholds);
+  constexpr std::size_t kOrder = 2;  // property 3, of which there are two here
+  if (demand < kOrder) return {all.rules[demand]};
+  if (demand == kOrder) return {all.rules[kOrder], all.rules[kOrder + 1]};
+  return {all.rules[demand + 1]};
+}
+
+std::string room_text(const Opposite& opposite) {
+  std::string room;
+  if (opposite.price_gap_eur_per_mwh > 0) {
+    room = fmt::format("{} EUR/MWh", opposite.price_gap_eur_per_mwh);
+  }
+  if (opposite.soc_gap > 0) {
+    room += fmt::format("{}{:g} % of charge", room.empty() ? "" : " and ",
+                        opposite.soc_gap * kPercentPerSocIndex);
+  }
+  return room;
+}
+
+std::string advice_of(const Certificate& certificate, ContextKind kind, const DemandCount& count,
+                      const Rule& rule, CorrectionMethod method) {
+  const bool by_layer = method == CorrectionMethod::kLayer;
+  if (by_layer && !count.is_rule) {
+    return "raise [correction] price_slope and soc_slope or [distil] repair_rounds";
+  }
+  if (by_layer && (rule.demand == Demand::kDirection || rule.has_gap())) {
+    return "the layer has no rows for it: use [distil] method = \"construction\"";
+  }
+  const auto opposite = nearest_opposite(certificate.rules, certificate.thresholds, kind, rule);
+  if (!opposite) return kMoreEffort;
+  return fmt::format("leave more than {} to \"{}\", which asks the opposite, or {}",
+                     room_text(*opposite), opposite->name, kMoreEffort);
+}
+
+}  // namespace
+
+std::string state_text(const LatticeState& s, ContextKind kind) {
+  return fmt::format("{} {}, {}, minute {}, SoC {:g} %, {} EUR/MWh",
+                     kind == ContextKind::kMonth ? "month" : "context class", s.context_class,
+                     hour_text(s.quarter_hour), s.minute_of_quarter_hour,
+                     s.soc_index * kPercentPerSocIndex, s.price_eur_per_mwh);
+}
+
+std::vector<BrokenDemand> broken_demands(const StudentFile& student, CorrectionMethod method) {
+  std::vector<BrokenDemand> broken;
+  const std::vector<DemandCount> counts = demand_counts(student.certificate);
+  for (std::size_t d = 0; d < counts.size(); ++d) {
+    if (counts[d].violations == 0) continue;
+    const std::vector<Rule> rules = rules_of(student.certificate, d);
+    std::string example;
+    for (const Rule& rule : rules) {
+      if (example.empty()) example = example_of(student, rule);
+    }
+    broken.push_back({counts[d], example,
+                      advice_of(student.certificate, student.net.context.kind, counts[d],
+                                rules.front(), method)});
+  }
+  return broken;
+}
+
+std::string describe_failed_proof(const StudentFile& student, const std::vector<ProofRound>& rounds,
+                                  CorrectionMethod method, const std::string& where,
+                                  const std::string& note) {
+  constexpr std::size_t kShown = 20;  // of rounds
+  const std::size_t first = rounds.size() > kShown ? rounds.size() - kShown : 0;
+  std::string by_round = first > 0 ? "..., " : "";
+  bool any_is_a_look = false;
+  for (std::size_t i = first; i < rounds.size(); ++i) {
+    by_round += fmt::format("{}{}", rounds[i].violations(), i + 1 < rounds.size() ? ", " : "");
+    any_is_a_look = any_is_a_look || !rounds[i].is_whole;
+  }
+  std::string text = fmt::format(
+      "{}{} violations are left after {} round{} (by round {}{}){}", where,
+      student.certificate.violations(), rounds.size(), rounds.size() == 1 ? "" : "s", by_round,
+      any_is_a_look ? "; without a proof those at the states that decide alone" : "", note);
+  for (const BrokenDemand& demand : broken_demands(student, method)) {
+    text +=
+        fmt::format("\n  {} ({}): {} violations{}{}; {}", demand.count.label(), demand.count.text,
+                    demand.count.violations, demand.example.empty() ? "" : ", its action is ",
+                    demand.example, demand.advice);
+  }
+  return text;
+}
+
+}  // namespace bess
