@@ -38,7 +38,7 @@ class LostOrders {
     } else if (fate == Fate::kHolds) {
       count_.good();
       history_.note(false);
-      if (++held_ >= kOrdersToSettle) first_lost_utc_s_ = 0;
+      if (++held_ >= kOrdersToSettle) settle();
     }
   }
 
@@ -73,6 +73,7 @@ class LostOrders {
       if (lost && first_lost_utc_s_ == 0) first_lost_utc_s_ = utc_s - (i + 1) * kSecondsPerStep;
     }
     lost_utc_s_ = utc_s;
+    history_.is_found = logged.is_found;
   }
   /// Since start.
   [[nodiscard]] std::int32_t replaced() const { return replaced_; }
@@ -114,9 +115,15 @@ class LostOrders {
            m.temperature_min_deci_c < kColdDeciC;
   }
 
+  void settle() {
+    first_lost_utc_s_ = 0;
+    history_.is_found = false;
+  }
+
   void count_loss(const Response& now, Fate fate) {
     count_.bad();
     history_.note(true);
+    history_.is_found = history_.is_found || count_.is_found();
     held_ = 0;
     lost_utc_s_ = now.utc_s;
     if (first_lost_utc_s_ == 0) first_lost_utc_s_ = now.utc_s;

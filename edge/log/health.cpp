@@ -34,11 +34,6 @@ std::string held_row(double eur_per_mwh) {
   return text;
 }
 
-/// Every third of them; one in four is forgiven, as in leaky_count.h.
-bool are_orders_lost(const HealthInputs& in) {
-  return in.lost_orders >= 2 && 10 * in.lost_orders >= 3 * in.judged_orders;
-}
-
 std::string frozen_price(const HealthInputs& in) {
   char text[200];
   std::snprintf(text, sizeof text,
@@ -108,7 +103,7 @@ void check_cycle(const HealthInputs& in, std::vector<std::string>& reasons) {
   }
   if (in.battery_warns) reasons.emplace_back("WARN: the battery warns, see its own display");
   check_findings(in, reasons);
-  if (are_orders_lost(in)) {
+  if (in.orders_are_lost) {
     reasons.push_back("WARN: " + std::to_string(in.lost_orders) + " of the last " +
                       std::to_string(in.judged_orders) +
                       " orders were replaced or ended before their time: who else writes to the "

@@ -19,6 +19,7 @@ struct HealthInputs {
   std::int64_t weak_answers = 0;       ///< in a row
   std::int64_t lost_orders = 0;        ///< of the newest `judged_orders`
   std::int64_t judged_orders = 0;
+  bool orders_are_lost = false;           ///< too many of them
   std::int64_t energy_share_percent = 0;  ///< these three: ResponseFindings, 0 where all is well
   std::int64_t rest_loss_w = 0;
   std::int64_t ramp_w_per_s = 0;

@@ -261,6 +261,10 @@ consteval auto make_record_fields() {
        "house_implausible",
        {.csv = 58, .last = 176, .metrics = {56, "bess_house_implausible"}},
        {"1 while grid less battery is no load that the house can have."}},
+      {member<&R::lost_orders, &O::is_found>(),
+       "orders_are_lost",
+       {.csv = 59, .last = 183, .metrics = {10, "bess_orders_are_lost"}},
+       {"1 while somebody or the device ends or replaces too many orders."}},
   });
 }
 

@@ -138,6 +138,7 @@ Health health_of(const EdgeConfig& config, JsonValue status, bool no_lock,
   in.unanswered_orders = whole(field<&R::unanswered_orders>(status));
   in.weak_answers = whole(field<&R::weak_answers>(status));
   in.lost_orders = whole(field<&R::lost_orders, &LostOrderHistory::lost>(status));
+  in.orders_are_lost = is_true(field<&R::lost_orders, &LostOrderHistory::is_found>(status));
   in.judged_orders = whole(field<&R::lost_orders, &LostOrderHistory::judged>(status));
   in.energy_share_percent = whole(field<&R::findings, &F::energy_share_percent>(status));
   in.rest_loss_w = whole(field<&R::findings, &F::rest_loss_w>(status));

@@ -19,7 +19,7 @@ namespace bess {
 struct MovedClock {
   explicit MovedClock(SimulatedDevice& d) : device(d) {}
 
-  [[nodiscard]] std::int64_t now_utc_ns() const { return device.utc_ns(); }
+  [[nodiscard]] std::int64_t now_utc_ns() const { return device.utc_ns() + step_ns; }
   [[nodiscard]] std::int64_t monotonic_ns() const { return device.test.device.now_ns; }
   [[nodiscard]] std::int64_t monotonic_ns_at(std::int64_t utc_ns) const {
     return monotonic_ns() + utc_ns - now_utc_ns();
@@ -38,11 +38,16 @@ struct MovedClock {
   [[nodiscard]] static bool is_synchronised() { return true; }
 
   SimulatedDevice& device;
+  std::int64_t step_ns = 0;  ///< by which the machine's UTC is wrong
   std::function<void()> every_half_minute = [] {};
 };
 
 struct PromptPrices {
   void request(std::int64_t minute_utc_s, std::int64_t, std::int64_t) {
+    if (!published(minute_utc_s)) {
+      report.status = Status::kNoRow;
+      return;
+    }
     report = {.has_row = true,
               .minute_utc_s = minute_utc_s,
               .price_centi_eur_per_mwh = price(minute_utc_s),
@@ -52,6 +57,7 @@ struct PromptPrices {
   [[nodiscard]] PriceReport latest() const { return report; }
 
   PriceReport report;
+  std::function<bool(std::int64_t)> published = [](std::int64_t) { return true; };
   std::function<std::int32_t(std::int64_t)> price = [](std::int64_t) { return 0; };
 };
 
@@ -76,17 +82,25 @@ class SupervisedSite {
   using Site = SiteLimits<HouseMeter, NoOutsideLimits>;
   using Loop = ControlLoop<DeviceDriver, PromptPrices, MovedClock, Site>;
 
-  explicit SupervisedSite(const MapVariant& variant, ControlSettings settings = {},
+  explicit SupervisedSite(const MapVariant& variant, const ControlSettings& settings = {},
                           const SiteSettings& site = {})
-      : device(variant.map, variant.variant), clock(device) {
-    settings.control = true;
-    settings.order_duration_s = device.test.map.watchdog.duration_s;
-    settings.has_watchdog = device.test.map.watchdog.duration_s > 0;
-    settings.supervision.response.band = device.test.map.response;
-    settings.supervision.capacity_wh_min = 6'000;
-    settings.supervision.capacity_wh_max = 10'000;
-    loop = std::make_unique<Loop>(settings, *device.test.driver, prices, clock,
-                                  Site(site, &meter, nullptr));
+      : device(variant.map, variant.variant), clock(device), settings_(settings), site_(site) {
+    settings_.control = true;
+    settings_.order_duration_s = device.test.map.watchdog.duration_s;
+    settings_.has_watchdog = device.test.map.watchdog.duration_s > 0;
+    settings_.supervision.response.band = device.test.map.response;
+    settings_.supervision.capacity_wh_min = 6'000;
+    settings_.supervision.capacity_wh_max = 10'000;
+    start();
+  }
+
+  /// A process without a memory: what the battery follows is all that is left of the one before.
+  void start() {
+    loop.reset();
+    device.test.driver = std::make_unique<DeviceDriver>(
+        device.test.map, DeviceClock(device.test.device), -1, device.test.device);
+    loop = std::make_unique<Loop>(settings_, *device.test.driver, prices, clock,
+                                  Site(site_, &meter, nullptr));
   }
 
   CycleRecord cycle() {
@@ -110,6 +124,10 @@ class SupervisedSite {
   MovedClock clock;
   PromptPrices prices;
   std::unique_ptr<Loop> loop;
+
+ private:
+  ControlSettings settings_;
+  SiteSettings site_;
 };
 
 inline void set_habits(SupervisedSite& site, const BatteryHabits& habits) {

@@ -253,6 +253,10 @@ void add_fault_options(ProgramCommand& command, BatteryOptions& options) {
   command.option("--fault-off-s", faults.off_s, "And then so long not")
       .positive()
       .needs("--fault-on-s");
+  command.option("--fault-period-s", faults.period_s, "Of what ends or replaces orders")
+      .range(1, 86'400)
+      .with_default()
+      .needs("--fault");
   command.option("--late-ms", server.late_ms, "Delay of late and byte-gap")
       .range(1, 60'000)
       .with_default()

@@ -54,7 +54,7 @@ constexpr BatteryFaultInfo kFaults[] = {
      kLasting},
     {BatteryFault::kOtherCapacity, "other-capacity", "lasts: shows 5 times its capacity", kLasting},
     {BatteryFault::kOtherMaster, "other-master",
-     "lasts: every 30 s somebody else orders the rated discharge", kLasting},
+     "lasts: every --fault-period-s somebody else orders the rated discharge", kLasting},
     {BatteryFault::kInverted, "inverted", "lasts: what is ordered flows the other way", kLasting},
     {BatteryFault::kEcho, "echo", "lasts: shows the order as its power, and nothing flows",
      kLasting},
@@ -73,6 +73,12 @@ constexpr BatteryFaultInfo kFaults[] = {
      "lasts: no fault, a habit: while it is full 450 W flow, whatever is ordered", kLasting},
     {BatteryFault::kSlowRamp, "slow-ramp",
      "lasts: no fault, a habit: its power changes by 30 W in a second", kLasting},
+    {BatteryFault::kMasterStops, "master-stops",
+     "lasts: every --fault-period-s somebody else gives the battery back", kLasting},
+    {BatteryFault::kMasterMode, "master-mode",
+     "lasts: every --fault-period-s somebody else writes another mode", kLasting},
+    {BatteryFault::kEndsOrders, "ends-orders",
+     "lasts: every --fault-period-s the device ends the order by itself", kLasting},
 };
 
 }  // namespace
@@ -110,6 +116,14 @@ BatteryFault FaultPlan::draw(FaultChance chance, double at_s) {
 bool FaultPlan::lasts(BatteryFault fault, double at_s) const {
   return in_span(at_s) && std::any_of(possible_.begin(), possible_.end(),
                                       [&](const auto& info) { return info.fault == fault; });
+}
+
+bool FaultPlan::acts() const {
+  using enum BatteryFault;
+  return std::any_of(possible_.begin(), possible_.end(), [](const auto& info) {
+    return info.fault == kOtherMaster || info.fault == kMasterStops || info.fault == kMasterMode ||
+           info.fault == kEndsOrders;
+  });
 }
 
 }  // namespace bess

@@ -56,6 +56,9 @@ enum class BatteryFault : std::uint8_t {
   kForcedCharge,
   kBalancing,
   kSlowRamp,
+  kMasterStops,
+  kMasterMode,
+  kEndsOrders,
 };
 
 /// A moment at which a fault may strike.
@@ -83,6 +86,7 @@ struct FaultSchedule {
   /// Within its span it comes and goes: so long it may strike, then so long not. 0 = it stays.
   double on_s = 0;
   double off_s = 0;
+  std::int32_t period_s = 30;  ///< at which somebody, or the device, ends or replaces the order
 };
 
 class FaultPlan {
@@ -93,6 +97,9 @@ class FaultPlan {
   BatteryFault draw(FaultChance chance, double at_s);
   /// A fault that lasts is in force.
   [[nodiscard]] bool lasts(BatteryFault fault, double at_s) const;
+  /// One of those that act by themselves, every `period_s`.
+  [[nodiscard]] bool acts() const;
+  [[nodiscard]] std::int32_t period_s() const { return schedule_.period_s; }
   std::mt19937_64& random() { return random_; }
 
  private:

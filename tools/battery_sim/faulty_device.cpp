@@ -27,7 +27,12 @@ bool has_input_registers(const RegisterMap& map) {
 FaultyDevice::FaultyDevice(const RegisterMap& map, SimulatedBattery& battery, modbus_t* context,
                            const FaultSchedule& faults, bool rtu, std::int64_t start_utc_ns,
                            MeteredHouse* house)
-    : map_(map), battery_(battery), house_(house), start_utc_ns_(start_utc_ns), plan_(faults, rtu) {
+    : map_(map),
+      battery_(battery),
+      house_(house),
+      start_utc_ns_(start_utc_ns),
+      plan_(faults, rtu),
+      next_action_ns_(start_utc_ns) {
   make_registers();
   reply_ = std::make_unique<BusReply>(context, rtu);
 }
@@ -42,7 +47,7 @@ BatteryFault FaultyDevice::on_connect(std::int64_t utc_ns) {
 }
 
 BatteryFault FaultyDevice::on_request(const BusRequest& request, std::int64_t utc_ns) {
-  apply_lasting_faults(utc_ns);
+  live_until(utc_ns);
   const FaultChance chance = request.is_write() ? FaultChance::kWrite : FaultChance::kRead;
   const BatteryFault fault = plan_.draw(chance, elapsed_s(utc_ns));
   if (fault != BatteryFault::kFrozen) refresh(utc_ns);
@@ -60,6 +65,7 @@ Bytes FaultyDevice::answer(const BusRequest& request, BatteryFault fault, std::i
 }
 
 void FaultyDevice::advance(std::int64_t utc_ns) {
+  live_until(utc_ns);
   const auto plant = hold_plant();
   battery_.advance(utc_ns);
 }
@@ -98,10 +104,20 @@ double FaultyDevice::gain(std::int64_t utc_ns) const {
   return 1;
 }
 
-/// From the request after --fault-from-s on; what another master did between two requests is done late.
-void FaultyDevice::apply_lasting_faults(std::int64_t utc_ns) {
+/// What another master did between two requests is done at its own time; other lasting faults come into
+/// force with the next request.
+void FaultyDevice::live_until(std::int64_t utc_ns) {
   if (map_.is_meter) return;
   const auto plant = hold_plant();
+  for (; plan_.acts() && next_action_ns_ <= utc_ns;
+       next_action_ns_ += plan_.period_s() * kNanosecondsPerSecond) {
+    apply_lasting_faults(next_action_ns_);
+    act_on_order(next_action_ns_);
+  }
+  apply_lasting_faults(utc_ns);
+}
+
+void FaultyDevice::apply_lasting_faults(std::int64_t utc_ns) {
   const auto lasts = [&](BatteryFault fault) { return plan_.lasts(fault, elapsed_s(utc_ns)); };
   const double rated_w = battery_.parameters().power_w_max;
   battery_.advance(utc_ns);
@@ -120,12 +136,20 @@ void FaultyDevice::apply_lasting_faults(std::int64_t utc_ns) {
        .soc_offset_frac = lasts(BatteryFault::kSocRecalibrates) ? 0.06 : 0.0,
        .capacity_factor = lasts(BatteryFault::kOtherCapacity) ? 5.0 : 1.0,
        .order_as_power = lasts(BatteryFault::kEcho) || lasts(BatteryFault::kHalfFlow)});
-  if (!lasts(BatteryFault::kOtherMaster)) return;
-  constexpr std::int64_t kForeignIntervalNs = 30 * kNanosecondsPerSecond;
-  if (utc_ns < next_foreign_order_ns_) return;
-  next_foreign_order_ns_ = utc_ns + kForeignIntervalNs;
+}
+
+void FaultyDevice::act_on_order(std::int64_t utc_ns) {
+  const auto lasts = [&](BatteryFault fault) { return plan_.lasts(fault, elapsed_s(utc_ns)); };
   image_->refresh(utc_ns);
-  image_->order_from_outside(-static_cast<std::int32_t>(rated_w));
+  if (lasts(BatteryFault::kOtherMaster)) {
+    image_->order_from_outside(-static_cast<std::int32_t>(battery_.parameters().power_w_max));
+  }
+  if (lasts(BatteryFault::kMasterStops)) image_->release_from_outside();
+  if (lasts(BatteryFault::kMasterMode)) image_->change_mode_from_outside();
+  if (lasts(BatteryFault::kEndsOrders)) {
+    battery_.stop_dispatch();
+    image_->refresh(utc_ns);
+  }
 }
 
 /// What a healthy battery answers, and what a write does to it.

@@ -47,8 +47,10 @@ class FaultyDevice {
   void make_registers();
   [[nodiscard]] std::unique_lock<std::mutex> hold_plant() const;
   void refresh(std::int64_t utc_ns);
+  void live_until(std::int64_t utc_ns);
   void apply_lasting_faults(std::int64_t utc_ns);
   [[nodiscard]] double gain(std::int64_t utc_ns) const;
+  void act_on_order(std::int64_t utc_ns);
   Bytes right_answer(const BusRequest& request, bool keep_registers);
   void change_values(BatteryFault fault, std::int64_t utc_ns);
   [[nodiscard]] double elapsed_s(std::int64_t utc_ns) const {
@@ -65,7 +67,7 @@ class FaultyDevice {
   std::unique_ptr<RegisterImage> image_;
   std::unique_ptr<BusReply> reply_;
   FaultPlan plan_;
-  std::int64_t next_foreign_order_ns_ = 0;  ///< UTC; 0 = no other master yet
+  std::int64_t next_action_ns_;  ///< UTC: of another master, or of the device, on the order
 };
 
 }  // namespace bess

@@ -197,19 +197,33 @@ void RegisterImage::apply_write(int address, int count) {
 }
 
 void RegisterImage::order_from_outside(std::int32_t power_w) {
+  if (!is_running_) write_from_outside(Command::kEnable, power_w);
+  write_from_outside(command_of(power_w), power_w);
+}
+
+void RegisterImage::release_from_outside() { write_from_outside(Command::kRelease, 0); }
+
+void RegisterImage::write_from_outside(Command command, std::int32_t power_w) {
   const PowerOrder order{.power_w = power_w, .duration_s = map_.watchdog.duration_s};
-  const auto write_all = [&](Command command) {
-    for (const BlockWrite& write : map_.sequence(command).writes) {
-      RegisterBlock block;
-      const LivePoints live = snapshot();
-      if (encode_block(map_, write, order, block, {.live = &live}) != Status::kOk) continue;
-      const int address = address_of(write.values[0].point);
-      std::copy(block.begin(), block.end(), holding_.begin() + address);
-      apply_write(address, block.size());
-    }
-  };
-  if (!is_running_) write_all(Command::kEnable);
-  write_all(command_of(power_w));
+  for (const BlockWrite& write : map_.sequence(command).writes) {
+    RegisterBlock block;
+    const LivePoints live = snapshot();
+    if (encode_block(map_, write, order, block, {.live = &live}) != Status::kOk) continue;
+    const int address = address_of(write.values[0].point);
+    std::copy(block.begin(), block.end(), holding_.begin() + address);
+    apply_write(address, block.size());
+  }
+}
+
+void RegisterImage::change_mode_from_outside() {
+  if (active_.empty()) return;
+  const Condition& mode = active_[active_.size() - 1];
+  const RegisterPoint& p = map_.points[mode.point];
+  const bool is_named = mode.test == Condition::Test::kEqual;
+  std::int64_t other = (is_named ? mode.value : value(mode.point)) - 1;
+  if (other < p.value_min || (!is_named && other == mode.value)) other += 2;
+  set(mode.point, other);
+  apply_write(address_of(mode.point), p.register_count());
 }
 
 bool RegisterImage::is_order_ignored(int address, int count) const {

@@ -31,8 +31,11 @@ class RegisterImage {
   /// Acts on a write that has just changed holding registers; call `refresh` before the write.
   void apply_write(int address, int count);
 
-  /// What another master does who knows this map: registers are written as for an order, and acted on.
+  // What another master does who knows this map: registers are written as by a command of it, and acted on.
   void order_from_outside(std::int32_t power_w);
+  void release_from_outside();
+  /// Of what shows that an order is in force, the last: another value than its order's.
+  void change_mode_from_outside();
 
   /// Values that are shown otherwise than they are.
   struct Display {
@@ -64,6 +67,7 @@ class RegisterImage {
   void assign(const Assignment& assignment);
   [[nodiscard]] bool covers(int address, int count, int point) const;
   [[nodiscard]] bool is_order_ignored(int address, int count) const;
+  void write_from_outside(Command command, std::int32_t power_w);
   [[nodiscard]] std::int64_t duration_s() const;
   [[nodiscard]] double soc_limit_frac(std::int64_t power_w) const;
   void start(const LivePoints& registers);

@@ -133,6 +133,7 @@ void read_battery_fault(TomlTable table, bool rtu, BatteryFaultWindow& fault) {
   std::int64_t seed = 1;
   table.integer("seed", seed, 0, INT64_MAX);
   fault.schedule.seed = static_cast<std::uint64_t>(seed);
+  table.integer("period_s", fault.schedule.period_s, 1, 86'400);
   table.integer("late_ms", fault.late_ms, 1, 60'000);
   table.integer("drip_ms", fault.drip_ms, 1, 60'000);
   table.integer("exception_code", fault.exception_code, 1, 255);

@@ -328,6 +328,7 @@ class WallRun {
     add("--drip-ms", std::to_string(fault.drip_ms));
     add("--exception-code", std::to_string(fault.exception_code));
     add("--fault-seed", std::to_string(schedule.seed));
+    add("--fault-period-s", std::to_string(schedule.period_s));
     add("--fault-from-s", fmt::format("{}", schedule.from_s));
     if (schedule.to_s != kNeverMin) add("--fault-to-s", fmt::format("{}", schedule.to_s));
     if (schedule.off_s == 0) return;

@@ -61,12 +61,11 @@ TEST(Health, EveryTroubleHasItsReason) {
       {[](HealthInputs& in) { in.battery_warns = true; }, HealthLevel::kDegraded,
        "WARN: the battery warns"},
       {[](HealthInputs& in) {
+         in.orders_are_lost = true;
          in.lost_orders = 10;
          in.judged_orders = 30;
        },
        HealthLevel::kDegraded, "WARN: 10 of the last 30 orders were replaced or ended"},
-      {[](HealthInputs& in) { in.lost_orders = in.judged_orders = 2; }, HealthLevel::kDegraded,
-       "2 of the last 2 orders"},
       {[](HealthInputs& in) { in.disk_is_slow = true; }, HealthLevel::kDegraded, "too slow"},
       {[](HealthInputs& in) { in.disk_is_failing = true; }, HealthLevel::kDegraded, "disk full"},
       {[](HealthInputs& in) { in.disk_is_full = true; }, HealthLevel::kDegraded,
@@ -106,15 +105,6 @@ TEST(Health, EveryTroubleHasItsReason) {
     EXPECT_EQ(health.level, c.level) << c.reason;
     ASSERT_EQ(health.reasons.size(), 1U) << c.reason;
     EXPECT_THAT(health.reasons[0], HasSubstr(c.reason));
-  }
-}
-
-TEST(Health, OneLostOrderInFourIsForgiven) {
-  HealthInputs in = healthy_inputs();
-  for (const auto& [lost, judged] : {std::pair{1, 1}, {2, 7}, {8, 30}}) {
-    in.lost_orders = lost;
-    in.judged_orders = judged;
-    EXPECT_EQ(assess_health(in).level, HealthLevel::kOk) << lost << " of " << judged;
   }
 }
 

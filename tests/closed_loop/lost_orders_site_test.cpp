@@ -1,0 +1,313 @@
+// Orders that are not in force until their end, on every shipped map: somebody gives the battery back,
+// writes another mode or another power, or the device ends them, at each, every other or every third
+// tick: after how many cycles it is found, and what is delivered of what was ordered. And what is
+// nobody's intention: then nothing may be found.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/support/supervised_site.h"
+
+namespace bess {
+namespace {
+
+constexpr std::int32_t kForeignW = -1'700;
+constexpr int kTrialCycles = 40;
+
+std::int64_t now_s(const SupervisedSite& site) {
+  return site.clock.now_utc_ns() / kNanosecondsPerSecond;
+}
+
+/// What somebody, or the device, does to an order.
+struct Interference {
+  enum class Kind { kRelease, kMode, kPower, kEnd };
+  Kind kind;
+  const char* name;
+  std::function<void(SupervisedSite&)> act;
+};
+
+const std::vector<Interference> kInterferences = {
+    {Interference::Kind::kRelease, "gives it back",
+     [](SupervisedSite& s) { s.device.image.release_from_outside(); }},
+    {Interference::Kind::kMode, "another mode",
+     [](SupervisedSite& s) { s.device.image.change_mode_from_outside(); }},
+    {Interference::Kind::kPower, "another power",
+     [](SupervisedSite& s) { s.device.image.order_from_outside(kForeignW); }},
+    {Interference::Kind::kEnd, "the device ends it",
+     [](SupervisedSite& s) {
+       s.device.battery.stop_dispatch();
+       s.device.image.refresh(s.clock.now_utc_ns());
+     }},
+};
+
+/// What a map's registers can show (the table in edge/maps/README.md); what they cannot, the power does.
+struct Shows {
+  bool replaced = true;
+  bool ended = true;
+  /// Giving back, or changing the mode, writes no more than the device does at an order's end.
+  bool release_is_end = false;
+  bool mode_is_end = false;
+};
+
+Shows what_it_shows(const MapVariant& v) {
+  const std::string name = std::string(v.map) + " " + v.variant;
+  if (name == "alphaess ten_and_one") return {.release_is_end = true};
+  if (name == "simulator ") return {.mode_is_end = true};
+  if (name == "sungrow_sh external_ems") return {.release_is_end = true};
+  if (name == "sungrow_sh forced") return {.ended = false};
+  if (name == "sma bms_mode") return {.ended = false};
+  if (name == "sma setpoint") return {.replaced = false, .ended = false};
+  if (std::string(v.map) == "victron_ess3") return {.ended = false};
+  return {};
+}
+
+bool shows(const Shows& map, Interference::Kind kind) {
+  return kind == Interference::Kind::kEnd ? map.ended : map.replaced;
+}
+
+Reason found_as(const Shows& map, Interference::Kind kind) {
+  const bool is_end = kind == Interference::Kind::kEnd ||
+                      (kind == Interference::Kind::kRelease && map.release_is_end) ||
+                      (kind == Interference::Kind::kMode && map.mode_is_end);
+  return is_end ? Reason::kNoAnswer : Reason::kOtherMaster;
+}
+
+/// Two cycles of charging, two of discharging, beyond the thresholds.
+void trade_both_ways(SupervisedSite& site) {
+  site.prices.price = [](std::int64_t minute_utc_s) {
+    return minute_utc_s / 240 % 2 == 0 ? -60'000 : 160'000;
+  };
+}
+
+/// Thirty seconds after every `every`th tick.
+void interfere(SupervisedSite& site, const Interference& what, int every) {
+  site.clock.every_half_minute = [&site, &what, every] {
+    const std::int64_t s = now_s(site);
+    if (s % kSecondsPerStep != 30 || s / kSecondsPerStep % every != 0) return;
+    site.device.image.refresh(site.clock.now_utc_ns());
+    what.act(site);
+  };
+}
+
+struct Outcome {
+  int cycles_to_find = 0;  ///< since the first order was touched, until it is given back; 0: never
+  int cycles_to_tell = 0;  ///< likewise, until health is degraded by it
+  Reason reason = Reason::kStudent;
+  double ordered_wh = 0;  ///< of all orders of the trial, whole steps
+  double delivered_wh = 0;
+  CycleRecord last;
+};
+
+Outcome run_trial(SupervisedSite& site, const Interference& what, int every) {
+  for (int i = 0; i < 8; ++i) site.cycle();
+  interfere(site, what, every);
+  Outcome outcome;
+  std::int32_t ordered_w = 0;  // counted from the first order of the trial on
+  double before_wh = 0;
+  for (int i = 0; i < kTrialCycles; ++i) {
+    const CycleRecord& record = outcome.last = site.cycle();
+    const double now_wh = site.device.energy_wh();
+    if (ordered_w != 0) {
+      outcome.ordered_wh += std::abs(ordered_w) / 30.0;
+      outcome.delivered_wh += (now_wh - before_wh) * (ordered_w < 0 ? -1 : 1);
+    }
+    before_wh = now_wh;
+    ordered_w = record.ordered_power_w;
+    if (outcome.cycles_to_find == 0 && is_stop_reason(record.reason)) {
+      outcome.cycles_to_find = i + 1;
+      outcome.reason = record.reason;
+    }
+    if (outcome.cycles_to_tell == 0 && record.lost_orders.is_found) outcome.cycles_to_tell = i + 1;
+  }
+  return outcome;
+}
+
+void print(const MapVariant& v, const Interference& what, int every, bool yields,
+           const Outcome& o) {
+  std::printf("%-16s %-12s %-18s every %d %-6s found %2d told %2d as %-18s %5.0f of %5.0f Wh\n",
+              v.map, v.variant, what.name, every, yields ? "yield" : "insist", o.cycles_to_find,
+              o.cycles_to_tell, o.cycles_to_find == 0 ? "-" : reason_name(o.reason).data(),
+              o.delivered_wh, o.ordered_wh);
+}
+
+class EveryMapsOrders : public ::testing::TestWithParam<MapVariant> {};
+
+TEST_P(EveryMapsOrders, WhoEndsOrReplacesThemIsFoundAlsoWhenHeComesAndGoes) {
+  const Shows map = what_it_shows(GetParam());
+  for (const Interference& what : kInterferences) {
+    for (const auto& [every, most] : {std::pair{1, 3}, {2, 6}, {3, 9}}) {
+      SCOPED_TRACE(std::string(what.name) + " every " + std::to_string(every));
+      SupervisedSite site(GetParam());
+      trade_both_ways(site);
+      const Outcome o = run_trial(site, what, every);
+      print(GetParam(), what, every, true, o);
+      if (!shows(map, what.kind))
+        continue;  // found by the power, response_monitor_test and the trial hold that
+      EXPECT_GT(o.cycles_to_find, 0);
+      EXPECT_LE(o.cycles_to_find, most);
+      EXPECT_EQ(o.reason, found_as(map, what.kind));
+      EXPECT_GT(o.last.replaced_orders + o.last.ended_orders, 1);
+      EXPECT_EQ(o.last.replaced_orders == 0, o.reason == Reason::kNoAnswer);
+    }
+  }
+}
+
+TEST_P(EveryMapsOrders, WhoInsistsIsToldAndGivesUpAfterAnHour) {
+  const Shows map = what_it_shows(GetParam());
+  ControlSettings insists;
+  insists.supervision.yields_to_other_master = false;
+  for (const Interference& what : kInterferences) {
+    if (!shows(map, what.kind)) continue;
+    for (const int every : {1, 2, 3}) {
+      SCOPED_TRACE(std::string(what.name) + " every " + std::to_string(every));
+      SupervisedSite site(GetParam(), insists);
+      trade_both_ways(site);
+      const Outcome o = run_trial(site, what, every);
+      print(GetParam(), what, every, false, o);
+      EXPECT_GT(o.cycles_to_tell, 0);
+      EXPECT_LE(o.cycles_to_tell, every == 1 ? 3 : 3 * every);
+      if (every == 3) {
+        EXPECT_EQ(o.cycles_to_find, 0) << "two of three orders hold";
+      } else {
+        EXPECT_GE(o.cycles_to_find, 31);
+        EXPECT_LE(o.cycles_to_find, 34);
+      }
+    }
+  }
+}
+
+/// What ends orders and is nobody's intention; `at` says when, by cycle and half minute.
+struct Innocent {
+  const char* name;
+  std::function<void(SupervisedSite&, std::int64_t cycle, std::int64_t second)> happens;
+  std::function<void(SupervisedSite&)> begin = [](SupervisedSite&) {};
+};
+
+/// Registers and dispatch as after a power cut of the device.
+void reboot(SupervisedSite& site) {
+  site.device.image.refresh(site.clock.now_utc_ns());
+  site.device.image.release_from_outside();
+}
+
+bool has_full_or_empty(const SimulatedBattery& battery) {
+  return battery.dispatch_active() && battery.commanded_power_w() != 0 && battery.power_w() == 0;
+}
+
+const std::vector<Innocent> kInnocents = {
+    {"a process that is stopped for twenty minutes",
+     [](SupervisedSite& s, std::int64_t cycle, std::int64_t second) {
+       if (cycle % 3 == 0 && second == 60) s.device.test.device.now_ns += 1'200'000'000'000;
+     }},
+    {"a process that is stopped for three minutes",
+     [](SupervisedSite& s, std::int64_t cycle, std::int64_t second) {
+       if (cycle % 3 == 0 && second == 60) s.device.test.device.now_ns += 180'000'000'000;
+     }},
+    {"a device that boots for four minutes",
+     [](SupervisedSite& s, std::int64_t cycle, std::int64_t second) {
+       if (cycle % 12 == 3 && second == 30) {
+         s.device.test.device.exception = -1;
+         reboot(s);
+       }
+       if (cycle % 12 == 5 && second == 30) s.device.test.device.exception = 0;
+     }},
+    {"a device that boots for a minute",
+     [](SupervisedSite& s, std::int64_t cycle, std::int64_t second) {
+       if (cycle % 6 != 3) return;
+       if (second == 30) {
+         s.device.test.device.exception = -1;
+         reboot(s);
+       }
+       if (second == 90) s.device.test.device.exception = 0;
+     }},
+    {"a link that is cut for eight minutes",
+     [](SupervisedSite& s, std::int64_t cycle, std::int64_t second) {
+       if (second == 30) s.device.test.device.exception = cycle % 9 / 4 == 1 ? -1 : 0;
+     }},
+    {"a link that is away for a minute at every tick's reading",
+     [](SupervisedSite& s, std::int64_t cycle, std::int64_t second) {
+       if (cycle % 2 == 0) s.device.test.device.exception = second == 90 ? -1 : 0;
+     }},
+    {"a battery that ends orders when it is full or empty",
+     [](SupervisedSite& s, std::int64_t, std::int64_t) {
+       s.device.image.refresh(s.clock.now_utc_ns());
+       if (!has_full_or_empty(s.device.battery)) return;
+       s.device.battery.stop_dispatch();
+       s.device.image.refresh(s.clock.now_utc_ns());
+     },
+     [](SupervisedSite& s) {  // three hours of one price, then of the other
+       s.prices.price = [](std::int64_t minute_utc_s) {
+         return minute_utc_s / 10'800 % 2 == 0 ? -60'000 : 160'000;
+       };
+     }},
+    {"a device that follows no order of 0 W",
+     [](SupervisedSite& s, std::int64_t, std::int64_t second) {
+       s.device.image.refresh(s.clock.now_utc_ns());
+       if (second == 0 || s.device.battery.commanded_power_w() != 0) return;
+       s.device.battery.stop_dispatch();
+       s.device.image.refresh(s.clock.now_utc_ns());
+     },
+     [](SupervisedSite& s) {
+       s.prices.price = [](std::int64_t minute_utc_s) {
+         return minute_utc_s / 600 % 2 == 0     ? 9'000
+                : minute_utc_s / 1'200 % 2 == 0 ? -60'000
+                                                : 160'000;
+       };
+     }},
+    {"a clock that steps forward and back",
+     [](SupervisedSite& s, std::int64_t cycle, std::int64_t second) {
+       if (second != 60 || cycle % 5 != 2) return;
+       s.clock.step_ns += (cycle % 2 == 0 ? 3'600 : -3'600) * kNanosecondsPerSecond;
+     }},
+    {"a clock that steps a little",
+     [](SupervisedSite& s, std::int64_t cycle, std::int64_t second) {
+       if (second != 60 || cycle % 3 != 2) return;
+       s.clock.step_ns += (cycle % 2 == 0 ? 70 : -70) * kNanosecondsPerSecond;
+     }},
+    {"prices that are away for half an hour", [](SupervisedSite&, std::int64_t, std::int64_t) {},
+     [](SupervisedSite& s) {
+       s.prices.published = [](std::int64_t minute_utc_s) { return minute_utc_s / 1'800 % 2 == 0; };
+     }},
+    {"restarts", [](SupervisedSite&, std::int64_t, std::int64_t) {}},
+};
+
+TEST_P(EveryMapsOrders, WhatIsNobodysIntentionIsNotFound) {
+  for (const Innocent& innocent : kInnocents) {
+    SCOPED_TRACE(innocent.name);
+    SupervisedSite site(GetParam());
+    trade_both_ways(site);
+    innocent.begin(site);
+    std::int64_t cycle = 0;
+    std::set<std::pair<std::int64_t, std::int64_t>> happened;  // once each
+    site.clock.every_half_minute = [&] {
+      const std::int64_t second = now_s(site) % kSecondsPerStep;
+      if (happened.insert({cycle, second}).second) innocent.happens(site, cycle, second);
+    };
+    std::map<Reason, int> reasons;
+    CycleRecord record;
+    for (cycle = 0; cycle < 300; ++cycle) {
+      record = site.cycle();
+      ++reasons[record.reason];
+      if (std::string(innocent.name) == "restarts" && cycle % 4 == 3) site.start();
+    }
+    EXPECT_EQ(reasons[Reason::kOtherMaster], 0);
+    EXPECT_EQ(reasons[Reason::kNoAnswer], 0);
+    std::printf("%-16s %-12s %-55s lost %d, other stops:", GetParam().map, GetParam().variant,
+                innocent.name, record.replaced_orders + record.ended_orders);
+    for (const auto& [reason, count] : reasons) {
+      if (is_stop_reason(reason)) std::printf(" %s %d", reason_name(reason).data(), count);
+    }
+    std::printf("\n");
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Maps, EveryMapsOrders, ::testing::ValuesIn(kShippedMapVariants));
+
+}  // namespace
+}  // namespace bess
