@@ -11,7 +11,9 @@
 #include <charconv>
 #include <cstring>
 #include <optional>
+#include <utility>
 
+#include "shared/file_descriptor.h"
 #include "shared/host/unfinished_files.h"
 #include "shared/host/user_error.h"
 
@@ -61,7 +63,8 @@ fs::path resolved(const fs::path& path) {
   std::error_code error;
   if (!fs::is_symlink(fs::symlink_status(path, error))) return path;
   const fs::path target = fs::weakly_canonical(path, error);
-  return error ? path : target;
+  if (error) fail("{}: cannot write here: {}", path.string(), error.message());
+  return target;
 }
 
 /// What will be found under a name once it is committed: a temporary file beside it, which takes the
@@ -140,6 +143,99 @@ void create_parent(const fs::path& path) {
   if (error) fail("{}: cannot create: {}", path.parent_path().string(), error.message());
 }
 
+/// A file's bytes as they are read, unpacked where they are gzip: one member or more, nothing behind them.
+/// Bounded while it is read: some thousand bytes of gzip may stand for gigabytes.
+class WholeFile {
+ public:
+  WholeFile(std::string name, std::size_t bytes_max)
+      : name_(std::move(name)), bytes_max_(bytes_max) {}
+  WholeFile(const WholeFile&) = delete;
+  WholeFile& operator=(const WholeFile&) = delete;
+  ~WholeFile() {
+    if (kind_ == Kind::kGzip) inflateEnd(&stream_);
+  }
+
+  void add(std::string_view bytes) {
+    if (kind_ == Kind::kUnknown) {
+      head_ += bytes;
+      if (head_.size() < 2) return;
+      find_kind();
+      return unpack(std::exchange(head_, {}));
+    }
+    unpack(bytes);
+  }
+  /// The contents, once all bytes are added.
+  std::string finish() {
+    if (kind_ == Kind::kUnknown) return head_;  // shorter than the mark of gzip
+    if (kind_ == Kind::kGzip && !is_member_over_) damaged("unexpected end");
+    return std::move(contents_);
+  }
+  [[nodiscard]] bool is_plain() const { return kind_ != Kind::kGzip; }
+
+ private:
+  enum class Kind { kUnknown, kPlain, kGzip };
+  static constexpr std::string_view kMark = "\x1F\x8B";
+
+  void find_kind() {
+    kind_ = head_.starts_with(kMark) ? Kind::kGzip : Kind::kPlain;
+    constexpr int kGzipWindowBits = 15 + 16;
+    if (kind_ == Kind::kGzip && inflateInit2(&stream_, kGzipWindowBits) != Z_OK) {
+      fail("zlib cannot start unpacking");
+    }
+  }
+
+  void unpack(std::string_view bytes) {
+    if (kind_ == Kind::kPlain) return append(bytes);
+    stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+    stream_.avail_in = static_cast<uInt>(bytes.size());
+    while (stream_.avail_in > 0) {
+      if (is_member_over_) begin_member();
+      stream_.next_out = reinterpret_cast<Bytef*>(unpacked_.data());
+      stream_.avail_out = static_cast<uInt>(unpacked_.size());
+      const int status = inflate(&stream_, Z_NO_FLUSH);
+      if (status != Z_OK && status != Z_STREAM_END && status != Z_BUF_ERROR) {
+        damaged(stream_.msg == nullptr ? "no gzip data" : stream_.msg);
+      }
+      append(std::string_view(unpacked_).substr(0, unpacked_.size() - stream_.avail_out));
+      is_member_over_ = status == Z_STREAM_END;
+    }
+  }
+
+  /// gzip files may be joined; what is no further member was never packed.
+  void begin_member() {
+    if (*stream_.next_in != static_cast<Bytef>(kMark[0])) {
+      fail("{}: bytes behind the end of its gzip data; fetch or copy it again", name_);
+    }
+    if (inflateReset(&stream_) != Z_OK) fail("zlib cannot go on unpacking");
+    is_member_over_ = false;
+  }
+
+  void append(std::string_view bytes) {
+    if (contents_.size() + bytes.size() > bytes_max_) {
+      fail("{}: holds more than {}{}: not a file that is meant here", name_, size_text(bytes_max_),
+           is_plain() ? "" : " once unpacked");
+    }
+    contents_ += bytes;
+  }
+  static std::string size_text(std::size_t bytes) {
+    constexpr std::size_t kMiB = std::size_t{1} << 20;
+    return bytes >= kMiB ? std::to_string(bytes / kMiB) + " MiB"
+                         : std::to_string(bytes / 1024) + " KiB";
+  }
+  [[noreturn]] void damaged(const char* reason) const {
+    fail("{}: truncated or damaged gzip file ({}); fetch or copy it again", name_, reason);
+  }
+
+  std::string name_;
+  std::size_t bytes_max_;
+  Kind kind_ = Kind::kUnknown;
+  std::string head_;  ///< until it shows the kind
+  std::string contents_;
+  std::string unpacked_ = std::string(1 << 16, '\0');
+  z_stream stream_{};
+  bool is_member_over_ = false;
+};
+
 }  // namespace
 
 bool is_special_file(const fs::path& path) {
@@ -148,28 +244,24 @@ bool is_special_file(const fs::path& path) {
   return fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status);
 }
 
-std::string read_file(const fs::path& path) {
-  if (fs::is_directory(path)) fail("{}: is a folder, not a file", path.string());
-  gzFile file = gzopen(path.c_str(), "rb");  // reads plain files as they are
-  if (file == nullptr) fail("{}: cannot open: {}", path.string(), std::strerror(errno));
-  std::string contents;
-  constexpr std::size_t kChunk = 1 << 20;
-  int got = 0;
-  do {
-    const std::size_t size = contents.size();
-    contents.resize(size + kChunk);
-    got = gzread(file, contents.data() + size, kChunk);
-    contents.resize(size + static_cast<std::size_t>(std::max(got, 0)));
-  } while (got > 0);
-  const bool is_plain = gzdirect(file) == 1;
-  int status = Z_OK;
-  const std::string reason = gzerror(file, &status);
-  const int close_status = gzclose(file);
-  if (got < 0 || close_status == Z_BUF_ERROR || status == Z_BUF_ERROR) {
-    fail("{}: truncated or damaged gzip file ({}); fetch or copy it again", path.string(),
-         reason.empty() ? "unexpected end" : reason);
+std::string read_file(const fs::path& path, std::size_t bytes_max) {
+  const FileDescriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (file.get() < 0) fail("{}: cannot open: {}", path.string(), std::strerror(errno));
+  struct stat info {};
+  if (fstat(file.get(), &info) == 0 && S_ISDIR(info.st_mode)) {
+    fail("{}: is a folder, not a file", path.string());
   }
-  if (is_plain && is_gzip_name(path) && contents.find('\0') != contents.npos) {
+  WholeFile whole(path.string(), bytes_max);
+  std::string chunk(1 << 20, '\0');
+  while (true) {
+    const ssize_t got = ::read(file.get(), chunk.data(), chunk.size());
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) fail("{}: cannot read: {}", path.string(), std::strerror(errno));
+    if (got == 0) break;
+    whole.add(std::string_view(chunk).substr(0, static_cast<std::size_t>(got)));
+  }
+  std::string contents = whole.finish();
+  if (whole.is_plain() && is_gzip_name(path) && contents.find('\0') != contents.npos) {
     fail("{}: its name says gzip, its content is not; fetch or copy it again", path.string());
   }
   return contents;
@@ -177,7 +269,8 @@ std::string read_file(const fs::path& path) {
 
 void require_writable(const fs::path& path) {
   create_parent(path);
-  if (fs::is_directory(path)) fail("{}: is a folder, not a file", path.string());
+  std::error_code ignored;  // what is amiss shows when the file is made
+  if (fs::is_directory(path, ignored)) fail("{}: is a folder, not a file", path.string());
   if (is_special_file(path)) return;  // opening a pipe would wait for its reader
   const TemporaryFile probe(path);    // made and removed again
 }

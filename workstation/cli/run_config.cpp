@@ -272,7 +272,7 @@ RunConfig parse_run_config(std::string_view text, const std::string& name) {
 
 RunConfig load_run_config(const std::filesystem::path& path) {
   if (path.empty()) return {};
-  return parse_run_config(read_file(path), path.string());
+  return parse_run_config(read_file(path, kTomlBytesMax), path.string());
 }
 
 std::vector<std::pair<std::string, std::string>> config_entries(const RunConfig& config) {

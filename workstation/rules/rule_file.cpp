@@ -377,7 +377,7 @@ RuleSet parse_rules(std::string_view text, const std::string& name) {
 
 RuleSet load_rules(const std::vector<std::string>& paths) {
   RuleSet set;
-  for (const std::string& path : paths) append_rules(read_file(path), path, set);
+  for (const std::string& path : paths) append_rules(read_file(path, kTomlBytesMax), path, set);
   return set;
 }
 

@@ -3,11 +3,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <thread>
 
 #include "shared/host/user_error.h"
@@ -70,6 +72,95 @@ TEST_F(File, APlantedLinkIsNotFollowed) {
   EXPECT_EQ(read_file(victim), "precious");
   EXPECT_EQ(read_file(path_), "text");
   EXPECT_FALSE(fs::is_symlink(path_));
+}
+
+std::string complaint_about(const fs::path& path, std::size_t bytes_max = kFileBytesMax) {
+  try {
+    static_cast<void>(read_file(path, bytes_max));
+  } catch (const UserError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string packed(const TemporaryFolder& folder, const std::string& text) {
+  write_file(folder.file("packed.gz"), text);
+  std::ifstream file(folder.file("packed.gz"), std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST_F(File, GzipIsReadByItsContentInOneMemberOrMore) {
+  const std::string one = packed(folder_, "one\n");
+  const std::string two = packed(folder_, std::string(3'000'000, 'x') + "\n");
+  EXPECT_EQ(read_file(folder_.write("a", one + two + one)),
+            "one\n" + std::string(3'000'000, 'x') + "\none\n");
+  for (const char* text : {"", "\x1F", "x", "\x1Fx"}) {
+    EXPECT_EQ(read_file(folder_.write("short", text)), text);
+  }
+}
+
+TEST_F(File, WhatIsBehindOrMissingOfGzipIsTold) {
+  const std::string whole = packed(folder_, "minutes of a day, and some more of them\n");
+  for (const std::string& rest :
+       {std::string("x"), std::string("2023-01-01T00:00:00Z,1,2\n"), std::string(512, '\0')}) {
+    EXPECT_THAT(complaint_about(folder_.write("a.gz", whole + rest)),
+                testing::HasSubstr("a.gz: bytes behind the end of its gzip data"));
+  }
+  EXPECT_THAT(complaint_about(folder_.write("b.gz", whole + "\x1F")),
+              testing::HasSubstr("truncated or damaged"));
+  for (std::size_t cut = 2; cut < whole.size(); ++cut) {
+    EXPECT_THAT(complaint_about(folder_.write("c.gz", whole.substr(0, cut))),
+                testing::HasSubstr("c.gz: truncated or damaged gzip file (unexpected end)"))
+        << cut;
+  }
+  const std::string text = read_file(folder_.write("d", whole));
+  std::size_t told = 0;
+  for (std::size_t at = 10; at < whole.size(); ++at) {  // data, CRC, size
+    std::string flipped = whole;
+    flipped[at] = static_cast<char>(flipped[at] ^ 0x40);
+    const std::string path = folder_.write("d", flipped);
+    const std::string complaint = complaint_about(path);
+    if (complaint.empty()) {
+      EXPECT_EQ(read_file(path), text) << "a bit that means nothing: " << at;
+    } else {
+      EXPECT_THAT(complaint, testing::HasSubstr("damaged")) << at;
+      ++told;
+    }
+  }
+  EXPECT_GE(told, whole.size() - 12);
+}
+
+/// 1.2 MB that stand for 1.2 GB: no more than the bound is ever held.
+TEST_F(File, ABombIsBoundedWhileItIsRead) {
+  std::string comments;
+  while (comments.size() < 1'000'000) comments += "# nothing\n";
+  const std::string member = packed(folder_, comments);
+  std::string bomb;
+  for (int i = 0; i < 1'200; ++i) bomb += member;
+  EXPECT_THAT(complaint_about(folder_.write("bomb.gz", bomb), 16 << 20),
+              testing::HasSubstr("bomb.gz: holds more than 16 MiB once unpacked"));
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  EXPECT_LT(usage.ru_maxrss, 300'000) << "kilobytes";
+  EXPECT_EQ(complaint_about(folder_.write("member.gz", member), comments.size()), "");
+  EXPECT_THAT(complaint_about(folder_.write("member.gz", member), comments.size() - 1),
+              testing::HasSubstr("once unpacked"));
+}
+
+TEST_F(File, ADeviceWithoutEndEnds) {
+  EXPECT_THAT(complaint_about("/dev/zero", 1 << 20),
+              testing::HasSubstr("/dev/zero: holds more than 1 MiB: not a file"));
+}
+
+TEST_F(File, LinksInALoopAndNamesTooLongAreOneLine) {
+  fs::create_symlink(folder_.file("two"), folder_.file("one"));
+  fs::create_symlink(folder_.file("one"), folder_.file("two"));
+  EXPECT_THAT(complaint_about(folder_.file("one")), testing::HasSubstr("cannot open: Too many"));
+  EXPECT_THAT(complaint_about(folder_.file(std::string(300, 'a'))),
+              testing::HasSubstr("cannot open: File name too long"));
+  EXPECT_THROW(write_file(folder_.file("one"), "text"), UserError);
+  EXPECT_THROW(require_writable(folder_.file(std::string(300, 'a'))), UserError);
+  EXPECT_TRUE(fs::is_symlink(fs::symlink_status(folder_.file("one"))));
 }
 
 TEST_F(File, WhatAKilledProcessLeftIsRemoved) {
