@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <filesystem>
 #include <optional>
 #include <system_error>
 #include <type_traits>
@@ -74,6 +75,23 @@ std::optional<UnknownSubcommand> unknown_subcommand(const CLI::App& root, int ar
   return std::nullopt;
 }
 
+/// What CLI11 says of values, as the rest of the program would.
+std::string in_our_words(const std::string& what) {
+  constexpr std::string_view kNoNumber = "Could not convert: ";
+  constexpr std::string_view kTwice = ": At Most 1 required but received ";
+  if (what.starts_with(kNoNumber)) {  // "Could not convert: --seed = 1.5"
+    const std::string rest = what.substr(kNoNumber.size());
+    const std::size_t equals = rest.find(" = ");
+    if (equals == rest.npos) return rest + " is no number of the kind that is meant";
+    return rest.substr(0, equals) + ": " + rest.substr(equals + 3) +
+           " is no number of the kind that is meant, e.g. not a whole one";
+  }
+  const std::size_t twice = what.find(kTwice);
+  if (twice == what.npos) return what;
+  return what.substr(0, twice) + ": given " + what.substr(twice + kTwice.size()) +
+         " times; give it once (a list with commas, where it takes one)";
+}
+
 /// What is wrong with the command line. A word that nobody takes comes first: it may be the slip of the
 /// finger for which CLI11 calls another option missing.
 std::string complaint_of(const CLI::ParseError& error, const CLI::App& root) {
@@ -84,7 +102,7 @@ std::string complaint_of(const CLI::ParseError& error, const CLI::App& root) {
     return "unknown option " + *option + did_you_mean(*option, option_names(command));
   }
   if (!left.empty()) return "\"" + left.front() + "\" is one word too many";
-  return error.what();
+  return in_our_words(error.what());
 }
 
 /// Whoever gives a command nothing wants to know what it takes.
@@ -280,6 +298,10 @@ int CommandLine::run(int argc, const char* const* argv) {
   } catch (const Interrupted&) {
     std::fprintf(stderr, "%s: interrupted\n", program);
     return 3;
+  } catch (const std::filesystem::filesystem_error& error) {  // a loop of links, a name too long
+    std::fprintf(stderr, "%s: %s: %s\n", program, one_line(error.path1().string(), 300).c_str(),
+                 error.code().message().c_str());
+    return 1;
   } catch (const std::system_error& error) {  // {fmt}, when a long output meets a full disk
     if (std::ferror(stdout) == 0) {
       std::fprintf(stderr, "%s: %s\n", program, error.what());

@@ -227,6 +227,37 @@ TEST_F(BadPrices, ImportReadsWhatASpreadsheetSaved) {
               HasSubstr("convert downloads with 'bess-train prices import'"));
 }
 
+/// What the file system says is said with the name, in one line, by whatever option it came.
+TEST_F(BadPrices, LinksInALoopNamesTooLongAndFilesWithoutEndAreOneLine) {
+  std::filesystem::create_symlink(path("two"), path("one"));
+  std::filesystem::create_symlink(path("one"), path("two"));
+  const std::string good = written("good.csv", ordinary_text());
+  const std::string loop = path("one");
+  const std::string too_long = path(std::string(300, 'a'));
+  for (const std::string& name : {loop, too_long, std::string("/dev/zero")}) {
+    std::vector<std::vector<std::string>> commands{
+        {"evaluate", "--prices", good, "--policy", "rbc", "--config", name},
+        {"rules", "check", "--rules", name}};
+    if (name != "/dev/zero") {
+      commands.insert(commands.end(), {{"prices", "stats", name},
+                                       {"prices", "import", name, "--out", path("x.csv")},
+                                       {"prices", "simulate", "--days", "1", "--out", name},
+                                       {"evaluate", "--prices", name, "--policy", "rbc"},
+                                       {"evaluate", "--prices", good, "--policy", name},
+                                       {"train", "--prices", good, "--out", name},
+                                       {"verify", "--student", name}});
+    }
+    for (const std::vector<std::string>& command : commands) {
+      const Result result = run(command);
+      SCOPED_TRACE(command[0] + " " + command[1] + " " + name.substr(0, 40));
+      EXPECT_EQ(result.exit_code, 1) << result.output;
+      EXPECT_THAT(result.output, AllOf(HasSubstr("bess-train: "), Not(HasSubstr("filesystem"))));
+      EXPECT_EQ(std::ranges::count(result.output, '\n'), 1) << result.output;
+    }
+  }
+  EXPECT_TRUE(std::filesystem::is_symlink(std::filesystem::symlink_status(loop)));
+}
+
 TEST_F(BadPrices, GzipIsCalledGzip) {
   const auto raw = [](const std::string& file) {
     std::ifstream stream(file, std::ios::binary);
@@ -244,6 +275,8 @@ TEST_F(BadPrices, GzipIsCalledGzip) {
   std::ofstream(path("none.csv.gz")) << std::string("\x02\0\x03", 3) << packed;
   EXPECT_THAT(evaluate(path("none.csv.gz")).output,
               HasSubstr("none.csv.gz: its name says gzip, its content is not"));
+  EXPECT_THAT(evaluate(written("behind.csv", packed + "2023-01-01T00:00:00Z,1,2\n")).output,
+              HasSubstr("behind.csv: bytes behind the end of its gzip data"));
   EXPECT_THAT(evaluate(written("half.csv", packed.substr(0, packed.size() / 2))).output,
               HasSubstr("truncated or damaged gzip file"));
 }
