@@ -34,7 +34,7 @@ std::optional<WindowRows> kept_rows(const FetchRequest& request, const FetchWind
   if (window.settles_later || !fs::exists(path)) return std::nullopt;
   try {
     WindowRows rows = rows_in_window(read_file(path), path.string(), window, request.now_utc_s);
-    const bool complete = missing_in(window, rows.rows, request.now_utc_s).empty();
+    const bool complete = holes_in(window, rows.rows, request.now_utc_s).empty();
     if (count_of(rows.rows) > 0 && (complete || request.allow_gaps)) return rows;
   } catch (const UserError&) {
   }
@@ -47,7 +47,7 @@ std::optional<WindowRows> fetch_window(const FetchRequest& request, const FetchW
   std::optional<WindowDownload> download = download_window(request, window, interrupted);
   if (!download) return std::nullopt;
   const MarketRows& rows = download->rows.rows;
-  const bool complete = missing_in(window, rows, request.now_utc_s).empty();
+  const bool complete = holes_in(window, rows, request.now_utc_s).empty();
   const bool finished = !window.settles_later && count_of(rows) > 0 && !download->text.empty() &&
                         (complete || request.allow_gaps);
   if (finished) write_file(window_path(request, window), download->text);
@@ -186,7 +186,7 @@ std::vector<WindowGaps> gaps_of(const FetchRequest& request,
   for (std::size_t i = windows.size(); i-- > 0;) {
     const FetchWindow& window = windows[i];
     bool& follow = holds_minutes(window.dataset) ? minutes_follow : quarter_hours_follow;
-    std::vector<Gap> gaps = missing_in(window, rows[i].rows, request.now_utc_s);
+    std::vector<Gap> gaps = holes_in(window, rows[i].rows, request.now_utc_s);
     const bool ends_open = !follow && window.settles_later && !rows[i].lacks_rows_of_total();
     const std::int64_t end_utc_s = std::min(window.until_utc_s, request.now_utc_s);
     if (ends_open && !gaps.empty() &&
@@ -204,11 +204,13 @@ std::vector<WindowGaps> gaps_of(const FetchRequest& request,
 std::string describe_missing(const WindowGaps& of, std::int64_t now_utc_s) {
   const bool minutes = holds_minutes(of.window->dataset);
   const std::int64_t missing_min = minutes_in(of.gaps);
+  const bool has_empty_rows =
+      missing_min > minutes_in(missing_in(*of.window, of.rows->rows, now_utc_s));
   std::string text = fmt::format(
-      "{} of {} {} missing in {}, first from {} to {}", minutes ? missing_min : missing_min / 15,
+      "{} of {} {} {} in {}, first from {} to {}", minutes ? missing_min : missing_min / 15,
       expected_rows(*of.window, now_utc_s), minutes ? "minutes" : "quarter-hours",
-      of.window->dataset, utc_text(of.gaps.front().from_utc_s).view(),
-      utc_text(of.gaps.front().until_utc_s).view());
+      has_empty_rows ? "missing or without a price" : "missing", of.window->dataset,
+      utc_text(of.gaps.front().from_utc_s).view(), utc_text(of.gaps.front().until_utc_s).view());
   const std::optional<std::size_t>& total = of.rows->total;
   if (of.rows->lacks_rows_of_total()) {
     text += fmt::format(" (the server counts {} and sent {})", counted(*total, "row"),

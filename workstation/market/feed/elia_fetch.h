@@ -11,6 +11,7 @@
 #include <string>
 
 #include "workstation/market/feed/fetch_plan.h"
+#include "workstation/market/feed/http_client.h"
 #include "workstation/market/feed/market_join.h"
 #include "workstation/market/series/judged_prices.h"
 
@@ -22,6 +23,8 @@ struct RetryPolicy {
   int attempts_max = 6;
   int attempts_unreachable_max = 3;
   int attempts_unreadable_max = 2;  ///< answers that arrive whole and are no data
+  int attempts_slow_max = 2;        ///< answers that do not arrive in time
+  HttpLimits limits{};              ///< of one answer
   double first_wait_s = 1;          ///< doubled after each attempt
   double wait_max_s = 900;          ///< a server that asks for longer ends the run, to be resumed
 };

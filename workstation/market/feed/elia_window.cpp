@@ -65,6 +65,15 @@ std::int64_t end_of(const FetchWindow& window, std::int64_t now_utc_s) {
   return std::max(window.from_utc_s, std::min(window.until_utc_s, now_utc_s - now_utc_s % step_s));
 }
 
+/// A quarter-hour without a price is a hole; of the minutes Elia publishes some without one.
+std::set<std::int64_t> settled_times_of(const MarketRows& rows) {
+  std::set<std::int64_t> times;
+  for (const QuarterHour& row : rows.quarter_hours) {
+    if (is_published(row.price_eur_per_mwh)) times.insert(row.utc_s);
+  }
+  return times;
+}
+
 /// Times of the rows of the window's own kind.
 std::set<std::int64_t> times_of(const FetchWindow& window, const MarketRows& rows) {
   std::set<std::int64_t> times;
@@ -74,6 +83,25 @@ std::set<std::int64_t> times_of(const FetchWindow& window, const MarketRows& row
     for (const QuarterHour& row : rows.quarter_hours) times.insert(row.utc_s);
   }
   return times;
+}
+
+/// Stretches of the window that have ended and none of the times lies in.
+std::vector<Gap> gaps_between(const std::set<std::int64_t>& times, const FetchWindow& window,
+                              std::int64_t now_utc_s) {
+  const std::int64_t step_s = step_of(window);
+  std::vector<Gap> gaps;
+  std::int64_t next_s = window.from_utc_s;
+  const auto missing_until = [&](std::int64_t utc_s) {
+    if (next_s < utc_s) gaps.push_back({next_s, utc_s});
+  };
+  const std::int64_t end_s = end_of(window, now_utc_s);
+  for (const std::int64_t utc_s : times) {
+    if (utc_s < window.from_utc_s || utc_s >= end_s) continue;
+    missing_until(utc_s);
+    next_s = utc_s + step_s;
+  }
+  missing_until(end_s);
+  return gaps;
 }
 
 /// "December 2022" would do for a month, but windows are days as well.
@@ -87,6 +115,7 @@ std::string describe_window(const FetchRequest& request, const FetchWindow& wind
 struct Attempts {
   int all = 0;
   int unreadable = 0;  ///< a whole answer, but no data
+  int slow = 0;
 };
 
 /// Seconds until the next attempt; throws when there should be none.
@@ -96,7 +125,8 @@ double next_wait_s(const FetchRequest& request, const FetchWindow& window, const
   const bool unreachable = outcome.kind == Kind::kUnreachable;
   const int attempts_max = unreachable ? retry.attempts_unreachable_max : retry.attempts_max;
   if (outcome.kind == Kind::kRefused || attempts.all >= attempts_max ||
-      attempts.unreadable >= retry.attempts_unreadable_max) {
+      attempts.unreadable >= retry.attempts_unreadable_max ||
+      attempts.slow >= retry.attempts_slow_max) {
     fail(
         "{} ({}): {}; check --base-url and the network and run the same command again, finished "
         "windows are kept",
@@ -120,7 +150,9 @@ HttpOutcome get_rows(const FetchRequest& request, const FetchWindow& window,
                      const std::atomic<bool>& interrupted, WindowDownload& download,
                      Attempts& attempts) {
   ++attempts.all;
-  HttpOutcome outcome = http_get(rows_url(request.base_url, window), interrupted);
+  HttpOutcome outcome =
+      http_get(rows_url(request.base_url, window), interrupted, request.retry.limits);
+  attempts.slow += outcome.kind == Kind::kSlow ? 1 : 0;
   if (outcome.kind != Kind::kDone) return outcome;
   try {
     download.rows = rows_in_window(outcome.body, window.dataset, window, request.now_utc_s);
@@ -156,7 +188,8 @@ std::optional<std::size_t> server_total(const FetchRequest& request, const Fetch
                                         const std::atomic<bool>& interrupted) {
   constexpr double kDeadline_s = 30;
   const HttpOutcome outcome =
-      http_get(total_url(request.base_url, window), interrupted, kDeadline_s);
+      http_get(total_url(request.base_url, window), interrupted,
+               {.deadline_s = kDeadline_s, .bytes_max = std::size_t{1} << 20});
   if (outcome.kind != Kind::kDone) return std::nullopt;
   const Json json = Json::parse(outcome.body);
   const std::optional<double> total = json.value()["total_count"].number();
@@ -300,20 +333,13 @@ std::size_t expected_rows(const FetchWindow& window, std::int64_t now_utc_s) {
 
 std::vector<Gap> missing_in(const FetchWindow& window, const MarketRows& rows,
                             std::int64_t now_utc_s) {
-  const std::int64_t step_s = step_of(window);
-  std::vector<Gap> gaps;
-  std::int64_t next_s = window.from_utc_s;
-  const auto missing_until = [&](std::int64_t utc_s) {
-    if (next_s < utc_s) gaps.push_back({next_s, utc_s});
-  };
-  const std::int64_t end_s = end_of(window, now_utc_s);
-  for (const std::int64_t utc_s : times_of(window, rows)) {
-    if (utc_s < window.from_utc_s || utc_s >= end_s) continue;
-    missing_until(utc_s);
-    next_s = utc_s + step_s;
-  }
-  missing_until(end_s);
-  return gaps;
+  return gaps_between(times_of(window, rows), window, now_utc_s);
+}
+
+std::vector<Gap> holes_in(const FetchWindow& window, const MarketRows& rows,
+                          std::int64_t now_utc_s) {
+  if (holds_minutes(window.dataset)) return missing_in(window, rows, now_utc_s);
+  return gaps_between(settled_times_of(rows), window, now_utc_s);
 }
 
 std::optional<WindowDownload> download_window(const FetchRequest& request,

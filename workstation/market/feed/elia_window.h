@@ -42,6 +42,9 @@ std::size_t expected_rows(const FetchWindow& window, std::int64_t now_utc_s);
 /// Stretches of the window that have ended and have no row of the window's kind.
 std::vector<Gap> missing_in(const FetchWindow& window, const MarketRows& rows,
                             std::int64_t now_utc_s);
+/// The same, and quarter-hours whose row has no price: nobody will be paid for them.
+std::vector<Gap> holes_in(const FetchWindow& window, const MarketRows& rows,
+                          std::int64_t now_utc_s);
 
 struct WindowDownload {
   std::string text;  ///< all answers as one; empty when they cannot be joined

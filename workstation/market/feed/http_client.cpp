@@ -20,20 +20,21 @@ namespace {
 using Kind = HttpOutcome::Kind;
 
 constexpr long kConnectTimeout_s = 20;
-constexpr long kSilenceTimeout_s = 60;  // an export of a month is prepared for some seconds
-constexpr std::size_t kBodyMax = std::size_t{512} << 20;
 constexpr std::size_t kReasonMax = 200;  // of a server's own words in a message
 
 struct Received {
   std::string body;
+  std::size_t bytes_max = 0;
+  bool is_too_large = false;
   std::string retry_after, rate_limit_reset;
   bool has_length = false;
 };
 
 std::size_t take_body(char* data, std::size_t size, std::size_t count, void* user) {
-  std::string& body = static_cast<Received*>(user)->body;
-  if (body.size() + size * count > kBodyMax) return 0;
-  body.append(data, size * count);
+  auto& received = *static_cast<Received*>(user);
+  received.is_too_large = received.body.size() + size * count > received.bytes_max;
+  if (received.is_too_large) return 0;
+  received.body.append(data, size * count);
   return size * count;
 }
 
@@ -93,6 +94,36 @@ Kind kind_of_transport_error(CURLcode code) {
     default:  // certificate, address, ...
       return Kind::kRefused;
   }
+}
+
+/// Of a transfer that did not come to its end.
+HttpOutcome outcome_of_failure(CURLcode code, const Received& received, const HttpLimits& limits,
+                               const char* error_text, double took_s) {
+  if (received.is_too_large) {
+    return {Kind::kRefused,
+            {},
+            fmt::format("the answer is larger than {} bytes, more than is meant here",
+                        limits.bytes_max),
+            {}};
+  }
+  if (code == CURLE_OPERATION_TIMEDOUT && took_s >= 0.95 * limits.deadline_s) {
+    return {Kind::kSlow,
+            {},
+            fmt::format("the answer was not whole after {:g} s ({})", limits.deadline_s,
+                        counted(received.body.size(), "byte")),
+            {}};
+  }
+  const bool has_begun = !received.body.empty();
+  if (code == CURLE_OPERATION_TIMEDOUT && has_begun) {
+    return {Kind::kSlow,
+            {},
+            fmt::format("the answer came too slowly, less than {} bytes a second for {} s",
+                        limits.bytes_per_s_min, limits.slow_s),
+            {}};
+  }
+  const std::string reason =
+      one_line(error_text[0] != '\0' ? error_text : curl_easy_strerror(code), kReasonMax);
+  return {kind_of_transport_error(code), {}, reason, {}};
 }
 
 HttpOutcome outcome_of_status(long status, Received received) {
@@ -158,9 +189,10 @@ std::optional<double> wait_seconds(const std::string& header_value, double now_u
 }
 
 HttpOutcome http_get(const std::string& url, const std::atomic<bool>& interrupted,
-                     double deadline_s) {
+                     const HttpLimits& limits) {
   const Handle curl = new_handle();
   Received received;
+  received.bytes_max = limits.bytes_max;
   char error_text[CURL_ERROR_SIZE] = "";
   curl_easy_setopt(curl.get(), CURLOPT_URL, url.c_str());
   curl_easy_setopt(curl.get(), CURLOPT_PROTOCOLS_STR, "http,https");
@@ -170,9 +202,9 @@ HttpOutcome http_get(const std::string& url, const std::atomic<bool>& interrupte
   curl_easy_setopt(curl.get(), CURLOPT_SSL_VERIFYPEER, 1L);
   curl_easy_setopt(curl.get(), CURLOPT_SSL_VERIFYHOST, 2L);
   curl_easy_setopt(curl.get(), CURLOPT_CONNECTTIMEOUT, kConnectTimeout_s);
-  curl_easy_setopt(curl.get(), CURLOPT_TIMEOUT_MS, static_cast<long>(1000 * deadline_s));
-  curl_easy_setopt(curl.get(), CURLOPT_LOW_SPEED_LIMIT, 1L);
-  curl_easy_setopt(curl.get(), CURLOPT_LOW_SPEED_TIME, kSilenceTimeout_s);
+  curl_easy_setopt(curl.get(), CURLOPT_TIMEOUT_MS, static_cast<long>(1000 * limits.deadline_s));
+  curl_easy_setopt(curl.get(), CURLOPT_LOW_SPEED_LIMIT, limits.bytes_per_s_min);
+  curl_easy_setopt(curl.get(), CURLOPT_LOW_SPEED_TIME, limits.slow_s);
   curl_easy_setopt(curl.get(), CURLOPT_ACCEPT_ENCODING, "");  // whatever libcurl can unpack
   curl_easy_setopt(curl.get(), CURLOPT_USERAGENT, "bess-train/" BESS_VERSION);
   curl_easy_setopt(curl.get(), CURLOPT_NOSIGNAL, 1L);
@@ -186,9 +218,9 @@ HttpOutcome http_get(const std::string& url, const std::atomic<bool>& interrupte
   curl_easy_setopt(curl.get(), CURLOPT_XFERINFODATA, &interrupted);
   const CURLcode code = curl_easy_perform(curl.get());
   if (code != CURLE_OK) {
-    const std::string reason =
-        one_line(error_text[0] != '\0' ? error_text : curl_easy_strerror(code), kReasonMax);
-    return {kind_of_transport_error(code), {}, reason, {}};
+    double took_s = 0;
+    curl_easy_getinfo(curl.get(), CURLINFO_TOTAL_TIME, &took_s);
+    return outcome_of_failure(code, received, limits, error_text, took_s);
   }
   long status = 0;
   curl_easy_getinfo(curl.get(), CURLINFO_RESPONSE_CODE, &status);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <optional>
 #include <string>
 
@@ -15,6 +16,8 @@ struct HttpOutcome {
     kTransient,    ///< 5xx, time-out, cut connection: worth another try
     kUnreachable,  ///< no such host, nobody listens: worth few tries
     kRefused,      ///< anything that another try cannot mend
+    kSlow,         ///< it came, and too slowly: worth few tries
+    kWrongClock,   ///< rows of the future: nobody's answer, a caller's finding
     kInterrupted,  ///< the user stopped it
   };
   Kind kind;
@@ -23,10 +26,18 @@ struct HttpOutcome {
   std::optional<double> wait_s;  ///< what the server asked for
 };
 
-/// Returns soon after `interrupted` is raised, and as kTransient when the whole of it takes longer
-/// than `deadline_s`; 0 = only silence ends it.
+/// What an answer may cost.
+struct HttpLimits {
+  double deadline_s = 1'200;     ///< of the whole of it
+  long bytes_per_s_min = 1'000;  ///< over `slow_s`: less is silence, or as bad
+  long slow_s = 60;              ///< an export of a month is prepared for some seconds
+  std::size_t bytes_max = std::size_t{512} << 20;  ///< of the body, unpacked
+};
+
+/// Returns soon after `interrupted` is raised, and at the latest as `limits` say: too slow or too large is
+/// told as such.
 HttpOutcome http_get(const std::string& url, const std::atomic<bool>& interrupted,
-                     double deadline_s = 0);
+                     const HttpLimits& limits);
 
 /// Where a redirect may lead: never from https to plain http.
 const char* redirect_protocols(const std::string& url);

@@ -19,11 +19,13 @@ using Kind = HttpOutcome::Kind;
 
 constexpr std::size_t kRowsPerLook = 60;   // the hour that the source promises; a poll costs 16 kB
 constexpr std::size_t kRowsPerPage = 100;  // the API's most
-constexpr std::size_t kRowsMax = 1600;     // more than the longest day has
+constexpr std::size_t kPageBytesMax = std::size_t{4} << 20;  // of a hundred rows, which are 30 kB
+constexpr std::size_t kRowsMax = 1600;                       // more than the longest day has
 constexpr double kBackoffMax_s = 300;
 constexpr double kToldWaitMax_s = 86'400;
-constexpr std::int64_t kFutureMax_s = 86'400;  // a clock may be off; a stray date makes no file
-constexpr std::int64_t kClockSlack_s = 5;
+constexpr std::int64_t kFutureMax_s = 86'400;  // of a clock that is off; a stray date is none
+constexpr std::int64_t kEarlyMax_s =
+    60;  // of clocks that are a little apart: the row is left for later
 
 bool same(double a, double b) { return a == b || (!is_published(a) && !is_published(b)); }
 
@@ -73,6 +75,9 @@ class Follower {
       const Page page = get_page(offset, wanted, interrupted);
       if (page.outcome.kind == Kind::kInterrupted) return false;
       if (page.outcome.kind != Kind::kDone) return fail_look(page.outcome, start_s);
+      if (const MinuteRow* const early = row_of_the_future(page)) {
+        return fail_look(clock_trouble(*early, page.arrived_utc_s), start_s);
+      }
       const bool met_known = take(page, start_s, news);
       const bool source_is_done =
           page.rows.size() < wanted || page.rows.back().utc_s >= oldest_utc_s;
@@ -93,7 +98,10 @@ class Follower {
     const std::string url = fmt::format(
         "{}/catalog/datasets/{}/records?order_by=datetime%20desc&limit={}&offset={}&timezone=UTC",
         request_.base_url, dataset_, limit, offset);
-    Page page{http_get(url, interrupted, request_.deadline_s), {}, request_.clock.utc_s()};
+    Page page{
+        http_get(url, interrupted, {.deadline_s = request_.deadline_s, .bytes_max = kPageBytesMax}),
+        {},
+        request_.clock.utc_s()};
     if (page.outcome.kind != Kind::kDone) return page;
     try {
       page.rows = parse_market_json(page.outcome.body, dataset_).minutes;
@@ -105,13 +113,40 @@ class Follower {
     return page;
   }
 
+  static std::int64_t early_s(const MinuteRow& row, std::int64_t arrived_utc_s) {
+    return row.utc_s + 60 - arrived_utc_s;
+  }
+
+  /// A row so early that one of the two clocks is wrong: then no row of the page has arrived when it seems.
+  static const MinuteRow* row_of_the_future(const Page& page) {
+    for (const MinuteRow& row : page.rows) {
+      const std::int64_t by_s = early_s(row, page.arrived_utc_s);
+      if (by_s > kEarlyMax_s && by_s <= kFutureMax_s) return &row;
+    }
+    return nullptr;
+  }
+
+  static HttpOutcome clock_trouble(const MinuteRow& row, std::int64_t arrived_utc_s) {
+    return {Kind::kWrongClock, {}, early_text(row, arrived_utc_s), {}};
+  }
+
+  static std::string early_text(const MinuteRow& row, std::int64_t arrived_utc_s) {
+    return fmt::format(
+        "the row of {} came at {}, {} s before its minute had ended: is this computer's clock "
+        "right, and the source's?",
+        utc_text(row.utc_s).view(), utc_text(arrived_utc_s).view(), early_s(row, arrived_utc_s));
+  }
+
   /// True when the oldest row of the page was known.
   bool take(const Page& page, double start_s, ArrivedRows& news) {
     const bool looked_lately = start_s - last_look_s_ <= 2 * request_.poll_s;
     bool oldest_known = true;
     for (const MinuteRow& row : page.rows) {
-      if (row.utc_s > page.arrived_utc_s + kFutureMax_s) continue;
-      if (row.utc_s + 60 > page.arrived_utc_s + kClockSlack_s) tell_clock(row, page.arrived_utc_s);
+      if (row.utc_s + 60 >
+          page.arrived_utc_s) {  // its minute has not ended: nothing arrives before
+        tell_clock(row, page.arrived_utc_s);
+        continue;
+      }
       const RecordedMinute known = folder_.recorded(row.utc_s);
       oldest_known =
           of_prices_ ? known.price_eur_per_mwh.has_value() : known.system_imbalance_mw.has_value();
@@ -139,6 +174,10 @@ class Follower {
     if (outcome.kind == Kind::kRefused && of_prices_ && !has_answered_) {
       fail("{}: {}: {}; check --url", request_.base_url, dataset_, outcome.reason);
     }
+    if (outcome.kind == Kind::kWrongClock && !has_answered_) {
+      fail("{}: {}: {} Nothing is recorded until they agree", request_.base_url, dataset_,
+           outcome.reason);
+    }
     const double doubled_s = request_.poll_s * static_cast<double>(1 << std::min(failures_, 10));
     const double told_s = std::min(outcome.wait_s.value_or(0), kToldWaitMax_s);
     const double wait_s =
@@ -158,9 +197,7 @@ class Follower {
     if (clock_told_) return;
     clock_told_ = true;
     request_.tell({RecorderEvent::Kind::kClock, dataset_,
-                   fmt::format("the row of {} came at {}, before its minute had ended: is this "
-                               "computer's clock right?",
-                               utc_text(row.utc_s).view(), utc_text(arrived_utc_s).view())});
+                   early_text(row, arrived_utc_s) + " It is taken when its minute has ended"});
   }
 
   const RecordRequest& request_;

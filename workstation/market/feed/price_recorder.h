@@ -5,6 +5,9 @@
 // A look asks for the newest 60 rows, the hour that the source promises, and pages back when it does not
 // meet what is known: at the start, and after an outage. A row's arrival counts as seen when the look
 // before it reached as far back, did not show it, and was at most two polls ago; otherwise it was found.
+// No row arrives before its minute has ended: one that seems to, by up to a minute, is left for a later look;
+// by more, one of the two clocks is wrong, and no row of that answer is taken. At the first look that is an
+// error, later an outage.
 // Nothing of the network ends a recorder: it backs off, waits as told, says once that there is trouble
 // and once that it is over.
 #pragma once
@@ -63,7 +66,7 @@ struct RecordSummary {
 };
 
 /// Until `until_utc_s` or interrupted. Throws UserError when the folder is another recorder's or cannot
-/// be written, or when the first answer says that there is no such data set.
+/// be written, or when the first answer says that there is no such data set, or has rows of the future.
 RecordSummary record_prices(const RecordRequest& request, const std::atomic<bool>& interrupted);
 
 }  // namespace bess

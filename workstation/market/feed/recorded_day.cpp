@@ -60,6 +60,13 @@ RecordedLine recorded_line(const CsvTable& table, std::size_t row, std::string_v
   line.system_imbalance_mw = recorded_value(table, row, kImbalanceColumn, kImbalanceArrivedColumn);
   line.quality = std::string_view(table.text(row, kQualityColumn));
   line.seen = table.text(row, kArrivalColumn) == kSeen;
+  for (const auto& value : {line.price_eur_per_mwh, line.system_imbalance_mw}) {
+    if (!value || value->arrived_utc_s >= line.minute_utc_s + 60) continue;
+    fail(
+        "{}: the line of {}: arrived at {}, before its minute had ended: the clock of the recorder "
+        "or of the source was wrong; leave the file out",
+        name, table.text(row, kMinuteColumn), utc_text(value->arrived_utc_s).view());
+  }
   if (line.minute_utc_s % 60 != 0 || (!line.seen && table.text(row, kArrivalColumn) != kFound)) {
     fail(
         "{}: the line of {}: not a whole minute, or its arrival is neither {} nor {}; mend the "

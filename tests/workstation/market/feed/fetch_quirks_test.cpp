@@ -451,6 +451,90 @@ TEST_F(FetchQuirks, OfOrderAndNumber) { expect(order_and_number()); }
 TEST_F(FetchQuirks, OfForm) { expect(forms()); }
 TEST_F(FetchQuirks, OfTransport) { expect(transport()); }
 
+/// Rows that are there and say nothing: as good as none, where money is counted.
+TEST_F(FetchQuirks, ASettledHoleIsOneWhateverItIsMadeOf) {
+  const auto settled = [](const std::string& price) -> Quirk {
+    return [price](const Ask& ask, Answer& answer) {
+      if (ask.minutes() || ask.wants_total) return;
+      for (QuirkyRow& row : answer.rows) {
+        const bool in_hole = row.utc_s >= utc_of("2023-03-25T10:00:00Z") &&
+                             row.utc_s < utc_of("2023-03-25T11:00:00Z");
+        if (in_hole) row.price = price;
+      }
+      if (price == "null") {
+        answer.format = [](const Ask& of, const auto& rows) { return as_json(of, rows, ""); };
+      }
+    };
+  };
+  for (const char* price : {"", "null", "NaN", "nan", "\"\"", "-"}) {
+    SCOPED_TRACE(price);
+    const QuirkyElia elia(settled(price));
+    FetchRequest wanted = request(elia);
+    const std::string error = user_error_of([&] { fetch(wanted); });
+    const bool is_hole =
+        error.find(
+            "4 of 188 quarter-hours missing or without a price in ods047, "
+            "first from 2023-03-25T10:00:00Z to 2023-03-25T11:00:00Z") != error.npos;
+    EXPECT_TRUE(is_hole || error.find("is not a number") != error.npos) << error;
+    EXPECT_FALSE(std::filesystem::exists(wanted.out));
+    if (!is_hole) continue;
+    EXPECT_THAT(error, HasSubstr("--allow-gaps"));
+    wanted.allow_gaps = true;
+    fetch(wanted);
+    EXPECT_THAT(rows_of(wanted.out), HasSubstr("\n2023-03-25T10:00:00Z,"));
+    std::filesystem::remove(wanted.out);
+    std::filesystem::remove_all(fetch_cache_folder(wanted));
+  }
+}
+
+/// Kept windows have the hole as well: a second run asks again, and takes what the server has mended.
+TEST_F(FetchQuirks, AKeptWindowWithASettledHoleIsAskedForAgain) {
+  std::atomic<bool> is_mended{false};
+  const QuirkyElia elia([&is_mended](const Ask& ask, Answer& answer) {
+    if (ask.minutes() || ask.wants_total || is_mended) return;
+    answer.rows[40].price.clear();
+  });
+  const FetchRequest wanted = request(elia);
+  EXPECT_THAT(user_error_of([&] { fetch(wanted); }), HasSubstr("1 of 188 quarter-hours"));
+  is_mended = true;
+  fetch(wanted);
+  EXPECT_TRUE(rows_of(wanted.out) == whole());
+}
+
+TEST_F(FetchQuirks, AnAnswerThatDripsEndsAndIsToldAsSlow) {
+  const QuirkyElia elia(on_minutes([](const Ask&, Answer& answer) { answer.drip_ms = 20; }));
+  FetchRequest wanted = request(elia);
+  wanted.retry.limits = {.deadline_s = 60, .bytes_per_s_min = 1'000, .slow_s = 1};
+  EXPECT_THAT(
+      user_error_of([&] { fetch(wanted); }),
+      HasSubstr("the answer came too slowly, less than 1000 bytes a second for 1 s (2 attempts)"));
+  EXPECT_EQ(elia.minute_requests(), 2);
+}
+
+TEST_F(FetchQuirks, AnAnswerThatComesSteadilyAndNeverEndsHasADeadline) {
+  const QuirkyElia elia(on_minutes([](const Ask&, Answer& answer) { answer.drip_ms = 5; }));
+  FetchRequest wanted = request(elia);
+  wanted.retry.limits = {.deadline_s = 1.5, .bytes_per_s_min = 10, .slow_s = 1};
+  EXPECT_THAT(user_error_of([&] { fetch(wanted); }),
+              HasSubstr("the answer was not whole after 1.5 s ("));
+  EXPECT_EQ(elia.minute_requests(), 2);
+}
+
+TEST_F(FetchQuirks, AnAnswerTooLargeSaysSo) {
+  for (const bool is_packed : {false, true}) {
+    const QuirkyElia elia(on_minutes([is_packed](const Ask&, Answer& answer) {
+      const std::string bomb = quirky_csv({}, {}) + std::string(3'000'000, '#') + "\n";
+      answer.body = is_packed ? gzipped(bomb) : bomb;
+      if (is_packed) answer.headers = "Content-Encoding: gzip\r\n";
+    }));
+    FetchRequest wanted = request(elia);
+    wanted.retry.limits.bytes_max = 1'000'000;
+    EXPECT_THAT(user_error_of([&] { fetch(wanted); }),
+                HasSubstr("the answer is larger than 1000000 bytes, more than is meant here"));
+    EXPECT_EQ(elia.minute_requests(), 1) << "another try would bring the same";
+  }
+}
+
 TEST_F(FetchQuirks, AllowedGapsAreWrittenAndSaid) {
   const QuirkyElia elia(
       on_rows([](auto& rows) { leave_out(rows, "2023-03-25T10:00:00Z", "2023-03-25T11:00:00Z"); }));

@@ -375,14 +375,62 @@ TEST_F(PriceRecorder, AFullDiskIsAnErrorAndTakesNothing) {
   EXPECT_EQ(lines("2025-06-15").size(), 2u);
 }
 
-TEST_F(PriceRecorder, AClockThatIsSlowIsToldOf) {
-  elia_.publish(kNoon_s + 600, 1, 2);
+/// Half a minute off: each row is there before it can be, and is taken when it can.
+TEST_F(PriceRecorder, AClockThatIsALittleSlowCostsNoRow) {
+  elia_.publish(kNoon_s - 60, 1, 2);
+  elia_.publish(kNoon_s - 30 - kNoon_s % 60 + 30, 3, 4);  // ends in a minute
   elia_.publish(kNoon_s + 100 * 86'400, 1, 2);
-  record({[] {}});
-  EXPECT_THAT(told(Kind::kClock), ElementsAre(HasSubstr("ods161: the row of 2025-06-15T10:10:00Z"),
-                                              HasSubstr("ods169: ")));
-  EXPECT_EQ(lines("2025-06-15").size(), 1u);
+  record({[] {}, [] {}, [] {}});
+  EXPECT_THAT(told(Kind::kClock),
+              ElementsAre(HasSubstr("ods161: the row of 2025-09-23"), HasSubstr("ods169: ")));
+  EXPECT_THAT(lines("2025-06-15"),
+              ElementsAre("2025-06-15T09:59:00Z,1,2,2025-06-15T10:00:00Z,2025-06-15T10:00:00Z,"
+                          "DataIssue,found",
+                          HasSubstr("2025-06-15T10:00:00Z,3,4,2025-06-15T10:01:00Z,")));
   EXPECT_FALSE(fs::exists(file("2025-09-23"))) << "a stray date makes no file";
+}
+
+/// What came was stamped hours ahead, or this clock is hours behind: no row of it has arrived when it seems.
+TEST_F(PriceRecorder, ASourceAheadOfTheClockIsAnErrorAtTheStart) {
+  for (int minute = 0; minute < 240; ++minute) {
+    elia_.publish(kNoon_s + 7'200 - 60 * (minute + 1), minute, minute);
+  }
+  EXPECT_THAT(user_error_of([this] { record({[] {}}); }),
+              testing::AllOf(HasSubstr("ods161: the row of 2025-06-15T11:59:00Z came at "
+                                       "2025-06-15T10:00:00Z, 7200 s before its minute had ended"),
+                             HasSubstr("Nothing is recorded until they agree")));
+  EXPECT_FALSE(fs::exists(file("2025-06-15")));
+}
+
+/// Later it is told as an outage; nothing of such an answer is recorded, and it goes on when they agree.
+TEST_F(PriceRecorder, ASourceThatJumpsAheadIsAnOutage) {
+  elia_.publish(kNoon_s - 60, 1, 2);
+  const RecordSummary summary = record({[this] {
+                                          elia_.publish(kNoon_s - 120, 5, 6);
+                                          elia_.publish(kNoon_s + 3'600, 3, 4);
+                                        },
+                                        [] {},
+                                        [] {}});
+  EXPECT_THAT(told(Kind::kOutage),
+              ElementsAre(HasSubstr("before its minute had ended"), HasSubstr("ods169: ")));
+  EXPECT_EQ(lines("2025-06-15").size(), 1u);
+  EXPECT_THAT(summary.trouble, HasSubstr("is this computer's clock right"));
+}
+
+TEST_F(PriceRecorder, AnArrivalBeforeItsMinutesEndIsRefusedByWhoReadsTheDay) {
+  elia_.publish(kNoon_s - 60, 1, 2);
+  record({});
+  const std::string good = read_file(file("2025-06-15"));
+  EXPECT_NO_THROW(parse_recorded_rows(good, "day.csv"));
+  for (const char* column : {",2025-06-15T10:00:00Z,DataIssue", ",1,2,2025-06-15T10:00:00Z"}) {
+    std::string early = good;
+    const std::size_t at = early.find(column);
+    ASSERT_NE(at, early.npos);
+    early.replace(early.find("10:00:00Z", at), 9, "09:59:59Z");
+    EXPECT_THAT(user_error_of([&] { parse_recorded_rows(early, "day.csv"); }),
+                HasSubstr("day.csv: the line of 2025-06-15T09:59:00Z: arrived at "
+                          "2025-06-15T09:59:59Z, before its minute had ended"));
+  }
 }
 
 TEST_F(PriceRecorder, CtrlCAndSigtermEndTheProgramInOrder) {

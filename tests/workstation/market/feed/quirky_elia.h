@@ -5,10 +5,12 @@
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <functional>
 #include <map>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "shared/utc_text.h"
@@ -42,6 +44,7 @@ struct Answer {
   bool has_length = true;
   std::size_t sent_max = std::string::npos;  ///< bytes of the body, the length notwithstanding
   bool is_slow = false;
+  int drip_ms = 0;  ///< between single bytes of the body
 };
 
 inline std::string quirky_csv(const Ask& ask, const std::vector<QuirkyRow>& rows,
@@ -122,6 +125,14 @@ class QuirkyElia {
     std::string head = "HTTP/1.1 " + answer.status + "\r\nConnection: close\r\n" + answer.headers;
     if (answer.has_length) head += "Content-Length: " + std::to_string(body.size()) + "\r\n";
     const std::string sent = body.substr(0, answer.sent_max);
+    if (answer.drip_ms > 0) {
+      connection.send(head + "\r\n");
+      for (const char c : sent) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(answer.drip_ms));
+        if (server_.is_stopping() || !connection.send(std::string(1, c))) break;
+      }
+      return false;
+    }
     if (!answer.is_slow) {
       connection.send(head + "\r\n" + sent);
       return false;
