@@ -20,7 +20,8 @@ constexpr const char* kRunHelp =
   bess-edge [--config FILE] --self-test                 can this machine run the controller here?
   bess-edge signature                                   one number for what this build decides
   bess-edge history                                     versions that this machine has run
-  bess-edge COMMAND --help                              more on one of them
+  bess-edge help [COMMAND]                              this text, or more on one of them
+  bess-edge version                                     version and the student that is built in
 
   --config FILE  settings in TOML; edge/bess-edge.toml documents every key; default /etc/bess/edge.toml
   --check        check settings, map, student and sign check, print the registers that would be
@@ -31,10 +32,10 @@ constexpr const char* kRunHelp =
   --cycles N     stop cleanly after N cycles
   --record FILE  besides, write every request to the battery and its reply to FILE (see bess-edge
                  record --help): what bess-sim battery --replay plays again
-  --help         this text
+  --help         this text; behind a command, more on that one
   --version      version and the student that is built in
 
-Nothing is written to the battery unless the file says control = true and `bess-edge commission` has
+Options may stand before or behind the command. Nothing is written to the battery unless the file says control = true and `bess-edge commission` has
 found its sign right. One controller to one battery: a second one is refused, also one that only
 reads (--check too), because many batteries serve one connection.
 SIGTERM or Ctrl-C: 0 W is ordered, the battery is released, exit 0. SIGHUP: exit 0 and leave the order
@@ -218,7 +219,8 @@ private, texts beyond what the map's identity check asks for, and every register
 file can be given away. It holds neither addresses of the network nor prices. Refused while a bess-edge
 controls the battery: record that one with bess-edge run --record FILE, which has the orders too.
 What is made of it: bess-sim battery --replay FILE, and bess-edge map check --against FILE.
-Exit codes: 0 recorded   1 the file cannot be written, or nobody answered   2 the command line is bad
+Exit codes: 0 recorded   1 the file cannot be written, nobody answered, or the battery is in use
+2 the command line is bad
 
   bess-edge record --for 1h
   bess-edge record --for 5m --every 2s --out inverter.jsonl --config /etc/bess/edge.toml

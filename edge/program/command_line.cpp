@@ -2,26 +2,22 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "edge/control/policy.h"
 #include "edge/program/command_help.h"
 #include "edge/program/duration_text.h"
 #include "shared/host/build_info.h"
+#include "shared/host/nearest_word.h"
 #include "shared/utc_text.h"
 
 namespace bess {
 namespace {
-
-CommandLineResult usage_error(std::string_view message, std::string_view argument) {
-  std::fprintf(stderr, "bess-edge: %.*s%.*s (see bess-edge --help)\n",
-               static_cast<int>(message.size()), message.data(), static_cast<int>(argument.size()),
-               argument.data());
-  return CommandLineResult::kExitUsage;
-}
 
 struct UtcInstant {
   std::int64_t CommandLine::*utc_s;
@@ -55,6 +51,17 @@ constexpr CommandName kCommandNames[] = {
     {"map", SubCommand::kMapCheck},
     {"history", SubCommand::kHistory},
 };
+
+/// `topic`: of which command the help knows more; run: of all.
+CommandLineResult usage_error(SubCommand topic, const std::string& message) {
+  std::string help = "bess-edge ";
+  for (const CommandName& known : kCommandNames) {
+    const bool is_it = known.command == topic && topic != SubCommand::kRun;
+    if (is_it) help.append(known.name).append(topic == SubCommand::kMapCheck ? " check " : " ");
+  }
+  std::fprintf(stderr, "bess-edge: %s (see %s--help)\n", message.c_str(), help.c_str());
+  return CommandLineResult::kExitUsage;
+}
 
 bool find_command(std::string_view name, SubCommand& command) {
   for (const CommandName& known : kCommandNames) {
@@ -123,6 +130,43 @@ const Option* find_option(SubCommand command, std::string_view name) {
   return nullptr;
 }
 
+/// Of any command: those that share a name also share whether a value follows.
+const Option* find_option(std::string_view name) {
+  for (const Option& option : kOptions) {
+    if (option.name == name) return &option;
+  }
+  return nullptr;
+}
+
+bool takes_value(const Option& option) {
+  return !std::holds_alternative<bool CommandLine::*>(option.target) &&
+         !std::holds_alternative<SubCommand>(option.target);
+}
+
+bool is_help(std::string_view word) { return word == "--help" || word == "-h"; }
+
+std::vector<std::string> options_of(SubCommand command) {
+  std::vector<std::string> names = {"--help", "--version"};
+  for (const Option& option : kOptions) {
+    if (option.command == command) names.emplace_back(option.name);
+  }
+  return names;
+}
+
+CommandLineResult unknown_command(std::string_view name) {
+  std::vector<std::string> known = {"help", "version"};
+  for (const CommandName& command : kCommandNames) known.emplace_back(command.name);
+  std::string meant = did_you_mean(name, known);
+  if (meant.empty()) meant = did_you_mean("--" + std::string(name), options_of(SubCommand::kRun));
+  return usage_error(SubCommand::kRun, "unknown command " + std::string(name) + meant);
+}
+
+CommandLineResult unknown_option(SubCommand command, std::string_view name) {
+  const std::string_view bare = name.substr(0, name.find('='));  // of --name=value
+  return usage_error(
+      command, "unknown option " + std::string(name) + did_you_mean(bare, options_of(command)));
+}
+
 bool parse_count(std::string_view text, std::int64_t& value) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   return error == std::errc{} && end == text.data() + text.size() && value > 0;
@@ -130,28 +174,29 @@ bool parse_count(std::string_view text, std::int64_t& value) {
 
 /// Stores the option's value; false after printing what is wrong with it.
 bool store(const Option& option, std::string_view value, CommandLine& line) {
+  const std::string name(option.name);
+  const std::string given(value);
   if (const auto* text = std::get_if<std::string CommandLine::*>(&option.target)) {
     line.*(*text) = value;
     if (!value.empty()) return true;  // "$UNSET" must not mean the installed file
-    usage_error(std::string(option.name) + " needs a file, not an empty text", "");
+    usage_error(option.command, name + " needs a file, not an empty text");
     return false;
   } else if (const auto* count = std::get_if<std::int64_t CommandLine::*>(&option.target)) {
     if (parse_count(value, line.*(*count))) return true;
-    usage_error(std::string(option.name) + " needs a whole number above 0, not ", value);
+    usage_error(option.command, name + " needs a whole number above 0, not " + given);
     return false;
   } else if (const auto* instant = std::get_if<UtcInstant>(&option.target)) {
     if (parse_utc(value, line.*(instant->utc_s))) return true;
-    usage_error(std::string(option.name) + " needs an instant such as 2026-11-21T06:00:00Z, not ",
-                value);
+    usage_error(option.command,
+                name + " needs an instant such as 2026-11-21T06:00:00Z, not " + given);
     return false;
   } else if (const auto* duration = std::get_if<Duration>(&option.target)) {
     std::int64_t shortest_s = 0;
     static_cast<void>(parse_duration(duration->shortest, shortest_s));
     std::int64_t& seconds = line.*(duration->seconds);
     if (parse_duration(value, seconds) && seconds >= shortest_s) return true;
-    usage_error(std::string(option.name) + " needs " + std::string(duration->shortest) +
-                    " to 7d, such as 2h or 1h30m, not ",
-                value);
+    usage_error(option.command, name + " needs " + std::string(duration->shortest) +
+                                    " to 7d, such as 2h or 1h30m, not " + given);
     return false;
   }
   return true;
@@ -176,17 +221,11 @@ bool is_complete_hold(const CommandLine& line) {
   return line.release_hold ? !is_partial : is_order;
 }
 
-/// `map` is said with what is to be done with it; `--help` may stand there as well.
-bool take_map_verb(int argc, char** argv, int& i) {
-  if (i < argc && argv[i] == std::string_view("check")) return ++i, true;
-  return i < argc && argv[i][0] == '-' &&
-         (argv[i] == std::string_view("--help") || argv[i] == std::string_view("-h"));
-}
-
 CommandLineResult settle_config(CommandLine& line) {
   if (!line.config_path.empty()) return CommandLineResult::kGo;
   if (access(kDefaultConfigPath, F_OK) != 0) {
-    return usage_error("--config FILE is required, there is no ", kDefaultConfigPath);
+    return usage_error(line.command,
+                       std::string("--config FILE is required, there is no ") + kDefaultConfigPath);
   }
   line.config_path = kDefaultConfigPath;
   return CommandLineResult::kGo;
@@ -194,12 +233,13 @@ CommandLineResult settle_config(CommandLine& line) {
 
 /// A map that is named needs no configuration.
 CommandLineResult settle_map_check(CommandLine& line) {
-  if (line.against_path.empty()) return usage_error("map check needs --against FILE", "");
+  const auto refuse = [](const char* why) { return usage_error(SubCommand::kMapCheck, why); };
+  if (line.against_path.empty()) return refuse("map check needs --against FILE");
   if (!line.map_path.empty() && !line.config_path.empty()) {
-    return usage_error("--map and --config exclude each other", "");
+    return refuse("--map and --config exclude each other");
   }
   if (line.map_path.empty() && !line.variant.empty()) {
-    return usage_error("--variant needs --map: a configuration says it itself", "");
+    return refuse("--variant needs --map: a configuration says it itself");
   }
   return line.map_path.empty() ? settle_config(line) : CommandLineResult::kGo;
 }
@@ -216,54 +256,109 @@ bool set_switch(const Option& option, CommandLine& line) {
   return false;
 }
 
-bool print_general(std::string_view argument, SubCommand command) {
-  if (argument == "--help" || argument == "-h") {
-    std::fputs(help_of(command), stdout);
-    return true;
-  }
-  if (argument != "--version") return false;
+CommandLineResult print_help(SubCommand command) {
+  std::fputs(help_of(command), stdout);
+  return CommandLineResult::kExitOk;
+}
+
+CommandLineResult print_version() {
   std::printf("bess-edge %s, student %08x: %s\n%s\n", BESS_VERSION, student_hash(),
               student_provenance(), build_line().c_str());
-  return true;
+  return CommandLineResult::kExitOk;
+}
+
+using Words = std::vector<std::string_view>;
+
+/// The first word that is neither an option nor its value: options may stand before the command. Behind an option
+/// that no command knows nothing can be told.
+std::size_t find_command_word(const Words& words) {
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (!words[i].starts_with('-')) return i;
+    if (is_help(words[i]) || words[i] == "--version") continue;
+    const Option* const option = find_option(words[i]);
+    if (option == nullptr) break;
+    i += takes_value(*option) ? 1 : 0;
+  }
+  return words.size();
+}
+
+/// `map` is said with what is to be done with it.
+CommandLineResult take_map_verb(Words& words, CommandLine& line) {
+  const std::size_t at = find_command_word(words);
+  const bool is_check = at < words.size() && words[at] == "check";
+  if (is_check) words.erase(words.begin() + static_cast<std::ptrdiff_t>(at));
+  if (is_check || std::any_of(words.begin(), words.end(), is_help)) return CommandLineResult::kGo;
+  return usage_error(line.command, "map needs what is to be done: map check --against FILE");
+}
+
+/// Takes the command out of the words; `help [COMMAND]` and `version` are done with that.
+CommandLineResult take_command(Words& words, CommandLine& line) {
+  const std::size_t at = find_command_word(words);
+  if (at >= words.size()) return CommandLineResult::kGo;
+  std::string_view name = words[at];
+  words.erase(words.begin() + static_cast<std::ptrdiff_t>(at));
+  if (name == "version") return print_version();
+  const bool is_help_word = name == "help";
+  const bool is_of_all = is_help_word && (at >= words.size() || is_help(words[at]));
+  if (is_of_all) return print_help(SubCommand::kRun);
+  if (is_help_word) name = words[at];
+  if (!find_command(name, line.command)) return unknown_command(name);
+  if (is_help_word) return print_help(line.command);
+  if (line.command != SubCommand::kMapCheck) return CommandLineResult::kGo;
+  return take_map_verb(words, line);
+}
+
+CommandLineResult take_options(const Words& words, CommandLine& line) {
+  const SubCommand command = line.command;  // --check is an option of run and changes line.command
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (is_help(words[i])) return print_help(command);
+    if (words[i] == "--version") return print_version();
+    if (take_hold_power(words[i], line)) continue;
+    const Option* const option = find_option(command, words[i]);
+    if (option == nullptr) return unknown_option(command, words[i]);
+    if (set_switch(*option, line)) continue;
+    if (i + 1 == words.size()) {
+      return usage_error(command, "a value is missing after " + std::string(words[i]));
+    }
+    if (!store(*option, words[++i], line)) return CommandLineResult::kExitUsage;
+  }
+  return CommandLineResult::kGo;
+}
+
+/// What the options of a command must be together, and where its settings are.
+CommandLineResult settle(CommandLine& line) {
+  const auto refuse = [&](const char* why) { return usage_error(line.command, why); };
+  switch (line.command) {
+    case SubCommand::kSignature:
+    case SubCommand::kHistory:
+      return CommandLineResult::kGo;  // needs no settings
+    case SubCommand::kMapCheck:
+      return settle_map_check(line);
+    case SubCommand::kStatus:
+      if (line.json && line.prometheus) return refuse("--json and --prometheus exclude each other");
+      break;
+    case SubCommand::kHold:
+      if (is_complete_hold(line)) break;
+      return refuse("hold needs a power in W and --for DURATION, or --release alone");
+    case SubCommand::kLimit:
+      if (line.clear == (line.for_s == 0)) break;
+      return refuse("limit needs either --for DURATION or --clear");
+    case SubCommand::kRecord:
+      if (line.for_s == 0) return refuse("record needs --for DURATION");
+      break;
+    default:
+      break;
+  }
+  return settle_config(line);
 }
 
 }  // namespace
 
 CommandLineResult parse_command_line(int argc, char** argv, CommandLine& line) {
-  int i = 1;
-  if (i < argc && argv[i][0] != '-') {
-    const std::string_view name = argv[i++];
-    if (!find_command(name, line.command)) return usage_error("unknown command ", name);
-    if (line.command == SubCommand::kMapCheck && !take_map_verb(argc, argv, i)) {
-      return usage_error("map needs what is to be done: map check --against FILE", "");
-    }
-  }
-  const SubCommand command = line.command;  // --check is an option of run and changes line.command
-  for (; i < argc; ++i) {
-    if (print_general(argv[i], command)) return CommandLineResult::kExitOk;
-    if (take_hold_power(argv[i], line)) continue;
-    const Option* const option = find_option(command, argv[i]);
-    if (option == nullptr) return usage_error("unknown option ", argv[i]);
-    if (set_switch(*option, line)) continue;
-    if (i + 1 == argc) return usage_error("a value is missing after ", argv[i]);
-    if (!store(*option, argv[++i], line)) return CommandLineResult::kExitUsage;
-  }
-  if (line.json && line.prometheus)
-    return usage_error("--json and --prometheus exclude each other", "");
-  if (line.command == SubCommand::kHold && !is_complete_hold(line)) {
-    return usage_error("hold needs a power in W and --for DURATION, or --release alone", "");
-  }
-  const bool needs_no_settings =
-      line.command == SubCommand::kSignature || line.command == SubCommand::kHistory;
-  if (needs_no_settings) return CommandLineResult::kGo;
-  if (line.command == SubCommand::kLimit && line.clear != (line.for_s == 0)) {
-    return usage_error("limit needs either --for DURATION or --clear", "");
-  }
-  if (line.command == SubCommand::kRecord && line.for_s == 0) {
-    return usage_error("record needs --for DURATION", "");
-  }
-  if (line.command == SubCommand::kMapCheck) return settle_map_check(line);
-  return settle_config(line);
+  Words words(argv + std::min(argc, 1), argv + argc);
+  CommandLineResult result = take_command(words, line);
+  if (result == CommandLineResult::kGo) result = take_options(words, line);
+  return result == CommandLineResult::kGo ? settle(line) : result;
 }
 
 }  // namespace bess

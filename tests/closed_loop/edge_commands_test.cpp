@@ -1,0 +1,251 @@
+// The commands of bess-edge as an operator types them: where the words may stand, what is said of a slip, each exit
+// code that edge/README.md promises, and what is said of a controller that has tripped or ended.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <filesystem>
+
+#include "tests/support/simulated_site.h"
+
+namespace bess {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ContainsRegex;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+struct Said {
+  int exit_code;
+  std::string text;
+};
+
+Said edge(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), edge_program());
+  ChildProcess child(std::move(arguments));
+  std::string text = child.read_all();
+  return {child.wait(), std::move(text)};
+}
+
+constexpr const char* kCommands[] = {"run",       "commission", "status",  "log",
+                                     "hold",      "limit",      "release", "clear",
+                                     "signature", "record",     "map",     "history"};
+
+TEST(EdgeWords, HelpAndVersionAreWordsToo) {
+  const std::string general = edge({"--help"}).text;
+  for (const auto& words :
+       {std::vector<std::string>{"help"}, {"-h"}, {"help", "run"}, {"help", "--help"}}) {
+    const Said said = edge(words);
+    EXPECT_EQ(said.exit_code, 0);
+    EXPECT_EQ(said.text, general);
+  }
+  for (const char* command : kCommands) {
+    const Said said = edge({"help", command});
+    EXPECT_EQ(said.exit_code, 0) << command;
+    EXPECT_EQ(said.text, edge({command, "--help"}).text);
+    EXPECT_EQ(said.text, edge({"--help", command}).text);
+    EXPECT_THAT(said.text, HasSubstr("Exit codes: 0 ")) << command;
+    const bool is_row = general.find("bess-edge " + std::string(command)) != general.npos;
+    EXPECT_TRUE(is_row || std::string(command) == "run") << command;
+  }
+  EXPECT_EQ(edge({"version"}).exit_code, 0);
+  EXPECT_EQ(edge({"version"}).text, edge({"--version"}).text);
+  EXPECT_THAT(edge({"version"}).text, StartsWith("bess-edge "));
+}
+
+TEST(EdgeWords, ASlipIsToldWithWhatWasProbablyMeant) {
+  const std::pair<std::vector<std::string>, const char*> slips[] = {
+      {{"stat"}, "unknown command stat; did you mean status? (see bess-edge --help)"},
+      {{"stauts"}, "unknown command stauts; did you mean status?"},
+      {{"relase", "--yes"}, "unknown command relase; did you mean release?"},
+      {{"hlep"}, "unknown command hlep; did you mean help?"},
+      {{"check"}, "unknown command check; did you mean --check?"},
+      {{"selftest"}, "unknown command selftest; did you mean --self-test?"},
+      {{"help", "stauts"}, "unknown command stauts; did you mean status?"},
+      {{"plutonium"}, "unknown command plutonium (see bess-edge --help)"},
+      {{"--confg", "x"}, "unknown option --confg; did you mean --config? (see bess-edge --help)"},
+      {{"--config=x", "--check"}, "unknown option --config=x; did you mean --config?"},
+      {{"status", "--jsno"},
+       "unknown option --jsno; did you mean --json? (see bess-edge status --help)"},
+      {{"status", "--follw"}, "did you mean --follow?"},
+      {{"log", "--lst", "3"}, "did you mean --last?"},
+      {{"hold", "100", "--fro", "2h"}, "did you mean --for? (see bess-edge hold --help)"},
+      {{"status", "--cycles", "3"}, "unknown option --cycles (see bess-edge status --help)"},
+      {{"--json", "--cycles", "3", "status"},
+       "unknown option --cycles (see bess-edge status --help)"},
+      {{"map", "chek"},
+       "map needs what is to be done: map check --against FILE (see bess-edge map check"},
+      {{"log", "--last"}, "a value is missing after --last (see bess-edge log --help)"},
+      {{"--config"}, "a value is missing after --config (see bess-edge --help)"},
+  };
+  for (const auto& [words, complaint] : slips) {
+    const Said said = edge(words);
+    EXPECT_EQ(said.exit_code, 2) << complaint;
+    EXPECT_THAT(said.text, AllOf(StartsWith("bess-edge: "), HasSubstr(complaint)));
+    EXPECT_EQ(said.text.find('\n'), said.text.size() - 1) << said.text;
+  }
+}
+
+class EdgeCommands : public ::testing::Test {
+ protected:
+  static constexpr std::int32_t kScale = 900;
+
+  void start_site() {
+    site_.start_battery();
+    site_.start_market({}, SimulatedSite::minute_prices(1'200));
+    config_ = site_.commission();
+  }
+  /// The words, with the configuration where an operator may put it: before or behind.
+  Said with_config(std::vector<std::string> words) {
+    std::vector<std::string> before = {"--config", config_};
+    before.insert(before.end(), words.begin(), words.end());
+    words.insert(words.end(), {"--config", config_});
+    const Said said = edge(words);
+    EXPECT_EQ(edge(before).exit_code, said.exit_code);
+    return said;
+  }
+  int code_of(std::vector<std::string> words) { return with_config(std::move(words)).exit_code; }
+  /// The next line of output with this piece; empty when the program ended before.
+  static std::string await_line(ChildProcess& child, const std::string& piece) {
+    std::string line = child.read_line();
+    while (!line.empty() && line.find(piece) == std::string::npos) line = child.read_line();
+    return line;
+  }
+
+  SimulatedSite site_{kScale};
+  std::string config_;
+};
+
+TEST_F(EdgeCommands, OptionsMayStandBeforeTheCommand) {
+  start_site();
+  EXPECT_EQ(edge({"--config", config_, "--cycles", "2"}).exit_code, 0);
+  for (const auto& words : {std::vector<std::string>{"--config", config_, "log", "--last", "1"},
+                            {"--last", "1", "--config", config_, "log"},
+                            {"log", "--config", config_, "--last", "1"},
+                            {"--config", config_, "--last", "1", "log"}}) {
+    const Said said = edge(words);
+    EXPECT_EQ(said.exit_code, 0);
+    EXPECT_THAT(said.text, StartsWith("utc="));
+  }
+  EXPECT_THAT(edge({"--json", "--config", config_, "status"}).text, StartsWith("{"));
+  EXPECT_THAT(edge({"--config", config_, "hold", "-500", "--for", "2h"}).text, HasSubstr("-500 W"));
+  EXPECT_THAT(edge({"--config", config_, "--for", "2h", "hold", "-700"}).text, HasSubstr("-700 W"));
+  EXPECT_THAT(edge({"--config", config_, "--release", "hold"}).text, HasSubstr("hold       none"));
+  EXPECT_THAT(edge({"run", "--config", config_, "--cycles", "1"}).text, HasSubstr("cycle=1 "));
+}
+
+/// The table of exit codes in edge/README.md, row by row; the command line's 2 is above.
+TEST_F(EdgeCommands, ExitCodesAreTheDocumentedOnes) {
+  config_ = site_.write_config();  // nobody listens
+  EXPECT_EQ(code_of({"--check"}), 1);
+  EXPECT_EQ(code_of({"--self-test"}), 1);
+  EXPECT_EQ(code_of({"--cycles", "1"}), 1);
+  EXPECT_EQ(code_of({"commission", "--yes"}), 1);
+  EXPECT_EQ(code_of({"commission"}), 2);
+  EXPECT_EQ(code_of({"release", "--yes"}), 1);
+  EXPECT_EQ(code_of({"release"}), 2);
+  EXPECT_EQ(code_of({"clear", "--yes"}), 1);  // there is no log yet
+  EXPECT_EQ(code_of({"log"}), 1);
+  EXPECT_EQ(code_of({"status"}), 3);
+  EXPECT_EQ(code_of({"limit", "--for", "15m"}), 1);  // no [limits]
+  EXPECT_EQ(code_of({"hold", "5000", "--for", "2h"}), 1);
+  EXPECT_EQ(code_of({"record", "--for", "1s", "--out", site_.folder.file("none.jsonl")}), 1);
+  EXPECT_EQ(code_of({"map", "check", "--against", "/nonexistent"}), 1);
+  EXPECT_EQ(edge({"history", "--folder", "/nonexistent"}).exit_code, 1);
+  EXPECT_EQ(edge({"signature"}).exit_code, 0);
+  config_ = "/nonexistent";
+  for (const char* command : {"status", "log", "--check", "--self-test"})
+    EXPECT_EQ(code_of({command}), 1);
+}
+
+TEST_F(EdgeCommands, ExitCodesWhereAllIsWell) {
+  start_site();
+  EXPECT_EQ(code_of({"--check"}), 0);
+  EXPECT_EQ(code_of({"--self-test"}), 0);
+  EXPECT_EQ(code_of({"commission", "--yes"}), 0);
+  EXPECT_EQ(code_of({"--cycles", "1"}), 0);
+  EXPECT_EQ(code_of({"release", "--yes"}), 0);
+  EXPECT_EQ(code_of({"clear", "--yes"}), 0);
+  EXPECT_EQ(code_of({"clear"}), 0);  // nothing to clear
+  EXPECT_EQ(code_of({"log"}), 0);
+  EXPECT_EQ(code_of({"hold", "100", "--for", "2h"}), 0);
+  EXPECT_EQ(code_of({"hold", "--release"}), 0);
+  const std::string recording = site_.folder.file("device.jsonl");
+  EXPECT_EQ(edge({"record", "--for", "20m", "--config", config_, "--out", recording}).exit_code, 0);
+  EXPECT_EQ(code_of({"map", "check", "--against", recording}), 0);
+  ChildProcess controller({edge_program(), "--config", config_});
+  ASSERT_NE(await_line(controller, "mode=running"), "");
+  EXPECT_EQ(code_of({"--check"}), 1);  // the battery is in use
+  site_.market->signal(SIGKILL);
+  ASSERT_NE(await_line(controller, "mode=holding"), "");
+  EXPECT_EQ(code_of({"status"}), 1);
+  EXPECT_EQ(SimulatedSite::stop(controller), 0);
+  EXPECT_EQ(code_of({"status"}), 3);
+}
+
+TEST_F(EdgeCommands, AHealthyControllerIsExitCode0) {
+  start_site();
+  ChildProcess controller({edge_program(), "--config", config_});
+  int code = -1;
+  for (int i = 0; i < 50 && code != 0; ++i) {
+    ASSERT_NE(await_line(controller, "mode=running"), "");
+    code = edge({"status", "--config", config_}).exit_code;
+  }
+  EXPECT_EQ(code, 0);
+  EXPECT_EQ(SimulatedSite::stop(controller), 0);
+}
+
+TEST_F(EdgeCommands, TheStatusOfAnEndedControllerSaysWhatItWasAndWhenItEnded) {
+  start_site();
+  const auto status = [&] { return edge({"status", "--config", config_}).text; };
+  {
+    ChildProcess controller({edge_program(), "--config", config_});
+    ASSERT_NE(await_line(controller, "mode=running"), "");
+    EXPECT_THAT(status(), AllOf(ContainsRegex("\ncontroller in control, process [0-9]+ since 2023"),
+                                HasSubstr("\ndriving    127.0.0.1:"), HasSubstr("\nstate      ")));
+    EXPECT_EQ(SimulatedSite::stop(controller), 0);
+  }
+  EXPECT_THAT(
+      status(),
+      AllOf(Not(HasSubstr("controller in control")), Not(HasSubstr("driving")),
+            ContainsRegex("\ncontroller none; the last one was in control, process [0-9]+ "
+                          "from 2023-03-2[0-9T:-]+Z, stopped at 2023-03-2[0-9T:-]+Z, version"),
+            HasSubstr("\nbattery at 127.0.0.1:"), HasSubstr("\nwas        stopping at ")));
+  {
+    ChildProcess controller({edge_program(), "--config", config_, "--dry-run"});
+    ASSERT_NE(await_line(controller, "mode="), "");
+    ASSERT_NE(await_line(controller, "mode="), "");
+    EXPECT_THAT(status(), AllOf(ContainsRegex("\ncontroller read-only, process"),
+                                HasSubstr("\nreading    127.0.0.1:")));
+    controller.signal(SIGKILL);
+    controller.wait();
+  }
+  EXPECT_THAT(status(),
+              AllOf(ContainsRegex("\ncontroller none; the last one was read-only, process "
+                                  "[0-9]+ from 2023-03-2[0-9T:-]+Z, ended without a stop "
+                                  "after the cycle of 2023-03-2[0-9T:-]+Z, version"),
+                    ContainsRegex("\nwas        [a-z]+ at ")));
+}
+
+/// A hold cannot make a battery be driven that the supervision has given back: that is said where it is asked for.
+TEST_F(EdgeCommands, AHoldWhileTrippedSaysThatItIsNotFollowed) {
+  start_site();
+  const int port = site_.battery_port;
+  site_.battery.reset();
+  site_.start_battery({"--fault", "excess-power"}, port);
+  ChildProcess controller({edge_program(), "--config", config_});
+  ASSERT_NE(await_line(controller, "reason=uncontrolled_power"), "");
+  const auto hold = [&] { return edge({"hold", "-500", "--for", "6h", "--config", config_}).text; };
+  EXPECT_THAT(hold(),
+              ContainsRegex("NOT FOLLOWED yet: tripped, uncontrolled_power at 2023-03-2[0-9T:-]+Z; "
+                            "the battery stays released until bess-edge clear --yes"));
+  EXPECT_THAT(await_line(controller, "utc="), Not(HasSubstr("reason=held")));
+  EXPECT_EQ(edge({"clear", "--yes", "--config", config_}).exit_code, 0);
+  EXPECT_THAT(hold(), Not(HasSubstr("NOT FOLLOWED")));
+  EXPECT_EQ(SimulatedSite::stop(controller), 0);
+}
+
+}  // namespace
+}  // namespace bess
