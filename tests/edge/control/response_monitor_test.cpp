@@ -159,6 +159,18 @@ TEST(ResponseMonitor, NoPowerInTheMiddleOfTheChargeIsNoAnswer) {
   EXPECT_EQ(site.monitor.trip(), Reason::kStudent);
 }
 
+/// README: an order of 0 W begins the count anew.
+TEST(ResponseMonitor, UnansweredOrdersAreCountedInARow) {
+  MonitoredSite site;
+  site.soc_frac = 0.97;
+  for (int i = 0; i < 4; ++i) site.step(4'000, 0);
+  EXPECT_EQ(site.monitor.unanswered_orders(), 4);
+  site.step(0, 0);
+  EXPECT_EQ(site.monitor.unanswered_orders(), 0);
+  site.step(4'000, 0);
+  EXPECT_EQ(site.monitor.unanswered_orders(), 1);
+}
+
 TEST(ResponseMonitor, AFullEmptyColdOrLimitedBatteryMayRest) {
   struct Case {
     const char* name;

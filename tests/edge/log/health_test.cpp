@@ -20,6 +20,13 @@ HealthInputs healthy_inputs() {
   return in;
 }
 
+/// README: more than five readings in a row.
+TEST(Health, FiveUnansweredReadingsAreNotTooMany) {
+  HealthInputs in = healthy_inputs();
+  in.unanswered_orders = 5;
+  EXPECT_EQ(assess_health(in).level, HealthLevel::kOk);
+}
+
 TEST(Health, OkWhenNothingIsAmiss) {
   const Health health = assess_health(healthy_inputs());
   EXPECT_EQ(health.level, HealthLevel::kOk);

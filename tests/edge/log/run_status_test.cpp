@@ -8,8 +8,10 @@
 #include <map>
 #include <regex>
 #include <sstream>
+#include <vector>
 
 #include "tests/edge/log/sample_records.h"
+#include "tests/support/temporary_folder.h"
 
 namespace bess {
 namespace {
@@ -109,6 +111,31 @@ TEST(Prometheus, FollowsTheFormatAndTheNamingRules) {
   EXPECT_EQ(families.at("bess_state").samples.at("{state=\"safe\"}"), 0);
   EXPECT_DOUBLE_EQ(families.at("bess_cycle_duration_seconds").samples.at(""), 0.400005);
   EXPECT_EQ(families.at("bess_model_info").samples.begin()->second, 1);
+}
+
+/// "{rule}" of a family whose samples have that label.
+std::string labels_of(const Family& family) {
+  const std::string labels = family.samples.begin()->first;
+  return std::regex_replace(labels, std::regex("=\"[^\"]*\""), "");
+}
+
+/// Who builds a dashboard or an alarm reads the list in edge/README.md: it has every metric, and no other.
+TEST(Prometheus, TheReadmeListsTheseMetricsAndNoOthers) {
+  std::vector<std::string> published;
+  for (const auto& [name, family] :
+       parse_prometheus(prometheus_text(totals_after({full_record(1)})))) {
+    published.push_back(name + labels_of(family));
+  }
+  const std::string readme = text_of_file(BESS_SOURCE_DIR "/edge/README.md");
+  const std::size_t begin = readme.find("\n## Metrics\n");
+  ASSERT_NE(begin, readme.npos);
+  const std::string section = readme.substr(begin, readme.find("\n## ", begin + 1) - begin);
+  static const std::regex entry("`(bess_[a-z_]+(\\{[a-z_,]+\\})?)`");
+  std::vector<std::string> listed;
+  for (std::sregex_iterator m(section.begin(), section.end(), entry), end; m != end; ++m) {
+    listed.push_back((*m)[1]);
+  }
+  EXPECT_THAT(listed, testing::UnorderedElementsAreArray(published));
 }
 
 TEST(Prometheus, WhatWasNotMeasuredIsAbsentNotZero) {
