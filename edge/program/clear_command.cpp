@@ -14,26 +14,24 @@ namespace bess {
 int run_clear_command(const CommandLine& command_line, const EdgeConfig& config) {
   RingLog ring;
   FileMessage error;
-  CycleRecord newest;
   if (!ring.open_to_read(config.log.ring.c_str(), error)) {
     report(JournalLevel::kError, "%s", error.c_str());
     return 1;
   }
-  const auto path = trip_clearance_path(config);
-  const bool has_trip = ring.read(ring.newest_number(), newest) && newest.is_tripped &&
-                        !is_trip_cleared(path.c_str(), newest.trip.utc_s);
-  if (!has_trip) {
+  const Trip trip = standing_trip(ring, config);
+  if (!trip.is_set()) {
     std::printf("nothing to clear: the supervision has not tripped\n");
     return 0;
   }
-  std::printf("tripped    %s at %s\n", reason_name(newest.trip.reason).data(),
-              utc_text(newest.trip.utc_s).c_str());
+  std::printf("tripped    %s at %s\n", reason_name(trip.reason).data(),
+              utc_text(trip.utc_s).c_str());
   if (!command_line.yes) {
     report(JournalLevel::kError,
            "find out why first (bess-edge log --last 10); then add --yes to let it drive again");
     return 2;
   }
-  if (!clear_trip_of(path.c_str(), newest.trip.utc_s)) {
+  const auto path = trip_clearance_path(config);
+  if (!clear_trip_of(path.c_str(), trip.utc_s)) {
     fail_with_errno(path.c_str(), "cannot be written", error);
     report(JournalLevel::kError, "%s", error.c_str());
     return 1;

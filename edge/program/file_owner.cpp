@@ -38,6 +38,19 @@ bool refuse_stranger(const char* path, FileMessage& error) {
   return false;
 }
 
+bool refuse_roots_leftover(const char* path, FileMessage& error) {
+  struct stat info {};
+  if (geteuid() == 0 || lstat(path, &info) != 0 || info.st_uid != 0) return true;
+  char line[1'400];  // what is too long for a message is cut
+  std::snprintf(
+      line, sizeof line,
+      "%s is root's, of a bess-edge that was started as root: if none runs any more (pgrep "
+      "-u root -x bess-edge), it was killed; remove its lock: sudo rm %s",
+      path, path);
+  error = FileMessage(line);
+  return false;
+}
+
 bool is_believable(const char* path) {
   struct stat file {};
   if (lstat(path, &file) != 0 || is_trusted(file.st_uid)) return true;

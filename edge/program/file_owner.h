@@ -18,6 +18,9 @@ FileMessage strangers_file(const char* path);
 /// belongs to a stranger. A link is looked at itself.
 bool refuse_stranger(const char* path, FileMessage& error);
 
+/// For a file of root's that this process may not open: false with one line that names the command which removes it.
+bool refuse_roots_leftover(const char* path, FileMessage& error);
+
 /// For a file that is only read: also of whoever owns its folder, who can put anything there. A file that is not
 /// there is nobody's.
 bool is_believable(const char* path);

@@ -9,10 +9,12 @@
 #include "edge/control/hold.h"
 #include "edge/control/tick.h"
 #include "edge/log/journal.h"
+#include "edge/log/ring_log.h"
 #include "edge/log/whole_file.h"
 #include "edge/program/hold_file.h"
 #include "edge/program/people_config.h"
 #include "edge/program/run_locks.h"
+#include "edge/program/trip_clearance.h"
 #include "shared/local_time.h"
 #include "shared/utc_text.h"
 
@@ -24,6 +26,20 @@ int fail(const char* path, const char* what) {
   fail_with_errno(path, what, error);
   report(JournalLevel::kError, "%s", error.c_str());
   return 1;
+}
+
+/// Nothing is ordered while the supervision has tripped, whoever wants it.
+void print_trip(const EdgeConfig& config) {
+  RingLog ring;
+  FileMessage ignored;
+  if (!ring.open_to_read(config.log.ring.c_str(), ignored)) return;
+  const Trip trip = standing_trip(ring, config);
+  if (!trip.is_set()) return;
+  std::printf(
+      "           NOT FOLLOWED yet: tripped, %s at %s; the battery stays released until bess-edge "
+      "clear "
+      "--yes (first: bess-edge log --last 10)\n",
+      reason_name(trip.reason).data(), utc_text(trip.utc_s).c_str());
 }
 
 void print_controller(const EdgeConfig& config) {
@@ -49,6 +65,7 @@ void print_hold(const EdgeConfig& config, const Hold& hold, std::int64_t now_utc
       "reserve, limits and ramp stay stronger\n",
       utc_text(next_tick_utc_s(now_utc_s)).c_str());
   print_controller(config);
+  print_trip(config);
 }
 
 int release_hold(const char* path) {

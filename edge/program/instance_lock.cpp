@@ -105,7 +105,9 @@ bool InstanceLock::explain(const char* path, FileMessage& error) {
     error = {};
     return true;
   }
-  if (cause == EACCES) static_cast<void>(refuse_stranger(path, error));
+  if (cause == EACCES && refuse_stranger(path, error)) {
+    static_cast<void>(refuse_roots_leftover(path, error));
+  }
   return false;
 }
 

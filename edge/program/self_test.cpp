@@ -184,9 +184,11 @@ void test_battery(const EdgeConfig& config, EdgeClock& clock, Table& table) {
     return table.add("battery", Verdict::kNote, in_use.c_str());
   static ModbusBattery battery(config.link, config.map, config.clock);
   BatteryMeasurement m;
-  if (!reach_battery(config, battery, clock) || battery.read(m) != Status::kOk) {
-    return table.add("battery", false,
-                     place + ": does not answer as map " + config.map.name.c_str() + " says");
+  std::string trouble;
+  const bool is_there = find_battery(config, battery, clock, trouble) == Status::kOk;
+  if (!is_there) return table.add("battery", false, trouble);
+  if (const Status status = battery.read(m); status != Status::kOk) {
+    return table.add("battery", false, place + ": " + std::string(status_text(status)));
   }
   table.add("battery", true,
             text("%s, map %s: SoC %.1f %%, %d W", place.c_str(), config.map.name.c_str(),

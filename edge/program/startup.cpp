@@ -22,9 +22,13 @@
 namespace bess {
 namespace {
 
-void complain(const EdgeConfig& config, std::string_view what) {
-  report(JournalLevel::kError, "battery at %s: %.*s", battery_place(config).c_str(),
-         static_cast<int>(what.size()), what.data());
+/// "PLACE: what is wrong there".
+std::string trouble_at(const EdgeConfig& config, std::string_view what) {
+  return std::string(battery_place(config).view()) + ": " + std::string(what);
+}
+
+void complain(const std::string& trouble) {
+  report(JournalLevel::kError, "battery at %s", trouble.c_str());
 }
 
 /// What the link's trouble means for this transport.
@@ -34,8 +38,8 @@ std::string_view link_text(const EdgeConfig& config, Status status) {
          "group dialout?)";
 }
 
-/// Proves that this is the configured battery; one line when it is not.
-Status identify(const EdgeConfig& config, ModbusBattery& battery, bool complain_about_link) {
+/// Proves that this is the configured battery; else `trouble` says why it is not.
+Status identify(const EdgeConfig& config, ModbusBattery& battery, std::string& trouble) {
   IdentityFailure failure;
   Status status = battery.check_identity(failure);
   if (status == Status::kImplausible) {
@@ -45,14 +49,12 @@ Status identify(const EdgeConfig& config, ModbusBattery& battery, bool complain_
                   config.map.points[check.point].name.c_str(),
                   static_cast<long long>(failure.value), static_cast<long long>(check.value_min),
                   static_cast<long long>(check.value_max), check.hint.c_str());
-    complain(config, text);
+    trouble = trouble_at(config, text);
     return status;
   }
   BatteryMeasurement measurement;
   if (status == Status::kOk) status = battery.read(measurement);
-  if (status == Status::kImplausible || (status != Status::kOk && complain_about_link)) {
-    complain(config, link_text(config, status));
-  }
+  if (status != Status::kOk) trouble = trouble_at(config, link_text(config, status));
   return status;
 }
 
@@ -161,18 +163,26 @@ bool check_student() {
   return false;
 }
 
-bool reach_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& clock) {
+Status find_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& clock,
+                    std::string& trouble) {
   const std::int64_t deadline_ns =
       clock.monotonic_ns() + config.start_timeout_s * kNanosecondsPerSecond;
   while (!clock.stop_requested()) {
     const bool last = clock.monotonic_ns() >= deadline_ns || config.start_without_battery;
-    const Status status = identify(config, battery, last);
-    if (status == Status::kOk) return true;
-    if (status == Status::kImplausible) return false;  // the wrong device stays the wrong device
-    if (last) return config.start_without_battery;
+    const Status status = identify(config, battery, trouble);
+    // The wrong device stays the wrong device.
+    if (status == Status::kOk || status == Status::kImplausible || last) return status;
     sleep_until_monotonic(clock.monotonic_ns() + kNanosecondsPerSecond / 5);
   }
-  return true;
+  return Status::kOk;
+}
+
+bool reach_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& clock) {
+  std::string trouble;
+  const Status status = find_battery(config, battery, clock, trouble);
+  if (status == Status::kOk) return true;
+  complain(trouble);
+  return status != Status::kImplausible && config.start_without_battery;
 }
 
 Status greet_price_server(const EdgeConfig& config, PriceFeed& prices) {
@@ -231,7 +241,9 @@ bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& p
   const Hold hold = read_hold(hold_path(config).c_str());
   std::fputs(wishes_note(config.control, hold, now_utc_s).c_str(), stdout);
   std::fflush(stdout);
-  const bool battery_ok = identify(config, battery, true) == Status::kOk;
+  std::string trouble;
+  const bool battery_ok = identify(config, battery, trouble) == Status::kOk;
+  if (!battery_ok) complain(trouble);
   print_orders(config, battery);
   BatteryMeasurement m;
   if (battery_ok && battery.read(m) == Status::kOk) {

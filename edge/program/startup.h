@@ -13,9 +13,13 @@ namespace bess {
 /// Time zone, signals and timers of the process; before any thread is started.
 void prepare_process();
 
-/// Tries until `start_timeout_s` is over. True when the battery is there and is the right one, or
-/// when the configuration allows to start without it; otherwise one line on stderr says what to
-/// mend.
+/// Tries until `start_timeout_s` is over, or a stop is asked for. kOk when the battery is there and is the right
+/// one; otherwise `trouble` says where it was looked for, and what to mend.
+Status find_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& clock,
+                    std::string& trouble);
+
+/// True when it is found, or when the configuration allows to start without it; otherwise one line
+/// on stderr says what to mend.
 bool reach_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& clock);
 
 /// Fetches once: opens the connection before the first tick, and says it when there is no price

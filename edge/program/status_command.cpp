@@ -205,9 +205,10 @@ void print_site(JsonValue s) {
       whole(field<&R::site, &S::quarter_hour_import_wh>(s)));
 }
 
-void print_last_cycle(JsonValue s) {
-  std::printf("state      %s at %s, cycle %lld\n", text_of(field<&R::mode>(s)),
-              text_of(field<&R::utc_s>(s)), whole(field<&R::cycle>(s)));
+void print_last_cycle(JsonValue s, bool is_running) {
+  std::printf("%-10s %s at %s, cycle %lld\n", is_running ? "state" : "was",
+              text_of(field<&R::mode>(s)), text_of(field<&R::utc_s>(s)),
+              whole(field<&R::cycle>(s)));
   if (is_true(field<&R::has_measurement>(s))) {
     std::printf("battery    SoC %.1f %%, %.0f W (charging is positive), %s\n",
                 number(field<&R::measurement, &B::soc_e4>(s)) / 100,
@@ -268,18 +269,37 @@ void print_last_orders(const EdgeConfig& config) {
   }
 }
 
+/// Who decides; of one that has ended, what it was and when its last record was made.
+void print_controller(JsonValue s, bool is_running) {
+  const char* const part = is_true(s["control"]) ? "in control" : "read-only";
+  if (is_running) {
+    std::printf("controller %s, process %lld since %s", part, whole(s["pid"]),
+                text_of(s["start_utc"]));
+  } else {
+    const bool has_stopped = std::string_view(text_of(field<&R::mode>(s))) == "stopping";
+    const bool has_cycles = whole(field<&T::cycles>(s)) > 0;
+    std::printf("controller none; the last one was %s, process %lld from %s, %s %s", part,
+                whole(s["pid"]), text_of(s["start_utc"]),
+                !has_cycles   ? "ended before a cycle had"
+                : has_stopped ? "stopped at"
+                              : "ended without a stop after the cycle of",
+                has_cycles ? text_of(field<&R::utc_s>(s)) : "ended");
+  }
+  std::printf(", version %s, student %s\n", text_of(s["version"]), text_of(s["student"]));
+}
+
 void print_text(const EdgeConfig& config, JsonValue status, const Health& health,
                 const UpdateState& update) {
   print_health(health);
   if (status.exists()) {
-    std::printf("controller %s, process %lld since %s, version %s, student %s\n",
-                is_true(status["control"]) ? "in control" : "read-only", whole(status["pid"]),
-                text_of(status["start_utc"]), text_of(status["version"]),
-                text_of(status["student"]));
+    const bool is_running = health.level != HealthLevel::kNotRunning;
+    print_controller(status, is_running);
     const char* const variant = text_of(status["variant"]);
-    std::printf("driving    %s, map %s%s%s\n", text_of(status["battery"]), text_of(status["map"]),
+    const char* const part = is_true(status["control"]) ? "driving" : "reading";
+    std::printf("%-10s %s, map %s%s%s\n", is_running ? part : "battery at",
+                text_of(status["battery"]), text_of(status["map"]),
                 *variant == '\0' ? "" : ", variant ", variant);
-    if (whole(field<&T::cycles>(status)) > 0) print_last_cycle(status);
+    if (whole(field<&T::cycles>(status)) > 0) print_last_cycle(status, is_running);
     print_counters(status);
   }
   const std::string note = update_note(update);

@@ -26,4 +26,11 @@ bool is_trip_cleared(const char* path, std::int64_t trip_utc_s) {
   return error == std::errc{} && cleared_utc_s == trip_utc_s;
 }
 
+Trip standing_trip(const RingLog& ring, const EdgeConfig& config) {
+  CycleRecord newest;
+  if (!ring.read(ring.newest_number(), newest) || !newest.is_tripped) return {};
+  const bool is_cleared = is_trip_cleared(trip_clearance_path(config).c_str(), newest.trip.utc_s);
+  return is_cleared ? Trip{} : newest.trip;
+}
+
 }  // namespace bess

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include "edge/log/ring_log.h"
 #include "edge/program/edge_config.h"
 
 namespace bess {
@@ -13,6 +14,9 @@ FixedText<639> trip_clearance_path(const EdgeConfig& config);
 
 /// False with errno set. On the disk before it returns.
 bool clear_trip_of(const char* path, std::int64_t trip_utc_s);
+
+/// The trip that stands by the newest record, and that nobody has cleared; not set where there is none.
+Trip standing_trip(const RingLog& ring, const EdgeConfig& config);
 
 /// Whether the trip found at this instant was cleared. Allocates nothing.
 bool is_trip_cleared(const char* path, std::int64_t trip_utc_s);

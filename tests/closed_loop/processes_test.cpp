@@ -182,7 +182,7 @@ TEST_F(Processes, StatusAndLogShowWhatTheRunningControllerDoes) {
     EXPECT_THAT(metrics.read_all(), HasSubstr("bess_state{state=\"running\"} 1\n"));
     EXPECT_EQ(SimulatedSite::stop(edge), 0);
   }
-  EXPECT_THAT(run({"status"}, 3), HasSubstr("state      stopping at "));
+  EXPECT_THAT(run({"status"}, 3), HasSubstr("was        stopping at "));
   ChildProcess follower({edge_program(), "status", "--follow", "--config", config});
   for (int views = 0; views < 2;) {
     const std::string line = follower.read_line();

@@ -42,5 +42,26 @@ TEST(SelfTest, NamesWhatFails) {
                                HasSubstr("self-test  2 parts failed")));
 }
 
+/// What --check says of a battery that is missing, or another one, in the battery's own line.
+TEST(SelfTest, SaysOfTheBatteryWhatCheckSays) {
+  SimulatedSite site(60);
+  const auto check = [](const std::string& config) {
+    ChildProcess child({edge_program(), "--config", config, "--check"});
+    std::string text = child.read_all();
+    child.wait();
+    const std::string lead = "bess-edge: battery at ";
+    const std::size_t at = text.find(lead);
+    return at == text.npos ? text
+                           : text.substr(at + lead.size(), text.find('\n', at) - at - lead.size());
+  };
+  const std::string missing = check(site.write_config());
+  EXPECT_THAT(missing, HasSubstr("127.0.0.1:1 unit 85: no connection"));
+  EXPECT_THAT(self_test(site.write_config()).text, HasSubstr("battery    FAIL  " + missing + "\n"));
+  site.start_battery({"--capacity-wh", "20000"});
+  const std::string another = check(site.write_config());
+  EXPECT_THAT(another, HasSubstr("is this another battery?"));
+  EXPECT_THAT(self_test(site.write_config()).text, HasSubstr("battery    FAIL  " + another + "\n"));
+}
+
 }  // namespace
 }  // namespace bess

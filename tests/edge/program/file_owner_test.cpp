@@ -7,6 +7,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <fstream>
+
 #include "edge/program/instance_lock.h"
 #include "edge/program/run_locks.h"
 #include "tests/support/temporary_folder.h"
@@ -57,6 +59,37 @@ TEST_F(FileOwner, AStrangersStatusOrLogIsRefusedBeforeTheStart) {
     EXPECT_FALSE(lock_state(config, locks, error_));
     EXPECT_THAT(error_.c_str(), HasSubstr(std::string(name) + " belongs to user 65534"));
   }
+}
+
+/// A run as root, for a test, that was killed: the service's user may neither open what it left nor remove it.
+TEST_F(FileOwner, TheLockOfAKilledRootRunNamesTheCommandThatRemovesIt) {
+  const std::string path = folder_.file("bess-127.0.0.1_502_unit_85.lock");
+  ASSERT_EQ(chmod(folder_.file("").c_str(), 01777), 0);  // as /run/lock
+  const pid_t killed = fork();
+  if (killed == 0) {
+    InstanceLock lock;
+    _exit(lock.take(path.c_str(), "the battery", error_) ? 0 : 1);  // its file stays
+  }
+  int status = 0;
+  waitpid(killed, &status, 0);
+  ASSERT_EQ(status, 0);
+  const std::string said = folder_.write("said", "");
+  ASSERT_EQ(chmod(said.c_str(), 0666), 0);
+  const pid_t child = fork();
+  if (child == 0) {
+    if (setgid(kStranger) != 0 || setuid(kStranger) != 0) _exit(1);
+    InstanceLock lock;
+    if (lock.take(path.c_str(), "the battery", error_)) _exit(2);
+    std::ofstream(said) << error_.view();
+    _exit(0);
+  }
+  waitpid(child, &status, 0);
+  ASSERT_EQ(status, 0);
+  EXPECT_EQ(text_of_file(said),
+            path +
+                " is root's, of a bess-edge that was started as root: if none runs any more (pgrep "
+                "-u root -x bess-edge), it was killed; remove its lock: sudo rm " +
+                path);
 }
 
 /// Whoever may open a file can hold its lock, and so could keep the controller from starting.
