@@ -183,10 +183,10 @@ TEST_P(EveryMapsOrders, WhoInsistsIsToldAndGivesUpAfterAnHour) {
   }
 }
 
-/// What ends orders and is nobody's intention; `at` says when, by cycle and half minute.
+/// What ends orders and is nobody's intention: asked at each half minute, true when it has happened.
 struct Innocent {
   const char* name;
-  std::function<void(SupervisedSite&, std::int64_t cycle, std::int64_t second)> happens;
+  std::function<bool(SupervisedSite&, std::int64_t cycle, std::int64_t second)> happens;
   std::function<void(SupervisedSite&)> begin = [](SupervisedSite&) {};
 };
 
@@ -196,50 +196,72 @@ void reboot(SupervisedSite& site) {
   site.device.image.release_from_outside();
 }
 
-bool has_full_or_empty(const SimulatedBattery& battery) {
-  return battery.dispatch_active() && battery.commanded_power_w() != 0 && battery.power_w() == 0;
+/// By its own limits, a little inside those of the order.
+bool is_full_or_empty(const SimulatedBattery& battery) {
+  const double power_w = battery.commanded_power_w();
+  return (power_w > 0 && battery.soc_frac() >= 0.955) ||
+         (power_w < 0 && battery.soc_frac() <= 0.195);
+}
+
+void stop_process(SupervisedSite& site, std::int64_t seconds) {
+  site.device.test.device.now_ns += seconds * kNanosecondsPerSecond;
+}
+
+void set_link(SupervisedSite& site, bool is_up) {
+  site.device.test.device.exception = is_up ? 0 : -1;
+}
+
+bool end_order(SupervisedSite& site) {
+  site.device.battery.stop_dispatch();
+  site.device.image.refresh(site.clock.now_utc_ns());
+  return true;
 }
 
 const std::vector<Innocent> kInnocents = {
     {"a process that is stopped for twenty minutes",
      [](SupervisedSite& s, std::int64_t cycle, std::int64_t second) {
-       if (cycle % 3 == 0 && second == 60) s.device.test.device.now_ns += 1'200'000'000'000;
+       const bool now = cycle % 3 == 0 && second == 60;
+       if (now) stop_process(s, 1'200);
+       return now;
      }},
     {"a process that is stopped for three minutes",
      [](SupervisedSite& s, std::int64_t cycle, std::int64_t second) {
-       if (cycle % 3 == 0 && second == 60) s.device.test.device.now_ns += 180'000'000'000;
+       const bool now = cycle % 3 == 0 && second == 60;
+       if (now) stop_process(s, 180);
+       return now;
      }},
     {"a device that boots for four minutes",
      [](SupervisedSite& s, std::int64_t cycle, std::int64_t second) {
-       if (cycle % 12 == 3 && second == 30) {
-         s.device.test.device.exception = -1;
-         reboot(s);
-       }
-       if (cycle % 12 == 5 && second == 30) s.device.test.device.exception = 0;
+       if (cycle % 12 == 5 && second == 30) set_link(s, true);
+       if (cycle % 12 != 3 || second != 30) return false;
+       set_link(s, false);
+       reboot(s);
+       return true;
      }},
     {"a device that boots for a minute",
      [](SupervisedSite& s, std::int64_t cycle, std::int64_t second) {
-       if (cycle % 6 != 3) return;
-       if (second == 30) {
-         s.device.test.device.exception = -1;
-         reboot(s);
-       }
-       if (second == 90) s.device.test.device.exception = 0;
+       if (cycle % 6 == 3 && second == 90) set_link(s, true);
+       if (cycle % 6 != 3 || second != 30) return false;
+       set_link(s, false);
+       reboot(s);
+       return true;
      }},
     {"a link that is cut for eight minutes",
      [](SupervisedSite& s, std::int64_t cycle, std::int64_t second) {
-       if (second == 30) s.device.test.device.exception = cycle % 9 / 4 == 1 ? -1 : 0;
+       const bool is_up = cycle % 9 / 4 != 1;
+       if (second == 30) set_link(s, is_up);
+       return !is_up;
      }},
-    {"a link that is away for a minute at every tick's reading",
+    {"a link that is away at every other reading",
      [](SupervisedSite& s, std::int64_t cycle, std::int64_t second) {
-       if (cycle % 2 == 0) s.device.test.device.exception = second == 90 ? -1 : 0;
+       const bool is_away = cycle % 2 == 0 && second == 90;
+       set_link(s, !is_away);
+       return is_away;
      }},
     {"a battery that ends orders when it is full or empty",
      [](SupervisedSite& s, std::int64_t, std::int64_t) {
        s.device.image.refresh(s.clock.now_utc_ns());
-       if (!has_full_or_empty(s.device.battery)) return;
-       s.device.battery.stop_dispatch();
-       s.device.image.refresh(s.clock.now_utc_ns());
+       return is_full_or_empty(s.device.battery) && end_order(s);
      },
      [](SupervisedSite& s) {  // three hours of one price, then of the other
        s.prices.price = [](std::int64_t minute_utc_s) {
@@ -249,32 +271,32 @@ const std::vector<Innocent> kInnocents = {
     {"a device that follows no order of 0 W",
      [](SupervisedSite& s, std::int64_t, std::int64_t second) {
        s.device.image.refresh(s.clock.now_utc_ns());
-       if (second == 0 || s.device.battery.commanded_power_w() != 0) return;
-       s.device.battery.stop_dispatch();
-       s.device.image.refresh(s.clock.now_utc_ns());
+       const bool rests =
+           s.device.battery.dispatch_active() && s.device.battery.commanded_power_w() == 0;
+       return second != 0 && rests && end_order(s);
      },
-     [](SupervisedSite& s) {
+     [](SupervisedSite& s) {  // full for the guard after the first charging
        s.prices.price = [](std::int64_t minute_utc_s) {
-         return minute_utc_s / 600 % 2 == 0     ? 9'000
-                : minute_utc_s / 1'200 % 2 == 0 ? -60'000
-                                                : 160'000;
+         return minute_utc_s / 3'600 % 4 == 0 ? 160'000 : -60'000;
        };
      }},
-    {"a clock that steps forward and back",
+    {"a clock that steps by an hour",
      [](SupervisedSite& s, std::int64_t cycle, std::int64_t second) {
-       if (second != 60 || cycle % 5 != 2) return;
-       s.clock.step_ns += (cycle % 2 == 0 ? 3'600 : -3'600) * kNanosecondsPerSecond;
+       const bool now = second == 60 && cycle % 5 == 2;
+       if (now) s.clock.step_ns += (cycle % 2 == 0 ? 3'600 : -3'600) * kNanosecondsPerSecond;
+       return now;
      }},
-    {"a clock that steps a little",
+    {"a clock that steps by seventy seconds",
      [](SupervisedSite& s, std::int64_t cycle, std::int64_t second) {
-       if (second != 60 || cycle % 3 != 2) return;
-       s.clock.step_ns += (cycle % 2 == 0 ? 70 : -70) * kNanosecondsPerSecond;
+       const bool now = second == 60 && cycle % 3 == 2;
+       if (now) s.clock.step_ns += (cycle % 2 == 0 ? 70 : -70) * kNanosecondsPerSecond;
+       return now;
      }},
-    {"prices that are away for half an hour", [](SupervisedSite&, std::int64_t, std::int64_t) {},
+    {"prices that are away for half an hour",
+     [](SupervisedSite& s, std::int64_t, std::int64_t) { return !s.prices.published(now_s(s)); },
      [](SupervisedSite& s) {
        s.prices.published = [](std::int64_t minute_utc_s) { return minute_utc_s / 1'800 % 2 == 0; };
      }},
-    {"restarts", [](SupervisedSite&, std::int64_t, std::int64_t) {}},
 };
 
 TEST_P(EveryMapsOrders, WhatIsNobodysIntentionIsNotFound) {
@@ -284,26 +306,42 @@ TEST_P(EveryMapsOrders, WhatIsNobodysIntentionIsNotFound) {
     trade_both_ways(site);
     innocent.begin(site);
     std::int64_t cycle = 0;
-    std::set<std::pair<std::int64_t, std::int64_t>> happened;  // once each
+    int happened = 0;
+    std::set<std::pair<std::int64_t, std::int64_t>> asked;  // once each
     site.clock.every_half_minute = [&] {
       const std::int64_t second = now_s(site) % kSecondsPerStep;
-      if (happened.insert({cycle, second}).second) innocent.happens(site, cycle, second);
+      const bool is_new = asked.insert({cycle, second}).second;
+      if (is_new && innocent.happens(site, cycle, second)) ++happened;
     };
     std::map<Reason, int> reasons;
     CycleRecord record;
     for (cycle = 0; cycle < 300; ++cycle) {
       record = site.cycle();
       ++reasons[record.reason];
-      if (std::string(innocent.name) == "restarts" && cycle % 4 == 3) site.start();
     }
+    // Where the registers show no end, the simulator's next one waits for the next order that differs.
+    EXPECT_GE(happened, what_it_shows(GetParam()).ended ? 20 : 0);
     EXPECT_EQ(reasons[Reason::kOtherMaster], 0);
     EXPECT_EQ(reasons[Reason::kNoAnswer], 0);
-    std::printf("%-16s %-12s %-55s lost %d, other stops:", GetParam().map, GetParam().variant,
-                innocent.name, record.replaced_orders + record.ended_orders);
+    std::printf("%-16s %-12s %-52s %3d times, lost %d, stops:", GetParam().map, GetParam().variant,
+                innocent.name, happened, record.replaced_orders + record.ended_orders);
     for (const auto& [reason, count] : reasons) {
-      if (is_stop_reason(reason)) std::printf(" %s %d", reason_name(reason).data(), count);
+      if (is_stop_reason(reason) && count > 0)
+        std::printf(" %s %d", reason_name(reason).data(), count);
     }
     std::printf("\n");
+  }
+}
+
+/// A new process finds the order of the one before, and what became of it in between is not its to judge.
+TEST_P(EveryMapsOrders, RestartsLoseNone) {
+  SupervisedSite site(GetParam());
+  trade_both_ways(site);
+  for (int cycle = 0; cycle < 200; ++cycle) {
+    const CycleRecord record = site.cycle();
+    ASSERT_FALSE(is_stop_reason(record.reason)) << reason_name(record.reason);
+    ASSERT_EQ(record.replaced_orders + record.ended_orders, 0);
+    if (cycle % 3 == 2) site.start();
   }
 }
 

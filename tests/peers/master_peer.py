@@ -9,7 +9,9 @@ Registers by the makers' tables, worked out by hand; shares nothing with bess. H
     soc TENTHS-OF-A-PERCENT
     order WATTS from UTC-S to UTC-S pymodbus WATTS mbpoll WATTS
 
-With --day it orders a day on alphaess instead, each order for its own time.
+With --day it orders a day on alphaess instead, each order for its own time. With --interfere it is the second master:
+thirty seconds after every --every-th tick it writes stop, or another mode, in place of what another master has ordered, and
+prints the tick.
 """
 import argparse
 import re
@@ -83,6 +85,12 @@ class AlphaEss:
                                     (0x0885, [2])):
                 write(85, address, *values)
 
+    def stop(self):
+        self.master.write(85, 0x0880, 0)
+
+    def other_mode(self):
+        self.master.write(85, 0x0885, 1)
+
     def soc(self, read):
         return read(85, 0x0102)[0]
 
@@ -96,6 +104,12 @@ class Simulator:
 
     def order(self, watts):
         self.master.write(1, 100, 1, *words(watts), 10000 if watts > 0 else 1000, *words(300))
+
+    def stop(self):
+        self.master.write(1, 100, 0, 0, 0)
+
+    def other_mode(self):
+        self.master.write(1, 100, 0)
 
     def soc(self, read):
         return read(1, 10)[0] / 10
@@ -121,6 +135,13 @@ class SunSpec124:
         self.master.write(1, self.discharge, -share if watts > 0 else 10000)
         self.master.write(1, self.discharge + 1, 10000 if watts > 0 else -share)
         self.master.write(1, self.mode, 2 if watts > 0 else 1)
+
+    def stop(self):
+        self.master.write(1, self.mode, 0)
+
+    def other_mode(self):
+        """Of charging and discharging, the limit that was not written; where neither was, both."""
+        self.master.write(1, self.mode, 3 - self.master.read(1, self.mode)[0])
 
     def soc(self, read):
         return read(1, self.storage + 8)[0] / 10
@@ -154,6 +175,12 @@ class SunSpec704:
         self.master.write(1, self.battery + 19, self.beats)
         self.master.write(1, self.control + 22, 1)
 
+    def stop(self):
+        self.master.write(1, self.control + 22, 0)
+
+    def other_mode(self):
+        self.master.write(1, self.control + 23, 0)
+
     def soc(self, read):
         return read(1, self.battery + 11)[0] / 10
 
@@ -171,6 +198,12 @@ class VictronEss3:
         if self.phases == 3:
             self.master.write(228, 40, watts // 3, watts // 3)
 
+    def stop(self):
+        self.master.write(228, 37, 0)
+
+    def other_mode(self):
+        self.master.write(100, 2902, 1)
+
     def soc(self, read):
         return read(100, 843)[0] * 10
 
@@ -187,6 +220,12 @@ class SungrowSh:
         self.master.write(1, 13051, abs(watts))
         self.master.write(1, 13050, 0xAA if watts > 0 else 0xBB)
         self.master.write(1, 13049, self.mode)
+
+    def stop(self):
+        self.master.write(1, 13050, 0xCC)
+
+    def other_mode(self):
+        self.master.write(1, 13049, 0)
 
     def soc(self, read):
         return read(1, 13022, table=4)[0]
@@ -207,6 +246,12 @@ class HuaweiLuna:
         self.master.write(1, 47246, 0)
         self.master.write(1, 47100, 1 if watts > 0 else 2)
 
+    def stop(self):
+        self.master.write(1, 47100, 0)
+
+    def other_mode(self):
+        self.master.write(1, 47100, 3 - self.master.read(1, 47100)[0] or 1)
+
     def soc(self, read):
         return read(1, 37760)[0]
 
@@ -226,6 +271,16 @@ class Sma:
         self.master.write(3, 40236, *words(2289 if watts > 0 else 2290))
         for address, value in ((40793, charge), (40795, charge), (40797, discharge), (40799, discharge), (40801, 0)):
             self.master.write(3, address, *words(value))
+
+    def stop(self):
+        if self.variant == "setpoint":
+            return self.master.write(3, 40151, *words(803))
+        self.master.write(3, 40236, *words(2424))
+
+    def other_mode(self):
+        if self.variant == "setpoint":
+            return self.master.write(3, 40149, *words(1500))
+        self.master.write(3, 40236, *words(2290))
 
     def soc(self, read):
         return read(3, 30845, 2)[1] * 10
@@ -265,6 +320,17 @@ def drive_a_day(device, options, now):
     print("day over", flush=True)
 
 
+def interfere(device, options, now):
+    act = device.stop if options.interfere == "stop" else device.other_mode
+    tick = int(now()) // 120 + 1
+    while True:
+        while now() < tick * 120 + 30:
+            time.sleep(2 / options.scale)
+        act()
+        print("tick", tick * 120, flush=True)
+        tick += options.every
+
+
 if __name__ == "__main__":
     parser = argparse.ArgumentParser()
     parser.add_argument("--map", choices=DEVICES, required=True)
@@ -274,6 +340,8 @@ if __name__ == "__main__":
     parser.add_argument("--anchor-ns", type=int, required=True)
     parser.add_argument("--start-s", type=int, required=True)
     parser.add_argument("--day", action="store_true")
+    parser.add_argument("--interfere", choices=["stop", "mode"])
+    parser.add_argument("--every", type=int, default=1)
     chosen = parser.parse_args()
 
     def utc_s():
@@ -281,7 +349,9 @@ if __name__ == "__main__":
 
     bus = Master(chosen.port)
     battery = DEVICES[chosen.map](bus, chosen.variant)
-    if chosen.day:
+    if chosen.interfere:
+        interfere(battery, chosen, utc_s)
+    elif chosen.day:
         drive_a_day(battery, chosen, utc_s)
     else:
         drive(bus, battery, chosen, utc_s)
