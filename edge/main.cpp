@@ -92,15 +92,15 @@ int run_controller(const CommandLine& command_line, const EdgeConfig& config) {
     return run_record_command(command_line, config, clock);
   }
   static ModbusBattery battery(config.link, config.map, config.clock);
+  static ModbusMeter meter(config.site.link, config.site.map, config.clock);
   if (command_line.command == SubCommand::kCommission) {
     if (command_line.yes) release_if_a_check_fails(battery);
-    return run_commission_command(command_line, config, battery, clock);
+    return run_commission_command(command_line, config, battery, meter, clock);
   }
   if (command_line.command == SubCommand::kRelease) {
     return run_release_command(command_line, config, battery, clock);
   }
   static PriceFeed prices(config.price, config.clock);
-  static ModbusMeter meter(config.site.link, config.site.map, config.clock);
   if (command_line.command == SubCommand::kCheck) {
     const bool is_well = report_check(config, battery, prices, clock);
     return report_site(config, battery, meter) && is_well ? 0 : 1;

@@ -55,8 +55,11 @@ constexpr const char* kCommissionHelp =
   --config FILE  the controller's settings; default /etc/bess/edge.toml
   --yes          really order it: without it only what would be ordered is said
 
-The battery rests for 10 s, then charges 500 W for 30 s (discharges when it is more than half full), then
-is released. Its measured power must follow. The result is kept in the [state] folder and holds for this
+The battery rests for 10 s, then charges and discharges 500 W for 30 s each, then is released (the map's
+[commissioning] may say otherwise). Its measured power must follow each way, no less and no more than
+[response] of its map allows and as soon, and so must the meter of [meter]. A battery that is slower is
+refused with the lines to set; a direction that its SoC leaves no room for is not tested, and said.
+The result is kept in the [state] folder and holds for this
 map, variant and address; bess-edge refuses to control a battery without it.
 Exit codes: 0 passed   1 refused: the line says why   2 the command line is bad, or --yes is missing
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "edge/battery/modbus_battery.h"
+#include "edge/battery/modbus_meter.h"
 #include "edge/program/command_line.h"
 #include "edge/program/edge_clock.h"
 #include "edge/program/edge_config.h"
@@ -10,6 +11,6 @@ namespace bess {
 
 /// Exit code: 0 passed and stored, 1 refused or failed (one line on stderr), 2 without --yes.
 int run_commission_command(const CommandLine& command_line, const EdgeConfig& config,
-                           ModbusBattery& battery, EdgeClock& clock);
+                           ModbusBattery& battery, ModbusMeter& meter, EdgeClock& clock);
 
 }  // namespace bess

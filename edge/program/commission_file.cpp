@@ -56,6 +56,16 @@ std::string battery_text(const EdgeConfig& config) {
   return text;
 }
 
+/// What was found out, for people: nothing is compared with it.
+void add_direction(std::string_view name, const DirectionResult& direction,
+                   std::ostringstream& text) {
+  if (!direction.is_tested) return;
+  text << name << "_measured_w = " << direction.measured_power_w << "\n"
+       << name << "_lag_ms = " << direction.lag_ms << "\n"
+       << name << "_ramp_w_per_s = " << direction.ramp_w_per_s
+       << (direction.ramp_w_per_s == 0 ? "  # faster than could be seen\n" : "\n");
+}
+
 std::string file_text(const EdgeConfig& config, const CommissionResult& result,
                       std::int64_t utc_s) {
   std::ostringstream text;
@@ -67,6 +77,11 @@ std::string file_text(const EdgeConfig& config, const CommissionResult& result,
        << "ordered_power_w = " << result.ordered_power_w << "\n"
        << "measured_power_w = " << result.measured_power_w << "\n"
        << "utc = \"" << utc_text(utc_s).view() << "\"\n";
+  add_direction("charge", result.charge, text);
+  add_direction("discharge", result.discharge, text);
+  if (result.meter != MeterVerdict::kNotAsked) {
+    text << "meter_percent = " << result.meter_percent << "\n";
+  }
   return text.str();
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstdio>
 
+#include "edge/control/house_watch.h"
 #include "edge/log/journal.h"
 
 namespace bess {
@@ -51,7 +52,14 @@ bool report_site(const EdgeConfig& config, ModbusBattery& battery, ModbusMeter& 
   std::printf("meter      grid %d W (import is positive)", grid_power_w);
   if (has_battery) std::printf(", house %d W", grid_power_w - m.power_w);
   std::printf("\n");
-  return true;
+  if (!has_battery || is_plausible_house(grid_power_w, m.power_w, site.settings.pv_w_max)) {
+    return true;
+  }
+  report(JournalLevel::kError,
+         "meter: house %d W: a load below zero; the sign of meter or battery, the phase or the "
+         "place of the meter is wrong; where panels do that, set [meter] pv_w_max",
+         grid_power_w - m.power_w);
+  return false;
 }
 
 }  // namespace bess

@@ -4,42 +4,223 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <vector>
+
 #include "tests/support/fake_plant.h"
 
 namespace bess {
 namespace {
+
+/// A meter at the connection, and a house that may move.
+struct CommissionMeter {
+  [[nodiscard]] static bool exists() { return true; }
+  Status read(const BatteryMeasurement&, std::int32_t& grid_power_w) {
+    if (is_silent) return Status::kTimeout;
+    battery.physics.advance(battery.clock.now_ns);
+    grid_power_w = static_cast<std::int32_t>(
+        shown(house_w(battery.clock.now_ns / kNanosecondsPerSecond) + battery.physics.power_w()));
+    return Status::kOk;
+  }
+  FakeBattery& battery;
+  std::function<double(double)> shown = [](double grid_w) { return grid_w; };
+  std::function<double(std::int64_t)> house_w = [](std::int64_t) { return 400.0; };
+  bool is_silent = false;
+};
 
 struct CommissionSite {
   explicit CommissionSite(double soc = 0.3) : battery(clock, soc) {}
   CommissionResult commission(const CommissionSettings& settings = {}) {
     return SignCheck<FakeBattery, FakeClock>(settings, battery, clock).run();
   }
+  CommissionResult commission_with(const CommissionMeter& meter) {
+    return SignCheck<FakeBattery, FakeClock, CommissionMeter>({}, battery, clock, meter).run();
+  }
   void expect_refused(CommissionVerdict verdict) {
     EXPECT_EQ(commission().verdict, verdict) << commission_text(verdict);
     EXPECT_FALSE(battery.physics.dispatch_active());
+  }
+  [[nodiscard]] std::vector<int> ordered() const {
+    std::vector<int> watts;
+    for (const PowerOrder& order : battery.orders) watts.push_back(order.power_w);
+    return watts;
   }
 
   FakeClock clock;
   FakeBattery battery;
 };
 
-TEST(Commission, ChargesABatteryThatHasRoom) {
+TEST(Commission, DrivesABatteryBothWays) {
   CommissionSite site(0.3);
+  const std::int64_t start_ns = site.clock.now_ns;
   const CommissionResult result = site.commission();
   EXPECT_EQ(result.verdict, CommissionVerdict::kPassed);
-  EXPECT_EQ(result.ordered_power_w, 500);
-  EXPECT_EQ(result.measured_power_w, 500);
-  ASSERT_EQ(site.battery.orders.size(), 2U);  // rest, drive
-  EXPECT_EQ(site.battery.orders[0].power_w, 0);
+  EXPECT_TRUE(result.charge.is_tested && result.discharge.is_tested);
+  EXPECT_EQ(result.charge.measured_power_w, 500);
+  EXPECT_EQ(result.discharge.measured_power_w, -500);
+  EXPECT_EQ(result.charge.lag_ms, 0);
+  EXPECT_EQ(result.charge.ramp_w_per_s, 0);
+  EXPECT_EQ(site.ordered(), (std::vector{0, 500, 0, -500, 0}));
   EXPECT_EQ(site.battery.releases, 1);
-  EXPECT_NEAR(site.battery.physics.soc_frac() - 0.3, 500.0 * 30 / 3'600 / 8'000 * 0.95, 1e-5);
+  EXPECT_EQ((site.clock.now_ns - start_ns) / kNanosecondsPerSecond, 10 + 30 + 10 + 30 + 10);
 }
 
-TEST(Commission, DischargesAFullOne) {
-  CommissionSite site(1.0);
+TEST(Commission, SaysWhichDirectionItsSocDoesNotLeave) {
+  CommissionSite full(1.0);
+  const CommissionResult discharged = full.commission();
+  EXPECT_EQ(discharged.verdict, CommissionVerdict::kPassed);
+  EXPECT_FALSE(discharged.charge.is_tested);
+  EXPECT_EQ(discharged.discharge.measured_power_w, -500);
+  EXPECT_EQ(full.ordered(), (std::vector{0, -500, 0}));
+  CommissionSite empty(0.1);
+  const CommissionResult charged = empty.commission();
+  EXPECT_EQ(charged.verdict, CommissionVerdict::kPassed);
+  EXPECT_FALSE(charged.discharge.is_tested);
+  CommissionSite between(0.5);
+  EXPECT_EQ(between.commission({.soc_min_e4 = 4'950, .soc_max_e4 = 5'050}).verdict,
+            CommissionVerdict::kNoRoom);
+  EXPECT_TRUE(between.battery.orders.empty());
+}
+
+/// 4029 W were once measured for 500, and "the sign is right".
+TEST(Commission, RefusesMorePowerThanOrderedAndEndsItAtOnce) {
+  for (const double gain : {8.06, 1.5, -8.0}) {
+    CommissionSite site;
+    site.battery.physics.set_habits({.gain = gain});
+    const std::int64_t start_ns = site.clock.now_ns;
+    site.expect_refused(gain > 0 ? CommissionVerdict::kTooMuch : CommissionVerdict::kWrongSign);
+    EXPECT_LE(site.clock.now_ns - start_ns, 13 * kNanosecondsPerSecond);
+  }
+}
+
+TEST(Commission, TheOtherDirectionIsLookedAtAsWell) {
+  struct OneWay : FakeBattery {
+    using FakeBattery::FakeBattery;
+    Status read(BatteryMeasurement& m) {
+      const Status status = FakeBattery::read(m);
+      if (m.power_w < 0) m.power_w = -m.power_w;  // a map that reads a magnitude
+      return status;
+    }
+  };
+  FakeClock clock;
+  OneWay battery(clock, 0.3);
+  const CommissionResult result = SignCheck<OneWay, FakeClock>({}, battery, clock).run();
+  EXPECT_EQ(result.verdict, CommissionVerdict::kWrongSign);
+  EXPECT_EQ(result.ordered_power_w, -500);
+  EXPECT_FALSE(battery.physics.dispatch_active());
+}
+
+TEST(Commission, RefusesLessThanItsMapAllowsAndSaysWhatToSet) {
+  CommissionSite site;
+  site.battery.physics.set_habits({.gain = 0.55});
   const CommissionResult result = site.commission();
+  EXPECT_EQ(result.verdict, CommissionVerdict::kTooLittle);
+  EXPECT_EQ(result.wanted_tolerance_w, 300);  // 225 W are missing
+  CommissionSettings told;
+  told.response.tolerance_w = 300;
+  CommissionSite again;
+  again.battery.physics.set_habits({.gain = 0.55});
+  EXPECT_EQ(again.commission(told).verdict, CommissionVerdict::kPassed);
+}
+
+TEST(Commission, MeasuresALagAndProposesTheTimeToSettle) {
+  CommissionSite quick;
+  quick.battery.physics.set_habits({.delay_s = 5});
+  const CommissionResult passed = quick.commission();
+  EXPECT_EQ(passed.verdict, CommissionVerdict::kPassed);
+  EXPECT_NEAR(static_cast<double>(passed.charge.lag_ms), 5'000, 1'001);
+  EXPECT_NEAR(static_cast<double>(passed.charge.came_ms), 5'000, 1'001);
+  CommissionSite late;
+  late.battery.physics.set_habits({.delay_s = 25});
+  const CommissionResult refused = late.commission();
+  EXPECT_EQ(refused.verdict, CommissionVerdict::kSlow);
+  EXPECT_GE(refused.wanted_settle_s, 25);
+  EXPECT_LE(refused.wanted_settle_s, 32);
+  EXPECT_EQ(refused.wanted_ramp_w_max, 0);
+  CommissionSettings told;
+  told.response.settle_s = refused.wanted_settle_s;
+  CommissionSite again;
+  again.battery.physics.set_habits({.delay_s = 25});
+  EXPECT_EQ(again.commission(told).verdict, CommissionVerdict::kPassed);
+}
+
+/// 500 W are there in 17 s; a reversal of 8 kW takes 267 s, longer than any map may say.
+TEST(Commission, MeasuresARampAndProposesTheStepThatItManages) {
+  CommissionSite site;
+  site.battery.physics.set_habits({.ramp_w_per_s = 30});
+  const CommissionResult result = site.commission();
+  EXPECT_EQ(result.verdict, CommissionVerdict::kSlow);
+  EXPECT_NEAR(result.charge.ramp_w_per_s, 30, 2);
+  EXPECT_EQ(result.wanted_settle_s, 100);
+  EXPECT_NEAR(result.wanted_ramp_w_max, 2'400, 200);
+  CommissionSettings told;
+  told.response.settle_s = result.wanted_settle_s;
+  told.step_w_max = result.wanted_ramp_w_max;
+  CommissionSite again;
+  again.battery.physics.set_habits({.ramp_w_per_s = 30});
+  EXPECT_EQ(again.commission(told).verdict, CommissionVerdict::kPassed);
+  CommissionSite brisk;
+  brisk.battery.physics.set_habits({.ramp_w_per_s = 200});
+  EXPECT_EQ(brisk.commission().verdict, CommissionVerdict::kPassed);  // too fast to be seen
+}
+
+TEST(Commission, AnAlarmThatComesMeanwhileEndsIt) {
+  struct Alarming : FakeBattery {
+    using FakeBattery::FakeBattery;
+    Status read(BatteryMeasurement& m) {
+      const Status status = FakeBattery::read(m);
+      m.alarm = physics.power_w() != 0;
+      return status;
+    }
+  };
+  FakeClock clock;
+  Alarming battery(clock, 0.3);
+  const CommissionResult result = SignCheck<Alarming, FakeClock>({}, battery, clock).run();
+  EXPECT_EQ(result.verdict, CommissionVerdict::kAlarm);
+  EXPECT_EQ(battery.releases, 1);
+  EXPECT_EQ(battery.orders.size(), 2U);
+}
+
+// --- the meter -----------------------------------------------------------------------------------
+
+TEST(Commission, AMeterThatFollowsPasses) {
+  CommissionSite site;
+  const CommissionResult result = site.commission_with({.battery = site.battery});
   EXPECT_EQ(result.verdict, CommissionVerdict::kPassed);
-  EXPECT_EQ(result.measured_power_w, -500);
+  EXPECT_EQ(result.meter, MeterVerdict::kFollows);
+  EXPECT_EQ(result.meter_percent, 100);
+  EXPECT_EQ(result.rest_house_w, 400);
+  CommissionSite full(1.0);
+  EXPECT_EQ(full.commission_with({.battery = full.battery}).meter, MeterVerdict::kFollows);
+  CommissionSite kettle;  // goes on in one of the four steps
+  CommissionMeter meter{.battery = kettle.battery};
+  const std::int64_t on_s = kettle.clock.now_ns / kNanosecondsPerSecond + 60;
+  meter.house_w = [on_s](std::int64_t utc_s) { return utc_s < on_s ? 400.0 : 2'400.0; };
+  EXPECT_EQ(kettle.commission_with(meter).verdict, CommissionVerdict::kPassed);
+}
+
+TEST(Commission, AMeterThatDoesNotFollowIsRefused) {
+  const std::function<double(double)> liars[] = {
+      [](double) { return 400.0; }, [](double w) { return -w; }, [](double w) { return 0.1 * w; },
+      [](double w) { return 10 * w; }, [](double w) { return 0.65 * w; }};
+  for (const auto& lie : liars) {
+    CommissionSite site;
+    const CommissionResult result = site.commission_with({.battery = site.battery, .shown = lie});
+    EXPECT_EQ(result.verdict, CommissionVerdict::kMeterMismatch) << result.meter_percent;
+    EXPECT_EQ(site.battery.releases, 1);
+  }
+  CommissionSite silent;
+  const CommissionResult lost =
+      silent.commission_with({.battery = silent.battery, .is_silent = true});
+  EXPECT_EQ(lost.verdict, CommissionVerdict::kMeterLost);
+  EXPECT_EQ(lost.status, Status::kTimeout);
+}
+
+TEST(Commission, AHouseThatMovesTooMuchIsNoReasonToAccuse) {
+  CommissionSite site;
+  CommissionMeter meter{.battery = site.battery};
+  meter.house_w = [](std::int64_t utc_s) { return static_cast<double>(utc_s * 7'919 % 13) * 300; };
+  EXPECT_EQ(site.commission_with(meter).verdict, CommissionVerdict::kMeterRestless);
 }
 
 TEST(Commission, RefusesAWrongSign) {
@@ -108,7 +289,7 @@ TEST(Commission, FeedsTheWatchdogMeanwhile) {
   CommissionSite site;
   site.battery.refresh_s = 9;
   EXPECT_EQ(site.commission().verdict, CommissionVerdict::kPassed);
-  EXPECT_EQ(site.battery.refreshed_ns.size(), 1U + 3U);  // 10 s of rest, 30 s of driving
+  EXPECT_EQ(site.battery.refreshed_ns.size(), 3 * 1U + 2 * 3U);  // 10 s of rest, 30 s of driving
 }
 
 }  // namespace

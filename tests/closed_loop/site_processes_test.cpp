@@ -2,6 +2,7 @@
 // limits from `bess-edge limit`, and bess-sim's own record says what flowed.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "tests/support/simulated_site.h"
 
@@ -138,6 +139,56 @@ TEST_F(SiteProcesses, TheCommandLineOfALimitIsChecked) {
   EXPECT_EQ(exit_code({"limit", "--config", with, "--charge", "-1", "--for", "15m"}), 2);
   EXPECT_EQ(exit_code({"limit", "--config", with, "--for", "15m", "--clear"}), 2);
   EXPECT_EQ(exit_code({"limit", "--config", with, "--clear"}), 0);
+}
+
+TEST_F(SiteProcesses, CheckSaysThatAHouseCannotGenerate) {
+  std::vector<std::string> options = own_meter();
+  options.insert(options.end(), {"--meter-fault", "wrong-sign"});
+  start(options);
+  usleep(600'000);  // faults begin with simulated time
+  for (const auto& [keys, code] : {std::pair{"", 1}, std::pair{"pv_w_max = 2000\n", 0}}) {
+    const std::string config = site_.write_config({.guard_keys = meter_section(keys)});
+    ChildProcess check({edge_program(), "--config", config, "--check", "--dry-run"});
+    const std::string said = check.read_all();
+    EXPECT_THAT(said, HasSubstr("meter      grid -1500 W (import is positive), house -1500 W"));
+    EXPECT_EQ(said.find("house -1500 W: a load below zero") != std::string::npos, code == 1);
+    EXPECT_EQ(check.wait(), code) << said;
+  }
+}
+
+TEST_F(SiteProcesses, CommissionMovesTheMeterToo) {
+  start(own_meter());
+  const std::string config = site_.write_config({.guard_keys = meter_section("")});
+  ChildProcess honest({edge_program(), "commission", "--config", config, "--yes"});
+  const std::string said = honest.read_all();
+  EXPECT_THAT(said, HasSubstr("charge     ordered 500 W, measured 500 W"));
+  EXPECT_THAT(said, HasSubstr("discharge  ordered -500 W, measured -500 W"));
+  EXPECT_THAT(said, HasSubstr("meter      shows 100 % of the battery's steps; house 1500 W"));
+  EXPECT_EQ(honest.wait(), 0);
+}
+
+TEST_F(SiteProcesses, CommissionRefusesAMeterThatDoesNotFollow) {
+  std::vector<std::string> options = own_meter();
+  options.insert(options.end(), {"--meter-fault", "wrong-sign"});
+  start(options);
+  usleep(600'000);  // faults begin with simulated time
+  const std::string config = site_.write_config({.guard_keys = meter_section("")});
+  ChildProcess liar({edge_program(), "commission", "--config", config, "--yes"});
+  const std::string said = liar.read_all();
+  EXPECT_THAT(said, HasSubstr("the meter does not step with the battery"));
+  EXPECT_THAT(said, HasSubstr("shows -100 % of the battery's steps"));
+  EXPECT_EQ(liar.wait(), 1);
+  EXPECT_FALSE(std::filesystem::exists(site_.folder.file("state/commissioned.toml")));
+}
+
+TEST_F(SiteProcesses, CommissionRefusesMorePowerThanOrdered) {
+  start({"--fault", "excess-power", "--fault-every", "1"});
+  const std::string config = site_.write_config({.guard_keys = ""});
+  ChildProcess edge({edge_program(), "commission", "--config", config, "--yes"});
+  const std::string said = edge.read_all();
+  EXPECT_THAT(said, HasSubstr("more power flows than ordered"));
+  EXPECT_EQ(edge.wait(), 1);
+  EXPECT_FALSE(std::filesystem::exists(site_.folder.file("state/commissioned.toml")));
 }
 
 TEST_F(SiteProcesses, CheckShowsGridAndHouse) {

@@ -4,6 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <sstream>
+
 #include "tests/support/temporary_folder.h"
 
 namespace bess {
@@ -73,6 +76,26 @@ TEST_F(CommissionFile, AnEditedIncludedMapMustBeCheckedAgain) {
   EXPECT_TRUE(is_commissioned(config_, error_)) << error_;
   static_cast<void>(folder_.write("base.toml", "# version 2\n"));
   EXPECT_THAT(complaint(), HasSubstr("map_crc32"));
+}
+
+TEST_F(CommissionFile, KeepsWhatWasMeasuredAndStillReadsOlderFiles) {
+  CommissionResult result{.verdict = CommissionVerdict::kPassed};
+  result.charge = {.is_tested = true, .measured_power_w = 493, .lag_ms = 1'200, .ramp_w_per_s = 40};
+  result.meter = MeterVerdict::kFollows;
+  result.meter_percent = 98;
+  ASSERT_TRUE(write_commission_file(config_, result, 1'679'788'800, error_)) << error_;
+  EXPECT_TRUE(is_commissioned(config_, error_)) << error_;
+  std::ostringstream bytes;
+  bytes << std::ifstream(folder_.file("state/commissioned.toml")).rdbuf();
+  const std::string text = bytes.str();
+  for (const char* const line : {"charge_measured_w = 493\n", "charge_lag_ms = 1200\n",
+                                 "charge_ramp_w_per_s = 40\n", "meter_percent = 98\n"}) {
+    EXPECT_THAT(text, HasSubstr(line));
+  }
+  EXPECT_EQ(text.find("discharge"), std::string::npos);
+  static_cast<void>(
+      folder_.write("state/commissioned.toml", text.substr(0, text.find("charge_measured_w"))));
+  EXPECT_TRUE(is_commissioned(config_, error_)) << error_;
 }
 
 TEST_F(CommissionFile, NoneAtAllSaysWhatToRun) {
