@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <stdexcept>
 
 namespace bess {
@@ -15,6 +16,8 @@ static_assert(std::endian::native == std::endian::little, "the page's arrays are
 
 constexpr double kMilliPerEur = 1000;
 constexpr int kSecondsPerMinute = 60;
+/// A settled price of a million EUR/MWh is refused wherever steps are made.
+static_assert(1'000'000 * kMilliPerEur < std::numeric_limits<std::int32_t>::max());
 
 /// One array: `value` of each item.
 template <typename Number, typename Items, typename Value>

@@ -60,6 +60,14 @@ TEST(StepHold, ARowOlderThanTheHeldOneChangesNothing) {
   EXPECT_EQ(hold.held().minute_utc_s, 14 * 60);
 }
 
+TEST(StepHold, FromOneEndOfAllPricesToTheOtherNothingOverflows) {
+  constexpr PriceRow kLowest{.minute_utc_s = 600, .price_centi_eur_per_mwh = -10'000'000};
+  EXPECT_TRUE(StepHold(20'000'000, true).judge(kLowest, row_at(11, 10'000'000)).is_taken);
+  StepHold hold(19'999'999, true);
+  EXPECT_FALSE(hold.judge(kLowest, row_at(11, 10'000'000)).is_taken);
+  EXPECT_TRUE(hold.judge(kLowest, row_at(12, 10'000'000)).is_taken) << "confirmed";
+}
+
 TEST(StepHold, SwitchedOffItOnlyFlags) {
   StepHold hold(kStep, false);
   const auto verdict = hold.judge(kBefore, row_at(11, 900'000));

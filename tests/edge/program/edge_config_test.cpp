@@ -215,6 +215,8 @@ TEST(EdgeConfig, EveryMistakeIsOneClearLineWithItsPlace) {
       {"soc_min = 0.2", "soc_min = \"0.2\"", 8, "must be a number"},
       {"soc_min = 0.2", "soc_min = 1.0", 8, "must be below soc_max"},
       {"soc_min = 0.2", "low_price_eur_per_mwh = 2000", 8, "must be below high_price"},
+      {"soc_min = 0.2", "frozen_price_s_max = -1", 8, "must lie between 0 and 86400"},
+      {"soc_min = 0.2", "frozen_price_s_max = 86401", 8, "must lie between 0 and 86400"},
       {"soc_min = 0.2", "low_price_eur_per_mwh = -15001", 8, "must lie between -15000 and 15000"},
       {"soc_min = 0.2", "high_price_eur_per_mwh = 999.5", 8,
        "must be whole EUR/MWh, as the student is proved for"},

@@ -147,6 +147,8 @@ TEST_F(BadPrices, ExtremePricesPassThroughEveryCommand) {
       const std::string told = fmt::format("price {} lies beyond 15000 EUR/MWh", c.price);
       EXPECT_EQ(result.output.find(told) != result.output.npos, c.is_told) << result.output;
     }
+    EXPECT_THAT(read_file(path("stats.svg")),
+                HasSubstr(fmt::format("1 quarter-hour beyond, {0} to {0})", c.price)));
     EXPECT_THAT(read_file(imported), HasSubstr(fmt::format(",{0},{0}\n", c.price)));
     EXPECT_THAT(read_file(drawn), HasSubstr(fmt::format(",{0},{0}\n", c.price)));
   }

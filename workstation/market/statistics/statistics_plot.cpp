@@ -2,10 +2,13 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <map>
+#include <vector>
 
 #include "shared/host/file.h"
 #include "shared/host/gnuplot.h"
+#include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
 
@@ -24,20 +27,36 @@ std::string_view terminal_for(const fs::path& path) {
   fail("{}: a picture is .svg or .png; rename it", path.string());
 }
 
-/// Share of quarter-hours by price bin, in percent per bin.
-std::string histogram_data(std::span<const double> settled) {
+struct PriceBins {
+  std::string data;  ///< share of all quarter-hours by price bin, in percent per bin
+  std::string axis;  ///< label: what is shown, and what lies beyond
+};
+
+PriceBins price_bins(std::span<const double> settled) {
   std::map<int, int> bins;
   int count = 0;
+  std::vector<double> beyond;
   for (const double price : settled) {
-    if (!is_published(price) || price < kShownMinEurPerMwh || price > kShownMaxEurPerMwh) continue;
-    ++bins[static_cast<int>(std::floor(price / kBinEurPerMwh))];
+    if (!is_published(price)) continue;
     ++count;
+    if (price < kShownMinEurPerMwh || price > kShownMaxEurPerMwh) {
+      beyond.push_back(price);
+    } else {
+      ++bins[static_cast<int>(std::floor(price / kBinEurPerMwh))];
+    }
   }
-  std::string data;
+  PriceBins result;
   for (const auto& [bin, hits] : bins) {
-    data += fmt::format("{} {:.4f}\n", (bin + 0.5) * kBinEurPerMwh, 100.0 * hits / count);
+    result.data += fmt::format("{} {:.4f}\n", (bin + 0.5) * kBinEurPerMwh, 100.0 * hits / count);
   }
-  return data;
+  result.axis = "settled price, EUR/MWh (-600 to 1000 shown";
+  if (!beyond.empty()) {
+    const auto [least, most] = std::ranges::minmax(beyond);
+    result.axis +=
+        fmt::format("; {} beyond, {} to {}", counted(beyond.size(), "quarter-hour"), least, most);
+  }
+  result.axis += ")";
+  return result;
 }
 
 std::string convergence_data(const ConvergenceByMinute& convergence) {
@@ -55,16 +74,17 @@ std::string gnuplot_script(const fs::path& picture, const fs::path& output,
                            const MarketStatistics& statistics, std::span<const double> settled) {
   const std::string convergence =
       statistics.convergence ? convergence_data(*statistics.convergence) : std::string();
+  const PriceBins bins = price_bins(settled);
   std::string script =
       fmt::format("set terminal {}\nset output {}\n$prices << EOD\n{}EOD\n", terminal_for(picture),
-                  gnuplot_quoted(output.string()), histogram_data(settled));
+                  gnuplot_quoted(output.string()), bins.data);
   if (!convergence.empty()) script += fmt::format("$errors << EOD\n{}EOD\n", convergence);
   script += fmt::format(
       "set multiplot layout {},1\nset grid\nset key top right\nset style fill solid 0.6\n"
-      "set xlabel 'settled price, EUR/MWh (-600 to 1000 shown)'\n"
+      "set xlabel '{}'\n"
       "set ylabel '% of quarter-hours'\nset title 'Imbalance prices {} to {}'\n"
       "plot $prices using 1:2 with boxes notitle\n",
-      convergence.empty() ? 1 : 2, utc_text(statistics.from_utc_s).view(),
+      convergence.empty() ? 1 : 2, bins.axis, utc_text(statistics.from_utc_s).view(),
       utc_text(statistics.until_utc_s).view());
   if (!convergence.empty()) {
     script +=
@@ -86,7 +106,7 @@ void require_drawable(const fs::path& path) {
 void plot_statistics(const fs::path& path, const MarketStatistics& statistics,
                      std::span<const double> settled) {
   require_drawable(path);
-  if (histogram_data(settled).empty()) {
+  if (price_bins(settled).data.empty()) {
     fail("{}: nothing to draw: no settled price from {} to {} EUR/MWh", path.string(),
          kShownMinEurPerMwh, kShownMaxEurPerMwh);
   }

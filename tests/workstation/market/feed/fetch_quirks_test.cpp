@@ -535,6 +535,22 @@ TEST_F(FetchQuirks, AnAnswerTooLargeSaysSo) {
   }
 }
 
+/// What Belgium settled at, what another country did, and where bids end: in the file to the digit.
+TEST_F(FetchQuirks, ExtremePricesAreFetchedAsTheyAre) {
+  for (const char* price : {"-999", "25907.54", "-25907.54", "99999", "-99999"}) {
+    const QuirkyElia elia([price](const Ask& ask, Answer& answer) {
+      if (ask.minutes() || ask.wants_total) return;
+      for (QuirkyRow& row : answer.rows) {
+        if (row.utc_s == utc_of("2023-03-25T10:00:00Z")) row.price = price;
+      }
+    });
+    const FetchRequest wanted = request(elia);
+    fetch(wanted);
+    EXPECT_EQ(std::ranges::count(read_minute_file(wanted.out).settled, std::stod(price)), 15);
+    std::filesystem::remove(wanted.out);
+  }
+}
+
 TEST_F(FetchQuirks, AllowedGapsAreWrittenAndSaid) {
   const QuirkyElia elia(
       on_rows([](auto& rows) { leave_out(rows, "2023-03-25T10:00:00Z", "2023-03-25T11:00:00Z"); }));
