@@ -25,17 +25,27 @@ constexpr Schedule kSchedules[] = {{"always", {.every = 1}},
                                    {"every 3rd", {.every = 3}},
                                    {"at random 0.3", {.probability = 0.3}}};
 
+std::string told(const FaultResult& r) {
+  std::string text = r.weak_answers >= 2 ? " weak" : "";
+  if (r.told_cycles == 0) return text;
+  text += " told " + std::to_string(r.told_cycles);
+  if (r.told.energy_share_percent != 0) {
+    text += " (" + std::to_string(r.told.energy_share_percent) + " %)";
+  }
+  if (r.told.rest_loss_w != 0) text += " (" + std::to_string(r.told.rest_loss_w) + " W)";
+  return text;
+}
+
 std::string cell(const FaultResult& r) {
   char text[120];
   if (r.reason == Reason::kStudent) {
-    std::snprintf(text, sizeof text, "- %.0f/%.0f Wh%s", r.against_order_wh, r.moved_wh,
-                  r.weak_answers >= 2 ? " weak" : "");
-  } else {
-    std::snprintf(text, sizeof text, "%d %s%s %.0f/%.0f Wh, then %d", r.cycles,
-                  reason_name(r.reason).data(), r.is_trip ? "" : "*", r.against_order_wh,
-                  r.moved_wh, r.driven_after);
+    std::snprintf(text, sizeof text, "- %.0f/%.0f Wh", r.against_order_wh, r.moved_wh);
+    return text + told(r);
   }
-  return text;
+  std::snprintf(text, sizeof text, "%d %s%s %.0f/%.0f Wh, then %d", r.cycles,
+                reason_name(r.reason).data(), r.is_trip ? "" : "*", r.against_order_wh, r.moved_wh,
+                r.driven_after);
+  return text + told(r);
 }
 
 void print_header(const char* first) {
@@ -57,9 +67,10 @@ void print_row(const std::string& name, FaultCase c) {
 
 constexpr const char* kLegend =
     "Cycles until it was found, as what (* a pause, else a trip), energy against the order / moved "
-    "until then, cycles "
-    "driven\nof the next 30. \"-\": not found in 60 cycles (real day: 720); \"weak\": told as weak "
-    "answers.\n\n";
+    "until then, cycles\ndriven of the next 30. \"-\": not stopped in 60 cycles (real day: 720). "
+    "\"weak\": told as weak answers; \"told N\": after N\ncycles as energy that does not arrive "
+    "(%), "
+    "or is lost at rest (W).\n\n";
 
 void print_table(const std::string& title, FaultCase c) {
   print_header(title.c_str());
@@ -71,7 +82,7 @@ void print_table(const std::string& title, FaultCase c) {
 }
 
 void print_faults() {
-  std::printf("%s", kLegend);
+  std::fputs(kLegend, stdout);
   for (const Schedule& schedule : kSchedules) {
     print_table(std::string("SoC 45 %, ") + schedule.name, {.times = schedule.times});
   }
@@ -80,7 +91,7 @@ void print_faults() {
 }
 
 void print_ends() {
-  std::printf("%s", kLegend);
+  std::fputs(kLegend, stdout);
   for (const int percent : {9, 12, 85, 97}) {
     print_table("SoC " + std::to_string(percent) + " %, always", {.soc_frac = percent / 100.0});
   }
@@ -116,18 +127,19 @@ void print_honest(int days) {
 void print_csv() {
   std::printf(
       "fault,schedule,orders,soc,cycles,reason,trip,against_order_wh,moved_wh,driven_after,"
-      "moved_after_wh,weak_answers,soc_end\n");
+      "moved_after_wh,weak_answers,told_cycles,told_percent,told_w,soc_end\n");
   for (const double soc : {0.09, 0.12, 0.45, 0.85, 0.97}) {
     for (const Schedule& schedule : kSchedules) {
       for (const TrialFault& fault : trial_faults()) {
         for (const Orders orders : kAllOrders) {
           const FaultResult r = try_fault(
               {.fault = &fault, .times = schedule.times, .orders = orders, .soc_frac = soc});
-          std::printf("%s,%s,%s,%.2f,%d,%s,%d,%.0f,%.0f,%d,%.0f,%d,%.3f\n", fault.name,
+          std::printf("%s,%s,%s,%.2f,%d,%s,%d,%.0f,%.0f,%d,%.0f,%d,%d,%d,%d,%.3f\n", fault.name,
                       schedule.name, orders_name(orders).data(), soc, r.cycles,
                       r.reason == Reason::kStudent ? "" : reason_name(r.reason).data(), r.is_trip,
                       r.against_order_wh, r.moved_wh, r.driven_after, r.moved_after_wh,
-                      r.weak_answers, r.soc_frac);
+                      r.weak_answers, r.told_cycles, r.told.energy_share_percent,
+                      r.told.rest_loss_w, r.soc_frac);
         }
       }
     }

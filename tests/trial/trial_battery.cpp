@@ -319,6 +319,7 @@ void TrialBattery::show() {
   fault_->show({.is_dispatched = is_dispatched_,
                 .ordered_w = ordered_w_,
                 .flow_w = flow_w_,
+                .honest_w = honest_w_,
                 .charged_frac = charge_frac_ - charge_at_fault_frac_,
                 .fault_s = now_s_ - fault_since_s_,
                 .at_fault = shown_at_fault_},

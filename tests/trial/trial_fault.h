@@ -26,6 +26,7 @@ struct ShownView {
   bool is_dispatched = false;
   double ordered_w = 0;
   double flow_w = 0;         ///< what really flows
+  double honest_w = 0;       ///< what would
   double charged_frac = 0;   ///< of its capacity, really, since the fault began
   std::int64_t fault_s = 0;  ///< since it began
   const BatteryMeasurement& at_fault;

@@ -61,7 +61,9 @@ void TrialSite::start() {
 void TrialSite::kill_and_restart() {
   clock.pause_ns(45 * kNanosecondsPerSecond);
   start();
-  loop_->take_over(take_over_of(newest_, newest_.price_level, false));
+  recall_cycles(log_, clock.now_utc_s(), *loop_);
+  const CycleRecord& newest = log_.records.back();
+  loop_->take_over(take_over_of(newest, newest.price_level, false));
 }
 
 std::int64_t TrialSite::next_tick_utc_s() const { return bess::next_tick_utc_s(clock.now_utc_s()); }
@@ -83,8 +85,11 @@ CycleRecord TrialSite::cycle_held(std::int32_t power_w) {
 
 CycleRecord TrialSite::run() {
   ++cycles_;
-  loop_->run_cycle(newest_);
-  return newest_;
+  CycleRecord record;
+  loop_->run_cycle(record);
+  log_.records.push_back(record);
+  if (log_.records.size() > TrialLog::kRecordsMax) log_.records.pop_front();
+  return record;
 }
 
 ControlSettings trial_settings(const HonestVariant& variant) {
@@ -100,6 +105,16 @@ ControlSettings trial_settings(const HonestVariant& variant) {
       variant.told_soc_step_e4 > 0 ? variant.told_soc_step_e4 : nature.soc_step_e4;
   return settings;
 }
+
+namespace {
+
+void note_told(const ResponseFindings& findings, FaultResult& result) {
+  if (findings.energy_share_percent == 0 && findings.rest_loss_w == 0) return;
+  if (result.told_cycles == 0) result.told_cycles = result.cycles;
+  result.told = findings;
+}
+
+}  // namespace
 
 FaultResult try_fault(const FaultCase& c) {
   ControlSettings settings = trial_settings({.name = "", .nature = c.nature});
@@ -117,6 +132,7 @@ FaultResult try_fault(const FaultCase& c) {
     const CycleRecord record = site.cycle(c.orders);
     ++result.cycles;
     result.weak_answers = std::max(result.weak_answers, record.weak_answers);
+    note_told(record.findings, result);
     if (is_stop_reason(record.reason)) result.reason = record.reason;
     result.is_trip = record.is_tripped;
     if (c.is_killed) site.kill_and_restart();

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
+#include <iterator>
 #include <optional>
 #include <string_view>
 
@@ -32,6 +34,17 @@ struct TrialPrices {
   }
   std::int64_t wanted_utc_s = 0;
   std::int32_t price_centi_eur_per_mwh = 0;
+};
+
+/// What a run leaves behind for the next one.
+struct TrialLog {
+  static constexpr std::size_t kRecordsMax = 500;  ///< more than a start reads again
+  bool read_back(std::int64_t records_ago, CycleRecord& record) const {
+    if (records_ago >= std::ssize(records)) return false;
+    record = records[records.size() - 1 - static_cast<std::size_t>(records_ago)];
+    return true;
+  }
+  std::deque<CycleRecord> records;
 };
 
 class TrialSite {
@@ -64,7 +77,7 @@ class TrialSite {
 
   ControlSettings settings_;
   std::optional<Loop> loop_;
-  CycleRecord newest_;
+  TrialLog log_;
   std::int64_t cycles_ = 0;
 };
 
@@ -91,6 +104,8 @@ struct FaultResult {
   int driven_after = 0;       ///< of the next thirty cycles, those with an order that is not 0 W
   double moved_after_wh = 0;  ///< in the next thirty cycles
   int weak_answers = 0;       ///< the most that were told
+  int told_cycles = 0;        ///< until energy was told that does not arrive, or is lost; 0 = never
+  ResponseFindings told{};    ///< the last of it
   double soc_frac = 0;        ///< of the cells when it was found, or in the end
 };
 
