@@ -190,8 +190,8 @@ TEST_P(Peers, AStoppedEdgeLeavesTheBlockReleased) {
 /// A battery that breaks after two good orders, at a price that asks for the same order in every cycle.
 struct Breakdown {
   const char* fault;
-  const char* reason;
-  int cycles_until_noticed;  ///< from the order with which it breaks
+  const char* reason = "";
+  int cycles_until_noticed = 0;  ///< from the order with which it breaks
   const char* guard_keys = "";
   int exit_code = 0;
   int every = 1;  ///< in every so manieth two minutes
@@ -203,7 +203,7 @@ void PrintTo(const Breakdown& b, std::ostream* out) { *out << b.fault; }
 
 std::string breakdown_name(const ::testing::TestParamInfo<Breakdown>& info) {
   const Breakdown& b = info.param;
-  std::string name = b.fault;
+  std::string name = *b.fault == '\0' ? "slow_and_noisy" : b.fault;
   std::replace(name.begin(), name.end(), '-', '_');
   if (b.every > 1) name.append("_at_every_").append(std::to_string(b.every));
   return name.append("_from_").append(std::to_string(b.soc_permille));
@@ -272,12 +272,45 @@ INSTANTIATE_TEST_SUITE_P(
         Breakdown{"reversed", "wrong_direction", 2}, Breakdown{"twice", "uncontrolled_power", 2},
         Breakdown{"idle-discharge", "uncontrolled_power", 2, "soc_max = 0.3\n"},
         Breakdown{"soc-stuck", "soc_mismatch", 3}, Breakdown{"dead", "no_answer", 2},
-        Breakdown{"echo", "soc_mismatch", 3}, Breakdown{"capacity", "capacity", 1},
-        Breakdown{"other-master", "other_master", 2},
+        Breakdown{"echo", "soc_mismatch", 3},
+        // What comes and goes, and the end of the SoC.
+        Breakdown{.fault = "reversed",
+                  .reason = "wrong_direction",
+                  .cycles_until_noticed = 6,
+                  .every = 2},
+        Breakdown{.fault = "twice",
+                  .reason = "uncontrolled_power",
+                  .cycles_until_noticed = 9,
+                  .every = 3},
+        Breakdown{.fault = "soc-stuck",
+                  .reason = "soc_mismatch",
+                  .cycles_until_noticed = 3,
+                  .soc_permille = 1'000,
+                  .price_eur_per_mwh = 1'600},
+        Breakdown{.fault = "soc-inverted",
+                  .reason = "soc_mismatch",
+                  .cycles_until_noticed = 4,
+                  .soc_permille = 1'000,
+                  .price_eur_per_mwh = 1'600},
+        Breakdown{"capacity", "capacity", 1}, Breakdown{"other-master", "other_master", 2},
         // An order that fails is taken back at once: three of them are no danger. Nor can the
         // release be confirmed.
         Breakdown{"wrong-echo", "orders_fail", 3, "", 1}),
     breakdown_name);
+
+class PeersTold : public PeersBreakdown {};
+
+TEST_P(PeersTold, IsToldByStatusAndDrivenOn) {
+  ChildProcess edge({edge_program(), "--config", config_});
+  EXPECT_GT(cycle_with(edge, " cycle=14 ", 15), 0);
+  const std::string status = command({"status"});
+  EXPECT_THAT(status, HasSubstr("the SoC shows about"));
+  EXPECT_THAT(status, ::testing::Not(HasSubstr("CRITICAL")));
+  EXPECT_EQ(SimulatedSite::stop(edge), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Bus, PeersTold, ::testing::Values(Breakdown{.fault = "half-flow"}),
+                         breakdown_name);
 
 class PeersTrip : public PeersBreakdown {};
 
@@ -337,8 +370,11 @@ TEST_P(PeersHealthy, IsDrivenOn) {
   EXPECT_GT(driven, kCycles / 2);
 }
 
-INSTANTIATE_TEST_SUITE_P(Bus, PeersHealthy, ::testing::Values(Breakdown{"", "", 0}),
-                         [](const auto&) { return "slow_and_noisy"; });
+INSTANTIATE_TEST_SUITE_P(Bus, PeersHealthy,
+                         ::testing::Values(Breakdown{"", "", 0}, Breakdown{"recalibrates", "", 0},
+                                           Breakdown{.fault = "forced-charge", .soc_permille = 98},
+                                           Breakdown{.fault = "balancing", .soc_permille = 1'000}),
+                         breakdown_name);
 
 std::string setup_name(const ::testing::TestParamInfo<Setup>& info) {
   return std::string(info.param.rtu ? "rtu_" : "tcp_") + info.param.variant;
