@@ -230,9 +230,9 @@ class BatteryDriver {
     OrderTrace trace = OrderTrace::kOurs;  // also where it cannot be read just now
     static_cast<void>(runner_.trace(command_, trace));
     if (trace == OrderTrace::kForeign || (active && trace == OrderTrace::kAtRest)) {
-      give_up_lost_order(Loss::kReplaced);
+      note_loss(Loss::kReplaced, trace);
     } else if (!active && (trace == OrderTrace::kAtRest || has_settled())) {
-      give_up_lost_order(Loss::kEnded);
+      note_loss(Loss::kEnded, trace);
     }
   }
 
@@ -240,22 +240,18 @@ class BatteryDriver {
   [[nodiscard]] bool is_still_there() {
     OrderTrace trace = OrderTrace::kOurs;
     if (runner_.trace(command_, trace) != Status::kOk || trace == OrderTrace::kOurs) return true;
-    // Only a fresh reading tells an end from a hand that wrote just as much.
-    const bool is_end = trace == OrderTrace::kAtRest && shows_end() &&
-                        read_registers() == Status::kOk &&
-                        !live_all(map_, map_.active, bus_.live());
-    if (is_end && !is_within_its_time()) {
-      lose_order();
-    } else {
-      give_up_lost_order(is_end ? Loss::kEnded : Loss::kReplaced);
-    }
+    // Only a fresh reading tells that the device still follows an order.
+    const bool may_be_end = trace == OrderTrace::kAtRest && shows_end();
+    const bool is_active =
+        may_be_end && read_registers() == Status::kOk && live_all(map_, map_.active, bus_.live());
+    note_loss(may_be_end && !is_active ? Loss::kEnded : Loss::kReplaced, trace);
     return false;
   }
 
   /// All of it is written again with the next order, unless control yields. Not before: two masters
-  /// that outdo each other would swing the power.
-  void give_up_lost_order(Loss loss) {
-    loss_ = loss;
+  /// that outdo each other would swing the power. What has just run out was not lost.
+  void note_loss(Loss loss, OrderTrace trace) {
+    if (trace == OrderTrace::kForeign || is_within_its_time()) loss_ = loss;
     lose_order();
   }
 

@@ -247,8 +247,10 @@ class ControlLoop {
     if (bearable_power_w(known, Margin::kHalf) == order_.power_w() && !cut_failed_) return;
     const std::int32_t power_w = bearable_power_w(known, Margin::kWhole);
     if (!site_.needs_battery()) is_read = battery_.read(measurement) == Status::kOk;
-    // What became of our order is for the tick to see, and not to be hidden by the next one.
-    if (is_read && (measurement.order_replaced || measurement.order_ended)) return;
+    // What became of our order is for the tick to see, and not to be hidden by the next one. Some follow
+    // none of 0 W: there is nothing to hide.
+    const bool has_ended = measurement.order_ended && order_.drives();
+    if (is_read && (measurement.order_replaced || has_ended)) return;
     if (is_read) account_until_cut(measurement);
     cut_order(power_w);
   }

@@ -270,6 +270,33 @@ TEST_F(DriverTest, AnOrderWhoseTimeIsOverWasNotLost) {
   }
 }
 
+/// The link fails just when the end is looked at more closely.
+TEST_F(DriverTest, AnEndIsNoHandEvenWhereTheReadingFails) {
+  MapUnderTest& t = with();
+  ASSERT_EQ(t.order(1'000), Status::kOk);
+  t.device.pass_s(110);
+  t.device.set(10, {0});
+  t.device.unreadable_address = 0;
+  EXPECT_EQ(t.driver->refresh(), Status::kNotApplied);
+  t.device.unreadable_address = -1;
+  ASSERT_EQ(t.read(), Status::kOk);
+  EXPECT_TRUE(t.measured.order_ended);
+  EXPECT_FALSE(t.measured.order_replaced);
+}
+
+TEST_F(DriverTest, AnOrderThatRunsOutWhileItIsReadWasNotLost) {
+  MapUnderTest& t = with();
+  ASSERT_EQ(t.order(1'000), Status::kOk);
+  t.device.pass_s(299);
+  const int reads = t.device.reads;
+  t.device.before_request = [&] {
+    if (t.device.reads == reads + 3) t.device.set(10, {0});  // after the two of the measurement
+  };
+  ASSERT_EQ(t.read(), Status::kOk);
+  EXPECT_TRUE(t.measured.dispatch_active);
+  EXPECT_FALSE(t.measured.order_replaced || t.measured.order_ended);
+}
+
 TEST_F(DriverTest, AnOrderThatShowsLateIsNotLost) {
   MapUnderTest& t = with({{"active = [\"enable = 1\"]", "active = [\"status = ready\"]"}});
   ASSERT_EQ(t.order(1'000), Status::kOk);
