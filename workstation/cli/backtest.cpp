@@ -140,7 +140,12 @@ void run_backtest(const BacktestArguments& options) {
   if (std::ranges::find(options.policies, kChainName) != options.policies.end()) {
     learn_folds(folds, config, folder);
   }
+  std::vector<std::size_t> fitted_days;
+  for (const Fold& fold : folds.traded) {
+    fitted_days.push_back(fold.market.days.size() - fold.market.days_of(Split::kTest).size());
+  }
   BacktestResults results{{},
+                          std::move(fitted_days),
                           folds.skipped,
                           options.window_days,
                           config.battery.capacity_wh / kWattsPerMegawatt,

@@ -14,6 +14,7 @@
 #include "shared/utc_text.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
+#include "workstation/cli/learnt_for.h"
 #include "workstation/cli/policy_factory.h"
 #include "workstation/cli/price_input.h"
 #include "workstation/env/evaluate.h"
@@ -222,6 +223,7 @@ void run_evaluate(const EvaluateArguments& options) {
   std::vector<NamedEvaluation> results;
   Records records;
   for (const std::string& name : options.policies) {
+    warn_learnt_otherwise(name, circumstances_of(config_entries(config)));
     results.push_back(evaluate_policy(name, trial, &records));
   }
   if (!options.days_out.empty()) write_file(options.days_out, records.days);

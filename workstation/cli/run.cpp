@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include <memory>
+#include <optional>
 
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
@@ -9,6 +10,7 @@
 #include "workstation/cli/commands.h"
 #include "workstation/cli/folder_lock.h"
 #include "workstation/cli/interruption.h"
+#include "workstation/cli/learnt_for.h"
 #include "workstation/cli/run_plan.h"
 #include "workstation/cli/run_seeds.h"
 #include "workstation/cli/run_stages.h"
@@ -25,35 +27,18 @@ struct RunArguments {
   bool json = false;
 };
 
-/// A teacher that was learnt for another battery or market goes on earning what it learnt: that is told.
-void warn_of_foreign_teacher(const RunRecord& record) {
-  if (record.teacher_file.empty()) return;
-  const fs::path file = record.teacher_file;
-  const auto its_run = load_run_record({file.parent_path()});
-  if (!its_run) return;
-  const auto about_the_world = [](const Entries& identity) {
-    Entries kept;
-    for (const auto& entry : identity) {
-      const std::string& key = entry.first;
-      const bool counts = key == "prices" || key.starts_with("[market]") ||
-                          key.starts_with("[battery]") || key.starts_with("[costs]");
-      if (counts) kept.push_back(entry);
-    }
-    return kept;
-  };
-  const std::string other =
-      differences(about_the_world(its_run->identity), about_the_world(record.identity));
-  if (other.empty()) return;
-  fmt::print(stderr, "bess-train: warning: {} was learnt for other circumstances: {}\n",
-             file.string(), other);
-}
-
 /// Plans, claims the folder and goes through all stages.
 void run_one(const RunRequest& request, std::FILE* messages) {
+  std::optional<FolderLock> lock;
+  if (fs::is_directory(request.out)) lock.emplace(request.out);  // before what it holds is judged
   RunPlan plan = plan_run(request);
-  warn_of_foreign_teacher(plan.record);
+  if (!plan.record.teacher_file.empty()) {
+    Entries here = circumstances_of(plan.record.identity);
+    here.emplace_back("prices", plan.record.value("prices"));
+    warn_learnt_otherwise(plan.record.teacher_file, here);
+  }
   require_writable(plan.folder.record());
-  const FolderLock lock(plan.folder.path);
+  if (!lock) lock.emplace(plan.folder.path);
   fmt::print(messages, "[1/6] prices: {} ({} minutes)\n", plan.record.prices_name,
              plan.series.size());
   if (!load_run_record(plan.folder)) save_run_record(plan.folder, plan.record);

@@ -46,6 +46,22 @@ void require_same(const RunRecord& there, const RunRecord& asked, const RunFolde
   }
 }
 
+/// What is written in the folder's config.toml is what the run was made with, whatever anybody wrote into it since:
+/// an edit would be undone without a word.
+void require_unedited_configuration(const RunRecord& there, const RunFolder& folder) {
+  const fs::path path = folder.file(run_file::kConfig);
+  if (!fs::exists(path)) return;
+  const std::string edits =
+      differences(configuration_of(there.identity), config_entries(load_run_config(path)),
+                  "in the run", "in the file");
+  if (edits.empty()) return;
+  fail(
+      "{}: was edited: {}; a run goes on with the configuration that it began with: put it back, "
+      "or "
+      "take the file to another run, --config {} --out ANOTHER",
+      path.string(), edits, path.string());
+}
+
 RunConfig config_of(const RunRequest& request, const RunRecord* there, const RunFolder& folder) {
   if (there == nullptr) return request.common.resolve();
   const RunConfig known = there->config(folder);
@@ -75,6 +91,7 @@ RunPlan plan_run(const RunRequest& request) {
   const std::optional<RunRecord> there = load_run_record(plan.folder);
   const RunRecord* known = request.resume && there ? &*there : nullptr;
   if (!there) require_free(plan.folder, request);
+  if (known != nullptr) require_unedited_configuration(*known, plan.folder);
   RunConfig config = config_of(request, known, plan.folder);
   request.rule_files.apply(config, config.train.context);
   RunRecord& record = plan.record;

@@ -137,11 +137,28 @@ Entries identity_of(const RunConfig& config, const std::string& prices_hash,
   return identity;
 }
 
-std::string differences(const Entries& there, const Entries& here) {
+Entries configuration_of(const Entries& identity) {
+  Entries kept;
+  std::ranges::copy_if(identity, std::back_inserter(kept),
+                       [](const auto& entry) { return entry.first.starts_with('['); });
+  return kept;
+}
+
+Entries circumstances_of(const Entries& identity) {
+  Entries kept;
+  std::ranges::copy_if(identity, std::back_inserter(kept), [](const auto& entry) {
+    return entry.first.starts_with("[market]") || entry.first.starts_with("[battery]") ||
+           entry.first.starts_with("[costs]");
+  });
+  return kept;
+}
+
+std::string differences(const Entries& there, const Entries& here, const std::string& where_there,
+                        const std::string& where_here) {
   std::string text;
   const auto add = [&](const std::string& name, const std::string& a, const std::string& b) {
-    text += fmt::format("{}{} is {} there and {} here", text.empty() ? "" : "; ", name, one_line(a),
-                        one_line(b));
+    text += fmt::format("{}{} is {} {} and {} {}", text.empty() ? "" : "; ", name, one_line(a),
+                        where_there, one_line(b), where_here);
   };
   for (const auto& [name, value] : there) {
     const auto found = find(here, name);

@@ -76,7 +76,14 @@ Entries identity_of(const RunConfig& config, const std::string& prices_hash,
                     const std::string& teacher_hash);
 
 /// "KEY is A there and B here; ...": empty when they are the same.
-std::string differences(const Entries& there, const Entries& here);
+std::string differences(const Entries& there, const Entries& here,
+                        const std::string& where_there = "there",
+                        const std::string& where_here = "here");
+
+/// The keys of a configuration alone.
+Entries configuration_of(const Entries& identity);
+/// Of these, what a policy is learnt for: market, battery and costs.
+Entries circumstances_of(const Entries& identity);
 
 /// None when the folder has no run.json. Throws UserError when that is not a run's, or of another bess-train.
 std::optional<RunRecord> load_run_record(const RunFolder& folder);

@@ -16,6 +16,7 @@
 #include "workstation/cli/chain_steps.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
+#include "workstation/cli/folder_lock.h"
 #include "workstation/cli/interruption.h"
 #include "workstation/cli/price_input.h"
 #include "workstation/env/evaluate.h"
@@ -193,6 +194,8 @@ void run_train(const TrainArguments& options) {
                     {"the checkpoint", checkpoint_path(options.out)}},
                    {{"--prices", options.prices}, {"--config", options.common.config_path}});
   require_writable(options.out);
+  const FolderLock folder_lock(fs::path(options.out).parent_path(), FolderLock::Of::kOneFile);
+  const FileLock lock(options.out);
   const MinuteSeries series = options.price_input.read(options.prices);
   const MarketSteps market = make_market_steps(series, config.market);
   warn_untrained_months(market, config.train.context == ContextKind::kMonth);

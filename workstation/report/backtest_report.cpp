@@ -16,6 +16,7 @@ namespace bess {
 namespace {
 
 constexpr const char* kAllMonths = "all";
+constexpr std::array kLineColours{&kMuted, &kSoft, &kDischarge, &kCharge, &kInk};
 
 /// One policy in one month, or in all of them.
 struct Row {
@@ -52,19 +53,75 @@ std::size_t name_width(const BacktestResults& results) {
   return width;
 }
 
+/// "the 90 to 120 days before it, of 120 that were asked for": a fold takes what is there.
+std::string window_text(const BacktestResults& results) {
+  const auto [least, most] = std::ranges::minmax(results.fitted_days);
+  const std::string days = least == most ? fmt::format("the {} days before it", most)
+                                         : fmt::format("the {} to {} days before it", least, most);
+  const bool is_short = least < static_cast<std::size_t>(results.window_days);
+  return is_short ? fmt::format("{}, of {} that were asked for", days, results.window_days) : days;
+}
+
+/// Labels of the first day of each month, at most a dozen of them; the panel above bears none.
+std::string month_tics(const std::vector<DayResult>& days, bool labelled) {
+  constexpr std::size_t kLabelsMax = 12;
+  constexpr std::size_t kMonthLength = 7;  // of "2024-06"
+  std::vector<std::string> firsts;
+  for (const DayResult& day : days) {
+    const bool is_new =
+        firsts.empty() || firsts.back().substr(0, kMonthLength) != day.date.substr(0, kMonthLength);
+    if (is_new) firsts.push_back(day.date);
+  }
+  const std::size_t stride = (firsts.size() + kLabelsMax - 1) / kLabelsMax;
+  std::string tics;
+  for (std::size_t m = 0; m < firsts.size(); m += stride) {
+    tics += fmt::format("{}'{}' '{}'", tics.empty() ? "" : ", ",
+                        labelled ? firsts[m].substr(0, kMonthLength) : "", firsts[m]);
+  }
+  return fmt::format("set xtics ({})\n", tics);
+}
+
+std::vector<const WalkForward*> shown_in_figure(const BacktestResults& results) {
+  std::vector<const WalkForward*> shown;
+  for (const WalkForward& policy : results.policies) {
+    if (policy.name != kForesightName) shown.push_back(&policy);
+  }
+  return shown;
+}
+
 /// A figure, or nothing where it cannot be known: the spread of one day.
 std::string csv_figure(double value, int decimals) {
   return std::isnan(value) ? "" : fmt::format("{:.{}f}", value, decimals);
 }
 
-constexpr std::array kLineColours{&kMuted, &kSoft, &kDischarge, &kCharge, &kInk};
+std::string fall_text(double drawdown_eur_per_mwh) {
+  if (drawdown_eur_per_mwh == 0) return "no day ended below an earlier one";
+  return fmt::format(
+      "its deepest fall, from the end of a day to that of a later one, was {:.0f} EUR "
+      "per MWh",
+      drawdown_eur_per_mwh);
+}
 
-/// Cumulative profit of every policy but the bound, above; how far each is below its peak, below.
-Figure cumulative_figure(const BacktestResults& results) {
-  std::vector<const WalkForward*> shown;
-  for (const WalkForward& policy : results.policies) {
-    if (policy.name != kForesightName) shown.push_back(&policy);
+/// The colour of a policy's line, in picture and key.
+const Colour& line_colour(std::size_t policy) {
+  return *kLineColours[policy % kLineColours.size()];
+}
+
+/// The key as the page's own text: on a narrow screen that of the picture is cut off.
+std::string legend_html(const BacktestResults& results) {
+  std::string items;
+  const std::vector<const WalkForward*> shown = shown_in_figure(results);
+  for (std::size_t p = 0; p < shown.size(); ++p) {
+    items += fmt::format("<li><i style=\"background:var(--{})\"></i>{}</li>", line_colour(p).name,
+                         html_escaped(shown[p]->name));
   }
+  return fmt::format("<ul class=\"legend\">{}</ul>\n", items);
+}
+
+/// Cumulative profit of every policy but the bound, above; how far each is below its peak, below, unless none
+/// ever is.
+Figure cumulative_figure(const BacktestResults& results) {
+  const std::vector<const WalkForward*> shown = shown_in_figure(results);
   std::vector<std::string> rows;
   std::vector<std::vector<double>> cumulative;
   for (const WalkForward* policy : shown) cumulative.push_back(policy->cumulative_eur_per_mwh());
@@ -87,16 +144,15 @@ Figure cumulative_figure(const BacktestResults& results) {
   const auto best = std::ranges::max_element(
       shown, {}, [](const WalkForward* p) { return p->total.profit_eur_per_day_per_mwh(); });
   figure.caption = fmt::format(
-      "Each month was traded by what was fitted on the {} days before it, the charge carried over. "
-      "{} earned most: {:.1f} EUR per day per MWh; its deepest fall from a peak was {:.0f} EUR per "
-      "MWh.",
-      results.window_days, (*best)->name, (*best)->total.profit_eur_per_day_per_mwh(),
-      (*best)->drawdown_eur_per_mwh());
+      "Each month was traded by what was fitted on {}, the charge carried over. {} earned most: "
+      "{:.1f} EUR per day per MWh; {}.",
+      window_text(results), (*best)->name, (*best)->total.profit_eur_per_day_per_mwh(),
+      fall_text((*best)->drawdown_eur_per_mwh()));
   std::vector<KeyEntry> entries;
   std::string profit_plot;
   std::string fall_plot;
   for (std::size_t p = 0; p < shown.size(); ++p) {
-    const Colour& colour = *kLineColours[p % kLineColours.size()];
+    const Colour& colour = line_colour(p);
     entries.push_back({shown[p]->name, colour, KeyEntry::Kind::kLine, 2.5});
     const char* separator = p == 0 ? "plot " : ", ";
     profit_plot += fmt::format("{}$days using 1:{} with lines lw 2.5 lc {}", separator, 2 + 2 * p,
@@ -105,15 +161,22 @@ Figure cumulative_figure(const BacktestResults& results) {
                              rgb(colour));
   }
   const KeyRow key = key_row(figure, 100, entries);
+  const std::vector<DayResult>& days = shown.front()->total.days;
+  const bool any_falls = std::ranges::any_of(
+      shown, [](const WalkForward* policy) { return policy->drawdown_eur_per_mwh() > 0; });
   figure.commands = data_block("days", rows) +
-                    "set xdata time\nset timefmt '%Y-%m-%d'\nset format x ''\n"
-                    "set multiplot\nset lmargin at screen 0.115\nset rmargin at screen 0.96\n"
-                    "set tmargin at screen 0.925\nset bmargin at screen 0.42\n"
-                    "set ylabel \"profit,\\n1000 EUR/MWh\"\n" +
-                    key.set + profit_plot + "\n" + key.unset +
-                    "set tmargin at screen 0.36\nset bmargin at screen 0.12\nset format x '%Y-%m'\n"
-                    "set ylabel \"below its peak,\\nEUR/MWh\"\n" +
-                    fall_plot + "\nunset multiplot\n";
+                    "set xdata time\nset timefmt '%Y-%m-%d'\nset multiplot\n"
+                    "set lmargin at screen 0.115\nset rmargin at screen 0.96\n"
+                    "set tmargin at screen 0.925\n" +
+                    fmt::format("set bmargin at screen {}\n", any_falls ? 0.42 : 0.12) +
+                    month_tics(days, !any_falls) + "set ylabel \"profit,\\n1000 EUR/MWh\"\n" +
+                    key.set + profit_plot + "\n" + key.unset;
+  if (any_falls) {
+    figure.commands += "set tmargin at screen 0.36\nset bmargin at screen 0.12\n" +
+                       month_tics(days, true) + "set ylabel \"below its peak,\\nEUR/MWh\"\n" +
+                       fall_plot + "\n";
+  }
+  figure.commands += "unset multiplot\n";
   return figure;
 }
 
@@ -148,7 +211,19 @@ HtmlTable month_table(const BacktestResults& results) {
     }
     table.rows.push_back(std::move(cells));
   }
+  std::vector<std::string> fitted{"fitted on days"};
+  for (const std::size_t days : results.fitted_days) fitted.push_back(fmt::format("{}", days));
+  table.rows.push_back(std::move(fitted));
   return table;
+}
+
+std::string skipped_html(const BacktestResults& results) {
+  std::string text;
+  for (const SkippedMonth& month : results.skipped) {
+    text += fmt::format("<li>{} is not traded: {}</li>\n", html_escaped(month.month),
+                        html_escaped(month.reason));
+  }
+  return text.empty() ? text : fmt::format("<ul class=\"note\">\n{}</ul>\n", text);
 }
 
 }  // namespace
@@ -157,10 +232,10 @@ std::string format_backtest_table(const BacktestResults& results) {
   const std::size_t width = name_width(results);
   const WalkForward& first = results.policies.front();
   std::string text = fmt::format(
-      "{} months, {} days, each month by what was fitted on the {} days before it; SoC carried "
-      "over;\nEUR per day per MWh of capacity\n{:<{}}  {:>8} {:>6}  {:>8} {:>6}  {:>10}  {:>8}  "
+      "{} months, {} days, each month by what was fitted on {}; SoC carried over;\nEUR per day per "
+      "MWh of capacity\n{:<{}}  {:>8} {:>6}  {:>8} {:>6}  {:>10}  {:>8}  "
       "{:>8}\n",
-      first.months.size(), first.total.days.size(), results.window_days, "policy", width, "profit",
+      first.months.size(), first.total.days.size(), window_text(results), "policy", width, "profit",
       "s.e.", "gain", "s.e.", wear_column(), "turnover", "drawdown");
   for (const WalkForward& policy : results.policies) {
     const Row row = rows_of(policy, first).back();
@@ -181,9 +256,8 @@ std::string format_backtest_table(const BacktestResults& results) {
   }
   text += fmt::format(
       "\ngain: day-by-day difference to {}; {}: {}\n"
-      "turnover: energy through it a day, in capacities; drawdown: deepest fall from a peak, EUR "
-      "per "
-      "MWh\n",
+      "turnover: energy through it a day, in capacities; drawdown: deepest fall from the end of a "
+      "day to that\nof a later one, EUR per MWh\n",
       first.name, wear_column(), reference_wear_meaning(first.total.wear_eur_per_mwh));
   for (const SkippedMonth& month : results.skipped) {
     text += fmt::format("{} is not traded: {}\n", month.month, month.reason);
@@ -195,13 +269,17 @@ std::string backtest_csv(const BacktestResults& results) {
   std::string text =
       "month,policy,days,profit_eur_per_day_per_mwh,standard_error,gain_eur_per_day_per_mwh,"
       "gain_standard_error,turnover_per_day," +
-      std::string(kReferenceWearKey) + "\n";
+      std::string(kReferenceWearKey) + ",fitted_days\n";
   for (const WalkForward& policy : results.policies) {
+    std::size_t month = 0;
     for (const Row& row : rows_of(policy, results.policies.front())) {
-      text += fmt::format(
-          "{},{},{},{:.4f},{},{:.4f},{},{:.4f},{:.4f}\n", row.month, csv_field(policy.name),
-          row.days, row.profit, csv_figure(row.profit_error, 4), row.gain.mean,
-          csv_figure(row.gain.standard_error, 4), row.turnover_per_day, row.at_reference_wear);
+      const std::string fitted =
+          row.month == kAllMonths ? "" : fmt::format("{}", results.fitted_days[month++]);
+      text +=
+          fmt::format("{},{},{},{:.4f},{},{:.4f},{},{:.4f},{:.4f},{}\n", row.month,
+                      csv_field(policy.name), row.days, row.profit, csv_figure(row.profit_error, 4),
+                      row.gain.mean, csv_figure(row.gain.standard_error, 4), row.turnover_per_day,
+                      row.at_reference_wear, fitted);
     }
   }
   return text;
@@ -236,6 +314,17 @@ Json backtest_json(const BacktestResults& results) {
   }
   Json json = Json::object({{"window_days", results.window_days}, {"soc", "carried"}});
   json.set("policies", std::move(policies));
+  Json months = Json::list();
+  for (std::size_t m = 0; m < results.fitted_days.size(); ++m) {
+    months.add(Json::object(
+        {{"month", results.policies.front().months[m]}, {"fitted_days", results.fitted_days[m]}}));
+  }
+  json.set("months", std::move(months));
+  Json skipped = Json::list();
+  for (const SkippedMonth& month : results.skipped) {
+    skipped.add(Json::object({{"month", month.month}, {"reason", month.reason}}));
+  }
+  json.set("not_traded", std::move(skipped));
   return json;
 }
 
@@ -244,11 +333,11 @@ void write_backtest_page(const BacktestResults& results, const std::filesystem::
   draw_figure(figure, folder);
   const std::filesystem::path svg = folder / (figure.name + ".svg");
   const std::string body = fmt::format(
-      "<h1>Walk-forward backtest</h1>\n<p>{}</p>\n{}\n<figure>\n<h2>{}</h2>\n<div "
-      "class=\"wide\">{}</div>\n<figcaption>{}</figcaption>\n</figure>\n{}\n",
+      "<h1>Walk-forward backtest</h1>\n<p>{}</p>\n{}\n<figure>\n<h2>{}</h2>\n{}<div "
+      "class=\"wide\">{}</div>\n<figcaption>{}</figcaption>\n</figure>\n{}\n{}",
       html_escaped(results.provenance), format_table(total_table(results)),
-      html_escaped(figure.title), inline_svg(read_file(svg), figure), html_escaped(figure.caption),
-      format_table(month_table(results)));
+      html_escaped(figure.title), legend_html(results), inline_svg(read_file(svg), figure),
+      html_escaped(figure.caption), format_table(month_table(results)), skipped_html(results));
   write_file(folder / "backtest.html", format_page("Walk-forward backtest", body));
 }
 

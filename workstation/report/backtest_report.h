@@ -14,6 +14,8 @@ namespace bess {
 /// Gains are day-by-day differences to the first policy.
 struct BacktestResults {
   std::vector<WalkForward> policies;  ///< not empty; the same months and days for all
+  std::vector<std::size_t>
+      fitted_days;  ///< of each month: on how many days before it it was fitted
   std::vector<SkippedMonth> skipped;
   int window_days;
   double capacity_mwh;

@@ -7,6 +7,8 @@
 #include "shared/host/user_error.h"
 #include "tests/support/small_market.h"
 #include "tests/support/temporary_folder.h"
+#include "workstation/cli/folder_lock.h"
+#include "workstation/cli/learnt_for.h"
 
 namespace bess {
 namespace {
@@ -87,6 +89,85 @@ TEST_F(RunPlanning, WhatIsNotGivenIsTheFolders) {
   EXPECT_EQ(config.distil.threads, 3);
   EXPECT_EQ(plan.record.prices, prices_);
   EXPECT_EQ(plan.series.settled, read_minute_file(prices_).settled);
+}
+
+/// It was undone without a word: what a run is made of stands in run.json.
+TEST_F(RunPlanning, AnEditedConfigurationIsRefusedNamingKeyAndBothValues) {
+  request_.resume = true;
+  const RunPlan plan = plan_run(request_);
+  const fs::path file = request_.out / "config.toml";
+  const std::string written = format_run_config(plan.record.config(plan.folder));
+  write_file(file, written);
+  RunRequest bare;
+  bare.out = request_.out;
+  bare.resume = true;
+  EXPECT_EQ(refusal(bare), "");
+  write_file(file, "# only a remark\n" + written);
+  EXPECT_EQ(refusal(bare), "") << "says the same";
+  write_file(file, written + "\n");
+  std::string edited = written;
+  const std::size_t at = edited.find("\npower_w = 5000000");
+  ASSERT_NE(at, std::string::npos);
+  edited.replace(at + 11, 7, "4000000");
+  write_file(file, edited);
+  for (const RunRequest& request : {bare, request_}) {
+    EXPECT_THAT(refusal(request),
+                AllOf(HasSubstr("config.toml: was edited: [battery] power_w is 5000000 in the run "
+                                "and 4000000 in the file"),
+                      HasSubstr("--config " + file.string() + " --out ANOTHER")));
+  }
+  EXPECT_EQ(read_file(file), edited) << "left as it is";
+}
+
+TEST_F(RunPlanning, AModelIsToldThatWasLearntForOthers) {
+  request_.resume = true;
+  const RunPlan plan = plan_run(request_);
+  const fs::path model = request_.out / "student.json";
+  write_file(model, "{}");
+  RunConfig config = plan.record.config(plan.folder);
+  EXPECT_EQ(learnt_otherwise(model, circumstances_of(config_entries(config))), "");
+  config.battery.power_w_max = 1e6;
+  config.battery.costs.import_adder_eur_per_mwh = 42;
+  config.market.observation_delay_min = 3;
+  config.distil.epochs = 7;
+  EXPECT_THAT(learnt_otherwise(model, circumstances_of(config_entries(config))),
+              AllOf(HasSubstr("[battery] power_w is 5000000 there and 1000000 here"),
+                    HasSubstr("[costs] import_adder_eur_per_mwh is 0 there and 42 here"),
+                    HasSubstr("[market] "), Not(HasSubstr("epochs"))));
+  EXPECT_EQ(learnt_otherwise("rbc-tuned", circumstances_of(config_entries(config))), "");
+}
+
+/// A whole folder excludes all others in it; single files are made side by side, each by one program.
+TEST_F(RunPlanning, OneProgramAtATimeIsAtWork) {
+  const fs::path folder = request_.out;
+  using Of = FolderLock::Of;
+  const auto is_busy = [](auto lock) {
+    try {
+      lock();
+    } catch (const UserError& error) {
+      return std::string_view(error.what()).find("another bess-train is at work here") !=
+             std::string_view::npos;
+    }
+    return false;
+  };
+  const auto whole = [&] { const FolderLock lock(folder); };
+  const auto part = [&] { const FolderLock lock(folder, Of::kOneFile); };
+  const auto file = [&] { const FileLock lock(folder / "teacher.bin"); };
+  {
+    const FolderLock lock(folder);
+    EXPECT_TRUE(is_busy(whole));
+    EXPECT_TRUE(is_busy(part));
+  }
+  {
+    const FolderLock lock(folder, Of::kOneFile);
+    const FileLock of_file(folder / "teacher.bin");
+    EXPECT_TRUE(is_busy(whole));
+    EXPECT_FALSE(is_busy(part)) << "another file of the folder";
+    EXPECT_TRUE(is_busy(file));
+  }
+  EXPECT_FALSE(is_busy(whole));
+  EXPECT_FALSE(is_busy(file));
+  EXPECT_FALSE(fs::exists(folder / "teacher.bin.lock"));
 }
 
 TEST_F(RunPlanning, PricesThatMovedAreTheSamePrices) {

@@ -409,8 +409,7 @@ TEST_F(PriceRecorder, ASourceThatJumpsAheadIsAnOutage) {
                                           elia_.publish(kNoon_s - 120, 5, 6);
                                           elia_.publish(kNoon_s + 3'600, 3, 4);
                                         },
-                                        [] {},
-                                        [] {}});
+                                        [] {}, [] {}});
   EXPECT_THAT(told(Kind::kOutage),
               ElementsAre(HasSubstr("before its minute had ended"), HasSubstr("ods169: ")));
   EXPECT_EQ(lines("2025-06-15").size(), 1u);

@@ -1,0 +1,80 @@
+// A backtest says what it did: on how many days each month was fitted, and which months were not traded.
+#include "workstation/report/backtest_report.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "shared/host/file.h"
+#include "tests/support/temporary_folder.h"
+
+namespace bess {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+/// Two months of three days; each policy earns so much on its second day, and 10 EUR on every other one.
+WalkForward traded(const std::string& name, double second_day_eur) {
+  WalkForward result{.name = name, .total = {}, .months = {"2023-04", "2023-05"}, .by_month = {}};
+  for (const std::string& month : result.months) {
+    Evaluation e;
+    e.capacity_mwh = 1;
+    for (int day = 1; day <= 3; ++day) {
+      e.days.push_back(
+          {month + "-0" + std::to_string(day), day == 2 ? second_day_eur : 10, 1, 1, 0.5});
+    }
+    result.total.capacity_mwh = 1;
+    result.total.days.insert(result.total.days.end(), e.days.begin(), e.days.end());
+    result.by_month.push_back(e);
+  }
+  return result;
+}
+
+BacktestResults results(double second_day_eur) {
+  return {{traded("rbc", second_day_eur), traded("sdp", 40)},
+          {90, 120},
+          {{"2023-02", "31 of the 120 days before it are there"}},
+          120,
+          1,
+          "made by hand"};
+}
+
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t found = 0;
+  for (std::size_t at = text.find(part); at != text.npos; at = text.find(part, at + 1)) ++found;
+  return found;
+}
+
+TEST(BacktestReport, SaysOnHowManyDaysEachMonthWasFitted) {
+  BacktestResults fitted = results(5);
+  EXPECT_THAT(format_backtest_table(fitted),
+              HasSubstr("fitted on the 90 to 120 days before it, of 120 that were asked for;"));
+  EXPECT_THAT(backtest_csv(fitted),
+              AllOf(HasSubstr(",fitted_days\n"), HasSubstr(",90\n"), HasSubstr(",120\n")));
+  EXPECT_THAT(backtest_json(fitted).line(),
+              AllOf(HasSubstr("{\"month\":\"2023-04\",\"fitted_days\":90}"),
+                    HasSubstr("\"not_traded\":[{\"month\":\"2023-02\",\"reason\":\"31 of ")));
+  fitted.fitted_days = {120, 120};
+  EXPECT_THAT(format_backtest_table(fitted), HasSubstr("fitted on the 120 days before it; SoC"));
+}
+
+TEST(BacktestReport, ThePageLabelsEachMonthOnceAndDrawsAFallWhereThereIsOne) {
+  const TemporaryFolder folder;
+  for (const double second_day_eur : {-30.0, 5.0}) {
+    write_backtest_page(results(second_day_eur), folder.file(""));
+    const std::string svg = read_file(folder.file("backtest.svg"));
+    EXPECT_EQ(count(svg, ">2023-04<"), 1U);
+    EXPECT_EQ(count(svg, ">2023-05<"), 1U);
+    EXPECT_EQ(count(svg, "below its peak"), second_day_eur < 0 ? 1U : 0U) << "an empty picture";
+    EXPECT_THAT(
+        read_file(folder.file("backtest.html")),
+        AllOf(HasSubstr("<li>2023-02 is not traded: 31 of the 120 days"),
+              HasSubstr("no day ended below an earlier one"),
+              HasSubstr("<ul class=\"legend\"><li><i style=\"background:var(--muted)\"></i>rbc"),
+              HasSubstr("fitted on days"), Not(HasSubstr("on the 120 days before it,"))));
+  }
+}
+
+}  // namespace
+}  // namespace bess
