@@ -94,6 +94,12 @@ PriceRange price_range(const DayStory& story) {
   return {range.low - room, range.high + room};
 }
 
+/// Room for the numbers of the price axis and its name: of five digits and more they need more.
+double left_margin(const PriceRange& range) {
+  constexpr double kFiveDigits = 10'000;
+  return range.low <= -kFiveDigits || range.high >= kFiveDigits ? 0.135 : 0.10;
+}
+
 std::string price_panel(const DayStory& story) {
   const PriceRange range = price_range(story);
   return fmt::format(
@@ -159,9 +165,9 @@ Figure day_figure(const DayStory& story) {
                     data_block("charge_full", band_rows(story, Action::kCharge, false)) +
                     data_block("discharge_empty", band_rows(story, Action::kDischarge, false)) +
                     fmt::format(
-                        "set multiplot\nset lmargin at screen 0.10\n"
+                        "set multiplot\nset lmargin at screen {}\n"
                         "set rmargin at screen 0.97\nset xrange [0:{:.4f}]\n",
-                        end_hours_of(story)) +
+                        left_margin(price_range(story)), end_hours_of(story)) +
                     time_tics(story, false) + key.set + price_panel(story) + key.unset +
                     soc_panel(story) + "unset multiplot\n";
   return figure;
