@@ -39,10 +39,10 @@ class FrozenPrice {
   /// The newest row that a decision sees. Of an outage only a step counts: it neither thaws a price nor
   /// makes two equal rows hours apart a frozen one.
   constexpr void observe(std::int64_t minute_utc_s, std::int32_t centi_eur_per_mwh) {
-    const bool stands = price_.minute_utc_s != 0 && centi_eur_per_mwh == price_.centi_eur_per_mwh;
-    const std::int64_t counted_s =
-        clamp_to<std::int64_t>(minute_utc_s - price_.minute_utc_s, 0, kCountedGapS);
-    const std::int64_t stood_s = stands ? price_.unchanged_s + counted_s : 0;
+    const bool stands = price_.minute_utc_s > 0 && centi_eur_per_mwh == price_.centi_eur_per_mwh;
+    const std::int64_t since_s = stands ? minute_utc_s - price_.minute_utc_s : 0;
+    const std::int64_t stood_s =
+        stands ? price_.unchanged_s + clamp_to<std::int64_t>(since_s, 0, kCountedGapS) : 0;
     price_ = {
         .minute_utc_s = minute_utc_s,
         .centi_eur_per_mwh = centi_eur_per_mwh,

@@ -90,6 +90,13 @@ TEST(FrozenPrice, AStampOfTheFutureNeitherCountsNorOverflows) {
   EXPECT_EQ(frozen.price().unchanged_s, INT32_MAX);
   frozen.observe(kFirstMinute + 120, 700);
   EXPECT_EQ(frozen.price().unchanged_s, INT32_MAX);
+  for (const StandingPrice& damaged :
+       {StandingPrice{INT64_MIN, 700, INT32_MIN}, StandingPrice{kFirstMinute, 700, INT32_MIN},
+        StandingPrice{INT64_MAX, 700, -1}}) {
+    frozen.restore(damaged);
+    frozen.observe(kFirstMinute + 120, 700);
+    EXPECT_EQ(frozen.price().unchanged_s, 0);
+  }
 }
 
 TEST(FrozenPrice, BothTimesCanBeSwitchedOff) {
