@@ -8,6 +8,8 @@
 namespace bess {
 namespace {
 
+constexpr const char* kNotRunning = "not running";  ///< as `bess-edge status` says it
+
 /// Absent, not 0, where it was not measured.
 void set_scaled(Json& json, const char* key, JsonValue last, const char* name, double divisor,
                 int decimals) {
@@ -90,25 +92,9 @@ Json earned_yesterday_json(const NotifySettings& settings, const std::string& id
                        {"unit_of_measurement", "EUR"}});
 }
 
-std::string id_of(const NotifySettings& settings) { return "bess_" + settings.node; }
-
-}  // namespace
-
-std::string topic(const std::string& node, const char* name) {
-  return "bess/v1/" + node + "/" + name;
-}
-
-std::string state_json(const ControllerStatus& status, std::size_t open_alarms,
-                       const Ledger& ledger) {
-  const JsonValue all = status.json.value();
+/// What the last cycle saw and did: of a controller that has ended, nothing is known any more.
+void set_newest(Json& json, JsonValue all) {
   const JsonValue last = all["last"];
-  Json json = Json::object(
-      {{"health", status.trouble.empty() ? all["health"].text_or("unknown") : "unknown"},
-       {"alarms", open_alarms},
-       {"mode", last["mode"].text_or("none")},
-       {"reason", last["reason"].text_or("none")},
-       {"in_control", is_true(all["control"])},
-       {"utc", last["utc"].text_or("")}});
   if (is_true(last["has_measurement"])) {
     set_scaled(json, "soc_percent", last, "soc_e4", 100, 1);
     set_scaled(json, "power_w", last, "battery_power_w", 1, 0);
@@ -126,6 +112,9 @@ std::string state_json(const ControllerStatus& status, std::size_t open_alarms,
     set_scaled(json, "hold_w", last, "hold_power_w", 1, 0);
     json.set("hold_until_utc", last["hold_until_utc"].text_or(""));
   }
+}
+
+void set_ledger(Json& json, const Ledger& ledger) {
   if (ledger.energy.has_begun()) {
     json.set("charged_kwh", Decimals{ledger.energy.charged_kwh(), 3});
     json.set("discharged_kwh", Decimals{ledger.energy.discharged_kwh(), 3});
@@ -134,6 +123,35 @@ std::string state_json(const ControllerStatus& status, std::size_t open_alarms,
     json.set("earned_today_eur", Decimals{ledger.today.earned_eur(), 2});
     json.set("today_since_utc", utc_text(ledger.today.start_utc_s()).view());
   }
+}
+
+std::string id_of(const NotifySettings& settings) { return "bess_" + settings.node; }
+
+}  // namespace
+
+std::string topic(const std::string& node, const char* name) {
+  return "bess/v1/" + node + "/" + name;
+}
+
+std::string state_json(const ControllerStatus& status, std::size_t open_alarms,
+                       const Ledger& ledger) {
+  const JsonValue all = status.json.value();
+  const std::string_view health =
+      status.trouble.empty() ? all["health"].text_or("unknown") : "unknown";
+  const bool is_running = health != kNotRunning;
+  Json json =
+      Json::object({{"health", health},
+                    {"alarms", open_alarms},
+                    {"mode", is_running ? all["last"]["mode"].text_or("none") : kNotRunning},
+                    {"reason", all["last"]["reason"].text_or("none")},
+                    {"in_control", is_running && is_true(all["control"])},
+                    {"utc", all["last"]["utc"].text_or("")}});
+  if (is_running) {
+    set_newest(json, all);
+  } else {
+    json.set("held", false);
+  }
+  set_ledger(json, ledger);
   return json.line();
 }
 

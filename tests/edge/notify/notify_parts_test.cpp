@@ -211,10 +211,10 @@ TEST(Webhook, OnlyHttpsOrThisVeryMachine) {
   }
 }
 
-ControllerStatus sample_status() {
+ControllerStatus sample_status(const std::string& health = "degraded") {
   ControllerStatus status;
-  status.json = Json::parse(
-      R"({"health": "degraded", "control": true, "last": {"utc": "2023-03-27T00:02:00Z",
+  status.json = Json::parse(R"({"health": ")" + health +
+                            R"(", "control": true, "last": {"utc": "2023-03-27T00:02:00Z",
           "mode": "running", "reason": "held", "has_measurement": true, "soc_e4": 4235,
           "battery_power_w": -1990, "ordered_power_w": -2000, "has_price": true,
           "price_centi_eur_per_mwh": -16318, "held": true, "hold_power_w": -2000,
@@ -241,6 +241,8 @@ TEST(Topics, AreTheseToTheLetter) {
   text += topic("garage", "state") + " " + state_json(sample_status(), 2, {energy, day}) + "\n";
   text +=
       topic("garage", "state") + " " + state_json({.trouble = "x"}, 0, {{}, DayAccount(0)}) + "\n";
+  text += topic("garage", "state") + " " +
+          state_json(sample_status("not running"), 1, {energy, day}) + "\n";
   text += topic("garage", "alarms") + " " +
           alarms_json({{.key = "k", .text = "t", .since_utc_s = 0, .is_told = true},
                        {.key = "not told yet"}}) +
