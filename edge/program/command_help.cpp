@@ -35,13 +35,14 @@ constexpr const char* kRunHelp =
   --help         this text; behind a command, more on that one
   --version      version and the student that is built in
 
-Options may stand before or behind the command. Nothing is written to the battery unless the file says control = true and `bess-edge commission` has
-found its sign right. One controller to one battery: a second one is refused, also one that only
+Options may stand before the command or behind it. A run writes nothing to the battery unless the file
+says control = true and `bess-edge commission` has found its sign right. One controller to one battery: a second one is refused, also one that only
 reads (--check too), because many batteries serve one connection.
 SIGTERM or Ctrl-C: 0 W is ordered, the battery is released, exit 0. SIGHUP: exit 0 and leave the order
 in force for the next start, which takes over; the battery's own timer ends it if there is none.
-Exit codes: 0 done   1 settings or battery are bad, the sign is not checked, or the battery is in use;
-with --check also: no price, clock not set by NTP; with --self-test: a part fails   2 the command line is bad
+Exit codes: 0 done   1 settings or battery are bad, the sign is not checked, the battery is in use, or was
+not released at the end; with --check also: no price, clock not set by NTP; with --self-test: a part fails
+2 the command line is bad
 
   bess-edge --config /etc/bess/edge.toml --check
   bess-edge --config /etc/bess/edge.toml --dry-run --cycles 5
@@ -109,7 +110,7 @@ constexpr const char* kStatusHelp =
   --no-lock      whether it runs is told by its process number alone: its lock is not even tried
 
 Health is ok, degraded (with the reasons) or not running. A status older than two cycles is a WARN,
-older than four CRITICAL.
+older than four CRITICAL. Of a controller that has ended, what it was last and when that was.
 Exit codes: 0 ok   1 degraded, or the files cannot be read   2 the command line is bad   3 not running
 
   bess-edge status
@@ -154,7 +155,7 @@ constexpr const char* kHistoryHelp =
   --folder FOLDER  where bess-update keeps it; default /var/lib/bess-update
 
 Events: trying (installed, on trial), confirmed, going_back and rolled_back (with the reason), failed (nothing to
-go back to). "certificate" is the begin of the SHA-256 of the exported header.
+go back to). The column "certificate" is the beginning of header_sha256, of the exported header.
 Exit codes: 0 done   1 no history   2 the command line is bad
 
   bess-edge history
@@ -175,7 +176,8 @@ constexpr const char* kHoldHelp =
 The running controller follows from its next cycle on, restarts included, and trades again when the end has
 passed. A hold stands for the student and the price thresholds, and needs no price. Everything else of the
 guard stays stronger: stop reasons, SoC bounds, reserve, cycles, reversals, power and connection limits,
-ramp. A new hold replaces the one before. It lies in the [state] folder: run it as the controller's user, or as root.
+ramp. While the supervision has tripped nothing is driven, and so no hold is followed: that is said, see
+bess-edge clear. A new hold replaces the one before. It lies in the [state] folder: run it as the controller's user, or as root.
 Exit codes: 0 done   1 refused: the line says why   2 the command line is bad
 
   bess-edge hold 0 --for 30m
@@ -219,8 +221,8 @@ constexpr const char* kRecordHelp =
 
 One JSON object a line: request, values or error, latency. Hidden (0, of a text X) is what the map marks as
 private, texts beyond what the map's identity check asks for, and every register that the map does not name: the
-file can be given away. It holds neither addresses of the network nor prices. Refused while a bess-edge
-controls the battery: record that one with bess-edge run --record FILE, which has the orders too.
+file can be given away. It holds neither addresses of the network nor prices. Refused while another bess-edge
+has the battery: record that one with bess-edge run --record FILE, which has the orders too.
 What is made of it: bess-sim battery --replay FILE, and bess-edge map check --against FILE.
 Exit codes: 0 recorded   1 the file cannot be written, nobody answered, or the battery is in use
 2 the command line is bad
