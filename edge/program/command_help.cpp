@@ -36,8 +36,8 @@ constexpr const char* kRunHelp =
   --version      version and the student that is built in
 
 Options may stand before the command or behind it. A run writes nothing to the battery unless the file
-says control = true and `bess-edge commission` has found its sign right. One controller to one battery: a second one is refused, also one that only
-reads (--check too), because many batteries serve one connection.
+says control = true and `bess-edge commission` has found its sign right. One controller to one battery: a
+second one is refused, also one that only reads (--check too), because many batteries serve one connection.
 SIGTERM or Ctrl-C: 0 W is ordered, the battery is released, exit 0. SIGHUP: exit 0 and leave the order
 in force for the next start, which takes over; the battery's own timer ends it if there is none.
 Exit codes: 0 done   1 settings or battery are bad, the sign is not checked, the battery is in use, or was
@@ -177,7 +177,8 @@ The running controller follows from its next cycle on, restarts included, and tr
 passed. A hold stands for the student and the price thresholds, and needs no price. Everything else of the
 guard stays stronger: stop reasons, SoC bounds, reserve, cycles, reversals, power and connection limits,
 ramp. While the supervision has tripped nothing is driven, and so no hold is followed: that is said, see
-bess-edge clear. A new hold replaces the one before. It lies in the [state] folder: run it as the controller's user, or as root.
+bess-edge clear. A new hold replaces the one before. It lies in the [state] folder: run it as the
+controller's user, or as root.
 Exit codes: 0 done   1 refused: the line says why   2 the command line is bad
 
   bess-edge hold 0 --for 30m

@@ -86,6 +86,7 @@ TEST_F(Lanes, AnAlarmReachesTheGoodWayWithinARoundWhateverTheOthersAreAt) {
     ASSERT_NE(all.await("/event", std::string("WARN: ") + name), "");
     slowest_s = std::max(slowest_s, seconds_now() - begin_s);
   }
+  std::printf("an alarm is at the good way after %.1f s at most, with rounds of 1 s\n", slowest_s);
   EXPECT_LT(slowest_s, 1 + 5) << "a round, and what a busy machine adds";
   notify.signal(SIGTERM);
   const double begin_s = seconds_now();
@@ -112,6 +113,7 @@ TEST_F(Lanes, AnOutageIsToldAsLongAsItWas) {
   const std::string over = all.await("/event", "lasted");
   const std::size_t at = over.find("(lasted ");
   ASSERT_NE(at, over.npos) << over;
+  std::printf("an outage of %.1f s is told as %s\n", lasted_s, over.substr(at).c_str());
   EXPECT_NEAR(std::stod(over.substr(at + 8)), lasted_s, 3) << over;
 }
 
@@ -154,6 +156,22 @@ TEST_F(Lanes, ABrokerThatComesAndGoesIsToldEverythingOnce) {
   set_status("degraded", R"("WARN: two")");
   ASSERT_NE(all->await("/event", "WARN: two"), "");
   EXPECT_EQ(all->count("/event"), 2U);  // since it is there again
+}
+
+TEST_F(Lanes, ABrokerThatStandsStillDoesNotHoldUpTheEnd) {
+  Broker broker(folder_, port());
+  Listener all(port(), "bess/#");
+  ChildProcess notify({BESS_NOTIFY_PROGRAM, "--config", config()});
+  ASSERT_EQ(all.await("/status", "online"), "online");
+  broker.freeze();
+  set_status("degraded", R"("WARN: a trouble")");
+  std::this_thread::sleep_for(std::chrono::milliseconds(1'500));
+  const double begin_s = seconds_now();
+  notify.signal(SIGTERM);
+  EXPECT_EQ(notify.wait(), 0);
+  EXPECT_LT(seconds_now() - begin_s, 20);
+  broker.thaw();
+  EXPECT_EQ(owed("mqtt").messages.size(), 1U) << "told after the next start";
 }
 
 /// Killed again and again while its mailer takes its time: no alarm is lost, and the file is whole each time.

@@ -93,6 +93,31 @@ TEST_F(Rounds, TheDayIsToldWhenTheNextBegins) {
                         "kWh, 0.00 full cycles, 0 interventions"));
 }
 
+/// A card wears by writing: what the log can give again is kept once an hour, and what has not changed not at all.
+TEST_F(Rounds, WhatWasToldIsWrittenWhenItChanges) {
+  RingLog ring;
+  FileMessage error;
+  ASSERT_TRUE(ring.open(settings_.ring.c_str(), 2'000, error)) << error.c_str();
+  const auto written = [&] { return std::filesystem::last_write_time(settings_.memory); };
+  Notifier notifier(settings_);
+  const auto cycle = [&](int tick) {
+    CycleRecord record;
+    record.utc_s = kNow + 120 * tick;
+    record.has_measurement = true;
+    record.measurement.power_w = 4'000;
+    ASSERT_TRUE(ring.append(record));
+    set_status("ok", "", record.utc_s);
+    whole_round(notifier, record.utc_s);
+  };
+  cycle(0);
+  const auto first = written();
+  for (int tick = 1; tick < 30; ++tick) cycle(tick);
+  EXPECT_EQ(written(), first);
+  cycle(30);
+  EXPECT_NE(written(), first);
+  EXPECT_EQ(read_told(settings_.memory).energy.charged_ws, 30 * 120 * 4'000);
+}
+
 TEST_F(Rounds, AWebhookIsPostedAsJsonAndNothingButASuccessCounts) {
   std::mutex mutex;
   std::vector<std::string> bodies;
