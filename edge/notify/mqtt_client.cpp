@@ -4,6 +4,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <memory>
+#include <thread>
 
 #include "edge/notify/connection_trouble.h"
 #include "edge/notify/topics.h"
@@ -13,6 +15,7 @@ namespace {
 
 constexpr int kQos = 1;
 constexpr int kKeepAliveS = 60;
+constexpr unsigned kReconnectSMax = 5;
 constexpr std::string_view kOffline = "offline";
 
 const char* text_or_null(const std::string& text) { return text.empty() ? nullptr : text.c_str(); }
@@ -66,7 +69,6 @@ void MqttClient::set_up() {
     code =
         mosquitto_tls_set(client_, settings_.ca_file.c_str(), nullptr, nullptr, nullptr, nullptr);
   }
-  constexpr unsigned kReconnectSMax = 5;
   mosquitto_reconnect_delay_set(client_, 1, kReconnectSMax, true);
   // Begins without a broker, too: the thread tries again for ever.
   if (code == MOSQ_ERR_SUCCESS) code = mosquitto_loop_start(client_);
@@ -79,17 +81,40 @@ void MqttClient::set_up() {
 }
 
 MqttClient::~MqttClient() {
-  if (client_ != nullptr) {
-    const bool was_connected = is_connected();
-    if (was_connected && presence_ == MqttPresence::kStays) {
-      static_cast<void>(send(status_topic_, std::string(kOffline), {}));
-    }
-    mosquitto_disconnect(client_);
-    // Without a connection its thread may sit in a connect, or a look-up, of minutes.
-    mosquitto_loop_stop(client_, !was_connected);
-    mosquitto_destroy(client_);
+  if (client_ == nullptr) return;
+  if (is_connected() && presence_ == MqttPresence::kStays) {
+    static_cast<void>(send(status_topic_, std::string(kOffline), {}));
   }
-  mosquitto_lib_cleanup();
+  mosquitto_disconnect(client_);
+  if (end_thread()) {
+    mosquitto_destroy(client_);
+    mosquitto_lib_cleanup();
+    return;
+  }
+  // It sits in a connect, or a look-up, of minutes: cut there it would keep the library's locks. It ends with the
+  // process, and calls nobody any more.
+  mosquitto_connect_callback_set(client_, nullptr);
+  mosquitto_disconnect_callback_set(client_, nullptr);
+  mosquitto_publish_callback_set(client_, nullptr);
+}
+
+/// False when libmosquitto's thread does not end within twice the pause between two connects.
+bool MqttClient::end_thread() const {
+  struct Ended {
+    std::mutex mutex;
+    std::condition_variable changed;
+    bool is_true = false;
+  };
+  const auto ended = std::make_shared<Ended>();
+  std::thread([client = client_, ended] {
+    mosquitto_loop_stop(client, false);
+    const std::lock_guard lock(ended->mutex);
+    ended->is_true = true;
+    ended->changed.notify_all();
+  }).detach();
+  constexpr std::chrono::seconds kPatience(2 * kReconnectSMax);
+  std::unique_lock lock(ended->mutex);
+  return ended->changed.wait_for(lock, kPatience, [&] { return ended->is_true; });
 }
 
 void MqttClient::retain(const std::string& topic, const std::string& payload) {

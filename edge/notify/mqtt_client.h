@@ -57,6 +57,7 @@ class MqttClient {
   void set_up();
   std::string why_not_connected(const std::stop_token& stop);
   bool is_connected();
+  [[nodiscard]] bool end_thread() const;
   void publish_retained(const std::string& topic, const std::string& payload);
 
   const MqttSettings settings_;
