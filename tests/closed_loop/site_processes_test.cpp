@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+
 #include "tests/support/simulated_site.h"
 
 namespace bess {
@@ -15,14 +17,28 @@ constexpr std::int32_t kScale = 120;
 
 class SiteProcesses : public ::testing::Test {
  protected:
-  /// Prices at which the battery charges all the time; the house takes 1500 W.
-  void start(const std::vector<std::string>& meter_options) {
-    std::vector<std::string> options = {"--house", "1500", "--soc", "0.3"};
+  /// Prices at which the battery charges all the time, or by turns of six minutes; the house takes 1500 W.
+  void start(const std::vector<std::string>& meter_options,
+             const std::vector<int>& prices = {-600}) {
+    std::vector<std::string> options = {"--soc", "0.3"};
+    if (std::find(meter_options.begin(), meter_options.end(), "--house") == meter_options.end()) {
+      options.insert(options.end(), {"--house", "1500"});
+    }
     options.insert(options.end(), meter_options.begin(), meter_options.end());
     site_.start_battery(options);
     const std::string line = has_meter(meter_options) ? site_.battery->read_line() : "";
     meter_port_ = std::atoi(line.substr(line.rfind(':', line.rfind(',')) + 1).c_str());
-    site_.start_market({}, SimulatedSite::minute_prices(150, {-600, 0}));
+    site_.start_market({}, turns_of(prices));
+  }
+  static std::string turns_of(const std::vector<int>& prices) {
+    std::ostringstream text;
+    text << "minute_utc,indicative_eur_mwh,settled_eur_mwh\n";
+    for (int minute = -60; minute < 150; ++minute) {
+      const int price = prices[static_cast<std::size_t>(minute + 60) / 6 % prices.size()];
+      text << utc_text(SimulatedSite::kStartS + 60 * minute).view() << ',' << price << ',' << price
+           << '\n';
+    }
+    return text.str();
   }
   static bool has_meter(const std::vector<std::string>& options) {
     return !options.empty() && options[0] == "--meter-map";
@@ -189,6 +205,42 @@ TEST_F(SiteProcesses, CommissionRefusesMorePowerThanOrdered) {
   EXPECT_THAT(said, HasSubstr("more power flows than ordered"));
   EXPECT_EQ(edge.wait(), 1);
   EXPECT_FALSE(std::filesystem::exists(site_.folder.file("state/commissioned.toml")));
+}
+
+/// bess-sim's own liars, told by journal, status and log.
+TEST_F(SiteProcesses, AMeterThatDoesNotStepWithTheBatteryIsToldAndLost) {
+  std::vector<std::string> options = own_meter();
+  options.insert(options.end(), {"--meter-fault", "grid-scaled", "--meter-fault-from-s", "480"});
+  start(options, {-600, 1'600});
+  const std::string config = commission(meter_section("import_w_max = 9000\n"));
+  ChildProcess edge({edge_program(), "--config", config});
+  std::string line;
+  do line = edge.read_line();
+  while (!line.empty() && line.find(" reason=meter_mismatch ") == std::string::npos);
+  EXPECT_THAT(line, HasSubstr(" ordered_power_w=0 "));
+  EXPECT_THAT(line, HasSubstr(" mode=running "));
+  do line = edge.read_line();
+  while (!line.empty() && line.find(" cycle=") == std::string::npos);
+  ChildProcess status({edge_program(), "status", "--config", config});
+  EXPECT_THAT(status.read_all(), HasSubstr("WARN: meter: it does not step with the battery"));
+  EXPECT_EQ(status.wait(), 1);
+  EXPECT_EQ(SimulatedSite::stop(edge), 0);
+  ChildProcess again({edge_program(), "--config", config, "--cycles", "1"});
+  EXPECT_THAT(again.read_all(), HasSubstr(" reason=meter_mismatch "));  // over a restart
+  EXPECT_EQ(again.wait(), 0);
+}
+
+TEST_F(SiteProcesses, ALoadBelowZeroIsSaidOnce) {
+  std::vector<std::string> options = own_meter();
+  options.insert(options.end(), {"--meter-fault", "grid-offset", "--meter-fault-from-s", "360",
+                                 "--meter-fault-to-s", "720", "--house", "400"});
+  start(options);
+  const std::string config = commission(meter_section(""));
+  ChildProcess edge({edge_program(), "--config", config, "--cycles", "8"});
+  const std::string said = edge.read_all();
+  EXPECT_EQ(edge.wait(), 0);
+  EXPECT_THAT(said, HasSubstr("leaves the house a load below zero"));
+  EXPECT_THAT(said, HasSubstr("the house's load is plausible again"));
 }
 
 TEST_F(SiteProcesses, CheckShowsGridAndHouse) {

@@ -26,7 +26,7 @@ TEST(BatteryFaults, EveryFaultHasItsPlaceInTheTable) {
     EXPECT_EQ(static_cast<int>(info.fault), ++value) << info.name;
     EXPECT_TRUE(info.tcp || info.rtu) << info.name;
   }
-  EXPECT_EQ(value, static_cast<int>(BatteryFault::kEndsOrders));
+  EXPECT_EQ(value, static_cast<int>(BatteryFault::kGridOtherPhase));
 }
 
 TEST(BatteryFaults, WrongSignShowsChargingAsDischarging) {

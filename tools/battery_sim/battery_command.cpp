@@ -324,7 +324,7 @@ void add_house_options(ProgramCommand& command, BatteryOptions& options) {
       .needs("--meter-map");
   command
       .option("--meter-fault", options.meter_fault_names,
-              "The meter misbehaves, at every chance: silence, frozen, wrong-sign, drop ...")
+              "The meter misbehaves, at every chance: silence, frozen, wrong-sign, grid-scaled ...")
       .check(known_fault)
       .value_name("NAME")
       .needs("--meter-map");
@@ -336,6 +336,14 @@ void add_house_options(ProgramCommand& command, BatteryOptions& options) {
   command.option("--meter-fault-to-s", options.meter.faults.to_s, "And until when")
       .non_negative()
       .needs("--meter-fault");
+  command
+      .option("--meter-fault-on-s", options.meter.faults.on_s,
+              "Comes and goes: so long it may strike")
+      .positive()
+      .needs("--meter-fault");
+  command.option("--meter-fault-off-s", options.meter.faults.off_s, "And then so long not")
+      .positive()
+      .needs("--meter-fault-on-s");
 }
 
 }  // namespace

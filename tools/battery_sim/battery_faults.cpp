@@ -79,6 +79,14 @@ constexpr BatteryFaultInfo kFaults[] = {
      "lasts: every --fault-period-s somebody else writes another mode", kLasting},
     {BatteryFault::kEndsOrders, "ends-orders",
      "lasts: every --fault-period-s the device ends the order by itself", kLasting},
+    {BatteryFault::kGridScaled, "grid-scaled", "lasts: shows a tenth of the grid's power",
+     kLasting},
+    {BatteryFault::kGridOffset, "grid-offset", "lasts: shows 1000 W less of the grid's power",
+     kLasting},
+    {BatteryFault::kGridLate, "grid-late", "lasts: shows the grid's power of a minute before",
+     kLasting},
+    {BatteryFault::kGridOtherPhase, "grid-other-phase",
+     "lasts: shows a third of the house, and not the battery, as the grid's power", kLasting},
 };
 
 }  // namespace

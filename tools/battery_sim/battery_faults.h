@@ -59,6 +59,10 @@ enum class BatteryFault : std::uint8_t {
   kMasterStops,
   kMasterMode,
   kEndsOrders,
+  kGridScaled,
+  kGridOffset,
+  kGridLate,
+  kGridOtherPhase,
 };
 
 /// A moment at which a fault may strike.

@@ -104,9 +104,18 @@ double FaultyDevice::gain(std::int64_t utc_ns) const {
   return 1;
 }
 
+void FaultyDevice::show_grid_as_of(std::int64_t utc_ns) {
+  const auto lasts = [&](BatteryFault fault) { return plan_.lasts(fault, elapsed_s(utc_ns)); };
+  image_->set_grid_display({.gain = lasts(BatteryFault::kGridScaled) ? 0.1 : 1.0,
+                            .offset_w = lasts(BatteryFault::kGridOffset) ? -1'000.0 : 0.0,
+                            .late_s = lasts(BatteryFault::kGridLate) ? 60 : 0,
+                            .other_phase = lasts(BatteryFault::kGridOtherPhase)});
+}
+
 /// What another master did between two requests is done at its own time; other lasting faults come into
 /// force with the next request.
 void FaultyDevice::live_until(std::int64_t utc_ns) {
+  show_grid_as_of(utc_ns);
   if (map_.is_meter) return;
   const auto plant = hold_plant();
   for (; plan_.acts() && next_action_ns_ <= utc_ns;

@@ -47,6 +47,7 @@ class FaultyDevice {
   void make_registers();
   [[nodiscard]] std::unique_lock<std::mutex> hold_plant() const;
   void refresh(std::int64_t utc_ns);
+  void show_grid_as_of(std::int64_t utc_ns);
   void live_until(std::int64_t utc_ns);
   void apply_lasting_faults(std::int64_t utc_ns);
   [[nodiscard]] double gain(std::int64_t utc_ns) const;

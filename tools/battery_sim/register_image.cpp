@@ -116,6 +116,20 @@ void RegisterImage::find_arguments() {
   }
 }
 
+/// What is shown late is as old as the requests are apart, besides.
+double RegisterImage::shown_grid_w() {
+  constexpr std::int64_t kKeptS = 300;
+  const double house_w = house_->power_w(utc_s_);
+  grid_w_.emplace_back(utc_s_, house_w + battery_.power_w());
+  while (grid_w_.front().first < utc_s_ - kKeptS) grid_w_.pop_front();
+  if (grid_display_.other_phase) return house_w / 3;
+  double grid_w = grid_w_.front().second;
+  for (const auto& [second, power_w] : grid_w_) {
+    if (second <= utc_s_ - grid_display_.late_s) grid_w = power_w;
+  }
+  return grid_display_.gain * grid_w + grid_display_.offset_w;
+}
+
 void RegisterImage::refresh(std::int64_t utc_ns) {
   battery_.advance(utc_ns);
   utc_s_ = utc_ns / kNanosecondsPerSecond;
@@ -127,7 +141,7 @@ void RegisterImage::refresh(std::int64_t utc_ns) {
       display_.order_as_power ? battery_.commanded_power_w() : battery_.power_w();
   show_power(map_.measured_power, std::llround(shown_w));
   if (house_ != nullptr) {
-    show_power(map_.grid_power, std::llround(house_->power_w(utc_s_) + battery_.power_w()));
+    show_power(map_.grid_power, std::llround(shown_grid_w()));
   }
   set("capacity", p.capacity_wh * display_.capacity_factor);
   set("charge_power_max", p.power_w_max * battery_.derating());

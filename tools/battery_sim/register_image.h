@@ -5,7 +5,9 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <span>
+#include <utility>
 
 #include "edge/registers/live_points.h"
 #include "edge/registers/register_map.h"
@@ -46,6 +48,14 @@ class RegisterImage {
     bool order_as_power = false;  ///< what was ordered, not what flows
   };
   void set_display(const Display& display);
+  /// How the grid point shows the power at the connection.
+  struct GridDisplay {
+    double gain = 1;
+    double offset_w = 0;
+    std::int32_t late_s = 0;
+    bool other_phase = false;  ///< a third of the house, and not the battery
+  };
+  void set_grid_display(const GridDisplay& display) { grid_display_ = display; }
   /// From now on the map's grid point shows this house and the battery.
   void connect_house(const HouseLoad& house) { house_ = &house; }
 
@@ -63,6 +73,7 @@ class RegisterImage {
   void set(int point, std::int64_t value);
   void set(std::string_view name, double value);
   void show_soc();
+  [[nodiscard]] double shown_grid_w();
   void show_power(const StaticVector<PowerCase, 4>& cases, std::int64_t power_w);
   void assign(const Assignment& assignment);
   [[nodiscard]] bool covers(int address, int count, int point) const;
@@ -76,6 +87,8 @@ class RegisterImage {
   const RegisterMap& map_;
   SimulatedBattery& battery_;
   const HouseLoad* house_ = nullptr;
+  GridDisplay grid_display_;
+  std::deque<std::pair<std::int64_t, double>> grid_w_;  ///< of the last minutes, by second
   std::span<std::uint16_t> holding_, input_;
   const StaticVector<Condition, 4>& active_;
   const StaticVector<PowerCase, 4>& order_power_;
