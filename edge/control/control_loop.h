@@ -52,7 +52,8 @@ struct TakeOver {
   SiteReport site{};
   StandingPrice standing_price{};
   std::int32_t ordered_power_w = 0;
-  std::int64_t utc_s = 0;  ///< of that log's newest record
+  std::int64_t ordered_since_utc_s = 0;  ///< when that power was ordered first
+  std::int64_t utc_s = 0;                ///< of that log's newest record
 };
 
 template <typename Battery, typename PriceSource, typename Clock, typename Site = NoSite>
@@ -92,7 +93,7 @@ class ControlLoop {
     full_charge_.restore(before.last_full_day);
     site_.take_over(before.utc_s, before.site);
     frozen_price_.restore(before.standing_price);
-    order_.expect(before.ordered_power_w, before.utc_s);
+    order_.expect(before.ordered_power_w, before.utc_s, before.ordered_since_utc_s);
   }
 
   /// Follows the holds that are published there, which outlives the loop.

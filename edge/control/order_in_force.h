@@ -48,13 +48,15 @@ class OrderInForce {
     power_w_ = measurement.order_power_w;
     const bool is_expected = power_w_ == expected_power_w_ && expected_utc_s_ <= since_utc_s_ &&
                              since_utc_s_ - expected_utc_s_ <= settings_.order_duration_s;
-    if (is_expected) since_utc_s_ = expected_utc_s_;
+    if (is_expected) since_utc_s_ = expected_since_utc_s_;
   }
 
-  /// The newest order of the run before, by its log: found in force, it is that old, and its answer counts.
-  void expect(std::int32_t power_w, std::int64_t utc_s) {
+  /// The newest order of the run before, by its log, and since when it has been that power: found in force, it
+  /// is that old, and its answer counts.
+  void expect(std::int32_t power_w, std::int64_t utc_s, std::int64_t since_utc_s) {
     expected_power_w_ = power_w;
     expected_utc_s_ = utc_s;
+    expected_since_utc_s_ = since_utc_s;
   }
 
   /// An order belongs to its tick: a process that was stopped and goes on later neither writes it nor
@@ -147,6 +149,7 @@ class OrderInForce {
   std::int64_t feed_until_ns_ = 0;
   std::int32_t expected_power_w_ = 0;
   std::int64_t expected_utc_s_ = INT64_MIN / 2;
+  std::int64_t expected_since_utc_s_ = INT64_MIN / 2;
   bool has_looked_ = false;
   bool was_found_ = false;
 };

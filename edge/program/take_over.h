@@ -5,6 +5,13 @@
 
 namespace bess {
 
+/// When the power of a record's order was ordered first, to some seconds: the battery was read a little before its tick.
+inline std::int64_t ordered_since_utc_s(const CycleRecord& record) {
+  const FollowedOrder& before = record.followed;
+  const bool goes_on = before.is_judged && before.power_w == record.ordered_power_w;
+  return goes_on ? record.utc_s - before.age_s : record.utc_s;
+}
+
 inline TakeOver take_over_of(const CycleRecord& before, const PriceLevel& level,
                              bool is_trip_cleared) {
   return {.throughput = before.throughput,
@@ -16,6 +23,7 @@ inline TakeOver take_over_of(const CycleRecord& before, const PriceLevel& level,
           .site = before.site,
           .standing_price = before.standing_price,
           .ordered_power_w = before.ordered_power_w,
+          .ordered_since_utc_s = ordered_since_utc_s(before),
           .utc_s = before.utc_s};
 }
 

@@ -295,6 +295,7 @@ int runs_until_trip(int cycles_per_run, const std::function<void(FakeBattery&, i
       const CycleRecord& newest = log.back();
       loop.take_over({.trip = newest.is_tripped ? newest.trip : Trip{},
                       .ordered_power_w = newest.ordered_power_w,
+                      .ordered_since_utc_s = newest.utc_s,
                       .utc_s = newest.utc_s});
     }
     for (int i = 0; i < cycles_per_run; ++i) {

@@ -30,9 +30,7 @@ TEST_P(HonestBattery, TripsNothing) {
 }
 
 TEST_P(HonestBattery, TripsNothingAmongKills) {
-  // Ten hours at one percent: what is read again after each kill is not yet what was lived.
-  const bool is_slow = GetParam().name == std::string_view("ten_hours_and_1_percent");
-  for (const int every : {is_slow ? 13 : 1, 7}) {
+  for (const int every : {1, 7}) {
     const HonestDays days = live_honest_days(GetParam(), (kDays + 2) / 3, every);
     EXPECT_EQ(days.trips, 0) << reason_name(days.first_trip) << " in cycle "
                              << days.first_trip_cycle << ", killed after every " << every;
