@@ -72,9 +72,22 @@ std::vector<double> profits_by_day(const std::vector<MarketDay>& days, const Pol
   return profits;
 }
 
+/// Less what perfect foresight would have earned, where it was evaluated: how bad a day was, as the page ranks them.
+std::vector<double> against_foresight(const ReportInputs& in, std::vector<double> profits) {
+  const auto bound = std::ranges::find(in.evaluations, kForesightName, &NamedEvaluation::name);
+  if (bound == in.evaluations.end() || bound->day_reset.days.size() != profits.size()) {
+    return profits;
+  }
+  for (std::size_t d = 0; d < profits.size(); ++d) {
+    profits[d] -= bound->day_reset.days[d].profit_eur;
+  }
+  return profits;
+}
+
 Json archive_json(const ReportInputs& in, const std::vector<MarketDay>& days) {
   const std::vector<PolicySteps> policies = all_steps(in, days);
-  const auto kept = days_with_steps(profits_by_day(days, policies.front()), kDaysWithSteps);
+  const auto kept = days_with_steps(against_foresight(in, profits_by_day(days, policies.front())),
+                                    kDaysWithSteps);
   Json archive = step_archive(in.market, days, policies, kept, context_classes_of(in));
   archive.set("days_left_out", days.size() - kept.size());
   return archive;

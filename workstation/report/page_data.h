@@ -9,7 +9,7 @@ namespace bess {
 
 /// Days whose steps a page holds at most: it stays under 5 MB. The worst and the newest are kept.
 inline constexpr std::size_t kDaysWithSteps = 250;
-/// Of these, the days on which the exported policy earned least.
+/// Of these, the days on which the exported policy missed most of what foresight would have earned.
 inline constexpr std::size_t kWorstDaysKept = 25;
 
 /// Indices of the days to keep, ascending; `profit_eur` of each of them, in time.

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "tests/support/rule_sets.h"
+#include "workstation/report/html.h"
 #include "workstation/report/page_files.h"
 #include "workstation/report/report_tables.h"
 
@@ -91,6 +92,17 @@ TEST(ReportTables, AFailedProofNamesDemandStateAndMend) {
     EXPECT_NE(html.find(said), std::string::npos) << said;
   }
   EXPECT_EQ(failure_html({}), "");
+}
+
+TEST(ReportTables, NumbersHaveMinusSignsAndNamesKeepTheirHyphens) {
+  const std::string html = format_table(
+      {"",
+       {"policy", "gain"},
+       {{"rbc-tuned", "-3.5"}, {"a", "318 (-89)"}, {"b", "2023-04"}, {"c", "-"}, {"d", "no-one"}}});
+  for (const char* said :
+       {">rbc-tuned<", ">\u22123.5<", ">318 (\u221289)<", ">2023-04<", ">-<", ">no-one<"}) {
+    EXPECT_NE(html.find(said), std::string::npos) << said;
+  }
 }
 
 TEST(ReportTables, FactsAreEscaped) {

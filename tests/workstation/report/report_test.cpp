@@ -104,6 +104,14 @@ TEST(Report, NoTestDaysNameTheMend) {
   }
 }
 
+/// Numbers of a table have a true minus.
+std::string with_minus(std::string cells) {
+  for (std::size_t at = cells.find(">-"); at != cells.npos; at = cells.find(">-", at)) {
+    cells.replace(at, 2, ">\u2212");
+  }
+  return cells;
+}
+
 TEST(Report, TableNumbersAreThoseOfTheEvaluations) {
   const TemporaryFolder folder;
   const FinishedRun run;
@@ -112,20 +120,21 @@ TEST(Report, TableNumbersAreThoseOfTheEvaluations) {
   for (const auto field : {&NamedEvaluation::day_reset, &NamedEvaluation::carried_over}) {
     const Evaluation& teacher = in.evaluations[1].*field;
     const PairedDifference d = paired_difference(teacher, in.evaluations[0].*field);
-    const std::string cells = fmt::format(
+    const std::string cells = with_minus(fmt::format(
         "teacher</th><td data-label=\"EUR/day/MWh\">{:.1f}</td><td data-label=\"s.e.\">{:.1f}</td>"
         "<td data-label=\"Gain\">{:+.1f}</td><td data-label=\"s.e.\">{:.1f}</td>"
         "<td data-label=\"Worst day\">{:.1f}</td><td data-label=\"Cycles/day\">{:.2f}</td>"
         "<td data-label=\"Switches/day\">{:.1f}</td>",
         teacher.profit_eur_per_day_per_mwh(), teacher.standard_error(), d.mean, d.standard_error,
-        teacher.worst_day_eur_per_mwh(), teacher.cycles_per_day(), teacher.switches_per_day());
+        teacher.worst_day_eur_per_mwh(), teacher.cycles_per_day(), teacher.switches_per_day()));
     EXPECT_NE(html.find(cells), std::string::npos) << cells;
   }
   EXPECT_NE(html.find("<th scope=\"col\">At wear 10</th>"), std::string::npos);
   const double at_wear =
       in.evaluations[1].day_reset.profit_at_wear_eur_per_day_per_mwh(kReferenceWearEurPerMwh);
-  EXPECT_NE(html.find(fmt::format("<td data-label=\"At wear 10\">{:.1f}</td></tr>", at_wear)),
-            std::string::npos);
+  EXPECT_NE(
+      html.find(with_minus(fmt::format("<td data-label=\"At wear 10\">{:.1f}</td></tr>", at_wear))),
+      std::string::npos);
   EXPECT_NE(html.find("At wear 10: profit of the same decisions"), std::string::npos);
   EXPECT_NE(html.find("<td data-label=\"Pairs out of order\">42</td></tr>"), std::string::npos);
 }

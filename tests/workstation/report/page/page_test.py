@@ -225,8 +225,14 @@ class PageTest(unittest.TestCase):
 
     def test_worst_days_open(self):
         dates = self.page.run("[...document.querySelectorAll('#worst-days tbody a')].map((link) => link.textContent)")
-        days = sorted(self.expected["days"]["corrected student"], key=lambda day: day["profit_eur"])
-        self.assertEqual(dates, [day["date"] for day in days[:8]])
+        days = self.expected["days"]["corrected student"]
+        bound = {day["date"]: day["profit_eur"] for day in self.expected["days"]["foresight"]}
+        missed = {day["date"]: (bound[day["date"]] - day["profit_eur"]) / self.expected["capacity_mwh"] for day in days}
+        self.assertEqual(dates, sorted(missed, key=missed.get, reverse=True)[:8])
+        shown = self.page.run("[...document.querySelectorAll('#worst-days tbody td:nth-child(2)')].map((cell) => cell.textContent)")
+        for text, date in zip(shown, dates):
+            self.assertAlmostEqual(float(text), missed[date], delta=.051)
+        days = sorted(days, key=lambda day: day["profit_eur"])
         self.page.run("document.querySelector('#worst-days tbody a').click()")
         self.assertEqual(self.page.run("page.day.day.date"), dates[0])
         self.page.run("document.getElementById('day-best').click()")
