@@ -1,6 +1,9 @@
 // JSON downloads: the API's records (`results`), exports (a bare array) and version 1
 // (`records[].fields`).
+#include <algorithm>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "shared/host/json.h"
 #include "shared/host/text.h"
@@ -10,8 +13,20 @@
 namespace bess {
 namespace {
 
+/// Which of two members of one name is meant nobody knows.
+void require_each_once(JsonValue object, std::string_view place) {
+  std::vector<std::string_view> keys;
+  for (const JsonValue item : object) keys.emplace_back(item.key());
+  std::ranges::sort(keys);
+  const auto twice = std::ranges::adjacent_find(keys);
+  if (twice == keys.end()) return;
+  fail("{}: \"{}\" stands twice in one object; download the file again", place,
+       one_line(*twice, 40));
+}
+
 JsonValue find_records(JsonValue root, std::string_view name) {
   if (root.is_list()) return root;
+  if (root.is_object()) require_each_once(root, name);
   for (const char* key : {"results", "records"}) {
     const JsonValue records = root[key];
     if (records.is_list()) return records;
@@ -21,7 +36,9 @@ JsonValue find_records(JsonValue root, std::string_view name) {
 
 void parse_record(JsonValue record, std::string_view place, MarketRows& rows) {
   if (!record.is_object()) fail("{}: is not an object; download the file again", place);
+  require_each_once(record, place);
   const JsonValue fields = record["fields"];
+  if (fields.is_object()) require_each_once(fields, place);
   MarketRowBuilder builder(place);
   for (const JsonValue item : fields.is_object() ? fields : record) {
     const std::optional<MarketField> field = market_field_of(item.key());

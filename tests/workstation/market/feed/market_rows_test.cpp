@@ -175,6 +175,21 @@ TEST(MarketJson, RecordsExportsAndVersion1) {
   }
 }
 
+TEST(MarketJson, AMemberThatStandsTwiceIsRefused) {
+  const std::string row =
+      R"("datetime":"2025-08-17T00:15:00Z","resolutioncode":"PT15M","imbalanceprice":5)";
+  const auto complaint = [](const std::string& text) {
+    return user_error_of([&] { (void)parse_market_json(text, "f.json"); });
+  };
+  EXPECT_THAT(complaint("[{" + row + R"(,"imbalanceprice":9}])"),
+              HasSubstr(R"(f.json: record 1: "imbalanceprice" stands twice)"));
+  EXPECT_THAT(complaint(R"({"records":[{"fields":{)" + row + R"(,"imbalanceprice":5}}]})"),
+              HasSubstr("stands twice"));
+  EXPECT_THAT(complaint(R"({"results":[{)" + row + R"(}],"results":[]})"),
+              HasSubstr(R"(f.json: "results" stands twice)"));
+  EXPECT_EQ(parse_market_json("[{" + row + "}]", "f.json").quarter_hours.size(), 1u);
+}
+
 TEST(MarketJson, QuarterHourAndNullPrice) {
   const MarketRows rows = parse_market_text(
       R"([{"datetime":"2025-10-08T13:00:00+02:00","resolutioncode":"PT15M","imbalanceprice":100.06},
