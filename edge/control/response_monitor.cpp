@@ -25,6 +25,7 @@ void ResponseMonitor::observe(const Response& now) {
   soc_.observe(now);
   trip_if(soc_.contradicts(), Reason::kSocMismatch);
   judge_power(now);
+  count_locked(now.measurement);
   has_before_ = true;
   before_utc_s_ = now.utc_s;
   before_power_w_ = now.measurement.power_w;
@@ -34,7 +35,18 @@ void ResponseMonitor::observe(const Response& now) {
 ResponseFindings ResponseMonitor::findings() const {
   return {.energy_share_percent = soc_.balance().share_percent,
           .rest_loss_w = soc_.balance().rest_loss_w,
-          .ramp_w_per_s = slow_.is_found() ? ramp_w_per_s_ : 0};
+          .ramp_w_per_s = slow_.is_found() ? ramp_w_per_s_ : 0,
+          .locked_readings = locked_readings_};
+}
+
+/// Nothing is ordered then that could go unanswered.
+void ResponseMonitor::count_locked(const BatteryMeasurement& m) {
+  const bool is_locked = std::max(m.charge_w_max, m.discharge_w_max) <= settings_.noise_w();
+  if (!is_locked) {
+    locked_readings_ = 0;
+  } else if (locked_readings_ < INT16_MAX) {
+    ++locked_readings_;
+  }
 }
 
 void ResponseMonitor::trip_if(bool is_found, Reason reason) {

@@ -10,7 +10,8 @@
 //   charging by itself near empty, balancing at full  pause: a battery looks after itself
 //   SoC that jumps                                    stop until readings agree again
 //   less power than ordered, energy that does not     told, not stopped
-//   arrive, loss at 0 W, a slow ramp
+//   arrive, loss at 0 W, a slow ramp, limits of
+//   its own that allow nothing
 // Each kind of fault has counts of its own (leaky_count.h), so that one that comes and goes is found. A
 // reading that could not show a fault leaves its count as it is: a
 // battery that goes the wrong way at every other order, with idle between, is found as well.
@@ -77,6 +78,7 @@ class ResponseMonitor {
   void forget() { *this = ResponseMonitor(settings_); }
 
  private:
+  void count_locked(const BatteryMeasurement& m);
   void judge_power(const Response& now);
   void judge_idle(const Response& now);
   void judge_driven(const Response& now);
@@ -99,6 +101,7 @@ class ResponseMonitor {
   LeakyCount care_;
   LeakyCount slow_;
   std::int32_t ramp_w_per_s_ = 0;  ///< of the newest answer that was still on its way
+  std::int16_t locked_readings_ = 0;
   std::int32_t weak_answers_ = 0;
   std::int32_t unanswered_orders_ = 0;
   bool has_before_ = false;

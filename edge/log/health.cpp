@@ -12,6 +12,8 @@ namespace {
 /// A full, empty or cold battery rests for a while; one that never answers does not listen.
 constexpr std::int64_t kUnansweredOrdersMax = 5;
 constexpr std::int64_t kWeakAnswersMax = 1;
+/// An hour: a battery that is too cold or too warm may rest as long.
+constexpr std::int64_t kLockedReadingsMax = 30;
 
 std::string seconds(std::int64_t ms) { return std::to_string(ms / 1'000) + " s"; }
 
@@ -81,6 +83,10 @@ void check_findings(const HealthInputs& in, std::vector<std::string>& reasons) {
     reasons.push_back("WARN: at 0 W the battery " +
                       std::string(in.rest_loss_w > 0 ? "loses" : "gains") + " about " +
                       std::to_string(std::abs(in.rest_loss_w)) + " W: what else drives it?");
+  }
+  if (in.locked_readings > kLockedReadingsMax) {
+    reasons.push_back("WARN: by its own limits the battery may neither charge nor discharge, in " +
+                      std::to_string(in.locked_readings) + " readings: see its own display");
   }
   if (in.ramp_w_per_s != 0) {
     reasons.push_back("WARN: the battery follows at " + std::to_string(in.ramp_w_per_s) +

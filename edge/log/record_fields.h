@@ -265,6 +265,10 @@ consteval auto make_record_fields() {
        "orders_are_lost",
        {.csv = 59, .last = 183, .metrics = {10, "bess_orders_are_lost"}},
        {"1 while somebody or the device ends or replaces too many orders."}},
+      {member<&R::findings, &F::locked_readings>(),
+       "locked_readings",
+       {.csv = 60, .totals = 84, .metrics = {40, "bess_locked_readings"}},
+       {"Readings in a row in which the battery's own limits allow nothing."}},
   });
 }
 

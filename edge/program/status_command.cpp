@@ -143,6 +143,7 @@ Health health_of(const EdgeConfig& config, JsonValue status, bool no_lock,
   in.energy_share_percent = whole(field<&R::findings, &F::energy_share_percent>(status));
   in.rest_loss_w = whole(field<&R::findings, &F::rest_loss_w>(status));
   in.ramp_w_per_s = whole(field<&R::findings, &F::ramp_w_per_s>(status));
+  in.locked_readings = whole(field<&R::findings, &F::locked_readings>(status));
   in.trip = text_of(field<&R::trip, &Trip::reason>(status));
   in.battery_warns = is_true(field<&R::measurement, &B::warning>(status));
   in.disk_is_slow = is_true(field<&T::disk_is_slow>(status));

@@ -198,6 +198,50 @@ TEST(ResponseMonitor, AFullEmptyColdOrLimitedBatteryMayRest) {
   }
 }
 
+TEST(ResponseMonitor, LimitsThatAllowNothingAreCounted) {
+  MonitoredSite site;
+  const auto locked = [](BatteryMeasurement& m) { m.charge_w_max = m.discharge_w_max = 0; };
+  for (int i = 0; i < 40; ++i) site.step(0, 0, locked);
+  EXPECT_EQ(site.monitor.findings().locked_readings, 40);
+  site.step(0, 0, [](BatteryMeasurement& m) { m.charge_w_max = 0; });
+  EXPECT_EQ(site.monitor.findings().locked_readings, 0);
+}
+
+TEST(ResponseMonitor, ASlowRampIsToldAndNoFault) {
+  MonitoredSite site;
+  double power_w = 0;
+  for (int i = 0; i < 40; ++i) {
+    const std::int32_t ordered_w = i / 2 % 2 == 0 ? 4'000 : -4'000;
+    power_w += std::clamp(ordered_w - power_w, -3'300.0, 3'300.0);  // 30 W/s, read before its end
+    site.soc_frac = 0.5;
+    site.monitor.observe({.utc_s = site.utc_s += kStepS,
+                          .is_driven = true,
+                          .ordered_power_w = ordered_w,
+                          .order_age_s = kStepS - 5,
+                          .measurement = {.soc_e4 = 5'000 + i % 2 * 10,
+                                          .power_w = static_cast<std::int32_t>(power_w),
+                                          .capacity_wh = 80'000}});
+  }
+  EXPECT_EQ(site.monitor.trip(), Reason::kStudent);
+  EXPECT_NEAR(site.monitor.findings().ramp_w_per_s, 29, 2);
+}
+
+TEST(ResponseMonitor, ABatteryThatLooksAfterItselfIsNoFault) {
+  for (const auto& [soc_e4, power_w] : {std::pair{800, 2'000}, {1'100, 500}, {9'800, 450}}) {
+    ResponseMonitor monitor{ResponseSettings{}};
+    for (int i = 0; i < 2; ++i) {
+      EXPECT_FALSE(monitor.looks_after_itself());
+      monitor.observe(
+          {.utc_s = 120 * i,
+           .is_driven = true,
+           .order_age_s = 117,
+           .measurement = {.soc_e4 = soc_e4, .power_w = power_w, .capacity_wh = 8'000}});
+    }
+    EXPECT_TRUE(monitor.looks_after_itself()) << soc_e4;
+    EXPECT_EQ(monitor.trip(), Reason::kStudent) << soc_e4;
+  }
+}
+
 TEST(ResponseMonitor, ASocThatStandsStillWhilePowerFlowsIsFound) {
   MonitoredSite site;
   site.step(4'000, 4'000);

@@ -140,5 +140,34 @@ TEST(Supervision, AnotherCapacityStopsForAsLongAsItIsRead) {
   EXPECT_EQ(supervision.stop_reason(), Reason::kStudent);
 }
 
+/// Ten minutes each time, and a trip only after a day without an honest reading.
+TEST(Supervision, ABatteryThatLooksAfterItselfIsLeftAloneForAWhile) {
+  Supervision supervision(kSettings);
+  const auto balancing = [](std::int64_t utc_s) {
+    Response now = reading(utc_s, 0, 450);
+    now.measurement.soc_e4 = 9'900;
+    return now;
+  };
+  std::int64_t utc_s = 0;
+  int pauses = 0;
+  while (utc_s < 23 * 3'600) {
+    supervision.observe(balancing(utc_s += 120), false);
+    ASSERT_FALSE(supervision.trip().is_set()) << utc_s;
+    if (supervision.stop_reason() != Reason::kBatteryCare) continue;
+    ++pauses;
+    Response own = balancing(utc_s += Pause::kFirstS);
+    own.is_driven = own.measurement.dispatch_active = false;
+    supervision.observe(own, true);
+    ASSERT_EQ(supervision.stop_reason(), Reason::kStudent);
+  }
+  EXPECT_GT(pauses, 90);
+  Supervision forgiven = supervision;
+  while (utc_s < 25 * 3'600) supervision.observe(balancing(utc_s += 120), false);
+  EXPECT_EQ(supervision.trip().reason, Reason::kUncontrolledPower);
+  forgiven.observe(reading(utc_s += 120, 0, 0), false);
+  for (int i = 0; i < 60; ++i) forgiven.observe(balancing(utc_s += 120), false);
+  EXPECT_FALSE(forgiven.trip().is_set());
+}
+
 }  // namespace
 }  // namespace bess
