@@ -109,7 +109,7 @@ void EnergyBalance::observe(const EnergyInterval& interval, std::int32_t soc_spa
 
 void EnergyBalance::judge_flow(std::int64_t soc_variance) {
   Evidence little, much, far_too_little, far_too_little_so_far, far_too_much;
-  Roughness roughness;
+  Roughness roughness, beyond_delay;
   std::int64_t explained = 0, shown = 0;  // the share is shown / explained
   int flowing = 0;
   for (std::size_t i = 0; i < count_; ++i) {
@@ -117,18 +117,21 @@ void EnergyBalance::judge_flow(std::int64_t soc_variance) {
     const bool flows = interval.kind == Kind::kFlowing;
     const std::int64_t energy = flows ? interval.energy_e4 : 0;
     roughness.add(energy);
+    const std::int64_t lacking = flows ? lack_beyond_delay(interval) : 0;
+    beyond_delay.add(lacking != 0 ? energy : 0);  // what says nothing makes no noise
     if (!flows) continue;
     ++flowing;
     little.add(lack(kToldBelow, energy, interval.soc_e4));
     much.add(-lack(kToldAbove, energy, interval.soc_e4));
-    far_too_little.add(lack_beyond_delay(interval));
+    far_too_little.add(lacking);
     far_too_little_so_far.add(lack(kContradictedBelow, energy, interval.soc_e4));
     far_too_much.add(-lack(kContradictedAbove, energy, interval.soc_e4));
     explained += energy * energy;
     shown += energy * interval.soc_e4;
     const std::int64_t noise = kPercent * square_root(soc_variance * roughness.sum());
+    const std::int64_t noise_beyond = kPercent * square_root(soc_variance * beyond_delay.sum());
     if (flowing >= kIntervalsToContradict &&
-        (far_too_little.contradicts(noise) || far_too_much.contradicts(noise))) {
+        (far_too_little.contradicts(noise_beyond) || far_too_much.contradicts(noise))) {
       findings_.contradicts = true;
     }
     if (flowing >= kIntervalsBeyondDelay && far_too_little_so_far.contradicts(noise)) {

@@ -22,9 +22,9 @@ constexpr std::int32_t kFullRampS = 180;
 }  // namespace
 
 void ResponseMonitor::observe(const Response& now) {
-  soc_.observe(now);
-  trip_if(soc_.contradicts(), Reason::kSocMismatch);
   judge_power(now);
+  soc_.observe(now);
+  trip_if(soc_.contradicts(), Reason::kSocMismatch);  // what power shows says more
   count_locked(now.measurement);
   has_before_ = true;
   before_utc_s_ = now.utc_s;
@@ -123,10 +123,10 @@ void ResponseMonitor::judge_answer(const Response& now, std::int32_t measured_w)
     if (answers_) slow_.good();
     return;
   }
-  // What stands at 0 W is not on its way through it.
-  if (measured_w > noise_w && note_ramp(now, before_power_w_)) return;
   if (!answers_) unexplained_.bad(is_charging);
-  ++weak_answers_;
+  // What stands at 0 W is not on its way through it.
+  const bool is_on_its_way = measured_w > noise_w && note_ramp(now, before_power_w_);
+  if (!is_on_its_way) ++weak_answers_;
 }
 
 /// Whether the power is on its way to a new order, too slow for its map but quicker than a fault that

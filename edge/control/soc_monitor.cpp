@@ -21,6 +21,7 @@ constexpr std::int32_t kShownEmptyE4 = 10;
 constexpr std::int64_t kReadingGapMaxS = 300;  ///< beyond: what flowed between is not known
 constexpr std::int32_t kReadingsUntilSettled = 3;
 constexpr std::int32_t kStillReadings = 2;
+constexpr std::int64_t kStillSlackE4 = 50;
 constexpr std::int32_t kUsualRefreshS = 60;
 
 constexpr std::int64_t kSocErrorE4 = 100;  ///< of any count of charge from one reading to the next
@@ -75,7 +76,7 @@ void SocMonitor::begin_anew(const Response& now) {
   flow_utc_s_ = now.utc_s;
   flow_power_w_ = now.measurement.power_w;
   flowed_ws_ = late_ws_ = 0;
-  still_e4_ = still_least_e4_ = still_most_e4_ = 0;
+  still_e4_ = still_least_e4_ = still_most_e4_ = still_total_e4_ = 0;
   still_readings_ = 0;
   balance_.interrupt();
 }
@@ -199,28 +200,38 @@ EnergyInterval SocMonitor::interval_of(const Response& now, const Flow& flow) co
           .power_w = now.measurement.power_w};
 }
 
-/// Whenever the battery followed its order: nothing where it may have gone either way.
-std::int64_t SocMonitor::surely_moved_e4(const Flow& flow) {
+/// Whenever the battery followed its order, and whatever its meter is off by: nothing where it may have gone
+/// either way.
+std::int64_t SocMonitor::surely_moved_e4(const Flow& flow, std::int64_t seconds) const {
   if ((flow.energy_e4 < 0) != (flow.late_energy_e4 < 0)) return 0;
-  return flow.energy_e4 < 0 ? std::max(flow.energy_e4, flow.late_energy_e4)
-                            : std::min(flow.energy_e4, flow.late_energy_e4);
+  const std::int64_t measured_e4 =
+      std::min(std::abs(flow.energy_e4), std::abs(flow.late_energy_e4));
+  const std::int64_t error_e4 = e4_of(settings_.noise_w() * seconds);
+  const std::int64_t sure_e4 = std::max<std::int64_t>(measured_e4 - error_e4, 0);
+  return flow.energy_e4 < 0 ? -sure_e4 : sure_e4;
 }
 
 void SocMonitor::judge_standstill(const Response& now, const Flow& flow, bool excused) {
   const std::int32_t soc_e4 = now.measurement.soc_e4;
   const bool is_known = now.is_driven && before_.is_driven;
   if (!is_known || soc_e4 != before_.measurement.soc_e4) {
-    still_e4_ = still_least_e4_ = still_most_e4_ = 0;
+    still_e4_ = still_least_e4_ = still_most_e4_ = still_total_e4_ = 0;
     still_readings_ = 0;
     return;
   }
-  if (!excused) still_e4_ += surely_moved_e4(flow);
+  const std::int64_t moved_e4 = excused ? 0 : surely_moved_e4(flow, now.utc_s - before_.utc_s);
+  still_e4_ += moved_e4;
+  still_total_e4_ += std::abs(moved_e4);
   still_least_e4_ = std::min(still_least_e4_, still_e4_);
   still_most_e4_ = std::max(still_most_e4_, still_e4_);
   ++still_readings_;
-  const std::int64_t must_show_e4 = soc_span_e4() * 6 / 5 + 50;
-  const std::int64_t moved_at_least_e4 = (still_most_e4_ - still_least_e4_) * 4 / 5;
-  if (still_readings_ >= kStillReadings && moved_at_least_e4 > must_show_e4) contradicts_ = true;
+  // A count may flicker by a step: it must have gone further.
+  const std::int64_t must_show_e4 = soc_span_e4() * 6 / 5 + kStillSlackE4;
+  const std::int64_t range_e4 = (still_most_e4_ - still_least_e4_) * 85 / 100;
+  // To and fro brings it back to where it was, but not without a step on either way.
+  const std::int64_t total_e4 = still_total_e4_ * 85 / 100;
+  const bool moved = range_e4 > must_show_e4 || total_e4 > 2 * must_show_e4;
+  if (still_readings_ >= kStillReadings && moved) contradicts_ = true;
 }
 
 }  // namespace bess

@@ -49,7 +49,7 @@ class SocMonitor {
   [[nodiscard]] bool rests(const Response& reading) const;
   [[nodiscard]] std::int32_t soc_step_e4() const;
   [[nodiscard]] std::int32_t soc_span_e4() const;
-  [[nodiscard]] static std::int64_t surely_moved_e4(const Flow& flow);
+  [[nodiscard]] std::int64_t surely_moved_e4(const Flow& flow, std::int64_t seconds) const;
   bool is_excused(const Response& now, const Flow& flow, std::int64_t change_e4);
   bool is_beyond_its_end(std::int32_t soc_e4, const Flow& flow, std::int64_t change_e4);
   bool judge_jump(const Response& now, const Flow& flow, std::int64_t change_e4);
@@ -77,6 +77,7 @@ class SocMonitor {
   std::int64_t still_e4_ = 0;
   std::int64_t still_least_e4_ = 0;
   std::int64_t still_most_e4_ = 0;
+  std::int64_t still_total_e4_ = 0;  ///< all ways together
   std::int32_t still_readings_ = 0;
 };
 

@@ -105,7 +105,9 @@ TEST_P(EveryMapSupervised, EveryFaultIsNoticedWithinTwoCyclesAndDrivenNoFurther)
     // What charges a hybrid too much may be the sun: only the discharging cycles show it.
     const bool may_be_sun =
         map.response.charges_by_itself && fault.reason == Reason::kUncontrolledPower;
-    EXPECT_LE(cycles, may_be_sun ? 5 : 3) << fault.name;
+    // A SoC in whole percents that may be a minute old says little where the order turns every four minutes.
+    const bool is_coarse = map.response.soc_step_e4 >= 100 && fault.reason == Reason::kSocMismatch;
+    EXPECT_LE(cycles, may_be_sun ? 5 : is_coarse ? 7 : 3) << fault.name;
     EXPECT_EQ(record.mode, Mode::kSafe) << fault.name;
     EXPECT_EQ(record.ordered_power_w, 0) << fault.name;
     // And from here on nothing of ours is in force.
