@@ -227,9 +227,9 @@ void SocMonitor::judge_standstill(const Response& now, const Flow& flow, bool ex
   ++still_readings_;
   // A count may flicker by a step: it must have gone further.
   const std::int64_t must_show_e4 = soc_span_e4() * 6 / 5 + kStillSlackE4;
-  const std::int64_t range_e4 = (still_most_e4_ - still_least_e4_) * 85 / 100;
+  const std::int64_t range_e4 = (still_most_e4_ - still_least_e4_) * 7 / 8;
   // To and fro brings it back to where it was, but not without a step on either way.
-  const std::int64_t total_e4 = still_total_e4_ * 85 / 100;
+  const std::int64_t total_e4 = still_total_e4_ * 7 / 8;
   const bool moved = range_e4 > must_show_e4 || total_e4 > 2 * must_show_e4;
   if (still_readings_ >= kStillReadings && moved) contradicts_ = true;
 }
