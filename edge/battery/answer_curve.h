@@ -1,6 +1,7 @@
-// How a battery came to the power that it was ordered: readings since the order, of which follow how long nothing
-// showed (lag), how fast it rose (ramp) and until when it was not there yet. A reading takes a while, and the program
-// may have been held up within it: what is said to be slow was slow however the reading lay within its time.
+// How a battery came to the power that it was ordered: readings since the order, of which follow
+// how long nothing showed (lag), how fast it rose (ramp) and until when it was not there yet. A
+// reading takes a while, and the program may have been held up within it: what is said to be slow
+// was slow however the reading lay within its time.
 #pragma once
 
 #include <algorithm>

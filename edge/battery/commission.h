@@ -1,12 +1,13 @@
-// The sign check that a new battery must pass before it may be controlled: small orders, and a look at which way the
-// power goes, how much of it, how soon, and whether the meter at the connection sees it. A map's sign is documented
-// both ways for some devices, and registers that read back as written prove nothing about it.
+// The sign check that a new battery must pass before it may be controlled: small orders, and a
+// look at which way the power goes, how much of it, how soon, and whether the meter at the
+// connection sees it. A map's sign is documented both ways for some devices, and registers that
+// read back as written prove nothing about it.
 //
 //   read -> rest: 0 W, power must be near 0 -> drive one way -> rest -> drive the other way -> rest -> release
 //
-// A direction that the SoC, or the battery's own limit, does not leave is not tested, and said. Power beyond the order
-// ends it at once. A template over battery, clock and meter like the control loop (control_loop.h names what the first
-// two offer).
+// A direction that the SoC, or the battery's own limit, does not leave is not tested, and said.
+// Power beyond the order ends it at once. A template over battery, clock and meter like the
+// control loop (control_loop.h names what the first two offer).
 //
 //   Meter   bool exists();  Status read(const BatteryMeasurement&, int32& grid_power_w)
 #pragma once

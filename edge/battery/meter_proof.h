@@ -1,6 +1,7 @@
-// Does the meter at the connection follow the battery's steps of a sign check? Grid = house + battery: between two
-// plateaus of the battery (at rest, driven, at rest, ...) the grid must step by as much. The house moves meanwhile, and
-// how much it does within a plateau is what a step may miss.
+// Does the meter at the connection follow the battery's steps of a sign check? Grid = house +
+// battery: between two plateaus of the battery (at rest, driven, at rest, ...) the grid must step
+// by as much. The house moves meanwhile, and how much it does within a plateau is what a step may
+// miss.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +18,7 @@ enum class MeterVerdict : std::uint8_t {
 
 class MeterProof {
  public:
-  /// One reading under the order in force; `is_settled`: it belongs to the plateau.
+  /// One settled reading of the plateau under way.
   void add(std::int32_t battery_w, std::int32_t grid_w) {
     const std::int64_t house_w = std::int64_t{grid_w} - battery_w;
     if (now_.count > 0) {

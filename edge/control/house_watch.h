@@ -1,7 +1,7 @@
-// Is the load that meter and battery leave for the house one that a house can have? House = grid -
-// battery; below zero it generates, and no more than its panels can. An inverted meter or battery,
-// an offset, a meter on another phase show as "house -631 W". Told, not acted on: whoever has panels
-// and has not said so would lose his battery to the sun.
+// Is the load that meter and battery leave for the house one that a house can have? House = grid
+// - battery; below zero it generates, and no more than its panels can. An inverted meter or
+// battery, an offset, a meter on another phase show as "house -631 W". Told, not acted on:
+// whoever has panels and has not said so would lose his battery to the sun.
 #pragma once
 
 #include <algorithm>

@@ -7,8 +7,8 @@
 namespace bess {
 namespace {
 
-// Points. Chosen on houses drawn from seeds (tests/closed_loop/meter_liars_test.cpp): with 7 some
-// months of 30 days accuse an honest meter, with 10 none of 96; a step under doubt is taken back at
+// Points, chosen on houses drawn from seeds (tests/closed_loop/meter_liars_test.cpp): with 7
+// two of 96 months of 30 days accuse an honest meter, with 10 none; a step under doubt is taken back at
 // once, so that the fourth contradiction costs no more of a limit than the third.
 constexpr std::int32_t kContradicts = 3;
 constexpr std::int32_t kLateAnswer = 3;

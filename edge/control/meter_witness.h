@@ -1,32 +1,32 @@
 // Does the meter at the connection see what the battery does? The controller steps its battery by
 // kilowatts every few cycles, and grid = house + battery: each such step must show on the meter.
-// One that is frozen, inverted, on another phase, late or of a wrong ratio would be believed else.
-// Pure integers, fed with every pair of readings.
+// One that is frozen, inverted, on another phase, late or of a wrong ratio would be believed
+// else. Pure integers, fed with every pair of readings.
 //
-// Only what has settled is compared: the last readings under one order with the first ones under the
-// next, `settle_s` after it, so that neither a ramp nor a register that lags counts. The house moves
-// meanwhile, by kilowatts at times. Therefore
-//   - what is missing of a step must be more than 40 % of it, and more than twice what the house itself
-//     moves by lately, between readings under one order (its second largest move, fading);
+// Only what has settled is compared: the last readings under one order with the first ones under
+// the next, `settle_s` after it, so that neither a ramp nor a register that lags counts. The
+// house moves meanwhile, by kilowatts at times. Therefore
+//   - what is missing of a step must be more than 40 % of it, and more than twice what the house
+//     itself moves by lately, between readings under one order (its second largest move, fading);
 //   - one such step is a doubt and no finding. It is answered at once by 0 W until the next tick,
 //     which is the same experiment again, backwards, at an instant that the house did not choose;
 //   - contradictions weigh 3, what follows forgives 1, and so do ten minutes: four in a row are a
 //     finding, and a meter that lies at every other or third step is found as well;
-//   - ratios between 0.6 and 1, and above, are found by the sums over the last steps: the error is
-//     more than a quarter and goes with the step (correlation above 0.7), which the house's own moves
-//     do not do for long;
-//   - a step that shows on the meter later, with the battery standing still, is the meter's and not
-//     the house's, and so is a sign that turns around.
-// A finding ends by itself, for no person can see from afar either whether a meter is right, and a
-// battery that rests gives no evidence: after a pause (10 min, doubling to 6 h) it is tested with an
-// eighth of the power, in every other cycle, as far as prices ask for any, and only until each step
-// has shown. Six steps that agree, alone and in sum, end it; a contradiction is the next pause. The
-// pause keeps its length until a day without a finding: it cannot flap.
+//   - ratios between 0.6 and 1, and above, are found by the sums over the last steps: the error
+//     is more than a quarter and goes with the step (correlation above 0.7), which the house's
+//     own moves do not do for long;
+//   - a step that shows on the meter later, with the battery standing still, is the meter's and
+//     not the house's, and so is a sign that turns around.
+// A finding ends by itself, for no person can see from afar either whether a meter is right, and
+// a battery that rests gives no evidence: after a pause (10 min, doubling to 6 h) it is tested
+// with an eighth of the power, in every other cycle, as far as prices ask for any, and only until
+// each step has shown. Six steps that agree, alone and in sum, end it; a contradiction is the
+// next pause. The pause keeps its length until a day without a finding: it cannot flap.
 //
-// What it cannot see: an offset (steps are right: house_watch.h looks at the level), a meter that lies
-// while the battery rests. Something else that holds the grid at a value (a second battery, curtailed
-// sun) takes the steps away: `judged = false`. A battery whose measured power is not true looks the
-// same: one of the two is wrong, and neither may be relied on.
+// What it cannot see: an offset (steps are right: house_watch.h looks at the level), a meter that
+// lies while the battery rests. Something else that holds the grid at a value (a second battery,
+// curtailed sun) takes the steps away: `judged = false`. A battery whose measured power is not
+// true looks the same: one of the two is wrong, and neither may be relied on.
 #pragma once
 
 #include <cstdint>

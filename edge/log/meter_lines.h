@@ -1,5 +1,6 @@
-// What the journal says of a meter that is not to be believed: a line when it is found, and when it agrees
-// again; the same of a house load that cannot be. Written by the log thread; nothing allocates.
+// What the journal says of a meter that is not to be believed: a line when it is found, and when
+// it agrees again; the same of a house load that cannot be. Written by the log thread; nothing
+// allocates.
 #pragma once
 
 #include "edge/control/control_types.h"
