@@ -120,9 +120,11 @@ const StageRecord* RunRecord::holds(const std::string& stage,
 std::string RunRecord::state() const {
   if (figures) return "finished";
   if (stages.empty()) return "just begun";
-  const bool failed = std::ranges::any_of(stages, &StageRecord::failed);
-  return failed ? "ended without a proof" : fmt::format("stopped after the {}", stages.back().name);
+  return has_failed() ? "ended without a proof"
+                      : fmt::format("stopped after the {}", stages.back().name);
 }
+
+bool RunRecord::has_failed() const { return std::ranges::any_of(stages, &StageRecord::failed); }
 
 Entries identity_of(const RunConfig& config, const std::string& prices_hash,
                     const std::string& teacher_hash) {

@@ -67,6 +67,8 @@ struct RunRecord {
   [[nodiscard]] const StageRecord* holds(const std::string& stage,
                                          const std::vector<std::string>& inputs,
                                          const RunFolder& folder) const;
+  /// It ran to its end, and its student was not proved.
+  [[nodiscard]] bool has_failed() const;
   /// "finished", or where it stopped.
   [[nodiscard]] std::string state() const;
 };

@@ -120,6 +120,12 @@ RunSummary load_run_summary(const RunFolder& folder) {
     fail("{}: holds no run, there is no {} in it; make one with 'bess-train run --out {}'", name,
          run_file::kRecord, name);
   }
+  if (!record->figures && record->has_failed()) {
+    fail(
+        "{}: ended without a proof, {} shows where; 'bess-train run --from-teacher {} --config NEW "
+        "--out ANOTHER' starts at its correction",
+        name, folder.file(run_file::kReport).string(), name);
+  }
   if (!record->figures) {
     fail("{}: is not finished, but {}; 'bess-train run --resume --out {}' goes on", name,
          record->state(), name);

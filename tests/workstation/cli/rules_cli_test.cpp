@@ -160,6 +160,30 @@ TEST_F(RulesLearnt, EachIsPricedAloneAndAllTogetherByStudentsThatStay) {
   EXPECT_LT(number(lines[0], "difference"), -50) << "a third of the day is quiet";
 }
 
+/// Two rules four EUR/MWh apart: consistent, and too steep for so few epochs.
+TEST_F(RulesLearnt, AStudentThatIsNotProvedIsKeptUnderAnotherName) {
+  const std::string config =
+      " --config " + folder_.write("a.toml", "[distil]\nepochs = 2\nrepair_rounds = 0\n");
+  const std::string rules = rule_file(
+      "[[rule]]\nname = \"buy\"\nprice_max = 100\nhours = \"10:00-14:00\"\nis = \"charge\"\n"
+      "[[rule]]\nname = \"sell\"\nprice_min = 104\nhours = \"12:00-13:00\"\nis = \"discharge\"\n");
+  const std::string teacher = folder_.file("teacher.bin");
+  output("train --out " + teacher + with_prices() + config);
+  const std::string student = folder_.file("student.json");
+  try {
+    output("distil --teacher " + teacher + " --rules " + rules + " --out " + student +
+           with_prices() + config);
+    ADD_FAILURE() << "proved";
+  } catch (const UserError& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("kept as " + folder_.file("student_unproved.json")),
+                                    HasSubstr("rule \"sell\" (12:00-13:00, "),
+                                    HasSubstr("leave more than 4 EUR/MWh to \"buy\"")));
+  }
+  EXPECT_FALSE(std::filesystem::exists(student));
+  const Certificate kept = load_student(folder_.file("student_unproved.json")).certificate;
+  EXPECT_GT(kept.rule_counts.at(1).violations, 0);
+}
+
 TEST_F(RulesCli, WhatIsAboutDistillingNeedsATeacher) {
   const std::string arguments =
       "price --policy rbc --rules " + example_rule_path("quiet_hours") + with_prices();

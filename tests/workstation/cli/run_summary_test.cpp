@@ -163,6 +163,11 @@ TEST(RunSummaries, ARunThatIsNotFinishedIsNamedWithTheMend) {
   save_run_record(run, record);
   EXPECT_THAT(refusal(),
               AllOf(HasSubstr("stopped after the teacher"), HasSubstr("run --resume --out")));
+  record.stages.push_back({"corrected student", {}, {}, true});
+  record.stages.push_back({"report of the failed proof", {}, {}, false});
+  save_run_record(run, record);
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("ended without a proof, "), HasSubstr("report.html shows"),
+                               HasSubstr("run --from-teacher"), Not(HasSubstr("--resume"))));
 }
 
 }  // namespace
