@@ -4,9 +4,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <span>
 #include <utility>
 
 #include "shared/crc32.h"
@@ -15,6 +17,7 @@ namespace bess {
 namespace {
 
 constexpr std::int64_t kHeaderBytes = 4'096;
+constexpr std::int64_t kHeaderCopyAt = 2'048;
 constexpr char kMagic[8] = {'B', 'E', 'S', 'S', 'R', 'I', 'N', 'G'};
 constexpr std::uint32_t kVersion = 1;
 constexpr std::size_t kHeaderUsedBytes = 28;  // magic, version, record bytes, capacity, CRC
@@ -40,6 +43,11 @@ void fill_header(std::uint8_t (&header)[kHeaderUsedBytes], std::size_t record_by
   put(header + 24, crc.value(), 4);
 }
 
+/// A place that no record was ever written to.
+bool is_blank(std::span<const std::uint8_t> stored) {
+  return std::all_of(stored.begin(), stored.end(), [](std::uint8_t byte) { return byte == 0; });
+}
+
 }  // namespace
 
 RingLog::~RingLog() { close_file(); }
@@ -54,13 +62,20 @@ std::int64_t RingLog::offset_of(std::uint64_t number) const {
                             static_cast<std::int64_t>(record_bytes_);
 }
 
+std::int64_t RingLog::file_bytes() const {
+  return kHeaderBytes + capacity_ * static_cast<std::int64_t>(record_bytes_);
+}
+
 bool RingLog::open(const char* path, std::int64_t capacity, FileMessage& error) {
+  damage_ = {};
   fd_ = ::open(path, O_RDWR | O_CLOEXEC);
-  if (fd_ < 0 && errno == EROFS) return learn_newest(path, error);
+  if (fd_ < 0 && errno == EROFS) return learn_newest(path, capacity, error);
   if (fd_ < 0 && errno != ENOENT) return fail_with_errno(path, "cannot open the log", error);
-  const bool is_sound = fd_ >= 0 && read_header();
-  if (is_sound) find_newest();
+  damage_.was_absent = fd_ < 0;
+  const bool is_sound = fd_ >= 0 && understand(capacity);
+  damage_.is_set_aside = fd_ >= 0 && !is_sound;
   const bool takes_records = is_sound && record_bytes_ == kRecordBytes;
+  if (takes_records) mend();
   if (takes_records && capacity_ == capacity) return true;
   const std::int64_t capacity_before = std::exchange(capacity_, capacity);
   if (replace(path, error)) return true;
@@ -68,14 +83,17 @@ bool RingLog::open(const char* path, std::int64_t capacity, FileMessage& error) 
     capacity_ = capacity_before;
     return true;
   }
+  const int cause = errno;
   close_file();
+  errno = cause;
   return false;
 }
 
 /// On a read-only disk nothing can be added, but the counters of earlier runs are known. Always false.
-bool RingLog::learn_newest(const char* path, FileMessage& error) {
+bool RingLog::learn_newest(const char* path, std::int64_t capacity, FileMessage& error) {
   fd_ = ::open(path, O_RDONLY | O_CLOEXEC);
-  if (fd_ >= 0 && read_header()) find_newest();
+  damage_.was_absent = fd_ < 0;
+  if (fd_ >= 0 && !understand(capacity)) damage_.is_set_aside = true;
   close_file();
   errno = EROFS;
   return fail_with_errno(path, "cannot open the log", error);
@@ -84,15 +102,13 @@ bool RingLog::learn_newest(const char* path, FileMessage& error) {
 bool RingLog::open_to_read(const char* path, FileMessage& error) {
   fd_ = ::open(path, O_RDONLY | O_CLOEXEC);
   if (fd_ < 0) return fail_with_errno(path, "cannot open the log", error);
-  if (!read_header()) {
-    char line[700];
-    std::snprintf(line, sizeof line,
-                  "%s: is not a decision log of this program; the next start sets it aside", path);
-    static_cast<void>(error.assign(line));
-    return false;
-  }
-  find_newest();
-  return true;
+  if (understand(0)) return true;
+  close_file();
+  char line[700];
+  std::snprintf(line, sizeof line,
+                "%s: is not a decision log of this program; the next start sets it aside", path);
+  static_cast<void>(error.assign(line));
+  return false;
 }
 
 /// The new file is there as a whole before the old one loses its name.
@@ -117,14 +133,15 @@ bool RingLog::replace(const char* path, FileMessage& error) {
   return true;
 }
 
-/// At its full size and with its header, on the disk. Negative with errno set, and nothing left.
+/// At its full size, with its header and the newest record that is known, on the disk: what a restart needs is
+/// never in one process alone. Negative with errno set, and nothing left.
 int RingLog::make_whole(const char* path) const {
   const int made = make_afresh(path);
   if (made < 0) return -1;
   const std::int64_t size = kHeaderBytes + capacity_ * static_cast<std::int64_t>(kRecordBytes);
   int cause = posix_fallocate(made, 0, size);  // a full disk must show now, not in a month
   errno = ENOSPC;                              // what a short write means
-  if (cause == 0 && write_header(made) && fsync(made) == 0) return made;
+  if (cause == 0 && write_header(made) && write_newest(made) && fsync(made) == 0) return made;
   if (cause == 0) cause = errno;
   close(made);
   unlink(path);
@@ -132,52 +149,164 @@ int RingLog::make_whole(const char* path) const {
   return -1;
 }
 
-bool RingLog::write_header(int fd) const {
-  std::uint8_t header[kHeaderUsedBytes];
-  fill_header(header, kRecordBytes, capacity_);
-  return pwrite(fd, header, sizeof header, 0) == static_cast<ssize_t>(sizeof header);
+/// By its header, the header's copy, or the records. `likely_capacity` 0: not known.
+bool RingLog::understand(std::int64_t likely_capacity) {
+  if (read_header(0) || read_header(kHeaderCopyAt)) {
+    const Scan scan = find_newest();
+    damage_.broken_records = scan.broken;
+    damage_.missing_records = scan.missing;
+  } else if (find_geometry(likely_capacity)) {
+    damage_.header = RingDamage::Header::kFromRecords;
+  } else {
+    return false;
+  }
+  damage_.newest_is_lost = damage_.broken_records > 0 && is_broken_at(newest_number_ + 1);
+  return true;
 }
 
-bool RingLog::read_header() {
+bool RingLog::read_header(std::int64_t offset) {
   std::uint8_t header[kHeaderUsedBytes];
-  if (pread(fd_, header, sizeof header, 0) != static_cast<ssize_t>(sizeof header)) return false;
+  if (pread(fd_, header, sizeof header, offset) != static_cast<ssize_t>(sizeof header)) {
+    return false;
+  }
   const auto capacity = static_cast<std::int64_t>(take(header + 16, 8));
   record_bytes_ = take(header + 12, 4) == kOlderRecordBytes ? kOlderRecordBytes : kRecordBytes;
   std::uint8_t expected[kHeaderUsedBytes];
   fill_header(expected, record_bytes_, capacity);
-  if (capacity < 1 || std::memcmp(header, expected, sizeof header) != 0) return false;
+  const std::int64_t most = (INT64_MAX - kHeaderBytes) / static_cast<std::int64_t>(kRecordBytes);
+  if (std::memcmp(header, expected, sizeof header) != 0 || capacity < 1 || capacity > most) {
+    return false;
+  }
   struct stat info {};
-  const bool is_file = fstat(fd_, &info) == 0;
   capacity_ = capacity;
-  return is_file &&
-         capacity <= (INT64_MAX - kHeaderBytes) / static_cast<std::int64_t>(kRecordBytes);
+  if (offset != 0) damage_.header = RingDamage::Header::kFromCopy;
+  return fstat(fd_, &info) == 0;
 }
 
-void RingLog::find_newest() {
-  constexpr std::size_t kChunkBytes = 64 * kRecordBytes;
-  std::uint8_t chunk[kChunkBytes];
-  CycleRecord record;
-  std::int64_t offset = kHeaderBytes;
+/// Without a header: the size of the file says how many records it has, and each record by its
+/// number in which place it must lie.
+bool RingLog::find_geometry(std::int64_t likely_capacity) {
+  struct stat info {};
+  if (fstat(fd_, &info) != 0 || info.st_size <= kHeaderBytes) return false;
+  const auto by_size = [&](std::size_t record_bytes) {
+    return Geometry{record_bytes,
+                    (info.st_size - kHeaderBytes) / static_cast<std::int64_t>(record_bytes)};
+  };
+  if (fits({kRecordBytes, likely_capacity}) || fits(by_size(kRecordBytes)) ||
+      fits(by_size(kOlderRecordBytes))) {
+    return true;
+  }
+  newest_number_ = 0;
+  damage_.broken_records = damage_.missing_records = 0;
+  return false;
+}
+
+/// Also a log in which nothing stands yet, at the size that it would have.
+bool RingLog::fits(const Geometry& geometry) {
+  if (geometry.capacity < 1) return false;
+  record_bytes_ = geometry.record_bytes;
+  capacity_ = geometry.capacity;
+  newest_number_ = 0;
+  const Scan scan = find_newest();
+  damage_.broken_records = scan.broken;
+  damage_.missing_records = scan.missing;
+  const bool is_empty = scan.whole == 0 && scan.broken == 0 && scan.missing == 0;
+  return scan.misplaced == 0 && (scan.whole > 0 || is_empty);
+}
+
+/// Headers as they must be, the file at its full size. Where the disk refuses, the next start tries again.
+void RingLog::mend() {
+  const bool is_written = write_header(fd_);
+  const bool is_long = damage_.missing_records == 0 || posix_fallocate(fd_, 0, file_bytes()) == 0;
+  const bool is_kept = damage_.is_any() && is_written && is_long && fdatasync(fd_) == 0;
+  static_cast<void>(is_kept);
+}
+
+/// Into a new file of `capacity_`.
+bool RingLog::write_newest(int fd) const {
+  if (newest_number_ == 0) return true;
+  RecordBytes bytes;
+  encode_record(newest_, newest_number_, bytes);
+  const auto slot =
+      static_cast<std::int64_t>(newest_number_ % static_cast<std::uint64_t>(capacity_));
+  const std::int64_t offset = kHeaderBytes + slot * static_cast<std::int64_t>(kRecordBytes);
+  return pwrite(fd, bytes.data(), bytes.size(), offset) == static_cast<ssize_t>(bytes.size());
+}
+
+bool RingLog::write_header(int fd) const {
+  std::uint8_t header[kHeaderUsedBytes];
+  std::uint8_t there[kHeaderUsedBytes];
+  fill_header(header, kRecordBytes, capacity_);
+  for (const std::int64_t offset : {std::int64_t{0}, kHeaderCopyAt}) {
+    constexpr auto kSize = static_cast<ssize_t>(sizeof header);
+    const bool is_there = pread(fd, there, sizeof there, offset) == kSize &&
+                          std::memcmp(there, header, sizeof header) == 0;
+    if (!is_there && pwrite(fd, header, sizeof header, offset) != kSize) return false;
+  }
+  return true;
+}
+
+/// What the disk cannot read costs the records that lie there.
+RingLog::Scan RingLog::find_newest() {
+  constexpr std::int64_t kSlotsOfChunk = 64;
+  std::uint8_t chunk[static_cast<std::size_t>(kSlotsOfChunk) * kRecordBytes];
+  const auto record_bytes = static_cast<std::int64_t>(record_bytes_);
+  Scan scan;
+  std::int64_t slots_at_once = kSlotsOfChunk;
   for (std::int64_t slot = 0; slot < capacity_;) {
-    const ssize_t bytes = pread(fd_, chunk, sizeof chunk, offset);
-    const auto count = bytes > 0 ? static_cast<std::size_t>(bytes) / record_bytes_ : 0;
-    if (count == 0) return;  // shorter than it should be: what is there counts
-    for (std::size_t i = 0; i < count && slot < capacity_; ++i, ++slot) {
-      std::uint64_t number = 0;
-      const bool whole =
-          decode_record({chunk + i * record_bytes_, record_bytes_}, record, number) &&
-          number % static_cast<std::uint64_t>(capacity_) == static_cast<std::uint64_t>(slot);
-      if (!whole || number <= newest_number_) continue;
-      newest_number_ = number;
-      newest_ = record;
+    const std::int64_t left = capacity_ - slot;
+    const std::int64_t wanted = slots_at_once < left ? slots_at_once : left;
+    const ssize_t bytes = pread(fd_, chunk, static_cast<std::size_t>(wanted * record_bytes),
+                                kHeaderBytes + slot * record_bytes);
+    const std::int64_t count = bytes / record_bytes;
+    if (bytes >= 0 && count == 0) {
+      scan.missing = left;
+      return scan;
     }
-    offset += static_cast<std::int64_t>(count * record_bytes_);
+    if (bytes < 0 && slots_at_once > 1) {  // one by one, from here on
+      slots_at_once = 1;
+      continue;
+    }
+    if (bytes < 0) {
+      ++scan.broken;
+      ++slot;
+      continue;
+    }
+    for (std::int64_t i = 0; i < count; ++i, ++slot) {
+      look_at({chunk + i * record_bytes, record_bytes_}, slot, scan);
+    }
+  }
+  return scan;
+}
+
+void RingLog::look_at(std::span<const std::uint8_t> stored, std::int64_t slot, Scan& scan) {
+  CycleRecord record;
+  std::uint64_t number = 0;
+  if (!decode_record(stored, record, number)) {
+    scan.broken += is_blank(stored) ? 0 : 1;
+  } else if (number % static_cast<std::uint64_t>(capacity_) != static_cast<std::uint64_t>(slot)) {
+    ++scan.misplaced;
+  } else {
+    ++scan.whole;
+    if (number <= newest_number_) return;
+    newest_number_ = number;
+    newest_ = record;
   }
 }
 
-bool RingLog::append(const CycleRecord& record) {
+/// Whether something stood in the place of this record that is none.
+bool RingLog::is_broken_at(std::uint64_t number) const {
   RecordBytes bytes;
-  const std::uint64_t number = newest_number_ + 1;
+  const ssize_t got = pread(fd_, bytes.data(), record_bytes_, offset_of(number));
+  const auto stored = std::span(bytes).first(record_bytes_);
+  CycleRecord record;
+  std::uint64_t found = 0;
+  return got < 0 || (got == static_cast<ssize_t>(record_bytes_) && !is_blank(stored) &&
+                     !decode_record(stored, record, found));
+}
+
+bool RingLog::append(const CycleRecord& record, std::uint64_t number) {
+  RecordBytes bytes;
   encode_record(record, number, bytes);
   const ssize_t written = pwrite(fd_, bytes.data(), bytes.size(), offset_of(number));
   if (written != static_cast<ssize_t>(bytes.size()) || fdatasync(fd_) != 0) return false;

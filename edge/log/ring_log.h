@@ -2,18 +2,23 @@
 // the log thread of bess-edge, read by `bess-edge log` and `bess-edge status` while it is being
 // written.
 //
-//   0     header: "BESSRING", version, bytes of a record, capacity, CRC-32; padded to 4096 bytes
+//   0     header: "BESSRING", version, bytes of a record, capacity, CRC-32
+//   2048  the header again; zeros up to 4096
 //   4096  capacity records of 512 bytes (record_codec.h); record number n lies in slot n % capacity
 //
 // Power cuts: the file is made beside its place and renamed, so its header is never half written; a
 // record overwrites the oldest one and carries a CRC, so a torn one costs itself and nothing else.
+// A card that forgets: a broken header is taken from its second copy, or found from the records
+// themselves, whose numbers and places prove it; what cannot be read is passed over and counted.
 // Nothing here allocates.
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "edge/control/control_types.h"
 #include "edge/log/record_codec.h"
+#include "edge/log/ring_damage.h"
 #include "edge/log/whole_file.h"
 
 namespace bess {
@@ -25,10 +30,11 @@ class RingLog {
   RingLog& operator=(const RingLog&) = delete;
   ~RingLog();
 
-  /// For writing. A missing file is made; one of another capacity, of smaller records or without a
-  /// sound header is set aside as "PATH.old", its numbers and newest record are taken over as far as
-  /// they can be read. Where the disk has no room for another one, a sound log goes on at the size
-  /// that it has. False with one line and errno; may be tried again.
+  /// For writing. A missing file is made; one of another capacity, of smaller records or of which
+  /// nothing can be understood is set aside as "PATH.old", its numbers and newest record are taken
+  /// over as far as they can be read. Where the disk has no room for another one, a sound log goes on
+  /// at the size that it has. On a read-only disk it fails, and the newest record is known all the
+  /// same. False with one line and errno; may be tried again.
   bool open(const char* path, std::int64_t capacity, FileMessage& error);
   /// For reading, beside a writer.
   bool open_to_read(const char* path, FileMessage& error);
@@ -38,7 +44,9 @@ class RingLog {
 
   /// Writes behind the newest record and waits for the disk. False when the disk refused; the next
   /// call tries the same slot again.
-  bool append(const CycleRecord& record);
+  bool append(const CycleRecord& record) { return append(record, newest_number_ + 1); }
+  /// The same under a later number: the ones between are left out.
+  bool append(const CycleRecord& record, std::uint64_t number);
 
   /// The newest whole record that was there at opening or was appended since; false = none.
   bool newest(CycleRecord& record) const;
@@ -47,15 +55,36 @@ class RingLog {
   [[nodiscard]] std::uint64_t oldest_number() const;
   /// False when that record was never written, is torn, or has been overwritten.
   bool read(std::uint64_t number, CycleRecord& record) const;
+  /// What was lost of the file that the last `open` found.
+  [[nodiscard]] const RingDamage& damage() const { return damage_; }
 
  private:
-  bool learn_newest(const char* path, FileMessage& error);
+  struct Geometry {
+    std::size_t record_bytes = 0;
+    std::int64_t capacity = 0;
+  };
+  struct Scan {
+    std::int64_t whole = 0;      ///< records in their places
+    std::int64_t misplaced = 0;  ///< records in others' places
+    std::int64_t broken = 0;     ///< neither a record nor never written
+    std::int64_t missing = 0;    ///< behind the end of the file
+  };
+
+  bool learn_newest(const char* path, std::int64_t capacity, FileMessage& error);
   bool replace(const char* path, FileMessage& error);
   int make_whole(const char* path) const;
-  bool read_header();
+  bool understand(std::int64_t likely_capacity);
+  bool read_header(std::int64_t offset);
+  bool find_geometry(std::int64_t likely_capacity);
+  bool fits(const Geometry& geometry);
+  void mend();
   bool write_header(int fd) const;
-  void find_newest();
+  bool write_newest(int fd) const;
+  Scan find_newest();
+  void look_at(std::span<const std::uint8_t> stored, std::int64_t slot, Scan& scan);
+  [[nodiscard]] bool is_broken_at(std::uint64_t number) const;
   [[nodiscard]] std::int64_t offset_of(std::uint64_t number) const;
+  [[nodiscard]] std::int64_t file_bytes() const;
   void close_file();
 
   int fd_ = -1;
@@ -63,6 +92,7 @@ class RingLog {
   std::int64_t capacity_ = 0;
   std::uint64_t newest_number_ = 0;
   CycleRecord newest_{};
+  RingDamage damage_{};
 };
 
 }  // namespace bess
