@@ -30,6 +30,7 @@ install_with_paths(${CMAKE_CURRENT_SOURCE_DIR}/bess-edge.toml /etc/bess edge.tom
   "map = \"maps/" "map = \"${CMAKE_INSTALL_FULL_DATADIR}/bess/maps/"
   "map = \"meters/" "map = \"${CMAKE_INSTALL_FULL_DATADIR}/bess/meters/"
   "folder = \"state\"  " "folder = \"/var/lib/bess\"  "
+  "#run_folder = \"run\"   " "run_folder = \"/run/bess\""
   "folder = \"notify\"  " "folder = \"/var/lib/bess-notify\"  ")
 install_with_paths(${CMAKE_CURRENT_SOURCE_DIR}/systemd/bess-edge.service lib/systemd/system
   bess-edge.service

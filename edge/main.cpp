@@ -28,6 +28,7 @@
 #include "edge/program/log_command.h"
 #include "edge/program/map_check_command.h"
 #include "edge/program/people_config.h"
+#include "edge/program/published_status.h"
 #include "edge/program/record_command.h"
 #include "edge/program/release_command.h"
 #include "edge/program/run_locks.h"
@@ -115,6 +116,7 @@ int run_controller(const CommandLine& command_line, const EdgeConfig& config) {
   if (!reach_battery(config, battery, clock)) return 1;
   std::string refusal;
   if (config.control.control && !is_commissioned(config, refusal)) return fail(refusal.c_str());
+  const std::uint64_t published = published_log_number(config);
   if (!log.open(config.log, identity_of_run(config), error)) return fail(error.c_str());
   const Status greeting = greet_price_server(config, prices);
   write_journal_line(JournalLevel::kNotice,
@@ -128,21 +130,18 @@ int run_controller(const CommandLine& command_line, const EdgeConfig& config) {
   if (student_context().kind == ContextKind::kLevel) {
     notify.extend_start(config.history.wait_s + 60);
   }
-  CycleRecord before;  // stays empty where there is none
-  if (log.newest(before)) {
-    battery.restore_flash_writes(before.counters.flash_day, before.counters.flash_writes_today);
-  }
-  static const auto clearance = trip_clearance_path(config);
-  const bool is_cleared = is_trip_cleared(clearance.c_str(), before.trip.utc_s);
-  const PriceLevel level = level_at_start(config, before.price_level, greeting, prices, clock);
+  const Recall recalled = recall_at_start(config, log, published);
+  const BatteryCounters& counters = recalled.before.counters;
+  battery.restore_flash_writes(counters.flash_day, counters.flash_writes_today);
+  const PriceLevel level =
+      level_at_start(config, recalled.before.price_level, greeting, prices, clock);
   recall_cycles(log, clock.now_utc_ns() / kNanosecondsPerSecond, loop);
-  loop.take_over(take_over_of(before, level, is_cleared));
-  static HoldWatch holds;
-  holds.start(hold_path(config).c_str(), config.clock.scale);
-  loop.follow_holds(holds.mailbox());
+  loop.take_over(take_over_of(recalled.before, recalled.trip, level));
+  static HoldWatch people;
+  people.start(hold_path(config).c_str(), clearance_paths(config), config.clock.scale);
+  loop.follow_holds(people.mailbox());
   notify.ready();
-  const bool is_released =
-      run_supervised(loop, command_line.cycles, clock, log, notify, clearance.c_str());
+  const bool is_released = run_supervised(loop, command_line.cycles, clock, log, notify, people);
   if (!recorder.finish(error)) return fail(error.c_str());
   return is_released ? 0 : 1;
 }

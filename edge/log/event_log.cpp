@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -15,6 +16,9 @@
 
 namespace bess {
 namespace {
+
+/// Of the run folder's ring: the eight hours that supervision judges again at a start.
+constexpr std::int64_t kRunRecords = 256;
 
 bool append_line(int fd, const char* text, std::size_t size) {
   char line[kLogLineBytes + 1];
@@ -60,14 +64,19 @@ bool EventLog::open(const EventLogSettings& settings, const RunIdentity& identit
     if (is_disk) totals_.disk_is_failing = true;
     return opened || is_disk;
   };
+  open_run_ring();
   if (!may_go_on(open_ring(error)) || !may_go_on(open_csv(error))) return false;
-  if (!may_go_on(publish_metrics())) {
+  tell_of_damage(ring_, settings_.ring.c_str());
+  totals_.log_number = newer_ring().newest_number();
+  if (!may_go_on(publish_metrics(settings.metrics.c_str()))) {
     return fail_with_errno(settings.metrics.c_str(), "cannot write the metrics here", error);
   }
-  if (!may_go_on(publish_status())) {
+  if (!may_go_on(publish_status(settings.status.c_str()))) {
     return fail_with_errno(settings.status.c_str(), "cannot write the status here", error);
   }
+  publish_in_memory();
   tell_of_disk(totals_.disk_is_failing);
+  tell_of_run_folder();
   thread_.start(
       [](void* log) -> void* {
         static_cast<EventLog*>(log)->run();
@@ -83,6 +92,25 @@ bool EventLog::open_ring(FileMessage& error) {
   if (!ring_.open(settings_.ring.c_str(), capacity, error)) return false;
   if (ring_.capacity() != capacity) totals_.disk_is_failing = true;
   return true;
+}
+
+/// What fails here is tried again with every record.
+void EventLog::open_run_ring() {
+  if (settings_.run_ring.empty()) return;
+  FileMessage ignored;
+  if (!run_ring_.open(settings_.run_ring.c_str(), kRunRecords, ignored)) {
+    totals_.run_folder_is_failing = true;
+    return;
+  }
+  tell_of_damage(run_ring_, settings_.run_ring.c_str());
+}
+
+void EventLog::tell_of_damage(const RingLog& ring, const char* path) const {
+  if (!ring.damage().is_any()) return;
+  char text[1'024];
+  TextBuffer line(text);
+  describe_damage(ring.damage(), path, line);
+  write_journal_line(JournalLevel::kError, line.view());
 }
 
 bool EventLog::open_csv(FileMessage& error) {
@@ -134,25 +162,45 @@ void EventLog::run() {
   }
 }
 
-/// The ring first, status last: whoever is told of a record finds it in the ring, a next run as well.
+/// The rings first, status last: whoever is told of a record finds it in a ring, a next run as well.
 void EventLog::keep(const CycleRecord& record) {
+  const std::uint64_t number = newer_ring().newest_number() + 1;
+  const std::int64_t dropped = dropped_;
+  totals_.disk_is_slow = dropped > totals_.records_dropped;
+  totals_.records_dropped = dropped;
+  totals_.count(record);
+  totals_.log_number = number;
+  keep_in_memory(record, number);
+  keep_on_disk(record, number);
+  tell_of_run_folder();
+}
+
+void EventLog::keep_in_memory(const CycleRecord& record, std::uint64_t number) {
+  if (settings_.run_ring.empty()) return;
+  totals_.run_folder_is_failing = !append_to_run_ring(record, number);
+  publish_in_memory();
+}
+
+/// Whatever a disk does here, even if it never answers again: memory knows the record.
+void EventLog::keep_on_disk(const CycleRecord& record, std::uint64_t number) {
   const std::int64_t failures_before = totals_.disk_failures;
   char line[kLogLineBytes];
   const std::size_t size = format_log_line(record, line);
-  if (!append_to_ring(record)) ++totals_.disk_failures;
+  if (!append_to_ring(record, number)) ++totals_.disk_failures;
   tell_of_hold(record);
   tell_of_meter(record);
   write_journal_line(level_of(record), {line, size});
   tell_of_trip(record);
   if (!append_to_csv(record)) ++totals_.disk_failures;
-  totals_.count(record);
-  const std::int64_t dropped = dropped_;
-  totals_.disk_is_slow = dropped > totals_.records_dropped;
-  totals_.records_dropped = dropped;
-  static_cast<void>(publish_metrics());
+  if (!publish_metrics(settings_.metrics.c_str())) ++totals_.disk_failures;
+  const bool was_failing = totals_.disk_is_failing;
   totals_.disk_is_failing = totals_.disk_failures > failures_before;
-  static_cast<void>(publish_status());
-  tell_of_disk(totals_.disk_failures > failures_before);
+  if (!publish_status(settings_.status.c_str())) {
+    ++totals_.disk_failures;
+    totals_.disk_is_failing = true;
+  }
+  if (totals_.disk_is_failing || was_failing) publish_in_memory();
+  tell_of_disk(totals_.disk_is_failing);
 }
 
 /// On the journal, once each time: what a person has to end.
@@ -168,10 +216,41 @@ void EventLog::tell_of_trip(const CycleRecord& record) {
                                        : "cleared: a person lets the battery be driven again");
 }
 
-/// A log that the disk refused at the start is tried again.
-bool EventLog::append_to_ring(const CycleRecord& record) {
+bool EventLog::append_to_run_ring(const CycleRecord& record, std::uint64_t number) {
   FileMessage ignored;
-  return (ring_.is_open() || open_ring(ignored)) && ring_.append(record);
+  const bool is_open =
+      run_ring_.is_open() || run_ring_.open(settings_.run_ring.c_str(), kRunRecords, ignored);
+  return is_open && run_ring_.append(record, number);
+}
+
+/// A log that the disk refused at the start is tried again.
+bool EventLog::append_to_ring(const CycleRecord& record, std::uint64_t number) {
+  FileMessage ignored;
+  return (ring_.is_open() || open_ring(ignored)) && catch_up(number) &&
+         ring_.append(record, number);
+}
+
+/// What the disk refused for a while, as far as memory still has it.
+bool EventLog::catch_up(std::uint64_t number) {
+  const std::uint64_t first = ring_.newest_number() + 1;
+  if (first >= number) return true;
+  std::uint64_t kept = 0;
+  CycleRecord record;
+  const bool has_memory = run_ring_.is_open();
+  for (std::uint64_t n = std::max(first, run_ring_.oldest_number()); has_memory && n < number;
+       ++n) {
+    if (!run_ring_.read(n, record)) continue;
+    if (!ring_.append(record, n)) return false;
+    ++kept;
+  }
+  char text[160];
+  TextBuffer line(text);
+  line.add(
+      "the decision log goes on: %llu records that it missed are taken from memory, %llu are lost",
+      static_cast<unsigned long long>(kept),
+      static_cast<unsigned long long>(number - first - kept));
+  write_journal_line(JournalLevel::kWarning, line.view());
+  return true;
 }
 
 bool EventLog::append_to_csv(const CycleRecord& record) {
@@ -215,20 +294,33 @@ void EventLog::tell_of_meter(const CycleRecord& record) {
   }
 }
 
-bool EventLog::publish_metrics() {
-  TextBuffer metrics(metrics_text_);
-  format_prometheus(identity_, totals_, metrics);
-  const bool done = replace_file(settings_.metrics.c_str(), metrics.view());
-  if (!done) ++totals_.disk_failures;
-  return done;
+void EventLog::tell_of_run_folder() {
+  if (totals_.run_folder_is_failing == was_run_failing_) return;
+  was_run_failing_ = totals_.run_folder_is_failing;
+  write_journal_line(JournalLevel::kWarning,
+                     was_run_failing_
+                         ? "the files of [state] run_folder cannot be written: if the disk dies as "
+                           "well, nobody can be told how things are"
+                         : "the files of [state] run_folder are written again");
 }
 
-bool EventLog::publish_status() {
+void EventLog::publish_in_memory() {
+  if (settings_.run_ring.empty()) return;
+  const bool has_metrics = publish_metrics(settings_.run_metrics.c_str());
+  const bool has_status = publish_status(settings_.run_status.c_str());
+  if (!has_metrics || !has_status) totals_.run_folder_is_failing = true;
+}
+
+bool EventLog::publish_metrics(const char* path) {
+  TextBuffer metrics(metrics_text_);
+  format_prometheus(identity_, totals_, metrics);
+  return replace_or_remove_file(path, metrics.view());
+}
+
+bool EventLog::publish_status(const char* path) {
   TextBuffer status(status_text_);
   format_status_json(identity_, totals_, clock_ns(CLOCK_MONOTONIC), status);
-  const bool done = replace_file(settings_.status.c_str(), status.view());
-  if (!done) ++totals_.disk_failures;
-  return done;
+  return replace_or_remove_file(path, status.view());
 }
 
 }  // namespace bess

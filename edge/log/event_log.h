@@ -1,8 +1,10 @@
 // The log of the controller. The control thread hands over one record a cycle and never waits; a
 // log thread of its own, on a static stack, writes it everywhere:
-//   CycleRecord -> queue -> log thread -> stdout (journal), ring log, CSV, status, metrics
-// A disk may stand still for seconds: 64 records, two hours, fit into the queue; what does not fit
-// is dropped and counted. After `open` neither thread allocates here.
+//   CycleRecord -> queue -> log thread -> run folder (memory): short ring, metrics, status
+//                                      -> stdout (journal), ring log, CSV, metrics, status
+// The run folder comes first: what is in it holds, however the disk dies. A disk may stand still for
+// seconds: 64 records, two hours, fit into the queue; what does not fit is dropped and counted.
+// After `open` neither thread allocates here.
 #pragma once
 
 #include <atomic>
@@ -24,7 +26,11 @@ struct EventLogSettings {
   FixedText<511> ring;
   FixedText<511> status;
   FixedText<511> metrics;
-  FixedText<511> csv;           ///< empty = none
+  FixedText<511> csv;  ///< empty = none
+  // In the run folder, on a memory file system; all empty = none.
+  FixedText<511> run_ring;
+  FixedText<511> run_status;
+  FixedText<511> run_metrics;
   std::int64_t ring_days = 35;  ///< of 720 records
 };
 
@@ -41,13 +47,17 @@ class EventLog {
   bool open(const EventLogSettings& settings, const RunIdentity& identity, FileMessage& error);
   /// The newest record of earlier runs, for counters that a restart must take over; false = none.
   /// Only before the first `write`.
-  bool newest(CycleRecord& record) const { return ring_.newest(record); }
+  bool newest(CycleRecord& record) const { return newer_ring().newest(record); }
   /// The record that many before the newest; false = there is none, or it is torn. As `newest`.
   bool read_back(std::int64_t records, CycleRecord& record) const {
-    const std::uint64_t newest = ring_.newest_number();
+    const std::uint64_t newest = newer_ring().newest_number();
     const auto back = static_cast<std::uint64_t>(records);
-    return back < newest && ring_.read(newest - back, record);
+    return back < newest &&
+           (ring_.read(newest - back, record) || run_ring_.read(newest - back, record));
   }
+  /// The two logs, for what one of them knows alone. Only before the first `write`.
+  [[nodiscard]] const RingLog& ring() const { return ring_; }
+  [[nodiscard]] const RingLog& run_ring() const { return run_ring_; }
 
   /// From the control thread; never waits.
   void write(const CycleRecord& record);
@@ -61,16 +71,27 @@ class EventLog {
   static constexpr std::size_t kStackBytes = 256 * 1024;
 
   bool open_ring(FileMessage& error);
+  void open_run_ring();
+  void tell_of_damage(const RingLog& ring, const char* path) const;
+  [[nodiscard]] const RingLog& newer_ring() const {
+    return run_ring_.newest_number() > ring_.newest_number() ? run_ring_ : ring_;
+  }
   bool open_csv(FileMessage& error);
   bool head_csv();
   void run();
   void keep(const CycleRecord& record);
   void tell_of_trip(const CycleRecord& record);
-  bool append_to_ring(const CycleRecord& record);
+  void keep_in_memory(const CycleRecord& record, std::uint64_t number);
+  void keep_on_disk(const CycleRecord& record, std::uint64_t number);
+  bool append_to_run_ring(const CycleRecord& record, std::uint64_t number);
+  bool append_to_ring(const CycleRecord& record, std::uint64_t number);
+  bool catch_up(std::uint64_t number);
   bool append_to_csv(const CycleRecord& record);
-  [[nodiscard]] bool publish_metrics();
-  [[nodiscard]] bool publish_status();
+  void publish_in_memory();
+  [[nodiscard]] bool publish_metrics(const char* path);
+  [[nodiscard]] bool publish_status(const char* path);
   void tell_of_disk(bool is_failing);
+  void tell_of_run_folder();
   void tell_of_hold(const CycleRecord& record);
   void tell_of_meter(const CycleRecord& record);
 
@@ -78,10 +99,12 @@ class EventLog {
   RunIdentity identity_;
   RunTotals totals_;
   RingLog ring_;
+  RingLog run_ring_;
   int csv_fd_ = -1;
   bool was_tripped_ = false;
   bool csv_has_head_ = false;
   bool was_failing_ = false;
+  bool was_run_failing_ = false;
   HoldLines hold_lines_;
   MeterLines meter_lines_;
   HandoverQueue<CycleRecord, kQueueRecords> queue_;

@@ -19,11 +19,10 @@ std::string seconds(std::int64_t ms) { return std::to_string(ms / 1'000) + " s";
 
 /// The convention of the field: warn at twice the cadence, critical at four times.
 void check_age(const HealthInputs& in, std::vector<std::string>& reasons) {
-  const std::int64_t age_ms = in.age_ms - in.cycles_behind * in.cadence_ms;
-  if (age_ms <= 2 * in.cadence_ms) return;
-  const bool is_critical = age_ms > 4 * in.cadence_ms;
+  if (in.age_ms <= 2 * in.cadence_ms) return;
+  const bool is_critical = in.age_ms > 4 * in.cadence_ms;
   const std::string level = is_critical ? "CRITICAL" : "WARN";
-  reasons.push_back(level + ": the last cycle ended " + seconds(age_ms) +
+  reasons.push_back(level + ": the last cycle ended " + seconds(in.age_ms) +
                     " ago, one is due every " + seconds(in.cadence_ms));
 }
 
@@ -147,19 +146,24 @@ Health assess_health(const HealthInputs& in) {
     return {HealthLevel::kNotRunning, {"CRITICAL: no bess-edge runs with this configuration"}};
   }
   Health health;
-  if (!in.is_of_this_run || in.cycles == 0) {
-    if (in.cycles_behind == 0) health.reasons.emplace_back("WARN: started, no cycle has ended yet");
+  if (!in.unknown.empty()) {
+    health.reasons.push_back("CRITICAL: unknown: " + std::string(in.unknown));
+  } else if (!in.is_of_this_run || in.cycles == 0) {
+    health.reasons.emplace_back("WARN: started, no cycle has ended yet");
   } else {
     check_cycle(in, health.reasons);
+    check_age(in, health.reasons);
   }
-  if (in.is_of_this_run) check_age(in, health.reasons);
   if (!in.update_trouble.empty()) {
     health.reasons.push_back("WARN: update: " + std::string(in.update_trouble));
   }
   if (in.disk_is_slow)
     health.reasons.emplace_back("WARN: records not logged, the disk is too slow");
-  const std::int64_t cycles_behind_max = in.is_of_this_run ? 1 : 0;
-  if (in.cycles_behind > cycles_behind_max) {
+  if (in.run_folder_is_failing) {
+    health.reasons.emplace_back("WARN: the files of [state] run_folder cannot be written");
+  }
+  // Between the log's record and the status there is a moment in every cycle.
+  if (in.cycles_behind > 1) {
     health.reasons.push_back("WARN: status.json is " + std::to_string(in.cycles_behind) +
                              " cycles behind the log, is the disk full or read-only?");
   } else if (in.disk_is_failing) {

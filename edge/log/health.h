@@ -37,7 +37,8 @@ struct HealthInputs {
   std::string_view limit_status = "ok";
   bool disk_is_slow = false;
   bool disk_is_failing = false;
-  std::int64_t cycles_behind = 0;  ///< cycles that the log has and the status has not
+  bool run_folder_is_failing = false;
+  std::int64_t cycles_behind = 0;  ///< that status.json is behind the log, whose word counts
   bool disk_is_full = false;       ///< of the state folder, or it is read-only
   bool price_step_held = false;
   double held_eur_per_mwh = 0;  ///< price of the row that waits for the next
@@ -46,6 +47,7 @@ struct HealthInputs {
   bool price_frozen = false;           ///< it has not moved, under new stamps
   std::int64_t price_unchanged_s = 0;  ///< for so long
   bool hold_is_unreadable = false;
+  std::string_view unknown;         ///< not empty: a process runs, and nothing says how it is; why
   std::string_view update_trouble;  ///< what the last upgrade ended badly with; empty = none
 };
 

@@ -49,10 +49,14 @@ void encode_record(const CycleRecord& record, std::uint64_t sequence, RecordByte
   put(crc_of(bytes), kCrcBytes, bytes.data() + kCrcOffset);
 }
 
+bool is_intact(std::span<const std::uint8_t> stored) {
+  return take(kCrcBytes, stored.data() + stored.size() - kCrcBytes) == crc_of(stored);
+}
+
 bool decode_record(std::span<const std::uint8_t> stored, CycleRecord& record,
                    std::uint64_t& sequence) {
+  if (!is_intact(stored)) return false;
   const std::size_t crc_offset = stored.size() - kCrcBytes;
-  if (take(kCrcBytes, stored.data() + crc_offset) != crc_of(stored)) return false;
   RecordBytes bytes{};  // fields behind an older record's end read as zero
   std::copy_n(stored.begin(), crc_offset, bytes.begin());
   record = CycleRecord{};

@@ -21,6 +21,9 @@ using RecordBytes = std::array<std::uint8_t, kRecordBytes>;
 
 void encode_record(const CycleRecord& record, std::uint64_t sequence, RecordBytes& bytes);
 
+/// Whether the bytes are what was once written, whatever it means; not so where nothing ever was.
+bool is_intact(std::span<const std::uint8_t> stored);
+
 /// False when the bytes are not a whole record: torn, never written, or of a later program.
 /// `stored`: kRecordBytes, or kOlderRecordBytes.
 bool decode_record(std::span<const std::uint8_t> stored, CycleRecord& record,

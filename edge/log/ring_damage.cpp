@@ -15,10 +15,13 @@ void describe_damage(const RingDamage& damage, const char* path, TextBuffer& lin
   }
   const auto broken = static_cast<long long>(damage.broken_records);
   if (broken > 0) line.add("; %lld %s lost", broken, broken == 1 ? "record is" : "records are");
-  if (damage.newest_is_lost) line.add(", perhaps the newest: the one before it counts");
   if (damage.missing_records > 0) {
     line.add("; its end is cut off: the places of %lld records are gone",
              static_cast<long long>(damage.missing_records));
+  }
+  if (damage.newest_lost > 0) {
+    line.add("; perhaps %lld of the newest: the last one before counts",
+             static_cast<long long>(damage.newest_lost));
   }
 }
 

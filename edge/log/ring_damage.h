@@ -13,9 +13,9 @@ struct RingDamage {
   Header header = Header::kSound;
   std::int64_t broken_records = 0;   ///< slots that hold neither a record nor nothing
   std::int64_t missing_records = 0;  ///< slots behind the end of the file
-  bool newest_is_lost = false;       ///< one of the broken ones stands where the newest would be
-  bool is_set_aside = false;         ///< nothing of the file could be understood
-  bool was_absent = false;           ///< no file: not a loss by itself
+  std::int64_t newest_lost = 0;  ///< of both, right behind the newest that is left: perhaps newer
+  bool is_set_aside = false;     ///< nothing of the file could be understood
+  bool was_absent = false;       ///< no file: not a loss by itself
 
   [[nodiscard]] bool is_any() const {
     return header != Header::kSound || broken_records > 0 || missing_records > 0 || is_set_aside;

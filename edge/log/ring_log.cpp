@@ -43,9 +43,16 @@ void fill_header(std::uint8_t (&header)[kHeaderUsedBytes], std::size_t record_by
   put(header + 24, crc.value(), 4);
 }
 
-/// A place that no record was ever written to.
-bool is_blank(std::span<const std::uint8_t> stored) {
-  return std::all_of(stored.begin(), stored.end(), [](std::uint8_t byte) { return byte == 0; });
+/// Neither as it was written (perhaps by a later program), nor a place that was never written to.
+bool is_broken(std::span<const std::uint8_t> stored) {
+  return !is_intact(stored) &&
+         std::any_of(stored.begin(), stored.end(), [](std::uint8_t byte) { return byte != 0; });
+}
+
+FixedText<643> beside(const char* path, const char* ending) {
+  char text[644];
+  std::snprintf(text, sizeof text, "%s%s", path, ending);
+  return {text};
 }
 
 }  // namespace
@@ -55,6 +62,7 @@ RingLog::~RingLog() { close_file(); }
 void RingLog::close_file() {
   if (fd_ >= 0) close(fd_);
   fd_ = -1;
+  is_read_only_ = false;
 }
 
 std::int64_t RingLog::offset_of(std::uint64_t number) const {
@@ -68,12 +76,14 @@ std::int64_t RingLog::file_bytes() const {
 
 bool RingLog::open(const char* path, std::int64_t capacity, FileMessage& error) {
   damage_ = {};
-  fd_ = ::open(path, O_RDWR | O_CLOEXEC);
-  if (fd_ < 0 && errno == EROFS) return learn_newest(path, capacity, error);
-  if (fd_ < 0 && errno != ENOENT) return fail_with_errno(path, "cannot open the log", error);
+  const int opened = ::open(path, O_RDWR | O_CLOEXEC);
+  if (opened < 0 && errno == EROFS) return open_read_only(path, capacity, error);
+  if (opened < 0 && errno != ENOENT) return fail_with_errno(path, "cannot open the log", error);
+  close_file();
+  fd_ = opened;
   damage_.was_absent = fd_ < 0;
   const bool is_sound = fd_ >= 0 && understand(capacity);
-  damage_.is_set_aside = fd_ >= 0 && !is_sound;
+  if (fd_ >= 0 && !is_sound) set_aside(path);
   const bool takes_records = is_sound && record_bytes_ == kRecordBytes;
   if (takes_records) mend();
   if (takes_records && capacity_ == capacity) return true;
@@ -89,12 +99,15 @@ bool RingLog::open(const char* path, std::int64_t capacity, FileMessage& error) 
   return false;
 }
 
-/// On a read-only disk nothing can be added, but the counters of earlier runs are known. Always false.
-bool RingLog::learn_newest(const char* path, std::int64_t capacity, FileMessage& error) {
-  fd_ = ::open(path, O_RDONLY | O_CLOEXEC);
-  damage_.was_absent = fd_ < 0;
-  if (fd_ >= 0 && !understand(capacity)) damage_.is_set_aside = true;
-  close_file();
+/// On a read-only disk nothing can be added, but what earlier runs left is known. Always false.
+bool RingLog::open_read_only(const char* path, std::int64_t capacity, FileMessage& error) {
+  if (fd_ < 0) {  // else it is known from before: nothing has been added to it
+    fd_ = ::open(path, O_RDONLY | O_CLOEXEC);
+    damage_.was_absent = fd_ < 0;
+    damage_.is_set_aside = fd_ >= 0 && !understand(capacity);
+    if (damage_.is_set_aside) close_file();
+    is_read_only_ = fd_ >= 0;
+  }
   errno = EROFS;
   return fail_with_errno(path, "cannot open the log", error);
 }
@@ -111,19 +124,23 @@ bool RingLog::open_to_read(const char* path, FileMessage& error) {
   return false;
 }
 
+/// Of no use to anybody but a person, whether there is room for another one or not.
+void RingLog::set_aside(const char* path) {
+  damage_.is_set_aside = true;
+  const FixedText<643> aside = beside(path, ".old");
+  if (rename(path, aside.c_str()) == 0) close_file();
+}
+
 /// The new file is there as a whole before the old one loses its name.
 bool RingLog::replace(const char* path, FileMessage& error) {
-  char beside[640];
-  std::snprintf(beside, sizeof beside, "%s.new", path);
-  const int made = make_whole(beside);
-  if (made < 0) return fail_with_errno(beside, "cannot make the log", error);
-  char aside[640];
-  std::snprintf(aside, sizeof aside, "%s.old", path);
-  const bool is_free = fd_ < 0 || rename(path, aside) == 0;
-  if (!is_free || rename(beside, path) != 0) {
+  const FixedText<643> new_path = beside(path, ".new");
+  const int made = make_whole(new_path.c_str());
+  if (made < 0) return fail_with_errno(new_path.c_str(), "cannot make the log", error);
+  const bool is_free = fd_ < 0 || rename(path, beside(path, ".old").c_str()) == 0;
+  if (!is_free || rename(new_path.c_str(), path) != 0) {
     fail_with_errno(path, "cannot set aside the log", error);
     close(made);
-    unlink(beside);
+    unlink(new_path.c_str());
     return false;
   }
   close_file();
@@ -160,7 +177,11 @@ bool RingLog::understand(std::int64_t likely_capacity) {
   } else {
     return false;
   }
-  damage_.newest_is_lost = damage_.broken_records > 0 && is_broken_at(newest_number_ + 1);
+  damage_.newest_lost = 0;
+  while (damage_.newest_lost < damage_.broken_records + damage_.missing_records &&
+         is_lost_at(newest_number_ + 1 + static_cast<std::uint64_t>(damage_.newest_lost))) {
+    ++damage_.newest_lost;
+  }
   return true;
 }
 
@@ -283,7 +304,7 @@ void RingLog::look_at(std::span<const std::uint8_t> stored, std::int64_t slot, S
   CycleRecord record;
   std::uint64_t number = 0;
   if (!decode_record(stored, record, number)) {
-    scan.broken += is_blank(stored) ? 0 : 1;
+    scan.broken += is_broken(stored) ? 1 : 0;
   } else if (number % static_cast<std::uint64_t>(capacity_) != static_cast<std::uint64_t>(slot)) {
     ++scan.misplaced;
   } else {
@@ -294,15 +315,12 @@ void RingLog::look_at(std::span<const std::uint8_t> stored, std::int64_t slot, S
   }
 }
 
-/// Whether something stood in the place of this record that is none.
-bool RingLog::is_broken_at(std::uint64_t number) const {
+/// Whether what stood in the place of this record is gone.
+bool RingLog::is_lost_at(std::uint64_t number) const {
   RecordBytes bytes;
   const ssize_t got = pread(fd_, bytes.data(), record_bytes_, offset_of(number));
-  const auto stored = std::span(bytes).first(record_bytes_);
-  CycleRecord record;
-  std::uint64_t found = 0;
-  return got < 0 || (got == static_cast<ssize_t>(record_bytes_) && !is_blank(stored) &&
-                     !decode_record(stored, record, found));
+  const auto stored = std::span<const std::uint8_t>(bytes).first(record_bytes_);
+  return got != static_cast<ssize_t>(record_bytes_) || is_broken(stored);
 }
 
 bool RingLog::append(const CycleRecord& record, std::uint64_t number) {
@@ -327,6 +345,7 @@ std::uint64_t RingLog::oldest_number() const {
 }
 
 bool RingLog::read(std::uint64_t number, CycleRecord& record) const {
+  if (fd_ < 0) return false;
   RecordBytes bytes;
   const ssize_t got = pread(fd_, bytes.data(), record_bytes_, offset_of(number));
   std::uint64_t found = 0;

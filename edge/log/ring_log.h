@@ -33,13 +33,14 @@ class RingLog {
   /// For writing. A missing file is made; one of another capacity, of smaller records or of which
   /// nothing can be understood is set aside as "PATH.old", its numbers and newest record are taken
   /// over as far as they can be read. Where the disk has no room for another one, a sound log goes on
-  /// at the size that it has. On a read-only disk it fails, and the newest record is known all the
-  /// same. False with one line and errno; may be tried again.
+  /// at the size that it has. On a read-only disk it fails, and what is in the log can be read all
+  /// the same. False with one line and errno; may be tried again.
   bool open(const char* path, std::int64_t capacity, FileMessage& error);
   /// For reading, beside a writer.
   bool open_to_read(const char* path, FileMessage& error);
 
-  [[nodiscard]] bool is_open() const { return fd_ >= 0; }
+  /// For what it was opened for.
+  [[nodiscard]] bool is_open() const { return fd_ >= 0 && !is_read_only_; }
   [[nodiscard]] std::int64_t capacity() const { return capacity_; }
 
   /// Writes behind the newest record and waits for the disk. False when the disk refused; the next
@@ -70,7 +71,8 @@ class RingLog {
     std::int64_t missing = 0;    ///< behind the end of the file
   };
 
-  bool learn_newest(const char* path, std::int64_t capacity, FileMessage& error);
+  bool open_read_only(const char* path, std::int64_t capacity, FileMessage& error);
+  void set_aside(const char* path);
   bool replace(const char* path, FileMessage& error);
   int make_whole(const char* path) const;
   bool understand(std::int64_t likely_capacity);
@@ -82,12 +84,13 @@ class RingLog {
   bool write_newest(int fd) const;
   Scan find_newest();
   void look_at(std::span<const std::uint8_t> stored, std::int64_t slot, Scan& scan);
-  [[nodiscard]] bool is_broken_at(std::uint64_t number) const;
+  [[nodiscard]] bool is_lost_at(std::uint64_t number) const;
   [[nodiscard]] std::int64_t offset_of(std::uint64_t number) const;
   [[nodiscard]] std::int64_t file_bytes() const;
   void close_file();
 
   int fd_ = -1;
+  bool is_read_only_ = false;                ///< although it was opened for writing
   std::size_t record_bytes_ = kRecordBytes;  ///< of the file that is open
   std::int64_t capacity_ = 0;
   std::uint64_t newest_number_ = 0;

@@ -27,6 +27,7 @@ consteval auto make_run_fields() {
        {"Records that a log file refused."}},
       {member<&T::disk_is_slow>(), "disk_is_slow", {.totals = 51}},
       {member<&T::disk_is_failing>(), "disk_is_failing", {.totals = 52}},
+      {member<&T::run_folder_is_failing>(), "run_folder_is_failing", {.totals = 53}},
   });
 }
 

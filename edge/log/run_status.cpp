@@ -161,6 +161,7 @@ void format_status_json(const RunIdentity& identity, const RunTotals& totals,
   json.add("{\n");
   add_identity(identity, json);
   json.add("  \"written_monotonic_ms\": %lld,\n", as_long(written_monotonic_ns / 1'000'000));
+  json.add("  \"log_number\": %llu,\n", static_cast<unsigned long long>(totals.log_number));
   add_section<&Places::last>(kLastSection, totals, json);
   add_section<&Places::totals>(kTotalsSection, totals, json);
   add_cycles_by_reason(totals, json);

@@ -34,12 +34,14 @@ struct RunTotals {
   std::int64_t cycles = 0;
   std::array<std::int64_t, kReasonCount> cycles_by_reason{};
   std::int64_t written_orders = 0;
-  std::int64_t battery_failures = 0;  ///< cycles whose battery status was not ok
-  std::int64_t price_failures = 0;    ///< cycles whose last price request was not ok
-  std::int64_t records_dropped = 0;   ///< not logged, because the disk was too slow
-  std::int64_t disk_failures = 0;     ///< records that a log file refused
-  bool disk_is_slow = false;          ///< records were dropped since the last one kept
-  bool disk_is_failing = false;       ///< the last record could not be written everywhere
+  std::int64_t battery_failures = 0;   ///< cycles whose battery status was not ok
+  std::int64_t price_failures = 0;     ///< cycles whose last price request was not ok
+  std::int64_t records_dropped = 0;    ///< not logged, because the disk was too slow
+  std::int64_t disk_failures = 0;      ///< records that a log file refused
+  bool disk_is_slow = false;           ///< records were dropped since the last one kept
+  bool disk_is_failing = false;        ///< the last record could not be written everywhere
+  bool run_folder_is_failing = false;  ///< nor what goes to the run folder
+  std::uint64_t log_number = 0;        ///< of the newest record that this status knows
   CycleRecord last{};
 
   void count(const CycleRecord& record);

@@ -68,7 +68,8 @@ struct StableCodes<Reason> {
                                      Reason::kRule,
                                      Reason::kFrozenPrice,
                                      Reason::kBatteryCare,
-                                     Reason::kMeterMismatch};
+                                     Reason::kMeterMismatch,
+                                     Reason::kStateLost};
   static constexpr auto kNameOf = reason_name;
 };
 

@@ -29,9 +29,10 @@ bool replace(const char* path, std::string_view text, Durability durability) {
                        (durability == Durability::kOrdinary || fsync(fd) == 0);
   const int write_errno = errno;
   close(fd);
-  if (written) return rename(beside, path) == 0;
+  if (written && rename(beside, path) == 0) return true;
+  const int cause = written ? errno : write_errno;
   unlink(beside);
-  errno = write_errno;
+  errno = cause;
   return false;
 }
 
@@ -60,6 +61,14 @@ bool is_disk_trouble(int error) {
 
 bool replace_file(const char* path, std::string_view text) {
   return replace(path, text, Durability::kOrdinary);
+}
+
+bool replace_or_remove_file(const char* path, std::string_view text) {
+  if (replace_file(path, text)) return true;
+  const int cause = errno;
+  if (is_disk_trouble(cause) && unlink(path) == 0) return replace_file(path, text);
+  errno = cause;
+  return false;
 }
 
 bool replace_file_durably(const char* path, std::string_view text) {

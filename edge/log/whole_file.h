@@ -18,7 +18,11 @@ using FileMessage = FixedText<767>;
 /// power cut it would be wrong anyway.
 bool replace_file(const char* path, std::string_view text);
 
-/// The same, and on the disk before it returns: for what must outlast a power cut.
+/// The same; where the disk has no room for a new one, the old text is taken away first: none says less that
+/// is wrong than an old one. False with errno set.
+bool replace_or_remove_file(const char* path, std::string_view text);
+
+/// As `replace_file`, and on the disk before it returns: for what must outlast a power cut.
 bool replace_file_durably(const char* path, std::string_view text);
 
 /// Whether a path may lead through a link to what another user pointed it at.

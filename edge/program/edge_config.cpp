@@ -242,13 +242,29 @@ std::string resolved(const TomlTable& table, std::string_view path) {
   return (std::filesystem::path(table.file()).parent_path() / path).string();
 }
 
+/// Folders of the installed service (bess-edge.service): StateDirectory and RuntimeDirectory.
+constexpr std::string_view kInstalledState = "/var/lib/bess";
+constexpr std::string_view kInstalledRun = "/run/bess";
+
+void keep_run_paths(TomlTable& table, const std::string& path, EdgeConfig& config) {
+  keep_path(table, "run_folder", path, config.state.run_folder);
+  keep_path(table, "run_folder", path + "/decisions.ring", config.log.run_ring);
+  keep_path(table, "run_folder", path + "/status.json", config.log.run_status);
+  keep_path(table, "run_folder", path + "/metrics.prom", config.log.run_metrics);
+}
+
 void read_state(TomlTable table, EdgeConfig& config) {
   FixedText<255> folder("state");
   table.text("folder", folder);
   if (folder.empty()) table.fail("folder", "must not be empty");
   table.text("lock_folder", config.state.lock_folder);
-  table.finish();
+  table.boolean("drive_without_state", config.state.drive_without_state);
   const std::string path = resolved(table, folder.view());
+  // As the service has it; elsewhere nobody says which folder is in memory.
+  FixedText<255> run_folder(path == kInstalledState ? kInstalledRun : "");
+  table.text("run_folder", run_folder);
+  table.finish();
+  if (!run_folder.empty()) keep_run_paths(table, resolved(table, run_folder.view()), config);
   keep_path(table, "folder", path, config.state.folder);
   keep_path(table, "folder", path + "/decisions.ring", config.log.ring);
   keep_path(table, "folder", path + "/status.json", config.log.status);
@@ -323,11 +339,23 @@ bool load_edge_config(const std::string& path, EdgeConfig& config, std::string& 
   return error.empty();
 }
 
-FixedText<639> state_file(const EdgeConfig& config, std::string_view name) {
+namespace {
+
+FixedText<639> file_in(const char* folder, std::string_view name) {
   char path[640];
-  std::snprintf(path, sizeof path, "%s/%.*s", config.state.folder.c_str(),
-                static_cast<int>(name.size()), name.data());
+  std::snprintf(path, sizeof path, "%s/%.*s", folder, static_cast<int>(name.size()), name.data());
   return {path};
+}
+
+}  // namespace
+
+FixedText<639> state_file(const EdgeConfig& config, std::string_view name) {
+  return file_in(config.state.folder.c_str(), name);
+}
+
+FixedText<639> run_file(const EdgeConfig& config, std::string_view name) {
+  if (config.state.run_folder.empty()) return {};
+  return file_in(config.state.run_folder.c_str(), name);
 }
 
 FixedText<159> battery_place(const EdgeConfig& config) {

@@ -22,7 +22,10 @@ namespace bess {
 /// Where the controller keeps what outlives it, and where it locks battery and state.
 struct StateSettings {
   FixedText<511> folder;
+  FixedText<511> run_folder;   ///< on a memory file system, beside `folder`; empty = none
   FixedText<255> lock_folder;  ///< besides the standard one; empty = none
+  /// Drives although nothing can be known of what earlier runs left, a trip for one.
+  bool drive_without_state = false;
 };
 
 struct EdgeConfig {
@@ -51,6 +54,8 @@ bool load_edge_config(const std::string& path, EdgeConfig& config, std::string& 
 
 /// Path of a file of this name in the [state] folder.
 FixedText<639> state_file(const EdgeConfig& config, std::string_view name);
+/// In [state] run_folder; empty where there is none.
+FixedText<639> run_file(const EdgeConfig& config, std::string_view name);
 
 /// "127.0.0.1:502 unit 85" or "/dev/ttyUSB0 unit 85": where the battery is looked for.
 FixedText<159> battery_place(const EdgeConfig& config);

@@ -9,12 +9,12 @@
 #include "edge/control/hold.h"
 #include "edge/control/tick.h"
 #include "edge/log/journal.h"
-#include "edge/log/ring_log.h"
+#include "edge/log/log_reader.h"
 #include "edge/log/whole_file.h"
 #include "edge/program/hold_file.h"
 #include "edge/program/people_config.h"
+#include "edge/program/recall.h"
 #include "edge/program/run_locks.h"
-#include "edge/program/trip_clearance.h"
 #include "shared/local_time.h"
 #include "shared/utc_text.h"
 
@@ -30,10 +30,10 @@ int fail(const char* path, const char* what) {
 
 /// Nothing is ordered while the supervision has tripped, whoever wants it.
 void print_trip(const EdgeConfig& config) {
-  RingLog ring;
+  LogReader log;
   FileMessage ignored;
-  if (!ring.open_to_read(config.log.ring.c_str(), ignored)) return;
-  const Trip trip = standing_trip(ring, config);
+  if (!log.open(config.log, ignored)) return;
+  const Trip trip = standing_trip(log.ring(), log.run_ring(), clearance_paths(config));
   if (!trip.is_set()) return;
   std::printf(
       "           NOT FOLLOWED yet: tripped, %s at %s; the battery stays released until bess-edge "

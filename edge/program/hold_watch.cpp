@@ -33,12 +33,13 @@ HoldWatch::~HoldWatch() {
   sem_destroy(&ending_);
 }
 
-void HoldWatch::start(const char* path, std::int32_t time_scale) {
+void HoldWatch::start(const char* path, const ClearancePaths& cleared, std::int32_t time_scale) {
   constexpr std::int64_t kPeriodNsMin = kNanosecondsPerSecond / 1'000;
   path_ = FixedText<639>(path);
+  cleared_ = cleared;
   const std::int64_t period_ns = kNanosecondsPerSecond / time_scale;
   period_ns_ = period_ns > kPeriodNsMin ? period_ns : kPeriodNsMin;
-  mailbox_.publish(read_hold(path_.c_str()));
+  look();
   thread_.start(
       [](void* watch) -> void* {
         static_cast<HoldWatch*>(watch)->run();
@@ -48,7 +49,19 @@ void HoldWatch::start(const char* path, std::int32_t time_scale) {
 }
 
 void HoldWatch::run() {
-  while (wait_ns(ending_, period_ns_)) mailbox_.publish(read_hold(path_.c_str()));
+  while (wait_ns(ending_, period_ns_)) look();
+}
+
+void HoldWatch::look() {
+  mailbox_.publish(read_hold(path_.c_str()));
+  const std::int64_t trip_utc_s = asked_trip_utc_s_;
+  if (trip_utc_s == 0 || cleared_trip_utc_s_ == trip_utc_s) return;
+  if (is_trip_cleared(cleared_, trip_utc_s)) cleared_trip_utc_s_ = trip_utc_s;
+}
+
+bool HoldWatch::is_cleared(std::int64_t trip_utc_s) {
+  asked_trip_utc_s_ = trip_utc_s;
+  return trip_utc_s != 0 && cleared_trip_utc_s_ == trip_utc_s;
 }
 
 }  // namespace bess

@@ -1,14 +1,16 @@
-// Looks at the hold file every second and publishes what it says: a thread of its own, on a static stack,
-// because a card that stands still must not keep the control thread waiting. After `start` it allocates
-// nothing.
+// Looks every second at the files through which people speak to the controller, and publishes what they say: the
+// hold, and whether a trip was cleared. A thread of its own, on a static stack, because a card that stands still
+// must not keep the control thread waiting. After `start` it allocates nothing.
 #pragma once
 
 #include <semaphore.h>
 
+#include <atomic>
 #include <cstdint>
 
 #include "edge/control/hold.h"
 #include "edge/memory/static_thread.h"
+#include "edge/program/trip_clearance.h"
 #include "shared/fixed_text.h"
 
 namespace bess {
@@ -22,15 +24,23 @@ class HoldWatch {
 
   /// Reads the file once, so that the first cycle knows it, then goes on in the background.
   /// `time_scale`: simulated time is looked at as often as it passes.
-  void start(const char* path, std::int32_t time_scale);
+  void start(const char* path, const ClearancePaths& cleared, std::int32_t time_scale);
   [[nodiscard]] const HoldMailbox& mailbox() const { return mailbox_; }
+
+  /// From the control thread, which never waits here: whether a person has cleared the trip of this instant, as
+  /// far as it is known by now. It is looked for from the first question on.
+  bool is_cleared(std::int64_t trip_utc_s);
 
  private:
   static constexpr std::size_t kStackBytes = 256 * 1024;  // for sanitizers: it uses a few KiB
 
   void run();
+  void look();
 
   FixedText<639> path_;
+  ClearancePaths cleared_;
+  std::atomic<std::int64_t> asked_trip_utc_s_{0};
+  std::atomic<std::int64_t> cleared_trip_utc_s_{0};
   std::int64_t period_ns_ = 0;
   HoldMailbox mailbox_;
   sem_t ending_;

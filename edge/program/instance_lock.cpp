@@ -1,6 +1,7 @@
 #include "edge/program/instance_lock.h"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -125,6 +126,8 @@ int holder_of(const char* path) {
   if (fd < 0) return errno == EACCES ? kHolderHidden : 0;
   int holder = 0;
   if (flock(fd, LOCK_SH | LOCK_NB) != 0) holder = pid_in(fd);
+  // On a read-only disk a lock keeps the number of whoever could write it last.
+  if (holder > 0 && kill(holder, 0) != 0 && errno == ESRCH) holder = -1;
   close(fd);
   return holder;
 }

@@ -4,16 +4,16 @@
 #include <cstdio>
 
 #include "edge/log/journal.h"
+#include "edge/log/log_reader.h"
 #include "edge/log/log_text.h"
-#include "edge/log/ring_log.h"
 
 namespace bess {
 namespace {
 
 /// Number of the first record to print: torn ones count as records, time may have been stepped.
-std::uint64_t first_number(const RingLog& ring, std::int64_t last) {
-  const std::uint64_t oldest = ring.oldest_number();
-  const std::uint64_t newest = ring.newest_number();
+std::uint64_t first_number(const LogReader& log, std::int64_t last) {
+  const std::uint64_t oldest = log.oldest_number();
+  const std::uint64_t newest = log.newest_number();
   if (last < 0 || static_cast<std::uint64_t>(last) > newest) return oldest;
   return std::max(oldest, newest - static_cast<std::uint64_t>(last) + 1);
 }
@@ -21,9 +21,9 @@ std::uint64_t first_number(const RingLog& ring, std::int64_t last) {
 }  // namespace
 
 int run_log_command(const CommandLine& command_line, const EdgeConfig& config) {
-  RingLog ring;
+  LogReader log;
   FileMessage error;
-  if (!ring.open_to_read(config.log.ring.c_str(), error)) {
+  if (!log.open(config.log, error)) {
     report(JournalLevel::kError, "%s", error.c_str());
     return 1;
   }
@@ -33,8 +33,8 @@ int run_log_command(const CommandLine& command_line, const EdgeConfig& config) {
     std::puts(line);
   }
   CycleRecord record;
-  for (std::uint64_t n = first_number(ring, command_line.last); n <= ring.newest_number(); ++n) {
-    if (!ring.read(n, record) || record.utc_s < command_line.since_utc_s) continue;
+  for (std::uint64_t n = first_number(log, command_line.last); n <= log.newest_number(); ++n) {
+    if (!log.read(n, record) || record.utc_s < command_line.since_utc_s) continue;
     command_line.csv ? format_csv_line(record, line) : format_log_line(record, line);
     std::puts(line);
   }

@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstdio>
 
+#include "edge/log/journal.h"
 #include "edge/program/file_owner.h"
 
 namespace bess {
@@ -19,6 +20,21 @@ FixedText<159> locked_thing(const EdgeConfig& config) {
   char real[PATH_MAX];
   const char* const found = realpath(config.link.device.c_str(), real);
   return {found != nullptr ? found : config.link.device.c_str()};
+}
+
+bool lock_run_folder(const EdgeConfig& config, RunLocks& locks, FileMessage& error) {
+  const char* const folder = config.state.run_folder.c_str();
+  if (*folder == '\0') return true;
+  if (mkdir(folder, 0755) != 0 && errno != EEXIST) {
+    static_cast<void>(
+        fail_with_errno(folder, "cannot make the folder of [state] run_folder", error));
+    report(JournalLevel::kWarning, "note: %s: going on without it", error.c_str());
+    error = {};
+    return true;
+  }
+  char what[560];
+  std::snprintf(what, sizeof what, "the run folder %s", folder);
+  return locks.run.take(run_file(config, "lock").c_str(), what, error);
 }
 
 bool is_same_folder(const char* one, const char* other) {
@@ -47,11 +63,15 @@ std::string_view standard_lock_folder() {
   return is_there ? "/run/lock" : "/tmp";
 }
 
-FixedText<639> state_lock_path(const EdgeConfig& config) { return state_file(config, "lock"); }
-
-bool is_controller_running(const EdgeConfig& config) {
-  return holder_of(state_lock_path(config).c_str()) != 0;
+int controller_holding(const EdgeConfig& config) {
+  const bool has_run_folder = !config.state.run_folder.empty();
+  const int of_run_folder = has_run_folder ? holder_of(run_file(config, "lock").c_str()) : 0;
+  if (of_run_folder > 0) return of_run_folder;
+  const int of_state_folder = holder_of(state_file(config, "lock").c_str());
+  return of_state_folder != 0 ? of_state_folder : of_run_folder;
 }
+
+bool is_controller_running(const EdgeConfig& config) { return controller_holding(config) != 0; }
 
 bool lock_battery(const EdgeConfig& config, RunLocks& locks, FileMessage& error) {
   char what[200];
@@ -68,12 +88,14 @@ bool lock_state(const EdgeConfig& config, RunLocks& locks, FileMessage& error) {
   if (mkdir(folder, 0755) != 0 && errno != EEXIST) {
     return fail_with_errno(folder, "cannot make the folder of [state] folder", error);
   }
-  for (const auto& path : {config.log.status, config.log.ring}) {
+  for (const auto& path :
+       {config.log.status, config.log.ring, config.log.run_status, config.log.run_ring}) {
     if (!refuse_stranger(path.c_str(), error)) return false;
   }
   char what[560];
   std::snprintf(what, sizeof what, "the state folder %s", folder);
-  return locks.state.take(state_lock_path(config).c_str(), what, error);
+  return locks.state.take(state_file(config, "lock").c_str(), what, error) &&
+         lock_run_folder(config, locks, error);
 }
 
 }  // namespace bess

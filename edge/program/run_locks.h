@@ -10,20 +10,22 @@ namespace bess {
 FixedText<639> battery_lock_path(const EdgeConfig& config, std::string_view folder);
 /// Where every controller of this machine locks its battery; no configuration leads past it.
 std::string_view standard_lock_folder();
-/// Lock of the state folder; held by the controller that writes the status there.
-FixedText<639> state_lock_path(const EdgeConfig& config);
-/// Whether a controller of this configuration holds that lock.
+/// Process of the controller of this configuration, as `holder_of` has it: by the lock of its state folder or, where
+/// that could not be made there, of its run folder.
+int controller_holding(const EdgeConfig& config);
 bool is_controller_running(const EdgeConfig& config);
 
 struct RunLocks {
   InstanceLock battery;
   InstanceLock battery_elsewhere;  ///< in [state] lock_folder as well, if it names one
   InstanceLock state;
+  InstanceLock run;  ///< where there is a run folder
 };
 
 /// --check needs the battery alone. False with one line.
 bool lock_battery(const EdgeConfig& config, RunLocks& locks, FileMessage& error);
-/// Makes the state folder if it is missing; refuses files of another user in it.
+/// Makes state and run folder if they are missing; refuses files of another user in them. A run folder that cannot
+/// be made is told and no reason to fail.
 bool lock_state(const EdgeConfig& config, RunLocks& locks, FileMessage& error);
 
 }  // namespace bess

@@ -194,6 +194,32 @@ Status greet_price_server(const EdgeConfig& config, PriceFeed& prices) {
   return status;
 }
 
+Recall recall_at_start(const EdgeConfig& config, const EventLog& log,
+                       std::uint64_t published_number) {
+  const ClearancePaths paths = clearance_paths(config);
+  for (const FixedText<639>* path : {&paths.state, &paths.run}) {
+    if (!read_cleared(path->c_str()).unreadable) continue;
+    report(JournalLevel::kError,
+           "%s cannot be understood: a trip that was cleared there counts again", path->c_str());
+  }
+  Recall recalled = recall(log.ring(), log.run_ring(), published_number, paths);
+  if (recalled.unknown.empty()) return recalled;
+  const char* const what = recalled.unknown.c_str();
+  if (config.state.drive_without_state || recalled.trip.is_set()) {
+    report(JournalLevel::kError,
+           "state: %s: trip, cycle budget and price level of earlier runs are not known%s", what,
+           recalled.trip.is_set() ? "" : "; driving all the same: drive_without_state = true");
+    return recalled;
+  }
+  report(JournalLevel::kError,
+         "state: %s: the battery may have tripped and is not driven until bess-edge clear --yes "
+         "([state] drive_without_state = true drives it all the same)",
+         what);
+  recalled.trip = {.reason = Reason::kStateLost,
+                   .utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond};
+  return recalled;
+}
+
 PriceLevel level_at_start(const EdgeConfig& config, const PriceLevel& logged, Status greeting,
                           PriceFeed& prices, EdgeClock& clock) {
   const std::int64_t now_utc_s = clock.now_utc_ns() / kNanosecondsPerSecond;

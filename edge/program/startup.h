@@ -7,6 +7,7 @@
 #include "edge/prices/price_feed.h"
 #include "edge/program/edge_clock.h"
 #include "edge/program/edge_config.h"
+#include "edge/program/recall.h"
 
 namespace bess {
 
@@ -25,6 +26,11 @@ bool reach_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& 
 /// Fetches once: opens the connection before the first tick, and says it when there is no price
 /// yet.
 Status greet_price_server(const EdgeConfig& config, PriceFeed& prices);
+
+/// What earlier runs left. Where that cannot be read, a journal line says why, and the battery is not driven until
+/// a person clears it, unless [state] drive_without_state allows it. `published_number`: recall.h.
+Recall recall_at_start(const EdgeConfig& config, const EventLog& log,
+                       std::uint64_t published_number);
 
 /// The price level that the loop starts with, `logged` being the newest record's: kept, or for a student by
 /// level filled from what the server (which has just answered with `greeting`) still has. One

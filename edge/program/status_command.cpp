@@ -1,20 +1,14 @@
 #include "edge/program/status_command.h"
 
-#include <signal.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <cstdio>
-#include <fstream>
-#include <sstream>
 
 #include "edge/log/health.h"
 #include "edge/log/journal.h"
-#include "edge/log/ring_log.h"
-#include "edge/log/status_keys.h"
-#include "edge/program/file_owner.h"
-#include "edge/program/run_locks.h"
+#include "edge/log/log_reader.h"
+#include "edge/program/published_status.h"
 #include "edge/program/update_state.h"
 #include "shared/host/json.h"
 #include "shared/units_and_limits.h"
@@ -34,27 +28,6 @@ using M = MeterTrust;
 using T = RunTotals;
 using H = HoldReport;
 
-bool read_text(const char* path, std::string& text) {
-  const std::ifstream file(path);
-  if (!file) return false;
-  std::ostringstream all;
-  all << file.rdbuf();
-  text = all.str();
-  return true;
-}
-
-/// The published status; does not exist when there is none or it is not ours.
-Json read_status(const EdgeConfig& config) {
-  std::string text;
-  const char* const path = config.log.status.c_str();
-  if (is_believable(path)) {
-    read_text(path, text);
-  } else {
-    report(JournalLevel::kWarning, "%s", strangers_file(path).c_str());
-  }
-  return Json::parse(text);
-}
-
 /// Nothing more would fit, for a user without root's reserve.
 bool disk_is_full(const EdgeConfig& config) {
   struct statvfs disk {};
@@ -62,67 +35,21 @@ bool disk_is_full(const EdgeConfig& config) {
          (disk.f_bavail == 0 || (disk.f_flag & ST_RDONLY) != 0);
 }
 
-/// What the status says of the member at this path of CycleRecord or RunTotals.
-template <auto... kPath>
-JsonValue field(JsonValue status) {
-  constexpr StatusKey kKey = status_key<kPath...>();
-  return status[kKey.section][kKey.name];
-}
-
-double number(JsonValue found) { return found.number().value_or(0); }
-
-long long whole(JsonValue found) { return static_cast<long long>(number(found)); }
-
 const char* text_of(JsonValue found) { return found.text_or("none"); }
 
 bool is_true(JsonValue found) { return found.boolean().value_or(false); }
 
-std::int64_t age_ms_of(JsonValue status) {
-  return clock_ns(CLOCK_MONOTONIC) / 1'000'000 - whole(status["written_monotonic_ms"]);
-}
-
-/// On a full disk the status stays as it was, while the log goes on in its file of fixed size.
-std::int64_t cycles_behind(const EdgeConfig& config, JsonValue status) {
-  RingLog ring;
-  FileMessage ignored;
-  CycleRecord newest;
-  std::int64_t published_utc_s = 0;
-  const bool is_known = ring.open_to_read(config.log.ring.c_str(), ignored) &&
-                        ring.read(ring.newest_number(), newest) &&
-                        parse_utc(text_of(field<&R::utc_s>(status)), published_utc_s);
-  if (!is_known || newest.utc_s < published_utc_s) return 0;
-  return (newest.utc_s - published_utc_s) / kSecondsPerStep;
-}
-
-/// The process that wrote the status, while it lives; 0 = none. A status of before the last boot is nobody's,
-/// nor is a number that another program has by now, where that can be seen.
-int living_writer_of(JsonValue status) {
-  const auto pid = static_cast<int>(whole(status["pid"]));
-  if (pid <= 0 || age_ms_of(status) < 0) return 0;
-  if (kill(pid, 0) != 0 && errno != EPERM) return 0;
-  std::string name;
-  const bool is_another =
-      read_text(("/proc/" + std::to_string(pid) + "/comm").c_str(), name) && name != "bess-edge\n";
-  return is_another ? 0 : pid;
-}
-
-/// Who may not open the lock, or will not, asks for the process that the status names instead: its age
-/// shows all the same.
-int controller_of(const EdgeConfig& config, JsonValue status, bool no_lock) {
-  const int holder = no_lock ? kHolderHidden : holder_of(state_lock_path(config).c_str());
-  return holder == kHolderHidden ? living_writer_of(status) : holder;
-}
-
-Health health_of(const EdgeConfig& config, JsonValue status, bool no_lock,
+Health health_of(const EdgeConfig& config, const PublishedStatus& published,
                  const std::string& update_trouble) {
-  const int holder = controller_of(config, status, no_lock);
+  const JsonValue status = published.status.value();
   HealthInputs in;
-  in.is_running = holder != 0;
+  in.is_running = published.holder != 0;
   in.disk_is_full = disk_is_full(config);
   in.update_trouble = update_trouble;
+  in.unknown = published.unknown;
   if (!status.exists()) return assess_health(in);
-  in.is_of_this_run = holder == whole(status["pid"]);
-  in.age_ms = age_ms_of(status);
+  in.is_of_this_run = published.is_of_this_run;
+  in.age_ms = published.age_ms;
   in.cadence_ms = whole(status["cadence_ms"]);
   in.cycles = whole(field<&T::cycles>(status));
   in.mode = text_of(field<&R::mode>(status));
@@ -148,6 +75,7 @@ Health health_of(const EdgeConfig& config, JsonValue status, bool no_lock,
   in.battery_warns = is_true(field<&R::measurement, &B::warning>(status));
   in.disk_is_slow = is_true(field<&T::disk_is_slow>(status));
   in.disk_is_failing = is_true(field<&T::disk_is_failing>(status));
+  in.run_folder_is_failing = is_true(field<&T::run_folder_is_failing>(status));
   in.price_step_held = is_true(field<&R::price, &P::step_held>(status));
   in.held_eur_per_mwh = number(field<&R::price, &P::held_centi_eur_per_mwh>(status)) / kCentiPerEur;
   in.has_price = is_true(field<&R::price, &P::has_row>(status));
@@ -156,8 +84,7 @@ Health health_of(const EdgeConfig& config, JsonValue status, bool no_lock,
   in.price_frozen = is_true(field<&R::price_frozen>(status));
   in.price_unchanged_s = whole(field<&R::standing_price, &StandingPrice::unchanged_s>(status));
   in.hold_is_unreadable = is_true(field<&R::hold, &H::unreadable>(status));
-  // Of an earlier run: the disk was full at this one's start, and the log is all that it could write.
-  if (in.is_running && in.cycles > 0) in.cycles_behind = cycles_behind(config, status);
+  in.cycles_behind = published.cycles_behind;
   return assess_health(in);
 }
 
@@ -255,14 +182,14 @@ void print_counters(JsonValue s) {
 
 void print_last_orders(const EdgeConfig& config) {
   constexpr std::uint64_t kOrders = 10;
-  RingLog ring;
+  LogReader log;
   FileMessage ignored;
-  if (!ring.open_to_read(config.log.ring.c_str(), ignored)) return;
+  if (!log.open(config.log, ignored)) return;
   std::printf("orders     utc                     ordered W  price EUR/MWh   SoC %%  reason\n");
-  const std::uint64_t newest = ring.newest_number();
+  const std::uint64_t newest = log.newest_number();
   CycleRecord r;
   for (std::uint64_t n = newest > kOrders ? newest - kOrders + 1 : 1; n <= newest; ++n) {
-    if (!ring.read(n, r)) continue;
+    if (!log.read(n, r)) continue;
     std::printf("           %s  %10d  %13.2f  %6.1f  %s%s\n", utc_text(r.utc_s).c_str(),
                 r.ordered_power_w, r.price.price_centi_eur_per_mwh / 100.0,
                 r.measurement.soc_e4 / 100.0, reason_name(r.reason).data(),
@@ -289,10 +216,13 @@ void print_controller(JsonValue s, bool is_running) {
   std::printf(", version %s, student %s\n", text_of(s["version"]), text_of(s["student"]));
 }
 
-void print_text(const EdgeConfig& config, JsonValue status, const Health& health,
+void print_text(const EdgeConfig& config, const PublishedStatus& published, const Health& health,
                 const UpdateState& update) {
+  const JsonValue status = published.status.value();
   print_health(health);
-  if (status.exists()) {
+  if (!published.unknown.empty()) {
+    std::printf("state      unknown: %s\n", published.unknown.c_str());
+  } else if (status.exists()) {
     const bool is_running = health.level != HealthLevel::kNotRunning;
     print_controller(status, is_running);
     const char* const variant = text_of(status["variant"]);
@@ -318,8 +248,11 @@ Json update_json(const UpdateState& update) {
                        {"needed_cycles", update.needed_cycles}});
 }
 
-void print_json(Json status, const Health& health, const UpdateState& update) {
-  if (!status.value().is_object()) status = Json::object();
+void print_json(PublishedStatus published, const Health& health, const UpdateState& update) {
+  // What is of another run would say the opposite of "unknown".
+  const bool is_known = published.unknown.empty() && published.status.value().is_object();
+  Json status = is_known ? std::move(published.status) : Json::object();
+  if (!published.unknown.empty()) status.set("unknown", published.unknown);
   Json reasons = Json::list();
   for (const std::string& reason : health.reasons) reasons.add(reason);
   status.set("health", health_name(health.level));
@@ -330,7 +263,7 @@ void print_json(Json status, const Health& health, const UpdateState& update) {
 
 bool print_metrics(const EdgeConfig& config) {
   std::string text;
-  if (!read_text(config.log.metrics.c_str(), text)) {
+  if (!read_published_metrics(config, text)) {
     report(JournalLevel::kError, "%s: no metrics here; has bess-edge run with this configuration?",
            config.log.metrics.c_str());
     return false;
@@ -344,16 +277,15 @@ bool print_metrics(const EdgeConfig& config) {
 }
 
 int print_once(const CommandLine& command_line, const EdgeConfig& config) {
-  Json status = read_status(config);
+  PublishedStatus published = read_published_status(config, command_line.no_lock);
   const UpdateState update = read_update_state(kUpdateFolder);
-  const Health health =
-      health_of(config, status.value(), command_line.no_lock, update_trouble(update));
+  const Health health = health_of(config, published, update_trouble(update));
   if (command_line.prometheus) {
     if (!print_metrics(config)) return 1;
   } else if (command_line.json) {
-    print_json(std::move(status), health, update);
+    print_json(std::move(published), health, update);
   } else {
-    print_text(config, status.value(), health, update);
+    print_text(config, published, health, update);
   }
   std::fflush(stdout);
   return static_cast<int>(health.level);

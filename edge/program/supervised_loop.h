@@ -8,8 +8,8 @@
 #include "edge/log/journal.h"
 #include "edge/memory/heap_seal.h"
 #include "edge/program/edge_clock.h"
+#include "edge/program/hold_watch.h"
 #include "edge/program/service_notify.h"
-#include "edge/program/trip_clearance.h"
 
 namespace bess {
 
@@ -32,10 +32,10 @@ inline void write_farewell(const CycleRecord& last, bool is_in_control, bool end
 }
 
 /// The last order keeps its whole step. False when the battery could not be given back.
-/// `clearance`: the file with which a person ends a trip.
+/// `people` knows when one of them has ended a trip.
 template <typename Loop>
 bool run_supervised(Loop& loop, std::int64_t cycles, EdgeClock& clock, EventLog& log,
-                    ServiceNotify& notify, const char* clearance) {
+                    ServiceNotify& notify, HoldWatch& people) {
   constexpr std::int64_t kDrainNsMax = 5 * kNanosecondsPerSecond;
   CycleRecord record{};
   const HeapSeal seal;  // from here on this thread calls no allocator
@@ -43,7 +43,7 @@ bool run_supervised(Loop& loop, std::int64_t cycles, EdgeClock& clock, EventLog&
   for (std::int64_t i = 0; i != cycles && loop.run_cycle(record); ++i) {
     log.write(record);
     notify.cycle_done(record);
-    if (loop.trip().is_set() && is_trip_cleared(clearance, loop.trip().utc_s)) loop.clear_trip();
+    if (loop.trip().is_set() && people.is_cleared(loop.trip().utc_s)) loop.clear_trip();
   }
   loop.finish_step();
   notify.stopping();

@@ -12,11 +12,11 @@ inline std::int64_t ordered_since_utc_s(const CycleRecord& record) {
   return goes_on ? record.utc_s - before.age_s : record.utc_s;
 }
 
-inline TakeOver take_over_of(const CycleRecord& before, const PriceLevel& level,
-                             bool is_trip_cleared) {
+/// `trip`: the one in force, which another log than that of `before` may know.
+inline TakeOver take_over_of(const CycleRecord& before, const Trip& trip, const PriceLevel& level) {
   return {.throughput = before.throughput,
           .price_level = level,
-          .trip = before.is_tripped && !is_trip_cleared ? before.trip : Trip{},
+          .trip = trip,
           .lost_orders = before.lost_orders,
           .reversals = before.reversals,
           .last_full_day = last_full_day_of(before.utc_s, before.days_since_full),

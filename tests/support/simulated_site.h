@@ -96,6 +96,7 @@ class SimulatedSite {
     std::string price_keys = "";  ///< lines of TOML for [price], beside the URL
     std::string guard_keys = "";  ///< lines of TOML
     std::string state = "state";  ///< folder; the file is named after it
+    std::string state_keys = "";  ///< lines of TOML for [state]
   };
 
   /// All configurations of a site lock in one place.
@@ -108,8 +109,9 @@ class SimulatedSite {
         << "/api/explore/v2.1/catalog/datasets/ods161/records?order_by=datetime%20desc&limit=20\"\n"
         << options.price_keys << "[guard]\n"
         << options.guard_keys << "[state]\nfolder = \"" << options.state << "\"\nlock_folder = \""
-        << folder.file("")
-        << "\"\n[log]\ncsv = \"edge.csv\"\n[simulation]\ntime_scale = " << time_scale_
+        << folder.file("") << "\"\n"
+        << options.state_keys
+        << "[log]\ncsv = \"edge.csv\"\n[simulation]\ntime_scale = " << time_scale_
         << "\nutc_start = \"" << utc_text(kStartS).view()
         << "\"\nanchor_monotonic_ns = " << anchor_ns_ << "\n";
     return folder.write(options.state + ".toml", text.str());

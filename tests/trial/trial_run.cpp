@@ -63,7 +63,8 @@ void TrialSite::kill_and_restart() {
   start();
   recall_cycles(log_, clock.now_utc_s(), *loop_);
   const CycleRecord& newest = log_.records.back();
-  loop_->take_over(take_over_of(newest, newest.price_level, false));
+  loop_->take_over(
+      take_over_of(newest, newest.is_tripped ? newest.trip : Trip{}, newest.price_level));
 }
 
 std::int64_t TrialSite::next_tick_utc_s() const { return bess::next_tick_utc_s(clock.now_utc_s()); }

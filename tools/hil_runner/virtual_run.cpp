@@ -122,7 +122,7 @@ class VirtualEdge {
         student_context().kind, before.price_level, clock_.now_utc_ns() / kNanosecondsPerSecond,
         config_.level_start_centi_eur_per_mwh, [] { return PriceLevel{}; });
     recall_cycles(state, clock_.now_utc_ns() / kNanosecondsPerSecond, loop_);
-    loop_.take_over(take_over_of(before, start.level, false));
+    loop_.take_over(take_over_of(before, before.is_tripped ? before.trip : Trip{}, start.level));
   }
 
   const EdgeConfig& config_;

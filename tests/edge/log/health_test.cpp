@@ -111,17 +111,17 @@ TEST(Health, EveryTroubleHasItsReason) {
          in.price_eur_per_mwh = -25'907.54;
        },
        HealthLevel::kDegraded, "-25907.54 EUR/MWh lies beyond 15000: rare, and possible"},
-      {[](HealthInputs& in) {  // it started on a full disk: the log alone tells of it
+      {[](HealthInputs&
+              in) {  // what is known is of another run: it must not look as if this one were well
          in.is_of_this_run = false;
-         in.cycles_behind = 1;
+         in.unknown = "process 12 runs, but nothing tells of it";
        },
-       HealthLevel::kDegraded, "WARN: status.json is 1 cycles behind the log, is the disk full"},
+       HealthLevel::kDegraded, "CRITICAL: unknown: process 12 runs, but nothing tells of it"},
+      {[](HealthInputs& in) { in.run_folder_is_failing = true; }, HealthLevel::kDegraded,
+       "WARN: the files of [state] run_folder cannot be written"},
       {[](HealthInputs& in) { in.hold_is_unreadable = true; }, HealthLevel::kDegraded, "hold file"},
-      {[](HealthInputs& in) {
-         in.age_ms = 1'319'000;
-         in.cycles_behind = 10;
-       },
-       HealthLevel::kDegraded, "WARN: status.json is 10 cycles behind the log, is the disk full"},
+      {[](HealthInputs& in) { in.cycles_behind = 10; }, HealthLevel::kDegraded,
+       "WARN: status.json is 10 cycles behind the log, is the disk full"},
   };
   for (const Case& c : cases) {
     HealthInputs in = healthy_inputs();
@@ -134,10 +134,10 @@ TEST(Health, EveryTroubleHasItsReason) {
 }
 
 /// A controller that hangs on a full disk must not look as if only the disk were full.
-TEST(Health, AgeCountsFromTheNewestCycleInTheLog) {
+TEST(Health, TheAgeIsToldBesideTheDisk) {
   HealthInputs in = healthy_inputs();
   in.cycles_behind = 10;
-  in.age_ms = 14 * 120'000 + 1'000;
+  in.age_ms = 481'000;
   const Health health = assess_health(in);
   ASSERT_EQ(health.reasons.size(), 2U);
   EXPECT_THAT(health.reasons[0], HasSubstr("CRITICAL: the last cycle ended 481 s ago"));

@@ -69,7 +69,7 @@ TEST(HoldWatch, KnowsTheFileAtOnceAndFollowsIt) {
   const TemporaryFolder folder;
   const std::string path = folder.write("hold", line_of(kHold));
   const auto watch = std::make_unique<HoldWatch>();
-  watch->start(path.c_str(), 900);
+  watch->start(path.c_str(), {}, 900);
   EXPECT_EQ(watch->mailbox().latest(), kHold);  // before the thread has looked
   const Hold other{.power_w = 3, .until_utc_s = 4};
   ASSERT_TRUE(replace_file(path.c_str(), line_of(other)));

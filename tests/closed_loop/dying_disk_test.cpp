@@ -1,0 +1,413 @@
+// A disk that dies under the real programs: full, read-only, without answer, gone, with flipped bytes. Whatever it
+// does, status, metrics and alarms never say the opposite of what the controller has just decided, and a trip stays
+// until a person clears it. Each row is printed; together they are the table.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/mount.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <functional>
+#include <random>
+
+#include "tests/support/simulated_site.h"
+
+namespace bess {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::AnyOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr std::int32_t kScale = 300;
+constexpr int kCyclesToTrip = 12;  ///< at most, with the change of the battery in between
+
+struct Said {
+  int exit_code;
+  std::string text;
+};
+
+Said edge(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), edge_program());
+  ChildProcess child(std::move(arguments));
+  std::string text = child.read_all();
+  return {child.wait(), std::move(text)};
+}
+
+/// The word behind "NAME=" of a journal line.
+std::string word_of(const std::string& line, const std::string& name) {
+  const std::size_t at = line.find(name + "=");
+  if (at == std::string::npos) return "";
+  const std::size_t begin = at + name.size() + 1;
+  return line.substr(begin, line.find(' ', begin) - begin);
+}
+
+/// As the metrics have it.
+std::string utc_number(const std::string& utc) {
+  std::int64_t utc_s = 0;
+  EXPECT_TRUE(parse_utc(utc, utc_s)) << utc;
+  return std::to_string(utc_s);
+}
+
+/// The state folder as a disk of its own, and what can happen to it.
+class StateDisk {
+ public:
+  explicit StateDisk(const SimulatedSite& site)
+      : folder_(site.folder.file("state")), control_(site.folder.file("dying_disk")) {
+    fs::create_directory(folder_);
+    is_mounted_ = mount("bess_test", folder_.c_str(), "tmpfs", 0, "size=30m") == 0;
+    setenv("LD_PRELOAD", BESS_DYING_DISK, 1);
+    setenv("BESS_DYING_DISK", control_.c_str(), 1);
+  }
+  StateDisk(const StateDisk&) = delete;
+  StateDisk& operator=(const StateDisk&) = delete;
+  ~StateDisk() {
+    unsetenv("LD_PRELOAD");
+    unsetenv("BESS_DYING_DISK");
+    if (is_mounted_) umount2(folder_.c_str(), MNT_DETACH);
+  }
+  [[nodiscard]] bool is_mounted() const { return is_mounted_; }
+  [[nodiscard]] std::string file(const std::string& name) const { return folder_ + "/" + name; }
+
+  void fill() const {
+    std::ofstream filler(file("filler"), std::ios::app);
+    while (filler << std::string(1024, 'x') << std::flush) continue;
+  }
+  void free_again() const { fs::remove(file("filler")); }
+  /// As the kernel does after an error, under whatever has files open.
+  void go_read_only() const { std::ofstream(control_) << "EROFS " << folder_; }
+  void go_silent() const { std::ofstream(control_) << "EIO " << folder_; }
+  void come_back() const { fs::remove(control_); }
+  void go_away() const { fs::remove(file("decisions.ring")); }
+  void flip(const std::string& name, std::uintmax_t from, std::uintmax_t to) const {
+    std::fstream bytes(file(name), std::ios::in | std::ios::out | std::ios::binary);
+    std::string text(to - from, '\0');
+    bytes.seekg(static_cast<std::streamoff>(from));
+    bytes.read(text.data(), static_cast<std::streamsize>(text.size()));
+    for (char& byte : text) byte = static_cast<char>(byte ^ 0x5a);
+    bytes.seekp(static_cast<std::streamoff>(from));
+    bytes.write(text.data(), static_cast<std::streamsize>(text.size()));
+  }
+
+ private:
+  std::string folder_;
+  std::string control_;
+  bool is_mounted_ = false;
+};
+
+class DyingDisk : public ::testing::Test {
+ protected:
+  DyingDisk() : disk_(site_) {}
+
+  void SetUp() override {
+#ifdef BESS_SANITIZED
+    GTEST_SKIP() << "a sanitizer's runtime must come before LD_PRELOAD";
+#endif
+    if (!disk_.is_mounted()) GTEST_SKIP() << "needs root, to mount a small disk";
+    site_.start_battery();
+    site_.start_market({}, SimulatedSite::minute_prices(
+                               6'000, {.mean_eur_per_mwh = 1'700, .amplitude_eur_per_mwh = 0}));
+  }
+
+  void commission(bool has_run_folder, const std::string& keys = "") {
+    const std::string run = "run_folder = \"" + site_.folder.file("run") + "\"\n";
+    config_ =
+        site_.commission({.guard_keys = "price_age_s_max = 1800\n",  // it is stopped to be asked
+                          .state_keys = (has_run_folder ? run : "") + keys});
+  }
+  void start() {
+    controller_ = std::make_unique<ChildProcess>(
+        std::vector<std::string>{edge_program(), "--config", config_});
+  }
+  /// The first line of a cycle that has this word, among so many; empty when none has.
+  std::string await_cycle(const std::string& name, const std::string& word, int cycles_max) {
+    for (int cycle = 0; cycle < cycles_max;) {
+      const std::string line = controller_->read_line();
+      if (line.empty()) return "";
+      said_ += line + "\n";
+      if (!line.starts_with("utc=")) continue;
+      ++cycle;
+      if (word_of(line, name) == word) return line;
+    }
+    return "";
+  }
+  /// Another battery at the same place, whose power goes the other way.
+  void swap_battery(bool is_wrong) {
+    const int port = site_.battery_port;
+    site_.battery.reset();
+    site_.start_battery(
+        is_wrong ? std::vector<std::string>{"--fault", "wrong-sign", "--fault-every", "1"}
+                 : std::vector<std::string>{},
+        port);
+  }
+  void trip() {
+    swap_battery(true);
+    ASSERT_NE(await_cycle("reason", "wrong_direction", kCyclesToTrip), "") << said_;
+  }
+  void end_run() {
+    EXPECT_EQ(SimulatedSite::stop(*controller_), 0);
+    said_ += controller_->read_all();
+  }
+
+  struct Answers {
+    CsvRow decided;  ///< the newest cycle, by the CSV, which lies on another disk
+    std::string status;
+    std::string json;
+    std::string metrics;
+  };
+  /// Asks everybody while the controller stands still.
+  Answers ask_all() {
+    controller_->signal(SIGSTOP);
+    Answers answers;
+    answers.decided = read_csv(site_.folder.file("edge.csv")).back();
+    answers.status = edge({"status", "--config", config_}).text;
+    answers.json = edge({"status", "--json", "--no-lock", "--config", config_}).text;
+    answers.metrics = edge({"status", "--prometheus", "--config", config_}).text;
+    controller_->signal(SIGCONT);
+    return answers;
+  }
+
+  /// What everybody says of the controller is what it has just decided. Asked again when it was stopped between
+  /// deciding and telling.
+  void expect_all_agree(bool may_be_unknown) {
+    Answers answers = ask_all();
+    for (int i = 0; i < 20; ++i) {
+      const std::string& utc = answers.decided.at("utc");
+      const bool is_told = answers.status.find(utc) != std::string::npos &&
+                           answers.json.find(utc) != std::string::npos &&
+                           answers.metrics.find(utc_number(utc)) != std::string::npos;
+      if (is_told || may_be_unknown) break;
+      usleep(40'000);
+      answers = ask_all();
+    }
+    const std::string& utc = answers.decided.at("utc");
+    const std::string& reason = answers.decided.at("reason");
+    const bool is_tripped = answers.decided.at("trip") != "none";
+    for (const std::string& text : {answers.status, answers.json}) {
+      EXPECT_THAT(text, Not(HasSubstr("no bess-edge runs"))) << utc;
+      const bool is_unknown = text.find("unknown: ") != std::string::npos;
+      EXPECT_TRUE(may_be_unknown || !is_unknown) << text;
+      if (is_unknown) {
+        EXPECT_THAT(text, AllOf(HasSubstr("CRITICAL: unknown: "), Not(HasSubstr("in control"))));
+        continue;
+      }
+      EXPECT_THAT(text, AllOf(HasSubstr(utc), HasSubstr(reason)));
+      if (is_tripped) {
+        EXPECT_THAT(text, AllOf(HasSubstr("CRITICAL: tripped"), Not(HasSubstr("health     ok"))));
+      }
+    }
+    if (may_be_unknown) return;
+    EXPECT_THAT(answers.metrics,
+                AllOf(HasSubstr(is_tripped ? "bess_tripped 1\n" : "bess_tripped 0\n"),
+                      HasSubstr("bess_last_cycle_timestamp_seconds " + utc_number(utc) + "\n")));
+  }
+
+  void print_row(const char* what, const std::string& outcome) {
+    if (!HasFailure()) std::printf("| %-52s | %s |\n", what, outcome.c_str());
+  }
+
+  SimulatedSite site_{kScale};
+  StateDisk disk_;
+  std::string config_;
+  std::unique_ptr<ChildProcess> controller_;
+  std::string said_;
+};
+
+/// The disk dies under a running controller, which then trips.
+struct Death {
+  const char* name;
+  void (*happen)(const StateDisk& disk);
+  bool log_lives;  ///< the ring, in its file of fixed size
+};
+constexpr Death kDeaths[] = {
+    {"full", [](const StateDisk& disk) { disk.fill(); }, true},
+    {"read-only", [](const StateDisk& disk) { disk.go_read_only(); }, false},
+    {"I/O errors", [](const StateDisk& disk) { disk.go_silent(); }, false},
+};
+
+class DyingDiskRun : public DyingDisk, public ::testing::WithParamInterface<Death> {};
+
+TEST_P(DyingDiskRun, WithARunFolderAllSayWhatIsAndTheTripStays) {
+  commission(true);
+  start();
+  ASSERT_NE(await_cycle("mode", "running", 8), "") << said_;
+  GetParam().happen(disk_);
+  ASSERT_NE(await_cycle("mode", "running", 8), "") << said_;
+  expect_all_agree(false);
+  trip();
+  ASSERT_NE(await_cycle("reason", "wrong_direction", 6), "") << said_;
+  expect_all_agree(false);
+  swap_battery(false);
+  end_run();
+
+  start();  // on the dead disk
+  EXPECT_NE(await_cycle("reason", "wrong_direction", 6), "") << said_;
+  ASSERT_NE(await_cycle("reason", "wrong_direction", 6), "") << said_;
+  expect_all_agree(false);
+  const Said cleared = edge({"clear", "--yes", "--config", config_});
+  EXPECT_EQ(cleared.exit_code, 0) << cleared.text;
+  EXPECT_THAT(cleared.text, AllOf(HasSubstr("driven again"), HasSubstr("next boot")));
+  EXPECT_NE(await_cycle("mode", "running", 8), "") << said_;
+  ASSERT_NE(await_cycle("mode", "running", 8), "") << said_;
+  expect_all_agree(false);
+  end_run();
+
+  start();  // what was cleared stays cleared
+  EXPECT_NE(await_cycle("mode", "running", 8), "") << said_;
+  disk_.free_again();
+  disk_.come_back();
+  ASSERT_NE(await_cycle("mode", "running", 8), "") << said_;
+  expect_all_agree(false);
+  end_run();
+  if (!GetParam().log_lives) {
+    EXPECT_THAT(said_, AllOf(HasSubstr("is the disk full or read-only?"),
+                             HasSubstr("the decision log goes on: ")));
+  }
+  print_row((std::string(GetParam().name) + " amid a run, run folder").c_str(),
+            "all agree, trip kept, cleared, kept cleared");
+}
+
+TEST_P(DyingDiskRun, WithoutARunFolderTheyKnowOrSayThatTheyDoNot) {
+  commission(false);
+  start();
+  ASSERT_NE(await_cycle("mode", "running", 8), "") << said_;
+  GetParam().happen(disk_);
+  await_cycle("mode", "running", 8);
+  trip();
+  for (int cycle = 0; cycle < 5; ++cycle) await_cycle("reason", "wrong_direction", 6);
+  expect_all_agree(!GetParam().log_lives);
+  end_run();
+  print_row((std::string(GetParam().name) + " amid a run, no run folder").c_str(),
+            GetParam().log_lives ? "all agree, by the log" : "status says unknown, CRITICAL");
+}
+
+INSTANTIATE_TEST_SUITE_P(All, DyingDiskRun, ::testing::ValuesIn(kDeaths), [](const auto& info) {
+  return std::string(info.param.name) == "full" ? "Full"
+         : info.param.name[0] == 'r'            ? "ReadOnly"
+                                                : "IoErrors";
+});
+
+/// What happens to the disk between a run that has tripped and the next start.
+struct Accident {
+  const char* name;
+  const char* what;
+  void (*happen)(const StateDisk& disk);
+  bool boots;            ///< the run folder is empty again
+  const char* expected;  ///< the reason of the next run's cycles
+  const char* line;      ///< of its journal
+};
+
+std::uintmax_t place_of_record(std::uintmax_t number) { return 4'096 + 512 * number; }
+
+constexpr Accident kAccidents[] = {
+    {"ReadOnly", "read-only at the start, run folder",
+     [](const StateDisk& disk) { disk.go_read_only(); }, false, "wrong_direction", ""},
+    {"ReadOnlyAfterABoot", "read-only at the start, after a boot",
+     [](const StateDisk& disk) { disk.go_read_only(); }, true, "wrong_direction", ""},
+    {"Full", "full at the start, run folder", [](const StateDisk& disk) { disk.fill(); }, false,
+     "wrong_direction", ""},
+    {"FullAfterABoot", "full at the start, after a boot",
+     [](const StateDisk& disk) { disk.fill(); }, true, "wrong_direction", ""},
+    {"HeaderGone", "both headers of the log gone, after a boot",
+     [](const StateDisk& disk) { disk.flip("decisions.ring", 0, 4'096); }, true, "wrong_direction",
+     "header and copy were broken, and are made anew"},
+    {"LogGone", "the log removed, run folder", [](const StateDisk& disk) { disk.go_away(); }, false,
+     "wrong_direction", ""},
+    {"LogGoneAfterABoot", "the log removed, after a boot",
+     [](const StateDisk& disk) { disk.go_away(); }, true, "state_lost",
+     "the decision log is gone, although a controller has run here"},
+    {"LogGarbageAfterABoot", "the log overwritten, after a boot",
+     [](const StateDisk& disk) { disk.flip("decisions.ring", 0, 4'096 + 512 * 64); }, true,
+     "state_lost", "nothing in the decision log can be understood"},
+    {"LogCutAfterABoot", "the log cut short, after a boot",
+     [](const StateDisk& disk) {
+       fs::resize_file(disk.file("decisions.ring"), place_of_record(3));
+     },
+     true, "state_lost", "its end is cut off"},
+    {"LogEmptyAfterABoot", "the log without a byte, after a boot",
+     [](const StateDisk& disk) { fs::resize_file(disk.file("decisions.ring"), 0); }, true,
+     "state_lost", "nothing in the decision log can be understood"},
+};
+
+class DyingDiskStart : public DyingDisk, public ::testing::WithParamInterface<Accident> {};
+
+TEST_P(DyingDiskStart, ATripIsNotForgotten) {
+  commission(true);
+  start();
+  ASSERT_NE(await_cycle("mode", "running", 8), "") << said_;
+  trip();
+  await_cycle("reason", "wrong_direction", 6);
+  end_run();
+  swap_battery(false);
+  said_.clear();
+  GetParam().happen(disk_);
+  if (GetParam().boots) fs::remove_all(site_.folder.file("run"));
+
+  start();
+  EXPECT_NE(await_cycle("reason", GetParam().expected, 6), "") << said_;
+  EXPECT_THAT(said_, AllOf(HasSubstr(GetParam().line), Not(HasSubstr("mode=running"))));
+  ASSERT_NE(await_cycle("reason", GetParam().expected, 6), "") << said_;
+  expect_all_agree(false);
+  const Said cleared = edge({"clear", "--yes", "--config", config_});
+  EXPECT_EQ(cleared.exit_code, 0) << cleared.text;
+  EXPECT_NE(await_cycle("mode", "running", 8), "") << said_;
+  end_run();
+  print_row(GetParam().what, std::string(GetParam().expected) + ", told, cleared");
+}
+
+INSTANTIATE_TEST_SUITE_P(All, DyingDiskStart, ::testing::ValuesIn(kAccidents),
+                         [](const auto& info) { return std::string(info.param.name); });
+
+TEST_F(DyingDisk, ANewBatteryStarts) {
+  commission(true);
+  start();
+  EXPECT_NE(await_cycle("mode", "running", 8), "") << said_;
+  end_run();
+  EXPECT_THAT(said_, Not(HasSubstr("state: ")));
+  print_row("first start", "driven");
+}
+
+/// It has never run here, and cannot keep anything: not driven, and said so, unless a key allows it.
+TEST_F(DyingDisk, FullOrReadOnlyFromTheStartItIsNotDrivenUnlessAllowed) {
+  for (const Death& death : kDeaths) {
+    if (std::string(death.name) == "I/O errors")
+      continue;  // not commissioned, as far as anybody can read
+    for (const bool has_run_folder : {true, false}) {
+      fs::remove_all(site_.folder.file("run"));
+      commission(has_run_folder);
+      death.happen(disk_);
+      start();
+      EXPECT_NE(await_cycle("reason", "state_lost", 6), "") << said_;
+      ASSERT_NE(await_cycle("reason", "state_lost", 6), "") << said_;
+      expect_all_agree(!has_run_folder);
+      end_run();
+      EXPECT_THAT(said_, HasSubstr("not driven until bess-edge clear --yes"));
+      disk_.free_again();
+      disk_.come_back();
+      fs::remove(disk_.file("status.json"));
+
+      fs::remove_all(site_.folder.file("run"));
+      commission(has_run_folder, "drive_without_state = true\n");
+      death.happen(disk_);
+      start();
+      EXPECT_NE(await_cycle("mode", "running", 8), "") << said_;
+      ASSERT_NE(await_cycle("mode", "running", 8), "") << said_;
+      expect_all_agree(!has_run_folder);
+      end_run();
+      EXPECT_THAT(said_, HasSubstr("driving all the same: drive_without_state = true"));
+      disk_.free_again();
+      disk_.come_back();
+      for (const char* name : {"status.json", "decisions.ring", "metrics.prom"}) {
+        fs::remove(disk_.file(name));
+      }
+      said_.clear();
+    }
+    print_row((std::string(death.name) + " from the first start").c_str(),
+              "state_lost, told; driven with the key");
+  }
+}
+
+}  // namespace
+}  // namespace bess
