@@ -1,6 +1,6 @@
 // Faults that come and go: a bad reading weighs three times what a good one forgives.
 //
-//   level <- min(level + 3, 6) on a bad reading,  max(level - 1, 0) on a good one;  found: level >= 5
+//   level <- min(level + 3, 6) on a bad reading, max(level - 1, 0) on a good one; found: level >= 5
 //
 //   every reading bad       3 6                found by the 2nd bad one, after 2 readings
 //   every other one         3 2 5              found by the 2nd, after 3

@@ -1,5 +1,5 @@
-// The newest orders that power was to flow by: which of them were lost before their end. Logged, so that a
-// restart goes on counting; told by status, health and metrics.
+// The newest orders that power was to flow by: which of them were lost before their end. Logged, so
+// that a restart goes on counting; told by status, health and metrics.
 #pragma once
 
 #include <bit>

@@ -1,6 +1,6 @@
-// Orders of ours that are not in force when they are read back before their end: somebody else replaced
-// them, or they ended, by the device or by a hand that wrote just that. Counted once each, so that who
-// comes and goes is found as well (leaky_count.h); one that nobody meant is no finding:
+// Orders of ours that are not in force when they are read back before their end: somebody else
+// replaced them, or they ended, by the device or by a hand that wrote just that. Counted once each,
+// so that who comes and goes is found as well (leaky_count.h); one that nobody meant is no finding:
 //
 //   0 W that ended, and no power flows                     it rests, as it was told
 //   charging that ended near full, discharging near empty  there was nothing left to do
@@ -42,8 +42,8 @@ class LostOrders {
     }
   }
 
-  /// Time to give the battery back: the newest order was lost, and so were others before it. Who insists
-  /// tries for an hour first, and after that as long as less than half is lost.
+  /// Time to give the battery back: the newest order was lost, and so were others before it. Who
+  /// insists tries for an hour first, and after that as long as less than half is lost.
   [[nodiscard]] bool is_to_be_given_up(std::int64_t utc_s, bool yields) const {
     if (!was_lost_ || !count_.is_found()) return false;
     const bool most = 2 * history_.lost >= history_.judged;
@@ -93,8 +93,8 @@ class LostOrders {
   [[nodiscard]] Fate fate_of(const Response& now) const {
     const BatteryMeasurement& m = now.measurement;
     if (m.alarm || m.off_grid) return Fate::kNothingToSee;
-    if (is_lost(m) && now.order_number == lost_order_)
-      return Fate::kNothingToSee;  // counted before
+    const bool is_counted = is_lost(m) && now.order_number == lost_order_;
+    if (is_counted) return Fate::kNothingToSee;
     if (m.order_replaced) return Fate::kReplaced;
     if (m.order_ended) return is_done(now) ? Fate::kNothingToSee : Fate::kEnded;
     return now.is_driven && moves(now.ordered_power_w) ? Fate::kHolds : Fate::kNothingToSee;
