@@ -60,7 +60,6 @@ struct HonestVariant {
   BatteryNature nature;
   bool charges_by_itself = false;     ///< its register map says so
   std::int32_t told_soc_step_e4 = 0;  ///< what its register map says of its display; 0 = the truth
-  std::int32_t told_soc_refresh_s = 0;  ///< and of how old its SoC may be; 0 = the usual
   std::int32_t night_charge_power_w = 4'000;
   friend void PrintTo(const HonestVariant& v, std::ostream* out) { *out << v.name; }
 };

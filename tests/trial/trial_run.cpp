@@ -104,9 +104,6 @@ ControlSettings trial_settings(const HonestVariant& variant) {
   settings.supervision.response.band.charges_by_itself = variant.charges_by_itself;
   settings.supervision.response.band.soc_step_e4 =
       variant.told_soc_step_e4 > 0 ? variant.told_soc_step_e4 : nature.soc_step_e4;
-  if (variant.told_soc_refresh_s > 0) {
-    settings.supervision.response.band.soc_refresh_s = variant.told_soc_refresh_s;
-  }
   return settings;
 }
 
