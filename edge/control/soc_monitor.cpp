@@ -162,7 +162,7 @@ bool SocMonitor::is_beyond_its_end(std::int32_t soc_e4, const Flow& flow, std::i
 
 bool SocMonitor::judge_jump(const Response& now, const Flow& flow, std::int64_t change_e4) {
   const std::int64_t seconds = now.utc_s - before_.utc_s;
-  const bool is_at_rest = rests(now) && rests(before_);
+  const bool is_at_rest = rests(now) && rests(before_) && now.order_age_s >= seconds;
   const std::int64_t full_step_e4 = e4_of(std::int64_t{settings_.power_w} * seconds);
   const std::int64_t slack_e4 =
       kSocErrorE4 + soc_step_e4() * 3 / 2 + (is_at_rest ? 0 : 2 * full_step_e4);
@@ -187,7 +187,7 @@ EnergyInterval SocMonitor::interval_of(const Response& now, const Flow& flow) co
   const std::int64_t flowing_e4 = e4_of(4 * std::int64_t{noise_w} * seconds);
   // In its own mode the power changes between the readings.
   const bool is_known = now.is_driven && before_.is_driven;
-  const bool is_at_rest = rests(now) && rests(before_);
+  const bool is_at_rest = rests(now) && rests(before_) && now.order_age_s >= seconds;
   const bool flows = std::abs(flow.energy_e4) >= flowing_e4;
   return {.kind = !is_known    ? Kind::kUnknown
                   : is_at_rest ? Kind::kResting

@@ -162,6 +162,16 @@ Health assess_health(const HealthInputs& in) {
   if (in.run_folder_is_failing) {
     health.reasons.emplace_back("WARN: the files of [state] run_folder cannot be written");
   }
+  if (in.disk_used_life_percent > 0) {
+    health.reasons.push_back("WARN: the card has used up to " +
+                             std::to_string(in.disk_used_life_percent) +
+                             " % of its life: replace it before it fails");
+  }
+  if (in.file_system_errors > 0) {
+    health.reasons.push_back(
+        "WARN: the kernel has counted " + std::to_string(in.file_system_errors) +
+        " errors in the state folder's file system: is the card dying? (dmesg)");
+  }
   // Between the log's record and the status there is a moment in every cycle.
   if (in.cycles_behind > 1) {
     health.reasons.push_back("WARN: status.json is " + std::to_string(in.cycles_behind) +

@@ -38,8 +38,10 @@ struct HealthInputs {
   bool disk_is_slow = false;
   bool disk_is_failing = false;
   bool run_folder_is_failing = false;
-  std::int64_t cycles_behind = 0;  ///< that status.json is behind the log, whose word counts
-  bool disk_is_full = false;       ///< of the state folder, or it is read-only
+  std::int64_t cycles_behind = 0;       ///< that status.json is behind the log, whose word counts
+  int disk_used_life_percent = 0;       ///< of the state folder's device; 0: not told, or not worn
+  std::int64_t file_system_errors = 0;  ///< that the kernel has counted there
+  bool disk_is_full = false;            ///< of the state folder, or it is read-only
   bool price_step_held = false;
   double held_eur_per_mwh = 0;  ///< price of the row that waits for the next
   bool has_price = false;

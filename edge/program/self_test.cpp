@@ -161,7 +161,6 @@ void test_ca_file(const EdgeConfig& config, Table& table) {
 
 void test_storage(const EdgeConfig& config, Table& table) {
   constexpr double kFreeMbMin = 20;  // the log of 35 days, and a package with the one before it
-  constexpr int kUsedLifePercentMax = 90;
   const StorageHealth disk = look_at_storage(config.state.folder.c_str());
   const std::string folder = config.state.folder.c_str();
   if (!disk.is_writable) return table.add("storage", false, folder + ": " + disk.error);

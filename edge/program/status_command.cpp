@@ -9,6 +9,7 @@
 #include "edge/log/journal.h"
 #include "edge/log/log_reader.h"
 #include "edge/program/published_status.h"
+#include "edge/program/storage_health.h"
 #include "edge/program/update_state.h"
 #include "shared/host/json.h"
 #include "shared/units_and_limits.h"
@@ -45,6 +46,9 @@ Health health_of(const EdgeConfig& config, const PublishedStatus& published,
   HealthInputs in;
   in.is_running = published.holder != 0;
   in.disk_is_full = disk_is_full(config);
+  const int used_life_percent = used_life_of(config.state.folder.c_str()).value_or(0);
+  if (used_life_percent > kUsedLifePercentMax) in.disk_used_life_percent = used_life_percent;
+  in.file_system_errors = file_system_errors_of(config.state.folder.c_str());
   in.update_trouble = update_trouble;
   in.unknown = published.unknown;
   if (!status.exists()) return assess_health(in);

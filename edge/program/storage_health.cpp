@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 
@@ -18,18 +19,12 @@
 namespace bess {
 namespace {
 
-/// The block device, or the one that it is a partition of.
-std::optional<int> used_life_of(const std::string& folder) {
+/// Its place in /sys; empty when there is no such folder.
+std::string block_device_of(const std::string& folder) {
   struct stat at {};
-  if (stat(folder.c_str(), &at) != 0) return std::nullopt;
-  const std::string device =
-      "/sys/dev/block/" + std::to_string(major(at.st_dev)) + ":" + std::to_string(minor(at.st_dev));
-  for (const char* const place : {"/device/life_time", "/../device/life_time"}) {
-    std::ifstream file(device + place);
-    std::ostringstream text;
-    if (file && text << file.rdbuf()) return used_life_percent(text.str());
-  }
-  return std::nullopt;
+  if (stat(folder.c_str(), &at) != 0) return {};
+  return "/sys/dev/block/" + std::to_string(major(at.st_dev)) + ":" +
+         std::to_string(minor(at.st_dev));
 }
 
 /// 0, or an errno.
@@ -45,6 +40,27 @@ int write_and_sync(const std::string& path) {
 }
 
 }  // namespace
+
+std::optional<int> used_life_of(const std::string& folder) {
+  const std::string device = block_device_of(folder);
+  if (device.empty()) return std::nullopt;
+  // Of the device itself, or of the one that it is a partition of.
+  for (const char* const place : {"/device/life_time", "/../device/life_time"}) {
+    std::ifstream file(device + place);
+    std::ostringstream text;
+    if (file && text << file.rdbuf()) return used_life_percent(text.str());
+  }
+  return std::nullopt;
+}
+
+std::int64_t file_system_errors_of(const std::string& folder) {
+  std::error_code error;
+  const auto device = std::filesystem::canonical(block_device_of(folder), error);
+  if (error) return 0;
+  std::ifstream file("/sys/fs/ext4/" + device.filename().string() + "/errors_count");
+  std::int64_t errors = 0;
+  return file >> errors ? errors : 0;
+}
 
 std::optional<int> used_life_percent(std::string_view life_time) {
   int worst = 0;

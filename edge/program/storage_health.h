@@ -1,16 +1,26 @@
 // The disk that the state folder lies on: room, how long a synced write takes, and how worn it is where it says so
-// (eMMC; an SD card does not). For the self-test.
+// (eMMC; an SD card does not). For the self-test and for `status`.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 
 namespace bess {
 
+/// A card that has used more of its life is to be replaced.
+inline constexpr int kUsedLifePercentMax = 90;
+
 /// Used share of its life from an eMMC's life_time file ("0x01 0x03": two kinds of cells, in tenths), the worse one,
 /// as the upper end in percent; none when it does not tell.
 std::optional<int> used_life_percent(std::string_view life_time);
+
+/// Of the device that the folder lies on; none when it does not tell.
+std::optional<int> used_life_of(const std::string& folder);
+
+/// Errors that the kernel has counted in that folder's file system (ext4); 0 where it does not tell.
+std::int64_t file_system_errors_of(const std::string& folder);
 
 struct StorageHealth {
   bool is_writable = false;

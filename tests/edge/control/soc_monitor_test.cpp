@@ -30,7 +30,8 @@ struct CountedBattery {
   double stored_frac;
   std::int32_t step_e4;
   std::int64_t utc_s = 0;
-  int readings = 0;
+  std::int32_t ordered_before_w = 0;
+  std::int32_t age_s = 0;
   /// What flows, what the SoC shows of what is stored, what the meter shows of what flows.
   std::function<double(double)> flow = [](double ordered_w) { return ordered_w; };
   std::function<double(double)> count = [](double frac) { return frac; };
@@ -40,13 +41,14 @@ struct CountedBattery {
     const double flowing_w = flow(ordered_w);
     stored_frac = std::clamp(stored_frac + flowing_w * kReadingS / 3'600.0 / 8'000, 0.0, 1.0);
     utc_s += kReadingS;
-    ++readings;
+    age_s = ordered_w == ordered_before_w ? age_s + kReadingS : kReadingS - 3;
+    ordered_before_w = ordered_w;
     const double shown_e4 = std::clamp(count(stored_frac), 0.0, 1.0) * 1e4;
     monitor.observe(
         {.utc_s = utc_s,
          .is_driven = true,
          .ordered_power_w = ordered_w,
-         .order_age_s = kReadingS - 3,
+         .order_age_s = age_s,
          .measurement = {
              .soc_e4 = static_cast<std::int32_t>(std::lround(shown_e4 / step_e4)) * step_e4,
              .power_w = static_cast<std::int32_t>(std::lround(meter(ordered_w, flowing_w))),

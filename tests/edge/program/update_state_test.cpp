@@ -77,6 +77,10 @@ TEST(StorageHealth, WearIsTheWorseOfTheTwoKindsOfCells) {
   EXPECT_EQ(used_life_percent("0x0a 0x00\n"), 100);
   EXPECT_EQ(used_life_percent("0x00 0x00\n"), std::nullopt);
   EXPECT_EQ(used_life_percent("unknown"), std::nullopt);
+  EXPECT_EQ(used_life_of("/no/such/folder"), std::nullopt);
+  EXPECT_EQ(file_system_errors_of("/no/such/folder"), 0);
+  EXPECT_EQ(used_life_of("/proc"), std::nullopt);  // on no device
+  EXPECT_EQ(file_system_errors_of("/proc"), 0);
 }
 
 TEST(StorageHealth, ATrialWriteLeavesNothing) {
