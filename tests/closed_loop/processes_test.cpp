@@ -562,7 +562,7 @@ TEST_F(Processes, ABatteryWhoseSignWasNeverCheckedIsNotControlled) {
   EXPECT_THAT(edge.read_all(), HasSubstr("run once: bess-edge commission --config FILE --yes"));
   EXPECT_EQ(edge.wait(), 1);
   ChildProcess hesitant({edge_program(), "commission", "--config", config});
-  EXPECT_THAT(hesitant.read_all(), HasSubstr("charge or discharge 500 W for 30 s"));
+  EXPECT_THAT(hesitant.read_all(), HasSubstr("to charge and to discharge 500 W for 30 s each"));
   EXPECT_EQ(hesitant.wait(), 2);
   ChildProcess reader({edge_program(), "--config", config, "--dry-run", "--cycles", "1"});
   const std::string read_only = reader.read_all();

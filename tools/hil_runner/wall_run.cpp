@@ -36,7 +36,7 @@ constexpr double kLateS = 0.15;
 constexpr double kLateFactor = 2;
 constexpr double kSlackMaxS =
     60;  ///< simulated: later, an order would be judged by the next cycle's price
-constexpr int kSmallDiskBytes = 1'024 * 1'024;
+constexpr int kSmallDiskBytes = 32 * 1'024 * 1'024;  // more than a log of 35 days
 
 /// A program whose output goes to a file: a pipe that nobody reads would stop it. It ends with this one, however
 /// that ends.

@@ -51,6 +51,8 @@ TEST(Scenarios, EveryFaultOfTheBatteryIsInOneOnEachBusThatHasIt) {
     }
   }
   for (const BatteryFaultInfo& info : battery_faults()) {
+    // A scenario's site has no meter; tests/closed_loop and tests/peers lie with it to the real program.
+    if (std::string_view(info.name).starts_with("grid-")) continue;
     // What the battery does, not what the bus makes of it, is the same on both.
     const bool is_of_bus = info.fault <= BatteryFault::kBadCrc;
     const bool over_tcp = tried.contains({info.fault, false}) || !info.tcp;
