@@ -36,6 +36,11 @@ Said edge(std::vector<std::string> arguments) {
   return {child.wait(), std::move(text)};
 }
 
+std::string text_of_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
 /// The word behind "NAME=" of a journal line.
 std::string word_of(const std::string& line, const std::string& name) {
   const std::size_t at = line.find(name + "=");
@@ -359,6 +364,32 @@ TEST_P(DyingDiskStart, ATripIsNotForgotten) {
 
 INSTANTIATE_TEST_SUITE_P(All, DyingDiskStart, ::testing::ValuesIn(kAccidents),
                          [](const auto& info) { return std::string(info.param.name); });
+
+TEST_F(DyingDisk, AHoldThatCannotBeWrittenSaysSoAndLeavesTheOneBefore) {
+  commission(true);
+  const auto hold = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "hold");
+    arguments.insert(arguments.end(), {"--config", config_});
+    return edge(std::move(arguments));
+  };
+  ASSERT_EQ(hold({"-1000", "--for", "2h"}).exit_code, 0);
+  const std::string before = text_of_file(disk_.file("hold"));
+  ASSERT_FALSE(before.empty());
+  for (const bool is_full : {true, false}) {
+    is_full ? disk_.fill() : disk_.go_read_only();
+    for (const std::vector<std::string>& arguments :
+         {std::vector<std::string>{"2000", "--for", "1h"}, {"--release"}}) {
+      if (is_full && arguments.size() == 1) continue;  // what goes needs no room
+      const Said said = hold(arguments);
+      EXPECT_EQ(said.exit_code, 1) << said.text;
+      EXPECT_THAT(said.text, HasSubstr(is_full ? "No space left" : "Read-only file system"));
+      EXPECT_EQ(text_of_file(disk_.file("hold")), before);
+    }
+    is_full ? disk_.free_again() : disk_.come_back();
+  }
+  EXPECT_EQ(hold({"2000", "--for", "1h"}).exit_code, 0);
+  EXPECT_NE(text_of_file(disk_.file("hold")), before);
+}
 
 TEST_F(DyingDisk, ANewBatteryStarts) {
   commission(true);
