@@ -32,7 +32,7 @@ STOPPED = [0, 0, 32000, 0, 32000, 0, 0, 0, 90, 255, 0]
 
 CAPACITY_WH = 8000
 RATED_W = 4000
-HEALTHY_ORDERS = 5  # three of the sign check, two of the controller
+HEALTHY_ORDERS = 2  # of the controller, after the sign check has released the battery
 CYCLE_S = 120
 GAIN = {"reversed": -1, "twice": 2, "third": 0.3, "dead": 0, "echo": 0, "half-flow": 0.5}
 
@@ -78,6 +78,7 @@ class Registers(ModbusSequentialDataBlock):
         self.cells = Cells(options.soc, options.habits)
         self.scale, self.fault, self.every = options.scale, options.fault, options.every
         self.since, self.orders, self.foreign, self.broke = time.monotonic(), 0, time.monotonic(), None
+        self.is_checked = False  # its sign
         self.flowing, self.mirror = 0, None
         self.values[0x010D] = self.values[0x0110] = 200  # 0.1 degC
         self.values[SOC] = options.soc            # 0.1 %
@@ -87,7 +88,7 @@ class Registers(ModbusSequentialDataBlock):
         self.values[DISPATCH:DISPATCH + len(STOPPED)] = STOPPED
 
     def breaks(self, fault, now=None):
-        if self.fault != fault or self.orders <= HEALTHY_ORDERS:
+        if self.fault != fault or not self.is_checked or self.orders <= HEALTHY_ORDERS:
             return False
         now = now or time.monotonic()
         self.broke = self.broke or now
@@ -152,6 +153,8 @@ class Registers(ModbusSequentialDataBlock):
         super().setValues(address, values)
         print("write", address, *values, flush=True)
         self.orders += 1
+        if not self.is_checked and address == DISPATCH and values[0] == 0:
+            self.is_checked, self.orders = True, 0
         self.live()
 
 

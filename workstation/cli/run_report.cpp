@@ -109,7 +109,10 @@ std::string write_run_report(const RunResults& run, const std::vector<NamedEvalu
   write_report(inputs, folder.path);
   std::string summary = format_comparison_table(evaluations) +
                         violations_text(run.plain.certificate, run.corrected.certificate);
-  if (const auto prices = rule_prices_of(evaluations)) summary += "\n" + rule_prices_text(*prices);
+  if (const auto prices = rule_prices_of(evaluations)) {
+    summary += '\n';
+    summary += rule_prices_text(*prices);
+  }
   write_file(folder.file(run_file::kSummary), summary);
   return summary;
 }
