@@ -134,7 +134,7 @@ inline CycleRecord longest_record() {
             .house_is_implausible = true,
             .trust = {.is_mismatch = true,
                       .doubt = INT32_MIN,
-                      .pause_until_utc_s = INT64_MIN,
+                      .pause_until_utc_s = 4'102'444'800,
                       .pause_s = INT32_MIN,
                       .steps = INT32_MIN,
                       .step_squares = INT64_MIN,
