@@ -13,8 +13,8 @@
 //   arrive, loss at 0 W, a slow ramp, limits of
 //   its own that allow nothing
 // Each kind of fault has counts of its own (leaky_count.h), so that one that comes and goes is found. A
-// reading that could not show a fault leaves its count as it is: a
-// battery that goes the wrong way at every other order, with idle between, is found as well.
+// reading that could not show a fault leaves its count as it is: a battery that goes the wrong way at every
+// other order, with idle between, is found as well.
 #pragma once
 
 #include <cstdint>

@@ -10,6 +10,7 @@
 #include <functional>
 #include <random>
 
+#include "tests/support/edge_answer.h"
 #include "tests/support/simulated_site.h"
 
 namespace bess {
@@ -23,18 +24,6 @@ using ::testing::Not;
 
 constexpr std::int32_t kScale = 300;
 constexpr int kCyclesToTrip = 12;  ///< at most, with the change of the battery in between
-
-struct Said {
-  int exit_code;
-  std::string text;
-};
-
-Said edge(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), edge_program());
-  ChildProcess child(std::move(arguments));
-  std::string text = child.read_all();
-  return {child.wait(), std::move(text)};
-}
 
 std::string text_of_file(const std::string& path) {
   std::ifstream file(path, std::ios::binary);

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 
+#include "tests/support/edge_answer.h"
 #include "tests/support/simulated_site.h"
 
 namespace bess {
@@ -16,18 +17,6 @@ using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
-
-struct Said {
-  int exit_code;
-  std::string text;
-};
-
-Said edge(std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), edge_program());
-  ChildProcess child(std::move(arguments));
-  std::string text = child.read_all();
-  return {child.wait(), std::move(text)};
-}
 
 constexpr const char* kCommands[] = {"run",       "commission", "status",  "log",
                                      "hold",      "limit",      "release", "clear",

@@ -1,0 +1,26 @@
+// What bess-edge answers to one command line, once it has ended.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/support/programs_under_test.h"
+#include "tests/support/simulated_site.h"
+
+namespace bess {
+
+struct Said {
+  int exit_code;
+  std::string text;
+};
+
+/// Waits for its end. `arguments`: without the program.
+inline Said edge(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), edge_program());
+  ChildProcess child(std::move(arguments));
+  std::string text = child.read_all();
+  return {child.wait(), std::move(text)};
+}
+
+}  // namespace bess
