@@ -78,20 +78,17 @@ std::vector<NamedEvaluation> evaluate_run(const RunResults& run) {
     RuledPolicy ruled(plain, rules, run.plain.net.context);
     all.push_back(evaluate_both(name, ruled, run));
   };
-  RuleSet projected;
-  for (const Rule& rule : run.corrected.certificate.rules.rules) {
-    if (!can_be_projected(rule)) continue;
-    projected.rules.push_back(rule);
-    under(under_rule_name(rule.name), {{rule}});
-  }
+  const RuleSet projected = projected_rules(run.corrected.certificate.rules);
+  for (const Rule& rule : projected.rules) under(under_rule_name(rule.name), {{rule}});
   if (!projected.empty()) under(kUnderAllRules, projected);
   all.push_back(evaluate_both(kCorrectedName, *exported_policy(run.corrected), run));
   baseline("foresight");
   return all;
 }
 
-std::string write_run_report(const RunResults& run, const std::vector<NamedEvaluation>& evaluations,
-                             const RunFolder& folder) {
+std::vector<std::string> write_run_report(const RunResults& run,
+                                          const std::vector<NamedEvaluation>& evaluations,
+                                          const RunFolder& folder) {
   const ReportInputs inputs{
       .market = run.market,
       .battery = run.config.battery,
@@ -106,7 +103,7 @@ std::string write_run_report(const RunResults& run, const std::vector<NamedEvalu
       .provenance = run.corrected.provenance,
       .facts = run_facts(run.config, run.market, folder),
   };
-  write_report(inputs, folder.path);
+  std::vector<std::string> names = write_report(inputs, folder.path);
   std::string summary = format_comparison_table(evaluations) +
                         violations_text(run.plain.certificate, run.corrected.certificate);
   if (const auto prices = rule_prices_of(evaluations)) {
@@ -114,7 +111,8 @@ std::string write_run_report(const RunResults& run, const std::vector<NamedEvalu
     summary += rule_prices_text(*prices);
   }
   write_file(folder.file(run_file::kSummary), summary);
-  return summary;
+  names.emplace_back(run_file::kSummary);
+  return names;
 }
 
 }  // namespace bess

@@ -28,8 +28,9 @@ void require_test_days(const MarketSteps& market);
 /// plain and the corrected student, and foresight last.
 std::vector<NamedEvaluation> evaluate_run(const RunResults& run);
 
-/// Writes the figures, report.html and the summary; returns that, the closing table for the terminal.
-std::string write_run_report(const RunResults& run, const std::vector<NamedEvaluation>& evaluations,
-                             const RunFolder& folder);
+/// Writes the figures with their CSV files, report.html and the summary; returns the names of all.
+std::vector<std::string> write_run_report(const RunResults& run,
+                                          const std::vector<NamedEvaluation>& evaluations,
+                                          const RunFolder& folder);
 
 }  // namespace bess

@@ -60,6 +60,11 @@ std::vector<DemandFigures> demand_figures(const Certificate& plain, const Certif
   return figures;
 }
 
+std::vector<std::string> sorted(std::vector<std::string> names) {
+  std::ranges::sort(names);
+  return names;
+}
+
 /// A file's name while it is written (file.cpp), whoever wrote it: the folder is locked.
 bool is_half_written(const std::string& name) {
   const std::size_t at = name.rfind(".part.");
@@ -296,8 +301,7 @@ void RunStages::fail_the_proof() {
 RunStages::Names RunStages::make_failure_report() {
   const RunResults run = results(unproved_student());
   const std::vector<NamedEvaluation> evaluations = evaluate_run(run);
-  write_run_report(run, evaluations, folder_);
-  return {kSummary, kReport};
+  return sorted(write_run_report(run, evaluations, folder_));
 }
 
 RunStages::Names RunStages::make_header() {
@@ -337,7 +341,7 @@ RunStages::Names RunStages::make_report() {
   const RunResults run = results(load_student(path(kStudent)));
   const auto evaluations =
       parse_evaluation_days_csv(read_file(path(kDays)), path(kDays).string(), config_.battery);
-  write_run_report(run, evaluations, folder_);
+  Names names = write_run_report(run, evaluations, folder_);
   const Certificate& certificate = run.corrected.certificate;
   record_.figures = {run.corrected.provenance,
                      fmt::format("{:08x}", student_weights_hash(run.corrected.net)),
@@ -346,12 +350,7 @@ RunStages::Names RunStages::make_report() {
                      run.plain.certificate.violations(),
                      certificate.violations(),
                      demand_figures(run.plain.certificate, certificate)};
-  Names names{kSummary, kReport};
-  for (const auto& entry : fs::directory_iterator(folder_.path)) {
-    if (entry.path().extension() == ".svg") names.push_back(entry.path().filename().string());
-  }
-  std::ranges::sort(names);
-  return names;
+  return sorted(std::move(names));
 }
 
 std::string how_to_go_on(const RunFolder& folder) {

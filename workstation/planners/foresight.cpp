@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "shared/exchange_cost.h"
 #include "shared/units_and_limits.h"
 #include "workstation/planners/shadow_price.h"
 
@@ -94,12 +95,27 @@ void ForesightPolicy::solve_block(std::size_t block) const {
   solved_block_ = block;
 }
 
-Action ForesightPolicy::best(std::size_t index, double soc_frac) const {
+BatteryParameters ForesightPolicy::shadowed(std::size_t index) const {
+  BatteryParameters battery = battery_;
+  battery.wear_eur_per_mwh += static_cast<double>(shadow_[index]);
+  return battery;
+}
+
+const float* ForesightPolicy::values_after(std::size_t index) const {
   if (index / kBlockSteps != solved_block_) solve_block(index / kBlockSteps);
-  const float* next = &value_[(index % kBlockSteps + 1) * kSocPoints];
-  BatteryParameters shadowed = battery_;
-  shadowed.wear_eur_per_mwh += static_cast<double>(shadow_[index]);
-  return best_action(shadowed, grid_, next, static_cast<double>(paid_[index]), soc_frac);
+  return &value_[(index % kBlockSteps + 1) * kSocPoints];
+}
+
+Action ForesightPolicy::best(std::size_t index, double soc_frac) const {
+  return best_action(shadowed(index), grid_, values_after(index), static_cast<double>(paid_[index]),
+                     soc_frac);
+}
+
+double ForesightPolicy::worth_eur(std::size_t index, double soc_frac, double wanted_power_w) const {
+  const BatteryStep moved = battery_step(battery_, soc_frac, wanted_power_w, kHoursPerStep);
+  const double energy_mwh = moved.power_w / kWattsPerMegawatt * kHoursPerStep;
+  return static_cast<double>(interpolate(values_after(index), grid_.position(moved.soc_frac))) -
+         exchange_cost_eur(shadowed(index), energy_mwh, static_cast<double>(paid_[index]));
 }
 
 Action ForesightPolicy::decide(const MarketStep&, std::size_t index, double soc_frac) const {

@@ -22,19 +22,6 @@ std::string colour_scheme() {
       variables(&Colour::light), variables(&Colour::dark));
 }
 
-/// A number's hyphen becomes a minus sign: at the start, behind a space or a bracket.
-std::string with_true_minus(std::string_view cell) {
-  constexpr std::string_view kDigits = "0123456789";
-  std::string text;
-  for (std::size_t i = 0; i < cell.size(); ++i) {
-    const bool begins = i == 0 || cell[i - 1] == ' ' || cell[i - 1] == '(';
-    const bool is_minus = cell[i] == '-' && begins && i + 1 < cell.size() &&
-                          kDigits.find(cell[i + 1]) != kDigits.npos;
-    text += is_minus ? std::string("\u2212") : std::string(1, cell[i]);
-  }
-  return text;
-}
-
 std::string table_row(const std::vector<std::string>& cells,
                       const std::vector<std::string>& header) {
   std::string text = "<tr>";
@@ -70,6 +57,18 @@ std::string html_escaped(std::string_view text) {
       default:
         out += c;
     }
+  }
+  return out;
+}
+
+std::string with_true_minus(std::string_view text) {
+  constexpr std::string_view kDigits = "0123456789";
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool begins = i == 0 || text[i - 1] == ' ' || text[i - 1] == '(';
+    const bool is_minus = text[i] == '-' && begins && i + 1 < text.size() &&
+                          kDigits.find(text[i + 1]) != kDigits.npos;
+    out += is_minus ? std::string("\u2212") : std::string(1, text[i]);
   }
   return out;
 }

@@ -10,6 +10,9 @@ namespace bess {
 /// & < > " ' become entities.
 std::string html_escaped(std::string_view text);
 
+/// A number's hyphen becomes a minus sign: at the start, behind a space or a bracket.
+std::string with_true_minus(std::string_view text);
+
 /// A table whose first column names the row and whose other columns are numbers. Each number bears the head of
 /// its column: a narrow screen shows every row as a list.
 struct HtmlTable {

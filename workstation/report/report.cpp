@@ -9,7 +9,9 @@
 
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
+#include "shared/units_and_limits.h"
 #include "workstation/report/headline.h"
+#include "workstation/report/lost_page.h"
 #include "workstation/report/page_data.h"
 #include "workstation/report/report_page.h"
 #include "workstation/report/report_tables.h"
@@ -20,6 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kPage = "report.html";
 constexpr const char* kPageTitle = "Battery arbitrage: what was learned, corrected and proved";
 
 double rule_validation_profit(const ReportInputs& in) {
@@ -136,7 +139,11 @@ const Certificate* certificate_of(const StudentFile* student) {
   return student == nullptr ? nullptr : &student->certificate;
 }
 
-std::string page_of(const ReportInputs& in) {
+double capacity_mwh_of(const ReportInputs& in) {
+  return in.battery.capacity_wh / kWattsPerMegawatt;
+}
+
+std::string page_of(const ReportInputs& in, const std::vector<DayLoss>& losses) {
   std::vector<Fact> facts = in.facts;
   facts.push_back({"battery", battery_text(in.battery)});
   const std::optional<RulePrices> prices = rule_prices_of(in.evaluations);
@@ -146,6 +153,9 @@ std::string page_of(const ReportInputs& in) {
        {"failure", section_of("failure", "Where the proof failed", failure_html(in.broken))},
        {"comparison",
         section_of("comparison", "What each policy earned", comparison_html(in.evaluations))},
+       {"lost",
+        section_of("lost", "Where it lost, and why", lost_html(losses, capacity_mwh_of(in)))},
+       {"lost_link", losses.empty() ? "" : "<li><a href=\"#lost\">Where it lost</a></li>\n"},
        {"rules", section_of("rules", "Rules",
                             rules_html(certificate_of(in.uncorrected), certificate_of(in.corrected),
                                        prices ? &*prices : nullptr))},
@@ -178,15 +188,26 @@ PriceThresholds thresholds_of(const ReportInputs& in) {
   return in.uncorrected ? in.uncorrected->certificate.thresholds : PriceThresholds{};
 }
 
-void write_report(const ReportInputs& inputs, const fs::path& folder) {
+std::vector<std::string> write_report(const ReportInputs& inputs, const fs::path& folder) {
   if (inputs.market.days_of(Split::kTest).empty()) {
     fail("no test days (local days 26 to the end) in these prices; add some");
   }
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) fail("{}: cannot create: {}", folder.string(), error.message());
-  for (const Figure& figure : figures_of(inputs)) draw_figure(figure, folder);
-  write_file(folder / "report.html", page_of(inputs));
+  std::vector<std::string> names{kPage};
+  for (const Figure& figure : figures_of(inputs)) {
+    draw_figure(figure, folder);
+    names.push_back(figure.name + ".svg");
+    names.push_back(figure.name + "_dark.svg");
+  }
+  const std::vector<DayLoss> losses = losses_of(inputs);
+  for (const PictureTable& table : lost_tables(losses, capacity_mwh_of(inputs))) {
+    write_picture(table, folder);
+    names.push_back(picture_file(table));
+  }
+  write_file(folder / kPage, page_of(inputs, losses));
+  return names;
 }
 
 }  // namespace bess

@@ -43,8 +43,10 @@ PriceThresholds thresholds_of(const ReportInputs& inputs);
 /// Whose counterexamples are shown: the corrected student's when it has any, else the uncorrected one's; may be null.
 const StudentFile* shown_as_wrong(const ReportInputs& inputs);
 
-/// Writes the SVG figures and report.html into `folder`, which is created; each file appears
-/// complete or not at all. Throws UserError without gnuplot or room to write, or without test days.
-void write_report(const ReportInputs& inputs, const std::filesystem::path& folder);
+/// Writes the SVG figures, the CSV file of each picture and report.html into `folder`, which is created; each
+/// file appears complete or not at all. Returns the names of all of them. Throws UserError without gnuplot or room
+/// to write, or without test days.
+std::vector<std::string> write_report(const ReportInputs& inputs,
+                                      const std::filesystem::path& folder);
 
 }  // namespace bess

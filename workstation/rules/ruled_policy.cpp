@@ -9,6 +9,12 @@ bool can_be_projected(const Rule& rule) {
   return rule.demand == Demand::kActions || rule.demand == Demand::kPower;
 }
 
+RuleSet projected_rules(const RuleSet& rules) {
+  RuleSet projected;
+  std::ranges::copy_if(rules.rules, std::back_inserter(projected.rules), can_be_projected);
+  return projected;
+}
+
 RulePoint rule_point_of(const MarketStep& step, double soc_frac, const ContextClasses& classes) {
   const auto soc_e4 = static_cast<std::int32_t>(std::lround(soc_frac * kSocFullE4));
   return {.price_eur_per_mwh = whole_price_of(price_centi_of(step.observed_eur_per_mwh)),

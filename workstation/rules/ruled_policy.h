@@ -14,6 +14,8 @@ namespace bess {
 
 /// Whether the rule is projected by a RuledPolicy at all.
 bool can_be_projected(const Rule& rule);
+/// Those of them that can be.
+RuleSet projected_rules(const RuleSet& rules);
 
 class RuledPolicy final : public Policy {
  public:

@@ -60,7 +60,7 @@ layer $w/backtest                   $w/backtest $w/env $w/market/series $w/base 
 layer $w/rl                         $w/rl $w/nn $w/planners $w/env $w/base shared
 layer $w/correction                 $w/correction $w/rules $w/rl $w/nn $w/env $w/base shared
 layer $w/student                    $w/student $w/correction $w/rules $w/rl $w/nn $w/env $w/base shared student_weights.h
-layer $w/report                     $w/report $w/backtest $w/student $w/correction $w/rl $w/rules $w/env $w/market/statistics $w/base shared
+layer $w/report                     $w/report $w/backtest $w/student $w/correction $w/rl $w/rules $w/planners/foresight.h $w/env $w/market/statistics $w/base shared
 layer $w/cli                        $w shared
 layer $w/main.cpp                   $w shared
 

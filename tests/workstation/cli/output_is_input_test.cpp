@@ -45,7 +45,7 @@ TEST_P(OutputIsInput, IsRefusedAndTheFileStays) {
   EXPECT_TRUE(std::filesystem::is_symlink(link));
 }
 
-constexpr Case kCases[] = {
+constexpr Case kOutputCases[] = {
     {"train", "train --prices IN --out OUT"},
     {"train_curve", "train --prices IN --out FOLDER/t.bin --curve-out OUT"},
     {"distil_prices", "distil --prices IN --teacher FOLDER/none --out OUT"},
@@ -63,7 +63,7 @@ constexpr Case kCases[] = {
     {"run_config", "run --config OUT --out FOLDER"},
     {"run_teacher", "run --from-teacher OUT --out FOLDER"},
 };
-INSTANTIATE_TEST_SUITE_P(Commands, OutputIsInput, testing::ValuesIn(kCases),
+INSTANTIATE_TEST_SUITE_P(Commands, OutputIsInput, testing::ValuesIn(kOutputCases),
                          [](const auto& one) { return std::string(one.param.name); });
 
 }  // namespace

@@ -48,6 +48,18 @@ class DayView {
     this.openAt(this.days.findIndex((day) => day.date === date));
   }
 
+  /** Links of the page to a day, or to a minute of one (UTC, since 1970). */
+  openByLinks() {
+    for (const link of document.querySelectorAll("a[data-day]")) {
+      link.addEventListener("click", () => {
+        this.open(link.dataset.day);
+        if (link.dataset.minute && this.day.date === link.dataset.day) {
+          this.moveTo(Math.max(0, this.day.minute.indexOf(Number(link.dataset.minute))));
+        }
+      });
+    }
+  }
+
   openAt(index) {
     if (index < 0 || index >= this.days.length) return;
     this.index = index;

@@ -17,7 +17,8 @@ async function openPage() {
     document.getElementById("policy").scrollIntoView();
   });
   page.day.openAt(page.day.widest());
-  page.tearSheet = new TearSheet(page.data, page.days, (date) => page.day.open(date));
+  page.day.openByLinks();
+  page.tearSheet = new TearSheet(page.data, page.days);
   page.tearSheet.draw();
   onColourScheme(() => {
     redrawCharts();

@@ -4,14 +4,12 @@
 const kReferenceWear = 10;  // EUR/MWh
 const kShownRivals = ["rbc-tuned", "mpc", "sdp", "foresight"];
 const kBars = 14;
-const kWorstDays = 8;
 
 class TearSheet {
-  /** `days`: of unpackDays; `openDay(date)` shows one. */
-  constructor(data, days, openDay) {
+  /** `days`: of unpackDays. */
+  constructor(data, days) {
     this.data = data;
     this.days = days;
-    this.openDay = openDay;
     this.wear = data.battery.wear_eur_per_mwh;
     bindChoice("wear-choice", "wear", (value) => {
       this.wear = value === "configured" ? data.battery.wear_eur_per_mwh : kReferenceWear;
@@ -37,7 +35,6 @@ class TearSheet {
       this.drawCumulative(exported);
       this.drawMonths(exported);
       this.drawDistribution(exported);
-      this.listWorstDays(exported);
     }
     this.drawDrawdown();
     this.drawHours();
@@ -153,41 +150,6 @@ class TearSheet {
         datasets: series.map(([name, values]) => ({label: name, data: values, backgroundColor: policyColour(name)})),
       },
       options: {scales: {x: axis(), y: axis({ticks: {precision: 0}})}},
-    }));
-  }
-
-  /** EUR per MWh of capacity, by day: what perfect foresight would have earned more; without it, what was lost. */
-  missed(exported) {
-    const earned = this.profits(exported);
-    const [bound] = this.policies([this.data.foresight]);
-    const most = bound ? this.profits(bound) : new Array(earned.length).fill(0);
-    return earned.map((eur, d) => most[d] - eur);
-  }
-
-  listWorstDays(exported) {
-    const shown = [exported, ...this.policies(["rbc-tuned", this.data.foresight])];
-    const profits = shown.map((policy) => this.profits(policy));
-    const missed = this.missed(exported);
-    const order = this.data.dates.map((_, d) => d).sort((a, b) => missed[b] - missed[a]);
-    const table = document.getElementById("worst-days");
-    const row = (cells, kind) => {
-      const tr = document.createElement("tr");
-      cells.forEach((content, c) => {
-        const cell = document.createElement(c === 0 ? "th" : kind);
-        if (c > 0) cell.dataset.label = ["missed", ...shown.map((policy) => policy.name), "cycles"][c - 1];
-        cell.append(content);
-        tr.append(cell);
-      });
-      return tr;
-    };
-    table.tHead.replaceChildren(row(["Day", "missed", ...shown.map((policy) => policy.name), "cycles"], "th"));
-    table.tBodies[0].replaceChildren(...order.slice(0, kWorstDays).map((d) => {
-      const link = document.createElement("a");
-      link.href = "#day";
-      link.textContent = this.data.dates[d];
-      link.addEventListener("click", () => this.openDay(this.data.dates[d]));
-      return row([link, missed[d].toFixed(1), ...profits.map((of) => of[d].toFixed(1)),
-                  exported.cycles[d].toFixed(2)], "td");
     }));
   }
 }

@@ -3,6 +3,8 @@
 
 Exit code 77 where Chromium is not installed (tools/setup --test installs it).
 """
+import csv
+import gzip
 import json
 import os
 import subprocess
@@ -31,6 +33,13 @@ def contrast(a, b):
 
 def of_hex(text):
     return [int(text[at:at + 2], 16) for at in (1, 3, 5)]
+
+
+def number_or_text(text):
+    try:
+        return float(text)
+    except ValueError:
+        return text
 
 
 class PageTest(unittest.TestCase):
@@ -224,7 +233,7 @@ class PageTest(unittest.TestCase):
         self.assertIn(f"{gain:+.1f}", cells[0])
 
     def test_worst_days_open(self):
-        dates = self.page.run("[...document.querySelectorAll('#worst-days tbody a')].map((link) => link.textContent)")
+        dates = self.page.run("[...document.querySelectorAll('#worst-days th a')].map((link) => link.textContent)")
         days = self.expected["days"]["corrected student"]
         bound = {day["date"]: day["profit_eur"] for day in self.expected["days"]["foresight"]}
         missed = {day["date"]: (bound[day["date"]] - day["profit_eur"]) / self.expected["capacity_mwh"] for day in days}
@@ -233,10 +242,56 @@ class PageTest(unittest.TestCase):
         for text, date in zip(shown, dates):
             self.assertAlmostEqual(float(text), missed[date], delta=.051)
         days = sorted(days, key=lambda day: day["profit_eur"])
-        self.page.run("document.querySelector('#worst-days tbody a').click()")
+        self.page.run("document.querySelector('#worst-days th a').click()")
         self.assertEqual(self.page.run("page.day.day.date"), dates[0])
+        for row in range(3):
+            moment = f"document.querySelectorAll('#worst-days tbody tr')[{row}].querySelector('td a')"
+            self.page.run(f"{moment}.click()")
+            self.assertEqual(self.page.run("page.day.day.date"), dates[row])
+            self.assertEqual(self.page.run("document.getElementById('step-time').value"),
+                             self.page.run(f"{moment}.textContent"))
         self.page.run("document.getElementById('day-best').click()")
         self.assertEqual(self.page.run("document.getElementById('day-select').value"), days[-1]["date"])
+
+    def csv(self, name):
+        """Rows of a picture's file, numbers as numbers."""
+        opened = gzip.open if name.endswith(".gz") else open
+        with opened(os.path.join(self.folder.name, name), "rt", encoding="utf-8") as file:
+            return [{key: number_or_text(value) for key, value in row.items()} for row in csv.DictReader(file)]
+
+    def test_parts_of_a_day_add_up_to_what_it_missed(self):
+        days = self.csv("lost_days.csv")
+        self.assertEqual(len(days), len(self.expected["days"]["corrected student"]))
+        parts = list(days[0])
+        parts = parts[parts.index("foresight_eur_per_mwh") + 1:parts.index("main_cause")]
+        self.assertEqual(len(parts), 11)
+        for day in days:
+            self.assertAlmostEqual(sum(day[part] for part in parts), day["missed_eur_per_mwh"], places=4)
+            self.assertLess(abs(day["rounding_eur_per_mwh"]), .01 * day["missed_eur_per_mwh"] + .5)
+        means = {row["cause"]: row["missed_eur_per_day_per_mwh"] for row in self.csv("lost_causes.csv")}
+        for part in parts:
+            mean = sum(day[part] for day in days) / len(days)
+            self.assertAlmostEqual(mean, means.get(part.removesuffix("_eur_per_mwh"), 0), places=4)
+        shown = self.page.run("[...document.querySelectorAll('.causes tbody td:nth-child(2)')].map((cell) => cell.textContent)")
+        for text, mean in zip(shown, means.values(), strict=True):
+            self.assertAlmostEqual(float(text.replace("\u2212", "-")), mean, delta=.051)
+
+    def test_the_heat_map_adds_up_to_the_months(self):
+        cells = self.csv("lost_hours.csv")
+        days = self.csv("lost_days.csv")
+        for month in {cell["month"] for cell in cells}:
+            own = [day for day in days if day["date"].startswith(month)]
+            missed = sum(day["missed_eur_per_mwh"] - day["rounding_eur_per_mwh"] for day in own) / len(own)
+            self.assertAlmostEqual(sum(cell["missed_eur_per_day_per_mwh"] for cell in cells if cell["month"] == month),
+                                   missed, places=4)
+        shown = self.page.run("[...document.querySelectorAll('.heat td')].map((cell) => [cell.title, cell.textContent, "
+                              "Number(cell.style.getPropertyValue('--heat'))])")
+        most = max(cell["missed_eur_per_day_per_mwh"] for cell in cells)
+        for (title, text, heat), cell in zip(shown, cells, strict=True):
+            value = cell["missed_eur_per_day_per_mwh"]
+            self.assertEqual(title, f"{cell['month']}, {int(cell['local_hour']):02}:00: {value:.1f}")
+            self.assertAlmostEqual(float(text), value, delta=.51)
+            self.assertAlmostEqual(heat, value / most, places=2)
 
     def test_the_day_and_the_map_agree(self):
         self.page.run("document.getElementById('day-worst').click()")

@@ -1,0 +1,38 @@
+#include "workstation/report/picture_table.h"
+
+#include <fmt/core.h>
+
+#include "shared/host/csv.h"
+#include "shared/host/file.h"
+#include "workstation/report/html.h"
+
+namespace bess {
+namespace {
+
+std::string line_of(const std::vector<std::string>& fields) {
+  std::string line;
+  for (const std::string& field : fields) line += (line.empty() ? "" : ",") + csv_field(field);
+  return line + "\n";
+}
+
+}  // namespace
+
+std::string picture_file(const PictureTable& table) {
+  return table.name + (table.packed ? ".csv.gz" : ".csv");
+}
+
+std::string picture_csv(const PictureTable& table) {
+  std::string text = line_of(table.columns);
+  for (const auto& row : table.rows) text += line_of(row);
+  return text;
+}
+
+void write_picture(const PictureTable& table, const std::filesystem::path& folder) {
+  write_file(folder / picture_file(table), picture_csv(table));
+}
+
+std::string csv_link(std::string_view file) {
+  return fmt::format("<a class=\"csv\" href=\"{0}\" download>{0}</a>", html_escaped(file));
+}
+
+}  // namespace bess
