@@ -4,17 +4,9 @@
 
 namespace bess {
 
-bool HistoryPages::fetch_next(std::int32_t timeout_ms) {
-  const std::int64_t oldest_before_utc_s = oldest_utc_s_;
-  bool has_row = true;
-  int items = 0;
-  const PriceRowTaker taker{
-      this, [](void* self, const PriceRow& row) { static_cast<HistoryPages*>(self)->take(row); }};
-  status_ = prices_.fetch_page(page_url().c_str(), timeout_ms, taker, items);
-  if (status_ == Status::kNoRow) {
-    status_ = Status::kOk;
-    has_row = false;
-  }
+bool HistoryPages::goes_on(Status status, int items, std::int64_t oldest_before_utc_s) {
+  const bool has_row = status != Status::kNoRow;
+  status_ = has_row ? status : Status::kOk;
   offset_ += items;
   const bool is_older = oldest_utc_s_ < oldest_before_utc_s;  // else the server knows no pages
   return status_ == Status::kOk && items > 0 && (is_older || !has_row) && !has_all_hours() &&

@@ -26,12 +26,19 @@ class HistoryPages {
   static constexpr int kFailuresMax = 3;  ///< requests that may fail before the rest is given up
 
   /// `url` as for the newest rows; its own limit and offset are replaced.
-  HistoryPages(PriceFeed& prices, PriceHistory& history, std::string_view url)
-      : prices_(prices), history_(history), url_(url) {}
+  HistoryPages(PriceHistory& history, std::string_view url) : history_(history), url_(url) {}
 
   /// Asks for the page behind the last one. False when there is none to ask for: the hours are
   /// full, the server has nothing older, or the request failed.
-  bool fetch_next(std::int32_t timeout_ms);
+  template <typename Prices>
+  bool fetch_next(Prices& prices, std::int32_t timeout_ms) {
+    const std::int64_t oldest_before_utc_s = oldest_utc_s_;
+    int items = 0;
+    const PriceRowTaker taker{
+        this, [](void* self, const PriceRow& row) { static_cast<HistoryPages*>(self)->take(row); }};
+    const Status status = prices.fetch_page(page_url().c_str(), timeout_ms, taker, items);
+    return goes_on(status, items, oldest_before_utc_s);
+  }
   /// Of the last request; a page behind the last row is no failure.
   [[nodiscard]] Status status() const { return status_; }
   [[nodiscard]] bool has_all_hours() const {
@@ -42,9 +49,9 @@ class HistoryPages {
   using PageUrl = FixedText<639>;
 
   [[nodiscard]] PageUrl page_url() const;
+  bool goes_on(Status status, int items, std::int64_t oldest_before_utc_s);
   void take(const PriceRow& row);
 
-  PriceFeed& prices_;
   PriceHistory& history_;
   FixedText<511> url_;
   int offset_ = 0;
@@ -55,21 +62,22 @@ class HistoryPages {
 /// Fills the history within `wait_s` of the clock. Anything but kOk: it ended before its time, what came in
 /// is there. On the caller's thread. Names apart, which the price feed has just looked up, nothing
 /// waits longer.
+///   Prices  Status fetch_page(const char* url, int32 timeout_ms, const PriceRowTaker&, int& items)
 ///   Clock   monotonic_ns(), scaled(), stop_requested()
-template <typename Clock>
-Status fetch_history(PriceFeed& prices, const PriceFeedSettings& price,
+template <typename Prices, typename Clock>
+Status fetch_history(Prices& prices, const PriceFeedSettings& price,
                      const HistorySettings& settings, Clock& clock, PriceHistory& history) {
   const std::int64_t deadline_ns =
       clock.monotonic_ns() + clock.scaled().wall_ns(settings.wait_s * kNanosecondsPerSecond);
   int failures = 0;
   for (const FixedText<511>& url : {price.http.url, settings.url}) {
     if (url.empty()) continue;
-    HistoryPages pages(prices, history, url.view());
+    HistoryPages pages(history, url.view());
     for (bool more = true; more;) {
       const std::int64_t left_ms = (deadline_ns - clock.monotonic_ns()) / 1'000'000;
       if (left_ms <= 0 || clock.stop_requested()) return Status::kTimeout;
-      more = pages.fetch_next(
-          static_cast<std::int32_t>(std::min<std::int64_t>(left_ms, price.http.timeout_ms)));
+      more = pages.fetch_next(prices, static_cast<std::int32_t>(
+                                          std::min<std::int64_t>(left_ms, price.http.timeout_ms)));
       const bool has_failed = pages.status() != Status::kOk;
       more =
           more || (has_failed && ++failures < HistoryPages::kFailuresMax);  // the same page again

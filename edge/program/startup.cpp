@@ -22,40 +22,8 @@
 namespace bess {
 namespace {
 
-/// "PLACE: what is wrong there".
-std::string trouble_at(const EdgeConfig& config, std::string_view what) {
-  return std::string(battery_place(config).view()) + ": " + std::string(what);
-}
-
 void complain(const std::string& trouble) {
   report(JournalLevel::kError, "battery at %s", trouble.c_str());
-}
-
-/// What the link's trouble means for this transport.
-std::string_view link_text(const EdgeConfig& config, Status status) {
-  if (!config.link.rtu || status != Status::kNotConnected) return status_text(status);
-  return "the serial line cannot be opened (is device right and plugged in, is this user in the "
-         "group dialout?)";
-}
-
-/// Proves that this is the configured battery; else `trouble` says why it is not.
-Status identify(const EdgeConfig& config, ModbusBattery& battery, std::string& trouble) {
-  IdentityFailure failure;
-  Status status = battery.check_identity(failure);
-  if (status == Status::kImplausible) {
-    const IdentityCheck& check = config.map.identity[failure.check];
-    char text[256];
-    std::snprintf(text, sizeof text, "%s reads %lld, not %lld to %lld: %s",
-                  config.map.points[check.point].name.c_str(),
-                  static_cast<long long>(failure.value), static_cast<long long>(check.value_min),
-                  static_cast<long long>(check.value_max), check.hint.c_str());
-    trouble = trouble_at(config, text);
-    return status;
-  }
-  BatteryMeasurement measurement;
-  if (status == Status::kOk) status = battery.read(measurement);
-  if (status != Status::kOk) trouble = trouble_at(config, link_text(config, status));
-  return status;
 }
 
 /// What a command would write, by the battery's own scale factors and limits if it was reached.
@@ -163,35 +131,12 @@ bool check_student() {
   return false;
 }
 
-Status find_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& clock,
-                    std::string& trouble) {
-  const std::int64_t deadline_ns =
-      clock.monotonic_ns() + config.start_timeout_s * kNanosecondsPerSecond;
-  while (!clock.stop_requested()) {
-    const bool last = clock.monotonic_ns() >= deadline_ns || config.start_without_battery;
-    const Status status = identify(config, battery, trouble);
-    // The wrong device stays the wrong device.
-    if (status == Status::kOk || status == Status::kImplausible || last) return status;
-    sleep_until_monotonic(clock.monotonic_ns() + kNanosecondsPerSecond / 5);
-  }
-  return Status::kOk;
-}
-
 bool reach_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& clock) {
   std::string trouble;
   const Status status = find_battery(config, battery, clock, trouble);
   if (status == Status::kOk) return true;
   complain(trouble);
-  return status != Status::kImplausible && config.start_without_battery;
-}
-
-Status greet_price_server(const EdgeConfig& config, PriceFeed& prices) {
-  PriceRow row;
-  const Status status = prices.fetch_once(row);
-  if (status == Status::kOk) return status;
-  report(JournalLevel::kWarning, "note: price from %s: %s; waiting in safe state",
-         loggable_url(config.price.http.url.view()).c_str(), price_status_text(status).data());
-  return status;
+  return may_start_without(config, status);
 }
 
 Recall recall_at_start(const EdgeConfig& config, const EventLog& log,
@@ -218,27 +163,6 @@ Recall recall_at_start(const EdgeConfig& config, const EventLog& log,
   recalled.trip = {.reason = Reason::kStateLost,
                    .utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond};
   return recalled;
-}
-
-PriceLevel level_at_start(const EdgeConfig& config, const PriceLevel& logged, Status greeting,
-                          PriceFeed& prices, EdgeClock& clock) {
-  const std::int64_t now_utc_s = clock.now_utc_ns() / kNanosecondsPerSecond;
-  LevelNews news{.hours_wanted = config.history.hours, .status = greeting};
-  const auto fetch = [&]() -> PriceLevel {
-    // A server that has just not answered would only hold up the start.
-    const bool has_answered = greeting == Status::kOk || greeting == Status::kNoRow;
-    if (news.hours_wanted == 0 || !has_answered) return {};
-    static PriceHistory history(news.hours_wanted, now_utc_s);
-    news.status = fetch_history(prices, config.price, config.history, clock, history);
-    news.hours = history.hours_covered();
-    news.rows = history.rows();
-    return history.level();
-  };
-  const ContextKind kind = student_context().kind;
-  news.start =
-      find_start_level(kind, logged, now_utc_s, config.level_start_centi_eur_per_mwh, fetch);
-  if (kind == ContextKind::kLevel) write_journal_line(journal_level_of(news), level_note(news));
-  return news.start.level;
 }
 
 void journal_thresholds(const EdgeConfig& config) {
@@ -268,7 +192,7 @@ bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& p
   std::fputs(wishes_note(config.control, hold, now_utc_s).c_str(), stdout);
   std::fflush(stdout);
   std::string trouble;
-  const bool battery_ok = identify(config, battery, trouble) == Status::kOk;
+  const bool battery_ok = identify_battery(config, battery, trouble) == Status::kOk;
   if (!battery_ok) complain(trouble);
   print_orders(config, battery);
   BatteryMeasurement m;

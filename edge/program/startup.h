@@ -7,6 +7,7 @@
 #include "edge/prices/price_feed.h"
 #include "edge/program/edge_clock.h"
 #include "edge/program/edge_config.h"
+#include "edge/program/find_battery.h"
 #include "edge/program/recall.h"
 
 namespace bess {
@@ -14,29 +15,14 @@ namespace bess {
 /// Time zone, signals and timers of the process; before any thread is started.
 void prepare_process();
 
-/// Tries until `start_timeout_s` is over, or a stop is asked for. kOk when the battery is there and is the right
-/// one; otherwise `trouble` says where it was looked for, and what to mend.
-Status find_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& clock,
-                    std::string& trouble);
-
 /// True when it is found, or when the configuration allows to start without it; otherwise one line
 /// on stderr says what to mend.
 bool reach_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& clock);
-
-/// Fetches once: opens the connection before the first tick, and says it when there is no price
-/// yet.
-Status greet_price_server(const EdgeConfig& config, PriceFeed& prices);
 
 /// What earlier runs left. Where that cannot be read, a journal line says why, and the battery is not driven until
 /// a person clears it, unless [state] drive_without_state allows it. `published_number`: recall.h.
 Recall recall_at_start(const EdgeConfig& config, const EventLog& log,
                        std::uint64_t published_number);
-
-/// The price level that the loop starts with, `logged` being the newest record's: kept, or for a student by
-/// level filled from what the server (which has just answered with `greeting`) still has. One
-/// journal line where the level is the context.
-PriceLevel level_at_start(const EdgeConfig& config, const PriceLevel& logged, Status greeting,
-                          PriceFeed& prices, EdgeClock& clock);
 
 /// One journal line: whether the guard enforces what the student is proved for.
 void journal_thresholds(const EdgeConfig& config);

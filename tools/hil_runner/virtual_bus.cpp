@@ -1,6 +1,8 @@
 #include "tools/hil_runner/virtual_bus.h"
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "shared/host/user_error.h"
 #include "shared/scaled_clock.h"
@@ -9,7 +11,12 @@ namespace bess {
 namespace {
 
 constexpr std::int64_t kMillisecondNs = 1'000'000;
-VirtualBus* current_bus = nullptr;
+
+/// Those that exist.
+std::vector<std::pair<std::int32_t, VirtualBus*>>& buses() {
+  static std::vector<std::pair<std::int32_t, VirtualBus*>> all;
+  return all;
+}
 
 /// It only makes frames: nothing is opened.
 modbus_t* make_context(bool rtu, int unit) {
@@ -22,21 +29,27 @@ modbus_t* make_context(bool rtu, int unit) {
 
 }  // namespace
 
-VirtualBus::VirtualBus(const Scenario& scenario, const RegisterMap& map, SimulatedBattery& battery,
-                       VirtualTime& time)
-    : scenario_(scenario),
+VirtualBus::VirtualBus(const VirtualBusSettings& settings, const RegisterMap& map,
+                       SimulatedBattery& battery, VirtualTime& time, MeteredHouse* house)
+    : settings_(settings),
       time_(time),
-      rtu_(scenario.battery.rtu),
       baud_(map.baud),
-      context_(make_context(rtu_, map.unit)),
-      device_(map, battery, context_.get(), scenario.battery_fault.schedule, rtu_,
-              scenario.utc_ns_at(0)) {
-  current_bus = this;
+      context_(make_context(settings.rtu, map.unit)),
+      device_(map, battery, context_.get(), settings.fault.schedule, settings.rtu,
+              settings.start_utc_ns, house) {
+  buses().emplace_back(settings.port, this);
 }
 
-VirtualBus::~VirtualBus() { current_bus = nullptr; }
+VirtualBus::~VirtualBus() {
+  std::erase_if(buses(), [this](const auto& bus) { return bus.second == this; });
+}
 
-VirtualBus& VirtualBus::current() { return *current_bus; }
+VirtualBus* VirtualBus::at(std::int32_t port) {
+  for (const auto& [at, bus] : buses()) {
+    if (at == port) return bus;
+  }
+  return nullptr;
+}
 
 Status VirtualBus::open() {
   ++connection_;
@@ -48,14 +61,14 @@ Status VirtualBus::open() {
 
 /// A line has no connection: what is on its way still comes.
 void VirtualBus::close() {
-  if (rtu_) return;
+  if (settings_.rtu) return;
   ++connection_;
   input_.clear();
 }
 
 bool VirtualBus::is_spoilt() {
   answer_due();
-  if (rtu_) return false;
+  if (settings_.rtu) return false;
   return is_cut_ || (!input_.empty() && input_.front().arrives_ns <= time_.monotonic_ns());
 }
 
@@ -72,7 +85,7 @@ Status VirtualBus::send(const ModbusFrame& frame) {
   BusRequest& request = pending.request;
   std::copy_n(frame.bytes, frame.size, request.bytes);
   request.size = frame.size;
-  request.header = rtu_ ? 0 : kTcpHeaderBytes;
+  request.header = settings_.rtu ? 0 : kTcpHeaderBytes;
   const bool is_heard =
       device_.serves_unit(request.unit()) && !is_half_open_ && !time_.battery_is_paused();
   if (!is_heard) return Status::kOk;
@@ -81,9 +94,9 @@ Status VirtualBus::send(const ModbusFrame& frame) {
   const std::int64_t begun_ns =
       pending_.empty() ? heard_ns : std::max(heard_ns, pending_.back().due_ns);
   pending.fault = device_.on_request(request, time_.utc_ns());
-  pending.due_ns = begun_ns + scenario_.battery.response_delay_ms * kMillisecondNs;
+  pending.due_ns = begun_ns + settings_.response_delay_ms * kMillisecondNs;
   if (pending.fault == BatteryFault::kLate) {
-    pending.due_ns += scenario_.battery_fault.late_ms * kMillisecondNs;
+    pending.due_ns += settings_.fault.late_ms * kMillisecondNs;
   }
   pending_.push_back(pending);
   return Status::kOk;
@@ -117,9 +130,9 @@ void VirtualBus::answer_due() {
 }
 
 void VirtualBus::answer(const Pending& pending) {
-  const bool is_heard = rtu_ || pending.connection == connection_;
+  const bool is_heard = settings_.rtu || pending.connection == connection_;
   const std::int64_t due_utc_ns = time_.utc_ns() - time_.monotonic_ns() + pending.due_ns;
-  const std::int64_t late_ns = scenario_.battery_fault.late_ms * kMillisecondNs;
+  const std::int64_t late_ns = settings_.fault.late_ms * kMillisecondNs;
   switch (pending.fault) {
     case BatteryFault::kSilence:
       return;
@@ -132,7 +145,7 @@ void VirtualBus::answer(const Pending& pending) {
       return;
     case BatteryFault::kException:
       if (!is_heard) return;
-      return put(device_.exception(pending.request, scenario_.battery_fault.exception_code),
+      return put(device_.exception(pending.request, settings_.fault.exception_code),
                  pending.due_ns);
     default:
       break;
@@ -140,7 +153,7 @@ void VirtualBus::answer(const Pending& pending) {
   const Bytes bytes = device_.answer(pending.request, pending.fault, due_utc_ns);
   if (!is_heard) return;
   if (pending.fault == BatteryFault::kDrip) {
-    return put(bytes, pending.due_ns, scenario_.battery_fault.drip_ms * kMillisecondNs);
+    return put(bytes, pending.due_ns, settings_.fault.drip_ms * kMillisecondNs);
   }
   if (pending.fault != BatteryFault::kByteGap) return put(bytes, pending.due_ns);
   const auto middle = bytes.begin() + static_cast<std::ptrdiff_t>(bytes.size() / 2);
@@ -160,7 +173,7 @@ void VirtualBus::put(const Bytes& bytes, std::int64_t first_ns, std::int64_t gap
 
 /// Time that so many bytes take on a serial line: 10 bits each.
 std::int64_t VirtualBus::line_ns(int bytes) const {
-  return rtu_ ? bytes * 10 * kNanosecondsPerSecond / baud_ : 0;
+  return settings_.rtu ? bytes * 10 * kNanosecondsPerSecond / baud_ : 0;
 }
 
 }  // namespace bess

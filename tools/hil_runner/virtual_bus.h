@@ -1,4 +1,4 @@
-// The battery of a virtual run and the bus to it: what the edge's ModbusWire sends arrives here, and the
+// A device of a virtual run and the bus to it: what the edge's ModbusWire sends to its port arrives here, and the
 // answer comes when the device has it, byte by byte if a fault says so. virtual_wire.cpp is the edge's
 // end. Over TCP one connection, over RTU a line that keeps what was sent too late.
 #pragma once
@@ -16,15 +16,26 @@
 
 namespace bess {
 
+/// Where a device is, and what goes wrong with it.
+struct VirtualBusSettings {
+  std::int32_t port = 1;
+  bool rtu = false;
+  std::int32_t response_delay_ms = 20;
+  BatteryFaultWindow fault{};
+  std::int64_t start_utc_ns = 0;  ///< from which the faults count
+};
+
 class VirtualBus {
  public:
-  /// All of them must outlive this object. One at a time in a process.
-  VirtualBus(const Scenario& scenario, const RegisterMap& map, SimulatedBattery& battery,
-             VirtualTime& time);
+  /// All but the settings must outlive this object. One of a port at a time in a process. With a house the map's
+  /// grid point shows it, and a meter's map makes this a meter.
+  VirtualBus(const VirtualBusSettings& settings, const RegisterMap& map, SimulatedBattery& battery,
+             VirtualTime& time, MeteredHouse* house = nullptr);
   VirtualBus(const VirtualBus&) = delete;
   VirtualBus& operator=(const VirtualBus&) = delete;
   ~VirtualBus();
-  static VirtualBus& current();
+  /// Null: nobody is there.
+  static VirtualBus* at(std::int32_t port);
 
   Status open();
   void close();
@@ -55,9 +66,8 @@ class VirtualBus {
   void put(const Bytes& bytes, std::int64_t first_ns, std::int64_t gap_ns = 0);
   [[nodiscard]] std::int64_t line_ns(int bytes) const;
 
-  const Scenario& scenario_;
+  VirtualBusSettings settings_;
   VirtualTime& time_;
-  bool rtu_;
   std::int32_t baud_;
   std::unique_ptr<modbus_t, FreeContext> context_;
   FaultyDevice device_;

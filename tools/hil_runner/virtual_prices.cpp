@@ -1,6 +1,8 @@
 #include "tools/hil_runner/virtual_prices.h"
 
 #include <algorithm>
+#include <cstdlib>
+#include <string_view>
 
 #include "shared/scaled_clock.h"
 
@@ -10,6 +12,12 @@ namespace {
 constexpr std::int64_t kMillisecondNs = 1'000'000;
 constexpr std::int64_t kFetchNs = 30 * kMillisecondNs;  ///< of one answer
 constexpr int kRowsAsked = 20;  ///< as the edge's example configuration does
+
+/// Of a URL's query: "limit=" of "...?limit=100&offset=0" is 100.
+int number_of(std::string_view url, std::string_view key) {
+  const std::size_t at = url.rfind(key);
+  return at == url.npos ? 0 : std::atoi(url.data() + at + key.size());
+}
 
 }  // namespace
 
@@ -70,31 +78,50 @@ bool VirtualPrices::begin_next() {
 }
 
 void VirtualPrices::fetch() {
-  answer_.done_ns = time_.monotonic_ns() + kFetchNs;
+  const Reply reply = ask({.limit = kRowsAsked}, settings_.http.timeout_ms);
+  answer_.done_ns = time_.monotonic_ns() + reply.takes_ns;
+  answer_.status = reply.status != Status::kOk ? reply.status
+                                               : parse_newest_price(reply.text, settings_.fields,
+                                                                    edge_utc_s(), answer_.row);
+}
+
+Status VirtualPrices::fetch_once(PriceRow& row) {
+  const Reply reply = ask({.limit = kRowsAsked}, settings_.http.timeout_ms);
+  time_.advance_to(time_.monotonic_ns() + reply.takes_ns);
+  if (reply.status != Status::kOk) return reply.status;
+  return parse_newest_price(reply.text, settings_.fields, edge_utc_s(), row);
+}
+
+Status VirtualPrices::fetch_page(const char* url, std::int32_t timeout_ms,
+                                 const PriceRowTaker& taker, int& items) {
+  items = 0;
+  const Reply reply =
+      ask({.limit = number_of(url, "limit="), .offset = number_of(url, "offset=")}, timeout_ms);
+  time_.advance_to(time_.monotonic_ns() + reply.takes_ns);
+  if (reply.status != Status::kOk) return reply.status;
+  return parse_prices(reply.text, settings_.fields, edge_utc_s(), taker, items);
+}
+
+std::int64_t VirtualPrices::edge_utc_s() const {
+  return time_.edge_utc_ns() / kNanosecondsPerSecond;
+}
+
+VirtualPrices::Reply VirtualPrices::ask(RecordsQuery query, std::int32_t timeout_ms) {
   if (time_.market() == VirtualTime::Market::kPaused) {
-    answer_.status = Status::kTimeout;
-    answer_.done_ns = time_.monotonic_ns() + settings_.http.timeout_ms * kMillisecondNs;
-    return;
+    return {.status = Status::kTimeout, .takes_ns = timeout_ms * kMillisecondNs};
   }
   if (time_.market() == VirtualTime::Market::kDead) {
-    answer_.status = Status::kNotConnected;
-    return;
+    return {.status = Status::kNotConnected, .takes_ns = kFetchNs};
   }
   const double at_s = static_cast<double>(time_.utc_ns() - scenario_.utc_ns_at(0)) / 1e9;
   const MarketFault fault = faults_.next(at_s);
   if (fault == MarketFault::kHttp500) {
-    answer_.status = Status::kHttpError;
-    return;
+    return {.status = Status::kHttpError, .takes_ns = kFetchNs};
   }
   const std::int64_t market_ns =
       time_.utc_ns() - (fault == MarketFault::kStale ? kStaleAnswerS * kNanosecondsPerSecond : 0);
-  const std::string text =
-      spoilt(fault, market_.records({.dataset = Dataset::kMinutes,
-                                     .limit = kRowsAsked,
-                                     .hide_newest_price = fault == MarketFault::kNull},
-                                    market_ns));
-  answer_.status = parse_newest_price(text, settings_.fields,
-                                      time_.edge_utc_ns() / kNanosecondsPerSecond, answer_.row);
+  query.hide_newest_price = fault == MarketFault::kNull;
+  return {.text = spoilt(fault, market_.records(query, market_ns)), .takes_ns = kFetchNs};
 }
 
 }  // namespace bess

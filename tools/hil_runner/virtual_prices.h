@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "edge/prices/newest_row.h"
 #include "edge/prices/price_feed.h"
@@ -24,7 +25,18 @@ class VirtualPrices {
   bool wait(std::int64_t until_monotonic_ns);
   [[nodiscard]] PriceReport latest() const { return newest_.report(); }
 
+  // One request, which takes its time, as PriceFeed has them for the start.
+  Status fetch_once(PriceRow& row);
+  Status fetch_page(const char* url, std::int32_t timeout_ms, const PriceRowTaker& taker,
+                    int& items);
+
  private:
+  /// What the server answers to a request of now, and how long that takes.
+  struct Reply {
+    Status status = Status::kOk;
+    std::string text{};
+    std::int64_t takes_ns = 0;
+  };
   struct Answer {
     Status status = Status::kTimeout;
     PriceRow row{};
@@ -33,6 +45,8 @@ class VirtualPrices {
   };
   [[nodiscard]] bool begin_next();
   void fetch();
+  [[nodiscard]] std::int64_t edge_utc_s() const;
+  [[nodiscard]] Reply ask(RecordsQuery query, std::int32_t timeout_ms);
 
   PriceFeedSettings settings_;
   const MarketView& market_;
