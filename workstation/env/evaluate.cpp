@@ -18,16 +18,6 @@ double mean_over_days(const std::vector<DayResult>& days, Field field) {
   return days.empty() ? 0.0 : sum / static_cast<double>(days.size());
 }
 
-double standard_error_of(const std::vector<double>& values) {
-  const auto n = static_cast<double>(values.size());
-  if (values.size() < 2) return std::numeric_limits<double>::quiet_NaN();  // one day tells nothing
-  double mean = 0;
-  for (const double v : values) mean += v / n;
-  double squares = 0;
-  for (const double v : values) squares += (v - mean) * (v - mean);
-  return std::sqrt(squares / (n - 1) / n);
-}
-
 class Runner {
  public:
   Runner(Policy& policy, const EvaluationOptions& options)
@@ -118,11 +108,12 @@ double Evaluation::profit_at_wear_eur_per_day_per_mwh(double other_wear_eur_per_
   return profit_eur_per_day_per_mwh() -
          (other_wear_eur_per_mwh - wear_eur_per_mwh) * throughput_mwh_per_day / capacity_mwh;
 }
-double Evaluation::standard_error() const {
-  std::vector<double> profits;
-  for (const DayResult& day : days) profits.push_back(day.profit_eur / capacity_mwh);
-  return standard_error_of(profits);
+DayErrors Evaluation::errors() const {
+  std::vector<DayValue> profits;
+  for (const DayResult& day : days) profits.emplace_back(day.date, day.profit_eur / capacity_mwh);
+  return day_errors(profits);
 }
+double Evaluation::standard_error() const { return errors().plain; }
 double Evaluation::worst_day_eur_per_mwh() const {
   const auto worst = std::ranges::min_element(days, {}, &DayResult::profit_eur);
   return worst == days.end() ? 0.0 : worst->profit_eur / capacity_mwh;
@@ -159,14 +150,15 @@ PairedDifference paired_difference(const Evaluation& a, const Evaluation& b) {
   if (a.days.size() != b.days.size() || a.days.empty()) {
     throw std::logic_error("paired difference needs the same days on both sides");
   }
-  std::vector<double> differences;
+  std::vector<DayValue> differences;
   double mean = 0;
   for (std::size_t d = 0; d < a.days.size(); ++d) {
-    differences.push_back(a.days[d].profit_eur / a.capacity_mwh -
-                          b.days[d].profit_eur / b.capacity_mwh);
-    mean += differences.back() / static_cast<double>(a.days.size());
+    differences.emplace_back(a.days[d].date, a.days[d].profit_eur / a.capacity_mwh -
+                                                 b.days[d].profit_eur / b.capacity_mwh);
+    mean += differences.back().second / static_cast<double>(a.days.size());
   }
-  return {mean, standard_error_of(differences)};
+  const DayErrors errors = day_errors(differences);
+  return {mean, errors.plain, errors.by_month, errors.months, errors.days};
 }
 
 }  // namespace bess

@@ -14,10 +14,12 @@
 // the policy says.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "shared/battery_model.h"
+#include "workstation/env/day_errors.h"
 #include "workstation/env/market_steps.h"
 #include "workstation/env/policy.h"
 
@@ -46,8 +48,8 @@ struct Evaluation {
   [[nodiscard]] double profit_eur_per_day_per_mwh() const;
   /// Of the same decisions, with this wear in place of the one that is counted.
   [[nodiscard]] double profit_at_wear_eur_per_day_per_mwh(double other_wear_eur_per_mwh) const;
-  [[nodiscard]] double standard_error()
-      const;  ///< of the mean over days, same unit; NaN for one day
+  [[nodiscard]] DayErrors errors() const;       ///< of the mean over days, same unit
+  [[nodiscard]] double standard_error() const;  ///< the plain one; NaN for one day
   [[nodiscard]] double worst_day_eur_per_mwh() const;
   [[nodiscard]] double cycles_per_day() const;
   [[nodiscard]] double switches_per_day() const;
@@ -70,11 +72,18 @@ struct StepRecord {
 Evaluation evaluate(const MarketSteps& market, const std::vector<MarketDay>& days, Policy& policy,
                     const EvaluationOptions& options, std::vector<StepRecord>* records = nullptr);
 
-/// Mean and standard error of the day-by-day difference a - b, EUR per day per MWh. Same days
+/// Mean and standard errors of the day-by-day difference a - b, EUR per day per MWh. Same days
 /// required.
 struct PairedDifference {
   double mean;
-  double standard_error;
+  double standard_error;  ///< as if days were independent; NaN of one day
+  double standard_error_by_month = std::numeric_limits<double>::quiet_NaN();  ///< NaN of one month
+  int months = 0;
+  int days = 0;
+
+  [[nodiscard]] DayErrors errors() const {
+    return {standard_error, standard_error_by_month, months, days};
+  }
 };
 PairedDifference paired_difference(const Evaluation& a, const Evaluation& b);
 
