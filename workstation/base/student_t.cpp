@@ -6,7 +6,8 @@
 namespace bess {
 namespace {
 
-/// P(|T| < t). Abramowitz and Stegun 1964, 26.7.3 (odd degrees) and 26.7.4 (even), theta = atan(t / sqrt(degrees)).
+/// P(|T| < t). Abramowitz and Stegun 1964, 26.7.3 (odd degrees) and 26.7.4 (even), with
+/// theta = atan(t / sqrt(degrees)).
 double probability_within(double t, int degrees) {
   const double theta = std::atan(t / std::sqrt(static_cast<double>(degrees)));
   const double cosine = std::cos(theta);

@@ -100,11 +100,11 @@ void print_head(const DistilledPriceOptions& options, const Students& base) {
   fmt::print(
       "\n{} student{} distilled without them: {:.1f} EUR a day per MWh of capacity, with the SoC "
       "carried over {:.1f}; {} violations.\nWhat learning rules changes, day by day:\n"
-      "{:<30} {:>10} {:>8} {:>6} {:>7}  {:>8} {:>6} {:>7}\n",
+      "{:<30} {:>10} {:>8} {:>6} {:>8} {:>7}  {:>8} {:>6} {:>8} {:>7}\n",
       options.seeds, options.seeds == 1 ? "" : "s",
       mean_of(base.reset).profit_eur_per_day_per_mwh(),
       mean_of(base.carried).profit_eur_per_day_per_mwh(), base.violations, "rule", "violations",
-      "reset", "s.e.", "spread", "carried", "s.e.", "spread");
+      "reset", "s.e.", "by month", "spread", "carried", "s.e.", "by month", "spread");
 }
 
 void print_row(const DistilledPriceOptions& options, const std::string& name, const Students& base,
@@ -112,27 +112,32 @@ void print_row(const DistilledPriceOptions& options, const std::string& name, co
   const SeededDifference reset = seeded_difference(ruled.reset, base.reset);
   const SeededDifference carried = seeded_difference(ruled.carried, base.carried);
   if (!options.json) {
-    fmt::print("{:<30} {:>10} {:>+8.1f} {:>6.1f} {:>7}  {:>+8.1f} {:>6.1f} {:>7}\n", name,
-               ruled.violations, reset.mean, reset.standard_error, amount(reset.spread),
-               carried.mean, carried.standard_error, amount(carried.spread));
+    fmt::print("{:<30} {:>10} {:>+8.1f} {:>6} {:>8} {:>7}  {:>+8.1f} {:>6} {:>8} {:>7}\n", name,
+               ruled.violations, reset.mean, error_text(reset.standard_error, 1),
+               error_text(reset.standard_error_by_month, 1), amount(reset.spread), carried.mean,
+               error_text(carried.standard_error, 1),
+               error_text(carried.standard_error_by_month, 1), amount(carried.spread));
   } else {
     const auto profit = [](const std::vector<Evaluation>& seeds) {
       return Decimals{mean_of(seeds).profit_eur_per_day_per_mwh(), 4};
     };
-    Json json = Json::object({{"rule", name},
-                              {"by", "distillation"},
-                              {"days", options.days.size()},
-                              {"seeds", options.seeds},
-                              {"states_checked", ruled.states},
-                              {"violations", ruled.violations},
-                              {"profit_eur_per_day_per_mwh", profit(ruled.reset)},
-                              {"without_eur_per_day_per_mwh", profit(base.reset)},
-                              {"difference", Decimals{reset.mean, 4}},
-                              {"standard_error", Decimals{reset.standard_error, 4}},
-                              {"carried_profit_eur_per_day_per_mwh", profit(ruled.carried)},
-                              {"carried_without_eur_per_day_per_mwh", profit(base.carried)},
-                              {"carried_difference", Decimals{carried.mean, 4}},
-                              {"carried_standard_error", Decimals{carried.standard_error, 4}}});
+    Json json = Json::object(
+        {{"rule", name},
+         {"by", "distillation"},
+         {"days", options.days.size()},
+         {"seeds", options.seeds},
+         {"states_checked", ruled.states},
+         {"violations", ruled.violations},
+         {"profit_eur_per_day_per_mwh", profit(ruled.reset)},
+         {"without_eur_per_day_per_mwh", profit(base.reset)},
+         {"difference", Decimals{reset.mean, 4}},
+         {"standard_error", Decimals{reset.standard_error, 4}},
+         {"standard_error_by_month", Decimals{reset.standard_error_by_month, 4}},
+         {"carried_profit_eur_per_day_per_mwh", profit(ruled.carried)},
+         {"carried_without_eur_per_day_per_mwh", profit(base.carried)},
+         {"carried_difference", Decimals{carried.mean, 4}},
+         {"carried_standard_error", Decimals{carried.standard_error, 4}},
+         {"carried_standard_error_by_month", Decimals{carried.standard_error_by_month, 4}}});
     if (options.seeds > 1) {
       json.set("spread", Decimals{reset.spread, 4});
       json.set("carried_spread", Decimals{carried.spread, 4});
@@ -171,7 +176,7 @@ SeededDifference seeded_difference(const std::vector<Evaluation>& with,
   }
   const double spread = with.size() > 1 ? std::sqrt(squares / static_cast<double>(with.size() - 1))
                                         : std::numeric_limits<double>::quiet_NaN();
-  return {over_days.mean, over_days.standard_error, spread};
+  return {over_days.mean, over_days.standard_error, over_days.standard_error_by_month, spread};
 }
 
 void price_by_distilling(const DistilledPriceOptions& options, const Teacher& teacher,

@@ -22,8 +22,9 @@ BothWays run_both_ways(Policy& policy, const std::vector<MarketDay>& days, const
 /// What is paired: the mean over seeds of what rules change. Money in EUR per day per MWh.
 struct SeededDifference {
   double mean;
-  double standard_error;  ///< over days, of the mean over seeds
-  double spread;          ///< standard deviation over seeds; NaN for one seed
+  double standard_error;           ///< over days, of the mean over seeds
+  double standard_error_by_month;  ///< the same by months
+  double spread;                   ///< standard deviation over seeds; NaN for one seed
 };
 
 /// `with[s]` against `without[s]`; the same days, one entry a seed.

@@ -76,7 +76,10 @@ void add_metrics(Json& json, const Evaluation& e, double foresight_profit) {
   json.set("profit_eur_per_day_per_mwh", Decimals{profit, 4});
   json.set(kReferenceWearKey,
            Decimals{e.profit_at_wear_eur_per_day_per_mwh(kReferenceWearEurPerMwh), 4});
-  json.set("standard_error", Decimals{e.standard_error(), 4});
+  const DayErrors errors = e.errors();
+  json.set("standard_error", Decimals{errors.plain, 4});
+  json.set("standard_error_by_month", Decimals{errors.by_month, 4});
+  json.set("months", errors.months);
   json.set("cycles_per_day", Decimals{e.cycles_per_day(), 4});
   json.set("worst_day_eur_per_mwh", Decimals{e.worst_day_eur_per_mwh(), 4});
   json.set("share_of_foresight", Decimals{share, 5});
@@ -88,6 +91,7 @@ void add_difference(Json& json, const Evaluation& e, const Evaluation& first) {
   const PairedDifference difference = paired_difference(e, first);
   json.set("difference_to_first", Decimals{difference.mean, 4});
   json.set("difference_standard_error", Decimals{difference.standard_error, 4});
+  json.set("gain_standard_error_by_month", Decimals{difference.standard_error_by_month, 4});
 }
 
 /// With several policies: also the paired difference to the first and, nested, the same with the SoC

@@ -105,7 +105,9 @@ void print_json(const OmegaPoint& point, const Evaluation& teacher) {
        {"profit_eur_per_day_per_mwh", Decimals{point.evaluation.profit_eur_per_day_per_mwh(), 4}},
        {"standard_error", Decimals{point.evaluation.standard_error(), 4}},
        {"gain_over_teacher", Decimals{gain.mean, 4}},
-       {"gain_standard_error", Decimals{gain.standard_error, 4}}});
+       {"gain_standard_error", Decimals{gain.standard_error, 4}},
+       {"standard_error_by_month", Decimals{point.evaluation.errors().by_month, 4}},
+       {"gain_standard_error_by_month", Decimals{gain.standard_error_by_month, 4}}});
   fmt::print("{}\n", json.line());
   std::fflush(stdout);  // each takes minutes
 }

@@ -50,10 +50,10 @@ class Pricing {
     fmt::print(
         "{} split, {} days; {} earns {:.1f} EUR a day per MWh of capacity, with the SoC carried "
         "over {:.1f}.\nWhat rules change of it, day by day:\n"
-        "{:<40}  {:>7} {:>6}  {:>7} {:>6}  {:>12}\n",
+        "{:<40}  {:>7} {:>6} {:>8}  {:>7} {:>6} {:>8}  {:>12}\n",
         options_.split, days_.size(), name, base.reset.profit_eur_per_day_per_mwh(),
-        base.carried.profit_eur_per_day_per_mwh(), "rule", "reset", "s.e.", "carried", "s.e.",
-        "decisions, %");
+        base.carried.profit_eur_per_day_per_mwh(), "rule", "reset", "s.e.", "by month", "carried",
+        "s.e.", "by month", "decisions, %");
   }
 
   void print_row(const std::string& rule, const BothWays& base, const BothWays& ruled,
@@ -61,8 +61,11 @@ class Pricing {
     const PairedDifference reset = paired_difference(ruled.reset, base.reset);
     const PairedDifference carried = paired_difference(ruled.carried, base.carried);
     if (!options_.json) {
-      fmt::print("{:<40}  {:>+7.2f} {:>6.2f}  {:>+7.2f} {:>6.2f}  {:>12.2f}\n", rule, reset.mean,
-                 reset.standard_error, carried.mean, carried.standard_error, 100 * changed_share);
+      fmt::print("{:<40}  {:>+7.2f} {:>6} {:>8}  {:>+7.2f} {:>6} {:>8}  {:>12.2f}\n", rule,
+                 reset.mean, error_text(reset.standard_error, 2),
+                 error_text(reset.standard_error_by_month, 2), carried.mean,
+                 error_text(carried.standard_error, 2),
+                 error_text(carried.standard_error_by_month, 2), 100 * changed_share);
       return;
     }
     const Json json = Json::object(
@@ -73,8 +76,10 @@ class Pricing {
          {"profit_eur_per_day_per_mwh", Decimals{ruled.reset.profit_eur_per_day_per_mwh(), 4}},
          {"difference", Decimals{reset.mean, 4}},
          {"standard_error", Decimals{reset.standard_error, 4}},
+         {"standard_error_by_month", Decimals{reset.standard_error_by_month, 4}},
          {"carried_difference", Decimals{carried.mean, 4}},
          {"carried_standard_error", Decimals{carried.standard_error, 4}},
+         {"carried_standard_error_by_month", Decimals{carried.standard_error_by_month, 4}},
          {"decisions_changed", Decimals{changed_share, 6}}});
     fmt::print("{}\n", json.line());
   }

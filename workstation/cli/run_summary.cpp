@@ -33,7 +33,9 @@ Json row_json(const ComparisonRow& row, const char* soc) {
                             {"soc", soc},
                             {"days", row.days},
                             {"profit_eur_per_day_per_mwh", Decimals{row.profit, 4}},
-                            {"standard_error", Decimals{row.standard_error, 4}},
+                            {"standard_error", Decimals{row.errors.plain, 4}},
+                            {"standard_error_by_month", Decimals{row.errors.by_month, 4}},
+                            {"months", row.errors.months},
                             {kReferenceWearKey, Decimals{row.profit_at_reference_wear, 4}},
                             {"worst_day_eur_per_mwh", Decimals{row.worst_day, 4}},
                             {"cycles_per_day", Decimals{row.cycles_per_day, 4}},
@@ -41,6 +43,7 @@ Json row_json(const ComparisonRow& row, const char* soc) {
   if (row.difference) {
     json.set("difference_to_first", Decimals{row.difference->mean, 4});
     json.set("difference_standard_error", Decimals{row.difference->standard_error, 4});
+    json.set("gain_standard_error_by_month", Decimals{row.difference->standard_error_by_month, 4});
   }
   if (row.foresight_share) json.set("share_of_foresight", Decimals{*row.foresight_share, 5});
   return json;
@@ -50,10 +53,6 @@ Json row_json(const ComparisonRow& row, const char* soc) {
 std::optional<PairedDifference> gain(const Evaluation& run, const Evaluation& first) {
   if (!std::ranges::equal(run.days, first.days, {}, &DayResult::date, &DayResult::date)) return {};
   return paired_difference(run, first);
-}
-
-std::string error_text(double standard_error) {
-  return std::isnan(standard_error) ? "-" : fmt::format("{:.1f}", standard_error);
 }
 
 /// The value of a key for people, in one line; rules by what they say.
@@ -195,9 +194,9 @@ std::string format_runs_table(const std::vector<RunSummary>& runs) {
   for (const RunSummary& run : runs) width = std::max(width, run.folder.path.string().size());
   std::string text = fmt::format(
       "What the {} of each run earned on its test days; EUR per day per MWh of capacity\n"
-      "{:<{}} {:>5} {:>5} {:>5} {:>8} {:>6} {:>8} {:>6} {:>11} {:>9} {:>8} {:>9}\n",
-      kExportedPolicy, "run", width, "seed", "rules", "days", "carried", "s.e.", "gain", "s.e.",
-      wear_column(), "foresight", "reset", "weights");
+      "{:<{}} {:>5} {:>5} {:>5} {:>8} {:>6} {:>8} {:>8} {:>6} {:>8} {:>11} {:>9} {:>8} {:>9}\n",
+      kExportedPolicy, "run", width, "seed", "rules", "days", "carried", "s.e.", "by month", "gain",
+      "s.e.", "by month", wear_column(), "foresight", "reset", "weights");
   const Evaluation& first = exported(runs.front()).carried_over;
   for (const RunSummary& run : runs) {
     const NamedEvaluation& student = exported(run);
@@ -206,18 +205,22 @@ std::string format_runs_table(const std::vector<RunSummary>& runs) {
     const auto over_first =
         &run == &runs.front() ? std::nullopt : gain(student.carried_over, first);
     text += fmt::format(
-        "{:<{}} {:>5} {:>5} {:>5} {:>8.1f} {:>6} {:>8} {:>6} {:>11.1f} {:>9} {:>8.1f} {:>9}\n",
+        "{:<{}} {:>5} {:>5} {:>5} {:>8.1f} {:>6} {:>8} {:>8} {:>6} {:>8} {:>11.1f} {:>9} {:>8.1f} "
+        "{:>9}\n",
         run.folder.path.string(), width, run.record.value("seed"), rules_of(run), row->days,
-        row->profit, error_text(row->standard_error),
+        row->profit, error_text(row->errors.plain, 1), error_text(row->errors.by_month, 1),
         over_first ? fmt::format("{:+.1f}", over_first->mean) : "-",
-        over_first ? error_text(over_first->standard_error) : "-", row->profit_at_reference_wear,
+        over_first ? error_text(over_first->standard_error, 1) : "-",
+        over_first ? error_text(over_first->standard_error_by_month, 1) : "-",
+        row->profit_at_reference_wear,
         row->foresight_share ? fmt::format("{:.1f}", 100 * *row->foresight_share) : "-",
         student.day_reset.profit_eur_per_day_per_mwh(), run.record.figures->weights_hash);
   }
-  text +=
+  text += fmt::format(
       "\ncarried, reset: SoC carried over from day to day, or the same at the start of each;\n"
       "gain: day-by-day difference to the first run, where both have the same days; s.e.: its "
-      "standard error\n";
+      "standard error;\nby month: {}\n",
+      by_month_meaning(first.errors().months));
   const std::string differs = runs.size() > 1 ? what_differs(runs) : "";
   if (!differs.empty()) text += "\nThe runs differ in\n" + differs;
   return text;

@@ -53,6 +53,10 @@ double interval_half_width(const DayErrors& errors, double coverage) {
   return std::max(plain, student_t_within(coverage, errors.months - 1) * errors.by_month);
 }
 
+std::string error_text(double error, int decimals, std::string_view unknown) {
+  return std::isnan(error) ? std::string(unknown) : fmt::format("{:.{}f}", error, decimals);
+}
+
 std::string by_month_meaning(int months) {
   std::string text =
       "the standard error with the days of a month as one draw, since days side by side are alike";

@@ -22,7 +22,8 @@ constexpr std::array kLineColours{&kMuted, &kSoft, &kDischarge, &kCharge, &kInk}
 struct Row {
   std::string month;
   std::size_t days;
-  double profit, profit_error;
+  double profit;
+  DayErrors errors;
   PairedDifference gain;  ///< to the first policy; both 0 for itself
   double turnover_per_day;
   double at_reference_wear;  ///< of the same decisions
@@ -32,7 +33,7 @@ Row make_row(const std::string& month, const Evaluation& e, const Evaluation& fi
   return {.month = month,
           .days = e.days.size(),
           .profit = e.profit_eur_per_day_per_mwh(),
-          .profit_error = e.standard_error(),
+          .errors = e.errors(),
           .gain = paired_difference(e, first),
           .turnover_per_day = 2 * e.cycles_per_day(),
           .at_reference_wear = e.profit_at_wear_eur_per_day_per_mwh(kReferenceWearEurPerMwh)};
@@ -87,11 +88,6 @@ std::vector<const WalkForward*> shown_in_figure(const BacktestResults& results) 
     if (policy.name != kForesightName) shown.push_back(&policy);
   }
   return shown;
-}
-
-/// A figure, or nothing where it cannot be known: the spread of one day.
-std::string csv_figure(double value, int decimals) {
-  return std::isnan(value) ? "" : fmt::format("{:.{}f}", value, decimals);
 }
 
 std::string fall_text(double drawdown_eur_per_mwh) {
@@ -183,13 +179,14 @@ Figure cumulative_figure(const BacktestResults& results) {
 HtmlTable total_table(const BacktestResults& results) {
   HtmlTable table;
   table.caption = "EUR per day per MWh of capacity, all traded days";
-  table.header = {"policy", "profit",      "s.e.",     "gain",
-                  "s.e.",   wear_column(), "turnover", "drawdown"};
+  table.header = {"policy", "profit",   "s.e.",        "by month", "gain",
+                  "s.e.",   "by month", wear_column(), "turnover", "drawdown"};
   for (const WalkForward& policy : results.policies) {
     const Row row = rows_of(policy, results.policies.front()).back();
     table.rows.push_back(
-        {policy.name, fmt::format("{:.1f}", row.profit), fmt::format("{:.1f}", row.profit_error),
-         fmt::format("{:+.1f}", row.gain.mean), fmt::format("{:.1f}", row.gain.standard_error),
+        {policy.name, fmt::format("{:.1f}", row.profit), error_text(row.errors.plain, 1),
+         error_text(row.errors.by_month, 1), fmt::format("{:+.1f}", row.gain.mean),
+         error_text(row.gain.standard_error, 1), error_text(row.gain.standard_error_by_month, 1),
          fmt::format("{:.1f}", row.at_reference_wear), fmt::format("{:.2f}", row.turnover_per_day),
          fmt::format("{:.0f}", policy.drawdown_eur_per_mwh())});
   }
@@ -233,16 +230,17 @@ std::string format_backtest_table(const BacktestResults& results) {
   const WalkForward& first = results.policies.front();
   std::string text = fmt::format(
       "{} months, {} days, each month by what was fitted on {}; SoC carried over;\nEUR per day per "
-      "MWh of capacity\n{:<{}}  {:>8} {:>6}  {:>8} {:>6}  {:>10}  {:>8}  "
-      "{:>8}\n",
+      "MWh of capacity\n{:<{}}  {:>8} {:>6} {:>8}  {:>8} {:>6} {:>8}  {:>10}  {:>8}  {:>8}\n",
       first.months.size(), first.total.days.size(), window_text(results), "policy", width, "profit",
-      "s.e.", "gain", "s.e.", wear_column(), "turnover", "drawdown");
+      "s.e.", "by month", "gain", "s.e.", "by month", wear_column(), "turnover", "drawdown");
   for (const WalkForward& policy : results.policies) {
     const Row row = rows_of(policy, first).back();
     text += fmt::format(
-        "{:<{}}  {:>8.1f} {:>6.1f}  {:>+8.1f} {:>6.1f}  {:>10.1f}  {:>8.2f}  {:>8.0f}\n",
-        policy.name, width, row.profit, row.profit_error, row.gain.mean, row.gain.standard_error,
-        row.at_reference_wear, row.turnover_per_day, policy.drawdown_eur_per_mwh());
+        "{:<{}}  {:>8.1f} {:>6} {:>8}  {:>+8.1f} {:>6} {:>8}  {:>10.1f}  {:>8.2f}  {:>8.0f}\n",
+        policy.name, width, row.profit, error_text(row.errors.plain, 1),
+        error_text(row.errors.by_month, 1), row.gain.mean, error_text(row.gain.standard_error, 1),
+        error_text(row.gain.standard_error_by_month, 1), row.at_reference_wear,
+        row.turnover_per_day, policy.drawdown_eur_per_mwh());
   }
   text += fmt::format("\nprofit by month\n{:<{}}", "policy", width);
   for (const std::string& month : first.months) text += fmt::format("  {:>8}", month);
@@ -255,10 +253,11 @@ std::string format_backtest_table(const BacktestResults& results) {
     text += "\n";
   }
   text += fmt::format(
-      "\ngain: day-by-day difference to {}; {}: {}\n"
+      "\ngain: day-by-day difference to {}; by month: {}\n{}: {}\n"
       "turnover: energy through it a day, in capacities; drawdown: deepest fall from the end of a "
       "day to that\nof a later one, EUR per MWh\n",
-      first.name, wear_column(), reference_wear_meaning(first.total.wear_eur_per_mwh));
+      first.name, by_month_meaning(first.total.errors().months), wear_column(),
+      reference_wear_meaning(first.total.wear_eur_per_mwh));
   for (const SkippedMonth& month : results.skipped) {
     text += fmt::format("{} is not traded: {}\n", month.month, month.reason);
   }
@@ -269,17 +268,19 @@ std::string backtest_csv(const BacktestResults& results) {
   std::string text =
       "month,policy,days,profit_eur_per_day_per_mwh,standard_error,gain_eur_per_day_per_mwh,"
       "gain_standard_error,turnover_per_day," +
-      std::string(kReferenceWearKey) + ",fitted_days\n";
+      std::string(kReferenceWearKey) +
+      ",fitted_days,standard_error_by_month,gain_standard_error_by_month\n";
   for (const WalkForward& policy : results.policies) {
     std::size_t month = 0;
     for (const Row& row : rows_of(policy, results.policies.front())) {
       const std::string fitted =
           row.month == kAllMonths ? "" : fmt::format("{}", results.fitted_days[month++]);
-      text +=
-          fmt::format("{},{},{},{:.4f},{},{:.4f},{},{:.4f},{:.4f},{}\n", row.month,
-                      csv_field(policy.name), row.days, row.profit, csv_figure(row.profit_error, 4),
-                      row.gain.mean, csv_figure(row.gain.standard_error, 4), row.turnover_per_day,
-                      row.at_reference_wear, fitted);
+      text += fmt::format("{},{},{},{:.4f},{},{:.4f},{},{:.4f},{:.4f},{},{},{}\n", row.month,
+                          csv_field(policy.name), row.days, row.profit,
+                          error_text(row.errors.plain, 4, ""), row.gain.mean,
+                          error_text(row.gain.standard_error, 4, ""), row.turnover_per_day,
+                          row.at_reference_wear, fitted, error_text(row.errors.by_month, 4, ""),
+                          error_text(row.gain.standard_error_by_month, 4, ""));
     }
   }
   return text;
@@ -300,17 +301,19 @@ Json backtest_json(const BacktestResults& results) {
   Json policies = Json::list();
   for (const WalkForward& policy : results.policies) {
     const Row row = rows_of(policy, results.policies.front()).back();
-    policies.add(
-        Json::object({{"policy", policy.name},
-                      {"days", row.days},
-                      {"months", policy.months.size()},
-                      {"profit_eur_per_day_per_mwh", Decimals{row.profit, 4}},
-                      {"standard_error", Decimals{row.profit_error, 4}},
-                      {"gain_to_first", Decimals{row.gain.mean, 4}},
-                      {"gain_standard_error", Decimals{row.gain.standard_error, 4}},
-                      {"turnover_per_day", Decimals{row.turnover_per_day, 4}},
-                      {kReferenceWearKey, Decimals{row.at_reference_wear, 4}},
-                      {"drawdown_eur_per_mwh", Decimals{policy.drawdown_eur_per_mwh(), 2}}}));
+    policies.add(Json::object(
+        {{"policy", policy.name},
+         {"days", row.days},
+         {"months", policy.months.size()},
+         {"profit_eur_per_day_per_mwh", Decimals{row.profit, 4}},
+         {"standard_error", Decimals{row.errors.plain, 4}},
+         {"standard_error_by_month", Decimals{row.errors.by_month, 4}},
+         {"gain_to_first", Decimals{row.gain.mean, 4}},
+         {"gain_standard_error", Decimals{row.gain.standard_error, 4}},
+         {"gain_standard_error_by_month", Decimals{row.gain.standard_error_by_month, 4}},
+         {"turnover_per_day", Decimals{row.turnover_per_day, 4}},
+         {kReferenceWearKey, Decimals{row.at_reference_wear, 4}},
+         {"drawdown_eur_per_mwh", Decimals{policy.drawdown_eur_per_mwh(), 2}}}));
   }
   Json json = Json::object({{"window_days", results.window_days}, {"soc", "carried"}});
   json.set("policies", std::move(policies));
@@ -333,9 +336,11 @@ void write_backtest_page(const BacktestResults& results, const std::filesystem::
   draw_figure(figure, folder);
   const std::filesystem::path svg = folder / (figure.name + ".svg");
   const std::string body = fmt::format(
-      "<h1>Walk-forward backtest</h1>\n<p>{}</p>\n{}\n<figure>\n<h2>{}</h2>\n{}<div "
+      "<h1>Walk-forward backtest</h1>\n<p>{}</p>\n{}\n<p class=\"note\">By month: "
+      "{}.</p>\n<figure>\n<h2>{}</h2>\n{}<div "
       "class=\"wide\">{}</div>\n<figcaption>{}</figcaption>\n</figure>\n{}\n{}",
       html_escaped(results.provenance), format_table(total_table(results)),
+      html_escaped(by_month_meaning(results.policies.front().total.errors().months)),
       html_escaped(figure.title), legend_html(results), inline_svg(read_file(svg), figure),
       html_escaped(figure.caption), format_table(month_table(results)), skipped_html(results));
   write_file(folder / "backtest.html", format_page("Walk-forward backtest", body));

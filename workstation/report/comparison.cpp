@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "shared/host/csv.h"
 #include "workstation/report/rule_prices.h"
@@ -23,7 +24,7 @@ ComparisonRow make_row(const std::string& name, const Evaluation& evaluation,
   ComparisonRow row{.name = name,
                     .days = evaluation.days.size(),
                     .profit = evaluation.profit_eur_per_day_per_mwh(),
-                    .standard_error = evaluation.standard_error(),
+                    .errors = evaluation.errors(),
                     .profit_at_reference_wear =
                         evaluation.profit_at_wear_eur_per_day_per_mwh(kReferenceWearEurPerMwh),
                     .difference = std::nullopt,
@@ -39,26 +40,29 @@ ComparisonRow make_row(const std::string& name, const Evaluation& evaluation,
   return row;
 }
 
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr DayErrors kNoErrors{kUnknown, kUnknown, 0, 0};
+
 std::string or_dash(const std::optional<double>& value, int decimals) {
   return value ? fmt::format("{:.{}f}", *value, decimals) : "-";
 }
 
-/// A figure, or `missing` where it cannot be known.
-std::string figure(double value, int decimals, std::string_view missing) {
-  return std::isnan(value) ? std::string(missing) : fmt::format("{:.{}f}", value, decimals);
+/// A figure with both of its errors.
+std::string sure_figure(const std::string& value, const DayErrors& errors) {
+  return fmt::format("{:>8} {:>6} {:>8}", value, error_text(errors.plain, 1),
+                     error_text(errors.by_month, 1));
 }
 
 std::string table_line(const ComparisonRow& row, std::size_t name_width) {
   const auto& difference = row.difference;
   const std::string gain = difference ? fmt::format("{:+.1f}", difference->mean) : "-";
-  const std::string gain_error = difference ? figure(difference->standard_error, 1, "-") : "-";
   const std::optional<double> percent =
       row.foresight_share ? std::optional(100 * *row.foresight_share) : std::nullopt;
-  return fmt::format(
-      "{:<{}}  {:>8.1f} {:>6}  {:>8} {:>6}  {:>9.1f}  {:>6.2f}  {:>8.1f}  {:>9}  {:>10.1f}\n",
-      row.name, name_width, row.profit, figure(row.standard_error, 1, "-"), gain, gain_error,
-      row.worst_day, row.cycles_per_day, row.switches_per_day, or_dash(percent, 1),
-      row.profit_at_reference_wear);
+  return fmt::format("{:<{}}  {}  {}  {:>9.1f}  {:>6.2f}  {:>8.1f}  {:>9}  {:>10.1f}\n", row.name,
+                     name_width, sure_figure(fmt::format("{:.1f}", row.profit), row.errors),
+                     sure_figure(gain, difference ? difference->errors() : kNoErrors),
+                     row.worst_day, row.cycles_per_day, row.switches_per_day, or_dash(percent, 1),
+                     row.profit_at_reference_wear);
 }
 
 std::string table_block(const std::string& title, const std::vector<ComparisonRow>& rows) {
@@ -66,22 +70,24 @@ std::string table_block(const std::string& title, const std::vector<ComparisonRo
   for (const ComparisonRow& row : rows) name_width = std::max(name_width, row.name.size());
   std::string text = fmt::format("{}, {} day{}; EUR per day per MWh of capacity\n", title,
                                  rows.front().days, rows.front().days == 1 ? "" : "s");
-  text += fmt::format("{:<{}}  {:>8} {:>6}  {:>8} {:>6}  {:>9}  {:>6}  {:>8}  {:>9}  {:>10}\n",
-                      "policy", name_width, "profit", "s.e.", "gain", "s.e.", "worst day", "cycles",
-                      "switches", "foresight", wear_column());
+  text += fmt::format(
+      "{:<{}}  {:>8} {:>6} {:>8}  {:>8} {:>6} {:>8}  {:>9}  {:>6}  {:>8}  {:>9}  {:>10}\n",
+      "policy", name_width, "profit", "s.e.", "by month", "gain", "s.e.", "by month", "worst day",
+      "cycles", "switches", "foresight", wear_column());
   for (const ComparisonRow& row : rows) text += table_line(row, name_width);
   return text;
 }
 
 std::string csv_line(const ComparisonRow& row, std::string_view soc) {
   const auto& d = row.difference;
-  return fmt::format("{},{},{},{:.4f},{},{},{},{:.4f},{:.4f},{:.4f},{},{:.4f}\n",
+  return fmt::format("{},{},{},{:.4f},{},{},{},{:.4f},{:.4f},{:.4f},{},{:.4f},{},{},{}\n",
                      csv_field(row.name), soc, row.days, row.profit,
-                     figure(row.standard_error, 4, ""), d ? fmt::format("{:.4f}", d->mean) : "",
-                     d ? figure(d->standard_error, 4, "") : "", row.worst_day, row.cycles_per_day,
-                     row.switches_per_day,
+                     error_text(row.errors.plain, 4, ""), d ? fmt::format("{:.4f}", d->mean) : "",
+                     d ? error_text(d->standard_error, 4, "") : "", row.worst_day,
+                     row.cycles_per_day, row.switches_per_day,
                      row.foresight_share ? fmt::format("{:.6f}", *row.foresight_share) : "",
-                     row.profit_at_reference_wear);
+                     row.profit_at_reference_wear, error_text(row.errors.by_month, 4, ""),
+                     d ? error_text(d->standard_error_by_month, 4, "") : "", row.errors.months);
 }
 
 }  // namespace
@@ -118,12 +124,18 @@ std::string format_comparison_table(const std::vector<NamedEvaluation>& evaluati
         "cycles, switches: per day; foresight: % of the perfect-foresight profit\n",
         evaluations.front().name);
   }
+  text += fmt::format("by month: {}\n", by_month_meaning(months_of(evaluations)));
   text += fmt::format("{}: {}\n", wear_column(),
                       reference_wear_meaning(configured_wear_eur_per_mwh(evaluations)));
   for (const NamedEvaluation& named : evaluations) {
     if (!named.description.empty()) text += fmt::format("{}: {}\n", named.name, named.description);
   }
   return text;
+}
+
+int months_of(const std::vector<NamedEvaluation>& evaluations) {
+  const NamedEvaluation& any = evaluations.front();
+  return (any.day_reset.days.empty() ? any.carried_over : any.day_reset).errors().months;
 }
 
 std::string wear_column() { return fmt::format("at wear {:g}", kReferenceWearEurPerMwh); }
@@ -146,7 +158,8 @@ std::string comparison_csv(const std::vector<NamedEvaluation>& evaluations,
       "policy,soc,days,profit_eur_per_day_per_mwh,standard_error,gain_eur_per_day_per_mwh,"
       "gain_standard_error,worst_day_eur_per_mwh,cycles_per_day,switches_per_day,"
       "foresight_share," +
-      std::string(kReferenceWearKey) + "\n";
+      std::string(kReferenceWearKey) +
+      ",standard_error_by_month,gain_standard_error_by_month,months\n";
   for (const auto& row : comparison_rows(evaluations, &NamedEvaluation::day_reset, foresight)) {
     text += csv_line(row, "reset");
   }

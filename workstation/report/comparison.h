@@ -31,7 +31,7 @@ struct ComparisonRow {
   std::string name;
   std::size_t days;
   double profit;
-  double standard_error;
+  DayErrors errors;                            ///< of the profit
   double profit_at_reference_wear;             ///< of the same decisions
   std::optional<PairedDifference> difference;  ///< to the first policy; none for itself
   double worst_day;
@@ -52,6 +52,9 @@ std::vector<ComparisonRow> comparison_rows(const std::vector<NamedEvaluation>& e
 /// Aligned columns for the terminal: a block per way of counting, the missing one left out.
 std::string format_comparison_table(const std::vector<NamedEvaluation>& evaluations,
                                     const NamedEvaluation* foresight = nullptr);
+
+/// In how many months the days of these lie; all have the same.
+int months_of(const std::vector<NamedEvaluation>& evaluations);
 
 /// "at wear 10", the head of its column.
 std::string wear_column();

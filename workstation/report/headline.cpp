@@ -31,8 +31,18 @@ const NamedEvaluation* find(const std::vector<NamedEvaluation>& evaluations,
   return found == evaluations.end() || found->day_reset.days.empty() ? nullptr : &*found;
 }
 
-std::string error_of_mean(double standard_error) {
-  return std::isnan(standard_error) ? "" : fmt::format(" \u00b1 {:.1f}", standard_error);
+/// " ± 1.1 (1.4 by month)", each where it is known.
+std::string errors_text(const DayErrors& errors) {
+  if (std::isnan(errors.plain)) return "";
+  std::string text = fmt::format(" \u00b1 {:.1f}", errors.plain);
+  if (!std::isnan(errors.by_month)) text += fmt::format(" ({:.1f} by month)", errors.by_month);
+  return text;
+}
+
+/// Half of the interval in which a gain shows nothing; 0 where it is not known.
+double half_width(const PairedDifference& difference) {
+  const double half = interval_half_width(difference.errors(), kShownCoverage);
+  return std::isnan(half) ? 0 : half;
 }
 
 /// Half the width of the bars' axis, EUR per day per MWh: foresight is far beyond all others.
@@ -41,22 +51,21 @@ double bar_reach(const Headline& headline) {
   for (const HeadlineGain& gain : headline.gains) {
     if (gain.against == kForesightName) continue;
     for (const PairedDifference& d : gain.difference) {
-      const double error = std::isnan(d.standard_error) ? 0 : d.standard_error;
-      reach = std::max(reach, std::abs(d.mean) + 2 * error);
+      reach = std::max(reach, std::abs(d.mean) + half_width(d));
     }
   }
   return reach;
 }
 
-/// Mean and two standard errors on an axis whose middle is zero, drawn by the style sheet.
+/// Mean and interval on an axis whose middle is zero, drawn by the style sheet.
 std::string bar(const PairedDifference& difference, double reach) {
   const auto percent = [&](double value) { return 50 + 50 * std::clamp(value / reach, -1.0, 1.0); };
-  const double error = std::isnan(difference.standard_error) ? 0 : 2 * difference.standard_error;
+  const double half = half_width(difference);
   const char* kind = !is_shown(difference) ? "open" : difference.mean > 0 ? "better" : "worse";
   return fmt::format(
       "<span class=\"bar {}\" aria-hidden=\"true\" style=\"--from:{:.1f}%;--to:{:.1f}%;--mean:"
       "{:.1f}%\"></span>",
-      kind, percent(difference.mean - error), percent(difference.mean + error),
+      kind, percent(difference.mean - half), percent(difference.mean + half),
       percent(difference.mean));
 }
 
@@ -73,15 +82,14 @@ std::string gain_row(const HeadlineGain& gain, double reach) {
   return row + "</tr>\n";
 }
 
-/// The price of correction in words; a difference is claimed only beyond two standard errors.
+/// The price of correction in words; a difference is claimed only beyond its interval.
 std::string correction_text(const HeadlineGain& correction) {
   const PairedDifference& d = correction.difference.front();
   if (!is_shown(d)) {
     return fmt::format("Price of the correction: none shown ({} against the {})",
                        difference_text(d), correction.against);
   }
-  const std::string size =
-      fmt::format("{:.1f}{}", std::abs(d.mean), error_of_mean(d.standard_error));
+  const std::string size = fmt::format("{:.1f}{}", std::abs(d.mean), errors_text(d.errors()));
   return d.mean < 0 ? "Price of the correction: " + size
                     : "The correction costs nothing: it earns " + size + " more";
 }
@@ -90,7 +98,7 @@ std::string correction_text(const HeadlineGain& correction) {
 std::string rules_text(const HeadlineGain& rules) {
   const PairedDifference& d = rules.difference.front();
   if (!is_shown(d)) return fmt::format("none shown ({})", difference_text(d));
-  return d.mean < 0 ? fmt::format("{:.1f}{}", -d.mean, error_of_mean(d.standard_error))
+  return d.mean < 0 ? fmt::format("{:.1f}{}", -d.mean, errors_text(d.errors()))
                     : "none, they earn " + difference_text(d);
 }
 
@@ -117,11 +125,12 @@ HeadlineGain gain_over(const NamedEvaluation& exported, const NamedEvaluation& o
 
 std::string difference_text(const PairedDifference& difference) {
   return fmt::format("{}{:.1f}{}", difference.mean < 0 ? "\u2212" : "+", std::abs(difference.mean),
-                     error_of_mean(difference.standard_error));
+                     errors_text(difference.errors()));
 }
 
 bool is_shown(const PairedDifference& difference) {
-  return std::abs(difference.mean) > 2 * difference.standard_error;  // false for NaN
+  return std::abs(difference.mean) >
+         interval_half_width(difference.errors(), kShownCoverage);  // false for NaN
 }
 
 std::optional<Headline> headline_of(const std::vector<NamedEvaluation>& evaluations) {
@@ -130,7 +139,7 @@ std::optional<Headline> headline_of(const std::vector<NamedEvaluation>& evaluati
   const Evaluation& days = exported->day_reset;
   Headline headline{.days = days.days.size(),
                     .profit = days.profit_eur_per_day_per_mwh(),
-                    .standard_error = days.standard_error(),
+                    .errors = days.errors(),
                     .foresight_share = {},
                     .correction = {},
                     .rules = {},
@@ -157,7 +166,7 @@ std::string headline_html(const Headline& headline) {
       "<p class=\"figure\"><strong id=\"headline-profit\">{:.1f}</strong><span>EUR per day per MWh "
       "of capacity{}<br>the corrected student, over {} test days</span></p>\n<ul "
       "class=\"badges\">\n",
-      headline.profit, error_of_mean(headline.standard_error), headline.days);
+      headline.profit, errors_text(headline.errors), headline.days);
   if (headline.correction) {
     text += fmt::format("<li id=\"price-of-correction\">{}</li>\n",
                         html_escaped(correction_text(*headline.correction)));
@@ -174,7 +183,7 @@ std::string headline_html(const Headline& headline) {
   if (headline.gains.empty()) return text;
   text += fmt::format(
       "<table class=\"gains\">\n<caption>What it earns more than each of these, day by day, EUR "
-      "per day per MWh of capacity, \u00b1 standard error</caption>\n<thead><tr><th "
+      "per day per MWh of capacity, \u00b1 standard error, and by month</caption>\n<thead><tr><th "
       "scope=\"col\">Against</th><th scope=\"col\">No wear</th><th scope=\"col\">Wear {:g} "
       "EUR/MWh</th></tr></thead>\n<tbody>\n",
       kHeadlineWears[1]);
@@ -182,8 +191,9 @@ std::string headline_html(const Headline& headline) {
   for (const HeadlineGain& gain : headline.gains) text += gain_row(gain, reach);
   return text +
          "</tbody></table>\n<p class=\"note\">Wear is counted per MWh charged and per MWh "
-         "discharged. A bar spans two standard errors on either side; one that touches the line "
-         "shows no difference. Every day starts at the same charge.</p>\n";
+         "discharged. A bar spans the interval of 95 %, that of the wider error by Student's t; "
+         "one "
+         "that touches the line shows no difference. Every day starts at the same charge.</p>\n";
 }
 
 }  // namespace bess

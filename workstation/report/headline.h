@@ -32,8 +32,8 @@ HeadlineGain gain_over(const NamedEvaluation& exported, const NamedEvaluation& o
 
 struct Headline {
   std::size_t days;
-  double profit;  ///< EUR per day per MWh of capacity, net of the configured wear
-  double standard_error;
+  double profit;     ///< EUR per day per MWh of capacity, net of the configured wear
+  DayErrors errors;  ///< of the profit
   std::optional<double> foresight_share;
   std::optional<HeadlineGain>
       correction;  ///< against the plain student under the rules: the price of correction, negated
@@ -47,10 +47,10 @@ Evaluation at_wear(const Evaluation& evaluation, double wear_eur_per_mwh);
 /// None without an evaluation of the corrected student. Every day starts at the same SoC.
 std::optional<Headline> headline_of(const std::vector<NamedEvaluation>& evaluations);
 
-/// Beyond two standard errors; never of one day.
+/// Beyond the interval of 95 %; never of one day.
 bool is_shown(const PairedDifference& difference);
 
-/// "+5.2 ± 1.1", with a true minus; the error of one day is not known.
+/// "+5.2 ± 1.1 (1.4 by month)", with a true minus; an error that is not known is left out.
 std::string difference_text(const PairedDifference& difference);
 
 /// The head of the page: the figure, the badges, the gains. Escaped.

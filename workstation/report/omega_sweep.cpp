@@ -8,20 +8,23 @@ std::string format_omega_table(const std::vector<OmegaPoint>& points, const Eval
   std::string table = fmt::format(
       "Before repair; violations in {} states; validation and test days, SoC carried over, EUR per "
       "day per MWh of capacity\n"
-      "{:>8} {:>12} {:>12} {:>12} {:>9} {:>9} {:>8} {:>6} {:>8} {:>6}\n",
+      "{:>8} {:>12} {:>12} {:>12} {:>9} {:>9} {:>8} {:>6} {:>8} {:>8} {:>6} {:>8}\n",
       points.empty() ? 0 : points.front().certificate.states_checked, "omega", "property 1",
-      "property 2", "property 3", "KL, nats", "agrees", "profit", "s.e.", "gain", "s.e.");
+      "property 2", "property 3", "KL, nats", "agrees", "profit", "s.e.", "by month", "gain",
+      "s.e.", "by month");
   table +=
-      fmt::format("{:>8} {:>12} {:>12} {:>12} {:>9} {:>9} {:8.1f} {:6.1f}\n", "teacher", "-", "-",
-                  "-", "-", "-", teacher.profit_eur_per_day_per_mwh(), teacher.standard_error());
+      fmt::format("{:>8} {:>12} {:>12} {:>12} {:>9} {:>9} {:8.1f} {:>6} {:>8}\n", "teacher", "-",
+                  "-", "-", "-", "-", teacher.profit_eur_per_day_per_mwh(),
+                  error_text(teacher.errors().plain, 1), error_text(teacher.errors().by_month, 1));
   for (const OmegaPoint& p : points) {
     const PairedDifference gain = paired_difference(p.evaluation, teacher);
     table += fmt::format(
-        "{:>8g} {:>12} {:>12} {:>12} {:9.4f} {:7.2f} % {:8.1f} {:6.1f} {:>+8.1f} {:6.1f}\n",
+        "{:>8g} {:>12} {:>12} {:>12} {:9.4f} {:7.2f} % {:8.1f} {:>6} {:>8} {:>+8.1f} {:>6} {:>8}\n",
         p.omega, p.certificate.violations_property_1, p.certificate.violations_property_2,
         p.certificate.violations_property_3, p.divergence_nats, 100 * p.agreement,
-        p.evaluation.profit_eur_per_day_per_mwh(), p.evaluation.standard_error(), gain.mean,
-        gain.standard_error);
+        p.evaluation.profit_eur_per_day_per_mwh(), error_text(p.evaluation.errors().plain, 1),
+        error_text(p.evaluation.errors().by_month, 1), gain.mean,
+        error_text(gain.standard_error, 1), error_text(gain.standard_error_by_month, 1));
   }
   return table;
 }
@@ -30,14 +33,16 @@ std::string omega_csv(const std::vector<OmegaPoint>& points, const Evaluation& t
   std::string csv =
       "omega,states_checked,violations_property_1,violations_property_2,violations_property_3,"
       "divergence_nats,agreement,profit_eur_per_day_per_mwh,standard_error,gain_over_teacher,"
-      "gain_standard_error\n";
+      "gain_standard_error,standard_error_by_month,gain_standard_error_by_month\n";
   for (const OmegaPoint& p : points) {
     const PairedDifference gain = paired_difference(p.evaluation, teacher);
-    csv += fmt::format("{:g},{},{},{},{},{:.6g},{:.6f},{:.4f},{:.4f},{:.4f},{:.4f}\n", p.omega,
-                       p.certificate.states_checked, p.certificate.violations_property_1,
+    csv += fmt::format("{:g},{},{},{},{},{:.6g},{:.6f},{:.4f},{:.4f},{:.4f},{:.4f},{},{}\n",
+                       p.omega, p.certificate.states_checked, p.certificate.violations_property_1,
                        p.certificate.violations_property_2, p.certificate.violations_property_3,
                        p.divergence_nats, p.agreement, p.evaluation.profit_eur_per_day_per_mwh(),
-                       p.evaluation.standard_error(), gain.mean, gain.standard_error);
+                       p.evaluation.standard_error(), gain.mean, gain.standard_error,
+                       error_text(p.evaluation.errors().by_month, 4, ""),
+                       error_text(gain.standard_error_by_month, 4, ""));
   }
   return csv;
 }

@@ -18,17 +18,15 @@ std::string text_or_dash(bool present, const std::string& text) {
   return present ? text : kNotThere;
 }
 
-std::string error_text(double standard_error) {
-  return text_or_dash(!std::isnan(standard_error), fmt::format("{:.1f}", standard_error));
-}
-
 std::vector<std::string> comparison_cells(const ComparisonRow& row) {
-  const PairedDifference d = row.difference.value_or(PairedDifference{0, 0});
+  const PairedDifference d = row.difference.value_or(PairedDifference{0, std::nan("")});
   return {row.name,
           fmt::format("{:.1f}", row.profit),
-          error_text(row.standard_error),
+          error_text(row.errors.plain, 1, kNotThere),
+          error_text(row.errors.by_month, 1, kNotThere),
           text_or_dash(row.difference.has_value(), fmt::format("{:+.1f}", d.mean)),
-          text_or_dash(row.difference.has_value(), error_text(d.standard_error)),
+          error_text(d.standard_error, 1, kNotThere),
+          error_text(d.standard_error_by_month, 1, kNotThere),
           fmt::format("{:.1f}", row.worst_day),
           fmt::format("{:.2f}", row.cycles_per_day),
           fmt::format("{:.1f}", row.switches_per_day),
@@ -40,11 +38,11 @@ std::vector<std::string> comparison_cells(const ComparisonRow& row) {
 std::string comparison_table(const std::string& caption, std::vector<ComparisonRow> rows) {
   std::erase_if(rows, [](const ComparisonRow& row) { return is_under_rules(row.name); });
   if (rows.empty()) return {};
-  HtmlTable table{
-      fmt::format("{}, {} days", caption, rows.front().days),
-      {"Policy", "EUR/day/MWh", "s.e.", "Gain", "s.e.", "Worst day", "Cycles/day", "Switches/day",
-       "% of foresight", fmt::format("At wear {:g}", kReferenceWearEurPerMwh)},
-      {}};
+  HtmlTable table{fmt::format("{}, {} days", caption, rows.front().days),
+                  {"Policy", "EUR/day/MWh", "s.e.", "By month", "Gain", "s.e.", "By month",
+                   "Worst day", "Cycles/day", "Switches/day", "% of foresight",
+                   fmt::format("At wear {:g}", kReferenceWearEurPerMwh)},
+                  {}};
   for (const ComparisonRow& row : rows) table.rows.push_back(comparison_cells(row));
   return format_table(table);
 }
@@ -119,12 +117,14 @@ std::string comparison_html(const std::vector<NamedEvaluation>& evaluations) {
   if (reset.empty() && carried.empty()) return {};
   return fmt::format(
       "{}{}<p class=\"note\">Money in EUR per day per MWh of capacity. Gain: mean day-by-day "
-      "difference to {}; s.e.: standard error of the mean to its left. A gain under two standard "
-      "errors shows nothing. Cycles: energy through the battery over twice its capacity; switches: "
+      "difference to {}; s.e.: standard error of the mean to its left; by month: {}. A gain within "
+      "{} shows nothing. Cycles: energy through the battery over twice its capacity; switches: "
       "changes of the order. At wear {:g}: {}.</p>\n",
       comparison_table("Each day starts at the same charge", reset),
       comparison_table("Charge carried over from day to day", carried),
-      html_escaped(evaluations.front().name), kReferenceWearEurPerMwh,
+      html_escaped(evaluations.front().name),
+      html_escaped(by_month_meaning(months_of(evaluations))), kIntervalMeaning,
+      kReferenceWearEurPerMwh,
       html_escaped(reference_wear_meaning(configured_wear_eur_per_mwh(evaluations))));
 }
 

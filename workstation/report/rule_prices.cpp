@@ -18,7 +18,8 @@ const NamedEvaluation* find(const std::vector<NamedEvaluation>& evaluations,
 std::string price_line(const std::string& name, const HeadlineGain& gain) {
   std::string line = fmt::format("  {:<44}", name);
   for (const PairedDifference& d : gain.difference) {
-    line += fmt::format("  {:>+8.1f} {:>6.1f}", d.mean, d.standard_error);
+    line += fmt::format("  {:>+8.1f} {:>6} {:>8}", d.mean, error_text(d.standard_error, 1),
+                        error_text(d.standard_error_by_month, 1));
   }
   return line + "\n";
 }
@@ -52,8 +53,9 @@ std::string rule_prices_text(const RulePrices& prices) {
   std::string text = fmt::format(
       "What the rules change, in EUR per day per MWh of capacity: the plain student's decisions "
       "moved to the\nnearest that they leave; what is left between that and the corrected student "
-      "is the correction\n  {:<44}  {:>8} {:>6}  {:>8} {:>6}\n",
-      "", "wear 0", "s.e.", fmt::format("wear {:g}", kHeadlineWears[1]), "s.e.");
+      "is the correction\n  {:<44}  {:>8} {:>6} {:>8}  {:>8} {:>6} {:>8}\n",
+      "", "wear 0", "s.e.", "by month", fmt::format("wear {:g}", kHeadlineWears[1]), "s.e.",
+      "by month");
   for (const HeadlineGain& rule : prices.rules) {
     text += price_line(fmt::format("rule \"{}\" alone", rule.meaning), rule);
   }
@@ -70,6 +72,8 @@ Json rule_prices_json(const RulePrices& prices) {
       const std::string key = fmt::format("at_wear_{:g}", kHeadlineWears[w]);
       json.set((key + "_eur_per_day_per_mwh").c_str(), Decimals{gain.difference[w].mean, 4});
       json.set((key + "_standard_error").c_str(), Decimals{gain.difference[w].standard_error, 4});
+      json.set((key + "_standard_error_by_month").c_str(),
+               Decimals{gain.difference[w].standard_error_by_month, 4});
     }
     list.add(std::move(json));
   };

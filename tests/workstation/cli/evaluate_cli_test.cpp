@@ -58,7 +58,8 @@ TEST_F(EvaluateCli, OnePolicyKeepsItsJsonFields) {
   EXPECT_THAT(json_keys(text[0]),
               testing::ElementsAre("policy", "split", "days", "profit_eur_per_day_per_mwh",
                                    "profit_at_wear_10_eur_per_day_per_mwh", "standard_error",
-                                   "cycles_per_day", "worst_day_eur_per_mwh", "share_of_foresight",
+                                   "standard_error_by_month", "months", "cycles_per_day",
+                                   "worst_day_eur_per_mwh", "share_of_foresight",
                                    "switches_per_day", "soc_end_mean", "carry_soc", "description"));
   EXPECT_THAT(text[0], HasSubstr("\"carry_soc\":false"));
   EXPECT_THAT(output("evaluate", "--policy rbc --json --carry-soc"),
@@ -69,8 +70,8 @@ TEST_F(EvaluateCli, SeveralPoliciesAddTheDifferenceAndTheOtherWayOfCounting) {
   const auto text = lines(output("evaluate", "--policy rbc rbc:60:140 --json"));
   ASSERT_EQ(text.size(), 2U);
   const auto keys = json_keys(text[1]);
-  EXPECT_THAT(keys, testing::IsSupersetOf(
-                        {"difference_to_first", "difference_standard_error", "carried_over"}));
+  EXPECT_THAT(keys, testing::IsSupersetOf({"difference_to_first", "difference_standard_error",
+                                           "gain_standard_error_by_month", "carried_over"}));
 }
 
 TEST_F(EvaluateCli, SeveralPoliciesShowBothTables) {

@@ -51,12 +51,33 @@ TEST(BacktestReport, SaysOnHowManyDaysEachMonthWasFitted) {
   EXPECT_THAT(format_backtest_table(fitted),
               HasSubstr("fitted on the 90 to 120 days before it, of 120 that were asked for;"));
   EXPECT_THAT(backtest_csv(fitted),
-              AllOf(HasSubstr(",fitted_days\n"), HasSubstr(",90\n"), HasSubstr(",120\n")));
+              AllOf(HasSubstr(",fitted_days,"), HasSubstr(",90,"), HasSubstr(",120,")));
   EXPECT_THAT(backtest_json(fitted).line(),
               AllOf(HasSubstr("{\"month\":\"2023-04\",\"fitted_days\":90}"),
                     HasSubstr("\"not_traded\":[{\"month\":\"2023-02\",\"reason\":\"31 of ")));
   fitted.fitted_days = {120, 120};
   EXPECT_THAT(format_backtest_table(fitted), HasSubstr("fitted on the 120 days before it; SoC"));
+}
+
+/// April earned 10 a day more than the first, May 20: of two months the error is 5, whatever the days say.
+TEST(BacktestReport, TellsErrorsByMonthBesideThePlainOnes) {
+  BacktestResults fitted = results(10);
+  WalkForward& sdp = fitted.policies[1];
+  for (std::size_t d = 0; d < 6; ++d) {
+    const double profit_eur = 10 + (d < 3 ? 10 : 20);
+    sdp.total.days[d].profit_eur = profit_eur;
+    sdp.by_month[d / 3].days[d % 3].profit_eur = profit_eur;
+  }
+  EXPECT_THAT(format_backtest_table(fitted),
+              AllOf(HasSubstr("gain   s.e. by month"), HasSubstr("   +15.0    2.2      5.0"),
+                    HasSubstr("2 months tell it to within 71 % only")));
+  EXPECT_THAT(backtest_csv(fitted), HasSubstr("all,sdp,6,25.0000,2.2361,15.0000,2.2361,2.0000,"));
+  EXPECT_THAT(backtest_csv(fitted), HasSubstr(",,5.0000,5.0000\n"));
+  EXPECT_THAT(backtest_json(fitted).line(), HasSubstr("\"gain_standard_error_by_month\":5.0000"));
+  const TemporaryFolder folder;
+  write_backtest_page(fitted, folder.file(""));
+  EXPECT_THAT(read_file(folder.file("backtest.html")),
+              HasSubstr("<td data-label=\"by month\">5.0</td>"));
 }
 
 TEST(BacktestReport, ThePageLabelsEachMonthOnceAndDrawsAFallWhereThereIsOne) {

@@ -30,7 +30,7 @@ TEST(Comparison, RowsAreThoseOfTheEvaluations) {
   EXPECT_DOUBLE_EQ(rows[0].profit, 200);
   EXPECT_FALSE(rows[0].difference.has_value());
   EXPECT_DOUBLE_EQ(rows[1].profit, policies[1].day_reset.profit_eur_per_day_per_mwh());
-  EXPECT_DOUBLE_EQ(rows[1].standard_error, policies[1].day_reset.standard_error());
+  EXPECT_DOUBLE_EQ(rows[1].errors.plain, policies[1].day_reset.standard_error());
   const PairedDifference d = paired_difference(policies[1].day_reset, policies[0].day_reset);
   ASSERT_TRUE(rows[1].difference.has_value());
   EXPECT_DOUBLE_EQ(rows[1].difference->mean, d.mean);
@@ -56,9 +56,10 @@ TEST(Comparison, ProfitAtTheReferenceWearByHand) {
   EXPECT_NE(table.find("at wear 10\nrule "), std::string::npos) << table;
   EXPECT_NE(table.find("     180.0\n"), std::string::npos) << table;
   EXPECT_NE(table.find("it costs what is configured: 25"), std::string::npos) << table;
-  EXPECT_NE(comparison_csv({rule}).find(",profit_at_wear_10_eur_per_day_per_mwh\nrule,reset,2,"),
+  EXPECT_NE(comparison_csv({rule}).find(
+                ",profit_at_wear_10_eur_per_day_per_mwh,standard_error_by_month,"),
             std::string::npos);
-  EXPECT_NE(comparison_csv({rule}).find(",180.0000\n"), std::string::npos);
+  EXPECT_NE(comparison_csv({rule}).find(",180.0000,,,1\n"), std::string::npos);
 }
 
 TEST(Comparison, WithoutForesightThereIsNoShare) {
@@ -92,6 +93,26 @@ TEST(Comparison, CsvHasOneLinePerPolicyAndWay) {
             std::string::npos)
       << csv;
   EXPECT_NE(csv.find("\nstudent,carried,3,"), std::string::npos);
+}
+
+/// Two days of January and two of February: the rule earns nothing, the student 1 3 and 6 10 a MWh. By hand in
+/// day_errors_test.cpp: mean 5, errors 1.958 and 3 by two months, known to within 71 %.
+TEST(Comparison, BothErrorsStandBesideProfitAndGain) {
+  NamedEvaluation rule{"rule", evaluation_of({0, 0, 0, 0}), {}};
+  NamedEvaluation student{"student", evaluation_of({8, 24, 48, 80}), {}};
+  const char* const dates[] = {"2023-01-30", "2023-01-31", "2023-02-27", "2023-02-28"};
+  for (std::size_t d = 0; d < 4; ++d) {
+    rule.day_reset.days[d].date = student.day_reset.days[d].date = dates[d];
+  }
+  const std::string table = format_comparison_table({rule, student});
+  EXPECT_NE(table.find("profit   s.e. by month      gain   s.e. by month"), std::string::npos);
+  EXPECT_NE(table.find("     5.0    2.0      3.0      +5.0    2.0      3.0  "), std::string::npos)
+      << table;
+  EXPECT_NE(table.find("2 months tell it to within 71 % only"), std::string::npos) << table;
+  const std::string csv = comparison_csv({rule, student});
+  EXPECT_NE(csv.find(",standard_error_by_month,gain_standard_error_by_month,months\n"),
+            std::string::npos);
+  EXPECT_NE(csv.find(",3.0000,3.0000,2\n"), std::string::npos) << csv;
 }
 
 TEST(Comparison, CsvQuotesNamesThatNeedIt) {

@@ -63,10 +63,15 @@ TEST(Headline, WearReplacesTheConfiguredOne) {
                    worn.day_reset.profit_at_wear_eur_per_day_per_mwh(10));
 }
 
-TEST(Headline, ADifferenceIsClaimedBeyondTwoErrorsOnly) {
-  EXPECT_TRUE(is_shown({-2.1, 1}));
-  EXPECT_FALSE(is_shown({1.9, 1}));
-  EXPECT_FALSE(is_shown({100, std::numeric_limits<double>::quiet_NaN()}));
+TEST(Headline, ADifferenceIsClaimedBeyondItsIntervalOnly) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(is_shown({-2.1, 1, kUnknown, 1, 65}));
+  EXPECT_FALSE(is_shown({1.9, 1, kUnknown, 1, 65}));
+  EXPECT_FALSE(is_shown({100, kUnknown, kUnknown, 1, 1}));
+  // Twelve months ask for 2.2 errors, four for 3.2; months that agree by chance claim nothing more.
+  EXPECT_TRUE(is_shown({2.3, 0.5, 1, 12, 65}));
+  EXPECT_FALSE(is_shown({2.3, 0.5, 1, 4, 20}));
+  EXPECT_FALSE(is_shown({1.9, 1, 0.1, 12, 65}));
 }
 
 TEST(Headline, ThePriceOfCorrectionIsInWords) {

@@ -122,11 +122,13 @@ TEST(Report, TableNumbersAreThoseOfTheEvaluations) {
     const PairedDifference d = paired_difference(teacher, in.evaluations[0].*field);
     const std::string cells = with_minus(fmt::format(
         "teacher</th><td data-label=\"EUR/day/MWh\">{:.1f}</td><td data-label=\"s.e.\">{:.1f}</td>"
-        "<td data-label=\"Gain\">{:+.1f}</td><td data-label=\"s.e.\">{:.1f}</td>"
+        "<td data-label=\"By month\">{:.1f}</td><td data-label=\"Gain\">{:+.1f}</td>"
+        "<td data-label=\"s.e.\">{:.1f}</td><td data-label=\"By month\">{:.1f}</td>"
         "<td data-label=\"Worst day\">{:.1f}</td><td data-label=\"Cycles/day\">{:.2f}</td>"
         "<td data-label=\"Switches/day\">{:.1f}</td>",
-        teacher.profit_eur_per_day_per_mwh(), teacher.standard_error(), d.mean, d.standard_error,
-        teacher.worst_day_eur_per_mwh(), teacher.cycles_per_day(), teacher.switches_per_day()));
+        teacher.profit_eur_per_day_per_mwh(), teacher.standard_error(), teacher.errors().by_month,
+        d.mean, d.standard_error, d.standard_error_by_month, teacher.worst_day_eur_per_mwh(),
+        teacher.cycles_per_day(), teacher.switches_per_day()));
     EXPECT_NE(html.find(cells), std::string::npos) << cells;
   }
   EXPECT_NE(html.find("<th scope=\"col\">At wear 10</th>"), std::string::npos);
