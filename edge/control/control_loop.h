@@ -30,6 +30,7 @@
 #include "edge/control/hold.h"
 #include "edge/control/order_in_force.h"
 #include "edge/control/policy.h"
+#include "edge/control/recalled_time.h"
 #include "edge/control/reserve.h"
 #include "edge/control/safety_guard.h"
 #include "edge/control/site_limits.h"
@@ -79,6 +80,7 @@ class ControlLoop {
   void recall(const CycleRecord& record) {
     if (!settings_.control || !record.has_measurement) return;
     supervision_.recall(recalled_response(record));
+    order_.set_ahead(recalled_time_.ahead_s());
     if (record.mode == Mode::kRunning) {
       supervision_.on_ordered(record.utc_s, record.battery_status);
     }
@@ -88,7 +90,7 @@ class ControlLoop {
     cycle_budget_.restore(before.throughput);
     price_level_ = before.price_level;
     supervision_.restore(before.trip);
-    supervision_.restore(before.lost_orders, before.utc_s);
+    supervision_.restore(before.lost_orders, before.utc_s + recalled_time_.ahead_s());
     reversal_cap_.restore(before.reversals, before.utc_s);
     full_charge_.restore(before.last_full_day);
     site_.take_over(before.utc_s, before.site);
@@ -297,8 +299,9 @@ class ControlLoop {
     last_tick_utc_s_ = tick_utc_s;
   }
 
-  [[nodiscard]] Response recalled_response(const CycleRecord& record) const {
+  [[nodiscard]] Response recalled_response(const CycleRecord& record) {
     return {.utc_s = record.utc_s - settings_.read_lead_s,
+            .steady_s = recalled_time_.steady_s(record, settings_.read_lead_s),
             .is_driven = record.followed.is_judged,
             .ordered_power_w = record.followed.power_w,
             .order_age_s = record.followed.age_s,
@@ -551,6 +554,7 @@ class ControlLoop {
   PriceLevel price_level_;
   FrozenPrice frozen_price_;
   Supervision supervision_;
+  RecalledTime recalled_time_;
   Mode mode_ = Mode::kStart;
   std::int64_t cycle_ = 0;
   std::int64_t last_tick_utc_s_ = 0;

@@ -29,7 +29,7 @@ class LostOrders {
 
   /// `follows_another`: nothing of ours is in force, and the battery follows an order.
   void observe(const Response& now, bool follows_another) {
-    if (lost_utc_s_ != 0 && now.utc_s - lost_utc_s_ > kForgottenAfterS) forget_old();
+    if (lost_s_ != 0 && now.steady_s - lost_s_ > kForgottenAfterS) forget_old();
     const Fate fate = follows_another ? Fate::kReplaced : fate_of(now);
     if (is_lost(now.measurement)) lost_order_ = now.order_number;
     was_lost_ = fate == Fate::kReplaced || fate == Fate::kEnded;
@@ -44,17 +44,17 @@ class LostOrders {
 
   /// Time to give the battery back: the newest order was lost, and so were others before it. Who
   /// insists tries for an hour first, and after that as long as less than half is lost.
-  [[nodiscard]] bool is_to_be_given_up(std::int64_t utc_s, bool yields) const {
+  [[nodiscard]] bool is_to_be_given_up(std::int64_t steady_s, bool yields) const {
     if (!was_lost_ || !count_.is_found()) return false;
     const bool most = 2 * history_.lost >= history_.judged;
-    return yields || (most && utc_s - first_lost_utc_s_ >= kInsistsForS);
+    return yields || (most && steady_s - first_lost_s_ >= kInsistsForS);
   }
   /// Why: kOtherMaster where somebody's hand was seen, else kNoAnswer.
   [[nodiscard]] Reason reason() const {
     return was_replaced_ ? Reason::kOtherMaster : Reason::kNoAnswer;
   }
   /// Orders have held for long enough since one was lost.
-  [[nodiscard]] bool has_settled() const { return first_lost_utc_s_ == 0; }
+  [[nodiscard]] bool has_settled() const { return first_lost_s_ == 0; }
 
   /// The battery has been given back: found anew from here.
   void forget_findings() {
@@ -70,9 +70,9 @@ class LostOrders {
       const bool lost = (logged.orders >> i & 1U) != 0;
       history_.note(lost);
       lost ? count_.bad() : count_.good();
-      if (lost && first_lost_utc_s_ == 0) first_lost_utc_s_ = utc_s - (i + 1) * kSecondsPerStep;
+      if (lost && first_lost_s_ == 0) first_lost_s_ = utc_s - (i + 1) * kSecondsPerStep;
     }
-    lost_utc_s_ = utc_s;
+    lost_s_ = utc_s;
     history_.is_found = logged.is_found;
   }
   /// Since start.
@@ -116,7 +116,7 @@ class LostOrders {
   }
 
   void settle() {
-    first_lost_utc_s_ = 0;
+    first_lost_s_ = 0;
     history_.is_found = false;
   }
 
@@ -125,8 +125,8 @@ class LostOrders {
     history_.note(true);
     history_.is_found = history_.is_found || count_.is_found();
     held_ = 0;
-    lost_utc_s_ = now.utc_s;
-    if (first_lost_utc_s_ == 0) first_lost_utc_s_ = now.utc_s;
+    lost_s_ = now.steady_s;
+    if (first_lost_s_ == 0) first_lost_s_ = now.steady_s;
     was_replaced_ = was_replaced_ || fate == Fate::kReplaced;
     ++(fate == Fate::kReplaced ? replaced_ : ended_);
   }
@@ -134,18 +134,18 @@ class LostOrders {
   void forget_old() {
     forget_findings();
     history_ = {};
-    lost_utc_s_ = 0;
+    lost_s_ = 0;
   }
 
   ResponseSettings settings_;
   LeakyCount count_;
   LostOrderHistory history_;
-  bool was_lost_ = false;              ///< by the newest reading
-  bool was_replaced_ = false;          ///< one of those that are counted
-  std::int64_t lost_order_ = -1;       ///< number of the newest that was
-  std::int64_t lost_utc_s_ = 0;        ///< when that was seen; 0 = long ago
-  std::int64_t first_lost_utc_s_ = 0;  ///< of those since orders had settled; 0 = they have
-  std::int32_t held_ = 0;              ///< in a row since then
+  bool was_lost_ = false;          ///< by the newest reading
+  bool was_replaced_ = false;      ///< one of those that are counted
+  std::int64_t lost_order_ = -1;   ///< number of the newest that was
+  std::int64_t lost_s_ = 0;        ///< when that was seen; 0 = long ago
+  std::int64_t first_lost_s_ = 0;  ///< of those since orders had settled; 0 = they have
+  std::int32_t held_ = 0;          ///< in a row since then
   std::int32_t replaced_ = 0;
   std::int32_t ended_ = 0;
 };

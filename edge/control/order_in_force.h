@@ -20,6 +20,7 @@ class OrderInForce {
       : settings_(settings),
         battery_(battery),
         clock_(clock),
+        time_(clock),
         soc_floor_e4_(settings.guard.soc_min_e4) {}
   OrderInForce(const OrderInForce&) = delete;
   OrderInForce& operator=(const OrderInForce&) = delete;
@@ -43,12 +44,13 @@ class OrderInForce {
     was_found_ = settings_.control && measurement.dispatch_active;
     if (!was_found_) return;
     exists_ = true;
-    since_utc_s_ = now_utc_s();
+    since_s_ = time_.now_s();
     if (!measurement.has_order_power) return;
     power_w_ = measurement.order_power_w;
-    const bool is_expected = power_w_ == expected_power_w_ && expected_utc_s_ <= since_utc_s_ &&
-                             since_utc_s_ - expected_utc_s_ <= settings_.order_duration_s;
-    if (is_expected) since_utc_s_ = expected_since_utc_s_;
+    const std::int64_t utc_s = now_utc_s();
+    const bool is_expected = power_w_ == expected_power_w_ && expected_utc_s_ <= utc_s &&
+                             utc_s - expected_utc_s_ <= settings_.order_duration_s;
+    if (is_expected) since_s_ -= utc_s - expected_since_utc_s_;
   }
 
   /// The newest order of the run before, by its log, and since when it has been that power: found in force, it
@@ -58,6 +60,9 @@ class OrderInForce {
     expected_utc_s_ = utc_s;
     expected_since_utc_s_ = since_utc_s;
   }
+
+  /// Of steady time before UTC: it goes on from what was recalled.
+  void set_ahead(std::int64_t ahead_s) { time_.set_ahead(ahead_s); }
 
   /// An order belongs to its tick: a process that was stopped and goes on later neither writes it nor
   /// feeds it, for the price that it was decided on is gone.
@@ -71,7 +76,7 @@ class OrderInForce {
   }
 
   Status write(std::int32_t power_w, std::int32_t reserve_soc_e4, std::int64_t write_until_ns) {
-    if (!exists_ || power_w != power_w_) since_utc_s_ = now_utc_s();
+    if (!exists_ || power_w != power_w_) since_s_ = time_.now_s();
     exists_ = true;  // even when it fails: the battery may have understood
     power_w_ = power_w;
     fed_utc_ns_ = clock_.now_utc_ns();
@@ -117,14 +122,15 @@ class OrderInForce {
   /// Only the order that the battery really follows can be answered: one that it refused, or that
   /// has run out, leaves it in its own mode, which goes any way.
   [[nodiscard]] Response response(const BatteryMeasurement& m) const {
-    const std::int64_t read_utc_s = now_utc_s();
+    const std::int64_t read_s = time_.now_s();
     const bool is_known = m.has_order_power || is_confirmed_;
-    return {.utc_s = read_utc_s,
+    return {.utc_s = now_utc_s(),
+            .steady_s = read_s,
             .is_driven =
                 exists_ && m.dispatch_active && is_known && !m.order_replaced && !m.order_ended,
             .order_number = number_,
             .ordered_power_w = m.has_order_power ? m.order_power_w : power_w_,
-            .order_age_s = static_cast<std::int32_t>(read_utc_s - since_utc_s_),
+            .order_age_s = static_cast<std::int32_t>(read_s - since_s_),
             .soc_floor_e4 = soc_floor_e4_,
             .soc_ceiling_e4 = settings_.guard.soc_max_e4,
             .measurement = m};
@@ -138,13 +144,14 @@ class OrderInForce {
   const ControlSettings& settings_;
   Battery& battery_;
   Clock& clock_;
+  SteadyTime<Clock> time_;
   bool exists_ = false;
   std::int32_t power_w_ = 0;
-  bool is_confirmed_ = false;     ///< it was read back
-  std::int64_t number_ = 0;       ///< of the orders that were
-  std::int64_t since_utc_s_ = 0;  ///< when that power was ordered first
-  std::int64_t fed_utc_ns_ = 0;   ///< when the battery last got an order or a refresh
-  std::int32_t soc_floor_e4_;     ///< at which the device itself stops to discharge by it
+  bool is_confirmed_ = false;    ///< it was read back
+  std::int64_t number_ = 0;      ///< of the orders that were
+  std::int64_t since_s_ = 0;     ///< steady: when that power was ordered first
+  std::int64_t fed_utc_ns_ = 0;  ///< when the battery last got an order or a refresh
+  std::int32_t soc_floor_e4_;    ///< at which the device itself stops to discharge by it
   std::int64_t write_until_ns_ = 0;
   std::int64_t feed_until_ns_ = 0;
   std::int32_t expected_power_w_ = 0;

@@ -18,6 +18,7 @@ constexpr std::int32_t kBalancesFromE4 = 9'500;
 constexpr std::int32_t kBalancingPercentMax = 15;  ///< of the rating
 /// A battery that takes longer from rest to its rating has not followed, whatever it moves.
 constexpr std::int32_t kFullRampS = 180;
+constexpr std::int64_t kReadingGapMaxS = 300;  ///< a reading that was lost, and the time of both
 
 }  // namespace
 
@@ -27,7 +28,7 @@ void ResponseMonitor::observe(const Response& now) {
   trip_if(soc_.contradicts(), Reason::kSocMismatch);  // what power shows says more
   count_locked(now.measurement);
   has_before_ = true;
-  before_utc_s_ = now.utc_s;
+  before_s_ = now.steady_s;
   before_power_w_ = now.measurement.power_w;
   before_ordered_w_ = now.ordered_power_w;
 }
@@ -70,7 +71,7 @@ void ResponseMonitor::judge_idle(const Response& now) {
     needs_no_care_ = true;
   } else if (is_care(now.measurement)) {
     care_.bad();
-  } else if (!note_ramp(now, before_power_w_)) {
+  } else if (!is_ramp(now)) {
     excessive_idle_.bad();
     trip_if(excessive_idle_.is_found(), Reason::kUncontrolledPower);
   }
@@ -87,7 +88,7 @@ void ResponseMonitor::judge_driven(const Response& now) {
   if (measured_w < -noise_w) {
     if (is_care(now.measurement)) return care_.bad();
     // A device may ramp its setpoint: then it comes from the order before, whatever of it flowed.
-    if (!note_ramp(now, before_power_w_) && !note_ramp(now, before_ordered_w_)) {
+    if (!is_ramp(now) && !note_ramp(now, before_ordered_w_)) {
       opposed_.bad(is_charging);
       trip_if(opposed_.is_found(), Reason::kWrongDirection);
     }
@@ -95,7 +96,7 @@ void ResponseMonitor::judge_driven(const Response& now) {
   }
   const bool is_pv = is_charging && settings_.band.charges_by_itself;
   if (measured_w - ordered_w > settings_.tolerance_w(ordered_w) && !is_pv) {
-    if (note_ramp(now, before_power_w_)) return;
+    if (is_ramp(now)) return;
     excessive_driven_.bad(is_charging);
     return trip_if(excessive_driven_.is_found(), Reason::kUncontrolledPower);
   }
@@ -132,7 +133,7 @@ void ResponseMonitor::judge_answer(const Response& now, std::int32_t measured_w)
 /// Whether the power is on its way to a new order, too slow for its map but quicker than a fault that
 /// merely differs from one reading to the next.
 bool ResponseMonitor::note_ramp(const Response& now, std::int32_t from_w) {
-  const bool is_new_order = has_before_ && now.order_age_s <= now.utc_s - before_utc_s_;
+  const bool is_new_order = knows_before(now) && now.order_age_s <= now.steady_s - before_s_;
   if (!is_new_order) return false;
   const std::int64_t left_w = std::int64_t{now.ordered_power_w} - from_w;
   const std::int64_t moved_w = std::int64_t{now.measurement.power_w} - from_w;
@@ -142,6 +143,25 @@ bool ResponseMonitor::note_ramp(const Response& now, std::int32_t from_w) {
   ramp_w_per_s_ = static_cast<std::int32_t>(towards_w / now.order_age_s);
   slow_.bad();
   return true;
+}
+
+/// Of a reading long ago it is not known what came after it.
+bool ResponseMonitor::knows_before(const Response& now) const {
+  const std::int64_t seconds = now.steady_s - before_s_;
+  return has_before_ && seconds > 0 && seconds <= kReadingGapMaxS;
+}
+
+bool ResponseMonitor::is_ramp(const Response& now) {
+  return knows_before(now) ? note_ramp(now, before_power_w_) : may_be_ramp(now);
+}
+
+/// The first reading of a new order, with nothing known of the one before: it comes from its rating at most.
+bool ResponseMonitor::may_be_ramp(const Response& now) const {
+  if (now.order_age_s > kSecondsPerStep) return false;
+  const std::int64_t apart_w = std::int64_t{now.measurement.power_w} - now.ordered_power_w;
+  const std::int64_t rated_w = apart_w < 0 ? -std::int64_t{settings_.power_w} : settings_.power_w;
+  const std::int64_t least_w = std::int64_t{settings_.power_w} * now.order_age_s / kFullRampS;
+  return std::abs(apart_w) <= std::abs(rated_w - now.ordered_power_w) - least_w;
 }
 
 bool ResponseMonitor::is_care(const BatteryMeasurement& m) const {

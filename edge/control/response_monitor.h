@@ -85,6 +85,9 @@ class ResponseMonitor {
   void judge_answer(const Response& now, std::int32_t measured_w);
   void trip_if(bool is_found, Reason reason);
   bool note_ramp(const Response& now, std::int32_t from_w);
+  bool is_ramp(const Response& now);
+  [[nodiscard]] bool knows_before(const Response& now) const;
+  [[nodiscard]] bool may_be_ramp(const Response& now) const;
   [[nodiscard]] bool is_care(const BatteryMeasurement& m) const;
   [[nodiscard]] std::int32_t reachable_power_w(const Response& now) const;
   [[nodiscard]] bool may_be_less(const Response& now) const;
@@ -105,7 +108,7 @@ class ResponseMonitor {
   std::int32_t weak_answers_ = 0;
   std::int32_t unanswered_orders_ = 0;
   bool has_before_ = false;
-  std::int64_t before_utc_s_ = 0;
+  std::int64_t before_s_ = 0;
   std::int32_t before_power_w_ = 0;
   std::int32_t before_ordered_w_ = 0;
 };

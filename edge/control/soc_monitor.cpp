@@ -46,7 +46,7 @@ void SocMonitor::observe(const Response& now) {
   const BatteryMeasurement& m = now.measurement;
   capacity_wh_ = m.capacity_wh > 0 ? m.capacity_wh : settings_.capacity_wh;
   shown_step_e4_ = std::gcd(shown_step_e4_, m.soc_e4);
-  const std::int64_t seconds = now.utc_s - before_.utc_s;
+  const std::int64_t seconds = now.steady_s - before_.steady_s;
   if (!has_before_ || seconds <= 0 || seconds > kReadingGapMaxS) return begin_anew(now);
   const Flow flow = flow_until(now);
   const std::int64_t change_e4 = m.soc_e4 - before_.measurement.soc_e4;
@@ -66,14 +66,14 @@ void SocMonitor::observe(const Response& now) {
 void SocMonitor::note_power(const Response& now) {
   flowed_ws_ += flowed_ws(now, 0);
   late_ws_ += late_ws(now);
-  flow_utc_s_ = now.utc_s;
+  flow_s_ = now.steady_s;
   flow_power_w_ = now.measurement.power_w;
 }
 
 void SocMonitor::begin_anew(const Response& now) {
   has_before_ = true;
   before_ = now;
-  flow_utc_s_ = now.utc_s;
+  flow_s_ = now.steady_s;
   flow_power_w_ = now.measurement.power_w;
   flowed_ws_ = late_ws_ = 0;
   still_e4_ = still_least_e4_ = still_most_e4_ = still_total_e4_ = 0;
@@ -83,7 +83,7 @@ void SocMonitor::begin_anew(const Response& now) {
 
 /// The reading's own power since its order, the power of the reading before until then.
 std::int64_t SocMonitor::flowed_ws(const Response& now, std::int64_t delay_s) const {
-  const std::int64_t seconds = std::max<std::int64_t>(now.utc_s - flow_utc_s_, 0);
+  const std::int64_t seconds = std::max<std::int64_t>(now.steady_s - flow_s_, 0);
   const std::int64_t of_order_s = std::clamp<std::int64_t>(now.order_age_s - delay_s, 0, seconds);
   return std::int64_t{now.measurement.power_w} * of_order_s +
          std::int64_t{flow_power_w_} * (seconds - of_order_s);
@@ -97,7 +97,7 @@ std::int64_t SocMonitor::late_ws(const Response& now) const {
   const std::int32_t power_w = now.measurement.power_w;
   const std::int64_t apart_w = std::int64_t{power_w} - now.ordered_power_w;
   if (std::abs(apart_w) <= settings_.tolerance_w(now.ordered_power_w)) return late_ws;
-  const std::int64_t seconds = std::max<std::int64_t>(now.utc_s - flow_utc_s_, 0);
+  const std::int64_t seconds = std::max<std::int64_t>(now.steady_s - flow_s_, 0);
   const std::int64_t ramp_ws = (std::int64_t{power_w} + flow_power_w_) * seconds / 2;
   return power_w > 0 ? std::min(late_ws, ramp_ws) : std::max(late_ws, ramp_ws);
 }
@@ -161,7 +161,7 @@ bool SocMonitor::is_beyond_its_end(std::int32_t soc_e4, const Flow& flow, std::i
 }
 
 bool SocMonitor::judge_jump(const Response& now, const Flow& flow, std::int64_t change_e4) {
-  const std::int64_t seconds = now.utc_s - before_.utc_s;
+  const std::int64_t seconds = now.steady_s - before_.steady_s;
   const bool is_at_rest = rests(now) && rests(before_) && now.order_age_s >= seconds;
   const std::int64_t full_step_e4 = e4_of(std::int64_t{settings_.power_w} * seconds);
   const std::int64_t slack_e4 =
@@ -182,7 +182,7 @@ bool SocMonitor::judge_jump(const Response& now, const Flow& flow, std::int64_t 
 
 EnergyInterval SocMonitor::interval_of(const Response& now, const Flow& flow) const {
   using Kind = EnergyInterval::Kind;
-  const std::int64_t seconds = now.utc_s - before_.utc_s;
+  const std::int64_t seconds = now.steady_s - before_.steady_s;
   const std::int32_t noise_w = settings_.noise_w();
   const std::int64_t flowing_e4 = e4_of(4 * std::int64_t{noise_w} * seconds);
   // In its own mode the power changes between the readings.
@@ -219,7 +219,8 @@ void SocMonitor::judge_standstill(const Response& now, const Flow& flow, bool ex
     still_readings_ = 0;
     return;
   }
-  const std::int64_t moved_e4 = excused ? 0 : surely_moved_e4(flow, now.utc_s - before_.utc_s);
+  const std::int64_t moved_e4 =
+      excused ? 0 : surely_moved_e4(flow, now.steady_s - before_.steady_s);
   still_e4_ += moved_e4;
   still_total_e4_ += std::abs(moved_e4);
   still_least_e4_ = std::min(still_least_e4_, still_e4_);

@@ -63,9 +63,9 @@ class SocMonitor {
   bool has_before_ = false;
   Response before_;
   std::int64_t capacity_wh_ = 1;
-  std::int64_t flowed_ws_ = 0;  ///< from then until `flow_utc_s_`, with `flow_power_w_` at its end
+  std::int64_t flowed_ws_ = 0;  ///< from then until `flow_s_`, with `flow_power_w_` at its end
   std::int64_t late_ws_ = 0;
-  std::int64_t flow_utc_s_ = 0;
+  std::int64_t flow_s_ = 0;
   std::int32_t flow_power_w_ = 0;
 
   std::int32_t shown_step_e4_ = 0;  ///< the smallest change that it has shown; 0 = none yet

@@ -111,13 +111,13 @@ class Supervision {
  private:
   void judge(const Response& now) {
     response_.observe(now);
-    if (response_.needs_no_care()) care_since_utc_s_ = 0;
+    if (response_.needs_no_care()) care_since_s_ = 0;
     if (response_.trip() != Reason::kStudent) {
       trip_ = {.reason = response_.trip(), .utc_s = now.utc_s};
     } else if (response_.gives_no_answer()) {
       pause(now.utc_s, Reason::kNoAnswer);
     } else if (response_.looks_after_itself()) {
-      pause_for_care(now.utc_s);
+      pause_for_care(now);
     } else if (response_.has_answered() && lost_.has_settled() && failed_orders_ == 0) {
       pause_.on_success();
     }
@@ -129,12 +129,12 @@ class Supervision {
     response_.forget();
   }
   /// Tried again soon, as often as it takes: the price may want it meanwhile.
-  void pause_for_care(std::int64_t utc_s) {
+  void pause_for_care(const Response& now) {
     pause_.on_success();
-    pause(utc_s, Reason::kBatteryCare);
-    if (care_since_utc_s_ == 0) care_since_utc_s_ = utc_s;
-    if (utc_s - care_since_utc_s_ < kCareWithoutEndS) return;
-    trip_ = {.reason = Reason::kUncontrolledPower, .utc_s = utc_s};
+    pause(now.utc_s, Reason::kBatteryCare);
+    if (care_since_s_ == 0) care_since_s_ = now.steady_s;
+    if (now.steady_s - care_since_s_ < kCareWithoutEndS) return;
+    trip_ = {.reason = Reason::kUncontrolledPower, .utc_s = now.utc_s};
   }
   void end_pause(std::int64_t utc_s) {
     if (pause_.reason() != Reason::kStudent && pause_.is_over(utc_s)) pause_.end();
@@ -148,7 +148,7 @@ class Supervision {
       return pause_.prolong(now.utc_s);
     }
     lost_.observe(now, follows_another);
-    if (lost_.is_to_be_given_up(now.utc_s, yields)) pause(now.utc_s, lost_.reason());
+    if (lost_.is_to_be_given_up(now.steady_s, yields)) pause(now.utc_s, lost_.reason());
   }
 
   [[nodiscard]] bool is_right_capacity(std::int32_t capacity_wh) const {
@@ -162,7 +162,7 @@ class Supervision {
   Pause pause_;
   bool capacity_fits_ = true;
   LostOrders lost_;
-  std::int64_t care_since_utc_s_ = 0;  ///< without an honest reading since; 0 = it needs none
+  std::int64_t care_since_s_ = 0;  ///< without an honest reading since; 0 = it needs none
   std::int32_t failed_orders_ = 0;
 };
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <span>
 #include <string_view>
 
 #include "tests/support/thorough.h"
@@ -30,13 +31,26 @@ TEST_P(HonestBattery, TripsNothing) {
 }
 
 TEST_P(HonestBattery, TripsNothingAmongKills) {
-  // Far slower than its map says, and every reading the first of a run: a trip in ten days, where it is paused else.
-  const bool is_beyond_its_map = GetParam().name == std::string_view("ramp_30_w_per_s");
-  for (const int every : {is_beyond_its_map ? 7 : 1, 7}) {
-    const HonestDays days = live_honest_days(GetParam(), (kDays + 5) / 6, every);
+  for (const int every : {1, 7}) {
+    const HonestDays days = live_honest_days(GetParam(), (kDays + 5) / 6, {.kill_every = every});
     EXPECT_EQ(days.trips, 0) << reason_name(days.first_trip) << " in cycle "
                              << days.first_trip_cycle << ", killed after every " << every;
     EXPECT_GT(days.driven, days.cycles / 3);
+  }
+}
+
+TEST_P(HonestBattery, TripsNothingUnderAClockThatIsStepped) {
+  // Slower than its map says: of cycles that a step makes short, two after one another look like anything.
+  const bool is_beyond_its_map = GetParam().name == std::string_view("ramp_30_w_per_s");
+  const Disturbances cases[] = {{.kill_every = 2, .step_every = 3},
+                                {.step_every = is_beyond_its_map ? 7 : 3},
+                                {.step_every = 11}};
+  for (const Disturbances& often : std::span(cases).first(few_or_all(1, 3))) {
+    const HonestDays days = live_honest_days(GetParam(), (kDays + 5) / 6, often);
+    EXPECT_EQ(days.trips, 0) << reason_name(days.first_trip) << " in cycle "
+                             << days.first_trip_cycle << ", stepped after every "
+                             << often.step_every << ", killed after " << often.kill_every;
+    EXPECT_GT(days.driven, days.cycles / 4);
   }
 }
 

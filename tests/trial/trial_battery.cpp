@@ -25,7 +25,7 @@ TrialBattery::TrialBattery(TrialClock& clock, const BatteryNature& nature, doubl
     : clock_(clock),
       nature_(nature),
       random_(seed),
-      now_s_(clock.now_utc_s()),
+      now_s_(clock.true_utc_s()),
       charge_frac_(soc_frac),
       count_error_frac_(0) {
   if (nature_.restarts_per_day > 0) next_restart_s_ = now_s_ + kSecondsPerDay / 8;
@@ -81,7 +81,7 @@ bool TrialBattery::answers_late() {
 }
 
 void TrialBattery::advance() {
-  while (now_s_ < clock_.now_utc_s()) step();
+  while (now_s_ < clock_.true_utc_s()) step();
 }
 
 /// One second.

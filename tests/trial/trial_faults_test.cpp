@@ -104,6 +104,21 @@ TEST_P(ShownFaultOfTheTrial, IsFoundThoughTheControllerIsKilledAfterEachCycle) {
   }
 }
 
+TEST_P(ShownFaultOfTheTrial, IsFoundUnderAClockThatIsSteppedInEachCycle) {
+  for (const bool is_killed : {false, true}) {
+    for (const Orders orders : {Orders::kCharge, Orders::kDischarge, Orders::kZero}) {
+      if ((GetParam().at & at(orders)) == 0) continue;
+      const FaultResult r = try_fault({.fault = &trial_fault(GetParam().name),
+                                       .orders = orders,
+                                       .is_killed = is_killed,
+                                       .step_every = 1});
+      EXPECT_NE(r.reason, Reason::kStudent) << orders_name(orders);
+      EXPECT_LE(r.cycles, is_killed ? 9 : 6)
+          << orders_name(orders) << (is_killed ? ", killed" : "");
+    }
+  }
+}
+
 std::string fault_name(const ::testing::TestParamInfo<ShownFault>& info) { return info.param.name; }
 
 INSTANTIATE_TEST_SUITE_P(Faults, ShownFaultOfTheTrial, ::testing::ValuesIn(kShownFaults),

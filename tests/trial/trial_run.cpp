@@ -67,6 +67,15 @@ void TrialSite::kill_and_restart() {
       take_over_of(newest, newest.is_tripped ? newest.trip : Trip{}, newest.price_level));
 }
 
+void TrialSite::step_clock() {
+  // In sum none: days of one price stay days of one price.
+  constexpr std::int64_t kStepsS[] = {1,    -1,    30,     -30, 119, -119,   600,
+                                      -600, 3'600, -3'600, -2,  45,  -3'000, 2'957};
+  const std::int64_t step_s = kStepsS[clock_steps_ % std::size(kStepsS)];
+  clock.step_after(static_cast<std::int64_t>(clock_steps_ * 37 % 110), step_s);
+  ++clock_steps_;
+}
+
 std::int64_t TrialSite::next_tick_utc_s() const { return bess::next_tick_utc_s(clock.now_utc_s()); }
 
 CycleRecord TrialSite::cycle(Orders orders) {
@@ -102,6 +111,7 @@ ControlSettings trial_settings(const HonestVariant& variant) {
   settings.supervision.response.power_w = settings.guard.power_w;
   settings.supervision.response.capacity_wh = static_cast<std::int32_t>(nature.shown_capacity_wh);
   settings.supervision.response.band.charges_by_itself = variant.charges_by_itself;
+  settings.supervision.response.band.settle_s = variant.told_settle_s;
   settings.supervision.response.band.soc_step_e4 =
       variant.told_soc_step_e4 > 0 ? variant.told_soc_step_e4 : nature.soc_step_e4;
   return settings;
@@ -137,6 +147,7 @@ FaultResult try_fault(const FaultCase& c) {
     if (is_stop_reason(record.reason)) result.reason = record.reason;
     result.is_trip = record.is_tripped;
     if (c.is_killed) site.kill_and_restart();
+    if (c.step_every > 0 && result.cycles % c.step_every == 0) site.step_clock();
   }
   const EnergyAccount found = site.battery.energy();
   result.against_order_wh = found.against_order_wh - before.against_order_wh;
@@ -161,7 +172,7 @@ CycleRecord cycle_of_day(TrialSite& site, std::int32_t night_charge_power_w) {
   return site.cycle(is_between(1'020, 1'110) ? Orders::kDischarge : Orders::kRealDay);
 }
 
-HonestDays live_honest_days(const HonestVariant& variant, int days, int kill_every) {
+HonestDays live_honest_days(const HonestVariant& variant, int days, const Disturbances& often) {
   TrialSite site(variant.nature, 0.5, trial_settings(variant), 1);
   HonestDays result;
   for (int i = 0; i < days * kStepsPerDay; ++i) {
@@ -170,7 +181,8 @@ HonestDays live_honest_days(const HonestVariant& variant, int days, int kill_eve
     result.driven += record.ordered_power_w != 0 ? 1 : 0;
     result.weak_cycles += record.weak_answers >= 2 ? 1 : 0;
     if (is_stop_reason(record.reason)) ++result.lost[static_cast<int>(record.reason)];
-    if (kill_every > 0 && (i + 1) % kill_every == 0) site.kill_and_restart();
+    if (often.kill_every > 0 && (i + 1) % often.kill_every == 0) site.kill_and_restart();
+    if (often.step_every > 0 && (i + 1) % often.step_every == 0) site.step_clock();
     if (!record.is_tripped) continue;
     if (result.trips++ == 0) {
       result.first_trip = record.trip.reason;

@@ -70,6 +70,8 @@ class TrialSite {
   /// Killed between two cycles, and started again with what its newest record kept.
   void kill_and_restart();
   void clear_trip() { loop_->clear_trip(); }
+  /// The next of the steps that a time server and people make, somewhere in the next cycle.
+  void step_clock();
 
  private:
   CycleRecord run();
@@ -79,6 +81,7 @@ class TrialSite {
   std::optional<Loop> loop_;
   TrialLog log_;
   std::int64_t cycles_ = 0;
+  std::size_t clock_steps_ = 0;
 };
 
 /// The settings of a controller of such a battery.
@@ -92,6 +95,7 @@ struct FaultCase {
   BatteryNature nature{};
   std::uint64_t seed = 1;
   bool is_killed = false;  ///< the controller, after each cycle
+  int step_every = 0;      ///< the clock is stepped after so many cycles; 0 = never
 };
 
 /// A fault is found when the battery is stopped for it.
@@ -129,8 +133,12 @@ struct HonestDays {
   [[nodiscard]] int lost_in_all() const;
 };
 
-/// `kill_every`: the controller, after so many cycles; 0 = never.
-HonestDays live_honest_days(const HonestVariant& variant, int days, int kill_every = 0);
+/// After so many cycles each; 0 = never.
+struct Disturbances {
+  int kill_every = 0;  ///< the controller
+  int step_every = 0;  ///< the clock is stepped
+};
+HonestDays live_honest_days(const HonestVariant& variant, int days, const Disturbances& often = {});
 
 /// The yardstick of tests/data.
 const MinuteSeries& real_prices();

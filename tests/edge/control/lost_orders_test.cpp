@@ -19,6 +19,7 @@ enum class Fate { kHolds, kReplaced, kEnded };
 Response reading(std::int64_t number, Fate fate, std::int32_t ordered_w = kW) {
   const bool holds = fate == Fate::kHolds;
   return {.utc_s = kFirstUtcS + kSecondsPerStep * number,
+          .steady_s = kFirstUtcS + kSecondsPerStep * number,
           .is_driven = holds,
           .order_number = number,
           .ordered_power_w = ordered_w,
@@ -36,7 +37,7 @@ int given_back_after(const std::function<Fate(int)>& fate, bool yields = true, i
   for (int i = 1; i <= most; ++i) {
     const Response now = reading(i, fate(i));
     orders.observe(now, false);
-    if (orders.is_to_be_given_up(now.utc_s, yields)) return i;
+    if (orders.is_to_be_given_up(now.steady_s, yields)) return i;
   }
   return 0;
 }
@@ -78,9 +79,9 @@ TEST(LostOrders, OneOrderIsLostOnce) {
   LostOrders orders{ResponseSettings{}};
   for (int i = 0; i < 5; ++i) {
     Response now = reading(1, Fate::kEnded);
-    now.utc_s += 120 * i;
+    now.steady_s += 120 * i;
     orders.observe(now, false);
-    EXPECT_FALSE(orders.is_to_be_given_up(now.utc_s, true));
+    EXPECT_FALSE(orders.is_to_be_given_up(now.steady_s, true));
   }
   EXPECT_EQ(orders.ended(), 1);
 }
@@ -173,7 +174,7 @@ TEST(LostOrders, TheNextTryIsGivenUpSoonerUntilOrdersHaveHeld) {
     for (int n = 1;; ++n) {
       const Response now = reading(++i, Fate::kReplaced);
       orders.observe(now, false);
-      if (!orders.is_to_be_given_up(now.utc_s, false)) continue;
+      if (!orders.is_to_be_given_up(now.steady_s, false)) continue;
       orders.forget_findings();
       return n;
     }
@@ -209,7 +210,7 @@ TEST(LostOrders, ManyShortRunsFindItTogether) {
     const std::int64_t utc_s = kFirstUtcS + run * 165;
     orders.restore(logged, utc_s - 60);
     Response now = reading(1, Fate::kReplaced);
-    now.utc_s = utc_s;
+    now.steady_s = utc_s;
     orders.observe(now, false);
     if (orders.is_to_be_given_up(utc_s, true)) found = run;
     logged = orders.history();
@@ -236,7 +237,7 @@ TEST(LostOrders, PausesGrowUntilOrdersHold) {
   const auto observe = [&](Fate fate, bool own = false) {
     const bool charges = soc_e4 < 5'000;
     Response now = reading(++number, fate, charges ? kW : -kW);
-    now.utc_s = utc_s += kSecondsPerStep;
+    now.steady_s = utc_s += kSecondsPerStep;
     if (own) now.measurement.power_w = 0;
     soc_e4 += now.measurement.power_w / 24;  // of 8 kWh, in two minutes
     now.measurement.soc_e4 = soc_e4;

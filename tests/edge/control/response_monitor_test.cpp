@@ -32,7 +32,7 @@ struct MonitoredSite {
     shown.power_w = static_cast<std::int32_t>(std::lround(flowing_w));
     BatteryMeasurement m = shown;
     fault(m);
-    monitor.observe({.utc_s = utc_s,
+    monitor.observe({.steady_s = utc_s,
                      .is_driven = true,
                      .ordered_power_w = ordered_w,
                      .order_age_s = kStepS,
@@ -86,7 +86,7 @@ int readings_until_trip(const Intermittent& c, const std::function<double(std::i
     // The charge is kept in the middle: what is meant is found by power.
     site.soc_frac = 0.5;
     site.shown.soc_e4 = 5'000;
-    site.monitor.observe({.utc_s = site.utc_s += kStepS,
+    site.monitor.observe({.steady_s = site.utc_s += kStepS,
                           .is_driven = true,
                           .ordered_power_w = ordered_w,
                           .order_age_s = kStepS,
@@ -138,6 +138,31 @@ TEST(ResponseMonitor, TwiceTheOrderIsUncontrolledAlsoWhenItRestsBetween) {
     site.step(0, 0);
   }
   EXPECT_EQ(site.monitor.trip(), Reason::kUncontrolledPower);
+}
+
+/// Recalled or after a pause, with nothing known of the order before: it may be on its way.
+TEST(ResponseMonitor, TheFirstReadingOfANewOrderMayBeARamp) {
+  const auto after_two_first_readings = [](std::int32_t ordered_w, std::int32_t power_w,
+                                           std::int32_t age_s) {
+    ResponseMonitor monitor{ResponseSettings{}};
+    for (int i = 0; i < 2; ++i) {  // far apart: neither knows the other
+      monitor.observe({.steady_s = 3'600 * (i + 1),
+                       .is_driven = true,
+                       .ordered_power_w = ordered_w,
+                       .order_age_s = age_s,
+                       .measurement = {.soc_e4 = 5'000 + i, .power_w = power_w}});
+    }
+    return monitor.trip();
+  };
+  EXPECT_EQ(after_two_first_readings(0, -490, 117), Reason::kStudent);
+  EXPECT_EQ(after_two_first_readings(-1'000, 490, 117), Reason::kStudent);
+  EXPECT_EQ(after_two_first_readings(1'000, 1'350, 117), Reason::kStudent);
+  // It has stood for longer, or no ramp of any battery would be that far behind.
+  EXPECT_EQ(after_two_first_readings(0, -490, 237), Reason::kUncontrolledPower);
+  EXPECT_EQ(after_two_first_readings(0, -3'000, 117), Reason::kUncontrolledPower);
+  EXPECT_EQ(after_two_first_readings(4'000, -4'000, 117), Reason::kWrongDirection);
+  EXPECT_EQ(after_two_first_readings(4'000, 8'000, 117), Reason::kUncontrolledPower);
+  EXPECT_EQ(after_two_first_readings(-1'000, 1'900, 117), Reason::kWrongDirection);
 }
 
 TEST(ResponseMonitor, LessThanOrderedIsToldButNotStopped) {
@@ -214,7 +239,7 @@ TEST(ResponseMonitor, ASlowRampIsToldAndNoFault) {
     const std::int32_t ordered_w = i / 2 % 2 == 0 ? 4'000 : -4'000;
     power_w += std::clamp(ordered_w - power_w, -3'300.0, 3'300.0);  // 30 W/s, read before its end
     site.soc_frac = 0.5;
-    site.monitor.observe({.utc_s = site.utc_s += kStepS,
+    site.monitor.observe({.steady_s = site.utc_s += kStepS,
                           .is_driven = true,
                           .ordered_power_w = ordered_w,
                           .order_age_s = kStepS - 5,
@@ -232,7 +257,7 @@ TEST(ResponseMonitor, ABatteryThatLooksAfterItselfIsNoFault) {
     for (int i = 0; i < 2; ++i) {
       EXPECT_FALSE(monitor.looks_after_itself());
       monitor.observe(
-          {.utc_s = 120 * i,
+          {.steady_s = 120 * i,
            .is_driven = true,
            .order_age_s = 117,
            .measurement = {.soc_e4 = soc_e4, .power_w = power_w, .capacity_wh = 8'000}});
@@ -272,18 +297,18 @@ TEST(ResponseMonitor, AnOrderThatIsCutWithinItsStepHasMovedWhatItMoved) {
   double soc_frac = 0.2;
   for (int i = 0; i < 10; ++i) {
     Response now;
-    now.utc_s = i * kStepS;
+    now.steady_s = i * kStepS;
     now.is_driven = true;
     now.order_age_s = kStepS / 2;
     now.measurement.capacity_wh = 8'000;
     now.measurement.power_w = 4'000;
-    now.utc_s += kStepS / 2;
+    now.steady_s += kStepS / 2;
     now.ordered_power_w = 4'000;
     soc_frac += 4'000 * kStepS / 2 / 3'600.0 / 8'000;
     now.measurement.soc_e4 = static_cast<std::int32_t>(std::lround(soc_frac * 1e4));
     monitor.note_power(now);
     now.measurement.power_w = now.ordered_power_w = 0;
-    now.utc_s += kStepS / 2;
+    now.steady_s += kStepS / 2;
     monitor.observe(now);
     EXPECT_EQ(monitor.trip(), Reason::kStudent) << i;
     EXPECT_FALSE(monitor.has_jumped()) << i;
@@ -308,7 +333,7 @@ TEST(ResponseMonitor, ASocThatJumpsStopsUntilItAgreesAgain) {
 TEST(ResponseMonitor, AnOrderThatIsTooYoungIsNotJudged) {
   ResponseMonitor monitor{ResponseSettings{}};
   for (int i = 0; i < 10; ++i) {
-    monitor.observe({.utc_s = 120 * i,
+    monitor.observe({.steady_s = 120 * i,
                      .is_driven = true,
                      .ordered_power_w = i % 2 == 0 ? 4'000 : -4'000,
                      .order_age_s = ResponseBand{}.settle_s - 1,
@@ -321,7 +346,7 @@ TEST(ResponseMonitor, AnOrderThatIsTooYoungIsNotJudged) {
 TEST(ResponseMonitor, ItsOwnModeIsNotJudged) {
   ResponseMonitor monitor{ResponseSettings{}};
   for (int i = 0; i < 10; ++i) {
-    monitor.observe({.utc_s = 120 * i,
+    monitor.observe({.steady_s = 120 * i,
                      .is_driven = false,
                      .ordered_power_w = 4'000,
                      .order_age_s = 120,
@@ -336,7 +361,7 @@ TEST(ResponseMonitor, SurplusSunMayChargeWhereTheMapSaysSo) {
   ResponseMonitor monitor{settings};
   for (int i = 0; i < 8; ++i) {
     monitor.observe(
-        {.utc_s = 120 * i,
+        {.steady_s = 120 * i,
          .is_driven = true,
          .ordered_power_w = i < 4 ? 0 : -1'000,
          .order_age_s = 120,

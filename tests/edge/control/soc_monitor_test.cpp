@@ -45,7 +45,7 @@ struct CountedBattery {
     ordered_before_w = ordered_w;
     const double shown_e4 = std::clamp(count(stored_frac), 0.0, 1.0) * 1e4;
     monitor.observe(
-        {.utc_s = utc_s,
+        {.steady_s = utc_s,
          .is_driven = true,
          .ordered_power_w = ordered_w,
          .order_age_s = age_s,

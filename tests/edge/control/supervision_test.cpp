@@ -12,6 +12,7 @@ const SupervisionSettings kSettings{
 Response reading(std::int64_t utc_s, std::int32_t ordered_w, std::int32_t measured_w) {
   return {
       .utc_s = utc_s,
+      .steady_s = utc_s,
       .is_driven = true,
       .ordered_power_w = ordered_w,
       .order_age_s = 120,
@@ -55,7 +56,7 @@ TEST(Supervision, NoAnswerPausesLongerEachTime) {
     own.is_driven = own.measurement.dispatch_active = false;
     supervision.observe(own, true);
     EXPECT_EQ(supervision.stop_reason(), Reason::kNoAnswer);
-    own.utc_s = utc_s += pause_s;
+    own.utc_s = own.steady_s = utc_s += pause_s;
     supervision.observe(own, true);
     EXPECT_EQ(supervision.stop_reason(), Reason::kStudent);
   }
@@ -106,12 +107,12 @@ TEST(Supervision, YieldsToAnotherMasterForAsLongAsItOrders) {
   Response foreign = reading(utc_s, -4'500, -4'500);
   foreign.is_driven = false;
   for (int i = 0; i < 30; ++i) {
-    foreign.utc_s = utc_s += 120;
+    foreign.utc_s = foreign.steady_s = utc_s += 120;
     supervision.observe(foreign, true);
     ASSERT_EQ(supervision.stop_reason(), Reason::kOtherMaster);
   }
   foreign.measurement.dispatch_active = false;
-  foreign.utc_s = utc_s += Pause::kFirstS;
+  foreign.utc_s = foreign.steady_s = utc_s += Pause::kFirstS;
   supervision.observe(foreign, true);
   EXPECT_EQ(supervision.stop_reason(), Reason::kStudent);
 }
@@ -131,7 +132,7 @@ TEST(Supervision, AnotherCapacityStopsForAsLongAsItIsRead) {
   now.measurement.capacity_wh = 100'000;
   supervision.observe(now, false);
   EXPECT_EQ(supervision.stop_reason(), Reason::kCapacity);
-  now.utc_s = 240;
+  now.utc_s = now.steady_s = 240;
   now.measurement.capacity_wh = 8'000;
   supervision.observe(now, false);
   EXPECT_EQ(supervision.stop_reason(), Reason::kStudent);
