@@ -77,6 +77,9 @@ struct BatteryFaultInfo {
   bool rtu = true;
 };
 
+/// Of what a device shows of the grid's power: a meter, or a battery's own grid point.
+constexpr bool is_of_grid(BatteryFault fault) { return fault >= BatteryFault::kGridScaled; }
+
 /// Every fault but kNone, in the order of the enumeration.
 std::span<const BatteryFaultInfo> battery_faults();
 

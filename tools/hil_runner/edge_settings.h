@@ -18,11 +18,12 @@ struct EdgePlaces {
   std::string serial_device;
   std::string battery_link;  ///< TOML that leads to a real one; empty: a simulated one, here
   int market_port = 1;
+  int meter_port = 2;
   std::int64_t anchor_monotonic_ns = 0;
 };
 
-/// The price level that the days before the start have led to.
-PriceLevel level_before(const MinuteSeries& prices, std::int64_t start_utc_s);
+/// The price level that the hours before the start have led to; by default as many as the edge asks for.
+PriceLevel level_before(const MinuteSeries& prices, std::int64_t start_utc_s, int hours = 72);
 
 std::string edge_settings(const Scenario& scenario, const MinuteSeries& prices,
                           const EdgePlaces& places);

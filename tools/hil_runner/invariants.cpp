@@ -15,6 +15,7 @@
 #include "tools/hil_runner/command_timeline.h"
 #include "tools/hil_runner/edge_settings.h"
 #include "tools/hil_runner/scenario.h"
+#include "tools/hil_runner/scenario_house.h"
 
 namespace bess {
 namespace {
@@ -37,7 +38,7 @@ class Judge {
     InvariantInfo info;
     void (Judge::*judge)();
   };
-  static const Rule kRules[14];
+  static const Rule kRules[15];
 
   explicit Judge(const Trial& trial)
       : scenario_(trial.scenario),
@@ -46,6 +47,7 @@ class Judge {
         publication_(trial.scenario, trial.prices),
         commands_(trial.evidence.orders),
         level_(level_at_start(trial)) {
+    if (trial.scenario.house.exists()) house_.emplace(house_load(trial.scenario));
     find_disturbances();
   }
 
@@ -64,6 +66,10 @@ class Judge {
 
  private:
   static PriceLevel level_at_start(const Trial& trial) {
+    // By what the market has published when the edge starts, a minute before the scenario does.
+    if (const int hours = trial.scenario.prices.history_hours; hours > 0) {
+      return level_before(trial.prices, trial.scenario.start_utc_s - 60, hours);
+    }
     const auto& setting = trial.config.level_start_centi_eur_per_mwh;
     return setting ? PriceLevel::starting_at(*setting) : PriceLevel{};
   }
@@ -333,9 +339,25 @@ class Judge {
         return command.is_driven && std::abs(command.power_w - cycle.ordered_power_w) <= 2;
       };
       if (!counts || is_in_force(settled_ns(tick_ns)) || is_in_force(by_ns)) continue;
+      if (was_cut(tick_ns, by_ns, cycle.ordered_power_w)) continue;
       find(by_ns, fmt::format("{} W, as logged", cycle.ordered_power_w),
            watts(commands_.at(by_ns)));
     }
+  }
+
+  /// A site's limits may take power off an order before it is looked for.
+  [[nodiscard]] bool has_site() const { return house_.has_value() || scenario_.has_limits(); }
+  /// Between two ticks it only cuts, but what was taken in a quarter-hour is given back for its peak.
+  [[nodiscard]] bool may_be_cut(double from_w, double to_w) const {
+    const bool has_peak = config_.site.settings.connection.peak_w_max != kAnyPowerW;
+    const bool is_less = std::abs(to_w) <= std::abs(from_w) + 2 && to_w * from_w >= 0;
+    return has_site() && (is_less || (has_peak && to_w < from_w));
+  }
+  [[nodiscard]] bool was_cut(std::int64_t tick_ns, std::int64_t by_ns, double ordered_w) const {
+    if (!may_be_cut(ordered_w, commands_.at(by_ns).power_w)) return false;
+    return std::ranges::any_of(evidence_.orders, [&](const DispatchEvent& e) {
+      return e.utc_ns >= tick_ns && e.utc_ns <= by_ns && std::abs(e.power_w - ordered_w) <= 2;
+    });
   }
 
   [[nodiscard]] bool is_lost(std::int64_t tick_ns) const {
@@ -349,8 +371,9 @@ class Judge {
     for (const DispatchEvent& e : evidence_.orders) {
       const CommandInForce now = {.is_driven = e.kind == DispatchEvent::Kind::kOrder,
                                   .power_w = e.power_w};
-      const bool is_new =
-          now.is_driven && now.power_w != 0 && std::abs(now.power_w - before.power_w) > 2;
+      const bool is_cut = may_be_cut(before.power_w, now.power_w);
+      const bool is_new = now.is_driven && now.power_w != 0 && !is_cut &&
+                          std::abs(now.power_w - before.power_w) > 2;
       before = now;
       const std::int64_t after_tick_ns = e.utc_ns % kStepNs;
       const bool is_judged = e.utc_ns >= start_ns() && e.utc_ns < scenario_.end_utc_ns();
@@ -470,6 +493,45 @@ class Judge {
          fmt::format("{:.1f} Wh by the SoC", by_soc_wh));
   }
 
+  /// By the house's load and what the battery recorded of itself, and not by what any meter showed.
+  void judge_connection() {
+    if (!house_) return;
+    const ConnectionSettings& limits = config_.site.settings.connection;
+    // Of the one in which the house rose, the edge's next look cuts what is too much.
+    const int minutes_max = 1 + static_cast<int>(std::ceil((evidence_.slack_s) / 60));
+    int minutes_over = 0;
+    for (const MinuteRecord& m : evidence_.minutes) {
+      const double battery_w = 60 * m.energy_wh;
+      const double grid_w = house_->power_w(m.minute_utc_s) + battery_w;
+      const bool is_over = (battery_w > 0 && grid_w > limits.import_w_max) ||
+                           (battery_w < 0 && -grid_w > limits.export_w_max);
+      minutes_over = is_over ? minutes_over + 1 : 0;
+      if (minutes_over <= minutes_max) continue;
+      find(m.minute_utc_s * kSecondNs,
+           battery_w > 0 ? fmt::format("at most {} W taken from the grid", limits.import_w_max)
+                         : fmt::format("at most {} W given to the grid", limits.export_w_max),
+           fmt::format("{:.0f} W, of which the battery {:.0f} W", grid_w, battery_w));
+    }
+    if (limits.peak_w_max != kAnyPowerW) judge_peaks(limits.peak_w_max);
+  }
+
+  void judge_peaks(double peak_w_max) {
+    constexpr double kHours = 0.25;
+    constexpr double kRoundTripWh = 10;  // of what it takes and gives back
+    double import_wh = 0, battery_wh = 0;
+    for (const MinuteRecord& m : evidence_.minutes) {
+      if (m.minute_utc_s % kQuarterHourS == 0) import_wh = battery_wh = 0;
+      import_wh += std::max(0.0, house_->power_w(m.minute_utc_s) / 60 + m.energy_wh);
+      battery_wh += m.energy_wh;
+      const bool is_over = m.minute_utc_s % kQuarterHourS == kQuarterHourS - 60;
+      const bool is_above = import_wh > peak_w_max * kHours;
+      if (!is_over || !is_above || battery_wh <= kRoundTripWh) continue;
+      find(m.minute_utc_s * kSecondNs,
+           fmt::format("at most {:.0f} W in the mean of a quarter-hour", peak_w_max),
+           fmt::format("{:.0f} W, {:.0f} Wh of it the battery's", import_wh / kHours, battery_wh));
+    }
+  }
+
   // --- what the scenario expects of its own ---------------------------------------------------------
   static bool fits(Expectation::Command wanted, const CommandInForce& c) {
     using enum Expectation::Command;
@@ -505,8 +567,14 @@ class Judge {
                                      : scenario_.utc_ns_at(expectation.span.to_min);
       for (std::int64_t t = (from_ns + kStepNs - 1) / kStepNs * kStepNs; t < to_ns; t += kStepNs) {
         const CommandInForce command = commands_.at(settled_ns(t));
-        if (fits(expectation.command, command)) continue;
-        find(settled_ns(t), kNames[static_cast<int>(expectation.command)], watts(command));
+        if (!fits(expectation.command, command)) {
+          find(settled_ns(t), kNames[static_cast<int>(expectation.command)], watts(command));
+        } else if (command.power_w < expectation.power_w_min ||
+                   command.power_w > expectation.power_w_max) {
+          find(settled_ns(t),
+               fmt::format("{:g} to {:g} W", expectation.power_w_min, expectation.power_w_max),
+               watts(command));
+        }
       }
       judge_reasons(expectation, {from_ns, to_ns});
     }
@@ -546,13 +614,14 @@ class Judge {
   Publication publication_;
   CommandTimeline commands_;
   PriceLevel level_;
+  std::optional<HouseLoad> house_;
   std::vector<Window> disturbed_;
   std::vector<Window> lost_;  ///< nobody can feed or end an order
   std::string rule_;
   std::vector<Finding> findings_;
 };
 
-const Judge::Rule Judge::kRules[14] = {
+const Judge::Rule Judge::kRules[15] = {
     {{"soc_window",
       "the SoC stays in the edge's window, but for one cycle where the device has no limit"},
      &Judge::judge_soc_window},
@@ -579,7 +648,11 @@ const Judge::Rule Judge::kRules[14] = {
     {{"held", "before the battery is given back, 0 W is held as long as configured"},
      &Judge::judge_held},
     {{"released", "whoever ends the edge, no order is left"}, &Judge::judge_released},
-    {{"energy", "the battery's energy and its SoC agree within 0.1 %"}, &Judge::judge_energy}};
+    {{"energy", "the battery's energy and its SoC agree within 0.1 %"}, &Judge::judge_energy},
+    {{"connection",
+      "the battery leads the house's connection beyond no limit of the meter but in the minute in "
+      "which the house changes, and no quarter-hour above its peak"},
+     &Judge::judge_connection}};
 
 }  // namespace
 

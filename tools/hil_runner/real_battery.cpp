@@ -19,7 +19,7 @@ namespace {
 bool is_for_simulators(ScenarioEvent::Does does) {
   using enum ScenarioEvent::Does;
   return does == kBatteryPause || does == kBatteryContinue || does == kEdgeKill ||
-         does == kEdgePause || does == kEdgeContinue || does == kEdgeHandOver;
+         does == kEdgePause || does == kEdgeContinue || does == kEdgeHandOver || is_of_people(does);
 }
 
 using Registers = std::vector<std::uint16_t>;
@@ -65,9 +65,10 @@ std::string why_not_real(const Scenario& scenario) {
   if (event != scenario.events.end()) {
     return fmt::format("{} is for a simulated battery", event_name(event->does));
   }
+  if (scenario.house.exists()) return "it needs a simulated house and its meter";
   if (scenario.battery.sets_state) return "it sets the battery's SoC, size or limits";
   const bool has_settings = !scenario.edge_battery.empty() || !scenario.edge_guard.empty() ||
-                            !scenario.edge_other.empty();
+                            !scenario.edge_other.empty() || scenario.has_limits();
   return has_settings ? "it sets limits of the edge" : "";
 }
 

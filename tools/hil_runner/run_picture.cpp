@@ -171,13 +171,16 @@ class RunPicture {
     constexpr const char* kOfBattery = "#e69f00";
     constexpr const char* kOfPrices = "#999999";
     std::vector<Trouble> all;
-    const FaultSchedule& battery = scenario_.battery_fault.schedule;
-    if (!battery.faults.empty()) {
-      std::string names = "battery:";
-      for (const BatteryFault fault : battery.faults) {
+    const std::pair<const char*, const FaultSchedule*> devices[] = {
+        {"battery:", &scenario_.battery_fault.schedule},
+        {"meter:", &scenario_.meter.fault.schedule}};
+    for (const auto& [device, schedule] : devices) {
+      if (schedule->faults.empty()) continue;
+      std::string names = device;
+      for (const BatteryFault fault : schedule->faults) {
         names += std::string(" ") + battery_faults()[static_cast<std::size_t>(fault) - 1].name;
       }
-      all.push_back({{battery.from_s / 60, battery.to_s / 60}, kOfBattery, names});
+      all.push_back({{schedule->from_s / 60, schedule->to_s / 60}, kOfBattery, names});
     }
     const PriceFaultWindow& price = scenario_.price_fault;
     if (price.fault != MarketFault::kNone) {

@@ -6,10 +6,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "edge/control/site_types.h"
 #include "shared/battery_model.h"
 #include "tools/battery_sim/battery_faults.h"
 #include "tools/market_sim/market_fault.h"
@@ -47,7 +49,9 @@ struct ScenarioPrices {
   double wave_mean_eur_per_mwh = 100;
   double wave_amplitude_eur_per_mwh = 400;
   double wave_period_min = 44;
-  double latency_s = 2;             ///< from the end of a minute until its row is readable
+  double latency_s = 2;  ///< from the end of a minute until its row is readable
+  /// That the edge asks the market for at its start; 0: the level that they lead to is its setting.
+  std::int32_t history_hours = 0;
   std::vector<MinuteSpan> missing;  ///< rows that are never published
 };
 
@@ -62,13 +66,33 @@ struct BatteryFaultWindow {
   }
 };
 
+/// The house behind the same meter as the battery: none, steps, or a household drawn from a seed.
+struct ScenarioHouse {
+  struct Step {
+    double from_min;
+    double power_w;  ///< negative: more sun than load
+  };
+  std::vector<Step> steps;  ///< each load until the next, the first before it too
+  std::optional<std::uint64_t> seed{};
+  [[nodiscard]] bool exists() const { return !steps.empty() || seed.has_value(); }
+};
+
+/// The meter at the house's connection.
+struct ScenarioMeter {
+  enum class Source : std::uint8_t { kNone, kMap, kBattery };
+  Source source = Source::kNone;  ///< kBattery: the battery's own grid point
+  std::string map;                ///< path of its register map
+  std::string variant;
+  BatteryFaultWindow fault;  ///< of one with a map of its own
+};
+
 struct PriceFaultWindow {
   MarketFault fault = MarketFault::kNone;
   std::int32_t every = 1;
   MinuteSpan span;
 };
 
-/// What happens to a process, its clock or its disk.
+/// What happens to a process, its clock or its disk, and what people and other programs say to the edge.
 struct ScenarioEvent {
   enum class Does : std::uint8_t {
     kEdgeKill,         ///< SIGKILL
@@ -86,12 +110,26 @@ struct ScenarioEvent {
     kClockStep,            ///< the edge's UTC, by `seconds`
     kClockUnsynchronised,  ///< NTP says that it is not to be trusted
     kClockSynchronised,
-    kDiskFull,  ///< of the edge's state folder
+    kHold,  ///< bess-edge hold
+    kHoldRelease,
+    kLimit,       ///< bess-edge limit
+    kLimitClear,  //
+    kLimitTorn,   ///< by a program that writes only half of its line
+    kClear,       ///< bess-edge clear
+    kDiskFull,    ///< of the edge's state folder
   };
   double at_min = 0;
   Does does = Does::kEdgeStop;
-  double seconds = 0;
+  double seconds = 0;                  ///< of a step of the clock
+  std::int32_t power_w = 0;            ///< of a hold
+  std::int64_t for_s = 0;              ///< of a hold, or a limit
+  std::int32_t charge_w = kAnyPowerW;  ///< of a limit
+  std::int32_t discharge_w = kAnyPowerW;
 };
+/// Somebody says something to the edge, rather than doing something to it.
+constexpr bool is_of_people(ScenarioEvent::Does does) {
+  return does >= ScenarioEvent::Does::kHold && does <= ScenarioEvent::Does::kClear;
+}
 std::string_view event_name(ScenarioEvent::Does does);
 
 struct Expectation {
@@ -106,7 +144,9 @@ struct Expectation {
   };
   MinuteSpan span;
   Command command =
-      Command::kAny;      ///< of every cycle that begins in the span, by the battery's record
+      Command::kAny;  ///< of every cycle that begins in the span, by the battery's record
+  double power_w_min = -kNeverMin;  ///< of the same cycles' commands
+  double power_w_max = kNeverMin;
   std::string reason;     ///< that the edge logs at least once in the span; empty = any
   std::string no_reason;  ///< that it never logs in the span
 };
@@ -122,8 +162,10 @@ struct Scenario {
   std::int32_t time_scale = 60;  ///< of wall time
   ScenarioBattery battery;
   ScenarioPrices prices;
+  ScenarioHouse house;
+  ScenarioMeter meter;
   // Lines of TOML for the edge's configuration, by its tables; `edge_other` is whole tables.
-  std::string edge_battery, edge_price, edge_guard, edge_other;
+  std::string edge_battery, edge_price, edge_guard, edge_meter, edge_limits, edge_other;
   BatteryFaultWindow battery_fault;
   PriceFaultWindow price_fault;
   std::vector<ScenarioEvent> events;  ///< in the order of time
@@ -132,6 +174,8 @@ struct Scenario {
   double recovery_min = 12;             ///< after a fault, until the edge must drive again
   std::int32_t exit_code = 0;           ///< of the edge that runs last
 
+  /// The edge has a limit file.
+  [[nodiscard]] bool has_limits() const;
   [[nodiscard]] std::int64_t utc_ns_at(double minute) const;
   [[nodiscard]] std::int64_t end_utc_ns() const { return utc_ns_at(minutes); }
 };

@@ -95,8 +95,11 @@ Status VirtualPrices::fetch_once(PriceRow& row) {
 Status VirtualPrices::fetch_page(const char* url, std::int32_t timeout_ms,
                                  const PriceRowTaker& taker, int& items) {
   items = 0;
-  const Reply reply =
-      ask({.limit = number_of(url, "limit="), .offset = number_of(url, "offset=")}, timeout_ms);
+  const bool is_past = std::string_view(url).find("/ods133/") != std::string_view::npos;
+  const Reply reply = ask({.dataset = is_past ? Dataset::kMinutesOfPastDays : Dataset::kMinutes,
+                           .limit = number_of(url, "limit="),
+                           .offset = number_of(url, "offset=")},
+                          timeout_ms);
   time_.advance_to(time_.monotonic_ns() + reply.takes_ns);
   if (reply.status != Status::kOk) return reply.status;
   return parse_prices(reply.text, settings_.fields, edge_utc_s(), taker, items);

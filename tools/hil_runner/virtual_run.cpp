@@ -3,7 +3,11 @@
 #include <pthread.h>
 #include <signal.h>
 
+#include <optional>
+
 #include "edge/program/controller.h"
+#include "shared/scaled_clock.h"
+#include "tools/hil_runner/scenario_house.h"
 #include "tools/hil_runner/virtual_bus.h"
 #include "tools/hil_runner/virtual_prices.h"
 #include "tools/hil_runner/virtual_time.h"
@@ -39,12 +43,22 @@ Evidence run_virtual(const Scenario& scenario, const MinuteSeries& prices, const
   const KeptSignalMask mask;
   VirtualTime time(scenario);
   SimulatedBattery battery(scenario.battery.physics, scenario.battery.soc_frac, time.utc_ns());
+  std::optional<MeteredHouse> house;
+  if (scenario.house.exists()) house.emplace(house_load(scenario));
   VirtualBus bus({.port = config.link.port,
                   .rtu = config.link.rtu,
                   .response_delay_ms = scenario.battery.response_delay_ms,
                   .fault = scenario.battery_fault,
                   .start_utc_ns = scenario.utc_ns_at(0)},
-                 config.map, battery, time);
+                 config.map, battery, time, house ? &*house : nullptr);
+  std::optional<VirtualBus> meter;
+  if (scenario.meter.source == ScenarioMeter::Source::kMap) {
+    meter.emplace(VirtualBusSettings{.port = config.site.link.port,
+                                     .response_delay_ms = scenario.battery.response_delay_ms,
+                                     .fault = scenario.meter.fault,
+                                     .start_utc_ns = scenario.utc_ns_at(0)},
+                  config.site.map, battery, time, &*house);
+  }
   const MarketView market(prices, scenario.prices.latency_s);
   MarketFaultPlan faults({.fault = scenario.price_fault.fault,
                           .every = scenario.price_fault.every,
@@ -52,6 +66,10 @@ Evidence run_virtual(const Scenario& scenario, const MinuteSeries& prices, const
                           .to_s = 60 * scenario.price_fault.span.to_min});
   Evidence evidence;
   EdgeState state;
+  VirtualPeople people;
+  time.on_people([&](const ScenarioEvent& event) {
+    people.act(event, time.edge_utc_ns() / kNanosecondsPerSecond, state.trip());
+  });
   do {
     try {
       VirtualWorld world(config, VirtualPrices(config.price, market, faults, scenario, time),
@@ -59,6 +77,7 @@ Evidence run_virtual(const Scenario& scenario, const MinuteSeries& prices, const
                           .physics = battery,
                           .weather = weather,
                           .state = state,
+                          .people = people,
                           .evidence = evidence});
       evidence.edge_exit_code = run_edge(config, world);
     } catch (const EdgeKilled&) {

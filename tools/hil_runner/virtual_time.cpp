@@ -101,6 +101,14 @@ void VirtualTime::apply(const ScenarioEvent& event) {
     case kClockSynchronised:
       synchronised_ = event.does == kClockSynchronised;
       break;
+    case kHold:
+    case kHoldRelease:
+    case kLimit:
+    case kLimitClear:
+    case kLimitTorn:
+    case kClear:
+      on_people_(event);
+      break;
     case kDiskFull:
       break;  // refused by the reader: in virtual time there is no disk
   }

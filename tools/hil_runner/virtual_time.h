@@ -5,6 +5,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <utility>
 #include <vector>
 
 #include "tools/hil_runner/scenario.h"
@@ -31,6 +33,10 @@ class VirtualTime {
   [[nodiscard]] std::int64_t edge_utc_ns() const { return utc_ns() + step_ns_; }
   [[nodiscard]] bool is_synchronised() const { return synchronised_; }
   [[nodiscard]] bool battery_is_paused() const { return battery_is_paused_; }
+  /// Who is told when people, or another program, say something to the edge.
+  void on_people(std::function<void(const ScenarioEvent&)> listener) {
+    on_people_ = std::move(listener);
+  }
   enum class Market : std::uint8_t { kServes, kPaused, kDead };
   [[nodiscard]] Market market() const { return market_; }
 
@@ -61,6 +67,7 @@ class VirtualTime {
   bool synchronised_ = true;
   bool battery_is_paused_ = false;
   Market market_ = Market::kServes;
+  std::function<void(const ScenarioEvent&)> on_people_ = [](const ScenarioEvent&) {};
 };
 
 }  // namespace bess

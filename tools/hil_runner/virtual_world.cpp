@@ -37,6 +37,11 @@ bool EdgeState::read_back(std::int64_t records, CycleRecord& record) const {
   return true;
 }
 
+Trip EdgeState::trip() const {
+  CycleRecord newest;
+  return read_back(0, newest) && newest.is_tripped ? newest.trip : Trip{};
+}
+
 VirtualWorld::VirtualWorld(const EdgeConfig& config, const VirtualPrices& prices,
                            const Surroundings& around)
     : around_(around),
@@ -48,7 +53,8 @@ VirtualWorld::VirtualWorld(const EdgeConfig& config, const VirtualPrices& prices
 Recall VirtualWorld::recall() const {
   Recall recalled;
   static_cast<void>(around_.state.read_back(0, recalled.before));
-  if (recalled.before.is_tripped) recalled.trip = recalled.before.trip;
+  const Trip trip = around_.state.trip();
+  if (trip.is_set() && !around_.people.is_cleared(trip.utc_s)) recalled.trip = trip;
   return recalled;
 }
 

@@ -10,32 +10,30 @@
 #include "edge/log/journal.h"
 #include "edge/program/controller.h"
 #include "tools/hil_runner/evidence.h"
+#include "tools/hil_runner/virtual_people.h"
 #include "tools/hil_runner/virtual_prices.h"
 #include "tools/hil_runner/virtual_run.h"
 
 namespace bess {
 
-/// What bess-edge keeps on its disk between two runs, and in its log for the judge.
+/// What bess-edge keeps on its disk between two runs.
 class EdgeState {
  public:
   void add(const CycleRecord& record);
   [[nodiscard]] bool read_back(std::int64_t records, CycleRecord& record) const;
+  /// By the newest record.
+  [[nodiscard]] Trip trip() const;
 
  private:
   static constexpr std::size_t kRecordsMax = 720;  // a day: more than a start reads again
   std::deque<CycleRecord> records_;
 };
 
-/// Nobody limits the battery from outside.
-struct NoLimits {
-  static Status read(OutsideLimit&, bool&) { return Status::kOk; }
-};
-
 class VirtualWorld {
  public:
   using Prices = VirtualPrices;
   using Meter = ModbusMeter;
-  using Limits = NoLimits;
+  using Limits = VirtualPeople;
   /// Here the records go into memory, cycle by cycle.
   struct Seal {
     Seal() {}
@@ -47,6 +45,7 @@ class VirtualWorld {
     SimulatedBattery& physics;
     Weather weather;
     EdgeState& state;
+    VirtualPeople& people;
     Evidence& evidence;
   };
   VirtualWorld(const EdgeConfig& config, const VirtualPrices& prices, const Surroundings& around);
@@ -55,7 +54,7 @@ class VirtualWorld {
   ModbusBattery& battery() { return battery_; }
   VirtualPrices& prices() { return prices_; }
   ModbusMeter& meter() { return meter_; }
-  NoLimits& limits() { return limits_; }
+  VirtualPeople& limits() { return around_.people; }
 
   static bool open() { return true; }
   [[nodiscard]] Recall recall() const;
@@ -63,8 +62,10 @@ class VirtualWorld {
     return around_.state.read_back(records, record);
   }
   void keep(const CycleRecord& record);
-  const HoldMailbox& listen() { return holds_; }
-  static bool is_cleared(std::int64_t) { return false; }
+  const HoldMailbox& listen() { return around_.people.holds(); }
+  [[nodiscard]] bool is_cleared(std::int64_t trip_utc_s) const {
+    return around_.people.is_cleared(trip_utc_s);
+  }
 
   static void needs_time(std::int64_t) {}
   static void complain(JournalLevel, const std::string&) {}
@@ -81,8 +82,6 @@ class VirtualWorld {
   ModbusBattery battery_;
   ModbusMeter meter_;
   VirtualPrices prices_;
-  NoLimits limits_;
-  HoldMailbox holds_;
 };
 
 }  // namespace bess

@@ -25,6 +25,8 @@
 #include "shared/scaled_clock.h"
 #include "shared/utc_text.h"
 #include "tools/hil_runner/edge_settings.h"
+#include "tools/hil_runner/limit_line.h"
+#include "tools/hil_runner/scenario_house.h"
 #include "tools/hil_runner/stop_request.h"
 
 namespace bess {
@@ -55,6 +57,15 @@ std::string last_line(const std::string& path) {
     if (!line.empty()) last = line;
   }
   return last;
+}
+
+/// The first that has this text in it; empty: none.
+std::string line_with(const std::string& text, const std::string& path) {
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);) {
+    if (line.find(text) != std::string::npos) return line;
+  }
+  return "";
 }
 
 template <typename Enum, typename NameOf>
@@ -164,6 +175,7 @@ class WallRun {
                           .serial_device = line_ ? line_->device(1) : "",
                           .battery_link = site_.battery ? link_keys(*site_.battery) : "",
                           .market_port = market_port_,
+                          .meter_port = meter_port_,
                           .anchor_monotonic_ns = anchor_ns_});
   }
 
@@ -266,20 +278,20 @@ class WallRun {
             "--anchor-monotonic-ns", std::to_string(anchor_ns_)};
   }
 
-  /// Of "... listening on HOST:PORT, ...", when it has come.
-  [[nodiscard]] std::string wait_for_listening(const std::string& log,
-                                               ChildProcess& process) const {
+  /// Port of the line "... WHO listening on HOST:PORT, ...", when it has come.
+  [[nodiscard]] static int port_of(const std::string& who, const std::string& log,
+                                   const ChildProcess& process) {
     constexpr std::int64_t kWaitNs = 20 * kNanosecondsPerSecond;
     const std::int64_t until_ns = clock_ns(CLOCK_MONOTONIC) + kWaitNs;
     while (clock_ns(CLOCK_MONOTONIC) < until_ns) {
-      std::string line = last_line(log);
-      if (line.find("listening on ") != std::string::npos) return line;
+      const std::string line = line_with(who + " listening on ", log);
+      if (!line.empty()) return port_in(line);
       if (kill(process.pid(), 0) != 0) break;
       usleep(2'000);
     }
     fail("a simulator did not start: {}", last_line(log));
   }
-  static int port_of(const std::string& line) {
+  static int port_in(const std::string& line) {
     const std::size_t colon = line.find(':', line.find("127.0.0.1"));
     if (colon == std::string::npos) return 0;
     return static_cast<int>(std::strtol(line.c_str() + colon + 1, nullptr, 10));
@@ -311,9 +323,41 @@ class WallRun {
       add("--fault", battery_faults()[static_cast<std::size_t>(kind) - 1].name);
     }
     if (!fault.schedule.faults.empty()) add_faults(fault, add);
+    add_house(add);
+    const bool has_meter = scenario_.meter.source == ScenarioMeter::Source::kMap;
+    if (has_meter) add_meter(add);
     const std::string log = folder_.file("battery.log");
     battery_ = start_logged(arguments, log);
-    battery_port_ = std::max(1, port_of(wait_for_listening(log, *battery_)));
+    battery_port_ = std::max(1, port_of("bess-sim battery:", log, *battery_));
+    if (has_meter) meter_port_ = port_of("bess-sim battery: meter", log, *battery_);
+  }
+
+  template <typename Add>
+  void add_house(const Add& add) const {
+    if (!scenario_.house.exists()) return;
+    if (scenario_.house.seed) {
+      add("--house", "daily");
+      return add("--house-seed", std::to_string(*scenario_.house.seed));
+    }
+    write_file(folder_.file("house.csv"), house_csv(scenario_));
+    add("--house", folder_.file("house.csv"));
+  }
+
+  template <typename Add>
+  void add_meter(const Add& add) const {
+    const FaultSchedule& faults = scenario_.meter.fault.schedule;
+    add("--meter-map", scenario_.meter.map);
+    if (!scenario_.meter.variant.empty()) add("--meter-variant", scenario_.meter.variant);
+    add("--meter-port", "0");
+    if (faults.faults.empty()) return;
+    for (const BatteryFault kind : faults.faults) {
+      add("--meter-fault", battery_faults()[static_cast<std::size_t>(kind) - 1].name);
+    }
+    add("--meter-fault-from-s", fmt::format("{}", faults.from_s));
+    if (faults.to_s != kNeverMin) add("--meter-fault-to-s", fmt::format("{}", faults.to_s));
+    if (faults.off_s == 0) return;
+    add("--meter-fault-on-s", fmt::format("{}", faults.on_s));
+    add("--meter-fault-off-s", fmt::format("{}", faults.off_s));
   }
 
   template <typename Add>
@@ -354,7 +398,7 @@ class WallRun {
     }
     const std::string log = folder_.file(fmt::format("market-{}.log", ++markets_));
     market_ = start_logged(arguments, log);
-    market_port_ = port_of(wait_for_listening(log, *market_));
+    market_port_ = port_of("bess-sim market:", log, *market_);
   }
 
   void start_edge() {
@@ -400,6 +444,19 @@ class WallRun {
         return;
       case kMarketStart:
         return start_market();
+      case kHold:
+        return say({"hold", std::to_string(event.power_w), "--for", seconds_text(event)});
+      case kHoldRelease:
+        return say({"hold", "--release"});
+      case kLimit:
+        return say({"limit", "--charge", limit_power_text(event.charge_w), "--discharge",
+                    limit_power_text(event.discharge_w), "--for", seconds_text(event)});
+      case kLimitClear:
+        return say({"limit", "--clear"});
+      case kLimitTorn:
+        return write_file(config_.site.limit_file.c_str(), limit_line(event, now_utc_s()));
+      case kClear:
+        return say({"clear", "--yes"});
       case kDiskFull:
         return disk_->fill();
       case kClockStep:
@@ -407,6 +464,21 @@ class WallRun {
       case kClockSynchronised:
         return;  // refused by the reader: the clock of this machine is not touched
     }
+  }
+
+  /// By the command with which a person says it.
+  void say(std::vector<std::string> command) {
+    command.insert(command.begin(), site_.edge);
+    command.insert(command.end(), {"--config", folder_.file("edge.toml")});
+    const std::string log = folder_.file("commands.log");
+    const int code = start_logged(command, log)->wait();
+    if (code != 0) fail("bess-edge {}: exit code {}: {}", command[1], code, last_line(log));
+  }
+  static std::string seconds_text(const ScenarioEvent& event) {
+    return std::to_string(event.for_s) + "s";
+  }
+  [[nodiscard]] std::int64_t now_utc_s() const {
+    return config_.clock.now_utc_ns() / kNanosecondsPerSecond;
   }
 
   static void signal(const std::unique_ptr<ChildProcess>& process, int number) {
@@ -547,6 +619,7 @@ class WallRun {
   std::int64_t anchor_ns_ = 0;
   int battery_port_ = 1;
   int market_port_ = 0;
+  int meter_port_ = 0;
   int markets_ = 0;
   int edges_ = 0;
   std::string edge_log_;  ///< of the one that was started last

@@ -146,6 +146,78 @@ TEST(Judge, SeesEnergyThatTheSocDoesNotKnow) {
   EXPECT_EQ(run.broken(), "energy");
 }
 
+/// A house of 500 W behind a meter, with these limits of the connection.
+HandMade with_house(const char* limits) {
+  HandMade run;
+  run.scenario.house.steps = {{0, 500}};
+  run.scenario.meter = {.source = ScenarioMeter::Source::kMap,
+                        .map = BESS_SOURCE_DIR "/edge/meters/simulator.toml",
+                        .variant = "",
+                        .fault = {}};
+  run.scenario.edge_meter = limits;
+  run.scenario.invariants = {"connection"};
+  return run;
+}
+
+void flow(HandMade& run, std::size_t minute, double power_w) {
+  run.evidence.minutes[minute].energy_wh = power_w / 60;
+}
+
+TEST(Judge, SeesABatteryThatLeadsTheConnectionBeyondItsLimits) {
+  HandMade run = with_house("import_w_max = 3000\nexport_w_max = 1000");
+  flow(run, 4, 2'600);  // a minute's rise is the house's
+  flow(run, 6, 2'500);
+  flow(run, 7, 2'500);
+  flow(run, 9, -1'600);
+  EXPECT_EQ(run.broken(), "");
+  flow(run, 5, 2'600);
+  EXPECT_EQ(run.broken(), "connection");
+  flow(run, 5, 0);
+  flow(run, 10, -1'600);
+  EXPECT_EQ(run.broken(), "connection");
+  run.scenario.house.steps = {{0, 500}, {10, 700}};
+  EXPECT_EQ(run.broken(), "");
+  // Beyond it by itself, the house is nobody's fault.
+  run.scenario.house.steps = {{0, 4'000}};
+  run.evidence.minutes[4].energy_wh = run.evidence.minutes[6].energy_wh =
+      run.evidence.minutes[7].energy_wh = 0;
+  EXPECT_EQ(run.broken(), "");
+}
+
+TEST(Judge, SeesABatteryThatMakesAQuarterHoursPeak) {
+  HandMade run = with_house("peak_w_max = 1000");
+  for (std::size_t minute = 0; minute < 15; ++minute) flow(run, minute, 500);
+  EXPECT_EQ(run.broken(), "");
+  flow(run, 14, 520);
+  EXPECT_EQ(run.broken(), "connection");
+  flow(run, 13, 0);
+  EXPECT_EQ(run.broken(), "");
+  // What it took and gave back is not its own.
+  run.scenario.house.steps = {{0, 500}, {10, 3'000}};
+  for (std::size_t minute = 10; minute < 15; ++minute) flow(run, minute, -1'000);
+  EXPECT_EQ(run.broken(), "");
+}
+
+TEST(Judge, TakesAnOrderThatTheSiteCutForTheEdgesOwn) {
+  HandMade run = with_house("import_w_max = 3000");
+  run.scenario.invariants = {"order", "in_time"};
+  run.order_of(8).power_w = 2'000;
+  const auto cut = [&](double power_w) {
+    DispatchEvent event = run.order_of(8);
+    event.utc_ns = HandMade::at_ns(9, 10);
+    event.power_w = power_w;
+    return event;
+  };
+  run.evidence.orders.insert(run.evidence.orders.begin() + 5, cut(1'000));
+  EXPECT_EQ(run.broken(), "");
+  run.evidence.orders[5] = cut(2'500);  // it may not give
+  EXPECT_EQ(run.broken(), "in_time");
+  run.evidence.orders[5] = cut(-1'000);
+  EXPECT_EQ(run.broken(), "in_time");
+  run.scenario.edge_meter = "peak_w_max = 1000";  // but give back for a peak
+  EXPECT_EQ(run.broken(), "");
+}
+
 TEST(Judge, HoldsTheLogAgainstMarketBatteryAndStudent) {
   HandMade run;
   LoggedCycle cycle;
@@ -189,6 +261,20 @@ TEST(Judge, GivesAnOrderUntilItsDeadlineWhereTheBusIsDisturbed) {
   EXPECT_EQ(run.broken(), "");
   run.order_of(8).utc_ns = HandMade::at_ns(9, 10);
   EXPECT_EQ(run.broken(), "order");
+}
+
+TEST(Judge, HoldsPowerAgainstTheRangeThatIsExpected) {
+  HandMade run;
+  run.scenario.expectations = {{.span = {.from_min = 4, .to_min = 12},
+                                .power_w_min = -10,
+                                .power_w_max = 1'000,
+                                .reason = "",
+                                .no_reason = ""}};
+  EXPECT_EQ(run.broken(), "");
+  run.order_of(8).power_w = 1'001;
+  EXPECT_EQ(run.broken(), "expect 1");
+  run.order_of(8).power_w = -11;
+  EXPECT_EQ(run.broken(), "expect 1");
 }
 
 TEST(Judge, HoldsTheRunAgainstWhatTheScenarioExpects) {

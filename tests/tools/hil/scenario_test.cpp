@@ -49,10 +49,11 @@ TEST(Scenarios, EveryFaultOfTheBatteryIsInOneOnEachBusThatHasIt) {
     for (const BatteryFault fault : s.battery_fault.schedule.faults) {
       tried.insert({fault, s.battery.rtu});
     }
+    for (const BatteryFault fault : s.meter.fault.schedule.faults) {
+      if (is_of_grid(fault)) tried.insert({fault, false});
+    }
   }
   for (const BatteryFaultInfo& info : battery_faults()) {
-    // A scenario's site has no meter; tests/closed_loop and tests/peers lie with it to the real program.
-    if (std::string_view(info.name).starts_with("grid-")) continue;
     // What the battery does, not what the bus makes of it, is the same on both.
     const bool is_of_bus = info.fault <= BatteryFault::kBadCrc;
     const bool over_tcp = tried.contains({info.fault, false}) || !info.tcp;
@@ -89,6 +90,69 @@ TEST(Scenarios, EveryShippedMapIsInOne) {
     EXPECT_TRUE(tried.contains(name + " " + (is_default ? "" : wanted.variant)))
         << name << " " << wanted.variant;
   }
+}
+
+TEST(Scenarios, WhatAMeterCanDoWrongIsInOne) {
+  std::set<BatteryFault> tried;
+  for (const Scenario& s : shipped()) {
+    tried.insert(s.meter.fault.schedule.faults.begin(), s.meter.fault.schedule.faults.end());
+  }
+  using enum BatteryFault;
+  for (const BatteryFault fault :
+       {kSilence, kFrozen, kWrongSign, kGridScaled, kGridOffset, kGridLate, kGridOtherPhase}) {
+    EXPECT_TRUE(tried.contains(fault)) << static_cast<int>(fault);
+  }
+}
+
+TEST(Scenarios, WhatIsWrongOfTheSiteIsSaidWithItsLine) {
+  const std::string site = "title = \"x\"\n[house]\npower_w = 500\n[meter]\nmap = \"simulator\"\n";
+  EXPECT_EQ(refusal(site), "");
+  EXPECT_THAT(refusal("title = \"x\"\n[house]\npower_w = 500\n"),
+              HasSubstr("s.toml:2: house needs [meter]: else nobody would see it"));
+  EXPECT_THAT(refusal("title = \"x\"\n[meter]\nmap = \"simulator\"\n"),
+              HasSubstr("s.toml:2: meter needs [house]"));
+  EXPECT_THAT(refusal("title = \"x\"\n[house]\npower_w = 500\nseed = 3\n"),
+              HasSubstr("s.toml:3: [house] power_w or steps or seed: exactly one"));
+  EXPECT_THAT(refusal("title = \"x\"\n[house]\n"), HasSubstr("s.toml:2: [house] power_w or steps"));
+  EXPECT_THAT(refusal("title = \"x\"\n[house]\nsteps = [[3, 1], [2, 1]]\n"),
+              HasSubstr("in the order of time"));
+  EXPECT_THAT(refusal("title = \"x\"\n[house]\nsteps = [[0, 1], [60, 2]]\n[meter]\nmap = "
+                      "\"simulator\"\n"),
+              HasSubstr("[house] begins at minute 60, after the end"));
+  EXPECT_THAT(refusal("title = \"x\"\n[meter]\nmap = \"nobody\"\n"),
+              HasSubstr("s.toml:3: [meter] map names no register map"));
+  EXPECT_THAT(refusal("title = \"x\"\n[meter_fault]\nkinds = [\"frozen\"]\n"),
+              HasSubstr("s.toml:3: [meter_fault] kinds need [meter]"));
+  EXPECT_THAT(refusal(site + "[meter_fault]\nkinds = [\"half-flow\"]\n"),
+              HasSubstr("s.toml:7: is of a battery, not of a meter"));
+  EXPECT_THAT(refusal(site + "[meter_fault]\nkinds = [\"frozen\"]\non_s = 30\n"),
+              HasSubstr("comes with the other of on_s and off_s"));
+  EXPECT_THAT(refusal(site + "[battery_fault]\nkinds = [\"grid-scaled\"]\n"),
+              HasSubstr("battery_fault kinds: grid-... need [meter] map = \"battery\""));
+  EXPECT_THAT(refusal("title = \"x\"\n[edge]\nmeter = \"import_w_max = 1\"\n"),
+              HasSubstr("edge meter: needs [meter], which is read"));
+  EXPECT_THAT(refusal("title = \"x\"\n[edge]\nother = \"[limits]\"\n"),
+              HasSubstr("edge other: lines of [limits] go into the key limits"));
+}
+
+TEST(Scenarios, WhatIsWrongOfWhatPeopleSayIsSaidWithItsLine) {
+  const std::string event = "title = \"x\"\n[[event]]\nat_min = 1\n";
+  EXPECT_THAT(refusal(event + "does = \"hold\"\nfor_min = 9\n"),
+              HasSubstr("s.toml:2: [[event]] power_w is missing"));
+  EXPECT_THAT(refusal(event + "does = \"hold\"\npower_w = 10\n"), HasSubstr("for_min is missing"));
+  EXPECT_THAT(refusal(event + "does = \"hold\"\npower_w = 10\nfor_min = 1\n"),
+              HasSubstr("s.toml:6: [[event]] for_min must be a number from 2 to"));
+  EXPECT_THAT(refusal(event + "does = \"hold\"\npower_w = 4001\nfor_min = 9\n"),
+              HasSubstr("hold: 4001 W is more than the battery's 4000"));
+  EXPECT_THAT(refusal(event + "does = \"hold_release\"\npower_w = 1\n"), HasSubstr("power_w"));
+  EXPECT_THAT(refusal(event + "does = \"limit\"\nfor_min = 9\n"), HasSubstr("charge_w is missing"));
+  EXPECT_THAT(refusal(event + "does = \"limit\"\ncharge_w = -1\nfor_min = 9\n"),
+              HasSubstr("s.toml:5: [[event]] charge_w"));
+  EXPECT_THAT(refusal(event + "does = \"clear\"\nseconds = 3\n"), HasSubstr("seconds"));
+  EXPECT_THAT(refusal("title = \"x\"\n[[expect]]\npower_w = [3, 1]\n"),
+              HasSubstr("s.toml:3: [[expect]] power_w must be [least, most]"));
+  EXPECT_THAT(refusal("title = \"x\"\n[prices]\nhistory_hours = 97\n"),
+              HasSubstr("s.toml:3: [prices] history_hours"));
 }
 
 TEST(Scenarios, WhatIsWrongIsSaidWithItsLine) {

@@ -1,0 +1,98 @@
+// What the scenarios of meter, limits, people, reserve, ramp and history are about decides them: each passes, and without
+// what it is about its own expectations fail.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "tools/hil_runner/run_scenario.h"
+
+namespace bess {
+namespace {
+
+/// What a scenario is about, and how it is taken away; false: it is not about that.
+struct Subject {
+  const char* name;
+  bool (*take_away)(Scenario& scenario);
+};
+
+constexpr Subject kSubjects[] = {
+    {"meter fault",
+     [](Scenario& s) {
+       const bool has = !s.meter.fault.schedule.faults.empty();
+       s.meter.fault = {};
+       return has;
+     }},
+    {"fault of the battery's grid point",
+     [](Scenario& s) {
+       auto& faults = s.battery_fault.schedule.faults;
+       return std::erase_if(faults, is_of_grid) > 0;
+     }},
+    // Of one that lies the limits are not the subject.
+    {"limits of the connection",
+     [](Scenario& s) {
+       const bool lies = !s.meter.fault.schedule.faults.empty() ||
+                         std::ranges::any_of(s.battery_fault.schedule.faults, is_of_grid);
+       const bool has = !s.edge_meter.empty() && !lies;
+       s.edge_meter.clear();
+       return has;
+     }},
+    {"what is said",
+     [](Scenario& s) {
+       return std::erase_if(s.events, [](const auto& e) { return is_of_people(e.does); }) > 0;
+     }},
+    {"reserve",
+     [](Scenario& s) {
+       const bool has = s.edge_other.find("[[reserve]]") != std::string::npos;
+       s.edge_other.clear();
+       return has;
+     }},
+    {"ramp",
+     [](Scenario& s) {
+       const bool has = s.edge_guard.find("ramp_w_max") != std::string::npos;
+       s.edge_guard.clear();
+       return has;
+     }},
+    {"history",  // the days before were as cheap
+     [](Scenario& s) {
+       const bool has = s.prices.history_hours > 0;
+       if (has) s.prices.steps.erase(s.prices.steps.begin());
+       return has;
+     }},
+};
+
+bool breaks_its_expectations(const Outcome& outcome) {
+  return std::ranges::any_of(outcome.findings,
+                             [](const Finding& f) { return f.rule.starts_with("expect"); });
+}
+
+TEST(SiteScenarios, EachFailsWithoutWhatItIsAbout) {
+  int tried = 0;
+  for (const auto& file : std::filesystem::directory_iterator(BESS_SOURCE_DIR "/tests/scenarios")) {
+    if (file.path().extension() != ".toml") continue;
+    const Scenario scenario = read_scenario(file.path().string());
+    if (!scenario.runs_virtual) continue;
+    for (const Subject& subject : kSubjects) {
+      Scenario without = scenario;
+      if (!subject.take_away(without)) continue;
+      ++tried;
+      const Outcome outcome = run_scenario(without, true, {});
+      EXPECT_TRUE(outcome.error.empty()) << scenario.name << ": " << outcome.error;
+      EXPECT_TRUE(breaks_its_expectations(outcome))
+          << scenario.name << " passes without its " << subject.name;
+    }
+  }
+  EXPECT_GE(tried, 24);
+}
+
+TEST(SiteScenarios, AMeterThatIsNotThereIsLostAndNotIgnored) {
+  Scenario scenario = read_scenario(BESS_SOURCE_DIR "/tests/scenarios/meter_lost.toml");
+  scenario.meter.fault.schedule.from_s = -1e6;  // the edge starts before the scenario
+  scenario.meter.fault.schedule.to_s = 60 * kNeverMin;
+  const Outcome outcome = run_scenario(scenario, true, {});
+  ASSERT_FALSE(outcome.evidence.log.empty());
+  for (const LoggedCycle& cycle : outcome.evidence.log) EXPECT_EQ(cycle.ordered_power_w, 0);
+}
+
+}  // namespace
+}  // namespace bess
