@@ -108,7 +108,7 @@ std::optional<Publication::Row> Publication::newest_published(std::int64_t utc_n
   std::int64_t minute = (last_utc_s - prices_.start_utc_s) / 60;
   minute = std::min(minute, static_cast<std::int64_t>(prices_.size()) - 1) - skip;
   for (; minute >= 0; --minute) {
-    const double price = prices_.indicative[static_cast<std::size_t>(minute)];
+    const double price = shown(minute);
     if (!std::isnan(price)) {
       return Row{.minute_utc_s = prices_.start_utc_s + 60 * minute, .eur_per_mwh = price};
     }
@@ -116,10 +116,22 @@ std::optional<Publication::Row> Publication::newest_published(std::int64_t utc_n
   return std::nullopt;
 }
 
+double Publication::shown(std::int64_t minute) const {
+  const auto price = [this](std::int64_t m) {
+    return prices_.indicative[static_cast<std::size_t>(m)];
+  };
+  const std::int64_t frozen = (scenario_.price_fault_utc_s() - prices_.start_utc_s) / 60;
+  const bool is_frozen = scenario_.price_fault.fault == MarketFault::kFrozen && minute >= frozen;
+  if (!is_frozen || std::isnan(price(minute))) return price(minute);
+  std::int64_t last = frozen - 1;
+  while (last > 0 && std::isnan(price(last))) --last;
+  return last < 0 ? price(minute) : price(last);
+}
+
 std::optional<double> Publication::price_of(std::int64_t minute_utc_s) const {
   const std::int64_t minute = (minute_utc_s - prices_.start_utc_s) / 60;
   if (minute < 0 || minute >= static_cast<std::int64_t>(prices_.size())) return std::nullopt;
-  const double price = prices_.indicative[static_cast<std::size_t>(minute)];
+  const double price = shown(minute);
   return std::isnan(price) ? std::nullopt : std::optional(price);
 }
 

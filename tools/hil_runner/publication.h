@@ -30,6 +30,8 @@ class Publication {
 
  private:
   [[nodiscard]] std::optional<Row> newest_published(std::int64_t utc_ns, int skip) const;
+  /// What the server has as the price of this minute of the series; not a number: none.
+  [[nodiscard]] double shown(std::int64_t minute) const;
 
   const Scenario& scenario_;
   const MinuteSeries& prices_;

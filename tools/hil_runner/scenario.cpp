@@ -118,11 +118,14 @@ void read_price_fault(TomlTable table, PriceFaultWindow& fault) {
   table.integer("every", fault.every, 1, 1'000'000);
   int kind = 0;
   table.require("kind");
-  table.choice("kind", kind, {"null", "http-500", "stale", "garbage", "trailing", "twice", "all"});
-  constexpr MarketFault kKinds[] = {
-      MarketFault::kNull,     MarketFault::kHttp500, MarketFault::kStale, MarketFault::kGarbage,
-      MarketFault::kTrailing, MarketFault::kTwice,   MarketFault::kAll};
-  fault.fault = kKinds[kind];
+  table.choice("kind", kind,
+               {"null", "http-500", "stale", "garbage", "trailing", "twice", "all", "frozen"});
+  fault.fault = static_cast<MarketFault>(kind + 1);
+  // What it would show once it moves again, or in some of its answers, steps of [prices] show.
+  const bool is_partly_frozen = fault.every > 1 || fault.span.to_min != kNeverMin;
+  if (table.ok() && fault.fault == MarketFault::kFrozen && is_partly_frozen) {
+    table.fail("kind", "frozen lasts to the end, in every answer: leave every and to_min out");
+  }
   table.finish();
 }
 

@@ -177,6 +177,10 @@ struct Scenario {
   /// The edge has a limit file.
   [[nodiscard]] bool has_limits() const;
   [[nodiscard]] std::int64_t utc_ns_at(double minute) const;
+  /// From which on the price server is wrong.
+  [[nodiscard]] std::int64_t price_fault_utc_s() const {
+    return start_utc_s + static_cast<std::int64_t>(60 * price_fault.span.from_min);
+  }
   [[nodiscard]] std::int64_t end_utc_ns() const { return utc_ns_at(minutes); }
 };
 

@@ -124,6 +124,7 @@ VirtualPrices::Reply VirtualPrices::ask(RecordsQuery query, std::int32_t timeout
   const std::int64_t market_ns =
       time_.utc_ns() - (fault == MarketFault::kStale ? kStaleAnswerS * kNanosecondsPerSecond : 0);
   query.hide_newest_price = fault == MarketFault::kNull;
+  if (fault == MarketFault::kFrozen) query.frozen_utc_s = scenario_.price_fault_utc_s();
   return {.text = spoilt(fault, market_.records(query, market_ns)), .takes_ns = kFetchNs};
 }
 

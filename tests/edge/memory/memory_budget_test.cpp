@@ -6,24 +6,16 @@
 #include <map>
 #include <string>
 
-#include "edge/battery/modbus_battery.h"
-#include "edge/battery/modbus_meter.h"
-#include "edge/control/control_loop.h"
-#include "edge/control/price_history.h"
-#include "edge/log/event_log.h"
 #include "edge/memory/heap_seal.h"
 #include "edge/memory/segregated_fit.h"
 #include "edge/memory/static_arena.h"
-#include "edge/program/edge_clock.h"
-#include "edge/program/edge_config.h"
-#include "edge/program/exchange_recorder.h"
-#include "edge/program/hold_watch.h"
-#include "edge/program/limit_file.h"
+#include "edge/program/controller.h"
+#include "edge/program/real_world.h"
 
 namespace bess {
 namespace {
 
-using Loop = ControlLoop<ModbusBattery, PriceFeed, EdgeClock, SiteLimits<ModbusMeter, LimitFile>>;
+using Loop = Controller<RealWorld>::Loop;
 
 /// First column to second column of the table under the heading.
 std::map<std::string, std::size_t> read_budget() {

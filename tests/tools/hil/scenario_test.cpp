@@ -65,7 +65,7 @@ TEST(Scenarios, EveryFaultOfTheBatteryIsInOneOnEachBusThatHasIt) {
 TEST(Scenarios, EveryFaultOfThePricesIsInOne) {
   std::set<MarketFault> tried;
   for (const Scenario& s : shipped()) tried.insert(s.price_fault.fault);
-  EXPECT_EQ(tried.size(), 8U) << "none, null, http-500, stale, garbage, trailing, twice, all";
+  EXPECT_EQ(tried.size(), std::size(kMarketFaultNames));
 }
 
 TEST(Scenarios, EveryEventIsInOne) {
@@ -185,6 +185,8 @@ TEST(Scenarios, WhatIsWrongIsSaidWithItsLine) {
               HasSubstr("no invariant"));
   EXPECT_THAT(refusal("title = \"x\"\n[prices]\nsteps = [[3, 1], [2, 1]]\n"),
               HasSubstr("in the order of time"));
+  EXPECT_THAT(refusal("title = \"x\"\n[price_fault]\nkind = \"frozen\"\nto_min = 9\n"),
+              HasSubstr("s.toml:3: [price_fault] kind frozen lasts to the end"));
 }
 
 }  // namespace

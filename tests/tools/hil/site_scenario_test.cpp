@@ -53,6 +53,12 @@ constexpr Subject kSubjects[] = {
        s.edge_guard.clear();
        return has;
      }},
+    {"frozen price",
+     [](Scenario& s) {
+       const bool has = s.price_fault.fault == MarketFault::kFrozen;
+       if (has) s.price_fault.fault = MarketFault::kNone;
+       return has;
+     }},
     {"history",  // the days before were as cheap
      [](Scenario& s) {
        const bool has = s.prices.history_hours > 0;
@@ -82,7 +88,7 @@ TEST(SiteScenarios, EachFailsWithoutWhatItIsAbout) {
           << scenario.name << " passes without its " << subject.name;
     }
   }
-  EXPECT_GE(tried, 24);
+  EXPECT_GE(tried, 25);
 }
 
 TEST(SiteScenarios, AMeterThatIsNotThereIsLostAndNotIgnored) {
