@@ -94,6 +94,7 @@ Json Json::of_boolean(bool value) { return Json(made(cJSON_CreateBool(value ? 1 
 Json Json::of_whole(const std::string& digits) {
   return Json(made(cJSON_CreateRaw(digits.c_str())));
 }
+Json Json::null() { return Json(made(cJSON_CreateNull())); }
 Json Json::list() { return Json(made(cJSON_CreateArray())); }
 
 Json Json::object(std::initializer_list<JsonMember> members) {

@@ -84,6 +84,7 @@ class Json {
   Json(std::span<T, kExtent> wholes) : Json(list()) {  // NOLINT
     for (const T whole : wholes) add(whole);
   }
+  static Json null();
   static Json list();
   static Json object(std::initializer_list<JsonMember> members = {});
 

@@ -21,6 +21,7 @@ void add_report_command(ProgramCommand& app);
 void add_run_command(ProgramCommand& app);
 void add_runs_commands(ProgramCommand& app);  ///< compare
 void add_config_command(ProgramCommand& app);
+void add_schema_command(ProgramCommand& app);
 
 /// Every subcommand, in the order of the help.
 void add_commands(ProgramCommand& app);

@@ -8,6 +8,7 @@
 
 #include "shared/host/json.h"
 #include "shared/host/user_error.h"
+#include "workstation/base/answer.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
 #include "workstation/cli/policy_factory.h"
@@ -32,7 +33,9 @@ struct DelaysArguments {
 
 /// EUR per day per MWh
 struct Cell {
+  std::size_t days;
   double profit;
+  DayErrors errors;
   double profit_at_reference_wear;  ///< of the same decisions
 };
 /// [fitted at][run at]
@@ -53,7 +56,7 @@ Table delay_table(const std::string& name, const Markets& markets, const RunConf
       const Evaluation result =
           evaluate(markets[run], days, *policy,
                    {config.battery, config.initial_soc_frac, options.carry_soc});
-      table[fit][run] = {result.profit_eur_per_day_per_mwh(),
+      table[fit][run] = {result.days.size(), result.profit_eur_per_day_per_mwh(), result.errors(),
                          result.profit_at_wear_eur_per_day_per_mwh(kReferenceWearEurPerMwh)};
     }
   }
@@ -77,14 +80,18 @@ void print_table(const std::string& name, const Table& table) {
 void print_json(const std::string& name, const Table& table, const DelaysArguments& options) {
   for (int fit = 0; fit < kDelays; ++fit) {
     for (int run = 0; run < kDelays; ++run) {
-      const Json json = Json::object(
-          {{"policy", name},
-           {"split", options.split},
-           {"carry_soc", options.carry_soc},
-           {"fit_delay_min", fit},
-           {"run_delay_min", run},
-           {"profit_eur_per_day_per_mwh", Decimals{table[fit][run].profit, 4}},
-           {kReferenceWearKey, Decimals{table[fit][run].profit_at_reference_wear, 4}}});
+      const Cell& cell = table[fit][run];
+      Json json = answer("delay");
+      json.set("policy", name);
+      json.set("split", options.split);
+      json.set(key::kCarrySoc, options.carry_soc);
+      json.set("fit_delay_min", fit);
+      json.set("run_delay_min", run);
+      json.set("days", cell.days);
+      json.set(key::kProfit, Decimals{cell.profit, 4});
+      json.set(kReferenceWearKey, Decimals{cell.profit_at_reference_wear, 4});
+      json.set(key::kProfitError, Decimals{cell.errors.plain, 4});
+      json.set(key::kProfitErrorByMonth, Decimals{cell.errors.by_month, 4});
       fmt::print("{}\n", json.line());
     }
   }

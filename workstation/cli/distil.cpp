@@ -8,6 +8,7 @@
 #include "shared/host/file.h"
 #include "shared/host/json.h"
 #include "shared/host/user_error.h"
+#include "workstation/base/answer.h"
 #include "workstation/cli/chain_steps.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
@@ -41,14 +42,13 @@ void print_result(const DistilArguments& options, const CorrectionResult& result
   const Certificate& c = student_of(result.verdict).certificate;
   const std::size_t rounds = result.rounds.size();
   if (options.json) {
-    Json json = Json::object({{"student", options.out},
-                              {"corrected", !options.plain},
-                              {"rounds", rounds},
-                              {"states_checked", c.states_checked},
-                              {"violations_property_1", c.violations_property_1},
-                              {"violations_property_2", c.violations_property_2},
-                              {"violations_property_3", c.violations_property_3}});
-    add_rule_counts(c, json);
+    Json json = answer("student");
+    json.set("student", options.out);
+    json.set("weights_hash",
+             fmt::format("{:08x}", student_weights_hash(student_of(result.verdict).net)));
+    json.set("corrected", !options.plain);
+    json.set("rounds", rounds);
+    add_certificate(c, json);
     fmt::print("{}\n", json.line());
     return;
   }

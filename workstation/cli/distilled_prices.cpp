@@ -8,10 +8,10 @@
 #include <limits>
 #include <memory>
 
-#include "shared/host/json.h"
 #include "shared/host/user_error.h"
 #include "workstation/cli/interruption.h"
 #include "workstation/cli/rule_files.h"
+#include "workstation/cli/rule_price_json.h"
 #include "workstation/cli/rules.h"
 #include "workstation/rules/rule_conflicts.h"
 #include "workstation/student/correct_and_prove.h"
@@ -118,31 +118,27 @@ void print_row(const DistilledPriceOptions& options, const std::string& name, co
                error_text(carried.standard_error, 1),
                error_text(carried.standard_error_by_month, 1), amount(carried.spread));
   } else {
-    const auto profit = [](const std::vector<Evaluation>& seeds) {
-      return Decimals{mean_of(seeds).profit_eur_per_day_per_mwh(), 4};
+    const auto gain = [](const std::vector<Evaluation>& with,
+                         const std::vector<Evaluation>& without,
+                         const SeededDifference& difference) {
+      return RuleGain{mean_of(with).profit_eur_per_day_per_mwh(),
+                      mean_of(without).profit_eur_per_day_per_mwh(),
+                      difference.mean,
+                      difference.standard_error,
+                      difference.standard_error_by_month,
+                      difference.spread};
     };
-    Json json = Json::object(
-        {{"rule", name},
-         {"by", "distillation"},
-         {"days", options.days.size()},
-         {"seeds", options.seeds},
-         {"states_checked", ruled.states},
-         {"violations", ruled.violations},
-         {"profit_eur_per_day_per_mwh", profit(ruled.reset)},
-         {"without_eur_per_day_per_mwh", profit(base.reset)},
-         {"difference", Decimals{reset.mean, 4}},
-         {"standard_error", Decimals{reset.standard_error, 4}},
-         {"standard_error_by_month", Decimals{reset.standard_error_by_month, 4}},
-         {"carried_profit_eur_per_day_per_mwh", profit(ruled.carried)},
-         {"carried_without_eur_per_day_per_mwh", profit(base.carried)},
-         {"carried_difference", Decimals{carried.mean, 4}},
-         {"carried_standard_error", Decimals{carried.standard_error, 4}},
-         {"carried_standard_error_by_month", Decimals{carried.standard_error_by_month, 4}}});
-    if (options.seeds > 1) {
-      json.set("spread", Decimals{reset.spread, 4});
-      json.set("carried_spread", Decimals{carried.spread, 4});
-    }
-    fmt::print("{}\n", json.line());
+    const RulePriceRow row{.rule = name,
+                           .by = "distillation",
+                           .gain_over = "students without rules",
+                           .split = options.split,
+                           .days = options.days.size(),
+                           .reset = gain(ruled.reset, base.reset, reset),
+                           .carried = gain(ruled.carried, base.carried, carried),
+                           .seeds = options.seeds,
+                           .states_checked = ruled.states,
+                           .violations = ruled.violations};
+    fmt::print("{}\n", rule_price_json(row).line());
   }
   std::fflush(stdout);  // each takes minutes
 }

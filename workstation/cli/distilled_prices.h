@@ -34,6 +34,7 @@ SeededDifference seeded_difference(const std::vector<Evaluation>& with,
 struct DistilledPriceOptions {
   RuleSet rules;
   std::vector<MarketDay> days;
+  std::string split;   ///< that they are of
   int seeds = 1;       ///< from that of the configuration on
   bool alone = false;  ///< each rule alone besides all together
   std::string keep;    ///< folder for the students, each by rule and seed; empty: none

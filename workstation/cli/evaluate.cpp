@@ -2,7 +2,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -12,6 +11,7 @@
 #include "shared/host/json.h"
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
+#include "workstation/base/answer.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
 #include "workstation/cli/learnt_for.h"
@@ -44,75 +44,67 @@ struct EvaluateArguments {
   [[nodiscard]] bool wants_carried() const { return carry_soc || policies.size() > 1; }
 };
 
-constexpr std::string_view kSocModes[] = {"reset", "carried"};
-
 /// Per-day and per-step records of every policy and way of counting, as CSV.
 struct Records {
-  std::string days = "date,profit_eur,cycles,switches,soc_end,policy,soc_mode\n";
+  // soc_mode, soc_end, soc and ..._eur_mwh are names of before schema version 1, until the next release.
+  std::string days =
+      "date,profit_eur,cycles,switches,soc_end,policy,soc_mode,carry_soc,soc_end_frac\n";
   std::string steps =
       "utc,observed_eur_mwh,paid_eur_mwh,level_eur_mwh,soc,action,power_w,profit_eur,policy,soc_"
-      "mode\n";
+      "mode,carry_soc,observed_eur_per_mwh,paid_eur_per_mwh,level_eur_per_mwh,soc_frac\n";
 
-  void add(const std::string& policy, std::string_view mode, const Evaluation& e,
+  void add(const std::string& policy, bool carry_soc, const Evaluation& e,
            const std::vector<StepRecord>& records) {
-    const std::string tail = fmt::format("{},{}", csv_field(policy), mode);
+    const std::string tail = fmt::format("{},{},{}", csv_field(policy),
+                                         carry_soc ? "carried" : "reset", truth(carry_soc));
     for (const DayResult& d : e.days) {
-      days += fmt::format("{},{:.8g},{:.4f},{},{:.5f},{}\n", d.date, d.profit_eur, d.cycles,
-                          d.switches, d.soc_end_frac, tail);
+      days += fmt::format("{},{:.8g},{:.4f},{},{:.5f},{},{:.5f}\n", d.date, d.profit_eur, d.cycles,
+                          d.switches, d.soc_end_frac, tail, d.soc_end_frac);
     }
     for (const StepRecord& r : records) {
-      steps += fmt::format("{},{:.10g},{:.10g},{:.2f},{:.6f},{},{:.3f},{:.8g},{}\n",
-                           utc_text(r.utc_s).view(), r.observed_eur_per_mwh, r.paid_eur_per_mwh,
-                           r.level_eur_per_mwh, r.soc_frac, action_name(r.action), r.power_w,
-                           r.profit_eur, tail);
+      const std::string prices =
+          fmt::format("{:.10g},{:.10g},{:.2f},{:.6f}", r.observed_eur_per_mwh, r.paid_eur_per_mwh,
+                      r.level_eur_per_mwh, r.soc_frac);
+      steps += fmt::format("{},{},{},{:.3f},{:.8g},{},{}\n", utc_text(r.utc_s).view(), prices,
+                           action_name(r.action), r.power_w, r.profit_eur, tail, prices);
     }
   }
 };
 
-void add_metrics(Json& json, const Evaluation& e, double foresight_profit) {
-  const double profit = e.profit_eur_per_day_per_mwh();
-  const double share = foresight_profit > 0 ? profit / foresight_profit : NAN;  // null then
-  json.set("days", e.days.size());
-  json.set("profit_eur_per_day_per_mwh", Decimals{profit, 4});
-  json.set(kReferenceWearKey,
-           Decimals{e.profit_at_wear_eur_per_day_per_mwh(kReferenceWearEurPerMwh), 4});
-  const DayErrors errors = e.errors();
-  json.set("standard_error", Decimals{errors.plain, 4});
-  json.set("standard_error_by_month", Decimals{errors.by_month, 4});
-  json.set("months", errors.months);
-  json.set("cycles_per_day", Decimals{e.cycles_per_day(), 4});
-  json.set("worst_day_eur_per_mwh", Decimals{e.worst_day_eur_per_mwh(), 4});
-  json.set("share_of_foresight", Decimals{share, 5});
-  json.set("switches_per_day", Decimals{e.switches_per_day(), 3});
-  json.set("soc_end_mean", Decimals{e.soc_end_mean(), 5});
-}
+/// A row a policy in one way of counting, in their order; none when it was not counted.
+using Rows = std::vector<ComparisonRow>;
 
-void add_difference(Json& json, const Evaluation& e, const Evaluation& first) {
-  const PairedDifference difference = paired_difference(e, first);
-  json.set("difference_to_first", Decimals{difference.mean, 4});
-  json.set("difference_standard_error", Decimals{difference.standard_error, 4});
-  json.set("gain_standard_error_by_month", Decimals{difference.standard_error_by_month, 4});
-}
-
-/// With several policies: also the paired difference to the first and, nested, the same with the SoC
-/// carried over.
-Json evaluation_json(const NamedEvaluation& named, const NamedEvaluation& first,
-                     const NamedEvaluation& foresight, const EvaluateArguments& options) {
-  const EvaluationField field =
-      options.carry_soc ? &NamedEvaluation::carried_over : &NamedEvaluation::day_reset;
-  const bool several = options.policies.size() > 1;
-  Json json = Json::object({{"policy", named.name}, {"split", options.split}});
-  add_metrics(json, named.*field, (foresight.*field).profit_eur_per_day_per_mwh());
-  json.set("carry_soc", options.carry_soc);
-  if (!named.description.empty()) json.set("description", named.description);
-  if (several) add_difference(json, named.*field, first.*field);
-  if (several && !options.carry_soc) {
-    Json carried = Json::object();
-    add_metrics(carried, named.carried_over, foresight.carried_over.profit_eur_per_day_per_mwh());
-    add_difference(carried, named.carried_over, first.carried_over);
-    json.set("carried_over", std::move(carried));
+Json evaluation_json(const NamedEvaluation& named, std::size_t index, const Rows& rows,
+                     const Rows& carried, const std::string& first,
+                     const EvaluateArguments& options) {
+  Json json = answer("evaluation");
+  json.set("policy", named.name);
+  json.set("split", options.split);
+  json.set("date", text_or_null(options.date));
+  json.set(key::kCarrySoc, options.carry_soc);
+  add_figures(rows[index], first, json);
+  json.set("description", text_or_null(named.description));
+  if (carried.empty()) {
+    json.set(key::kCarriedOver, Json::null());
+    return json;
   }
+  Json other = Json::object({{key::kCarrySoc, true}});
+  add_figures(carried[index], first, other);
+  json.set(key::kCarriedOver, std::move(other));
   return json;
+}
+
+/// A line a policy; of several, nested, the same with the SoC carried over.
+void print_json(const std::vector<NamedEvaluation>& results, const NamedEvaluation& foresight,
+                const EvaluateArguments& options) {
+  const Rows reset = comparison_rows(results, &NamedEvaluation::day_reset, &foresight);
+  const Rows carried = comparison_rows(results, &NamedEvaluation::carried_over, &foresight);
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    fmt::print("{}\n",
+               evaluation_json(results[i], i, options.carry_soc ? carried : reset,
+                               options.carry_soc ? Rows{} : carried, results.front().name, options)
+                   .line());
+  }
 }
 
 double price_range(const MarketSteps& market, const MarketDay& day) {
@@ -185,7 +177,7 @@ NamedEvaluation evaluate_policy(const std::string& name, const Trial& trial, Rec
                           {config.battery, config.initial_soc_frac, carry_soc},
                           wants_steps ? &steps : nullptr);
     if (trial.only_day) keep_day(*trial.only_day, trial.market, evaluation, steps);
-    if (records != nullptr) records->add(name, kSocModes[carry_soc ? 1 : 0], evaluation, steps);
+    if (records != nullptr) records->add(name, carry_soc, evaluation, steps);
   }
   return named;
 }
@@ -237,9 +229,7 @@ void run_evaluate(const EvaluateArguments& options) {
     fmt::print("{} split: {}", options.split, format_comparison_table(results, &foresight));
     return;
   }
-  for (const NamedEvaluation& named : results) {
-    fmt::print("{}\n", evaluation_json(named, results.front(), foresight, options).line());
-  }
+  print_json(results, foresight, options);
 }
 
 }  // namespace

@@ -9,10 +9,12 @@
 #include "shared/host/file.h"
 #include "shared/host/json.h"
 #include "shared/host/user_error.h"
+#include "workstation/base/answer.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
 #include "workstation/cli/interruption.h"
 #include "workstation/cli/price_input.h"
+#include "workstation/cli/rule_report.h"
 #include "workstation/report/omega_sweep.h"
 #include "workstation/student/correct_and_prove.h"
 #include "workstation/student/student_policy.h"
@@ -94,20 +96,23 @@ OmegaPoint measure(const Bench& bench, const DistilOptions& options) {
 
 void print_json(const OmegaPoint& point, const Evaluation& teacher) {
   const PairedDifference gain = paired_difference(point.evaluation, teacher);
-  const Json json = Json::object(
-      {{"omega", point.omega},
-       {"states_checked", point.certificate.states_checked},
-       {"violations_property_1", point.certificate.violations_property_1},
-       {"violations_property_2", point.certificate.violations_property_2},
-       {"violations_property_3", point.certificate.violations_property_3},
-       {"divergence_nats", point.divergence_nats},
-       {"agreement", Decimals{point.agreement, 6}},
-       {"profit_eur_per_day_per_mwh", Decimals{point.evaluation.profit_eur_per_day_per_mwh(), 4}},
-       {"standard_error", Decimals{point.evaluation.standard_error(), 4}},
-       {"gain_over_teacher", Decimals{gain.mean, 4}},
-       {"gain_standard_error", Decimals{gain.standard_error, 4}},
-       {"standard_error_by_month", Decimals{point.evaluation.errors().by_month, 4}},
-       {"gain_standard_error_by_month", Decimals{gain.standard_error_by_month, 4}}});
+  Json json = answer("omega");
+  json.set("omega", point.omega);
+  add_certificate(point.certificate, json);
+  json.set("divergence_nats", point.divergence_nats);
+  json.set("agreement", Decimals{point.agreement, 6});
+  json.set(key::kCarrySoc, true);
+  json.set("days", point.evaluation.days.size());
+  json.set(key::kProfit, Decimals{point.evaluation.profit_eur_per_day_per_mwh(), 4});
+  json.set(key::kProfitError, Decimals{point.evaluation.standard_error(), 4});
+  json.set(key::kProfitErrorByMonth, Decimals{point.evaluation.errors().by_month, 4});
+  json.set(key::kGainOver, "teacher");
+  json.set(key::kGain, Decimals{gain.mean, 4});
+  json.set(key::kGainError, Decimals{gain.standard_error, 4});
+  json.set(key::kGainErrorByMonth, Decimals{gain.standard_error_by_month, 4});
+  // Names of before schema version 1, until the next release.
+  json.set("standard_error", Decimals{point.evaluation.standard_error(), 4});
+  json.set("gain_over_teacher", Decimals{gain.mean, 4});
   fmt::print("{}\n", json.line());
   std::fflush(stdout);  // each takes minutes
 }

@@ -11,6 +11,7 @@
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
+#include "workstation/base/answer.h"
 #include "workstation/cli/common_options.h"
 #include "workstation/cli/interruption.h"
 #include "workstation/cli/prices.h"
@@ -68,10 +69,12 @@ class Teller {
 
   void tell(const RecorderEvent& event) {
     if (json_) {
-      Json json = Json::object(
-          {{"event", name_of(event.kind)}, {"utc", utc_text(std::time(nullptr)).view()}});
-      if (!event.subject.empty()) json.set("subject", event.subject);
-      json.set("text", event.text);
+      Json json = answer("recorder_event");
+      json.set("event", name_of(event.kind));
+      json.set("utc", utc_text(std::time(nullptr)).view());
+      json.set("subject", text_or_null(event.subject));
+      json.set("message", event.text);
+      json.set("text", event.text);  // its name before schema version 1, until the next release
       print_json(json);
     } else if (event.kind == RecorderEvent::Kind::kRecorded) {
       if (terminal_) fmt::print(stderr, "\r\033[Krecord: {}", event.text);
@@ -116,16 +119,18 @@ class Teller {
 void print_summary(const RecordSummary& summary, const PricesRecordArguments& options) {
   if (options.json) {
     const bool any_seen = summary.lateness.seen > 0;
-    Teller::print_json(Json::object({{"event", "end"},
-                                     {"utc", utc_text(std::time(nullptr)).view()},
-                                     {"lines", summary.lines},
-                                     {"prices", summary.prices},
-                                     {"imbalances", summary.imbalances},
-                                     {"revised", summary.revised},
-                                     {"seen", summary.lateness.seen},
-                                     {"found", summary.lateness.found},
-                                     {"late_s_median", any_seen ? summary.lateness.median_s : NAN},
-                                     {"late_s_p95", any_seen ? summary.lateness.p95_s : NAN}}));
+    Json json = answer("recorder_summary");
+    json.set("event", "end");
+    json.set("utc", utc_text(std::time(nullptr)).view());
+    json.set("lines", summary.lines);
+    json.set("prices", summary.prices);
+    json.set("imbalances", summary.imbalances);
+    json.set("revised", summary.revised);
+    json.set("seen", summary.lateness.seen);
+    json.set("found", summary.lateness.found);
+    json.set("late_s_median", any_seen ? summary.lateness.median_s : NAN);
+    json.set("late_s_p95", any_seen ? summary.lateness.p95_s : NAN);
+    Teller::print_json(json);
     return;
   }
   fmt::print("{}: {}, {}, {}\n{}", options.out, counted(summary.prices, "minute price"),

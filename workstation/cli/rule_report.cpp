@@ -23,8 +23,15 @@ std::string rule_count_lines(const Certificate& certificate) {
   return text;
 }
 
-void add_rule_counts(const Certificate& certificate, Json& json) {
-  if (certificate.rule_counts.empty()) return;
+void add_certificate(const Certificate& certificate, Json& json) {
+  json.set("states_checked", certificate.states_checked);
+  json.set("states_evaluated", certificate.states_evaluated);
+  json.set("low_price_eur_per_mwh", certificate.thresholds.low_eur_per_mwh);
+  json.set("high_price_eur_per_mwh", certificate.thresholds.high_eur_per_mwh);
+  json.set("violations", certificate.violations());
+  json.set("violations_property_1", certificate.violations_property_1);
+  json.set("violations_property_2", certificate.violations_property_2);
+  json.set("violations_property_3", certificate.violations_property_3);
   Json list = Json::list();
   for (std::size_t r = 0; r < certificate.rule_counts.size(); ++r) {
     const Rule& rule = certificate.rules.rules[r];

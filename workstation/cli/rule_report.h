@@ -13,7 +13,7 @@ namespace bess {
 std::string rule_count_lines(const Certificate& certificate);
 
 /// "rules": a list of objects; nothing without rules.
-void add_rule_counts(const Certificate& certificate, Json& json);
+void add_certificate(const Certificate& certificate, Json& json);
 
 /// Of each broken rule the worst state, and the share of decisions on the days of `market` that break it, the SoC
 /// carried over; without days there is no share.

@@ -39,15 +39,37 @@ const char* bound_by(const Rule& rule, ContextKind kind) {
   return rule.enforce ? "student and guard" : "student";
 }
 
+/// What was counted of it is null without a policy.
+Json rule_json(const Rule& rule, ContextKind kind, const std::string& policy,
+               const std::string& split, std::optional<std::int64_t> decisions,
+               const std::optional<WatchCount>& count) {
+  const auto whole = [](std::optional<std::int64_t> number) {
+    return number ? Json(*number) : Json::null();
+  };
+  const auto counted = [&](std::int64_t WatchCount::*field) {
+    return count ? Json((*count).*field) : Json::null();
+  };
+  Json json = answer("rule");
+  json.set("rule", rule.name);
+  json.set("rule_text", rule.text());
+  json.set("context", context_name(kind));
+  json.set("binds_student", binds_student(rule, kind));
+  json.set("enforced", rule.enforce);
+  json.set("policy", text_or_null(policy));
+  json.set("split", text_or_null(split));
+  json.set("decisions", whole(decisions));
+  json.set("visited", counted(&WatchCount::visited));
+  json.set("visited_broken", counted(&WatchCount::visited_broken));
+  json.set("drawn", counted(&WatchCount::drawn));
+  json.set("drawn_broken", counted(&WatchCount::drawn_broken));
+  json.set("text", rule.text());  // its name before schema version 1, until the next release
+  return json;
+}
+
 void print_rules(const RuleSet& rules, ContextKind kind, bool json) {
   for (const Rule& rule : rules.rules) {
     if (json) {
-      fmt::print("{}\n", Json::object({{"rule", rule.name},
-                                       {"text", rule.text()},
-                                       {"context", context_name(kind)},
-                                       {"binds_student", binds_student(rule, kind)},
-                                       {"enforced", rule.enforce}})
-                             .line());
+      fmt::print("{}\n", rule_json(rule, kind, {}, {}, {}, {}).line());
     } else {
       fmt::print("{:<40}  {:<17}  {}\n", rule.name, bound_by(rule, kind), rule.text());
     }
@@ -58,7 +80,8 @@ double percent(std::int64_t part, std::int64_t whole) {
   return whole == 0 ? 0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
 }
 
-void print_watch(const RuleSet& rules, const RuleWatch& watch, const CheckArguments& options) {
+void print_watch(const RuleSet& rules, const RuleWatch& watch, ContextKind kind,
+                 const CheckArguments& options) {
   if (!options.json) {
     fmt::print(
         "\n{} breaks, in {} decisions of the {} split and at {} SoCs drawn beside each (seed {}):\n"
@@ -69,13 +92,8 @@ void print_watch(const RuleSet& rules, const RuleWatch& watch, const CheckArgume
   for (std::size_t r = 0; r < rules.rules.size(); ++r) {
     const WatchCount& c = watch.counts()[r];
     if (options.json) {
-      fmt::print("{}\n", Json::object({{"rule", rules.rules[r].name},
-                                       {"policy", options.policy},
-                                       {"decisions", watch.decisions()},
-                                       {"visited", c.visited},
-                                       {"visited_broken", c.visited_broken},
-                                       {"drawn", c.drawn},
-                                       {"drawn_broken", c.drawn_broken}})
+      fmt::print("{}\n", rule_json(rules.rules[r], kind, options.policy, options.split,
+                                   watch.decisions(), c)
                              .line());
     } else if (c.visited + c.drawn == 0) {
       fmt::print("{:<40}  never met in these states\n", rules.rules[r].name);
@@ -107,7 +125,7 @@ void run_rules_check(const CheckArguments& options) {
   RuleWatch watch(make_policy(options.policy, market, config.battery), all, classes,
                   options.drawn_per_step, config.train.seed);
   evaluate(market, days, watch, {config.battery, config.initial_soc_frac, true});
-  print_watch(all, watch, options);
+  print_watch(all, watch, classes.kind, options);
 }
 
 }  // namespace

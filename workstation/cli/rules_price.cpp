@@ -5,13 +5,13 @@
 #include <cstdio>
 #include <memory>
 
-#include "shared/host/json.h"
 #include "shared/host/user_error.h"
 #include "workstation/cli/common_options.h"
 #include "workstation/cli/distilled_prices.h"
 #include "workstation/cli/policy_factory.h"
 #include "workstation/cli/price_input.h"
 #include "workstation/cli/rule_files.h"
+#include "workstation/cli/rule_price_json.h"
 #include "workstation/cli/rules.h"
 #include "workstation/env/evaluate.h"
 #include "workstation/rules/rule_conflicts.h"
@@ -68,23 +68,39 @@ class Pricing {
                  error_text(carried.standard_error_by_month, 2), 100 * changed_share);
       return;
     }
-    const Json json = Json::object(
-        {{"rule", rule},
-         {"by", "projection"},
-         {"split", options_.split},
-         {"days", days_.size()},
-         {"profit_eur_per_day_per_mwh", Decimals{ruled.reset.profit_eur_per_day_per_mwh(), 4}},
-         {"difference", Decimals{reset.mean, 4}},
-         {"standard_error", Decimals{reset.standard_error, 4}},
-         {"standard_error_by_month", Decimals{reset.standard_error_by_month, 4}},
-         {"carried_difference", Decimals{carried.mean, 4}},
-         {"carried_standard_error", Decimals{carried.standard_error, 4}},
-         {"carried_standard_error_by_month", Decimals{carried.standard_error_by_month, 4}},
-         {"decisions_changed", Decimals{changed_share, 6}}});
-    fmt::print("{}\n", json.line());
+    const auto gain = [](const Evaluation& with, const Evaluation& without,
+                         const PairedDifference& difference) {
+      return RuleGain{with.profit_eur_per_day_per_mwh(), without.profit_eur_per_day_per_mwh(),
+                      difference.mean, difference.standard_error,
+                      difference.standard_error_by_month};
+    };
+    RulePriceRow row = row_of(rule);
+    row.reset = gain(ruled.reset, base.reset, reset);
+    row.carried = gain(ruled.carried, base.carried, carried);
+    row.changed_share = changed_share;
+    fmt::print("{}\n", rule_price_json(row).line());
+  }
+
+  /// Of a rule that no single decision can be moved by.
+  void print_unknown(const std::string& rule) const {
+    if (options_.json) {
+      fmt::print("{}\n", rule_price_json(row_of(rule)).line());
+    } else {
+      fmt::print("{:<40}  no demand on single states: give --teacher to see\n", rule);
+    }
   }
 
  private:
+  [[nodiscard]] RulePriceRow row_of(const std::string& rule) const {
+    return {.rule = rule,
+            .by = "projection",
+            .gain_over = options_.policy,
+            .split = options_.split,
+            .days = days_.size(),
+            .reset = {},
+            .carried = {}};
+  }
+
   const PriceArguments& options_;
   const RunConfig& config_;
   const MarketSteps& market_;
@@ -112,8 +128,8 @@ void price_by_projection(const PriceArguments& options, const RunConfig& config,
   for (const Rule& rule : rules.rules) {
     if (can_be_projected(rule)) {
       price(rule.name, {{rule}});
-    } else if (!options.json) {
-      fmt::print("{:<40}  no demand on single states: give --teacher to see\n", rule.name);
+    } else {
+      pricing.print_unknown(rule.name);
     }
   }
   if (rules.rules.size() > 1) price(kAllTogether, rules);
@@ -130,6 +146,7 @@ void run_rules_price(const PriceArguments& options) {
   std::fflush(stdout);  // what follows takes minutes
   price_by_distilling({.rules = rules,
                        .days = pricing.days(),
+                       .split = options.split,
                        .seeds = options.seeds,
                        .alone = options.alone,
                        .keep = options.keep,

@@ -6,6 +6,7 @@
 
 #include "shared/host/csv.h"
 #include "shared/host/file.h"
+#include "workstation/base/answer.h"
 #include "workstation/report/html.h"
 #include "workstation/report/rule_prices.h"
 
@@ -15,14 +16,39 @@ namespace {
 std::string number(double value) { return std::isnan(value) ? "-" : fmt::format("{:.1f}", value); }
 
 std::string bands_csv(const std::vector<Band>& bands, std::size_t runs) {
-  std::string text = "policy,soc,runs,mean,deviation,lowest,highest,mean_at_wear_10\n";
+  // soc to mean_at_wear_10 are names of before schema version 1, until the next release.
+  std::string text =
+      "policy,soc,runs,mean,deviation,lowest,highest,mean_at_wear_10,carry_soc,"
+      "profit_eur_per_day_per_mwh_mean,profit_eur_per_day_per_mwh_deviation,"
+      "profit_eur_per_day_per_mwh_min,profit_eur_per_day_per_mwh_max,"
+      "profit_at_wear_10_eur_per_day_per_mwh_mean\n";
   for (const Band& b : bands) {
-    text +=
-        fmt::format("{},{},{},{:.4f},{},{:.4f},{:.4f},{:.4f}\n", csv_field(b.policy), b.soc, runs,
-                    b.mean, std::isnan(b.deviation) ? "" : fmt::format("{:.4f}", b.deviation),
-                    b.low, b.high, b.mean_at_reference_wear);
+    const std::string figures =
+        fmt::format("{:.4f},{},{:.4f},{:.4f},{:.4f}", b.mean,
+                    std::isnan(b.deviation) ? "" : fmt::format("{:.4f}", b.deviation), b.low,
+                    b.high, b.mean_at_reference_wear);
+    text += fmt::format("{},{},{},{},{},{}\n", csv_field(b.policy), b.soc, runs, figures,
+                        truth(b.soc == "carried"), figures);
   }
   return text;
+}
+
+Json band_json(const Band& b) {
+  const std::string wear_mean = std::string(kReferenceWearKey) + "_mean";
+  return Json::object({{"policy", b.policy},
+                       {key::kCarrySoc, b.soc == "carried"},
+                       {"profit_eur_per_day_per_mwh_mean", Decimals{b.mean, 4}},
+                       {"profit_eur_per_day_per_mwh_deviation", Decimals{b.deviation, 4}},
+                       {"profit_eur_per_day_per_mwh_min", Decimals{b.low, 4}},
+                       {"profit_eur_per_day_per_mwh_max", Decimals{b.high, 4}},
+                       {wear_mean.c_str(), Decimals{b.mean_at_reference_wear, 4}},
+                       // Names of before schema version 1, until the next release.
+                       {"soc", b.soc},
+                       {"mean_eur_per_day_per_mwh", Decimals{b.mean, 4}},
+                       {"deviation", Decimals{b.deviation, 4}},
+                       {"lowest", Decimals{b.low, 4}},
+                       {"highest", Decimals{b.high, 4}},
+                       {kReferenceWearKey, Decimals{b.mean_at_reference_wear, 4}}});
 }
 
 std::string bands_html(const std::vector<Band>& bands, std::string_view soc,
@@ -75,15 +101,10 @@ std::string format_bands(const std::vector<Band>& bands, std::size_t runs) {
 std::string bands_json(const std::vector<Band>& bands, std::size_t runs) {
   Json list = Json::list();
   for (const Band& b : bands) {
-    list.add(Json::object({{"policy", b.policy},
-                           {"soc", b.soc},
-                           {"mean_eur_per_day_per_mwh", Decimals{b.mean, 4}},
-                           {"deviation", Decimals{b.deviation, 4}},
-                           {"lowest", Decimals{b.low, 4}},
-                           {"highest", Decimals{b.high, 4}},
-                           {kReferenceWearKey, Decimals{b.mean_at_reference_wear, 4}}}));
+    list.add(band_json(b));
   }
-  Json json = Json::object({{"runs", runs}});
+  Json json = answer("run_bands");
+  json.set("runs", runs);
   json.set("bands", std::move(list));
   return json.line();
 }

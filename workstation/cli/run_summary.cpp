@@ -9,6 +9,7 @@
 #include "shared/host/file.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
+#include "workstation/base/answer.h"
 #include "workstation/report/evaluation_days.h"
 #include "workstation/report/rule_prices.h"
 #include "workstation/rules/rule_file.h"
@@ -16,8 +17,9 @@
 namespace bess {
 namespace {
 
+constexpr std::string_view kCarried = "carried";
 constexpr std::pair<const char*, EvaluationField> kWays[] = {
-    {"reset", &NamedEvaluation::day_reset}, {"carried", &NamedEvaluation::carried_over}};
+    {"reset", &NamedEvaluation::day_reset}, {kCarried.data(), &NamedEvaluation::carried_over}};
 
 const NamedEvaluation& exported(const RunSummary& run) {
   const auto found = std::ranges::find(run.evaluations, kExportedPolicy, &NamedEvaluation::name);
@@ -28,24 +30,10 @@ const NamedEvaluation& exported(const RunSummary& run) {
   return *found;
 }
 
-Json row_json(const ComparisonRow& row, const char* soc) {
-  Json json = Json::object({{"policy", row.name},
-                            {"soc", soc},
-                            {"days", row.days},
-                            {"profit_eur_per_day_per_mwh", Decimals{row.profit, 4}},
-                            {"standard_error", Decimals{row.errors.plain, 4}},
-                            {"standard_error_by_month", Decimals{row.errors.by_month, 4}},
-                            {"months", row.errors.months},
-                            {kReferenceWearKey, Decimals{row.profit_at_reference_wear, 4}},
-                            {"worst_day_eur_per_mwh", Decimals{row.worst_day, 4}},
-                            {"cycles_per_day", Decimals{row.cycles_per_day, 4}},
-                            {"switches_per_day", Decimals{row.switches_per_day, 3}}});
-  if (row.difference) {
-    json.set("difference_to_first", Decimals{row.difference->mean, 4});
-    json.set("difference_standard_error", Decimals{row.difference->standard_error, 4});
-    json.set("gain_standard_error_by_month", Decimals{row.difference->standard_error_by_month, 4});
-  }
-  if (row.foresight_share) json.set("share_of_foresight", Decimals{*row.foresight_share, 5});
+Json row_json(const ComparisonRow& row, const std::string& first, const char* soc) {
+  Json json = Json::object({{"policy", row.name}, {key::kCarrySoc, soc == kCarried}});
+  add_figures(row, first, json);
+  json.set("soc", soc);  // its name before schema version 1, until the next release
   return json;
 }
 
@@ -139,23 +127,23 @@ RunSummary load_run_summary(const RunFolder& folder) {
 Json summary_json(const RunSummary& run) {
   const RunRecord& record = run.record;
   const RunFigures& figures = *record.figures;
-  Json json = Json::object({{"run", run.folder.path.string()},
-                            {"prices", record.prices},
-                            {"seed", record.config(run.folder).train.seed},
-                            {"provenance", figures.provenance},
-                            {"weights_hash", figures.weights_hash},
-                            {"states_checked", figures.states_checked},
-                            {"states_checked_plain", figures.states_checked_plain},
-                            {"violations_plain", figures.violations_plain},
-                            {"violations_corrected", figures.violations_corrected}});
+  Json json = answer("run");
+  json.set("run", run.folder.path.string());
+  json.set("prices", record.prices);
+  json.set("seed", record.config(run.folder).train.seed);
+  json.set("provenance", figures.provenance);
+  json.set("weights_hash", figures.weights_hash);
+  json.set("states_checked", figures.states_checked);
+  json.set("states_checked_plain", figures.states_checked_plain);
+  json.set("violations_plain", figures.violations_plain);
+  json.set("violations_corrected", figures.violations_corrected);
   json.set("demands", demands_json(figures.demands));
-  if (const auto prices = rule_prices_of(run.evaluations)) {
-    json.set("price_of_correction", rule_prices_json(*prices));
-  }
+  const auto prices = rule_prices_of(run.evaluations);
+  json.set("price_of_correction", prices ? rule_prices_json(*prices) : Json::null());
   Json policies = Json::list();
   for (const auto& [soc, field] : kWays) {
     for (const ComparisonRow& row : comparison_rows(run.evaluations, field)) {
-      policies.add(row_json(row, soc));
+      policies.add(row_json(row, run.evaluations.front().name, soc));
     }
   }
   json.set("policies", std::move(policies));

@@ -13,6 +13,7 @@
 #include "shared/host/file.h"
 #include "shared/host/json.h"
 #include "shared/host/user_error.h"
+#include "workstation/base/answer.h"
 #include "workstation/cli/chain_steps.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
@@ -75,15 +76,21 @@ std::string identity_of(const RunConfig& config, const MinuteSeries& series) {
                      series.start_utc_s, format_run_config(config));
 }
 
-std::string result_json(const std::string& out, Method method, const TrainResult& result) {
-  return Json::object({{"teacher", out},
-                       {"method", method_name(method)},
-                       {"steps", result.curve.back().step},
-                       {"best_step", result.best_step},
-                       {"validation_eur_per_day_per_mwh",
-                        Decimals{result.best_validation_eur_per_day_per_mwh, 4}},
-                       {"seconds", Decimals{result.seconds, 2}}})
-      .line();
+/// One seed is not looked at on test days.
+std::string result_json(const fs::path& out, const RunConfig& config, const TrainResult& result,
+                        std::uint64_t seed, double test = NAN, double test_carried = NAN) {
+  Json json = answer("teacher");
+  json.set("teacher", out.string());
+  json.set("method", method_name(config.train.method));
+  json.set("seed", seed);
+  json.set("steps", result.curve.back().step);
+  json.set("best_step", result.best_step);
+  json.set("validation_eur_per_day_per_mwh",
+           Decimals{result.best_validation_eur_per_day_per_mwh, 4});
+  json.set("test_eur_per_day_per_mwh", Decimals{test, 4});
+  json.set("test_carried_eur_per_day_per_mwh", Decimals{test_carried, 4});
+  json.set("seconds", Decimals{result.seconds, 2});
+  return json.line();
 }
 
 /// Trains with the configuration's seed, keeping a checkpoint beside `out` until the end.
@@ -116,7 +123,7 @@ TrainResult train_one(const fs::path& out, const TrainArguments& options, const 
 }
 
 void print_seeds(const std::vector<SeedResult>& results, const TrainArguments& options,
-                 Method method) {
+                 const RunConfig& config) {
   const auto column = [&](auto figure) {
     std::vector<double> values;
     for (const SeedResult& r : results) values.push_back(figure(r));
@@ -130,19 +137,12 @@ void print_seeds(const std::vector<SeedResult>& results, const TrainArguments& o
       column([](const SeedResult& r) { return r.test_carried.profit_eur_per_day_per_mwh(); });
   if (options.json) {
     for (std::size_t i = 0; i < results.size(); ++i) {
-      const Json json =
-          Json::object({{"method", method_name(method)},
-                        {"seed", results[i].seed},
-                        {"best_step", results[i].training.best_step},
-                        {"validation_eur_per_day_per_mwh", Decimals{validation[i], 4}},
-                        {"test_eur_per_day_per_mwh", Decimals{test[i], 4}},
-                        {"test_carried_eur_per_day_per_mwh", Decimals{carried[i], 4}},
-                        {"seconds", Decimals{results[i].training.seconds, 2}}});
-      fmt::print("{}\n", json.line());
+      fmt::print("{}\n", result_json(seed_path(options.out, results[i].seed), config,
+                                     results[i].training, results[i].seed, test[i], carried[i]));
     }
     return;
   }
-  fmt::print("{}, {} seeds; EUR per day per MWh of capacity\n", method_name(method),
+  fmt::print("{}, {} seeds; EUR per day per MWh of capacity\n", method_name(config.train.method),
              results.size());
   fmt::print("{:>9} {:>10} {:>11} {:>8} {:>13} {:>8}\n", "seed", "best step", "validation", "test",
              "test carried", "seconds");
@@ -179,7 +179,7 @@ void run_seeds(const TrainArguments& options, RunConfig config, const MinuteSeri
     return r.training.best_validation_eur_per_day_per_mwh;
   });
   save_teacher(options.out, best->training.teacher);
-  print_seeds(results, options, config.train.method);
+  print_seeds(results, options, config);
   if (!options.json) {
     fmt::print("{}: seed {}, the best on the validation days\n", options.out, best->seed);
   }
@@ -202,7 +202,7 @@ void run_train(const TrainArguments& options) {
   if (options.seeds > 1) return run_seeds(options, config, series, market);
   const TrainResult result = train_one(options.out, options, config, series, market);
   if (options.json) {
-    fmt::print("{}\n", result_json(options.out, config.train.method, result));
+    fmt::print("{}\n", result_json(options.out, config, result, config.train.seed));
   } else {
     fmt::print("{}: {}, best at step {} of {}: {:.1f} EUR/day/MWh on validation days, {:.0f} s\n",
                options.out, method_name(config.train.method), result.best_step,

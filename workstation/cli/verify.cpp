@@ -5,6 +5,7 @@
 
 #include "shared/host/json.h"
 #include "shared/host/user_error.h"
+#include "workstation/base/answer.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
 #include "workstation/cli/price_input.h"
@@ -29,19 +30,15 @@ struct VerifyArguments {
 
 void print_json(const std::string& name, const StudentFile& student, bool exhaustive) {
   const Certificate& c = student.certificate;
-  Json json =
-      Json::object({{"student", name},
-                    {"weights_hash", fmt::format("{:08x}", student_weights_hash(student.net))},
-                    {"method", exhaustive ? "exhaustive" : "bounds and enumeration"},
-                    {"states_checked", c.states_checked},
-                    {"states_evaluated", c.states_evaluated},
-                    {"violations_property_1", c.violations_property_1},
-                    {"violations_property_2", c.violations_property_2},
-                    {"violations_property_3", c.violations_property_3},
-                    {"low_price_eur_per_mwh", c.thresholds.low_eur_per_mwh},
-                    {"high_price_eur_per_mwh", c.thresholds.high_eur_per_mwh},
-                    {"seconds", Decimals{c.seconds, 3}}});
-  add_rule_counts(c, json);
+  const char* const way = exhaustive ? "exhaustive" : "bounds and enumeration";
+  Json json = answer("proof");
+  json.set("student", name);
+  json.set("weights_hash", fmt::format("{:08x}", student_weights_hash(student.net)));
+  json.set("proof_method", way);
+  json.set("proved", c.covers_lattice_without_violation());
+  add_certificate(c, json);
+  json.set("seconds", Decimals{c.seconds, 3});
+  json.set("method", way);  // its name before schema version 1, until the next release
   fmt::print("{}\n", json.line());
 }
 

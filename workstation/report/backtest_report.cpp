@@ -8,6 +8,7 @@
 
 #include "shared/host/csv.h"
 #include "shared/host/file.h"
+#include "workstation/base/answer.h"
 #include "workstation/report/comparison.h"
 #include "workstation/report/figure.h"
 #include "workstation/report/html.h"
@@ -223,6 +224,28 @@ std::string skipped_html(const BacktestResults& results) {
   return text.empty() ? text : fmt::format("<ul class=\"note\">\n{}</ul>\n", text);
 }
 
+Json policy_json(const WalkForward& policy, const WalkForward& first) {
+  const Row row = rows_of(policy, first).back();
+  Json json = Json::object({{"policy", policy.name},
+                            {"days", row.days},
+                            {"months", policy.months.size()},
+                            {key::kProfit, Decimals{row.profit, 4}},
+                            {kReferenceWearKey, Decimals{row.at_reference_wear, 4}},
+                            {key::kProfitError, Decimals{row.errors.plain, 4}},
+                            {key::kProfitErrorByMonth, Decimals{row.errors.by_month, 4}},
+                            {key::kGainOver, first.name},
+                            {key::kGain, Decimals{row.gain.mean, 4}},
+                            {key::kGainError, Decimals{row.gain.standard_error, 4}},
+                            {key::kGainErrorByMonth, Decimals{row.gain.standard_error_by_month, 4}},
+                            {"cycles_per_day", Decimals{row.turnover_per_day / 2, 4}},
+                            {"drawdown_eur_per_mwh", Decimals{policy.drawdown_eur_per_mwh(), 2}}});
+  // Names of before schema version 1, until the next release.
+  json.set("standard_error", Decimals{row.errors.plain, 4});
+  json.set("gain_to_first", Decimals{row.gain.mean, 4});
+  json.set("turnover_per_day", Decimals{row.turnover_per_day, 4});
+  return json;
+}
+
 }  // namespace
 
 std::string format_backtest_table(const BacktestResults& results) {
@@ -265,33 +288,36 @@ std::string format_backtest_table(const BacktestResults& results) {
 }
 
 std::string backtest_csv(const BacktestResults& results) {
+  // standard_error and turnover_per_day are names of before schema version 1, until the next release.
   std::string text =
       "month,policy,days,profit_eur_per_day_per_mwh,standard_error,gain_eur_per_day_per_mwh,"
-      "gain_standard_error,turnover_per_day," +
-      std::string(kReferenceWearKey) +
-      ",fitted_days,standard_error_by_month,gain_standard_error_by_month\n";
+      "gain_standard_error,turnover_per_day,profit_at_wear_10_eur_per_day_per_mwh,fitted_days,"
+      "profit_standard_error,profit_standard_error_by_month,gain_standard_error_by_month,"
+      "cycles_per_day\n";
   for (const WalkForward& policy : results.policies) {
     std::size_t month = 0;
     for (const Row& row : rows_of(policy, results.policies.front())) {
       const std::string fitted =
           row.month == kAllMonths ? "" : fmt::format("{}", results.fitted_days[month++]);
-      text += fmt::format("{},{},{},{:.4f},{},{:.4f},{},{:.4f},{:.4f},{},{},{}\n", row.month,
-                          csv_field(policy.name), row.days, row.profit,
-                          error_text(row.errors.plain, 4, ""), row.gain.mean,
-                          error_text(row.gain.standard_error, 4, ""), row.turnover_per_day,
-                          row.at_reference_wear, fitted, error_text(row.errors.by_month, 4, ""),
-                          error_text(row.gain.standard_error_by_month, 4, ""));
+      const std::string error = error_text(row.errors.plain, 4, "");
+      text += fmt::format(
+          "{},{},{},{:.4f},{},{:.4f},{},{:.4f},{:.4f},{},{},{},{},{:.4f}\n", row.month,
+          csv_field(policy.name), row.days, row.profit, error, row.gain.mean,
+          error_text(row.gain.standard_error, 4, ""), row.turnover_per_day, row.at_reference_wear,
+          fitted, error, error_text(row.errors.by_month, 4, ""),
+          error_text(row.gain.standard_error_by_month, 4, ""), row.turnover_per_day / 2);
     }
   }
   return text;
 }
 
 std::string backtest_days_csv(const BacktestResults& results) {
-  std::string text = "date,policy,profit_eur,cycles,switches,soc_end\n";
+  // soc_end is the name of soc_end_frac before schema version 1, until the next release.
+  std::string text = "date,policy,profit_eur,cycles,switches,soc_end,soc_end_frac\n";
   for (const WalkForward& policy : results.policies) {
     for (const DayResult& d : policy.total.days) {
-      text += fmt::format("{},{},{:.8g},{:.4f},{},{:.5f}\n", d.date, csv_field(policy.name),
-                          d.profit_eur, d.cycles, d.switches, d.soc_end_frac);
+      text += fmt::format("{},{},{:.8g},{:.4f},{},{:.5f},{:.5f}\n", d.date, csv_field(policy.name),
+                          d.profit_eur, d.cycles, d.switches, d.soc_end_frac, d.soc_end_frac);
     }
   }
   return text;
@@ -300,22 +326,12 @@ std::string backtest_days_csv(const BacktestResults& results) {
 Json backtest_json(const BacktestResults& results) {
   Json policies = Json::list();
   for (const WalkForward& policy : results.policies) {
-    const Row row = rows_of(policy, results.policies.front()).back();
-    policies.add(Json::object(
-        {{"policy", policy.name},
-         {"days", row.days},
-         {"months", policy.months.size()},
-         {"profit_eur_per_day_per_mwh", Decimals{row.profit, 4}},
-         {"standard_error", Decimals{row.errors.plain, 4}},
-         {"standard_error_by_month", Decimals{row.errors.by_month, 4}},
-         {"gain_to_first", Decimals{row.gain.mean, 4}},
-         {"gain_standard_error", Decimals{row.gain.standard_error, 4}},
-         {"gain_standard_error_by_month", Decimals{row.gain.standard_error_by_month, 4}},
-         {"turnover_per_day", Decimals{row.turnover_per_day, 4}},
-         {kReferenceWearKey, Decimals{row.at_reference_wear, 4}},
-         {"drawdown_eur_per_mwh", Decimals{policy.drawdown_eur_per_mwh(), 2}}}));
+    policies.add(policy_json(policy, results.policies.front()));
   }
-  Json json = Json::object({{"window_days", results.window_days}, {"soc", "carried"}});
+  Json json = answer("backtest");
+  json.set("window_days", results.window_days);
+  json.set(key::kCarrySoc, true);
+  json.set("soc", "carried");  // its name before schema version 1, until the next release
   json.set("policies", std::move(policies));
   Json months = Json::list();
   for (std::size_t m = 0; m < results.fitted_days.size(); ++m) {

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "shared/host/csv.h"
+#include "workstation/base/answer.h"
 #include "workstation/report/rule_prices.h"
 
 namespace bess {
@@ -31,6 +32,7 @@ ComparisonRow make_row(const std::string& name, const Evaluation& evaluation,
                     .worst_day = evaluation.worst_day_eur_per_mwh(),
                     .cycles_per_day = evaluation.cycles_per_day(),
                     .switches_per_day = evaluation.switches_per_day(),
+                    .soc_end_frac_mean = evaluation.soc_end_mean(),
                     .foresight_share = std::nullopt};
   if (&evaluation != &first && !first.days.empty()) {
     row.difference = paired_difference(evaluation, first);
@@ -78,17 +80,28 @@ std::string table_block(const std::string& title, const std::vector<ComparisonRo
   return text;
 }
 
-std::string csv_line(const ComparisonRow& row, std::string_view soc) {
+/// What had another name before schema version 1 stands under both until the next release: see kCsvHeader.
+std::string csv_line(const ComparisonRow& row, const std::string& first, bool carry_soc) {
   const auto& d = row.difference;
-  return fmt::format("{},{},{},{:.4f},{},{},{},{:.4f},{:.4f},{:.4f},{},{:.4f},{},{},{}\n",
-                     csv_field(row.name), soc, row.days, row.profit,
-                     error_text(row.errors.plain, 4, ""), d ? fmt::format("{:.4f}", d->mean) : "",
-                     d ? error_text(d->standard_error, 4, "") : "", row.worst_day,
-                     row.cycles_per_day, row.switches_per_day,
-                     row.foresight_share ? fmt::format("{:.6f}", *row.foresight_share) : "",
-                     row.profit_at_reference_wear, error_text(row.errors.by_month, 4, ""),
-                     d ? error_text(d->standard_error_by_month, 4, "") : "", row.errors.months);
+  const std::string profit_error = error_text(row.errors.plain, 4, "");
+  const std::string share = row.foresight_share ? fmt::format("{:.6f}", *row.foresight_share) : "";
+  const std::string old_names = fmt::format(
+      "{},{},{},{:.4f},{},{},{},{:.4f},{:.4f},{:.4f},{},{:.4f}", csv_field(row.name),
+      carry_soc ? "carried" : "reset", row.days, row.profit, profit_error,
+      d ? fmt::format("{:.4f}", d->mean) : "", d ? error_text(d->standard_error, 4, "") : "",
+      row.worst_day, row.cycles_per_day, row.switches_per_day, share, row.profit_at_reference_wear);
+  return fmt::format("{},{},{},{},{},{},{},{},{:.5f}\n", old_names, truth(carry_soc), profit_error,
+                     error_text(row.errors.by_month, 4, ""), d ? csv_field(first) : "",
+                     d ? error_text(d->standard_error_by_month, 4, "") : "", row.errors.months,
+                     share, row.soc_end_frac_mean);
 }
+
+constexpr const char* kCsvHeader =
+    "policy,soc,days,profit_eur_per_day_per_mwh,standard_error,gain_eur_per_day_per_mwh,"
+    "gain_standard_error,worst_day_eur_per_mwh,cycles_per_day,switches_per_day,foresight_share,"
+    "profit_at_wear_10_eur_per_day_per_mwh,carry_soc,profit_standard_error,"
+    "profit_standard_error_by_month,gain_over,gain_standard_error_by_month,months,"
+    "share_of_foresight,soc_end_frac_mean\n";
 
 }  // namespace
 
@@ -103,6 +116,32 @@ std::vector<ComparisonRow> comparison_rows(const std::vector<NamedEvaluation>& e
     rows.push_back(make_row(named.name, named.*field, first, foresight));
   }
   return rows;
+}
+
+void add_figures(const ComparisonRow& row, const std::string& first, Json& json) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  const PairedDifference gain = row.difference.value_or(PairedDifference{kUnknown, kUnknown});
+  const double share = row.foresight_share.value_or(kUnknown);
+  json.set("days", row.days);
+  json.set("months", row.errors.months);
+  json.set(key::kProfit, Decimals{row.profit, 4});
+  json.set(kReferenceWearKey, Decimals{row.profit_at_reference_wear, 4});
+  json.set(key::kProfitError, Decimals{row.errors.plain, 4});
+  json.set(key::kProfitErrorByMonth, Decimals{row.errors.by_month, 4});
+  json.set(key::kGainOver, row.difference ? Json(first) : Json::null());
+  json.set(key::kGain, Decimals{gain.mean, 4});
+  json.set(key::kGainError, Decimals{gain.standard_error, 4});
+  json.set(key::kGainErrorByMonth, Decimals{gain.standard_error_by_month, 4});
+  json.set("worst_day_eur_per_mwh", Decimals{row.worst_day, 4});
+  json.set("cycles_per_day", Decimals{row.cycles_per_day, 4});
+  json.set("switches_per_day", Decimals{row.switches_per_day, 3});
+  json.set(key::kShareOfForesight, Decimals{share, 5});
+  json.set("soc_end_frac_mean", Decimals{row.soc_end_frac_mean, 5});
+  // Names of before schema version 1, until the next release.
+  json.set("standard_error", Decimals{row.errors.plain, 4});
+  json.set("difference_to_first", Decimals{gain.mean, 4});
+  json.set("difference_standard_error", Decimals{gain.standard_error, 4});
+  json.set("soc_end_mean", Decimals{row.soc_end_frac_mean, 5});
 }
 
 std::string format_comparison_table(const std::vector<NamedEvaluation>& evaluations,
@@ -154,17 +193,12 @@ double configured_wear_eur_per_mwh(const std::vector<NamedEvaluation>& evaluatio
 
 std::string comparison_csv(const std::vector<NamedEvaluation>& evaluations,
                            const NamedEvaluation* foresight) {
-  std::string text =
-      "policy,soc,days,profit_eur_per_day_per_mwh,standard_error,gain_eur_per_day_per_mwh,"
-      "gain_standard_error,worst_day_eur_per_mwh,cycles_per_day,switches_per_day,"
-      "foresight_share," +
-      std::string(kReferenceWearKey) +
-      ",standard_error_by_month,gain_standard_error_by_month,months\n";
+  std::string text = kCsvHeader;
   for (const auto& row : comparison_rows(evaluations, &NamedEvaluation::day_reset, foresight)) {
-    text += csv_line(row, "reset");
+    text += csv_line(row, evaluations.front().name, false);
   }
   for (const auto& row : comparison_rows(evaluations, &NamedEvaluation::carried_over, foresight)) {
-    text += csv_line(row, "carried");
+    text += csv_line(row, evaluations.front().name, true);
   }
   return text;
 }

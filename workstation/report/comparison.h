@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "shared/host/json.h"
 #include "workstation/env/evaluate.h"
 
 namespace bess {
@@ -37,6 +38,7 @@ struct ComparisonRow {
   double worst_day;
   double cycles_per_day;
   double switches_per_day;
+  double soc_end_frac_mean;
   std::optional<double> foresight_share;  ///< of the foresight profit, when it is there and > 0
 };
 
@@ -48,6 +50,9 @@ using EvaluationField = Evaluation NamedEvaluation::*;
 std::vector<ComparisonRow> comparison_rows(const std::vector<NamedEvaluation>& evaluations,
                                            EvaluationField field,
                                            const NamedEvaluation* given = nullptr);
+
+/// The figures of `row`, which answers share (base/answer.h); gains are over `first`.
+void add_figures(const ComparisonRow& row, const std::string& first, Json& json);
 
 /// Aligned columns for the terminal: a block per way of counting, the missing one left out.
 std::string format_comparison_table(const std::vector<NamedEvaluation>& evaluations,
@@ -63,7 +68,7 @@ std::string reference_wear_meaning(double wear_eur_per_mwh);
 /// The wear that the profits of these are net of.
 double configured_wear_eur_per_mwh(const std::vector<NamedEvaluation>& evaluations);
 
-/// Header `policy,soc,days,...`; soc is "reset" or "carried"; an empty field is "not applicable".
+/// Header `policy,soc,days,...`; an empty field is "not applicable".
 std::string comparison_csv(const std::vector<NamedEvaluation>& evaluations,
                            const NamedEvaluation* foresight = nullptr);
 

@@ -7,20 +7,25 @@
 #include "shared/host/csv.h"
 #include "shared/host/user_error.h"
 #include "shared/units_and_limits.h"
+#include "workstation/base/answer.h"
 
 namespace bess {
 namespace {
 
-constexpr std::string_view kHeader =
+/// soc and soc_end are names of before schema version 1, until the next release; so is what a run of then has.
+constexpr std::string_view kHeaderBefore =
     "policy,soc,date,profit_eur,cycles,switches,soc_end,throughput_mwh";
+constexpr std::string_view kHeader =
+    "policy,soc,date,profit_eur,cycles,switches,soc_end,throughput_mwh,carry_soc,soc_end_frac";
 constexpr std::string_view kReset = "reset";
 constexpr std::string_view kCarried = "carried";
 
 void add_days(std::string& text, const std::string& policy, std::string_view soc,
               const Evaluation& evaluation) {
   for (const DayResult& d : evaluation.days) {
-    text += fmt::format("{},{},{},{},{},{},{},{}\n", csv_field(policy), soc, d.date, d.profit_eur,
-                        d.cycles, d.switches, d.soc_end_frac, d.throughput_mwh);
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", csv_field(policy), soc, d.date,
+                        d.profit_eur, d.cycles, d.switches, d.soc_end_frac, d.throughput_mwh,
+                        truth(soc == kCarried), d.soc_end_frac);
   }
 }
 
@@ -38,7 +43,7 @@ std::string evaluation_days_csv(const std::vector<NamedEvaluation>& evaluations)
 std::vector<NamedEvaluation> parse_evaluation_days_csv(std::string_view text,
                                                        const std::string& name,
                                                        const BatteryParameters& battery) {
-  const CsvTable table(text, name, kHeader);
+  const CsvTable table(text, name, csv_header(text) == kHeaderBefore ? kHeaderBefore : kHeader);
   Evaluation none;
   none.capacity_mwh = battery.capacity_wh / kWattsPerMegawatt;
   none.wear_eur_per_mwh = battery.wear_eur_per_mwh;

@@ -67,7 +67,7 @@ Json rule_prices_json(const RulePrices& prices) {
   Json list = Json::list();
   const auto add = [&](const char* part, const HeadlineGain& gain) {
     Json json = Json::object({{"part", part}});
-    if (part == std::string_view("rule")) json.set("rule", gain.meaning);
+    json.set("rule", part == std::string_view("rule") ? Json(gain.meaning) : Json::null());
     for (std::size_t w = 0; w < kHeadlineWears.size(); ++w) {
       const std::string key = fmt::format("at_wear_{:g}", kHeadlineWears[w]);
       json.set((key + "_eur_per_day_per_mwh").c_str(), Decimals{gain.difference[w].mean, 4});

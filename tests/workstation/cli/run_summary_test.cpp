@@ -47,9 +47,19 @@ TEST(EvaluationDays, ReadBackToTheBit) {
   const auto read = parse_evaluation_days_csv(text, "days.csv", {});
   EXPECT_EQ(evaluation_days_csv(read), text);
   EXPECT_EQ(comparison_csv(read), comparison_csv(written));
-  EXPECT_THROW(
-      (void)parse_evaluation_days_csv(text + "rbc,half,2023-01-29,0,0,0,0,0\n", "days.csv", {}),
-      UserError);
+  EXPECT_THROW((void)parse_evaluation_days_csv(text + "rbc,half,2023-01-29,0,0,0,0,0,true,0\n",
+                                               "days.csv", {}),
+               UserError);
+}
+
+/// A run of before schema version 1 has no columns of today's names.
+TEST(EvaluationDays, OfARunOfBeforeAreRead) {
+  const auto read = parse_evaluation_days_csv(
+      "policy,soc,date,profit_eur,cycles,switches,soc_end,throughput_mwh\n"
+      "rbc,carried,2023-01-29,24,1.5,40,0.25,2\n",
+      "days.csv", {});
+  ASSERT_EQ(read.size(), 1U);
+  EXPECT_EQ(read[0].carried_over.days.at(0).soc_end_frac, 0.25);
 }
 
 TEST(RunSummaries, BandsSpanTheRuns) {

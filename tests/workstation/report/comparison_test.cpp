@@ -56,10 +56,9 @@ TEST(Comparison, ProfitAtTheReferenceWearByHand) {
   EXPECT_NE(table.find("at wear 10\nrule "), std::string::npos) << table;
   EXPECT_NE(table.find("     180.0\n"), std::string::npos) << table;
   EXPECT_NE(table.find("it costs what is configured: 25"), std::string::npos) << table;
-  EXPECT_NE(comparison_csv({rule}).find(
-                ",profit_at_wear_10_eur_per_day_per_mwh,standard_error_by_month,"),
+  EXPECT_NE(comparison_csv({rule}).find("share_of_foresight,soc_end_frac_mean\nrule,reset,2,"),
             std::string::npos);
-  EXPECT_NE(comparison_csv({rule}).find(",180.0000,,,1\n"), std::string::npos);
+  EXPECT_NE(comparison_csv({rule}).find(",180.0000,false,"), std::string::npos);
 }
 
 TEST(Comparison, WithoutForesightThereIsNoShare) {
@@ -110,9 +109,10 @@ TEST(Comparison, BothErrorsStandBesideProfitAndGain) {
       << table;
   EXPECT_NE(table.find("2 months tell it to within 71 % only"), std::string::npos) << table;
   const std::string csv = comparison_csv({rule, student});
-  EXPECT_NE(csv.find(",standard_error_by_month,gain_standard_error_by_month,months\n"),
-            std::string::npos);
-  EXPECT_NE(csv.find(",3.0000,3.0000,2\n"), std::string::npos) << csv;
+  EXPECT_NE(
+      csv.find(",profit_standard_error_by_month,gain_over,gain_standard_error_by_month,months,"),
+      std::string::npos);
+  EXPECT_NE(csv.find(",3.0000,rule,3.0000,2,"), std::string::npos) << csv;
 }
 
 TEST(Comparison, CsvQuotesNamesThatNeedIt) {

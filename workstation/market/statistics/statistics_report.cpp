@@ -7,6 +7,7 @@
 #include "shared/host/json.h"
 #include "shared/host/text.h"
 #include "shared/utc_text.h"
+#include "workstation/base/answer.h"
 
 namespace bess {
 namespace {
@@ -48,21 +49,32 @@ std::string format_convergence_text(const ConvergenceByMinute& convergence) {
 }
 
 void add_price(Json& json, const PriceStatistics& price) {
+  // Without a price none of its figures is known.
+  const auto set = [&](const char* name, double figure) {
+    json.set(name, price.count > 0 ? figure : NAN);
+  };
   json.set("quarter_hours", price.count);
-  if (price.count == 0) return;
-  json.set("mean", price.mean);
-  json.set("minimum", price.minimum);
-  json.set("quartile_1", price.quartile_1);
-  json.set("median", price.median);
-  json.set("quartile_3", price.quartile_3);
-  json.set("maximum", price.maximum);
-  json.set("share_below_minus_200", price.share_below_minus_200);
-  json.set("share_below_0", price.share_below_0);
-  json.set("share_above_1000", price.share_above_1000);
-  json.set("sign_flip_rate", price.sign_flip_rate);
+  set("settled_eur_per_mwh_mean", price.mean);
+  set("settled_eur_per_mwh_min", price.minimum);
+  set("settled_eur_per_mwh_quartile_1", price.quartile_1);
+  set("settled_eur_per_mwh_median", price.median);
+  set("settled_eur_per_mwh_quartile_3", price.quartile_3);
+  set("settled_eur_per_mwh_max", price.maximum);
+  set("share_below_minus_200", price.share_below_minus_200);
+  set("share_below_0", price.share_below_0);
+  set("share_above_1000", price.share_above_1000);
+  set("sign_flip_rate", price.sign_flip_rate);
+  // Names of before schema version 1, until the next release.
+  set("mean", price.mean);
+  set("minimum", price.minimum);
+  set("quartile_1", price.quartile_1);
+  set("median", price.median);
+  set("quartile_3", price.quartile_3);
+  set("maximum", price.maximum);
   Json lags = Json::object();
   for (std::size_t i = 0; i < kAutocorrelationLags.size(); ++i) {
-    lags.set(std::to_string(kAutocorrelationLags[i]).c_str(), price.autocorrelation[i]);
+    lags.set(std::to_string(kAutocorrelationLags[i]).c_str(),
+             price.count > 0 ? price.autocorrelation[i] : NAN);
   }
   json.set("autocorrelation", std::move(lags));
 }
@@ -71,19 +83,33 @@ Json convergence_json(const ConvergenceByMinute& convergence) {
   Json list = Json::list();
   for (std::size_t m = 0; m < convergence.size(); ++m) {
     const bool known = convergence[m].count > 0;
+    const double median = known ? convergence[m].median_error : NAN;
+    const double mean = known ? convergence[m].mean_error : NAN;
     list.add(Json::object({{"minute", m},
                            {"rows", convergence[m].count},
-                           {"median_error", known ? convergence[m].median_error : NAN},
-                           {"mean_error", known ? convergence[m].mean_error : NAN}}));
+                           {"error_eur_per_mwh_median", median},
+                           {"error_eur_per_mwh_mean", mean},
+                           // Names of before schema version 1, until the next release.
+                           {"median_error", median},
+                           {"mean_error", mean}}));
   }
   return list;
+}
+
+/// Under its names, and under those of before schema version 1, until the next release.
+void add_span(Json& json, std::int64_t from_utc_s, std::int64_t until_utc_s) {
+  json.set("from_utc", utc_text(from_utc_s).view());
+  json.set("until_utc", utc_text(until_utc_s).view());
+  json.set("from", utc_text(from_utc_s).view());
+  json.set("until", utc_text(until_utc_s).view());
 }
 
 Json gaps_json(const std::vector<Gap>& gaps) {
   Json list = Json::list();
   for (const Gap& gap : gaps) {
-    list.add(Json::object(
-        {{"from", utc_text(gap.from_utc_s).view()}, {"until", utc_text(gap.until_utc_s).view()}}));
+    Json span = Json::object();
+    add_span(span, gap.from_utc_s, gap.until_utc_s);
+    list.add(std::move(span));
   }
   return list;
 }
@@ -117,11 +143,12 @@ std::string format_statistics_text(const MarketStatistics& statistics) {
 }
 
 std::string format_statistics_json(const MarketStatistics& statistics) {
-  Json json = Json::object({{"from", utc_text(statistics.from_utc_s).view()},
-                            {"until", utc_text(statistics.until_utc_s).view()}});
+  Json json = answer("price_statistics");
+  add_span(json, statistics.from_utc_s, statistics.until_utc_s);
   add_price(json, statistics.price);
   json.set("imbalance_sign_flip_rate", statistics.imbalance_sign_flip_rate.value_or(NAN));
-  if (statistics.convergence) json.set("convergence", convergence_json(*statistics.convergence));
+  json.set("convergence",
+           statistics.convergence ? convergence_json(*statistics.convergence) : Json::null());
   json.set("settled_gaps", gaps_json(statistics.settled_gaps));
   json.set("indicative_gaps", gaps_json(statistics.indicative_gaps));
   json.set("clock_changes", clock_changes_json(statistics.clock_changes));

@@ -14,7 +14,8 @@ endif()
 
 file(GLOB page_files CONFIGURE_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/*.js ${CMAKE_CURRENT_LIST_DIR}/*.css
      ${CMAKE_CURRENT_LIST_DIR}/*.html)
-list(APPEND page_files ${BESS_CHART_JS})
+# Of the answers of --json: 'bess-train schema' prints it, and the package installs it.
+list(APPEND page_files ${BESS_CHART_JS} ${CMAKE_CURRENT_LIST_DIR}/../answers.schema.json)
 list(JOIN page_files "|" page_files_in_one)
 set(page_source ${CMAKE_CURRENT_BINARY_DIR}/page_files.cpp)
 add_custom_command(

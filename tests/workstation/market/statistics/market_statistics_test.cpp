@@ -73,9 +73,10 @@ TEST(Statistics, TextAndJson) {
   const std::string json = format_statistics_json(result);
   EXPECT_THAT(json, HasSubstr("\"median\":100"));
   EXPECT_THAT(json, HasSubstr("\"autocorrelation\":{\"1\":null"));  // a constant has none
-  EXPECT_THAT(json, HasSubstr("{\"minute\":5,\"rows\":2,\"median_error\":10,\"mean_error\":10}"));
-  EXPECT_THAT(json,
-              HasSubstr("{\"from\":\"1970-01-01T00:20:00Z\",\"until\":\"1970-01-01T00:21:00Z\"}"));
+  EXPECT_THAT(json, HasSubstr("{\"minute\":5,\"rows\":2,\"error_eur_per_mwh_median\":10,"));
+  EXPECT_THAT(
+      json,
+      HasSubstr("{\"from_utc\":\"1970-01-01T00:20:00Z\",\"until_utc\":\"1970-01-01T00:21:00Z\","));
 }
 
 TEST(Statistics, PictureIsWrittenOrTheReasonIsGiven) {

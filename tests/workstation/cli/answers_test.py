@@ -1,0 +1,240 @@
+"""Every answer of --json and every table of bess-train, held against the schema that it prints, by jsonschema.
+
+answers_test.py PROGRAM          commands that take seconds
+answers_test.py PROGRAM --full   and those that prove or distil a student: every one that has --json
+"""
+
+import csv
+import datetime
+import http.server
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import threading
+import unittest
+import urllib.parse
+
+import jsonschema  # Debian's python3-jsonschema: tools/setup --test
+
+PROGRAM = os.path.abspath(sys.argv[1])
+FULL = "--full" in sys.argv or os.environ.get("BESS_THOROUGH") == "1"
+SLOW_ANSWERS = {"proof", "omega", "run", "run_bands"}
+SLOW_COMMANDS = {"verify", "omega-sweep", "run", "runs compare"}
+SLOW_TABLES = {"evaluation_days.csv", "seeds.csv", "omega_sweep.csv", "proof_rounds.csv", "violations.csv"}
+
+
+class Minutes(http.server.BaseHTTPRequestHandler):
+    """The live minutes of Elia: the last five that are over."""
+
+    def do_GET(self):
+        dataset = self.path.split("/datasets/")[1].split("/")[0]
+        query = urllib.parse.parse_qs(urllib.parse.urlparse(self.path).query)
+        now = datetime.datetime.now(datetime.timezone.utc).replace(second=0, microsecond=0)
+        rows = [] if query.get("offset", ["0"])[0] != "0" else [self.row(dataset, now, m) for m in range(2, 7)]
+        body = json.dumps({"total_count": 5, "results": rows}).encode()
+        self.send_response(200)
+        self.send_header("Content-Type", "application/json")
+        self.send_header("Content-Length", str(len(body)))
+        self.end_headers()
+        self.wfile.write(body)
+
+    @staticmethod
+    def row(dataset, now, minutes_ago):
+        at = now - datetime.timedelta(minutes=minutes_ago)
+        name = "imbalanceprice" if dataset == "ods161" else "systemimbalance"
+        return {"datetime": at.strftime("%Y-%m-%dT%H:%M:%S+00:00"), "resolutioncode": "PT1M",
+                "qualitystatus": "DataIssue", name: 50.5}
+
+    def log_message(self, *_):
+        pass
+
+
+class Answers(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.schema = json.loads(subprocess.run([PROGRAM, "schema"], check=True, capture_output=True).stdout)
+        jsonschema.Draft202012Validator.check_schema(cls.schema)
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.seen, cls.run_commands, cls.tables = set(), set(), set()
+        with open(cls.file("few.toml"), "w") as config:
+            config.write("[distil]\nepochs = 60\n")
+        with open(cls.file("rules.toml"), "w") as rules:
+            rules.write('[[rule]]\nname = "no dear charging"\nprice_min = 301\nat_most = "idle"\n'
+                        '[[rule]]\nname = "steady"\nnever_rises_with = "minute"\n')
+        cls.bess(["prices", "simulate", "--days", "60", "--out", cls.file("market.csv")])
+
+    @classmethod
+    def file(cls, name):
+        return os.path.join(cls.folder.name, name)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    @classmethod
+    def bess(cls, arguments, code=0):
+        done = subprocess.run([PROGRAM, *arguments], capture_output=True, text=True)
+        assert done.returncode == code, (arguments, done.returncode, done.stderr)
+        return done.stdout
+
+    def validator(self, name):
+        return jsonschema.Draft202012Validator({"$ref": f"#/$defs/{name}", "$defs": self.schema["$defs"]})
+
+    def answers(self, *arguments, code=0):
+        """What a command answers, each line held; all keys of a kind are always there."""
+        arguments = [self.file(a[1:]) if a.startswith("@") else a for a in arguments]
+        self.run_commands.add(re.match(r"((runs|rules|prices) )?\S+", " ".join(arguments))[0])
+        lines = [json.loads(line) for line in self.bess([*arguments, "--json"], code).splitlines()]
+        self.assertTrue(lines, arguments)
+        for line in lines:
+            self.assertEqual(list(line)[:2], ["schema_version", "answer"])
+            kind = "answer_" + line["answer"]
+            self.validator(kind).validate(line)
+            self.assertEqual(set(line), set(self.schema["$defs"][kind]["properties"]))
+            self.seen.add(line["answer"])
+        return lines
+
+    def table(self, path, name=None):
+        """A table's columns are those of the schema in their order, and its rows are as described."""
+        name = name or os.path.basename(path)
+        with open(path, newline="") as file:
+            rows = csv.reader(line for line in file if not line.startswith("#"))
+            header = next(rows)
+            self.assertEqual(header, list(self.schema["$defs"][name]["properties"]), path)
+            validator = self.validator(name)
+            for number, row in enumerate(rows):
+                if number < 50:
+                    validator.validate({key: self.value(text) for key, text in zip(header, row, strict=True)})
+        self.tables.add(name)
+
+    @staticmethod
+    def value(text):
+        if text in ("", "true", "false"):
+            return {"": None, "true": True, "false": False}[text]
+        try:
+            return int(text)
+        except ValueError:
+            pass
+        try:
+            return float(text)
+        except ValueError:
+            return text
+
+    def test_1_prices(self):
+        stats = self.answers("prices", "stats", "@market.csv")[0]
+        self.assertEqual(stats["mean"], stats["settled_eur_per_mwh_mean"])
+        with open(self.file("quarter.csv"), "w") as file:  # no minutes, no imbalance
+            file.write("Datetime;Resolution code;Imbalance Price\n")
+            for quarter in range(8):
+                file.write(f"2023-01-01T{quarter // 4:02}:{quarter % 4 * 15:02}:00+00:00;PT15M;{40 + quarter}\n")
+        self.assertIsNone(self.answers("prices", "stats", "@quarter.csv")[0]["convergence"])
+        self.table(self.file("market.csv"), "minutes.csv")
+
+    def test_2_record(self):
+        server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), Minutes)
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        url = f"http://127.0.0.1:{server.server_port}/api/explore/v2.1"
+        lines = self.answers("prices", "record", "--out", "@recorded", "--url", url, "--for", "1s")
+        server.shutdown()
+        server.server_close()
+        self.assertEqual(lines[-1]["prices"], 5)
+
+    def test_3_teacher_and_plain_student(self):
+        one = self.answers("train", "--prices", "@market.csv", "--out", "@teacher.bin", "--curve-out", "@curve.csv")
+        self.assertIsNone(one[0]["test_eur_per_day_per_mwh"])
+        two = self.answers("train", "--prices", "@market.csv", "--out", "@best.bin", "--seeds", "2")
+        self.assertEqual([line["seed"] for line in two], [1, 2])
+        self.answers("distil", "--prices", "@market.csv", "--teacher", "@teacher.bin", "--out", "@plain.json",
+                     "--plain", "--config", "@few.toml", "--curve-out", "@distil.csv", "--rules", "@rules.toml")
+        self.table(self.file("curve.csv"), "training_curve.csv")
+        self.table(self.file("distil.csv"), "distil_curve.csv")
+
+    def test_4_evaluate(self):
+        common = ["--prices", "@market.csv", "--policy"]
+        alone = self.answers("evaluate", *common, "rbc")[0]
+        self.assertIsNone(alone["gain_over"])
+        self.assertIsNone(alone["carried_over"])
+        several = self.answers("evaluate", *common, "rbc", "rbc-tuned", "@plain.json", "foresight", "--csv",
+                               "@evaluation.csv", "--days-out", "@days.csv", "--steps-out", "@steps.csv")
+        self.assertEqual(several[1]["gain_over"], "rbc")
+        self.assertEqual(several[1]["gain_eur_per_day_per_mwh"], several[1]["difference_to_first"])
+        self.assertEqual(several[3]["share_of_foresight"], 1)
+        self.assertEqual(set(several[1]["carried_over"]) - {"carry_soc"}, set(several[1]) & set(
+            several[1]["carried_over"]) - {"carry_soc"})
+        carried = self.answers("evaluate", *common, "rbc", "rbc-tuned", "--carry-soc")[1]
+        self.assertEqual(carried["gain_eur_per_day_per_mwh"], several[1]["carried_over"]["gain_eur_per_day_per_mwh"])
+        day = self.answers("evaluate", *common, "rbc", "rbc-tuned", "--date", "widest")[1]
+        self.assertIsNone(day["gain_standard_error"])
+        self.answers("delays", "--prices", "@market.csv", "--policy", "rbc", "tabular", "--carry-soc")
+        for name in ("evaluation.csv", "days.csv", "steps.csv"):
+            self.table(self.file(name))
+
+    def test_5_rules(self):
+        check = ["rules", "check", "--rules", "@rules.toml"]
+        self.assertIsNone(self.answers(*check)[0]["decisions"])
+        with_policy = self.answers(*check, "--policy", "rbc", "--prices", "@market.csv")
+        self.assertEqual([r["rule"] for r in with_policy][-2:], ["no dear charging", "steady"])
+        price = self.answers("rules", "price", "--rules", "@rules.toml", "--prices", "@market.csv", "--policy", "rbc")
+        self.assertIsNone(price[1]["gain_eur_per_day_per_mwh"], "steady says nothing of single states")
+        self.assertEqual(price[0]["gain_eur_per_day_per_mwh"], price[0]["difference"])
+
+    def test_6_backtest(self):
+        backtest = ["--prices", "@market.csv", "--out", "@backtest", "--window-days", "30", "--policy", "rbc", "tabular"]
+        line = self.answers("backtest", *backtest)[0]
+        with open(self.file("backtest/backtest.json")) as file:
+            self.assertEqual(json.load(file), line)
+        for name in ("backtest.csv", "backtest_days.csv"):
+            self.table(self.file("backtest/" + name))
+
+    @unittest.skipUnless(FULL, "minutes: with --full")
+    def test_7_students(self):
+        learn = ["--prices", "@market.csv", "--teacher", "@teacher.bin", "--config", "@few.toml"]
+        student = self.answers("distil", *learn, "--out", "@student.json")[0]
+        self.assertEqual(student["rules"], [])
+        proof = self.answers("verify", "--student", "@student.json")[0]
+        self.assertTrue(proof["proved"])
+        self.answers("verify", "--student", "@plain.json", "--rules", "@rules.toml", code=1)
+        self.answers("omega-sweep", "--prices", "@market.csv", "--teacher", "@teacher.bin", "--out", "@sweep",
+                     "--omega", "1e-3", "--epochs", "1")
+        self.table(self.file("sweep/omega_sweep.csv"))
+        by = [line["by"] for line in self.answers("rules", "price", "--rules", "@rules.toml", "--policy", "@teacher.bin",
+                                                  "--seeds", "2", *learn)]
+        self.assertIn("distillation", by)
+
+    @unittest.skipUnless(FULL, "minutes: with --full")
+    def test_8_runs(self):
+        lines = self.answers("run", "--prices", "@market.csv", "--config", "@few.toml", "--rules", "@rules.toml",
+                             "--out", "@runs", "--seeds", "2")
+        self.assertEqual(lines[-1]["answer"], "run_bands")
+        self.assertEqual(self.answers("runs", "compare", "@runs"), lines[:-1])
+        self.table(self.file("runs/seeds.csv"))
+        run = self.file("runs/seed-1/")
+        for name in ("evaluation.csv", "evaluation_days.csv", "training_curve.csv", "distil_curve.csv",
+                     "proof_rounds.csv"):
+            self.table(run + name)
+        self.table(run + "student_plain_violations.csv", "violations.csv")
+
+    def test_9_nothing_is_left_out(self):
+        """Every command that knows --json was asked, and every kind of answer and table was met."""
+        kinds = {name.removeprefix("answer_") for name in self.schema["$defs"] if name.startswith("answer_")}
+        tables = {name for name in self.schema["$defs"] if name.endswith(".csv")}
+        commands = self.commands_with_json([])
+        slow = (set(), set(), set()) if FULL else (SLOW_ANSWERS, SLOW_COMMANDS, SLOW_TABLES)
+        self.assertEqual(kinds - slow[0], self.seen)
+        self.assertEqual(commands - slow[1], self.run_commands)
+        self.assertEqual(tables - slow[2], self.tables)
+
+    def commands_with_json(self, path):
+        text = self.bess([*path, "--help"])
+        found = {" ".join(path)} if re.search(r"^\s+--json", text, re.M) else set()
+        part = re.search(r"^Subcommands:\n(.*)", text, re.S | re.M)
+        for name in re.findall(r"^  ([a-z-]+)\s", part[1] if part else "", re.M):
+            found |= self.commands_with_json([*path, name])
+        return found
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)
