@@ -75,7 +75,7 @@ bool EventLog::open(const EventLogSettings& settings, const RunIdentity& identit
     return fail_with_errno(settings.status.c_str(), "cannot write the status here", error);
   }
   publish_in_memory();
-  tell_of_disk(totals_.disk_is_failing);
+  tell_of_disk(totals_.disk_is_failing, nullptr);
   tell_of_run_folder();
   thread_.start(
       [](void* log) -> void* {
@@ -200,7 +200,7 @@ void EventLog::keep_on_disk(const CycleRecord& record, std::uint64_t number) {
     totals_.disk_is_failing = true;
   }
   if (totals_.disk_is_failing || was_failing) publish_in_memory();
-  tell_of_disk(totals_.disk_is_failing);
+  tell_of_disk(totals_.disk_is_failing, &record);
 }
 
 /// On the journal, once each time: what a person has to end.
@@ -261,15 +261,36 @@ bool EventLog::append_to_csv(const CycleRecord& record) {
   return append_line(csv_fd_, line, format_csv_line(record, line));
 }
 
+/// What the controller does all the same; before its first cycle nobody knows.
+void EventLog::add_what_goes_on(const CycleRecord* record, TextBuffer& line) const {
+  if (record == nullptr) {
+    line.add("What follows says whether the battery is driven");
+  } else if (record->is_tripped) {
+    line.add("The battery stays released: tripped, %s", reason_name(record->trip.reason).data());
+  } else if (!identity_.control) {
+    line.add("The battery is read on");
+  } else if (record->mode == Mode::kRunning) {
+    line.add("The battery is driven on");
+  } else {
+    line.add("The battery is not driven now: %s", reason_name(record->reason).data());
+  }
+}
+
 /// On the journal, once each time: the files that would tell of it cannot be written.
-void EventLog::tell_of_disk(bool is_failing) {
+void EventLog::tell_of_disk(bool is_failing, const CycleRecord* record) {
   if (is_failing == was_failing_) return;
   was_failing_ = is_failing;
-  write_journal_line(
-      JournalLevel::kWarning,
-      is_failing ? "the files of [state], [log] or [metrics] cannot be written, is the disk full "
-                   "or read-only? The battery is driven on"
-                 : "the files of [state], [log] and [metrics] are written again");
+  char text[256];
+  TextBuffer line(text);
+  if (is_failing) {
+    line.add(
+        "the files of [state], [log] or [metrics] cannot be written, is the disk full or "
+        "read-only? ");
+    add_what_goes_on(record, line);
+  } else {
+    line.add("the files of [state], [log] and [metrics] are written again");
+  }
+  write_journal_line(JournalLevel::kWarning, line.view());
 }
 
 void EventLog::tell_of_hold(const CycleRecord& record) {

@@ -90,7 +90,8 @@ class EventLog {
   void publish_in_memory();
   [[nodiscard]] bool publish_metrics(const char* path);
   [[nodiscard]] bool publish_status(const char* path);
-  void tell_of_disk(bool is_failing);
+  void tell_of_disk(bool is_failing, const CycleRecord* record);
+  void add_what_goes_on(const CycleRecord* record, TextBuffer& line) const;
   void tell_of_run_folder();
   void tell_of_hold(const CycleRecord& record);
   void tell_of_meter(const CycleRecord& record);

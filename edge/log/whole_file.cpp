@@ -15,6 +15,32 @@ namespace {
 
 enum class Durability { kOrdinary, kOnDisk };
 
+struct Belonging {
+  uid_t user;
+  gid_t group;
+  mode_t mode;
+};
+
+/// What lies in a folder is for whoever may enter it, whatever the umask says and whoever makes it: what root
+/// leaves there, the service must be able to read and to replace.
+void belong(int fd, const Belonging& wanted) {
+  struct stat made {};
+  if (fstat(fd, &made) != 0) return;
+  const bool is_root = geteuid() == 0;
+  const bool is_others = made.st_uid != wanted.user || made.st_gid != wanted.group;
+  // Where it is refused, it stays as it was made.
+  bool is_done = !is_root || !is_others || fchown(fd, wanted.user, wanted.group) == 0;
+  if ((made.st_mode & 07777) != wanted.mode) is_done = fchmod(fd, wanted.mode) == 0 && is_done;
+  static_cast<void>(is_done);
+}
+
+void belong_to_folder(int fd, const char* path) {
+  constexpr mode_t kReaders = S_IRGRP | S_IROTH;
+  struct stat folder {};
+  if (stat(folder_of(path).c_str(), &folder) != 0) return;
+  belong(fd, {folder.st_uid, folder.st_gid, S_IRUSR | S_IWUSR | (folder.st_mode & kReaders)});
+}
+
 bool replace(const char* path, std::string_view text, Durability durability) {
   char beside[640];
   const int length = std::snprintf(beside, sizeof beside, "%s.new", path);
@@ -50,9 +76,28 @@ ssize_t read_beginning(const char* path, std::span<char> text, Links links) {
 
 int make_afresh(const char* path) {
   constexpr int kFlags = O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
-  const int fd = open(path, kFlags, 0644);
-  if (fd >= 0 || errno != EEXIST) return fd;
-  return unlink(path) == 0 ? open(path, kFlags, 0644) : -1;
+  int fd = open(path, kFlags, 0644);
+  if (fd < 0 && errno == EEXIST && unlink(path) == 0) fd = open(path, kFlags, 0644);
+  if (fd >= 0) belong_to_folder(fd, path);
+  return fd;
+}
+
+bool make_folder(const char* path) {
+  constexpr mode_t kMode = 0755;
+  if (mkdir(path, kMode) != 0) return errno == EEXIST;
+  const FileDescriptor made(open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
+  struct stat parent {};
+  if (made.get() >= 0 && stat(folder_of(path).c_str(), &parent) == 0) {
+    belong(made.get(), {parent.st_uid, parent.st_gid, kMode});
+  }
+  return true;
+}
+
+FixedText<639> folder_of(const char* path) {
+  const FixedText<639> text(path);
+  const std::size_t slash = text.view().rfind('/');
+  if (slash == std::string_view::npos) return {"."};
+  return {text.view().substr(0, slash == 0 ? 1 : slash)};
 }
 
 bool is_disk_trouble(int error) {
@@ -78,17 +123,8 @@ bool replace_file_durably(const char* path, std::string_view text) {
 }
 
 void sync_folder_of(const char* path) {
-  FixedText<639> folder(path);
-  const std::size_t slash = folder.view().rfind('/');
-  if (slash == std::string_view::npos) {
-    folder = ".";
-  } else {
-    folder = FixedText<639>(std::string_view(path, slash == 0 ? 1 : slash));
-  }
-  const int fd = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (fd < 0) return;
-  fsync(fd);
-  close(fd);
+  const FileDescriptor folder(open(folder_of(path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (folder.get() >= 0) fsync(folder.get());
 }
 
 bool fail_with_errno(const char* path, std::string_view what, FileMessage& error) {

@@ -33,8 +33,16 @@ enum class Links { kRefused, kFollowed };
 ssize_t read_beginning(const char* path, std::span<char> text, Links links);
 
 /// A new file of that name, for writing and reading: what lies there, a link as well, is removed and not
-/// followed. Negative with errno set.
+/// followed. Whoever may enter the folder may read it; made by root, it belongs to the folder's owner. Negative
+/// with errno set.
 int make_afresh(const char* path);
+
+/// Makes a folder that everybody may enter, where there is none; made by root, it belongs to the owner of the one
+/// around it. False with errno set.
+bool make_folder(const char* path);
+
+/// The folder that holds a file, "." for a bare name.
+FixedText<639> folder_of(const char* path);
 
 /// Of an errno: the disk is full, read-only or broken. That keeps no battery from being driven; anything else is
 /// the operator's to mend.

@@ -8,8 +8,8 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <filesystem>
 
+#include "edge/log/whole_file.h"
 #include "edge/notify/journal_line.h"
 
 namespace bess {
@@ -36,7 +36,7 @@ NotifyLock::~NotifyLock() {
 }
 
 bool NotifyLock::take(const std::string& path, std::string& error) {
-  mkdir(std::filesystem::path(path).parent_path().c_str(), 0755);
+  make_folder(folder_of(path.c_str()).c_str());
   fd_ = open_lock(path);
   if (fd_ < 0) {
     say(JournalLevel::kWarning,

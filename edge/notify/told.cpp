@@ -1,8 +1,5 @@
 #include "edge/notify/told.h"
 
-#include <sys/stat.h>
-
-#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -126,8 +123,7 @@ std::string told_text(const Told& told) {
 
 bool write_told(const std::string& path, const std::string& text, std::string& error) {
   const std::string folder = std::filesystem::path(path).parent_path().string();
-  const bool has_folder = mkdir(folder.c_str(), 0755) == 0 || errno == EEXIST;
-  if (has_folder && replace_file_durably(path.c_str(), text)) return true;
+  if (make_folder(folder.c_str()) && replace_file_durably(path.c_str(), text)) return true;
   FileMessage message;
   fail_with_errno(path.c_str(), "cannot be written", message);
   error = message.view();

@@ -1,6 +1,5 @@
 #include "edge/program/commission_file.h"
 
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -101,7 +100,7 @@ bool expect_same(TomlTable& table, std::string_view key, const std::string& conf
 bool write_commission_file(const EdgeConfig& config, const CommissionResult& result,
                            std::int64_t utc_s, std::string& error) {
   const std::string path = path_of(config);
-  mkdir(config.state.folder.c_str(), 0755);  // when it fails, the open below says why
+  make_folder(config.state.folder.c_str());  // when it fails, the open below says why
   if (replace_file_durably(path.c_str(), file_text(config, result, utc_s))) return true;
   error = path + ": cannot write here: " + std::strerror(errno) +
           "; mend the folder's permissions, or [state] folder, and repeat";

@@ -5,18 +5,6 @@
 #include <cstdio>
 
 namespace bess {
-namespace {
-
-/// The folder that holds a file, "." for a bare name.
-FixedText<639> folder_of(const char* path) {
-  const FixedText<639> text(path);
-  const std::size_t slash = text.view().rfind('/');
-  if (slash == std::string_view::npos) return {"."};
-  return {text.view().substr(0, slash == 0 ? 1 : slash)};
-}
-
-}  // namespace
-
 bool is_trusted(uid_t owner) { return owner == 0 || owner == geteuid(); }
 
 FileMessage strangers_file(const char* path) {

@@ -1,6 +1,5 @@
 #include "edge/program/hold_command.h"
 
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -93,7 +92,7 @@ int run_hold_command(const CommandLine& command_line, const EdgeConfig& config) 
   const std::int64_t now_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
   const Hold hold{.power_w = static_cast<std::int32_t>(power_w),
                   .until_utc_s = static_cast<std::uint32_t>(now_utc_s + command_line.for_s)};
-  if (mkdir(config.state.folder.c_str(), 0755) != 0 && errno != EEXIST) {
+  if (!make_folder(config.state.folder.c_str())) {
     return fail(config.state.folder.c_str(), "cannot make the folder of [state] folder");
   }
   if (!replace_file_durably(path.c_str(), format_hold(hold).view())) {

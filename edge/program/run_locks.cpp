@@ -25,7 +25,7 @@ FixedText<159> locked_thing(const EdgeConfig& config) {
 bool lock_run_folder(const EdgeConfig& config, RunLocks& locks, FileMessage& error) {
   const char* const folder = config.state.run_folder.c_str();
   if (*folder == '\0') return true;
-  if (mkdir(folder, 0755) != 0 && errno != EEXIST) {
+  if (!make_folder(folder)) {
     static_cast<void>(
         fail_with_errno(folder, "cannot make the folder of [state] run_folder", error));
     report(JournalLevel::kWarning, "note: %s: going on without it", error.c_str());
@@ -85,7 +85,7 @@ bool lock_battery(const EdgeConfig& config, RunLocks& locks, FileMessage& error)
 
 bool lock_state(const EdgeConfig& config, RunLocks& locks, FileMessage& error) {
   const char* const folder = config.state.folder.c_str();
-  if (mkdir(folder, 0755) != 0 && errno != EEXIST) {
+  if (!make_folder(folder)) {
     return fail_with_errno(folder, "cannot make the folder of [state] folder", error);
   }
   for (const auto& path :

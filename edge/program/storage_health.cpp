@@ -81,7 +81,7 @@ std::optional<int> used_life_percent(std::string_view life_time) {
 
 StorageHealth look_at_storage(const std::string& folder) {
   StorageHealth health;
-  mkdir(folder.c_str(), 0755);  // when it fails, the write says why
+  make_folder(folder.c_str());  // when it fails, the write says why
   const std::int64_t begin_ns = clock_ns(CLOCK_MONOTONIC);
   const int error = write_and_sync(folder + "/self-test.new");
   health.is_writable = error == 0;

@@ -152,7 +152,8 @@ TEST_F(HostileHost, AFullDiskForbidsNoRestart) {
   EXPECT_THAT(run({"--config", config, "--cycles", "2"}, 0),
               AllOf(HasSubstr("the decision log can be neither read nor made"),
                     HasSubstr("not driven until bess-edge clear --yes"),
-                    HasSubstr("reason=state_lost"), Not(HasSubstr("mode=running"))));
+                    HasSubstr("reason=state_lost"), Not(HasSubstr("mode=running")),
+                    Not(HasSubstr("is driven on"))));
   EXPECT_THAT(run({"--config", allowing_to_drive(config), "--cycles", "2"}, 0),
               AllOf(HasSubstr("driving all the same"), HasSubstr("mode=running"),
                     HasSubstr("stopped: battery released")));

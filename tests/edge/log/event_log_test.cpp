@@ -111,7 +111,8 @@ TEST_F(Log, AFullDiskIsToldAndDoesNotStopTheStart) {
   const bool opened = log->open(s, RunIdentity{}, error_);
   const std::string journal = ::testing::internal::GetCapturedStdout();
   ASSERT_TRUE(opened) << error_.c_str();
-  EXPECT_THAT(journal, HasSubstr("cannot be written, is the disk full or read-only?"));
+  EXPECT_THAT(journal, HasSubstr("cannot be written, is the disk full or read-only? What follows "
+                                 "says whether the battery is driven\n"));
   EXPECT_THAT(text_of_file(folder_.file("status.json")), HasSubstr("\"disk_is_failing\": true"));
 }
 
@@ -207,6 +208,50 @@ TEST_F(Log, AMetricsFolderThatVanishesIsAFailureOfThatFileOnly) {
   const std::string status = text_of_file(folder_.file("status.json"));
   EXPECT_THAT(status, HasSubstr("\"cycles\": 2"));
   EXPECT_THAT(status, HasSubstr("\"disk_is_failing\": true"));
+}
+
+/// What a disk in trouble does not change: the line promises nothing that is not so.
+TEST_F(Log, TheLineOfAFailingDiskSaysWhatTheControllerDoes) {
+  struct Case {
+    bool control;
+    void (*change)(CycleRecord& record);
+    const char* said;
+  };
+  const Case cases[] = {
+      {true, [](CycleRecord& record) { record.mode = Mode::kRunning; }, "The battery is driven on"},
+      {false, [](CycleRecord& record) { record.mode = Mode::kRunning; }, "The battery is read on"},
+      {true,
+       [](CycleRecord& record) {
+         record.mode = Mode::kSafe;
+         record.reason = Reason::kNoPrice;
+       },
+       "The battery is not driven now: no_price"},
+      {true,
+       [](CycleRecord& record) {
+         record.mode = Mode::kSafe;
+         record.is_tripped = true;
+         record.trip = {.reason = Reason::kStateLost, .utc_s = 1};
+       },
+       "The battery stays released: tripped, state_lost"}};
+  for (const Case& one : cases) {
+    EventLogSettings s = settings();
+    s.metrics = folder_.file("metrics").c_str();
+    RunIdentity identity;
+    identity.control = one.control;
+    const auto log = std::make_unique<EventLog>();
+    ASSERT_TRUE(log->open(s, identity, error_)) << error_.c_str();
+    std::filesystem::remove(folder_.file("metrics"));
+    std::filesystem::create_directory(folder_.file("metrics"));
+    CycleRecord record = record_of(1);
+    one.change(record);
+    ::testing::internal::CaptureStdout();
+    log->write(record);
+    const bool drained = log->drain(kDrainNs);
+    const std::string journal = ::testing::internal::GetCapturedStdout();
+    ASSERT_TRUE(drained);
+    EXPECT_THAT(journal, HasSubstr(std::string("full or read-only? ") + one.said + "\n"));
+    std::filesystem::remove(folder_.file("metrics"));
+  }
 }
 
 TEST_F(Log, WhatCannotBeOpenedStopsTheStartWithOneLine) {
