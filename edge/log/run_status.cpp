@@ -5,6 +5,7 @@
 
 #include "edge/log/run_fields.h"
 #include "edge/log/status_keys.h"
+#include "edge/log/text_checksum.h"
 #include "shared/utc_text.h"
 
 namespace bess {
@@ -86,7 +87,7 @@ void add_cycles_by_reason(const RunTotals& t, TextBuffer& json) {
     json.add("%s\n    \"%s\": %lld", i == 0 ? "" : ",", reason_name(static_cast<Reason>(i)).data(),
              as_long(t.cycles_by_reason[static_cast<std::size_t>(i)]));
   }
-  json.add("\n  }\n");
+  json.add("\n  }");
 }
 
 /// What counts up has a name that says so: the naming rule of Prometheus.
@@ -165,7 +166,7 @@ void format_status_json(const RunIdentity& identity, const RunTotals& totals,
   add_section<&Places::last>(kLastSection, totals, json);
   add_section<&Places::totals>(kTotalsSection, totals, json);
   add_cycles_by_reason(totals, json);
-  json.add("}\n");
+  json.add("%s", checksum_end(json.view(), kJsonChecksum).c_str());
 }
 
 void format_prometheus(const RunIdentity& identity, const RunTotals& totals, TextBuffer& text) {
@@ -182,6 +183,7 @@ void format_prometheus(const RunIdentity& identity, const RunTotals& totals, Tex
   add_fields(MetricGroup::kPeople, totals, text);
   add_fields(MetricGroup::kConnection, totals, text);
   add_model(identity, text);
+  text.add("%s", checksum_end(text.view(), kCommentChecksum).c_str());
 }
 
 }  // namespace bess

@@ -50,6 +50,7 @@ struct RunTotals {
 inline constexpr std::size_t kStatusBytes = 6'144;
 inline constexpr std::size_t kMetricsBytes = 12'288;
 
+/// Both end with a checksum of what stands before (text_checksum.h): as JSON's last member, as a comment.
 void format_status_json(const RunIdentity& identity, const RunTotals& totals,
                         std::int64_t written_monotonic_ns, TextBuffer& json);
 void format_prometheus(const RunIdentity& identity, const RunTotals& totals, TextBuffer& text);

@@ -64,14 +64,26 @@ bool replace(const char* path, std::string_view text, Durability durability) {
 
 }  // namespace
 
+bool is_of_the_house(uid_t owner, const char* path) {
+  if (owner == 0 || owner == geteuid()) return true;
+  struct stat folder {};
+  return stat(folder_of(path).c_str(), &folder) == 0 && folder.st_uid == owner;
+}
+
 ssize_t read_beginning(const char* path, std::span<char> text, Links links) {
   const int follow = links == Links::kRefused ? O_NOFOLLOW : 0;
   const FileDescriptor file(open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | follow));
   struct stat facts {};
   if (file.get() < 0 || fstat(file.get(), &facts) != 0) return -1;
-  if (S_ISREG(facts.st_mode)) return pread(file.get(), text.data(), text.size(), 0);
-  errno = EINVAL;
-  return -1;
+  if (!S_ISREG(facts.st_mode)) {
+    errno = S_ISDIR(facts.st_mode) ? EISDIR : EINVAL;
+    return -1;
+  }
+  if (links == Links::kRefused && !is_of_the_house(facts.st_uid, path)) {
+    errno = EPERM;
+    return -1;
+  }
+  return pread(file.get(), text.data(), text.size(), 0);
 }
 
 int make_afresh(const char* path) {

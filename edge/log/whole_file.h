@@ -25,11 +25,14 @@ bool replace_or_remove_file(const char* path, std::string_view text);
 /// As `replace_file`, and on the disk before it returns: for what must outlast a power cut.
 bool replace_file_durably(const char* path, std::string_view text);
 
-/// Whether a path may lead through a link to what another user pointed it at.
+/// Root, the user of this process, and whoever owns the folder around `path`, who can put anything there.
+bool is_of_the_house(uid_t owner, const char* path);
+
+/// Whether a path may lead through a link to what another user pointed it at, and be of any owner.
 enum class Links { kRefused, kFollowed };
 
 /// Reads the beginning of a regular file, never what could block (a pipe). Returns the bytes read, at most
-/// `text.size()`; negative with errno set, ENOENT where there is no such file.
+/// `text.size()`; negative with errno set: ENOENT where there is no such file, EPERM where it is a stranger's.
 ssize_t read_beginning(const char* path, std::span<char> text, Links links);
 
 /// A new file of that name, for writing and reading: what lies there, a link as well, is removed and not

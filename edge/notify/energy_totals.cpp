@@ -9,9 +9,9 @@ namespace {
 
 constexpr double kWattSecondsPerKwh = 3.6e6;
 
-bool is_counted_up_to(const RingLog& ring, const EnergyTotals& before) {
+bool is_counted_up_to(const LogReader& log, const EnergyTotals& before) {
   CycleRecord record;
-  return ring.read(before.counted_number, record) && record.utc_s == before.counted_utc_s;
+  return log.read(before.counted_number, record) && record.utc_s == before.counted_utc_s;
 }
 
 }  // namespace
@@ -26,21 +26,21 @@ void EnergyTotals::count(const CycleRecord& record) {
   discharged_ws += std::max<std::int64_t>(-energy_ws, 0);
 }
 
-void EnergyTotals::count_new(const RingLog& ring) {
+void EnergyTotals::count_new(const LogReader& log) {
   CycleRecord record;
-  const std::uint64_t newest = ring.newest_number();
-  if (!ring.read(newest, record)) return;
-  const bool is_known = has_begun() && is_counted_up_to(ring, *this);
-  // Another ring that ends before what was counted: it cannot be told what of it was.
+  const std::uint64_t newest = log.newest_number();
+  if (!log.read(newest, record)) return;
+  const bool is_known = has_begun() && is_counted_up_to(log, *this);
+  // Another log that ends before what was counted: it cannot be told what of it was.
   if (!has_begun() || (!is_known && record.utc_s < counted_utc_s)) {
     counted_number = newest;
     counted_utc_s = record.utc_s;
     return;
   }
-  std::uint64_t number = is_known ? counted_number + 1 : ring.oldest_number();
+  std::uint64_t number = is_known ? counted_number + 1 : log.oldest_number();
   const std::int64_t before_utc_s = counted_utc_s;
   for (; number <= newest; ++number) {
-    if (!ring.read(number, record) || record.mode == Mode::kStopping) continue;  // no cycle
+    if (!log.read(number, record) || record.mode == Mode::kStopping) continue;  // no cycle
     if (!is_known && record.utc_s <= before_utc_s) continue;
     count(record);
     counted_number = number;

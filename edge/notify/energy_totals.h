@@ -8,7 +8,7 @@
 #include <cstdint>
 
 #include "edge/control/control_types.h"
-#include "edge/log/ring_log.h"
+#include "edge/log/log_reader.h"
 
 namespace bess {
 
@@ -20,7 +20,7 @@ struct EnergyTotals {
   std::int64_t counted_utc_s = 0;    ///< its tick; 0 = nothing was ever counted
 
   /// The first look counts nothing: it is where the counters begin.
-  void count_new(const RingLog& ring);
+  void count_new(const LogReader& log);
 
   [[nodiscard]] bool has_begun() const { return counted_utc_s != 0; }
   [[nodiscard]] double charged_kwh() const;

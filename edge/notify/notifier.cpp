@@ -1,9 +1,10 @@
 #include "edge/notify/notifier.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "edge/control/cycle_budget.h"
-#include "edge/log/ring_log.h"
+#include "edge/log/log_reader.h"
 #include "edge/notify/day_account.h"
 #include "edge/notify/journal_line.h"
 #include "edge/notify/mail.h"
@@ -22,12 +23,12 @@ constexpr std::int64_t kKeepEnergyEveryS = 3'600;
 std::int32_t local_day_at(std::int64_t utc_s) { return local_day_of(local_minute_of(utc_s)); }
 
 /// The days from `first_day` to `last_day`, oldest first, from the newest records backwards.
-std::vector<DayAccount> accounts_of_days(const RingLog& ring, std::int32_t first_day,
+std::vector<DayAccount> accounts_of_days(const LogReader& log, std::int32_t first_day,
                                          std::int32_t last_day) {
   std::map<std::int32_t, DayAccount> days;
   CycleRecord record;
-  for (std::uint64_t n = ring.newest_number(); n >= ring.oldest_number() && n > 0; --n) {
-    if (!ring.read(n, record)) continue;
+  for (std::uint64_t n = log.newest_number(); n >= log.oldest_number() && n > 0; --n) {
+    if (!log.read(n, record)) continue;
     const std::int32_t day = local_day_at(record.utc_s);
     if (day < first_day) break;
     if (day <= last_day) days.try_emplace(day, day).first->second.add(record);
@@ -55,11 +56,23 @@ std::string duration_text(std::int64_t seconds) {
   return std::to_string(seconds / 3'600) + " h";
 }
 
+std::vector<std::string> memories_of(const NotifySettings& settings) {
+  std::vector<std::string> paths = {settings.memory};
+  paths.insert(paths.end(), settings.memory_copies.begin(), settings.memory_copies.end());
+  return paths;
+}
+
+Told recall(const NotifySettings& settings) {
+  ToldReading reading = read_newest_told(memories_of(settings));
+  for (const std::string& loss : reading.losses) say(JournalLevel::kError, loss);
+  return std::move(reading.told);
+}
+
 }  // namespace
 
 Notifier::Notifier(const NotifySettings& settings, MqttPresence presence)
     : settings_(settings),
-      told_(read_told(settings.memory)),
+      told_(recall(settings)),
       energy_(told_.energy),
       book_(settings.after_s, told_.alarms),
       kept_(told_text(told_)) {
@@ -100,7 +113,9 @@ Notifier::~Notifier() {
 
 void Notifier::run_round(std::int64_t now_utc_s) {
   const ControllerStatus status = ask_controller(settings_.program, settings_.config_path);
-  tell_events(book_.observe(troubles_of(status), now_utc_s), now_utc_s);
+  std::vector<Trouble> troubles = troubles_of(status);
+  if (!memory_trouble_.empty()) troubles.push_back({.key = "memory", .text = memory_trouble_});
+  tell_events(book_.observe(troubles, now_utc_s), now_utc_s);
   read_log(newest_utc_of(status), now_utc_s);
   publish(status);
   keep();  // before it is sent: killed in between, a message is sent late and not never
@@ -156,26 +171,29 @@ void Notifier::tell_events(const std::vector<AlarmEvent>& events, std::int64_t n
 
 /// Only behind a new cycle: to look for the newest record costs a reading of the whole log.
 void Notifier::read_log(std::int64_t newest_utc_s, std::int64_t now_utc_s) {
-  RingLog ring;
+  LogReader log;
   FileMessage ignored;
+  EventLogSettings places;
+  places.ring.assign(settings_.ring);
+  places.run_ring.assign(settings_.run_ring);
   const bool is_new = newest_utc_s != 0 && newest_utc_s != read_up_to_utc_s_;
-  if (!is_new || !ring.open_to_read(settings_.ring.c_str(), ignored)) return;
+  if (!is_new || !log.open(places, ignored)) return;
   read_up_to_utc_s_ = newest_utc_s;
-  energy_.count_new(ring);
+  energy_.count_new(log);
   const std::int32_t today = local_day_at(newest_utc_s);
-  const std::vector<DayAccount> accounts = accounts_of_days(ring, today, today);
+  const std::vector<DayAccount> accounts = accounts_of_days(log, today, today);
   today_ = accounts.empty() ? DayAccount(today) : accounts.front();
-  if (settings_.daily) tell_days(ring, newest_utc_s, now_utc_s);
+  if (settings_.daily) tell_days(log, newest_utc_s, now_utc_s);
 }
 
 /// By the controller's own time: its newest record begins the new day.
-void Notifier::tell_days(const RingLog& ring, std::int64_t newest_utc_s, std::int64_t now_utc_s) {
+void Notifier::tell_days(const LogReader& log, std::int64_t newest_utc_s, std::int64_t now_utc_s) {
   const std::int32_t today = local_day_at(newest_utc_s);
   const std::int32_t yesterday = local_day_at(newest_utc_s - 86'400);
   if (told_.local_day == 0) told_.local_day = yesterday;     // the days before were not watched
   if (told_.local_day > today) told_.local_day = yesterday;  // told while the clock was wrong
   if (told_.local_day >= yesterday) return;
-  for (const DayAccount& day : accounts_of_days(ring, told_.local_day + 1, yesterday)) {
+  for (const DayAccount& day : accounts_of_days(log, told_.local_day + 1, yesterday)) {
     tell({.kind = MessageKind::kDay, .key = day.date(), .text = day.line(), .utc_s = now_utc_s});
     if (mqtt_ != nullptr) mqtt_->retain(topic(settings_.node, "day"), day_json(day));
   }
@@ -200,15 +218,17 @@ void Notifier::keep() {
   // Its growth can be counted again from the log: alone it is not worth a write to the card.
   const bool is_energy_due =
       energy_.counted_utc_s - told_.energy.counted_utc_s >= kKeepEnergyEveryS;
-  if (!is_energy_due && told_text(told_) == kept_ && !is_memory_failing_) return;
+  if (!is_energy_due && told_text(told_) == kept_ && memory_trouble_.empty()) return;
   told_.energy = energy_;
+  ++told_.number;
   const std::string text = told_text(told_);
-  std::string error;
-  const bool is_kept = write_told(settings_.memory, text, error);
-  if (!is_kept && !is_memory_failing_) {
-    say(JournalLevel::kWarning, error + "; a restart will tell again what was told");
+  const std::string trouble_before =
+      std::exchange(memory_trouble_, write_told(memories_of(settings_), text));
+  if (trouble_before.empty() && !memory_trouble_.empty()) {
+    say(JournalLevel::kWarning, memory_trouble_);
+  } else if (!trouble_before.empty() && memory_trouble_.empty()) {
+    say(JournalLevel::kNotice, settings_.memory + " is written again");
   }
-  is_memory_failing_ = !is_kept;
   kept_ = text;
 }
 

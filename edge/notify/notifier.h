@@ -8,7 +8,7 @@
 #include <memory>
 #include <string>
 
-#include "edge/log/ring_log.h"
+#include "edge/log/log_reader.h"
 #include "edge/notify/alarm_book.h"
 #include "edge/notify/bell.h"
 #include "edge/notify/controller_status.h"
@@ -48,7 +48,7 @@ class Notifier {
   void tell(const Message& message);
   void tell_events(const std::vector<AlarmEvent>& events, std::int64_t now_utc_s);
   void read_log(std::int64_t newest_utc_s, std::int64_t now_utc_s);
-  void tell_days(const RingLog& ring, std::int64_t newest_utc_s, std::int64_t now_utc_s);
+  void tell_days(const LogReader& log, std::int64_t newest_utc_s, std::int64_t now_utc_s);
   void publish(const ControllerStatus& status);
 
   const NotifySettings settings_;
@@ -61,7 +61,7 @@ class Notifier {
   std::unique_ptr<MqttClient> mqtt_;
   std::map<std::string, Lane> lanes_;  ///< after what their threads use
   std::string kept_;                   ///< the text that was written last
-  bool is_memory_failing_ = false;
+  std::string memory_trouble_;         ///< why what is told cannot be kept; empty = it is
 };
 
 }  // namespace bess

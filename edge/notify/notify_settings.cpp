@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "edge/log/installed_folders.h"
 #include "edge/notify/webhook.h"
 #include "edge/prices/http_secrets.h"
 #include "shared/file_descriptor.h"
@@ -163,10 +164,17 @@ void read_notify(TomlTable table, NotifySettings& settings) {
   read_mail(table, settings);
   read_webhook(table, settings);
   read_mqtt(table, settings.mqtt);
+  folder = resolved(table, folder);
+  std::string run_folder(kInstalledNotify.run_beside(folder));
+  read_text(table, "run_folder", run_folder);
   table.finish();
   settings.program = resolved(table, settings.program);
-  settings.memory = resolved(table, folder) + "/told.json";
-  settings.lock = resolved(table, folder) + "/lock";
+  settings.memory = folder + "/told.json";
+  settings.memory_copies = {folder + "/told.copy"};
+  if (!run_folder.empty()) {
+    settings.memory_copies.push_back(resolved(table, run_folder) + "/told.json");
+  }
+  settings.lock = folder + "/lock";
 }
 
 }  // namespace
@@ -179,7 +187,11 @@ bool load_notify_settings(const std::string& path, NotifySettings& settings, std
   std::string state = "state";
   TomlTable state_table(root.table("state"), path, "[state]", error);
   read_text(state_table, "folder", state);
-  settings.ring = resolved(root, state) + "/decisions.ring";
+  state = resolved(root, state);
+  std::string run_folder(kInstalledEdge.run_beside(state));
+  read_text(state_table, "run_folder", run_folder);
+  settings.ring = state + "/decisions.ring";
+  if (!run_folder.empty()) settings.run_ring = resolved(root, run_folder) + "/decisions.ring";
   read_notify(TomlTable(root.table("notify"), path, "[notify]", error), settings);
   return error.empty();
 }

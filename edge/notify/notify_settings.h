@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace bess {
 
@@ -20,10 +21,12 @@ struct MqttSettings {
 
 struct NotifySettings {
   std::string config_path;
-  std::string program;  ///< bess-edge
-  std::string ring;     ///< the decision log
-  std::string memory;   ///< file of what was told
-  std::string lock;     ///< file that the one notifier of this memory holds
+  std::string program;                     ///< bess-edge
+  std::string ring;                        ///< the decision log
+  std::string run_ring;                    ///< what of it is in memory; empty = none
+  std::string memory;                      ///< file of what was told
+  std::vector<std::string> memory_copies;  ///< the same, for a disk that forgets or dies
+  std::string lock;                        ///< file that the one notifier of this memory holds
   std::string node;
   std::int32_t every_s = 30;
   std::int32_t after_s = 300;

@@ -1,9 +1,10 @@
 #include "edge/notify/told.h"
 
-#include <filesystem>
-#include <fstream>
-#include <sstream>
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
 
+#include "edge/log/text_checksum.h"
 #include "edge/log/whole_file.h"
 #include "shared/host/json.h"
 #include "shared/utc_text.h"
@@ -81,15 +82,19 @@ EnergyTotals read_energy(JsonValue energy) {
   return totals;
 }
 
-}  // namespace
+/// What lies at one of the places.
+struct KeptTold {
+  std::string path;
+  Told told{};
+  std::string loss{};  ///< why it does not count
+  bool is_absent = false;
 
-Told read_told(const std::string& path) {
-  std::ostringstream text;
-  text << std::ifstream(path).rdbuf();
-  const Json json = Json::parse(text.str());
-  const JsonValue all = json.value();
+  [[nodiscard]] bool counts() const { return !is_absent && loss.empty(); }
+};
+
+Told told_in(JsonValue all) {
   Told told;
-  if (all["version"].number().value_or(0) != kVersion) return told;
+  told.number = whole_of<std::uint64_t>(all["number"]);
   told.local_day = whole_of<std::int32_t>(all["local_day"]);
   for (const JsonValue alarm : all["alarms"]) {
     told.alarms.push_back({.key = text_of(alarm["key"]),
@@ -103,6 +108,59 @@ Told read_told(const std::string& path) {
   return told;
 }
 
+KeptTold read_place(const std::string& path) {
+  constexpr std::size_t kBytesMax =
+      4 * 1024 * 1024;  // three ways that owe 200 messages each need a tenth
+  KeptTold place{.path = path};
+  std::string text(kBytesMax, '\0');
+  const ssize_t size = read_beginning(path.c_str(), text, Links::kRefused);
+  if (size < 0) {
+    place.is_absent = errno == ENOENT;
+    if (!place.is_absent) place.loss = std::string("cannot be read: ") + std::strerror(errno);
+    return place;
+  }
+  text.resize(static_cast<std::size_t>(size));
+  const Json json = Json::parse(text);  // one of an older program has no checksum
+  const bool is_broken = check_text(text, kJsonChecksum) == TextState::kBroken;
+  if (is_broken || json.value()["version"].number().value_or(0) != kVersion) {
+    place.loss = "is damaged, or of another version: not believed";
+    return place;
+  }
+  place.told = told_in(json.value());
+  return place;
+}
+
+}  // namespace
+
+Told read_told(const std::string& path) { return read_newest_told({path}).told; }
+
+ToldReading read_newest_told(const std::vector<std::string>& paths) {
+  ToldReading reading;
+  std::vector<KeptTold> places;
+  for (const std::string& path : paths) places.push_back(read_place(path));
+  for (KeptTold& place : places) {
+    if (!place.loss.empty()) reading.losses.push_back(place.path + " " + place.loss);
+    if (!place.counts() || place.told.number < reading.told.number) continue;
+    reading.told = place.told;
+  }
+  const bool is_any =
+      std::any_of(places.begin(), places.end(), [](const KeptTold& p) { return p.counts(); });
+  if (!is_any && !reading.losses.empty()) {
+    reading.losses.emplace_back(
+        "what was told is not known: alarms are told again, days and energy are counted anew");
+  }
+  const auto folder = [](const std::string& path) {
+    return std::string(folder_of(path.c_str()).view());
+  };
+  for (const KeptTold& place :
+       places) {  // that of another folder is in memory, which a boot empties
+    const bool is_gone =
+        place.is_absent && reading.told.number > 0 && folder(place.path) == folder(paths.front());
+    if (is_gone) reading.losses.push_back(place.path + " is gone; another copy counts");
+  }
+  return reading;
+}
+
 std::string told_text(const Told& told) {
   Json alarms = Json::list();
   Json pending = Json::list();
@@ -112,22 +170,33 @@ std::string told_text(const Told& told) {
     for (const Message& message : owed.messages) pending.add(pending_json(way, message));
     if (owed.dropped.count > 0) dropped.add(dropped_json(way, owed.dropped));
   }
-  return Json::object({{"version", kVersion},
-                       {"local_day", told.local_day},
-                       {"alarms", std::move(alarms)},
-                       {"pending", std::move(pending)},
-                       {"dropped", std::move(dropped)},
-                       {"energy", energy_json(told.energy)}})
-      .text();
+  const std::string text = Json::object({{"version", kVersion},
+                                         {"number", told.number},
+                                         {"local_day", told.local_day},
+                                         {"alarms", std::move(alarms)},
+                                         {"pending", std::move(pending)},
+                                         {"dropped", std::move(dropped)},
+                                         {"energy", energy_json(told.energy)}})
+                               .text();
+  const std::string body = text.substr(0, text.rfind("\n}"));
+  return body + std::string(checksum_end(body, kJsonChecksum).view());
 }
 
-bool write_told(const std::string& path, const std::string& text, std::string& error) {
-  const std::string folder = std::filesystem::path(path).parent_path().string();
-  if (make_folder(folder.c_str()) && replace_file_durably(path.c_str(), text)) return true;
-  FileMessage message;
-  fail_with_errno(path.c_str(), "cannot be written", message);
-  error = message.view();
-  return false;
+std::string write_told(const std::vector<std::string>& paths, const std::string& text) {
+  std::string trouble;
+  std::string kept;
+  for (const std::string& path : paths) {
+    if (make_folder(folder_of(path.c_str()).c_str()) && replace_file_durably(path.c_str(), text)) {
+      kept = path;
+      continue;
+    }
+    FileMessage message;
+    fail_with_errno(path.c_str(), "cannot be written", message);
+    if (trouble.empty()) trouble = message.view();
+  }
+  if (trouble.empty()) return "";
+  return trouble + (kept.empty() ? "; what is told is kept nowhere: a restart tells it again"
+                                 : "; what is told is kept in " + kept + " alone");
 }
 
 }  // namespace bess

@@ -1,5 +1,6 @@
 // What must outlast a restart of the notifier: the alarms that were told, the last day that was, what each way
-// has not taken yet, and the counters of energy. One JSON file, replaced at once.
+// has not taken yet, and the counters of energy. One JSON text with a checksum, in several files, each replaced at
+// once: twice in [notify] folder, for a card that forgets, and in run_folder, for one that dies.
 #pragma once
 
 #include <cstdint>
@@ -14,18 +15,27 @@
 namespace bess {
 
 struct Told {
+  std::uint64_t number = 0;  ///< grows with every time that it is kept
   std::vector<Alarm> alarms{};
   std::int32_t local_day = 0;          ///< the last that was told; 0 = none yet
   std::map<std::string, Owed> owed{};  ///< by way: "mail", "webhook", "mqtt"
   EnergyTotals energy{};
 };
 
-/// A file that is missing or not ours is as if nothing had been told.
+/// A file that is missing, damaged or not ours is as if nothing had been told.
 Told read_told(const std::string& path);
+
+struct ToldReading {
+  Told told{};
+  std::vector<std::string> losses{};  ///< one line each
+};
+/// Of all files the one that was kept last.
+ToldReading read_newest_told(const std::vector<std::string>& paths);
 
 std::string told_text(const Told& told);
 
-/// What `told_text` gave. Makes the folder if it is missing. False with one line.
-bool write_told(const std::string& path, const std::string& text, std::string& error);
+/// What `told_text` gave, to every place; a folder that is missing is made. Empty, or one line: which place could
+/// not be written first, and what follows from it.
+std::string write_told(const std::vector<std::string>& paths, const std::string& text);
 
 }  // namespace bess

@@ -1,4 +1,5 @@
 #include "edge/program/edge_config.h"
+#include "edge/log/installed_folders.h"
 
 #include <unistd.h>
 
@@ -242,10 +243,6 @@ std::string resolved(const TomlTable& table, std::string_view path) {
   return (std::filesystem::path(table.file()).parent_path() / path).string();
 }
 
-/// Folders of the installed service (bess-edge.service): StateDirectory and RuntimeDirectory.
-constexpr std::string_view kInstalledState = "/var/lib/bess";
-constexpr std::string_view kInstalledRun = "/run/bess";
-
 void keep_run_paths(TomlTable& table, const std::string& path, EdgeConfig& config) {
   keep_path(table, "run_folder", path, config.state.run_folder);
   keep_path(table, "run_folder", path + "/decisions.ring", config.log.run_ring);
@@ -261,7 +258,7 @@ void read_state(TomlTable table, EdgeConfig& config) {
   table.boolean("drive_without_state", config.state.drive_without_state);
   const std::string path = resolved(table, folder.view());
   // As the service has it; elsewhere nobody says which folder is in memory.
-  FixedText<255> run_folder(path == kInstalledState ? kInstalledRun : "");
+  FixedText<255> run_folder(kInstalledEdge.run_beside(path));
   table.text("run_folder", run_folder);
   table.finish();
   if (!run_folder.empty()) keep_run_paths(table, resolved(table, run_folder.view()), config);

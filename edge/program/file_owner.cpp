@@ -41,9 +41,7 @@ bool refuse_roots_leftover(const char* path, FileMessage& error) {
 
 bool is_believable(const char* path) {
   struct stat file {};
-  if (lstat(path, &file) != 0 || is_trusted(file.st_uid)) return true;
-  struct stat folder {};
-  return stat(folder_of(path).c_str(), &folder) == 0 && folder.st_uid == file.st_uid;
+  return lstat(path, &file) != 0 || is_of_the_house(file.st_uid, path);
 }
 
 }  // namespace bess

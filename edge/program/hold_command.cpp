@@ -20,13 +20,6 @@
 namespace bess {
 namespace {
 
-int fail(const char* path, const char* what) {
-  FileMessage error;
-  fail_with_errno(path, what, error);
-  report(JournalLevel::kError, "%s", error.c_str());
-  return 1;
-}
-
 /// Nothing is ordered while the supervision has tripped, whoever wants it.
 void print_trip(const EdgeConfig& config) {
   LogReader log;
@@ -67,9 +60,59 @@ void print_hold(const EdgeConfig& config, const Hold& hold, std::int64_t now_utc
   print_trip(config);
 }
 
-int release_hold(const char* path) {
-  if (unlink(path) != 0 && errno != ENOENT) return fail(path, "cannot take the hold away");
+bool is_kept(const char* path, const Hold& hold) {
+  return replace_file_durably(path, format_hold(hold).view());
+}
+
+bool is_gone(const char* path) {
+  if (unlink(path) != 0 && errno != ENOENT) return false;
   sync_folder_of(path);
+  return true;
+}
+
+void warn_of_next_boot(const HoldPaths& paths, const FileMessage& error) {
+  report(JournalLevel::kWarning,
+         "%s; kept in %s alone, which the next boot of this machine forgets: repeat it then",
+         error.c_str(), paths.run.c_str());
+}
+
+/// One place is enough for the controller: its word is the newer one.
+int keep_hold(const EdgeConfig& config, const Hold& hold, std::int64_t now_utc_s) {
+  const HoldPaths paths = hold_paths(config);
+  FileMessage error;
+  FileMessage run_error;
+  const bool in_state = is_kept(paths.state.c_str(), hold) ||
+                        fail_with_errno(paths.state.c_str(), "cannot write the hold", error);
+  const bool in_run = !paths.run.empty() &&
+                      (is_kept(paths.run.c_str(), hold) ||
+                       fail_with_errno(paths.run.c_str(), "cannot write the hold", run_error));
+  if (!in_state && !in_run) {
+    report(JournalLevel::kError, "%s; nothing has changed", error.c_str());
+    return 1;
+  }
+  if (!in_state) warn_of_next_boot(paths, error);
+  if (!run_error.empty()) report(JournalLevel::kWarning, "note: %s", run_error.c_str());
+  print_hold(config, hold, now_utc_s);
+  return 0;
+}
+
+/// What cannot be taken away is outdone by a newer word in the other place: a hold that is over.
+int release_hold(const EdgeConfig& config) {
+  constexpr Hold kOver{.power_w = 0, .until_utc_s = 1};
+  const HoldPaths paths = hold_paths(config);
+  const bool has_run = !paths.run.empty();
+  FileMessage error;
+  const bool of_state = is_gone(paths.state.c_str()) ||
+                        fail_with_errno(paths.state.c_str(), "cannot take the hold away", error);
+  const bool of_run = !has_run || is_gone(paths.run.c_str()) ||
+                      fail_with_errno(paths.run.c_str(), "cannot take the hold away", error);
+  const bool is_outdone = (of_state || (has_run && is_kept(paths.run.c_str(), kOver))) &&
+                          (of_run || is_kept(paths.state.c_str(), kOver));
+  if (!is_outdone) {
+    report(JournalLevel::kError, "%s; it is still in force", error.c_str());
+    return 1;
+  }
+  if (!of_state) warn_of_next_boot(paths, error);
   std::printf("hold       none: from the next cycle on the prices decide\n");
   return 0;
 }
@@ -77,8 +120,7 @@ int release_hold(const char* path) {
 }  // namespace
 
 int run_hold_command(const CommandLine& command_line, const EdgeConfig& config) {
-  const FixedText<639> path = hold_path(config);
-  if (command_line.release_hold) return release_hold(path.c_str());
+  if (command_line.release_hold) return release_hold(config);
   const std::int64_t power_w_max = config.control.guard.power_w;
   const std::int64_t power_w = *command_line.hold_power_w;
   if (power_w > power_w_max || power_w < -power_w_max) {
@@ -92,14 +134,10 @@ int run_hold_command(const CommandLine& command_line, const EdgeConfig& config) 
   const std::int64_t now_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
   const Hold hold{.power_w = static_cast<std::int32_t>(power_w),
                   .until_utc_s = static_cast<std::uint32_t>(now_utc_s + command_line.for_s)};
-  if (!make_folder(config.state.folder.c_str())) {
-    return fail(config.state.folder.c_str(), "cannot make the folder of [state] folder");
+  for (const FixedText<511>* const folder : {&config.state.folder, &config.state.run_folder}) {
+    if (!folder->empty()) make_folder(folder->c_str());  // when it fails, the writing says why
   }
-  if (!replace_file_durably(path.c_str(), format_hold(hold).view())) {
-    return fail(path.c_str(), "cannot write the hold");
-  }
-  print_hold(config, hold, now_utc_s);
-  return 0;
+  return keep_hold(config, hold, now_utc_s);
 }
 
 }  // namespace bess

@@ -1,11 +1,14 @@
 #include "edge/program/hold_file.h"
 
+#include <sys/stat.h>
+
 #include <cerrno>
 #include <charconv>
 #include <cstdio>
 
 #include "edge/log/whole_file.h"
 #include "shared/crc32.h"
+#include "shared/scaled_clock.h"
 #include "shared/utc_text.h"
 
 namespace bess {
@@ -17,6 +20,23 @@ constexpr std::string_view kBeforeUntil = " until=";
 constexpr std::size_t kUntilCharacters = 20;
 
 constexpr Hold kUnreadable{.unreadable = true};
+
+/// What one of the places says, and since when.
+struct Word {
+  Hold hold;
+  bool is_there = false;
+  std::int64_t given_ns = 0;
+
+  [[nodiscard]] bool counts() const { return is_there && !hold.unreadable; }
+};
+
+Word read_word(const char* path) {
+  struct stat facts {};
+  if (lstat(path, &facts) != 0 && errno == ENOENT) return {};
+  return {.hold = read_hold(path),
+          .is_there = true,
+          .given_ns = facts.st_mtim.tv_sec * kNanosecondsPerSecond + facts.st_mtim.tv_nsec};
+}
 
 }  // namespace
 
@@ -53,6 +73,19 @@ Hold read_hold(const char* path) {
   const ssize_t size = read_beginning(path, text, Links::kRefused);
   if (size < 0) return errno == ENOENT ? Hold{} : kUnreadable;
   return parse_hold({text, static_cast<std::size_t>(size)});
+}
+
+HoldReading read_newest_hold(const HoldPaths& paths) {
+  const Word of_state = read_word(paths.state.c_str());
+  const Word of_run = paths.run.empty() ? Word{} : read_word(paths.run.c_str());
+  if (!of_state.counts() && !of_run.counts()) {
+    return {.hold = {.unreadable = of_state.is_there || of_run.is_there}};
+  }
+  const bool run_is_newer =
+      of_run.counts() && (!of_state.counts() || of_run.given_ns > of_state.given_ns);
+  return {.hold = run_is_newer ? of_run.hold : of_state.hold,
+          .state_is_lost = of_state.is_there && !of_state.counts(),
+          .run_is_lost = of_run.is_there && !of_run.counts()};
 }
 
 }  // namespace bess

@@ -4,7 +4,7 @@
 
 #include <cerrno>
 
-#include "edge/program/hold_file.h"
+#include "edge/log/journal.h"
 #include "shared/scaled_clock.h"
 
 namespace bess {
@@ -33,9 +33,10 @@ HoldWatch::~HoldWatch() {
   sem_destroy(&ending_);
 }
 
-void HoldWatch::start(const char* path, const ClearancePaths& cleared, std::int32_t time_scale) {
+void HoldWatch::start(const HoldPaths& paths, const ClearancePaths& cleared,
+                      std::int32_t time_scale) {
   constexpr std::int64_t kPeriodNsMin = kNanosecondsPerSecond / 1'000;
-  path_ = FixedText<639>(path);
+  paths_ = paths;
   cleared_ = cleared;
   const std::int64_t period_ns = kNanosecondsPerSecond / time_scale;
   period_ns_ = period_ns > kPeriodNsMin ? period_ns : kPeriodNsMin;
@@ -53,10 +54,23 @@ void HoldWatch::run() {
 }
 
 void HoldWatch::look() {
-  mailbox_.publish(read_hold(path_.c_str()));
+  const HoldReading reading = read_newest_hold(paths_);
+  mailbox_.publish(reading.hold);
+  tell_of_losses(reading);
   const std::int64_t trip_utc_s = asked_trip_utc_s_;
   if (trip_utc_s == 0 || cleared_trip_utc_s_ == trip_utc_s) return;
   if (is_trip_cleared(cleared_, trip_utc_s)) cleared_trip_utc_s_ = trip_utc_s;
+}
+
+/// Once each time. That no file can be understood is told with the cycle that does not follow it.
+void HoldWatch::tell_of_losses(const HoldReading& reading) {
+  const bool state_is_new = reading.state_is_lost && !told_.state_is_lost;
+  const bool run_is_new = reading.run_is_lost && !told_.run_is_lost;
+  told_ = reading;
+  if (!state_is_new && !run_is_new) return;
+  report(JournalLevel::kError, "hold: %s cannot be understood; %s counts",
+         state_is_new ? paths_.state.c_str() : paths_.run.c_str(),
+         state_is_new ? paths_.run.c_str() : paths_.state.c_str());
 }
 
 bool HoldWatch::is_cleared(std::int64_t trip_utc_s) {

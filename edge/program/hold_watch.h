@@ -10,6 +10,7 @@
 
 #include "edge/control/hold.h"
 #include "edge/memory/static_thread.h"
+#include "edge/program/hold_file.h"
 #include "edge/program/trip_clearance.h"
 #include "shared/fixed_text.h"
 
@@ -22,9 +23,9 @@ class HoldWatch {
   HoldWatch& operator=(const HoldWatch&) = delete;
   ~HoldWatch();
 
-  /// Reads the file once, so that the first cycle knows it, then goes on in the background.
+  /// Reads the files once, so that the first cycle knows it, then goes on in the background.
   /// `time_scale`: simulated time is looked at as often as it passes.
-  void start(const char* path, const ClearancePaths& cleared, std::int32_t time_scale);
+  void start(const HoldPaths& paths, const ClearancePaths& cleared, std::int32_t time_scale);
   [[nodiscard]] const HoldMailbox& mailbox() const { return mailbox_; }
 
   /// From the control thread, which never waits here: whether a person has cleared the trip of this instant, as
@@ -37,7 +38,10 @@ class HoldWatch {
   void run();
   void look();
 
-  FixedText<639> path_;
+  void tell_of_losses(const HoldReading& reading);
+
+  HoldPaths paths_;
+  HoldReading told_;
   ClearancePaths cleared_;
   std::atomic<std::int64_t> asked_trip_utc_s_{0};
   std::atomic<std::int64_t> cleared_trip_utc_s_{0};

@@ -62,7 +62,9 @@ ReservePeriod read_period(TomlTable table, const GuardSettings& guard) {
 
 }  // namespace
 
-FixedText<639> hold_path(const EdgeConfig& config) { return state_file(config, "hold"); }
+HoldPaths hold_paths(const EdgeConfig& config) {
+  return {.state = state_file(config, "hold"), .run = run_file(config, "hold")};
+}
 
 void read_full_charge(TomlTable& battery, ControlSettings& control) {
   std::int32_t share_e4 = 5'000;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "edge/program/edge_config.h"
+#include "edge/program/hold_file.h"
 #include "shared/host/toml_reader.h"
 
 namespace bess {
@@ -17,7 +18,7 @@ void read_reserve(TomlTable& root, ControlSettings& control);
 void read_start_spread(TomlTable& guard, EdgeConfig& config);
 
 /// Where a controller of this configuration looks for an operator's hold.
-FixedText<639> hold_path(const EdgeConfig& config);
+HoldPaths hold_paths(const EdgeConfig& config);
 
 /// A full charge that soc_max forbids would be tried for ever.
 void check_full_charge(TomlTable& battery, const ControlSettings& control);

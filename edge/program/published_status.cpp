@@ -11,10 +11,12 @@
 #include <fstream>
 #include <optional>
 #include <sstream>
+#include <utility>
 
 #include "edge/log/journal.h"
 #include "edge/log/log_reader.h"
 #include "edge/log/run_status.h"
+#include "edge/log/text_checksum.h"
 #include "edge/program/file_owner.h"
 #include "edge/program/run_locks.h"
 #include "edge/program/startup.h"
@@ -30,7 +32,7 @@ std::int64_t age_ms_of(JsonValue status) {
   return clock_ns(CLOCK_MONOTONIC) / 1'000'000 - whole(status["written_monotonic_ms"]);
 }
 
-/// Does not exist when there is none at `path`, or it is not ours.
+/// Does not exist when there is none at `path`, it is not ours, or it is not as it was written.
 Json read_status(const char* path) {
   std::string text;
   if (is_believable(path)) {
@@ -38,8 +40,20 @@ Json read_status(const char* path) {
   } else {
     report(JournalLevel::kWarning, "%s", strangers_file(path).c_str());
   }
-  Json status = Json::parse(text);
-  return status.value().is_object() ? std::move(status) : Json::parse("");
+  const TextState state = check_text(text, kJsonChecksum);
+  Json status = Json::parse(state == TextState::kIntact
+                                ? std::string(without_checksum(text, kJsonChecksum)) + "\n}\n"
+                                : text);  // of an older program
+  if (state != TextState::kBroken && status.value().is_object()) return status;
+  if (!text.empty()) report(JournalLevel::kWarning, "%s is damaged: not believed", path);
+  return Json::parse("");
+}
+
+/// 0 when there is no such file.
+std::int64_t written_ns(const char* path) {
+  struct stat info {};
+  if (*path == '\0' || stat(path, &info) != 0) return 0;
+  return info.st_mtim.tv_sec * kNanosecondsPerSecond + info.st_mtim.tv_nsec;
 }
 
 /// Of both places the one that was written last. One of before the last boot is older than any other.
@@ -241,17 +255,15 @@ PublishedStatus read_published_status(const EdgeConfig& config, bool no_lock) {
 }
 
 bool read_published_metrics(const EdgeConfig& config, std::string& text) {
-  struct stat of_state {};
-  struct stat of_run {};
-  const char* const state_path = config.log.metrics.c_str();
-  const char* const run_path = config.log.run_metrics.c_str();
-  const bool has_state = stat(state_path, &of_state) == 0;
-  const bool has_run = stat(run_path, &of_run) == 0 && is_believable(run_path);
-  const auto is_older = [](const timespec& one, const timespec& other) {
-    return one.tv_sec < other.tv_sec || (one.tv_sec == other.tv_sec && one.tv_nsec < other.tv_nsec);
-  };
-  const bool run_counts = has_run && (!has_state || is_older(of_state.st_mtim, of_run.st_mtim));
-  return read_text(run_counts ? run_path : state_path, text);
+  const char* newer = config.log.metrics.c_str();
+  const char* older = config.log.run_metrics.c_str();
+  if (written_ns(older) > written_ns(newer)) std::swap(newer, older);
+  for (const char* path : {newer, older}) {
+    if (*path == '\0' || !is_believable(path) || !read_text(path, text)) continue;
+    if (check_text(text, kCommentChecksum) == TextState::kIntact) return true;
+    report(JournalLevel::kWarning, "%s is damaged: not believed", path);
+  }
+  return false;
 }
 
 std::uint64_t published_log_number(const EdgeConfig& config) {

@@ -26,7 +26,7 @@ struct PublishedStatus {
 /// `no_lock`: without asking who holds a lock; the process that the status names counts instead.
 PublishedStatus read_published_status(const EdgeConfig& config, bool no_lock);
 
-/// The newer of the metrics files; false when there is none.
+/// The newer of the metrics files that is as it was written; false when there is none.
 bool read_published_metrics(const EdgeConfig& config, std::string& text);
 
 /// Number of the newest record that a status.json knows; 0 = none does.

@@ -49,6 +49,7 @@ bool RealWorld::open() {
     complain(JournalLevel::kError, refusal);
     return false;
   }
+  if (config_.control.control) report_commission_losses(config_);
   published_ = published_log_number(config_);
   FileMessage error;
   if (log_.open(config_.log, identity_of_run(config_), error)) return true;
@@ -59,7 +60,7 @@ bool RealWorld::open() {
 Recall RealWorld::recall() { return recall_at_start(config_, log_, published_); }
 
 const HoldMailbox& RealWorld::listen() {
-  people_.start(hold_path(config_).c_str(), clearance_paths(config_), config_.clock.scale);
+  people_.start(hold_paths(config_), clearance_paths(config_), config_.clock.scale);
   return people_.mailbox();
 }
 

@@ -139,6 +139,12 @@ bool reach_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& 
   return may_start_without(config, status);
 }
 
+void report_commission_losses(const EdgeConfig& config) {
+  for (const std::string& line : mend_commission_file(config)) {
+    report(JournalLevel::kError, "%s", line.c_str());
+  }
+}
+
 Recall recall_at_start(const EdgeConfig& config, const EventLog& log,
                        std::uint64_t published_number) {
   const ClearancePaths paths = clearance_paths(config);
@@ -188,7 +194,7 @@ bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& p
   print_thresholds(config);
   print_transport(config);
   const std::int64_t now_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
-  const Hold hold = read_hold(hold_path(config).c_str());
+  const Hold hold = read_newest_hold(hold_paths(config)).hold;
   std::fputs(wishes_note(config.control, hold, now_utc_s).c_str(), stdout);
   std::fflush(stdout);
   std::string trouble;

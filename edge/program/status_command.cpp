@@ -268,7 +268,8 @@ void print_json(PublishedStatus published, const Health& health, const UpdateSta
 bool print_metrics(const EdgeConfig& config) {
   std::string text;
   if (!read_published_metrics(config, text)) {
-    report(JournalLevel::kError, "%s: no metrics here; has bess-edge run with this configuration?",
+    report(JournalLevel::kError,
+           "%s: no metrics here that can be believed; has bess-edge run with this configuration?",
            config.log.metrics.c_str());
     return false;
   }

@@ -2,8 +2,12 @@
 
 #include <array>
 #include <charconv>
+#include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string_view>
+
+#include "edge/log/text_checksum.h"
 
 namespace bess {
 namespace {
@@ -34,12 +38,48 @@ void take_line(std::string_view line, UpdateState& state) {
   if (key == "needed") state.needed_cycles = whole_of(value);
 }
 
+/// One of the two files, as bess-update writes them.
+struct StateText {
+  std::string text;
+  bool is_there = false;
+  bool is_readable = false;  ///< a text, which its checksum does not contradict
+  bool is_whole = false;     ///< by its checksum, or by its last line where it has none
+};
+
+StateText read_state_text(const std::string& path) {
+  StateText state;
+  std::error_code ignored;
+  state.is_there = std::filesystem::exists(path, ignored);
+  std::ifstream file(path);
+  std::ostringstream bytes;
+  bytes << file.rdbuf();
+  state.text = bytes.str();
+  const TextState checked = check_text(state.text, kCommentChecksum);
+  state.is_readable = state.text.starts_with("phase=") && checked != TextState::kBroken;
+  const std::size_t last = state.text.rfind("\nneeded=");
+  const bool ends_well =
+      last != std::string::npos && state.text.find('\n', last + 1) == state.text.size() - 1;
+  state.is_whole = checked == TextState::kIntact || (state.is_readable && ends_well);
+  return state;
+}
+
 }  // namespace
 
 UpdateState read_update_state(const std::string& folder) {
+  const std::string path = folder + "/state";
+  const StateText main = read_state_text(path);
+  const StateText copy = read_state_text(path + ".copy");
   UpdateState state;
-  std::ifstream file(folder + "/state");
-  for (std::string line; std::getline(file, line);) take_line(line, state);
+  if (!main.is_there && !copy.is_there) return state;
+  // Without a copy it is of a bess-update that wrote neither that nor a checksum.
+  const bool main_counts = main.is_whole || (main.is_readable && !copy.is_there);
+  if (!main_counts && !copy.is_whole) {
+    state.phase = "failed";
+    state.reason = "the state of the upgrades is lost: " + path + " and its copy are damaged";
+    return state;
+  }
+  std::istringstream lines(main_counts ? main.text : copy.text);
+  for (std::string line; std::getline(lines, line);) take_line(line, state);
   return state;
 }
 
@@ -56,6 +96,7 @@ std::string update_note(const UpdateState& state) {
   }
   if (state.phase == "confirmed") return state.version + " confirmed";
   if (state.phase == "upgrading") return "a new version is being installed";
+  if (state.phase == "failed" && state.version.empty()) return state.reason;
   if (state.phase == "failed") return state.version + " did not confirm: " + state.reason;
   if (state.phase == "going_back") return state.refused + " is being rolled back: " + state.reason;
   return state.version + "; " + refused;

@@ -354,30 +354,73 @@ TEST_P(DyingDiskStart, ATripIsNotForgotten) {
 INSTANTIATE_TEST_SUITE_P(All, DyingDiskStart, ::testing::ValuesIn(kAccidents),
                          [](const auto& info) { return std::string(info.param.name); });
 
-TEST_F(DyingDisk, AHoldThatCannotBeWrittenSaysSoAndLeavesTheOneBefore) {
-  commission(true);
-  const auto hold = [&](std::vector<std::string> arguments) {
+/// What people say to the controller while its disk takes nothing.
+class DyingDiskWords : public DyingDisk {
+ protected:
+  Said hold(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), "hold");
     arguments.insert(arguments.end(), {"--config", config_});
     return edge(std::move(arguments));
-  };
+  }
+  void break_disk(bool is_full) { is_full ? disk_.fill() : disk_.go_read_only(); }
+  void mend_disk(bool is_full) { is_full ? disk_.free_again() : disk_.come_back(); }
+};
+
+TEST_F(DyingDiskWords, WithoutARunFolderAHoldThatCannotBeWrittenLeavesTheOneBefore) {
+  commission(false);
   ASSERT_EQ(hold({"-1000", "--for", "2h"}).exit_code, 0);
   const std::string before = text_of_file(disk_.file("hold"));
   ASSERT_FALSE(before.empty());
   for (const bool is_full : {true, false}) {
-    is_full ? disk_.fill() : disk_.go_read_only();
+    break_disk(is_full);
     for (const std::vector<std::string>& arguments :
          {std::vector<std::string>{"2000", "--for", "1h"}, {"--release"}}) {
       if (is_full && arguments.size() == 1) continue;  // what goes needs no room
       const Said said = hold(arguments);
       EXPECT_EQ(said.exit_code, 1) << said.text;
-      EXPECT_THAT(said.text, HasSubstr(is_full ? "No space left" : "Read-only file system"));
+      EXPECT_THAT(said.text, AllOf(HasSubstr(is_full ? "No space left" : "Read-only file system"),
+                                   AnyOf(HasSubstr("nothing has changed"),
+                                         HasSubstr("it is still in force"))));
       EXPECT_EQ(text_of_file(disk_.file("hold")), before);
     }
-    is_full ? disk_.free_again() : disk_.come_back();
+    mend_disk(is_full);
   }
   EXPECT_EQ(hold({"2000", "--for", "1h"}).exit_code, 0);
   EXPECT_NE(text_of_file(disk_.file("hold")), before);
+  print_row("hold, release on a full or read-only disk, no run folder",
+            "refused, the one before holds");
+}
+
+TEST_F(DyingDiskWords, WithARunFolderTheNewestWordIsFollowedAndSaidToEndWithTheBoot) {
+  for (const bool is_full : {true, false}) {
+    fs::remove_all(site_.folder.file("run"));
+    commission(true);
+    start();
+    ASSERT_NE(await_cycle("mode", "running", 8), "") << said_;
+    ASSERT_EQ(hold({"-1000", "--for", "6h"}).exit_code, 0);
+    ASSERT_NE(await_cycle("ordered_power_w", "-1000", 8), "") << said_;
+    break_disk(is_full);
+    const Said other = hold({"-2000", "--for", "6h"});
+    EXPECT_EQ(other.exit_code, 0) << other.text;
+    EXPECT_THAT(other.text, AllOf(HasSubstr(is_full ? "No space left" : "Read-only file system"),
+                                  HasSubstr("which the next boot of this machine forgets")));
+    EXPECT_NE(await_cycle("ordered_power_w", "-2000", 8), "") << said_;
+    const Said released = hold({"--release"});
+    EXPECT_EQ(released.exit_code, 0) << released.text;
+    EXPECT_EQ(released.text.find("which the next boot") == std::string::npos, is_full)
+        << "what goes needs no room: " << released.text;
+    EXPECT_NE(await_cycle("ordered_power_w", "-4000", 8), "") << said_;
+    end_run();
+    EXPECT_THAT(said_, HasSubstr("hold: released; the prices decide again"));
+    mend_disk(is_full);
+    ASSERT_EQ(hold({"--release"}).exit_code, 0);
+    for (const char* path : {"state/hold", "run/hold"}) {
+      EXPECT_FALSE(fs::exists(site_.folder.file(path))) << path;
+    }
+    said_.clear();
+  }
+  print_row("hold, release on a full or read-only disk, run folder",
+            "followed; kept until the boot, said");
 }
 
 TEST_F(DyingDisk, ANewBatteryStarts) {

@@ -585,7 +585,9 @@ TEST_F(Processes, ARefusedStartLeavesTheStatusOfTheRunBefore) {
   };
   const std::string before = status();
   ASSERT_THAT(before, HasSubstr("\"reason\": \"stop_requested\""));
-  std::filesystem::remove(site_.folder.file("state/commissioned.toml"));
+  for (const char* name : {"state/commissioned.toml", "state/commissioned.copy"}) {
+    std::filesystem::remove(site_.folder.file(name));
+  }
   ChildProcess refused({edge_program(), "--config", config});
   EXPECT_EQ(refused.wait(), 1);
   EXPECT_EQ(status(), before);

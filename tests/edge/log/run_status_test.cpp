@@ -10,6 +10,7 @@
 #include <set>
 #include <sstream>
 
+#include "edge/log/text_checksum.h"
 #include "tests/edge/log/sample_records.h"
 #include "tests/support/temporary_folder.h"
 
@@ -80,11 +81,23 @@ std::map<std::string, Family> parse_prometheus(const std::string& text) {
     } else if (std::regex_match(line, m, sample)) {
       EXPECT_EQ(m[1], current) << "samples of a family stay together";
       EXPECT_TRUE(families[current].samples.emplace(m[2], std::stod(m[5])).second) << line;
+    } else if (line.starts_with("# crc32=")) {  // to Prometheus a comment
+      EXPECT_TRUE(lines.peek() == EOF) << "the last line";
     } else {
       ADD_FAILURE() << "not exposition format: " << line;
     }
   }
   return families;
+}
+
+/// Any byte that a card forgets is seen by who reads them.
+TEST(RunStatusTexts, EndWithTheirChecksum) {
+  const RunTotals totals = totals_after({good_record()});
+  EXPECT_EQ(check_text(prometheus_text(totals), kCommentChecksum), TextState::kIntact);
+  char storage[kStatusBytes];
+  TextBuffer json(storage);
+  format_status_json(sample_identity(), totals, 5, json);
+  EXPECT_EQ(check_text(json.view(), kJsonChecksum), TextState::kIntact);
 }
 
 TEST(Prometheus, FollowsTheFormatAndTheNamingRules) {

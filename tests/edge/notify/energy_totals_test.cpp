@@ -32,10 +32,12 @@ class EnergyTotalsTest : public ::testing::Test {
   void append(const CycleRecord& record) { ASSERT_TRUE(writer_->append(record)); }
   void append(int tick, std::int32_t power_w) { append(record_at(kTick + 120 * tick, power_w)); }
   void count(EnergyTotals& totals) const {
-    RingLog ring;
+    LogReader log;
     FileMessage error;
-    ASSERT_TRUE(ring.open_to_read(path_.c_str(), error)) << error.c_str();
-    totals.count_new(ring);
+    EventLogSettings places;
+    places.ring.assign(path_);
+    ASSERT_TRUE(log.open(places, error)) << error.c_str();
+    totals.count_new(log);
   }
 
   TemporaryFolder folder_;

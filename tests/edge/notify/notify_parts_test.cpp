@@ -46,6 +46,18 @@ TEST(NotifySettings, WithoutASectionThereIsNoWay) {
   EXPECT_EQ(std::filesystem::path(settings.program).filename(), "bess-edge");
 }
 
+TEST(NotifySettings, TheInstalledFolderHasItsPlaceInMemory) {
+  const TemporaryFolder folder;
+  NotifySettings settings;
+  std::string error;
+  ASSERT_TRUE(load_notify_settings(
+      folder.write("edge.toml", "[notify]\nfolder = \"/var/lib/bess-notify\"\n"), settings, error))
+      << error;
+  EXPECT_THAT(settings.memory_copies, ::testing::ElementsAre("/var/lib/bess-notify/told.copy",
+                                                             "/run/bess-notify/told.json"));
+  EXPECT_EQ(settings.run_ring, "") << "none: [state] folder is not the installed one";
+}
+
 TEST(NotifySettings, TheDocumentedExampleIsValid) {
   NotifySettings settings;
   std::string error;
@@ -63,6 +75,7 @@ TEST(NotifySettings, ReadsEveryKey) {
       folder.write("edge.toml",
                    "[state]\nfolder = \"/var/lib/bess\"\n[notify]\nnode = \"garage-1\"\n"
                    "every_s = 10\nafter_s = 60\ndaily = false\nfolder = \"memory\"\n"
+                   "run_folder = \"run\"\n"
                    "program = \"/opt/bess-edge\"\nmail_to = \"a@b.example, c@d.example\"\n"
                    "mail_from = \"bess@b.example\"\nsendmail = \"/bin/true\"\n"
                    "webhook_url = \"https://example.org/hook\"\nwebhook_header_file = \"headers\"\n"
@@ -72,7 +85,10 @@ TEST(NotifySettings, ReadsEveryKey) {
       << error;
   EXPECT_TRUE(settings.has_a_way());
   EXPECT_EQ(settings.ring, "/var/lib/bess/decisions.ring");
+  EXPECT_EQ(settings.run_ring, "/run/bess/decisions.ring") << "as the controller has it";
   EXPECT_EQ(settings.memory, folder.file("memory/told.json"));
+  EXPECT_THAT(settings.memory_copies, ::testing::ElementsAre(folder.file("memory/told.copy"),
+                                                             folder.file("run/told.json")));
   EXPECT_EQ(settings.node, "garage-1");
   EXPECT_EQ(settings.every_s, 10);
   EXPECT_EQ(settings.after_s, 60);
@@ -265,8 +281,7 @@ TEST(Told, OutlastsARestart) {
   told.energy.discharged_ws = 7;
   told.energy.counted_number = 25'200;
   told.energy.counted_utc_s = 1'679'875'320;
-  std::string error;
-  ASSERT_TRUE(write_told(path, told_text(told), error)) << error;
+  ASSERT_EQ(write_told({path}, told_text(told)), "");
   const Told read = read_told(path);
   EXPECT_EQ(read.local_day, 20'231'126);
   ASSERT_EQ(read.alarms.size(), 1U);
@@ -292,9 +307,87 @@ TEST(Told, ADamagedFileIsAsIfNothingWasTold) {
     EXPECT_EQ(told.local_day, 0);
     EXPECT_TRUE(told.alarms.empty());
   }
-  std::string error;
-  EXPECT_FALSE(write_told("/proc/nowhere/told.json", "{}", error));
-  EXPECT_THAT(error, HasSubstr("cannot be written"));
+}
+
+/// In the folder twice, and in memory.
+class ToldCopies : public ::testing::Test {
+ protected:
+  void keep(std::uint64_t number) {
+    Told told;
+    told.number = number;
+    told.local_day = static_cast<std::int32_t>(number);
+    text_ = told_text(told);
+    ASSERT_EQ(write_told(paths_, text_), "");
+  }
+  void expect_known(std::uint64_t number, const std::vector<std::string>& losses) const {
+    const ToldReading reading = read_newest_told(paths_);
+    EXPECT_EQ(reading.told.local_day, static_cast<std::int32_t>(number));
+    EXPECT_EQ(reading.losses, losses);
+  }
+
+  const TemporaryFolder folder_;
+  const std::vector<std::string> paths_ = {folder_.file("disk/told.json"),
+                                           folder_.file("disk/told.copy"),
+                                           folder_.file("memory/told.json")};
+  std::string text_;
+};
+
+TEST_F(ToldCopies, TheNewestCounts) {
+  expect_known(0, {});
+  keep(7);
+  expect_known(7, {});
+  for (const std::string& path : paths_) {
+    Told later;
+    later.number = later.local_day = 8;
+    ASSERT_EQ(write_told({path}, told_text(later)), "");
+    expect_known(8, {});
+    keep(7);
+  }
+  std::filesystem::remove_all(folder_.file("memory"));
+  expect_known(7, {});  // a boot
+}
+
+TEST_F(ToldCopies, AnyFlippedByteIsSeenAndCostsNothing) {
+  keep(7);
+  for (const std::string& path : paths_) {
+    for (std::size_t i = 0; i < text_.size(); i += 5) {
+      std::string flipped = text_;
+      flipped[i] = static_cast<char>(flipped[i] ^ (1 << i % 8));
+      std::ofstream(path, std::ios::binary) << flipped;
+      const ToldReading reading = read_newest_told(paths_);
+      ASSERT_EQ(reading.told.local_day, 7) << i;
+      // In the words around the checksum a flip makes it one without: what it says is as it was.
+      EXPECT_TRUE(!reading.losses.empty() || i >= text_.rfind(",\n")) << i;
+    }
+    std::ofstream(path) << text_;
+  }
+}
+
+TEST_F(ToldCopies, WhatIsLostIsNamedAndAllLostIsSaid) {
+  keep(7);
+  std::filesystem::remove(paths_[1]);
+  expect_known(7, {paths_[1] + " is gone; another copy counts"});
+  std::filesystem::remove(paths_[0]);
+  std::filesystem::create_directory(paths_[0]);
+  std::ofstream(paths_[2]) << text_.substr(0, text_.size() / 2);
+  expect_known(0, {paths_[0] + " cannot be read: Is a directory",
+                   paths_[2] + " is damaged, or of another version: not believed",
+                   "what was told is not known: alarms are told again, days and energy are counted "
+                   "anew"});
+}
+
+TEST_F(ToldCopies, WhereOnePlaceRefusesTheOthersKeepItAndThatIsSaid) {
+  keep(7);
+  std::filesystem::remove(paths_[0]);
+  std::filesystem::create_directory(paths_[0]);
+  EXPECT_EQ(write_told(paths_, text_), paths_[0] +
+                                           ": cannot be written: Is a directory; what is "
+                                           "told is kept in " +
+                                           paths_[2] + " alone");
+  EXPECT_EQ(
+      write_told({"/proc/nowhere/told.json"}, text_),
+      "/proc/nowhere/told.json: cannot be written: No such file or directory; what is told is "
+      "kept nowhere: a restart tells it again");
 }
 
 }  // namespace

@@ -44,7 +44,7 @@ TEST_F(CommissionFile, FitsTheConfigurationThatItWasMadeWith) {
 
 TEST_F(CommissionFile, AnotherAddressIsAnotherBattery) {
   config_.link.host = "192.168.1.20";
-  EXPECT_THAT(complaint(), HasSubstr("commissioned.toml:5: battery is \"127.0.0.1:502 unit 1\""));
+  EXPECT_THAT(complaint(), HasSubstr("commissioned.toml:6: battery is \"127.0.0.1:502 unit 1\""));
   EXPECT_THAT(error_, HasSubstr("bess-edge commission --config FILE --yes"));
 }
 
@@ -98,12 +98,104 @@ TEST_F(CommissionFile, KeepsWhatWasMeasuredAndStillReadsOlderFiles) {
   EXPECT_TRUE(is_commissioned(config_, error_)) << error_;
 }
 
+/// In three places, one of them in memory.
+class CommissionCopies : public CommissionFile {
+ protected:
+  CommissionCopies() {
+    config_.state.run_folder.assign(folder_.file("run"));
+    EXPECT_TRUE(write_commission_file(config_, {}, 1'679'788'800, error_)) << error_;
+    text_ = text_of_file(folder_.file("state/commissioned.toml"));
+  }
+  void expect_all_whole() {
+    for (const char* place : kPlaces) EXPECT_EQ(text_of_file(folder_.file(place)), text_) << place;
+    EXPECT_THAT(mend_commission_file(config_), ::testing::IsEmpty());
+  }
+
+  static constexpr const char* kPlaces[] = {"state/commissioned.toml", "state/commissioned.copy",
+                                            "run/commissioned.toml"};
+  std::string text_;
+};
+
+TEST_F(CommissionCopies, AnyFlippedByteOfAnyPlaceIsToldAndMended) {
+  expect_all_whole();
+  for (const char* place : kPlaces) {
+    for (std::size_t i = 0; i < text_.size(); i += 7) {
+      std::string flipped = text_;
+      flipped[i] = static_cast<char>(flipped[i] ^ (1 << i % 8));
+      static_cast<void>(folder_.write(place, flipped));
+      ASSERT_TRUE(is_commissioned(config_, error_)) << error_;
+      ASSERT_THAT(mend_commission_file(config_), ::testing::ElementsAre(::testing::AllOf(
+                                                     HasSubstr(folder_.file(place)),
+                                                     HasSubstr("counts, and it is written again"))))
+          << i;
+      ASSERT_EQ(text_of_file(folder_.file(place)), text_) << i;
+    }
+  }
+  expect_all_whole();
+}
+
+TEST_F(CommissionCopies, WhatIsCutEmptyGoneOrNoFileIsTakenFromTheOthers) {
+  namespace fs = std::filesystem;
+  for (const char* place : kPlaces) {
+    const std::string path = folder_.file(place);
+    for (const std::size_t size : {text_.size() - 1, text_.size() / 2, std::size_t{0}}) {
+      fs::resize_file(path, size);
+      ASSERT_TRUE(is_commissioned(config_, error_)) << error_;
+      EXPECT_EQ(mend_commission_file(config_).size(), 1U);
+      expect_all_whole();
+    }
+    fs::remove(path);
+    ASSERT_TRUE(is_commissioned(config_, error_)) << error_;
+    const bool is_in_memory = std::string(place).starts_with("run/");
+    EXPECT_EQ(mend_commission_file(config_).size(), is_in_memory ? 0U : 1U) << "a boot is no loss";
+    expect_all_whole();
+    fs::remove(path);
+    fs::create_directory(path);
+    ASSERT_TRUE(is_commissioned(config_, error_)) << error_;
+    EXPECT_THAT(mend_commission_file(config_),
+                ::testing::ElementsAre(HasSubstr("it cannot be written: Is a directory")));
+    fs::remove(path);
+    static_cast<void>(folder_.write(place, text_));
+  }
+}
+
+TEST_F(CommissionCopies, AllOfThemBrokenIsNoProofAndSaysSo) {
+  for (const char* place : kPlaces) static_cast<void>(folder_.write(place, "\0\0\0"));
+  EXPECT_THAT(complaint(), ::testing::AllOf(HasSubstr("commissioned.toml is damaged"),
+                                            HasSubstr("no copy counts"),
+                                            HasSubstr("bess-edge commission --config FILE --yes")));
+  EXPECT_THAT(mend_commission_file(config_), ::testing::IsEmpty());
+}
+
+/// A program before this one kept it once, and without a checksum: no loss.
+TEST_F(CommissionCopies, AnOlderProgramsFileIsTakenOver) {
+  for (const char* place : kPlaces) std::filesystem::remove(folder_.file(place));
+  const std::string older = text_.substr(0, text_.rfind("# crc32="));
+  static_cast<void>(folder_.write(kPlaces[0], older));
+  ASSERT_TRUE(is_commissioned(config_, error_)) << error_;
+  EXPECT_THAT(mend_commission_file(config_), ::testing::IsEmpty());
+  expect_all_whole();
+}
+
+/// Of another battery, from before: what can be written, and what cannot, must not be mixed.
+TEST_F(CommissionCopies, ANewCheckLeavesNoCopyOfTheOneBefore) {
+  std::filesystem::remove(folder_.file(kPlaces[1]));
+  std::filesystem::create_directory(folder_.file(kPlaces[1]));
+  config_.link.host = "192.168.1.20";
+  ASSERT_TRUE(write_commission_file(config_, {}, 1'679'788'800, error_)) << error_;
+  std::filesystem::remove(folder_.file(kPlaces[0]));
+  EXPECT_TRUE(is_commissioned(config_, error_)) << error_;
+  config_.link.host = "127.0.0.1";
+  EXPECT_THAT(complaint(), HasSubstr("battery is \"192.168.1.20"));
+}
+
 TEST_F(CommissionFile, NoneAtAllSaysWhatToRun) {
   config_.state.folder.assign(folder_.file("elsewhere"));
   EXPECT_THAT(complaint(), HasSubstr("bess-edge commission --config FILE --yes"));
 }
 
 TEST_F(CommissionFile, ATornFileIsNoProof) {
+  std::filesystem::remove(folder_.file("state/commissioned.copy"));
   static_cast<void>(
       folder_.write("state/commissioned.toml", "map = \"simulator\"\nvariant = \"bl"));
   EXPECT_THAT(complaint(), HasSubstr("commissioned.toml"));

@@ -69,7 +69,7 @@ TEST(HoldWatch, KnowsTheFileAtOnceAndFollowsIt) {
   const TemporaryFolder folder;
   const std::string path = folder.write("hold", line_of(kHold));
   const auto watch = std::make_unique<HoldWatch>();
-  watch->start(path.c_str(), {}, 900);
+  watch->start({.state = path.c_str(), .run = ""}, {}, 900);
   EXPECT_EQ(watch->mailbox().latest(), kHold);  // before the thread has looked
   const Hold other{.power_w = 3, .until_utc_s = 4};
   ASSERT_TRUE(replace_file(path.c_str(), line_of(other)));
@@ -78,6 +78,63 @@ TEST(HoldWatch, KnowsTheFileAtOnceAndFollowsIt) {
   EXPECT_TRUE(is_published(*watch, {.unreadable = true}));
   std::filesystem::remove(path);
   EXPECT_TRUE(is_published(*watch, Hold{}));
+}
+
+/// Two places, as after a disk has refused some of the words.
+class TwoHolds : public ::testing::Test {
+ protected:
+  TwoHolds() : paths_{.state = folder_.file("state").c_str(), .run = folder_.file("run").c_str()} {}
+  /// Since `minute` of the real clock.
+  static void put(const FixedText<639>& path, const std::string& text, int minute) {
+    ASSERT_TRUE(replace_file(path.c_str(), text));
+    std::filesystem::last_write_time(
+        path.c_str(), std::filesystem::file_time_type() + std::chrono::minutes(minute));
+  }
+  [[nodiscard]] HoldReading reading() const { return read_newest_hold(paths_); }
+
+  const TemporaryFolder folder_;
+  const HoldPaths paths_;
+  const Hold other_{.power_w = 3, .until_utc_s = 4};
+};
+
+TEST_F(TwoHolds, TheYoungerWordCounts) {
+  EXPECT_EQ(reading(), HoldReading{});
+  put(paths_.state, line_of(kHold), 1);
+  EXPECT_EQ(reading(), HoldReading{.hold = kHold}) << "memory is empty after a boot";
+  put(paths_.run, line_of(other_), 2);
+  EXPECT_EQ(reading(), HoldReading{.hold = other_});
+  put(paths_.state, line_of(kHold), 3);
+  EXPECT_EQ(reading(), HoldReading{.hold = kHold});
+  std::filesystem::remove(paths_.state.c_str());
+  EXPECT_EQ(reading(), HoldReading{.hold = other_}) << "another disk, which knows nothing";
+  EXPECT_EQ(read_newest_hold({.state = paths_.state, .run = ""}), HoldReading{});
+}
+
+TEST_F(TwoHolds, WhatCannotBeUnderstoodLeavesTheOtherAndIsNamed) {
+  put(paths_.state, line_of(kHold), 1);
+  put(paths_.run, line_of(kHold), 2);
+  put(paths_.state, std::string(kHoldFileBytes, '\0'), 3);
+  EXPECT_EQ(reading(), (HoldReading{.hold = kHold, .state_is_lost = true}));
+  put(paths_.state, line_of(kHold), 3);
+  std::filesystem::remove(paths_.run.c_str());
+  std::filesystem::create_directory(paths_.run.c_str());
+  EXPECT_EQ(reading(), (HoldReading{.hold = kHold, .run_is_lost = true}));
+  put(paths_.state, "", 4);
+  EXPECT_TRUE(reading().hold.unreadable);
+}
+
+TEST_F(TwoHolds, TheWatchNamesALossOnce) {
+  put(paths_.state, line_of(kHold), 1);
+  put(paths_.run, line_of(kHold), 2);
+  const auto watch = std::make_unique<HoldWatch>();
+  ::testing::internal::CaptureStderr();
+  watch->start(paths_, {}, 900);
+  put(paths_.state, "nonsense", 3);
+  sleep_until_monotonic(clock_ns(CLOCK_MONOTONIC) + kNanosecondsPerSecond / 10);
+  EXPECT_EQ(watch->mailbox().latest(), kHold);
+  const std::string said = ::testing::internal::GetCapturedStderr();
+  EXPECT_EQ(said, "bess-edge: hold: " + folder_.file("state") + " cannot be understood; " +
+                      folder_.file("run") + " counts\n");
 }
 
 TEST(HoldWatch, NeedsNoStart) {

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "edge/log/text_checksum.h"
 #include "edge/program/storage_health.h"
 #include "edge/program/update_state.h"
 #include "tests/support/temporary_folder.h"
@@ -53,6 +54,55 @@ TEST(UpdateState, OnlyWhatEndedBadlyIsTroubleForHealth) {
   for (const char* const phase : {"upgrading", "trying", "confirmed", ""}) {
     EXPECT_EQ(trouble_of(phase), "") << phase;
   }
+}
+
+/// As bess-update writes it: with its checksum, and a copy.
+class UpdateStateCopies : public ::testing::Test {
+ protected:
+  UpdateStateCopies() {
+    text_ = "phase=rolled_back\nversion=1.0\nrefused=2.0\nreason=it hangs\nneeded=15\n";
+    older_ = text_;
+    text_ += checksum_end(text_, kCommentChecksum).view();
+    put(text_, text_);
+  }
+  void put(const std::string& state, const std::string& copy) {
+    static_cast<void>(folder_.write("state", state));
+    static_cast<void>(folder_.write("state.copy", copy));
+  }
+  [[nodiscard]] std::string trouble() const {
+    return update_trouble(read_update_state(folder_of(folder_)));
+  }
+
+  static constexpr const char* kTrouble = "1.0; 2.0 was rolled back: it hangs";
+  const TemporaryFolder folder_;
+  std::string text_;
+  std::string older_;  ///< the same, of a bess-update without checksums
+};
+
+TEST_F(UpdateStateCopies, WhatIsDamagedIsTakenFromTheCopy) {
+  for (std::size_t i = 0; i < text_.size(); ++i) {
+    std::string flipped = text_;
+    flipped[i] = static_cast<char>(flipped[i] ^ (1 << i % 8));
+    put(flipped, text_);
+    ASSERT_EQ(trouble(), kTrouble) << i;
+    put(text_, flipped);
+    ASSERT_EQ(trouble(), kTrouble) << i;
+    put(text_.substr(0, i), text_);
+    ASSERT_EQ(trouble(), kTrouble) << i;
+  }
+}
+
+TEST_F(UpdateStateCopies, BothDamagedIsToldAndNothingIsBelieved) {
+  put(std::string(200, '\0'), text_.substr(0, 40));
+  EXPECT_THAT(trouble(), AllOf(HasSubstr("the state of the upgrades is lost: "),
+                               HasSubstr("state and its copy are damaged")));
+}
+
+TEST_F(UpdateStateCopies, AnOlderProgramsWordIsNewerThanTheCopy) {
+  std::string confirmed = older_;
+  confirmed.replace(0, confirmed.find('\n'), "phase=confirmed");
+  put(confirmed, text_);
+  EXPECT_EQ(trouble(), "");
 }
 
 TEST(UpdateHistory, OldestFirstAndNotWhatAPowerCutTore) {

@@ -209,7 +209,7 @@ expect_version 1.0 "by hand"
 # Power cuts: at the n-th durable write of keep, begin, or supervise; inside dpkg; and then a boot.
 for trouble in none crashes; do
   for step in keep begin supervise; do
-    case $step in keep) writes=5 ;; begin) writes=5 ;; supervise) writes=16 ;; esac
+    case $step in keep) writes=7 ;; begin) writes=7 ;; supervise) writes=20 ;; esac
     n=0
     while [ $((n += 1)) -le $writes ]; do
       machine
@@ -254,6 +254,49 @@ echo 2.0 >version
 run recover
 expect_version 1.0 "power cut while unpacking"
 [ "$(cat status)" = "ii " ] || fail "power cut while unpacking: dpkg says $(cat status)"
+
+# A card that forgets: one of the two files costs nothing, both leave the version that runs, and a line.
+damage() {  # damage KIND FILE
+  case $1 in
+    flip) sed -i 's/good=1/good=3/; s/phase=trying/phase=tryinG/' "$2" ;;
+    cut) head -c 40 "$2" >"$2.cut" && mv "$2.cut" "$2" ;;
+    empty) : >"$2" ;;
+    zeros) head -c 200 /dev/zero >"$2" ;;
+    gone) rm "$2" ;;
+    folder) rm "$2" && mkdir "$2" ;;
+  esac
+}
+for one in flip:state cut:state zeros:state gone:state flip:state.copy flip:both empty:both folder:both; do
+  kind=${one%:*} files=${one#*:}
+  machine
+  upgrade 2.0
+  state=$BESS_ROOT/var/lib/bess-update/state
+  cmp -s "$state" "$state.copy" || fail "the copy differs"
+  [ $files = state.copy ] || damage "$kind" "$state"
+  [ $files = state ] || damage "$kind" "$state.copy"
+  run supervise
+  case $files:$kind in
+    *:folder) ;;                                       # nothing can be kept there, but it must not run away
+    both:*)
+      expect phase failed "$one"
+      expect version 2.0 "$one"
+      grep -q "is lost: .* and its copy are damaged" said || fail "$one: no line: $(cat said)" ;;
+    state:*)
+      expect phase confirmed "$one"
+      grep -q "state is damaged: its copy counts" said || fail "$one: no line: $(cat said)" ;;
+    *) expect phase confirmed "$one" ;;
+  esac
+  expect_version 2.0 "$one"
+  [ "$kind" = folder ] || cmp -s "$state" "$state.copy" || fail "$one: not mended"
+done
+# The script of the version before writes neither checksum nor copy: its word is the newer one.
+machine
+upgrade 2.0
+state=$BESS_ROOT/var/lib/bess-update/state
+sed '/^#/d; s/phase=trying/phase=confirmed/' "$state" >older && mv older "$state"
+run supervise
+expect phase confirmed "written by an older version"
+[ "$(cat cycles)" = 0 ] || fail "a trial that an older version has ended goes on"
 
 [ $failures -eq 0 ] || { echo "$failures failed, see $folder"; exit 1; }
 echo "bess-update: $case_number machines, each with one working version"
