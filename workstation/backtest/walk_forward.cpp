@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "shared/host/user_error.h"
+#include "workstation/env/day_risk.h"
 #include "workstation/market/series/local_date.h"
 
 namespace bess {
@@ -82,24 +83,10 @@ Folds make_folds(const MarketSteps& market, int window_days) {
 }
 
 std::vector<double> WalkForward::cumulative_eur_per_mwh() const {
-  std::vector<double> cumulative;
-  double sum = 0;
-  for (const DayResult& day : total.days) {
-    sum += day.profit_eur / total.capacity_mwh;
-    cumulative.push_back(sum);
-  }
-  return cumulative;
+  return cumulative(daily_profits(total));
 }
 
-double WalkForward::drawdown_eur_per_mwh() const {
-  double peak = 0;
-  double deepest = 0;
-  for (const double profit : cumulative_eur_per_mwh()) {
-    peak = std::max(peak, profit);
-    deepest = std::max(deepest, peak - profit);
-  }
-  return deepest;
-}
+double WalkForward::drawdown_eur_per_mwh() const { return day_risk(daily_profits(total)).drawdown; }
 
 WalkForward walk_forward(const std::string& name, const Folds& folds, const FoldPolicy& make,
                          const BatteryParameters& battery, double initial_soc_frac,

@@ -41,7 +41,7 @@ struct WalkForward {
   std::vector<std::string> months;   ///< as in Folds::traded
   std::vector<Evaluation> by_month;  ///< parallel to `months`
 
-  /// Largest fall of the cumulative profit from a peak, EUR per MWh of capacity.
+  /// As day_risk.h defines it, EUR per MWh of capacity.
   [[nodiscard]] double drawdown_eur_per_mwh() const;
   /// Profit after each day, EUR per MWh of capacity.
   [[nodiscard]] std::vector<double> cumulative_eur_per_mwh() const;

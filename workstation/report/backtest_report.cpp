@@ -9,6 +9,7 @@
 #include "shared/host/csv.h"
 #include "shared/host/file.h"
 #include "workstation/base/answer.h"
+#include "workstation/env/day_risk.h"
 #include "workstation/report/comparison.h"
 #include "workstation/report/figure.h"
 #include "workstation/report/html.h"
@@ -120,14 +121,16 @@ std::string legend_html(const BacktestResults& results) {
 Figure cumulative_figure(const BacktestResults& results) {
   const std::vector<const WalkForward*> shown = shown_in_figure(results);
   std::vector<std::string> rows;
-  std::vector<std::vector<double>> cumulative;
-  for (const WalkForward* policy : shown) cumulative.push_back(policy->cumulative_eur_per_mwh());
-  std::vector<double> peak(shown.size(), 0.0);
+  std::vector<std::vector<double>> sums;
+  std::vector<std::vector<double>> falls;
+  for (const WalkForward* policy : shown) {
+    sums.push_back(policy->cumulative_eur_per_mwh());
+    falls.push_back(below_peak(sums.back()));
+  }
   for (std::size_t d = 0; d < shown.front()->total.days.size(); ++d) {
     std::string row = shown.front()->total.days[d].date;
     for (std::size_t p = 0; p < shown.size(); ++p) {
-      peak[p] = std::max(peak[p], cumulative[p][d]);
-      row += fmt::format(" {:.3f} {:.3f}", cumulative[p][d] / 1000, cumulative[p][d] - peak[p]);
+      row += fmt::format(" {:.3f} {:.3f}", sums[p][d] / 1000, falls[p][d]);
     }
     rows.push_back(std::move(row));
   }

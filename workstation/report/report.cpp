@@ -15,6 +15,7 @@
 #include "workstation/report/page_data.h"
 #include "workstation/report/report_page.h"
 #include "workstation/report/report_tables.h"
+#include "workstation/report/risk_page.h"
 #include "workstation/report/shown_policies.h"
 
 namespace bess {
@@ -151,8 +152,8 @@ std::string page_of(const ReportInputs& in, const std::vector<DayLoss>& losses) 
       {{"title", kPageTitle},
        {"head", head_of(in)},
        {"failure", section_of("failure", "Where the proof failed", failure_html(in.broken))},
-       {"comparison",
-        section_of("comparison", "What each policy earned", comparison_html(in.evaluations))},
+       {"comparison", section_of("comparison", "What each policy earned",
+                                 comparison_html(in.evaluations) + risk_html(in.evaluations))},
        {"lost",
         section_of("lost", "Where it lost, and why", lost_html(losses, capacity_mwh_of(in)))},
        {"lost_link", losses.empty() ? "" : "<li><a href=\"#lost\">Where it lost</a></li>\n"},

@@ -35,8 +35,8 @@ class TearSheet {
       this.drawCumulative(exported);
       this.drawMonths(exported);
       this.drawDistribution(exported);
+      this.drawDrawdown(exported);
     }
-    this.drawDrawdown();
     this.drawHours();
   }
 
@@ -56,31 +56,18 @@ class TearSheet {
     }));
   }
 
-  /** By day: the lowest of the running profit minus its peak, from the steps of the days that are here. */
-  drawdowns() {
-    let sum = 0, peak = 0;
-    return this.days.map((day) => {
-      let deepest = 0;
-      for (const eur of day.policies[0].profit) {
-        sum += eur;
-        peak = Math.max(peak, sum);
-        deepest = Math.min(deepest, sum - peak);
-      }
-      return deepest / this.data.battery.capacity_mwh;
-    });
+  /** By day: the cumulative profit at its end minus the highest at the end of a day before, 0 at the beginning. */
+  drawdowns(policy) {
+    let peak = 0;
+    return cumulative(this.profits(policy)).map((sum) => sum - (peak = Math.max(peak, sum)));
   }
 
-  drawDrawdown() {
-    const falls = this.drawdowns();
-    drawChart("chart-drawdown", () => ({
-      type: "bar",
-      data: {
-        labels: this.days.map((day) => day.date),
-        datasets: [{label: this.data.archive.policies[0], data: falls, backgroundColor: policyColour("corrected student"),
-                    barPercentage: 1, categoryPercentage: .9}],
-      },
-      options: {scales: {x: axis(), y: axis({max: 0})}, plugins: {legend: {display: false}}},
-    }));
+  drawDrawdown(exported) {
+    const falls = [exported, ...this.policies(["rbc-tuned"])].map((policy) => [policy.name, this.drawdowns(policy)]);
+    const anyFalls = falls.some(([, values]) => Math.min(...values) < 0);
+    document.getElementById("drawdown-none").hidden = anyFalls;
+    document.getElementById("chart-drawdown").parentElement.hidden = !anyFalls;
+    if (anyFalls) this.drawBars("chart-drawdown", this.data.dates, falls, {max: 0});
   }
 
   drawMonths(exported) {
@@ -141,15 +128,15 @@ class TearSheet {
     }));
   }
 
-  /** Bars side by side; `series`: [name, values] each. */
-  drawBars(id, labels, series) {
+  /** Bars side by side; `series`: [name, values] each; `y` tells more about its axis. */
+  drawBars(id, labels, series, y = {}) {
     drawChart(id, () => ({
       type: "bar",
       data: {
         labels,
         datasets: series.map(([name, values]) => ({label: name, data: values, backgroundColor: policyColour(name)})),
       },
-      options: {scales: {x: axis(), y: axis({ticks: {precision: 0}})}},
+      options: {scales: {x: axis(), y: axis({ticks: {precision: 0}, ...y})}},
     }));
   }
 }

@@ -217,10 +217,19 @@ class PageTest(unittest.TestCase):
         self.assertEqual(len(net), 24)
         self.assertAlmostEqual(sum(net), mean, places=3)
 
-    def test_drawdown_is_never_above_zero_and_somewhere_below(self):
-        falls = self.page.run("page.tearSheet.drawdowns()")
-        self.assertLess(min(falls), 0)
-        self.assertLessEqual(max(falls), 0)
+    def test_drawdown_is_that_of_the_days(self):
+        for name in ("corrected student", "rbc-tuned"):
+            falls = self.page.run(f"page.tearSheet.drawdowns(page.tearSheet.policies([{json.dumps(name)}])[0])")
+            peak = 0
+            for fall, total in zip(falls, self.cumulative_of(name, 0), strict=True):
+                peak = max(peak, total)
+                self.assertAlmostEqual(fall, total - peak, places=6)
+            row = self.page.run(f"""[...document.querySelectorAll("#comparison tr")].find((row) =>
+              row.querySelector("[data-label=Drawdown]") && row.firstChild.textContent === {json.dumps(name)})
+              .querySelector("[data-label=Drawdown]").textContent""")
+            self.assertAlmostEqual(float(row), -min(falls), delta=.051)
+        shown = self.page.run("!document.getElementById('drawdown-none').hidden")
+        self.assertEqual(shown, not self.page.run("shownCharts.has('chart-drawdown')"))
 
     def test_headline_is_about_the_corrected_student(self):
         days = [day["profit_eur"] / self.expected["capacity_mwh"] for day in self.expected["days"]["corrected student"]]
