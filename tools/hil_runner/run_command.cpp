@@ -15,6 +15,7 @@
 #include "shared/host/json.h"
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
+#include "tools/hil_runner/agreement.h"
 #include "tools/hil_runner/hil_command.h"
 #include "tools/hil_runner/junit.h"
 #include "tools/hil_runner/real_options.h"
@@ -226,6 +227,8 @@ void run(const RunOptions& options) {
                            .line());
   } else {
     fmt::print("{} passed, {} failed, {} skipped\n", ran - failed, failed, skipped);
+    const std::string agreement = agreement_line(agreement_of(outcomes));
+    if (!agreement.empty()) fmt::print("{}\n", agreement);
   }
   if (!options.junit.empty()) write_file(options.junit, junit_text(outcomes));
   if (!options.report.empty()) write_file(options.report, report_page(outcomes));
