@@ -2,7 +2,6 @@
 
 #include <signal.h>
 #include <sys/stat.h>
-#include <sys/statvfs.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -20,6 +19,7 @@
 #include "edge/program/file_owner.h"
 #include "edge/program/run_locks.h"
 #include "edge/program/startup.h"
+#include "edge/program/storage_health.h"
 #include "shared/utc_text.h"
 
 namespace bess {
@@ -79,22 +79,11 @@ int living_writer_of(JsonValue status) {
   return is_another ? 0 : pid;
 }
 
-bool is_read_only(const char* folder) {
-  struct statvfs disk {};
-  return statvfs(folder, &disk) != 0 || (disk.f_flag & ST_RDONLY) != 0;
-}
-
-/// No new file, that is: the log goes on in its place on a full disk.
-bool disk_takes_nothing(const char* folder) {
-  struct statvfs disk {};
-  return statvfs(folder, &disk) != 0 || disk.f_bavail == 0 || (disk.f_flag & ST_RDONLY) != 0;
-}
-
 /// Whether a controller could write a status anywhere now.
 bool has_place_for_status(const EdgeConfig& config) {
   const char* const run_folder = config.state.run_folder.c_str();
-  return !disk_takes_nothing(config.state.folder.c_str()) ||
-         (*run_folder != '\0' && !disk_takes_nothing(run_folder));
+  return !takes_no_file(config.state.folder.c_str()) ||
+         (*run_folder != '\0' && !takes_no_file(run_folder));
 }
 
 /// Whether neither a status nor the log can have been written just now.

@@ -1,6 +1,5 @@
 #include "edge/program/status_command.h"
 
-#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -29,13 +28,6 @@ using M = MeterTrust;
 using T = RunTotals;
 using H = HoldReport;
 
-/// Nothing more would fit, for a user without root's reserve.
-bool disk_is_full(const EdgeConfig& config) {
-  struct statvfs disk {};
-  return statvfs(config.state.folder.c_str(), &disk) == 0 &&
-         (disk.f_bavail == 0 || (disk.f_flag & ST_RDONLY) != 0);
-}
-
 const char* text_of(JsonValue found) { return found.text_or("none"); }
 
 bool is_true(JsonValue found) { return found.boolean().value_or(false); }
@@ -45,7 +37,7 @@ Health health_of(const EdgeConfig& config, const PublishedStatus& published,
   const JsonValue status = published.status.value();
   HealthInputs in;
   in.is_running = published.holder != 0;
-  in.disk_is_full = disk_is_full(config);
+  in.disk_is_full = takes_no_file(config.state.folder.c_str());
   const int used_life_percent = used_life_of(config.state.folder.c_str()).value_or(0);
   if (used_life_percent > kUsedLifePercentMax) in.disk_used_life_percent = used_life_percent;
   in.file_system_errors = file_system_errors_of(config.state.folder.c_str());

@@ -27,6 +27,21 @@ std::string block_device_of(const std::string& folder) {
          std::to_string(minor(at.st_dev));
 }
 
+/// By the options of the file system that the folder lies on: "36 35 8:1 / /var rw - ext4 /dev/sda1 rw,emergency_ro".
+bool was_set_read_only(const char* folder) {
+  struct stat at {};
+  if (stat(folder, &at) != 0) return true;
+  const std::string device =
+      " " + std::to_string(major(at.st_dev)) + ":" + std::to_string(minor(at.st_dev)) + " ";
+  std::ifstream mounts("/proc/self/mountinfo");
+  for (std::string line; std::getline(mounts, line);) {
+    const std::size_t of_file_system = line.find(" - ");
+    const bool is_there = line.find(device) < of_file_system;
+    if (is_there && line.find("emergency_ro", of_file_system) != std::string::npos) return true;
+  }
+  return false;
+}
+
 /// 0, or an errno.
 int write_and_sync(const std::string& path) {
   const int fd = make_afresh(path.c_str());
@@ -77,6 +92,16 @@ std::optional<int> used_life_percent(std::string_view life_time) {
   }
   if (worst < 1 || worst > 11) return std::nullopt;  // 0: not defined; 11: beyond its life
   return worst * 10;
+}
+
+bool is_read_only(const char* folder) {
+  struct statvfs disk {};
+  return statvfs(folder, &disk) != 0 || (disk.f_flag & ST_RDONLY) != 0 || was_set_read_only(folder);
+}
+
+bool takes_no_file(const char* folder) {
+  struct statvfs disk {};
+  return is_read_only(folder) || (statvfs(folder, &disk) == 0 && disk.f_bavail == 0);
 }
 
 StorageHealth look_at_storage(const std::string& folder) {

@@ -22,6 +22,13 @@ std::optional<int> used_life_of(const std::string& folder);
 /// Errors that the kernel has counted in that folder's file system (ext4); 0 where it does not tell.
 std::int64_t file_system_errors_of(const std::string& folder);
 
+/// Whether nothing can be written in that folder: mounted so, or set so by the kernel after an error, which ext4 does
+/// not tell statvfs of (emergency_ro of Linux 6.15 and later). Also where nobody can say.
+bool is_read_only(const char* folder);
+
+/// The same, or no new file for want of room, without root's reserve: the log goes on in its place.
+bool takes_no_file(const char* folder);
+
 struct StorageHealth {
   bool is_writable = false;
   std::string error;  ///< why it is not

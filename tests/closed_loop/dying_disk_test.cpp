@@ -1,10 +1,13 @@
 // A disk that dies under the real programs: full, read-only, without answer, gone, with flipped bytes. Whatever it
 // does, status, metrics and alarms never say the opposite of what the controller has just decided, and a trip stays
 // until a person clears it. Each row is printed; together they are the table.
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sched.h>
 #include <sys/mount.h>
 #include <sys/stat.h>
+#include <sys/sysmacros.h>
 
 #include <filesystem>
 #include <functional>
@@ -51,7 +54,7 @@ class StateDisk {
   explicit StateDisk(const SimulatedSite& site)
       : folder_(site.folder.file("state")), control_(site.folder.file("dying_disk")) {
     fs::create_directory(folder_);
-    is_mounted_ = mount("bess_test", folder_.c_str(), "tmpfs", 0, "size=30m") == 0;
+    is_mounted_ = has_own_mounts() && mount_tmpfs("size=30m");
     setenv("LD_PRELOAD", BESS_DYING_DISK, 1);
     setenv("BESS_DYING_DISK", control_.c_str(), 1);
   }
@@ -64,6 +67,34 @@ class StateDisk {
   }
   [[nodiscard]] bool is_mounted() const { return is_mounted_; }
   [[nodiscard]] std::string file(const std::string& name) const { return folder_ + "/" + name; }
+
+  /// As small as that from the start.
+  bool become_tiny() {
+    umount2(folder_.c_str(), MNT_DETACH);
+    return mount_tmpfs("size=64k");
+  }
+  /// A file system of a card's kind, on a file. False where that is not allowed here.
+  bool become_ext4(const std::string& image) {
+    umount2(folder_.c_str(), MNT_DETACH);
+    const std::string make = "truncate -s 40M " + image + " && mkfs.ext4 -q -F " + image +
+                             " && mount -o loop,errors=remount-ro " + image + " " + folder_;
+    return std::system((make + " 2>/dev/null").c_str()) == 0;
+  }
+  /// What the kernel does to a card after an error, under whatever has files open. No shim has a part in it.
+  void fail_for_real() const {
+    struct stat at {};
+    ASSERT_EQ(stat(folder_.c_str(), &at), 0);
+    const auto device = fs::canonical("/sys/dev/block/" + std::to_string(major(at.st_dev)) + ":" +
+                                      std::to_string(minor(at.st_dev)));
+    std::ofstream("/sys/fs/ext4/" + device.filename().string() + "/trigger_fs_error") << "1\n"
+                                                                                      << std::flush;
+    EXPECT_LT(open(file("probe").c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0600), 0);
+    EXPECT_EQ(errno, EROFS);
+  }
+  /// By mount(8); only while nothing is open for writing.
+  void remount_read_only() const {
+    EXPECT_EQ(mount(nullptr, folder_.c_str(), nullptr, MS_REMOUNT | MS_RDONLY, nullptr), 0);
+  }
 
   void fill() const {
     std::ofstream filler(file("filler"), std::ios::app);
@@ -86,6 +117,16 @@ class StateDisk {
   }
 
  private:
+  /// What is mounted here goes with this process, however it ends.
+  static bool has_own_mounts() {
+    static const bool is_done =
+        unshare(CLONE_NEWNS) == 0 && mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) == 0;
+    return is_done;
+  }
+  bool mount_tmpfs(const char* size) const {
+    return mount("bess_test", folder_.c_str(), "tmpfs", 0, size) == 0;
+  }
+
   std::string folder_;
   std::string control_;
   bool is_mounted_ = false;
@@ -213,15 +254,26 @@ class DyingDisk : public ::testing::Test {
 struct Death {
   const char* name;
   void (*happen)(const StateDisk& disk);
-  bool log_lives;  ///< the ring, in its file of fixed size
+  bool log_lives;        ///< the ring, in its file of fixed size
+  bool is_real = false;  ///< by the kernel alone, for good
 };
 constexpr Death kDeaths[] = {
     {"full", [](const StateDisk& disk) { disk.fill(); }, true},
     {"read-only", [](const StateDisk& disk) { disk.go_read_only(); }, false},
     {"I/O errors", [](const StateDisk& disk) { disk.go_silent(); }, false},
+    {"ext4 error", [](const StateDisk& disk) { disk.fail_for_real(); }, false, true},
 };
 
-class DyingDiskRun : public DyingDisk, public ::testing::WithParamInterface<Death> {};
+class DyingDiskRun : public DyingDisk, public ::testing::WithParamInterface<Death> {
+ protected:
+  void SetUp() override {
+    DyingDisk::SetUp();
+    if (IsSkipped() || !GetParam().is_real) return;
+    if (!disk_.become_ext4(site_.folder.file("card"))) {
+      GTEST_SKIP() << "no loop device or mkfs.ext4 here: a real error of a card is not tried";
+    }
+  }
+};
 
 TEST_P(DyingDiskRun, WithARunFolderAllSayWhatIsAndTheTripStays) {
   commission(true);
@@ -255,7 +307,7 @@ TEST_P(DyingDiskRun, WithARunFolderAllSayWhatIsAndTheTripStays) {
   ASSERT_NE(await_cycle("mode", "running", 8), "") << said_;
   expect_all_agree(false);
   end_run();
-  if (!GetParam().log_lives) {
+  if (!GetParam().log_lives && !GetParam().is_real) {
     EXPECT_THAT(said_, AllOf(HasSubstr("is the disk full or read-only?"),
                              HasSubstr("the decision log goes on: ")));
   }
@@ -280,6 +332,7 @@ TEST_P(DyingDiskRun, WithoutARunFolderTheyKnowOrSayThatTheyDoNot) {
 INSTANTIATE_TEST_SUITE_P(All, DyingDiskRun, ::testing::ValuesIn(kDeaths), [](const auto& info) {
   return std::string(info.param.name) == "full" ? "Full"
          : info.param.name[0] == 'r'            ? "ReadOnly"
+         : info.param.is_real                   ? "Ext4Error"
                                                 : "IoErrors";
 });
 
@@ -300,6 +353,10 @@ constexpr Accident kAccidents[] = {
      [](const StateDisk& disk) { disk.go_read_only(); }, false, "wrong_direction", ""},
     {"ReadOnlyAfterABoot", "read-only at the start, after a boot",
      [](const StateDisk& disk) { disk.go_read_only(); }, true, "wrong_direction", ""},
+    {"Remounted", "remounted read-only by mount(8), run folder",
+     [](const StateDisk& disk) { disk.remount_read_only(); }, false, "wrong_direction", ""},
+    {"RemountedAfterABoot", "remounted read-only by mount(8), after a boot",
+     [](const StateDisk& disk) { disk.remount_read_only(); }, true, "wrong_direction", ""},
     {"Full", "full at the start, run folder", [](const StateDisk& disk) { disk.fill(); }, false,
      "wrong_direction", ""},
     {"FullAfterABoot", "full at the start, after a boot",
@@ -435,7 +492,7 @@ TEST_F(DyingDisk, ANewBatteryStarts) {
 /// It has never run here, and cannot keep anything: not driven, and said so, unless a key allows it.
 TEST_F(DyingDisk, FullOrReadOnlyFromTheStartItIsNotDrivenUnlessAllowed) {
   for (const Death& death : kDeaths) {
-    if (std::string(death.name) == "I/O errors")
+    if (std::string(death.name) == "I/O errors" || death.is_real)
       continue;  // not commissioned, as far as anybody can read
     for (const bool has_run_folder : {true, false}) {
       fs::remove_all(site_.folder.file("run"));
@@ -470,6 +527,22 @@ TEST_F(DyingDisk, FullOrReadOnlyFromTheStartItIsNotDrivenUnlessAllowed) {
     print_row((std::string(death.name) + " from the first start").c_str(),
               "state_lost, told; driven with the key");
   }
+}
+
+/// No room for the log, ever.
+TEST_F(DyingDisk, OnADiskOfAFewKilobytesItIsNotDrivenAndThatIsSaid) {
+  ASSERT_TRUE(disk_.become_tiny());
+  commission(true);
+  start();
+  for (int cycle = 0; cycle < 2; ++cycle) {
+    ASSERT_NE(await_cycle("reason", "state_lost", 6), "") << said_;
+  }
+  expect_all_agree(false);
+  end_run();
+  EXPECT_THAT(said_, AllOf(HasSubstr("the decision log can be neither read nor made"),
+                           HasSubstr("What follows says whether the battery is driven"),
+                           Not(HasSubstr("is driven on"))));
+  print_row("a disk of 64 kB", "state_lost, told");
 }
 
 }  // namespace

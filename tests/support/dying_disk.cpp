@@ -1,6 +1,7 @@
 // A disk that dies under a running program, for LD_PRELOAD: while the file that BESS_DYING_DISK names holds
 // "EROFS FOLDER" or "EIO FOLDER", calls that touch what is in FOLDER fail as on a card that the kernel has
-// remounted read-only, or that no longer answers. A real remount is refused as long as a log is open for writing.
+// remounted read-only, or that no longer answers. A real remount is refused as long as a log is open for writing; what
+// the kernel does by itself after an error is tried where a test may mount (dying_disk_test).
 // Straight to the kernel: nothing here allocates, or looks up other libraries.
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -42,8 +43,10 @@ Fault fault_at(const char* path) {
   const long size = syscall(SYS_read, fd, text, sizeof text - 1);
   syscall(SYS_close, fd);
   const char* const folder = size > 0 ? std::strchr(text, ' ') : nullptr;
+  if (folder == nullptr) return Fault::kNone;
+  const std::size_t length = std::strlen(folder + 1);
   const bool is_there =
-      folder != nullptr && std::strncmp(path, folder + 1, std::strlen(folder + 1)) == 0;
+      std::strncmp(path, folder + 1, length) == 0 && (path[length] == '/' || path[length] == '\0');
   if (!is_there) return Fault::kNone;
   return text[1] == 'R' ? Fault::kReadOnly : Fault::kBroken;
 }
@@ -104,6 +107,18 @@ int open64(const char* path, int flags, ...) {
   va_end(arguments);
   return open_or_fail(path, flags, mode);
 }
+/// What streams are read through. Nothing under test writes through one.
+FILE* fopen(const char* path, const char* mode) {
+  const bool writes = *mode != 'r';
+  const int flags = *mode == 'r'   ? O_RDONLY
+                    : *mode == 'a' ? O_WRONLY | O_CREAT | O_APPEND
+                                   : O_WRONLY | O_CREAT | O_TRUNC;
+  const bool reads_too = std::strchr(mode, '+') != nullptr;
+  const int fd =
+      open_or_fail(path, reads_too ? (flags & ~O_ACCMODE) | O_RDWR : flags, writes ? 0666 : 0);
+  return fd < 0 ? nullptr : fdopen(fd, mode);
+}
+FILE* fopen64(const char* path, const char* mode) { return fopen(path, mode); }
 ssize_t pread(int fd, void* bytes, size_t size, off_t offset) {
   return unless(when_broken(fault_of(fd)), SYS_pread64, fd, bytes, size, offset);
 }
