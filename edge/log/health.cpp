@@ -167,6 +167,13 @@ Health assess_health(const HealthInputs& in) {
                              std::to_string(in.disk_used_life_percent) +
                              " % of its life: replace it before it fails");
   }
+  if (in.disk_spare_level >= 2) {
+    health.reasons.emplace_back(
+        in.disk_spare_level >= 3 ? "CRITICAL: the card has used 90 % of its spare blocks and will "
+                                   "take no more before long: replace it now"
+                                 : "WARN: the card has used 80 % of its spare blocks: replace it "
+                                   "before it fails");
+  }
   if (in.file_system_errors > 0) {
     health.reasons.push_back(
         "WARN: the kernel has counted " + std::to_string(in.file_system_errors) +

@@ -40,6 +40,7 @@ struct HealthInputs {
   bool run_folder_is_failing = false;
   std::int64_t cycles_behind = 0;       ///< that status.json is behind the log, whose word counts
   int disk_used_life_percent = 0;       ///< of the state folder's device; 0: not told, or not worn
+  int disk_spare_level = 0;             ///< as of CardWear
   std::int64_t file_system_errors = 0;  ///< that the kernel has counted there
   bool disk_is_full = false;            ///< of the state folder, or it is read-only
   bool price_step_held = false;

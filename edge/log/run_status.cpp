@@ -145,6 +145,26 @@ void add_model(const RunIdentity& id, TextBuffer& text) {
            quotable(id.map).c_str());
 }
 
+/// Only what the device tells.
+void add_wear(const CardWear& wear, TextBuffer& text) {
+  if (wear.used_life_percent > 0) {
+    add_value(text, "bess_card_used_life_ratio",
+              "Share of its life that the state folder's card has used, as of the start.",
+              wear.used_life_percent / 100.0);
+  }
+  if (wear.spare_level > 0) {
+    add_value(text, "bess_card_spare_level",
+              "Spare blocks of that card: 1 normal, 2 most are used, 3 nearly all.",
+              wear.spare_level);
+  }
+  if (wear.file_system_errors >= 0) {
+    add_value(
+        text, "bess_file_system_errors",
+        "Errors that the kernel has counted in the state folder's file system, as of the start.",
+        static_cast<double>(wear.file_system_errors));
+  }
+}
+
 }  // namespace
 
 void RunTotals::count(const CycleRecord& record) {
@@ -183,6 +203,7 @@ void format_prometheus(const RunIdentity& identity, const RunTotals& totals, Tex
   add_fields(MetricGroup::kPeople, totals, text);
   add_fields(MetricGroup::kConnection, totals, text);
   add_model(identity, text);
+  add_wear(identity.wear, text);
   text.add("%s", checksum_end(text.view(), kCommentChecksum).c_str());
 }
 

@@ -14,6 +14,16 @@
 
 namespace bess {
 
+/// What the state folder's device tells of its wear, and its file system of itself; read at the start.
+struct CardWear {
+  int used_life_percent = 0;  ///< of an eMMC, the upper end of its tenth; 0 = not told
+  int spare_level =
+      0;  ///< its pre_eol_info: 1 normal, 2 four fifths of the spare blocks are used, 3 nine tenths;
+          ///< 0 = not told
+  std::int64_t file_system_errors =
+      -1;  ///< that the kernel has counted (ext4); negative = not told
+};
+
 /// What does not change while the process runs.
 struct RunIdentity {
   FixedText<31> version;
@@ -27,6 +37,7 @@ struct RunIdentity {
   pid_t pid = 0;
   std::int64_t start_utc_s = 0;
   std::int32_t cadence_ms = 120'000;  ///< wall time from one cycle to the next
+  CardWear wear;
 };
 
 /// What has happened since the start.

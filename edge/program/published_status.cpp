@@ -35,17 +35,15 @@ std::int64_t age_ms_of(JsonValue status) {
 /// Does not exist when there is none at `path`, it is not ours, or it is not as it was written.
 Json read_status(const char* path) {
   std::string text;
-  if (is_believable(path)) {
-    read_text(path, text);
-  } else {
-    report(JournalLevel::kWarning, "%s", strangers_file(path).c_str());
-  }
+  const bool is_believed = is_believable(path);
+  if (!is_believed) report(JournalLevel::kWarning, "%s", strangers_file(path).c_str());
+  if (*path == '\0' || !is_believed || !read_text(path, text)) return Json::parse("");
   const TextState state = check_text(text, kJsonChecksum);
   Json status = Json::parse(state == TextState::kIntact
                                 ? std::string(without_checksum(text, kJsonChecksum)) + "\n}\n"
                                 : text);  // of an older program
   if (state != TextState::kBroken && status.value().is_object()) return status;
-  if (!text.empty()) report(JournalLevel::kWarning, "%s is damaged: not believed", path);
+  report(JournalLevel::kWarning, "%s is damaged: not believed", path);
   return Json::parse("");
 }
 

@@ -164,11 +164,11 @@ void test_storage(const EdgeConfig& config, Table& table) {
   const StorageHealth disk = look_at_storage(config.state.folder.c_str());
   const std::string folder = config.state.folder.c_str();
   if (!disk.is_writable) return table.add("storage", false, folder + ": " + disk.error);
+  const int used_life_percent = disk.wear.used_life_percent;
   const std::string wear =
-      disk.used_life_percent.has_value()
-          ? "up to " + std::to_string(*disk.used_life_percent) + " % of its life used"
-          : "it does not tell its wear";
-  const bool is_worn = disk.used_life_percent.value_or(0) > kUsedLifePercentMax;
+      used_life_percent > 0 ? "up to " + std::to_string(used_life_percent) + " % of its life used"
+                            : "it does not tell its wear";
+  const bool is_worn = used_life_percent > kUsedLifePercentMax || disk.wear.spare_level >= 2;
   table.add("storage", disk.free_mb >= kFreeMbMin && !is_worn,
             text("%s: %.0f MB free, 4 KiB on the disk after %.1f ms, %s", folder.c_str(),
                  disk.free_mb, disk.synced_write_ms, wear.c_str()));

@@ -14,6 +14,7 @@
 #include "edge/program/level_note.h"
 #include "edge/program/people_config.h"
 #include "edge/program/price_transport.h"
+#include "edge/program/storage_health.h"
 #include "edge/program/threshold_note.h"
 #include "edge/program/wishes_note.h"
 #include "edge/registers/codec.h"
@@ -232,6 +233,7 @@ RunIdentity identity_of_run(const EdgeConfig& config) {
   identity.control = config.control.control;
   identity.pid = getpid();
   identity.start_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
+  identity.wear = card_wear_of(config.state.folder.c_str());
   identity.cadence_ms = kSecondsPerStep * 1'000 / config.clock.scale;
   return identity;
 }

@@ -38,9 +38,12 @@ Health health_of(const EdgeConfig& config, const PublishedStatus& published,
   HealthInputs in;
   in.is_running = published.holder != 0;
   in.disk_is_full = takes_no_file(config.state.folder.c_str());
-  const int used_life_percent = used_life_of(config.state.folder.c_str()).value_or(0);
-  if (used_life_percent > kUsedLifePercentMax) in.disk_used_life_percent = used_life_percent;
-  in.file_system_errors = file_system_errors_of(config.state.folder.c_str());
+  const CardWear wear = card_wear_of(config.state.folder.c_str());
+  if (wear.used_life_percent > kUsedLifePercentMax) {
+    in.disk_used_life_percent = wear.used_life_percent;
+  }
+  in.disk_spare_level = wear.spare_level;
+  in.file_system_errors = wear.file_system_errors;
   in.update_trouble = update_trouble;
   in.unknown = published.unknown;
   if (!status.exists()) return assess_health(in);

@@ -6,12 +6,14 @@
 #include <sys/sysmacros.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
+#include <iterator>
 
 #include "edge/log/whole_file.h"
 #include "shared/scaled_clock.h"
@@ -19,11 +21,31 @@
 namespace bess {
 namespace {
 
+/// Tests have one of their own below a folder, as bess-update has.
+std::string sysfs() {
+  const char* const root = std::getenv("BESS_ROOT");
+  return std::string(root == nullptr ? "" : root) + "/sys";
+}
+
+/// Empty where there is none.
+std::string text_of(const std::string& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+/// Of "0x0a" at that place; 0 where it is no number.
+int hexadecimal_at(std::string_view text, std::size_t at) {
+  int value = 0;
+  text.remove_prefix(at + 2);
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), value, 16);
+  return read.ec == std::errc{} && value > 0 ? value : 0;
+}
+
 /// Its place in /sys; empty when there is no such folder.
 std::string block_device_of(const std::string& folder) {
   struct stat at {};
   if (stat(folder.c_str(), &at) != 0) return {};
-  return "/sys/dev/block/" + std::to_string(major(at.st_dev)) + ":" +
+  return sysfs() + "/dev/block/" + std::to_string(major(at.st_dev)) + ":" +
          std::to_string(minor(at.st_dev));
 }
 
@@ -56,42 +78,42 @@ int write_and_sync(const std::string& path) {
 
 }  // namespace
 
-std::optional<int> used_life_of(const std::string& folder) {
-  const std::string device = block_device_of(folder);
-  if (device.empty()) return std::nullopt;
-  // Of the device itself, or of the one that it is a partition of.
-  for (const char* const place : {"/device/life_time", "/../device/life_time"}) {
-    std::ifstream file(device + place);
-    std::ostringstream text;
-    if (file && text << file.rdbuf()) return used_life_percent(text.str());
-  }
-  return std::nullopt;
-}
-
-std::int64_t file_system_errors_of(const std::string& folder) {
-  std::error_code error;
-  const auto device = std::filesystem::canonical(block_device_of(folder), error);
-  if (error) return 0;
-  std::ifstream file("/sys/fs/ext4/" + device.filename().string() + "/errors_count");
-  std::int64_t errors = 0;
-  return file >> errors ? errors : 0;
-}
-
-std::optional<int> used_life_percent(std::string_view life_time) {
+int used_life_percent(std::string_view life_time) {
+  constexpr int kTenthsMax = 11;  // beyond its life
   int worst = 0;
-  while (!life_time.empty()) {
-    const std::size_t begin = life_time.find("0x");
-    if (begin == std::string_view::npos) break;
-    life_time.remove_prefix(begin + 2);
-    int tenths = 0;
-    const auto [end, error] =
-        std::from_chars(life_time.data(), life_time.data() + life_time.size(), tenths, 16);
-    if (error != std::errc{}) return std::nullopt;
-    life_time.remove_prefix(static_cast<std::size_t>(end - life_time.data()));
-    worst = tenths > worst ? tenths : worst;
+  for (std::size_t at = life_time.find("0x"); at != std::string_view::npos;
+       at = life_time.find("0x", at + 1)) {
+    worst = std::max(worst, hexadecimal_at(life_time, at));
   }
-  if (worst < 1 || worst > 11) return std::nullopt;  // 0: not defined; 11: beyond its life
-  return worst * 10;
+  return worst > kTenthsMax ? 0 : worst * 10;
+}
+
+int spare_level(std::string_view pre_eol_info) {
+  constexpr int kLevelMax = 3;
+  const int level = pre_eol_info.starts_with("0x") ? hexadecimal_at(pre_eol_info, 0) : 0;
+  return level > kLevelMax ? 0 : level;
+}
+
+CardWear card_wear_of(const std::string& folder) {
+  CardWear wear;
+  const std::string device = block_device_of(folder);
+  if (device.empty()) return wear;
+  // Of the device itself, or of the one that it is a partition of.
+  for (const std::string& place : {device + "/device", device + "/../device"}) {
+    if (wear.used_life_percent == 0) {
+      wear.used_life_percent = used_life_percent(text_of(place + "/life_time"));
+    }
+    if (wear.spare_level == 0) wear.spare_level = spare_level(text_of(place + "/pre_eol_info"));
+  }
+  std::error_code error;
+  const auto block_device = std::filesystem::canonical(device, error);
+  const std::string errors =
+      text_of(sysfs() + "/fs/ext4/" + block_device.filename().string() + "/errors_count");
+  if (error || errors.empty()) return wear;
+  std::int64_t count = -1;
+  std::from_chars(errors.data(), errors.data() + errors.size(), count);
+  wear.file_system_errors = count;
+  return wear;
 }
 
 bool is_read_only(const char* folder) {
@@ -119,7 +141,7 @@ StorageHealth look_at_storage(const std::string& folder) {
   if (statvfs(folder.c_str(), &disk) == 0) {
     health.free_mb = static_cast<double>(disk.f_bavail) * static_cast<double>(disk.f_frsize) / 1e6;
   }
-  health.used_life_percent = used_life_of(folder);
+  health.wear = card_wear_of(folder);
   return health;
 }
 

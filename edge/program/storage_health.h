@@ -3,9 +3,10 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <string_view>
+
+#include "edge/log/run_status.h"
 
 namespace bess {
 
@@ -13,14 +14,14 @@ namespace bess {
 inline constexpr int kUsedLifePercentMax = 90;
 
 /// Used share of its life from an eMMC's life_time file ("0x01 0x03": two kinds of cells, in tenths), the worse one,
-/// as the upper end in percent; none when it does not tell.
-std::optional<int> used_life_percent(std::string_view life_time);
+/// as the upper end in percent; 0 when it does not tell.
+int used_life_percent(std::string_view life_time);
 
-/// Of the device that the folder lies on; none when it does not tell.
-std::optional<int> used_life_of(const std::string& folder);
+/// From its pre_eol_info file ("0x01"): CardWear::spare_level.
+int spare_level(std::string_view pre_eol_info);
 
-/// Errors that the kernel has counted in that folder's file system (ext4); 0 where it does not tell.
-std::int64_t file_system_errors_of(const std::string& folder);
+/// Of the device and the file system that the folder lies on, as far as /sys tells; below BESS_ROOT, for tests.
+CardWear card_wear_of(const std::string& folder);
 
 /// Whether nothing can be written in that folder: mounted so, or set so by the kernel after an error, which ext4 does
 /// not tell statvfs of (emergency_ro of Linux 6.15 and later). Also where nobody can say.
@@ -34,7 +35,7 @@ struct StorageHealth {
   std::string error;  ///< why it is not
   double free_mb = 0;
   double synced_write_ms = 0;
-  std::optional<int> used_life_percent;
+  CardWear wear;
 };
 
 /// Writes 4 KiB beside what is in `folder` and takes them away again; a folder that is missing is made.

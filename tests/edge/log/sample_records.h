@@ -188,6 +188,7 @@ inline RunIdentity sample_identity() {
   id.control = true;
   id.pid = 4711;
   id.start_utc_s = 1'679'788'800;
+  id.wear = {.used_life_percent = 30, .spare_level = 1, .file_system_errors = 2};
   return id;
 }
 

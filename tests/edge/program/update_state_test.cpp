@@ -5,6 +5,7 @@
 #include "edge/log/text_checksum.h"
 #include "edge/program/storage_health.h"
 #include "edge/program/update_state.h"
+#include "tests/support/fake_card.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bess {
@@ -125,12 +126,37 @@ TEST(UpdateHistory, OldestFirstAndNotWhatAPowerCutTore) {
 TEST(StorageHealth, WearIsTheWorseOfTheTwoKindsOfCells) {
   EXPECT_EQ(used_life_percent("0x01 0x03\n"), 30);
   EXPECT_EQ(used_life_percent("0x0a 0x00\n"), 100);
-  EXPECT_EQ(used_life_percent("0x00 0x00\n"), std::nullopt);
-  EXPECT_EQ(used_life_percent("unknown"), std::nullopt);
-  EXPECT_EQ(used_life_of("/no/such/folder"), std::nullopt);
-  EXPECT_EQ(file_system_errors_of("/no/such/folder"), 0);
-  EXPECT_EQ(used_life_of("/proc"), std::nullopt);  // on no device
-  EXPECT_EQ(file_system_errors_of("/proc"), 0);
+  EXPECT_EQ(used_life_percent("0x0b 0x01\n"), 110);
+  for (const char* untold : {"0x00 0x00\n", "unknown", "", "0x", "0x0c 0x01\n"}) {
+    EXPECT_EQ(used_life_percent(untold), 0) << untold;
+  }
+  EXPECT_EQ(spare_level("0x01\n"), 1);
+  EXPECT_EQ(spare_level("0x03\n"), 3);
+  for (const char* untold : {"0x00\n", "0x04\n", "3\n", "", "0x"}) {
+    EXPECT_EQ(spare_level(untold), 0) << untold;
+  }
+}
+
+TEST(StorageHealth, WhatNoDeviceTellsIsNotMadeUp) {
+  for (const char* folder : {"/no/such/folder", "/proc"}) {
+    const CardWear wear = card_wear_of(folder);
+    EXPECT_EQ(wear.used_life_percent, 0) << folder;
+    EXPECT_EQ(wear.spare_level, 0) << folder;
+    EXPECT_LT(wear.file_system_errors, 0) << folder;
+  }
+}
+
+TEST(StorageHealth, AnEmmcAndItsFileSystemAreReadThroughThePartition) {
+  const TemporaryFolder root;
+  const TemporaryFolder state;
+  setenv("BESS_ROOT", root.file("").c_str(), 1);
+  write_card(root, state.file(""),
+             {.life_time = "0x02 0x0a\n", .pre_eol_info = "0x02\n", .errors = "7\n"});
+  const CardWear wear = card_wear_of(state.file(""));
+  unsetenv("BESS_ROOT");
+  EXPECT_EQ(wear.used_life_percent, 100);
+  EXPECT_EQ(wear.spare_level, 2);
+  EXPECT_EQ(wear.file_system_errors, 7);
 }
 
 TEST(StorageHealth, ATrialWriteLeavesNothing) {

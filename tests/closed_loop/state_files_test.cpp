@@ -1,0 +1,286 @@
+// The small files of controller and notifier, damaged between two runs of the real programs: what is drawn at random
+// from a named seed, over all files and all ways in which a card forgets. The sign check, an operator's hold and what
+// was told are kept by another copy, each loss is a line, nothing is believed that was not written so.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <random>
+
+#include "tests/support/edge_answer.h"
+#include "tests/support/fake_card.h"
+#include "tests/support/simulated_site.h"
+#include "tests/support/thorough.h"
+
+namespace bess {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+constexpr std::int32_t kScale = 300;
+constexpr std::uint32_t kSeed = 20'261'123;
+
+struct StateFile {
+  const char* path;          ///< in the site's folder
+  bool is_written_at_start;  ///< what cannot be replaced there keeps the controller from starting
+  bool is_read = true;       ///< by anybody, as long as the other one is younger
+};
+constexpr StateFile kFiles[] = {
+    {"state/commissioned.toml", false},
+    {"state/commissioned.copy", false},
+    {"run/commissioned.toml", false},
+    {"state/hold", false},
+    {"run/hold", false},
+    {"state/status.json", true},
+    {"run/status.json", true},
+    {"state/metrics.prom", true},
+    {"run/metrics.prom", true, false},
+    {"notify/told.json", false},
+    {"notify/told.copy", false},
+    {"notify_run/told.json", false},
+};
+
+enum class Damage { kFlip, kCut, kEmpty, kZeros, kFolder, kStranger };
+constexpr Damage kDamages[] = {Damage::kFlip,  Damage::kCut,    Damage::kEmpty,
+                               Damage::kZeros, Damage::kFolder, Damage::kStranger};
+constexpr const char* kDamageNames[] = {"flipped bit", "cut",      "empty",
+                                        "zeros",       "a folder", "a stranger's"};
+
+std::size_t count_of(const std::string& text, const std::string& piece) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(piece); at != text.npos; at = text.find(piece, at + 1)) ++count;
+  return count;
+}
+
+/// A battery that an operator holds at 0 W: the prices alone would discharge it.
+class StateFiles : public ::testing::Test {
+ protected:
+  static constexpr const char* kFolders[] = {"state", "run", "notify", "notify_run"};
+
+  void SetUp() override {
+    site_.start_battery();
+    site_.start_market({}, SimulatedSite::minute_prices(
+                               6'000, {.mean_eur_per_mwh = 1'700, .amplitude_eur_per_mwh = 0}));
+    config_ =
+        site_.commission({.guard_keys = "price_age_s_max = 1800\n",
+                          .state_keys = "run_folder = \"" + site_.folder.file("run") + "\"\n"});
+    add_notifier();
+    ASSERT_EQ(edge({"hold", "0", "--for", "7d", "--config", config_}).exit_code, 0);
+    ASSERT_THAT(run_controller(), AllOf(HasSubstr("reason=held"), Not(HasSubstr("damaged"))));
+    ASSERT_THAT(notify(), HasSubstr("ALARM: CRITICAL: no bess-edge runs"));
+    newest_utc_ = read_csv(site_.folder.file("edge.csv")).back().at("utc");
+    for (const char* folder : kFolders) {
+      fs::copy(site_.folder.file(folder), pristine(folder), fs::copy_options::recursive);
+    }
+  }
+  void add_notifier() {
+    const std::string mailer =
+        site_.folder.write("mailer", "#!/bin/sh\ncat >>" + site_.folder.file("mails") + "\n");
+    chmod(mailer.c_str(), 0755);
+    std::ofstream(config_, std::ios::app)
+        << "[notify]\nafter_s = 0\nfolder = \"notify\"\nrun_folder = \"notify_run\"\nmail_to = "
+           "\"a@b.example\"\nsendmail = \""
+        << mailer << "\"\n";
+  }
+  [[nodiscard]] std::string pristine(const char* folder) const {
+    return site_.folder.file(std::string("pristine_") + folder);
+  }
+  void restore() {
+    for (const char* folder : kFolders) {
+      fs::remove_all(site_.folder.file(folder));
+      fs::copy(pristine(folder), site_.folder.file(folder), fs::copy_options::recursive);
+    }
+  }
+  std::string run_controller() {
+    const Said said = edge({"--config", config_, "--cycles", "2"});
+    exit_code_ = said.exit_code;
+    return said.text;
+  }
+  std::string notify() {
+    ChildProcess child({BESS_NOTIFY_PROGRAM, "--once", "--config", config_});
+    std::string text = child.read_all();
+    exit_code_ = child.wait();
+    return text;
+  }
+  [[nodiscard]] std::size_t mails() const {
+    return count_of(text_of_file(site_.folder.file("mails")), "Subject:");
+  }
+
+  void damage(const std::string& path, Damage how) {
+    std::string text = text_of_file(path);
+    ASSERT_FALSE(text.empty()) << path;
+    const std::size_t at = random_() % text.size();
+    switch (how) {
+      case Damage::kFlip:
+        text[at] = static_cast<char>(text[at] ^ (1 << random_() % 8));
+        std::ofstream(path, std::ios::binary) << text;
+        return;
+      case Damage::kCut:
+        return fs::resize_file(path, at);
+      case Damage::kEmpty:
+        return fs::resize_file(path, 0);
+      case Damage::kZeros:
+        std::ofstream(path, std::ios::binary) << std::string(text.size(), '\0');
+        return;
+      case Damage::kFolder:
+        fs::remove(path);
+        fs::create_directory(path);
+        return;
+      case Damage::kStranger:
+        ASSERT_EQ(chown(path.c_str(), 65'534, 65'534), 0);
+    }
+  }
+
+  /// Of a controller that has ended, with its newest cycle, whoever has to tell it.
+  void expect_status_is_true() {
+    const Said json = edge({"status", "--json", "--config", config_});
+    EXPECT_EQ(json.exit_code, 3) << json.text;
+    EXPECT_THAT(json.text, AllOf(HasSubstr("not running"), HasSubstr(newest_utc_)));
+    const Said text = edge({"status", "--config", config_});
+    EXPECT_THAT(text.text, AllOf(HasSubstr("controller none; the last one was"),
+                                 HasSubstr(newest_utc_), Not(HasSubstr("health     ok"))));
+    const Said metrics = edge({"status", "--prometheus", "--config", config_});
+    EXPECT_THAT(metrics.text, AllOf(HasSubstr("bess_tripped 0\n"),
+                                    HasSubstr("bess_last_cycle_timestamp_seconds ")))
+        << metrics.text;
+    said_ += json.text + text.text + metrics.text;
+  }
+  /// What was told is not told again, and the energy is as it was.
+  void expect_notifier_remembers() {
+    const std::size_t before = mails();
+    said_ += notify();
+    EXPECT_EQ(exit_code_, 0) << said_;
+    EXPECT_EQ(mails(), before) << said_;
+  }
+  void expect_driven_as_before(const StateFile& file, Damage how) {
+    const std::string run = run_controller();
+    said_ += run;
+    const bool may_refuse =
+        file.is_written_at_start && (how == Damage::kFolder || how == Damage::kStranger);
+    if (may_refuse && exit_code_ == 1) {
+      EXPECT_THAT(run, HasSubstr(site_.folder.file(file.path))) << "and nothing was driven";
+      EXPECT_THAT(run, Not(HasSubstr("utc=")));
+      return;
+    }
+    EXPECT_EQ(exit_code_, 0) << run;
+    EXPECT_EQ(count_of(run, " ordered_power_w=0 reason=held "), 2U) << run;
+  }
+  void try_one(const StateFile& file, Damage how) {
+    SCOPED_TRACE(std::string(file.path) + ", " + kDamageNames[static_cast<int>(how)]);
+    restore();
+    said_.clear();
+    const std::string path = site_.folder.file(file.path);
+    const std::string before = text_of_file(path);
+    damage(path, how);
+    expect_status_is_true();
+    expect_notifier_remembers();
+    expect_driven_as_before(file, how);
+    // A bit in the words around the checksum costs nothing but the checksum.
+    const bool is_of_the_words = how == Damage::kFlip || how == Damage::kCut;
+    const bool is_named = said_.find(path) != std::string::npos;
+    EXPECT_TRUE(is_named || is_of_the_words || !file.is_read) << said_;
+    if (!HasFailure()) {
+      std::printf("| %-26s | %-12s | %-5s | kept, true, told once |\n", file.path,
+                  kDamageNames[static_cast<int>(how)], is_named ? "named" : "-");
+    }
+  }
+
+  SimulatedSite site_{kScale};
+  std::string config_;
+  std::string newest_utc_;
+  std::string said_;
+  int exit_code_ = 0;
+  std::mt19937 random_{kSeed};
+};
+
+TEST_F(StateFiles, WhateverACardForgetsNothingIsForgottenOrBelieved) {
+  if (geteuid() != 0) GTEST_SKIP() << "needs root, to give a file to somebody else";
+  for (int i = 0; i < few_or_all(4, 150); ++i) {
+    const StateFile& file = kFiles[random_() % std::size(kFiles)];
+    try_one(file, kDamages[random_() % std::size(kDamages)]);
+  }
+}
+
+/// Each copy of the sign check lost is a refusal, each copy of the hold lost is told and not followed.
+TEST_F(StateFiles, AllCopiesLostIsSaidAndNotDefaulted) {
+  for (const char* path : {"state/hold", "run/hold"}) {
+    std::ofstream(site_.folder.file(path)) << std::string(73, '\0');
+  }
+  const std::string without_hold = run_controller();
+  EXPECT_EQ(exit_code_, 0);
+  EXPECT_THAT(without_hold, AllOf(HasSubstr("hold: the file hold in [state] folder is not one"),
+                                  Not(HasSubstr("reason=held"))));
+  restore();
+  for (const char* path :
+       {"state/commissioned.toml", "state/commissioned.copy", "run/commissioned.toml"}) {
+    std::ofstream(site_.folder.file(path)) << "map = \"si";
+  }
+  const std::string refused = run_controller();
+  EXPECT_EQ(exit_code_, 1);
+  EXPECT_THAT(refused,
+              AllOf(HasSubstr("commissioned.toml is damaged"), HasSubstr("no copy counts"),
+                    HasSubstr("bess-edge commission --config FILE --yes"), Not(HasSubstr("utc="))));
+  const std::size_t before = mails();
+  for (const char* path : {"notify/told.json", "notify/told.copy", "notify_run/told.json"}) {
+    std::ofstream(site_.folder.file(path)) << "{\"version\": 1, \"al";
+  }
+  EXPECT_THAT(notify(), AllOf(HasSubstr("told.json is damaged"), HasSubstr("told.copy is damaged"),
+                              HasSubstr("what was told is not known: alarms are told again")));
+  EXPECT_EQ(mails(), before + 1) << "told again rather than never";
+}
+
+/// The wear of the state folder's card, where it tells: by status, metrics and mail.
+TEST_F(StateFiles, AWornCardIsToldByEverybody) {
+  const TemporaryFolder root;
+  setenv("BESS_ROOT", root.file("").c_str(), 1);
+  write_card(root, site_.folder.file("state"),
+             {.life_time = "0x02 0x0a\n", .pre_eol_info = "0x03\n", .errors = "7\n"});
+  ChildProcess controller({edge_program(), "--config", config_});
+  std::string line;
+  for (int cycles = 0; cycles < 2 && !(line = controller.read_line()).empty();) {
+    cycles += line.starts_with("utc=") ? 1 : 0;
+  }
+  const std::string status = edge({"status", "--config", config_}).text;
+  const std::string metrics = edge({"status", "--prometheus", "--config", config_}).text;
+  const std::string told = notify();
+  EXPECT_EQ(SimulatedSite::stop(controller), 0);
+  unsetenv("BESS_ROOT");
+  for (const std::string& text : {status, told}) {
+    EXPECT_THAT(text, AllOf(HasSubstr("WARN: the card has used up to 100 % of its life"),
+                            HasSubstr("CRITICAL: the card has used 90 % of its spare blocks"),
+                            HasSubstr("WARN: the kernel has counted 7 errors")));
+  }
+  EXPECT_THAT(metrics, AllOf(HasSubstr("bess_card_used_life_ratio 1\n"),
+                             HasSubstr("bess_card_spare_level 3\n"),
+                             HasSubstr("bess_file_system_errors 7\n")));
+  EXPECT_THAT(text_of_file(site_.folder.file("mails")), HasSubstr("90 % of its spare blocks"));
+}
+
+/// sudo bess-edge hold, by a root whose files are for root alone, beside a service of another user.
+TEST_F(StateFiles, ACarefulRootsHoldIsReadByTheService) {
+  if (geteuid() != 0) GTEST_SKIP() << "needs root";
+  for (const char* folder : {"state", "run"}) {
+    ASSERT_EQ(chown(site_.folder.file(folder).c_str(), 65'534, 65'534), 0);
+  }
+  const Said given = [&] {
+    ChildProcess child({"/bin/sh", "-c", "umask 077; exec \"$0\" \"$@\"", edge_program(), "hold",
+                        "-500", "--for", "2h", "--config", config_});
+    std::string text = child.read_all();
+    return Said{child.wait(), std::move(text)};
+  }();
+  ASSERT_EQ(given.exit_code, 0) << given.text;
+  for (const char* path : {"state/hold", "run/hold"}) {
+    struct stat facts {};
+    ASSERT_EQ(stat(site_.folder.file(path).c_str(), &facts), 0);
+    EXPECT_EQ(facts.st_uid, 65'534U) << path;
+    EXPECT_EQ(facts.st_mode & 07777, 0644U) << path;
+  }
+}
+
+}  // namespace
+}  // namespace bess
