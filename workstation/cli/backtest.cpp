@@ -30,8 +30,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The whole chain, learnt anew for each fold.
+/// The whole chain, learnt anew for each fold; and its teacher.
 constexpr const char* kChainName = "student";
+constexpr const char* kTeacherName = "teacher";
 
 struct BacktestArguments {
   CommonOptions common;
@@ -65,28 +66,47 @@ void claim_folder(const fs::path& folder, const std::string& identity) {
   }
 }
 
+fs::path model_path(const fs::path& folder, const Fold& fold, std::string_view name) {
+  return folder / (fold.month + (name == kChainName ? ".student.json" : ".teacher.bin"));
+}
+
+bool is_learnt(std::string_view policy) { return policy == kChainName || policy == kTeacherName; }
+
 /// Train, correct, prove. Throws UserError when the proof fails.
-StudentFile learn_fold(const Fold& fold, const RunConfig& config) {
-  const TrainResult trained =
-      train_teacher(fold.market, config.battery, config.train, interruption());
-  const Matrix visited =
-      visited_inputs(trained.teacher, fold.market, config.battery, config.distil);
+StudentFile distil_fold(const Teacher& teacher, const Fold& fold, const RunConfig& config) {
+  const Matrix visited = visited_inputs(teacher, fold.market, config.battery, config.distil);
   const CorrectionResult corrected =
-      correct_and_prove(trained.teacher, visited, config.distil, interruption(),
+      correct_and_prove(teacher, visited, config.distil, interruption(),
                         validation_score(fold.market, config.battery, config.initial_soc_frac));
   return require_proof(corrected, config.distil.method, fold.month + ": ").file();
 }
 
-fs::path student_path(const fs::path& folder, const Fold& fold) {
-  return folder / (fold.month + ".student.json");
+/// Of the models of a fold those that are asked for and not there yet.
+void learn_fold(const Fold& fold, const RunConfig& config, const fs::path& folder,
+                bool and_student) {
+  const fs::path path = model_path(folder, fold, kTeacherName);
+  if (!fs::exists(path)) {
+    save_teacher(path,
+                 train_teacher(fold.market, config.battery, config.train, interruption()).teacher);
+  }
+  const fs::path student = model_path(folder, fold, kChainName);
+  if (!and_student || fs::exists(student)) return;
+  save_student(student, distil_fold(load_teacher(path), fold, config));
 }
 
 /// Learns what is not there yet, a fold to a thread: with one thread each, a fold repeats to the bit
 /// whatever runs beside it.
-void learn_folds(const Folds& folds, RunConfig config, const fs::path& folder) {
+void learn_folds(const Folds& folds, RunConfig config, const fs::path& folder,
+                 const std::vector<std::string>& policies) {
+  const auto is_missing = [&](const Fold& fold) {
+    return std::ranges::any_of(policies, [&](const std::string& name) {
+      return is_learnt(name) && !fs::exists(model_path(folder, fold, name));
+    });
+  };
+  const bool and_student = std::ranges::find(policies, kChainName) != policies.end();
   std::vector<const Fold*> missing;
   for (const Fold& fold : folds.traded) {
-    if (!fs::exists(student_path(folder, fold))) missing.push_back(&fold);
+    if (is_missing(fold)) missing.push_back(&fold);
   }
   const int threads = config.train.threads;
   config.set_threads(1);
@@ -105,7 +125,7 @@ void learn_folds(const Folds& folds, RunConfig config, const fs::path& folder) {
         fold = missing[next++];
       }
       try {
-        save_student(student_path(folder, *fold), learn_fold(*fold, config));
+        learn_fold(*fold, config, folder, and_student);
         const std::lock_guard lock(mutex);
         progress.update(static_cast<double>(++done), fold->month);
       } catch (...) {
@@ -137,9 +157,7 @@ void run_backtest(const BacktestArguments& options) {
   require_writable(folder / "backtest.csv");
   claim_folder(folder, identity_of(config, series, options));
   end_when_interrupted("months that were learnt are kept: the same command goes on");
-  if (std::ranges::find(options.policies, kChainName) != options.policies.end()) {
-    learn_folds(folds, config, folder);
-  }
+  learn_folds(folds, config, folder, options.policies);
   std::vector<std::size_t> fitted_days;
   for (const Fold& fold : folds.traded) {
     fitted_days.push_back(fold.market.days.size() - fold.market.days_of(Split::kTest).size());
@@ -155,7 +173,7 @@ void run_backtest(const BacktestArguments& options) {
   Progress progress("trade", "policies", static_cast<double>(options.policies.size()));
   for (const std::string& name : options.policies) {
     const FoldPolicy make = [&](const Fold& fold) {
-      const std::string model = name == kChainName ? student_path(folder, fold).string() : name;
+      const std::string model = is_learnt(name) ? model_path(folder, fold, name).string() : name;
       return make_policy(model, fold.market, config.battery);
     };
     results.policies.push_back(
@@ -188,7 +206,8 @@ void add_backtest_command(ProgramCommand& app) {
   command
       .option("--policy", options->policies,
               std::string("Gains are over the first. ") + kChainName +
-                  " is the whole chain, learnt anew for each month; the others: " + kPolicyHelp)
+                  " is the whole chain, learnt anew for each month, " + kTeacherName +
+                  " its teacher; the others: " + kPolicyHelp)
       .with_default();
   command.option("--window-days", options->window_days, "Days before a month that it is fitted on")
       .range(30, 3650)

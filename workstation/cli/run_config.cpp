@@ -148,6 +148,10 @@ void KeyList::list(RunConfig& c) {
   number("learning_rate", c.train.learning_rate, 1e-7, 1, "of Adam, at the start");
   number("learning_rate_end", c.train.learning_rate_end, 0, 1, "at the end of a cosine");
   number("gamma", c.train.gamma, 0, 0.999999, "discount a step");
+  boolean("residual", c.train.residual,
+          "c51, dqn: the network adds to the stochastic program and begins at adding nothing");
+  number("residual_gamma", c.train.residual_gamma, 0, 0.9995,
+         "discount a step of what it adds, in place of gamma: beyond its reach the program stands");
   number("tau", c.train.tau, 1e-6, 1, "target <- tau * online + (1 - tau) * target, each step");
   integer("atoms", c.train.atoms, 2, 1001, "of the value distribution");
   number("value_min_eur_per_h", c.train.value_min_eur_per_h, -1e9, 1e9, "lowest atom");
@@ -214,6 +218,14 @@ void check_relations(const RunConfig& config, const std::string& name) {
   }
   if (config.train.value_min_eur_per_h >= config.train.value_max_eur_per_h) {
     fail("{}: [train] value_min_eur_per_h must be below value_max_eur_per_h", name);
+  }
+  if (config.train.residual && config.train.horizon != Horizon::kContinuing) {
+    fail("{}: [train] residual needs horizon = \"continuing\": the program's days have no end",
+         name);
+  }
+  if (config.train.residual && config.train.atoms % 2 == 0) {
+    fail("{}: [train] residual needs an odd number of atoms, not {}: zero is the middle one", name,
+         config.train.atoms);
   }
   if (!config.distil.correction.thresholds.are_ordered()) {
     fail("{}: [correction] low_price_eur_per_mwh must be below high_price_eur_per_mwh", name);

@@ -226,17 +226,25 @@ std::string training_provenance(const std::string& prices, const TrainOptions& o
       fmt::format("bess-train {} {} on {}, by {}", BESS_VERSION, method_name(options.method),
                   fs::path(prices).filename().string(), context_name(options.context));
   if (options.method == Method::kSdp) return text;  // there is no chance in it, and no step
+  if (options.residual) {
+    text += fmt::format(" on the stochastic program, {} atoms to +-{:.0f} EUR/h", options.atoms,
+                        double{result.teacher.support.v_max} / double{kRewardScale});
+  }
   return fmt::format("{}, seed {}, best at step {} of {}", text, options.seed, result.best_step,
                      options.steps);
 }
 
 void warn_narrow_support(const TrainOptions& options, const TrainResult& result) {
   constexpr double kEdgeMassMax = 0.01;
-  if (options.method != Method::kC51 || result.curve.back().edge_mass_frac <= kEdgeMassMax) return;
+  constexpr double kResidualEdgeMassMax = 0.005;  // its support is measured, not given
+  if (options.method != Method::kC51 || result.curve.empty()) return;
+  const double edge_mass_frac = result.curve.back().edge_mass_frac;
+  if (edge_mass_frac <= (options.residual ? kResidualEdgeMassMax : kEdgeMassMax)) return;
   fmt::print(stderr,
-             "bess-train: warning: {:.1f} % of the value distribution sits on the end atoms; widen "
-             "[train] value_min_eur_per_h and value_max_eur_per_h\n",
-             100 * result.curve.back().edge_mass_frac);
+             "bess-train: warning: {:.1f} % of the value distribution sits on the end atoms; {}\n",
+             100 * edge_mass_frac,
+             options.residual ? "lower [train] residual_gamma"
+                              : "widen [train] value_min_eur_per_h and value_max_eur_per_h");
 }
 
 void add_train_command(ProgramCommand& app) {

@@ -249,37 +249,60 @@ void StochasticProgram::solve() {
   }
 }
 
-std::array<double, kActionCount> StochasticProgram::action_values(const Situation& at,
-                                                                  double soc_frac) const {
+StochasticProgram::Outlook StochasticProgram::outlook(const Situation& at) const {
   const double level = at.level_eur_per_mwh;
   const Between bins = between_bins(at.price_eur_per_mwh - usual(at.row_quarter_hour, level));
   const Between anchors = between_levels(level);
   const int phase = at.step_of_day % kPhases;
   const double* paid = &paid_[phase * kBins + bins.lower];
-  const double price =
+  Outlook outlook{};
+  outlook.price_eur_per_mwh =
       paid[0] + bins.weight * (paid[1] - paid[0]) + usual_paid(at.step_of_day, level);
+  for (int l = 0; l < 2; ++l) {
+    const double level_weight = l == 0 ? 1 - anchors.weight : anchors.weight;
+    if (level_weight == 0) continue;
+    for (int b = 0; b < 2; ++b) {
+      const std::size_t i = 2 * l + b;
+      outlook.row[i] = continuation_at(anchors.lower + l, at.step_of_day, bins.lower + b);
+      outlook.weight[i] = level_weight * (b == 0 ? 1 - bins.weight : bins.weight);
+    }
+  }
+  return outlook;
+}
+
+std::array<double, kActionCount> StochasticProgram::action_values(const Situation& at,
+                                                                  double soc_frac) const {
+  const Outlook sees = outlook(at);
   std::array<double, kActionCount> worth{};
   for (int a = 0; a < kActionCount; ++a) {
     const double wanted_w = power_sign(static_cast<Action>(a)) * battery_.power_w_max;
     const BatteryStep moved = battery_step(battery_, soc_frac, wanted_w, kHoursPerStep);
     const SocGrid::Position soc = grid_.position(moved.soc_frac);
     double ahead = 0;
-    for (int l = 0; l < 2; ++l) {
-      const double level_weight = l == 0 ? 1 - anchors.weight : anchors.weight;
-      if (level_weight == 0) continue;
-      for (int b = 0; b < 2; ++b) {
-        const double weight = level_weight * (b == 0 ? 1 - bins.weight : bins.weight);
-        ahead +=
-            weight *
-            double{interpolate(
-                &continuation_[continuation_at(anchors.lower + l, at.step_of_day, bins.lower + b)],
-                soc)};
-      }
+    for (std::size_t i = 0; i < sees.row.size(); ++i) {
+      if (sees.weight[i] == 0) continue;
+      ahead += sees.weight[i] * double{interpolate(&continuation_[sees.row[i]], soc)};
     }
-    worth[a] = ahead - exchange_cost_eur(battery_,
-                                         moved.power_w / kWattsPerMegawatt * kHoursPerStep, price);
+    worth[a] =
+        ahead - exchange_cost_eur(battery_, moved.power_w / kWattsPerMegawatt * kHoursPerStep,
+                                  sees.price_eur_per_mwh);
   }
   return worth;
+}
+
+double StochasticProgram::expected_price(const Situation& at) const {
+  return outlook(at).price_eur_per_mwh;
+}
+
+void StochasticProgram::continuation(const Situation& at, float* value_eur) const {
+  const Outlook sees = outlook(at);
+  for (int p = 0; p < kSocPoints; ++p) {
+    double ahead = 0;
+    for (std::size_t i = 0; i < sees.row.size(); ++i) {
+      ahead += sees.weight[i] * double{continuation_[sees.row[i] + static_cast<std::size_t>(p)]};
+    }
+    value_eur[p] = static_cast<float>(ahead);
+  }
 }
 
 void StochasticProgram::values(const Situation& at, float* value_eur) const {

@@ -64,6 +64,11 @@ class StochasticProgram {
                                                                double soc_frac) const;
   /// Value of the SoC grid's points [kSocPoints], EUR, for shaping rewards.
   void values(const Situation& at, float* value_eur) const;
+  /// What action_values() is made of: the price that the step is expected to be paid at, and
+  /// the discounted value of the SoC grid's points [kSocPoints] after it, EUR.
+  [[nodiscard]] double expected_price(const Situation& at) const;
+  void continuation(const Situation& at, float* value_eur) const;
+  [[nodiscard]] double gamma() const { return options_.gamma; }
   [[nodiscard]] double mean_level_eur_per_mwh() const { return level_mean_; }
   [[nodiscard]] const BatteryParameters& battery() const { return battery_; }
 
@@ -82,6 +87,14 @@ class StochasticProgram {
   void fit_bins(const MarketSteps& market, const std::vector<MarketDay>& days);
   void count_chain(const MarketSteps& market, const std::vector<MarketDay>& days);
   void solve();
+  /// The rows of `continuation_` that a situation lies between, with their weights, and what is
+  /// expected to be paid.
+  struct Outlook {
+    std::array<std::size_t, 4> row;
+    std::array<double, 4> weight;
+    double price_eur_per_mwh;
+  };
+  [[nodiscard]] Outlook outlook(const Situation& at) const;
   /// Where in `continuation_` the SoC points of a level, step and bin begin.
   [[nodiscard]] static std::size_t continuation_at(int level, int step_of_day, int bin) {
     return ((static_cast<std::size_t>(level) * kStepsPerDay + step_of_day) * kBins + bin) *

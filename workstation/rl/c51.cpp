@@ -36,18 +36,21 @@ void project_targets(const GradientStep& step, const TileRange& range, C51Tile& 
   const int count = tile.support.count;
   tile.m.resize(count, range.count);
   for (Eigen::Index n = 0; n < range.count; ++n) {
-    float mean[kActionCount];
+    const float* advantage = step.batch.next_advantage.col(range.first + n).data();
+    float value[kActionCount];
     float sum[kActionCount];
     for (int a = 0; a < kActionCount; ++a) {
       float* p = tile.next.distribution(a);
       sum[a] = step.kernels.exponentials(tile.z_next.sample(n) + a * count, count, p).sum;
-      mean[a] = tile.atoms.dot(Eigen::Map<const Eigen::VectorXf>(p, tile.atoms.size())) / sum[a];
+      value[a] = tile.atoms.dot(Eigen::Map<const Eigen::VectorXf>(p, tile.atoms.size())) / sum[a] +
+                 advantage[a];
     }
-    const auto best = static_cast<int>(argmax_action(mean));
+    const auto best = static_cast<int>(argmax_action(value));
     const bool terminal = step.batch.terminal[static_cast<std::size_t>(range.first + n)] != 0;
+    const float discount = terminal ? 0.0F : step.gamma;
     float* m = tile.m.sample(n);
-    tile.next.project(best, 1 / sum[best], step.batch.reward[range.first + n],
-                      terminal ? 0.0F : step.gamma, m);
+    tile.next.project(best, 1 / sum[best],
+                      step.batch.reward[range.first + n] + discount * advantage[best], discount, m);
     tile.edge_mass += m[0] + m[count - 1];
   }
 }

@@ -17,7 +17,8 @@ double dqn_tile_gradient(const GradientStep& step, const TileRange& range, DqnTi
   auto q = tile.q.rows(1);
   for (Eigen::Index n = 0; n < range.count; ++n) {
     const bool terminal = batch.terminal[static_cast<std::size_t>(range.first + n)] != 0;
-    const float bootstrap = terminal ? 0.0F : step.gamma * q_next.col(n).maxCoeff();
+    const auto advantage = batch.next_advantage.col(range.first + n);
+    const float bootstrap = terminal ? 0.0F : step.gamma * (q_next.col(n) + advantage).maxCoeff();
     const float error = q(0, n) - (batch.reward[range.first + n] + bootstrap);
     loss += 0.5 * static_cast<double>(error) * error;
     q(0, n) = error / static_cast<float>(batch.size());

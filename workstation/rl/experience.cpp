@@ -8,10 +8,8 @@
 namespace bess {
 namespace {
 
-/// EUR over a step -> scaled EUR/h of the paper's 4 MW battery, in which rewards are learned.
 float scale_of_eur(const BatteryParameters& battery) {
-  return static_cast<float>(double{kPaperPowerMw} * 1e6 / battery.power_w_max / kHoursPerStep *
-                            double{kRewardScale});
+  return static_cast<float>(learned_per_eur(battery));
 }
 
 /// Moves a normalised input by `shift` and keeps it in its range.
@@ -24,10 +22,11 @@ void move_input(float& x, double shift) {
 TrainingMarket::TrainingMarket(const MarketSteps& market, const PriceMap& price_map,
                                const BatteryParameters& battery, Horizon horizon,
                                const RewardShaping& shaping, const ContextClasses& context)
-    : battery_(battery),
+    : battery_(shaping.program ? shaping.program->battery() : battery),
       potential_grid_(battery, shaping.potential.soc_points),
       gamma_(static_cast<float>(shaping.gamma)),
       reward_centre_(static_cast<float>(shaping.reward_centre_eur_per_h) * kRewardScale) {
+  if (shaping.program) program_.emplace(shaping.program);
   const std::vector<MarketDay> training = market.days_of(Split::kTrain);
   require_training_days(training.size());
   const TradingCosts& costs = battery_.costs;
@@ -45,14 +44,21 @@ TrainingMarket::TrainingMarket(const MarketSteps& market, const PriceMap& price_
       const bool terminal = last && horizon == Horizon::kDay;
       if (!follows && !terminal) continue;
       const NetworkContext here = network_context(steps[i], price_map, context);
-      steps_.push_back({here, follows ? network_context(*next, price_map, context) : here,
-                        static_cast<float>(costs.import_eur_per_mwh(steps[i].paid_eur_per_mwh)),
-                        static_cast<float>(costs.export_eur_per_mwh(steps[i].paid_eur_per_mwh)),
-                        terminal, add_potential(shaping.potential, steps[i]),
-                        add_potential(shaping.potential, follows ? *next : steps[i])});
+      Step step{here, follows ? network_context(*next, price_map, context) : here,
+                static_cast<float>(costs.import_eur_per_mwh(steps[i].paid_eur_per_mwh)),
+                static_cast<float>(costs.export_eur_per_mwh(steps[i].paid_eur_per_mwh)), terminal};
+      const auto add = [&](const MarketStep& of) {
+        return program_ ? program_->add(of) : add_potential(shaping.potential, of);
+      };
+      step.potential = add(steps[i]);
+      step.next_potential = add(follows ? *next : steps[i]);
+      step.is_midnight = last;
+      step.follows_last = !steps_.empty() && steps_.back().next_potential == step.potential;
+      steps_.push_back(step);
     }
     days_.push_back({first, steps_.size() - first});
   }
+  if (program_) centre_residuals();
 }
 
 /// A step is mostly the one that the last row was made for: the successor of the step before it.
@@ -88,11 +94,67 @@ double TrainingMarket::make_transition(std::size_t index, double soc_frac, Actio
   const float price = power_frac > 0 ? step.import_eur_per_mwh : step.export_eur_per_mwh;
   const float paid_eur_per_h = power_frac * price + std::fabs(power_frac) * wear;
   out.reward = -paid_eur_per_h * kPaperPowerMw * kRewardScale - reward_centre_;
-  if (!step.terminal) out.reward += gamma_ * potential_at(step.next_potential, moved.soc_frac);
-  out.reward -= potential_at(step.potential, soc_frac);
   out.action = static_cast<std::int32_t>(action);
   out.terminal = step.terminal ? 1 : 0;
+  program_ ? shape_by_program(step, soc_frac, moved.soc_frac, out)
+           : shape_by_potential(step, soc_frac, moved.soc_frac, out);
   return moved.soc_frac;
+}
+
+void TrainingMarket::shape_by_potential(const Step& step, double soc_frac, double next_soc_frac,
+                                        Transition& out) const {
+  if (!step.terminal) out.reward += gamma_ * potential_at(step.next_potential, next_soc_frac);
+  out.reward -= potential_at(step.potential, soc_frac);
+  std::ranges::fill(out.next_advantage, 0.0F);
+}
+
+/// r' and A(s', .) of program_residual.h.
+void TrainingMarket::shape_by_program(const Step& step, double soc_frac, double next_soc_frac,
+                                      Transition& out) const {
+  const ProgramRows::Values here = program_->at(step.potential, soc_frac);
+  const ProgramRows::Values next = program_->at(step.next_potential, next_soc_frac);
+  out.reward += static_cast<float>(program_->program().gamma()) * next.best -
+                here.action[static_cast<std::size_t>(out.action)];
+  if (step.is_midnight) out.reward -= midnight_centre_;
+  for (int b = 0; b < kActionCount; ++b) out.next_advantage[b] = next.action[b] - next.best;
+}
+
+template <typename Visit>
+void TrainingMarket::trade_by_program(Visit visit) const {
+  const double start_frac = 0.5 * (battery_.soc_min_frac + battery_.soc_max_frac);
+  double soc_frac = start_frac;
+  Transition transition{};
+  for (std::size_t i = 0; i < steps_.size(); ++i) {
+    if (!steps_[i].follows_last) soc_frac = start_frac;
+    const Action action = argmax_action(program_->at(steps_[i].potential, soc_frac).action.data());
+    soc_frac = make_transition(i, soc_frac, action, transition);
+    visit(steps_[i], transition);
+  }
+}
+
+/// So that r' is zero on average where the program trades, and over midnight by itself.
+void TrainingMarket::centre_residuals() {
+  double sum[2] = {0, 0};
+  double count[2] = {1e-9, 1e-9};  // a market may have no midnight
+  trade_by_program([&](const Step& step, const Transition& transition) {
+    sum[step.is_midnight] += double{transition.reward};
+    count[step.is_midnight] += 1;
+  });
+  reward_centre_ += static_cast<float>(sum[0] / count[0]);
+  midnight_centre_ = static_cast<float>(sum[1] / count[1] - sum[0] / count[0]);
+}
+
+std::vector<float> TrainingMarket::residual_returns(double discount) const {
+  std::vector<float> returns;
+  std::vector<bool> follows;
+  trade_by_program([&](const Step& step, const Transition& transition) {
+    returns.push_back(transition.reward);
+    follows.push_back(step.follows_last);
+  });
+  for (std::size_t i = returns.size(); i-- > 1;) {
+    if (follows[i]) returns[i - 1] += static_cast<float>(discount) * returns[i];
+  }
+  return returns;
 }
 
 std::vector<double> observed_training_prices(const MarketSteps& market) {

@@ -5,6 +5,7 @@
 //                   transitions (replay.h).
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "shared/battery_model.h"
@@ -12,6 +13,7 @@
 #include "workstation/env/market_steps.h"
 #include "workstation/planners/soc_grid.h"
 #include "workstation/rl/potential.h"
+#include "workstation/rl/program_residual.h"
 #include "workstation/rl/transition.h"
 
 namespace bess {
@@ -28,6 +30,8 @@ struct RewardShaping {
   double reward_centre_eur_per_h = 0;
   double gamma = 0.999;
   Potential potential{};
+  /// Instead of all these: rewards are r' of program_residual.h, centred by themselves.
+  std::shared_ptr<const StochasticProgram> program = nullptr;
 };
 
 /// Standard deviations of a random shift of the calendar inputs, the same for a state and its
@@ -58,6 +62,10 @@ class TrainingMarket {
   [[nodiscard]] const NetworkContext& context(std::size_t index) const {
     return steps_[index].context;
   }
+  /// Residual only: the discounted sums of r' that the program leaves on the training days when it
+  /// trades them from the middle of the SoC window, one a step, learned unit. Their spread is what
+  /// the support must hold.
+  [[nodiscard]] std::vector<float> residual_returns(double discount) const;
   /// First step and number of steps of each training day.
   struct Day {
     std::size_t first;
@@ -71,10 +79,20 @@ class TrainingMarket {
     NetworkContext next;
     float import_eur_per_mwh, export_eur_per_mwh;  ///< paid price with trading costs
     bool terminal;
-    std::uint32_t potential, next_potential;  ///< rows of potential_
+    std::uint32_t potential = 0, next_potential = 0;  ///< rows of potential_, or of program_
+    bool is_midnight = false;                         ///< the successor is a day's first step
+    bool follows_last = false;                        ///< the successor of the step before this one
   };
   std::uint32_t add_potential(const Potential& potential, const MarketStep& step);
   [[nodiscard]] float potential_at(std::uint32_t row, double soc_frac) const;
+  void shape_by_potential(const Step& step, double soc_frac, double next_soc_frac,
+                          Transition& out) const;
+  void shape_by_program(const Step& step, double soc_frac, double next_soc_frac,
+                        Transition& out) const;
+  /// Calls visit(step, transition) for every step that the program trades, the SoC carried over.
+  template <typename Visit>
+  void trade_by_program(Visit visit) const;
+  void centre_residuals();
 
   BatteryParameters battery_;
   SocGrid potential_grid_;
@@ -82,6 +100,9 @@ class TrainingMarket {
   std::int64_t potential_utc_s_ = -1;  ///< step of the last row
   float gamma_;
   float reward_centre_;  ///< scaled
+  std::optional<ProgramRows> program_;
+  /// Of r', over midnight: there the program's values, of a finite number of days, begin anew.
+  float midnight_centre_ = 0;
   std::vector<Step> steps_;
   std::vector<Day> days_;
 };

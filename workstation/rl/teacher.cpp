@@ -18,6 +18,9 @@ constexpr int kTeacherHidden1 = 256;
 constexpr int kTeacherHidden2 = 128;
 constexpr std::size_t kProvenanceMax = 4096;
 constexpr int kAtomsMax = 10'000;
+constexpr float kResidualQuantum = 1e-6F;  ///< of network_values(), in the support's reach
+/// In the file beside the method's number: a program follows the parameters.
+constexpr std::uint32_t kResidualFlag = 0x100;
 
 bool is_possible(const Support& support) {
   return std::isfinite(support.v_min) && std::isfinite(support.v_max) &&
@@ -53,8 +56,7 @@ int unscaled(float input, int scale) {
 /// The program's values in the teacher's unit: EUR over a step -> scaled EUR/h of the paper's 4 MW.
 Matrix program_values(const Teacher& teacher, const MatrixRef& x) {
   const StochasticProgram& program = *teacher.program;
-  const double scale = double{kPaperPowerMw} * kWattsPerMegawatt / program.battery().power_w_max /
-                       kHoursPerStep * double{kRewardScale};
+  const double scale = learned_per_eur(program.battery());
   Matrix values(kActionCount, x.cols());
   for (Eigen::Index c = 0; c < x.cols(); ++c) {
     const int minute = unscaled(x(0, c), kMinuteOfQuarterHourScale);
@@ -97,40 +99,61 @@ MlpShape teacher_shape(Method method, const Support& support) {
 }
 
 Matrix Teacher::action_values(const MatrixRef& x, MlpTile& tile) const {
-  if (program) return program_values(*this, x);
+  if (!program) return network_values(x, tile);
+  Matrix values = program_values(*this, x);
+  if (is_residual()) values += network_values(x, tile);
+  return values;
+}
+
+Matrix Teacher::network_values(const MatrixRef& x, MlpTile& tile) const {
   const ConstMlp mlp(shape, parameters.data());
   Matrix z;
   forward_hidden(mlp, x, tile);
   forward_head(mlp, tile, z);
   if (method == Method::kDqn) return z;
-  return risk.is_mean() ? mean_values(support, z) : risk_values(support, z, risk);
+  Matrix values = risk.is_mean() ? mean_values(support, z) : risk_values(support, z, risk);
+  if (!is_residual()) return values;
+  const float quantum = support.v_max * kResidualQuantum;
+  return (values.array() / quantum).round() * quantum;
+}
+
+void begin_at_zero(Method method, const Support& support, const MlpShape& shape,
+                   Parameters& parameters) {
+  MutableMlp mlp(shape, parameters.data());
+  mlp.w3.setZero();
+  mlp.b3.setZero();
+  if (method != Method::kC51) return;
+  const double others = support.count - 1;
+  mlp.b3.setConstant(static_cast<float>(std::log(kPriorMass / (1 - kPriorMass) / others)));
+  for (int a = 0; a < kActionCount; ++a) mlp.b3[a * support.count + support.count / 2] = 0;
 }
 
 Action TeacherPolicy::decide(const MarketStep& step, std::size_t, double soc_frac) const {
-  if (teacher_.program) {
-    const auto worth =
-        teacher_.program->action_values(StochasticProgram::situation_of(step), soc_frac);
-    return argmax_action(worth.data());
+  if (!teacher_.program || teacher_.is_residual()) {
+    write_input(network_context(step, teacher_.price_map, teacher_.context), soc_frac, x_.data());
   }
-  write_input(network_context(step, teacher_.price_map, teacher_.context), soc_frac, x_.data());
-  const Matrix values = teacher_.action_values(x_, tile_);
-  return argmax_action(values.data());
+  if (!teacher_.program) return argmax_action(teacher_.action_values(x_, tile_).data());
+  // The program is asked for the step itself: it need not see through the network's inputs.
+  auto worth_eur = teacher_.program->action_values(StochasticProgram::situation_of(step), soc_frac);
+  if (teacher_.is_residual()) {
+    const Matrix added = teacher_.network_values(x_, tile_);
+    const double unit_per_eur = learned_per_eur(teacher_.program->battery());
+    for (int a = 0; a < kActionCount; ++a) worth_eur[a] += double{added(a)} / unit_per_eur;
+  }
+  return argmax_action(worth_eur.data());
 }
 
 void save_teacher(const std::filesystem::path& path, const Teacher& teacher) {
   BinaryWriter out(kMagic, kVersion);
-  out.put(static_cast<std::uint32_t>(teacher.method));
+  out.put(static_cast<std::uint32_t>(teacher.method) | (teacher.is_residual() ? kResidualFlag : 0));
   out.put(teacher.support);
   out.put(teacher.shape);
   out.put(teacher.price_map.table());
   out.put(static_cast<std::uint32_t>(teacher.context.kind));
   out.put(teacher.context.level_edge_eur_per_mwh);
   out.put_text(std::string_view(teacher.provenance).substr(0, kProvenanceMax));
-  if (teacher.program) {
-    teacher.program->save(out);
-  } else {
-    put_parameters(out, teacher.parameters);
-  }
+  put_parameters(out, teacher.parameters);  // none of a program's
+  if (teacher.program) teacher.program->save(out);
   out.save(path);
 }
 
@@ -140,10 +163,13 @@ bool is_teacher_file(const std::filesystem::path& path) {
 
 Teacher load_teacher(const std::filesystem::path& path) {
   BinaryReader in(path, kMagic, kVersion, "teacher file", "make one with 'bess-train train'");
-  const auto method_number = in.take<std::uint32_t>();
+  const auto written_method = in.take<std::uint32_t>();
+  const bool is_residual = (written_method & kResidualFlag) != 0;
+  const std::uint32_t method_number = written_method & ~kResidualFlag;
   const auto support = in.take<Support>();
   // The checksum is right, so this was written by another program; say so before using any of it.
   if (method_number > static_cast<std::uint32_t>(Method::kSdp) ||
+      (is_residual && method_number == static_cast<std::uint32_t>(Method::kSdp)) ||
       (method_number != static_cast<std::uint32_t>(Method::kSdp) && !is_possible(support))) {
     in.damaged("has an impossible method or value range");
   }
@@ -155,11 +181,9 @@ Teacher load_teacher(const std::filesystem::path& path) {
   std::string provenance = in.take_text();
   Parameters parameters(shape.parameter_count());
   std::shared_ptr<const StochasticProgram> program;
-  if (method == Method::kSdp) {
+  take_parameters(in, parameters);
+  if (is_residual || method == Method::kSdp)
     program = std::make_shared<const StochasticProgram>(in);
-  } else {
-    take_parameters(in, parameters);
-  }
   in.finish();
   return {method,
           support,

@@ -29,15 +29,26 @@ struct Teacher {
   PriceMap price_map;
   Parameters parameters;
   std::string provenance;  ///< one line: prices, seed, steps
-  /// SDP only, instead of a network: shape and parameters are empty.
+  /// SDP: instead of a network, shape and parameters are empty. With a network: what it adds to
+  /// (program_residual.h).
   std::shared_ptr<const StochasticProgram> program = nullptr;
   ContextClasses context{};  ///< by month unless said otherwise
   Risk risk{};               ///< how decisions are made; not part of the file
 
+  [[nodiscard]] bool is_residual() const { return program != nullptr && method != Method::kSdp; }
   /// Action values, means unless `risk` says otherwise, [3 x samples] in units of 1e4 EUR/h for
   /// inputs [5 x samples].
   [[nodiscard]] Matrix action_values(const MatrixRef& x, MlpTile& tile) const;
+  /// The network's part of them. Of a residual in whole millionths of the support's reach: a point
+  /// mass at zero then is zero exactly, however its exponentials are rounded.
+  [[nodiscard]] Matrix network_values(const MatrixRef& x, MlpTile& tile) const;
 };
+
+/// Makes of a network's parameters those of a residual that adds nothing: C51's distributions are a
+/// point mass at the middle atom, but for kPriorMass that the first steps can grow from.
+void begin_at_zero(Method method, const Support& support, const MlpShape& shape,
+                   Parameters& parameters);
+inline constexpr double kPriorMass = 2.5e-3;
 
 /// Outputs of the network for a method.
 MlpShape teacher_shape(Method method, const Support& support);

@@ -97,6 +97,37 @@ RewardShaping fit_shaping(const MarketSteps& market, const BatteryParameters& ba
   return shaping;
 }
 
+/// The stochastic program of the training days, mindful of a limit on daily cycles.
+std::shared_ptr<const StochasticProgram> fit_program(const MarketSteps& market,
+                                                     const BatteryParameters& battery,
+                                                     ContextKind context) {
+  const std::vector<MarketDay> training = market.days_of(Split::kTrain);
+  StochasticProgramOptions options;
+  if (context == ContextKind::kMonth) options.level_weight = 0;
+  return std::make_shared<const StochasticProgram>(
+      market, training,
+      battery_with_shadow_price<StochasticProgramPolicy>(market, training, battery, options),
+      options);
+}
+
+/// Half as far again, on both sides, as all but a thousandth of the returns that the program leaves:
+/// zero is the middle atom.
+Support residual_support(const TrainingMarket& market, const TrainOptions& options) {
+  constexpr double kLeftOut = 1e-3;
+  constexpr float kRoom = 1.5F;
+  std::vector<float> sizes = market.residual_returns(options.residual_gamma);
+  for (float& size : sizes) size = std::abs(size);
+  const auto kept = static_cast<std::ptrdiff_t>((1 - kLeftOut) * static_cast<double>(sizes.size()));
+  std::ranges::nth_element(sizes, sizes.begin() + kept);
+  const float reach = std::max(kRoom * sizes[static_cast<std::size_t>(kept)], kRewardScale);
+  return {-reach, reach, options.atoms};
+}
+
+Support given_support(const TrainOptions& options) {
+  return {static_cast<float>(options.value_min_eur_per_h) * kRewardScale,
+          static_cast<float>(options.value_max_eur_per_h) * kRewardScale, options.atoms};
+}
+
 double cosine_rate(const TrainOptions& options, long step) {
   const double progress = static_cast<double>(step) / static_cast<double>(options.steps);
   const double blend = 0.5 * (1 + std::cos(std::numbers::pi * progress));
@@ -137,17 +168,27 @@ class Training {
         validation_(market.days_of(Split::kValidation)),
         price_map_(PriceMap::fit(observed_training_prices(market))),
         context_(fit_context_classes(market, options.context)),
-        training_(market, price_map_, battery, options.horizon,
-                  fit_shaping(market, battery, options), context_),
-        support_{static_cast<float>(options.value_min_eur_per_h) * kRewardScale,
-                 static_cast<float>(options.value_max_eur_per_h) * kRewardScale, options.atoms},
-        learner_(options.method, support_, options.gamma, derive_seed(options.seed, kSeedWeights),
-                 options.threads, options.mean_weight),
+        program_(options.residual ? fit_program(market, battery, options.context) : nullptr),
+        training_(
+            market, price_map_, battery, options.horizon,
+            program_ ? RewardShaping{.program = program_} : fit_shaping(market, battery, options),
+            context_),
+        support_(program_ ? residual_support(training_, options) : given_support(options)),
+        learner_(options.method, support_, program_ ? options.residual_gamma : options.gamma,
+                 derive_seed(options.seed, kSeedWeights), options.threads,
+                 program_ ? options.mean_weight / double{support_.step() * support_.step()}
+                          : options.mean_weight),
         experience_(training_, options),
         current_{options.method,    support_, learner_.shape(), price_map_,
-                 learner_.online(), "",       nullptr,          context_},
+                 learner_.online(), "",       program_,         context_},
         average_(learner_.online()),
-        result_{current_, {}, -1e300, 0, 0} {}
+        result_{current_, {}, -1e300, 0, 0} {
+    if (!program_) return;
+    for (Parameters* p : {&learner_.online(), &learner_.target(), &average_, &current_.parameters,
+                          &result_.teacher.parameters}) {
+      begin_at_zero(options.method, support_, learner_.shape(), *p);
+    }
+  }
 
   void run(const std::function<bool()>& interrupted, const CheckpointOptions& checkpoint) {
     const auto start = std::chrono::steady_clock::now();
@@ -191,7 +232,10 @@ class Training {
 
   [[nodiscard]] bool is_validation_due() const {
     const bool is_its_step = step_ % options_.validate_every == 0 || step_ == options_.steps;
-    return is_its_step && step_ != (result_.curve.empty() ? 0 : result_.curve.back().step);
+    // Of a residual step 0, the program, is a candidate too.
+    const long nothing_yet = program_ ? -1 : 0;
+    return is_its_step &&
+           step_ != (result_.curve.empty() ? nothing_yet : result_.curve.back().step);
   }
 
   /// Adds a point to the curve and keeps the averaged weights when they earn more than any before. False
@@ -202,13 +246,14 @@ class Training {
     StoppablePolicy policy(teacher, interrupted);
     EvaluationOptions evaluation;
     evaluation.battery = battery_;
+    evaluation.carry_soc = program_ != nullptr;  // the reset flatters one that ends its days empty
     double profit = 0;
     try {
       profit = evaluate(market_, validation_, policy, evaluation).profit_eur_per_day_per_mwh();
     } catch (const ValidationStopped&) {
       return false;
     }
-    const auto n = static_cast<double>(summed_);
+    const auto n = static_cast<double>(std::max(summed_, 1L));
     result_.curve.push_back({step_, sums_.loss / n, profit, sums_.edge_mass_frac / n});
     sums_ = {0, 0};
     summed_ = 0;
@@ -260,6 +305,7 @@ class Training {
   std::vector<MarketDay> validation_;
   PriceMap price_map_;
   ContextClasses context_;
+  std::shared_ptr<const StochasticProgram> program_;  ///< that a residual adds to
   TrainingMarket training_;
   Support support_;
   Learner learner_;
@@ -273,24 +319,17 @@ class Training {
 };
 
 /// Nothing to iterate: the program is fitted and solved.
-TrainResult fit_program(const MarketSteps& market, const BatteryParameters& battery,
-                        const TrainOptions& options) {
+TrainResult train_program(const MarketSteps& market, const BatteryParameters& battery,
+                          const TrainOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  const std::vector<MarketDay> training = market.days_of(Split::kTrain);
-  StochasticProgramOptions program;
-  if (options.context == ContextKind::kMonth) program.level_weight = 0;
-  Teacher teacher{
-      Method::kSdp,
-      {},
-      {},
-      PriceMap::fit(observed_training_prices(market)),
-      {},
-      "",
-      std::make_shared<const StochasticProgram>(
-          market, training,
-          battery_with_shadow_price<StochasticProgramPolicy>(market, training, battery, program),
-          program),
-      fit_context_classes(market, options.context)};
+  Teacher teacher{Method::kSdp,
+                  {},
+                  {},
+                  PriceMap::fit(observed_training_prices(market)),
+                  {},
+                  "",
+                  fit_program(market, battery, options.context),
+                  fit_context_classes(market, options.context)};
   TeacherPolicy policy(teacher);
   EvaluationOptions evaluation;
   evaluation.battery = battery;
@@ -310,7 +349,7 @@ TrainResult train_teacher(const MarketSteps& market, const BatteryParameters& ba
     fail("no validation days (local days 21 to 25) in these prices; add some");
   }
   require_training_days(market.days_of(Split::kTrain).size());
-  if (options.method == Method::kSdp) return fit_program(market, battery, options);
+  if (options.method == Method::kSdp) return train_program(market, battery, options);
   Training training(market, battery, options);
   training.run(interrupted, checkpoint);
   return training.take_result();

@@ -29,7 +29,9 @@ struct TrainOptions {
   double learning_rate = 1e-3;  ///< of Adam, falling to `learning_rate_end` along a cosine
   double learning_rate_end = 5e-5;
   double gamma = 0.999;
-  double tau = 0.05;  ///< target <- tau * online + (1 - tau) * target, each step
+  bool residual = false;         ///< a network adds to the stochastic program (program_residual.h)
+  double residual_gamma = 0.98;  ///< discount a step of what it adds, in place of gamma
+  double tau = 0.05;             ///< target <- tau * online + (1 - tau) * target, each step
   int atoms = 51;
   ContextKind context = ContextKind::kLevel;
   PotentialKind potential = PotentialKind::kSdp;  ///< of reward shaping

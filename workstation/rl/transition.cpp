@@ -11,6 +11,7 @@ void group_by_action(std::size_t size, const TransitionOf& transition_of, MiniBa
   const auto count = static_cast<Eigen::Index>(size);
   batch.state.resize(kNetworkInputs, count);
   batch.next_state.resize(kNetworkInputs, count);
+  batch.next_advantage.resize(kActionCount, count);
   batch.reward.resize(count);
   batch.terminal.resize(size);
   // Counting sort. The first pass also fetches the records: from a ring of a million each is a cache
@@ -29,6 +30,7 @@ void group_by_action(std::size_t size, const TransitionOf& transition_of, MiniBa
     const Eigen::Index at = next[t.action]++;
     std::copy_n(t.state, kNetworkInputs, batch.state.col(at).data());
     std::copy_n(t.next_state, kNetworkInputs, batch.next_state.col(at).data());
+    std::copy_n(t.next_advantage, kActionCount, batch.next_advantage.col(at).data());
     batch.reward[at] = t.reward;
     batch.terminal[static_cast<std::size_t>(at)] = t.terminal;
   }

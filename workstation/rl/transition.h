@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "shared/battery_model.h"
 #include "workstation/nn/mlp.h"
 #include "workstation/rl/network_input.h"
 
@@ -15,6 +16,12 @@ inline constexpr float kRewardScale = 1e-4F;
 /// Rewards are those of the paper's 4 MW battery, whatever the real one's size.
 inline constexpr float kPaperPowerMw = 4;
 
+/// EUR over a step -> the unit that rewards are learned in.
+inline double learned_per_eur(const BatteryParameters& battery) {
+  return double{kPaperPowerMw} * kWattsPerMegawatt / battery.power_w_max / kHoursPerStep *
+         double{kRewardScale};
+}
+
 /// Aligned, so that fetching a random one from a large ring is one cache miss and not two.
 struct alignas(64) Transition {
   float state[kNetworkInputs];
@@ -22,15 +29,18 @@ struct alignas(64) Transition {
   float reward;         ///< -p * price, scaled
   std::int32_t action;  ///< Action
   std::int32_t terminal;
-  std::int32_t unused[3];
+  /// A_program(s', a') of each next action where a residual is learned (program_residual.h), else
+  /// 0: what the network's own value there is added to.
+  float next_advantage[kActionCount];
 };
 static_assert(sizeof(Transition) == 64);
 
 /// Samples as columns, grouped by action: only the taken action's outputs carry gradient, so each
 /// group needs a third of the last layer. Exact, and a quarter faster.
 struct MiniBatch {
-  Matrix state;       ///< [5 x samples]
-  Matrix next_state;  ///< [5 x samples]
+  Matrix state;           ///< [5 x samples]
+  Matrix next_state;      ///< [5 x samples]
+  Matrix next_advantage;  ///< [3 x samples]
   Eigen::VectorXf reward;
   std::vector<std::int32_t> terminal;
   Eigen::Index group_end[kActionCount];  ///< samples of action a: group_end[a-1] .. group_end[a]

@@ -166,9 +166,14 @@ inline ReferenceLoss reference_c51(const Support& support, double gamma, const R
   result.gradient.assign(online.parameters.size(), 0.0);
   for (const Transition& t : batch) {
     const Doubles next = target.forward(inputs_of(t.next_state)).z;
-    const std::size_t best = largest_of(reference_means(support, next));
-    const Doubles m = reference_projection(support, reference_softmax(next, best * count, count),
-                                           t.reward, t.terminal != 0 ? 0.0 : gamma, &result);
+    Doubles values = reference_means(support, next);
+    for (std::size_t a = 0; a < kActionCount; ++a) values[a] += double{t.next_advantage[a]};
+    const std::size_t best = largest_of(values);
+    const double discount = t.terminal != 0 ? 0.0 : gamma;
+    // Atom z of the residual stands for the value A(s', a*) + z: Algorithm 1 moves the whole of it.
+    const Doubles m = reference_projection(
+        support, reference_softmax(next, best * count, count),
+        double{t.reward} + discount * double{t.next_advantage[best]}, discount, &result);
     result.edge_mass += (m.front() + m.back()) / samples;
     const ReferenceNet::Pass pass = online.forward(inputs_of(t.state));
     const std::size_t at = static_cast<std::size_t>(t.action) * count;
@@ -199,7 +204,9 @@ inline ReferenceLoss reference_dqn(double gamma, const ReferenceNet& online,
   result.gradient.assign(online.parameters.size(), 0.0);
   for (const Transition& t : batch) {
     const Doubles next = target.forward(inputs_of(t.next_state)).z;
-    const double bootstrap = t.terminal != 0 ? 0.0 : gamma * next[largest_of(next)];
+    Doubles values = next;
+    for (std::size_t a = 0; a < kActionCount; ++a) values[a] += double{t.next_advantage[a]};
+    const double bootstrap = t.terminal != 0 ? 0.0 : gamma * values[largest_of(values)];
     const ReferenceNet::Pass pass = online.forward(inputs_of(t.state));
     const auto action = static_cast<std::size_t>(t.action);
     const double error = pass.z[action] - (t.reward + bootstrap);
@@ -262,6 +269,7 @@ struct BatchRecipe {
   std::size_t group[kActionCount];
   double reward_deviation;
   double terminal_share = 0.15;
+  double advantage_deviation = 0;  ///< of what a residual adds to, in the next state
 };
 
 /// Shuffled random transitions with `recipe.group[a]` samples of action a. `support` for C51.
@@ -278,6 +286,7 @@ inline std::vector<Transition> random_transitions(const BatchRecipe& recipe,
     if (std::ranges::any_of(pass.before2, near_zero)) return false;
     Doubles values = target.forward(inputs_of(t.next_state)).z;
     if (support) values = reference_means(*support, values);
+    for (std::size_t a = 0; a < kActionCount; ++a) values[a] += double{t.next_advantage[a]};
     std::ranges::sort(values);
     return values[kActionCount - 1] - values[kActionCount - 2] > kTieDistance;
   };
@@ -288,6 +297,11 @@ inline std::vector<Transition> random_transitions(const BatchRecipe& recipe,
       do {
         for (float& x : t.state) x = static_cast<float>(random.uniform());
         for (float& x : t.next_state) x = static_cast<float>(random.uniform());
+        if (recipe.advantage_deviation > 0) {
+          for (float& x : t.next_advantage) {
+            x = -std::abs(static_cast<float>(random.normal() * recipe.advantage_deviation));
+          }
+        }
       } while (!is_safe(t));
       t.reward = static_cast<float>(random.normal() * recipe.reward_deviation);
       t.action = action;

@@ -285,6 +285,9 @@ INSTANTIATE_TEST_SUITE_P(
         GradientCase{"paper_support", {-30, 30, 51}, 0.999, {{300, 300, 300}, 12}, true},
         GradientCase{"default_atoms", {-30, 30, 101}, 0.999, {{90, 80, 60}, 12}, true},
         GradientCase{"mean_as_well", {-10, 10, 51}, 0.999, {{120, 100, 90}, 8}, true, 10},
+        GradientCase{"residual", {-3, 3, 51}, 0.98, {{120, 100, 90}, 2, 0.15, 0.5}, true, 10},
+        GradientCase{
+            "residual_of_the_program_alone", {-3, 3, 51}, 0.98, {{60, 50, 70}, 2, 0.15, 5}, true},
         GradientCase{"uneven_groups", {-15, 15, 21}, 0.99, {{700, 3, 60}, 6}, true},
         GradientCase{"no_idle", {-15, 15, 21}, 0.95, {{40, 0, 130}, 6}, true},
         GradientCase{"only_charge", {-15, 15, 11}, 0.9, {{0, 0, 33}, 30}, true},

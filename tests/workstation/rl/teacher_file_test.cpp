@@ -62,6 +62,31 @@ TEST_F(TeacherFile, RoundTripIsBitForBit) {
   }
 }
 
+TEST_F(TeacherFile, WithTheProgramThatItAddsToItIsReadBack) {
+  const MarketSteps market = simulated_market({2023, 1, 1}, 24);
+  const auto program = std::make_shared<const StochasticProgram>(
+      market, market.days_of(Split::kTrain), BatteryParameters{});
+  for (const Method method : {Method::kC51, Method::kDqn}) {
+    Teacher teacher = teacher_of(method);
+    teacher.program = program;
+    save_teacher(path, teacher);
+    const std::string bytes = read_file(path);
+    const Teacher read = load_teacher(path);
+    EXPECT_EQ(read.method, method);
+    ASSERT_TRUE(read.is_residual());
+    EXPECT_EQ(read.parameters, teacher.parameters);
+    for (std::size_t i = 0; i < market.steps.size(); i += 41) {
+      EXPECT_EQ(TeacherPolicy(read).decide(market.steps[i], 0, 0.4),
+                TeacherPolicy(teacher).decide(market.steps[i], 0, 0.4));
+    }
+    save_teacher(path, read);
+    EXPECT_EQ(read_file(path), bytes);
+    for (std::size_t part = 1; part < 20; ++part) {
+      expect_refused(std::string_view(bytes).substr(0, bytes.size() * part / 20), "cut");
+    }
+  }
+}
+
 TEST_F(TeacherFile, ReadBackItDecidesTheSame) {
   const Teacher teacher = teacher_of(Method::kC51);
   save_teacher(path, teacher);
@@ -143,6 +168,7 @@ TEST_F(TeacherFile, SoundChecksumOverImpossibleContentsIsRefused) {
     std::size_t at;
     std::int32_t value;
   } cases[] = {{"method", kMethodAt, 7},
+               {"a program that adds to a program", kMethodAt, 0x102},
                {"no atoms", kSupportCountAt, 0},
                {"negative atoms", kSupportCountAt, -1},
                {"very many atoms", kSupportCountAt, 0x7FFFFFFF},

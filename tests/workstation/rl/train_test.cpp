@@ -20,6 +20,7 @@ struct TrainCase {
   Source source;
   Horizon horizon;
   long steps;
+  bool residual = false;
 };
 
 void PrintTo(const TrainCase& c, std::ostream* out) { *out << c.name; }
@@ -40,6 +41,7 @@ TrainOptions options_of(const TrainCase& c) {
   options.source = c.source;
   options.horizon = c.horizon;
   options.steps = c.steps;
+  options.residual = c.residual;
   return options;
 }
 
@@ -59,7 +61,8 @@ class TrainTeacher : public testing::TestWithParam<TrainCase> {};
 TEST_P(TrainTeacher, RunsAndRepeatsToTheBit) {
   const TrainOptions options = options_of(GetParam());
   const TrainResult result = train(options);
-  ASSERT_EQ(result.curve.size(), static_cast<std::size_t>((options.steps + 99) / 100));
+  const std::size_t points = static_cast<std::size_t>((options.steps + 99) / 100);
+  ASSERT_EQ(result.curve.size(), points + (options.residual ? 1 : 0));  // the program is step 0
   double best = -1e300;
   for (const CurvePoint& point : result.curve) {
     EXPECT_TRUE(std::isfinite(point.loss));
@@ -87,7 +90,9 @@ TEST_P(TrainTeacher, BestEarnsOnTheValidationDaysWhatIsReported) {
   const TrainResult result = train(options_of(GetParam()));
   TeacherPolicy policy(result.teacher);
   const auto days = small_market().days_of(Split::kValidation);
-  EXPECT_DOUBLE_EQ(evaluate(small_market(), days, policy, {}).profit_eur_per_day_per_mwh(),
+  EvaluationOptions evaluation;
+  evaluation.carry_soc = GetParam().residual;
+  EXPECT_DOUBLE_EQ(evaluate(small_market(), days, policy, evaluation).profit_eur_per_day_per_mwh(),
                    result.best_validation_eur_per_day_per_mwh);
 }
 
@@ -116,7 +121,10 @@ INSTANTIATE_TEST_SUITE_P(
         TrainCase{"c51", Method::kC51, Source::kCounterfactual, Horizon::kContinuing, 300},
         TrainCase{"dqn_days", Method::kDqn, Source::kCounterfactual, Horizon::kDay, 150},
         TrainCase{"dqn_replay", Method::kDqn, Source::kReplay, Horizon::kContinuing, 40},
-        TrainCase{"paper", Method::kC51, Source::kReplay, Horizon::kDay, 40}),
+        TrainCase{"paper", Method::kC51, Source::kReplay, Horizon::kDay, 40},
+        TrainCase{"residual", Method::kC51, Source::kCounterfactual, Horizon::kContinuing, 200,
+                  true},
+        TrainCase{"residual_dqn", Method::kDqn, Source::kReplay, Horizon::kContinuing, 40, true}),
     [](const auto& instance) { return instance.param.name; });
 
 TEST(Train, AnotherSeedIsAnotherTeacher) {

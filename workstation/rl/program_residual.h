@@ -1,0 +1,59 @@
+// What a network may add to the stochastic program (planners/stochastic_program.h), so that it
+// stands on the program's shoulders instead of learning the market anew:
+//
+//   Q(s, a) = A(s, a) + E[Z(s, a)]    A(s, a) = Q_P(s, a) - V_P(s)    V_P(s) = max_b Q_P(s, b)
+//
+// Q_P are the program's action values, discounted by its gamma_P. Rewards shaped by V_P
+// [Ng, Harada, Russell 1999], with a discount g <= gamma_P for what is learned
+// [Cheng, Kolobov, Swaminathan 2021, heuristic-guided learning], lead to
+//
+//   Q(s, a) = E[r - c + gamma_P V_P(s') - V_P(s) + g max_b Q(s', b)]
+//
+// With g = gamma_P that is the optimum, up to V_P; with less, the program's own values stand beyond
+// the reach 1 / (1 - g) steps. Q = A + E[Z] on both sides, and V_P + A = Q_P, give
+//
+//   Z(s, a) =(in distribution) r' + g A(s', a*) + g Z(s', a*)    a* = argmax_b A(s', b) + E[Z(s', b)]
+//   r' = r - c + gamma_P V_P(s') - Q_P(s, a)
+//
+// So in Algorithm 1 [Bellemare, Dabney, Munos 2017] atom z_j of Z(s', a*) moves to
+// (r' + g A(s', a*)) + g z_j: the reward's place is taken by what stands in brackets. r' is the
+// program's own error in one step: where its model is right it is zero on average, and so is Z. The
+// constant c, one for every action, takes away what is left of a mean.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "workstation/planners/stochastic_program.h"
+
+namespace bess {
+
+/// The program's action values in many steps, each for every SoC, in the unit that rewards are
+/// learned in.
+class ProgramRows {
+ public:
+  explicit ProgramRows(std::shared_ptr<const StochasticProgram> program);
+
+  /// The row of this step. Asked for steps in the order of time: the successor of one is mostly the
+  /// next one asked for, and shares its row.
+  std::uint32_t add(const MarketStep& step);
+
+  struct Values {
+    std::array<float, kActionCount> action;  ///< Q_P, discharge first
+    float best;                              ///< V_P
+  };
+  [[nodiscard]] Values at(std::uint32_t row, double soc_frac) const;
+  [[nodiscard]] const StochasticProgram& program() const { return *program_; }
+
+ private:
+  std::shared_ptr<const StochasticProgram> program_;
+  SocGrid grid_;
+  double unit_per_eur_;
+  std::vector<float> continuation_;        ///< [row][SoC point], EUR
+  std::vector<double> price_eur_per_mwh_;  ///< [row] expected
+  std::int64_t last_utc_s_ = -1;           ///< step of the last row
+};
+
+}  // namespace bess
