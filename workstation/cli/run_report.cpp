@@ -7,6 +7,7 @@
 #include "workstation/cli/policy_factory.h"
 #include "workstation/cli/run_facts.h"
 #include "workstation/env/evaluate.h"
+#include "workstation/report/risk_table.h"
 #include "workstation/report/rule_prices.h"
 #include "workstation/rules/ruled_policy.h"
 #include "workstation/student/demand_counts.h"
@@ -54,6 +55,10 @@ std::string violations_text(const Certificate& plain, const Certificate& correct
   return text;
 }
 
+std::string teacher_name(const Teacher& teacher) {
+  return fmt::format("{} teacher", method_name(teacher.method));
+}
+
 }  // namespace
 
 void require_test_days(const MarketSteps& market) {
@@ -70,8 +75,15 @@ std::vector<NamedEvaluation> evaluate_run(const RunResults& run) {
   for (const char* name : {"rbc", "rbc-quartile", "rbc-tuned", "tabular", "mpc", "sdp"})
     baseline(name);
   TeacherPolicy teacher(run.teacher);
-  all.push_back(
-      evaluate_both(fmt::format("{} teacher", method_name(run.teacher.method)), teacher, run));
+  all.push_back(evaluate_both(teacher_name(run.teacher), teacher, run));
+  if (run.teacher.method == Method::kC51) {
+    for (const double share : kShownRiskShares) {
+      Teacher cautious = run.teacher;
+      cautious.risk.worst_share = share;
+      TeacherPolicy policy(cautious);
+      all.push_back(evaluate_both(risk_name(teacher_name(run.teacher), share), policy, run));
+    }
+  }
   const auto plain = std::make_shared<StudentPolicy>(run.plain.net);
   all.push_back(evaluate_both(kPlainName, *plain, run));
   const auto under = [&](const std::string& name, const RuleSet& rules) {
@@ -106,6 +118,10 @@ std::vector<std::string> write_run_report(const RunResults& run,
   std::vector<std::string> names = write_report(inputs, folder.path);
   std::string summary = format_comparison_table(evaluations) +
                         violations_text(run.plain.certificate, run.corrected.certificate);
+  if (const std::string risks = risk_table(evaluations, teacher_name(run.teacher));
+      !risks.empty()) {
+    summary += '\n' + risks;
+  }
   if (const auto prices = rule_prices_of(evaluations)) {
     summary += '\n';
     summary += rule_prices_text(*prices);
