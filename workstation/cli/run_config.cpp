@@ -152,6 +152,12 @@ void KeyList::list(RunConfig& c) {
           "c51, dqn: the network adds to the stochastic program and begins at adding nothing");
   number("residual_gamma", c.train.residual_gamma, 0, 0.9995,
          "discount a step of what it adds, in place of gamma: beyond its reach the program stands");
+  boolean("input_previous", c.train.inputs.previous,
+          "c51, dqn: the teacher sees the last price of the quarter-hour before; the student not");
+  boolean("input_earlier", c.train.inputs.earlier, "and the mean of the three before that one");
+  boolean("input_slope", c.train.inputs.slope, "and what the last three minutes added");
+  boolean("input_calm", c.train.inputs.calm,
+          "and the time since a price was 100 EUR/MWh off its level");
   number("tau", c.train.tau, 1e-6, 1, "target <- tau * online + (1 - tau) * target, each step");
   integer("atoms", c.train.atoms, 2, 1001, "of the value distribution");
   number("value_min_eur_per_h", c.train.value_min_eur_per_h, -1e9, 1e9, "lowest atom");
@@ -221,6 +227,10 @@ void check_relations(const RunConfig& config, const std::string& name) {
   }
   if (config.train.residual && config.train.horizon != Horizon::kContinuing) {
     fail("{}: [train] residual needs horizon = \"continuing\": the program's days have no end",
+         name);
+  }
+  if (config.train.inputs.count() > 0 && config.train.source != Source::kCounterfactual) {
+    fail("{}: [train] input_... needs source = \"counterfactual\": the ring holds five inputs",
          name);
   }
   if (config.train.residual && config.train.atoms % 2 == 0) {

@@ -53,7 +53,7 @@ Matrix visited_inputs(const Teacher& teacher, const MarketSteps& market,
   const std::vector<MarketDay> training = market.days_of(Split::kTrain);
   std::size_t steps = 0;
   for (const MarketDay& day : training) steps += day.step_count;
-  Matrix visited(kNetworkInputs, static_cast<Eigen::Index>(steps * kVisitedPasses));
+  Matrix visited(teacher.input_count(), static_cast<Eigen::Index>(steps * kVisitedPasses));
   Eigen::Index at = 0;
   // All days of all passes side by side: one forward pass over many columns per step of the day.
   struct Episode {
@@ -82,8 +82,9 @@ Matrix visited_inputs(const Teacher& teacher, const MarketSteps& market,
       MarketStep seen = episode.steps[step];
       seen.observed_eur_per_mwh += episode.shift_eur_per_mwh;
       seen.level_centi_eur_per_mwh += price_centi_of(episode.shift_eur_per_mwh);
-      write_input(network_context(seen, teacher.price_map, teacher.context), episode.soc_frac,
-                  visited.col(at++).data());
+      seen.recent.previous_eur_per_mwh += static_cast<float>(episode.shift_eur_per_mwh);
+      seen.recent.earlier_eur_per_mwh += static_cast<float>(episode.shift_eur_per_mwh);
+      teacher.write_inputs(seen, episode.soc_frac, visited.col(at++).data());
     }
     const Matrix values = teacher.action_values(visited.middleCols(first, at - first), tile);
     Eigen::Index column = 0;
@@ -199,9 +200,9 @@ void Distiller::lattice_inputs(const Lattice& lattice, Matrix& x) const {
   }
 }
 
-/// log mu for the worker's inputs: softmax of the teacher's values over the temperature.
-Eigen::MatrixXd Distiller::teacher_log_policy(Worker& worker) const {
-  return log_softmax(teacher_logits(teacher_, options_, worker.x, worker.teacher_tile));
+/// log mu for what the teacher sees: softmax of the teacher's values over the temperature.
+Eigen::MatrixXd Distiller::teacher_log_policy(const Matrix& seen, Worker& worker) const {
+  return log_softmax(teacher_logits(teacher_, options_, seen, worker.teacher_tile));
 }
 
 void Distiller::backward_student(Worker& worker) const {
@@ -229,7 +230,7 @@ void Distiller::learn_lattice(const Lattice& lattice, CorrectionLayer& layer, do
                               Worker& worker) {
   const ConstMlp student(kStudentShape, student_.data());
   lattice_inputs(lattice, worker.x);
-  const Eigen::MatrixXd log_mu = teacher_log_policy(worker);
+  const Eigen::MatrixXd log_mu = teacher_log_policy(worker.x, worker);
   forward_hidden(student, worker.x, worker.student_tile);
   forward_head(student, worker.student_tile, worker.z);
   const Eigen::MatrixXd logits = worker.z.cast<double>();
@@ -259,11 +260,12 @@ void Distiller::learn_lattice(const Lattice& lattice, CorrectionLayer& layer, do
 void Distiller::learn_visited(const std::vector<Eigen::Index>& columns, double weight,
                               Worker& worker) {
   const ConstMlp student(kStudentShape, student_.data());
-  worker.x.resize(kNetworkInputs, static_cast<Eigen::Index>(columns.size()));
+  worker.seen.resize(visited_.rows(), static_cast<Eigen::Index>(columns.size()));
   for (std::size_t c = 0; c < columns.size(); ++c) {
-    worker.x.col(static_cast<Eigen::Index>(c)) = visited_.col(columns[c]);
+    worker.seen.col(static_cast<Eigen::Index>(c)) = visited_.col(columns[c]);
   }
-  const Eigen::MatrixXd log_mu = teacher_log_policy(worker);
+  worker.x = worker.seen.topRows(kNetworkInputs);
+  const Eigen::MatrixXd log_mu = teacher_log_policy(worker.seen, worker);
   forward_hidden(student, worker.x, worker.student_tile);
   forward_head(student, worker.student_tile, worker.z);
   const Eigen::MatrixXd log_student = log_softmax(worker.z.cast<double>());

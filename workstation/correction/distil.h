@@ -53,7 +53,7 @@ struct DistilOptions {
 inline constexpr MlpShape kStudentShape{kStudentInputs, kStudentHidden1, kStudentHidden2,
                                         kActionCount};
 
-/// Inputs of states that the teacher's policy meets on the training days, with some exploration. All but the
+/// The teacher's inputs, the student's five first, of states that the teacher's policy meets on the training days, with some exploration. All but the
 /// first pass move the prices of each day when the teacher knows such days: a stochastic program does, a
 /// network knows what it was shown.
 Matrix visited_inputs(const Teacher& teacher, const MarketSteps& market,
@@ -103,6 +103,7 @@ class Distiller {
     Parameters gradient;
     Losses losses;
     MlpTile teacher_tile, student_tile;
+    Matrix seen;  ///< by the teacher, which may have inputs of its own
     Matrix x, z, dz;
     std::string complaint;  ///< of the constraint layer, for the user
   };
@@ -110,7 +111,7 @@ class Distiller {
   Lattice draw_lattice(const std::vector<LatticeState>& counterexamples, bool near_counterexample);
   void draw_axes(const LatticeState* centre, LatticeAxes& axes);
   void lattice_inputs(const Lattice& lattice, Matrix& x) const;
-  Eigen::MatrixXd teacher_log_policy(Worker& worker) const;
+  Eigen::MatrixXd teacher_log_policy(const Matrix& seen, Worker& worker) const;
   void backward_student(Worker& worker) const;
   [[nodiscard]] std::optional<ConstraintLayer> layer_with_rules(
       const Lattice& lattice, const CorrectionOptions& correction) const;

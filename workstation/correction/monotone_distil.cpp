@@ -58,10 +58,10 @@ LessonStates make_lessons(const Teacher& teacher, const Matrix& visited,
   const auto anywhere =
       static_cast<Eigen::Index>(kRandomShare * static_cast<double>(visited.cols()));
   LessonStates lessons;
-  lessons.inputs.resize(kNetworkInputs, visited.cols() + anywhere);
-  lessons.inputs.leftCols(visited.cols()) = visited;
+  Matrix seen(visited.rows(), visited.cols() + anywhere);
+  seen.leftCols(visited.cols()) = visited;
   for (Eigen::Index i = 0; i < anywhere; ++i) {
-    float* x = lessons.inputs.col(visited.cols() + i).data();
+    float* x = seen.col(visited.cols() + i).data();
     const Eigen::Index from =
         static_cast<Eigen::Index>(random.index(static_cast<std::uint64_t>(visited.cols())));
     const int price = kLatticePriceMinEurPerMwh + static_cast<int>(random.index(kPriceCount));
@@ -72,7 +72,9 @@ LessonStates make_lessons(const Teacher& teacher, const Matrix& visited,
     const auto minute = static_cast<int>(random.index(kMinuteOfQuarterHourCount));
     write_input(network_context(minute, quarter_hour, context_class, mapped), 0, x);
     x[3] = scaled_input(static_cast<int>(random.index(kSocCount)), kSocScale);
+    teacher.inputs.write_without_past(mapped, x + kNetworkInputs);
   }
+  lessons.inputs = seen.topRows(kNetworkInputs);
   MlpTile tile;
   constexpr Eigen::Index kTile = 1024;
   lessons.teacher_frac.resize(kActionCount, lessons.inputs.cols());
@@ -80,7 +82,7 @@ LessonStates make_lessons(const Teacher& teacher, const Matrix& visited,
   for (Eigen::Index at = 0; at < lessons.inputs.cols(); at += kTile) {
     const Eigen::Index count = std::min(kTile, lessons.inputs.cols() - at);
     const Eigen::MatrixXd values =
-        teacher_logits(teacher, options, lessons.inputs.middleCols(at, count), tile);
+        teacher_logits(teacher, options, seen.middleCols(at, count), tile);
     lessons.teacher_frac.middleCols(at, count) = log_softmax(values).array().exp().cast<float>();
     for (Eigen::Index c = 0; c < count; ++c) {
       lessons.regret.col(at + c) = (values.col(c).maxCoeff() - values.col(c).array()).cast<float>();

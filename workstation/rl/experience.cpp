@@ -21,11 +21,13 @@ void move_input(float& x, double shift) {
 
 TrainingMarket::TrainingMarket(const MarketSteps& market, const PriceMap& price_map,
                                const BatteryParameters& battery, Horizon horizon,
-                               const RewardShaping& shaping, const ContextClasses& context)
+                               const RewardShaping& shaping, const ContextClasses& context,
+                               const TeacherInputs& inputs)
     : battery_(shaping.program ? shaping.program->battery() : battery),
       potential_grid_(battery, shaping.potential.soc_points),
       gamma_(static_cast<float>(shaping.gamma)),
-      reward_centre_(static_cast<float>(shaping.reward_centre_eur_per_h) * kRewardScale) {
+      reward_centre_(static_cast<float>(shaping.reward_centre_eur_per_h) * kRewardScale),
+      teacher_inputs_(inputs.count()) {
   if (shaping.program) program_.emplace(shaping.program);
   const std::vector<MarketDay> training = market.days_of(Split::kTrain);
   require_training_days(training.size());
@@ -55,6 +57,10 @@ TrainingMarket::TrainingMarket(const MarketSteps& market, const PriceMap& price_
       step.is_midnight = last;
       step.follows_last = !steps_.empty() && steps_.back().next_potential == step.potential;
       steps_.push_back(step);
+      if (teacher_inputs_ == 0) continue;
+      TeacherSight& sight = sights_.emplace_back();
+      inputs.write(steps[i].recent, price_map, sight.state);
+      inputs.write(follows ? next->recent : steps[i].recent, price_map, sight.next_state);
     }
     days_.push_back({first, steps_.size() - first});
   }
@@ -166,11 +172,13 @@ std::vector<double> observed_training_prices(const MarketSteps& market) {
 }
 
 void draw_counterfactual(const TrainingMarket& market, std::size_t count,
-                         const ContextJitter& jitter, Random& random,
-                         std::vector<Transition>& out) {
+                         const ContextJitter& jitter, Random& random, std::vector<Transition>& out,
+                         std::vector<TeacherSight>* sights) {
   constexpr int kQuarterHourInput = 1;  // order of write_input
   constexpr int kContextClassInput = 2;
   out.resize(count);
+  const bool draws_sights = sights != nullptr && market.teacher_inputs() > 0;
+  if (draws_sights) sights->resize(count);
   std::size_t index = 0;
   double soc_frac = 0;
   double quarter_hour_shift = 0;
@@ -183,6 +191,7 @@ void draw_counterfactual(const TrainingMarket& market, std::size_t count,
       quarter_hour_shift = random.normal() * jitter.quarter_hours / (kQuarterHourCount - 1);
       class_shift = random.normal() * jitter.classes / (kContextClassCount - 1);
     }
+    if (draws_sights) (*sights)[i] = market.sight(index);
     Transition& transition = out[i];
     market.make_transition(index, soc_frac, static_cast<Action>(action), transition);
     for (float* x : {transition.state, transition.next_state}) {

@@ -48,7 +48,7 @@ class TrainingMarket {
   /// Throws UserError when `market` has no training days.
   TrainingMarket(const MarketSteps& market, const PriceMap& price_map,
                  const BatteryParameters& battery, Horizon horizon, const RewardShaping& shaping,
-                 const ContextClasses& context = {});
+                 const ContextClasses& context = {}, const TeacherInputs& inputs = {});
 
   /// The transition of taking `action` at `soc_frac` in step `index`; also returns the SoC after
   /// it.
@@ -62,6 +62,9 @@ class TrainingMarket {
   [[nodiscard]] const NetworkContext& context(std::size_t index) const {
     return steps_[index].context;
   }
+  /// What only the teacher sees of a step and its successor.
+  [[nodiscard]] const TeacherSight& sight(std::size_t index) const { return sights_[index]; }
+  [[nodiscard]] int teacher_inputs() const { return teacher_inputs_; }
   /// Residual only: the discounted sums of r' that the program leaves on the training days when it
   /// trades them from the middle of the SoC window, one a step, learned unit. Their spread is what
   /// the support must hold.
@@ -103,7 +106,9 @@ class TrainingMarket {
   std::optional<ProgramRows> program_;
   /// Of r', over midnight: there the program's values, of a finite number of days, begin anew.
   float midnight_centre_ = 0;
+  int teacher_inputs_;
   std::vector<Step> steps_;
+  std::vector<TeacherSight> sights_;  ///< [step], empty when the teacher has no inputs of its own
   std::vector<Day> days_;
 };
 
@@ -113,6 +118,7 @@ std::vector<double> observed_training_prices(const MarketSteps& market);
 /// Draws `count` counterfactual transitions. Each price transition and SoC serves all three actions
 /// in a row: they share its noise, so that what tells the actions apart is not drowned in it.
 void draw_counterfactual(const TrainingMarket& market, std::size_t count,
-                         const ContextJitter& jitter, Random& random, std::vector<Transition>& out);
+                         const ContextJitter& jitter, Random& random, std::vector<Transition>& out,
+                         std::vector<TeacherSight>* sights = nullptr);
 
 }  // namespace bess

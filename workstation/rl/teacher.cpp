@@ -21,6 +21,9 @@ constexpr int kAtomsMax = 10'000;
 constexpr float kResidualQuantum = 1e-6F;  ///< of network_values(), in the support's reach
 /// In the file beside the method's number: a program follows the parameters.
 constexpr std::uint32_t kResidualFlag = 0x100;
+/// And which inputs of its own the teacher has.
+constexpr int kInputsShift = 12;
+constexpr std::uint32_t kInputsMask = 0xF000;
 
 bool is_possible(const Support& support) {
   return std::isfinite(support.v_min) && std::isfinite(support.v_max) &&
@@ -92,10 +95,10 @@ std::string_view method_name(Method method) {
   return kNames[static_cast<int>(method)];
 }
 
-MlpShape teacher_shape(Method method, const Support& support) {
+MlpShape teacher_shape(Method method, const Support& support, const TeacherInputs& inputs) {
   if (method == Method::kSdp) return {};
   const int outputs = method == Method::kC51 ? kActionCount * support.count : kActionCount;
-  return {kNetworkInputs, kTeacherHidden1, kTeacherHidden2, outputs};
+  return {kNetworkInputs + inputs.count(), kTeacherHidden1, kTeacherHidden2, outputs};
 }
 
 Matrix Teacher::action_values(const MatrixRef& x, MlpTile& tile) const {
@@ -106,6 +109,14 @@ Matrix Teacher::action_values(const MatrixRef& x, MlpTile& tile) const {
 }
 
 Matrix Teacher::network_values(const MatrixRef& x, MlpTile& tile) const {
+  if (x.rows() < input_count()) {
+    Matrix whole(input_count(), x.cols());
+    whole.topRows(kNetworkInputs) = x;
+    for (Eigen::Index c = 0; c < x.cols(); ++c) {
+      inputs.write_without_past(x(4, c), whole.col(c).data() + kNetworkInputs);
+    }
+    return network_values(whole, tile);
+  }
   const ConstMlp mlp(shape, parameters.data());
   Matrix z;
   forward_hidden(mlp, x, tile);
@@ -130,7 +141,7 @@ void begin_at_zero(Method method, const Support& support, const MlpShape& shape,
 
 Action TeacherPolicy::decide(const MarketStep& step, std::size_t, double soc_frac) const {
   if (!teacher_.program || teacher_.is_residual()) {
-    write_input(network_context(step, teacher_.price_map, teacher_.context), soc_frac, x_.data());
+    teacher_.write_inputs(step, soc_frac, x_.data());
   }
   if (!teacher_.program) return argmax_action(teacher_.action_values(x_, tile_).data());
   // The program is asked for the step itself: it need not see through the network's inputs.
@@ -145,7 +156,8 @@ Action TeacherPolicy::decide(const MarketStep& step, std::size_t, double soc_fra
 
 void save_teacher(const std::filesystem::path& path, const Teacher& teacher) {
   BinaryWriter out(kMagic, kVersion);
-  out.put(static_cast<std::uint32_t>(teacher.method) | (teacher.is_residual() ? kResidualFlag : 0));
+  out.put(static_cast<std::uint32_t>(teacher.method) | (teacher.is_residual() ? kResidualFlag : 0) |
+          teacher.inputs.bits() << kInputsShift);
   out.put(teacher.support);
   out.put(teacher.shape);
   out.put(teacher.price_map.table());
@@ -165,7 +177,8 @@ Teacher load_teacher(const std::filesystem::path& path) {
   BinaryReader in(path, kMagic, kVersion, "teacher file", "make one with 'bess-train train'");
   const auto written_method = in.take<std::uint32_t>();
   const bool is_residual = (written_method & kResidualFlag) != 0;
-  const std::uint32_t method_number = written_method & ~kResidualFlag;
+  const auto inputs = TeacherInputs::of_bits((written_method & kInputsMask) >> kInputsShift);
+  const std::uint32_t method_number = written_method & ~(kResidualFlag | kInputsMask);
   const auto support = in.take<Support>();
   // The checksum is right, so this was written by another program; say so before using any of it.
   if (method_number > static_cast<std::uint32_t>(Method::kSdp) ||
@@ -175,7 +188,7 @@ Teacher load_teacher(const std::filesystem::path& path) {
   }
   const auto method = static_cast<Method>(method_number);
   const auto shape = in.take<MlpShape>();
-  if (!(shape == teacher_shape(method, support))) in.damaged("is of another network shape");
+  if (!(shape == teacher_shape(method, support, inputs))) in.damaged("is of another network shape");
   const PriceMap price_map = take_price_map(in);
   const ContextClasses context = take_context(in);
   std::string provenance = in.take_text();
@@ -192,7 +205,9 @@ Teacher load_teacher(const std::filesystem::path& path) {
           std::move(parameters),
           std::move(provenance),
           std::move(program),
-          context};
+          context,
+          {},
+          inputs};
 }
 
 Teacher load_teacher(const std::filesystem::path& path, const Risk& risk) {

@@ -11,10 +11,10 @@
 #include "workstation/env/policy.h"
 #include "workstation/nn/mlp.h"
 #include "workstation/planners/stochastic_program.h"
-#include "workstation/rl/network_input.h"
 #include "workstation/rl/price_map.h"
 #include "workstation/rl/risk.h"
 #include "workstation/rl/support.h"
+#include "workstation/rl/teacher_inputs.h"
 
 namespace bess {
 
@@ -34,14 +34,21 @@ struct Teacher {
   std::shared_ptr<const StochasticProgram> program = nullptr;
   ContextClasses context{};  ///< by month unless said otherwise
   Risk risk{};               ///< how decisions are made; not part of the file
+  TeacherInputs inputs{};    ///< beside the student's five
 
   [[nodiscard]] bool is_residual() const { return program != nullptr && method != Method::kSdp; }
   /// Action values, means unless `risk` says otherwise, [3 x samples] in units of 1e4 EUR/h for
-  /// inputs [5 x samples].
+  /// inputs [5 x samples], or with the teacher's own below them; without, a state has no past.
   [[nodiscard]] Matrix action_values(const MatrixRef& x, MlpTile& tile) const;
   /// The network's part of them. Of a residual in whole millionths of the support's reach: a point
   /// mass at zero then is zero exactly, however its exponentials are rounded.
   [[nodiscard]] Matrix network_values(const MatrixRef& x, MlpTile& tile) const;
+  [[nodiscard]] int input_count() const { return kNetworkInputs + inputs.count(); }
+  /// Writes input_count() inputs of a step.
+  void write_inputs(const MarketStep& step, double soc_frac, float* x) const {
+    write_input(network_context(step, price_map, context), soc_frac, x);
+    inputs.write(step.recent, price_map, x + kNetworkInputs);
+  }
 };
 
 /// Makes of a network's parameters those of a residual that adds nothing: C51's distributions are a
@@ -51,7 +58,7 @@ void begin_at_zero(Method method, const Support& support, const MlpShape& shape,
 inline constexpr double kPriorMass = 2.5e-3;
 
 /// Outputs of the network for a method.
-MlpShape teacher_shape(Method method, const Support& support);
+MlpShape teacher_shape(Method method, const Support& support, const TeacherInputs& inputs = {});
 
 /// Versioned, checksummed, written beside and renamed. load throws UserError when the file is not a
 /// teacher, is damaged, or is of another version.
@@ -66,7 +73,8 @@ Teacher load_teacher(const std::filesystem::path& path, const Risk& risk);
 /// Greedy by action value, ties to the lowest action.
 class TeacherPolicy final : public Policy {
  public:
-  explicit TeacherPolicy(const Teacher& teacher) : teacher_(teacher), x_(kNetworkInputs, 1) {}
+  explicit TeacherPolicy(const Teacher& teacher)
+      : teacher_(teacher), x_(teacher.input_count(), 1) {}
   [[nodiscard]] Action decide(const MarketStep& step, std::size_t index,
                               double soc_frac) const override;
 

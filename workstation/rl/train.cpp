@@ -32,8 +32,8 @@ class Experience {
   const MiniBatch& next(long step, const Teacher& acting) {
     const auto count = static_cast<std::size_t>(options_.batch_size);
     if (options_.source == Source::kCounterfactual) {
-      draw_counterfactual(market_, count, options_.jitter, minibatch_random_, drawn_);
-      fill_minibatch(drawn_, batch_);
+      draw_counterfactual(market_, count, options_.jitter, minibatch_random_, drawn_, &sights_);
+      fill_minibatch(drawn_, batch_, sights_, market_.teacher_inputs());
     } else {
       if (step % kLockstepDays == 0) {
         replay_.play(acting, kLockstepDays, epsilon(step), experience_random_);
@@ -69,6 +69,7 @@ class Experience {
   Random experience_random_;
   Random minibatch_random_;
   std::vector<Transition> drawn_;
+  std::vector<TeacherSight> sights_;
   MiniBatch batch_;
 };
 
@@ -172,15 +173,17 @@ class Training {
         training_(
             market, price_map_, battery, options.horizon,
             program_ ? RewardShaping{.program = program_} : fit_shaping(market, battery, options),
-            context_),
+            context_, options.inputs),
         support_(program_ ? residual_support(training_, options) : given_support(options)),
         learner_(options.method, support_, program_ ? options.residual_gamma : options.gamma,
                  derive_seed(options.seed, kSeedWeights), options.threads,
                  program_ ? options.mean_weight / double{support_.step() * support_.step()}
-                          : options.mean_weight),
+                          : options.mean_weight,
+                 packet_kernels(), options.inputs),
         experience_(training_, options),
-        current_{options.method,    support_, learner_.shape(), price_map_,
-                 learner_.online(), "",       program_,         context_},
+        current_{
+            options.method, support_, learner_.shape(), price_map_, learner_.online(), "", program_,
+            context_,       {},       options.inputs},
         average_(learner_.online()),
         result_{current_, {}, -1e300, 0, 0} {
     if (!program_) return;

@@ -128,6 +128,8 @@ TEST(RunConfig, MistakesNamePlaceAndMend) {
       {"[train]\nvalue_min_eur_per_h = 5e8\n", ": ", "[train] value_min_eur_per_h must be below"},
       {"[train]\nresidual = true\nhorizon = \"day\"\n", ": ",
        "[train] residual needs horizon = \"continuing\""},
+      {"[train]\ninput_calm = true\nsource = \"replay\"\n", ": ",
+       "[train] input_... needs source = \"counterfactual\""},
       {"[train]\nresidual = true\natoms = 50\n", ": ",
        "[train] residual needs an odd number of atoms, not 50"},
       {"[correction]\nlow_price_eur_per_mwh = 1500\n", ": ",

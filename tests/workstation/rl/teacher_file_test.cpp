@@ -87,6 +87,24 @@ TEST_F(TeacherFile, WithTheProgramThatItAddsToItIsReadBack) {
   }
 }
 
+TEST_F(TeacherFile, WithInputsOfItsOwnItIsReadBack) {
+  const Support support{-1, 1, 5};
+  for (std::uint32_t bits = 1; bits < 16; ++bits) {
+    const TeacherInputs inputs = TeacherInputs::of_bits(bits);
+    EXPECT_EQ(inputs.bits(), bits);
+    Teacher teacher = teacher_of(Method::kC51);
+    teacher.inputs = inputs;
+    teacher.support = support;
+    teacher.shape = teacher_shape(Method::kC51, support, inputs);
+    teacher.parameters = initial_parameters(teacher.shape, bits);
+    save_teacher(path, teacher);
+    const Teacher read = load_teacher(path);
+    EXPECT_EQ(read.inputs.bits(), bits);
+    EXPECT_EQ(read.shape.inputs, kNetworkInputs + inputs.count());
+    EXPECT_EQ(read.parameters, teacher.parameters);
+  }
+}
+
 TEST_F(TeacherFile, ReadBackItDecidesTheSame) {
   const Teacher teacher = teacher_of(Method::kC51);
   save_teacher(path, teacher);
