@@ -55,7 +55,7 @@ class ResponseMonitor {
 
   void observe(const Response& now);
   /// Between two readings that are judged, just before an order changes: counts what has flowed.
-  void note_power(const Response& now) { soc_.note_power(now); }
+  void note_power(const Response& now) { soc_.note_cut(now); }
 
   /// kWrongDirection, kUncontrolledPower or kSocMismatch once it is found; kStudent: nothing.
   [[nodiscard]] Reason trip() const { return trip_; }

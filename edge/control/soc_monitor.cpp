@@ -22,7 +22,6 @@ constexpr std::int64_t kReadingGapMaxS = 300;  ///< beyond: what flowed between 
 constexpr std::int32_t kReadingsUntilSettled = 3;
 constexpr std::int32_t kStillReadings = 2;
 constexpr std::int64_t kStillSlackE4 = 50;
-constexpr std::int32_t kUsualRefreshS = 60;
 
 constexpr std::int64_t kSocErrorE4 = 100;  ///< of any count of charge from one reading to the next
 constexpr std::int32_t kUnknownStepE4 = 100;
@@ -40,7 +39,8 @@ SocMonitor::SocMonitor(const ResponseSettings& settings)
     : settings_(settings),
       balance_({.capacity_wh = settings.capacity_wh,
                 .noise_w = settings.noise_w(),
-                .charges_by_itself = settings.band.charges_by_itself}) {}
+                .charges_by_itself = settings.band.charges_by_itself}),
+      seldom_(settings) {}
 
 void SocMonitor::observe(const Response& now) {
   const BatteryMeasurement& m = now.measurement;
@@ -48,19 +48,36 @@ void SocMonitor::observe(const Response& now) {
   shown_step_e4_ = std::gcd(shown_step_e4_, m.soc_e4);
   const std::int64_t seconds = now.steady_s - before_.steady_s;
   if (!has_before_ || seconds <= 0 || seconds > kReadingGapMaxS) return begin_anew(now);
+  if (seldom_.is_seldom()) {
+    seldom_.note_power(now, flow_power_w_);
+    seldom_.observe(now);
+  }
   const Flow flow = flow_until(now);
   const std::int64_t change_e4 = m.soc_e4 - before_.measurement.soc_e4;
   const bool excused = is_excused(now, flow, change_e4);
   if (!excused && judge_jump(now, flow, change_e4)) return begin_anew(now);
   if (unsettled_readings_ > 0) --unsettled_readings_;
-  judge_standstill(now, flow, excused);
-  EnergyInterval interval = interval_of(now, flow);
-  if (excused) interval.kind = EnergyInterval::Kind::kUnknown;
-  balance_.observe(interval, soc_span_e4());
-  contradicts_ = contradicts_ || balance_.findings().contradicts;
+  if (seldom_.is_seldom()) {
+    judge_seldom(now, excused);
+  } else {
+    judge_standstill(now, flow, excused);
+    EnergyInterval interval = interval_of(now, flow);
+    if (excused) interval.kind = EnergyInterval::Kind::kUnknown;
+    judge_balance(interval);
+  }
   before_ = now;
   note_power(now);
   flowed_ws_ = late_ws_ = 0;
+}
+
+void SocMonitor::judge_balance(const EnergyInterval& interval) {
+  balance_.observe(interval, soc_span_e4());
+  contradicts_ = contradicts_ || balance_.findings().contradicts;
+}
+
+void SocMonitor::note_cut(const Response& now) {
+  if (seldom_.is_seldom()) seldom_.note_power(now, flow_power_w_);
+  note_power(now);
 }
 
 void SocMonitor::note_power(const Response& now) {
@@ -79,6 +96,7 @@ void SocMonitor::begin_anew(const Response& now) {
   still_e4_ = still_least_e4_ = still_most_e4_ = still_total_e4_ = 0;
   still_readings_ = 0;
   balance_.interrupt();
+  seldom_.begin(now);
 }
 
 /// The reading's own power since its order, the power of the reading before until then.
@@ -108,6 +126,13 @@ std::int64_t SocMonitor::e4_of(std::int64_t energy_ws) const {
 
 SocMonitor::Flow SocMonitor::flow_until(const Response& now) const {
   const std::int64_t energy_e4 = e4_of(flowed_ws_ + flowed_ws(now, 0));
+  if (seldom_.is_seldom()) {
+    const EnergyRange change = seldom_.change();
+    const std::int64_t least_e4 = e4_of(change.least_ws);
+    const std::int64_t most_e4 = e4_of(change.most_ws);
+    return {energy_e4, e4_of(change.surely_ws()), std::min(least_e4 * 3 / 5, least_e4 * 7 / 5),
+            std::max(most_e4 * 3 / 5, most_e4 * 7 / 5)};
+  }
   const std::int64_t late_e4 = e4_of(late_ws_ + late_ws(now));
   // Losses, ageing and a rounded capacity are all within these bounds.
   const auto [least_e4, most_e4] =
@@ -130,7 +155,7 @@ std::int32_t SocMonitor::soc_step_e4() const {
 
 /// One that is refreshed seldom lags by what flows meanwhile.
 std::int32_t SocMonitor::soc_span_e4() const {
-  const std::int64_t lag_s = settings_.band.soc_refresh_s - kUsualRefreshS;
+  const std::int64_t lag_s = settings_.band.soc_refresh_s - SeldomSoc::kUsualRefreshS;
   const std::int64_t lag_ws = std::int64_t{settings_.power_w} * std::max<std::int64_t>(lag_s, 0);
   return soc_step_e4() + static_cast<std::int32_t>(e4_of(lag_ws));
 }
@@ -211,6 +236,40 @@ std::int64_t SocMonitor::surely_moved_e4(const Flow& flow, std::int64_t seconds)
   return flow.energy_e4 < 0 ? -sure_e4 : sure_e4;
 }
 
+/// A count may flicker by a step: it must have gone further.
+std::int64_t SocMonitor::must_show_e4() const { return soc_step_e4() * 6 / 5 + kStillSlackE4; }
+
+/// Readings are judged where enough of them have come together.
+void SocMonitor::judge_seldom(const Response& now, bool excused) {
+  using Kind = EnergyInterval::Kind;
+  const bool is_known = now.is_driven && before_.is_driven;
+  if (!is_known || excused) {
+    seldom_.restart_interval();
+    seldom_.restart_standstill();
+    return judge_balance({});
+  }
+  const std::int64_t error_e4 = e4_of(settings_.noise_w() * seldom_.still_s());
+  const std::int64_t moved_e4 = (std::abs(e4_of(seldom_.still_ws())) - error_e4) * 7 / 8;
+  if (seldom_.still_readings() >= kStillReadings && moved_e4 > must_show_e4()) contradicts_ = true;
+  EnergyInterval interval = interval_of(now, flow_until(now));
+  if (interval.kind == Kind::kResting && now.order_age_s >= settings_.band.soc_refresh_s) {
+    seldom_.restart_interval();
+    return judge_balance(interval);
+  }
+  SeldomSoc::Interval together;
+  if (seldom_.take_interval(together)) {
+    return judge_balance({.kind = Kind::kFlowing,
+                          .energy_e4 = to_int16(e4_of(together.energy_ws)),
+                          .late_energy_e4 = to_int16(e4_of(together.surely_ws)),
+                          .soc_e4 = to_int16(together.soc_e4),
+                          .seconds = to_int16(together.seconds),
+                          .power_w = now.measurement.power_w});
+  }
+  if (!seldom_.is_too_long()) return;
+  seldom_.restart_interval();
+  judge_balance({});
+}
+
 void SocMonitor::judge_standstill(const Response& now, const Flow& flow, bool excused) {
   const std::int32_t soc_e4 = now.measurement.soc_e4;
   const bool is_known = now.is_driven && before_.is_driven;
@@ -226,8 +285,7 @@ void SocMonitor::judge_standstill(const Response& now, const Flow& flow, bool ex
   still_least_e4_ = std::min(still_least_e4_, still_e4_);
   still_most_e4_ = std::max(still_most_e4_, still_e4_);
   ++still_readings_;
-  // A count may flicker by a step: it must have gone further.
-  const std::int64_t must_show_e4 = soc_span_e4() * 6 / 5 + kStillSlackE4;
+  const std::int64_t must_show_e4 = this->must_show_e4();
   const std::int64_t range_e4 = (still_most_e4_ - still_least_e4_) * 7 / 8;
   // To and fro brings it back to where it was, but not without a step on either way.
   const std::int64_t total_e4 = still_total_e4_ * 7 / 8;

@@ -15,6 +15,7 @@
 #include "edge/control/energy_balance.h"
 #include "edge/control/leaky_count.h"
 #include "edge/control/response.h"
+#include "edge/control/seldom_soc.h"
 
 namespace bess {
 
@@ -24,7 +25,7 @@ class SocMonitor {
 
   void observe(const Response& now);
   /// Between two readings that are judged, just before an order changes: counts what has flowed.
-  void note_power(const Response& now);
+  void note_cut(const Response& now);
 
   /// The SoC is not that of this battery's energy.
   [[nodiscard]] bool contradicts() const { return contradicts_; }
@@ -53,11 +54,16 @@ class SocMonitor {
   bool is_excused(const Response& now, const Flow& flow, std::int64_t change_e4);
   bool is_beyond_its_end(std::int32_t soc_e4, const Flow& flow, std::int64_t change_e4);
   bool judge_jump(const Response& now, const Flow& flow, std::int64_t change_e4);
+  [[nodiscard]] std::int64_t must_show_e4() const;
+  void note_power(const Response& now);
+  void judge_balance(const EnergyInterval& interval);
+  void judge_seldom(const Response& now, bool excused);
   void judge_standstill(const Response& now, const Flow& flow, bool excused);
   void begin_anew(const Response& now);
 
   ResponseSettings settings_;
   EnergyBalance balance_;
+  SeldomSoc seldom_;  ///< instead of every reading, where the SoC is seldom refreshed
   bool contradicts_ = false;
 
   bool has_before_ = false;

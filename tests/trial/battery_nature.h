@@ -62,6 +62,7 @@ struct HonestVariant {
   std::int32_t told_soc_step_e4 = 0;  ///< what its register map says of its display; 0 = the truth
   std::int32_t night_charge_power_w = 4'000;
   std::int32_t told_settle_s = 20;  ///< what it says of its lag
+  std::int32_t told_soc_refresh_s = 60;
   friend void PrintTo(const HonestVariant& v, std::ostream* out) { *out << v.name; }
 };
 

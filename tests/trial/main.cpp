@@ -87,6 +87,8 @@ void print_faults() {
     print_table(std::string("SoC 45 %, ") + schedule.name, {.times = schedule.times});
   }
   print_table("SoC 45 % in whole percent", {.nature = {.soc_step_e4 = 100}});
+  print_table("SoC 45 %, brought up to date every 2 min, told", {.nature = {.soc_refresh_s = 120}});
+  print_table("SoC 45 %, brought up to date every 5 min, told", {.nature = {.soc_refresh_s = 300}});
   print_table("SoC 45 %, controller killed after each cycle", {.is_killed = true});
 }
 
@@ -99,8 +101,9 @@ void print_ends() {
 
 void print_honest(int days) {
   std::printf("%d days each of real prices.\n\n", days);
-  std::printf("| variant | trips | cycles lost | by reason | driven | weak | seen of it |\n");
-  std::printf("|---|---|---|---|---|---|---|\n");
+  std::printf(
+      "| variant | trips | cycles lost | by reason | driven | weak | told | seen of it |\n");
+  std::printf("|---|---|---|---|---|---|---|---|\n");
   for (const HonestVariant& variant : honest_variants()) {
     const HonestDays r = live_honest_days(variant, days);
     std::string reasons;
@@ -115,8 +118,9 @@ void print_honest(int days) {
                std::to_string(r.first_trip_cycle) + ")";
     }
     const Oddities& o = r.oddities;
-    std::printf("| %s | %s | %d of %d | %s| %d | %d | ", variant.name, trips.c_str(),
-                r.lost_in_all(), r.cycles, reasons.c_str(), r.driven, r.weak_cycles);
+    std::printf("| %s | %s | %d of %d | %s| %d | %d | %d (%d %%, %d W) | ", variant.name,
+                trips.c_str(), r.lost_in_all(), r.cycles, reasons.c_str(), r.driven, r.weak_cycles,
+                r.told_cycles, r.told.energy_share_percent, r.told.rest_loss_w);
     std::printf(
         "calibrations %d restarts %d late %d derated %.0f h forced %.1f h balancing %.1f h |\n",
         o.calibrations, o.restarts, o.late_answers, static_cast<double>(o.derated_s) / 3'600,

@@ -1,5 +1,6 @@
 #include "tests/trial/trial_run.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -112,6 +113,7 @@ ControlSettings trial_settings(const HonestVariant& variant) {
   settings.supervision.response.capacity_wh = static_cast<std::int32_t>(nature.shown_capacity_wh);
   settings.supervision.response.band.charges_by_itself = variant.charges_by_itself;
   settings.supervision.response.band.settle_s = variant.told_settle_s;
+  settings.supervision.response.band.soc_refresh_s = variant.told_soc_refresh_s;
   settings.supervision.response.band.soc_step_e4 =
       variant.told_soc_step_e4 > 0 ? variant.told_soc_step_e4 : nature.soc_step_e4;
   return settings;
@@ -119,8 +121,12 @@ ControlSettings trial_settings(const HonestVariant& variant) {
 
 namespace {
 
+bool tells_of_energy(const ResponseFindings& findings) {
+  return findings.energy_share_percent != 0 || findings.rest_loss_w != 0;
+}
+
 void note_told(const ResponseFindings& findings, FaultResult& result) {
-  if (findings.energy_share_percent == 0 && findings.rest_loss_w == 0) return;
+  if (!tells_of_energy(findings)) return;
   if (result.told_cycles == 0) result.told_cycles = result.cycles;
   result.told = findings;
 }
@@ -128,7 +134,8 @@ void note_told(const ResponseFindings& findings, FaultResult& result) {
 }  // namespace
 
 FaultResult try_fault(const FaultCase& c) {
-  ControlSettings settings = trial_settings({.name = "", .nature = c.nature});
+  ControlSettings settings = trial_settings(
+      {.name = "", .nature = c.nature, .told_soc_refresh_s = std::max(60, c.nature.soc_refresh_s)});
   if (c.orders != Orders::kRealDay) settings.reversals_per_hour_max = 0;
   TrialSite site(c.nature, c.soc_frac, settings, c.seed);
   // In balance, so that the fault begins where it was wanted.
@@ -180,6 +187,10 @@ HonestDays live_honest_days(const HonestVariant& variant, int days, const Distur
     ++result.cycles;
     result.driven += record.ordered_power_w != 0 ? 1 : 0;
     result.weak_cycles += record.weak_answers >= 2 ? 1 : 0;
+    if (tells_of_energy(record.findings)) {
+      ++result.told_cycles;
+      result.told = record.findings;
+    }
     if (is_stop_reason(record.reason)) ++result.lost[static_cast<int>(record.reason)];
     if (often.kill_every > 0 && (i + 1) % often.kill_every == 0) site.kill_and_restart();
     if (often.step_every > 0 && (i + 1) % often.step_every == 0) site.step_clock();

@@ -126,6 +126,8 @@ struct HonestDays {
   Reason first_trip = Reason::kStudent;
   int first_trip_cycle = 0;
   int lost[kReasonCount] = {};  ///< cycles that were stopped, by reason
+  int told_cycles = 0;          ///< that told of energy that does not arrive, or is lost
+  ResponseFindings told{};      ///< the last of it
   int weak_cycles = 0;          ///< that told of two weak answers or more
   Oddities oddities{};
   double moved_wh = 0;
