@@ -78,6 +78,8 @@ class ControlLoop {
   /// A cycle of an earlier run, oldest first and before `take_over`: what supervision has found by then,
   /// short of a trip, is found again. Who kills the program between two readings hides nothing.
   void recall(const CycleRecord& record) {
+    const PriceReport& price = record.price;
+    if (price.has_row) frozen_price_.recall(price.minute_utc_s, price.price_centi_eur_per_mwh);
     if (!settings_.control || !record.has_measurement) return;
     supervision_.recall(recalled_response(record));
     order_.set_ahead(recalled_time_.ahead_s());

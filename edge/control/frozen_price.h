@@ -7,11 +7,13 @@
 //   52,530 real settled quarter-hours of January 2023 to June 2025: 10 in a row at most (150.00, on
 //     29 December 2024); 7 or more 26 times, 9 or more 8 times. The minutes converge to what is settled, so
 //     a run of theirs is at most two times 14 minutes longer: under 3 hours, had each of them shown it
-// So what stands still for 30 minutes is worth a look, and no honest price stood still for 3 hours.
+// So what stands still for 30 minutes is worth a look, and no honest price stood still for 3 hours. Among four
+// values (few_values.h) it must stay four times as long to be told, and two and a half times as long to be none.
 #pragma once
 
 #include <cstdint>
 
+#include "edge/control/few_values.h"
 #include "shared/fixed_point.h"
 #include "shared/units_and_limits.h"
 
@@ -36,9 +38,21 @@ class FrozenPrice {
 
   constexpr void restore(const StandingPrice& before) { price_ = before; }
 
+  /// A row that an earlier run decided on, by its log, oldest first.
+  constexpr void recall(std::int64_t minute_utc_s, std::int32_t centi_eur_per_mwh) {
+    const bool goes_on = few_minute_utc_s_ > 0 && minute_utc_s > few_minute_utc_s_;
+    const std::int64_t since_s = goes_on ? minute_utc_s - few_minute_utc_s_ : 0;
+    // What stood for so long was told as that, and has moved.
+    const bool thaws = few_values_.stood_s() >= kStoodS;
+    if (thaws && centi_eur_per_mwh != few_values_.newest()) few_values_ = FewValues{};
+    few_values_.observe(centi_eur_per_mwh, std::min(since_s, kCountedGapS));
+    few_minute_utc_s_ = minute_utc_s;
+  }
+
   /// The newest row that a decision sees. Of an outage only a step counts: it neither thaws a price nor
   /// makes two equal rows hours apart a frozen one.
   constexpr void observe(std::int64_t minute_utc_s, std::int32_t centi_eur_per_mwh) {
+    recall(minute_utc_s, centi_eur_per_mwh);
     const bool stands = price_.minute_utc_s > 0 && centi_eur_per_mwh == price_.centi_eur_per_mwh;
     const std::int64_t since_s = stands ? minute_utc_s - price_.minute_utc_s : 0;
     const std::int64_t stood_s =
@@ -51,18 +65,23 @@ class FrozenPrice {
 
   [[nodiscard]] constexpr const StandingPrice& price() const { return price_; }
   [[nodiscard]] constexpr bool is_told() const {
-    return settings_.told_s > 0 && price_.unchanged_s >= settings_.told_s;
+    const std::int64_t told_s = settings_.told_s;
+    return told_s > 0 && (price_.unchanged_s >= told_s || few_values_.lasted_s() >= 4 * told_s);
   }
   [[nodiscard]] constexpr bool is_no_price() const {
-    return settings_.stop_s > 0 && price_.unchanged_s >= settings_.stop_s;
+    const std::int64_t stop_s = settings_.stop_s;
+    return stop_s > 0 && (price_.unchanged_s >= stop_s || few_values_.lasted_s() >= stop_s * 5 / 2);
   }
 
  private:
+  static constexpr std::int64_t kStoodS = 1'800;  ///< longer than any honest minutes
   static constexpr std::int64_t kCountedGapS =
       2 * kSecondsPerStep;  ///< a step, and one that failed
 
   FrozenPriceSettings settings_;
   StandingPrice price_{};
+  FewValues few_values_;
+  std::int64_t few_minute_utc_s_ = 0;  ///< of its newest row; 0 = none
 };
 
 }  // namespace bess

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <deque>
 #include <vector>
 
 #include "edge/control/control_loop.h"
@@ -118,6 +119,38 @@ TEST(PriceLies, APriceThatStandsStillIsToldAndIsNoneAfterThreeHours) {
   EXPECT_EQ(record.mode, Mode::kRunning);
   EXPECT_FALSE(record.price_frozen);
   EXPECT_EQ(record.standing_price.unchanged_s, 0);
+}
+
+struct Logged {
+  bool read_back(std::int64_t ago, CycleRecord& record) const {
+    if (ago >= std::ssize(newest_first)) return false;
+    record = newest_first[static_cast<std::size_t>(ago)];
+    return true;
+  }
+  std::deque<CycleRecord> newest_first;
+};
+
+/// A source that hangs, and shows now one and now the other of its last rows.
+TEST(PriceLies, APriceThatGoesToAndFroIsToldAndIsNoneAfterSevenAndAHalfHoursAlsoAmongKills) {
+  Hung hung;
+  Logged log;
+  for (int run = 0; run < 80; ++run) {
+    Loop loop({.control = true, .guard = {}}, hung.battery, hung.prices, hung.clock);
+    if (run > 0) {
+      recall_cycles(log, hung.clock.now_utc_ns() / kNanosecondsPerSecond, loop);
+      loop.take_over(
+          take_over_of(log.newest_first.front(), Trip{}, log.newest_first.front().price_level));
+    }
+    for (int cycle = 0; cycle < 3; ++cycle) {
+      CycleRecord record;
+      hung.centi = 9'000 + cycle % 2;
+      ASSERT_TRUE(loop.run_cycle(record));
+      const int rows = 3 * run + cycle;
+      EXPECT_EQ(record.price_frozen, rows >= 60) << rows;
+      EXPECT_EQ(record.reason == Reason::kFrozenPrice, rows >= 225) << rows;
+      log.newest_first.push_front(record);
+    }
+  }
 }
 
 /// 20 runs of ten minutes: each takes over what the one before logged.

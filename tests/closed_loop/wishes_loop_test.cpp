@@ -112,7 +112,8 @@ TEST(LoopWithFullCharges, FillsTheBatteryWhenItIsDue) {
   settings.guard.soc_max_e4 = 10'000;
   Site site(0.5, settings);
   site.prices.price = [](std::int64_t minute_utc_s) {  // dear: the student sells, or rests
-    return minute_utc_s % 3'600 < 1'800 ? 30'000 : 25'000;
+    const auto cents = static_cast<std::int32_t>(minute_utc_s / 60 % 97);  // it is not frozen
+    return (minute_utc_s % 3'600 < 1'800 ? 30'000 : 25'000) + cents;
   };
   int due_cycles = 0;
   std::int32_t fullest_e4 = 0;

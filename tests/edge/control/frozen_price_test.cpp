@@ -99,6 +99,71 @@ TEST(FrozenPrice, AStampOfTheFutureNeitherCountsNorOverflows) {
   }
 }
 
+/// Rows that go round among `values`, each for `each` rows.
+Rows rows_among(int values, int each, int rows) {
+  Rows r;
+  for (int i = 0; i < rows; ++i) r.add(1, 5'000 + i / each % values);
+  return r;
+}
+
+TEST(FrozenPrice, ToAndFroAmongFourValuesIsToldAfterTwoHoursAndNoneAfterSevenAndAHalf) {
+  for (const int values : {2, 3, 4}) {
+    for (const int each : {1, 2, 7}) {
+      EXPECT_FALSE(rows_among(values, each, 60).frozen.is_told()) << values << ' ' << each;
+      EXPECT_TRUE(rows_among(values, each, 61).frozen.is_told()) << values << ' ' << each;
+      EXPECT_FALSE(rows_among(values, each, 225).frozen.is_no_price()) << values << ' ' << each;
+      EXPECT_TRUE(rows_among(values, each, 226).frozen.is_no_price()) << values << ' ' << each;
+    }
+  }
+  EXPECT_FALSE(rows_among(5, 1, 2'000).frozen.is_told());
+  EXPECT_FALSE(rows_among(5, 7, 2'000).frozen.is_told());
+}
+
+TEST(FrozenPrice, AFifthValueThawsItAndTheOthersCountFromWhenTheyWereAlone) {
+  Rows rows = rows_among(4, 1, 226);  // ends with the second of the four
+  rows.add(1, 9'999);
+  EXPECT_FALSE(rows.frozen.is_told() || rows.frozen.is_no_price());
+  for (int i = 0; i < 55; ++i) rows.add(1, 5'000 + i % 2);
+  EXPECT_FALSE(rows.frozen.is_told());
+  rows.add(1, 5'000);
+  EXPECT_TRUE(rows.frozen.is_told());
+}
+
+TEST(FrozenPrice, WhatStoodStillForHoursAndMovesIsNoToAndFro) {
+  for (const int rows_frozen : {16, 91, 1'000}) {
+    Rows rows;
+    for (int i = 0; i < 40; ++i) rows.add(1, 5'000 + i % 3);
+    rows.add(rows_frozen, 5'000);
+    EXPECT_TRUE(rows.frozen.is_told());
+    rows.add(1, 5'001);
+    EXPECT_FALSE(rows.frozen.is_told() || rows.frozen.is_no_price()) << rows_frozen;
+    for (int i = 0; i < 59; ++i) rows.add(1, 5'000 + i % 2);
+    EXPECT_FALSE(rows.frozen.is_told());
+    rows.add(1, 5'001);
+    EXPECT_TRUE(rows.frozen.is_told());
+  }
+}
+
+TEST(FrozenPrice, ToAndFroIsRecalledByTheLogAndAnOutageIsAFewMinutes) {
+  FrozenPrice next{FrozenPriceSettings{}};
+  std::int64_t minute_utc_s = kFirstMinute;
+  for (int i = 0; i < 60; ++i) next.recall(minute_utc_s += 120, 700 + i % 2);
+  EXPECT_EQ(next.price().unchanged_s, 0);
+  next.restore({.minute_utc_s = minute_utc_s, .centi_eur_per_mwh = 701, .unchanged_s = 0});
+  EXPECT_FALSE(next.is_told());
+  next.observe(minute_utc_s += 120, 700);
+  EXPECT_TRUE(next.is_told());
+
+  FrozenPrice gaps{FrozenPriceSettings{}};
+  for (int i = 0; i < 30; ++i) gaps.recall(minute_utc_s += 9 * 3'600, 700 + i % 2);
+  EXPECT_FALSE(gaps.is_told()) << "29 times four minutes";
+  for (int i = 0; i < 2; ++i) gaps.recall(minute_utc_s += 9 * 3'600, 700 + i % 2);
+  EXPECT_TRUE(gaps.is_told());
+  gaps.observe(INT64_MIN, 700);
+  gaps.observe(INT64_MAX, 701);
+  gaps.observe(kFirstMinute, 700);
+}
+
 TEST(FrozenPrice, BothTimesCanBeSwitchedOff) {
   Rows rows({.told_s = 0, .stop_s = 0});
   rows.add(2'000, 0);
