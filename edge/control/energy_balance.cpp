@@ -1,6 +1,7 @@
 #include "edge/control/energy_balance.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace bess {
 namespace {
@@ -19,6 +20,13 @@ constexpr int kIntervalsToContradict = 2;
 constexpr int kIntervalsBeyondDelay = 15;
 constexpr int kIntervalsOfRest = 5;        ///< until what is lost unmeasured is told
 constexpr int kIntervalsOfShownRest = 10;  ///< until what is measured at 0 W is
+
+/// Under orders that go both ways, what leaves or comes besides: beyond what is lost on the way, and what another
+/// capacity makes of the energy that did not come back.
+constexpr std::int64_t kLostOnTheWayPercent = 15;
+constexpr std::int64_t kUsuallyLostPercent = 5;
+constexpr std::int64_t kWrongScalePercent = 35;
+constexpr int kIntervalsOfDrift = 10;
 
 /// Half standard deviations. An honest battery is far from either bound, so that few will do.
 constexpr std::int64_t kHalfSigmasToTell = 4;
@@ -105,6 +113,7 @@ void EnergyBalance::observe(const EnergyInterval& interval, std::int32_t soc_spa
   const std::int64_t soc_variance = span * span / 12 + kSocErrorE4 * kSocErrorE4;
   judge_flow(soc_variance);
   judge_rest(soc_variance);
+  if (findings_.rest_loss_w == 0) judge_drift(soc_variance);
 }
 
 void EnergyBalance::judge_flow(std::int64_t soc_variance) {
@@ -181,6 +190,44 @@ void EnergyBalance::judge_rest(std::int64_t soc_variance) {
     if (lost_for_good.sum - lost_for_good.largest > kRestContradictedE4 && lost.tells(noise)) {
       findings_.contradicts = true;
     }
+  }
+}
+
+/// Under orders: s_i = k e_i + b t_i, with a loss b that no meter shows. Orders that go both ways tell it from k.
+void EnergyBalance::judge_drift(std::int64_t soc_variance) {
+  const std::int64_t capacity_ws = std::int64_t{3'600} * settings_.capacity_wh;
+  const std::int64_t allowed_w = std::int64_t{settings_.noise_w} * 5 / 4;
+  Evidence lost, gained;
+  std::int64_t seconds = 0, moved_e4 = 0, net_e4 = 0;
+  int flowing = 0, spells = 0;
+  bool was_flowing = false;
+  for (std::size_t i = 0; i < count_; ++i) {
+    const EnergyInterval& interval = back(i);
+    const bool flows = interval.kind == Kind::kFlowing;
+    if (flows && !was_flowing) ++spells;
+    was_flowing = flows;
+    if (!flows) continue;
+    ++flowing;
+    const std::int64_t missing_e4 = interval.energy_e4 - interval.soc_e4;
+    lost.add(missing_e4);
+    gained.add(-missing_e4);
+    seconds += interval.seconds;
+    moved_e4 += std::abs(interval.energy_e4);
+    net_e4 += interval.energy_e4;
+    if (flowing < kIntervalsOfDrift) continue;
+    const std::int64_t allowed_e4 =
+        (kLostOnTheWayPercent * moved_e4 + kWrongScalePercent * std::abs(net_e4)) / kPercent +
+        allowed_w * seconds * 10'000 / capacity_ws;
+    const std::int64_t noise = square_root(2 * spells * soc_variance);
+    const auto beyond_e4 = [&](const Evidence& e) { return e.sum - e.largest - allowed_e4; };
+    const bool loses = 2 * beyond_e4(lost) > kHalfSigmasToTell * noise;
+    const bool gains =
+        2 * beyond_e4(gained) > kHalfSigmasToTell * noise && !settings_.charges_by_itself;
+    if (!loses && !gains) continue;
+    const std::int64_t drift_e4 = lost.sum - kUsuallyLostPercent * moved_e4 / kPercent;
+    findings_.rest_loss_w = static_cast<std::int32_t>(drift_e4 * capacity_ws / 10'000 / seconds);
+    const std::int64_t most_e4 = std::max(beyond_e4(lost), gains ? beyond_e4(gained) : 0);
+    if (most_e4 > kRestContradictedE4) findings_.contradicts = true;
   }
 }
 

@@ -52,7 +52,8 @@ class EnergyBalance {
         false;  ///< beyond what any honest battery does: less than 40 %, more than 250 %
     std::int16_t share_percent =
         0;  ///< of the energy shows in the SoC: below 70 or above 150 where it is found
-    std::int32_t rest_loss_w = 0;  ///< at 0 W it loses that much (negative: gains), measured or not
+    std::int32_t rest_loss_w =
+        0;  ///< at 0 W, or besides its orders, it loses that much (negative: gains), measured or not
   };
 
   explicit EnergyBalance(const EnergyBalanceSettings& settings) : settings_(settings) {}
@@ -68,6 +69,7 @@ class EnergyBalance {
   void add(const EnergyInterval& interval);
   void judge_flow(std::int64_t soc_variance);
   void judge_rest(std::int64_t soc_variance);
+  void judge_drift(std::int64_t soc_variance);
   /// 0 is the newest.
   [[nodiscard]] const EnergyInterval& back(std::size_t i) const {
     return intervals_[(next_ + kIntervals - 1 - i) % kIntervals];

@@ -36,11 +36,12 @@ std::string held_row(double eur_per_mwh) {
 }
 
 std::string frozen_price(const HealthInputs& in) {
-  char text[200];
-  std::snprintf(text, sizeof text,
-                "WARN: prices: frozen_price, %.2f EUR/MWh has not moved for %lld minutes under new "
-                "stamps: does the source hang? (frozen_price_s)",
-                in.price_eur_per_mwh, static_cast<long long>(in.price_unchanged_s / 60));
+  char text[240];
+  std::snprintf(
+      text, sizeof text,
+      "WARN: prices: frozen_price, %.2f EUR/MWh has not moved for %lld minutes under new "
+      "stamps, or for hours only among four values: does the source hang? (frozen_price_s)",
+      in.price_eur_per_mwh, static_cast<long long>(in.price_unchanged_s / 60));
   return text;
 }
 
@@ -79,7 +80,7 @@ void check_findings(const HealthInputs& in, std::vector<std::string>& reasons) {
                       " % of the measured energy: is capacity_wh right, does the power arrive?");
   }
   if (in.rest_loss_w != 0) {
-    reasons.push_back("WARN: at 0 W the battery " +
+    reasons.push_back("WARN: at 0 W, or besides its orders, the battery " +
                       std::string(in.rest_loss_w > 0 ? "loses" : "gains") + " about " +
                       std::to_string(std::abs(in.rest_loss_w)) + " W: what else drives it?");
   }

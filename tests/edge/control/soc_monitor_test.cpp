@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <random>
+#include <tuple>
 
 #include "edge/control/response_monitor.h"
 
@@ -196,6 +197,159 @@ TEST(SocMonitor, ALossAtRestIsToldShownOrHidden) {
   standby.flow = [](double) { return -90.0; };
   standby.meter = [](double, double) { return 0.0; };
   EXPECT_EQ(standby.readings_until(has_told_loss, rest), 1'000);
+}
+
+TEST(SocMonitor, ADrainBesidesOrdersOfEitherSignIsToldWithAnEstimate) {
+  const Orders pairs = [](int i) { return i / 2 % 2 == 0 ? 4'000 : -4'000; };
+  for (const Orders& orders : {Orders{alternating}, pairs}) {
+    for (const std::int32_t step_e4 : {10, 100}) {
+      CountedBattery drained(0.8, step_e4);
+      drained.flow = [](double ordered_w) { return ordered_w - 1'200; };
+      drained.meter = [](double ordered_w, double) { return ordered_w; };
+      EXPECT_LE(drained.readings_until(has_told_loss, orders), step_e4 == 10 ? 30 : 50);
+      EXPECT_NEAR(drained.monitor.findings().rest_loss_w, 1'000, 250);
+      EXPECT_EQ(drained.monitor.trip(), Reason::kStudent);
+
+      CountedBattery creeping(0.2, step_e4);
+      double wrong = 0;
+      creeping.count = [&](double stored) { return stored + (wrong += 0.01); };
+      EXPECT_LE(creeping.readings_until(has_told_loss, orders), 15);
+      EXPECT_LE(creeping.monitor.findings().rest_loss_w, -1'500);
+      EXPECT_LE(creeping.readings_until(has_tripped, orders), 50);
+    }
+  }
+}
+
+TEST(SocMonitor, LossesAndAnotherCapacityAreNoDrain) {
+  const Orders uneven = [](int i) { return i % 3 == 0 ? -4'000 : 2'500; };
+  for (const Orders& orders : {Orders{alternating}, uneven}) {
+    for (const double capacity : {0.8, 1.0, 1.2}) {
+      CountedBattery battery(0.5);
+      battery.count = [capacity](double stored) { return 0.5 + (stored - 0.5) * capacity; };
+      battery.flow = [](double ordered_w) {
+        return ordered_w - 0.11 * std::abs(ordered_w) - 90;  // 80 % there and back, and 90 W
+      };
+      battery.meter = [](double ordered_w, double) { return ordered_w; };
+      EXPECT_EQ(battery.readings_until(has_told_loss, orders), 1'000) << capacity;
+      EXPECT_EQ(battery.monitor.trip(), Reason::kStudent);
+    }
+  }
+}
+
+/// The SoC of a device that brings it up to date every `refresh_s`, and says so.
+struct SeldomBattery {
+  explicit SeldomBattery(std::int32_t refresh_s)
+      : monitor({.band = {.soc_step_e4 = 10, .soc_refresh_s = refresh_s}}), refresh_s(refresh_s) {}
+
+  ResponseMonitor monitor;
+  std::int32_t refresh_s;
+  double stored_frac = 0.5;
+  double flowing_share = 1;  ///< of what is measured
+  double shown_frac = 0.5;
+  std::int64_t now_s = 0;
+  std::int32_t before_w = 0;
+  std::int32_t age_s = 0;
+  bool is_frozen = false;
+
+  void step(std::int32_t ordered_w) {
+    age_s = ordered_w == before_w ? age_s + kReadingS : kReadingS - 3;
+    for (int i = 0; i < kReadingS; ++i) {
+      ++now_s;
+      const std::int32_t flows_w = i < 3 ? before_w : ordered_w;  // read 3 s before the order
+      stored_frac += flowing_share * flows_w / 3'600.0 / 8'000;
+      if (now_s % refresh_s == 0 && !is_frozen) shown_frac = stored_frac;
+    }
+    before_w = ordered_w;
+    monitor.observe(
+        {.steady_s = now_s,
+         .is_driven = true,
+         .ordered_power_w = ordered_w,
+         .order_age_s = age_s,
+         .measurement = {.soc_e4 = static_cast<std::int32_t>(std::lround(shown_frac * 1e3)) * 10,
+                         .power_w = ordered_w,
+                         .capacity_wh = 8'000}});
+  }
+  int steps_until(const std::function<bool(const ResponseMonitor&)>& is_found, const Orders& orders,
+                  int most) {
+    for (int i = 0; i < most; ++i) {
+      step(orders(i));
+      if (is_found(monitor)) return i + 1;
+    }
+    return 1'000;
+  }
+};
+
+TEST(SeldomSoc, HonestIsLeftAloneWhateverIsOrdered) {
+  std::mt19937_64 random(5);
+  for (const std::int32_t refresh_s : {90, 110, 120, 180, 300, 600}) {
+    SeldomBattery battery(refresh_s);
+    for (int i = 0; i < 4'000; ++i) {
+      // Back to the middle: what is meant is not the ends.
+      const std::int32_t towards_w = battery.stored_frac > 0.5 ? -4'000 : 4'000;
+      const std::int32_t any_w = static_cast<std::int32_t>(random() % 9) * 1'000 - 4'000;
+      battery.step(std::abs(battery.stored_frac - 0.5) > 0.3 ? towards_w : any_w);
+      ASSERT_EQ(battery.monitor.trip(), Reason::kStudent) << refresh_s << ' ' << i;
+      ASSERT_FALSE(battery.monitor.has_jumped()) << refresh_s << ' ' << i;
+      ASSERT_EQ(battery.monitor.findings().energy_share_percent, 0) << refresh_s << ' ' << i;
+    }
+  }
+}
+
+TEST(SeldomSoc, FaultsAtOneDirectionAreStillFound) {
+  for (const auto& [refresh_s, frozen_max, half_max] : {std::tuple{120, 5, 40}, {300, 8, 40}}) {
+    SeldomBattery frozen(refresh_s);
+    for (int i = 0; i < 10; ++i) frozen.step(0);
+    frozen.is_frozen = true;
+    EXPECT_LE(frozen.steps_until(has_tripped, charge, 20), frozen_max) << refresh_s;
+
+    SeldomBattery half(refresh_s);
+    half.flowing_share = 0.5;
+    half.stored_frac = 0.1;
+    for (int i = 0; i < 10; ++i) half.step(0);
+    EXPECT_LE(half.steps_until(has_told_share, charge, 50), half_max) << refresh_s;
+    EXPECT_NEAR(half.monitor.findings().energy_share_percent, 50, 10);
+    EXPECT_EQ(half.monitor.trip(), Reason::kStudent);
+
+    SeldomBattery inverted(refresh_s);
+    inverted.flowing_share = -1;
+    for (int i = 0; i < 10; ++i) inverted.step(0);
+    EXPECT_LE(inverted.steps_until(has_tripped, charge, 50), 13) << refresh_s;
+  }
+}
+
+TEST(EnergyPath, OfAWindowIsTheLeastAndTheMostAndTheForgottenEitherWay) {
+  EnergyPath path;
+  path.begin(1'000);
+  path.add(1'100, 4'000);
+  path.add(1'200, -4'000);
+  path.add(1'200, 9'999);  // no time has passed
+  path.add(1'250, 0);
+  EXPECT_EQ(path.energy_ws(), 0);
+  const EnergyRange all = path.since(1'000, 4'000);
+  EXPECT_EQ(all.least_ws, 0);
+  EXPECT_EQ(all.most_ws, 400'000);
+  const EnergyRange half = path.since(1'150, 4'000);
+  EXPECT_EQ(half.least_ws, 0);
+  EXPECT_EQ(half.most_ws, 200'000);
+  const EnergyRange now = path.since(1'250, 4'000);
+  EXPECT_EQ(now.most_ws - now.least_ws, 0);
+  const EnergyRange before = path.since(990, 4'000);
+  EXPECT_EQ(before.least_ws, -40'000);
+  EXPECT_EQ(before.most_ws, 400'000);
+  for (int i = 0; i < 1'000; ++i) path.add(1'250 + i, 1'000);
+  EXPECT_EQ(path.since(2'200, 4'000).least_ws, 950'000);
+  // Of the oldest points nothing is left.
+  EXPECT_EQ(path.since(1'250, 4'000).least_ws,
+            (999 - 63) * 1'000 - (999 - 63) * std::int64_t{4'000});
+}
+
+TEST(EnergyPath, SurelyIsWhatFlowedWhicheverTheInstantsWere) {
+  EXPECT_EQ((EnergyRange{5, 9}).surely_ws(), 5);
+  EXPECT_EQ((EnergyRange{-9, -5}).surely_ws(), -5);
+  EXPECT_EQ((EnergyRange{-1, 9}).surely_ws(), 0);
+  const EnergyRange change = EnergyRange{10, 20}.since({3, 8});
+  EXPECT_EQ(change.least_ws, 2);
+  EXPECT_EQ(change.most_ws, 17);
 }
 
 TEST(SocMonitor, SetRightAtRestIsAJumpWhateverItsSize) {
