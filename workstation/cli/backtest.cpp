@@ -147,7 +147,8 @@ void run_backtest(const BacktestArguments& options) {
   std::vector<GivenPath> inputs = given_paths("--prices", options.prices);
   inputs.push_back({"--config", options.common.config_path});
   std::vector<GivenPath> outputs;
-  for (const char* name : {"backtest.csv", "backtest_days.csv", "backtest.json", "backtest.html"}) {
+  for (const char* name : {"backtest.csv", "backtest_days.csv", "backtest_curve.csv",
+                           "backtest.json", "backtest.html"}) {
     outputs.push_back({"--out", folder / name});
   }
   require_distinct(outputs, inputs);

@@ -7,6 +7,7 @@
 
 #include "shared/host/json.h"
 #include "shared/host/user_error.h"
+#include "workstation/base/answer.h"
 #include "workstation/cli/common_options.h"
 #include "workstation/cli/policy_factory.h"
 #include "workstation/cli/price_input.h"

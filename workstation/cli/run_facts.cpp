@@ -14,6 +14,7 @@
 #include "shared/host/file.h"
 #include "shared/host/json.h"
 #include "shared/utc_text.h"
+#include "workstation/cli/changed_keys.h"
 
 namespace bess {
 namespace {
@@ -121,6 +122,7 @@ std::vector<Fact> run_facts(const RunConfig& config, const MarketSteps& market,
   facts.push_back({"settlement", config.market.settlement == Settlement::kMinute
                                      ? "each minute by its own quarter-hour"
                                      : "each step by the quarter-hour in which it starts"});
+  facts.push_back({"keys changed", changed_keys_text(config)});
   facts.push_back(
       {"seed, threads", fmt::format("{}, {}", config.train.seed, config.train.threads)});
   return facts;

@@ -24,31 +24,19 @@ inline constexpr const char* kUnprovedStudent = "student_unproved.json";
 inline constexpr const char* kUnprovedViolations = "student_unproved_violations.csv";
 inline constexpr const char* kDistilCurve = "distil_curve.csv";
 inline constexpr const char* kProofRounds = "proof_rounds.csv";
+inline constexpr const char* kCheckpoints = "student_checkpoints.csv";
 inline constexpr const char* kHeader = "student_weights.h";
 inline constexpr const char* kTable = "evaluation.csv";
 inline constexpr const char* kDays = "evaluation_days.csv";
 inline constexpr const char* kSummary = "summary.txt";
 inline constexpr const char* kReport = "report.html";
 /// All that a run writes, but for the figures.
-inline constexpr const char* kAll[] = {kRecord,
-                                       kTimes,
-                                       kConfig,
-                                       kSimulatedPrices,
-                                       kTeacher,
-                                       kCheckpoint,
-                                       kTrainingCurve,
-                                       kPlainStudent,
-                                       kPlainViolations,
-                                       kStudent,
-                                       kUnprovedStudent,
-                                       kUnprovedViolations,
-                                       kDistilCurve,
-                                       kProofRounds,
-                                       kHeader,
-                                       kTable,
-                                       kDays,
-                                       kSummary,
-                                       kReport};
+inline constexpr const char* kAll[] = {
+    kRecord,          kTimes,       kConfig,          kSimulatedPrices,
+    kTeacher,         kCheckpoint,  kTrainingCurve,   kPlainStudent,
+    kPlainViolations, kStudent,     kUnprovedStudent, kUnprovedViolations,
+    kDistilCurve,     kProofRounds, kCheckpoints,     kHeader,
+    kTable,           kDays,        kSummary,         kReport};
 }  // namespace run_file
 
 struct RunFolder {

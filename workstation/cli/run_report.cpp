@@ -7,6 +7,7 @@
 #include "workstation/cli/policy_factory.h"
 #include "workstation/cli/run_facts.h"
 #include "workstation/env/evaluate.h"
+#include "workstation/report/comparison_notes.h"
 #include "workstation/report/risk_table.h"
 #include "workstation/report/rule_prices.h"
 #include "workstation/rules/ruled_policy.h"
@@ -108,6 +109,7 @@ std::vector<std::string> write_run_report(const RunResults& run,
       .evaluations = evaluations,
       .training_curve = run.training_curve,
       .distil_curve = run.distil_curve,
+      .checkpoints = run.checkpoints,
       .teacher = &run.teacher,
       .uncorrected = &run.plain,
       .corrected = &run.corrected,
@@ -116,7 +118,9 @@ std::vector<std::string> write_run_report(const RunResults& run,
       .facts = run_facts(run.config, run.market, folder),
   };
   std::vector<std::string> names = write_report(inputs, folder.path);
-  std::string summary = format_comparison_table(evaluations) +
+  const std::string alike = same_program_text(evaluations);
+  std::string summary = format_comparison_table(evaluations) + (alike.empty() ? "" : alike + "\n") +
+                        whole_battery_text(evaluations) +
                         violations_text(run.plain.certificate, run.corrected.certificate);
   if (const std::string risks = risk_table(evaluations, teacher_name(run.teacher));
       !risks.empty()) {

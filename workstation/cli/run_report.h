@@ -19,6 +19,7 @@ struct RunResults {
   StudentFile corrected;
   std::vector<CurvePoint> training_curve;
   std::vector<DistilPoint> distil_curve;
+  std::vector<StudentCheckpoint> checkpoints = {};
 };
 
 /// Throws UserError: asked before anything is trained.

@@ -262,19 +262,20 @@ RunStages::Names RunStages::make_corrected_student() {
   const StudentFile& student = student_of(corrected.verdict);
   write_file(path(kProofRounds), proof_rounds_csv(corrected.rounds));
   write_file(path(kDistilCurve), distil_curve_csv(corrected.curve));
+  write_file(path(kCheckpoints), student_checkpoints_csv(corrected.checkpoints));
   const auto* proved = std::get_if<ProvedStudent>(&corrected.verdict);
   unproved_ = proved == nullptr;
   if (unproved_) {
     save_student(path(kUnprovedStudent), student);
     write_file(path(kUnprovedViolations), counterexamples_csv(student.certificate.counterexamples));
-    return {kUnprovedStudent, kUnprovedViolations, kDistilCurve, kProofRounds};
+    return {kUnprovedStudent, kUnprovedViolations, kDistilCurve, kProofRounds, kCheckpoints};
   }
   save_student(path(kStudent), student);
   const std::size_t rounds = corrected.rounds.size();
   proved_ = *proved;
   tell(fmt::format("no violation over {} states, {} round{}", student.certificate.states_checked,
                    rounds, rounds == 1 ? "" : "s"));
-  return {kStudent, kDistilCurve, kProofRounds};
+  return {kStudent, kDistilCurve, kProofRounds, kCheckpoints};
 }
 
 StudentFile RunStages::unproved_student() const {
@@ -324,6 +325,9 @@ RunResults RunStages::results(StudentFile corrected) {
                      std::move(corrected),
                      parse_training_curve_csv(text(kTrainingCurve), path(kTrainingCurve).string()),
                      parse_distil_curve_csv(text(kDistilCurve), path(kDistilCurve).string())};
+  if (fs::exists(path(kCheckpoints))) {  // an older run has none
+    results.checkpoints = parse_student_checkpoints_csv(text(kCheckpoints), kCheckpoints);
+  }
   results.plain.certificate.counterexamples =
       parse_counterexamples_csv(text(kPlainViolations), path(kPlainViolations).string());
   return results;

@@ -43,36 +43,17 @@ std::optional<PairedDifference> gain(const Evaluation& run, const Evaluation& fi
   return paired_difference(run, first);
 }
 
-/// The value of a key for people, in one line; rules by what they say.
-std::string value_text(const RunRecord& record, const std::string& key) {
-  const std::string value = record.value(key);
-  if (key != kRulesKey) return value.empty() ? "unknown" : one_line(value);
-  if (value.empty()) return "none";
-  std::string text;
-  for (const Rule& rule : parse_rules(value, "run.json: rules").rules) {
-    text += fmt::format("{}\"{}\" ({}{})", text.empty() ? "" : "; ", rule.name, rule.text(),
-                        rule.enforce ? "; the guard's too" : "");
-  }
-  return text;
-}
-
-/// "KEY: A | B | C" for every key, of any run, of which the runs have not all the same value.
+/// "KEY: A | B | C" for each of them.
 std::string what_differs(const std::vector<RunSummary>& runs) {
-  std::vector<std::string> keys;
-  for (const RunSummary& run : runs) {
-    for (const auto& [key, value] : run.record.identity) {
-      if (std::ranges::find(keys, key) == keys.end()) keys.push_back(key);
-    }
-  }
+  std::vector<const RunRecord*> records;
+  for (const RunSummary& run : runs) records.push_back(&run.record);
   std::string text;
-  for (const std::string& key : keys) {
+  for (const std::string& key : differing_keys(records)) {
     std::string line;
-    bool is_same = true;
-    for (const RunSummary& run : runs) {
-      line += fmt::format("{}{}", line.empty() ? "" : " | ", value_text(run.record, key));
-      is_same = is_same && run.record.value(key) == runs.front().record.value(key);
+    for (const RunRecord* record : records) {
+      line += fmt::format("{}{}", line.empty() ? "" : " | ", value_text(*record, key));
     }
-    if (!is_same) text += fmt::format("{}: {}\n", key, line);
+    text += fmt::format("{}: {}\n", key, line);
   }
   return text;
 }
@@ -99,6 +80,30 @@ std::size_t rules_of(const RunSummary& run) {
 }
 
 }  // namespace
+
+std::string value_text(const RunRecord& record, const std::string& key) {
+  const std::string value = record.value(key);
+  if (key != kRulesKey) return value.empty() ? "unknown" : one_line(value);
+  if (value.empty()) return "none";
+  std::string text;
+  for (const Rule& rule : parse_rules(value, "run.json: rules").rules) {
+    text += fmt::format("{}\"{}\" ({}{})", text.empty() ? "" : "; ", rule.name, rule.text(),
+                        rule.enforce ? "; the guard's too" : "");
+  }
+  return text;
+}
+
+std::vector<std::string> differing_keys(const std::vector<const RunRecord*>& runs) {
+  std::vector<std::string> keys;
+  for (const RunRecord* run : runs) {
+    for (const auto& [key, value] : run->identity) {
+      const bool is_same = std::ranges::all_of(
+          runs, [&](const RunRecord* other) { return other->value(key) == value; });
+      if (!is_same && std::ranges::find(keys, key) == keys.end()) keys.push_back(key);
+    }
+  }
+  return keys;
+}
 
 RunSummary load_run_summary(const RunFolder& folder) {
   std::optional<RunRecord> record = load_run_record(folder);

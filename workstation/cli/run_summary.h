@@ -33,6 +33,11 @@ struct Band {
 };
 std::vector<Band> bands_of(const std::vector<RunSummary>& runs);
 
+/// The value of a key for people, in one line; rules by what they say.
+std::string value_text(const RunRecord& record, const std::string& key);
+/// The keys, of any run, of which the runs have not all the same value.
+std::vector<std::string> differing_keys(const std::vector<const RunRecord*>& runs);
+
 /// A line a run, and what the runs differ in.
 std::string format_runs_table(const std::vector<RunSummary>& runs);
 

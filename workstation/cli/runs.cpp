@@ -4,9 +4,13 @@
 #include <algorithm>
 #include <memory>
 
+#include "shared/host/distinct_files.h"
+#include "shared/host/file.h"
+#include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/run_summary.h"
+#include "workstation/cli/runs_page.h"
 
 namespace bess {
 namespace {
@@ -16,6 +20,7 @@ namespace fs = std::filesystem;
 struct Options {
   std::vector<std::string> folders;
   bool json = false;
+  std::string html;
 };
 
 /// A folder of several seeds stands for all of its runs.
@@ -36,11 +41,29 @@ std::vector<RunFolder> runs_in(const std::string& name) {
   return runs;
 }
 
-void compare(const Options& options) {
-  std::vector<RunSummary> runs;
+std::vector<RunFolder> all_runs(const Options& options) {
+  std::vector<RunFolder> all;
   for (const std::string& name : options.folders) {
-    for (const RunFolder& folder : runs_in(name)) runs.push_back(load_run_summary(folder));
+    std::ranges::move(runs_in(name), std::back_inserter(all));
   }
+  return all;
+}
+
+void write_page(const Options& options) {
+  require_distinct({{"--html", options.html}}, given_paths("", options.folders));
+  require_writable(options.html);
+  std::vector<RunLine> runs;
+  for (const RunFolder& folder : all_runs(options)) runs.push_back(load_run_line(folder));
+  write_file(options.html, runs_page(runs, options.html));
+  const auto finished =
+      std::ranges::count_if(runs, [](const RunLine& run) { return run.summary.has_value(); });
+  fmt::print("{}: {}, {} with figures\n", options.html, counted(runs.size(), "run"), finished);
+}
+
+void compare(const Options& options) {
+  if (!options.html.empty()) return write_page(options);
+  std::vector<RunSummary> runs;
+  for (const RunFolder& folder : all_runs(options)) runs.push_back(load_run_summary(folder));
   if (!options.json) {
     fmt::print("{}", format_runs_table(runs));
     return;
@@ -59,11 +82,14 @@ void add_runs_commands(ProgramCommand& app) {
   command.option("folders", options->folders, "Run folders, or folders of 'run --seeds'")
       .required();
   command.flag("--json", options->json, "One JSON object a line and run");
+  command.option("--html", options->html,
+                 "Instead a page with a table to sort, also of runs that failed or were stopped");
   command.footer(
       "Gains are over the first, day by day.\n"
       "Examples:\n"
       "  bess-train runs compare runs/first runs/second\n"
-      "  bess-train runs compare runs/seeds --json");
+      "  bess-train runs compare runs/seeds --json\n"
+      "  bess-train runs compare runs/* --html runs/all.html");
   command.runs([options] { compare(*options); });
 }
 

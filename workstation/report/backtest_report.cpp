@@ -13,6 +13,7 @@
 #include "workstation/report/comparison.h"
 #include "workstation/report/figure.h"
 #include "workstation/report/html.h"
+#include "workstation/report/picture_table.h"
 
 namespace bess {
 namespace {
@@ -178,6 +179,25 @@ Figure cumulative_figure(const BacktestResults& results) {
   }
   figure.commands += "unset multiplot\n";
   return figure;
+}
+
+/// The numbers of the figure, EUR per MWh.
+PictureTable curve_table(const BacktestResults& results) {
+  PictureTable table{"backtest_curve", {"date"}, {}};
+  std::vector<std::vector<double>> columns;
+  for (const WalkForward* policy : shown_in_figure(results)) {
+    table.columns.push_back(policy->name);
+    table.columns.push_back(policy->name + " below peak");
+    columns.push_back(policy->cumulative_eur_per_mwh());
+    columns.push_back(below_peak(columns.back()));
+  }
+  const std::vector<DayResult>& days = results.policies.front().total.days;
+  for (std::size_t d = 0; d < days.size(); ++d) {
+    std::vector<std::string> row{days[d].date};
+    for (const auto& column : columns) row.push_back(exact(column[d]));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
 }
 
 HtmlTable total_table(const BacktestResults& results) {
@@ -353,6 +373,8 @@ Json backtest_json(const BacktestResults& results) {
 void write_backtest_page(const BacktestResults& results, const std::filesystem::path& folder) {
   const Figure figure = cumulative_figure(results);
   draw_figure(figure, folder);
+  const PictureTable curve = curve_table(results);
+  write_picture(curve, folder);
   const std::filesystem::path svg = folder / (figure.name + ".svg");
   const std::string body = fmt::format(
       "<h1>Walk-forward backtest</h1>\n<p>{}</p>\n{}\n<p class=\"note\">By month: "
@@ -361,7 +383,8 @@ void write_backtest_page(const BacktestResults& results, const std::filesystem::
       html_escaped(results.provenance), format_table(total_table(results)),
       html_escaped(by_month_meaning(results.policies.front().total.errors().months)),
       html_escaped(figure.title), legend_html(results), inline_svg(read_file(svg), figure),
-      html_escaped(figure.caption), format_table(month_table(results)), skipped_html(results));
+      html_escaped(with_true_minus(figure.caption)) + " " + csv_link(picture_file(curve)),
+      format_table(month_table(results)), skipped_html(results));
   write_file(folder / "backtest.html", format_page("Walk-forward backtest", body));
 }
 

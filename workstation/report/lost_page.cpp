@@ -16,8 +16,7 @@ namespace bess {
 namespace {
 
 constexpr std::size_t kWorstDays = 8;
-constexpr double kNamedShare = 0.1;      ///< of what a day missed, from which on a cause is named
-constexpr std::size_t kMonthLength = 7;  // of "2023-01"
+constexpr double kNamedShare = 0.1;  ///< of what a day missed, from which on a cause is named
 
 LossCause cause_at(std::size_t index) { return static_cast<LossCause>(index); }
 
@@ -43,7 +42,7 @@ std::map<std::string, std::array<double, kHoursPerDay>> regret_by_month(
   std::map<std::string, std::array<double, kHoursPerDay>> months;
   std::map<std::string, double> days;
   for (const DayLoss& day : losses) {
-    const std::string month = day.date.substr(0, kMonthLength);
+    const std::string month = day.date.substr(0, kMonthTextLength);
     days[month] += 1;
     for (std::size_t h = 0; h < kHoursPerDay; ++h) {
       months[month][h] += day.regret_eur[h] / capacity_mwh;
@@ -170,8 +169,6 @@ std::string days_html(const std::vector<DayLoss>& losses, double capacity_mwh) {
   }
   return text + "</tbody></table></figure>\n";
 }
-
-std::string exact(double value) { return fmt::format("{:.6f}", value + 0.0); }
 
 PictureTable cause_table(const std::vector<DayLoss>& losses, double capacity_mwh) {
   const Means means(losses, capacity_mwh);

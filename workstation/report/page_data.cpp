@@ -49,7 +49,6 @@ Json policies_json(const std::vector<NamedEvaluation>& evaluations) {
   return list;
 }
 
-/// The exported policy first.
 std::vector<PolicySteps> all_steps(const ReportInputs& in, const std::vector<MarketDay>& days) {
   std::vector<PolicySteps> all;
   for (const ShownPolicy& shown : shown_policies(in)) {
@@ -84,12 +83,10 @@ std::vector<double> against_foresight(const ReportInputs& in, std::vector<double
   return profits;
 }
 
-Json archive_json(const ReportInputs& in, const std::vector<MarketDay>& days) {
-  const std::vector<PolicySteps> policies = all_steps(in, days);
-  const auto kept = days_with_steps(against_foresight(in, profits_by_day(days, policies.front())),
-                                    kDaysWithSteps);
-  Json archive = step_archive(in.market, days, policies, kept, context_classes_of(in));
-  archive.set("days_left_out", days.size() - kept.size());
+Json archive_json(const ReportInputs& in, const PageSteps& steps) {
+  Json archive =
+      step_archive(in.market, steps.days, steps.policies, steps.kept, context_classes_of(in));
+  archive.set("days_left_out", steps.days.size() - steps.kept.size());
   return archive;
 }
 
@@ -133,18 +130,10 @@ Json counterexamples_json(const ReportInputs& in) {
   return list;
 }
 
-/// The class that most steps of the test days are in, at noon: what the map shows first.
-Json first_map_json(const ReportInputs& in, const std::vector<MarketDay>& days) {
-  const ContextClasses classes = context_classes_of(in);
-  std::array<std::size_t, kContextClassCount + 1> steps{};
-  for (const MarketDay& day : days) {
-    for (const MarketStep& step : in.market.of(day)) {
-      ++steps[static_cast<std::size_t>(classes.class_of(step.month, step.level_centi_eur_per_mwh))];
-    }
-  }
-  const auto most = std::max_element(steps.begin() + 1, steps.end()) - steps.begin();
-  return Json::object(
-      {{"context_class", most}, {"quarter_hour", kNoonQuarterHour}, {"minute", kMiddleMinute}});
+Json map_json(const PolicyContext& context) {
+  return Json::object({{"context_class", context.context_class},
+                       {"quarter_hour", context.quarter_hour},
+                       {"minute", context.minute_of_quarter_hour}});
 }
 
 Json contexts_json(const ContextClasses& classes) {
@@ -165,7 +154,16 @@ Json learning_json(const ReportInputs& in) {
         numbers({static_cast<double>(p.epoch), p.teacher_loss, p.correction_loss, p.visited_loss}));
     by_construction = by_construction && p.is_by_construction();
   }
+  Json checkpoints = Json::list();
+  for (const StudentCheckpoint& c : in.checkpoints) {
+    Json point = Json::list();
+    point.add(c.epoch);
+    point.add(c.validation_eur_per_day_per_mwh);
+    point.add(checkpoint_state_name(c.state));
+    checkpoints.add(std::move(point));
+  }
   Json json = Json::object({{"by_construction", by_construction}});
+  json.set("checkpoints", std::move(checkpoints));
   json.set("training", std::move(training));
   json.set("distil", std::move(distil));
   return json;
@@ -176,6 +174,8 @@ Json prices_json(const MarketSteps& market) {
   Json json = Json::object({{"low", histogram.low}, {"bin", kPriceBinEurPerMwh}});
   json.set("train", numbers(histogram.percent_by_bin(histogram.train)));
   json.set("test", numbers(histogram.percent_by_bin(histogram.test)));
+  json.set("outside_train", histogram.percent_outside(histogram.train));
+  json.set("outside_test", histogram.percent_outside(histogram.test));
   return json;
 }
 
@@ -228,21 +228,41 @@ Json lattice_json() {
                        {"price_max", kLatticePriceMaxEurPerMwh}});
 }
 
-Json page_data(const ReportInputs& in) {
-  const std::vector<MarketDay> days = in.market.days_of(Split::kTest);
+PageSteps page_steps(const ReportInputs& in) {
+  PageSteps steps{in.market.days_of(Split::kTest), {}, {}};
+  steps.policies = all_steps(in, steps.days);
+  steps.kept = days_with_steps(
+      against_foresight(in, profits_by_day(steps.days, steps.policies.front())), kDaysWithSteps);
+  return steps;
+}
+
+PolicyContext first_map(const ReportInputs& in) {
+  const ContextClasses classes = context_classes_of(in);
+  std::array<std::size_t, kContextClassCount + 1> steps{};
+  for (const MarketDay& day : in.market.days_of(Split::kTest)) {
+    for (const MarketStep& step : in.market.of(day)) {
+      ++steps[static_cast<std::size_t>(classes.class_of(step.month, step.level_centi_eur_per_mwh))];
+    }
+  }
+  const auto most = std::max_element(steps.begin() + 1, steps.end()) - steps.begin();
+  return {static_cast<int>(most), kNoonQuarterHour, kMiddleMinute};
+}
+
+Json page_data(const ReportInputs& in, const PageSteps& steps) {
+  const std::vector<MarketDay>& days = steps.days;
   Json dates = Json::list();
   for (const MarketDay& day : days) dates.add(day.date());
   Json data = Json::object({{"exported", kCorrectedName}, {"foresight", kForesightName}});
   data.set("battery", battery_json(in.battery));
   data.set("dates", std::move(dates));
   data.set("policies", policies_json(in.evaluations));
-  data.set("archive", archive_json(in, days));
+  data.set("archive", archive_json(in, steps));
   data.set("lattice", lattice_json());
   data.set("contexts", contexts_json(context_classes_of(in)));
   data.set("thresholds", thresholds_json(thresholds_of(in)));
   data.set("students", students_json(in));
   data.set("counterexamples", counterexamples_json(in));
-  data.set("first_map", first_map_json(in, days));
+  data.set("first_map", map_json(first_map(in)));
   data.set("learning", learning_json(in));
   data.set("prices", prices_json(in.market));
   return data;

@@ -4,6 +4,7 @@
 
 #include "shared/host/json.h"
 #include "workstation/report/report.h"
+#include "workstation/report/step_archive.h"
 
 namespace bess {
 
@@ -19,6 +20,17 @@ std::vector<std::size_t> days_with_steps(const std::vector<double>& profit_eur, 
 Json student_json(const StudentNet& net);
 Json lattice_json();
 
-Json page_data(const ReportInputs& inputs);
+/// What the run's own policies did on the test days.
+struct PageSteps {
+  std::vector<MarketDay> days;        ///< all test days
+  std::vector<PolicySteps> policies;  ///< of all of them; the exported policy first
+  std::vector<std::size_t> kept;      ///< indices of the days that the page holds, ascending
+};
+PageSteps page_steps(const ReportInputs& inputs);
+
+/// What the page's map shows first: the class that most steps of the test days are in, at noon.
+PolicyContext first_map(const ReportInputs& inputs);
+
+Json page_data(const ReportInputs& inputs, const PageSteps& steps);
 
 }  // namespace bess

@@ -6,6 +6,8 @@
 #include <array>
 #include <string_view>
 
+#include "shared/action.h"  // its enumerators have names of colours: GCC wants them declared before
+
 namespace bess {
 
 struct Colour {

@@ -17,6 +17,11 @@ std::string line_of(const std::vector<std::string>& fields) {
 
 }  // namespace
 
+std::string exact(double value) {
+  const std::string text = fmt::format("{:.6f}", value);
+  return text == "-0.000000" ? text.substr(1) : text;
+}
+
 std::string picture_file(const PictureTable& table) {
   return table.name + (table.packed ? ".csv.gz" : ".csv");
 }

@@ -7,6 +7,11 @@
 
 namespace bess {
 
+inline constexpr std::size_t kMonthTextLength = 7;  ///< of "2023-01"
+
+/// A number to six decimals, nothing without a minus.
+std::string exact(double value);
+
 struct PictureTable {
   std::string name;  ///< of the file, without its ending
   std::vector<std::string> columns;

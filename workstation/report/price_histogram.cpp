@@ -34,6 +34,13 @@ std::vector<double> PriceHistogram::percent_by_bin(const std::vector<double>& so
   return percent;
 }
 
+double PriceHistogram::percent_outside(const std::vector<double>& sorted) const {
+  if (sorted.empty()) return 0;
+  double inside = 0;
+  for (const double percent : percent_by_bin(sorted)) inside += percent;
+  return std::max(0.0, 100 - inside);
+}
+
 PriceHistogram price_histogram(const MarketSteps& market) {
   PriceHistogram histogram{sorted_observed(market, Split::kTrain),
                            sorted_observed(market, Split::kTest), 0, 0};

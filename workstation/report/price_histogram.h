@@ -17,6 +17,8 @@ struct PriceHistogram {
 
   /// Percent of `sorted` in each bin from low to high.
   [[nodiscard]] std::vector<double> percent_by_bin(const std::vector<double>& sorted) const;
+  /// Percent of `sorted` beyond them on either side.
+  [[nodiscard]] double percent_outside(const std::vector<double>& sorted) const;
 };
 
 PriceHistogram price_histogram(const MarketSteps& market);

@@ -10,9 +10,12 @@
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
 #include "shared/units_and_limits.h"
+#include "workstation/report/comparison_notes.h"
 #include "workstation/report/headline.h"
+#include "workstation/report/html.h"
 #include "workstation/report/lost_page.h"
 #include "workstation/report/page_data.h"
+#include "workstation/report/page_pictures.h"
 #include "workstation/report/report_page.h"
 #include "workstation/report/report_tables.h"
 #include "workstation/report/risk_page.h"
@@ -140,11 +143,17 @@ const Certificate* certificate_of(const StudentFile* student) {
   return student == nullptr ? nullptr : &student->certificate;
 }
 
+std::string same_program_html(const std::vector<NamedEvaluation>& evaluations) {
+  const std::string text = same_program_text(evaluations);
+  return text.empty() ? text : fmt::format("<p class=\"note\">{}.</p>\n", html_escaped(text));
+}
+
 double capacity_mwh_of(const ReportInputs& in) {
   return in.battery.capacity_wh / kWattsPerMegawatt;
 }
 
-std::string page_of(const ReportInputs& in, const std::vector<DayLoss>& losses) {
+std::string page_of(const ReportInputs& in, const PageSteps& steps,
+                    const std::vector<DayLoss>& losses) {
   std::vector<Fact> facts = in.facts;
   facts.push_back({"battery", battery_text(in.battery)});
   const std::optional<RulePrices> prices = rule_prices_of(in.evaluations);
@@ -152,8 +161,10 @@ std::string page_of(const ReportInputs& in, const std::vector<DayLoss>& losses) 
       {{"title", kPageTitle},
        {"head", head_of(in)},
        {"failure", section_of("failure", "Where the proof failed", failure_html(in.broken))},
-       {"comparison", section_of("comparison", "What each policy earned",
-                                 comparison_html(in.evaluations) + risk_html(in.evaluations))},
+       {"comparison",
+        section_of("comparison", "What each policy earned",
+                   comparison_html(in.evaluations) + same_program_html(in.evaluations) +
+                       whole_battery_html(in.evaluations) + risk_html(in.evaluations))},
        {"lost",
         section_of("lost", "Where it lost, and why", lost_html(losses, capacity_mwh_of(in)))},
        {"lost_link", losses.empty() ? "" : "<li><a href=\"#lost\">Where it lost</a></li>\n"},
@@ -166,7 +177,7 @@ std::string page_of(const ReportInputs& in, const std::vector<DayLoss>& losses) 
                    proof_html(certificate_of(in.uncorrected), certificate_of(in.corrected)))},
        {"provenance",
         section_of("provenance", "Where this comes from", provenance_html(facts, in.provenance))}},
-      page_data(in));
+      page_data(in, steps));
 }
 
 }  // namespace
@@ -203,11 +214,14 @@ std::vector<std::string> write_report(const ReportInputs& inputs, const fs::path
     names.push_back(figure.name + "_dark.svg");
   }
   const std::vector<DayLoss> losses = losses_of(inputs);
-  for (const PictureTable& table : lost_tables(losses, capacity_mwh_of(inputs))) {
+  const PageSteps steps = page_steps(inputs);
+  std::vector<PictureTable> pictures = page_pictures(inputs, steps);
+  std::ranges::move(lost_tables(losses, capacity_mwh_of(inputs)), std::back_inserter(pictures));
+  for (const PictureTable& table : pictures) {
     write_picture(table, folder);
     names.push_back(picture_file(table));
   }
-  write_file(folder / kPage, page_of(inputs, losses));
+  write_file(folder / kPage, page_of(inputs, steps, losses));
   return names;
 }
 

@@ -13,6 +13,7 @@
 #include "workstation/report/provenance.h"
 #include "workstation/rl/train.h"
 #include "workstation/student/failed_proof.h"
+#include "workstation/student/student_checkpoints.h"
 #include "workstation/student/student_file.h"
 
 namespace bess {
@@ -20,10 +21,11 @@ namespace bess {
 struct ReportInputs {
   const MarketSteps& market;  ///< delay and settlement as trained
   BatteryParameters battery = {};
-  double initial_soc_frac = 0.5;                  ///< with which each test day starts
-  std::vector<NamedEvaluation> evaluations = {};  ///< on the test days; the first is rule-based
-  std::vector<CurvePoint> training_curve = {};    ///< may be empty
-  std::vector<DistilPoint> distil_curve = {};     ///< may be empty
+  double initial_soc_frac = 0.5;                    ///< with which each test day starts
+  std::vector<NamedEvaluation> evaluations = {};    ///< on the test days; the first is rule-based
+  std::vector<CurvePoint> training_curve = {};      ///< may be empty
+  std::vector<DistilPoint> distil_curve = {};       ///< may be empty
+  std::vector<StudentCheckpoint> checkpoints = {};  ///< of the corrected student; may be empty
   const Teacher* teacher = nullptr;  ///< each pointer may be null: what it shows is left out
   const StudentFile* uncorrected = nullptr;  ///< both students with the prover's certificate
   const StudentFile* corrected = nullptr;

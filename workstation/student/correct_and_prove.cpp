@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
@@ -43,7 +44,23 @@ Verdict judge(StudentFile student, const DistilOptions& options) {
 struct Candidate {
   StudentNet net;
   double score;
+  int epoch;
 };
+
+/// Appends the candidates of a round, which are ordered by score, in time; those before `chosen` disobey.
+void note_checkpoints(const std::vector<Candidate>& candidates, std::size_t chosen, int round,
+                      std::vector<StudentCheckpoint>& checkpoints) {
+  const auto before = static_cast<std::ptrdiff_t>(checkpoints.size());
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const CheckpointState state = i < chosen    ? CheckpointState::kDisobeys
+                                  : i == chosen ? CheckpointState::kChosen
+                                                : CheckpointState::kPassedOver;
+    checkpoints.push_back({round, candidates[i].epoch, candidates[i].score, state});
+  }
+  std::sort(
+      checkpoints.begin() + before, checkpoints.end(),
+      [](const StudentCheckpoint& a, const StudentCheckpoint& b) { return a.epoch < b.epoch; });
+}
 
 /// What a look at the states that decide a monotone student found.
 struct Look {
@@ -132,27 +149,33 @@ CorrectionResult construct_and_prove(const Teacher& teacher, const Matrix& visit
   MonotoneDistiller distiller(teacher, lessons, options);
   const RuleLessons rules(options.rules, teacher.context.kind);
   CorrectionResult result{.verdict = student, .curve = {}, .rounds = {}};
+  int epochs_before = 0;
   std::vector<LatticeState> counterexamples;
   RoundTeller teller(options, watch);
   const bool chooses = score && options.correct;
   for (std::size_t round = 0; round < teller.most() && !interrupted; ++round) {
     std::vector<Candidate> candidates;
     double next_look = kFirstLook;
-    distiller.run(round == 0 ? options.epochs : options.repair_epochs, counterexamples, interrupted,
-                  [&](double done) {
-                    if (done < 1 && (!chooses || done < next_look)) return;
-                    next_look = done + (1 - kFirstLook) / kLooks;
-                    StudentNet net =
-                        quantise_student(distiller.parameters(), teacher.price_map, kSaturation);
-                    net.context = teacher.context;
-                    candidates.push_back({net, chooses ? score(net) : 0.0});
-                  });
+    const int epochs = round == 0 ? options.epochs : options.repair_epochs;
+    distiller.run(epochs, counterexamples, interrupted, [&](double done) {
+      if (done < 1 && (!chooses || done < next_look)) return;
+      next_look = done + (1 - kFirstLook) / kLooks;
+      StudentNet net = quantise_student(distiller.parameters(), teacher.price_map, kSaturation);
+      net.context = teacher.context;
+      candidates.push_back({net, chooses ? score(net) : 0.0,
+                            epochs_before + static_cast<int>(std::lround(done * epochs))});
+    });
+    epochs_before += epochs;
     std::ranges::stable_sort(candidates, std::ranges::greater{}, &Candidate::score);
     if (candidates.empty()) break;  // interrupted
     const auto obedient = std::ranges::find_if(candidates, [&](const Candidate& candidate) {
       return look_at_corners(candidate.net, options, rules).states.empty();
     });
     const bool is_last = round + 1 == teller.most();
+    if (chooses) {
+      note_checkpoints(candidates, static_cast<std::size_t>(obedient - candidates.begin()),
+                       static_cast<int>(round) + 1, result.checkpoints);
+    }
     if (obedient == candidates.end() && !is_last) {
       Look look = look_at_corners(candidates.front().net, options, rules);
       counterexamples = std::move(look.states);
@@ -200,6 +223,7 @@ CorrectionResult correct_and_prove(const Teacher& teacher, const Matrix& visited
   student.provenance = provenance_of(teacher, options);
   CorrectionResult result{.verdict = student, .curve = {}, .rounds = {}};
   double margin_scale = 1;
+  int epochs_done = 0;
   RoundTeller teller(options, watch);
   for (std::size_t round = 0; round < teller.most() && !interrupted; ++round) {
     const int epochs = round == 0 ? options.epochs : options.repair_epochs;
@@ -207,7 +231,14 @@ CorrectionResult correct_and_prove(const Teacher& teacher, const Matrix& visited
                   interrupted);
     student.net = quantise_student(distiller.parameters(), teacher.price_map);
     student.net.context = teacher.context;
+    epochs_done += epochs;
     result.verdict = judge(student, options);
+    if (score && options.correct) {  // the last one is taken, whatever it earns
+      const bool is_proved = std::holds_alternative<ProvedStudent>(result.verdict);
+      result.checkpoints.push_back(
+          {static_cast<int>(round) + 1, epochs_done, score(student.net),
+           is_proved ? CheckpointState::kChosen : CheckpointState::kDisobeys});
+    }
     teller.add(round_of(student_of(result.verdict).certificate), result.rounds);
     if (std::holds_alternative<ProvedStudent>(result.verdict)) break;
     margin_scale *= kMarginGrowth;

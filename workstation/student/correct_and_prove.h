@@ -10,6 +10,7 @@
 #include "workstation/correction/distil.h"
 #include "workstation/student/proof_rounds.h"
 #include "workstation/student/prove.h"
+#include "workstation/student/student_checkpoints.h"
 
 namespace bess {
 
@@ -17,6 +18,7 @@ struct CorrectionResult {
   Verdict verdict;  ///< of the last round: a proved student, or the one with what is left
   std::vector<DistilPoint> curve;
   std::vector<ProofRound> rounds;  ///< empty when interrupted before the first proof
+  std::vector<StudentCheckpoint> checkpoints = {};  ///< in time; empty where nothing was scored
 };
 
 /// What a student earns on validation days.

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "shared/host/csv.h"
 #include "shared/host/file.h"
 #include "tests/support/temporary_folder.h"
 
@@ -94,6 +95,24 @@ TEST(BacktestReport, ThePageLabelsEachMonthOnceAndDrawsAFallWhereThereIsOne) {
               HasSubstr("no day ended below an earlier one"),
               HasSubstr("<ul class=\"legend\"><li><i style=\"background:var(--muted)\"></i>rbc"),
               HasSubstr("fitted on days"), Not(HasSubstr("on the 120 days before it,"))));
+  }
+}
+
+TEST(BacktestReport, ThePictureHasItsFile) {
+  const TemporaryFolder folder;
+  const BacktestResults fitted = results(5);
+  write_backtest_page(fitted, folder.file(""));
+  EXPECT_THAT(read_file(folder.file("backtest.html")), HasSubstr("href=\"backtest_curve.csv\""));
+  const CsvTable curve = CsvTable::read(folder.file("backtest_curve.csv"));
+  ASSERT_EQ(curve.row_count(), 6U);
+  for (const WalkForward& policy : fitted.policies) {
+    const std::vector<double> sums = policy.cumulative_eur_per_mwh();
+    double deepest = 0;
+    for (std::size_t d = 0; d < sums.size(); ++d) {
+      EXPECT_NEAR(curve.number(d, curve.column(policy.name)), sums[d], 1e-6);
+      deepest = std::min(deepest, curve.number(d, curve.column(policy.name + " below peak")));
+    }
+    EXPECT_NEAR(-deepest, policy.drawdown_eur_per_mwh(), 1e-6) << "as the table has it";
   }
 }
 

@@ -3,6 +3,20 @@
 
 const shownCharts = new Map();  // canvas id -> {chart, configure}
 
+/** A number's hyphen as a minus sign: at the start, behind a space or a bracket. */
+function trueMinus(text) {
+  return String(text).replace(/(^|[\s(])-(?=[\d.])/g, "$1\u2212");
+}
+
+for (const kind of ["linear", "logarithmic"]) {
+  const {ticks} = Chart.defaults.scales[kind], plain = ticks.callback;
+  ticks.callback = function (...about) { return trueMinus(plain.apply(this, about)); };
+}
+{
+  const {callbacks} = Chart.defaults.plugins.tooltip, plain = callbacks.label;
+  callbacks.label = function (item) { return trueMinus(plain.call(this, item)); };
+}
+
 /** Value of a colour variable of the style sheet. */
 function colour(name) {
   return getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();

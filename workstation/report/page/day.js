@@ -110,7 +110,7 @@ class DayView {
     const {low, high} = this.priceRange();
     const beyond = Array.from(this.day.paid).filter((price) => price < low || price > high).length;
     document.getElementById("price-note").textContent = "EUR/MWh" + (beyond > 0
-      ? `; ${beyond} steps are paid beyond this scale, marked at its edge: from ${Math.min(...this.day.paid).toFixed(0)} to ${Math.max(...this.day.paid).toFixed(0)}`
+      ? `; ${beyond} steps are paid beyond this scale, marked at its edge: from ${trueMinus(Math.min(...this.day.paid).toFixed(0))} to ${trueMinus(Math.max(...this.day.paid).toFixed(0))}`
       : "");
     drawChart("chart-price", () => ({
       type: "line",
@@ -193,7 +193,7 @@ class DayView {
       return line;
     };
     document.getElementById("step-readout").replaceChildren(
-      text("price", `observed ${day.observed[step].toFixed(1)}, paid ${day.paid[step].toFixed(1)} EUR/MWh`),
+      text("price", trueMinus(`observed ${day.observed[step].toFixed(1)}, paid ${day.paid[step].toFixed(1)} EUR/MWh`)),
       ...day.policies.map((policy, p) => text(
         this.data.archive.policies[p],
         `${kActions[policy.action[step]]}, ${(Math.abs(policy.power[step]) / 1e6).toPrecision(3)} MW at ` +

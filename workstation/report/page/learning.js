@@ -1,14 +1,15 @@
 // How teacher and student learned, and on which prices.
 "use strict";
 
-/** Lines over numbers; `series`: [name, points, colour, dash] each, points [x, y]. */
+/** Lines over numbers; `series`: [name, points, colour, dash, radius] each, points [x, y]; with a radius there is no line. */
 function drawLines(id, series, scales) {
   drawChart(id, () => ({
     type: "line",
     data: {
-      datasets: series.map(([label, points, ink, dash]) => ({
+      datasets: series.map(([label, points, ink, dash, radius]) => ({
         label, data: points.map(([x, y]) => ({x, y})), borderColor: colour(ink), backgroundColor: colour(ink),
-        pointRadius: points.length > 40 ? 0 : 2, borderWidth: 2, borderDash: dash || [],
+        pointRadius: radius || (points.length > 40 ? 0 : 2), borderWidth: 2, borderDash: dash || [],
+        showLine: !radius, order: radius ? 0 : 1,
       })),
     },
     options: {parsing: false, scales: {x: axis({type: "linear"}), y: axis(), ...scales()}},
@@ -18,7 +19,18 @@ function drawLines(id, series, scales) {
 function drawTraining({training}) {
   document.getElementById("training-figure").hidden = training.length < 2;  // a program is fitted, not trained
   if (training.length < 2) return;
-  drawLines("chart-training", [["validation", training, "line-1"]], () => ({}));
+  const best = training.find(([, profit]) => profit === Math.max(...training.map((point) => point[1])));
+  drawLines("chart-training", [["checkpoint", training, "line-1"], ["chosen", [best], "line-2", undefined, 6]], () => ({}));
+}
+
+/** Every student that was looked at: [epoch, profit on validation days, "chosen" | "disobeys" | "passed over"]. */
+function drawCheckpoints({checkpoints}) {
+  document.getElementById("checkpoints-figure").hidden = checkpoints.length === 0;
+  if (checkpoints.length === 0) return;
+  const of = (state) => checkpoints.filter((point) => point[2] === state);
+  drawLines("chart-checkpoints", [
+    ["checkpoint", checkpoints, "line-1"], ["disobeys", of("disobeys"), "muted", undefined, 6],
+    ["chosen", of("chosen"), "line-2", undefined, 6]], () => ({}));
 }
 
 function drawDistillation({distil, by_construction}) {
@@ -34,11 +46,13 @@ function drawDistillation({distil, by_construction}) {
             () => (by_construction ? {} : {y: axis({type: "logarithmic"})}));
 }
 
-function drawPriceHistogram({low, bin, train, test}) {
+function drawPriceHistogram({low, bin, train, test, outside_train, outside_test}) {
+  document.getElementById("prices-note").textContent =
+    `; the far tails are left out: ${outside_train.toFixed(2)} % of the training and ${outside_test.toFixed(2)} % of the test prices`;
   drawChart("chart-prices", () => ({
     type: "bar",
     data: {
-      labels: train.map((_, b) => String(low + b * bin)),
+      labels: train.map((_, b) => trueMinus(low + b * bin)),
       datasets: [
         {type: "line", label: "test days", data: test, borderColor: colour("ink"), backgroundColor: colour("ink"),
          borderWidth: 2, pointRadius: 0, stepped: "middle", order: 0},

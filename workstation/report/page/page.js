@@ -8,6 +8,7 @@ async function openPage() {
   page.data = JSON.parse(document.getElementById("data").textContent);
   showMapKeys();
   drawTraining(page.data.learning);
+  drawCheckpoints(page.data.learning);
   drawDistillation(page.data.learning);
   drawPriceHistogram(page.data.prices);
   page.map = new PolicyMap(page.data);

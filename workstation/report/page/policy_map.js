@@ -276,7 +276,7 @@ class PolicyMap {
     ctx.textBaseline = "top";
     const {first, last} = map.window, step = niceStep((last - first) / (width / 90));
     for (let price = Math.ceil(first / step) * step; price <= last; price += step) {
-      ctx.fillText(String(price).replace("-", "\u2212"), xOf(price), plot.y + plot.h + 5);
+      ctx.fillText(trueMinus(price), xOf(price), plot.y + plot.h + 5);
       ctx.fillRect(xOf(price) - .5, plot.y + plot.h, 1, 4);
     }
     ctx.fillText("price, EUR/MWh", plot.x + plot.w / 2, plot.y + plot.h + 20);
@@ -311,7 +311,7 @@ class PolicyMap {
     const actions = this.maps.map(
       ({name, student}) => `${name}: ${kActions[student.decide(this.context, soc, price)]}`);
     document.getElementById("map-readout").textContent =
-      `${price} EUR/MWh at ${(100 * soc / (rows - 1)).toFixed(1)} %: ${actions.join(", ")}`;
+      `${trueMinus(price)} EUR/MWh at ${(100 * soc / (rows - 1)).toFixed(1)} %: ${actions.join(", ")}`;
   }
 }
 

@@ -89,7 +89,7 @@ class TearSheet {
     const low = Math.min(...all.flat()), high = Math.max(...all.flat());
     const width = niceStep((high - low) / kBars), first = Math.floor(low / width) * width;
     const count = Math.floor((high - first) / width) + 1;
-    const labels = Array.from({length: count}, (_, b) => String(Math.round(first + b * width)));
+    const labels = Array.from({length: count}, (_, b) => trueMinus(Math.round(first + b * width)));
     this.drawBars("chart-days", labels, shown.map((policy, p) => {
       const bins = new Array(count).fill(0);
       for (const profit of all[p]) ++bins[Math.floor((profit - first) / width)];

@@ -7,6 +7,7 @@ import csv
 import gzip
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -267,6 +268,105 @@ class PageTest(unittest.TestCase):
         opened = gzip.open if name.endswith(".gz") else open
         with opened(os.path.join(self.folder.name, name), "rt", encoding="utf-8") as file:
             return [{key: number_or_text(value) for key, value in row.items()} for row in csv.DictReader(file)]
+
+    # Each picture has its file, and the file its numbers.
+
+    def test_each_picture_links_its_file(self):
+        links = self.page.run("""[...document.querySelectorAll("figure:not(#policy figure), #policy")].map((figure) =>
+          [figure.querySelector("figcaption, h2").firstChild.textContent, figure.querySelector("a.csv")?.getAttribute("href")])""")
+        self.assertGreaterEqual(len(links), 15)
+        for name, link in links:
+            self.assertTrue(link and os.path.isfile(os.path.join(self.folder.name, link)), f"{name}: {link}")
+        own = {file for file in os.listdir(self.folder.name) if file.endswith((".csv", ".csv.gz"))}
+        self.assertEqual(own, {link for _, link in links}, "a file that no picture links")
+
+    def drawn(self, chart):
+        """Label -> values of each line or bar of a chart; points of {x, y} as pairs."""
+        return self.page.run(f"""Object.fromEntries(shownCharts.get({json.dumps(chart)}).chart.data.datasets.map((set) =>
+          [set.label, Array.from(set.data, (value) => value.x === undefined ? value : [value.x, value.y])]))""")
+
+    def assert_same(self, drawn, rows, places=5):
+        for name, values in drawn.items():
+            for value, row in zip(values, rows, strict=True):
+                self.assertAlmostEqual(value, row[name], places=places, msg=name)
+
+    def test_files_have_the_numbers_of_the_charts(self):
+        self.page.run("document.querySelector('[data-wear=configured]').click()")
+        for chart in ("cumulative", "months", "days", "hours"):
+            self.assert_same(self.drawn("chart-" + chart), self.csv(chart + ".csv"), 3 if chart == "hours" else 5)
+        for name in ("corrected student", "rbc-tuned"):
+            falls = self.page.run(f"page.tearSheet.drawdowns(page.tearSheet.policies([{json.dumps(name)}])[0])")
+            self.assert_same({name: falls}, self.csv("drawdown.csv"))
+        labels = self.page.run("shownCharts.get('chart-days').chart.data.labels")
+        self.assertEqual([float(label.replace("\u2212", "-")) for label in labels],
+                         [row["from_eur_per_mwh"] for row in self.csv("days.csv")])
+        prices = self.drawn("chart-prices")
+        self.assert_same({"training_days_percent": prices["training days"], "test_days_percent": prices["test days"]},
+                         self.csv("prices_seen.csv"))
+
+    def test_checkpoints_and_the_chosen_one(self):
+        rows = self.csv("validation_teacher.csv")
+        drawn = self.drawn("chart-training")
+        self.assertEqual(drawn["checkpoint"], [[row["step"], row["validation_eur_per_day_per_mwh"]] for row in rows])
+        chosen = [row for row in rows if row["state"] == "chosen"]
+        self.assertEqual(drawn["chosen"], [[chosen[0]["step"], max(y for _, y in drawn["checkpoint"])]])
+        rows = self.csv("validation_student.csv")
+        drawn = self.drawn("chart-checkpoints")
+        self.assertEqual(len(drawn["checkpoint"]), len(rows))
+        for state in ("chosen", "disobeys"):
+            self.assertEqual(drawn[state], [[row["epoch"], row["validation_eur_per_day_per_mwh"]]
+                                            for row in rows if row["state"] == state])
+            self.assertEqual(len(drawn[state]), 1)
+
+    def test_the_losses_of_the_student_are_in_the_file(self):
+        rows = self.csv("distillation.csv")
+        drawn = self.drawn("chart-distil")
+        self.assertEqual(drawn["on the states that the teacher visits"],
+                         [[row["epoch"], row["visited_loss"]] for row in rows])
+
+    def test_steps_are_in_the_file(self):
+        rows = self.csv("steps.csv.gz")
+        days = self.page.run("""page.days.map((day) => ({observed: [...day.observed], paid: [...day.paid],
+          policies: day.policies.map(({profit, power, soc}) => ({profit: [...profit], power: [...power], soc: [...soc]}))}))""")
+        names = self.page.run("page.data.archive.policies")
+        at = 0
+        for day in days:
+            for step in range(len(day["paid"])):
+                row = rows[at]
+                self.assertAlmostEqual(row["observed_eur_per_mwh"], day["observed"][step], delta=.011)
+                self.assertAlmostEqual(row["paid_eur_per_mwh"], day["paid"][step], delta=.0011)
+                for name, policy in zip(names, day["policies"]):
+                    self.assertAlmostEqual(row[name + " power_w"], policy["power"][step], delta=1)
+                    self.assertAlmostEqual(row[name + " soc_frac"], policy["soc"][step], delta=1.1e-4)
+                    self.assertAlmostEqual(row[name + " profit_eur"], policy["profit"][step], delta=.001)
+                at += 1
+        self.assertEqual(at, len(rows))
+
+    def test_the_map_is_in_the_file(self):
+        first = self.page.run("page.data.first_map")
+        self.whole_range()
+        self.show_map(first["context_class"], first["quarter_hour"], first["minute"])
+        names = ["discharge", "idle", "charge"]
+        for index, student in enumerate(self.page.run("page.data.students.map(({name}) => name)")):
+            cells = [names.index(row["action"]) for row in self.csv("policy_map.csv") if row["student"] == student
+                     for _ in range(int(row["price_to_eur_per_mwh"] - row["price_from_eur_per_mwh"]) + 1)]
+            self.assertEqual("".join(map(str, cells)), self.page.run(f"page.map.maps[{index}].grid.join('')"), student)
+
+    def test_numbers_have_a_true_minus(self):
+        self.page.run("document.getElementById('day-widest').click()")
+        ticks = self.page.run("""[...shownCharts.values()].flatMap(({chart}) => Object.values(chart.scales)
+          .filter((scale) => scale.type === "linear").flatMap((scale) => scale.ticks.map(({label}) => String(label))))""")
+        self.assertTrue(any(tick.startswith("\u2212") for tick in ticks), ticks)
+        self.assertEqual([tick for tick in ticks if tick.startswith("-")], [])
+        cells = self.page.run("[...document.querySelectorAll('td')].map((cell) => cell.textContent)")
+        self.assertEqual([cell for cell in cells if re.match(r"-\d", cell)], [])
+
+    def test_the_far_tails_of_the_prices_are_told(self):
+        outside = self.page.run("[page.data.prices.outside_train, page.data.prices.outside_test]")
+        rows = self.csv("prices_seen.csv")
+        for share, column in zip(outside, ("training_days_percent", "test_days_percent")):
+            self.assertAlmostEqual(share, 100 - sum(row[column] for row in rows), places=3)
+        self.assertIn(f"{outside[0]:.2f} % of the training", self.page.run("document.getElementById('prices-note').textContent"))
 
     def test_parts_of_a_day_add_up_to_what_it_missed(self):
         days = self.csv("lost_days.csv")

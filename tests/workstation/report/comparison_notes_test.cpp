@@ -1,0 +1,36 @@
+#include "workstation/report/comparison_notes.h"
+
+#include <gtest/gtest.h>
+
+namespace bess {
+namespace {
+
+NamedEvaluation earning(const std::string& name, double eur) {
+  Evaluation evaluation;
+  evaluation.capacity_mwh = 8;
+  evaluation.days = {{"2023-01-26", eur, 0, 0, 0}, {"2023-01-27", -eur / 2, 0, 0, 0}};
+  return {name, evaluation, evaluation};
+}
+
+TEST(ComparisonNotes, TheWholeBatteryIsCapacityTimesWhatAMwhEarns) {
+  const std::vector<NamedEvaluation> evaluations{earning("rbc", -80),
+                                                 earning("corrected student", 4000)};
+  EXPECT_EQ(whole_battery_text(evaluations),
+            "the whole battery of 8 MWh: the corrected student 1000.0 EUR a day, 1000.0 with the "
+            "SoC carried over\n");
+  const std::string html = whole_battery_html(evaluations);
+  EXPECT_NE(html.find(">1000.0</td>"), std::string::npos) << html;
+  EXPECT_NE(html.find(">\u221220.0</td>"), std::string::npos) << "a true minus";
+  EXPECT_EQ(whole_battery_text({earning("rbc", 1)}), "");
+  EXPECT_EQ(whole_battery_html({}), "");
+}
+
+TEST(ComparisonNotes, AProgramAndItsTeacherAreExplainedWhereTheyAreTheSame) {
+  EXPECT_NE(same_program_text({earning("sdp", 5), earning("sdp teacher", 5)}).find("same program"),
+            std::string::npos);
+  EXPECT_EQ(same_program_text({earning("sdp", 5), earning("sdp teacher", 5.0000001)}), "");
+  EXPECT_EQ(same_program_text({earning("sdp", 5), earning("c51 teacher", 5)}), "");
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,74 @@
+#include "workstation/report/comparison_notes.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "workstation/report/headline.h"
+#include "workstation/report/html.h"
+#include "workstation/report/rule_prices.h"
+
+namespace bess {
+namespace {
+
+constexpr const char* kNoFigure = "\u2013";
+constexpr const char* kProgram = "sdp";
+constexpr const char* kProgramAsTeacher = "sdp teacher";
+
+const NamedEvaluation* evaluation_named(const std::vector<NamedEvaluation>& evaluations,
+                                        std::string_view name) {
+  const auto found = std::ranges::find(evaluations, name, &NamedEvaluation::name);
+  return found == evaluations.end() ? nullptr : &*found;
+}
+
+double capacity_mwh_in(const NamedEvaluation& any) {
+  return (any.day_reset.days.empty() ? any.carried_over : any.day_reset).capacity_mwh;
+}
+
+/// EUR per day of all of it.
+std::string eur_per_day(const Evaluation& evaluation) {
+  if (evaluation.days.empty()) return kNoFigure;
+  return fmt::format("{:.1f}", evaluation.profit_eur_per_day_per_mwh() * evaluation.capacity_mwh);
+}
+
+}  // namespace
+
+std::string whole_battery_html(const std::vector<NamedEvaluation>& evaluations) {
+  if (evaluations.empty()) return {};
+  HtmlTable table{
+      fmt::format("The whole battery of {:g} MWh", capacity_mwh_in(evaluations.front())),
+      {"Policy", "EUR/day, each day from the same charge", "EUR/day, charge carried over"},
+      {}};
+  for (const NamedEvaluation& named : evaluations) {
+    if (is_under_rules(named.name)) continue;
+    table.rows.push_back(
+        {named.name, eur_per_day(named.day_reset), eur_per_day(named.carried_over)});
+  }
+  return format_table(table);
+}
+
+std::string whole_battery_text(const std::vector<NamedEvaluation>& evaluations) {
+  const NamedEvaluation* exported = evaluation_named(evaluations, kCorrectedName);
+  if (exported == nullptr) return {};
+  return fmt::format(
+      "the whole battery of {:g} MWh: the {} {} EUR a day, {} with the SoC carried over\n",
+      capacity_mwh_in(*exported), kCorrectedName, eur_per_day(exported->day_reset),
+      eur_per_day(exported->carried_over));
+}
+
+std::string same_program_text(const std::vector<NamedEvaluation>& evaluations) {
+  const NamedEvaluation* program = evaluation_named(evaluations, kProgram);
+  const NamedEvaluation* teacher = evaluation_named(evaluations, kProgramAsTeacher);
+  if (program == nullptr || teacher == nullptr) return {};
+  for (const auto field : {&NamedEvaluation::day_reset, &NamedEvaluation::carried_over}) {
+    if (!std::ranges::equal((program->*field).days, (teacher->*field).days, {},
+                            &DayResult::profit_eur, &DayResult::profit_eur)) {
+      return {};
+    }
+  }
+  return fmt::format(
+      "{} and {} are the same program, fitted on the same days: they decide the same at every step",
+      kProgram, kProgramAsTeacher);
+}
+
+}  // namespace bess
