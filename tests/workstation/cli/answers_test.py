@@ -23,7 +23,8 @@ PROGRAM = os.path.abspath(sys.argv[1])
 FULL = "--full" in sys.argv or os.environ.get("BESS_THOROUGH") == "1"
 SLOW_ANSWERS = {"proof", "omega", "run", "run_bands"}
 SLOW_COMMANDS = {"verify", "omega-sweep", "run", "runs compare"}
-SLOW_TABLES = {"evaluation_days.csv", "seeds.csv", "omega_sweep.csv", "proof_rounds.csv", "violations.csv"}
+SLOW_TABLES = {"evaluation_days.csv", "seeds.csv", "omega_sweep.csv", "proof_rounds.csv", "violations.csv",
+               "student_checkpoints.csv", "lost_days.csv", "lost_causes.csv", "lost_hours.csv"}
 
 
 class Minutes(http.server.BaseHTTPRequestHandler):
@@ -213,7 +214,8 @@ class Answers(unittest.TestCase):
         self.table(self.file("runs/seeds.csv"))
         run = self.file("runs/seed-1/")
         for name in ("evaluation.csv", "evaluation_days.csv", "training_curve.csv", "distil_curve.csv",
-                     "proof_rounds.csv"):
+                     "proof_rounds.csv", "student_checkpoints.csv", "lost_days.csv", "lost_causes.csv",
+                     "lost_hours.csv"):
             self.table(run + name)
         self.table(run + "student_plain_violations.csv", "violations.csv")
 
