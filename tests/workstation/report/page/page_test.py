@@ -16,7 +16,7 @@ import unittest
 import browser
 
 FIXTURE = sys.argv.pop(1) if len(sys.argv) > 1 else ""
-WIDTHS_PX = (320, 400, 800, 1600)
+WIDTHS_PX = (320, 375, 800, 1440, 1600)
 COMPLETE = "[...document.querySelectorAll('canvas.map')].every((canvas) => canvas.dataset.complete === 'true')"
 
 
