@@ -1,6 +1,7 @@
 #include "edge/log/event_log.h"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -8,6 +9,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <utility>
 
 #include "edge/log/journal.h"
 #include "edge/log/log_text.h"
@@ -226,8 +228,35 @@ bool EventLog::append_to_run_ring(const CycleRecord& record, std::uint64_t numbe
 /// A log that the disk refused at the start is tried again.
 bool EventLog::append_to_ring(const CycleRecord& record, std::uint64_t number) {
   FileMessage ignored;
+  if (ring_.is_open() && !ring_.is_at(settings_.ring.c_str()) && !follow_the_folder()) return false;
   return (ring_.is_open() || open_ring(ignored)) && catch_up(number) &&
          ring_.append(record, number);
+}
+
+/// The state folder is another one: unmounted, mounted, replaced. An empty one, or one that this run has written to,
+/// is gone on with. The log of others may hold a trip: the next start has to read it.
+bool EventLog::follow_the_folder() {
+  RingLog there;
+  FileMessage ignored;
+  CycleRecord newest;
+  CycleRecord ours;
+  const bool is_log = there.open_to_read(settings_.ring.c_str(), ignored) && there.newest(newest);
+  const std::uint64_t number = there.newest_number();
+  const bool is_known = is_log && (ring_.read(number, ours) || run_ring_.read(number, ours)) &&
+                        ours.utc_s == newest.utc_s;
+  if (is_log && !is_known) {
+    if (std::exchange(is_ending_run_, true)) return false;
+    write_journal_line(JournalLevel::kError,
+                       "the state folder now holds another log, of a disk that was mounted late or "
+                       "replaced: this run ends, so that the next start knows what is in it");
+    kill(getpid(), SIGTERM);
+    return false;
+  }
+  write_journal_line(JournalLevel::kError,
+                     is_log ? "the state folder is back where it was: its log goes on"
+                            : "the decision log is gone from its place, was its disk unmounted? A "
+                              "new one begins there");
+  return open_ring(ignored);
 }
 
 /// What the disk refused for a while, as far as memory still has it.

@@ -85,6 +85,7 @@ class EventLog {
   void keep_on_disk(const CycleRecord& record, std::uint64_t number);
   bool append_to_run_ring(const CycleRecord& record, std::uint64_t number);
   bool append_to_ring(const CycleRecord& record, std::uint64_t number);
+  bool follow_the_folder();
   bool catch_up(std::uint64_t number);
   bool append_to_csv(const CycleRecord& record);
   void publish_in_memory();
@@ -106,6 +107,7 @@ class EventLog {
   bool csv_has_head_ = false;
   bool was_failing_ = false;
   bool was_run_failing_ = false;
+  bool is_ending_run_ = false;
   HoldLines hold_lines_;
   MeterLines meter_lines_;
   HandoverQueue<CycleRecord, kQueueRecords> queue_;

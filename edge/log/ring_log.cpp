@@ -323,6 +323,13 @@ bool RingLog::is_lost_at(std::uint64_t number) const {
   return got != static_cast<ssize_t>(record_bytes_) || is_broken(stored);
 }
 
+bool RingLog::is_at(const char* path) const {
+  struct stat ours {};
+  struct stat there {};
+  if (stat(path, &there) != 0) return errno != ENOENT;  // a disk that does not answer has not moved
+  return fstat(fd_, &ours) == 0 && ours.st_ino == there.st_ino && ours.st_dev == there.st_dev;
+}
+
 bool RingLog::append(const CycleRecord& record, std::uint64_t number) {
   RecordBytes bytes;
   encode_record(record, number, bytes);

@@ -40,6 +40,8 @@ class RingLog {
   bool open_to_read(const char* path, FileMessage& error);
 
   /// For what it was opened for.
+  /// Whether the file that is open is still the one of that name: a disk may be unmounted below it, or mounted over it.
+  [[nodiscard]] bool is_at(const char* path) const;
   [[nodiscard]] bool is_open() const { return fd_ >= 0 && !is_read_only_; }
   [[nodiscard]] std::int64_t capacity() const { return capacity_; }
 

@@ -18,8 +18,10 @@ int refuse(const std::string& message) {
 }
 
 int clear(const char* path) {
-  if (unlink(path) != 0 && errno != ENOENT)
-    return refuse(std::string(path) + ": " + std::strerror(errno));
+  if (unlink(path) != 0 && errno != ENOENT) {
+    return refuse(std::string(path) + ": cannot be taken away: " + std::strerror(errno) +
+                  "; it stays in force until its end");
+  }
   std::printf("limit      none\n");
   return 0;
 }
@@ -50,7 +52,8 @@ int run_limit_command(const CommandLine& command_line, const EdgeConfig& config)
       config.clock.now_utc_ns() / kNanosecondsPerSecond + command_line.for_s;
   const std::string until = utc_text(until_utc_s).c_str();
   if (!replace_file(path, charge + " " + discharge + " " + until + "\n")) {
-    return refuse(std::string(path) + ": " + std::strerror(errno));
+    return refuse(std::string(path) + ": cannot be written: " + std::strerror(errno) +
+                  "; nothing has changed. It is best in memory, below /run");
   }
   std::printf("limit      charge %s W, discharge %s W, until %s\n", charge.c_str(),
               discharge.c_str(), until.c_str());

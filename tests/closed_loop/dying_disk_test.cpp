@@ -15,6 +15,7 @@
 
 #include "tests/support/edge_answer.h"
 #include "tests/support/simulated_site.h"
+#include "tests/support/thorough.h"
 
 namespace bess {
 namespace {
@@ -105,6 +106,17 @@ class StateDisk {
   void go_read_only() const { std::ofstream(control_) << "EROFS " << folder_; }
   void go_silent() const { std::ofstream(control_) << "EIO " << folder_; }
   void come_back() const { fs::remove(control_); }
+  /// What is mounted goes, under whatever has files open; the folder below it stays, empty.
+  void unmount() {
+    EXPECT_EQ(umount2(folder_.c_str(), MNT_DETACH), 0);
+    is_mounted_ = false;
+  }
+  /// Another folder is seen there from now on, as a disk that comes late.
+  void mount_late(const std::string& other) {
+    EXPECT_EQ(mount(other.c_str(), folder_.c_str(), nullptr, MS_BIND, nullptr), 0);
+    is_mounted_ = true;
+  }
+  [[nodiscard]] const std::string& folder() const { return folder_; }
   void go_away() const { fs::remove(file("decisions.ring")); }
   void flip(const std::string& name, std::uintmax_t from, std::uintmax_t to) const {
     std::fstream bytes(file(name), std::ios::in | std::ios::out | std::ios::binary);
@@ -264,6 +276,13 @@ constexpr Death kDeaths[] = {
     {"ext4 error", [](const StateDisk& disk) { disk.fail_for_real(); }, false, true},
 };
 
+std::string name_of_death(const ::testing::TestParamInfo<Death>& info) {
+  return std::string(info.param.name) == "full" ? "Full"
+         : info.param.name[0] == 'r'            ? "ReadOnly"
+         : info.param.is_real                   ? "Ext4Error"
+                                                : "IoErrors";
+}
+
 class DyingDiskRun : public DyingDisk, public ::testing::WithParamInterface<Death> {
  protected:
   void SetUp() override {
@@ -329,12 +348,76 @@ TEST_P(DyingDiskRun, WithoutARunFolderTheyKnowOrSayThatTheyDoNot) {
             GetParam().log_lives ? "all agree, by the log" : "status says unknown, CRITICAL");
 }
 
-INSTANTIATE_TEST_SUITE_P(All, DyingDiskRun, ::testing::ValuesIn(kDeaths), [](const auto& info) {
-  return std::string(info.param.name) == "full" ? "Full"
-         : info.param.name[0] == 'r'            ? "ReadOnly"
-         : info.param.is_real                   ? "Ext4Error"
-                                                : "IoErrors";
-});
+INSTANTIATE_TEST_SUITE_P(All, DyingDiskRun, ::testing::ValuesIn(kDeaths), name_of_death);
+
+#ifdef BESS_NOTIFY_PROGRAM
+
+/// The notifier on the same disk: it tells what is, and what it cannot keep itself.
+class DyingDiskNotify : public DyingDiskRun {
+ protected:
+  void add_notifier() const {
+    const std::string mailer =
+        site_.folder.write("mailer", "#!/bin/sh\ncat >>" + site_.folder.file("mails") + "\n");
+    ASSERT_EQ(chmod(mailer.c_str(), 0755), 0);
+    std::ofstream(config_, std::ios::app)
+        << "[notify]\nevery_s = 1\nafter_s = 0\nfolder = \"state/notify\"\nrun_folder = "
+           "\"run/notify\"\nmail_to = \"a@b.example\"\nsendmail = \""
+        << mailer << "\"\nprogram = \"" << edge_program() << "\"\n";
+  }
+  void start_notifier() {
+    notifier_ = std::make_unique<ChildProcess>(
+        std::vector<std::string>{BESS_NOTIFY_PROGRAM, "--config", config_});
+  }
+  [[nodiscard]] std::size_t mails_with(const std::string& piece) const {
+    const std::string mails = text_of_file(site_.folder.file("mails"));
+    std::size_t count = 0;
+    for (std::size_t at = mails.find(piece); at != mails.npos; at = mails.find(piece, at + 1)) {
+      ++count;
+    }
+    return count;
+  }
+  /// False after half a minute. The controller's lines are read meanwhile, so that it never waits for a reader.
+  bool is_mailed(const std::string& piece) {
+    for (int cycle = 0; cycle < 90 && mails_with(piece) == 0; ++cycle) await_cycle("mode", "-", 1);
+    return mails_with(piece) > 0;
+  }
+
+  std::unique_ptr<ChildProcess> notifier_;
+};
+
+TEST_P(DyingDiskNotify, TellsEachAlarmOnceAndWhatItCannotKeep) {
+  const bool is_of_every_day = std::string(GetParam().name) == "read-only";
+  if (few_or_all(0, 1) == 0 && !is_of_every_day) GTEST_SKIP() << "only with BESS_THOROUGH";
+  commission(true);
+  add_notifier();
+  start();
+  ASSERT_NE(await_cycle("mode", "running", 8), "") << said_;
+  start_notifier();
+  GetParam().happen(disk_);
+  EXPECT_TRUE(is_mailed("ALARM: WARN: the ")) << "the disk";
+  EXPECT_TRUE(is_mailed(disk_.file("notify/told.json") + ": cannot be written: "));
+  EXPECT_GT(mails_with("what is told is kept in " + site_.folder.file("run/notify/told.json")), 0U);
+  trip();
+  EXPECT_TRUE(is_mailed("ALARM: CRITICAL: tripped")) << said_;
+  for (int cycle = 0; cycle < 5; ++cycle) await_cycle("mode", "-", 1);  // until that is kept
+  notifier_->signal(SIGKILL);
+  notifier_->wait();
+  start_notifier();
+  for (int cycle = 0; cycle < 10; ++cycle) await_cycle("mode", "-", 1);
+  EXPECT_EQ(mails_with("ALARM: CRITICAL: tripped"), 1U) << "memory knows that it was told";
+  EXPECT_EQ(mails_with("over: CRITICAL: tripped"), 0U) << "it is not over";
+  swap_battery(false);
+  ASSERT_EQ(edge({"clear", "--yes", "--config", config_}).exit_code, 0);
+  EXPECT_TRUE(is_mailed("over: CRITICAL: tripped"));
+  EXPECT_EQ(SimulatedSite::stop(*notifier_), 0);
+  end_run();
+  print_row((std::string(GetParam().name) + ", the notifier on it as well").c_str(),
+            "each alarm once, what is not kept is told");
+}
+
+INSTANTIATE_TEST_SUITE_P(All, DyingDiskNotify, ::testing::ValuesIn(kDeaths), name_of_death);
+
+#endif
 
 /// What happens to the disk between a run that has tripped and the next start.
 struct Accident {
@@ -448,6 +531,58 @@ TEST_F(DyingDiskWords, WithoutARunFolderAHoldThatCannotBeWrittenLeavesTheOneBefo
             "refused, the one before holds");
 }
 
+TEST_F(DyingDiskWords, ALimitThatCannotBeWrittenLeavesTheOneBefore) {
+  commission(true);
+  std::ofstream(config_, std::ios::app) << "[limits]\nfile = \"" << disk_.file("limit") << "\"\n";
+  const auto limit = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), "limit");
+    arguments.insert(arguments.end(), {"--config", config_});
+    return edge(std::move(arguments));
+  };
+  ASSERT_EQ(limit({"--charge", "2000", "--for", "15m"}).exit_code, 0);
+  const std::string before = text_of_file(disk_.file("limit"));
+  ASSERT_FALSE(before.empty());
+  for (const bool is_full : {true, false}) {
+    break_disk(is_full);
+    const Said other = limit({"--charge", "1000", "--for", "15m"});
+    EXPECT_EQ(other.exit_code, 1) << other.text;
+    EXPECT_THAT(other.text, AllOf(HasSubstr(is_full ? "No space left" : "Read-only file system"),
+                                  HasSubstr("nothing has changed")));
+    if (!is_full) {
+      const Said cleared = limit({"--clear"});
+      EXPECT_EQ(cleared.exit_code, 1) << cleared.text;
+      EXPECT_THAT(cleared.text, HasSubstr("it stays in force until its end"));
+    }
+    EXPECT_EQ(text_of_file(disk_.file("limit")), before);
+    mend_disk(is_full);
+  }
+  EXPECT_EQ(limit({"--clear"}).exit_code, 0);
+  print_row("limit on a full or read-only disk", "refused, the one before holds");
+}
+
+/// [metrics] prometheus on the disk that dies, the state on a good one.
+TEST_F(DyingDiskWords, MetricsThatCannotBeWrittenAreToldAndTheStateIsNot) {
+  config_ = site_.write_config({.guard_keys = "price_age_s_max = 1800\n",
+                                .state = "good",
+                                .state_keys = "[metrics]\nprometheus = \"state/bess.prom\"\n"});
+  ASSERT_EQ(edge({"commission", "--config", config_, "--yes"}).exit_code, 0);
+  for (const bool is_full : {true, false}) {
+    start();
+    ASSERT_NE(await_cycle("mode", "running", 8), "") << said_;
+    break_disk(is_full);
+    for (int cycle = 0; cycle < 3; ++cycle) await_cycle("mode", "running", 8);
+    const Said status = edge({"status", "--config", config_});
+    EXPECT_EQ(status.exit_code, is_full ? 0 : 1)
+        << "what is there can be replaced: " << status.text;
+    EXPECT_THAT(status.text, HasSubstr("state      running at"));
+    EXPECT_EQ(status.text.find("full or read-only?") == std::string::npos, is_full) << status.text;
+    end_run();
+    mend_disk(is_full);
+  }
+  EXPECT_THAT(said_, AllOf(HasSubstr("[metrics] cannot be written"),
+                           HasSubstr("The battery is driven on"), Not(HasSubstr("state: "))));
+}
+
 TEST_F(DyingDiskWords, WithARunFolderTheNewestWordIsFollowedAndSaidToEndWithTheBoot) {
   for (const bool is_full : {true, false}) {
     fs::remove_all(site_.folder.file("run"));
@@ -527,6 +662,66 @@ TEST_F(DyingDisk, FullOrReadOnlyFromTheStartItIsNotDrivenUnlessAllowed) {
     print_row((std::string(death.name) + " from the first start").c_str(),
               "state_lost, told; driven with the key");
   }
+}
+
+/// The folder is suddenly empty: what was known goes on in it.
+TEST_F(DyingDisk, UnmountedAmidARunItGoesOnInTheFolderBelow) {
+  commission(true);
+  start();
+  ASSERT_NE(await_cycle("mode", "running", 8), "") << said_;
+  disk_.unmount();
+  for (int cycle = 0; cycle < 2; ++cycle) {
+    ASSERT_NE(await_cycle("mode", "running", 8), "") << said_;
+  }
+  expect_all_agree(false);
+  trip();
+  await_cycle("reason", "wrong_direction", 6);
+  expect_all_agree(false);
+  end_run();
+  EXPECT_THAT(said_, HasSubstr("the decision log is gone from its place, was its disk unmounted?"));
+  swap_battery(false);
+  said_.clear();
+  start();  // with the sign check that memory has
+  EXPECT_NE(await_cycle("reason", "wrong_direction", 6), "") << said_;
+  end_run();
+  EXPECT_THAT(said_,
+              AllOf(HasSubstr("commissioned.toml is gone; "), Not(HasSubstr("mode=running"))));
+  fs::remove_all(site_.folder.file("run"));  // and after a boot
+  fs::remove(disk_.file("commissioned.toml"));
+  fs::remove(disk_.file("commissioned.copy"));
+  const Said refused = edge({"--config", config_});
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.text, HasSubstr("or the disk of [state] folder is not mounted"));
+  print_row("unmounted amid a run", "goes on below, trip kept");
+}
+
+/// A disk that is mounted after the start, and knows of a trip.
+TEST_F(DyingDisk, MountedLateItsTripCounts) {
+  disk_.unmount();
+  commission(false);
+  start();
+  ASSERT_NE(await_cycle("mode", "running", 8), "") << said_;
+  trip();
+  await_cycle("reason", "wrong_direction", 6);
+  end_run();
+  swap_battery(false);
+  fs::rename(disk_.folder(), site_.folder.file("card"));
+  fs::create_directory(disk_.folder());
+  commission(false);
+  start();  // on the folder below, where nothing is known
+  ASSERT_NE(await_cycle("mode", "running", 8), "") << said_;
+  said_.clear();
+  disk_.mount_late(site_.folder.file("card"));
+  said_ += controller_->read_all();  // it ends by itself
+  EXPECT_EQ(controller_->wait(), 0);
+  EXPECT_THAT(said_, AllOf(HasSubstr("the state folder now holds another log"),
+                           HasSubstr("stopped: battery released")));
+  said_.clear();
+  start();
+  EXPECT_NE(await_cycle("reason", "wrong_direction", 6), "") << said_;
+  end_run();
+  EXPECT_THAT(said_, Not(HasSubstr("mode=running")));
+  print_row("mounted late, with a trip in its log", "ends; the next start is tripped");
 }
 
 /// No room for the log, ever.
