@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/support/rule_sets.h"
 #include "tests/support/small_market.h"
 #include "tests/support/student_nets.h"
@@ -204,6 +206,19 @@ TEST(CorrectAndProve, ByConstructionTheThresholdsAreLearntAndTheStudentEarns) {
   EXPECT_LE(result.rounds.size(), 3U);
   const StudentNet& net = student_of(result.verdict).net;
   EXPECT_EQ(net.context, school().teacher.context);
+  const auto chosen =
+      std::ranges::find(result.checkpoints, CheckpointState::kChosen, &StudentCheckpoint::state);
+  ASSERT_NE(chosen, result.checkpoints.end());
+  EXPECT_EQ(chosen->validation_eur_per_day_per_mwh,
+            validation_score(school().market, {}, 0.5)(net));
+  for (const StudentCheckpoint& other : result.checkpoints) {
+    if (other.round != chosen->round) {
+      EXPECT_EQ(other.state, CheckpointState::kDisobeys);
+    }
+    if (other.state == CheckpointState::kPassedOver) {
+      EXPECT_LE(other.validation_eur_per_day_per_mwh, chosen->validation_eur_per_day_per_mwh);
+    }
+  }
   Random random(3);
   for (int i = 0; i < 5'000; ++i) {
     LatticeState s = random_state(random);
