@@ -246,7 +246,9 @@ bool read_published_metrics(const EdgeConfig& config, std::string& text) {
   const char* older = config.log.run_metrics.c_str();
   if (written_ns(older) > written_ns(newer)) std::swap(newer, older);
   for (const char* path : {newer, older}) {
-    if (*path == '\0' || !is_believable(path) || !read_text(path, text)) continue;
+    const bool is_believed = is_believable(path);
+    if (!is_believed) report(JournalLevel::kWarning, "%s", strangers_file(path).c_str());
+    if (*path == '\0' || !is_believed || !read_text(path, text)) continue;
     if (check_text(text, kCommentChecksum) == TextState::kIntact) return true;
     report(JournalLevel::kWarning, "%s is damaged: not believed", path);
   }
