@@ -142,10 +142,10 @@ TEST(ResponseMonitor, TwiceTheOrderIsUncontrolledAlsoWhenItRestsBetween) {
 
 /// Recalled or after a pause, with nothing known of the order before: it may be on its way.
 TEST(ResponseMonitor, TheFirstReadingOfANewOrderMayBeARamp) {
-  const auto after_two_first_readings = [](std::int32_t ordered_w, std::int32_t power_w,
-                                           std::int32_t age_s) {
+  const auto after_first_readings = [](std::int32_t ordered_w, std::int32_t power_w,
+                                       std::int32_t age_s) {
     ResponseMonitor monitor{ResponseSettings{}};
-    for (int i = 0; i < 2; ++i) {  // far apart: neither knows the other
+    for (int i = 0; i < 4; ++i) {  // far apart: none knows the one before
       monitor.observe({.steady_s = 3'600 * (i + 1),
                        .is_driven = true,
                        .ordered_power_w = ordered_w,
@@ -154,15 +154,15 @@ TEST(ResponseMonitor, TheFirstReadingOfANewOrderMayBeARamp) {
     }
     return monitor.trip();
   };
-  EXPECT_EQ(after_two_first_readings(0, -490, 117), Reason::kStudent);
-  EXPECT_EQ(after_two_first_readings(-1'000, 490, 117), Reason::kStudent);
-  EXPECT_EQ(after_two_first_readings(1'000, 1'350, 117), Reason::kStudent);
+  EXPECT_EQ(after_first_readings(0, -490, 117), Reason::kStudent);
+  EXPECT_EQ(after_first_readings(-1'000, 490, 117), Reason::kStudent);
+  EXPECT_EQ(after_first_readings(1'000, 1'350, 117), Reason::kStudent);
   // It has stood for longer, or no ramp of any battery would be that far behind.
-  EXPECT_EQ(after_two_first_readings(0, -490, 237), Reason::kUncontrolledPower);
-  EXPECT_EQ(after_two_first_readings(0, -3'000, 117), Reason::kUncontrolledPower);
-  EXPECT_EQ(after_two_first_readings(4'000, -4'000, 117), Reason::kWrongDirection);
-  EXPECT_EQ(after_two_first_readings(4'000, 8'000, 117), Reason::kUncontrolledPower);
-  EXPECT_EQ(after_two_first_readings(-1'000, 1'900, 117), Reason::kWrongDirection);
+  EXPECT_EQ(after_first_readings(0, -490, 237), Reason::kUncontrolledPower);
+  EXPECT_EQ(after_first_readings(0, -3'000, 117), Reason::kUncontrolledPower);
+  EXPECT_EQ(after_first_readings(4'000, -4'000, 117), Reason::kWrongDirection);
+  EXPECT_EQ(after_first_readings(4'000, 8'000, 117), Reason::kUncontrolledPower);
+  EXPECT_EQ(after_first_readings(-1'000, 1'900, 117), Reason::kWrongDirection);
 }
 
 TEST(ResponseMonitor, LessThanOrderedIsToldButNotStopped) {

@@ -6,6 +6,7 @@
 #include <functional>
 #include <random>
 #include <tuple>
+#include <vector>
 
 #include "edge/control/response_monitor.h"
 
@@ -234,6 +235,48 @@ TEST(SocMonitor, LossesAndAnotherCapacityAreNoDrain) {
       EXPECT_EQ(battery.monitor.trip(), Reason::kStudent);
     }
   }
+}
+
+TEST(SocMonitor, EnergyThatDoesNotArriveInOneDirectionIsAShareAndNoDrain) {
+  CountedBattery battery(0.1);
+  battery.count = [](double stored) { return 0.1 + (stored - 0.1) * 0.75; };
+  battery.flow = [](double ordered_w) { return 0.9 * ordered_w; };
+  battery.meter = [](double ordered_w, double) { return ordered_w; };
+  for (int i = 0; i < 45; ++i) {
+    battery.step(4'000);
+    EXPECT_EQ(battery.monitor.findings().rest_loss_w, 0) << i;
+  }
+  EXPECT_EQ(battery.monitor.trip(), Reason::kStudent);
+}
+
+/// 4 kW all the time, 120 s of refresh and 20 s of lag at both ends: three quarters are sure after 560 s; where
+/// nothing is known of before, 140 s either way, after twice as long.
+TEST(SeldomSoc, AnIntervalIsAsLongAsThreeQuartersOfItAreSure) {
+  const ResponseSettings settings{.band = {.soc_refresh_s = 120}};
+  SeldomSoc soc(settings);
+  ASSERT_TRUE(soc.is_seldom());
+  const auto reading = [](int i) {
+    return Response{.steady_s = 1'000 + kReadingS * i,
+                    .is_driven = true,
+                    .ordered_power_w = 4'000,
+                    .order_age_s = kReadingS * i,
+                    .measurement = {.soc_e4 = 5'000, .power_w = 4'000}};
+  };
+  soc.begin(reading(0));
+  std::vector<int> taken;
+  SeldomSoc::Interval interval;
+  for (int i = 1; i <= 20; ++i) {
+    soc.note_power(reading(i), 4'000);
+    soc.observe(reading(i));
+    if (!soc.take_interval(interval)) continue;
+    taken.push_back(i);
+    EXPECT_EQ(interval.energy_ws, 4'000 * interval.seconds);
+    EXPECT_EQ(interval.soc_e4, 0);
+  }
+  EXPECT_EQ(taken, (std::vector<int>{10, 15, 20}));
+  EXPECT_EQ(interval.seconds, 600);
+  EXPECT_EQ(interval.surely_ws, 4'000 * (600 - 140));
+  EXPECT_FALSE(SeldomSoc(ResponseSettings{}).is_seldom());
 }
 
 /// The SoC of a device that brings it up to date every `refresh_s`, and says so.
