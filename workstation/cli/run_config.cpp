@@ -158,6 +158,8 @@ void KeyList::list(RunConfig& c) {
   boolean("input_slope", c.train.inputs.slope, "and what the last three minutes added");
   boolean("input_calm", c.train.inputs.calm,
           "and the time since a price was 100 EUR/MWh off its level");
+  boolean("input_deviation", c.train.inputs.deviation,
+          "residual: and where the price lies among the usual ones, by the program");
   number("tau", c.train.tau, 1e-6, 1, "target <- tau * online + (1 - tau) * target, each step");
   integer("atoms", c.train.atoms, 2, 1001, "of the value distribution");
   number("value_min_eur_per_h", c.train.value_min_eur_per_h, -1e9, 1e9, "lowest atom");
@@ -174,6 +176,7 @@ void KeyList::list(RunConfig& c) {
          "standard deviation of a random shift of the quarter-hour: keeps days from being learnt "
          "by heart");
   number("jitter_classes", c.train.jitter.classes, 0, 12, "the same for the context class");
+  number("jitter_price", c.train.jitter.price, 0, 1, "the same for the price input, of its range");
   integer("replay_capacity", c.train.replay_capacity, 1, 100'000'000, "transitions in the ring");
   number("epsilon_start", c.train.epsilon_start, 0, 1, "share of random actions at the start");
   number("epsilon_end", c.train.epsilon_end, 0, 1, "and from half of the steps on");
@@ -232,6 +235,9 @@ void check_relations(const RunConfig& config, const std::string& name) {
   if (config.train.inputs.count() > 0 && config.train.source != Source::kCounterfactual) {
     fail("{}: [train] input_... needs source = \"counterfactual\": the ring holds five inputs",
          name);
+  }
+  if (config.train.inputs.deviation && !config.train.residual) {
+    fail("{}: [train] input_deviation needs residual = true: the program tells it", name);
   }
   if (config.train.residual && config.train.atoms % 2 == 0) {
     fail("{}: [train] residual needs an odd number of atoms, not {}: zero is the middle one", name,

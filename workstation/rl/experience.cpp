@@ -12,6 +12,10 @@ float scale_of_eur(const BatteryParameters& battery) {
   return static_cast<float>(learned_per_eur(battery));
 }
 
+double deviation_frac(const StochasticProgram* program, const MarketStep& step) {
+  return program == nullptr ? 0 : program->deviation_frac(StochasticProgram::situation_of(step));
+}
+
 /// Moves a normalised input by `shift` and keeps it in its range.
 void move_input(float& x, double shift) {
   x = std::clamp(x + static_cast<float>(shift), 0.0F, 1.0F);
@@ -59,8 +63,11 @@ TrainingMarket::TrainingMarket(const MarketSteps& market, const PriceMap& price_
       steps_.push_back(step);
       if (teacher_inputs_ == 0) continue;
       TeacherSight& sight = sights_.emplace_back();
-      inputs.write(steps[i].recent, price_map, sight.state);
-      inputs.write(follows ? next->recent : steps[i].recent, price_map, sight.next_state);
+      const auto write = [&](const MarketStep& of, float* x) {
+        inputs.write(of.recent, price_map, deviation_frac(shaping.program.get(), of), x);
+      };
+      write(steps[i], sight.state);
+      write(follows ? *next : steps[i], sight.next_state);
     }
     days_.push_back({first, steps_.size() - first});
   }
@@ -176,6 +183,7 @@ void draw_counterfactual(const TrainingMarket& market, std::size_t count,
                          std::vector<TeacherSight>* sights) {
   constexpr int kQuarterHourInput = 1;  // order of write_input
   constexpr int kContextClassInput = 2;
+  constexpr int kPriceInput = 4;
   out.resize(count);
   const bool draws_sights = sights != nullptr && market.teacher_inputs() > 0;
   if (draws_sights) sights->resize(count);
@@ -183,6 +191,7 @@ void draw_counterfactual(const TrainingMarket& market, std::size_t count,
   double soc_frac = 0;
   double quarter_hour_shift = 0;
   double class_shift = 0;
+  double price_shift = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t action = i % kActionCount;
     if (action == 0) {
@@ -190,6 +199,7 @@ void draw_counterfactual(const TrainingMarket& market, std::size_t count,
       soc_frac = market.draw_soc(random);
       quarter_hour_shift = random.normal() * jitter.quarter_hours / (kQuarterHourCount - 1);
       class_shift = random.normal() * jitter.classes / (kContextClassCount - 1);
+      if (jitter.price > 0) price_shift = random.normal() * jitter.price;
     }
     if (draws_sights) (*sights)[i] = market.sight(index);
     Transition& transition = out[i];
@@ -197,6 +207,7 @@ void draw_counterfactual(const TrainingMarket& market, std::size_t count,
     for (float* x : {transition.state, transition.next_state}) {
       move_input(x[kQuarterHourInput], quarter_hour_shift);
       move_input(x[kContextClassInput], class_shift);
+      if (jitter.price > 0) move_input(x[kPriceInput], price_shift);
     }
   }
 }

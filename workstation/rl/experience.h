@@ -40,6 +40,7 @@ struct RewardShaping {
 struct ContextJitter {
   double quarter_hours = 4;
   double classes = 0.5;
+  double price = 0;  ///< of the price input, 0..1: the teacher's own inputs stay
 };
 
 /// Training steps with their successor, ready to become transitions.

@@ -23,7 +23,7 @@ constexpr float kResidualQuantum = 1e-6F;  ///< of network_values(), in the supp
 constexpr std::uint32_t kResidualFlag = 0x100;
 /// And which inputs of its own the teacher has.
 constexpr int kInputsShift = 12;
-constexpr std::uint32_t kInputsMask = 0xF000;
+constexpr std::uint32_t kInputsMask = 0x1F000;
 
 bool is_possible(const Support& support) {
   return std::isfinite(support.v_min) && std::isfinite(support.v_max) &&
@@ -56,24 +56,29 @@ int unscaled(float input, int scale) {
       std::lround(input * static_cast<float>(kInputOne) / static_cast<float>(scale)));
 }
 
+/// What the program is asked in the state of five inputs.
+StochasticProgram::Situation situation_at(const Teacher& teacher, const float* x) {
+  const StochasticProgram& program = *teacher.program;
+  const int minute = unscaled(x[0], kMinuteOfQuarterHourScale);
+  const int quarter_hour = unscaled(x[1], kQuarterHourScale);
+  const int context_class = 1 + unscaled(x[2], kContextClassScale);
+  return {.step_of_day = (quarter_hour * kMinutesPerQuarterHour + minute) / kMinutesPerStep,
+          .row_quarter_hour = program.row_quarter_hour(quarter_hour, minute),
+          .price_eur_per_mwh = teacher.price_map.price_of(x[4]),
+          .level_eur_per_mwh = teacher.context.kind == ContextKind::kLevel
+                                   ? class_level_eur_per_mwh(teacher.context, context_class)
+                                   : program.mean_level_eur_per_mwh()};
+}
+
 /// The program's values in the teacher's unit: EUR over a step -> scaled EUR/h of the paper's 4 MW.
 Matrix program_values(const Teacher& teacher, const MatrixRef& x) {
   const StochasticProgram& program = *teacher.program;
   const double scale = learned_per_eur(program.battery());
   Matrix values(kActionCount, x.cols());
   for (Eigen::Index c = 0; c < x.cols(); ++c) {
-    const int minute = unscaled(x(0, c), kMinuteOfQuarterHourScale);
-    const int quarter_hour = unscaled(x(1, c), kQuarterHourScale);
-    const int context_class = 1 + unscaled(x(2, c), kContextClassScale);
-    const double level = teacher.context.kind == ContextKind::kLevel
-                             ? class_level_eur_per_mwh(teacher.context, context_class)
-                             : program.mean_level_eur_per_mwh();
-    const auto worth = program.action_values(
-        {.step_of_day = (quarter_hour * kMinutesPerQuarterHour + minute) / kMinutesPerStep,
-         .row_quarter_hour = program.row_quarter_hour(quarter_hour, minute),
-         .price_eur_per_mwh = teacher.price_map.price_of(x(4, c)),
-         .level_eur_per_mwh = level},
-        double{x(3, c)} * kInputOne / kSocScale / (kSocCount - 1));
+    const auto worth =
+        program.action_values(situation_at(teacher, x.col(c).data()),
+                              double{x(3, c)} * kInputOne / kSocScale / (kSocCount - 1));
     for (int a = 0; a < kActionCount; ++a) {
       values(a, c) = static_cast<float>((worth[a] - worth[1]) * scale);
     }
@@ -108,12 +113,18 @@ Matrix Teacher::action_values(const MatrixRef& x, MlpTile& tile) const {
   return values;
 }
 
+void Teacher::write_without_past(float* x) const {
+  const double deviation_frac =
+      inputs.deviation ? program->deviation_frac(situation_at(*this, x)) : 0;
+  inputs.write_without_past(x[4], deviation_frac, x + kNetworkInputs);
+}
+
 Matrix Teacher::network_values(const MatrixRef& x, MlpTile& tile) const {
   if (x.rows() < input_count()) {
     Matrix whole(input_count(), x.cols());
     whole.topRows(kNetworkInputs) = x;
     for (Eigen::Index c = 0; c < x.cols(); ++c) {
-      inputs.write_without_past(x(4, c), whole.col(c).data() + kNetworkInputs);
+      write_without_past(whole.col(c).data());
     }
     return network_values(whole, tile);
   }

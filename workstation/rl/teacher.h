@@ -43,11 +43,15 @@ struct Teacher {
   /// The network's part of them. Of a residual in whole millionths of the support's reach: a point
   /// mass at zero then is zero exactly, however its exponentials are rounded.
   [[nodiscard]] Matrix network_values(const MatrixRef& x, MlpTile& tile) const;
+  /// Writes the teacher's own inputs below the student's five, of a state without a past.
+  void write_without_past(float* x) const;
   [[nodiscard]] int input_count() const { return kNetworkInputs + inputs.count(); }
   /// Writes input_count() inputs of a step.
   void write_inputs(const MarketStep& step, double soc_frac, float* x) const {
     write_input(network_context(step, price_map, context), soc_frac, x);
-    inputs.write(step.recent, price_map, x + kNetworkInputs);
+    const double deviation_frac =
+        inputs.deviation ? program->deviation_frac(StochasticProgram::situation_of(step)) : 0;
+    inputs.write(step.recent, price_map, deviation_frac, x + kNetworkInputs);
   }
 };
 

@@ -60,6 +60,13 @@ TEST(RunConfig, KeysOverlayTheDefaults) {
   EXPECT_EQ(config.battery.capacity_wh, RunConfig{}.battery.capacity_wh);
 }
 
+TEST(RunConfig, TheFileOfAResidualTeacherIsValid) {
+  const RunConfig config =
+      load_run_config(std::string(BESS_SOURCE_DIR) + "/workstation/config/c51.toml");
+  EXPECT_EQ(config.train.method, Method::kC51);
+  EXPECT_TRUE(config.train.residual);
+}
+
 TEST(RunConfig, PaperFileIsValid) {
   const RunConfig config =
       load_run_config(std::string(BESS_SOURCE_DIR) + "/workstation/config/paper.toml");
@@ -130,6 +137,7 @@ TEST(RunConfig, MistakesNamePlaceAndMend) {
        "[train] residual needs horizon = \"continuing\""},
       {"[train]\ninput_calm = true\nsource = \"replay\"\n", ": ",
        "[train] input_... needs source = \"counterfactual\""},
+      {"[train]\ninput_deviation = true\n", ": ", "[train] input_deviation needs residual = true"},
       {"[train]\nresidual = true\natoms = 50\n", ": ",
        "[train] residual needs an odd number of atoms, not 50"},
       {"[correction]\nlow_price_eur_per_mwh = 1500\n", ": ",

@@ -345,6 +345,38 @@ TEST(TeacherInputs, AreSeenInTheStepAndWithoutAPastWhereThereIsNone) {
   EXPECT_NE(teacher.action_values(five, tile), teacher.action_values(nine, tile));
 }
 
+TEST(TeacherInputs, ADeviationIsTheProgramsWithAPastAndWithout) {
+  Teacher teacher = beginner(Method::kC51, {-1, 1, 5});
+  teacher.inputs = {.deviation = true};
+  teacher.shape = teacher_shape(teacher.method, teacher.support, teacher.inputs);
+  teacher.parameters = initial_parameters(teacher.shape, 8);
+  const StochasticProgram& program = *teacher.program;
+  std::vector<float> seen;
+  double apart = 0;
+  for (std::size_t i = 0; i < market().steps.size(); i += 17) {
+    MarketStep step = market().steps[i];
+    Matrix six(6, 1);
+    teacher.write_inputs(step, 0.4, six.data());
+    const auto at = StochasticProgram::situation_of(step);
+    EXPECT_EQ(six(5), static_cast<float>(program.deviation_frac(at)));
+    EXPECT_GE(six(5), 0);
+    EXPECT_LE(six(5), 1);
+    seen.push_back(six(5));
+    // Without a past the level is that of its class: nearly the same deviation.
+    float without[6];
+    std::copy_n(six.data(), kNetworkInputs, without);
+    teacher.write_without_past(without);
+    apart += std::abs(double{without[5]} - double{six(5)});
+    step.observed_eur_per_mwh += 1;
+    EXPECT_GE(program.deviation_frac(StochasticProgram::situation_of(step)),
+              program.deviation_frac(at));
+  }
+  EXPECT_LT(apart / static_cast<double>(seen.size()), 0.1);
+  // A quantile: its values are spread evenly over the days that the program was fitted on.
+  EXPECT_NEAR(std::accumulate(seen.begin(), seen.end(), 0.0) / static_cast<double>(seen.size()),
+              0.5, 0.1);
+}
+
 TEST(TeacherInputs, AreTheTeachersInDistillationAndTheStudentHasFive) {
   Teacher teacher = beginner(Method::kC51, {-1, 1, 5});
   teacher.inputs = {.earlier = true, .slope = true};
