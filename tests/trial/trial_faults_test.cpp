@@ -167,6 +167,22 @@ TEST_P(SocFaultOfTheTrial, IsFoundWithOrdersOfEitherSign) {
 INSTANTIATE_TEST_SUITE_P(Faults, SocFaultOfTheTrial, ::testing::ValuesIn(kSocFaults),
                          [](const auto& info) { return std::string(info.param.name); });
 
+TEST(TrialFaults, WhatLeavesOrComesBesidesOrdersOfEitherSignIsTold) {
+  for (const Orders orders : {Orders::kAlternating, Orders::kPairs}) {
+    const FaultResult drained =
+        try_fault({.fault = &trial_fault("hidden_drain_1_kw"), .orders = orders});
+    EXPECT_GT(drained.told_cycles, 0);
+    EXPECT_LE(drained.told_cycles, 20) << orders_name(orders);
+    EXPECT_NEAR(drained.told.rest_loss_w, 1'000, 200) << orders_name(orders);
+    EXPECT_EQ(drained.reason, Reason::kStudent) << "told, not stopped";
+    const FaultResult creeping =
+        try_fault({.fault = &trial_fault("soc_creeps_up"), .orders = orders});
+    EXPECT_LE(creeping.told_cycles, 15) << orders_name(orders);
+    EXPECT_EQ(creeping.reason, Reason::kSocMismatch) << orders_name(orders);
+    EXPECT_LE(creeping.cycles, 50) << orders_name(orders);
+  }
+}
+
 TEST(TrialFaults, AreAtLeastThirtyFive) { EXPECT_GE(trial_faults().size(), 35U); }
 
 }  // namespace
