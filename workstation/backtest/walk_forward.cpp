@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "shared/host/user_error.h"
+#include "workstation/env/charge_left.h"
 #include "workstation/env/day_risk.h"
 #include "workstation/market/series/local_date.h"
 
@@ -49,6 +50,14 @@ std::vector<std::pair<std::size_t, std::size_t>> months_of(const std::vector<Mar
     months.back().second = d + 1;
   }
   return months;
+}
+
+double mean_settled_of(const Evaluation& traded, const MarketSteps& market) {
+  std::vector<MarketDay> days = market.days;
+  std::erase_if(days, [&](const MarketDay& day) {
+    return std::ranges::find(traded.days, day.date(), &DayResult::date) == traded.days.end();
+  });
+  return mean_settled_eur_per_mwh(market, days);
 }
 
 }  // namespace
@@ -112,6 +121,8 @@ WalkForward walk_forward(const std::string& name, const Folds& folds, const Fold
     result.months.push_back(fold.month);
     result.by_month.push_back(std::move(evaluation));
   }
+  value_charge_left(result.total, battery, mean_settled_of(result.total, market));
+  result.by_month.back().days.back() = result.total.days.back();
   return result;
 }
 

@@ -19,6 +19,8 @@
 #include "workstation/cli/interruption.h"
 #include "workstation/cli/policy_factory.h"
 #include "workstation/cli/price_input.h"
+#include "workstation/cli/run_backtest.h"
+#include "workstation/cli/run_plan.h"
 #include "workstation/report/backtest_report.h"
 #include "workstation/report/comparison.h"
 #include "workstation/student/correct_and_prove.h"
@@ -30,8 +32,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The whole chain, learnt anew for each fold; and its teacher.
-constexpr const char* kChainName = "student";
+/// The teacher of the whole chain's fold.
 constexpr const char* kTeacherName = "teacher";
 
 struct BacktestArguments {
@@ -170,7 +171,8 @@ void run_backtest(const BacktestArguments& options) {
                           config.battery.capacity_wh / kWattsPerMegawatt,
                           fmt::format("{} on {} file{}, prices {:08x}, seed {}", BESS_VERSION,
                                       options.prices.size(), options.prices.size() == 1 ? "" : "s",
-                                      prices_checksum(series), config.train.seed)};
+                                      prices_checksum(series), config.train.seed),
+                          learning_identity(prices_hash(series), config)};
   Progress progress("trade", "policies", static_cast<double>(options.policies.size()));
   for (const std::string& name : options.policies) {
     const FoldPolicy make = [&](const Fold& fold) {
@@ -185,6 +187,10 @@ void run_backtest(const BacktestArguments& options) {
   write_file(folder / "backtest_days.csv", backtest_days_csv(results));
   write_file(folder / "backtest.json", backtest_json(results).text());
   write_backtest_page(results, folder);
+  const std::string run = folder.parent_path().string();
+  if (folder.filename() == kRunsBacktest && fs::exists(RunFolder{run}.record())) {
+    fmt::print(stderr, "'bess-train report --run {}' shows it beside the run's figure\n", run);
+  }
   if (options.json) {
     fmt::print("{}\n", backtest_json(results).line());
   } else {

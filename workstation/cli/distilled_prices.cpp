@@ -28,16 +28,6 @@ struct Students {
   std::string failure{};  ///< of the first that was not proved
 };
 
-Evaluation mean_of(const std::vector<Evaluation>& seeds) {
-  Evaluation mean = seeds.front();
-  for (std::size_t d = 0; d < mean.days.size(); ++d) {
-    double sum = 0;
-    for (const Evaluation& seed : seeds) sum += seed.days[d].profit_eur;
-    mean.days[d].profit_eur = sum / static_cast<double>(seeds.size());
-  }
-  return mean;
-}
-
 class Distillery {
  public:
   Distillery(const DistilledPriceOptions& options, const Teacher& teacher, const RunConfig& config,

@@ -17,8 +17,9 @@
 #include "workstation/cli/learnt_for.h"
 #include "workstation/cli/policy_factory.h"
 #include "workstation/cli/price_input.h"
-#include "workstation/env/evaluate.h"
+#include "workstation/env/charge_left.h"
 #include "workstation/report/comparison.h"
+#include "workstation/report/judged_days.h"
 
 namespace bess {
 namespace {
@@ -176,10 +177,21 @@ NamedEvaluation evaluate_policy(const std::string& name, const Trial& trial, Rec
     evaluation = evaluate(trial.market, trial.days, *policy,
                           {config.battery, config.initial_soc_frac, carry_soc},
                           wants_steps ? &steps : nullptr);
+    if (carry_soc) {
+      value_charge_left(evaluation, config.battery,
+                        mean_settled_eur_per_mwh(trial.market, trial.days));
+    }
     if (trial.only_day) keep_day(*trial.only_day, trial.market, evaluation, steps);
     if (records != nullptr) records->add(name, carry_soc, evaluation, steps);
   }
   return named;
+}
+
+std::vector<std::string> dates_of(const Trial& trial) {
+  if (trial.only_day) return {trial.only_day->date()};
+  std::vector<std::string> dates;
+  for (const MarketDay& day : trial.days) dates.push_back(day.date());
+  return dates;
 }
 
 /// Asked before the work, so that a wrong name costs nothing.
@@ -215,6 +227,7 @@ void run_evaluate(const EvaluateArguments& options) {
          options.split);
   }
   if (!options.date.empty()) trial.only_day = select_day(market, trial.days, options.date);
+  const JudgedDays judged{parse_split(options.split), dates_of(trial), last_learnt_day(fitting)};
   const NamedEvaluation foresight = evaluate_policy(kForesightName, trial, nullptr);
   std::vector<NamedEvaluation> results;
   Records records;
@@ -226,7 +239,8 @@ void run_evaluate(const EvaluateArguments& options) {
   if (!options.steps_out.empty()) write_file(options.steps_out, records.steps);
   if (!options.csv.empty()) write_file(options.csv, comparison_csv(results, &foresight));
   if (!options.json) {
-    fmt::print("{} split: {}", options.split, format_comparison_table(results, &foresight));
+    fmt::print("{} split: {}{}\n", options.split, format_comparison_table(results, &foresight),
+               judged_days_text(judged));
     return;
   }
   print_json(results, foresight, options);

@@ -78,6 +78,7 @@ std::vector<RunRequest> requests_of(const RunArguments& options) {
 void run_seeds(const RunArguments& options) {
   std::vector<RunSummary> finished;
   std::vector<std::string> failures;
+  std::vector<UnprovedSeed> unproved;
   for (const RunRequest& request : requests_of(options)) {
     std::FILE* messages = options.json ? stderr : stdout;
     fmt::print(messages, "seed {}\n", *request.common.seed);
@@ -87,10 +88,12 @@ void run_seeds(const RunArguments& options) {
     } catch (const ProofFailed& failed) {  // the other seeds may do better
       failures.push_back(fmt::format("seed {}: {}", *request.common.seed, failed.what()));
       fmt::print(stderr, "bess-train: {}\n", failures.back());
+      const std::string reason = failed.what();
+      unproved.push_back({request.out.filename().string(), reason.substr(0, reason.find('\n'))});
     }
   }
   if (!finished.empty()) {
-    write_seeds_report(options.request.out, finished);
+    write_seeds_report(options.request.out, finished, unproved);
     const std::vector<Band> bands = bands_of(finished);
     if (options.json) {
       for (const RunSummary& run : finished) fmt::print("{}\n", summary_json(run).line());

@@ -70,22 +70,6 @@ std::string stage_times(const fs::path& path) {
   return text;
 }
 
-/// What differs from one making of the same page to the next.
-void add_making(const RunFolder& folder, std::vector<Fact>& facts) {
-  if (const char* epoch = std::getenv("SOURCE_DATE_EPOCH")) {
-    facts.push_back({"date", std::string(utc_text(std::strtoll(epoch, nullptr, 10)).view())});
-    return;
-  }
-  facts.push_back({"date", std::string(utc_text(std::time(nullptr)).view())});
-  facts.push_back({"host", host_name()});
-  facts.push_back({"command", command_line()});
-  facts.push_back(
-      {"computed for", fmt::format("{:.1f} CPU seconds, this command until here",
-                                   static_cast<double>(std::clock()) / CLOCKS_PER_SEC)});
-  const std::string times = stage_times(folder.path / "times.json");
-  if (!times.empty()) facts.push_back({"stages", times});
-}
-
 /// "FILE: crc32 1234abcd, 4711 bytes"
 std::string prices_text(const RunFolder& folder) {
   const Json run = Json::parse(read_file(folder.path / "run.json"));
@@ -109,12 +93,30 @@ std::string span_text(const MarketSteps& market) {
 
 }  // namespace
 
+std::vector<Fact> making_facts(const RunFolder& folder) {
+  std::vector<Fact> facts;
+  if (const char* epoch = std::getenv("SOURCE_DATE_EPOCH")) {
+    facts.push_back({"date", std::string(utc_text(std::strtoll(epoch, nullptr, 10)).view())});
+    return facts;
+  }
+  facts.push_back({"date", std::string(utc_text(std::time(nullptr)).view())});
+  facts.push_back({"host", host_name()});
+  facts.push_back({"command", command_line()});
+  facts.push_back(
+      {"computed for", fmt::format("{:.1f} CPU seconds, this command until here",
+                                   static_cast<double>(std::clock()) / CLOCKS_PER_SEC)});
+  const std::string times = stage_times(folder.path / "times.json");
+  if (!times.empty()) facts.push_back({"stages", times});
+  return facts;
+}
+
+std::string program_text() { return fmt::format("bess-train {}, {}", BESS_VERSION, build_line()); }
+
 std::vector<Fact> run_facts(const RunConfig& config, const MarketSteps& market,
                             const RunFolder& folder) {
-  std::vector<Fact> facts;
-  add_making(folder, facts);
+  std::vector<Fact> facts = making_facts(folder);
   const int delay_min = config.market.observation_delay_min;
-  facts.push_back({"program", fmt::format("bess-train {}, {}", BESS_VERSION, build_line())});
+  facts.push_back({"program", program_text()});
   facts.push_back({"prices", prices_text(folder)});
   facts.push_back({"span", span_text(market)});
   facts.push_back(

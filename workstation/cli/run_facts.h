@@ -1,6 +1,7 @@
 // Where a run's page comes from: when, where and by what it was made, and from which prices.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "workstation/cli/run_config.h"
@@ -9,6 +10,11 @@
 #include "workstation/report/provenance.h"
 
 namespace bess {
+
+/// When, where, by which command and how long; with SOURCE_DATE_EPOCH set the date alone.
+std::vector<Fact> making_facts(const RunFolder& folder);
+/// "bess-train 0.1.0, BUILD"
+std::string program_text();
 
 /// Reads run.json of `folder` for the prices and, where there is one, times.json for its stages' times. With
 /// SOURCE_DATE_EPOCH in the environment (reproducible-builds.org) that is the date, and what differs from one

@@ -195,6 +195,7 @@ std::optional<RunRecord> load_run_record(const RunFolder& folder) {
     record.figures = {figures.text("provenance"), figures.text("weights_hash"),
                       count("states_checked"),    count("states_checked_plain"),
                       count("violations_plain"),  count("violations_corrected")};
+    record.figures->last_learnt_day = json.value()["figures"]["last_learnt_day"].text_or("");
     for (const JsonValue demand : json.value()["figures"]["demands"]) {
       const JsonReader of(demand, name, kKind);
       const auto violations = [&](const char* key) {
@@ -228,6 +229,7 @@ void save_run_record(const RunFolder& folder, const RunRecord& record) {
                                  {"violations_plain", f.violations_plain},
                                  {"violations_corrected", f.violations_corrected}});
     figures.set("demands", demands_json(f.demands));
+    figures.set("last_learnt_day", f.last_learnt_day);
     json.set("figures", std::move(figures));
   }
   write_file(folder.record(), json.text());

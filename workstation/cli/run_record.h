@@ -48,6 +48,7 @@ struct RunFigures {
   std::int64_t violations_plain = 0;
   std::int64_t violations_corrected = 0;
   std::vector<DemandFigures> demands = {};  ///< of which the violations are the sums
+  std::string last_learnt_day = {};         ///< trained or chosen on; empty: not told
 };
 
 /// In `identity`: the text of a rule file, if there are any rules.

@@ -6,8 +6,10 @@
 #include "shared/host/user_error.h"
 #include "workstation/cli/policy_factory.h"
 #include "workstation/cli/run_facts.h"
-#include "workstation/env/evaluate.h"
+#include "workstation/env/charge_left.h"
 #include "workstation/report/comparison_notes.h"
+#include "workstation/report/headline.h"
+#include "workstation/report/judged_days.h"
 #include "workstation/report/risk_table.h"
 #include "workstation/report/rule_prices.h"
 #include "workstation/rules/ruled_policy.h"
@@ -26,6 +28,8 @@ NamedEvaluation evaluate_both(const std::string& name, Policy& policy, const Run
   named.day_reset = evaluate(run.market, days, policy, options);
   options.carry_soc = true;
   named.carried_over = evaluate(run.market, days, policy, options);
+  value_charge_left(named.carried_over, run.config.battery,
+                    mean_settled_eur_per_mwh(run.market, days));
   return named;
 }
 
@@ -114,14 +118,20 @@ std::vector<std::string> write_run_report(const RunResults& run,
       .uncorrected = &run.plain,
       .corrected = &run.corrected,
       .broken = broken_demands(run.corrected, run.config.distil.method),
+      .walk_forward = run.walk_forward,
       .provenance = run.corrected.provenance,
       .facts = run_facts(run.config, run.market, folder),
   };
   std::vector<std::string> names = write_report(inputs, folder.path);
   const std::string alike = same_program_text(evaluations);
-  std::string summary = format_comparison_table(evaluations) + (alike.empty() ? "" : alike + "\n") +
-                        whole_battery_text(evaluations) +
-                        violations_text(run.plain.certificate, run.corrected.certificate);
+  std::string summary;
+  if (const auto headline = headline_of(evaluations)) {
+    summary = headline_text(*headline) + judged_days_text(judged_days(run.market, Split::kTest)) +
+              "\n" + walk_forward_text(run.walk_forward) + "\n\n";
+  }
+  summary += format_comparison_table(evaluations) + (alike.empty() ? "" : alike + "\n") +
+             whole_battery_text(evaluations) +
+             violations_text(run.plain.certificate, run.corrected.certificate);
   if (const std::string risks = risk_table(evaluations, teacher_name(run.teacher));
       !risks.empty()) {
     summary += '\n' + risks;

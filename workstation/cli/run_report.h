@@ -19,6 +19,7 @@ struct RunResults {
   StudentFile corrected;
   std::vector<CurvePoint> training_curve;
   std::vector<DistilPoint> distil_curve;
+  WalkForwardOfRun walk_forward;  ///< of the same prices and configuration
   std::vector<StudentCheckpoint> checkpoints = {};
 };
 

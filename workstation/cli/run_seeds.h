@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "workstation/cli/run_summary.h"
+#include "workstation/cli/seeds_page.h"
 
 namespace bess {
 
@@ -18,6 +19,7 @@ std::string format_bands(const std::vector<Band>& bands, std::size_t runs);
 std::string bands_json(const std::vector<Band>& bands, std::size_t runs);
 
 /// Writes seeds.csv and seeds.html, bands and every run, into `folder`.
-void write_seeds_report(const std::filesystem::path& folder, const std::vector<RunSummary>& runs);
+void write_seeds_report(const std::filesystem::path& folder, const std::vector<RunSummary>& runs,
+                        const std::vector<UnprovedSeed>& unproved = {});
 
 }  // namespace bess

@@ -16,7 +16,9 @@
 #include "workstation/cli/chain_steps.h"
 #include "workstation/cli/interruption.h"
 #include "workstation/cli/price_input.h"
+#include "workstation/cli/run_backtest.h"
 #include "workstation/report/evaluation_days.h"
+#include "workstation/report/judged_days.h"
 #include "workstation/student/correct_and_prove.h"
 #include "workstation/student/counterexamples.h"
 #include "workstation/student/demand_counts.h"
@@ -324,7 +326,8 @@ RunResults RunStages::results(StudentFile corrected) {
                      load_student(path(kPlainStudent)),
                      std::move(corrected),
                      parse_training_curve_csv(text(kTrainingCurve), path(kTrainingCurve).string()),
-                     parse_distil_curve_csv(text(kDistilCurve), path(kDistilCurve).string())};
+                     parse_distil_curve_csv(text(kDistilCurve), path(kDistilCurve).string()),
+                     walk_forward_of(folder_, record_)};
   if (fs::exists(path(kCheckpoints))) {  // an older run has none
     results.checkpoints = parse_student_checkpoints_csv(text(kCheckpoints), kCheckpoints);
   }
@@ -353,7 +356,8 @@ RunStages::Names RunStages::make_report() {
                      run.plain.certificate.states_checked,
                      run.plain.certificate.violations(),
                      certificate.violations(),
-                     demand_figures(run.plain.certificate, certificate)};
+                     demand_figures(run.plain.certificate, certificate),
+                     last_learnt_day(market_)};
   return sorted(std::move(names));
 }
 

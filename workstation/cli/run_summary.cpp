@@ -10,7 +10,10 @@
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "workstation/base/answer.h"
+#include "workstation/cli/run_backtest.h"
 #include "workstation/report/evaluation_days.h"
+#include "workstation/report/headline.h"
+#include "workstation/report/judged_days.h"
 #include "workstation/report/rule_prices.h"
 #include "workstation/rules/rule_file.h"
 
@@ -58,6 +61,33 @@ std::string what_differs(const std::vector<RunSummary>& runs) {
   return text;
 }
 
+/// The policy in every run that has it.
+std::vector<Evaluation> of_all_runs(const std::vector<RunSummary>& runs, const std::string& policy,
+                                    EvaluationField field) {
+  std::vector<Evaluation> all;
+  for (const RunSummary& run : runs) {
+    const auto same = std::ranges::find(run.evaluations, policy, &NamedEvaluation::name);
+    if (same != run.evaluations.end()) all.push_back((*same).*field);
+  }
+  return all;
+}
+
+Band band_of(const std::string& policy, const char* soc, const std::vector<Evaluation>& all) {
+  const auto n = static_cast<double>(all.size());
+  Band band{policy, soc, 0, 0, 0, 0, 0, mean_of(all).errors(), {}};
+  std::vector<double> profits;
+  for (const Evaluation& evaluation : all) {
+    profits.push_back(evaluation.profit_eur_per_day_per_mwh());
+    band.mean += profits.back() / n;
+    band.mean_at_reference_wear +=
+        evaluation.profit_at_wear_eur_per_day_per_mwh(kReferenceWearEurPerMwh) / n;
+  }
+  for (const double p : profits) band.deviation += (p - band.mean) * (p - band.mean);
+  band.deviation = std::sqrt(band.deviation / (n - 1));  // one run has none
+  std::tie(band.low, band.high) = std::pair(std::ranges::min(profits), std::ranges::max(profits));
+  return band;
+}
+
 /// Numbers that are compared are those that the run wrote.
 void require_unchanged(const RunRecord& record, const RunFolder& folder) {
   for (const StageRecord& stage : record.stages) {
@@ -72,6 +102,27 @@ void require_unchanged(const RunRecord& record, const RunFolder& folder) {
           now.empty() ? "missing" : now, folder.path.string());
     }
   }
+}
+
+/// What the figures are of, and the walk-forward one of each run that has it.
+std::string standing_text(const std::vector<RunSummary>& runs) {
+  std::string text = "\n";
+  std::string last;
+  for (const RunSummary& run : runs) {
+    const std::string judged = judged_days_text(judged_days_of(run));
+    if (judged != last) text += judged + "\n";
+    last = judged;
+  }
+  bool any = false;
+  for (const RunSummary& run : runs) {
+    const WalkForwardOfRun walk = walk_forward_of(run.folder, run.record);
+    if (!walk.figure) continue;
+    text += fmt::format("{}: {}\n", run.folder.path.string(), walk_forward_text(walk));
+    any = true;
+  }
+  const RunSummary& first = runs.front();
+  if (any) return text;
+  return text + walk_forward_text(walk_forward_of(first.folder, first.record)) + "\n";
 }
 
 std::size_t rules_of(const RunSummary& run) {
@@ -103,6 +154,12 @@ std::vector<std::string> differing_keys(const std::vector<const RunRecord*>& run
     }
   }
   return keys;
+}
+
+JudgedDays judged_days_of(const RunSummary& run) {
+  JudgedDays judged{Split::kTest, {}, run.record.figures->last_learnt_day};
+  for (const DayResult& day : exported(run).carried_over.days) judged.dates.push_back(day.date);
+  return judged;
 }
 
 RunSummary load_run_summary(const RunFolder& folder) {
@@ -145,6 +202,11 @@ Json summary_json(const RunSummary& run) {
   json.set("demands", demands_json(figures.demands));
   const auto prices = rule_prices_of(run.evaluations);
   json.set("price_of_correction", prices ? rule_prices_json(*prices) : Json::null());
+  const auto headline = headline_of(run.evaluations);
+  json.set("headline", headline ? headline_json(*headline) : Json::null());
+  json.set("judged_days", judged_days_json(judged_days_of(run)));
+  const WalkForwardOfRun walk = walk_forward_of(run.folder, record);
+  json.set("walk_forward", walk.figure ? walk_forward_json(*walk.figure) : Json::null());
   Json policies = Json::list();
   for (const auto& [soc, field] : kWays) {
     for (const ComparisonRow& row : comparison_rows(run.evaluations, field)) {
@@ -157,26 +219,15 @@ Json summary_json(const RunSummary& run) {
 
 std::vector<Band> bands_of(const std::vector<RunSummary>& runs) {
   std::vector<Band> bands;
-  const auto n = static_cast<double>(runs.size());
   for (const auto& [soc, field] : kWays) {
-    for (const NamedEvaluation& first : runs.front().evaluations) {
-      std::vector<double> profits;
-      Band band{first.name, soc, 0, 0, 0, 0, 0};
-      for (const RunSummary& run : runs) {
-        const auto same = std::ranges::find(run.evaluations, first.name, &NamedEvaluation::name);
-        if (same == run.evaluations.end()) break;
-        const Evaluation& evaluation = (*same).*field;
-        profits.push_back(evaluation.profit_eur_per_day_per_mwh());
-        band.mean += profits.back() / n;
-        band.mean_at_reference_wear +=
-            evaluation.profit_at_wear_eur_per_day_per_mwh(kReferenceWearEurPerMwh) / n;
-      }
-      if (profits.size() != runs.size()) continue;
-      for (const double p : profits) band.deviation += (p - band.mean) * (p - band.mean);
-      band.deviation = std::sqrt(band.deviation / (n - 1));  // one run has none
-      std::tie(band.low, band.high) =
-          std::pair(std::ranges::min(profits), std::ranges::max(profits));
-      bands.push_back(std::move(band));
+    std::optional<Evaluation> first;
+    for (const NamedEvaluation& named : runs.front().evaluations) {
+      const std::vector<Evaluation> all = of_all_runs(runs, named.name, field);
+      if (all.size() != runs.size()) continue;
+      bands.push_back(band_of(named.name, soc, all));
+      const Evaluation mean = mean_of(all);
+      if (first) bands.back().gain = paired_difference(mean, *first);
+      if (!first) first = mean;
     }
   }
   return bands;
@@ -214,6 +265,7 @@ std::string format_runs_table(const std::vector<RunSummary>& runs) {
       "gain: day-by-day difference to the first run, where both have the same days; s.e.: its "
       "standard error;\nby month: {}\n",
       by_month_meaning(first.errors().months));
+  text += standing_text(runs);
   const std::string differs = runs.size() > 1 ? what_differs(runs) : "";
   if (!differs.empty()) text += "\nThe runs differ in\n" + differs;
   return text;

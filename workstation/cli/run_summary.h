@@ -1,12 +1,14 @@
 // Finished runs as figures: what `run --json` prints, `run --seeds` makes bands of, and `runs compare` lines up.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "shared/host/json.h"
 #include "workstation/cli/run_record.h"
 #include "workstation/report/comparison.h"
+#include "workstation/report/judged_days.h"
 
 namespace bess {
 
@@ -19,17 +21,22 @@ struct RunSummary {
   std::vector<NamedEvaluation> evaluations;
 };
 
+/// The days that it is judged by.
+JudgedDays judged_days_of(const RunSummary& run);
+
 /// Throws UserError when there is no run or it is not finished, saying how to go on.
 RunSummary load_run_summary(const RunFolder& folder);
 
 /// One object: the run, its figures and every policy in both ways of counting.
 Json summary_json(const RunSummary& run);
 
-/// Mean, deviation and range over runs, of one policy in one way of counting; EUR per day per MWh.
+/// Mean, deviation and range over runs with the same days, of one policy in one way of counting; EUR per day per MWh.
 struct Band {
   std::string policy, soc;
   double mean, deviation, low, high;
   double mean_at_reference_wear;
+  DayErrors errors;                      ///< over days, of the mean over runs
+  std::optional<PairedDifference> gain;  ///< of that over the first policy's; none for itself
 };
 std::vector<Band> bands_of(const std::vector<RunSummary>& runs);
 

@@ -39,6 +39,7 @@ class Runner {
                                       ? battery.cycles_per_day_max * two_capacities_mwh
                                       : std::numeric_limits<double>::infinity();
     DayResult result{date, 0, 0, 0, 0};
+    result.soc_start_frac = soc_frac_;
     double energy_mwh = 0;
     for (const MarketStep& step : steps) {
       Action action = policy_.decide(step, index++, soc_frac_);
@@ -108,6 +109,11 @@ double Evaluation::profit_at_wear_eur_per_day_per_mwh(double other_wear_eur_per_
   return profit_eur_per_day_per_mwh() -
          (other_wear_eur_per_mwh - wear_eur_per_mwh) * throughput_mwh_per_day / capacity_mwh;
 }
+ChargeLeft Evaluation::charge_left() const {
+  const double value =
+      mean_over_days(days, [](const DayResult& d) { return d.charge_value_eur; }) / capacity_mwh;
+  return {charge_price_eur_per_mwh, values_charge_left() ? value : charge_price_eur_per_mwh};
+}
 DayErrors Evaluation::errors() const {
   std::vector<DayValue> profits;
   for (const DayResult& day : days) profits.emplace_back(day.date, day.profit_eur / capacity_mwh);
@@ -144,6 +150,20 @@ Evaluation evaluate(const MarketSteps& market, const std::vector<MarketDay>& day
     evaluation.days.push_back(runner.run(day.date(), market.of(day), 0, records));
   }
   return evaluation;
+}
+
+Evaluation mean_of(const std::vector<Evaluation>& evaluations) {
+  Evaluation mean = evaluations.front();
+  for (std::size_t d = 0; d < mean.days.size(); ++d) {
+    DayResult& day = mean.days[d];
+    day.profit_eur = day.charge_value_eur = 0;
+    for (const Evaluation& evaluation : evaluations) {
+      day.profit_eur += evaluation.days[d].profit_eur / static_cast<double>(evaluations.size());
+      day.charge_value_eur +=
+          evaluation.days[d].charge_value_eur / static_cast<double>(evaluations.size());
+    }
+  }
+  return mean;
 }
 
 PairedDifference paired_difference(const Evaluation& a, const Evaluation& b) {

@@ -14,6 +14,7 @@
 // the policy says.
 #pragma once
 
+#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
@@ -38,13 +39,26 @@ struct DayResult {
   int switches;   ///< changes of the action
   double soc_end_frac;
   double throughput_mwh = 0;  ///< charged and discharged, grid side
+  double soc_start_frac = 0;
+  double charge_value_eur = 0;  ///< part of the profit: the charge left at the end (charge_left.h)
+};
+
+/// The charge left at the end as a part of the profit, EUR per day per MWh of capacity; NaN where it
+/// is not valued.
+struct ChargeLeft {
+  double price_eur_per_mwh;
+  double value_eur_per_day_per_mwh;
 };
 
 struct Evaluation {
   std::vector<DayResult> days;
   double capacity_mwh = 0;
   double wear_eur_per_mwh = 0;  ///< that the profits are net of
+  /// At which the charge left at the end is valued in the last day's profit; NaN: it is not.
+  double charge_price_eur_per_mwh = std::numeric_limits<double>::quiet_NaN();
 
+  [[nodiscard]] bool values_charge_left() const { return !std::isnan(charge_price_eur_per_mwh); }
+  [[nodiscard]] ChargeLeft charge_left() const;
   [[nodiscard]] double profit_eur_per_day_per_mwh() const;
   /// Of the same decisions, with this wear in place of the one that is counted.
   [[nodiscard]] double profit_at_wear_eur_per_day_per_mwh(double other_wear_eur_per_mwh) const;
@@ -71,6 +85,10 @@ struct StepRecord {
 /// Evaluates `policy` on `days` of `market`. Appends every step to `records` when it is given.
 Evaluation evaluate(const MarketSteps& market, const std::vector<MarketDay>& days, Policy& policy,
                     const EvaluationOptions& options, std::vector<StepRecord>* records = nullptr);
+
+/// One evaluation of several on the same days, not none: each day's profit, and the
+/// charge valued in it, is their mean, all else is the first one's.
+Evaluation mean_of(const std::vector<Evaluation>& evaluations);
 
 /// Mean and standard errors of the day-by-day difference a - b, EUR per day per MWh. Same days
 /// required.

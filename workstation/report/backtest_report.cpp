@@ -262,6 +262,7 @@ Json policy_json(const WalkForward& policy, const WalkForward& first) {
                             {key::kGainErrorByMonth, Decimals{row.gain.standard_error_by_month, 4}},
                             {"cycles_per_day", Decimals{row.turnover_per_day / 2, 4}},
                             {"drawdown_eur_per_mwh", Decimals{policy.drawdown_eur_per_mwh(), 2}}});
+  add_charge_left(policy.total.charge_left(), json);
   // Names of before schema version 1, until the next release.
   json.set("standard_error", Decimals{row.errors.plain, 4});
   json.set("gain_to_first", Decimals{row.gain.mean, 4});
@@ -299,10 +300,11 @@ std::string format_backtest_table(const BacktestResults& results) {
     text += "\n";
   }
   text += fmt::format(
-      "\ngain: day-by-day difference to {}; by month: {}\n{}: {}\n"
+      "\ngain: day-by-day difference to {}; by month: {}\n{}\n{}: {}\n"
       "turnover: energy through it a day, in capacities; drawdown: deepest fall from the end of a "
       "day to that\nof a later one, EUR per MWh\n",
-      first.name, by_month_meaning(first.total.errors().months), wear_column(),
+      first.name, by_month_meaning(first.total.errors().months),
+      charge_left_meaning(first.total.charge_price_eur_per_mwh), wear_column(),
       reference_wear_meaning(first.total.wear_eur_per_mwh));
   for (const SkippedMonth& month : results.skipped) {
     text += fmt::format("{} is not traded: {}\n", month.month, month.reason);
@@ -355,6 +357,7 @@ Json backtest_json(const BacktestResults& results) {
   json.set("window_days", results.window_days);
   json.set(key::kCarrySoc, true);
   json.set("soc", "carried");  // its name before schema version 1, until the next release
+  json.set("learnt_from", results.learnt_from);
   json.set("policies", std::move(policies));
   Json months = Json::list();
   for (std::size_t m = 0; m < results.fitted_days.size(); ++m) {
@@ -377,11 +380,13 @@ void write_backtest_page(const BacktestResults& results, const std::filesystem::
   write_picture(curve, folder);
   const std::filesystem::path svg = folder / (figure.name + ".svg");
   const std::string body = fmt::format(
-      "<h1>Walk-forward backtest</h1>\n<p>{}</p>\n{}\n<p class=\"note\">By month: "
-      "{}.</p>\n<figure>\n<h2>{}</h2>\n{}<div "
+      "<h1>Walk-forward backtest</h1>\n<p>{}</p>\n{}\n<p class=\"note\">By month: {}. The charge "
+      "is "
+      "carried over; {}.</p>\n<figure>\n<h2>{}</h2>\n{}<div "
       "class=\"wide\">{}</div>\n<figcaption>{}</figcaption>\n</figure>\n{}\n{}",
       html_escaped(results.provenance), format_table(total_table(results)),
       html_escaped(by_month_meaning(results.policies.front().total.errors().months)),
+      charge_left_meaning(results.policies.front().total.charge_price_eur_per_mwh),
       html_escaped(figure.title), legend_html(results), inline_svg(read_file(svg), figure),
       html_escaped(with_true_minus(figure.caption)) + " " + csv_link(picture_file(curve)),
       format_table(month_table(results)), skipped_html(results));

@@ -19,7 +19,8 @@ struct BacktestResults {
   std::vector<SkippedMonth> skipped;
   int window_days;
   double capacity_mwh;
-  std::string provenance;  ///< a line: prices, configuration
+  std::string provenance;     ///< a line: prices, configuration
+  std::string learnt_from{};  ///< by which a run knows its own: prices, seed and every key
 };
 
 /// One line a policy: profit, gain, turnover, drawdown; then the gain by month.

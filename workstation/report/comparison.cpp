@@ -26,6 +26,7 @@ ComparisonRow make_row(const std::string& name, const Evaluation& evaluation,
                     .days = evaluation.days.size(),
                     .profit = evaluation.profit_eur_per_day_per_mwh(),
                     .errors = evaluation.errors(),
+                    .charge_left = evaluation.charge_left(),
                     .profit_at_reference_wear =
                         evaluation.profit_at_wear_eur_per_day_per_mwh(kReferenceWearEurPerMwh),
                     .difference = std::nullopt,
@@ -118,6 +119,11 @@ std::vector<ComparisonRow> comparison_rows(const std::vector<NamedEvaluation>& e
   return rows;
 }
 
+void add_charge_left(const ChargeLeft& charge, Json& json) {
+  json.set("charge_price_eur_per_mwh", Decimals{charge.price_eur_per_mwh, 4});
+  json.set("charge_value_eur_per_day_per_mwh", Decimals{charge.value_eur_per_day_per_mwh, 4});
+}
+
 void add_figures(const ComparisonRow& row, const std::string& first, Json& json) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   const PairedDifference gain = row.difference.value_or(PairedDifference{kUnknown, kUnknown});
@@ -137,6 +143,7 @@ void add_figures(const ComparisonRow& row, const std::string& first, Json& json)
   json.set("switches_per_day", Decimals{row.switches_per_day, 3});
   json.set(key::kShareOfForesight, Decimals{share, 5});
   json.set("soc_end_frac_mean", Decimals{row.soc_end_frac_mean, 5});
+  add_charge_left(row.charge_left, json);
   // Names of before schema version 1, until the next release.
   json.set("standard_error", Decimals{row.errors.plain, 4});
   json.set("difference_to_first", Decimals{gain.mean, 4});
@@ -152,9 +159,9 @@ std::string format_comparison_table(const std::vector<NamedEvaluation>& evaluati
     std::erase_if(*rows, [](const ComparisonRow& row) { return is_under_rules(row.name); });
   }
   std::string text;
-  if (!reset.empty()) text += table_block("Each day starts at the same SoC", reset);
-  if (!reset.empty() && !carried.empty()) text += "\n";
   if (!carried.empty()) text += table_block("SoC carried over from day to day", carried);
+  if (!reset.empty() && !carried.empty()) text += "\n";
+  if (!reset.empty()) text += table_block("Each day starts at the same SoC", reset);
   if (text.empty()) return text;
   text += "\n";
   if (evaluations.size() > 1) {
@@ -164,12 +171,30 @@ std::string format_comparison_table(const std::vector<NamedEvaluation>& evaluati
         evaluations.front().name);
   }
   text += fmt::format("by month: {}\n", by_month_meaning(months_of(evaluations)));
+  text += charge_meaning(evaluations);
   text += fmt::format("{}: {}\n", wear_column(),
                       reference_wear_meaning(configured_wear_eur_per_mwh(evaluations)));
   for (const NamedEvaluation& named : evaluations) {
     if (!named.description.empty()) text += fmt::format("{}: {}\n", named.name, named.description);
   }
   return text;
+}
+
+std::string charge_left_meaning(double price_eur_per_mwh) {
+  return fmt::format(
+      "the charge left at the end is valued at {:.2f} EUR/MWh, the mean settled price of these "
+      "days, with losses and costs",
+      price_eur_per_mwh);
+}
+
+std::string charge_meaning(const std::vector<NamedEvaluation>& evaluations) {
+  const Evaluation& carried = evaluations.front().carried_over;
+  std::string text;
+  if (!evaluations.front().day_reset.days.empty()) {
+    text = "same SoC each day: the friendlier accounting, which gives the end of each day away\n";
+  }
+  if (!carried.values_charge_left()) return text;
+  return text + "carried over: " + charge_left_meaning(carried.charge_price_eur_per_mwh) + "\n";
 }
 
 int months_of(const std::vector<NamedEvaluation>& evaluations) {

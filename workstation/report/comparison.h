@@ -33,6 +33,7 @@ struct ComparisonRow {
   std::size_t days;
   double profit;
   DayErrors errors;                            ///< of the profit
+  ChargeLeft charge_left;                      ///< of the profit
   double profit_at_reference_wear;             ///< of the same decisions
   std::optional<PairedDifference> difference;  ///< to the first policy; none for itself
   double worst_day;
@@ -51,12 +52,19 @@ std::vector<ComparisonRow> comparison_rows(const std::vector<NamedEvaluation>& e
                                            EvaluationField field,
                                            const NamedEvaluation* given = nullptr);
 
+/// What the charge left is valued at, and what it comes to: null where it is not valued.
+void add_charge_left(const ChargeLeft& charge, Json& json);
 /// The figures of `row`, which answers share (base/answer.h); gains are over `first`.
 void add_figures(const ComparisonRow& row, const std::string& first, Json& json);
 
 /// Aligned columns for the terminal: a block per way of counting, the missing one left out.
 std::string format_comparison_table(const std::vector<NamedEvaluation>& evaluations,
                                     const NamedEvaluation* foresight = nullptr);
+
+/// At what the charge left at the end is valued, for people.
+std::string charge_left_meaning(double price_eur_per_mwh);
+/// How both ways of counting treat the charge at the end; for people, with line ends.
+std::string charge_meaning(const std::vector<NamedEvaluation>& evaluations);
 
 /// In how many months the days of these lie; all have the same.
 int months_of(const std::vector<NamedEvaluation>& evaluations);

@@ -12,20 +12,24 @@
 namespace bess {
 namespace {
 
-/// soc and soc_end are names of before schema version 1, until the next release; so is what a run of then has.
-constexpr std::string_view kHeaderBefore =
-    "policy,soc,date,profit_eur,cycles,switches,soc_end,throughput_mwh";
+/// soc and soc_end are names of before schema version 1, until the next release.
 constexpr std::string_view kHeader =
-    "policy,soc,date,profit_eur,cycles,switches,soc_end,throughput_mwh,carry_soc,soc_end_frac";
+    "policy,soc,date,profit_eur,cycles,switches,soc_end,throughput_mwh,carry_soc,soc_end_frac,"
+    "soc_start_frac,charge_value_eur,charge_price_eur_per_mwh";
+/// Of a bess-train that did not value the charge that is left at the end.
+constexpr std::string_view kHeaderBefore = kHeader.substr(0, kHeader.find(",carry_soc"));
 constexpr std::string_view kReset = "reset";
 constexpr std::string_view kCarried = "carried";
 
 void add_days(std::string& text, const std::string& policy, std::string_view soc,
               const Evaluation& evaluation) {
+  const std::string price =
+      evaluation.values_charge_left() ? fmt::format("{}", evaluation.charge_price_eur_per_mwh) : "";
   for (const DayResult& d : evaluation.days) {
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", csv_field(policy), soc, d.date,
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_field(policy), soc, d.date,
                         d.profit_eur, d.cycles, d.switches, d.soc_end_frac, d.throughput_mwh,
-                        truth(soc == kCarried), d.soc_end_frac);
+                        truth(soc == kCarried), d.soc_end_frac, d.soc_start_frac,
+                        d.charge_value_eur, price);
   }
 }
 
@@ -43,7 +47,13 @@ std::string evaluation_days_csv(const std::vector<NamedEvaluation>& evaluations)
 std::vector<NamedEvaluation> parse_evaluation_days_csv(std::string_view text,
                                                        const std::string& name,
                                                        const BatteryParameters& battery) {
-  const CsvTable table(text, name, csv_header(text) == kHeaderBefore ? kHeaderBefore : kHeader);
+  if (csv_header(text) != kHeader && csv_header(text).starts_with(kHeaderBefore)) {
+    fail(
+        "{}: an older bess-train made it, which did not value the charge left at the end; remove "
+        "it, and 'bess-train report --run FOLDER' makes it again",
+        name);
+  }
+  const CsvTable table(text, name, kHeader);
   Evaluation none;
   none.capacity_mwh = battery.capacity_wh / kWattsPerMegawatt;
   none.wear_eur_per_mwh = battery.wear_eur_per_mwh;
@@ -64,7 +74,11 @@ std::vector<NamedEvaluation> parse_evaluation_days_csv(std::string_view text,
     day.switches = static_cast<int>(table.number(row, 5));
     day.soc_end_frac = table.number(row, 6);
     day.throughput_mwh = table.number(row, 7);
-    (soc == kReset ? named.day_reset : named.carried_over).days.push_back(std::move(day));
+    day.soc_start_frac = table.number(row, 10);
+    day.charge_value_eur = table.number(row, 11);
+    Evaluation& evaluation = soc == kReset ? named.day_reset : named.carried_over;
+    if (!table.text(row, 12).empty()) evaluation.charge_price_eur_per_mwh = table.number(row, 12);
+    evaluation.days.push_back(std::move(day));
   }
   return evaluations;
 }

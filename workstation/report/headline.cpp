@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "workstation/base/answer.h"
 #include "workstation/report/html.h"
 #include "workstation/report/rule_prices.h"
 
@@ -28,15 +29,23 @@ constexpr std::array kRivals{
 const NamedEvaluation* find(const std::vector<NamedEvaluation>& evaluations,
                             std::string_view name) {
   const auto found = std::ranges::find(evaluations, name, &NamedEvaluation::name);
-  return found == evaluations.end() || found->day_reset.days.empty() ? nullptr : &*found;
+  return found == evaluations.end() || found->carried_over.days.empty() ? nullptr : &*found;
 }
 
-/// " ± 1.1 (1.4 by month)", each where it is known.
+/// " ± 1.1", and " (1.4 by month)", each where it is known.
+std::string plain_error(const DayErrors& errors) {
+  return std::isnan(errors.plain) ? "" : fmt::format(" \u00b1 {:.1f}", errors.plain);
+}
+std::string month_error(const DayErrors& errors) {
+  return std::isnan(errors.by_month) ? "" : fmt::format(" ({:.1f} by month)", errors.by_month);
+}
 std::string errors_text(const DayErrors& errors) {
-  if (std::isnan(errors.plain)) return "";
-  std::string text = fmt::format(" \u00b1 {:.1f}", errors.plain);
-  if (!std::isnan(errors.by_month)) text += fmt::format(" ({:.1f} by month)", errors.by_month);
-  return text;
+  return plain_error(errors) + month_error(errors);
+}
+
+/// "+5.2", with a true minus.
+std::string signed_text(double value) {
+  return fmt::format("{}{:.1f}", value < 0 ? "\u2212" : "+", std::abs(value));
 }
 
 /// Half of the interval in which a gain shows nothing; 0 where it is not known.
@@ -75,9 +84,11 @@ std::string gain_row(const HeadlineGain& gain, double reach) {
                                 bound ? " class=\"bound\"" : "", html_escaped(gain.against),
                                 html_escaped(gain.meaning));
   for (std::size_t w = 0; w < kHeadlineWears.size(); ++w) {
-    row += fmt::format("<td data-label=\"wear {:g}\"><span class=\"number\">{}</span>{}</td>",
-                       kHeadlineWears[w], difference_text(gain.difference[w]),
-                       bound ? "" : bar(gain.difference[w], reach));
+    const PairedDifference& d = gain.difference[w];
+    row += fmt::format(
+        "<td data-label=\"wear {:g}\"><span class=\"number\">{}{}</span><small>{}</small>{}</td>",
+        kHeadlineWears[w], signed_text(d.mean), plain_error(d.errors()), month_error(d.errors()),
+        bound ? "" : bar(d, reach));
   }
   return row + "</tr>\n";
 }
@@ -86,8 +97,8 @@ std::string gain_row(const HeadlineGain& gain, double reach) {
 std::string correction_text(const HeadlineGain& correction) {
   const PairedDifference& d = correction.difference.front();
   if (!is_shown(d)) {
-    return fmt::format("Price of the correction: none shown ({} against the {})",
-                       difference_text(d), correction.against);
+    return fmt::format("Price of the correction: none shown, {} against the {}", difference_text(d),
+                       correction.against);
   }
   const std::string size = fmt::format("{:.1f}{}", std::abs(d.mean), errors_text(d.errors()));
   return d.mean < 0 ? "Price of the correction: " + size
@@ -97,7 +108,7 @@ std::string correction_text(const HeadlineGain& correction) {
 /// A price is what is lost: the change with its sign turned round.
 std::string rules_text(const HeadlineGain& rules) {
   const PairedDifference& d = rules.difference.front();
-  if (!is_shown(d)) return fmt::format("none shown ({})", difference_text(d));
+  if (!is_shown(d)) return fmt::format("none shown, {}", difference_text(d));
   return d.mean < 0 ? fmt::format("{:.1f}{}", -d.mean, errors_text(d.errors()))
                     : "none, they earn " + difference_text(d);
 }
@@ -117,15 +128,14 @@ HeadlineGain gain_over(const NamedEvaluation& exported, const NamedEvaluation& o
                        std::string_view meaning) {
   HeadlineGain gain{other.name, std::string(meaning), {}};
   for (std::size_t w = 0; w < kHeadlineWears.size(); ++w) {
-    gain.difference[w] = paired_difference(at_wear(exported.day_reset, kHeadlineWears[w]),
-                                           at_wear(other.day_reset, kHeadlineWears[w]));
+    gain.difference[w] = paired_difference(at_wear(exported.carried_over, kHeadlineWears[w]),
+                                           at_wear(other.carried_over, kHeadlineWears[w]));
   }
   return gain;
 }
 
 std::string difference_text(const PairedDifference& difference) {
-  return fmt::format("{}{:.1f}{}", difference.mean < 0 ? "\u2212" : "+", std::abs(difference.mean),
-                     errors_text(difference.errors()));
+  return signed_text(difference.mean) + errors_text(difference.errors());
 }
 
 bool is_shown(const PairedDifference& difference) {
@@ -136,14 +146,18 @@ bool is_shown(const PairedDifference& difference) {
 std::optional<Headline> headline_of(const std::vector<NamedEvaluation>& evaluations) {
   const NamedEvaluation* exported = find(evaluations, kCorrectedName);
   if (exported == nullptr) return std::nullopt;
-  const Evaluation& days = exported->day_reset;
+  const Evaluation& days = exported->carried_over;
+  const Evaluation& reset = exported->day_reset;
   Headline headline{.days = days.days.size(),
                     .profit = days.profit_eur_per_day_per_mwh(),
                     .errors = days.errors(),
+                    .reset_profit = {},
+                    .charge_left = days.charge_left(),
                     .foresight_share = {},
                     .correction = {},
                     .rules = {},
                     .gains = {}};
+  if (!reset.days.empty()) headline.reset_profit = reset.profit_eur_per_day_per_mwh();
   for (const Rival& rival : kRivals) {
     const NamedEvaluation* other = find(evaluations, rival.name);
     if (other != nullptr) headline.gains.push_back(gain_over(*exported, *other, rival.meaning));
@@ -155,18 +169,58 @@ std::optional<Headline> headline_of(const std::vector<NamedEvaluation>& evaluati
     headline.correction = headline.gains.front();
   }
   if (const NamedEvaluation* bound = find(evaluations, kForesightName)) {
-    const double most = bound->day_reset.profit_eur_per_day_per_mwh();
+    const double most = bound->carried_over.profit_eur_per_day_per_mwh();
     if (most > 0) headline.foresight_share = headline.profit / most;
   }
   return headline;
 }
 
+std::string headline_accounting(const Headline& headline) {
+  std::string text = "The charge is carried over from day to day";
+  if (!std::isnan(headline.charge_left.price_eur_per_mwh)) {
+    text += fmt::format(
+        ", and what is left of it at the end is valued at {:.1f} EUR/MWh, the mean settled price "
+        "of "
+        "these days, with losses and costs: {} of the figure",
+        headline.charge_left.price_eur_per_mwh,
+        signed_text(headline.charge_left.value_eur_per_day_per_mwh));
+  }
+  text += ".";
+  if (!headline.reset_profit) return text;
+  return text + fmt::format(
+                    " The friendlier accounting, each day from the same charge and its end given "
+                    "away, says {:.1f}.",
+                    *headline.reset_profit);
+}
+
+std::string headline_text(const Headline& headline) {
+  return fmt::format(
+      "The {} earned {:.1f} EUR per day per MWh of capacity{} on {} test days.\n{}\n",
+      kCorrectedName, headline.profit, errors_text(headline.errors), headline.days,
+      headline_accounting(headline));
+}
+
+Json headline_json(const Headline& headline) {
+  Json json = Json::object({{"policy", kCorrectedName},
+                            {key::kCarrySoc, true},
+                            {"days", headline.days},
+                            {"months", headline.errors.months},
+                            {key::kProfit, Decimals{headline.profit, 4}},
+                            {key::kProfitError, Decimals{headline.errors.plain, 4}},
+                            {key::kProfitErrorByMonth, Decimals{headline.errors.by_month, 4}}});
+  add_charge_left(headline.charge_left, json);
+  json.set("profit_from_same_soc_eur_per_day_per_mwh",
+           Decimals{headline.reset_profit.value_or(std::nan("")), 4});
+  return json;
+}
+
 std::string headline_html(const Headline& headline) {
   std::string text = fmt::format(
       "<p class=\"figure\"><strong id=\"headline-profit\">{:.1f}</strong><span>EUR per day per MWh "
-      "of capacity{}<br>the corrected student, over {} test days</span></p>\n<ul "
-      "class=\"badges\">\n",
-      headline.profit, errors_text(headline.errors), headline.days);
+      "of capacity{}<br>the corrected student, over {} test days, charge carried over</span></p>\n"
+      "<p class=\"note\" id=\"headline-accounting\">{}</p>\n<ul class=\"badges\">\n",
+      headline.profit, errors_text(headline.errors), headline.days,
+      html_escaped(headline_accounting(headline)));
   if (headline.correction) {
     text += fmt::format("<li id=\"price-of-correction\">{}</li>\n",
                         html_escaped(correction_text(*headline.correction)));
@@ -189,11 +243,12 @@ std::string headline_html(const Headline& headline) {
       kHeadlineWears[1]);
   const double reach = bar_reach(headline);
   for (const HeadlineGain& gain : headline.gains) text += gain_row(gain, reach);
-  return text +
-         "</tbody></table>\n<p class=\"note\">Wear is counted per MWh charged and per MWh "
-         "discharged. A bar spans the interval of 95 %, that of the wider error by Student's t; "
-         "one "
-         "that touches the line shows no difference. Every day starts at the same charge.</p>\n";
+  return text + fmt::format(
+                    "</tbody></table>\n<p class=\"note\">Wear is counted per MWh charged and per "
+                    "MWh discharged. A bar spans the interval of 95 %, that of the wider error by "
+                    "Student's t; one that touches the line shows no difference. By month: {}. The "
+                    "charge is carried over.</p>\n",
+                    html_escaped(by_month_meaning(headline.errors.months)));
 }
 
 }  // namespace bess

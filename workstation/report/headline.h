@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "shared/host/json.h"
 #include "workstation/report/comparison.h"
 
 namespace bess {
@@ -26,14 +27,18 @@ struct HeadlineGain {
   std::array<PairedDifference, kHeadlineWears.size()> difference;
 };
 
-/// `exported` minus `other`, each day from the same SoC.
+/// `exported` minus `other`, SoC carried over.
 HeadlineGain gain_over(const NamedEvaluation& exported, const NamedEvaluation& other,
                        std::string_view meaning);
 
+/// Charge carried over from day to day, what is left of it at the end valued; EUR per day per MWh
+/// of capacity, net of the configured wear.
 struct Headline {
   std::size_t days;
-  double profit;     ///< EUR per day per MWh of capacity, net of the configured wear
-  DayErrors errors;  ///< of the profit
+  double profit;
+  DayErrors errors;                    ///< of the profit
+  std::optional<double> reset_profit;  ///< friendlier: each day from the same charge, its end free
+  ChargeLeft charge_left;              ///< a part of the profit
   std::optional<double> foresight_share;
   std::optional<HeadlineGain>
       correction;  ///< against the plain student under the rules: the price of correction, negated
@@ -44,7 +49,7 @@ struct Headline {
 /// The same decisions, had wear cost this much instead.
 Evaluation at_wear(const Evaluation& evaluation, double wear_eur_per_mwh);
 
-/// None without an evaluation of the corrected student. Every day starts at the same SoC.
+/// None without an evaluation of the corrected student, SoC carried over.
 std::optional<Headline> headline_of(const std::vector<NamedEvaluation>& evaluations);
 
 /// Beyond the interval of 95 %; never of one day.
@@ -53,6 +58,12 @@ bool is_shown(const PairedDifference& difference);
 /// "+5.2 ± 1.1 (1.4 by month)", with a true minus; an error that is not known is left out.
 std::string difference_text(const PairedDifference& difference);
 
+/// How the figure counts: carried over, the charge left at what price, and the friendlier figure. For people.
+std::string headline_accounting(const Headline& headline);
+/// The figure in a line, for the terminal, with how it counts.
+std::string headline_text(const Headline& headline);
+/// The figure with its errors, the valued charge and the friendlier figure.
+Json headline_json(const Headline& headline);
 /// The head of the page: the figure, the badges, the gains. Escaped.
 std::string headline_html(const Headline& headline);
 

@@ -19,6 +19,7 @@ struct HtmlTable {
   std::string caption;
   std::vector<std::string> header;
   std::vector<std::vector<std::string>> rows;
+  std::vector<std::string> links{};  ///< of the first cells; none, or one a row
 };
 std::string format_table(const HtmlTable& table);
 

@@ -37,7 +37,7 @@ Json of_days(const Evaluation& evaluation, Field field) {
 Json policies_json(const std::vector<NamedEvaluation>& evaluations) {
   Json list = Json::list();
   for (const NamedEvaluation& named : evaluations) {
-    const Evaluation& days = named.day_reset;
+    const Evaluation& days = named.carried_over;
     if (days.days.empty() || is_under_rules(named.name)) continue;
     Json policy = Json::object({{"name", named.name}});
     policy.set("profit_eur", of_days(days, [](const DayResult& d) { return d.profit_eur; }));
@@ -49,6 +49,7 @@ Json policies_json(const std::vector<NamedEvaluation>& evaluations) {
   return list;
 }
 
+/// Each day by itself starts at the same SoC, as where it lost.
 std::vector<PolicySteps> all_steps(const ReportInputs& in, const std::vector<MarketDay>& days) {
   std::vector<PolicySteps> all;
   for (const ShownPolicy& shown : shown_policies(in)) {

@@ -24,7 +24,7 @@ std::vector<const NamedEvaluation*> shown(const ReportInputs& in,
   std::vector<const NamedEvaluation*> found;
   const auto add = [&](std::string_view name) {
     const auto at = std::ranges::find(in.evaluations, name, &NamedEvaluation::name);
-    if (at != in.evaluations.end() && !at->day_reset.days.empty()) found.push_back(&*at);
+    if (at != in.evaluations.end() && !at->carried_over.days.empty()) found.push_back(&*at);
     return !found.empty();
   };
   if (!add(kCorrectedName) && !in.evaluations.empty()) found.push_back(&in.evaluations.front());
@@ -48,14 +48,15 @@ PictureTable by_policy(const char* name, const char* label, const std::vector<st
 
 std::vector<std::string> dates_of(const NamedEvaluation& policy) {
   std::vector<std::string> dates;
-  for (const DayResult& day : policy.day_reset.days) dates.push_back(day.date);
+  for (const DayResult& day : policy.carried_over.days) dates.push_back(day.date);
   return dates;
 }
 
 PictureTable cumulative_table(const ReportInputs& in) {
   const auto policies = shown(in, {"rbc-tuned", "mpc", "sdp", kForesightName});
   std::vector<std::vector<double>> sums;
-  for (const auto* policy : policies) sums.push_back(cumulative(daily_profits(policy->day_reset)));
+  for (const auto* policy : policies)
+    sums.push_back(cumulative(daily_profits(policy->carried_over)));
   const auto dates = policies.empty() ? std::vector<std::string>{} : dates_of(*policies.front());
   return by_policy("cumulative", "date", dates, policies, sums);
 }
@@ -64,7 +65,7 @@ PictureTable drawdown_table(const ReportInputs& in) {
   const auto policies = shown(in, {"rbc-tuned"});
   std::vector<std::vector<double>> falls;
   for (const auto* policy : policies) {
-    falls.push_back(below_peak(cumulative(daily_profits(policy->day_reset))));
+    falls.push_back(below_peak(cumulative(daily_profits(policy->carried_over))));
   }
   const auto dates = policies.empty() ? std::vector<std::string>{} : dates_of(*policies.front());
   return by_policy("drawdown", "date", dates, policies, falls);
@@ -76,9 +77,9 @@ PictureTable month_table(const ReportInputs& in) {
   std::vector<std::vector<double>> means;
   for (const auto* policy : policies) {
     std::map<std::string, std::pair<double, double>> sums;  // and days
-    for (const DayResult& day : policy->day_reset.days) {
+    for (const DayResult& day : policy->carried_over.days) {
       auto& [sum, days] = sums[day.date.substr(0, kMonthTextLength)];
-      sum += day.profit_eur / policy->day_reset.capacity_mwh;
+      sum += day.profit_eur / policy->carried_over.capacity_mwh;
       days += 1;
     }
     months.clear();
@@ -97,7 +98,7 @@ PictureTable distribution_table(const ReportInputs& in) {
   double low = 0;
   double high = 0;
   for (const auto* policy : policies) {
-    profits.push_back(daily_profits(policy->day_reset));
+    profits.push_back(daily_profits(policy->carried_over));
     const auto [least, most] = std::ranges::minmax(profits.back());
     low = profits.size() == 1 ? least : std::min(low, least);
     high = profits.size() == 1 ? most : std::max(high, most);

@@ -13,6 +13,7 @@
 #include "workstation/report/comparison_notes.h"
 #include "workstation/report/headline.h"
 #include "workstation/report/html.h"
+#include "workstation/report/judged_days.h"
 #include "workstation/report/lost_page.h"
 #include "workstation/report/page_data.h"
 #include "workstation/report/page_pictures.h"
@@ -121,6 +122,15 @@ std::string battery_text(const BatteryParameters& battery) {
                      100 * battery.soc_min_frac, 100 * battery.soc_max_frac);
 }
 
+/// What the figure is not: of days that came after all learning.
+std::string standing_html(const ReportInputs& in) {
+  return fmt::format(
+      "<div class=\"standing\">\n<p class=\"note\" id=\"test-days\">{}</p>\n<p class=\"note\" "
+      "id=\"walk-forward\">{}</p>\n</div>\n",
+      html_escaped(judged_days_text(judged_days(in.market, Split::kTest))),
+      walk_forward_html(in.walk_forward));
+}
+
 std::string head_of(const ReportInputs& in) {
   std::string text;
   if (in.corrected) {
@@ -129,7 +139,7 @@ std::string head_of(const ReportInputs& in) {
                         proof_sentence(in.corrected->certificate));
   }
   const std::optional<Headline> headline = headline_of(in.evaluations);
-  if (headline) return text + headline_html(*headline);
+  if (headline) return text + headline_html(*headline) + standing_html(in);
   return text + "<p>No corrected student was evaluated: there is no policy to export.</p>\n";
 }
 

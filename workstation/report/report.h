@@ -11,6 +11,7 @@
 #include "workstation/report/comparison.h"
 #include "workstation/report/figures.h"
 #include "workstation/report/provenance.h"
+#include "workstation/report/walk_forward_figure.h"
 #include "workstation/rl/train.h"
 #include "workstation/student/failed_proof.h"
 #include "workstation/student/student_checkpoints.h"
@@ -33,6 +34,7 @@ struct ReportInputs {
   std::vector<PolicyContext> maps = {
       {.context_class = 11, .quarter_hour = 40, .minute_of_quarter_hour = 0},
       {.context_class = 1, .quarter_hour = 80, .minute_of_quarter_hour = 0}};
+  WalkForwardOfRun walk_forward = {};
   std::string provenance = {};   ///< lines, shown as they are
   std::vector<Fact> facts = {};  ///< when, where, from what and how
 };

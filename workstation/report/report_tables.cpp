@@ -120,8 +120,8 @@ std::string comparison_html(const std::vector<NamedEvaluation>& evaluations) {
       "difference to {}; s.e.: standard error of the mean to its left; by month: {}. A gain within "
       "{} shows nothing. Cycles: energy through the battery over twice its capacity; switches: "
       "changes of the order. At wear {:g}: {}.</p>\n",
-      comparison_table("Each day starts at the same charge", reset),
       comparison_table("Charge carried over from day to day", carried),
+      comparison_table("Each day starts at the same charge: the friendlier accounting", reset),
       html_escaped(evaluations.front().name),
       html_escaped(by_month_meaning(months_of(evaluations))), kIntervalMeaning,
       kReferenceWearEurPerMwh,
@@ -151,8 +151,8 @@ std::string rules_html(const Certificate* uncorrected, const Certificate* correc
   std::string text = rules_table(uncorrected, *corrected);
   if (prices != nullptr) text += rule_prices_table(*prices);
   return text +
-         "<p class=\"note\">Money in EUR per day per MWh of capacity, \u00b1 standard error, every "
-         "day from the same charge. What a rule changes is counted on the plain student: each "
+         "<p class=\"note\">Money in EUR per day per MWh of capacity, \u00b1 standard error, the "
+         "charge carried over. What a rule changes is counted on the plain student: each "
          "decision is moved to the nearest one that the rule leaves, and the days are run again, "
          "one rule at a time and all together. What lies between that and the corrected student is "
          "the correction. A direction of time or context cannot be counted so: it is in the "

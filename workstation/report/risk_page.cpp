@@ -20,15 +20,15 @@ std::string percent(double share) { return fmt::format("{:.0f}", 100 * share); }
 }  // namespace
 
 std::string risk_html(const std::vector<NamedEvaluation>& evaluations) {
-  if (evaluations.empty() || evaluations.front().day_reset.days.empty()) return {};
+  if (evaluations.empty() || evaluations.front().carried_over.days.empty()) return {};
   const NamedEvaluation& first = evaluations.front();
-  HtmlTable table{fmt::format("Day by day, {} days", first.day_reset.days.size()),
+  HtmlTable table{fmt::format("Day by day, {} days", first.carried_over.days.size()),
                   {"Policy", "Won, % of days", "Value at risk 95 %", "Drawdown", "Sortino",
                    fmt::format("Beat {}, % of days", first.name), "Sortino of the gain"},
                   {}};
   for (const NamedEvaluation& named : evaluations) {
-    if (named.day_reset.days.empty() || is_under_rules(named.name)) continue;
-    const DayRisk risk = day_risk(daily_profits(named.day_reset));
+    if (named.carried_over.days.empty() || is_under_rules(named.name)) continue;
+    const DayRisk risk = day_risk(daily_profits(named.carried_over));
     std::vector<std::string> cells{named.name,
                                    percent(risk.win_rate),
                                    fmt::format("{:.1f}", risk.value_at_risk),
@@ -37,7 +37,7 @@ std::string risk_html(const std::vector<NamedEvaluation>& evaluations) {
                                    kUnknown,
                                    kUnknown};
     if (&named != &first) {
-      const DayRisk gain = day_risk(daily_gains(named.day_reset, first.day_reset));
+      const DayRisk gain = day_risk(daily_gains(named.carried_over, first.carried_over));
       cells[5] = percent(gain.win_rate);
       cells[6] = ratio(gain.sortino);
     }
@@ -45,7 +45,7 @@ std::string risk_html(const std::vector<NamedEvaluation>& evaluations) {
   }
   return format_table(table) +
          fmt::format(
-             "<p class=\"note\">EUR per MWh of capacity, each day from the same charge. Won: days "
+             "<p class=\"note\">EUR per MWh of capacity, the charge carried over. Won: days "
              "that brought more than nothing. Value at risk: the loss that 19 of 20 days stay "
              "above (minus the 5 % quantile); negative when even that day earned. Drawdown: "
              "deepest "

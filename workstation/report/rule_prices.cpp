@@ -12,7 +12,7 @@ constexpr std::string_view kUnder = "plain student under ";
 const NamedEvaluation* find(const std::vector<NamedEvaluation>& evaluations,
                             std::string_view name) {
   const auto found = std::ranges::find(evaluations, name, &NamedEvaluation::name);
-  return found == evaluations.end() || found->day_reset.days.empty() ? nullptr : &*found;
+  return found == evaluations.end() || found->carried_over.days.empty() ? nullptr : &*found;
 }
 
 std::string price_line(const std::string& name, const HeadlineGain& gain) {

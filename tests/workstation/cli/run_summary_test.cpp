@@ -1,15 +1,19 @@
 // Finished runs as figures: bands over seeds, the table of runs, and the days that both are made of.
 #include "workstation/cli/run_summary.h"
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
 #include "tests/support/temporary_folder.h"
 #include "workstation/cli/run_seeds.h"
+#include "workstation/env/charge_left.h"
 #include "workstation/report/evaluation_days.h"
+#include "workstation/report/headline.h"
 #include "workstation/report/rule_prices.h"
 
 namespace bess {
@@ -52,14 +56,59 @@ TEST(EvaluationDays, ReadBackToTheBit) {
                UserError);
 }
 
-/// A run of before schema version 1 has no columns of today's names.
-TEST(EvaluationDays, OfARunOfBeforeAreRead) {
-  const auto read = parse_evaluation_days_csv(
-      "policy,soc,date,profit_eur,cycles,switches,soc_end,throughput_mwh\n"
-      "rbc,carried,2023-01-29,24,1.5,40,0.25,2\n",
-      "days.csv", {});
-  ASSERT_EQ(read.size(), 1U);
-  EXPECT_EQ(read[0].carried_over.days.at(0).soc_end_frac, 0.25);
+/// The page's, the summary's, the JSON's and the table of runs': one figure, carried over, to the digit.
+TEST(RunSummaries, TheSameFigureStandsEverywhere) {
+  RunSummary run = run_of("1", 24.7);
+  run.record.figures->last_learnt_day = "2023-01-25";
+  for (NamedEvaluation& named : run.evaluations) value_charge_left(named.carried_over, {}, 87.3);
+  // As a finished run is read back from its folder.
+  run.evaluations = parse_evaluation_days_csv(evaluation_days_csv(run.evaluations), "days", {});
+  const std::string figure =
+      fmt::format("{:.1f}", run.evaluations[1].carried_over.profit_eur_per_day_per_mwh());
+  const std::string friendlier =
+      fmt::format("{:.1f}", run.evaluations[1].day_reset.profit_eur_per_day_per_mwh());
+  ASSERT_NE(figure, friendlier);
+  const Headline headline = headline_of(run.evaluations).value();
+  EXPECT_THAT(headline_html(headline), AllOf(HasSubstr("\"headline-profit\">" + figure + "<"),
+                                             HasSubstr("says " + friendlier)));
+  EXPECT_THAT(headline_text(headline),
+              AllOf(HasSubstr("earned " + figure + " EUR"), HasSubstr("says " + friendlier)));
+  const Json json = Json::parse(summary_json(run).line());
+  const JsonValue told = json.value()["headline"];
+  EXPECT_EQ(fmt::format("{:.1f}", told["profit_eur_per_day_per_mwh"].number().value()), figure);
+  EXPECT_EQ(
+      fmt::format("{:.1f}", told["profit_from_same_soc_eur_per_day_per_mwh"].number().value()),
+      friendlier);
+  EXPECT_EQ(told["carry_soc"].boolean(), true);
+  EXPECT_EQ(told["charge_price_eur_per_mwh"].number(), 87.3);
+  for (const JsonValue row : json.value()["policies"]) {
+    if (row["policy"].text_or("") != std::string_view(kExportedPolicy)) continue;
+    const bool is_carried = row["soc"].text_or("") == std::string_view("carried");
+    EXPECT_EQ(fmt::format("{:.1f}", row["profit_eur_per_day_per_mwh"].number().value()),
+              is_carried ? figure : friendlier);
+  }
+  EXPECT_THAT(
+      format_runs_table({run}),
+      AllOf(HasSubstr("  " + figure + " "), HasSubstr(" " + friendlier + " "),
+            HasSubstr("Test days: local days 26 to the end of each month, 3 days in 1 month "
+                      "from 2023-01-26 to 2023-01-28. All of them come after"),
+            HasSubstr("No walk-forward figure")));
+  EXPECT_THAT(format_comparison_table(run.evaluations),
+              AllOf(HasSubstr(figure), HasSubstr("valued at 87.30 EUR/MWh")));
+}
+
+/// A run of an older bess-train did not value the charge: its figures are not mixed with others.
+TEST(EvaluationDays, OfAnOlderProgramAreRefusedWithTheMend) {
+  try {
+    (void)parse_evaluation_days_csv(
+        "policy,soc,date,profit_eur,cycles,switches,soc_end,throughput_mwh\n"
+        "rbc,reset,2023-01-26,1,1,1,0.5,1\n",
+        "run/evaluation_days.csv", {});
+    ADD_FAILURE() << "believed";
+  } catch (const UserError& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("run/evaluation_days.csv: an older bess-train"),
+                                    HasSubstr("bess-train report --run")));
+  }
 }
 
 TEST(RunSummaries, BandsSpanTheRuns) {
@@ -84,6 +133,56 @@ TEST(RunSummaries, BandsAreInTableReportAndJson) {
   EXPECT_THAT(read_file(folder.file("seeds.html")),
               AllOf(HasSubstr("seed-2"), HasSubstr("Highest")));
   EXPECT_EQ(std::ranges::count(read_file(folder.file("seeds.csv")), '\n'), 1 + 4);
+}
+
+/// Four days of two months: what seeds differ in is one thing, what days differ in another.
+TEST(RunSummaries, SeedsTellDayErrorsBesideTheirSpreadAndWhereTheyComeFrom) {
+  const auto days = [](double january_eur, double february_eur) {
+    Evaluation evaluation = evaluation_of(0);
+    evaluation.days.clear();
+    for (const char* date : {"2023-01-30", "2023-01-31"}) {
+      evaluation.days.push_back({date, january_eur, 1, 1, 0.5});
+    }
+    for (const char* date : {"2023-02-27", "2023-02-28"}) {
+      evaluation.days.push_back({date, february_eur, 1, 1, 0.5});
+    }
+    return evaluation;
+  };
+  std::vector<RunSummary> runs{run_of("1", 0), run_of("2", 0)};
+  for (RunSummary& run : runs) {
+    const double seed_eur = run.record.value("seed") == "2" ? 16 : 0;
+    run.record.prices_name = "market.csv.gz";
+    run.evaluations = {
+        {"rbc", days(0, 0), days(0, 0)},
+        {kExportedPolicy, days(16 + seed_eur, 32 + seed_eur), days(80 + seed_eur, 160 + seed_eur)}};
+  }
+  // Carried over: 11 and 21 a MWh and day in January and February, the mean of both seeds.
+  const std::vector<Band> bands = bands_of(runs);
+  const Band& band = bands.back();
+  EXPECT_DOUBLE_EQ(band.mean, 16);
+  EXPECT_DOUBLE_EQ(band.errors.by_month, 5);
+  EXPECT_DOUBLE_EQ(band.errors.plain, std::sqrt(100.0 / 3 / 4));
+  EXPECT_DOUBLE_EQ(band.deviation, std::sqrt(2.0));
+  EXPECT_DOUBLE_EQ(band.gain.value().mean, 16);
+  EXPECT_DOUBLE_EQ(band.gain.value().standard_error_by_month, 5);
+  EXPECT_FALSE(bands.front().gain.has_value());
+  EXPECT_THAT(format_bands(bands, 2),
+              AllOf(HasSubstr("    16.0    2.9      5.0    +16.0    2.9      5.0      1.4 "),
+                    HasSubstr("2 months tell it to within 71 % only")));
+  EXPECT_THAT(bands_json(bands, 2), AllOf(HasSubstr("\"profit_standard_error_by_month\":5"),
+                                          HasSubstr("\"gain_standard_error_by_month\":5")));
+  const TemporaryFolder folder;
+  write_seeds_report(folder.file(""), runs, {{"seed-3", "41 violations <left>"}});
+  EXPECT_THAT(read_file(folder.file("seeds.html")),
+              AllOf(HasSubstr("<a href=\"seed-1/report.html\">seed-1</a>"),
+                    HasSubstr("<a href=\"seed-2/report.html\">seed-2</a>"),
+                    HasSubstr("<a href=\"seed-3/report.html\">seed-3</a> was not proved"),
+                    HasSubstr("41 violations &lt;left&gt;"),
+                    HasSubstr("standard error over days is 2.9, and 5.0 by month"),
+                    HasSubstr("<td data-label=\"Gain by month\">5.0</td>"),
+                    HasSubstr("<dt>prices</dt><dd>market.csv.gz: the same</dd>"),
+                    HasSubstr("<dt>command</dt><dd>report_test"),
+                    HasSubstr("local days 26 to the end of each month")));
 }
 
 TEST(RunSummaries, TheTableSaysWhatRunsEarnedAndDifferIn) {
@@ -130,8 +229,8 @@ TEST(RunSummaries, ARunWithRulesTellsWhatEachOneCostAndWhoBrokeIt) {
   EXPECT_EQ(prices.rules[0].meaning, "rest");
   // Of three days one differs, by EUR a day over 8 MWh.
   EXPECT_NEAR(prices.rules[0].difference[0].mean, -8 / 3.0 / 8, 1e-12);
-  EXPECT_NEAR(prices.correction.difference[0].mean, -16 / 3.0 / 8, 1e-12);
-  EXPECT_NEAR(prices.total.difference[0].mean, -24 / 3.0 / 8, 1e-12);
+  EXPECT_NEAR(prices.correction.difference[0].mean, 8 / 3.0 / 8, 1e-12);
+  EXPECT_NEAR(prices.total.difference[0].mean, 0, 1e-12);
 }
 
 TEST(RunSummaries, AnEvaluationThatWasEditedIsNotBelieved) {

@@ -7,24 +7,32 @@
 #include <limits>
 #include <utility>
 
+#include "workstation/env/charge_left.h"
 #include "workstation/report/rule_prices.h"
 
 namespace bess {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
+
+/// By which a day from the same charge earns more than one in a chain.
+constexpr double kGivenAwayEur = 5;
 
 /// Days of 2 MWh of capacity that earned `profits_eur` and moved `throughput_mwh` each.
 NamedEvaluation evaluated(const std::string& name, const std::vector<double>& profits_eur,
                           double throughput_mwh) {
   NamedEvaluation named{name, {}, {}};
-  named.day_reset.capacity_mwh = 2;
+  named.carried_over.capacity_mwh = 2;
   for (const double profit_eur : profits_eur) {
     DayResult day{"2023-01-26", profit_eur, 1, 10, 0.5};
     day.throughput_mwh = throughput_mwh;
-    named.day_reset.days.push_back(day);
+    day.soc_start_frac = 0.5;
+    named.carried_over.days.push_back(day);
   }
+  named.day_reset = named.carried_over;
+  for (DayResult& day : named.day_reset.days) day.profit_eur += kGivenAwayEur;
   return named;
 }
 
@@ -45,6 +53,29 @@ TEST(Headline, IsAboutTheCorrectedStudent) {
   EXPECT_EQ(headline.gains[2].against, kForesightName);
 }
 
+TEST(Headline, IsCarriedOverAndNamesTheFriendlierAccounting) {
+  std::vector<NamedEvaluation> evaluations = all();
+  Headline headline = headline_of(evaluations).value();
+  EXPECT_DOUBLE_EQ(headline.reset_profit.value(), 60 + kGivenAwayEur / 2);
+  EXPECT_THAT(headline_text(headline),
+              AllOf(HasSubstr("earned 60.0 EUR per day per MWh of capacity"),
+                    HasSubstr("friendlier accounting, each day from the same charge and its end "
+                              "given away, says 62.5."),
+                    Not(HasSubstr("valued"))));
+  Evaluation& days = evaluations[3].carried_over;
+  days.days.back().soc_start_frac = 0.25;  // a quarter of 2 MWh more at the end
+  BatteryParameters battery;
+  battery.capacity_wh = 2e6;
+  value_charge_left(days, battery, 80);
+  headline = headline_of(evaluations).value();
+  EXPECT_DOUBLE_EQ(headline.profit, 60 + headline.charge_left.value_eur_per_day_per_mwh);
+  EXPECT_NEAR(headline.charge_left.value_eur_per_day_per_mwh, 0.5 * std::sqrt(0.9) * 80 / 3 / 2,
+              1e-9);
+  EXPECT_THAT(headline_text(headline), HasSubstr("valued at 80.0 EUR/MWh, the mean settled price "
+                                                 "of these days, with losses and costs: +6.3"));
+  EXPECT_THAT(headline_html(headline), HasSubstr("valued at 80.0 EUR/MWh"));
+}
+
 TEST(Headline, GainsArePairedAndCountWear) {
   const Headline headline = headline_of(all()).value();
   EXPECT_DOUBLE_EQ(headline.gains[1].difference[0].mean, 20);
@@ -55,12 +86,12 @@ TEST(Headline, GainsArePairedAndCountWear) {
 
 TEST(Headline, WearReplacesTheConfiguredOne) {
   NamedEvaluation worn = evaluated("x", {100}, 4);
-  worn.day_reset.wear_eur_per_mwh = 25;
-  EXPECT_DOUBLE_EQ(at_wear(worn.day_reset, 25).days[0].profit_eur, 100);
-  EXPECT_DOUBLE_EQ(at_wear(worn.day_reset, 0).days[0].profit_eur, 200);
-  EXPECT_DOUBLE_EQ(at_wear(worn.day_reset, 10).days[0].profit_eur, 160);
-  EXPECT_DOUBLE_EQ(at_wear(worn.day_reset, 10).profit_eur_per_day_per_mwh(),
-                   worn.day_reset.profit_at_wear_eur_per_day_per_mwh(10));
+  worn.carried_over.wear_eur_per_mwh = 25;
+  EXPECT_DOUBLE_EQ(at_wear(worn.carried_over, 25).days[0].profit_eur, 100);
+  EXPECT_DOUBLE_EQ(at_wear(worn.carried_over, 0).days[0].profit_eur, 200);
+  EXPECT_DOUBLE_EQ(at_wear(worn.carried_over, 10).days[0].profit_eur, 160);
+  EXPECT_DOUBLE_EQ(at_wear(worn.carried_over, 10).profit_eur_per_day_per_mwh(),
+                   worn.carried_over.profit_at_wear_eur_per_day_per_mwh(10));
 }
 
 TEST(Headline, ADifferenceIsClaimedBeyondItsIntervalOnly) {
@@ -76,7 +107,7 @@ TEST(Headline, ADifferenceIsClaimedBeyondItsIntervalOnly) {
 
 TEST(Headline, ThePriceOfCorrectionIsInWords) {
   EXPECT_THAT(headline_html(headline_of(all()).value()),
-              HasSubstr("Price of the correction: none shown ("));
+              HasSubstr("Price of the correction: none shown, "));
   std::vector<NamedEvaluation> dear = all();
   dear[2] = evaluated(kPlainName, {110, 130.2, 149.8}, 8);
   EXPECT_THAT(headline_html(headline_of(dear).value()), HasSubstr("Price of the correction: 5.0"));
@@ -90,17 +121,17 @@ TEST(Headline, ThePriceIsSplitBetweenRulesAndCorrection) {
   ruled[2] = evaluated(kPlainName, {300, 320.2, 339.8}, 8);
   ruled.push_back(evaluated(under_rule_name("rest"), {110, 130.2, 149.8}, 8));
   ruled.push_back(evaluated(kUnderAllRules, {110, 130.2, 149.8}, 8));
-  EXPECT_THAT(headline_html(headline_of(ruled).value()),
-              testing::AllOf(HasSubstr("Price of the correction: 5.0"),
-                             HasSubstr("Price of the rules: 95.0")));
+  EXPECT_THAT(
+      headline_html(headline_of(ruled).value()),
+      AllOf(HasSubstr("Price of the correction: 5.0"), HasSubstr("Price of the rules: 95.0")));
   EXPECT_THAT(headline_html(headline_of(all()).value()), Not(HasSubstr("Price of the rules")));
 }
 
 TEST(Headline, WithoutACorrectedStudentThereIsNone) {
   EXPECT_FALSE(headline_of({evaluated("rbc", {1}, 1)}).has_value());
-  NamedEvaluation carried_only = evaluated(kCorrectedName, {1}, 1);
-  std::swap(carried_only.day_reset, carried_only.carried_over);
-  EXPECT_FALSE(headline_of({carried_only}).has_value());
+  NamedEvaluation reset_only = evaluated(kCorrectedName, {1}, 1);
+  reset_only.carried_over = {};
+  EXPECT_FALSE(headline_of({reset_only}).has_value());
 }
 
 TEST(Headline, OneDayHasNoError) {

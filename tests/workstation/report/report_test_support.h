@@ -8,6 +8,7 @@
 
 #include "shared/local_time.h"
 #include "workstation/correction/distil.h"
+#include "workstation/env/charge_left.h"
 #include "workstation/market/model/quarter_hours_to_minutes.h"
 #include "workstation/market/model/simulated_market.h"
 #include "workstation/market/series/local_date.h"
@@ -44,12 +45,15 @@ inline StudentNet untrained_student() {
   return quantise_student(initial_parameters(kStudentShape, 2), small_price_map());
 }
 
+/// As a run evaluates: both ways of counting, the charge at the end valued.
 inline NamedEvaluation named_evaluation(const std::string& name, Policy& policy) {
   const auto days = small_market().days_of(Split::kTest);
   EvaluationOptions carried;
   carried.carry_soc = true;
-  return {name, evaluate(small_market(), days, policy, {}),
-          evaluate(small_market(), days, policy, carried)};
+  NamedEvaluation named{name, evaluate(small_market(), days, policy, {}),
+                        evaluate(small_market(), days, policy, carried)};
+  value_charge_left(named.carried_over, {}, mean_settled_eur_per_mwh(small_market(), days));
+  return named;
 }
 
 /// Empty when every tag is closed in order, else the first that is not.

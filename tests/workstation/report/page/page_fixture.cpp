@@ -114,11 +114,11 @@ std::vector<LatticeState> disordered_states(const StudentNet& net) {
   return found;
 }
 
-Json days_of(const std::vector<NamedEvaluation>& evaluations) {
+Json days_of(const std::vector<NamedEvaluation>& evaluations, EvaluationField field) {
   Json policies = Json::object();
   for (const NamedEvaluation& named : evaluations) {
     Json days = Json::list();
-    for (const DayResult& day : named.day_reset.days) {
+    for (const DayResult& day : (named.*field).days) {
       days.add(Json::object({{"date", day.date},
                              {"profit_eur", day.profit_eur},
                              {"throughput_mwh", day.throughput_mwh},
@@ -175,7 +175,9 @@ void write_fixture(const std::filesystem::path& folder) {
   }
   Json expected = Json::object();
   expected.set("students", std::move(students));
-  expected.set("days", days_of(evaluations));
+  expected.set("days", days_of(evaluations, &NamedEvaluation::carried_over));
+  expected.set("days_by_themselves", days_of(evaluations, &NamedEvaluation::day_reset));
+  expected.set("headline", headline_json(headline_of(evaluations).value()));
   expected.set("capacity_mwh", BatteryParameters{}.capacity_wh / 1e6);
   write_file(folder / "expected.json", expected.line());
 }

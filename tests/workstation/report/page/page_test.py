@@ -184,11 +184,11 @@ class PageTest(unittest.TestCase):
           energy: day.policies[0].power.reduce((sum, power) => sum + Math.abs(power), 0) / 1e6 / 30}))""")
         names = self.page.run("page.data.archive.policies")
         for name in ("corrected student", "plain student"):
-            wanted = self.expected["days"][name]
+            wanted = self.expected["days_by_themselves"][name]
             self.assertEqual([day["date"] for day in days], [day["date"] for day in wanted])
             for day, of_evaluation in zip(days, wanted):
                 self.assertAlmostEqual(day["profits"][names.index(name)], of_evaluation["profit_eur"], places=2)
-        for day, of_evaluation in zip(days, self.expected["days"]["corrected student"]):
+        for day, of_evaluation in zip(days, self.expected["days_by_themselves"]["corrected student"]):
             self.assertAlmostEqual(day["energy"], of_evaluation["throughput_mwh"], places=4)
 
     def cumulative_of(self, name, wear):
@@ -213,7 +213,7 @@ class PageTest(unittest.TestCase):
 
     def test_hours_add_up_to_the_mean_day(self):
         net = self.page.run("page.tearSheet.profitByHour().net")
-        days = self.expected["days"]["corrected student"]
+        days = self.expected["days_by_themselves"]["corrected student"]
         mean = sum(day["profit_eur"] for day in days) / len(days) / self.expected["capacity_mwh"]
         self.assertEqual(len(net), 24)
         self.assertAlmostEqual(sum(net), mean, places=3)
@@ -242,10 +242,24 @@ class PageTest(unittest.TestCase):
         self.assertTrue(cells[0].startswith("plain student"), cells)
         self.assertIn(f"{gain:+.1f}", cells[0])
 
+    def test_headline_is_carried_over_and_says_how_it_counts(self):
+        headline = self.expected["headline"]
+        text = self.page.run("document.getElementById('result').textContent")
+        self.assertTrue(headline["carry_soc"])
+        self.assertEqual(self.page.run("document.getElementById('headline-profit').textContent"),
+                         f"{headline['profit_eur_per_day_per_mwh']:.1f}")
+        for key in ("profit_standard_error", "profit_standard_error_by_month", "profit_from_same_soc_eur_per_day_per_mwh",
+                    "charge_price_eur_per_mwh"):
+            self.assertIn(f"{headline[key]:.1f}", text, key)
+        self.assertIn("valued at", text)
+        self.assertIn("local days 26 to the end of each month", text)
+        self.assertIn("Learning saw days to", text)
+        self.assertIn("walk-forward", text.lower())
+
     def test_worst_days_open(self):
         dates = self.page.run("[...document.querySelectorAll('#worst-days th a')].map((link) => link.textContent)")
-        days = self.expected["days"]["corrected student"]
-        bound = {day["date"]: day["profit_eur"] for day in self.expected["days"]["foresight"]}
+        days = self.expected["days_by_themselves"]["corrected student"]
+        bound = {day["date"]: day["profit_eur"] for day in self.expected["days_by_themselves"]["foresight"]}
         missed = {day["date"]: (bound[day["date"]] - day["profit_eur"]) / self.expected["capacity_mwh"] for day in days}
         self.assertEqual(dates, sorted(missed, key=missed.get, reverse=True)[:8])
         shown = self.page.run("[...document.querySelectorAll('#worst-days tbody td:nth-child(2)')].map((cell) => cell.textContent)")
