@@ -1,7 +1,10 @@
 #include "workstation/cli/distilled_prices.h"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -25,7 +28,13 @@ namespace {
 struct Students {
   std::vector<Evaluation> reset, carried;
   std::int64_t states = 0, violations = 0;
-  std::string failure{};  ///< of the first that was not proved
+  std::size_t rounds_most = 0;          ///< of the one that took most
+  double seconds = 0;                   ///< of all, distilled and proved
+  std::vector<std::string> failures{};  ///< of those that were not proved
+
+  [[nodiscard]] std::size_t count() const { return reset.size(); }
+  [[nodiscard]] std::size_t proved() const { return count() - failures.size(); }
+  [[nodiscard]] double seconds_each() const { return seconds / static_cast<double>(count()); }
 };
 
 class Distillery {
@@ -46,16 +55,20 @@ class Distillery {
     Students students;
     for (int s = 0; s < options_.seeds; ++s) {
       config.set_seed(seed_of(s));
+      const auto start = std::chrono::steady_clock::now();
       const CorrectionResult result = correct_and_prove(
           teacher_, visited_[static_cast<std::size_t>(s)], config.distil, interruption(),
           validation_score(market_, config.battery, config.initial_soc_frac));
+      const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
       const StudentFile& student = student_of(result.verdict);
+      students.seconds += took.count();
+      students.rounds_most = std::max(students.rounds_most, result.rounds.size());
       students.states += student.certificate.states_checked;
       students.violations += student.certificate.violations();
-      if (student.certificate.violations() > 0 && students.failure.empty()) {
-        students.failure =
+      if (student.certificate.violations() > 0) {
+        students.failures.push_back(
             describe_failed_proof(student, result.rounds, config.distil.method,
-                                  fmt::format("\"{}\", seed {}: ", name, config.distil.seed));
+                                  fmt::format("\"{}\", seed {}: ", name, config.distil.seed)));
       }
       const std::unique_ptr<Policy> policy = exported_policy(student);
       const BothWays earned = run_both_ways(*policy, options_.days, config, market_);
@@ -89,12 +102,14 @@ void print_head(const DistilledPriceOptions& options, const Students& base) {
   if (options.json) return;
   fmt::print(
       "\n{} student{} distilled without them: {:.1f} EUR a day per MWh of capacity, with the SoC "
-      "carried over {:.1f}; {} violations.\nWhat learning rules changes, day by day:\n"
-      "{:<30} {:>10} {:>8} {:>6} {:>8} {:>7}  {:>8} {:>6} {:>8} {:>7}\n",
+      "carried over {:.1f}; {} violations, {:.0f} s each.\nWhat learning rules changes, day by "
+      "day; rounds: of the student that took most; s: to learn and prove one\n"
+      "{:<30} {:>6} {:>6} {:>5} {:>10} {:>8} {:>6} {:>8} {:>7}  {:>8} {:>6} {:>8} {:>7}\n",
       options.seeds, options.seeds == 1 ? "" : "s",
       mean_of(base.reset).profit_eur_per_day_per_mwh(),
-      mean_of(base.carried).profit_eur_per_day_per_mwh(), base.violations, "rule", "violations",
-      "reset", "s.e.", "by month", "spread", "carried", "s.e.", "by month", "spread");
+      mean_of(base.carried).profit_eur_per_day_per_mwh(), base.violations, base.seconds_each(),
+      "rule", "proved", "rounds", "s", "violations", "reset", "s.e.", "by month", "spread",
+      "carried", "s.e.", "by month", "spread");
 }
 
 void print_row(const DistilledPriceOptions& options, const std::string& name, const Students& base,
@@ -102,11 +117,14 @@ void print_row(const DistilledPriceOptions& options, const std::string& name, co
   const SeededDifference reset = seeded_difference(ruled.reset, base.reset);
   const SeededDifference carried = seeded_difference(ruled.carried, base.carried);
   if (!options.json) {
-    fmt::print("{:<30} {:>10} {:>+8.1f} {:>6} {:>8} {:>7}  {:>+8.1f} {:>6} {:>8} {:>7}\n", name,
-               ruled.violations, reset.mean, error_text(reset.standard_error, 1),
-               error_text(reset.standard_error_by_month, 1), amount(reset.spread), carried.mean,
-               error_text(carried.standard_error, 1),
-               error_text(carried.standard_error_by_month, 1), amount(carried.spread));
+    fmt::print(
+        "{:<30} {:>6} {:>6} {:>5.0f} {:>10} {:>+8.1f} {:>6} {:>8} {:>7}  {:>+8.1f} {:>6} {:>8} "
+        "{:>7}\n",
+        name, fmt::format("{}/{}", ruled.proved(), ruled.count()), ruled.rounds_most,
+        ruled.seconds_each(), ruled.violations, reset.mean, error_text(reset.standard_error, 1),
+        error_text(reset.standard_error_by_month, 1), amount(reset.spread), carried.mean,
+        error_text(carried.standard_error, 1), error_text(carried.standard_error_by_month, 1),
+        amount(carried.spread));
   } else {
     const auto gain = [](const std::vector<Evaluation>& with,
                          const std::vector<Evaluation>& without,
@@ -127,7 +145,10 @@ void print_row(const DistilledPriceOptions& options, const std::string& name, co
                            .carried = gain(ruled.carried, base.carried, carried),
                            .seeds = options.seeds,
                            .states_checked = ruled.states,
-                           .violations = ruled.violations};
+                           .violations = ruled.violations,
+                           .proved = ruled.proved(),
+                           .rounds = ruled.rounds_most,
+                           .seconds_per_student = ruled.seconds_each()};
     fmt::print("{}\n", rule_price_json(row).line());
   }
   std::fflush(stdout);  // each takes minutes
@@ -171,11 +192,11 @@ void price_by_distilling(const DistilledPriceOptions& options, const Teacher& te
   const Distillery distillery(options, teacher, config, market);
   const Students base = distillery.students("without rules", {});
   print_head(options, base);
-  std::string failure = base.failure;
+  std::vector<std::string> failures = base.failures;
   const auto price = [&](const std::string& name, const RuleSet& rules) {
     const Students ruled = distillery.students(name, rules);
     print_row(options, name, base, ruled);
-    if (failure.empty()) failure = ruled.failure;
+    failures.insert(failures.end(), ruled.failures.begin(), ruled.failures.end());
   };
   const std::vector<Rule>& rules = options.rules.rules;
   for (const Rule& rule : rules) {
@@ -188,7 +209,7 @@ void price_by_distilling(const DistilledPriceOptions& options, const Teacher& te
     }
   }
   price(rules.size() == 1 ? rules.front().name : kAllTogether, options.rules);
-  if (!failure.empty()) fail("{}", failure);
+  if (!failures.empty()) fail("{}", fmt::join(failures, "\n"));
 }
 
 }  // namespace bess

@@ -46,6 +46,9 @@ Json rule_price_json(const RulePriceRow& row) {
   json.set("seeds", whole_or_null(row.seeds));
   json.set("states_checked", whole_or_null(row.states_checked));
   json.set("violations", whole_or_null(row.violations));
+  json.set("proved", whole_or_null(row.proved));
+  json.set("rounds", whole_or_null(row.rounds));
+  json.set("seconds_per_student", Decimals{row.seconds_per_student, 1});
   json.set("share_of_decisions_changed", Decimals{row.changed_share, 6});
   add_gain(row.reset, false, json);
   Json carried = Json::object();

@@ -28,6 +28,9 @@ struct RulePriceRow {
   double changed_share = NAN;  ///< of decisions, when projected
   std::optional<int> seeds{};  ///< and the rest when distilled
   std::optional<std::int64_t> states_checked{}, violations{};
+  std::optional<std::size_t> proved{};  ///< of the seeds
+  std::optional<std::size_t> rounds{};  ///< of the student that took most
+  double seconds_per_student = NAN;     ///< to learn and prove one
 };
 
 Json rule_price_json(const RulePriceRow& row);
