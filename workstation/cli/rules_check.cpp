@@ -35,11 +35,6 @@ struct CheckArguments {
   bool json = false;
 };
 
-const char* bound_by(const Rule& rule, ContextKind kind) {
-  if (!binds_student(rule, kind)) return rule.enforce ? "guard" : "guard's own thresholds";
-  return rule.enforce ? "student and guard" : "student";
-}
-
 /// What was counted of it is null without a policy.
 Json rule_json(const Rule& rule, ContextKind kind, const std::string& policy,
                const std::string& split, std::optional<std::int64_t> decisions,
@@ -72,7 +67,7 @@ void print_rules(const RuleSet& rules, ContextKind kind, bool json) {
     if (json) {
       fmt::print("{}\n", rule_json(rule, kind, {}, {}, {}, {}).line());
     } else {
-      fmt::print("{:<40}  {:<17}  {}\n", rule.name, bound_by(rule, kind), rule.text());
+      fmt::print("{:<40}  {:<17}  {}\n", rule.name, held_by(rule, kind), rule.text());
     }
   }
 }

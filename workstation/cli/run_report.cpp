@@ -10,8 +10,10 @@
 #include "workstation/report/comparison_notes.h"
 #include "workstation/report/headline.h"
 #include "workstation/report/judged_days.h"
+#include "workstation/report/report_tables.h"
 #include "workstation/report/risk_table.h"
 #include "workstation/report/rule_prices.h"
+#include "workstation/report/shown_policies.h"
 #include "workstation/rules/ruled_policy.h"
 #include "workstation/student/demand_counts.h"
 #include "workstation/student/exported_policy.h"
@@ -39,11 +41,14 @@ std::string violations_text(const Certificate& plain, const Certificate& correct
     return fmt::format("{} / {} / {} in {} states", c.violations_property_1,
                        c.violations_property_2, c.violations_property_3, c.states_checked);
   };
-  std::string text = fmt::format(
-      "\nviolations of properties 1 / 2 / 3\n"
-      "  before correction (plain student)    {}\n"
-      "  after correction (corrected student) {}\n",
-      properties(plain), properties(corrected));
+  const std::string before_head = fmt::format("before correction ({})", kPlainName);
+  const std::string after_head = fmt::format("after correction ({})", own_student_name(corrected));
+  const auto lines = [&](const std::string& of_plain, const std::string& of_corrected) {
+    return fmt::format("  {:<36} {}\n  {:<36} {}\n", before_head, of_plain, after_head,
+                       of_corrected);
+  };
+  std::string text =
+      "\nviolations of properties 1 / 2 / 3\n" + lines(properties(plain), properties(corrected));
   const std::vector<DemandCount> before = demand_counts(plain);
   const std::vector<DemandCount> after = demand_counts(corrected);
   for (std::size_t d = kPropertyCount; d < after.size(); ++d) {
@@ -52,10 +57,10 @@ std::string violations_text(const Certificate& plain, const Certificate& correct
       text += "  the guard's alone: no student is held to it\n";
       continue;
     }
-    text += fmt::format(
-        "  before correction (plain student)    {} in {} states\n"
-        "  after correction (corrected student) {} in {} states\n",
-        before[d].violations, before[d].states, after[d].violations, after[d].states);
+    const auto counted = [](const DemandCount& count) {
+      return fmt::format("{} in {} states", count.violations, count.states);
+    };
+    text += lines(counted(before[d]), counted(after[d]));
   }
   return text;
 }
@@ -98,7 +103,8 @@ std::vector<NamedEvaluation> evaluate_run(const RunResults& run) {
   const RuleSet projected = projected_rules(run.corrected.certificate.rules);
   for (const Rule& rule : projected.rules) under(under_rule_name(rule.name), {{rule}});
   if (!projected.empty()) under(kUnderAllRules, projected);
-  all.push_back(evaluate_both(kCorrectedName, *exported_policy(run.corrected), run));
+  all.push_back(evaluate_both(own_student_name(run.corrected.certificate),
+                              *exported_policy(run.corrected), run));
   baseline("foresight");
   return all;
 }
@@ -123,15 +129,15 @@ std::vector<std::string> write_run_report(const RunResults& run,
       .facts = run_facts(run.config, run.market, folder),
   };
   std::vector<std::string> names = write_report(inputs, folder.path);
+  const Certificate& certificate = run.corrected.certificate;
   const std::string alike = same_program_text(evaluations);
-  std::string summary;
+  std::string summary = certificate.violations() == 0 ? "" : proof_sentence(certificate) + "\n\n";
   if (const auto headline = headline_of(evaluations)) {
-    summary = headline_text(*headline) + judged_days_text(judged_days(run.market, Split::kTest)) +
-              "\n" + walk_forward_text(run.walk_forward) + "\n\n";
+    summary += headline_text(*headline) + judged_days_text(judged_days(run.market, Split::kTest)) +
+               "\n" + walk_forward_text(run.walk_forward) + "\n\n";
   }
   summary += format_comparison_table(evaluations) + (alike.empty() ? "" : alike + "\n") +
-             whole_battery_text(evaluations) +
-             violations_text(run.plain.certificate, run.corrected.certificate);
+             whole_battery_text(evaluations) + violations_text(run.plain.certificate, certificate);
   if (const std::string risks = risk_table(evaluations, teacher_name(run.teacher));
       !risks.empty()) {
     summary += '\n' + risks;

@@ -33,6 +33,7 @@ using namespace run_file;
 
 constexpr const char* kCorrection = "corrected student";
 constexpr const char* kReporting = "report";
+constexpr const char* kFailureReporting = "report of the failed proof";
 
 /// times.json: seconds and end of each stage, added to or replaced.
 void note_time(const fs::path& path, const std::string& stage, double seconds) {
@@ -176,14 +177,17 @@ void RunStages::report_again() {
                                                   {kCorrection, {kTeacher}}};
   for (const auto& [name, inputs] : needed) {
     const StageRecord* done = record_.holds(name, inputs, folder_);
-    if (done != nullptr && !done->failed) continue;
+    if (done != nullptr) continue;
     fail(
         "{}: the {} is missing or was changed since; 'bess-train run --resume --out {}' makes it "
         "again",
         folder_.path.string(), name, folder_.path.string());
   }
+  std::erase_if(record_.stages, [](const StageRecord& done) {
+    return done.name == kReporting || done.name == kFailureReporting;
+  });
+  if (record_.has_failed()) return report_the_failure();
   stage("evaluation", {kTeacher, kPlainStudent, kStudent}, [&] { return make_evaluation(); });
-  std::erase_if(record_.stages, [](const StageRecord& done) { return done.name == kReporting; });
   stage(kReporting,
         {kTeacher, kPlainStudent, kPlainViolations, kStudent, kTrainingCurve, kDistilCurve, kDays},
         [&] { return make_report(); });
@@ -289,8 +293,7 @@ StudentFile RunStages::unproved_student() const {
 
 void RunStages::fail_the_proof() {
   announce(6, "report where the proof failed");
-  stage("report of the failed proof", {kTeacher, kPlainStudent, kPlainViolations, kUnprovedStudent},
-        [&] { return make_failure_report(); });
+  report_the_failure();
   const std::string rounds = path(kProofRounds).string();
   throw ProofFailed(describe_failed_proof(unproved_student(),
                                           parse_proof_rounds_csv(read_file(rounds), rounds),
@@ -298,6 +301,11 @@ void RunStages::fail_the_proof() {
                     fmt::format("\n  {} shows where; then start at the correction: bess-train run "
                                 "--from-teacher {} --config NEW --out ANOTHER",
                                 path(kReport).string(), folder_.path.string()));
+}
+
+void RunStages::report_the_failure() {
+  stage(kFailureReporting, {kTeacher, kPlainStudent, kPlainViolations, kUnprovedStudent},
+        [&] { return make_failure_report(); });
 }
 
 /// The same page, of a student that nobody may export.

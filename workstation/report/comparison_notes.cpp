@@ -48,11 +48,11 @@ std::string whole_battery_html(const std::vector<NamedEvaluation>& evaluations) 
 }
 
 std::string whole_battery_text(const std::vector<NamedEvaluation>& evaluations) {
-  const NamedEvaluation* exported = evaluation_named(evaluations, kCorrectedName);
+  const NamedEvaluation* exported = find_own_student(evaluations);
   if (exported == nullptr) return {};
   return fmt::format(
       "the whole battery of {:g} MWh: the {} {} EUR a day, {} with the SoC carried over\n",
-      capacity_mwh_in(*exported), kCorrectedName, eur_per_day(exported->day_reset),
+      capacity_mwh_in(*exported), exported->name, eur_per_day(exported->day_reset),
       eur_per_day(exported->carried_over));
 }
 

@@ -159,12 +159,12 @@ Figure distillation_figure(const std::vector<DistilPoint>& curve) {
       "Line chart with a logarithmic axis: three Kullback-Leibler divergences over epochs.";
   figure.caption = fmt::format(
       "Divergence of student and teacher where the teacher goes ({:.3g} nats at the end), of "
-      "corrected student and teacher on the lattices ({:.3g}), and of student and its own "
+      "the student's correction and teacher on the lattices ({:.3g}), and of student and its own "
       "correction ({:.3g}): the last one is what the correction layer still had to change.",
       curve.back().visited_loss, curve.back().teacher_loss, curve.back().correction_loss);
   const KeyRow key =
       key_row(figure, 100,
-              {{"corrected student to teacher", kSoft, KeyEntry::Kind::kLine, 2},
+              {{"its correction to teacher", kSoft, KeyEntry::Kind::kLine, 2},
                {"student to teacher", kCharge, KeyEntry::Kind::kLine, 2.5},
                {"student to its correction", kDischarge, KeyEntry::Kind::kLine, 2.5}});
   figure.commands =

@@ -143,12 +143,18 @@ bool is_shown(const PairedDifference& difference) {
          interval_half_width(difference.errors(), kShownCoverage);  // false for NaN
 }
 
+const NamedEvaluation* find_own_student(const std::vector<NamedEvaluation>& evaluations) {
+  const NamedEvaluation* corrected = find(evaluations, kCorrectedName);
+  return corrected != nullptr ? corrected : find(evaluations, kUnprovedName);
+}
+
 std::optional<Headline> headline_of(const std::vector<NamedEvaluation>& evaluations) {
-  const NamedEvaluation* exported = find(evaluations, kCorrectedName);
+  const NamedEvaluation* exported = find_own_student(evaluations);
   if (exported == nullptr) return std::nullopt;
   const Evaluation& days = exported->carried_over;
   const Evaluation& reset = exported->day_reset;
-  Headline headline{.days = days.days.size(),
+  Headline headline{.student = exported->name,
+                    .days = days.days.size(),
                     .profit = days.profit_eur_per_day_per_mwh(),
                     .errors = days.errors(),
                     .reset_profit = {},
@@ -162,10 +168,11 @@ std::optional<Headline> headline_of(const std::vector<NamedEvaluation>& evaluati
     const NamedEvaluation* other = find(evaluations, rival.name);
     if (other != nullptr) headline.gains.push_back(gain_over(*exported, *other, rival.meaning));
   }
+  const bool is_finished = headline.student == kCorrectedName;
   if (const auto prices = rule_prices_of(evaluations)) {
-    headline.correction = prices->correction;
+    if (is_finished) headline.correction = prices->correction;
     headline.rules = prices->together;
-  } else if (find(evaluations, kPlainName) != nullptr) {
+  } else if (is_finished && find(evaluations, kPlainName) != nullptr) {
     headline.correction = headline.gains.front();
   }
   if (const NamedEvaluation* bound = find(evaluations, kForesightName)) {
@@ -196,12 +203,12 @@ std::string headline_accounting(const Headline& headline) {
 std::string headline_text(const Headline& headline) {
   return fmt::format(
       "The {} earned {:.1f} EUR per day per MWh of capacity{} on {} test days.\n{}\n",
-      kCorrectedName, headline.profit, errors_text(headline.errors), headline.days,
+      headline.student, headline.profit, errors_text(headline.errors), headline.days,
       headline_accounting(headline));
 }
 
 Json headline_json(const Headline& headline) {
-  Json json = Json::object({{"policy", kCorrectedName},
+  Json json = Json::object({{"policy", headline.student},
                             {key::kCarrySoc, true},
                             {"days", headline.days},
                             {"months", headline.errors.months},
@@ -217,9 +224,9 @@ Json headline_json(const Headline& headline) {
 std::string headline_html(const Headline& headline) {
   std::string text = fmt::format(
       "<p class=\"figure\"><strong id=\"headline-profit\">{:.1f}</strong><span>EUR per day per MWh "
-      "of capacity{}<br>the corrected student, over {} test days, charge carried over</span></p>\n"
+      "of capacity{}<br>the {}, over {} test days, charge carried over</span></p>\n"
       "<p class=\"note\" id=\"headline-accounting\">{}</p>\n<ul class=\"badges\">\n",
-      headline.profit, errors_text(headline.errors), headline.days,
+      headline.profit, errors_text(headline.errors), headline.student, headline.days,
       html_escaped(headline_accounting(headline)));
   if (headline.correction) {
     text += fmt::format("<li id=\"price-of-correction\">{}</li>\n",

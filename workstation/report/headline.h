@@ -16,6 +16,8 @@ namespace bess {
 /// Names by which the evaluations of a run are recognised.
 inline constexpr const char* kCorrectedName = "corrected student";
 inline constexpr const char* kPlainName = "plain student";
+/// In place of the corrected one where its proof failed: nobody may export it.
+inline constexpr const char* kUnprovedName = "unproved student";
 
 /// The wears, EUR/MWh, at which gains are shown, whatever is configured.
 inline constexpr std::array<double, 2> kHeadlineWears{0, kReferenceWearEurPerMwh};
@@ -34,6 +36,7 @@ HeadlineGain gain_over(const NamedEvaluation& exported, const NamedEvaluation& o
 /// Charge carried over from day to day, what is left of it at the end valued; EUR per day per MWh
 /// of capacity, net of the configured wear.
 struct Headline {
+  std::string student;  ///< kCorrectedName or kUnprovedName
   std::size_t days;
   double profit;
   DayErrors errors;                    ///< of the profit
@@ -49,7 +52,11 @@ struct Headline {
 /// The same decisions, had wear cost this much instead.
 Evaluation at_wear(const Evaluation& evaluation, double wear_eur_per_mwh);
 
-/// None without an evaluation of the corrected student, SoC carried over.
+/// The policy that a run is about: corrected student or, where its proof failed, unproved one; null without both.
+const NamedEvaluation* find_own_student(const std::vector<NamedEvaluation>& evaluations);
+
+/// None without an evaluation of the run's own student, SoC carried over. An unproved student has no price of
+/// correction: its correction was not finished.
 std::optional<Headline> headline_of(const std::vector<NamedEvaluation>& evaluations);
 
 /// Beyond the interval of 95 %; never of one day.

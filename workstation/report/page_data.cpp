@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <numeric>
 #include <string_view>
 
 #include "workstation/env/context_fit.h"
 #include "workstation/report/headline.h"
+#include "workstation/report/page_rules.h"
 #include "workstation/report/price_histogram.h"
 #include "workstation/report/rule_prices.h"
 #include "workstation/report/shown_policies.h"
@@ -111,9 +113,24 @@ Json students_json(const ReportInputs& in) {
     json.set("net", student_json(student->net));
     students.add(std::move(json));
   };
-  add(kCorrectedName, in.corrected);
+  if (in.corrected) add(own_student_name(in.corrected->certificate), in.corrected);
   add(kPlainName, in.uncorrected);
   return students;
+}
+
+Json state_json(const LatticeState& s) {
+  const std::int16_t state[] = {s.minute_of_quarter_hour, s.quarter_hour, s.context_class,
+                                s.soc_index, s.price_eur_per_mwh};
+  return std::span(state);
+}
+
+/// The state of each broken demand, null where none is known: of the buttons of failure_html().
+Json broken_json(const ReportInputs& in) {
+  Json list = Json::list();
+  for (const BrokenDemand& demand : in.broken) {
+    list.add(demand.state ? state_json(*demand.state) : Json(NAN));
+  }
+  return list;
 }
 
 Json counterexamples_json(const ReportInputs& in) {
@@ -123,10 +140,7 @@ Json counterexamples_json(const ReportInputs& in) {
   const auto& found = wrong->certificate.counterexamples;
   const std::size_t stride = found.size() / kCounterexamplesShown + 1;
   for (std::size_t i = 0; i < found.size(); i += stride) {
-    const LatticeState& s = found[i];
-    const std::int16_t state[] = {s.minute_of_quarter_hour, s.quarter_hour, s.context_class,
-                                  s.soc_index, s.price_eur_per_mwh};
-    list.add(std::span(state));
+    list.add(state_json(found[i]));
   }
   return list;
 }
@@ -251,18 +265,25 @@ PolicyContext first_map(const ReportInputs& in) {
 
 Json page_data(const ReportInputs& in, const PageSteps& steps) {
   const std::vector<MarketDay>& days = steps.days;
+  const ContextClasses classes = context_classes_of(in);
   Json dates = Json::list();
   for (const MarketDay& day : days) dates.add(day.date());
-  Json data = Json::object({{"exported", kCorrectedName}, {"foresight", kForesightName}});
+  const bool has_own = in.corrected != nullptr;
+  Json data = Json::object(
+      {{"exported", has_own ? own_student_name(in.corrected->certificate) : kCorrectedName},
+       {"foresight", kForesightName}});
   data.set("battery", battery_json(in.battery));
   data.set("dates", std::move(dates));
   data.set("policies", policies_json(in.evaluations));
   data.set("archive", archive_json(in, steps));
   data.set("lattice", lattice_json());
-  data.set("contexts", contexts_json(context_classes_of(in)));
+  data.set("contexts", contexts_json(classes));
   data.set("thresholds", thresholds_json(thresholds_of(in)));
   data.set("students", students_json(in));
   data.set("counterexamples", counterexamples_json(in));
+  data.set("counterexamples_of", shown_as_wrong_name(in));
+  data.set("broken", broken_json(in));
+  if (has_own) data.set("rules", rules_json(in.corrected->certificate.rules, classes.kind));
   data.set("first_map", map_json(first_map(in)));
   data.set("learning", learning_json(in));
   data.set("prices", prices_json(in.market));

@@ -11,6 +11,7 @@
 #include "workstation/report/figure.h"
 #include "workstation/report/headline.h"
 #include "workstation/report/price_histogram.h"
+#include "workstation/report/shown_policies.h"
 
 namespace bess {
 namespace {
@@ -27,7 +28,8 @@ std::vector<const NamedEvaluation*> shown(const ReportInputs& in,
     if (at != in.evaluations.end() && !at->carried_over.days.empty()) found.push_back(&*at);
     return !found.empty();
   };
-  if (!add(kCorrectedName) && !in.evaluations.empty()) found.push_back(&in.evaluations.front());
+  if (!add(kCorrectedName) && !add(kUnprovedName) && !in.evaluations.empty())
+    found.push_back(&in.evaluations.front());
   for (const std::string_view rival : rivals) add(rival);
   return found;
 }
@@ -204,7 +206,7 @@ PictureTable map_table(const ReportInputs& in) {
       }
     }
   };
-  add(kCorrectedName, in.corrected);
+  if (in.corrected) add(own_student_name(in.corrected->certificate), in.corrected);
   add(kPlainName, in.uncorrected);
   return table;
 }

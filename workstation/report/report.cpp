@@ -29,6 +29,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* kPage = "report.html";
 constexpr const char* kPageTitle = "Battery arbitrage: what was learned, corrected and proved";
+constexpr const char* kFailedTitle =
+    "Battery arbitrage: what was learned, and where its proof failed";
 
 double rule_validation_profit(const ReportInputs& in) {
   RuleBasedPolicy rule(kPaperRuleLowEurPerMwh, kPaperRuleHighEurPerMwh);
@@ -40,9 +42,12 @@ std::vector<NamedPolicyMap> policy_maps(const ReportInputs& in, const PolicyCont
   std::vector<NamedPolicyMap> maps;
   if (in.teacher) maps.push_back({"teacher", teacher_grid(*in.teacher, context)});
   if (in.uncorrected) {
-    maps.push_back({"uncorrected student", student_grid(in.uncorrected->net, context)});
+    maps.push_back({kPlainName, student_grid(in.uncorrected->net, context)});
   }
-  if (in.corrected) maps.push_back({"corrected student", student_grid(in.corrected->net, context)});
+  if (in.corrected) {
+    maps.push_back(
+        {own_student_name(in.corrected->certificate), student_grid(in.corrected->net, context)});
+  }
   return maps;
 }
 
@@ -89,10 +94,8 @@ void add_policy_maps(const ReportInputs& in, std::vector<Figure>& figures) {
   for (const PolicyContext& context : in.maps) add_policy_map(in, context, "", figures);
   const std::optional<PolicyContext> worst = worst_context(in);
   if (!worst || std::ranges::find(in.maps, *worst) != in.maps.end()) return;
-  const bool is_plain = shown_as_wrong(in) == in.uncorrected;
   add_policy_map(in, *worst,
-                 fmt::format("The time at which the {} student erred most. ",
-                             is_plain ? "uncorrected" : "corrected"),
+                 fmt::format("The time at which the {} erred most. ", shown_as_wrong_name(in)),
                  figures);
 }
 
@@ -140,7 +143,7 @@ std::string head_of(const ReportInputs& in) {
   }
   const std::optional<Headline> headline = headline_of(in.evaluations);
   if (headline) return text + headline_html(*headline) + standing_html(in);
-  return text + "<p>No corrected student was evaluated: there is no policy to export.</p>\n";
+  return text + "<p>No student of a correction was evaluated: there is no policy to export.</p>\n";
 }
 
 std::string section_of(const std::string& id, const std::string& title, const std::string& body) {
@@ -167,10 +170,12 @@ std::string page_of(const ReportInputs& in, const PageSteps& steps,
   std::vector<Fact> facts = in.facts;
   facts.push_back({"battery", battery_text(in.battery)});
   const std::optional<RulePrices> prices = rule_prices_of(in.evaluations);
+  const bool has_failed = !in.broken.empty();
   return format_report_page(
-      {{"title", kPageTitle},
+      {{"title", has_failed ? kFailedTitle : kPageTitle},
        {"head", head_of(in)},
        {"failure", section_of("failure", "Where the proof failed", failure_html(in.broken))},
+       {"failure_link", has_failed ? "<li><a href=\"#failure\">Where it failed</a></li>\n" : ""},
        {"comparison",
         section_of("comparison", "What each policy earned",
                    comparison_html(in.evaluations) + same_program_html(in.evaluations) +
@@ -180,7 +185,7 @@ std::string page_of(const ReportInputs& in, const PageSteps& steps,
        {"lost_link", losses.empty() ? "" : "<li><a href=\"#lost\">Where it lost</a></li>\n"},
        {"rules", section_of("rules", "Rules",
                             rules_html(certificate_of(in.uncorrected), certificate_of(in.corrected),
-                                       prices ? &*prices : nullptr))},
+                                       context_classes_of(in).kind, prices ? &*prices : nullptr))},
        {"rules_link", rules_of(in).empty() ? "" : "<li><a href=\"#rules\">Rules</a></li>\n"},
        {"proof",
         section_of("proof", "The proof",
@@ -197,6 +202,12 @@ const StudentFile* shown_as_wrong(const ReportInputs& in) {
     return in.corrected;
   }
   return in.uncorrected;
+}
+
+const char* shown_as_wrong_name(const ReportInputs& in) {
+  const StudentFile* wrong = shown_as_wrong(in);
+  return wrong == in.corrected && wrong != nullptr ? own_student_name(wrong->certificate)
+                                                   : kPlainName;
 }
 
 ContextClasses context_classes_of(const ReportInputs& in) {

@@ -46,6 +46,8 @@ PriceThresholds thresholds_of(const ReportInputs& inputs);
 
 /// Whose counterexamples are shown: the corrected student's when it has any, else the uncorrected one's; may be null.
 const StudentFile* shown_as_wrong(const ReportInputs& inputs);
+/// What it is called on the page.
+const char* shown_as_wrong_name(const ReportInputs& inputs);
 
 /// Writes the SVG figures, the CSV file of each picture and report.html into `folder`, which is created; each
 /// file appears complete or not at all. Returns the names of all of them. Throws UserError without gnuplot or room

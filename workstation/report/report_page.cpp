@@ -11,9 +11,9 @@ namespace bess {
 namespace {
 
 /// In the order in which they build on each other.
-constexpr std::string_view kScripts[] = {"chart.min.js",  "student.js",    "archive.js",
-                                         "charts.js",     "tear_sheet.js", "day.js",
-                                         "policy_map.js", "learning.js",   "page.js"};
+constexpr std::string_view kScripts[] = {
+    "chart.min.js", "student.js",    "archive.js",    "charts.js",   "tear_sheet.js",
+    "day.js",       "rule_boxes.js", "policy_map.js", "learning.js", "page.js"};
 
 std::string all_scripts() {
   std::string text;

@@ -3,10 +3,12 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "shared/host/text.h"
 #include "workstation/report/html.h"
+#include "workstation/report/shown_policies.h"
 #include "workstation/student/demand_counts.h"
 
 namespace bess {
@@ -52,29 +54,31 @@ std::vector<std::string> proof_cells(const std::string& name, const Certificate&
           grouped(c.violations_property_2), grouped(c.violations_property_3)};
 }
 
-std::string held_by(const DemandCount& count, bool is_enforced) {
-  if (!count.binds_student) return "guard";
-  return is_enforced ? "student, guard" : "student";
-}
-
 std::string percent_broken(const DemandCount& count) {
   if (!count.binds_student || count.states == 0) return kNotThere;
   return fmt::format(
       "{:.2f}", 100.0 * static_cast<double>(count.violations) / static_cast<double>(count.states));
 }
 
-std::string rules_table(const Certificate* uncorrected, const Certificate& corrected) {
-  HtmlTable table{
-      "Rules, and how often they are broken",
-      {"Rule", "Held to it", "States", "Plain student breaks, %", "Corrected student breaks"},
-      {}};
+/// "unproved student" at the head of a column.
+std::string capital(std::string text) {
+  text.front() = static_cast<char>(std::toupper(text.front()));
+  return text;
+}
+
+std::string rules_table(const Certificate* uncorrected, const Certificate& corrected,
+                        ContextKind kind) {
+  HtmlTable table{"Rules, and how often they are broken",
+                  {"Rule", "Held to it", "States", "Plain student breaks, %",
+                   capital(own_student_name(corrected)) + " breaks"},
+                  {}};
   const std::vector<DemandCount> after = demand_counts(corrected);
   const std::vector<DemandCount> before =
       uncorrected == nullptr ? std::vector<DemandCount>{} : demand_counts(*uncorrected);
   for (std::size_t d = kPropertyCount; d < after.size(); ++d) {
     const bool is_bound = after[d].binds_student;
     table.rows.push_back({fmt::format("{} \u2013 {}", after[d].name, after[d].text),
-                          held_by(after[d], corrected.rules.rules[d - kPropertyCount].enforce),
+                          held_by(corrected.rules.rules[d - kPropertyCount], kind),
                           text_or_dash(is_bound, grouped(after[d].states)),
                           d < before.size() ? percent_broken(before[d]) : kNotThere,
                           text_or_dash(is_bound, grouped(after[d].violations))});
@@ -133,8 +137,10 @@ std::string proof_html(const Certificate* uncorrected, const Certificate* correc
                   {"Student", "States checked", "Not charging when cheap",
                    "Not discharging when dear", "Pairs out of order"},
                   {}};
-  if (uncorrected != nullptr) table.rows.push_back(proof_cells("uncorrected", *uncorrected));
-  if (corrected != nullptr) table.rows.push_back(proof_cells("corrected", *corrected));
+  if (uncorrected != nullptr) table.rows.push_back(proof_cells(kPlainName, *uncorrected));
+  if (corrected != nullptr) {
+    table.rows.push_back(proof_cells(own_student_name(*corrected), *corrected));
+  }
   if (table.rows.empty()) return {};
   const PriceThresholds t = (corrected != nullptr ? corrected : uncorrected)->thresholds;
   return fmt::format(
@@ -146,42 +152,58 @@ std::string proof_html(const Certificate* uncorrected, const Certificate* correc
 }
 
 std::string rules_html(const Certificate* uncorrected, const Certificate* corrected,
-                       const RulePrices* prices) {
+                       ContextKind kind, const RulePrices* prices) {
   if (corrected == nullptr || corrected->rules.empty()) return {};
-  std::string text = rules_table(uncorrected, *corrected);
-  if (prices != nullptr) text += rule_prices_table(*prices);
-  return text +
-         "<p class=\"note\">Money in EUR per day per MWh of capacity, \u00b1 standard error, the "
-         "charge carried over. What a rule changes is counted on the plain student: each "
-         "decision is moved to the nearest one that the rule leaves, and the days are run again, "
-         "one rule at a time and all together. What lies between that and the corrected student is "
-         "the correction. A direction of time or context cannot be counted so: it is in the "
-         "correction. The plain student is looked at in part, the corrected one everywhere.</p>\n";
+  std::string text = rules_table(uncorrected, *corrected, kind);
+  std::string note = fmt::format("The plain student is looked at in part, the {} everywhere.",
+                                 own_student_name(*corrected));
+  if (prices != nullptr) {
+    text += rule_prices_table(*prices);
+    note += fmt::format(
+        " Money in EUR per day per MWh of capacity, \u00b1 standard error, the charge carried "
+        "over. "
+        "What a rule changes is counted on the plain student: each decision is moved to "
+        "the nearest one that the rule leaves, and the days are run again, one rule at a time and "
+        "all together. What lies between that and the {} is {}. A direction of time or context "
+        "cannot be counted so: it is in the correction.",
+        prices->student, prices->correction.meaning);
+  }
+  return text + fmt::format("<p class=\"note\">{}</p>\n", note);
 }
 
 std::string failure_html(const std::vector<BrokenDemand>& broken) {
   if (broken.empty()) return {};
   std::string text = "<dl class=\"facts\" id=\"broken\">\n";
-  for (const BrokenDemand& demand : broken) {
+  for (std::size_t i = 0; i < broken.size(); ++i) {
+    const BrokenDemand& demand = broken[i];
     const std::string example =
         demand.example.empty() ? "" : fmt::format("; its action is {}", demand.example);
-    text += fmt::format("<dt>{}</dt><dd>{}: <strong>{} violations</strong>{}. To mend: {}.</dd>\n",
-                        html_escaped(demand.count.label()), html_escaped(demand.count.text),
-                        grouped(demand.count.violations), html_escaped(example),
-                        html_escaped(demand.advice));
+    text += fmt::format(
+        "<dt>{}</dt><dd>{}: <strong>{} violations</strong>{}. To mend: {}.{}</dd>\n",
+        html_escaped(demand.count.label()), html_escaped(with_true_minus(demand.count.text)),
+        grouped(demand.count.violations), html_escaped(with_true_minus(example)),
+        html_escaped(demand.advice),
+        demand.state ? fmt::format(" <button type=\"button\" data-broken=\"{}\">"
+                                   "Show that state on the map</button>",
+                                   i)
+                     : "");
   }
   return text +
-         "</dl>\n<p class=\"note\">The student below is the best of the last round. Nothing may be "
-         "exported of it; the button over its map goes through the states where it is "
-         "wrong.</p>\n";
+         "</dl>\n<p class=\"note\">What this page calls the unproved student is that of the last "
+         "round. Nobody may export it; the button over its map goes through more states where it "
+         "is wrong.</p>\n";
 }
 
 std::string proof_sentence(const Certificate& c) {
   if (c.violations() != 0) {
-    const std::string which =
-        c.rules.empty() ? "" : fmt::format(" ({})", broken_text(demand_counts(c)));
+    std::string which;
+    for (const DemandCount& count : demand_counts(c)) {
+      if (count.violations == 0) continue;
+      which += fmt::format("{}{}: {}", which.empty() ? "" : ", ", count.label(),
+                           grouped(count.violations));
+    }
     return fmt::format(
-        "Not proved: it still breaks its constraints {} times{} and may not be exported",
+        "Not proved: it still breaks its constraints {} times ({}) and may not be exported",
         grouped(c.violations()), which);
   }
   const auto bound = std::ranges::count_if(c.rule_counts, &RuleCount::binds_student);

@@ -17,15 +17,16 @@ std::string comparison_html(const std::vector<NamedEvaluation>& evaluations);
 
 /// Violations before and after; either may be null.
 std::string proof_html(const Certificate* uncorrected, const Certificate* corrected);
-/// Where a proof failed, demand by demand; empty when none is broken.
+/// Where a proof failed, demand by demand; empty when none is broken. A button has the index of its demand as
+/// data-broken.
 std::string failure_html(const std::vector<BrokenDemand>& broken);
 /// "Proved: ..." or why the student may not be exported.
 std::string proof_sentence(const Certificate& certificate);
 
 /// The operator's rules: what each asks, who is held to it, who breaks it how often, and what it costs. Empty without
-/// rules; `prices` may be null.
+/// rules; `kind` is the students' context; `prices` may be null.
 std::string rules_html(const Certificate* uncorrected, const Certificate* corrected,
-                       const RulePrices* prices);
+                       ContextKind kind, const RulePrices* prices);
 
 /// Names and values, and below them `lines` as they are.
 std::string provenance_html(const std::vector<Fact>& facts, const std::string& lines);

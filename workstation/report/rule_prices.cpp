@@ -35,12 +35,16 @@ bool is_under_rules(std::string_view policy) { return policy.starts_with(kUnder)
 std::optional<RulePrices> rule_prices_of(const std::vector<NamedEvaluation>& evaluations) {
   const NamedEvaluation* plain = find(evaluations, kPlainName);
   const NamedEvaluation* under_all = find(evaluations, kUnderAllRules);
-  const NamedEvaluation* exported = find(evaluations, kCorrectedName);
+  const NamedEvaluation* exported = find_own_student(evaluations);
   if (plain == nullptr || under_all == nullptr || exported == nullptr) return std::nullopt;
-  RulePrices prices{.rules = {},
-                    .together = gain_over(*under_all, *plain, "all rules together"),
-                    .correction = gain_over(*exported, *under_all, "the correction"),
-                    .total = gain_over(*exported, *plain, "both")};
+  const bool is_finished = exported->name == kCorrectedName;
+  RulePrices prices{
+      .student = exported->name,
+      .rules = {},
+      .together = gain_over(*under_all, *plain, "all rules together"),
+      .correction = gain_over(*exported, *under_all,
+                              is_finished ? "the correction" : "the unfinished correction"),
+      .total = gain_over(*exported, *plain, "both")};
   for (const NamedEvaluation& named : evaluations) {
     if (!is_under_rules(named.name) || named.name == kUnderAllRules) continue;
     const std::string quoted = named.name.substr(kUnder.size());
@@ -52,15 +56,16 @@ std::optional<RulePrices> rule_prices_of(const std::vector<NamedEvaluation>& eva
 std::string rule_prices_text(const RulePrices& prices) {
   std::string text = fmt::format(
       "What the rules change, in EUR per day per MWh of capacity: the plain student's decisions "
-      "moved to the\nnearest that they leave; what is left between that and the corrected student "
-      "is the correction\n  {:<44}  {:>8} {:>6} {:>8}  {:>8} {:>6} {:>8}\n",
-      "", "wear 0", "s.e.", "by month", fmt::format("wear {:g}", kHeadlineWears[1]), "s.e.",
-      "by month");
+      "moved to the\nnearest that they leave; what is left between that and the {} is {}\n"
+      "  {:<44}  {:>8} {:>6} {:>8}  {:>8} {:>6} {:>8}\n",
+      prices.student, prices.correction.meaning, "", "wear 0", "s.e.", "by month",
+      fmt::format("wear {:g}", kHeadlineWears[1]), "s.e.", "by month");
   for (const HeadlineGain& rule : prices.rules) {
     text += price_line(fmt::format("rule \"{}\" alone", rule.meaning), rule);
   }
   return text + price_line("all rules together", prices.together) +
-         price_line("the correction", prices.correction) + price_line("both", prices.total);
+         price_line(prices.correction.meaning, prices.correction) +
+         price_line("both", prices.total);
 }
 
 Json rule_prices_json(const RulePrices& prices) {

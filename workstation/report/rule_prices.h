@@ -19,10 +19,11 @@ std::string under_rule_name(const std::string& rule);
 bool is_under_rules(std::string_view policy);
 
 struct RulePrices {
+  std::string student;              ///< kCorrectedName or kUnprovedName
   std::vector<HeadlineGain> rules;  ///< alone: plain student under the rule minus plain student
   HeadlineGain together;            ///< the same under all of them
-  HeadlineGain correction;          ///< corrected student minus plain student under all rules
-  HeadlineGain total;               ///< corrected student minus plain student: the sum of both
+  HeadlineGain correction;          ///< that student minus plain student under all rules
+  HeadlineGain total;               ///< that student minus plain student: the sum of both
 };
 
 /// None without rules that can be projected.

@@ -6,10 +6,15 @@
 
 namespace bess {
 
+const char* own_student_name(const Certificate& certificate) {
+  return certificate.violations() == 0 ? kCorrectedName : kUnprovedName;
+}
+
 std::vector<ShownPolicy> shown_policies(const ReportInputs& in) {
   std::vector<ShownPolicy> policies;
   if (in.corrected) {
-    policies.push_back({kCorrectedName, exported_policy(*in.corrected)});
+    policies.push_back(
+        {own_student_name(in.corrected->certificate), exported_policy(*in.corrected)});
   }
   if (in.uncorrected) {
     policies.push_back({kPlainName, std::make_unique<StudentPolicy>(in.uncorrected->net)});

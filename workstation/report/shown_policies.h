@@ -1,4 +1,5 @@
-// The policies of a run's own chain, whose steps the report shows: corrected student, plain student, teacher.
+// The policies of a run's own chain, whose steps the report shows: corrected student (or the unproved one), plain
+// student, teacher.
 #pragma once
 
 #include <memory>
@@ -13,6 +14,9 @@ struct ShownPolicy {
   std::string name;
   std::unique_ptr<Policy> policy;
 };
+
+/// What a run's own student is called: kCorrectedName, or kUnprovedName with violations left.
+const char* own_student_name(const Certificate& certificate);
 
 /// Those that there are, the last link of the chain first; without any, the paper's rule. `inputs` must outlive
 /// them.

@@ -68,11 +68,6 @@ std::string_view input_text(RuleInput input) {
   return kTexts[static_cast<int>(input)];
 }
 
-bool overlaps_lattice(const RuleBox& box) {
-  return box.price_min_eur_per_mwh <= kLatticePriceMaxEurPerMwh &&
-         box.price_max_eur_per_mwh >= kLatticePriceMinEurPerMwh;
-}
-
 }  // namespace
 
 std::string hour_text(int quarter_hour) {
@@ -140,6 +135,16 @@ std::vector<std::string> RuleSet::guard_rule_names() const {
 bool binds_student(const Rule& rule, ContextKind kind) {
   if (rule.demand == Demand::kPower || !overlaps_lattice(rule.box)) return false;
   return kind == ContextKind::kMonth || rule.box.months == kAllTwelve;
+}
+
+std::string held_by(const Rule& rule, ContextKind kind) {
+  if (!binds_student(rule, kind)) return rule.enforce ? "guard" : "guard's own thresholds";
+  return rule.enforce ? "student and guard" : "student";
+}
+
+bool overlaps_lattice(const RuleBox& box) {
+  return box.price_min_eur_per_mwh <= kLatticePriceMaxEurPerMwh &&
+         box.price_max_eur_per_mwh >= kLatticePriceMinEurPerMwh;
 }
 
 LatticeBox lattice_box_of(const RuleBox& box, ContextKind kind) {

@@ -68,6 +68,12 @@ struct RuleSet {
 /// Whether the proof of a student of this context counts the rule; else it is the guard's alone.
 bool binds_student(const Rule& rule, ContextKind kind);
 
+/// Who is held to the rule: "student", "guard", "student and guard", or "guard's own thresholds".
+std::string held_by(const Rule& rule, ContextKind kind);
+
+/// Whether some price of the box lies on the lattice.
+bool overlaps_lattice(const RuleBox& box);
+
 /// A box on the lattice: indices, ends included, and what it says of the context.
 struct LatticeBox {
   int price_first, price_last;  ///< indices from kLatticePriceMinEurPerMwh

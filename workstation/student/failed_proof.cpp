@@ -13,6 +13,8 @@ namespace {
 
 constexpr double kPercentPerSocIndex = 100.0 / (kSocCount - 1);
 constexpr const char* kMoreEffort = "raise [distil] epochs or repair_rounds";
+/// Further away than this, an opposite demand is not what makes a rule too steep to learn.
+constexpr int kNearEurPerMwh = 200;
 
 bool holds_at(const Rule& rule, ContextKind kind, const LatticeState& s) {
   const LatticeBox box = lattice_box_of(rule.box, kind);
@@ -35,7 +37,12 @@ std::optional<LatticeState> next_state(LatticeState state, RuleInput input) {
   return next_context(state, input);
 }
 
-std::string example_of(const StudentFile& student, const Rule& rule) {
+struct Example {
+  LatticeState state;
+  std::string text;
+};
+
+std::optional<Example> example_of(const StudentFile& student, const Rule& rule) {
   const StudentNet& net = student.net;
   const ContextKind kind = net.context.kind;
   RuleCount known;
@@ -45,7 +52,8 @@ std::string example_of(const StudentFile& student, const Rule& rule) {
   if (rule.demand == Demand::kActions) {
     const auto worst = worst_state(net, rule, known);
     if (!worst) return {};
-    return fmt::format("{} at {}", action_name(worst->action), state_text(worst->state, kind));
+    return Example{worst->state, fmt::format("{} at {}", action_name(worst->action),
+                                             state_text(worst->state, kind))};
   }
   for (const LatticeState& state : known.counterexamples) {
     const auto next = next_state(state, rule.direction.input);
@@ -53,8 +61,9 @@ std::string example_of(const StudentFile& student, const Rule& rule) {
     const Action here = net.decide(state);
     const Action there = net.decide(*next);
     if (rule.direction.sign < 0 ? there <= here : there >= here) continue;
-    return fmt::format("{} at {}, and {} at {}", action_name(here), state_text(state, kind),
-                       action_name(there), state_text(*next, kind));
+    return Example{state,
+                   fmt::format("{} at {}, and {} at {}", action_name(here), state_text(state, kind),
+                               action_name(there), state_text(*next, kind))};
   }
   return {};
 }
@@ -90,7 +99,7 @@ std::string advice_of(const Certificate& certificate, ContextKind kind, const De
     return "the layer has no rows for it: use [distil] method = \"construction\"";
   }
   const auto opposite = nearest_opposite(certificate.rules, certificate.thresholds, kind, rule);
-  if (!opposite) return kMoreEffort;
+  if (!opposite || opposite->price_gap_eur_per_mwh > kNearEurPerMwh) return kMoreEffort;
   return fmt::format("leave more than {} to \"{}\", which asks the opposite, or {}",
                      room_text(*opposite), opposite->name, kMoreEffort);
 }
@@ -110,13 +119,18 @@ std::vector<BrokenDemand> broken_demands(const StudentFile& student, CorrectionM
   for (std::size_t d = 0; d < counts.size(); ++d) {
     if (counts[d].violations == 0) continue;
     const std::vector<Rule> rules = rules_of(student.certificate, d);
-    std::string example;
+    std::optional<Example> example;
     for (const Rule& rule : rules) {
-      if (example.empty()) example = example_of(student, rule);
+      if (!example) example = example_of(student, rule);
     }
-    broken.push_back({counts[d], example,
-                      advice_of(student.certificate, student.net.context.kind, counts[d],
-                                rules.front(), method)});
+    BrokenDemand demand{
+        counts[d], "",
+        advice_of(student.certificate, student.net.context.kind, counts[d], rules.front(), method)};
+    if (example) {
+      demand.example = example->text;
+      demand.state = example->state;
+    }
+    broken.push_back(std::move(demand));
   }
   return broken;
 }

@@ -2,6 +2,7 @@
 // what the student does there, and what to change.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@ struct BrokenDemand {
   DemandCount count;
   std::string example;  ///< the state and what is done there; empty when none is known
   std::string advice;   ///< what to change
+  std::optional<LatticeState> state{};  ///< that of the example
 };
 
 /// Of a student with the certificate of its proof. Counterexamples help; without them the states that decide a

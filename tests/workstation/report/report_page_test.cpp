@@ -31,7 +31,7 @@ TEST(ReportPage, FilesAreEmbeddedWhole) {
 
 TEST(ReportPage, NoScriptEndsEarly) {
   for (const char* name : {"chart.min.js", "student.js", "archive.js", "charts.js", "tear_sheet.js",
-                           "day.js", "policy_map.js", "learning.js", "page.js"}) {
+                           "day.js", "rule_boxes.js", "policy_map.js", "learning.js", "page.js"}) {
     EXPECT_EQ(page_file(name).find("</script"), std::string_view::npos) << name;
   }
 }
@@ -44,7 +44,8 @@ TEST(ReportTables, AProofIsClaimedOfTheWholeLatticeOnly) {
   EXPECT_EQ(proof_sentence(certificate), "Looked at in part: no violation in 1,000 states");
   certificate.violations_property_1 = 1;
   EXPECT_EQ(proof_sentence(certificate),
-            "Not proved: it still breaks its constraints 1 times and may not be exported");
+            "Not proved: it still breaks its constraints 1 times (property 1: 1) and may not be "
+            "exported");
 }
 
 /// Two rules, one of them the guard's alone.
@@ -70,15 +71,19 @@ TEST(ReportTables, RulesAreShownWithWhoIsHeldToThemAndWhoBreaksThem) {
   const Certificate corrected = ruled_certificate(0);
   RulePrices prices{};
   prices.rules.push_back({"", "rest", {PairedDifference{-109.5, 2}, PairedDifference{-80, 3}}});
-  const std::string html = rules_html(&plain, &corrected, &prices);
+  const std::string html = rules_html(&plain, &corrected, ContextKind::kLevel, &prices);
   for (const char* said :
        {"rest \u2013 price 0 to 9 EUR/MWh: the action is idle</th>", ">81.04</td>", ">1,234</td>",
-        ">0</td>", ">student</td>", ">guard</td>", ">rest, alone</th>", "\u2212109.5 \u00b1 2.0"}) {
+        ">0</td>", ">student</td>", ">guard</td>", ">rest, alone</th>", "\u2212109.5 \u00b1 2.0",
+        "Corrected student breaks"}) {
     EXPECT_NE(html.find(said), std::string::npos) << said;
   }
-  EXPECT_EQ(rules_html(&plain, nullptr, nullptr), "");
+  EXPECT_NE(
+      rules_html(&plain, &plain, ContextKind::kLevel, nullptr).find("Unproved student breaks"),
+      std::string::npos);
+  EXPECT_EQ(rules_html(&plain, nullptr, ContextKind::kLevel, nullptr), "");
   const Certificate without;
-  EXPECT_EQ(rules_html(&without, &without, nullptr), "");
+  EXPECT_EQ(rules_html(&without, &without, ContextKind::kLevel, nullptr), "");
 }
 
 TEST(ReportTables, AFailedProofNamesDemandStateAndMend) {

@@ -7,6 +7,7 @@
 #include "shared/host/user_error.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/workstation/report/report_test_support.h"
+#include "workstation/report/headline.h"
 #include "workstation/report/palette.h"
 
 namespace bess {
@@ -90,6 +91,40 @@ TEST(Report, ThePageHoldsAllAndFetchesNothing) {
   EXPECT_NE(markup.find("seed 1 &lt;untrained&gt; &amp; small"), std::string::npos);
   EXPECT_NE(markup.find("may not be exported"), std::string::npos);
   EXPECT_LT(html.size(), 5'000'000u);
+}
+
+/// Of a run whose proof failed nothing is called corrected, and each broken demand leads to its state on the map.
+TEST(Report, APageOfAFailedProofIsAboutTheUnprovedStudent) {
+  const TemporaryFolder folder;
+  const FinishedRun run;
+  ReportInputs in = run.inputs();
+  RuleBasedPolicy policy(kPaperRuleLowEurPerMwh, kPaperRuleHighEurPerMwh);
+  in.evaluations.push_back(named_evaluation(kPlainName, policy));
+  in.evaluations.push_back(named_evaluation(kUnprovedName, policy));
+  in.broken = {
+      {{"property 3", "monotone", false, true, 9, 42}, "charge at dawn", "more effort"},
+      {{"rest", "idle", true, true, 9, 7}, "sells", "more room", LatticeState{1, 2, 3, 4, 5}}};
+  const std::string html = html_of(in, folder.file("run"));
+  const std::string markup = markup_of(html);
+  EXPECT_EQ(first_unbalanced_tag(markup), "");
+  for (const char* untrue : {"orrected student", "corrected and proved", "price-of-correction"}) {
+    EXPECT_EQ(count_of(markup, untrue), 0) << untrue;
+  }
+  for (const char* said :
+       {"where its proof failed</h1>", "the unproved student, over", "href=\"#failure\"",
+        "unproved student</th>", "data-broken=\"1\"", "may not be exported"}) {
+    EXPECT_GT(count_of(markup, said), 0) << said;
+  }
+  EXPECT_EQ(count_of(markup, "data-broken=\"0\""), 0) << "no state of it is known";
+  EXPECT_NE(html.find("\"broken\":[null,[1,2,3,4,5]]"), std::string::npos);
+  EXPECT_NE(html.find("\"exported\":\"unproved student\""), std::string::npos);
+  EXPECT_NE(html.find("\"counterexamples_of\":\"unproved student\""), std::string::npos);
+  in.broken.clear();
+  StudentFile proved = run.student;
+  proved.certificate.violations_property_3 = 0;
+  proved.certificate.counterexamples.clear();
+  in.corrected = &proved;
+  EXPECT_GT(count_of(html_of(in, folder.file("proved")), "corrected and proved</h1>"), 0);
 }
 
 TEST(Report, NoTestDaysNameTheMend) {

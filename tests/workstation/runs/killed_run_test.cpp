@@ -172,12 +172,23 @@ TEST_F(KilledRun, AFailedProofIsToldWithEveryRoundAndNotDoneTwice) {
                     HasSubstr("discharge at or above 201 EUR/MWh: <strong>")));
   EXPECT_FALSE(fs::exists(out + "/student.json"));
   const auto before = contents(out);
+  const std::string kept = folder_.file("kept");
+  fs::copy(out, kept, fs::copy_options::recursive);
   ChildProcess again(command(out, {"--resume"}));
   EXPECT_THAT(again.read_all(),
               AllOf(expected, HasSubstr("teacher: kept"), HasSubstr("plain student: kept"),
                     testing::Not(HasSubstr("distil, monotone"))));
   EXPECT_EQ(again.wait(), 1);
   expect_same(out, before);
+  fs::remove(out + "/report.html");
+  ChildProcess page({BESS_TRAIN_PROGRAM, "report", "--run", out});
+  EXPECT_THAT(page.read_all(), HasSubstr("Not proved: it still breaks its constraints "));
+  EXPECT_EQ(page.wait(), 0);
+  EXPECT_THAT(read_file(out + "/report.html"),
+              AllOf(HasSubstr("the unproved student, over"),
+                    testing::Not(HasSubstr("the corrected student"))));
+  fs::remove_all(out);
+  fs::copy(kept, out, fs::copy_options::recursive);
 
   // Nothing is lost: with a mended configuration its teacher goes on to a proved student.
   config_ = folder_.write("mended.toml", std::string(kIdle) +

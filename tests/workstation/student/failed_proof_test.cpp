@@ -49,6 +49,21 @@ TEST(FailedProof, NamesTheRuleAStateWhatIsDoneThereAndTheMend) {
                               "action is at least idle): ")));
 }
 
+/// Where what asks the opposite is far away, room is not what is missing.
+TEST(FailedProof, OnlyAnOppositeThatIsNearIsGivenMoreRoom) {
+  for (const auto& [price_min, advice] :
+       {std::pair{-450, "leave more than 50 EUR/MWh to "}, std::pair{-250, "raise [distil] "}}) {
+    RuleSet rules = one_rule("price_min = -450\nprice_max = 300\nis = \"idle\"", "rest");
+    rules.rules[0].box.price_min_eur_per_mwh = price_min;
+    const StudentFile student = counted(LinearNet{}.net(), {-500, 1500}, rules);
+    const auto broken = broken_demands(student, CorrectionMethod::kConstruction);
+    ASSERT_EQ(broken.size(), 1U);
+    ASSERT_TRUE(broken[0].state);
+    EXPECT_EQ(student.net.decide(*broken[0].state), Action::kCharge);
+    EXPECT_THAT(broken[0].advice, testing::StartsWith(advice));
+  }
+}
+
 TEST(FailedProof, ADirectionIsBrokenBetweenTwoStates) {
   StudentNet rising = LinearNet{.soc_weight = -40, .offset = 9000}.net();
   const StudentFile student = counted(rising, {-501, 1501}, {});

@@ -24,7 +24,7 @@ function colour(name) {
 
 /** The colour of each policy, everywhere on the page. */
 function policyColour(name) {
-  const names = {"corrected student": "line-1", "plain student": "line-2", "rbc-tuned": "line-2", "mpc": "line-3",
+  const names = {"corrected student": "line-1", "unproved student": "line-1", "plain student": "line-2", "rbc-tuned": "line-2", "mpc": "line-3",
                  "sdp": "line-4", "teacher": "line-3", "foresight": "muted"};
   return colour(names[name] || "muted");
 }

@@ -6,7 +6,7 @@ const page = {};
 
 async function openPage() {
   page.data = JSON.parse(document.getElementById("data").textContent);
-  showMapKeys();
+  showMapKeys((page.data.rules || []).length > 0);
   drawTraining(page.data.learning);
   drawCheckpoints(page.data.learning);
   drawDistillation(page.data.learning);

@@ -8,6 +8,7 @@ const kCoarseRows = 8;       // of the first, quick look
 const kWindowRoundTo = 10;   // EUR/MWh
 const kMargin = {left: 46, right: 8, top: 10, bottom: 38};  // CSS pixels around a map
 const kMarkPx = 3;           // of a violation, at least
+const kHatchPx = 8;          // between the lines over states that break a rule
 
 /** One student's map: its canvas, and the grid that it shows. */
 class StudentMap {
@@ -37,6 +38,11 @@ class PolicyMap {
                     minute: data.first_map.minute};
     this.marked = null;
     this.nextViolation = 0;
+    this.rules = new RuleBoxes(data.rules || [], data.lattice, (context) => {
+      this.context = context;
+      this.marked = null;
+      this.show();
+    });
     if (this.maps.length === 0) {
       document.getElementById("policy").hidden = true;
       return;
@@ -68,6 +74,13 @@ class PolicyMap {
     for (const map of this.maps) {
       map.canvas.addEventListener("pointermove", (event) => this.tell(map, event));
       map.canvas.addEventListener("pointerdown", (event) => this.tell(map, event));
+      map.canvas.addEventListener("pointerleave", () => this.point(null));
+    }
+    for (const button of document.querySelectorAll("[data-broken]")) {
+      button.addEventListener("click", () => {
+        this.showLatticeState(this.data.broken[Number(button.dataset.broken)]);
+        document.getElementById("policy").scrollIntoView();
+      });
     }
     new ResizeObserver(() => this.paint()).observe(document.getElementById("maps"));
   }
@@ -111,10 +124,14 @@ class PolicyMap {
     this.setWindow(first < last ? {first, last} : this.window);
   }
 
-  /** A state of the plain student that breaks a property, one after the other. */
+  /** A state at which a student breaks a property or rule, one after the other. */
   showViolation() {
-    const [minute, quarterHour, contextClass, soc, price] = this.data.counterexamples[this.nextViolation];
+    const state = this.data.counterexamples[this.nextViolation];
     this.nextViolation = (this.nextViolation + 1) % this.data.counterexamples.length;
+    this.showLatticeState(state);
+  }
+
+  showLatticeState([minute, quarterHour, contextClass, soc, price]) {
     this.showState({minute, quarterHour, contextClass, price, soc: soc / (this.lattice.soc_count - 1)});
   }
 
@@ -144,7 +161,9 @@ class PolicyMap {
     set("price-to", this.window.last);
     const count = this.data.counterexamples.length, button = document.getElementById("next-violation");
     button.hidden = count === 0;
-    button.textContent = `a violation of the plain student (${this.nextViolation + 1} of ${count} kept)`;
+    button.textContent =
+      `a violation of the ${this.data.counterexamples_of} (${this.nextViolation + 1} of ${count} kept)`;
+    this.rules.showLegend(document.getElementById("rule-keys"), this.context, () => this.paint());
   }
 
   show() {
@@ -173,15 +192,17 @@ class PolicyMap {
   *evaluation(map) {
     const {first, last} = this.window, context = {...this.context}, rows = this.lattice.soc_count;
     const width = last - first + 1, grid = new Int8Array(rows * width).fill(-1);
+    const nextGrids = {};
     map.grid = grid;
     map.window = this.window;
     map.violations = null;
-    const evaluate = (soc) => {
-      map.student.beginRow(context, soc);
+    const evaluateInto = (cells, at, soc) => {
+      map.student.beginRow(at, soc);
       for (let column = 0; column < width; ++column) {
-        grid[soc * width + column] = map.student.decideInRow(first + column);
+        cells[soc * width + column] = map.student.decideInRow(first + column);
       }
     };
+    const evaluate = (soc) => evaluateInto(grid, context, soc);
     for (let soc = 0; soc < rows; soc += kCoarseRows) {
       evaluate(soc);
       yield;
@@ -191,17 +212,30 @@ class PolicyMap {
       evaluate(soc);
       yield;
     }
+    for (const {direction: {input}} of this.rules.pairRules()) {
+      const next = this.rules.nextContext(context, input);
+      if (!next || nextGrids[input]) continue;
+      nextGrids[input] = new Int8Array(rows * width);
+      for (let soc = 0; soc < rows; ++soc) {
+        evaluateInto(nextGrids[input], next, soc);
+        yield;
+      }
+    }
     map.violations = violationsOf(grid, width, first, this.data.thresholds);
+    map.violations.rules = this.rules.violations(grid, map.window, context, nextGrids);
     this.describe(map);
     map.canvas.dataset.complete = "true";
   }
 
   describe(map) {
-    const {order, threshold} = map.violations;
-    map.found.textContent = order.length + threshold.length === 0
-      ? "no violation in what is shown"
-      : `${order.length} neighbouring pairs out of order, ${threshold.length} states beyond a threshold not obeyed`;
-    map.found.classList.toggle("some", order.length + threshold.length > 0);
+    const {order, threshold, rules} = map.violations;
+    const found = [[order.length, "neighbouring pairs out of order"],
+                   [threshold.length, "states beyond a threshold not obeyed"],
+                   ...rules.map(({rule, cells}) => [cells.length, `states against \u201c${rule.name}\u201d`])];
+    const some = found.filter(([count]) => count > 0);
+    map.found.textContent = some.length === 0 ? "no violation in what is shown"
+      : some.map(([count, what]) => `${count} ${what}`).join(", ");
+    map.found.classList.toggle("some", some.length > 0);
   }
 
   /** Where prices and charges lie on a canvas. */
@@ -226,7 +260,11 @@ class PolicyMap {
     const ctx = canvas.getContext("2d");
     ctx.scale(ratio, ratio);
     this.paintCells(ctx, map, frame);
-    if (map.violations) this.paintViolations(ctx, map, frame);
+    if (map.violations) {
+      this.paintBrokenRules(ctx, map, frame);
+      this.paintViolations(ctx, map, frame);
+    }
+    this.rules.paint(ctx, frame, map.window, this.context);
     this.paintAxes(ctx, map, frame);
     if (this.marked) this.paintMarked(ctx, frame);
   }
@@ -245,6 +283,32 @@ class PolicyMap {
     cells.getContext("2d").putImageData(image, 0, 0);
     ctx.imageSmoothingEnabled = false;
     ctx.drawImage(cells, plot.x, plot.y, plot.w, plot.h);
+  }
+
+  /** States against a rule, hatched, so that what is done there still shows. */
+  paintBrokenRules(ctx, map, {plot, columns, rows}) {
+    if (map.violations.rules.length === 0) return;
+    const cells = new OffscreenCanvas(columns, rows), image = new ImageData(columns, rows);
+    const pixels = new Uint32Array(image.data.buffer), ink = pixelOf("#000000");
+    for (const {cells: broken} of map.violations.rules) {
+      for (const cell of broken) pixels[(rows - 1 - Math.floor(cell / columns)) * columns + cell % columns] = ink;
+    }
+    cells.getContext("2d").putImageData(image, 0, 0);
+    const ratio = devicePixelRatio || 1;
+    const lines = new OffscreenCanvas(Math.ceil(plot.w * ratio), Math.ceil(plot.h * ratio)), pen = lines.getContext("2d");
+    pen.scale(ratio, ratio);
+    pen.strokeStyle = colour("mark");
+    pen.lineWidth = 1.5;
+    pen.beginPath();
+    for (let at = -plot.h; at < plot.w; at += kHatchPx) {
+      pen.moveTo(at, plot.h);
+      pen.lineTo(at + plot.h, 0);
+    }
+    pen.stroke();
+    pen.globalCompositeOperation = "destination-in";
+    pen.imageSmoothingEnabled = false;
+    pen.drawImage(cells, 0, 0, plot.w, plot.h);
+    ctx.drawImage(lines, plot.x, plot.y, plot.w, plot.h);
   }
 
   paintViolations(ctx, map, {plot, cellW, cellH, rows}) {
@@ -276,7 +340,8 @@ class PolicyMap {
     ctx.textBaseline = "top";
     const {first, last} = map.window, step = niceStep((last - first) / (width / 90));
     for (let price = Math.ceil(first / step) * step; price <= last; price += step) {
-      ctx.fillText(trueMinus(price), xOf(price), plot.y + plot.h + 5);
+      const label = trueMinus(price), half = ctx.measureText(label).width / 2;
+      ctx.fillText(label, Math.min(xOf(price), width - half), plot.y + plot.h + 5);  // the last one ends with the canvas
       ctx.fillRect(xOf(price) - .5, plot.y + plot.h, 1, 4);
     }
     ctx.fillText("price, EUR/MWh", plot.x + plot.w / 2, plot.y + plot.h + 20);
@@ -306,12 +371,26 @@ class PolicyMap {
     const {plot, columns, rows} = this.frame(map);
     const column = Math.floor((event.offsetX - plot.x) / plot.w * columns);
     const soc = rows - 1 - Math.floor((event.offsetY - plot.y) / plot.h * rows);
-    if (column < 0 || column >= columns || soc < 0 || soc >= rows) return;
+    if (column < 0 || column >= columns || soc < 0 || soc >= rows) {
+      this.point(null);
+      return;
+    }
     const price = map.window.first + column;
     const actions = this.maps.map(
       ({name, student}) => `${name}: ${kActions[student.decide(this.context, soc, price)]}`);
+    const rules = this.rules.atState(this.context, soc, price);
+    const names = rules.map(({number, name}) => `${number} ${name}`);
     document.getElementById("map-readout").textContent =
-      `${trueMinus(price)} EUR/MWh at ${(100 * soc / (rows - 1)).toFixed(1)} %: ${actions.join(", ")}`;
+      `${trueMinus(price)} EUR/MWh at ${(100 * soc / (rows - 1)).toFixed(1)} %: ${actions.join(", ")}` +
+      (names.length > 0 ? `. Rules that hold there: ${names.join(", ")}` : "");
+    this.point(rules.length > 0 ? rules.at(-1) : null);
+  }
+
+  /** Names a rule on the maps; null: none. */
+  point(rule) {
+    if (rule === this.rules.pointed) return;
+    this.rules.pointed = rule;
+    this.paint();
   }
 }
 
@@ -322,9 +401,11 @@ function pixelOf(hex) {
 }
 
 /** The key of the maps, in the page's colours. */
-function showMapKeys() {
+function showMapKeys(hasRules) {
   const keys = [["charge", "charge"], ["idle", "idle"], ["discharge", "discharge"], ["mark", "violation"],
-                ["", "dashed: charge that the battery keeps"]];
+                ["", "dashed across: charge that the battery keeps"],
+                ...(hasRules ? [["", "outlined, with its number: where a rule holds, dashed the guard\u2019s alone; " +
+                                     "hatched: states that break one"]] : [])];
   document.getElementById("map-keys").replaceChildren(...keys.map(([name, text]) => {
     const item = document.createElement("li");
     if (name) {

@@ -1,7 +1,14 @@
-// page_fixture FOLDER: a small run's report.html in FOLDER, and expected.json beside it: what the C++ says about the
-// same students and days. page_test.py opens the page and compares.
+// page_fixture FOLDER: the pages that bess-train writes, of small runs, and beside each report.html an expected.json:
+// what the C++ says about the same students, days and rules. page_test.py and pages_test.py open them and compare.
+//   FOLDER          a run
+//   FOLDER/ruled    a run with rules, proved
+//   FOLDER/failed   a run with rules that its student does not obey
+//   FOLDER/seeds    the same run from three seeds
+//   FOLDER/backtest a walk-forward backtest, with its JSON
 #include <fmt/core.h>
 
+#include <filesystem>
+#include <memory>
 #include <random>
 #include <stdexcept>
 
@@ -10,9 +17,17 @@
 #include "shared/local_time.h"
 #include "tests/workstation/report/report_test_support.h"
 #include "workstation/cli/policy_factory.h"
+#include "workstation/cli/run_seeds.h"
+#include "workstation/report/backtest_report.h"
 #include "workstation/report/headline.h"
 #include "workstation/report/policy_map.h"
+#include "workstation/report/rule_prices.h"
+#include "workstation/report/shown_policies.h"
+#include "workstation/rules/rule_file.h"
+#include "workstation/rules/ruled_policy.h"
+#include "workstation/student/exported_policy.h"
 #include "workstation/student/student_policy.h"
+#include "workstation/student/verify.h"
 
 namespace bess {
 namespace {
@@ -122,6 +137,8 @@ Json days_of(const std::vector<NamedEvaluation>& evaluations, EvaluationField fi
       days.add(Json::object({{"date", day.date},
                              {"profit_eur", day.profit_eur},
                              {"throughput_mwh", day.throughput_mwh},
+                             {"cycles", day.cycles},
+                             {"switches", day.switches},
                              {"soc_end", day.soc_end_frac}}));
     }
     policies.set(named.name.c_str(), std::move(days));
@@ -129,27 +146,109 @@ Json days_of(const std::vector<NamedEvaluation>& evaluations, EvaluationField fi
   return policies;
 }
 
-void write_fixture(const std::filesystem::path& folder) {
-  const Teacher teacher = untrained_teacher();
-  StudentFile corrected = compiled_student();
-  corrected.certificate.states_checked = kLatticeStateCount;
-  StudentFile plain{disordered_student(), corrected.certificate, "disordered"};
-  plain.certificate.counterexamples = disordered_states(plain.net);
-  plain.certificate.violations_property_3 =
-      static_cast<std::int64_t>(plain.certificate.counterexamples.size());
-
-  std::vector<NamedEvaluation> evaluations;
-  for (const char* name : {"rbc", "rbc-tuned", "sdp"}) {
-    const auto policy = make_policy(name, small_market(), {});
-    evaluations.push_back(named_evaluation(name, *policy));
+/// What each student breaks of each rule on the maps, over all prices and charges: {student: [{rule: count} a map]}.
+Json broken_rules_of(const StudentNet& net, const RuleSet& rules) {
+  Json maps = Json::list();
+  for (const PolicyContext& at : kMaps) {
+    RuleChecker checker(rules, net.context.kind);
+    const LatticeState context{
+        .minute_of_quarter_hour = static_cast<std::int16_t>(at.minute_of_quarter_hour),
+        .quarter_hour = static_cast<std::int16_t>(at.quarter_hour),
+        .context_class = static_cast<std::int16_t>(at.context_class),
+        .soc_index = 0,
+        .price_eur_per_mwh = 0};
+    std::vector<ActionGrid> neighbours;
+    for (const RuleInput input : checker.neighbours_needed()) {
+      const auto next = next_context(context, input);
+      neighbours.push_back(!next ? ActionGrid{}
+                                 : student_grid(net, {next->context_class, next->quarter_hour,
+                                                      next->minute_of_quarter_hour}));
+    }
+    checker.check(context, student_grid(net, at), neighbours);
+    Json counts = Json::object();
+    for (std::size_t r = 0; r < rules.rules.size(); ++r) {
+      counts.set(rules.rules[r].name.c_str(), checker.counts()[r].violations);
+    }
+    maps.add(std::move(counts));
   }
-  StudentPolicy plain_policy(plain.net);
-  evaluations.push_back(named_evaluation(kPlainName, plain_policy));
-  StudentPolicy corrected_policy(corrected.net);
-  evaluations.push_back(named_evaluation(kCorrectedName, corrected_policy));
-  const auto foresight = make_policy(kForesightName, small_market(), {});
-  evaluations.push_back(named_evaluation(kForesightName, *foresight));
+  return maps;
+}
 
+/// Everything that a page of a run is made of.
+struct FixtureRun {
+  StudentFile corrected, plain;
+  std::vector<BrokenDemand> broken;
+};
+
+const std::vector<NamedEvaluation>& baselines() {
+  static const std::vector<NamedEvaluation> evaluations = [] {
+    std::vector<NamedEvaluation> all;
+    for (const char* name : {"rbc", "rbc-tuned", "sdp", kForesightName}) {
+      const auto policy = make_policy(name, small_market(), {});
+      all.push_back(named_evaluation(name, *policy));
+    }
+    return all;
+  }();
+  return evaluations;
+}
+
+/// In the order of a run: rule-based first, foresight last.
+std::vector<NamedEvaluation> evaluations_of(const FixtureRun& run) {
+  std::vector<NamedEvaluation> all = baselines();
+  const NamedEvaluation foresight = all.back();
+  all.pop_back();
+  const auto plain = std::make_shared<StudentPolicy>(run.plain.net);
+  all.push_back(named_evaluation(kPlainName, *plain));
+  const auto under = [&](const std::string& name, const RuleSet& rules) {
+    RuledPolicy ruled(plain, rules, run.plain.net.context);
+    all.push_back(named_evaluation(name, ruled));
+  };
+  RuleSet projected;
+  for (const Rule& rule : run.corrected.certificate.rules.rules) {
+    if (!can_be_projected(rule)) continue;
+    projected.rules.push_back(rule);
+    under(under_rule_name(rule.name), {{rule}});
+  }
+  if (!projected.empty()) under(kUnderAllRules, projected);
+  all.push_back(named_evaluation(own_student_name(run.corrected.certificate),
+                                 *exported_policy(run.corrected)));
+  all.push_back(foresight);
+  return all;
+}
+
+void write_expected(const FixtureRun& run, const std::vector<NamedEvaluation>& evaluations,
+                    const std::filesystem::path& folder) {
+  const Certificate& certificate = run.corrected.certificate;
+  Json students = Json::object();
+  for (const auto& [name, net] : {std::pair(own_student_name(certificate), &run.corrected.net),
+                                  std::pair(kPlainName, &run.plain.net)}) {
+    Json student = Json::object();
+    student.set("answers", answers_of(*net));
+    student.set("maps", maps_of(*net));
+    student.set("broken_rules", broken_rules_of(*net, certificate.rules));
+    students.set(name, std::move(student));
+  }
+  Json demands = Json::list();
+  for (const DemandCount& count : demand_counts(certificate)) {
+    demands.add(Json::object({{"label", count.label()},
+                              {"text", count.text},
+                              {"states", count.states},
+                              {"violations", count.violations},
+                              {"binds_student", count.binds_student}}));
+  }
+  Json expected = Json::object();
+  expected.set("students", std::move(students));
+  expected.set("days", days_of(evaluations, &NamedEvaluation::carried_over));
+  expected.set("days_by_themselves", days_of(evaluations, &NamedEvaluation::day_reset));
+  expected.set("headline", headline_json(headline_of(evaluations).value()));
+  expected.set("capacity_mwh", BatteryParameters{}.capacity_wh / 1e6);
+  expected.set("demands", std::move(demands));
+  write_file(folder / "expected.json", expected.line());
+}
+
+void write_run_page(const FixtureRun& run, const std::filesystem::path& folder) {
+  static const Teacher teacher = untrained_teacher();
+  const std::vector<NamedEvaluation> evaluations = evaluations_of(run);
   write_report({.market = small_market(),
                 .evaluations = evaluations,
                 .training_curve = {{250, 3.5, 100, 0}, {500, 3.0, 140, 0}, {750, 2.9, 120, 0}},
@@ -158,28 +257,113 @@ void write_fixture(const std::filesystem::path& folder) {
                                 {1, 80, 104.25, CheckpointState::kDisobeys},
                                 {1, 100, 103, CheckpointState::kChosen}},
                 .teacher = &teacher,
-                .uncorrected = &plain,
-                .corrected = &corrected,
+                .uncorrected = &run.plain,
+                .corrected = &run.corrected,
+                .broken = run.broken,
                 .provenance = "a line of provenance that is long enough to be broken on a narrow "
                               "screen: crc32 0123456789abcdef0123456789abcdef0123456789abcdef",
                 .facts = {{"prices", "prices.csv.gz: crc32 0badcafe, 123456 bytes"}}},
                folder);
+  write_expected(run, evaluations, folder);
+}
 
-  Json students = Json::object();
-  for (const auto& [name, net] :
-       {std::pair(kCorrectedName, &corrected.net), std::pair(kPlainName, &plain.net)}) {
-    Json student = Json::object();
-    student.set("answers", answers_of(*net));
-    student.set("maps", maps_of(*net));
-    students.set(name, std::move(student));
+/// Counted in a sample of the contexts, and told as if it were the whole lattice: quick.
+Certificate counted(const StudentNet& net, const RuleSet& rules) {
+  constexpr int kStride = 1'999;  // a prime, so that every hour, class and minute comes
+  Certificate certificate = verify_student(net, {.rules = rules,
+                                                 .context_stride = kStride,
+                                                 .counterexamples_max = kCounterexamples,
+                                                 .threads = 2});
+  certificate.states_checked = kLatticeStateCount;
+  return certificate;
+}
+
+FixtureRun run_with(const RuleSet& rules) {
+  FixtureRun run{compiled_student(), {disordered_student(), {}, "disordered"}, {}};
+  run.corrected.certificate = counted(run.corrected.net, rules);
+  run.plain.certificate = counted(run.plain.net, rules);
+  run.broken = broken_demands(run.corrected, CorrectionMethod::kConstruction);
+  return run;
+}
+
+/// Of every kind that a map shows in its own way: a box at some hours, one of the guard's, one beyond the lattice, a
+/// direction that two maps show, one that a single map does.
+RuleSet rules_for_a_map(const std::string& first) {
+  return parse_rules("[[rule]]\nname = \"a rule whose name is forty letters long\"\n" + first +
+                         "\n[[rule]]\nname = \"evening cap\"\nhours = \"12:00-21:00\"\n"
+                         "power_max = 0.5\nenforce = true\n"
+                         "[[rule]]\nname = \"far away\"\nprice_min = 1800\nat_most = \"idle\"\n"
+                         "enforce = true\n"
+                         "[[rule]]\nname = \"falls with price\"\nnever_rises_with = \"price\"\n",
+                     "fixture");
+}
+
+void write_runs(const std::filesystem::path& folder) {
+  FixtureRun run{compiled_student(), {disordered_student(), {}, "disordered"}, {}};
+  run.corrected.certificate = {};
+  run.corrected.certificate.states_checked = kLatticeStateCount;
+  run.plain.certificate = run.corrected.certificate;
+  run.plain.certificate.counterexamples = disordered_states(run.plain.net);
+  run.plain.certificate.violations_property_3 =
+      static_cast<std::int64_t>(run.plain.certificate.counterexamples.size());
+  write_run_page(run, folder);
+
+  const FixtureRun ruled =
+      run_with(rules_for_a_map("price_min = 1400\nat_most = \"idle\"\nenforce = true"));
+  if (!ruled.broken.empty()) throw std::logic_error("the compiled student charges at 1400");
+  write_run_page(ruled, folder / "ruled");
+
+  const RuleSet broken = rules_for_a_map(
+      "hours = \"10:00-01:00\"\nprice_min = -50\nprice_max = 500\nsoc_min = 0.2\nsoc_max = 0.7\n"
+      "is = \"idle\"\n[[rule]]\nname = \"falls\"\nnever_rises_with = \"quarter_hour\"");
+  const FixtureRun failed = run_with(broken);
+  if (failed.broken.size() < 2) throw std::logic_error("the compiled student obeys all rules");
+  write_run_page(failed, folder / "failed");
+}
+
+void write_seeds(const std::filesystem::path& folder) {
+  std::vector<RunSummary> runs;
+  for (const char* seed : {"1", "2", "3"}) {
+    RunSummary run{{folder / (std::string("seed-") + seed)}, {}, baselines()};
+    NamedEvaluation student = baselines()[2];  // what each seed earned differs a little
+    for (Evaluation* evaluation : {&student.day_reset, &student.carried_over}) {
+      for (DayResult& day : evaluation->days) day.profit_eur *= 1 + 0.01 * (seed[0] - '2');
+    }
+    student.name = kCorrectedName;
+    run.evaluations.insert(run.evaluations.end() - 1, student);
+    run.record.identity = {{"prices", "prices.csv.gz"}, {"seed", seed}};
+    run.record.figures = RunFigures{"made by hand", "0123abcd", kLatticeStateCount, 2, 0};
+    runs.push_back(std::move(run));
   }
-  Json expected = Json::object();
-  expected.set("students", std::move(students));
-  expected.set("days", days_of(evaluations, &NamedEvaluation::carried_over));
-  expected.set("days_by_themselves", days_of(evaluations, &NamedEvaluation::day_reset));
-  expected.set("headline", headline_json(headline_of(evaluations).value()));
-  expected.set("capacity_mwh", BatteryParameters{}.capacity_wh / 1e6);
-  write_file(folder / "expected.json", expected.line());
+  write_seeds_report(folder, runs);
+}
+
+/// The days of one month.
+Evaluation month_of(Evaluation evaluation, const std::string& month) {
+  std::erase_if(evaluation.days,
+                [&](const DayResult& day) { return !day.date.starts_with(month); });
+  return evaluation;
+}
+
+void write_backtest(const std::filesystem::path& folder) {
+  const std::vector<std::string> months{"2023-01", "2023-02"};
+  BacktestResults results{.policies = {},
+                          .fitted_days = {25, 31},
+                          .skipped = {{"2022-12", "0 of the 31 days before it are there"}},
+                          .window_days = 31,
+                          .capacity_mwh = BatteryParameters{}.capacity_wh / 1e6,
+                          .provenance = "made by hand"};
+  for (const NamedEvaluation& named : baselines()) {
+    if (named.name == kForesightName) continue;
+    WalkForward traded{
+        .name = named.name, .total = named.carried_over, .months = months, .by_month = {}};
+    for (const std::string& month : months)
+      traded.by_month.push_back(month_of(traded.total, month));
+    results.policies.push_back(std::move(traded));
+  }
+  write_file(folder / "backtest.json", backtest_json(results).line());
+  write_file(folder / "backtest.csv", backtest_csv(results));
+  write_backtest_page(results, folder);
 }
 
 }  // namespace
@@ -188,6 +372,12 @@ void write_fixture(const std::filesystem::path& folder) {
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
   bess::set_market_time_zone();
-  bess::write_fixture(argv[1]);
+  const std::filesystem::path folder = argv[1];
+  for (const char* part : {"ruled", "failed", "seeds", "backtest"}) {
+    std::filesystem::create_directories(folder / part);
+  }
+  bess::write_runs(folder);
+  bess::write_seeds(folder / "seeds");
+  bess::write_backtest(folder / "backtest");
   return 0;
 }

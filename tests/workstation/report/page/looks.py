@@ -1,0 +1,104 @@
+"""What a page looks like, found out in the browser: what hangs over an edge, what is hard to read, what is cut off.
+
+Each function gives a list of what is wrong, for people; empty is good. `page` is a browser.Page.
+"""
+
+LARGE_TEXT_PX = 24  # from here on WCAG asks for a contrast of 3, else of 4.5
+
+
+def settle(page):
+    """Until what was changed is drawn."""
+    page.run("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+
+
+def off_the_screen(page):
+    """Elements beyond the window or their card that no scroller of their own holds, and the window's own scrolling."""
+    return page.run("""(() => {
+      const inScroller = (element) => element.closest(".wide") !== null && !element.matches(".wide");
+      const found = [...document.body.querySelectorAll("*")].filter((element) => {
+        const box = element.getBoundingClientRect(), card = element.closest(".card");
+        const right = card ? Math.min(innerWidth, card.getBoundingClientRect().right) : innerWidth;
+        return box.width > 0 && !inScroller(element) && (box.right > right + .5 || box.left < -.5);
+      }).map((element) => `${element.tagName}#${element.id}.${element.getAttribute("class")} is off the screen`);
+      const width = document.documentElement.scrollWidth;
+      return width > innerWidth ? [...found, `the page is ${width} px wide`] : found;
+    })()""")
+
+
+def low_contrast(page):
+    """Texts that stand out from what is behind them by less than WCAG 2 AA asks for."""
+    return page.run("""(() => {
+      const parse = (text) => {
+        const [red, green, blue, alpha = 1] = text.match(/[\\d.]+/g).map(Number);
+        return {rgb: [red, green, blue], alpha};
+      };
+      const behind = (element) => {
+        for (let e = element; e; e = e.parentElement) {
+          const {rgb, alpha} = parse(getComputedStyle(e).backgroundColor);
+          if (alpha === 1) return rgb;
+        }
+        return matchMedia("(prefers-color-scheme: dark)").matches ? [0, 0, 0] : [255, 255, 255];
+      };
+      const luminance = (rgb) => {
+        const [r, g, b] = rgb.map((c) => c / 255 <= .04045 ? c / 255 / 12.92 : ((c / 255 + .055) / 1.055) ** 2.4);
+        return .2126 * r + .7152 * g + .0722 * b;
+      };
+      const contrast = (a, b) => {
+        const [low, high] = [luminance(a), luminance(b)].sort((x, y) => x - y);
+        return (high + .05) / (low + .05);
+      };
+      const found = [];
+      for (const element of document.body.querySelectorAll("*")) {
+        const own = [...element.childNodes].some((node) => node.nodeType === Node.TEXT_NODE && node.data.trim());
+        if (!own || element.closest("script, noscript, option, [disabled]") || !element.checkVisibility()) continue;
+        const style = getComputedStyle(element);
+        const ink = parse(element instanceof SVGElement ? style.fill : style.color).rgb;
+        const ratio = contrast(ink, behind(element)), least = parseFloat(style.fontSize) >= %d ? 3 : 4.5;
+        if (ratio < least) found.push(`${element.textContent.trim().slice(0, 40)}: contrast ${ratio.toFixed(2)}`);
+      }
+      return found;
+    })()""" % LARGE_TEXT_PX)
+
+
+def cut_off(page):
+    """Texts of elements and drawings that are wider than what holds them."""
+    return page.run("""(() => {
+      const found = [];
+      for (const element of document.body.querySelectorAll("*")) {
+        const style = getComputedStyle(element);
+        if (["hidden", "clip"].includes(style.overflowX) && element.scrollWidth > element.clientWidth + 1 &&
+            element.innerText?.trim()) {
+          found.push(element.textContent.trim().slice(0, 40));
+        }
+      }
+      for (const text of document.querySelectorAll("svg text")) {
+        const box = text.getBoundingClientRect(), frame = text.closest("svg").getBoundingClientRect();
+        if (box.left < frame.left - 1 || box.right > frame.right + 1) found.push(text.textContent);
+      }
+      return found;
+    })()""")
+
+
+def cut_off_in_canvases(page):
+    """Texts that reach beyond the canvas that they are drawn on; of a page of a run."""
+    return page.run("""(() => {
+      const found = [];
+      const watch = (proto) => {
+        const real = proto.fillText;
+        proto.fillText = function (text, x, y, most) {
+          const width = Math.min(this.measureText(text).width, most ?? Infinity), at = this.getTransform();
+          const before = {center: width / 2, right: width, end: width}[this.textAlign] ?? 0;
+          const ends = [x - before, x - before + width].map((end) => at.transformPoint({x: end, y}).x);
+          if (Math.abs(at.b) < .01 && (Math.min(...ends) < -1 || Math.max(...ends) > this.canvas.width + 1)) {
+            found.push(`${this.canvas.id || this.canvas.getAttribute("aria-label")}: ${text}`);
+          }
+          return real.apply(this, arguments);
+        };
+        return () => { proto.fillText = real; };
+      };
+      const restore = watch(CanvasRenderingContext2D.prototype);
+      redrawCharts();
+      page.map.paint();
+      restore();
+      return [...new Set(found)];
+    })()""")
