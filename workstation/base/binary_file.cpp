@@ -20,13 +20,14 @@ void BinaryWriter::save(const std::filesystem::path& path) {
 }
 
 BinaryReader::BinaryReader(const std::filesystem::path& path, std::string_view magic,
-                           std::uint32_t version, std::string_view kind, std::string_view mend)
+                           std::uint32_t version, std::string_view kind, std::string_view mend,
+                           std::uint32_t version_min)
     : name_(path.string()), kind_(kind), mend_(mend), bytes_(read_file(path)), rest_(bytes_) {
   if (!rest_.starts_with(magic)) fail("{}: not a {}; {}", name_, kind_, mend_);
   rest_.remove_prefix(magic.size());
-  const auto found = take<std::uint32_t>();
-  if (found != version) {
-    fail("{}: {} version {}, this program reads {}; {}", name_, kind_, found, version, mend_);
+  version_ = take<std::uint32_t>();
+  if (version_ > version || version_ < (version_min == 0 ? version : version_min)) {
+    fail("{}: {} version {}, this program reads {}; {}", name_, kind_, version_, version, mend_);
   }
   std::uint32_t checksum = 0;
   if (rest_.size() < sizeof checksum) damaged("is truncated");

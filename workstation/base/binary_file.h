@@ -50,10 +50,11 @@ class BinaryWriter {
 
 class BinaryReader {
  public:
-  /// Reads the whole file and checks magic, version and checksum. `kind` ("teacher file") and `mend`
+  /// Reads the whole file and checks magic, version (`version`, or from `version_min` on if that is given) and checksum. `kind` ("teacher file") and `mend`
   /// ("train again") are used in messages.
   BinaryReader(const std::filesystem::path& path, std::string_view magic, std::uint32_t version,
-               std::string_view kind, std::string_view mend);
+               std::string_view kind, std::string_view mend, std::uint32_t version_min = 0);
+  [[nodiscard]] std::uint32_t version() const { return version_; }
 
   template <typename T>
   T take() {
@@ -94,6 +95,7 @@ class BinaryReader {
 
  private:
   std::string name_, kind_, mend_;
+  std::uint32_t version_ = 0;
   std::string bytes_;
   std::string_view rest_;
 };

@@ -21,6 +21,7 @@
 #include "workstation/cli/price_input.h"
 #include "workstation/cli/run_backtest.h"
 #include "workstation/cli/run_plan.h"
+#include "workstation/cli/run_record.h"
 #include "workstation/report/backtest_report.h"
 #include "workstation/report/comparison.h"
 #include "workstation/student/correct_and_prove.h"
@@ -87,8 +88,10 @@ void learn_fold(const Fold& fold, const RunConfig& config, const fs::path& folde
                 bool and_student) {
   const fs::path path = model_path(folder, fold, kTeacherName);
   if (!fs::exists(path)) {
-    save_teacher(path,
-                 train_teacher(fold.market, config.battery, config.train, interruption()).teacher);
+    Teacher teacher =
+        train_teacher(fold.market, config.battery, config.train, interruption()).teacher;
+    teacher.learnt_for = circumstances_of(config_entries(config));
+    save_teacher(path, teacher);
   }
   const fs::path student = model_path(folder, fold, kChainName);
   if (!and_student || fs::exists(student)) return;

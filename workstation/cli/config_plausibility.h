@@ -1,5 +1,5 @@
-// Whether a battery that lies within every key's range can be meant: watts written as megawatts, an
-// efficiency that no battery has.
+// Whether what lies within every key's range can be meant: watts written as megawatts, an efficiency that no battery
+// has, a training of years.
 #pragma once
 
 #include <string>
@@ -11,5 +11,10 @@ namespace bess {
 /// Throws UserError naming the keys when power, capacity or their ratio cannot be meant; prints a
 /// warning about efficiencies that are unusual. `name` is the file's.
 void require_plausible(const RunConfig& config, const std::string& name);
+
+/// What a network's training is likely to take on its cores; 0 for the stochastic program.
+double training_hours(const TrainOptions& options);
+/// One line on stderr, before anything starts, when that is more than an hour.
+void warn_long_training(const RunConfig& config);
 
 }  // namespace bess

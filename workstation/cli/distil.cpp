@@ -13,6 +13,7 @@
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
 #include "workstation/cli/interruption.h"
+#include "workstation/cli/learnt_for.h"
 #include "workstation/cli/price_input.h"
 #include "workstation/cli/rule_files.h"
 #include "workstation/cli/rule_report.h"
@@ -75,6 +76,8 @@ void run_distil(const DistilArguments& options) {
                     {"--config", options.common.config_path}});
   require_writable(options.out);
   Teacher teacher = load_teacher(options.teacher, parse_risk(options.risk));
+  teacher.learnt_for = learnt_for_of(options.teacher);
+  warn_learnt_otherwise(options.teacher, circumstances_of(config_entries(config)));
   options.rule_files.apply(config, teacher.context.kind);
   if (!teacher.risk.is_mean()) teacher.provenance += ", risk " + options.risk;
   const MarketSteps market =

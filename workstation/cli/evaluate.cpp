@@ -232,7 +232,7 @@ void run_evaluate(const EvaluateArguments& options) {
   std::vector<NamedEvaluation> results;
   Records records;
   for (const std::string& name : options.policies) {
-    warn_learnt_otherwise(name, circumstances_of(config_entries(config)));
+    warn_learnt_otherwise(name, circumstances_of(config_entries(config)), market, trial.days);
     results.push_back(evaluate_policy(name, trial, &records));
   }
   if (!options.days_out.empty()) write_file(options.days_out, records.days);

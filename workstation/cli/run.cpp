@@ -8,6 +8,7 @@
 #include "shared/host/user_error.h"
 #include "workstation/cli/chain_steps.h"
 #include "workstation/cli/commands.h"
+#include "workstation/cli/config_plausibility.h"
 #include "workstation/cli/folder_lock.h"
 #include "workstation/cli/interruption.h"
 #include "workstation/cli/learnt_for.h"
@@ -37,6 +38,7 @@ void run_one(const RunRequest& request, std::FILE* messages) {
     here.emplace_back("prices", plan.record.value("prices"));
     warn_learnt_otherwise(plan.record.teacher_file, here);
   }
+  if (plan.record.teacher_file.empty()) warn_long_training(plan.record.config(plan.folder));
   require_writable(plan.folder.record());
   if (!lock) lock.emplace(plan.folder.path);
   fmt::print(messages, "[1/6] prices: {} ({} minutes)\n", plan.record.prices_name,

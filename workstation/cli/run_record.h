@@ -11,13 +11,11 @@
 #include <vector>
 
 #include "shared/host/json.h"
+#include "workstation/base/entries.h"
 #include "workstation/cli/run_config.h"
 #include "workstation/cli/run_folder.h"
 
 namespace bess {
-
-/// Names and values in order.
-using Entries = std::vector<std::pair<std::string, std::string>>;
 
 /// "crc32 1234abcd, 4711 bytes" of the file as it lies on the disk; empty when there is none to read.
 std::string file_mark(const std::filesystem::path& path);

@@ -15,6 +15,7 @@
 #include "workstation/cli/built_in_market.h"
 #include "workstation/cli/chain_steps.h"
 #include "workstation/cli/interruption.h"
+#include "workstation/cli/learnt_for.h"
 #include "workstation/cli/price_input.h"
 #include "workstation/cli/run_backtest.h"
 #include "workstation/report/evaluation_days.h"
@@ -230,6 +231,7 @@ RunStages::Names RunStages::make_teacher() {
   end_when_interrupted(how_to_go_on(folder_));
   warn_narrow_support(config_.train, trained);
   trained.teacher.provenance = training_provenance(record_.prices_name, config_.train, trained);
+  trained.teacher.learnt_for = learnt_for(config_, series_);
   save_teacher(path(kTeacher), trained.teacher);
   write_file(path(kTrainingCurve), training_curve_csv(trained.curve));
   tell(fmt::format("best at step {}: {:.1f} EUR/day/MWh on validation days, {:.0f} s",
@@ -239,7 +241,9 @@ RunStages::Names RunStages::make_teacher() {
 }
 
 RunStages::Names RunStages::take_teacher() const {
-  save_teacher(path(kTeacher), load_teacher(record_.teacher_file));
+  Teacher taken = load_teacher(record_.teacher_file);
+  taken.learnt_for = learnt_for_of(record_.teacher_file);
+  save_teacher(path(kTeacher), taken);
   write_file(path(kTrainingCurve), training_curve_csv({}));
   return {kTeacher, kTrainingCurve};
 }

@@ -17,9 +17,12 @@
 #include "workstation/cli/chain_steps.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
+#include "workstation/cli/config_plausibility.h"
 #include "workstation/cli/folder_lock.h"
 #include "workstation/cli/interruption.h"
+#include "workstation/cli/learnt_for.h"
 #include "workstation/cli/price_input.h"
+#include "workstation/cli/run_plan.h"
 #include "workstation/env/evaluate.h"
 #include "workstation/report/curves.h"
 
@@ -71,9 +74,11 @@ fs::path seed_path(const fs::path& out, std::uint64_t seed) {
 
 /// All that the weights depend on; a checkpoint is good for one of these only.
 std::string identity_of(const RunConfig& config, const MinuteSeries& series) {
-  return fmt::format("bess-train {} seed {} threads {} prices {:08x} from {}\n{}", BESS_VERSION,
-                     config.train.seed, config.train.threads, prices_checksum(series),
-                     series.start_utc_s, format_run_config(config));
+  std::string text = fmt::format("bess-train {}\nseed {}\nthreads {}\nprices {}\n", BESS_VERSION,
+                                 config.train.seed, config.train.threads, prices_hash(series));
+  for (const auto& [key, value] : config_entries(config))
+    text += fmt::format("{} {}\n", key, value);
+  return text;
 }
 
 /// One seed is not looked at on test days.
@@ -102,6 +107,7 @@ TrainResult train_one(const fs::path& out, const TrainArguments& options, const 
   TrainResult result = train_teacher(market, config.battery, config.train,
                                      watched_from_the_first_look(), checkpoint);
   result.teacher.provenance = training_provenance(options.prices, config.train, result);
+  result.teacher.learnt_for = learnt_for(config, series);
   if (!result.curve.empty()) {
     save_teacher(out, result.teacher);
     if (!options.curve_out.empty()) {
@@ -189,6 +195,7 @@ void run_train(const TrainArguments& options) {
   RunConfig config = options.common.resolve();
   if (options.method) config.train.method = parse_method(*options.method);
   if (options.steps) config.train.steps = *options.steps;
+  warn_long_training(config);
   require_distinct({{"--out", options.out},
                     {"--curve-out", options.curve_out},
                     {"the checkpoint", checkpoint_path(options.out)}},

@@ -13,7 +13,9 @@ namespace bess {
 namespace {
 
 constexpr std::string_view kMagic = "BESSTCHR";
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
+constexpr std::uint32_t kVersionWithoutLearntFor = 2;
+constexpr std::uint32_t kLearntForMax = 1000;
 constexpr int kTeacherHidden1 = 256;
 constexpr int kTeacherHidden2 = 128;
 constexpr std::size_t kProvenanceMax = 4096;
@@ -48,6 +50,18 @@ ContextClasses take_context(BinaryReader& in) {
     in.damaged("has impossible context classes");
   }
   return context;
+}
+
+Entries take_learnt_for(BinaryReader& in) {
+  if (in.version() == kVersionWithoutLearntFor) return {};
+  const auto count = in.take<std::uint32_t>();
+  if (count > kLearntForMax) in.damaged("has impossible circumstances");
+  Entries learnt_for(count);
+  for (auto& [name, value] : learnt_for) {
+    name = in.take_text();
+    value = in.take_text();
+  }
+  return learnt_for;
 }
 
 /// Whole number that an input was scaled from.
@@ -175,6 +189,11 @@ void save_teacher(const std::filesystem::path& path, const Teacher& teacher) {
   out.put(static_cast<std::uint32_t>(teacher.context.kind));
   out.put(teacher.context.level_edge_eur_per_mwh);
   out.put_text(std::string_view(teacher.provenance).substr(0, kProvenanceMax));
+  out.put(static_cast<std::uint32_t>(teacher.learnt_for.size()));
+  for (const auto& [name, value] : teacher.learnt_for) {
+    out.put_text(name);
+    out.put_text(value);
+  }
   put_parameters(out, teacher.parameters);  // none of a program's
   if (teacher.program) teacher.program->save(out);
   out.save(path);
@@ -185,7 +204,8 @@ bool is_teacher_file(const std::filesystem::path& path) {
 }
 
 Teacher load_teacher(const std::filesystem::path& path) {
-  BinaryReader in(path, kMagic, kVersion, "teacher file", "make one with 'bess-train train'");
+  BinaryReader in(path, kMagic, kVersion, "teacher file", "make one with 'bess-train train'",
+                  kVersionWithoutLearntFor);
   const auto written_method = in.take<std::uint32_t>();
   const bool is_residual = (written_method & kResidualFlag) != 0;
   const auto inputs = TeacherInputs::of_bits((written_method & kInputsMask) >> kInputsShift);
@@ -203,6 +223,7 @@ Teacher load_teacher(const std::filesystem::path& path) {
   const PriceMap price_map = take_price_map(in);
   const ContextClasses context = take_context(in);
   std::string provenance = in.take_text();
+  Entries learnt_for = take_learnt_for(in);
   Parameters parameters(shape.parameter_count());
   std::shared_ptr<const StochasticProgram> program;
   take_parameters(in, parameters);
@@ -218,7 +239,8 @@ Teacher load_teacher(const std::filesystem::path& path) {
           std::move(program),
           context,
           {},
-          inputs};
+          inputs,
+          std::move(learnt_for)};
 }
 
 Teacher load_teacher(const std::filesystem::path& path, const Risk& risk) {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "workstation/base/entries.h"
 #include "workstation/env/policy.h"
 #include "workstation/nn/mlp.h"
 #include "workstation/planners/stochastic_program.h"
@@ -35,6 +36,7 @@ struct Teacher {
   ContextClasses context{};  ///< by month unless said otherwise
   Risk risk{};               ///< how decisions are made; not part of the file
   TeacherInputs inputs{};    ///< beside the student's five
+  Entries learnt_for{};      ///< market, battery, costs and prices; empty: the file does not say
 
   [[nodiscard]] bool is_residual() const { return program != nullptr && method != Method::kSdp; }
   /// Action values, means unless `risk` says otherwise, [3 x samples] in units of 1e4 EUR/h for

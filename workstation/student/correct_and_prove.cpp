@@ -214,6 +214,7 @@ CorrectionResult correct_and_prove(const Teacher& teacher, const Matrix& visited
     student.certificate.rules = options.rules;
     student.certificate.thresholds = options.correction.thresholds;
     student.provenance = provenance_of(teacher, options);
+    student.learnt_for = teacher.learnt_for;
     return construct_and_prove(teacher, visited, options, interrupted, score, watch, student);
   }
   Distiller distiller(teacher, visited, options);
@@ -221,6 +222,7 @@ CorrectionResult correct_and_prove(const Teacher& teacher, const Matrix& visited
   student.certificate.rules = options.rules;
   student.certificate.thresholds = options.correction.thresholds;
   student.provenance = provenance_of(teacher, options);
+  student.learnt_for = teacher.learnt_for;
   CorrectionResult result{.verdict = student, .curve = {}, .rounds = {}};
   double margin_scale = 1;
   int epochs_done = 0;

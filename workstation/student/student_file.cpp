@@ -116,6 +116,21 @@ void add_rule_claims(const Certificate& certificate, Json& json) {
   json.set("rule_violations", std::span<const std::int64_t>(violations));
 }
 
+Json learnt_for_json(const Entries& learnt_for) {
+  Json json = Json::object();
+  for (const auto& [name, value] : learnt_for) json.set(name.c_str(), value);
+  return json;
+}
+
+Entries parse_learnt_for(const JsonValue& object, const std::string& name) {
+  Entries learnt_for;
+  for (const JsonValue member : object) {
+    if (member.text() == nullptr) fail("{}: \"learnt_for\" holds something else than texts", name);
+    learnt_for.emplace_back(member.key(), member.text());
+  }
+  return learnt_for;
+}
+
 Json certificate_json(const Certificate& c) {
   return Json::object({{"low_price_eur_per_mwh", c.thresholds.low_eur_per_mwh},
                        {"high_price_eur_per_mwh", c.thresholds.high_eur_per_mwh},
@@ -156,6 +171,7 @@ void save_student(const std::filesystem::path& path, const StudentFile& student)
                             {"provenance", student.provenance},
                             {"certificate", certificate_json(student.certificate)},
                             {"context", context_name(student.net.context.kind)}});
+  if (!student.learnt_for.empty()) json.set("learnt_for", learnt_for_json(student.learnt_for));
   if (has_rules) add_rule_claims(student.certificate, json);
   json.set("level_edge_eur_per_mwh", std::span(student.net.context.level_edge_eur_per_mwh));
   visit_arrays(student.net, [&json](const char* key, auto values) { json.set(key, values); });
@@ -198,6 +214,7 @@ StudentFile parse_student(const std::string& text, const std::string& name) {
     parse_rule_claims(json.value(), in, name, student.net.context.kind, student.certificate);
   }
   student.provenance = in.text("provenance");
+  student.learnt_for = parse_learnt_for(json.value()["learnt_for"], name);
   return student;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "shared/nn/student_net.h"
+#include "workstation/base/entries.h"
 #include "workstation/student/certificate.h"
 
 namespace bess {
@@ -14,6 +15,7 @@ struct StudentFile {
   StudentNet net;
   Certificate certificate;  ///< a claim: prove() finds out whether it holds
   std::string provenance;   ///< one line: prices, teacher, seed, options
+  Entries learnt_for{};     ///< as the teacher was; empty: the file does not say
 };
 
 /// Written beside and renamed.

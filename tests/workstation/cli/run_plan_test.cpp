@@ -1,5 +1,6 @@
 // What a run's folder refuses, and what it fills in, before anything is written.
 #include "workstation/cli/run_plan.h"
+#include "workstation/student/student_file.h"
 
 #include <gmock/gmock.h>
 
@@ -119,22 +120,26 @@ TEST_F(RunPlanning, AnEditedConfigurationIsRefusedNamingKeyAndBothValues) {
   EXPECT_EQ(read_file(file), edited) << "left as it is";
 }
 
+/// A model of before does not say what it was learnt for: then the run beside it does.
 TEST_F(RunPlanning, AModelIsToldThatWasLearntForOthers) {
   request_.resume = true;
   const RunPlan plan = plan_run(request_);
   const fs::path model = request_.out / "student.json";
-  write_file(model, "{}");
+  save_student(model, compiled_student());
   RunConfig config = plan.record.config(plan.folder);
-  EXPECT_EQ(learnt_otherwise(model, circumstances_of(config_entries(config))), "");
+  const auto otherwise = [&] {
+    return learnt_otherwise(learnt_for_of(model), circumstances_of(config_entries(config)));
+  };
+  EXPECT_EQ(otherwise(), "");
   config.battery.power_w_max = 1e6;
   config.battery.costs.import_adder_eur_per_mwh = 42;
   config.market.observation_delay_min = 3;
   config.distil.epochs = 7;
-  EXPECT_THAT(learnt_otherwise(model, circumstances_of(config_entries(config))),
+  EXPECT_THAT(otherwise(),
               AllOf(HasSubstr("[battery] power_w is 5000000 there and 1000000 here"),
                     HasSubstr("[costs] import_adder_eur_per_mwh is 0 there and 42 here"),
                     HasSubstr("[market] "), Not(HasSubstr("epochs"))));
-  EXPECT_EQ(learnt_otherwise("rbc-tuned", circumstances_of(config_entries(config))), "");
+  EXPECT_TRUE(learnt_for_of("rbc-tuned").empty());
 }
 
 /// A whole folder excludes all others in it; single files are made side by side, each by one program.
