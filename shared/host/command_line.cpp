@@ -14,6 +14,7 @@
 #include <system_error>
 #include <type_traits>
 
+#include "shared/host/errno_text.h"
 #include "shared/host/nearest_word.h"
 #include "shared/host/text.h"
 
@@ -300,7 +301,7 @@ int CommandLine::run(int argc, const char* const* argv) {
     return 3;
   } catch (const std::filesystem::filesystem_error& error) {  // a loop of links, a name too long
     std::fprintf(stderr, "%s: %s: %s\n", program, one_line(error.path1().string(), 300).c_str(),
-                 error.code().message().c_str());
+                 errno_text(error.code().value()).c_str());
     return 1;
   } catch (const std::system_error& error) {  // {fmt}, when a long output meets a full disk
     if (std::ferror(stdout) == 0) {

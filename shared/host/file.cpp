@@ -1,6 +1,7 @@
 #include "shared/host/file.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -14,6 +15,7 @@
 #include <utility>
 
 #include "shared/file_descriptor.h"
+#include "shared/host/errno_text.h"
 #include "shared/host/unfinished_files.h"
 #include "shared/host/user_error.h"
 
@@ -21,6 +23,22 @@ namespace bess {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Opened for reading. A pipe is waited for until somebody writes: without end, a forgotten writer would hang us.
+int open_to_read(const fs::path& path) {
+  const int fd = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  struct stat info {};
+  if (fd < 0 || fstat(fd, &info) != 0 || !S_ISFIFO(info.st_mode)) return fd;
+  constexpr int kWriterWait_ms = 10'000;
+  pollfd waiting{.fd = fd, .events = POLLIN, .revents = 0};
+  if (poll(&waiting, 1, kWriterWait_ms) == 0) {
+    close(fd);
+    fail("{}: is a pipe, and nobody has written into it for {} s; start its writer, or name a file",
+         path.string(), kWriterWait_ms / 1000);
+  }
+  fcntl(fd, F_SETFL, fcntl(fd, F_GETFL) & ~O_NONBLOCK);
+  return fd;
+}
 
 bool is_gzip_name(const fs::path& path) { return path.extension() == ".gz"; }
 
@@ -63,7 +81,7 @@ fs::path resolved(const fs::path& path) {
   std::error_code error;
   if (!fs::is_symlink(fs::symlink_status(path, error))) return path;
   const fs::path target = fs::weakly_canonical(path, error);
-  if (error) fail("{}: cannot write here: {}", path.string(), error.message());
+  if (error) fail("{}: cannot write here: {}", path.string(), errno_text(error.value()));
   return target;
 }
 
@@ -83,7 +101,7 @@ class TemporaryFile {
       fd_ = open(beside_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0644);
       unfinished_->made();
     }
-    if (fd_ < 0) fail("{}: cannot write here: {}", target_.string(), std::strerror(errno));
+    if (fd_ < 0) fail("{}: cannot write here: {}", target_.string(), errno_text(errno));
     struct stat before {};
     if (!beside_.empty() && stat(target_.c_str(), &before) == 0) {
       fchmod(fd_, before.st_mode & 07777);
@@ -245,8 +263,8 @@ bool is_special_file(const fs::path& path) {
 }
 
 std::string read_file(const fs::path& path, std::size_t bytes_max) {
-  const FileDescriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  if (file.get() < 0) fail("{}: cannot open: {}", path.string(), std::strerror(errno));
+  const FileDescriptor file(open_to_read(path));
+  if (file.get() < 0) fail("{}: cannot open: {}", path.string(), errno_text(errno));
   struct stat info {};
   if (fstat(file.get(), &info) == 0 && S_ISDIR(info.st_mode)) {
     fail("{}: is a folder, not a file", path.string());

@@ -1,8 +1,20 @@
 #include "shared/host/json_reader.h"
 
 #include <cmath>
+#include <set>
+#include <string_view>
 
 namespace bess {
+
+JsonReader::JsonReader(JsonValue object, std::string file, std::string kind)
+    : object_(object), file_(std::move(file)), kind_(std::move(kind)) {
+  std::set<std::string_view> keys;
+  for (const JsonValue each : object) {
+    if (!each.key().empty() && !keys.insert(each.key()).second) {
+      fail("{}: not {}: \"{}\" stands twice", file_, kind_, each.key());
+    }
+  }
+}
 
 JsonValue JsonReader::member(const char* key) const {
   const JsonValue found = object_[key];

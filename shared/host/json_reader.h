@@ -14,8 +14,8 @@ namespace bess {
 class JsonReader {
  public:
   /// `kind` says what the file should be, e.g. "a student file". The object outlives the reader.
-  JsonReader(JsonValue object, std::string file, std::string kind)
-      : object_(object), file_(std::move(file)), kind_(std::move(kind)) {}
+  /// Throws UserError when a member stands twice: nobody knows which was meant.
+  JsonReader(JsonValue object, std::string file, std::string kind);
 
   // Each throws UserError when the member is not there, or is something else.
   [[nodiscard]] std::string text(const char* key) const;

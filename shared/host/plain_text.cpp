@@ -37,6 +37,9 @@ std::string_view plain_text(std::string_view text, std::string_view name) {
   if (text.find('\0') != std::string_view::npos) {
     fail("{}: holds NUL bytes: UTF-16 text? save it as UTF-8", name);
   }
+  if (text.find('\r') != std::string_view::npos && text.find('\n') == std::string_view::npos) {
+    fail("{}: its lines end in CR alone: save it with LF or CR LF", name);
+  }
   text = without_byte_order_mark(text);
   if (is_web_page(text)) {
     fail("{}: a web page, not data (maintenance or a proxy's log-in?)", name);

@@ -1,7 +1,9 @@
 #include "workstation/cli/common_options.h"
 
+#include <cstdlib>
 #include <thread>
 
+#include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "workstation/market/feed/elia_fetch.h"
 
@@ -46,9 +48,17 @@ RunConfig CommonOptions::resolve(RunConfig config) const {
 }
 
 std::string checked_base_url(std::string url, const std::string& option) {
+  const std::string given = url;
   while (url.ends_with('/')) url.pop_back();
-  if (!url.starts_with("http://") && !url.starts_with("https://")) {
-    fail("{} \"{}\" is not a web address; write it as {}", option, url, kEliaBaseUrl);
+  const std::size_t scheme = url.starts_with("http://") ? 7 : url.starts_with("https://") ? 8 : 0;
+  const std::string host = url.substr(scheme, url.find('/', scheme) - scheme);
+  const std::size_t colon = host.rfind(':');
+  const bool has_port = colon != host.npos && host.find(']', colon) == host.npos;
+  const long port = has_port ? std::strtol(host.c_str() + colon + 1, nullptr, 10) : 1;
+  if (scheme == 0 || url.size() <= scheme || host.empty() || colon == 0 || port < 1 ||
+      port > 65'535 || url.find_first_of(" \t\r\n") != url.npos) {
+    fail("{} \"{}\" is not a web address; write it as {}", option, one_line(given, 80),
+         kEliaBaseUrl);
   }
   return url;
 }

@@ -44,7 +44,9 @@ void PriceInput::add(ProgramCommand& command) {
         try {
           static_cast<void>(AcceptedFindings(list));
         } catch (const UserError& error) {
-          return error.what();
+          const std::string what = error.what();  // the option is named in front of it
+          constexpr std::string_view kOption = "--accept: ";
+          return what.starts_with(kOption) ? what.substr(kOption.size()) : what;
         }
         return {};
       });

@@ -54,6 +54,9 @@ std::optional<std::int64_t> end_utc_s(const PricesRecordArguments& options) {
     fail("--until \"{}\" is not an instant; write it as 2025-06-15T22:00:00Z",
          one_line(options.until, 40));
   }
+  if (utc_s <= std::time(nullptr)) {
+    fail("--until {} is over; give an instant to come, in UTC", options.until);
+  }
   return utc_s;
 }
 

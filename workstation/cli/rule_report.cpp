@@ -6,6 +6,7 @@
 
 #include "workstation/env/evaluate.h"
 #include "workstation/rules/rule_watch.h"
+#include "workstation/rules/ruled_policy.h"
 #include "workstation/student/failed_proof.h"
 #include "workstation/student/student_policy.h"
 
@@ -69,6 +70,12 @@ std::string broken_rule_lines(const StudentFile& student, const MarketSteps& mar
                   config.train.seed);
   evaluate(market, market.days, watch, {config.battery, config.initial_soc_frac, true});
   for (std::size_t r = 0; r < broken.rules.size(); ++r) {
+    if (!can_be_projected(broken.rules[r])) {
+      text += fmt::format(
+          "  \"{}\" is about pairs of states: no single decision shows that it is broken\n",
+          broken.rules[r].name);
+      continue;
+    }
     const WatchCount& count = watch.counts()[r];
     text += fmt::format(
         "  \"{}\" is broken in {} of {} decisions ({:.3f} %)\n", broken.rules[r].name,

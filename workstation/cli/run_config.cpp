@@ -266,7 +266,11 @@ void apply_document(const TomlValue& document, const std::vector<Key>& keys) {
   for (const auto& [section, table] : *document.as<TomlMembers>()) {
     const auto* members = table.as<TomlMembers>();
     const bool known = std::ranges::find(keys, section, &Key::section) != keys.end();
-    if (members == nullptr || !known) {
+    if (members == nullptr && known) {
+      fail("{}:{}: \"{}\" is a section: write [{}] on a line of its own, once, and its keys below",
+           *table.file, table.line, section, section);
+    }
+    if (!known) {
       fail("{}:{}: unknown section or key \"{}\"{}; 'bess-train config' lists all", *table.file,
            table.line, one_line(section), did_you_mean(section, section_names(keys)));
     }

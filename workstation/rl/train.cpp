@@ -1,9 +1,12 @@
 #include "workstation/rl/train.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <numbers>
 
+#include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "workstation/base/progress.h"
 #include "workstation/planners/cycle_limit.h"
@@ -159,6 +162,18 @@ class StoppablePolicy final : public Policy {
 constexpr std::string_view kCheckpointMagic = "BESSCKPT";
 constexpr std::uint32_t kCheckpointVersion = 1;
 
+/// "A there and B here", of the first line that two identities have not in common.
+std::string first_difference(std::string_view there, std::string_view here) {
+  while (true) {
+    const std::string_view a = take_line(there);
+    const std::string_view b = take_line(here);
+    if (a != b || (there.empty() && here.empty())) {
+      return fmt::format("{} there and {} here", a.empty() ? "no more" : a,
+                         b.empty() ? "no more" : b);
+    }
+  }
+}
+
 /// One run of training, from the first step or from a checkpoint.
 class Training {
  public:
@@ -286,8 +301,9 @@ class Training {
   void restore(const CheckpointOptions& checkpoint) {
     BinaryReader in(checkpoint.path, kCheckpointMagic, kCheckpointVersion, "checkpoint",
                     "train anew, without --resume");
-    if (in.take_text() != checkpoint.identity) {
-      in.damaged("is of another run: its configuration, prices or seed differ");
+    const std::string there = in.take_text();
+    if (there != checkpoint.identity) {
+      in.damaged("is of another run: " + first_difference(there, checkpoint.identity));
     }
     step_ = in.take<std::int64_t>();
     summed_ = in.take<std::int64_t>();

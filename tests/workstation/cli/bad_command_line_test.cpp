@@ -213,7 +213,7 @@ constexpr ConfigMistake kConfigMistakes[] = {
     {"[correction]\nlow_price_eur_per_mwh = 500\nhigh_price_eur_per_mwh = 100\n",
      "low_price_eur_per_mwh must be below high_price_eur_per_mwh"},
     {"[distil]\nepochs = -1\n", "out of range"},
-    {"battery = 3\n", "unknown section or key \"battery\""},
+    {"battery = 3\n", "\"battery\" is a section: write [battery]"},
 };
 
 class BadTrainCommandLine : public testing::Test {

@@ -391,6 +391,157 @@ std::vector<QuirkCase> transport() {
   return cases;
 }
 
+Quirk raw(const std::string& status, const std::string& headers, const std::string& text,
+          bool has_length = true) {
+  return on_minutes([=](const Ask&, Answer& answer) {
+    answer.status = status;
+    answer.headers = headers;
+    answer.body = text;
+    answer.has_length = has_length;
+  });
+}
+Format with(const std::function<std::string(std::string)>& change) {
+  return [change](const Ask& ask, const auto& rows) { return change(quirky_csv(ask, rows)); };
+}
+/// The text with what is behind its first line changed.
+std::string with_a_row(std::string text, const std::string& row) {
+  return text.insert(text.find('\n') + 1, row + "\n");
+}
+
+/// What other servers, proxies and portals were seen or are allowed to do.
+std::vector<QuirkCase> others() {
+  const std::string row = "2023-03-25T00:00:00+00:00;PT1M;";
+  return {
+      {"304 to a question without a condition", status("304 Not Modified"), "304", 1},
+      {"203 of a proxy", status("203 Other"), "203", 1},
+      {"a status of no kind", status("799 What"), "799", 6},
+      {"moved to a file", raw("302 Found", "Location: file:///etc/passwd\r\n", "x"),
+       "not supported", 1},
+      {"moved to another protocol", raw("302 Found", "Location: gopher://127.0.0.1/\r\n", "x"),
+       "not supported", 1},
+      {"moved to nowhere", raw("302 Found", "", "x"), "302", 0},
+      {"quota, to wait less than nothing", once(status("429 Too Many", "Retry-After: -5\r\n")),
+       kWhole, 2},
+      {"quota, to wait for words", once(status("429 Too Many", "Retry-After: soon\r\n")), kWhole,
+       2},
+      {"quota, to wait for ever", status("429 Too Many", "Retry-After: 99999999999999999999\r\n"),
+       "asks to wait", 1},
+      {"busy, to wait 3 s", once(status("503 Busy", "Retry-After: 3\r\n")), kWhole, 2},
+      {"a length that is too long, once",
+       once(raw("200 OK", "Content-Length: 9999999\r\n", "datetime;", false)), kWhole, 2},
+      {"a length that is no number", raw("200 OK", "Content-Length: many\r\n", "x", false),
+       "Content-Length", 1},
+      {"a length below nothing", raw("200 OK", "Content-Length: -1\r\n", "x", false),
+       "Content-Length", 1},
+      {"chunks of no size",
+       raw("200 OK", "Transfer-Encoding: chunked\r\n", "zz\r\nabc\r\n0\r\n\r\n", false),
+       "(6 attempts)", 6},
+      {"a chunk larger than any",
+       raw("200 OK", "Transfer-Encoding: chunked\r\n", "ffffffffffffffffff\r\nabc\r\n", false),
+       "(6 attempts)", 6},
+      {"an encoding that nobody asked for", raw("200 OK", "Content-Encoding: br\r\n", "abc"),
+       "missing in ods046", 0},
+      {"gzip that breaks in the middle", on_minutes([](const Ask&, Answer& answer) {
+         answer.headers = "Content-Encoding: gzip\r\n";
+         answer.format = [](const Ask& of, const auto& rows) {
+           std::string packed = gzipped(quirky_csv(of, rows));
+           packed[packed.size() / 2] ^= 0x55;
+           return packed;
+         };
+       }),
+       "(6 attempts)", 6},
+      {"headers without end", raw("200 OK", "X: " + std::string(400'000, 'x') + "\r\n", "x"),
+       "(1 attempt)", 1},
+      {"rows called a web page", on_minutes([](const Ask&, Answer& answer) {
+         answer.headers = "Content-Type: text/html\r\n";
+       }),
+       kWhole, 1},
+      {"a byte order mark", formatted(with([](std::string t) { return "\xEF\xBB\xBF" + t; })),
+       kWhole, 1},
+      {"UTF-16", formatted(with([](std::string t) { return "\xFF\xFE" + t; })), "UTF-16", 0},
+      {"lines of old Macs",
+       formatted(with([](std::string t) { return replaced(std::move(t), "\n", "\r"); })),
+       "CR alone", 0},
+      {"the header once more in the middle",
+       formatted(with([](std::string t) { return t + t.substr(0, t.find('\n') + 1); })),
+       "is not a time", 2},
+      {"words behind the rows", formatted(with([](std::string t) { return t + "total: 2820\n"; })),
+       "is not a time", 2},
+      {"a column more",
+       formatted(with([](std::string t) { return replaced(std::move(t), "\n", ";x\n"); })), kWhole,
+       1},
+      {"columns in another order", formatted([](const Ask& ask, const auto& rows) {
+         std::string text = "imbalanceprice;datetime;resolutioncode\n";
+         for (const QuirkyRow& r : rows) {
+           text += fmt::format("{};{};{}\n", r.price, utc_text(r.utc_s).view(),
+                               ask.minutes() ? "PT1M" : "PT15M");
+         }
+         return text;
+       }),
+       kWhole, 1},
+      {"a column twice", formatted(with([](std::string t) {
+         return replaced(std::move(t), "resolutioncode", "imbalanceprice");
+       })),
+       "is not a number", 2},
+      {"no column of prices", formatted(with([](std::string t) {
+         return replaced(std::move(t), "imbalanceprice", "price");
+       })),
+       "no column for the imbalance price", 1},
+      {"a row twice, with another price",
+       formatted(with([row](std::string t) { return with_a_row(std::move(t), row + "4711"); })),
+       kWhole, 1},
+      {"a row of tomorrow", formatted(with([](std::string t) {
+         return with_a_row(std::move(t), "2023-03-27T10:00:00+00:00;PT1M;5");
+       })),
+       kWhole, 1},
+      {"a row of another century", formatted(with([](std::string t) {
+         return with_a_row(std::move(t), "1923-03-25T10:00:00+00:00;PT1M;5");
+       })),
+       "is not a time", 2},
+      {"a minute of 61 seconds", formatted(with([](std::string t) {
+         return with_a_row(std::move(t), "2023-03-25T10:00:60+00:00;PT1M;5");
+       })),
+       " ", 0},
+      {"a day that does not exist", formatted(with([](std::string t) {
+         return with_a_row(std::move(t), "2023-02-30T10:00:00+00:00;PT1M;5");
+       })),
+       " ", 0},
+      {"day and month swapped", formatted(with([](std::string t) {
+         return replaced(std::move(t), "2023-03-25", "2023-25-03");
+       })),
+       " ", 0},
+      {"an hour off, and saying so",
+       formatted(with([](std::string t) { return replaced(std::move(t), "+00:00", "+01:00"); })),
+       " ", 0},
+      {"an offset of no zone",
+       formatted(with([](std::string t) { return replaced(std::move(t), "+00:00", "+99:00"); })),
+       " ", 0},
+      {"seconds since 1970",
+       formatted(with([](std::string t) { return with_a_row(std::move(t), "1679702400;PT1M;5"); })),
+       " ", 0},
+      {"a price with an exponent", row_price("1.5e1e"), "is not a number", 0},
+      {"a price with thousands", row_price("1,234.5"), "is not a number", 0},
+      {"a price with a minus of print",
+       row_price("\xE2\x88\x92"
+                 "5"),
+       "is not a number", 0},
+      {"an infinite price", row_price("inf"), " ", 0},
+      {"a price in words of a spreadsheet", row_price("#N/A"), "is not a number", 0},
+      {"half of a JSON row", formatted([](const Ask& ask, const auto& rows) {
+         const std::string text = as_json(ask, rows, "");
+         return text.substr(0, text.size() / 2);
+       }),
+       " ", 0},
+      {"JSON of an error with 200",
+       body("{\"error_code\": \"ODSQLError\", \"message\": \"no\"}", "application/json"), " ", 0},
+      {"JSON within JSON", body(std::string(200'000, '['), "application/json"), " ", 0},
+      {"a member twice", formatted([](const Ask& ask, const auto& rows) {
+         return replaced(as_json(ask, rows, ""), "\"resolutioncode\"", "\"datetime\"");
+       }),
+       "stands twice", 0},
+  };
+}
+
 class FetchQuirks : public testing::Test {
  protected:
   FetchRequest request(const QuirkyElia& elia) {
@@ -450,6 +601,7 @@ class FetchQuirks : public testing::Test {
 TEST_F(FetchQuirks, OfOrderAndNumber) { expect(order_and_number()); }
 TEST_F(FetchQuirks, OfForm) { expect(forms()); }
 TEST_F(FetchQuirks, OfTransport) { expect(transport()); }
+TEST_F(FetchQuirks, OfOthers) { expect(others()); }
 
 /// Rows that are there and say nothing: as good as none, where money is counted.
 TEST_F(FetchQuirks, ASettledHoleIsOneWhateverItIsMadeOf) {
@@ -577,8 +729,9 @@ TEST_F(FetchQuirks, AWindowWithAGapIsAskedForAgain) {
   EXPECT_EQ(std::ranges::count(rows_of(wanted.out), '\n'), static_cast<long>(kMinutes) + 1);
 }
 
-TEST_F(FetchQuirks, AreMoreThanForty) {
-  EXPECT_GE(order_and_number().size() + forms().size() + transport().size(), 90u);
+TEST_F(FetchQuirks, AreMoreThanAHundredAndThirty) {
+  EXPECT_GE(order_and_number().size() + forms().size() + transport().size() + others().size(),
+            136u);
 }
 
 }  // namespace

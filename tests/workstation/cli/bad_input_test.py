@@ -1,0 +1,150 @@
+"""Bad inputs that once hung, were taken, or were told in a library's words: each ends with its code and one clear line
+that names the mend, and leaves nothing behind. bad_input_test.py PROGRAM
+"""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+
+PROGRAM = os.path.abspath(sys.argv[1])
+
+STUDENT_KEYS = '{"format": "bess-student", "version": 3, "version": 4}'
+RULE = '[[rule]]\nname = "a"\nis = "idle"\nhours = "22:00-06:00"\n'
+LONG = "x" * 300
+# Arguments, exit code, what the line must say.
+CASES = [
+    # A pipe that nobody writes into, a link to itself, a name that is too long: of every kind of file.
+    ("evaluate --policy rbc --prices pipe", 1, "nobody has written into it for 10 s; start its writer"),
+    ("config --config loop", 1, "a link that leads back to itself; name the file itself"),
+    ("rules check --rules loop", 1, "a link that leads back to itself"),
+    ("evaluate --prices market.csv --policy loop", 1, "a link that leads back to itself"),
+    ("runs compare loop", 1, "a link that leads back to itself"),
+    ("run --prices market.csv --out new --from-teacher loop", 1, "a link that leads back to itself"),
+    ("train --prices market.csv --out loop", 1, "a link that leads back to itself"),
+    (f"config --config {LONG}", 1, "the name is too long for a file"),
+    (f"evaluate --prices market.csv --policy {LONG}", 1, "the name is too long for a file"),
+    (f"train --prices market.csv --out {LONG}", 1, "the name is too long for a file"),
+    (f"verify --student {LONG}", 1, "the name is too long for a file"),
+    # Said once, and by the right name.
+    ("evaluate --policy rbc --prices market.csv --accept gapss", 2, 'bess-train: --accept: no finding is called "gapss"'),
+    ("config --config scalar.toml", 1, 'scalar.toml:1: "battery" is a section: write [battery] on a line of its own'),
+    ("config --config list.toml", 1, 'list.toml:1: "battery" is a section'),
+    # Twice: nobody knows which is meant.
+    ("verify --student twice.json", 1, '"version" stands twice'),
+    ("export --student twice.json --out new.h", 1, '"version" stands twice'),
+    ("runs compare twice", 1, '"prices" stands twice'),
+    # Another end of lines, times that are over, addresses that are none.
+    ("evaluate --policy rbc --prices cr.csv", 1, "its lines end in CR alone"),
+    ("prices stats cr.csv", 1, "its lines end in CR alone"),
+    ("prices record --out new --until 2020-01-01T00:00:00Z", 1, "is over; give an instant to come"),
+    ("prices fetch --from 2023-03-01 --to 2023-03-02 --out new.csv --base-url http://", 1,
+     '--base-url "http://" is not a web address'),
+    ("prices fetch --from 2023-03-01 --to 2023-03-02 --out new.csv --base-url http://127.0.0.1:99999/a", 1,
+     "is not a web address"),
+    ("prices record --out new --for 1s --url http://:80/", 1, "is not a web address"),
+    # What was right already, and stays so.
+    ("evaluate --policy rbc --prices /dev/zero", 1, "holds more than 512 MiB"),
+    ("evaluate --policy rbc --prices folder", 1, "is a folder"),
+    ("evaluate --policy rbc --prices february.csv", 1, "february.csv:4: not a UTC minute"),
+    ("evaluate --policy rbc --prices doubled.csv", 1, "does not come after"),
+    ("evaluate --policy rbc --prices swapped.csv", 1, "the header must be"),
+    ("evaluate --policy rbc --prices trailing.csv.gz", 1, "bytes behind the end of its gzip data"),
+    ("train --prices market.csv --out new.bin --seeds 0", 2, "not in range 1 to 1000"),
+    ("train --prices market.csv --prices market.csv --out new.bin", 2, "given 2 times"),
+    ("prices fetch --from 2023-02-30 --to 2023-03-02 --out new.csv", 1, "is not a date"),
+    ("prices import summer.csv --out new.csv", 1, "is not a time with its UTC offset"),
+]
+
+
+class BadInputs(unittest.TestCase):
+    def setUp(self):
+        self.scratch = tempfile.TemporaryDirectory()
+        self.addCleanup(self.scratch.cleanup)
+        self.folder = self.scratch.name
+        self.bess("prices simulate --days 40 --out market.csv")
+        with open(self.path("market.csv")) as file:
+            market = file.read()
+        lines = market.splitlines(True)
+        head, rows = "".join(lines[:3]), lines[3:]
+        self.assertTrue(lines[2].startswith("minute_utc"))
+        texts = {
+            "cr.csv": market.replace("\n", "\r"),
+            "february.csv": head + "2023-02-30T00:00:00Z,1,1\n" + "".join(rows),
+            "doubled.csv": head + rows[0] + "".join(rows),
+            "swapped.csv": head.replace("indicative_eur_mwh,settled_eur_mwh", "settled_eur_mwh,indicative_eur_mwh"),
+            "summer.csv": "Datetime;Resolution code;Imbalance Price\n2023-10-29T02:30:00;PT15M;5\n",
+            "scalar.toml": "battery = 3\n",
+            "list.toml": "[[battery]]\npower_w = 1\n",
+            "rules.toml": RULE,
+            "twice.json": STUDENT_KEYS,
+            "twice/run.json": '{"prices": "a", "prices": "b", "identity": {}}',
+        }
+        os.mkdir(self.path("twice"))
+        os.mkdir(self.path("folder"))
+        for name, text in texts.items():
+            with open(self.path(name), "w", newline="") as file:
+                file.write(text)
+        packed = subprocess.run(["gzip"], input=market.encode(), capture_output=True, check=True).stdout
+        with open(self.path("trailing.csv.gz"), "wb") as file:
+            file.write(packed + b"more")
+        os.mkfifo(self.path("pipe"))
+        os.symlink("loop", self.path("loop"))
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def bess(self, arguments):
+        return subprocess.run([PROGRAM, *arguments.split()], cwd=self.folder, capture_output=True, text=True, timeout=120)
+
+    def names(self):
+        return {os.path.join(where, name) for where, folders, files in os.walk(self.folder) for name in folders + files}
+
+    def test_each_is_one_clear_line_and_nothing_is_left(self):
+        before = self.names()
+        for arguments, code, said in CASES:
+            with self.subTest(arguments[:90]):
+                done = self.bess(arguments)
+                lines = [line for line in done.stderr.splitlines() if not line.startswith("bess-train: warning")]
+                self.assertEqual(done.returncode, code, done.stderr)
+                self.assertIn(said, done.stderr)
+                self.assertEqual(len(lines), 1, done.stderr)
+                self.assertEqual(self.names() - before, set())
+
+    def test_a_pipe_with_a_writer_is_read(self):
+        with subprocess.Popen(["sh", "-c", "sleep 1; cat market.csv > pipe"], cwd=self.folder):
+            done = self.bess("evaluate --policy rbc --json --prices pipe")
+        self.assertEqual(json.loads(done.stdout)["policy"], "rbc", done.stderr)
+
+    def test_a_checkpoint_of_another_run_names_the_key(self):
+        train = "train --prices market.csv --method dqn --out t.bin --threads 1 --config a.toml"
+        with open(self.path("a.toml"), "w") as file:
+            file.write("[train]\nsteps = 100000\nbatch_size = 64\nvalidate_every = 20\n")
+        with subprocess.Popen([PROGRAM, *train.split()], cwd=self.folder, stderr=subprocess.PIPE, text=True) as program:
+            for line in program.stderr:
+                if "steps" in line:  # it is at work
+                    program.send_signal(signal.SIGINT)
+                    break
+            program.stderr.read()
+        self.assertEqual(program.returncode, 3)
+        with open(self.path("a.toml"), "a") as file:
+            file.write("gamma = 0.5\n")
+        done = self.bess(train + " --resume")
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertRegex(done.stderr, r"is of another run: \[train\] gamma [0-9.]+ there and \[train\] gamma 0.5 here")
+
+    def test_absurd_sizes_are_told_before_they_start(self):
+        with open(self.path("years.toml"), "w") as file:
+            file.write("[train]\nmethod = \"c51\"\nsteps = 10000000\nbatch_size = 1048576\n")
+        with subprocess.Popen([PROGRAM, *"train --prices market.csv --out t.bin --threads 1 --config years.toml".split()],
+                              cwd=self.folder, stderr=subprocess.PIPE, text=True) as program:
+            first = program.stderr.readline()
+            program.kill()
+        self.assertRegex(first, r"warning: 10000000 steps of 1048576 transitions take about [0-9]+ (days|years) on 1 core")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)
