@@ -26,8 +26,12 @@ BinaryReader::BinaryReader(const std::filesystem::path& path, std::string_view m
   if (!rest_.starts_with(magic)) fail("{}: not a {}; {}", name_, kind_, mend_);
   rest_.remove_prefix(magic.size());
   version_ = take<std::uint32_t>();
-  if (version_ > version || version_ < (version_min == 0 ? version : version_min)) {
-    fail("{}: {} version {}, this program reads {}; {}", name_, kind_, version_, version, mend_);
+  if (version_min == 0) version_min = version;
+  if (version_ > version || version_ < version_min) {
+    const std::string read = version_min == version
+                                 ? std::to_string(version)
+                                 : std::to_string(version_min) + " to " + std::to_string(version);
+    fail("{}: {} version {}, this program reads {}; {}", name_, kind_, version_, read, mend_);
   }
   std::uint32_t checksum = 0;
   if (rest_.size() < sizeof checksum) damaged("is truncated");

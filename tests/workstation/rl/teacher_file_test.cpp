@@ -167,12 +167,32 @@ TEST_F(TeacherFile, OtherFilesAreRefused) {
   }
 }
 
+/// A file of version 2 has nothing between what it was made of and its parameters.
+TEST_F(TeacherFile, OneOfBeforeIsReadAndSaysNothingOfWhatItWasLearntFor) {
+  Teacher teacher = teacher_of(Method::kDqn);
+  std::string bytes = saved(Method::kDqn);
+  const std::size_t count_at = bytes.find(teacher.provenance) + teacher.provenance.size();
+  bytes.erase(count_at, sizeof(std::uint32_t));  // of the circumstances: none
+  bytes[8] = 2;
+  bytes.resize(bytes.size() - sizeof(std::uint32_t));
+  Crc32 crc;
+  crc.add_bytes(bytes.data(), bytes.size());
+  const std::uint32_t checksum = crc.value();
+  bytes.append(reinterpret_cast<const char*>(&checksum), sizeof checksum);
+  EXPECT_EQ(refusal_of(bytes), "");
+  const Teacher read = load_teacher(path);
+  EXPECT_TRUE(read.learnt_for.empty());
+  EXPECT_EQ(std::memcmp(read.parameters.data(), teacher.parameters.data(),
+                        sizeof(float) * static_cast<std::size_t>(read.parameters.size())),
+            0);
+}
+
 TEST_F(TeacherFile, OtherVersionNamesBoth) {
   std::string bytes = saved(Method::kDqn);
-  bytes[8] = 3;
+  bytes[8] = 4;
   const std::string message = refusal_of(bytes);
-  EXPECT_NE(message.find("version 3"), std::string::npos) << message;
-  EXPECT_NE(message.find("reads 2"), std::string::npos) << message;
+  EXPECT_NE(message.find("version 4"), std::string::npos) << message;
+  EXPECT_NE(message.find("reads 2 to 3"), std::string::npos) << message;
 }
 
 /// Fields in the file: magic 8, version 4, then these.
