@@ -231,7 +231,8 @@ consteval auto make_record_fields() {
       {member<&R::findings, &F::rest_loss_w>(),
        "rest_loss_w",
        {.csv = 54, .totals = 82, .metrics = {29, "bess_rest_loss_watts"}},
-       {"Power that is lost at 0 W or besides orders, where it is more than own consumption; else 0."}},
+       {"Power that is lost at 0 W or besides orders, where it is more than own consumption; else "
+        "0."}},
       {member<&R::findings, &F::ramp_w_per_s>(),
        "ramp_w_per_s",
        {.csv = 55, .totals = 83, .metrics = {20, "bess_slow_ramp_watts_per_second"}},

@@ -149,11 +149,11 @@ TEST_F(HostileHost, AFullDiskForbidsNoRestart) {
   // The log is gone, and a new one has no room: nobody knows whether it had tripped.
   fs::remove(site_.folder.file("state/decisions.ring"));
   disk.fill();
-  EXPECT_THAT(run({"--config", config, "--cycles", "2"}, 0),
-              AllOf(HasSubstr("the decision log can be neither read nor made"),
-                    HasSubstr("not driven until bess-edge clear --yes"),
-                    HasSubstr("reason=state_lost"), Not(HasSubstr("mode=running")),
-                    Not(HasSubstr("is driven on"))));
+  EXPECT_THAT(
+      run({"--config", config, "--cycles", "2"}, 0),
+      AllOf(HasSubstr("the decision log can be neither read nor made"),
+            HasSubstr("not driven until bess-edge clear --yes"), HasSubstr("reason=state_lost"),
+            Not(HasSubstr("mode=running")), Not(HasSubstr("is driven on"))));
   EXPECT_THAT(run({"--config", allowing_to_drive(config), "--cycles", "2"}, 0),
               AllOf(HasSubstr("driving all the same"), HasSubstr("mode=running"),
                     HasSubstr("stopped: battery released")));
