@@ -11,8 +11,13 @@ namespace {
 
 std::string line_of(const std::vector<std::string>& fields) {
   std::string line;
-  for (const std::string& field : fields) line += (line.empty() ? "" : ",") + csv_field(field);
-  return line + "\n";
+  for (const std::string& field : fields) {
+    line += csv_field(field);
+    line += ',';
+  }
+  if (!line.empty()) line.pop_back();
+  line += '\n';
+  return line;
 }
 
 }  // namespace
