@@ -1,6 +1,6 @@
 // The controller, the same in every world: reach the battery, begin with what runs before left, run cycle by cycle,
 // end in a safe state. What a world supplies is below: the machine that bess-edge runs on (real_world.h), or
-// virtual time and memory (tools/hil_runner/virtual_world.h), so that what is tested there is what drives a battery.
+// virtual time and memory (tools/hil_runner/virtual/virtual_world.h), so that what is tested there is what drives a battery.
 //   reach   is the battery there, and is it the right one?
 //   begin   greet the price server, recall log and trip, come by the price level, listen to people
 //   run     cycles, each kept and told of; then the end: hand over, or 0 W and release
@@ -12,14 +12,14 @@
 #include <optional>
 #include <string>
 
-#include "edge/control/control_loop.h"
 #include "edge/control/price_history.h"
 #include "edge/log/journal.h"
+#include "edge/loop/control_loop.h"
 #include "edge/prices/http_secrets.h"
 #include "edge/program/find_battery.h"
-#include "edge/program/recall.h"
 #include "edge/program/starting_level.h"
 #include "edge/program/take_over.h"
+#include "edge/state/recall.h"
 
 namespace bess {
 

@@ -6,7 +6,7 @@
 
 #include "edge/battery/modbus_battery.h"
 #include "edge/program/edge_clock.h"
-#include "edge/program/edge_config.h"
+#include "edge/settings/edge_config.h"
 
 namespace bess {
 

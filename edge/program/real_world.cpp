@@ -1,11 +1,11 @@
 #include "edge/program/real_world.h"
 
-#include "edge/program/commission_file.h"
-#include "edge/program/people_config.h"
-#include "edge/program/published_status.h"
-#include "edge/program/record_command.h"
 #include "edge/program/release_on_failed_check.h"
 #include "edge/program/startup.h"
+#include "edge/state/commission_file.h"
+#include "edge/state/hold_file.h"
+#include "edge/state/published_status.h"
+#include "edge/state/run_identity.h"
 
 namespace bess {
 namespace {
@@ -35,8 +35,8 @@ RealWorld::RealWorld(const EdgeConfig& config, const Devices& devices)
 
 bool RealWorld::record_battery(const std::string& path, FileMessage& error) {
   if (path.empty()) return true;
-  if (!recorder_.start(path.c_str(), recording_head_of(config_), config_.map, config_.clock,
-                       error)) {
+  if (!recorder_.start(path.c_str(), recording_head_of(config_.map, config_.link, config_.clock),
+                       config_.map, config_.clock, error)) {
     return false;
   }
   battery().link().tell_exchanges(recorder_.listener());

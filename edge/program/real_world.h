@@ -10,12 +10,12 @@
 #include "edge/memory/heap_seal.h"
 #include "edge/prices/price_feed.h"
 #include "edge/program/edge_clock.h"
-#include "edge/program/edge_config.h"
-#include "edge/program/exchange_recorder.h"
 #include "edge/program/hold_watch.h"
-#include "edge/program/limit_file.h"
-#include "edge/program/recall.h"
 #include "edge/program/service_notify.h"
+#include "edge/recording/exchange_recorder.h"
+#include "edge/settings/edge_config.h"
+#include "edge/state/limit_file.h"
+#include "edge/state/recall.h"
 
 namespace bess {
 

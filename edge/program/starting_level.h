@@ -7,8 +7,8 @@
 #include "edge/control/policy.h"
 #include "edge/control/price_history.h"
 #include "edge/prices/history_pages.h"
-#include "edge/program/edge_config.h"
 #include "edge/program/level_note.h"
+#include "edge/settings/edge_config.h"
 
 namespace bess {
 

@@ -2,22 +2,19 @@
 
 #include <signal.h>
 #include <sys/prctl.h>
-#include <unistd.h>
 
 #include <cstdio>
 
 #include "edge/control/policy.h"
 #include "edge/log/journal.h"
 #include "edge/prices/http_secrets.h"
-#include "edge/program/commission_file.h"
-#include "edge/program/hold_file.h"
 #include "edge/program/level_note.h"
-#include "edge/program/people_config.h"
-#include "edge/program/price_transport.h"
-#include "edge/program/storage_health.h"
 #include "edge/program/threshold_note.h"
 #include "edge/program/wishes_note.h"
 #include "edge/registers/codec.h"
+#include "edge/settings/price_transport.h"
+#include "edge/state/commission_file.h"
+#include "edge/state/hold_file.h"
 #include "shared/utc_text.h"
 
 namespace bess {
@@ -219,23 +216,6 @@ void prepare_process() {
   set_market_time_zone();
   signal(SIGPIPE, SIG_IGN);           // whoever reads the log may go away, the battery must not
   prctl(PR_SET_TIMERSLACK, 1'000UL);  // ns; the default 50 us would be seen at high time scales
-}
-
-RunIdentity identity_of_run(const EdgeConfig& config) {
-  RunIdentity identity;
-  identity.version = BESS_VERSION;
-  identity.student_hash = student_hash();
-  identity.student_provenance = student_provenance();
-  identity.context = context_name(student_context().kind);
-  identity.map = config.map.name.view();
-  identity.variant = config.map.variant.view();
-  identity.battery = battery_place(config);
-  identity.control = config.control.control;
-  identity.pid = getpid();
-  identity.start_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
-  identity.wear = card_wear_of(config.state.folder.c_str());
-  identity.cadence_ms = kSecondsPerStep * 1'000 / config.clock.scale;
-  return identity;
 }
 
 }  // namespace bess

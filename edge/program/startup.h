@@ -6,9 +6,9 @@
 #include "edge/log/run_status.h"
 #include "edge/prices/price_feed.h"
 #include "edge/program/edge_clock.h"
-#include "edge/program/edge_config.h"
 #include "edge/program/find_battery.h"
-#include "edge/program/recall.h"
+#include "edge/settings/edge_config.h"
+#include "edge/state/recall.h"
 
 namespace bess {
 
@@ -36,9 +36,6 @@ void journal_transport(const EdgeConfig& config);
 /// Prints settings, encoded orders, a battery reading and the newest price; true when all is well.
 bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& prices,
                   const EdgeClock& clock);
-
-/// Who this process is, for the status that it publishes.
-RunIdentity identity_of_run(const EdgeConfig& config);
 
 /// True when this machine computes the built-in student as the exporter did.
 bool check_student();

@@ -1,7 +1,7 @@
 // What a run takes over from the log of the runs before, which may be empty.
 #pragma once
 
-#include "edge/control/control_loop.h"
+#include "edge/loop/control_loop.h"
 
 namespace bess {
 

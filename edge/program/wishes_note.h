@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "edge/control/control_settings.h"
 #include "edge/control/hold.h"
+#include "edge/loop/control_settings.h"
 
 namespace bess {
 

@@ -1,6 +1,6 @@
 // The real control loop against the battery model and a fake clock: whole days in milliseconds,
 // with faults from one named seed, and invariants that hold whatever bus, market and clock do.
-#include "edge/control/control_loop.h"
+#include "edge/loop/control_loop.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,7 @@
 #include <functional>
 #include <random>
 
-#include "edge/control/control_loop.h"
+#include "edge/loop/control_loop.h"
 #include "shared/host/minute_file.h"
 #include "tests/support/fake_plant.h"
 #include "tests/support/moving_house.h"

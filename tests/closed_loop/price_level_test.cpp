@@ -10,9 +10,9 @@
 #include <memory>
 #include <thread>
 
-#include "edge/control/control_loop.h"
 #include "edge/control/level_start.h"
 #include "edge/log/ring_log.h"
+#include "edge/loop/control_loop.h"
 #include "edge/prices/history_pages.h"
 #include "tests/support/fake_plant.h"
 #include "tests/support/market_series.h"

@@ -5,7 +5,7 @@
 #include <deque>
 #include <vector>
 
-#include "edge/control/control_loop.h"
+#include "edge/loop/control_loop.h"
 #include "edge/program/take_over.h"
 #include "tests/support/fake_plant.h"
 

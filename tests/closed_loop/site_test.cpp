@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "edge/control/control_loop.h"
+#include "edge/loop/control_loop.h"
 #include "shared/host/minute_file.h"
 #include "tests/support/fake_plant.h"
 #include "tools/battery_sim/house_load.h"

@@ -1,7 +1,7 @@
 // Holds, reserve, full charges and the spread of starts in the real control loop, on a fake clock.
 #include <gtest/gtest.h>
 
-#include "edge/control/control_loop.h"
+#include "edge/loop/control_loop.h"
 #include "tests/support/fake_plant.h"
 
 namespace bess {

@@ -5,9 +5,9 @@
 #include <string>
 
 #include "edge/base/static_vector.h"
-#include "edge/control/control_loop.h"
 #include "edge/control/policy.h"
 #include "edge/log/log_text.h"
+#include "edge/loop/control_loop.h"
 #include "shared/fixed_text.h"
 #include "shared/utc_text.h"
 #include "tests/edge/log/sample_records.h"

@@ -1,5 +1,5 @@
 // The operator's configuration; the maps it may name are the shipped ones.
-#include "edge/program/edge_config.h"
+#include "edge/settings/edge_config.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/scratch_file.h"
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "edge/control/decision_signature.h"
-#include "edge/program/edge_config.h"
+#include "edge/settings/edge_config.h"
 #include "shared/local_time.h"
 #include "shared/signature.h"
 #include "shared/utc_text.h"

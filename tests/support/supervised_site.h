@@ -9,7 +9,7 @@
 #include <functional>
 #include <memory>
 
-#include "edge/control/control_loop.h"
+#include "edge/loop/control_loop.h"
 #include "tests/support/image_device.h"
 #include "tools/battery_sim/house_load.h"
 

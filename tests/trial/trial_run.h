@@ -8,7 +8,7 @@
 #include <optional>
 #include <string_view>
 
-#include "edge/control/control_loop.h"
+#include "edge/loop/control_loop.h"
 #include "edge/program/take_over.h"
 #include "shared/host/minute_file.h"
 #include "tests/trial/trial_battery.h"

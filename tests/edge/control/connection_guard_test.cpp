@@ -1,5 +1,5 @@
 // What the connection bears: hand-made cases for each limit, and what holds for any load and limit.
-#include "edge/control/connection_guard.h"
+#include "edge/site/connection_guard.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // How soon faults that come and go are found, and what is forgiven.
-#include "edge/control/leaky_count.h"
+#include "edge/supervision/leaky_count.h"
 
 #include <gtest/gtest.h>
 

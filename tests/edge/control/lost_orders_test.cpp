@@ -1,12 +1,12 @@
 // Which orders count as lost, how soon that is found, what is nobody's intention, and how long control
 // insists.
-#include "edge/control/lost_orders.h"
+#include "edge/supervision/lost_orders.h"
 
 #include <gtest/gtest.h>
 
 #include <functional>
 
-#include "edge/control/supervision.h"
+#include "edge/supervision/supervision.h"
 
 namespace bess {
 namespace {

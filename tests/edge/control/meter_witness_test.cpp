@@ -1,12 +1,12 @@
 // The meter's witness, reading by reading: what a doubt is, what a finding, and how it ends. Whole days
 // with houses that move are in tests/closed_loop/meter_liars_test.cpp.
-#include "edge/control/meter_witness.h"
+#include "edge/site/meter_witness.h"
 
 #include <gtest/gtest.h>
 
 #include <functional>
 
-#include "edge/control/house_watch.h"
+#include "edge/site/house_watch.h"
 #include "shared/units_and_limits.h"
 
 namespace bess {

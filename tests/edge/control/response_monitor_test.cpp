@@ -1,6 +1,6 @@
 // What counts as following an order: every fault is found in two readings, and a battery that is only
 // slow, noisy or near an end of its charge is left alone.
-#include "edge/control/response_monitor.h"
+#include "edge/supervision/response_monitor.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // The site's parts: energy of the quarter-hour, the outside limit's line, and what becomes of both
 // when the meter or the limit is lost.
-#include "edge/control/site_limits.h"
+#include "edge/site/site_limits.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <tuple>
 #include <vector>
 
-#include "edge/control/response_monitor.h"
+#include "edge/supervision/response_monitor.h"
 
 namespace bess {
 namespace {

@@ -1,5 +1,5 @@
 // What follows from what was found: trips stay, pauses end and grow, conditions pass.
-#include "edge/control/supervision.h"
+#include "edge/supervision/supervision.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "edge/control/control_loop.h"
+#include "edge/loop/control_loop.h"
 #include "edge/prices/history_pages.h"
 #include "shared/utc_text.h"
 #include "tests/support/fake_resolver.h"

@@ -12,8 +12,8 @@
 #include <filesystem>
 
 #include "edge/log/journal.h"
-#include "edge/program/instance_lock.h"
 #include "edge/program/service_notify.h"
+#include "edge/state/instance_lock.h"
 #include "shared/scaled_clock.h"
 #include "tests/support/temporary_folder.h"
 

@@ -26,25 +26,42 @@ blame "$(includes '"shared/host' "$(echo shared/*.h shared/*.cpp) shared/nn")" "
 layer edge/base                     edge/base shared
 layer edge/memory                   edge/memory edge/base shared
 layer edge/control                  edge/control edge/base shared
+layer edge/supervision              edge/supervision edge/control edge/base shared
+layer edge/site                     edge/site edge/control edge/base shared
+layer edge/loop                     edge/loop edge/supervision edge/site edge/control edge/base shared
 layer edge/registers                edge/registers edge/control/power_order.h edge/base shared
 layer edge/battery                  edge/battery edge/control edge/registers edge/base shared
 layer edge/prices                   edge/prices edge/control edge/memory edge/base shared
 layer edge/log                      edge/log edge/control edge/memory edge/base shared
-layer edge/program                  edge shared
+grounds="edge/battery edge/control edge/loop edge/site edge/supervision edge/log edge/memory edge/prices edge/registers edge/base shared"
+layer edge/settings                 edge/settings $grounds
+layer edge/recording                edge/recording $grounds
+layer edge/state                    edge/state edge/settings $grounds
+layer edge/program                  edge/program edge/state edge/recording edge/settings $grounds
+layer edge/commands                 edge/commands edge/program edge/state edge/recording edge/settings $grounds
 layer edge/main.cpp                 edge shared
 # Beside the controller: it reads what the log wrote.
 layer edge/notify                   edge/notify edge/log edge/control edge/prices/http_secrets.h edge/base shared
-blame "$(includes '"shared/host' edge | grep -vE '^edge/(registers/map_|program/|notify/)')" \
-  "only start-up uses the heap: edge/program and the reader of register maps"
+blame "$(includes '"shared/host' edge | grep -vE '^edge/(registers/map_|settings/|recording/|state/|program/|commands/|notify/)')" \
+  "only start-up uses the heap: from settings to commands, and the reader of register maps"
 # The simulators.
 layer tools/battery_sim             tools edge/registers edge/base shared
 layer tools/market_sim              tools shared
 layer tools/settle                  tools shared
 layer tools/sim                     tools shared
 # Independent of the simulators, whose mistakes it must not share.
-layer tests/trial                   tests/trial tests/support/thorough.h edge/program/take_over.h edge/control edge/base shared
+layer tests/trial                   tests/trial tests/support/thorough.h edge/program/take_over.h edge/loop edge/control edge/base shared
 # Beside the real programs it runs the edge's own objects in virtual time.
-layer tools/hil_runner              tools edge shared
+h=tools/hil_runner
+around="tools/sim tools/battery_sim tools/market_sim edge shared"
+layer $h/base                       $h/base shared
+layer $h/scenario                   $h/scenario $around
+layer $h/evidence                   $h/evidence $around
+layer $h/judge                      $h/judge $h/evidence $h/scenario $around
+layer $h/virtual                    $h/virtual $h/evidence $h/scenario $h/base $around
+layer $h/real                       $h/real $h/evidence $h/scenario $h/base $around
+layer $h/wall                       $h/wall $h/real $h/evidence $h/scenario $h/base $around
+layer $h/run                        $h $around
 # The workstation, in the order in which data flows.
 w=workstation
 layer $w/base                       $w/base shared
@@ -72,9 +89,9 @@ only curl/   'edge/prices/|edge/notify/curl_handle.h:'
 only mosquitto.h edge/notify/mqtt_client.cpp: 'edge shared workstation tools'
 only cjson/  'edge/prices/|shared/host/json.cpp:' 'edge shared workstation tools'
 only toml++/ shared/host/toml_document.cpp: 'edge shared workstation tools'
-only pugixml '(workstation/(market/feed/entsoe_xml|report/figure)|tools/hil_runner/junit).cpp:' 'edge shared workstation tools'
+only pugixml '(workstation/(market/feed/entsoe_xml|report/figure)|tools/hil_runner/run/junit).cpp:' 'edge shared workstation tools'
 
 # The control layer knows neither files, sockets, threads nor signals.
 io='<(sys/|arpa/|net|poll|unistd|fcntl|pthread|signal|semaphore|cstdio|stdio|fstream|iostream|thread|mutex)'
-blame "$(grep -rnHE "^#include $io" edge/control)" "edge/control knows no io"
+blame "$(grep -rnHE "^#include $io" edge/control edge/supervision edge/site edge/loop)" "the control layer knows no io"
 exit $status

@@ -1,5 +1,5 @@
 // Virtual and wall time held against each other: which cycles count, and what is the same order.
-#include "tools/hil_runner/agreement.h"
+#include "tools/hil_runner/run/agreement.h"
 
 #include <gtest/gtest.h>
 

@@ -8,11 +8,11 @@
 #include <optional>
 
 #include "shared/scaled_clock.h"
-#include "tools/hil_runner/edge_settings.h"
-#include "tools/hil_runner/publication.h"
-#include "tools/hil_runner/virtual_bus.h"
-#include "tools/hil_runner/virtual_world.h"
-#include "tools/hil_runner/work_folder.h"
+#include "tools/hil_runner/base/work_folder.h"
+#include "tools/hil_runner/scenario/edge_settings.h"
+#include "tools/hil_runner/scenario/publication.h"
+#include "tools/hil_runner/virtual/virtual_bus.h"
+#include "tools/hil_runner/virtual/virtual_world.h"
 
 namespace bess {
 namespace {

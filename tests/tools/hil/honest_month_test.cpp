@@ -10,7 +10,7 @@
 #include "tests/support/shipped_maps.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/thorough.h"
-#include "tools/hil_runner/run_scenario.h"
+#include "tools/hil_runner/run/run_scenario.h"
 
 namespace bess {
 namespace {

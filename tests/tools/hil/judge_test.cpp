@@ -2,9 +2,10 @@
 #include <gtest/gtest.h>
 
 #include "shared/scaled_clock.h"
-#include "tools/hil_runner/edge_settings.h"
-#include "tools/hil_runner/invariants.h"
-#include "tools/hil_runner/work_folder.h"
+#include "tools/hil_runner/base/work_folder.h"
+#include "tools/hil_runner/judge/judge.h"
+#include "tools/hil_runner/scenario/edge_settings.h"
+#include "tools/hil_runner/scenario/rules.h"
 
 namespace bess {
 namespace {
@@ -24,7 +25,7 @@ struct HandMade {
     scenario.minutes = 20;
     scenario.battery.map = BESS_SOURCE_DIR "/edge/maps/alphaess.toml";
     scenario.prices.steps = {{0, 100}};
-    for (const InvariantInfo& info : invariants()) scenario.invariants.emplace_back(info.name);
+    for (const RuleInfo& info : kRuleInfos) scenario.invariants.emplace_back(info.name);
     for (int minute = 0; minute < 20; minute += 2) order(minute, 0);
     evidence.orders.push_back(
         {.utc_ns = at_ns(20, 1), .kind = DispatchEvent::Kind::kStop, .soc_frac = 0.5});

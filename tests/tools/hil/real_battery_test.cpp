@@ -1,5 +1,5 @@
 // A real battery: which scenarios may drive it, what it was told by the bytes on its bus, and when its limits are broken.
-#include "tools/hil_runner/real_battery.h"
+#include "tools/hil_runner/real/real_battery.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

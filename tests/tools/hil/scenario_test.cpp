@@ -1,6 +1,6 @@
 // Scenario files: what is read, what is refused with one clear line, and that the shipped ones leave no
 // fault, no map and no event of the list out.
-#include "tools/hil_runner/scenario.h"
+#include "tools/hil_runner/scenario/scenario.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

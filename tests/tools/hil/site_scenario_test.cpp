@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "tools/hil_runner/run_scenario.h"
+#include "tools/hil_runner/run/run_scenario.h"
 
 namespace bess {
 namespace {

@@ -1,5 +1,5 @@
 // The trial week: paired losses, and a week of the yardstick with everything on.
-#include "tools/hil_runner/trial_week.h"
+#include "tools/hil_runner/run/trial_week.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

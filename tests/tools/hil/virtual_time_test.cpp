@@ -1,6 +1,6 @@
 // Runs in virtual time: they repeat to the bit, the energy is what a hand calculation says, and the process is
 // left as it was.
-#include "tools/hil_runner/virtual_time.h"
+#include "tools/hil_runner/virtual/virtual_time.h"
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "shared/scaled_clock.h"
-#include "tools/hil_runner/run_scenario.h"
+#include "tools/hil_runner/run/run_scenario.h"
 
 namespace bess {
 namespace {

@@ -1,0 +1,71 @@
+#include "edge/commands/clear_command.h"
+
+#include <cstdio>
+
+#include "edge/log/journal.h"
+#include "edge/log/log_reader.h"
+#include "edge/log/whole_file.h"
+#include "edge/state/recall.h"
+#include "edge/state/run_locks.h"
+#include "shared/utc_text.h"
+
+namespace bess {
+namespace {
+
+/// False with one line where the word cannot be left.
+bool leave_word(const char* path, std::int64_t trip_utc_s, FileMessage& error) {
+  return clear_trip_of(path, trip_utc_s) || fail_with_errno(path, "cannot be written", error);
+}
+
+/// In both places; one is enough for the controller to hear it.
+int clear(const EdgeConfig& config, const ClearancePaths& paths, const Trip& trip) {
+  FileMessage state_error;
+  FileMessage run_error;
+  const bool in_state = leave_word(paths.state.c_str(), trip.utc_s, state_error);
+  const bool in_run = !paths.run.empty() && leave_word(paths.run.c_str(), trip.utc_s, run_error);
+  if (!in_state) report(JournalLevel::kError, "%s", state_error.c_str());
+  if (!run_error.empty()) report(JournalLevel::kWarning, "%s", run_error.c_str());
+  if (!in_state && !in_run) {
+    report(JournalLevel::kError,
+           "not cleared: the battery stays released until the disk is mended");
+    return 1;
+  }
+  std::printf("cleared    the battery is driven again from the next %s on\n",
+              is_controller_running(config) ? "cycle" : "start");
+  if (!in_state) {
+    std::printf(
+        "           kept in %s alone, which the next boot of this machine forgets: then clear it "
+        "again\n",
+        paths.run.c_str());
+  }
+  return 0;
+}
+
+}  // namespace
+
+int run_clear_command(const CommandLine& command_line, const EdgeConfig& config) {
+  LogReader log;
+  FileMessage error;
+  if (!log.open(config.log, error)) {
+    report(JournalLevel::kError, "%s: whether the supervision has tripped cannot be known",
+           error.c_str());
+    return 1;
+  }
+  if (!error.empty()) report(JournalLevel::kWarning, "note: %s", error.c_str());
+  const ClearancePaths paths = clearance_paths(config);
+  const Trip trip = standing_trip(log.ring(), log.run_ring(), paths);
+  if (!trip.is_set()) {
+    std::printf("nothing to clear: the supervision has not tripped\n");
+    return 0;
+  }
+  std::printf("tripped    %s at %s\n", reason_name(trip.reason).data(),
+              utc_text(trip.utc_s).c_str());
+  if (!command_line.yes) {
+    report(JournalLevel::kError,
+           "find out why first (bess-edge log --last 10); then add --yes to let it drive again");
+    return 2;
+  }
+  return clear(config, paths, trip);
+}
+
+}  // namespace bess

@@ -1,0 +1,168 @@
+#include "edge/commands/commission_command.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "edge/battery/commission.h"
+#include "edge/log/journal.h"
+#include "edge/program/startup.h"
+#include "edge/site/house_watch.h"
+#include "edge/state/commission_file.h"
+
+namespace bess {
+namespace {
+
+/// The meter of [meter], a device of its own or the battery's grid point.
+class SiteMeter {
+ public:
+  SiteMeter(const SiteSettings& settings, ModbusMeter& meter)
+      : settings_(settings), meter_(meter) {}
+  [[nodiscard]] bool exists() const {
+    return settings_.meter != MeterSource::kNone && settings_.witness.judges;
+  }
+  Status read(const BatteryMeasurement& m, std::int32_t& grid_power_w) {
+    if (settings_.meter == MeterSource::kMap) return meter_.read(grid_power_w);
+    grid_power_w = m.grid_power_w;
+    return m.has_grid_power ? Status::kOk : Status::kImplausible;
+  }
+
+ private:
+  const SiteSettings& settings_;
+  ModbusMeter& meter_;
+};
+
+CommissionSettings settings_of(const EdgeConfig& config) {
+  const GuardSettings& guard = config.control.guard;
+  CommissionSettings settings;
+  const Commissioning& test = config.map.commissioning;
+  settings.power_w = std::min(test.power_w, guard.power_w);
+  settings.rest_s = test.settle_s;
+  settings.drive_s = test.duration_s;
+  settings.tolerance_percent = test.tolerance_percent;
+  settings.response = config.map.response;
+  settings.step_w_max =
+      guard.ramp_w_max > 0 ? std::min(guard.ramp_w_max, 2 * guard.power_w) : 2 * guard.power_w;
+  settings.soc_min_e4 = guard.soc_min_e4;
+  settings.soc_max_e4 = guard.soc_max_e4;
+  settings.order_duration_s = config.control.order_duration_s;
+  return settings;
+}
+
+int ask_for_yes(const EdgeConfig& config, const CommissionSettings& settings) {
+  report(JournalLevel::kError,
+         "commission orders the battery at %s to rest for %d s, then to charge and to discharge %d "
+         "W for %d s each, then releases it; add --yes to do that",
+         battery_place(config).c_str(), settings.rest_s, settings.power_w, settings.drive_s);
+  return 2;
+}
+
+void complain_about_release(const EdgeConfig& config, const CommissionResult& result) {
+  char timer[64] = "; it has no timer of its own: set it back by hand";
+  if (config.control.has_watchdog) {
+    std::snprintf(timer, sizeof timer, "; its own timer ends that after %d s",
+                  config.control.order_duration_s);
+  }
+  report(JournalLevel::kError,
+         "commission %s: the battery could not be released (%s) and may still follow an order of "
+         "%d W%s",
+         battery_place(config).c_str(), status_text(result.release_status).data(),
+         result.ordered_power_w, timer);
+}
+
+void print_direction(const char* name, const DirectionResult& direction, std::int32_t soc_e4) {
+  if (!direction.is_tested) {
+    std::printf(
+        "%-10s not tested: SoC %.1f %% or the battery's own limits leave no room; the other "
+        "direction is what is known\n",
+        name, soc_e4 / 100.0);
+    return;
+  }
+  std::printf("%-10s ordered %d W, measured %d W", name, direction.ordered_power_w,
+              direction.measured_power_w);
+  if (direction.came_ms >= 0) {
+    std::printf("; %.1f s until anything showed, there within %.1f s",
+                static_cast<double>(direction.lag_ms) / 1e3,
+                static_cast<double>(direction.came_ms) / 1e3);
+  }
+  if (direction.ramp_w_per_s > 0) std::printf(", %d W/s", direction.ramp_w_per_s);
+  std::printf("\n");
+}
+
+void print_measured(const EdgeConfig& config, const CommissionResult& result) {
+  if (result.charge.is_tested || result.discharge.is_tested) {
+    print_direction("charge", result.charge, result.soc_e4);
+    print_direction("discharge", result.discharge, result.soc_e4);
+  }
+  if (result.meter == MeterVerdict::kNotAsked) return;
+  std::printf("meter      shows %d %% of the battery's steps; house %d W at rest%s\n",
+              result.meter_percent, result.rest_house_w,
+              is_plausible_house(result.rest_house_w, 0, config.site.settings.pv_w_max)
+                  ? ""
+                  : ", which is below zero: is its sign right? Panels: [meter] pv_w_max");
+}
+
+/// With which it would pass.
+void print_proposal(const EdgeConfig& config, const CommissionResult& result) {
+  if (result.wanted_settle_s > 0 || result.wanted_tolerance_w > 0) {
+    std::printf("[response]   # of the map, %s\n", config.map_path.c_str());
+  }
+  if (result.wanted_settle_s > 0) {
+    std::printf("settle_s = %d   # it says %d\n", result.wanted_settle_s,
+                config.map.response.settle_s);
+  }
+  if (result.wanted_tolerance_w > 0) {
+    std::printf("tolerance_w = %d   # it says %d\n", result.wanted_tolerance_w,
+                config.map.response.tolerance_w);
+  }
+  if (result.wanted_ramp_w_max > 0) {
+    std::printf(
+        "[guard]      # of the configuration: a larger step takes longer than that\n"
+        "ramp_w_max = %d\n",
+        result.wanted_ramp_w_max);
+  }
+}
+
+bool is_link(CommissionVerdict verdict) {
+  return verdict == CommissionVerdict::kNoLink || verdict == CommissionVerdict::kMeterLost;
+}
+
+int refuse(const EdgeConfig& config, const CommissionResult& result) {
+  const bool has_status = is_link(result.verdict);
+  report(JournalLevel::kError, "commission %s: ordered %d W, measured %d W: %s%s%s",
+         battery_place(config).c_str(), result.ordered_power_w, result.measured_power_w,
+         commission_text(result.verdict).data(), has_status ? ": " : "",
+         has_status ? status_text(result.status).data() : "");
+  print_proposal(config, result);
+  return 1;
+}
+
+}  // namespace
+
+int run_commission_command(const CommandLine& command_line, const EdgeConfig& config,
+                           ModbusBattery& battery, ModbusMeter& meter, EdgeClock& clock) {
+  const CommissionSettings settings = settings_of(config);
+  if (!command_line.yes) return ask_for_yes(config, settings);
+  if (!reach_battery(config, battery, clock)) return 1;
+  std::printf("commission %s: resting %d s, then %d W for %d s each way ...\n",
+              battery_place(config).c_str(), settings.rest_s, settings.power_w, settings.drive_s);
+  std::fflush(stdout);
+  const CommissionResult result =
+      SignCheck<ModbusBattery, EdgeClock, SiteMeter>(settings, battery, clock,
+                                                     SiteMeter(config.site.settings, meter))
+          .run();
+  if (result.release_status != Status::kOk) complain_about_release(config, result);
+  print_measured(config, result);
+  std::fflush(stdout);
+  if (result.verdict != CommissionVerdict::kPassed) return refuse(config, result);
+  std::string error;
+  const std::int64_t utc_s = clock.now_utc_ns() / kNanosecondsPerSecond;
+  if (!write_commission_file(config, result, utc_s, error)) {
+    report(JournalLevel::kError, "%s", error.c_str());
+    return 1;
+  }
+  std::printf("passed     ordered %d W, measured %d W: the sign is right; stored in %s\n",
+              result.ordered_power_w, result.measured_power_w, config.state.folder.c_str());
+  return 0;
+}
+
+}  // namespace bess

@@ -1,0 +1,306 @@
+#include "edge/commands/status_command.h"
+
+#include <unistd.h>
+
+#include <cstdio>
+
+#include "edge/log/health.h"
+#include "edge/log/journal.h"
+#include "edge/log/log_reader.h"
+#include "edge/state/published_status.h"
+#include "edge/state/storage_health.h"
+#include "edge/state/update_state.h"
+#include "shared/host/json.h"
+#include "shared/units_and_limits.h"
+#include "shared/utc_text.h"
+
+namespace bess {
+namespace {
+
+using R = CycleRecord;
+using B = BatteryMeasurement;
+using P = PriceReport;
+using C = BatteryCounters;
+using L = PriceLevel;
+using S = SiteReport;
+using F = ResponseFindings;
+using M = MeterTrust;
+using T = RunTotals;
+using H = HoldReport;
+
+const char* text_of(JsonValue found) { return found.text_or("none"); }
+
+bool is_true(JsonValue found) { return found.boolean().value_or(false); }
+
+Health health_of(const EdgeConfig& config, const PublishedStatus& published,
+                 const std::string& update_trouble) {
+  const JsonValue status = published.status.value();
+  HealthInputs in;
+  in.is_running = published.holder != 0;
+  in.disk_is_full = takes_no_file(config.state.folder.c_str());
+  const CardWear wear = card_wear_of(config.state.folder.c_str());
+  if (wear.used_life_percent > kUsedLifePercentMax) {
+    in.disk_used_life_percent = wear.used_life_percent;
+  }
+  in.disk_spare_level = wear.spare_level;
+  in.file_system_errors = wear.file_system_errors;
+  in.update_trouble = update_trouble;
+  in.unknown = published.unknown;
+  if (!status.exists()) return assess_health(in);
+  in.is_of_this_run = published.is_of_this_run;
+  in.age_ms = published.age_ms;
+  in.cadence_ms = whole(status["cadence_ms"]);
+  in.cycles = whole(field<&T::cycles>(status));
+  in.mode = text_of(field<&R::mode>(status));
+  in.reason = text_of(field<&R::reason>(status));
+  in.battery_status = text_of(field<&R::battery_status>(status));
+  in.price_status = text_of(field<&R::price, &P::status>(status));
+  in.meter_status = text_of(field<&R::site, &S::meter_status>(status));
+  in.meter_is_mismatch = is_true(field<&R::site, &S::trust, &M::is_mismatch>(status));
+  in.house_is_implausible = is_true(field<&R::site, &S::house_is_implausible>(status));
+  in.house_w = whole(field<&R::site, &S::grid_power_w>(status)) -
+               whole(field<&R::measurement, &B::power_w>(status));
+  in.limit_status = text_of(field<&R::site, &S::limit_status>(status));
+  in.unanswered_orders = whole(field<&R::unanswered_orders>(status));
+  in.weak_answers = whole(field<&R::weak_answers>(status));
+  in.lost_orders = whole(field<&R::lost_orders, &LostOrderHistory::lost>(status));
+  in.orders_are_lost = is_true(field<&R::lost_orders, &LostOrderHistory::is_found>(status));
+  in.judged_orders = whole(field<&R::lost_orders, &LostOrderHistory::judged>(status));
+  in.energy_share_percent = whole(field<&R::findings, &F::energy_share_percent>(status));
+  in.rest_loss_w = whole(field<&R::findings, &F::rest_loss_w>(status));
+  in.ramp_w_per_s = whole(field<&R::findings, &F::ramp_w_per_s>(status));
+  in.locked_readings = whole(field<&R::findings, &F::locked_readings>(status));
+  in.trip = text_of(field<&R::trip, &Trip::reason>(status));
+  in.battery_warns = is_true(field<&R::measurement, &B::warning>(status));
+  in.disk_is_slow = is_true(field<&T::disk_is_slow>(status));
+  in.disk_is_failing = is_true(field<&T::disk_is_failing>(status));
+  in.run_folder_is_failing = is_true(field<&T::run_folder_is_failing>(status));
+  in.price_step_held = is_true(field<&R::price, &P::step_held>(status));
+  in.held_eur_per_mwh = number(field<&R::price, &P::held_centi_eur_per_mwh>(status)) / kCentiPerEur;
+  in.has_price = is_true(field<&R::price, &P::has_row>(status));
+  in.price_eur_per_mwh =
+      number(field<&R::price, &P::price_centi_eur_per_mwh>(status)) / kCentiPerEur;
+  in.price_frozen = is_true(field<&R::price_frozen>(status));
+  in.price_unchanged_s = whole(field<&R::standing_price, &StandingPrice::unchanged_s>(status));
+  in.hold_is_unreadable = is_true(field<&R::hold, &H::unreadable>(status));
+  in.cycles_behind = published.cycles_behind;
+  return assess_health(in);
+}
+
+void print_health(const Health& health) {
+  std::printf("health     %s\n", health_name(health.level).data());
+  for (const std::string& reason : health.reasons) std::printf("           %s\n", reason.c_str());
+}
+
+/// What the student is given besides clock, SoC and price, where that is the trailing level.
+void print_level(JsonValue s) {
+  if (std::string_view(text_of(s["context"])) != "level") return;
+  const double level = number(field<&R::price_level, &L::centi_q16>(s)) / L::kQ16PerEur;
+  const long long context_class = whole(field<&R::context_class>(s));
+  if (context_class == 0 && level == 0) {  // exactly: no price has set it yet
+    std::printf("level      not known\n");
+    return;
+  }
+  std::printf("level      %.2f EUR/MWh, ", level);
+  if (context_class == 0) {
+    std::printf("the student was not asked\n");
+  } else {
+    std::printf("class %lld of %d\n", context_class, kContextClassCount);
+  }
+}
+
+/// What people asked for: a hold with its end, the reserve of this hour, full charges.
+void print_wishes(JsonValue s) {
+  if (is_true(field<&R::hold, &H::held>(s))) {
+    std::printf("hold       %lld W until %s\n", whole(field<&R::hold, &H::power_w>(s)),
+                text_of(field<&R::hold, &H::until_utc_s>(s)));
+  }
+  const double reserve_e4 = number(field<&R::reserve_soc_e4>(s));
+  if (reserve_e4 > 0) std::printf("reserve    SoC %.1f %% at this hour\n", reserve_e4 / 100);
+  std::printf("full       %lld days since the last full charge\n",
+              whole(field<&R::days_since_full>(s)));
+}
+
+/// Nothing where there is no meter.
+void print_site(JsonValue s) {
+  if (!is_true(field<&R::site, &S::has_grid_power>(s))) return;
+  const double grid_w = number(field<&R::site, &S::grid_power_w>(s));
+  std::printf(
+      "grid       %.0f W (import is positive), house %.0f W, %lld Wh imported in this "
+      "quarter-hour\n",
+      grid_w, grid_w - number(field<&R::measurement, &B::power_w>(s)),
+      whole(field<&R::site, &S::quarter_hour_import_wh>(s)));
+}
+
+void print_last_cycle(JsonValue s, bool is_running) {
+  std::printf("%-10s %s at %s, cycle %lld\n", is_running ? "state" : "was",
+              text_of(field<&R::mode>(s)), text_of(field<&R::utc_s>(s)),
+              whole(field<&R::cycle>(s)));
+  if (is_true(field<&R::has_measurement>(s))) {
+    std::printf("battery    SoC %.1f %%, %.0f W (charging is positive), %s\n",
+                number(field<&R::measurement, &B::soc_e4>(s)) / 100,
+                number(field<&R::measurement, &B::power_w>(s)),
+                text_of(field<&R::battery_status>(s)));
+  } else {
+    std::printf("battery    not measured, %s\n", text_of(field<&R::battery_status>(s)));
+  }
+  if (is_true(field<&R::price, &P::has_row>(s))) {
+    std::printf("price      %.2f EUR/MWh, %.0f s old at the decision, %s\n",
+                number(field<&R::price, &P::price_centi_eur_per_mwh>(s)) / 100,
+                number(field<&R::price_age_s>(s)), text_of(field<&R::price, &P::status>(s)));
+  } else {
+    std::printf("price      none, %s\n", text_of(field<&R::price, &P::status>(s)));
+  }
+  if (is_true(field<&R::price, &P::step_held>(s))) {
+    std::printf("held       %.2f EUR/MWh, until the next row confirms it\n",
+                number(field<&R::price, &P::held_centi_eur_per_mwh>(s)) / kCentiPerEur);
+  }
+  print_level(s);
+  print_site(s);
+  std::printf("order      %.0f W, reason %s\n", number(field<&R::ordered_power_w>(s)),
+              text_of(field<&R::reason>(s)));
+  print_wishes(s);
+}
+
+void print_counters(JsonValue s) {
+  std::printf(
+      "cycles     %lld, missed ticks %lld, late orders %lld, orders written %lld, log records "
+      "dropped %lld\n",
+      whole(field<&T::cycles>(s)), whole(field<&R::missed_ticks>(s)),
+      whole(field<&R::deadline_misses>(s)), whole(field<&T::written_orders>(s)),
+      whole(field<&T::records_dropped>(s)));
+  std::printf("failures   battery %lld, prices %lld, disk %lld\n",
+              whole(field<&T::battery_failures>(s)), whole(field<&T::price_failures>(s)),
+              whole(field<&T::disk_failures>(s)));
+  std::printf("modbus     %lld requests, %lld failed, %lld reconnects, %lld register writes\n",
+              whole(field<&R::counters, &C::requests>(s)),
+              whole(field<&R::counters, &C::failed_requests>(s)),
+              whole(field<&R::counters, &C::reconnects>(s)),
+              whole(field<&R::counters, &C::register_writes>(s)));
+}
+
+void print_last_orders(const EdgeConfig& config) {
+  constexpr std::uint64_t kOrders = 10;
+  LogReader log;
+  FileMessage ignored;
+  if (!log.open(config.log, ignored)) return;
+  std::printf("orders     utc                     ordered W  price EUR/MWh   SoC %%  reason\n");
+  const std::uint64_t newest = log.newest_number();
+  CycleRecord r;
+  for (std::uint64_t n = newest > kOrders ? newest - kOrders + 1 : 1; n <= newest; ++n) {
+    if (!log.read(n, r)) continue;
+    std::printf("           %s  %10d  %13.2f  %6.1f  %s%s\n", utc_text(r.utc_s).c_str(),
+                r.ordered_power_w, r.price.price_centi_eur_per_mwh / 100.0,
+                r.measurement.soc_e4 / 100.0, reason_name(r.reason).data(),
+                r.written ? "" : " (not written)");
+  }
+}
+
+/// Who decides; of one that has ended, what it was and when its last record was made.
+void print_controller(JsonValue s, bool is_running) {
+  const char* const part = is_true(s["control"]) ? "in control" : "read-only";
+  if (is_running) {
+    std::printf("controller %s, process %lld since %s", part, whole(s["pid"]),
+                text_of(s["start_utc"]));
+  } else {
+    const bool has_stopped = std::string_view(text_of(field<&R::mode>(s))) == "stopping";
+    const bool has_cycles = whole(field<&T::cycles>(s)) > 0;
+    std::printf("controller none; the last one was %s, process %lld from %s, %s %s", part,
+                whole(s["pid"]), text_of(s["start_utc"]),
+                !has_cycles   ? "ended before a cycle had"
+                : has_stopped ? "stopped at"
+                              : "ended without a stop after the cycle of",
+                has_cycles ? text_of(field<&R::utc_s>(s)) : "ended");
+  }
+  std::printf(", version %s, student %s\n", text_of(s["version"]), text_of(s["student"]));
+}
+
+void print_text(const EdgeConfig& config, const PublishedStatus& published, const Health& health,
+                const UpdateState& update) {
+  const JsonValue status = published.status.value();
+  print_health(health);
+  if (!published.unknown.empty()) {
+    std::printf("state      unknown: %s\n", published.unknown.c_str());
+  } else if (status.exists()) {
+    const bool is_running = health.level != HealthLevel::kNotRunning;
+    print_controller(status, is_running);
+    const char* const variant = text_of(status["variant"]);
+    const char* const part = is_true(status["control"]) ? "driving" : "reading";
+    std::printf("%-10s %s, map %s%s%s\n", is_running ? part : "battery at",
+                text_of(status["battery"]), text_of(status["map"]),
+                *variant == '\0' ? "" : ", variant ", variant);
+    if (whole(field<&T::cycles>(status)) > 0) print_last_cycle(status, is_running);
+    print_counters(status);
+  }
+  const std::string note = update_note(update);
+  if (!note.empty()) std::printf("update     %s\n", note.c_str());
+  print_last_orders(config);
+}
+
+Json update_json(const UpdateState& update) {
+  return Json::object({{"phase", update.phase},
+                       {"version", update.version},
+                       {"previous", update.previous},
+                       {"rolled_back", update.refused},
+                       {"reason", update.reason},
+                       {"good_cycles", update.good_cycles},
+                       {"needed_cycles", update.needed_cycles}});
+}
+
+void print_json(PublishedStatus published, const Health& health, const UpdateState& update) {
+  // What is of another run would say the opposite of "unknown".
+  const bool is_known = published.unknown.empty() && published.status.value().is_object();
+  Json status = is_known ? std::move(published.status) : Json::object();
+  if (!published.unknown.empty()) status.set("unknown", published.unknown);
+  Json reasons = Json::list();
+  for (const std::string& reason : health.reasons) reasons.add(reason);
+  status.set("health", health_name(health.level));
+  status.set("health_reasons", std::move(reasons));
+  if (!update.phase.empty()) status.set("update", update_json(update));
+  std::fputs(status.text().c_str(), stdout);
+}
+
+bool print_metrics(const EdgeConfig& config) {
+  std::string text;
+  if (!read_published_metrics(config, text)) {
+    report(JournalLevel::kError,
+           "%s: no metrics here that can be believed; has bess-edge run with this configuration?",
+           config.log.metrics.c_str());
+    return false;
+  }
+  std::fputs(text.c_str(), stdout);
+  std::string updates;  // bess-update's own, where this is a package
+  if (read_text((std::string(kUpdateFolder) + "/update.prom").c_str(), updates)) {
+    std::fputs(updates.c_str(), stdout);
+  }
+  return true;
+}
+
+int print_once(const CommandLine& command_line, const EdgeConfig& config) {
+  PublishedStatus published = read_published_status(config, command_line.no_lock);
+  const UpdateState update = read_update_state(kUpdateFolder);
+  const Health health = health_of(config, published, update_trouble(update));
+  if (command_line.prometheus) {
+    if (!print_metrics(config)) return 1;
+  } else if (command_line.json) {
+    print_json(std::move(published), health, update);
+  } else {
+    print_text(config, published, health, update);
+  }
+  std::fflush(stdout);
+  return static_cast<int>(health.level);
+}
+
+}  // namespace
+
+int run_status_command(const CommandLine& command_line, const EdgeConfig& config) {
+  constexpr const char* kClearScreen = "\033[H\033[2J";
+  while (true) {
+    if (command_line.follow && isatty(STDOUT_FILENO) != 0) std::fputs(kClearScreen, stdout);
+    const int exit_code = print_once(command_line, config);
+    if (!command_line.follow) return exit_code;
+    sleep(2);
+  }
+}
+
+}  // namespace bess

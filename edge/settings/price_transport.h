@@ -1,0 +1,32 @@
+// Over what prices come, and what may be sent for them: refused at the start where the configuration does not
+// allow it, told where it does.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "edge/settings/edge_config.h"
+#include "shared/host/toml_reader.h"
+
+namespace bess {
+
+/// What the operator says about the way of the requests.
+struct PriceTransportKeys {
+  bool allow_http = false;
+  bool has_header_file = false;  ///< secrets are sent with every request
+};
+
+/// Complains, with the mend, of a URL of [price] that is none, of plain http that is not allowed, and of
+/// secrets on plain http.
+void check_price_transport(TomlTable& table, const EdgeConfig& config,
+                           const PriceTransportKeys& keys);
+
+struct TransportNote {
+  bool is_open = false;  ///< somebody else could write the prices
+  std::string text;
+};
+
+/// One line about the transport of url and history_url, the weaker one of them.
+TransportNote transport_note(const EdgeConfig& config);
+
+}  // namespace bess

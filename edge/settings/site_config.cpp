@@ -1,0 +1,117 @@
+#include "edge/settings/site_config.h"
+
+#include <filesystem>
+
+#include "edge/registers/map_file.h"
+#include "edge/settings/link_config.h"
+
+namespace bess {
+namespace {
+
+constexpr std::int64_t kConnectionWMax = 100'000'000;
+
+void read_connection(TomlTable& table, ConnectionSettings& connection) {
+  table.integer("import_w_max", connection.import_w_max, 0, kConnectionWMax);
+  table.integer("export_w_max", connection.export_w_max, 0, kConnectionWMax);
+  table.integer("peak_w_max", connection.peak_w_max, 1, kConnectionWMax);
+  table.integer("margin_w", connection.margin_w, 0, kConnectionWMax);
+  table.integer("house_rise_w", connection.house_rise_w, 0, kConnectionWMax);
+  table.boolean("peak_shave", connection.peak_shave);
+}
+
+void check_connection(TomlTable& table, const ConnectionSettings& connection) {
+  for (const char* const key : {"import_w_max", "peak_w_max"}) {
+    const std::int32_t limit_w = key[0] == 'i' ? connection.import_w_max : connection.peak_w_max;
+    if (limit_w <= connection.margin_w) {
+      table.fail(key, "must be above margin_w (" + std::to_string(connection.margin_w) +
+                          "): the battery would never charge");
+    }
+  }
+  if (table.has("peak_w_max")) return;
+  for (const char* const key : {"house_rise_w", "peak_shave"}) {
+    if (table.has(key)) table.fail(key, "means nothing without peak_w_max");
+  }
+}
+
+bool is_same_line(const BatteryLinkSettings& a, const BatteryLinkSettings& b) {
+  if (!a.rtu || !b.rtu) return false;
+  std::error_code ignored;
+  return a.device == b.device.view() ||
+         std::filesystem::equivalent(a.device.c_str(), b.device.c_str(), ignored);
+}
+
+void load_meter_map(TomlTable& table, const MeteredBattery& battery, std::string_view map_file,
+                    std::string_view variant, SiteConfig& site) {
+  check_link(table, site.link);
+  FixedText<511> path;
+  if (!load_linked_map(table, map_file, variant, site.link, site.map, path)) return;
+  if (!site.map.is_meter) {
+    table.fail("map", "is a battery's map; meters lie in meters/, their maps say kind = \"meter\"");
+  }
+  if (is_same_line(site.link, battery.link)) {
+    table.fail("device",
+               "is the battery's serial line, which it has for itself: use another line, or "
+               "source = \"battery\" where the battery has a grid point");
+  }
+}
+
+void use_grid_point(TomlTable& table, const MeteredBattery& battery) {
+  if (!table.ok() || measure_grid_power(battery.map)) return;
+  table.fail("source", "= \"battery\": the battery's map " + std::string(battery.map.name.view()) +
+                           " has no grid point; use a meter's map");
+}
+
+}  // namespace
+
+void read_meter(TomlTable table, MeteredBattery battery, SiteConfig& site) {
+  if (table.value() == nullptr) return;
+  SiteSettings& settings = site.settings;
+  int source = 0;
+  int on_loss = 0;
+  FixedText<255> map_file;
+  RegisterName variant;
+  table.choice("source", source, {"map", "battery"});
+  settings.meter = source == 0 ? MeterSource::kMap : MeterSource::kBattery;
+  if (settings.meter == MeterSource::kMap) {
+    table.require("map");
+    table.text("map", map_file);
+    table.text("variant", variant);
+    read_link(table, site.link);
+  }
+  read_connection(table, settings.connection);
+  table.choice("on_loss", on_loss, {"idle", "ignore"});
+  table.integer("age_s_max", settings.age_s_max, 5, 300);
+  table.integer("check_every_s", settings.check_every_s, 2, 60);
+  table.boolean("judged", settings.witness.judges);
+  table.integer("pv_w_max", settings.pv_w_max, 0, kConnectionWMax);
+  table.finish();
+  settings.idle_without_meter = on_loss == 0;
+  check_connection(table, settings.connection);
+  if (settings.check_every_s * 2 > settings.age_s_max) {
+    table.fail("check_every_s", "must be at most half of age_s_max: one reading may be lost");
+  }
+  if (settings.meter == MeterSource::kMap) {
+    load_meter_map(table, battery, map_file.view(), variant.view(), site);
+  } else {
+    use_grid_point(table, battery);
+  }
+}
+
+void read_limits(TomlTable table, SiteConfig& site) {
+  if (table.value() == nullptr) return;
+  FixedText<255> file;
+  int on_timeout = 0;
+  table.require("file");
+  table.text("file", file);
+  table.choice("on_timeout", on_timeout, {"release_limits", "idle"});
+  table.finish();
+  if (!table.ok()) return;
+  const auto folder = std::filesystem::path(table.file()).parent_path();
+  if (!site.limit_file.assign((folder / file.c_str()).string())) {
+    table.fail("file", "is too long a path");
+  }
+  site.settings.has_outside_limits = true;
+  site.settings.idle_after_timeout = on_timeout == 1;
+}
+
+}  // namespace bess

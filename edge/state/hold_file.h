@@ -1,0 +1,46 @@
+// The file through which `bess-edge hold` tells the running controller: one line of fixed length in the
+// state folder and in its run_folder, replaced at once. It outlives restarts; when its end has passed it means
+// nothing. The younger file is the newer word: a disk that dies may have kept an older one.
+//   bess-hold 1 power_w=+000002000 until=2026-11-22T14:00:00Z crc32=0123abcd
+// Nothing here allocates.
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+
+#include "edge/control/hold.h"
+#include "edge/settings/edge_config.h"
+#include "shared/fixed_text.h"
+
+namespace bess {
+
+inline constexpr std::size_t kHoldFileBytes = 73;  ///< with its line end
+using HoldText = FixedText<kHoldFileBytes>;
+
+HoldText format_hold(const Hold& hold);
+
+/// Anything but exactly what `format_hold` writes is an unreadable hold.
+Hold parse_hold(std::string_view text);
+
+/// What lies at `path`; no file is no hold.
+Hold read_hold(const char* path);
+
+struct HoldPaths {
+  FixedText<639> state;
+  FixedText<639> run;  ///< empty = none
+};
+
+/// Where a controller of this configuration looks for an operator's hold.
+HoldPaths hold_paths(const EdgeConfig& config);
+
+struct HoldReading {
+  Hold hold;  ///< unreadable where no file can be understood and one is there
+  bool state_is_lost = false;
+  bool run_is_lost = false;  ///< the file is there and cannot be understood, another one counts
+
+  friend bool operator==(const HoldReading&, const HoldReading&) = default;
+};
+/// Of both places the newer word; no file at all is no hold.
+HoldReading read_newest_hold(const HoldPaths& paths);
+
+}  // namespace bess

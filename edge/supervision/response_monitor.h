@@ -1,0 +1,116 @@
+// Does the battery do what it is told? Registers that read back as written prove only that they were
+// stored: some batteries acknowledge and do nothing, a map with a wrong sign charges when it should
+// discharge, and values can stand still while power flows. Pure integers, fed with every reading
+// and the order that was in force, 0 W included.
+//
+//   what is seen                                      what follows
+//   opposite direction; more power than ordered       trip: a person has to look
+//   SoC that stands still or runs apart from power    trip (soc_monitor.h)
+//   no power in the middle of the SoC                 pause: given back, tried again later
+//   charging by itself near empty, balancing at full  pause: a battery looks after itself
+//   SoC that jumps                                    stop until readings agree again
+//   less power than ordered, energy that does not     told, not stopped
+//   arrive, loss at 0 W, a slow ramp, limits of
+//   its own that allow nothing
+// Each kind of fault has counts of its own (leaky_count.h), so that one that comes and goes is found. A
+// reading that could not show a fault leaves its count as it is: a battery that goes the wrong way at every
+// other order, with idle between, is found as well.
+#pragma once
+
+#include <cstdint>
+
+#include "edge/supervision/leaky_count.h"
+#include "edge/supervision/response.h"
+#include "edge/supervision/soc_monitor.h"
+
+namespace bess {
+
+/// Of a fault that may be of orders of one sign alone: right answers to the others do not forgive it.
+class DirectedCount {
+ public:
+  void bad(bool is_charging) {
+    of_all_.bad();
+    of(is_charging).bad();
+  }
+  void good(bool is_charging) {
+    of_all_.good();
+    of(is_charging).good();
+  }
+  [[nodiscard]] bool is_found() const {
+    return of_all_.is_found() || of_charging_.is_found() || of_discharging_.is_found();
+  }
+
+ private:
+  LeakyCount& of(bool is_charging) { return is_charging ? of_charging_ : of_discharging_; }
+
+  LeakyCount of_all_;
+  LeakyCount of_charging_;
+  LeakyCount of_discharging_;
+};
+
+class ResponseMonitor {
+ public:
+  explicit ResponseMonitor(const ResponseSettings& settings)
+      : settings_(settings), soc_(settings) {}
+
+  void observe(const Response& now);
+  /// Between two readings that are judged, just before an order changes: counts what has flowed.
+  void note_power(const Response& now) { soc_.note_cut(now); }
+
+  /// kWrongDirection, kUncontrolledPower or kSocMismatch once it is found; kStudent: nothing.
+  [[nodiscard]] Reason trip() const { return trip_; }
+  [[nodiscard]] bool gives_no_answer() const { return unexplained_.is_found(); }
+  /// It charges although it is nearly empty and was not told to, or balances its full cells.
+  [[nodiscard]] bool looks_after_itself() const { return care_.is_found(); }
+  /// The newest reading has shown that it does not.
+  [[nodiscard]] bool needs_no_care() const { return needs_no_care_; }
+  [[nodiscard]] bool has_jumped() const { return soc_.has_jumped(); }
+  /// The newest reading showed power that an order asked for.
+  [[nodiscard]] bool has_answered() const { return answers_; }
+  /// Driven readings in a row with less power than ordered, and no reason for it.
+  [[nodiscard]] std::int32_t weak_answers() const { return weak_answers_; }
+  /// Driven readings in a row without any answer, explained or not.
+  [[nodiscard]] std::int32_t unanswered_orders() const { return unanswered_orders_; }
+  /// Found, and short of a reason to stop.
+  [[nodiscard]] ResponseFindings findings() const;
+
+  /// A person has looked, or a pause is over: counted anew from here.
+  void forget() { *this = ResponseMonitor(settings_); }
+
+ private:
+  void count_locked(const BatteryMeasurement& m);
+  void judge_power(const Response& now);
+  void judge_idle(const Response& now);
+  void judge_driven(const Response& now);
+  void judge_answer(const Response& now, std::int32_t measured_w);
+  void trip_if(bool is_found, Reason reason);
+  bool note_ramp(const Response& now, std::int32_t from_w);
+  bool is_ramp(const Response& now);
+  [[nodiscard]] bool knows_before(const Response& now) const;
+  [[nodiscard]] bool may_be_ramp(const Response& now) const;
+  [[nodiscard]] bool is_care(const BatteryMeasurement& m) const;
+  [[nodiscard]] std::int32_t reachable_power_w(const Response& now) const;
+  [[nodiscard]] bool may_be_less(const Response& now) const;
+
+  ResponseSettings settings_;
+  SocMonitor soc_;
+  Reason trip_ = Reason::kStudent;
+  bool answers_ = false;
+  bool needs_no_care_ = false;
+  DirectedCount opposed_;
+  DirectedCount excessive_driven_;
+  DirectedCount unexplained_;
+  LeakyCount excessive_idle_;
+  LeakyCount care_;
+  LeakyCount slow_;
+  std::int32_t ramp_w_per_s_ = 0;  ///< of the newest answer that was still on its way
+  std::int16_t locked_readings_ = 0;
+  std::int32_t weak_answers_ = 0;
+  std::int32_t unanswered_orders_ = 0;
+  bool has_before_ = false;
+  std::int64_t before_s_ = 0;
+  std::int32_t before_power_w_ = 0;
+  std::int32_t before_ordered_w_ = 0;
+};
+
+}  // namespace bess

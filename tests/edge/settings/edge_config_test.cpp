@@ -1,0 +1,312 @@
+// The operator's configuration: the documented example loads, and every mistake is one clear line.
+#include "edge/settings/edge_config.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+
+#include "edge/state/run_locks.h"
+#include "tests/support/temporary_folder.h"
+
+namespace bess {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+/// A valid configuration; a test adds or replaces a piece of it.
+std::string valid_text() {
+  return "control = true\n"
+         "[battery]\n"
+         "map = \"" BESS_SOURCE_DIR
+         "/edge/maps/alphaess.toml\"\n"
+         "power_w = 4000\n"
+         "[price]\n"
+         "url = \"http://127.0.0.1:1/records\"\n"
+         "[guard]\n"
+         "soc_min = 0.2\n"
+         "[simulation]\n"
+         "time_scale = 900\n"
+         "utc_start = \"2023-03-26T00:00:00Z\"\n"
+         "anchor_monotonic_ns = 5\n";
+}
+
+TEST(EdgeConfig, TheDocumentedExampleIsValidAndReadOnly) {
+  EdgeConfig config;
+  std::string error;
+  ASSERT_TRUE(load_edge_config(BESS_SOURCE_DIR "/edge/bess-edge.toml", config, error)) << error;
+  EXPECT_FALSE(config.control.control);
+  EXPECT_TRUE(config.clock.is_real_time());
+  EXPECT_EQ(config.control.guard.thresholds, (PriceThresholds{-500, 1500}));
+  EXPECT_EQ(config.control.order_duration_s, 300);
+  EXPECT_EQ(config.map.unit, 85);
+}
+
+TEST(EdgeConfig, ReadsEveryUnit) {
+  const TemporaryFolder folder;
+  EdgeConfig config;
+  std::string error;
+  std::string text = valid_text();
+  text.replace(text.find("soc_min"), 0,
+               "low_price_eur_per_mwh = -120.0\nhigh_price_eur_per_mwh = 640\n");
+  ASSERT_TRUE(load_edge_config(folder.write("edge.toml", text), config, error)) << error;
+  EXPECT_TRUE(config.control.control);
+  EXPECT_EQ(config.control.guard.thresholds, (PriceThresholds{-120, 640}));
+  EXPECT_EQ(config.control.guard.soc_min_e4, 2'000);
+  EXPECT_EQ(config.clock.scale, 900);
+  EXPECT_EQ(config.clock.anchor_utc_s, 1'679'788'800);
+  EXPECT_EQ(config.clock.anchor_monotonic_ns, 5);
+}
+
+/// They bound what a price source that lies can do, and honest prices never come near: README, "Price source".
+TEST(EdgeConfig, CyclesAndReversalsAreBoundedUnlessToldOtherwise) {
+  const TemporaryFolder folder;
+  EdgeConfig config;
+  std::string error;
+  ASSERT_TRUE(load_edge_config(folder.write("edge.toml", valid_text()), config, error)) << error;
+  EXPECT_EQ(config.control.cycles_per_day_max_e4, 60'000);
+  EXPECT_EQ(config.control.reversals_per_hour_max, 20);
+  EXPECT_EQ(config.control.guard.ramp_w_max, 0);
+  std::string text = valid_text();
+  text.insert(text.find("soc_min"), "cycles_per_day_max = 0\nreversals_per_hour_max = 0\n");
+  ASSERT_TRUE(load_edge_config(folder.write("edge.toml", text), config, error)) << error;
+  EXPECT_EQ(config.control.cycles_per_day_max_e4, 0);
+  EXPECT_EQ(config.control.reversals_per_hour_max, 0);
+}
+
+TEST(EdgeConfig, ABatteryThatIsFullSoonerMayCycleMore) {
+  const TemporaryFolder folder;
+  EdgeConfig config;
+  std::string error;
+  std::string text = valid_text();
+  text.insert(text.find("[battery]\n") + 10, "capacity_wh = 4000\n");
+  ASSERT_TRUE(load_edge_config(folder.write("edge.toml", text), config, error)) << error;
+  EXPECT_EQ(config.control.cycles_per_day_max_e4, 120'000);
+}
+
+TEST(EdgeConfig, UnitGroupsOfTheMapAreTheOperatorsToSet) {
+  const TemporaryFolder folder;
+  std::string text = valid_text();
+  text.replace(text.find("alphaess"), 8, "victron_ess3");
+  text.insert(text.find("power_w"), "units = { vebus = 246 }\n");
+  EdgeConfig config;
+  std::string error;
+  ASSERT_TRUE(load_edge_config(folder.write("edge.toml", text), config, error)) << error;
+  const RegisterPoint& set_point = config.map.points[find_point(config.map, "set_l1")];
+  EXPECT_EQ(config.map.unit_of(set_point), 246);
+  EXPECT_EQ(config.map.unit, 100);
+  EXPECT_EQ(config.link.port, 502);
+  text.replace(text.find("vebus"), 5, "vecan");
+  EXPECT_FALSE(load_edge_config(folder.write("edge.toml", text), config, error));
+  EXPECT_THAT(error, HasSubstr("vecan is not a known key here (known: battery, vebus)"));
+}
+
+TEST(EdgeConfig, ReadsTheSerialLinesSettings) {
+  const TemporaryFolder folder;
+  std::string text = valid_text();
+  text.insert(text.find("power_w"),
+              "transport = \"rtu\"\ndevice = \"/dev/ttyS1\"\nbaud = 19200\n"
+              "parity = \"even\"\nstop_bits = 2\n");
+  EdgeConfig config;
+  std::string error;
+  ASSERT_TRUE(load_edge_config(folder.write("edge.toml", text), config, error)) << error;
+  EXPECT_TRUE(config.link.rtu);
+  EXPECT_EQ(config.link.device.view(), "/dev/ttyS1");
+  EXPECT_EQ(config.link.baud, 19'200);
+  EXPECT_EQ(config.link.parity, Parity::kEven);
+  EXPECT_EQ(config.link.stop_bits, 2);
+}
+
+TEST(EdgeConfig, StateLogAndMetricsPathsAreRelativeToTheFile) {
+  const TemporaryFolder folder;
+  EdgeConfig config;
+  std::string error;
+  ASSERT_TRUE(load_edge_config(folder.write("edge.toml", valid_text()), config, error)) << error;
+  EXPECT_EQ(config.state.folder, folder.file("state"));
+  EXPECT_EQ(config.log.ring, folder.file("state/decisions.ring"));
+  EXPECT_EQ(config.log.status, folder.file("state/status.json"));
+  EXPECT_EQ(config.log.metrics, folder.file("state/metrics.prom"));
+  EXPECT_TRUE(config.log.csv.empty());
+  EXPECT_EQ(config.log.ring_days, 35);
+  EXPECT_TRUE(config.state.lock_folder.empty());
+
+  const std::string text = valid_text() +
+                           "[state]\nfolder = \"/var/lib/bess\"\nlock_folder = \"/run\"\n"
+                           "[log]\ndays = 365\ncsv = \"edge.csv\"\n"
+                           "[metrics]\nprometheus = \"/tmp/bess.prom\"\n";
+  EdgeConfig other;
+  ASSERT_TRUE(load_edge_config(folder.write("other.toml", text), other, error)) << error;
+  EXPECT_EQ(other.log.ring, "/var/lib/bess/decisions.ring");
+  EXPECT_EQ(other.state.lock_folder, "/run");  // besides the standard one
+  EXPECT_EQ(other.log.csv, folder.file("edge.csv"));
+  EXPECT_EQ(other.log.metrics, "/tmp/bess.prom");
+  EXPECT_EQ(other.log.ring_days, 365);
+}
+
+/// A relative path on the command line must not be put before the state's files twice.
+TEST(EdgeConfig, ARelativeConfigurationKeepsItsStateBesideIt) {
+  const TemporaryFolder folder;
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::create_directory(folder.file("etc"));
+  static_cast<void>(folder.write("etc/edge.toml", valid_text()));
+  std::filesystem::current_path(folder.file(""));
+  EdgeConfig config;
+  std::string error;
+  EXPECT_TRUE(load_edge_config("etc/edge.toml", config, error)) << error;
+  std::filesystem::current_path(before);
+  EXPECT_EQ(config.log.ring, "etc/state/decisions.ring");
+}
+
+/// Every way to write one battery's place must lead to one lock; every other battery to another.
+TEST(EdgeConfig, TheBatterysLockIsNamedByItsPlace) {
+  const TemporaryFolder folder;
+  EdgeConfig config;
+  config.map.unit = 85;
+  EXPECT_EQ(battery_lock_path(config, "/locks"), "/locks/bess-127.0.0.1_502_unit_85.lock");
+  config.link.unit = 1;
+  EXPECT_EQ(battery_lock_path(config, "/locks"), "/locks/bess-127.0.0.1_502_unit_1.lock");
+  config.link.rtu = true;
+  config.link.device = folder.write("ttyUSB0", "").c_str();
+  const FixedText<639> direct = battery_lock_path(config, "/locks");
+  std::filesystem::create_symlink(folder.file("ttyUSB0"), folder.file("by-id"));
+  config.link.device = folder.file("by-id").c_str();
+  EXPECT_EQ(battery_lock_path(config, "/locks"), direct.view());
+}
+
+struct ConfigMistake {
+  std::string before, after;
+  int line;
+  std::string message;
+};
+
+TEST(EdgeConfig, EveryMistakeIsOneClearLineWithItsPlace) {
+  const TemporaryFolder folder;
+  const ConfigMistake mistakes[] = {
+      {"control = true", "controll = true", 1, "controll is not a known key"},
+      {"control = true", "control = 1", 1, "control must be true or false"},
+      {"power_w = 4000", "power = 4000", 4, "power is not a known key"},
+      {"power_w = 4000", "power_w = 4000.5", 4, "must be a whole number"},
+      {"power_w = 4000", "power_w = 40000", 4, "more than the map alphaess can express"},
+      {"power_w = 4000", "power_w = -1", 4, "must lie between"},
+      {"power_w = 4000", "port = 70000", 4, "port must lie between 1 and 65535"},
+      {"power_w = 4000", "host = \"battery.local\"", 4, "numeric IPv4"},
+      {"power_w = 4000", "transport = \"udp\"", 4, "\"tcp\", \"rtu\""},
+      {"power_w = 4000", "baud = 14400", 4, "must be a speed of serial lines such as 9600"},
+      {"power_w = 4000", "parity = \"mark\"", 4, "\"none\", \"even\", \"odd\""},
+      {"power_w = 4000", "stop_bits = 3", 4, "must lie between 1 and 2"},
+      {"power_w = 4000", "variant = \"blok\"", 0, "does not exist (there are: block"},
+      {"http://", "ftp://", 6, "must start with http:// or https://"},
+      {"url =", "uri =", 5, "url is missing"},
+      {"[price]\nurl = \"http:", "[price]\nca_file = \"none.pem\"\nurl = \"https:", 6,
+       "none.pem cannot be read"},
+      {"[price]\nurl = \"http:", "[price]\nheader_file = \"none\"\nurl = \"https:", 0,
+       "none: cannot open the header file"},
+      {"[price]", "[price]\nresolve_every_s = 0", 6, "must lie between 1 and 86400"},
+      {"[price]", "[price]\nstep_flag_eur_per_mwh = -1", 6, "must lie between"},
+      {"[price]", "[price]\nhistory_hours = 97", 6, "history_hours must lie between 0 and 96"},
+      {"[price]", "[price]\nhistory_wait_s = 0", 6, "history_wait_s must lie between 1 and 3600"},
+      {"[price]", "[price]\nhistory_url = \"http://127.0.0.1:2/records\"", 6,
+       "history_url must start with http:// or https:// and be of the host of url"},
+      {"[price]", "[price]\nhistory_url = \"127.0.0.1:1/records\"", 6, "be of the host of url"},
+      {"[price]", "[price]\nlevel_start_eur_per_mwh = 1501", 6, "must lie between -500 and 1500"},
+      {"soc_min = 0.2", "soc_min = 20", 8, "must lie between 0 and 1"},
+      {"soc_min = 0.2", "soc_min = \"0.2\"", 8, "must be a number"},
+      {"soc_min = 0.2", "soc_min = 1.0", 8, "must be below soc_max"},
+      {"soc_min = 0.2", "low_price_eur_per_mwh = 2000", 8, "must be below high_price"},
+      {"soc_min = 0.2", "frozen_price_s_max = -1", 8, "must lie between 0 and 86400"},
+      {"soc_min = 0.2", "frozen_price_s_max = 86401", 8, "must lie between 0 and 86400"},
+      {"soc_min = 0.2", "low_price_eur_per_mwh = -15001", 8, "must lie between -15000 and 15000"},
+      {"soc_min = 0.2", "high_price_eur_per_mwh = 999.5", 8,
+       "must be whole EUR/MWh, as the student is proved for"},
+      {"soc_min = 0.2", "reversals_per_hour_max = 31", 8,
+       "reversals_per_hour_max must lie between 0 and 30"},
+      {"2023-03-26T00:00:00Z", "2023-03-26 00:00", 11, "utc_start must be a UTC instant"},
+      {"time_scale = 900", "time_scale = 0", 10, "must lie between"},
+      {"[guard]", "[log]\ndays = 0\n[guard]", 8, "days must lie between 1 and 3660"},
+      {"[guard]", "[state]\nfoldr = \"x\"\n[guard]", 8, "foldr is not a known key"},
+      {"[guard]", "[state]\nfolder = \"\"\n[guard]", 8, "folder must not be empty"},
+      {"power_w = 4000", "units = { vebus = 1 }", 4, "vebus is not a known key here (known: none)"},
+      {"maps/alphaess", "maps/alfaess", 3, "alfaess.toml cannot be read: No such file"},
+      {"[guard]", "[gard]", 7, "gard is not a known key"},
+      {"[guard]", "[guard", 7, "not valid TOML"},
+  };
+  for (const ConfigMistake& mistake : mistakes) {
+    std::string text = valid_text();
+    const std::size_t at = text.find(mistake.before);
+    ASSERT_NE(at, std::string::npos) << mistake.before;
+    text.replace(at, mistake.before.size(), mistake.after);
+    const std::string path = folder.write("edge.toml", text);
+    EdgeConfig config;
+    std::string error;
+    EXPECT_FALSE(load_edge_config(path, config, error)) << mistake.after;
+    EXPECT_THAT(error, HasSubstr(mistake.message)) << mistake.after;
+    EXPECT_EQ(error.find('\n'), std::string::npos) << error;
+    if (mistake.line > 0) {
+      EXPECT_THAT(error, StartsWith(path + ":" + std::to_string(mistake.line) + ":"));
+    }
+  }
+}
+
+TEST(EdgeConfig, ReadsWhatAFirstStartIsToldOfThePriceLevel) {
+  const TemporaryFolder folder;
+  EdgeConfig config;
+  std::string error;
+  ASSERT_TRUE(load_edge_config(folder.write("edge.toml", valid_text()), config, error)) << error;
+  EXPECT_EQ(config.history.hours, 72);
+  EXPECT_EQ(config.history.wait_s, 20);
+  EXPECT_TRUE(config.history.url.empty());
+  EXPECT_FALSE(config.level_start_centi_eur_per_mwh.has_value());
+  std::string text = valid_text();
+  text.insert(text.find("[guard]"),
+              "history_hours = 0\nhistory_wait_s = 5\nhistory_url = \"http://127.0.0.1:1/past\"\n"
+              "level_start_eur_per_mwh = -12.5\n");
+  ASSERT_TRUE(load_edge_config(folder.write("edge.toml", text), config, error)) << error;
+  EXPECT_EQ(config.history.hours, 0);
+  EXPECT_EQ(config.history.wait_s, 5);
+  EXPECT_EQ(config.history.url, "http://127.0.0.1:1/past");
+  EXPECT_EQ(config.level_start_centi_eur_per_mwh, -1'250);
+}
+
+TEST(EdgeConfig, ReadsTheKeysOfAnotherPriceServer) {
+  const TemporaryFolder folder;
+  const std::string headers = folder.write("headers", "X-Api-Key: k\n");
+  ASSERT_EQ(chmod(headers.c_str(), 0600), 0);
+  std::string text = valid_text();
+  text.replace(text.find("http://"), 7, "https://");  // secrets go over nothing else
+  text.replace(
+      text.find("[price]"), 7,
+      "[price]\nheader_file = \"headers\"\nca_file = \"headers\"\nrows_field = \"data.rows\"\n"
+      "resolve_every_s = 30\nstep_flag_eur_per_mwh = 1000.5");
+  EdgeConfig config;
+  std::string error;
+  ASSERT_TRUE(load_edge_config(folder.write("edge.toml", text), config, error)) << error;
+  EXPECT_EQ(config.price.http.headers, "X-Api-Key: k");
+  EXPECT_EQ(config.price.http.ca_file, headers);  // relative to the configuration
+  EXPECT_EQ(config.price.http.resolve_every_s, 30);
+  EXPECT_EQ(config.price.fields.rows, "data.rows");
+  EXPECT_EQ(config.price.step_flag_centi_eur_per_mwh, 100'050);
+}
+
+TEST(EdgeConfig, AByteOrderMarkIsPassedOver) {
+  const TemporaryFolder folder;
+  EdgeConfig config;
+  std::string error;
+  EXPECT_TRUE(
+      load_edge_config(folder.write("edge.toml", "\xEF\xBB\xBF" + valid_text()), config, error))
+      << error;
+}
+
+TEST(EdgeConfig, MissingFileAndFolder) {
+  EdgeConfig config;
+  std::string error;
+  EXPECT_FALSE(load_edge_config("/nonexistent.toml", config, error));
+  EXPECT_THAT(error, HasSubstr("cannot open"));
+  error.clear();
+  EXPECT_FALSE(load_edge_config("/tmp", config, error));
+  EXPECT_THAT(error, HasSubstr("cannot read"));
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,154 @@
+// Reserve, full charge and spread of starts in the operator's configuration, and every mistake in them.
+#include "edge/settings/people_config.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "edge/program/wishes_note.h"
+#include "edge/settings/start_offset.h"
+#include "shared/local_time.h"
+#include "tests/support/temporary_folder.h"
+
+namespace bess {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr const char* kMapLine = "map = \"" BESS_SOURCE_DIR "/edge/maps/alphaess.toml\"\n";
+
+struct Pieces {
+  std::string battery = "", guard = "", rest = "";
+};
+
+std::string toml_of(const Pieces& pieces) {
+  return std::string("[battery]\n") + kMapLine + pieces.battery +
+         "[price]\nurl = \"http://127.0.0.1:1/records\"\n[guard]\n" + pieces.guard + pieces.rest;
+}
+
+bool load_pieces(const Pieces& pieces, EdgeConfig& config, std::string& error) {
+  const TemporaryFolder folder;
+  return load_edge_config(folder.write("edge.toml", toml_of(pieces)), config, error);
+}
+
+TEST(PeopleConfig, WithoutKeysNothingIsWanted) {
+  EdgeConfig config;
+  std::string error;
+  ASSERT_TRUE(load_pieces({}, config, error)) << error;
+  EXPECT_TRUE(config.control.reserve.empty());
+  EXPECT_EQ(config.control.full_charge_every_days, 0);
+  EXPECT_EQ(config.control.start_offset_ms, 0);
+}
+
+TEST(PeopleConfig, ReadsWhatPeopleWant) {
+  EdgeConfig config;
+  std::string error;
+  ASSERT_TRUE(load_pieces({.battery = "full_charge_every_days = 14\nfull_charge_power = 0.25\n",
+                           .guard = "start_spread_s = 20\n",
+                           .rest = "[[reserve]]\nfrom = \"17:00\"\nto = \"24:00\"\nsoc = 0.3\n"
+                                   "[[reserve]]\nfrom = \"22:30\"\nto = \"06:00\"\nsoc = 0.155\n"
+                                   "months = [1, 12]\n"},
+                          config, error))
+      << error;
+  EXPECT_EQ(config.control.full_charge_every_days, 14);
+  EXPECT_EQ(config.control.guard.full_charge_power_w, 1'000);
+  EXPECT_GE(config.control.start_offset_ms, 0);
+  EXPECT_LT(config.control.start_offset_ms, 20'000);
+  ASSERT_EQ(config.control.reserve.size(), 2);
+  EXPECT_EQ(config.control.reserve[0].from_minute, 1'020);
+  EXPECT_EQ(config.control.reserve[0].to_minute, 1'440);
+  EXPECT_EQ(config.control.reserve[0].soc_e4, 3'000);
+  EXPECT_EQ(config.control.reserve[0].months, ReservePeriod::kEveryMonth);
+  EXPECT_EQ(config.control.reserve[1].from_minute, 1'350);
+  EXPECT_EQ(config.control.reserve[1].to_minute, 360);
+  EXPECT_EQ(config.control.reserve[1].soc_e4, 1'550);
+  EXPECT_EQ(config.control.reserve[1].months, 0x801);
+}
+
+/// bess-notify reads its own section: a mistake in it must not keep the controller from starting.
+TEST(PeopleConfig, TheNotifiersSectionIsNotTheControllersBusiness) {
+  EdgeConfig config;
+  std::string error;
+  EXPECT_TRUE(load_pieces({.rest = "[notify]\nno_such_key = 1\n"}, config, error)) << error;
+}
+
+TEST(PeopleConfig, EveryMistakeIsOneClearLine) {
+  const auto reserve = [](const std::string& keys) {
+    return Pieces{.rest = "[[reserve]]\n" + keys};
+  };
+  const std::string from_to = "from = \"17:00\"\nto = \"20:00\"\n";
+  std::string many;
+  for (int i = 0; i < 25; ++i) many += "[[reserve]]\n" + from_to + "soc = 0.3\n";
+  const std::pair<Pieces, const char*> mistakes[] = {
+      {{.battery = "full_charge_every_days = 366\n"}, "must lie between 0 and 365"},
+      {{.battery = "full_charge_power = 0.01\n"}, "full_charge_power must lie between 0.05 and 1"},
+      {{.battery = "full_charge_every_days = 7\n", .guard = "soc_max = 0.9\n"},
+       "full_charge_every_days needs [guard] soc_max of at least 0.995"},
+      {{.guard = "start_spread_s = 21\n"}, "must lie between 0 and 20"},
+      {{.guard = "start_spread_s = 10\norder_deadline_s = 10\n"},
+       "start_spread_s must be below order_deadline_s"},
+      {{.rest = "[reserve]\nsoc = 0.3\n"}, "reserve must be a list"},
+      {{.rest = "[x]\n"}, "x is not a known key"},
+      {reserve("soc = 0.3\n"), "from is missing"},
+      {reserve("from = \"17:00\"\nsoc = 0.3\n"), "to is missing"},
+      {reserve(from_to), "soc is missing"},
+      {reserve(from_to + "soc = 1.0\n"), "soc must be below [guard] soc_max"},
+      {reserve(from_to + "soc = 30\n"), "soc must lie between 0 and 1"},
+      {reserve(from_to + "soc = 0.3\nhours = 1\n"), "hours is not a known key"},
+      {reserve(from_to + "soc = 0.3\nmonths = [13]\n"), "must hold months, 1 to 12"},
+      {reserve(from_to + "soc = 0.3\nmonths = []\n"), "leave it out for every month"},
+      {reserve("from = \"17:00\"\nto = \"17:00\"\nsoc = 0.3\n"), "the same as from"},
+      {reserve("from = \"24:01\"\nto = \"20:00\"\nsoc = 0.3\n"),
+       "from must be a local time of day"},
+      {reserve("from = \"7:00\"\nto = \"20:00\"\nsoc = 0.3\n"), "from must be a local time of day"},
+      {reserve("from = \"17.00\"\nto = \"20:00\"\nsoc = 0.3\n"),
+       "from must be a local time of day"},
+      {{.rest = many}, "has more than 24 periods"},
+  };
+  for (const auto& [pieces, message] : mistakes) {
+    EdgeConfig config;
+    std::string error;
+    EXPECT_FALSE(load_pieces(pieces, config, error)) << message;
+    EXPECT_THAT(error, HasSubstr(message));
+    EXPECT_EQ(error.find('\n'), std::string::npos) << error;
+  }
+}
+
+TEST(WishesNote, SaysWhatIsWantedAndNothingElse) {
+  set_market_time_zone();
+  constexpr std::int64_t kNow = 1'679'875'320;  // 02:02 in Brussels
+  ControlSettings control;
+  EXPECT_EQ(wishes_note(control, {}, kNow), "");
+  EXPECT_EQ(wishes_note(control, {.power_w = -5, .until_utc_s = kNow}, kNow), "");  // over
+  control.reserve.push_back({.from_minute = 0, .to_minute = 180, .soc_e4 = 1'550});
+  control.full_charge_every_days = 7;
+  control.guard.full_charge_power_w = 2'000;
+  control.start_offset_ms = 7'312;
+  EXPECT_EQ(
+      wishes_note(control, {.power_w = -500, .until_utc_s = kNow + 60}, kNow),
+      "hold       -500 W until 2023-03-27T00:03:00Z\n"
+      "reserve    SoC 15.5 % at this hour, 1 periods in all\nfull       every 7 days, with 2000 W\n"
+      "spread     orders 7.312 s after each tick\n");
+  EXPECT_THAT(wishes_note({}, {.unreadable = true}, kNow), HasSubstr("not followed"));
+}
+
+TEST(StartOffset, IsTheSameAtEveryStartAndSpreadsOverAllMachines) {
+  constexpr std::string_view kPlace = "192.168.1.20:502 unit 85";
+  EXPECT_EQ(start_offset_ms(20, "a", kPlace), start_offset_ms(20, "a", kPlace));
+  EXPECT_NE(start_offset_ms(20, "a", kPlace), start_offset_ms(20, "a", "192.168.1.21:502 unit 85"));
+  EXPECT_EQ(start_offset_ms(0, "a", kPlace), 0);
+  int machines_in_second[20] = {};
+  for (int machine = 0; machine < 1'000; ++machine) {
+    const std::int32_t offset_ms = start_offset_ms(20, std::to_string(machine), kPlace);
+    ASSERT_GE(offset_ms, 0);
+    ASSERT_LT(offset_ms, 20'000);
+    ++machines_in_second[offset_ms / 1'000];
+  }
+  for (const int machines : machines_in_second) {  // 50 each, if it were even
+    EXPECT_GT(machines, 20);
+    EXPECT_LT(machines, 100);
+  }
+  EXPECT_FALSE(machine_id().empty());
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,179 @@
+// What `status`, `history` and the self-test read of upgrades and of the disk.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "edge/log/text_checksum.h"
+#include "edge/state/storage_health.h"
+#include "edge/state/update_state.h"
+#include "tests/support/fake_card.h"
+#include "tests/support/temporary_folder.h"
+
+namespace bess {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+std::string folder_of(const TemporaryFolder& folder) { return folder.file(""); }
+
+TEST(UpdateState, WithoutAPackageThereIsNothingToTell) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(update_note(read_update_state(folder_of(folder))), "");
+  EXPECT_THAT(read_update_history(folder_of(folder)), IsEmpty());
+}
+
+TEST(UpdateState, ATrialTellsItsCyclesAndItsWayBack) {
+  const TemporaryFolder folder;
+  static_cast<void>(
+      folder.write("state",
+                   "phase=trying\nversion=2.0\nprevious=1.0\nsince_utc=2026-11-22T06:00:00Z\n"
+                   "good=7\nneeded=15\n"));
+  EXPECT_EQ(update_note(read_update_state(folder_of(folder))),
+            "2.0 on trial since 2026-11-22T06:00:00Z, 7 of 15 good cycles; else back to 1.0");
+}
+
+TEST(UpdateState, ARollBackTellsWhatAndWhyAlsoWithAnEqualsSign) {
+  const TemporaryFolder folder;
+  static_cast<void>(folder.write(
+      "state", "phase=rolled_back\nversion=1.0\nrefused=2.0\nreason=map x: unit = 7\n"));
+  EXPECT_EQ(update_note(read_update_state(folder_of(folder))),
+            "1.0; 2.0 was rolled back: map x: unit = 7");
+}
+
+TEST(UpdateState, OnlyWhatEndedBadlyIsTroubleForHealth) {
+  const TemporaryFolder folder;
+  const auto trouble_of = [&](const std::string& phase) {
+    static_cast<void>(
+        folder.write("state", "phase=" + phase + "\nversion=1.0\nrefused=2.0\nreason=it hangs\n"));
+    return update_trouble(read_update_state(folder_of(folder)));
+  };
+  EXPECT_EQ(trouble_of("rolled_back"), "1.0; 2.0 was rolled back: it hangs");
+  EXPECT_EQ(trouble_of("going_back"), "2.0 is being rolled back: it hangs");
+  EXPECT_EQ(trouble_of("failed"), "1.0 did not confirm: it hangs");
+  for (const char* const phase : {"upgrading", "trying", "confirmed", ""}) {
+    EXPECT_EQ(trouble_of(phase), "") << phase;
+  }
+}
+
+/// As bess-update writes it: with its checksum, and a copy.
+class UpdateStateCopies : public ::testing::Test {
+ protected:
+  UpdateStateCopies() {
+    text_ = "phase=rolled_back\nversion=1.0\nrefused=2.0\nreason=it hangs\nneeded=15\n";
+    older_ = text_;
+    text_ += checksum_end(text_, kCommentChecksum).view();
+    put(text_, text_);
+  }
+  void put(const std::string& state, const std::string& copy) {
+    static_cast<void>(folder_.write("state", state));
+    static_cast<void>(folder_.write("state.copy", copy));
+  }
+  [[nodiscard]] std::string trouble() const {
+    return update_trouble(read_update_state(folder_of(folder_)));
+  }
+
+  static constexpr const char* kTrouble = "1.0; 2.0 was rolled back: it hangs";
+  const TemporaryFolder folder_;
+  std::string text_;
+  std::string older_;  ///< the same, of a bess-update without checksums
+};
+
+TEST_F(UpdateStateCopies, WhatIsDamagedIsTakenFromTheCopy) {
+  for (std::size_t i = 0; i < text_.size(); ++i) {
+    std::string flipped = text_;
+    flipped[i] = static_cast<char>(flipped[i] ^ (1 << i % 8));
+    put(flipped, text_);
+    ASSERT_EQ(trouble(), kTrouble) << i;
+    put(text_, flipped);
+    ASSERT_EQ(trouble(), kTrouble) << i;
+    put(text_.substr(0, i), text_);
+    ASSERT_EQ(trouble(), kTrouble) << i;
+  }
+}
+
+TEST_F(UpdateStateCopies, BothDamagedIsToldAndNothingIsBelieved) {
+  put(std::string(200, '\0'), text_.substr(0, 40));
+  EXPECT_THAT(trouble(), AllOf(HasSubstr("the state of the upgrades is lost: "),
+                               HasSubstr("state and its copy are damaged")));
+}
+
+TEST_F(UpdateStateCopies, AnOlderProgramsWordIsNewerThanTheCopy) {
+  std::string confirmed = older_;
+  confirmed.replace(0, confirmed.find('\n'), "phase=confirmed");
+  put(confirmed, text_);
+  EXPECT_EQ(trouble(), "");
+}
+
+TEST(UpdateHistory, OldestFirstAndNotWhatAPowerCutTore) {
+  const TemporaryFolder folder;
+  static_cast<void>(
+      folder.write("history",
+                   "2026-11-22T06:00:00Z\ttrying\t2.0\t45d2cbe3\t72c9\t\n"
+                   "2026-11-22T06:09:00Z\trolled_back\t2.0\t45d2cbe3\t72c9\tthe unit failed\n"
+                   "2026-11-22T07:00:00Z\ttrying\t3.0\t45d2cbe3\t72c9\thal"));
+  const auto events = read_update_history(folder_of(folder));
+  ASSERT_THAT(events, SizeIs(2));
+  EXPECT_EQ(events[0].event, "trying");
+  EXPECT_EQ(events[0].reason, "");
+  EXPECT_EQ(events[1].version, "2.0");
+  EXPECT_EQ(events[1].student, "45d2cbe3");
+  EXPECT_EQ(events[1].header_sha256, "72c9");
+  EXPECT_EQ(events[1].reason, "the unit failed");
+}
+
+TEST(StorageHealth, WearIsTheWorseOfTheTwoKindsOfCells) {
+  EXPECT_EQ(used_life_percent("0x01 0x03\n"), 30);
+  EXPECT_EQ(used_life_percent("0x0a 0x00\n"), 100);
+  EXPECT_EQ(used_life_percent("0x0b 0x01\n"), 110);
+  for (const char* untold : {"0x00 0x00\n", "unknown", "", "0x", "0x0c 0x01\n"}) {
+    EXPECT_EQ(used_life_percent(untold), 0) << untold;
+  }
+  EXPECT_EQ(spare_level("0x01\n"), 1);
+  EXPECT_EQ(spare_level("0x03\n"), 3);
+  for (const char* untold : {"0x00\n", "0x04\n", "3\n", "", "0x"}) {
+    EXPECT_EQ(spare_level(untold), 0) << untold;
+  }
+}
+
+TEST(StorageHealth, WhatNoDeviceTellsIsNotMadeUp) {
+  for (const char* folder : {"/no/such/folder", "/proc"}) {
+    const CardWear wear = card_wear_of(folder);
+    EXPECT_EQ(wear.used_life_percent, 0) << folder;
+    EXPECT_EQ(wear.spare_level, 0) << folder;
+    EXPECT_LT(wear.file_system_errors, 0) << folder;
+  }
+}
+
+TEST(StorageHealth, AnEmmcAndItsFileSystemAreReadThroughThePartition) {
+  const TemporaryFolder root;
+  const TemporaryFolder state;
+  setenv("BESS_ROOT", root.file("").c_str(), 1);
+  write_card(root, state.file(""),
+             {.life_time = "0x02 0x0a\n", .pre_eol_info = "0x02\n", .errors = "7\n"});
+  const CardWear wear = card_wear_of(state.file(""));
+  unsetenv("BESS_ROOT");
+  EXPECT_EQ(wear.used_life_percent, 100);
+  EXPECT_EQ(wear.spare_level, 2);
+  EXPECT_EQ(wear.file_system_errors, 7);
+}
+
+TEST(StorageHealth, ATrialWriteLeavesNothing) {
+  const TemporaryFolder folder;
+  const StorageHealth health = look_at_storage(folder.file("state"));
+  EXPECT_TRUE(health.is_writable) << health.error;
+  EXPECT_GT(health.free_mb, 0);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.file("state")));
+}
+
+TEST(StorageHealth, AFolderThatCannotBeSaysWhy) {
+  const TemporaryFolder folder;
+  static_cast<void>(folder.write("file", ""));
+  const StorageHealth health = look_at_storage(folder.file("file/state"));
+  EXPECT_FALSE(health.is_writable);
+  EXPECT_EQ(health.error, "Not a directory");
+}
+
+}  // namespace
+}  // namespace bess

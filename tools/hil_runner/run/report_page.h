@@ -1,0 +1,19 @@
+// The report of a run as one HTML page, pictures inside.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tools/hil_runner/run/outcome.h"
+
+namespace bess {
+
+/// A page without scripts and without anything from elsewhere.
+std::string html_page(std::string_view title, const std::string& body);
+std::string html_text(std::string_view text);
+
+/// Throws UserError without gnuplot.
+std::string report_page(const std::vector<Outcome>& outcomes);
+
+}  // namespace bess

@@ -1,0 +1,280 @@
+// bess-hil run: scenarios in one or both times, a line each.
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "shared/host/file.h"
+#include "shared/host/json.h"
+#include "shared/host/user_error.h"
+#include "shared/utc_text.h"
+#include "tools/hil_runner/base/stop_request.h"
+#include "tools/hil_runner/real/real_options.h"
+#include "tools/hil_runner/run/agreement.h"
+#include "tools/hil_runner/run/hil_command.h"
+#include "tools/hil_runner/run/junit.h"
+#include "tools/hil_runner/run/report_page.h"
+#include "tools/hil_runner/run/run_scenario.h"
+#include "tools/hil_runner/scenario/rules.h"
+
+namespace bess {
+namespace {
+
+namespace fs = std::filesystem;
+
+enum class Times : std::uint8_t { kVirtual, kWall, kBoth };
+
+struct RunOptions {
+  std::vector<std::string> places;
+  Times times = Times::kVirtual;
+  int jobs = 8;
+  bool list = false;
+  bool list_invariants = false;
+  bool json = false;
+  std::string junit, report, edge, simulators;
+  RealOptions real;
+};
+
+/// Files as they are; of a folder, its scenarios by name.
+std::vector<std::string> scenario_files(const std::vector<std::string>& places) {
+  std::vector<std::string> files;
+  for (const std::string& place : places) {
+    if (!fs::is_directory(place)) {
+      files.push_back(place);
+      continue;
+    }
+    std::vector<std::string> inside;
+    for (const auto& entry : fs::directory_iterator(place)) {
+      if (entry.path().extension() == ".toml") inside.push_back(entry.path().string());
+    }
+    std::ranges::sort(inside);
+    files.insert(files.end(), inside.begin(), inside.end());
+  }
+  if (files.empty()) fail("no scenario: give files, or a folder that holds some (*.toml)");
+  return files;
+}
+
+/// Beside this program, unless said otherwise.
+std::string program(const std::string& given, const char* name) {
+  if (!given.empty()) return given;
+  return (fs::read_symlink("/proc/self/exe").parent_path() / name).string();
+}
+
+void print_line(const Outcome& outcome) {
+  if (!outcome.skipped.empty()) {
+    fmt::print("skip  {:7} {:32} {}\n", outcome.time(), outcome.scenario.name, outcome.skipped);
+  } else if (outcome.passed()) {
+    fmt::print("ok    {:7} {:32} {:6.2f} s  {}\n", outcome.time(), outcome.scenario.name,
+               outcome.seconds, outcome.scenario.title);
+  } else {
+    fmt::print("FAIL  {:7} {:32} {:6.2f} s  {}{}\n", outcome.time(), outcome.scenario.name,
+               outcome.seconds, complaint(outcome),
+               outcome.kept_folder.empty() ? "" : " (its files: " + outcome.kept_folder + ")");
+  }
+  std::fflush(stdout);
+}
+
+Json json_of(const Outcome& outcome) {
+  Json findings = Json::list();
+  for (const Finding& f : outcome.findings) {
+    findings.add(Json::object({{"rule", f.rule},
+                               {"utc", utc_text(f.utc_s).view()},
+                               {"expected", f.expected},
+                               {"seen", f.seen}}));
+  }
+  Json json = Json::object({{"scenario", outcome.scenario.name},
+                            {"time", outcome.time()},
+                            {"passed", outcome.passed()},
+                            {"seconds", Decimals{outcome.seconds, 3}}});
+  if (!outcome.skipped.empty()) json.set("skipped", outcome.skipped);
+  if (!outcome.error.empty()) json.set("error", outcome.error);
+  if (outcome.signature != 0) json.set("signature", fmt::format("{:016x}", outcome.signature));
+  json.set("findings", std::move(findings));
+  return json;
+}
+
+class Runner {
+ public:
+  explicit Runner(const RunOptions& options)
+      : options_(options),
+        site_{.edge = program(options.edge, "bess-edge"),
+              .simulators = program(options.simulators, "bess-sim"),
+              .battery = real_battery(options.real)} {
+    for (const std::string& file : scenario_files(options.places)) {
+      scenarios_.push_back(read_scenario(file));
+    }
+    if (site_.battery) refuse_unsuited();
+  }
+
+  [[nodiscard]] const std::vector<Scenario>& scenarios() const { return scenarios_; }
+
+  std::vector<Outcome> run() {
+    watch_for_stop();
+    if (site_.battery) {
+      run_on_real_battery();
+      return std::move(outcomes_);
+    }
+    if (options_.times != Times::kWall) {
+      for (const Scenario& scenario : scenarios_) take(run_scenario(scenario, true, site_));
+    }
+    if (options_.times != Times::kVirtual) run_in_wall_time();
+    return std::move(outcomes_);
+  }
+
+ private:
+  /// Of a folder, those that may not are passed over; one that was named is a mistake.
+  void refuse_unsuited() const {
+    for (const Scenario& scenario : scenarios_) {
+      const bool was_named =
+          std::ranges::find(options_.places, scenario.path) != options_.places.end();
+      const std::string why = why_not_real(scenario, *site_.battery);
+      if (was_named && !why.empty()) {
+        fail("{}: not for a real battery: {} (--list names those that are)", scenario.path, why);
+      }
+    }
+  }
+
+  /// One after the other; what cannot be run to its end ends them all.
+  void run_on_real_battery() {
+    require_programs();
+    for (const Scenario& scenario : scenarios_) {
+      take(run_scenario(scenario, false, site_));
+      if (!outcomes_.back().error.empty()) return;
+    }
+  }
+
+  void require_programs() const {
+    for (const std::string& path : {site_.edge, site_.simulators}) {
+      if (access(path.c_str(), X_OK) != 0) {
+        fail("{}: {}; build it, or say where it is (see --help)", path,
+             fs::exists(path) ? "no program that this user may run" : "not there");
+      }
+    }
+  }
+
+  /// Most of it is waiting: several beside each other, the longest first, so that none is left at the end.
+  void run_in_wall_time() {
+    require_programs();
+    std::ranges::stable_sort(scenarios_, std::greater<>(), [](const Scenario& s) {
+      return s.runs_wall ? s.minutes / s.time_scale : 0;
+    });
+    std::atomic<std::size_t> next = 0;
+    std::vector<std::thread> threads;
+    for (int i = 0; i < options_.jobs; ++i) {
+      threads.emplace_back([&] {
+        for (std::size_t s = next++; s < scenarios_.size(); s = next++) {
+          try {
+            take(run_scenario(scenarios_[s], false, site_));
+          } catch (const Interrupted&) {
+            return;
+          }
+        }
+      });
+    }
+    for (std::thread& thread : threads) thread.join();
+    throw_if_stopped();
+  }
+
+  void take(Outcome outcome) {
+    const std::lock_guard lock(mutex_);
+    if (!options_.json) print_line(outcome);
+    outcomes_.push_back(std::move(outcome));
+  }
+
+  const RunOptions& options_;
+  WallSite site_;
+  std::vector<Scenario> scenarios_;
+  std::mutex mutex_;
+  std::vector<Outcome> outcomes_;
+};
+
+void list_scenarios(const std::vector<Scenario>& scenarios) {
+  for (const Scenario& s : scenarios) {
+    const char* const times = !s.runs_wall ? "virtual" : s.runs_virtual ? "both" : "wall";
+    const char* const real = why_not_real(s).empty() ? "real" : "-";
+    fmt::print("{:32} {:7} {:4} {:5.0f} min  {}\n", s.name, times, real, s.minutes, s.title);
+  }
+}
+
+void run(const RunOptions& options) {
+  if (options.list_invariants) {
+    for (const RuleInfo& info : kRuleInfos) fmt::print("{:12} {}\n", info.name, info.text);
+    return;
+  }
+  for (const std::string& path : {options.junit, options.report}) {
+    if (!path.empty()) require_writable(path);
+  }
+  Runner runner(options);
+  if (options.list) return list_scenarios(runner.scenarios());
+  const std::vector<Outcome> outcomes = runner.run();
+  const auto failed = std::ranges::count_if(outcomes, [](const Outcome& o) { return !o.passed(); });
+  const auto skipped =
+      std::ranges::count_if(outcomes, [](const Outcome& o) { return !o.skipped.empty(); });
+  const auto ran = std::ssize(outcomes) - skipped;
+  if (options.json) {
+    Json runs = Json::list();
+    for (const Outcome& outcome : outcomes) runs.add(json_of(outcome));
+    fmt::print("{}\n", Json::object({{"passed", ran - failed},
+                                     {"failed", failed},
+                                     {"skipped", skipped},
+                                     {"runs", std::move(runs)}})
+                           .line());
+  } else {
+    fmt::print("{} passed, {} failed, {} skipped\n", ran - failed, failed, skipped);
+    const std::string agreement = agreement_line(agreement_of(outcomes));
+    if (!agreement.empty()) fmt::print("{}\n", agreement);
+  }
+  if (!options.junit.empty()) write_file(options.junit, junit_text(outcomes));
+  if (!options.report.empty()) write_file(options.report, report_page(outcomes));
+  if (failed > 0) fail("{} of {} runs failed", failed, ran);
+  if (ran == 0) fail("nothing ran: all scenarios were skipped");
+}
+
+}  // namespace
+
+void add_run_command(ProgramCommand& app) {
+  auto options = std::make_shared<RunOptions>();
+  ProgramCommand command = app.subcommand("run", "Run scenarios, judge them, a line each");
+  command.footer(
+      "Examples:\n"
+      "  bess-hil run tests/scenarios/quiet_hour.toml\n"
+      "  bess-hil run tests/scenarios --time both --junit build/hil.xml\n"
+      "  bess-hil run mine.toml --report mine.html\n"
+      "  bess-hil run tests/scenarios --list\n"
+      "  bess-hil run tests/scenarios/quiet_hour.toml --real 192.168.1.20:502 "
+      "--yes-drive-real-battery\n"
+      "      --real-map alphaess --real-capacity-wh 8000 --real-power-w 500 --real-soc-min 0.3 "
+      "--real-soc-max 0.7\n"
+      "Exit codes: 0 all passed, 1 one failed or a file is bad, 2 the command line is bad, 3 "
+      "interrupted.");
+  command.option("scenarios", options->places, "Scenario files, or folders of them")
+      .value_name("SCENARIO...");
+  command.choice<Times>(
+      "--time", options->times,
+      {{"virtual", Times::kVirtual}, {"wall", Times::kWall}, {"both", Times::kBoth}},
+      "virtual (default): the edge's own parts, as quick as the machine; wall: "
+      "the real programs, scaled");
+  command.option("--jobs", options->jobs, "Scenarios beside each other, in wall time")
+      .range(1, 64)
+      .with_default();
+  command.flag("--list", options->list,
+               "Only name the scenarios, their times, and which may drive a real battery");
+  command.flag("--invariants", options->list_invariants, "Only name what is judged");
+  command.flag("--json", options->json, "One JSON object instead of lines");
+  command.option("--junit", options->junit, "Write JUnit XML here");
+  command.option("--report", options->report, "Write a page with pictures here (HTML)");
+  command.option("--edge", options->edge, "bess-edge; default: the one beside this program");
+  command.option("--simulators", options->simulators,
+                 "bess-sim; default: the one beside this program");
+  add_real_options(command, options->real);
+  command.runs([options] { run(*options); });
+}
+
+}  // namespace bess

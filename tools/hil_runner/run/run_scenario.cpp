@@ -1,0 +1,103 @@
+#include "tools/hil_runner/run/run_scenario.h"
+
+#include <fmt/core.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstring>
+
+#include "shared/signature.h"
+#include "shared/utc_text.h"
+#include "tools/hil_runner/scenario/edge_settings.h"
+#include "tools/hil_runner/scenario/publication.h"
+#include "tools/hil_runner/virtual/virtual_run.h"
+
+namespace bess {
+namespace {
+
+std::int64_t bits(double value) {
+  std::int64_t out = 0;
+  std::memcpy(&out, &value, sizeof out);
+  return out;
+}
+
+/// Every bit of what was recorded: two runs that differ anywhere have two signatures.
+std::uint64_t signature_of(const Evidence& evidence) {
+  Signature signature;
+  for (const DispatchEvent& e : evidence.orders) {
+    for (const std::int64_t part : {e.utc_ns, static_cast<std::int64_t>(e.kind), bits(e.power_w),
+                                    e.duration_s, bits(e.soc_frac)}) {
+      signature.add(part);
+    }
+  }
+  for (const MinuteRecord& m : evidence.minutes) {
+    for (const std::int64_t part : {m.minute_utc_s, bits(m.energy_wh), bits(m.soc_frac)}) {
+      signature.add(part);
+    }
+  }
+  for (const LoggedCycle& c : evidence.log) {
+    for (const std::int64_t part :
+         {c.utc_s, std::int64_t{c.soc_e4}, std::int64_t{c.price_centi_eur_per_mwh},
+          std::int64_t{c.context_class}, std::int64_t{c.ordered_power_w},
+          static_cast<std::int64_t>(c.mode), std::int64_t{c.written}}) {
+      signature.add(part);
+    }
+    for (const char letter : c.reason) signature.add(letter);
+  }
+  return signature.value();
+}
+
+void run_and_judge(const Scenario& scenario, const WallSite& site, Outcome& outcome,
+                   WorkFolder& folder) {
+  outcome.prices = scenario_prices(scenario);
+  const EdgeConfig config = load_edge_settings(scenario, folder.file("judge.toml"),
+                                               edge_settings(scenario, outcome.prices, {}));
+  outcome.evidence = outcome.is_virtual ? run_virtual(scenario, outcome.prices, config)
+                                        : run_wall(scenario, outcome.prices, site, folder);
+  outcome.evidence.order_ends_by_itself = config.control.has_watchdog;
+  outcome.evidence.order_duration_s = config.map.watchdog.duration_s;
+  if (outcome.is_virtual) outcome.signature = signature_of(outcome.evidence);
+  outcome.findings = judge({scenario, outcome.prices, config, outcome.evidence});
+}
+
+}  // namespace
+
+std::string complaint(const Outcome& outcome) {
+  if (!outcome.error.empty()) return outcome.error;
+  if (outcome.findings.empty()) return "";
+  const Finding& first = outcome.findings.front();
+  const double minute = static_cast<double>(first.utc_s - outcome.scenario.start_utc_s) / 60;
+  const std::string more =
+      outcome.findings.size() > 1 ? fmt::format(", and {} more", outcome.findings.size() - 1) : "";
+  return fmt::format("{}: expected {}, seen {}, at {} (minute {:.1f}){}", first.rule,
+                     first.expected, first.seen, utc_text(first.utc_s).view(), minute, more);
+}
+
+Outcome run_scenario(const Scenario& scenario, bool in_virtual_time, const WallSite& site) {
+  Outcome outcome;
+  outcome.scenario = site.battery ? on_real_battery(scenario, *site.battery) : scenario;
+  outcome.is_virtual = in_virtual_time;
+  outcome.is_real = site.battery.has_value();
+  if (in_virtual_time && !scenario.runs_virtual) outcome.skipped = "for wall time";
+  if (!in_virtual_time && !scenario.runs_wall) outcome.skipped = "for virtual time";
+  if (site.battery && outcome.skipped.empty()) {
+    outcome.skipped = why_not_real(scenario, *site.battery);
+  }
+  if (!in_virtual_time && outcome.skipped.empty()) outcome.skipped = why_not_wall(scenario);
+  if (!outcome.skipped.empty()) return outcome;
+  const auto begin = std::chrono::steady_clock::now();
+  WorkFolder folder;
+  try {
+    run_and_judge(outcome.scenario, site, outcome, folder);
+  } catch (const std::exception& error) {
+    outcome.error = error.what();
+  }
+  if (!in_virtual_time && !outcome.passed()) {
+    folder.keep();
+    outcome.kept_folder = folder.file("");
+  }
+  outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return outcome;
+}
+
+}  // namespace bess

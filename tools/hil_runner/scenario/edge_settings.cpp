@@ -1,0 +1,118 @@
+#include "tools/hil_runner/scenario/edge_settings.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "edge/control/price_history.h"
+#include "shared/host/file.h"
+#include "shared/host/user_error.h"
+#include "shared/utc_text.h"
+
+namespace bess {
+namespace {
+
+/// Of a wall-clock run: what is a second on the device passes in a fraction of one.
+constexpr std::int32_t kWallTimeoutMs = 200;
+
+std::string dataset_url(int market_port, const char* dataset) {
+  return fmt::format(
+      "http://127.0.0.1:{}/api/explore/v2.1/catalog/datasets/{}/records"
+      "?order_by=datetime%20desc&limit=20",
+      market_port, dataset);
+}
+
+/// Where the scenario's own lines for the table give none.
+std::string wall_timeout(const std::string& lines, const EdgePlaces& places) {
+  const bool is_wall = places.anchor_monotonic_ns != 0;
+  const bool has_timeout = lines.find("response_timeout_ms") != std::string::npos;
+  return is_wall && !has_timeout ? fmt::format("response_timeout_ms = {}\n", kWallTimeoutMs) : "";
+}
+
+std::string battery_keys(const Scenario& scenario, const EdgePlaces& places) {
+  const ScenarioBattery& battery = scenario.battery;
+  std::string text =
+      fmt::format("map = \"{}\"\npower_w = {:.0f}\ncapacity_wh = {:.0f}\n", battery.map,
+                  battery.physics.power_w_max, battery.physics.capacity_wh);
+  if (!battery.variant.empty()) text += fmt::format("variant = \"{}\"\n", battery.variant);
+  if (!places.battery_link.empty()) return text + places.battery_link + scenario.edge_battery;
+  text += fmt::format("port = {}\n", places.battery_port);
+  if (battery.rtu) {
+    text += fmt::format("transport = \"rtu\"\ndevice = \"{}\"\nbaud = 115200\n",
+                        places.serial_device.empty() ? "/dev/null" : places.serial_device);
+  }
+  return text + wall_timeout(scenario.edge_battery, places) + scenario.edge_battery;
+}
+
+std::string meter_table(const Scenario& scenario, const EdgePlaces& places) {
+  using enum ScenarioMeter::Source;
+  const ScenarioMeter& meter = scenario.meter;
+  if (meter.source == kNone) return "";
+  std::string text = "[meter]\n";
+  if (meter.source == kBattery) {
+    text += "source = \"battery\"\n";
+  } else {
+    text += fmt::format("map = \"{}\"\nport = {}\n", meter.map, places.meter_port);
+    if (!meter.variant.empty()) text += fmt::format("variant = \"{}\"\n", meter.variant);
+    text += wall_timeout(scenario.edge_meter, places);
+  }
+  return text + scenario.edge_meter + "\n";
+}
+
+/// The level that earlier days have led to, or how much of them the edge asks for.
+std::string history_keys(const Scenario& scenario, const MinuteSeries& prices, int market_port) {
+  if (scenario.prices.history_hours > 0) {
+    return fmt::format("history_hours = {}\nhistory_url = \"{}\"\n", scenario.prices.history_hours,
+                       dataset_url(market_port, "ods133"));
+  }
+  const PriceLevel level = level_before(prices, scenario.start_utc_s);
+  if (!level.is_known()) return "history_hours = 0\n";
+  return fmt::format("history_hours = 0\nlevel_start_eur_per_mwh = {:.2f}\n",
+                     level.centi_eur_per_mwh() / 100.0);
+}
+
+}  // namespace
+
+PriceLevel level_before(const MinuteSeries& prices, std::int64_t start_utc_s, int hours) {
+  PriceHistory history(hours, start_utc_s);
+  for (std::size_t m = 0; m < prices.size() && prices.utc_s(m) < start_utc_s; ++m) {
+    if (std::isnan(prices.indicative[m])) continue;
+    history.add(prices.utc_s(m),
+                static_cast<std::int32_t>(std::lround(100 * prices.indicative[m])));
+  }
+  return history.level();
+}
+
+std::string edge_settings(const Scenario& scenario, const MinuteSeries& prices,
+                          const EdgePlaces& places) {
+  std::string text = fmt::format("control = true\n[battery]\n{}\n", battery_keys(scenario, places));
+  text += fmt::format("[price]\nurl = \"{}\"\n", dataset_url(places.market_port, "ods161"));
+  text += history_keys(scenario, prices, places.market_port);
+  text += fmt::format("{}\n[guard]\n{}\n[state]\nfolder = \"state\"\n", scenario.edge_price,
+                      scenario.edge_guard);
+  text += meter_table(scenario, places);
+  if (scenario.has_limits()) {
+    text += fmt::format("[limits]\nfile = \"limit\"\n{}\n", scenario.edge_limits);
+  }
+  text += fmt::format("[log]\ncsv = \"edge.csv\"\n{}\n", scenario.edge_other);
+  if (places.anchor_monotonic_ns != 0) {
+    text += fmt::format(
+        "[simulation]\ntime_scale = {}\nutc_start = \"{}\"\nanchor_monotonic_ns = {}\n",
+        scenario.time_scale, utc_text(scenario.start_utc_s).view(), places.anchor_monotonic_ns);
+  }
+  return text;
+}
+
+EdgeConfig load_edge_settings(const Scenario& scenario, const std::string& path,
+                              const std::string& text) {
+  write_file(path, text);
+  EdgeConfig config;
+  std::string error;
+  if (load_edge_config(path, config, error)) return config;
+  // The file is not the user's, nor are its lines.
+  if (error.starts_with(path)) error = error.substr(std::min(error.size(), error.find(": ") + 2));
+  fail("{}: [edge], read as bess-edge's settings: {}", scenario.path, error);
+}
+
+}  // namespace bess

@@ -1,0 +1,79 @@
+// What the tables of a scenario file have in common: numbers with a range, spans of minutes, lists of pairs.
+#pragma once
+
+#include <fmt/core.h>
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "shared/host/toml_document.h"
+#include "shared/host/toml_reader.h"
+#include "tools/hil_runner/scenario/scenario.h"
+
+namespace bess {
+
+inline constexpr double kScenarioMinutesMax = 60.0 * 24 * 400;
+
+inline void read_decimal(TomlTable& table, std::string_view key, double& value, double min,
+                         double max) {
+  const TomlValue* const node = table.node(key);
+  if (node == nullptr) return;
+  const auto number = node->number();
+  if (!number || !(*number >= min && *number <= max)) {
+    return table.fail(key, fmt::format("must be a number from {:g} to {:g}", min, max));
+  }
+  value = *number;
+}
+
+inline void read_span(TomlTable& table, MinuteSpan& span) {
+  read_decimal(table, "from_min", span.from_min, 0, kScenarioMinutesMax);
+  read_decimal(table, "to_min", span.to_min, 0, kScenarioMinutesMax);
+  if (table.ok() && span.to_min <= span.from_min) {
+    table.fail("to_min", "must be later than from_min");
+  }
+}
+
+inline void read_text(TomlTable& table, std::string_view key, std::string& value) {
+  if (const std::string* const text = table.text(key)) value = *text;
+}
+
+/// Calls `take(first, second)` for each pair of numbers in a list of pairs.
+template <typename Take>
+void read_pairs(TomlTable& table, std::string_view key, const Take& take) {
+  const TomlArray* const list = table.array(key);
+  if (list == nullptr) return;
+  for (const TomlValue& item : *list) {
+    const auto* const pair = item.as<TomlArray>();
+    const auto first = pair != nullptr && pair->size() == 2 ? (*pair)[0].number() : std::nullopt;
+    const auto second = first ? (*pair)[1].number() : std::nullopt;
+    if (!second) {
+      return table.fail_at(item, std::string(key) + " must be a list of pairs of numbers");
+    }
+    take(*first, *second);
+  }
+}
+
+/// Key `kinds`, required: faults of bess-sim battery. `refuse(info)` says why one cannot be here; empty: it can.
+template <typename Refuse>
+void read_fault_kinds(TomlTable& table, std::vector<BatteryFault>& faults, const Refuse& refuse) {
+  table.require("kinds");
+  const TomlArray* const kinds = table.array("kinds");
+  for (std::size_t i = 0; kinds != nullptr && i < kinds->size(); ++i) {
+    const TomlValue& item = (*kinds)[i];
+    const auto* const name = item.as<std::string>();
+    const BatteryFaultInfo* found = nullptr;
+    for (const BatteryFaultInfo& info : battery_faults()) {
+      if (name != nullptr && *name == info.name) found = &info;
+    }
+    if (found == nullptr) {
+      table.fail_at(item, "no fault of the battery (see bess-sim battery --help)");
+    } else if (const std::string why = refuse(*found); !why.empty()) {
+      table.fail_at(item, why);
+    } else {
+      faults.push_back(found->fault);
+    }
+  }
+}
+
+}  // namespace bess

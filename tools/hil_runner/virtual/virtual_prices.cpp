@@ -1,0 +1,130 @@
+#include "tools/hil_runner/virtual/virtual_prices.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <string_view>
+
+#include "shared/scaled_clock.h"
+
+namespace bess {
+namespace {
+
+constexpr std::int64_t kFetchNs = 30 * kMillisecondNs;  ///< of one answer
+constexpr int kRowsAsked = 20;  ///< as the edge's example configuration does
+
+/// Of a URL's query: "limit=" of "...?limit=100&offset=0" is 100.
+int number_of(std::string_view url, std::string_view key) {
+  const std::size_t at = url.rfind(key);
+  return at == url.npos ? 0 : std::atoi(url.data() + at + key.size());
+}
+
+}  // namespace
+
+VirtualPrices::VirtualPrices(const PriceFeedSettings& settings, const MarketView& market,
+                             MarketFaultPlan& faults, const Scenario& scenario, VirtualTime& time)
+    : settings_(settings),
+      market_(market),
+      faults_(faults),
+      scenario_(scenario),
+      time_(time),
+      newest_(settings.step_flag_centi_eur_per_mwh, settings.hold_flagged_step) {}
+
+void VirtualPrices::request(std::int64_t minute_utc_s, std::int64_t start_monotonic_ns,
+                            std::int64_t deadline_monotonic_ns) {
+  minute_utc_s_ = minute_utc_s;
+  start_ns_ = start_monotonic_ns;
+  deadline_ns_ = deadline_monotonic_ns;
+  requests_ = 0;
+  is_asking_ = is_served_ = false;
+}
+
+bool VirtualPrices::wait(std::int64_t until_monotonic_ns) {
+  while (!is_served_) {
+    if (!is_asking_ && !begin_next()) break;
+    const std::int64_t next_ns = answer_.begun_ns > time_.monotonic_ns() || answer_.done_ns == 0
+                                     ? answer_.begun_ns
+                                     : answer_.done_ns;
+    if (next_ns > until_monotonic_ns) {
+      time_.advance_to(until_monotonic_ns);
+      return false;
+    }
+    time_.advance_to(next_ns);
+    if (answer_.done_ns == 0) {
+      fetch();
+      continue;
+    }
+    is_asking_ = false;
+    newest_.publish(answer_.status, answer_.row, time_.monotonic_ns(),
+                    static_cast<std::int32_t>((answer_.done_ns - answer_.begun_ns) / 1'000));
+    is_served_ = answer_.status == Status::kOk && answer_.row.minute_utc_s >= minute_utc_s_;
+  }
+  return true;
+}
+
+/// Spread over the wait like PriceFeed's; false when the cycle's requests are used up.
+bool VirtualPrices::begin_next() {
+  const std::int64_t spacing_ns =
+      settings_.wait_s * kNanosecondsPerSecond / settings_.requests_per_cycle;
+  const std::int64_t begin_ns = start_ns_ + requests_ * spacing_ns;
+  if (requests_ >= settings_.requests_per_cycle || (requests_ > 0 && begin_ns >= deadline_ns_)) {
+    is_served_ = true;
+    return false;
+  }
+  ++requests_;
+  is_asking_ = true;
+  answer_ = {.begun_ns = std::max(begin_ns, time_.monotonic_ns())};
+  return true;
+}
+
+void VirtualPrices::fetch() {
+  const Reply reply = ask({.limit = kRowsAsked}, settings_.http.timeout_ms);
+  answer_.done_ns = time_.monotonic_ns() + reply.takes_ns;
+  answer_.status = reply.status != Status::kOk ? reply.status
+                                               : parse_newest_price(reply.text, settings_.fields,
+                                                                    edge_utc_s(), answer_.row);
+}
+
+Status VirtualPrices::fetch_once(PriceRow& row) {
+  const Reply reply = ask({.limit = kRowsAsked}, settings_.http.timeout_ms);
+  time_.advance_to(time_.monotonic_ns() + reply.takes_ns);
+  if (reply.status != Status::kOk) return reply.status;
+  return parse_newest_price(reply.text, settings_.fields, edge_utc_s(), row);
+}
+
+Status VirtualPrices::fetch_page(const char* url, std::int32_t timeout_ms,
+                                 const PriceRowTaker& taker, int& items) {
+  items = 0;
+  const bool is_past = std::string_view(url).find("/ods133/") != std::string_view::npos;
+  const Reply reply = ask({.dataset = is_past ? Dataset::kMinutesOfPastDays : Dataset::kMinutes,
+                           .limit = number_of(url, "limit="),
+                           .offset = number_of(url, "offset=")},
+                          timeout_ms);
+  time_.advance_to(time_.monotonic_ns() + reply.takes_ns);
+  if (reply.status != Status::kOk) return reply.status;
+  return parse_prices(reply.text, settings_.fields, edge_utc_s(), taker, items);
+}
+
+std::int64_t VirtualPrices::edge_utc_s() const {
+  return time_.edge_utc_ns() / kNanosecondsPerSecond;
+}
+
+VirtualPrices::Reply VirtualPrices::ask(RecordsQuery query, std::int32_t timeout_ms) {
+  if (time_.market() == VirtualTime::Market::kPaused) {
+    return {.status = Status::kTimeout, .takes_ns = timeout_ms * kMillisecondNs};
+  }
+  if (time_.market() == VirtualTime::Market::kDead) {
+    return {.status = Status::kNotConnected, .takes_ns = kFetchNs};
+  }
+  const double at_s = static_cast<double>(time_.utc_ns() - scenario_.utc_ns_at(0)) / 1e9;
+  const MarketFault fault = faults_.next(at_s);
+  if (fault == MarketFault::kHttp500) {
+    return {.status = Status::kHttpError, .takes_ns = kFetchNs};
+  }
+  const std::int64_t market_ns =
+      time_.utc_ns() - (fault == MarketFault::kStale ? kStaleAnswerS * kNanosecondsPerSecond : 0);
+  query.hide_newest_price = fault == MarketFault::kNull;
+  if (fault == MarketFault::kFrozen) query.frozen_utc_s = scenario_.price_fault_utc_s();
+  return {.text = spoilt(fault, market_.records(query, market_ns)), .takes_ns = kFetchNs};
+}
+
+}  // namespace bess

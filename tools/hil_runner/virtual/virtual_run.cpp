@@ -1,0 +1,94 @@
+#include "tools/hil_runner/virtual/virtual_run.h"
+
+#include <pthread.h>
+#include <signal.h>
+
+#include <optional>
+
+#include "edge/program/controller.h"
+#include "shared/scaled_clock.h"
+#include "tools/hil_runner/scenario/scenario_house.h"
+#include "tools/hil_runner/virtual/virtual_bus.h"
+#include "tools/hil_runner/virtual/virtual_prices.h"
+#include "tools/hil_runner/virtual/virtual_time.h"
+#include "tools/hil_runner/virtual/virtual_world.h"
+
+namespace bess {
+namespace {
+
+/// EdgeClock blocks the signals that end a program; this one may still be interrupted.
+class KeptSignalMask {
+ public:
+  KeptSignalMask() { pthread_sigmask(SIG_SETMASK, nullptr, &mask_); }
+  KeptSignalMask(const KeptSignalMask&) = delete;
+  KeptSignalMask& operator=(const KeptSignalMask&) = delete;
+  ~KeptSignalMask() { pthread_sigmask(SIG_SETMASK, &mask_, nullptr); }
+
+ private:
+  sigset_t mask_{};
+};
+
+/// From its start to its end; the exit code.
+int run_edge(const EdgeConfig& config, VirtualWorld& world) {
+  Controller<VirtualWorld> controller(config, world);
+  if (!controller.reach() || !controller.begin()) return 1;
+  constexpr std::int64_t kEndless = -1;
+  return controller.run(kEndless) ? 0 : 1;
+}
+
+}  // namespace
+
+Evidence run_virtual(const Scenario& scenario, const MinuteSeries& prices, const EdgeConfig& config,
+                     Weather weather) {
+  const KeptSignalMask mask;
+  VirtualTime time(scenario);
+  SimulatedBattery battery(scenario.battery.physics, scenario.battery.soc_frac, time.utc_ns());
+  std::optional<MeteredHouse> house;
+  if (scenario.house.exists()) house.emplace(house_load(scenario));
+  VirtualBus bus({.port = config.link.port,
+                  .rtu = config.link.rtu,
+                  .response_delay_ms = scenario.battery.response_delay_ms,
+                  .fault = scenario.battery_fault,
+                  .start_utc_ns = scenario.utc_ns_at(0)},
+                 config.map, battery, time, house ? &*house : nullptr);
+  std::optional<VirtualBus> meter;
+  if (scenario.meter.source == ScenarioMeter::Source::kMap) {
+    meter.emplace(VirtualBusSettings{.port = config.site.link.port,
+                                     .response_delay_ms = scenario.battery.response_delay_ms,
+                                     .fault = scenario.meter.fault,
+                                     .start_utc_ns = scenario.utc_ns_at(0)},
+                  config.site.map, battery, time, &*house);
+  }
+  const MarketView market(prices, scenario.prices.latency_s);
+  MarketFaultPlan faults({.fault = scenario.price_fault.fault,
+                          .every = scenario.price_fault.every,
+                          .from_s = 60 * scenario.price_fault.span.from_min,
+                          .to_s = 60 * scenario.price_fault.span.to_min});
+  Evidence evidence;
+  EdgeState state;
+  VirtualPeople people;
+  time.on_people([&](const ScenarioEvent& event) {
+    people.act(event, time.edge_utc_ns() / kNanosecondsPerSecond, state.trip());
+  });
+  do {
+    try {
+      VirtualWorld world(config, VirtualPrices(config.price, market, faults, scenario, time),
+                         {.time = time,
+                          .physics = battery,
+                          .weather = weather,
+                          .state = state,
+                          .people = people,
+                          .evidence = evidence});
+      evidence.edge_exit_code = run_edge(config, world);
+    } catch (const EdgeKilled&) {
+      evidence.edge_exit_code = 128 + SIGKILL;
+    }
+  } while (time.advance_to_next_start());
+  bus.device().advance(time.utc_ns());
+  evidence.orders = battery.dispatch_events();
+  evidence.minutes = battery.record();
+  evidence.is_alive_at_end = true;
+  return evidence;
+}
+
+}  // namespace bess

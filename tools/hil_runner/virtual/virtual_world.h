@@ -1,0 +1,87 @@
+// Virtual time and memory as the world of a controller (edge/program/controller.h): the edge's own clock, driver,
+// link and meter on virtual buses, the simulated market's answers, and of what outlives a run what EdgeState keeps.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <string>
+
+#include "edge/battery/modbus_meter.h"
+#include "edge/log/journal.h"
+#include "edge/program/controller.h"
+#include "tools/hil_runner/evidence/evidence.h"
+#include "tools/hil_runner/virtual/virtual_people.h"
+#include "tools/hil_runner/virtual/virtual_prices.h"
+#include "tools/hil_runner/virtual/virtual_run.h"
+
+namespace bess {
+
+/// What bess-edge keeps on its disk between two runs.
+class EdgeState {
+ public:
+  void add(const CycleRecord& record);
+  [[nodiscard]] bool read_back(std::int64_t records, CycleRecord& record) const;
+  /// By the newest record.
+  [[nodiscard]] Trip trip() const;
+
+ private:
+  static constexpr std::size_t kRecordsMax = 720;  // a day: more than a start reads again
+  std::deque<CycleRecord> records_;
+};
+
+class VirtualWorld {
+ public:
+  using Prices = VirtualPrices;
+  using Meter = ModbusMeter;
+  using Limits = VirtualPeople;
+  /// Here the records go into memory, cycle by cycle.
+  struct Seal {
+    Seal() {}
+  };
+
+  /// What goes on while the edge does not run. All of it must outlive this object.
+  struct Surroundings {
+    VirtualTime& time;
+    SimulatedBattery& physics;
+    Weather weather;
+    EdgeState& state;
+    VirtualPeople& people;
+    Evidence& evidence;
+  };
+  VirtualWorld(const EdgeConfig& config, const VirtualPrices& prices, const Surroundings& around);
+
+  EdgeClock& clock() { return clock_; }
+  ModbusBattery& battery() { return battery_; }
+  VirtualPrices& prices() { return prices_; }
+  ModbusMeter& meter() { return meter_; }
+  VirtualPeople& limits() { return around_.people; }
+
+  static bool open() { return true; }
+  [[nodiscard]] Recall recall() const;
+  bool read_back(std::int64_t records, CycleRecord& record) const {
+    return around_.state.read_back(records, record);
+  }
+  void keep(const CycleRecord& record);
+  const HoldMailbox& listen() { return around_.people.holds(); }
+  [[nodiscard]] bool is_cleared(std::int64_t trip_utc_s) const {
+    return around_.people.is_cleared(trip_utc_s);
+  }
+
+  static void needs_time(std::int64_t) {}
+  static void complain(JournalLevel, const std::string&) {}
+  static void write_line(JournalLevel, const std::string&) {}
+  static void begins() {}
+  static void is_ready() {}
+  void cycle_done(const CycleRecord& record);
+  static void stops() {}
+  static void has_stopped(const CycleRecord&, bool, bool) {}
+
+ private:
+  Surroundings around_;
+  EdgeClock clock_;
+  ModbusBattery battery_;
+  ModbusMeter meter_;
+  VirtualPrices prices_;
+};
+
+}  // namespace bess
