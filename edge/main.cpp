@@ -25,7 +25,7 @@
 #include "edge/program/real_world.h"
 #include "edge/program/release_on_failed_check.h"
 #include "edge/program/startup.h"
-#include "edge/state/run_locks.h"
+#include "edge/storage/run_locks.h"
 
 namespace bess {
 namespace {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "edge/state/update_state.h"
+#include "edge/storage/update_state.h"
 
 namespace bess {
 

@@ -7,7 +7,7 @@
 #include "edge/log/journal.h"
 #include "edge/program/startup.h"
 #include "edge/site/house_watch.h"
-#include "edge/state/commission_file.h"
+#include "edge/storage/commission_file.h"
 
 namespace bess {
 namespace {

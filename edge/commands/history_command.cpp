@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "edge/log/journal.h"
-#include "edge/state/update_state.h"
+#include "edge/storage/update_state.h"
 #include "shared/host/json.h"
 
 namespace bess {

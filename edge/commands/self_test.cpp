@@ -20,8 +20,8 @@
 #include "edge/prices/price_feed.h"
 #include "edge/program/edge_clock.h"
 #include "edge/program/startup.h"
-#include "edge/state/run_locks.h"
-#include "edge/state/storage_health.h"
+#include "edge/storage/run_locks.h"
+#include "edge/storage/storage_health.h"
 #include "shared/utc_text.h"
 
 namespace bess {

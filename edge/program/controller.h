@@ -19,7 +19,7 @@
 #include "edge/program/find_battery.h"
 #include "edge/program/starting_level.h"
 #include "edge/program/take_over.h"
-#include "edge/state/recall.h"
+#include "edge/storage/recall.h"
 
 namespace bess {
 

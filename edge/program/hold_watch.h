@@ -10,8 +10,8 @@
 
 #include "edge/control/hold.h"
 #include "edge/memory/static_thread.h"
-#include "edge/state/hold_file.h"
-#include "edge/state/trip_clearance.h"
+#include "edge/storage/hold_file.h"
+#include "edge/storage/trip_clearance.h"
 #include "shared/fixed_text.h"
 
 namespace bess {

@@ -2,10 +2,10 @@
 
 #include "edge/program/release_on_failed_check.h"
 #include "edge/program/startup.h"
-#include "edge/state/commission_file.h"
-#include "edge/state/hold_file.h"
-#include "edge/state/published_status.h"
-#include "edge/state/run_identity.h"
+#include "edge/storage/commission_file.h"
+#include "edge/storage/hold_file.h"
+#include "edge/storage/published_status.h"
+#include "edge/storage/run_identity.h"
 
 namespace bess {
 namespace {

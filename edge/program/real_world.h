@@ -14,8 +14,8 @@
 #include "edge/program/service_notify.h"
 #include "edge/recording/exchange_recorder.h"
 #include "edge/settings/edge_config.h"
-#include "edge/state/limit_file.h"
-#include "edge/state/recall.h"
+#include "edge/storage/limit_file.h"
+#include "edge/storage/recall.h"
 
 namespace bess {
 

@@ -13,8 +13,8 @@
 #include "edge/program/wishes_note.h"
 #include "edge/registers/codec.h"
 #include "edge/settings/price_transport.h"
-#include "edge/state/commission_file.h"
-#include "edge/state/hold_file.h"
+#include "edge/storage/commission_file.h"
+#include "edge/storage/hold_file.h"
 #include "shared/utc_text.h"
 
 namespace bess {

@@ -8,7 +8,7 @@
 #include "edge/program/edge_clock.h"
 #include "edge/program/find_battery.h"
 #include "edge/settings/edge_config.h"
-#include "edge/state/recall.h"
+#include "edge/storage/recall.h"
 
 namespace bess {
 

@@ -13,7 +13,7 @@
 
 #include "edge/log/journal.h"
 #include "edge/program/service_notify.h"
-#include "edge/state/instance_lock.h"
+#include "edge/storage/instance_lock.h"
 #include "shared/scaled_clock.h"
 #include "tests/support/temporary_folder.h"
 

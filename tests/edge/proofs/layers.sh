@@ -36,13 +36,13 @@ layer edge/log                      edge/log edge/control edge/memory edge/base 
 grounds="edge/battery edge/control edge/loop edge/site edge/supervision edge/log edge/memory edge/prices edge/registers edge/base shared"
 layer edge/settings                 edge/settings $grounds
 layer edge/recording                edge/recording $grounds
-layer edge/state                    edge/state edge/settings $grounds
-layer edge/program                  edge/program edge/state edge/recording edge/settings $grounds
-layer edge/commands                 edge/commands edge/program edge/state edge/recording edge/settings $grounds
+layer edge/storage                    edge/storage edge/settings $grounds
+layer edge/program                  edge/program edge/storage edge/recording edge/settings $grounds
+layer edge/commands                 edge/commands edge/program edge/storage edge/recording edge/settings $grounds
 layer edge/main.cpp                 edge shared
 # Beside the controller: it reads what the log wrote.
 layer edge/notify                   edge/notify edge/log edge/control edge/prices/http_secrets.h edge/base shared
-blame "$(includes '"shared/host' edge | grep -vE '^edge/(registers/map_|settings/|recording/|state/|program/|commands/|notify/)')" \
+blame "$(includes '"shared/host' edge | grep -vE '^edge/(registers/map_|settings/|recording/|storage/|program/|commands/|notify/)')" \
   "only start-up uses the heap: from settings to commands, and the reader of register maps"
 # The simulators.
 layer tools/battery_sim             tools edge/registers edge/base shared

@@ -7,7 +7,7 @@
 
 #include <filesystem>
 
-#include "edge/state/run_locks.h"
+#include "edge/storage/run_locks.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bess {

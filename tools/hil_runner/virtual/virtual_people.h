@@ -7,7 +7,7 @@
 
 #include "edge/control/hold.h"
 #include "edge/site/outside_limit.h"
-#include "edge/state/trip_clearance.h"
+#include "edge/storage/trip_clearance.h"
 #include "tools/hil_runner/scenario/scenario.h"
 
 namespace bess {

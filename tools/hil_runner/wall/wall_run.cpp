@@ -16,7 +16,7 @@
 
 #include "edge/battery/commission.h"
 #include "edge/control/control_types.h"
-#include "edge/state/commission_file.h"
+#include "edge/storage/commission_file.h"
 #include "shared/host/child_process.h"
 #include "shared/host/csv.h"
 #include "shared/host/file.h"

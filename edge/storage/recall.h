@@ -6,7 +6,7 @@
 #include <string>
 
 #include "edge/log/ring_log.h"
-#include "edge/state/trip_clearance.h"
+#include "edge/storage/trip_clearance.h"
 
 namespace bess {
 

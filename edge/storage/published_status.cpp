@@ -1,4 +1,4 @@
-#include "edge/state/published_status.h"
+#include "edge/storage/published_status.h"
 
 #include <signal.h>
 #include <sys/stat.h>
@@ -16,10 +16,10 @@
 #include "edge/log/log_reader.h"
 #include "edge/log/run_status.h"
 #include "edge/log/text_checksum.h"
-#include "edge/state/file_owner.h"
-#include "edge/state/run_identity.h"
-#include "edge/state/run_locks.h"
-#include "edge/state/storage_health.h"
+#include "edge/storage/file_owner.h"
+#include "edge/storage/run_identity.h"
+#include "edge/storage/run_locks.h"
+#include "edge/storage/storage_health.h"
 #include "shared/utc_text.h"
 
 namespace bess {

@@ -1,5 +1,5 @@
 // Files that a stranger could have put there. Only root can act the stranger: else these are skipped.
-#include "edge/state/file_owner.h"
+#include "edge/storage/file_owner.h"
 
 #include <fcntl.h>
 #include <gmock/gmock.h>
@@ -9,8 +9,8 @@
 
 #include <fstream>
 
-#include "edge/state/instance_lock.h"
-#include "edge/state/run_locks.h"
+#include "edge/storage/instance_lock.h"
+#include "edge/storage/run_locks.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bess {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "edge/settings/edge_config.h"
-#include "edge/state/instance_lock.h"
+#include "edge/storage/instance_lock.h"
 
 namespace bess {
 

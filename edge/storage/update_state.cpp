@@ -1,4 +1,4 @@
-#include "edge/state/update_state.h"
+#include "edge/storage/update_state.h"
 
 #include <array>
 #include <charconv>

@@ -1,4 +1,4 @@
-#include "edge/state/run_locks.h"
+#include "edge/storage/run_locks.h"
 
 #include <limits.h>
 #include <stdlib.h>
@@ -8,7 +8,7 @@
 #include <cstdio>
 
 #include "edge/log/journal.h"
-#include "edge/state/file_owner.h"
+#include "edge/storage/file_owner.h"
 
 namespace bess {
 namespace {

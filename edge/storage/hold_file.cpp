@@ -1,4 +1,4 @@
-#include "edge/state/hold_file.h"
+#include "edge/storage/hold_file.h"
 
 #include <sys/stat.h>
 

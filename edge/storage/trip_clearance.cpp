@@ -1,4 +1,4 @@
-#include "edge/state/trip_clearance.h"
+#include "edge/storage/trip_clearance.h"
 
 #include <algorithm>
 #include <cerrno>

@@ -1,4 +1,4 @@
-#include "edge/state/commission_file.h"
+#include "edge/storage/commission_file.h"
 
 #include <unistd.h>
 

@@ -1,5 +1,5 @@
 // The stored sign check: what it is bound to, and what a newcomer reads when it does not fit.
-#include "edge/state/commission_file.h"
+#include "edge/storage/commission_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "edge/state/limit_file.h"
+#include "edge/storage/limit_file.h"
 
 #include <cerrno>
 

@@ -1,4 +1,4 @@
-#include "edge/state/instance_lock.h"
+#include "edge/storage/instance_lock.h"
 
 #include <fcntl.h>
 #include <signal.h>
@@ -12,7 +12,7 @@
 #include <cstdlib>
 
 #include "edge/log/journal.h"
-#include "edge/state/file_owner.h"
+#include "edge/storage/file_owner.h"
 #include "shared/scaled_clock.h"
 
 namespace bess {

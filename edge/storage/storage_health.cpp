@@ -1,4 +1,4 @@
-#include "edge/state/storage_health.h"
+#include "edge/storage/storage_health.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>

@@ -1,4 +1,4 @@
-#include "edge/state/recall.h"
+#include "edge/storage/recall.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "edge/state/file_owner.h"
+#include "edge/storage/file_owner.h"
 
 #include <unistd.h>
 

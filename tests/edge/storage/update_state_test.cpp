@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "edge/log/text_checksum.h"
-#include "edge/state/storage_health.h"
-#include "edge/state/update_state.h"
+#include "edge/storage/storage_health.h"
+#include "edge/storage/update_state.h"
 #include "tests/support/fake_card.h"
 #include "tests/support/temporary_folder.h"
 

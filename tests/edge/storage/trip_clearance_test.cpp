@@ -1,5 +1,5 @@
 // The file of cleared trips: its text, what is no such text, and that one word in either place is enough.
-#include "edge/state/trip_clearance.h"
+#include "edge/storage/trip_clearance.h"
 
 #include <gtest/gtest.h>
 

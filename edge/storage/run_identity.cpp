@@ -1,0 +1,27 @@
+#include "edge/storage/run_identity.h"
+
+#include <unistd.h>
+
+#include "edge/control/policy.h"
+#include "edge/storage/storage_health.h"
+
+namespace bess {
+
+RunIdentity identity_of_run(const EdgeConfig& config) {
+  RunIdentity identity;
+  identity.version = BESS_VERSION;
+  identity.student_hash = student_hash();
+  identity.student_provenance = student_provenance();
+  identity.context = context_name(student_context().kind);
+  identity.map = config.map.name.view();
+  identity.variant = config.map.variant.view();
+  identity.battery = battery_place(config);
+  identity.control = config.control.control;
+  identity.pid = getpid();
+  identity.start_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
+  identity.wear = card_wear_of(config.state.folder.c_str());
+  identity.cadence_ms = kSecondsPerStep * 1'000 / config.clock.scale;
+  return identity;
+}
+
+}  // namespace bess
