@@ -25,9 +25,11 @@ constexpr const char* kNothing = "\u2013";
 struct Cell {
   std::string html;
   std::string sort{};
+  bool is_text = false;  ///< read from the left, and may be broken
 };
 
-Cell text_cell(const std::string& text) { return {html_escaped(text), text}; }
+Cell text_cell(const std::string& text) { return {html_escaped(text), text, true}; }
+Cell no_text_cell() { return {kNothing, {}, true}; }
 
 Cell number_cell(const std::string& text, double value) {
   if (std::isnan(value)) return {kNothing};
@@ -45,12 +47,15 @@ struct SortTable {
 };
 
 std::string table_html(const SortTable& table) {
-  std::string text =
-      fmt::format("<table class=\"sortable\" id=\"{}\">\n<caption>{}</caption>\n<thead><tr>",
-                  table.id, html_escaped(table.caption));
-  for (const std::string& head : table.header) {
-    text += fmt::format("<th scope=\"col\"><button type=\"button\">{}</button></th>",
-                        html_escaped(head));
+  std::string text = fmt::format(
+      "<div class=\"wide\"><table class=\"sortable\" id=\"{}\">\n"
+      "<caption>{}</caption>\n<thead><tr>",
+      table.id, html_escaped(table.caption));
+  for (std::size_t c = 0; c < table.header.size(); ++c) {
+    const bool is_text =
+        std::ranges::any_of(table.rows, [&](const auto& row) { return row[c].is_text; });
+    text += fmt::format("<th scope=\"col\"{}><button type=\"button\">{}</button></th>",
+                        is_text ? " class=\"text\"" : "", html_escaped(table.header[c]));
   }
   text += "</tr></thead>\n<tbody>\n";
   for (const auto& row : table.rows) {
@@ -58,12 +63,13 @@ std::string table_html(const SortTable& table) {
     for (std::size_t c = 0; c < row.size(); ++c) {
       const std::string sort = fmt::format("data-sort=\"{}\"", html_escaped(row[c].sort));
       text += c == 0 ? fmt::format("<th scope=\"row\" {}>{}</th>", sort, row[c].html)
-                     : fmt::format("<td data-label=\"{}\" {}><span>{}</span></td>",
-                                   html_escaped(table.header[c]), sort, row[c].html);
+                     : fmt::format("<td data-label=\"{}\" {}{}><span>{}</span></td>",
+                                   html_escaped(table.header[c]), sort,
+                                   row[c].is_text ? " class=\"text\"" : "", row[c].html);
     }
     text += "</tr>\n";
   }
-  return text + "</tbody></table>\n";
+  return text + "</tbody></table></div>\n";
 }
 
 Cell run_cell(const RunLine& run, const fs::path& page) {
@@ -86,7 +92,7 @@ std::string left_text(const RunLine& run) {
 
 Cell proof_cell(const RunLine& run) {
   if (run.record.has_failed()) return text_cell("not proved" + left_text(run));
-  if (!run.record.figures) return {kNothing};
+  if (!run.record.figures) return no_text_cell();
   const RunFigures& figures = *run.record.figures;
   if (figures.violations_corrected != 0) {
     return text_cell(fmt::format("{} violations", grouped(figures.violations_corrected)));
@@ -137,12 +143,12 @@ std::vector<Cell> figure_cells(const RunLine& run, const Evaluation* first) {
 }
 
 SortTable run_table(const std::vector<RunLine>& runs, const fs::path& page) {
-  SortTable table{"runs",
-                  fmt::format("What the {} of each run earned on its test days", kExportedPolicy),
-                  {"Run", "State", "Proof", "Seed", "Rules", "Days", "Carried over", "Gain",
-                   "EUR/day, whole battery", "At wear 10", "% of foresight",
-                   "Each day from the same charge", "Weights"},
-                  {}};
+  SortTable table{
+      "runs",
+      fmt::format("What the {} of each run earned on its test days", kExportedPolicy),
+      {"Run", "State", "Proof", "Rules", "Seed", "Days", "Carried over", "Gain",
+       "EUR/day, whole battery", "At wear 10", "% of foresight", "Same charge each day", "Weights"},
+      {}};
   const Evaluation* first = nullptr;
   for (const RunLine& run : runs) {
     if (first == nullptr) first = exported_days(run, &NamedEvaluation::carried_over);
@@ -153,11 +159,11 @@ SortTable run_table(const std::vector<RunLine>& runs, const fs::path& page) {
     std::vector<Cell> row{run_cell(run, page),
                           text_cell(state_text(run)),
                           proof_cell(run),
-                          {html_escaped(seed), seed},
-                          text_cell(rules)};
+                          text_cell(rules),
+                          {html_escaped(seed), seed}};
     std::ranges::move(figure_cells(run, first), std::back_inserter(row));
     row.push_back(run.record.figures ? text_cell(run.record.figures->weights_hash)
-                                     : Cell{kNothing});
+                                     : no_text_cell());
     table.rows.push_back(std::move(row));
   }
   return table;

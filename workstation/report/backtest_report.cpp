@@ -8,6 +8,7 @@
 
 #include "shared/host/csv.h"
 #include "shared/host/file.h"
+#include "shared/host/text.h"
 #include "workstation/base/answer.h"
 #include "workstation/env/day_risk.h"
 #include "workstation/report/comparison.h"
@@ -200,17 +201,24 @@ PictureTable curve_table(const BacktestResults& results) {
   return table;
 }
 
+/// The heads are those of the page of seeds.
 HtmlTable total_table(const BacktestResults& results) {
   HtmlTable table;
   table.caption = "EUR per day per MWh of capacity, all traded days";
-  table.header = {"policy", "profit",   "s.e.",        "by month", "gain",
-                  "s.e.",   "by month", wear_column(), "turnover", "drawdown"};
+  table.header = {"Policy",   "Profit",        "s.e. over days", "By month", "Gain",
+                  "Its s.e.", "Gain by month", "At wear 10",     "Turnover", "Drawdown"};
+  const WalkForward& first = results.policies.front();
+  const std::string nothing = "\u2013";
   for (const WalkForward& policy : results.policies) {
-    const Row row = rows_of(policy, results.policies.front()).back();
+    const Row row = rows_of(policy, first).back();
+    const PairedDifference& gain = row.gain;
+    const bool is_first = &policy == &first;
     table.rows.push_back(
-        {policy.name, fmt::format("{:.1f}", row.profit), error_text(row.errors.plain, 1),
-         error_text(row.errors.by_month, 1), fmt::format("{:+.1f}", row.gain.mean),
-         error_text(row.gain.standard_error, 1), error_text(row.gain.standard_error_by_month, 1),
+        {policy.name, fmt::format("{:.1f}", row.profit), error_text(row.errors.plain, 1, nothing),
+         error_text(row.errors.by_month, 1, nothing),
+         is_first ? nothing : fmt::format("{:+.1f}", gain.mean),
+         is_first ? nothing : error_text(gain.standard_error, 1, nothing),
+         is_first ? nothing : error_text(gain.standard_error_by_month, 1, nothing),
          fmt::format("{:.1f}", row.at_reference_wear), fmt::format("{:.2f}", row.turnover_per_day),
          fmt::format("{:.0f}", policy.drawdown_eur_per_mwh())});
   }
@@ -218,17 +226,18 @@ HtmlTable total_table(const BacktestResults& results) {
 }
 
 HtmlTable month_table(const BacktestResults& results) {
+  const WalkForward& first = results.policies.front();
   HtmlTable table;
-  table.caption =
-      fmt::format("Profit by month, and the gain over {}", results.policies.front().name);
-  table.header = {"policy"};
-  for (const std::string& month : results.policies.front().months) table.header.push_back(month);
+  table.caption = fmt::format("Profit by month, and the gain over {}", first.name);
+  table.header = {"Policy"};
+  for (const std::string& month : first.months) table.header.push_back(month);
   for (const WalkForward& policy : results.policies) {
     std::vector<std::string> cells{policy.name};
-    for (const Row& row : rows_of(policy, results.policies.front())) {
-      if (row.month != kAllMonths) {
-        cells.push_back(fmt::format("{:.0f} ({:+.0f})", row.profit, row.gain.mean));
-      }
+    for (const Row& row : rows_of(policy, first)) {
+      if (row.month == kAllMonths) continue;
+      const std::string gain =
+          &policy == &first ? std::string() : fmt::format(" ({:+.0f})", row.gain.mean);
+      cells.push_back(fmt::format("{:.0f}{}", row.profit, gain));
     }
     table.rows.push_back(std::move(cells));
   }
@@ -374,20 +383,24 @@ Json backtest_json(const BacktestResults& results) {
 }
 
 void write_backtest_page(const BacktestResults& results, const std::filesystem::path& folder) {
+  const WalkForward& first = results.policies.front();
   const Figure figure = cumulative_figure(results);
   draw_figure(figure, folder);
   const PictureTable curve = curve_table(results);
   write_picture(curve, folder);
   const std::filesystem::path svg = folder / (figure.name + ".svg");
   const std::string body = fmt::format(
-      "<h1>Walk-forward backtest</h1>\n<p>{}</p>\n{}\n<p class=\"note\">By month: {}. The charge "
-      "is "
-      "carried over; {}.</p>\n<figure>\n<h2>{}</h2>\n{}<div "
-      "class=\"wide\">{}</div>\n<figcaption>{}</figcaption>\n</figure>\n{}\n{}",
+      "<h1>Walk-forward backtest</h1>\n<p>{}</p>\n{}\n<p class=\"note\">Gain: day by day, over {}. "
+      "By month: {}. The charge is carried over; {}. At wear 10: {}. Turnover: energy through it a "
+      "day, in capacities. Drawdown: deepest fall from the end of a day to that of a later one, "
+      "EUR "
+      "per MWh.</p>\n<figure>\n<h2>{}</h2>\n{}<div class=\"wide\">{}</div>\n"
+      "<figcaption>{}</figcaption>\n</figure>\n{}\n{}",
       html_escaped(results.provenance), format_table(total_table(results)),
-      html_escaped(by_month_meaning(results.policies.front().total.errors().months)),
-      charge_left_meaning(results.policies.front().total.charge_price_eur_per_mwh),
-      html_escaped(figure.title), legend_html(results), inline_svg(read_file(svg), figure),
+      html_escaped(first.name), html_escaped(by_month_meaning(first.total.errors().months)),
+      charge_left_meaning(first.total.charge_price_eur_per_mwh),
+      one_line(reference_wear_meaning(first.total.wear_eur_per_mwh)), html_escaped(figure.title),
+      legend_html(results), inline_svg(read_file(svg), figure),
       html_escaped(with_true_minus(figure.caption)) + " " + csv_link(picture_file(curve)),
       format_table(month_table(results)), skipped_html(results));
   write_file(folder / "backtest.html", format_page("Walk-forward backtest", body));

@@ -78,7 +78,7 @@ TEST(BacktestReport, TellsErrorsByMonthBesideThePlainOnes) {
   const TemporaryFolder folder;
   write_backtest_page(fitted, folder.file(""));
   EXPECT_THAT(read_file(folder.file("backtest.html")),
-              HasSubstr("<td data-label=\"by month\">5.0</td>"));
+              HasSubstr("<td data-label=\"Gain by month\">5.0</td>"));
 }
 
 TEST(BacktestReport, ThePageLabelsEachMonthOnceAndDrawsAFallWhereThereIsOne) {

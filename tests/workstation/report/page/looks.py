@@ -102,3 +102,58 @@ def cut_off_in_canvases(page):
       restore();
       return [...new Set(found)];
     })()""")
+
+
+def not_read_aloud(page):
+    """What somebody who hears the page would miss: a step of headings, heads of tables, words for pictures."""
+    return page.run("""(() => {
+      const found = [];
+      const say = (element, text) =>
+        found.push(`${element.tagName}#${element.id} ${element.textContent.trim().slice(0, 40)}: ${text}`);
+      if (!document.documentElement.lang || !document.title) found.push("no language or no title");
+      let level = 0;
+      for (const heading of document.querySelectorAll("h1, h2, h3, h4, h5, h6")) {
+        const own = Number(heading.tagName[1]);
+        if (own > level + 1) say(heading, `follows h${level}`);
+        level = own;
+      }
+      for (const once of ["h1", "main"]) {
+        if (document.querySelectorAll(once).length !== 1) found.push(`not one ${once}`);
+      }
+      for (const table of document.querySelectorAll("table")) {
+        const caption = table.caption ?? table.closest("figure")?.querySelector("figcaption");
+        if (!caption?.textContent.trim()) say(table, "no caption");
+        for (const head of table.querySelectorAll("th")) if (!head.scope) say(head, "no scope");
+        for (const row of table.tBodies[0].rows) {
+          if (!row.querySelector("th[scope=row]")) say(row, "no head");
+        }
+      }
+      const labelled = (element) => element.getAttribute("aria-label") ||
+        document.getElementById(element.getAttribute("aria-labelledby")?.split(" ")[0]);
+      for (const picture of document.querySelectorAll("canvas, svg")) {
+        if (picture.closest("[aria-hidden=true]") || picture.parentElement.closest("svg")) continue;
+        if (picture.getAttribute("role") !== "img" || !labelled(picture)) say(picture, "no words");
+      }
+      for (const control of document.querySelectorAll("button, select, input, a")) {
+        const text = control.matches("button, a") && control.textContent.trim();
+        if (!text && !control.labels?.length && !labelled(control)) say(control, "no name");
+      }
+      return found;
+    })()""")
+
+
+def unseen_focus(page):
+    """Links and controls that show no outline, or a thin one, when the keyboard is on them."""
+    return page.run("""(() => {
+      const found = [];
+      for (const control of document.querySelectorAll("a[href], button, select, input")) {
+        if (control.disabled || !control.checkVisibility()) continue;
+        control.focus({focusVisible: true, preventScroll: true});
+        const {outline, outlineStyle, outlineWidth} = getComputedStyle(control);
+        if (document.activeElement !== control || outlineStyle === "none" || parseFloat(outlineWidth) < 2) {
+          found.push(`${control.tagName}#${control.id} ${control.textContent.trim().slice(0, 30)}: ${outline}`);
+        }
+      }
+      document.activeElement.blur();
+      return found;
+    })()""")

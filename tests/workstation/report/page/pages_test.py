@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""pages_test.py FIXTURE_PROGRAM: every page that bess-train writes, in a headless Chromium: of a run, of one with
-rules, of one whose proof failed, of seeds and of a backtest. What they look like, narrow and wide, light and dark; that
-every number in their tables is one of their JSON or CSV; and the rules on the maps, held against what the C++ counts.
+"""pages_test.py FIXTURE_PROGRAM BESS_TRAIN: every page that bess-train writes, in a headless Chromium: of
+a run, of one with rules, of one whose proof failed, of seeds, of a backtest and of many runs. What they look
+like, narrow and wide, light and dark; that every number in their tables is that of their JSON; how many runs
+are sorted; and the rules on the maps, held against what the C++ counts.
 
 Exit code 77 where Chromium is not installed (tools/setup --test installs it).
 """
@@ -18,9 +19,22 @@ import browser
 import looks
 
 FIXTURE = sys.argv.pop(1) if len(sys.argv) > 1 else ""
+BESS_TRAIN = sys.argv.pop(1) if len(sys.argv) > 1 else ""
 WIDTHS_PX = (1440, 800, 375)
 RUNS = {"run": "", "ruled": "ruled", "failed": "failed"}
-OTHERS = {"seeds": "seeds/seeds.html", "backtest": "backtest/backtest.html"}
+OTHERS = {"seeds": "seeds/seeds.html", "backtest": "backtest/backtest.html", "many": "many.html"}
+NOTHING = "\u2013"
+FINISHED = ("run-10", "run-9", "ruled", "losing", "other-days")
+UNFINISHED = ("failed", "stopped", "edited")
+PROFIT = "profit_eur_per_day_per_mwh"
+GAIN = "gain_eur_per_day_per_mwh"
+WEAR = "profit_at_wear_10_eur_per_day_per_mwh"
+ERRORS = ("profit_standard_error", "profit_standard_error_by_month")
+GAIN_AND_ERRORS = (GAIN, "gain_standard_error", "gain_standard_error_by_month")
+BAND_COLUMNS = {"Mean": PROFIT + "_mean", "s.e. over days": ERRORS[0], "By month": ERRORS[1],
+                "Gain": GAIN, "Its s.e.": GAIN_AND_ERRORS[1], "Gain by month": GAIN_AND_ERRORS[2],
+                "s.d. over seeds": PROFIT + "_deviation", "Lowest": PROFIT + "_min",
+                "Highest": PROFIT + "_max", "Mean at wear 10": WEAR + "_mean"}
 COMPLETE = "[...document.querySelectorAll('canvas.map')].every((canvas) => canvas.dataset.complete === 'true')"
 NUMBER = re.compile(r"[-+\u2212]?\d[\d,]*(?:\.\d+)?")
 
@@ -32,11 +46,6 @@ def numbers_of(text):
         plain = token.replace(",", "").replace("\u2212", "-")
         found.append((float(plain), len(plain.partition(".")[2])))
     return found
-
-
-def is_among(value, decimals, known):
-    """Whether a number that was rounded to so many decimals may stand for one of those."""
-    return any(abs(abs(value) - abs(other)) <= .5001 * 10 ** -decimals for other in known)
 
 
 def mean(values):
@@ -63,6 +72,7 @@ class Pages(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
         subprocess.run([FIXTURE, cls.folder.name], check=True)
+        cls.compare_runs(FINISHED + UNFINISHED, "--html", "many.html")
         cls.browser = browser.Browser()
         cls.tabs, cls.expected = {}, {}
         for name, part in RUNS.items():
@@ -81,6 +91,13 @@ class Pages(unittest.TestCase):
     def tearDownClass(cls):
         cls.browser.close()
         cls.folder.cleanup()
+
+    @classmethod
+    def compare_runs(cls, names, *options):
+        """Standard output of bess-train runs compare."""
+        folders = ["many/" + name for name in names]
+        return subprocess.run([BESS_TRAIN, "runs", "compare", *folders, *options], cwd=cls.folder.name,
+                              check=True, capture_output=True, text=True).stdout
 
     def tearDown(self):
         for name, tab in self.tabs.items():
@@ -220,33 +237,285 @@ class Pages(unittest.TestCase):
                     shown, decimals = numbers_of(text)[0]
                     self.assertAlmostEqual(shown, wanted, delta=.5001 * 10 ** -decimals, msg=f"{name}, {part}")
 
-    def rows_hold(self, tab, known, names):
-        """Every number of the rows of these names is one of those known of it, and each name has a row."""
-        rows = [row for row in self.rows_of(tab, "table") if row[0] in names]
-        self.assertGreaterEqual({row[0] for row in rows}, {name for name in names if not name.startswith("plain student under")})
-        for row, cells in rows:
-            for label, text in cells:
-                for value, decimals in numbers_of(text):
-                    self.assertTrue(is_among(value, decimals, known(row, label)), f"{row}, {label}: {text}")
+    def json_of(self, path):
+        with open(os.path.join(self.folder.name, path), encoding="utf-8") as file:
+            return json.load(file)
 
-    def test_seeds_are_those_of_the_csv(self):
-        with open(os.path.join(self.folder.name, "seeds/seeds.csv"), encoding="utf-8") as file:
-            rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
-        def known(row, _):
-            return [float(v) for line in rows if line["policy"] == row for v in line.values()
-                    if re.fullmatch(r"-?[\d.]+", v or "")]
-        self.rows_hold(self.tab("seeds"), known, {line["policy"] for line in rows})
+    def lines_of(self, path):
+        with open(os.path.join(self.folder.name, path), encoding="utf-8") as file:
+            return [json.loads(line) for line in file]
+
+    def says(self, text, values, message=""):
+        """The text has these numbers, rounded, and no others."""
+        found = numbers_of(text)
+        self.assertEqual(len(found), len(values), f"{message}: {text}")
+        for (shown, decimals), value in zip(found, values):
+            self.assertAlmostEqual(shown, value, delta=.5001 * 10 ** -decimals,
+                                   msg=f"{message}: {text}")
+
+    def row_holds(self, name, cells, wanted):
+        """Each cell has its label and says its value: a number, None for none, or a text."""
+        self.assertEqual([label for label, _ in cells], list(wanted), name)
+        for label, text in cells:
+            value = wanted[label]
+            if value is None or isinstance(value, str):
+                self.assertEqual(text, NOTHING if value is None else value, f"{name}, {label}")
+            else:
+                self.says(text, [value], f"{name}, {label}")
+
+    def tables_of(self, tab):
+        """Rows of each table of the page, by its caption."""
+        captions = tab.run("""[...document.querySelectorAll("table")].map((table, i) => {
+          table.dataset.at = i;
+          return table.caption.textContent; })""")
+        return {caption: self.rows_of(tab, f'table[data-at="{i}"]')
+                for i, caption in enumerate(captions)}
+
+    def test_seeds_are_those_of_the_json(self):
+        tab, runs = self.tab("seeds"), self.lines_of("seeds/runs.json")
+        bands = {(band["policy"], band["carry_soc"]): band
+                 for band in self.json_of("seeds/bands.json")["bands"]}
+        tables = list(self.tables_of(tab).values())
+        self.assertEqual(len(tables), 3)
+        for carried, rows in zip((True, False), tables[1:]):
+            self.assertEqual([name for name, _ in rows],
+                             [policy for policy, way in bands if way == carried])
+            for name, cells in rows:
+                band = bands[name, carried]
+                self.row_holds(name, cells, {label: band[key] for label, key in BAND_COLUMNS.items()})
+        for (name, cells), run in zip(tables[0], runs, strict=True):
+            self.assertEqual(name, os.path.basename(run["run"]))
+            of = run["headline"]
+            self.row_holds(name, cells, {
+                "Seed": run["seed"], "Charge carried over": of[PROFIT],
+                "s.e. over days": of[ERRORS[0]], "By month": of[ERRORS[1]],
+                "Same charge each day": of["profit_from_same_soc_eur_per_day_per_mwh"],
+                "Weights": run["weights_hash"],
+                "Violations without correction": run["violations_plain"]})
+
+    def test_the_text_of_seeds_is_that_of_the_json(self):
+        tab, runs = self.tab("seeds"), self.lines_of("seeds/runs.json")
+        own = {band["carry_soc"]: band for band in self.json_of("seeds/bands.json")["bands"]
+               if band["policy"] == "corrected student"}
+        self.says(tab.run("document.getElementById('mean').textContent"),
+                  [own[True][PROFIT + "_mean"], len(runs), *[own[True][key] for key in ERRORS],
+                   *[own[True][PROFIT + end] for end in ("_min", "_max", "_deviation")]])
+        note = tab.run("document.querySelector('#mean + .note').textContent")
+        accounting, at, judged = note.partition("Test days: ")
+        charge = [mean([run["headline"][key] for run in runs])
+                  for key in ("charge_price_eur_per_mwh", "charge_value_eur_per_day_per_mwh")]
+        self.says(accounting, [*charge, own[False][PROFIT + "_mean"]])
+        days = runs[0]["judged_days"]
+        self.assertTrue(at)
+        self.assertIn(f"{days['days']} days in {days['months']} months from {days['from']} to "
+                      f"{days['to']}", judged)
+        self.assertIn(f"Learning saw days to {days['last_learnt_day']}, later than "
+                      f"{days['days_before_last_learnt']} of them", judged)
 
     def test_a_backtest_is_that_of_its_json(self):
-        with open(os.path.join(self.folder.name, "backtest/backtest.json"), encoding="utf-8") as file:
-            result = json.load(file)
-        of = {policy["policy"]: [v for v in policy.values() if isinstance(v, (int, float))] for policy in result["policies"]}
+        tab, result = self.tab("backtest"), self.json_of("backtest/backtest.json")
+        policies = {policy["policy"]: policy for policy in result["policies"]}
+        first = result["policies"][0]["policy"]
+        total, by_month = self.tables_of(tab).values()
+        self.assertEqual([name for name, _ in total], list(policies))
+        for name, cells in total:
+            of = policies[name]
+            gain, error, by_months = [None if name == first else of[key] for key in GAIN_AND_ERRORS]
+            self.row_holds(name, cells, {
+                "Profit": of[PROFIT], "s.e. over days": of[ERRORS[0]], "By month": of[ERRORS[1]],
+                "Gain": gain, "Its s.e.": error, "Gain by month": by_months, "At wear 10": of[WEAR],
+                "Turnover": 2 * of["cycles_per_day"], "Drawdown": of["drawdown_eur_per_mwh"]})
         with open(os.path.join(self.folder.name, "backtest/backtest.csv"), encoding="utf-8") as file:
-            for line in csv.DictReader(file):  # and by month
-                for value in line.values():
-                    if re.fullmatch(r"-?[\d.]+", value or ""):
-                        of[line["policy"]].append(float(value))
-        self.rows_hold(self.tab("backtest"), lambda row, _: of[row], set(of))
+            lines = {(line["policy"], line["month"]): line for line in csv.DictReader(file)}
+        fitted = {month["month"]: month["fitted_days"] for month in result["months"]}
+        self.assertEqual([name for name, _ in by_month], [*policies, "fitted on days"])
+        for name, cells in by_month:
+            self.assertEqual([label for label, _ in cells], list(fitted))
+            for month, text in cells:
+                keys = (PROFIT,) if name == first else (PROFIT, GAIN)
+                wanted = ([float(lines[name, month][key]) for key in keys] if name in policies
+                          else [fitted[month]])
+                self.says(text, wanted, f"{name}, {month}")
+
+    def test_the_text_of_a_backtest_is_that_of_its_json(self):
+        tab, result = self.tab("backtest"), self.json_of("backtest/backtest.json")
+        fitted = [month["fitted_days"] for month in result["months"]]
+        best = max(result["policies"], key=lambda policy: policy[PROFIT])
+        caption = tab.run("document.querySelector('figcaption').firstChild.data")
+        fall = [best["drawdown_eur_per_mwh"]] if best["drawdown_eur_per_mwh"] > 0 else []
+        self.says(caption, [min(fitted), max(fitted), result["window_days"], best[PROFIT], *fall])
+        self.assertIn(best["policy"] + " earned most", caption)
+        self.assertIn(f"valued at {result['policies'][0]['charge_price_eur_per_mwh']:.2f} EUR/MWh",
+                      tab.run("document.querySelector('.note').textContent"))
+        def items(of):
+            return tab.run(f"[...document.querySelectorAll('{of} li')].map((item) => item.textContent)")
+        self.assertEqual(items("ul.note"), [f"{month['month']} is not traded: {month['reason']}"
+                                            for month in result["not_traded"]])
+        self.assertEqual(items(".legend"), [policy["policy"] for policy in result["policies"]])
+
+    # Many runs.
+
+    def days_of_run(self, name):
+        """Profit by date of a run's student, charge carried over, EUR of the whole battery."""
+        path = os.path.join(self.folder.name, "many", name, "evaluation_days.csv")
+        with open(path, encoding="utf-8") as file:
+            return {line["date"]: float(line["profit_eur"]) for line in csv.DictReader(file)
+                    if (line["policy"], line["carry_soc"]) == ("corrected student", "true")}
+
+    def gain_of_run(self, name):
+        """Over the first run, from the days; None where they are not the same."""
+        own, first = self.days_of_run(name), self.days_of_run(FINISHED[0])
+        if name == FINISHED[0] or own.keys() != first.keys():
+            return None
+        gain = [(own[date] - first[date]) / self.expected["run"]["capacity_mwh"] for date in own]
+        return [mean(gain), error_of_mean(gain), error_by_month(list(own), gain)]
+
+    def test_many_runs_are_those_of_the_json(self):
+        rows = dict(self.rows_of(self.tab("many"), "#runs"))
+        of_json = [json.loads(line) for line in self.compare_runs(FINISHED, "--json").splitlines()]
+        self.assertEqual(set(rows), {"many/" + name for name in FINISHED + UNFINISHED})
+        for short, run in zip(FINISHED, of_json, strict=True):
+            name = "many/" + short
+            self.assertEqual(name, run["run"])
+            text = dict(rows[name])
+            carried, reset = [next(row for row in run["policies"]
+                                   if row["policy"] == "corrected student" and row["carry_soc"] == way)
+                              for way in (True, False)]
+            errors = [carried[key] for key in ERRORS if carried[key] is not None]
+            self.says(text["Carried over"], [carried[PROFIT], *errors], name)
+            gain = self.gain_of_run(short)
+            self.assertEqual(gain is None, short in ("run-10", "other-days"))
+            if gain is None:
+                self.assertEqual(text["Gain"], NOTHING, name)
+            else:
+                self.says(text["Gain"], gain, name)
+            whole = mean(list(self.days_of_run(short).values()))
+            for label, value in (("Seed", run["seed"]), ("Days", carried["days"]),
+                                 ("EUR/day, whole battery", whole), ("At wear 10", carried[WEAR]),
+                                 ("% of foresight", 100 * carried["share_of_foresight"]),
+                                 ("Same charge each day", reset[PROFIT]),
+                                 ("Proof", run["states_checked"])):
+                self.says(text[label], [value], f"{name}, {label}")
+            self.assertEqual(text["Weights"], run["weights_hash"])
+            self.assertEqual(text["State"], "finished")
+
+    def test_runs_without_figures_say_why(self):
+        rows = {name: dict(cells) for name, cells in self.rows_of(self.tab("many"), "#runs")}
+        for name, state, proof in (("failed", "ended without a proof", "not proved: property 3: 23994"),
+                                   ("stopped", "stopped after the teacher", NOTHING)):
+            self.assertEqual(rows["many/" + name]["State"], state)
+            self.assertEqual(rows["many/" + name]["Proof"], proof)
+        self.assertIn("evaluation_days.csv: is not what the run wrote", rows["many/edited"]["State"])
+        self.assertIn("'bess-train report --run many/edited' makes it again", rows["many/edited"]["State"])
+        for name in UNFINISHED:
+            for label in ("Days", "Carried over", "Gain", "EUR/day, whole battery", "At wear 10",
+                          "% of foresight", "Same charge each day"):
+                self.assertEqual(rows["many/" + name][label], NOTHING, f"{name}, {label}")
+
+    def test_a_run_leads_to_its_page(self):
+        tab = self.tab("many")
+        links = tab.run("""[...document.querySelectorAll("#runs a")].map(
+          (link) => [link.textContent, link.getAttribute("href")])""")
+        self.assertEqual(sorted(links), [[f"many/{name}", f"many/{name}/report.html"]
+                                         for name in sorted(FINISHED + UNFINISHED) if name != "stopped"])
+        for _, link in links:
+            self.assertTrue(os.path.exists(os.path.join(self.folder.name, link)), link)
+
+    def column(self, tab, label):
+        """What each row of the first table shows in a column, from the top."""
+        rows = self.rows_of(tab, "#runs")
+        return [name if label == "Run" else dict(cells)[label] for name, cells in rows]
+
+    def order_holds(self, tab, label, descending):
+        """A column is in order: numbers as numbers, texts as people count, what is unknown last."""
+        def natural(text):
+            return [(0, int(part), "") if part.isdigit() else (1, 0, part)
+                    for part in re.split(r"(\d+)", text) if part]
+        texts = self.column(tab, label)
+        known = [text for text in texts if text not in (NOTHING, "")]
+        self.assertEqual(texts[:len(known)], known, f"{label}: what is unknown comes last")
+        is_number = label not in ("Run", "State", "Proof", "Rules", "Weights")
+        keys = [numbers_of(text)[0][0] if is_number else natural(text) for text in known]
+        self.assertEqual(keys, sorted(keys, reverse=descending), f"{label}, {descending}")
+        arrows = tab.run("""[...document.querySelectorAll("#runs th[aria-sort]")].map(
+          (head) => [head.textContent, head.getAttribute("aria-sort")])""")
+        self.assertEqual(arrows, [[label, "descending" if descending else "ascending"]])
+
+    def heads(self, tab):
+        return tab.run("[...document.querySelectorAll('#runs thead th')].map((head) => head.textContent)")
+
+    def test_heads_sort_both_ways(self):
+        tab = self.tab("many")
+        before = sorted(map(str, self.rows_of(tab, "#runs")))
+        orders = set()
+        for at, label in enumerate(self.heads(tab)):
+            for descending in (False, True, False):
+                tab.run(f"document.querySelectorAll('#runs thead button')[{at}].click()")
+                self.order_holds(tab, label, descending)
+                orders.add(str(self.column(tab, "Run")))
+        self.assertEqual(sorted(map(str, self.rows_of(tab, "#runs"))), before, "rows keep their cells")
+        self.assertGreater(len(orders), 8)
+        tab.run("document.querySelector('#runs thead button').click()")
+        names = self.column(tab, "Run")
+        self.assertLess(names.index("many/run-9"), names.index("many/run-10"))
+
+    def press(self, tab, key, code):
+        event = {"key": key, "windowsVirtualKeyCode": code}
+        typed = {"Enter": {"text": "\r"}, " ": {"text": " "}}.get(key, {})
+        tab.call("Input.dispatchKeyEvent", {"type": "keyDown", **event, **typed})
+        tab.call("Input.dispatchKeyEvent", {"type": "keyUp", **event})
+
+    def test_the_keyboard_sorts(self):
+        tab = self.tab("many")
+        heads = self.heads(tab)
+        tab.run("document.querySelector('#runs thead button').focus()")
+        for at, label in enumerate(heads):
+            self.assertEqual(tab.run("document.activeElement.textContent"), label, "Tab goes on")
+            if at % 4 == 1:
+                descending = tab.run("document.activeElement.closest('[aria-sort=ascending]') !== null")
+                for key, code in (("Enter", 13), (" ", 32)):
+                    self.press(tab, key, code)
+                    self.order_holds(tab, label, descending)
+                    descending = not descending
+            self.press(tab, "Tab", 9)
+
+    def test_a_list_sorts_where_heads_are_hidden(self):
+        tab = self.tab("many", 375)
+        self.assertFalse(tab.run("document.querySelector('#runs thead').checkVisibility()"))
+        self.assertTrue(tab.run("document.querySelector('select.sorting').checkVisibility()"))
+        tab.run("document.querySelector('select.sorting').id = 'sorting'")
+        for at, label in enumerate(self.heads(tab)):
+            for sign in "+-":
+                tab.set_value("sorting", f"{at}{sign}")
+                self.order_holds(tab, label, sign == "-")
+
+    def test_a_table_of_texts_and_numbers_is_sorted_as_it_says(self):
+        tab = self.tab("many")
+        tab.run("""document.body.insertAdjacentHTML("beforeend",
+          `<table id="odd"><thead><tr><th>x</th></tr></thead><tbody>
+          ${["10", "9", "-2", "", "1e2", "0.5"].map((value) =>
+            `<tr><td data-sort="${value}">${value}</td></tr>`).join("")}</tbody></table>`)""")
+        def sorted_by(descending):
+            tab.run(f"sortTable(document.getElementById('odd'), 0, {json.dumps(descending)})")
+            return tab.run("[...document.querySelectorAll('#odd td')].map((cell) => cell.textContent)")
+        self.assertEqual(sorted_by(False), ["-2", "0.5", "9", "10", "1e2", ""])
+        self.assertEqual(sorted_by(True), ["1e2", "10", "9", "0.5", "-2", ""])
+        tab.run("document.querySelector('#odd td').dataset.sort = 'b 10'")
+        self.assertEqual(sorted_by(False)[-1], "", "texts, now that one is")
+        tab.run("document.getElementById('odd').remove()")
+
+    # Whoever does not see them.
+
+    def test_headings_tables_and_pictures_can_be_read_aloud(self):
+        for name in self.tabs:
+            with self.subTest(page=name):
+                self.assertEqual(looks.not_read_aloud(self.tab(name)), [])
+
+    def test_what_has_the_focus_is_seen(self):
+        for name in self.tabs:
+            for dark in (False, True):
+                with self.subTest(page=name, dark=dark):
+                    self.assertEqual(looks.unseen_focus(self.tab(name, dark=dark)), [])
 
     # A failed run.
 
