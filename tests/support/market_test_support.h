@@ -1,5 +1,4 @@
-// What the market tests share: the local time zone, real samples when they are there, a scratch
-// folder.
+// What the market tests share: real samples, a scratch folder, the text of an error.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -9,14 +8,20 @@
 
 namespace bess {
 
-/// A real sample kept outside the project; tests that need one skip where it is absent.
+/// Real prices that come with the project (tests/data/README.md).
 inline std::filesystem::path real_sample(const std::string& name) {
+  return std::filesystem::path(BESS_SOURCE_DIR) / "tests/data" / name;
+}
+
+/// Real prices that are kept beside the checkout; a test that needs them skips where they are absent.
+inline std::filesystem::path outside_sample(const std::string& name) {
   return std::filesystem::path(BESS_SOURCE_DIR) / "../shared/data" / name;
 }
 
-#define BESS_SKIP_WITHOUT(sample)                                                \
-  if (!std::filesystem::exists(bess::real_sample(sample))) {                     \
-    GTEST_SKIP() << "needs the real sample " << (sample) << ", which is absent"; \
+#define BESS_SKIP_WITHOUT(sample)                               \
+  if (!std::filesystem::exists(bess::outside_sample(sample))) { \
+    GTEST_SKIP() << "needs ../shared/data/" << (sample)         \
+                 << " beside the checkout, which is absent";    \
   }
 
 /// An empty folder of this test, removed at its end.

@@ -388,7 +388,6 @@ TEST_F(EliaFetch, TheRateIsThatOfTheDownloads) {
 }
 
 TEST_F(EliaFetch, ReplaysTheRealDownloads) {
-  BESS_SKIP_WITHOUT("raw/ods047_head3000.csv.gz");
   FakeElia elia([](const std::string& dataset, int, httplib::Response& response) {
     if (dataset == "ods047") {
       response.set_content(read_file(real_sample("raw/ods047_head3000.csv.gz")), "text/csv");

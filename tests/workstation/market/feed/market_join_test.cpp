@@ -115,7 +115,6 @@ TEST(MarketJoin, AMinuteFileNamesWhatIsNotReal) {
 }
 
 TEST(MarketJoin, RealDownloadsMatchTheTidyFile) {
-  BESS_SKIP_WITHOUT("raw/ods161_2024-09-06.csv.gz");
   const auto joined = [](const std::string& name) {
     return join_market(read_market_files({real_sample(name).string()}), name).series;
   };

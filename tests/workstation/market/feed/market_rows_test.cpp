@@ -236,7 +236,6 @@ TEST(MarketText, EveryCutOfARealRowIsReadOrRefused) {
 }
 
 TEST(MarketText, RealDownloads) {
-  BESS_SKIP_WITHOUT("raw/ods047_head3000.csv.gz");
   const auto rows_of = [](const std::string& name) {
     return parse_market_text(read_file(real_sample("raw/" + name)), name);
   };

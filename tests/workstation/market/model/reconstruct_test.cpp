@@ -58,7 +58,6 @@ TEST(Reconstruct, WithoutMarginalPricesThePathStillEndsOnTheSettledPrice) {
 
 TEST(Reconstruct, RealQuarterHoursConvergeLikeTheRealMinuteDays) {
   const std::string sample = "elia_quarter_hour_2023-01_2023-05.csv.gz";
-  BESS_SKIP_WITHOUT(sample);
   const auto rows = read_quarter_hour_files({real_sample(sample).string()}).quarter_hours;
   const MinuteSeries series = minutes_on_quarter_hours(rows, 7);
   const ConvergenceByMinute convergence = convergence_by_minute(series);

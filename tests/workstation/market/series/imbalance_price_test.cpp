@@ -32,7 +32,6 @@ TEST(ImbalancePrice, AlphaIsTemperedByTheMarginalPrice) {
 
 TEST(ImbalancePrice, RealQuarterHoursOf2023) {
   const std::string sample = "elia_quarter_hour_2023-01_2023-05.csv.gz";
-  BESS_SKIP_WITHOUT(sample);
   const auto rows = read_quarter_hour_files({real_sample(sample).string()}).quarter_hours;
   ASSERT_EQ(rows.size(), 13'650u);
   int alpha_right = 0;

@@ -105,7 +105,6 @@ TEST(Statistics, PictureIsWrittenOrTheReasonIsGiven) {
 
 TEST(Statistics, RealQuarterHoursOf2023) {
   const std::string sample = "elia_quarter_hour_2023-01_2023-05.csv.gz";
-  BESS_SKIP_WITHOUT(sample);
   const MarketStatistics result = statistics_of_quarter_hours(
       read_quarter_hour_files({real_sample(sample).string()}).quarter_hours);
   EXPECT_EQ(result.price.count, 13'650u);
