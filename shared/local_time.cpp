@@ -34,6 +34,25 @@ std::int64_t utc_from_civil(const CivilTime& t) {
          t.second;
 }
 
+std::int64_t utc_from_local(const CivilTime& wall) {
+  const std::int64_t wall_s = utc_from_civil(wall);
+  const auto shown_ahead_s = [](std::int64_t utc_s) {
+    const LocalMinute local = local_minute_of(utc_s);
+    return utc_from_civil({.year = local.year,
+                           .month = local.month,
+                           .day = local.day,
+                           .hour = local.minute_of_day / 60,
+                           .minute = local.minute_of_day % 60,
+                           .second = 0}) -
+           utc_s / 60 * 60;
+  };
+  // The offset of the day before holds up to a change of clocks, that of the day after from it on.
+  const std::int64_t before = wall_s - shown_ahead_s(wall_s - 86'400);
+  if (before + shown_ahead_s(before) == wall_s) return before;
+  const std::int64_t after = wall_s - shown_ahead_s(wall_s + 86'400);
+  return after + shown_ahead_s(after) == wall_s ? after : before;
+}
+
 CivilTime civil_from_utc(std::int64_t utc_s) {
   using namespace std::chrono;
   const sys_seconds instant{seconds{utc_s}};

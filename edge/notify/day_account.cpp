@@ -43,24 +43,12 @@ int DayAccount::interventions() const {
 }
 
 std::int64_t DayAccount::start_utc_s() const {
-  const std::int64_t wall_s = utc_from_civil({.year = local_day_ / 10'000,
-                                              .month = local_day_ / 100 % 100,
-                                              .day = local_day_ % 100,
-                                              .hour = 0,
-                                              .minute = 0,
-                                              .second = 0});
-  std::int64_t utc_s = wall_s;
-  for (int i = 0; i < 2; ++i) {  // the first guess lies up to some hours off, the second nowhere
-    const LocalMinute local = local_minute_of(utc_s);
-    const std::int64_t local_s = utc_from_civil({.year = local.year,
-                                                 .month = local.month,
-                                                 .day = local.day,
-                                                 .hour = local.minute_of_day / 60,
-                                                 .minute = local.minute_of_day % 60,
-                                                 .second = 0});
-    utc_s -= local_s - wall_s;
-  }
-  return utc_s;
+  return utc_from_local({.year = local_day_ / 10'000,
+                         .month = local_day_ / 100 % 100,
+                         .day = local_day_ % 100,
+                         .hour = 0,
+                         .minute = 0,
+                         .second = 0});
 }
 
 std::string DayAccount::date() const {

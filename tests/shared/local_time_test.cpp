@@ -82,6 +82,26 @@ TEST_F(LocalTime, FieldsStayInRangeAndFitTogetherForThreeYears) {
   }
 }
 
+TEST_F(LocalTime, TheWallClockLeadsBackToItsInstant) {
+  for (std::int64_t at = utc("2023-01-01T00:00:00Z"); at < utc("2026-01-01T00:00:00Z");
+       at += 13 * 60) {
+    const LocalMinute local = local_minute_of(at);
+    const std::int64_t found = utc_from_local({.year = local.year,
+                                               .month = local.month,
+                                               .day = local.day,
+                                               .hour = local.minute_of_day / 60,
+                                               .minute = local.minute_of_day % 60,
+                                               .second = 0});
+    // The second of an hour that comes twice is told as the first.
+    const LocalMinute an_hour_ago = local_minute_of(at - 3'600);
+    const bool is_second = an_hour_ago.minute_of_day == local.minute_of_day;
+    ASSERT_EQ(found, is_second ? at - 3'600 : at) << utc_text(at).c_str();
+  }
+  EXPECT_EQ(utc_from_local({2024, 3, 31, 2, 30, 0}), utc("2024-03-31T01:30:00Z"))
+      << "left out: half an hour behind 02:00, which is 03:00";
+  EXPECT_EQ(utc_from_local({2024, 10, 27, 2, 30, 15}), utc("2024-10-27T00:30:15Z"));
+}
+
 TEST_F(LocalTime, InstantsReadAndWriteAsText) {
   for (const char* text : {"1970-01-01T00:00:00Z", "2000-02-29T23:59:59Z", "2023-10-29T01:00:00Z",
                            "2038-01-19T03:14:08Z", "2100-03-01T00:00:00Z"}) {
