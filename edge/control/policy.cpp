@@ -3,6 +3,18 @@
 #include "shared/nn/exported_student.h"
 
 namespace bess {
+namespace {
+
+RulePoint rule_point(const LocalMinute& now, const LatticeState& state,
+                     std::int32_t price_centi_eur_per_mwh) {
+  return {.price_eur_per_mwh = whole_price_of(price_centi_eur_per_mwh),
+          .soc_index = state.soc_index,
+          .quarter_hour = state.quarter_hour,
+          .month = static_cast<std::int16_t>(now.month),
+          .context_class = state.context_class};
+}
+
+}  // namespace
 
 const ContextClasses& student_context() { return kExportedStudent.context; }
 
@@ -14,12 +26,17 @@ Action decide_with_student(const LatticeState& state) { return kExportedStudent.
 
 RuleLimits student_rule_limits(const LocalMinute& now, const LatticeState& state,
                                std::int32_t price_centi_eur_per_mwh) {
-  return rule_limits_at(kExportedGuardRules,
-                        {.price_eur_per_mwh = whole_price_of(price_centi_eur_per_mwh),
-                         .soc_index = state.soc_index,
-                         .quarter_hour = state.quarter_hour,
-                         .month = static_cast<std::int16_t>(now.month),
-                         .context_class = state.context_class});
+  return rule_limits_at(kExportedGuardRules, rule_point(now, state, price_centi_eur_per_mwh));
+}
+
+bool guard_rule_holds(int index, const LocalMinute& now, const LatticeState& state,
+                      std::int32_t price_centi_eur_per_mwh) {
+  const RulePoint point = rule_point(now, state, price_centi_eur_per_mwh);
+  int i = 0;
+  for (const GuardRule& rule : kExportedGuardRules) {
+    if (i++ == index) return rule.box.contains(point);
+  }
+  return false;
 }
 
 int guard_rule_count() { return kExportedGuardRuleCount; }

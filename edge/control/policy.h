@@ -25,6 +25,9 @@ RuleLimits student_rule_limits(const LocalMinute& now, const LatticeState& state
 /// Of the rules that the guard enforces.
 int guard_rule_count();
 const char* guard_rule_name(int index);
+/// Whether that rule has a say there.
+bool guard_rule_holds(int index, const LocalMinute& now, const LatticeState& state,
+                      std::int32_t price_centi_eur_per_mwh);
 
 /// 0 when this machine computes every golden vector of the weight header bit for bit.
 int count_student_self_check_failures();

@@ -36,14 +36,15 @@ layer edge/log                      edge/log edge/control edge/memory edge/base 
 grounds="edge/battery edge/control edge/loop edge/site edge/supervision edge/log edge/memory edge/prices edge/registers edge/base shared"
 layer edge/settings                 edge/settings $grounds
 layer edge/recording                edge/recording $grounds
-layer edge/storage                    edge/storage edge/settings $grounds
+layer edge/storage                  edge/storage edge/settings $grounds
 layer edge/program                  edge/program edge/storage edge/recording edge/settings $grounds
-layer edge/commands                 edge/commands edge/program edge/storage edge/recording edge/settings $grounds
+layer edge/commands                 edge/commands edge/why edge/program edge/storage edge/recording edge/settings $grounds
 layer edge/main.cpp                 edge shared
-# Beside the controller: it reads what the log wrote.
+# Beside the controller: they read what the log wrote.
+layer edge/why                      edge/why edge/log edge/loop edge/control edge/base shared
 layer edge/notify                   edge/notify edge/log edge/control edge/prices/http_secrets.h edge/base shared
-blame "$(includes '"shared/host' edge | grep -vE '^edge/(registers/map_|settings/|recording/|storage/|program/|commands/|notify/)')" \
-  "only start-up uses the heap: from settings to commands, and the reader of register maps"
+blame "$(includes '"shared/host' edge | grep -vE '^edge/(registers/map_|settings/|recording/|storage/|program/|commands/|why/|notify/)')" \
+  "only start-up and commands use the heap: from settings to commands, why, and the reader of register maps"
 # The simulators.
 layer tools/battery_sim             tools edge/registers edge/base shared
 layer tools/market_sim              tools shared

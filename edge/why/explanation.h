@@ -1,0 +1,42 @@
+// Why a cycle ordered what it did, with everything that a person asks next: who decided, since when and until when, on
+// which inputs, and at which prices and states of charge it would have been another order. Made from the decision log
+// and the settings, beside the controller.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "edge/control/control_types.h"
+#include "edge/log/log_reader.h"
+#include "edge/loop/control_settings.h"
+#include "edge/why/margins.h"
+#include "shared/host/json.h"
+
+namespace bess {
+
+struct Explanation {
+  CycleRecord record{};
+  std::int64_t since_utc_s = 0;  ///< tick from which on this reason has held, in one run of it
+  int cycles = 1;                ///< that it has held for, this one included
+  /// Price, measurement and student were there. Without them nothing below is said.
+  bool has_margins = false;
+  Margins margins{};
+  /// This program's student decides otherwise than the log says: another version wrote it.
+  bool is_other_student = false;
+};
+
+/// Of record `number` of the log; false when it cannot be read any more.
+bool explain(const LogReader& log, std::uint64_t number, const PriceThresholds& thresholds,
+             Explanation& explanation);
+
+/// The record whose order was in force at that instant, the newest where the clock was stepped; 0 = none.
+std::uint64_t number_at(const LogReader& log, std::int64_t utc_s);
+
+/// What ends the reason, and when: "until the SoC is above 10.5 %". Empty for the student's own decision.
+std::string what_ends(const CycleRecord& record, const ControlSettings& settings);
+
+/// Some lines, each ended, in local time.
+std::string explanation_text(const Explanation& explanation, const ControlSettings& settings);
+Json explanation_json(const Explanation& explanation, const ControlSettings& settings);
+
+}  // namespace bess
