@@ -266,7 +266,7 @@ damage() {  # damage KIND FILE
     folder) rm "$2" && mkdir "$2" ;;
   esac
 }
-for one in flip:state cut:state zeros:state gone:state flip:state.copy flip:both empty:both folder:both; do
+for one in flip:state cut:state zeros:state gone:state flip:state.copy flip:both empty:both folder:state folder:state.copy folder:both; do
   kind=${one%:*} files=${one#*:}
   machine
   upgrade 2.0
@@ -276,7 +276,6 @@ for one in flip:state cut:state zeros:state gone:state flip:state.copy flip:both
   [ $files = state ] || damage "$kind" "$state.copy"
   run supervise
   case $files:$kind in
-    *:folder) ;;                                       # nothing can be kept there, but it must not run away
     both:*)
       expect phase failed "$one"
       expect version 2.0 "$one"
@@ -287,8 +286,16 @@ for one in flip:state cut:state zeros:state gone:state flip:state.copy flip:both
     *) expect phase confirmed "$one" ;;
   esac
   expect_version 2.0 "$one"
-  [ "$kind" = folder ] || cmp -s "$state" "$state.copy" || fail "$one: not mended"
+  cmp -s "$state" "$state.copy" || fail "$one: not mended"
+  [ "$kind" != folder ] || grep -q "is a folder: it is set aside as" said || fail "$one: no line: $(cat said)"
 done
+machine
+upgrade 2.0
+rm "$BESS_ROOT/var/lib/bess-update/history"
+mkdir "$BESS_ROOT/var/lib/bess-update/history"
+run supervise
+expect phase confirmed "a folder in place of the history"
+grep -q confirmed "$BESS_ROOT/var/lib/bess-update/history" || fail "a folder in place of the history: none is kept"
 # The script of the version before writes neither checksum nor copy: its word is the newer one.
 machine
 upgrade 2.0
