@@ -1,7 +1,7 @@
-#include "edge/commands/clear_command.h"
-
+// `bess-edge clear`: a person has looked at why the supervision gave the battery back.
 #include <cstdio>
 
+#include "edge/commands/command_list.h"
 #include "edge/log/journal.h"
 #include "edge/log/log_reader.h"
 #include "edge/log/whole_file.h"
@@ -11,6 +11,31 @@
 
 namespace bess {
 namespace {
+
+struct ClearGiven {
+  bool yes = false;
+};
+
+using O = OptionsOf<ClearGiven>;
+constexpr CommandOption kOptions[] = {
+    O::flag<&ClearGiven::yes>("--yes"),
+};
+
+constexpr const char* kHelp =
+    R"(bess-edge clear: a person has looked why the battery did not do what it was told
+
+  bess-edge clear [--config FILE] --yes
+
+  --config FILE  the controller's settings; default /etc/bess/edge.toml
+  --yes          let it be driven again; without it only the trip is told
+
+After wrong_direction, uncontrolled_power, soc_mismatch or state_lost the battery is in its own mode until this is
+said, over restarts too. A running controller goes on at its next cycle.
+Exit codes: 0 cleared, or nothing to clear   1 log or state cannot be accessed   2 the command line is
+bad, or --yes is missing
+
+  bess-edge log --last 10; bess-edge clear --yes
+)";
 
 /// False with one line where the word cannot be left.
 bool leave_word(const char* path, std::int64_t trip_utc_s, FileMessage& error) {
@@ -41,9 +66,8 @@ int clear(const EdgeConfig& config, const ClearancePaths& paths, const Trip& tri
   return 0;
 }
 
-}  // namespace
-
-int run_clear_command(const CommandLine& command_line, const EdgeConfig& config) {
+int run_clear(const ClearGiven& given, SettingsFile& settings) {
+  const EdgeConfig& config = settings.config;
   LogReader log;
   FileMessage error;
   if (!log.open(config.log, error)) {
@@ -60,12 +84,21 @@ int run_clear_command(const CommandLine& command_line, const EdgeConfig& config)
   }
   std::printf("tripped    %s at %s\n", reason_name(trip.reason).data(),
               utc_text(trip.utc_s).c_str());
-  if (!command_line.yes) {
+  if (!given.yes) {
     report(JournalLevel::kError,
            "find out why first (bess-edge log --last 10); then add --yes to let it drive again");
     return 2;
   }
   return clear(config, paths, trip);
 }
+
+}  // namespace
+
+const EdgeCommand kClearCommand = {.name = "clear",
+                                   .usage = "clear [--config FILE] --yes",
+                                   .does = "drive again after the supervision tripped",
+                                   .help = kHelp,
+                                   .options = kOptions,
+                                   .run = run_with<ClearGiven, run_clear>};
 
 }  // namespace bess

@@ -1,16 +1,47 @@
-#include "edge/commands/commission_command.h"
-
+// bess-edge commission: runs the sign check on the real battery and stores its result.
 #include <algorithm>
 #include <cstdio>
 
 #include "edge/battery/commission.h"
+#include "edge/battery/modbus_meter.h"
+#include "edge/commands/command_list.h"
 #include "edge/log/journal.h"
+#include "edge/program/device_session.h"
+#include "edge/program/release_on_failed_check.h"
 #include "edge/program/startup.h"
 #include "edge/site/house_watch.h"
 #include "edge/storage/commission_file.h"
 
 namespace bess {
 namespace {
+
+struct CommissionGiven {
+  bool yes = false;
+};
+
+using O = OptionsOf<CommissionGiven>;
+constexpr CommandOption kOptions[] = {
+    O::flag<&CommissionGiven::yes>("--yes"),
+};
+
+constexpr const char* kHelp =
+    R"(bess-edge commission: checks once that a battery goes the way it is told
+
+  bess-edge commission [--config FILE] --yes
+
+  --config FILE  the controller's settings; default /etc/bess/edge.toml
+  --yes          really order it: without it only what would be ordered is said
+
+The battery rests for 10 s, then charges and discharges 500 W for 30 s each, then is released (the map's
+[commissioning] may say otherwise). Its measured power must follow each way, no less and no more than
+[response] of its map allows and as soon, and so must the meter of [meter]. A battery that is slower is
+refused with the lines to set; a direction that its SoC leaves no room for is not tested, and said.
+The result is kept in the [state] folder and holds for this
+map, variant and address; bess-edge refuses to control a battery without it.
+Exit codes: 0 passed   1 refused: the line says why   2 the command line is bad, or --yes is missing
+
+  bess-edge commission --config /etc/bess/edge.toml --yes
+)";
 
 /// The meter of [meter], a device of its own or the battery's grid point.
 class SiteMeter {
@@ -136,20 +167,23 @@ int refuse(const EdgeConfig& config, const CommissionResult& result) {
   return 1;
 }
 
-}  // namespace
-
-int run_commission_command(const CommandLine& command_line, const EdgeConfig& config,
-                           ModbusBattery& battery, ModbusMeter& meter, EdgeClock& clock) {
-  const CommissionSettings settings = settings_of(config);
-  if (!command_line.yes) return ask_for_yes(config, settings);
+int run_commission(const CommissionGiven& given, SettingsFile& settings) {
+  const EdgeConfig& config = settings.config;
+  DeviceSession session;
+  if (!session.begin(config)) return 1;
+  EdgeClock& clock = session.clock();
+  const CommissionSettings test = settings_of(config);
+  if (!given.yes) return ask_for_yes(config, test);
+  static ModbusBattery battery(config.link, config.map, config.clock);  // outlives a failed check
+  ModbusMeter meter(config.site.link, config.site.map, config.clock);
+  release_if_a_check_fails(battery);
   if (!reach_battery(config, battery, clock)) return 1;
   std::printf("commission %s: resting %d s, then %d W for %d s each way ...\n",
-              battery_place(config).c_str(), settings.rest_s, settings.power_w, settings.drive_s);
+              battery_place(config).c_str(), test.rest_s, test.power_w, test.drive_s);
   std::fflush(stdout);
-  const CommissionResult result =
-      SignCheck<ModbusBattery, EdgeClock, SiteMeter>(settings, battery, clock,
-                                                     SiteMeter(config.site.settings, meter))
-          .run();
+  const CommissionResult result = SignCheck<ModbusBattery, EdgeClock, SiteMeter>(
+                                      test, battery, clock, SiteMeter(config.site.settings, meter))
+                                      .run();
   if (result.release_status != Status::kOk) complain_about_release(config, result);
   print_measured(config, result);
   std::fflush(stdout);
@@ -164,5 +198,14 @@ int run_commission_command(const CommandLine& command_line, const EdgeConfig& co
               result.ordered_power_w, result.measured_power_w, config.state.folder.c_str());
   return 0;
 }
+
+}  // namespace
+
+const EdgeCommand kCommissionCommand = {.name = "commission",
+                                        .usage = "commission [--config FILE] --yes",
+                                        .does = "check the sign of a new battery, once",
+                                        .help = kHelp,
+                                        .options = kOptions,
+                                        .run = run_with<CommissionGiven, run_commission>};
 
 }  // namespace bess

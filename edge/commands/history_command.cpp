@@ -1,14 +1,41 @@
-#include "edge/commands/history_command.h"
-
+// `bess-edge history`: which versions and weights this machine has run, and what became of them.
 #include <algorithm>
 #include <cstdio>
 
+#include "edge/commands/command_list.h"
 #include "edge/log/journal.h"
 #include "edge/storage/update_state.h"
 #include "shared/host/json.h"
 
 namespace bess {
 namespace {
+
+struct HistoryGiven {
+  bool json = false;
+  std::string folder = kUpdateFolder;
+};
+
+using O = OptionsOf<HistoryGiven>;
+constexpr CommandOption kOptions[] = {
+    O::flag<&HistoryGiven::json>("--json"),
+    O::text<&HistoryGiven::folder>("--folder"),
+};
+
+constexpr const char* kHelp =
+    R"(bess-edge history: which versions and weights this machine has run, and what became of them
+
+  bess-edge history [--json] [--folder FOLDER]
+
+  --json           a list of objects: utc, event, version, student, header_sha256, reason
+  --folder FOLDER  where bess-update keeps it; default /var/lib/bess-update
+
+Events: trying (installed, on trial), confirmed, going_back and rolled_back (with the reason), failed (nothing to
+go back to). The column "certificate" is the beginning of header_sha256, of the exported header.
+Exit codes: 0 done   1 no history   2 the command line is bad
+
+  bess-edge history
+  bess-edge history --json | jq '.[-1].event'
+)";
 
 void print_json(const std::vector<UpdateEvent>& events) {
   Json list = Json::list();
@@ -35,10 +62,8 @@ void print_table(const std::vector<UpdateEvent>& events) {
   }
 }
 
-}  // namespace
-
-int run_history_command(const CommandLine& command_line) {
-  const std::string& folder = command_line.update_folder;
+int run_history(const HistoryGiven& given, SettingsFile&) {
+  const std::string& folder = given.folder;
   const std::vector<UpdateEvent> events = read_update_history(folder);
   if (events.empty()) {
     report(JournalLevel::kError,
@@ -46,12 +71,22 @@ int run_history_command(const CommandLine& command_line) {
            folder.c_str());
     return 1;
   }
-  if (command_line.json) {
+  if (given.json) {
     print_json(events);
   } else {
     print_table(events);
   }
   return 0;
 }
+
+}  // namespace
+
+const EdgeCommand kHistoryCommand = {.name = "history",
+                                     .usage = "history",
+                                     .does = "versions that this machine has run",
+                                     .help = kHelp,
+                                     .options = kOptions,
+                                     .settings = EdgeCommand::Settings::kNone,
+                                     .run = run_with<HistoryGiven, run_history>};
 
 }  // namespace bess

@@ -1,10 +1,10 @@
-#include "edge/commands/hold_command.h"
-
+// bess-edge hold: an operator's order with an end, left for the running controller to find.
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
 
+#include "edge/commands/command_list.h"
 #include "edge/control/hold.h"
 #include "edge/control/tick.h"
 #include "edge/log/journal.h"
@@ -18,6 +18,51 @@
 
 namespace bess {
 namespace {
+
+struct HoldGiven {
+  std::optional<std::int64_t> power_w;
+  bool release = false;
+  std::int64_t for_s = 0;  ///< 0 = not given
+};
+
+using O = OptionsOf<HoldGiven>;
+constexpr CommandOption kOptions[] = {
+    O::power<&HoldGiven::power_w>(),
+    O::duration<&HoldGiven::for_s, 120>("--for"),
+    O::flag<&HoldGiven::release>("--release"),
+};
+
+constexpr const char* kHelp =
+    R"(bess-edge hold: so many watts until an end, whatever the price
+
+  bess-edge hold [--config FILE] WATTS --for DURATION
+  bess-edge hold [--config FILE] --release
+
+  WATTS           power to hold: positive charges, negative discharges, 0 rests; up to [battery] power_w
+  --for DURATION  how long, 2m to 7d: 90m, 2h, 1d12h
+  --release       end the hold before its time
+  --config FILE   the controller's settings; default /etc/bess/edge.toml
+
+The running controller follows from its next cycle on, restarts included, and trades again when the end has
+passed. A hold stands for the student and the price thresholds, and needs no price. Everything else of the
+guard stays stronger: stop reasons, SoC bounds, reserve, cycles, reversals, power and connection limits,
+ramp. While the supervision has tripped nothing is driven, and so no hold is followed: that is said, see
+bess-edge clear. A new hold replaces the one before. It lies in the [state] folder: run it as the
+controller's user, or as root.
+Exit codes: 0 done   1 refused: the line says why   2 the command line is bad
+
+  bess-edge hold 0 --for 30m
+  bess-edge hold -2000 --for 2h
+  bess-edge hold --release
+)";
+
+/// Either a power and how long, or the end of what is held.
+const char* complaint(const HoldGiven& given) {
+  const bool is_order = given.power_w.has_value() && given.for_s > 0;
+  const bool is_partial = given.power_w.has_value() || given.for_s > 0;
+  const bool is_complete = given.release ? !is_partial : is_order;
+  return is_complete ? nullptr : "hold needs a power in W and --for DURATION, or --release alone";
+}
 
 /// Nothing is ordered while the supervision has tripped, whoever wants it.
 void print_trip(const EdgeConfig& config) {
@@ -116,27 +161,35 @@ int release_hold(const EdgeConfig& config) {
   return 0;
 }
 
-}  // namespace
-
-int run_hold_command(const CommandLine& command_line, const EdgeConfig& config) {
-  if (command_line.release_hold) return release_hold(config);
+int run_hold(const HoldGiven& given, SettingsFile& settings) {
+  const EdgeConfig& config = settings.config;
+  if (given.release) return release_hold(config);
   const std::int64_t power_w_max = config.control.guard.power_w;
-  const std::int64_t power_w = *command_line.hold_power_w;
+  const std::int64_t power_w = *given.power_w;
   if (power_w > power_w_max || power_w < -power_w_max) {
     report(JournalLevel::kError,
            "hold %lld W is beyond [battery] power_w of %s: choose between -%lld and %lld",
-           static_cast<long long>(power_w), command_line.config_path.c_str(),
+           static_cast<long long>(power_w), settings.path.c_str(),
            static_cast<long long>(power_w_max), static_cast<long long>(power_w_max));
     return 1;
   }
   set_market_time_zone();
   const std::int64_t now_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
   const Hold hold{.power_w = static_cast<std::int32_t>(power_w),
-                  .until_utc_s = static_cast<std::uint32_t>(now_utc_s + command_line.for_s)};
+                  .until_utc_s = static_cast<std::uint32_t>(now_utc_s + given.for_s)};
   for (const FixedText<511>* const folder : {&config.state.folder, &config.state.run_folder}) {
     if (!folder->empty()) make_folder(folder->c_str());  // when it fails, the writing says why
   }
   return keep_hold(config, hold, now_utc_s);
 }
+
+}  // namespace
+
+const EdgeCommand kHoldCommand = {.name = "hold",
+                                  .usage = "hold WATTS --for TIME [--config FILE]",
+                                  .does = "a power until an end, whatever the price",
+                                  .help = kHelp,
+                                  .options = kOptions,
+                                  .run = run_with<HoldGiven, run_hold, complaint>};
 
 }  // namespace bess

@@ -1,9 +1,10 @@
-#include "edge/commands/map_check_command.h"
-
+// bess-edge map check: a register map held against a recording of a device, without the device.
 #include <algorithm>
 #include <cinttypes>
 #include <cstdio>
+#include <memory>
 
+#include "edge/commands/command_list.h"
 #include "edge/log/journal.h"
 #include "edge/recording/map_check.h"
 #include "edge/registers/map_file.h"
@@ -12,6 +13,43 @@
 
 namespace bess {
 namespace {
+
+struct MapCheckGiven {
+  std::string map_path;  ///< empty = the configuration's map
+  std::string variant;
+  std::string against_path;
+  bool accept_cut = false;
+  bool json = false;
+};
+
+using O = OptionsOf<MapCheckGiven>;
+constexpr CommandOption kOptions[] = {
+    O::text<&MapCheckGiven::map_path>("--map"),
+    O::text<&MapCheckGiven::variant>("--variant"),
+    O::text<&MapCheckGiven::against_path>("--against"),
+    O::flag<&MapCheckGiven::accept_cut>("--accept-cut"),
+    O::flag<&MapCheckGiven::json>("--json"),
+};
+
+constexpr const char* kHelp =
+    R"(bess-edge map check: does a register map fit what a battery answered? Needs no battery
+
+  bess-edge map check --against FILE [--map FILE [--variant NAME] | --config FILE] [--json] [--accept-cut]
+
+  --against FILE  a recording: bess-edge record, or bess-edge run --record
+  --map FILE      the register map; default: that of the configuration
+  --variant NAME  of the map; default: its first
+  --config FILE   the controller's settings; default /etc/bess/edge.toml
+  --json          one JSON object
+  --accept-cut    take a recording without its last line up to where it was cut
+
+Names every point whose values cannot be true, with what would fit: never answered, outside its range, another
+scale, word order or type; a state of charge that stands still or does not follow the measured power; power that
+flows against the order. For the last three the battery must have moved energy while it was recorded.
+Exit codes: 0 all points are plausible   1 not all, or a file cannot be read   2 the command line is bad
+
+  bess-edge map check --against inverter.jsonl --map edge/maps/sma.toml --variant setpoint
+)";
 
 int refuse(const std::string& error) {
   report(JournalLevel::kError, "%s", error.c_str());
@@ -76,34 +114,54 @@ void print_text(const RegisterMap& map, const Result& result) {
               result.points.size(), result.exchanges);
 }
 
+/// A map that is named needs no configuration.
+std::optional<int> find_map(const MapCheckGiven& given, SettingsFile& settings) {
+  const auto complain = [](const char* why) { return usage_error(kMapCheckCommand, why); };
+  if (given.against_path.empty()) return complain("map check needs --against FILE");
+  if (given.map_path.empty()) {
+    if (given.variant.empty()) return load_settings(kMapCheckCommand, settings);
+    return complain("--variant needs --map: a configuration says it itself");
+  }
+  if (!settings.path.empty()) return complain("--map and --config exclude each other");
+  std::string error;
+  RegisterMap& map = settings.config.map;
+  if (load_register_map(given.map_path, given.variant, map, error)) return std::nullopt;
+  return refuse(error);
+}
+
 }  // namespace
 
-int run_map_check_command(const CommandLine& command_line, const EdgeConfig* config) {
-  static RegisterMap map;
+int run_map_check(const MapCheckGiven& given, SettingsFile& settings) {
+  if (const auto code = find_map(given, settings)) return *code;
+  RegisterMap& map = settings.config.map;
   std::string error;
-  if (config != nullptr) {
-    map = config->map;
-  } else if (!load_register_map(command_line.map_path, command_line.variant, map, error)) {
-    return refuse(error);
-  }
   BusRecordingReader recording;
-  const CutRecording cut =
-      command_line.accept_cut ? CutRecording::kAccepted : CutRecording::kRefused;
-  if (!recording.open(command_line.against_path, cut, error)) return refuse(error);
+  const CutRecording cut = given.accept_cut ? CutRecording::kAccepted : CutRecording::kRefused;
+  if (!recording.open(given.against_path, cut, error)) return refuse(error);
   take_units(recording.head(), map);
-  static MapCheck check(map, recording.head().unit);
+  const auto check = std::make_unique<MapCheck>(map, recording.head().unit);
   BusExchange exchange;
   auto next = recording.next(exchange, error);
   for (; next == BusRecordingReader::Next::kExchange; next = recording.next(exchange, error)) {
-    check.add(exchange);
+    check->add(exchange);
   }
   if (next == BusRecordingReader::Next::kDamaged) return refuse(error);
-  Result result{
-      .points = check.verdicts(), .unjudged = check.unjudged(), .exchanges = recording.exchanges()};
+  Result result{.points = check->verdicts(),
+                .unjudged = check->unjudged(),
+                .exchanges = recording.exchanges()};
   result.findings = std::count_if(result.points.begin(), result.points.end(),
                                   [](const PointVerdict& p) { return !p.finding.empty(); });
-  command_line.json ? print_json(map, result) : print_text(map, result);
+  given.json ? print_json(map, result) : print_text(map, result);
   return result.findings == 0 ? 0 : 1;
 }
+
+const EdgeCommand kMapCheckCommand = {.name = "map",
+                                      .verb = "check --against FILE",
+                                      .usage = "map check --against FILE [--map FILE]",
+                                      .does = "does a register map fit a recorded battery?",
+                                      .help = kHelp,
+                                      .options = kOptions,
+                                      .settings = EdgeCommand::Settings::kIfAsked,
+                                      .run = run_with<MapCheckGiven, run_map_check>};
 
 }  // namespace bess

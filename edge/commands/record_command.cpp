@@ -1,18 +1,61 @@
-#include "edge/commands/record_command.h"
-
+// bess-edge record: reads what the register map names, again and again, and writes every request and reply to a
+// file that can be given away. Writes nothing to the device. `bess-edge run --record` records a controller at work.
 #include <unistd.h>
 
 #include <algorithm>
 #include <cinttypes>
 #include <cstdio>
+#include <memory>
 
 #include "edge/battery/modbus_battery.h"
+#include "edge/commands/command_list.h"
 #include "edge/log/journal.h"
+#include "edge/program/device_session.h"
 #include "edge/recording/exchange_recorder.h"
 #include "shared/utc_text.h"
 
 namespace bess {
 namespace {
+
+struct RecordGiven {
+  std::string out_path;      ///< empty = a name made of the time
+  std::int64_t for_s = 0;    ///< 0 = not given
+  std::int64_t every_s = 0;  ///< 0 = not given
+};
+
+using O = OptionsOf<RecordGiven>;
+constexpr CommandOption kOptions[] = {
+    O::duration<&RecordGiven::for_s, 1>("--for"),
+    O::duration<&RecordGiven::every_s, 1>("--every"),
+    O::text<&RecordGiven::out_path>("--out"),
+};
+
+constexpr const char* kHelp =
+    R"(bess-edge record: what a battery answers, written to a file; writes nothing to the battery
+
+  bess-edge record --for DURATION [--every DURATION] [--out FILE] [--config FILE]
+
+  --for DURATION    how long, 1s to 7d: 90s, 1h, 1d12h; Ctrl-C ends it before, and the file is whole
+  --every DURATION  between two readings of what is measured; default 10s. Everything else that the
+                    register map names, and what it would write, is read every 10 minutes
+  --out FILE        default: bess-TIME.jsonl in the current folder
+  --config FILE     the controller's settings; default /etc/bess/edge.toml
+
+One JSON object a line: request, values or error, latency. Hidden (0, of a text X) is what the map marks as
+private, texts beyond what the map's identity check asks for, and every register that the map does not name: the
+file can be given away. It holds neither addresses of the network nor prices. Refused while another bess-edge
+has the battery: record that one with bess-edge run --record FILE, which has the orders too.
+What is made of it: bess-sim battery --replay FILE, and bess-edge map check --against FILE.
+Exit codes: 0 recorded   1 the file cannot be written, nobody answered, or the battery is in use
+2 the command line is bad
+
+  bess-edge record --for 1h
+  bess-edge record --for 5m --every 2s --out inverter.jsonl --config /etc/bess/edge.toml
+)";
+
+const char* complaint(const RecordGiven& given) {
+  return given.for_s == 0 ? "record needs --for DURATION" : nullptr;
+}
 
 constexpr std::int64_t kEveryDefaultS = 10;
 constexpr std::int64_t kAllEveryS =
@@ -21,8 +64,8 @@ constexpr std::int64_t kAllEveryS =
 using Bus = BatteryBus<ModbusLink, DeviceTime>;
 
 /// "bess-20261122T060000Z.jsonl" in the current folder, unless the command line names a file.
-std::string path_of(const CommandLine& command_line, std::int64_t utc_s) {
-  if (!command_line.out_path.empty()) return command_line.out_path;
+std::string path_of(const RecordGiven& given, std::int64_t utc_s) {
+  if (!given.out_path.empty()) return given.out_path;
   std::string name(utc_text(utc_s).view());
   std::erase_if(name, [](char c) { return c == '-' || c == ':'; });
   return "bess-" + name + ".jsonl";
@@ -66,13 +109,12 @@ class Progress {
 };
 
 /// Until the time is over, or somebody stops it.
-void poll_device(const CommandLine& command_line, const EdgeConfig& config, Bus& bus,
-                 EdgeClock& clock) {
-  const std::int64_t every_s = command_line.every_s > 0 ? command_line.every_s : kEveryDefaultS;
+void poll_device(const RecordGiven& given, const EdgeConfig& config, Bus& bus, EdgeClock& clock) {
+  const std::int64_t every_s = given.every_s > 0 ? given.every_s : kEveryDefaultS;
   const std::int64_t begin_ns = clock.now_utc_ns();
-  const std::int64_t end_ns = begin_ns + command_line.for_s * kNanosecondsPerSecond;
+  const std::int64_t end_ns = begin_ns + given.for_s * kNanosecondsPerSecond;
   const PointPlaces places(config.map, config.link.unit);
-  const Progress progress(command_line.for_s);
+  const Progress progress(given.for_s);
   std::int64_t next_all_ns = begin_ns;
   std::int64_t next_ns = begin_ns;
   while (!clock.stop_requested()) {
@@ -90,24 +132,25 @@ void poll_device(const CommandLine& command_line, const EdgeConfig& config, Bus&
   progress.end();
 }
 
-}  // namespace
-
-int run_record_command(const CommandLine& command_line, const EdgeConfig& config,
-                       EdgeClock& clock) {
+int run_record(const RecordGiven& given, SettingsFile& settings) {
+  const EdgeConfig& config = settings.config;
+  DeviceSession session;
+  if (!session.begin(config)) return 1;
+  EdgeClock& clock = session.clock();
   const RecordingHead head = recording_head_of(config.map, config.link, config.clock);
-  const std::string path = path_of(command_line, head.begin_utc_s);
-  static ExchangeRecorder recorder;
+  const std::string path = path_of(given, head.begin_utc_s);
+  const auto recorder = std::make_unique<ExchangeRecorder>();
   FileMessage error;
-  if (!recorder.start(path.c_str(), head, config.map, config.clock, error)) {
+  if (!recorder->start(path.c_str(), head, config.map, config.clock, error)) {
     report(JournalLevel::kError, "%s", error.c_str());
     return 1;
   }
-  static Bus bus(config.map, DeviceTime(config.clock), config.link.unit, config.link,
-                 timing_of(config.map), config.clock);
-  bus.link().tell_exchanges(recorder.listener());
-  poll_device(command_line, config, bus, clock);
+  Bus bus(config.map, DeviceTime(config.clock), config.link.unit, config.link,
+          timing_of(config.map), config.clock);
+  bus.link().tell_exchanges(recorder->listener());
+  poll_device(given, config, bus, clock);
   bus.link().tell_exchanges({});
-  if (!recorder.finish(error)) {
+  if (!recorder->finish(error)) {
     report(JournalLevel::kError, "%s", error.c_str());
     return 1;
   }
@@ -123,5 +166,14 @@ int run_record_command(const CommandLine& command_line, const EdgeConfig& config
          battery_place(config).c_str());
   return 1;
 }
+
+}  // namespace
+
+const EdgeCommand kRecordCommand = {.name = "record",
+                                    .usage = "record --for TIME [--config FILE]",
+                                    .does = "what the battery answers, to a file",
+                                    .help = kHelp,
+                                    .options = kOptions,
+                                    .run = run_with<RecordGiven, run_record, complaint>};
 
 }  // namespace bess

@@ -1,23 +1,54 @@
-#include "edge/commands/release_command.h"
-
+// bess-edge release: ends an order that a controller which is gone has left in force.
 #include <cstdio>
 
+#include "edge/commands/command_list.h"
 #include "edge/log/journal.h"
+#include "edge/program/device_session.h"
 #include "edge/program/startup.h"
 
 namespace bess {
+namespace {
 
-int run_release_command(const CommandLine& command_line, const EdgeConfig& config,
-                        ModbusBattery& battery, EdgeClock& clock) {
+struct ReleaseGiven {
+  bool yes = false;
+  bool force = false;
+};
+
+using O = OptionsOf<ReleaseGiven>;
+constexpr CommandOption kOptions[] = {
+    O::flag<&ReleaseGiven::yes>("--yes"),
+    O::flag<&ReleaseGiven::force>("--force"),
+};
+
+constexpr const char* kHelp =
+    R"(bess-edge release: gives a battery back to its own mode, when a controller that is gone left an order
+
+  bess-edge release [--config FILE] --yes [--force]
+
+  --config FILE  the controller's settings; default /etc/bess/edge.toml
+  --yes          really write it
+  --force        also to a device that does not answer as its register map says
+
+Needs no sign check. Refused while a bess-edge controls the battery: stop that instead.
+Exit codes: 0 released   1 refused or failed: the line says why   2 the command line is bad, or --yes is missing
+
+  systemctl stop bess-edge; bess-edge release --yes
+)";
+
+int run_release(const ReleaseGiven& given, SettingsFile& settings) {
+  const EdgeConfig& config = settings.config;
+  DeviceSession session;
+  if (!session.begin(config)) return 1;
+  ModbusBattery battery(config.link, config.map, config.clock);
   const auto place = battery_place(config);
-  if (!command_line.yes) {
+  if (!given.yes) {
     report(JournalLevel::kError,
            "release gives the battery at %s back to its own mode; add --yes to do that",
            place.c_str());
     return 2;
   }
-  if (command_line.force) battery.permit_release();
-  if (!reach_battery(config, battery, clock) && !command_line.force) {
+  if (given.force) battery.permit_release();
+  if (!reach_battery(config, battery, session.clock()) && !given.force) {
     report(JournalLevel::kError, "nothing was released; --force releases it all the same");
     return 1;
   }
@@ -29,5 +60,14 @@ int run_release_command(const CommandLine& command_line, const EdgeConfig& confi
   std::printf("released   %s is in its own mode\n", place.c_str());
   return 0;
 }
+
+}  // namespace
+
+const EdgeCommand kReleaseCommand = {.name = "release",
+                                     .usage = "release [--config FILE] --yes",
+                                     .does = "end an order that nobody ends any more",
+                                     .help = kHelp,
+                                     .options = kOptions,
+                                     .run = run_with<ReleaseGiven, run_release>};
 
 }  // namespace bess

@@ -7,10 +7,10 @@
 
 #include <cstdio>
 #include <fstream>
+#include <memory>
 #include <string>
 
 #include "edge/battery/modbus_battery.h"
-#include "edge/commands/signature_command.h"
 #include "edge/control/policy.h"
 #include "edge/log/journal.h"
 #include "edge/memory/heap_seal.h"
@@ -177,11 +177,11 @@ void test_storage(const EdgeConfig& config, Table& table) {
 /// Reads the identity and the measurements; writes nothing.
 void test_battery(const EdgeConfig& config, EdgeClock& clock, Table& table) {
   const std::string place = battery_place(config).c_str();
-  static RunLocks locks;
+  RunLocks locks;
   FileMessage in_use;
   if (!lock_battery(config, locks, in_use))
     return table.add("battery", Verdict::kNote, in_use.c_str());
-  static ModbusBattery battery(config.link, config.map, config.clock);
+  ModbusBattery battery(config.link, config.map, config.clock);
   BatteryMeasurement m;
   std::string trouble;
   const bool is_there = find_battery(config, battery, clock, trouble) == Status::kOk;
@@ -203,11 +203,10 @@ int run_self_test(const EdgeConfig& config) {
   test_arena(table);
   test_seal(table);  // before there is a thread
   prepare_process();
-  static EdgeClock clock(config.clock, config.require_synchronised_clock);
+  EdgeClock clock(config.clock, config.require_synchronised_clock);
   test_clock(config, clock, table);
   test_ca_file(config, table);
-  static PriceFeed prices(config.price, config.clock);
-  test_network(config, prices, table);
+  test_network(config, *std::make_unique<PriceFeed>(config.price, config.clock), table);
   test_storage(config, table);
   test_battery(config, clock, table);
   std::printf("self-test  %s\n",

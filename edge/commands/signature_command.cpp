@@ -1,28 +1,36 @@
-#include "edge/commands/signature_command.h"
-
-#include <cinttypes>
 #include <cstdio>
 
-#include "edge/control/decision_signature.h"
-#include "edge/control/policy.h"
-#include "shared/local_time.h"
+#include "edge/commands/command_list.h"
+#include "edge/program/startup.h"
 
 namespace bess {
+namespace {
 
-std::string decision_signature_line() {
-  set_market_time_zone();
-  const DecisionSignature found = replay_recorded_days();
-  char line[128];
-  std::snprintf(
-      line, sizeof line,
-      "student=%08" PRIx32 " decisions=%d charging=%d discharging=%d signature=%016" PRIx64,
-      student_hash(), found.decisions, found.charging, found.discharging, found.signature);
-  return line;
-}
+constexpr const char* kHelp =
+    R"(bess-edge signature: one number for what this build decides
 
-int run_signature_command() {
+  bess-edge signature
+
+Student and guard replay two recorded days of prices in each month of a year, those of the clock changes
+among them, in integers. The signature is over every order: builds with the same student that print
+different ones do not decide the same. edge/generated/decision_signature.txt holds the expected line.
+Exit codes: 0 done   2 the command line is bad
+)";
+
+struct NothingGiven {};
+
+int print_signature(const NothingGiven&, SettingsFile&) {
   std::puts(decision_signature_line().c_str());
   return 0;
 }
+
+}  // namespace
+
+const EdgeCommand kSignatureCommand = {.name = "signature",
+                                       .usage = "signature",
+                                       .does = "one number for what this build decides",
+                                       .help = kHelp,
+                                       .settings = EdgeCommand::Settings::kNone,
+                                       .run = run_with<NothingGiven, print_signature>};
 
 }  // namespace bess

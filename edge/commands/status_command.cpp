@@ -1,9 +1,10 @@
-#include "edge/commands/status_command.h"
-
+// `bess-edge status`: another process that reads what the controller publishes (status.json, the
+// decision ring, the lock) and says how it is, to a person or to a program.
 #include <unistd.h>
 
 #include <cstdio>
 
+#include "edge/commands/command_list.h"
 #include "edge/log/health.h"
 #include "edge/log/journal.h"
 #include "edge/log/log_reader.h"
@@ -16,6 +17,45 @@
 
 namespace bess {
 namespace {
+
+struct StatusGiven {
+  bool json = false;
+  bool prometheus = false;
+  bool follow = false;
+  bool no_lock = false;
+};
+
+using O = OptionsOf<StatusGiven>;
+constexpr CommandOption kOptions[] = {
+    O::flag<&StatusGiven::json>("--json"),
+    O::flag<&StatusGiven::prometheus>("--prometheus"),
+    O::flag<&StatusGiven::follow>("--follow"),
+    O::flag<&StatusGiven::no_lock>("--no-lock"),
+};
+
+constexpr const char* kHelp =
+    R"(bess-edge status: how the running controller is; touches neither battery nor controller
+
+  bess-edge status [--config FILE] [--json | --prometheus] [--follow] [--no-lock]
+
+  --config FILE  the controller's settings; default /etc/bess/edge.toml
+  --json         one JSON object with "health"
+  --prometheus   the metrics as the node exporter's textfile collector takes them
+  --follow       again every two seconds, until Ctrl-C
+  --no-lock      whether it runs is told by its process number alone: its lock is not even tried
+
+Health is ok, degraded (with the reasons) or not running. A status older than two cycles is a WARN,
+older than four CRITICAL. Of a controller that has ended, what it was last and when that was.
+Exit codes: 0 ok   1 degraded, or the files cannot be read   2 the command line is bad   3 not running
+
+  bess-edge status
+  bess-edge status --json | jq .health
+  watch -n 60 bess-edge status --config /etc/bess/edge.toml
+)";
+
+const char* complaint(const StatusGiven& given) {
+  return given.json && given.prometheus ? "--json and --prometheus exclude each other" : nullptr;
+}
 
 using R = CycleRecord;
 using B = BatteryMeasurement;
@@ -276,13 +316,13 @@ bool print_metrics(const EdgeConfig& config) {
   return true;
 }
 
-int print_once(const CommandLine& command_line, const EdgeConfig& config) {
-  PublishedStatus published = read_published_status(config, command_line.no_lock);
+int print_once(const StatusGiven& given, const EdgeConfig& config) {
+  PublishedStatus published = read_published_status(config, given.no_lock);
   const UpdateState update = read_update_state(kUpdateFolder);
   const Health health = health_of(config, published, update_trouble(update));
-  if (command_line.prometheus) {
+  if (given.prometheus) {
     if (!print_metrics(config)) return 1;
-  } else if (command_line.json) {
+  } else if (given.json) {
     print_json(std::move(published), health, update);
   } else {
     print_text(config, published, health, update);
@@ -291,16 +331,24 @@ int print_once(const CommandLine& command_line, const EdgeConfig& config) {
   return static_cast<int>(health.level);
 }
 
-}  // namespace
-
-int run_status_command(const CommandLine& command_line, const EdgeConfig& config) {
+int run_status(const StatusGiven& given, SettingsFile& settings) {
+  const EdgeConfig& config = settings.config;
   constexpr const char* kClearScreen = "\033[H\033[2J";
   while (true) {
-    if (command_line.follow && isatty(STDOUT_FILENO) != 0) std::fputs(kClearScreen, stdout);
-    const int exit_code = print_once(command_line, config);
-    if (!command_line.follow) return exit_code;
+    if (given.follow && isatty(STDOUT_FILENO) != 0) std::fputs(kClearScreen, stdout);
+    const int exit_code = print_once(given, config);
+    if (!given.follow) return exit_code;
     sleep(2);
   }
 }
+
+}  // namespace
+
+const EdgeCommand kStatusCommand = {.name = "status",
+                                    .usage = "status [--config FILE] ...",
+                                    .does = "how the running controller is",
+                                    .help = kHelp,
+                                    .options = kOptions,
+                                    .run = run_with<StatusGiven, run_status, complaint>};
 
 }  // namespace bess

@@ -1,10 +1,9 @@
-// What happens before the loop: reaching and identifying the battery, and the report of --check.
+// What happens before the loop: student, process, battery, what earlier runs left.
 // One line per finding, for a person; nothing here writes to the battery.
 #pragma once
 
 #include "edge/battery/modbus_battery.h"
-#include "edge/log/run_status.h"
-#include "edge/prices/price_feed.h"
+#include "edge/log/event_log.h"
 #include "edge/program/edge_clock.h"
 #include "edge/program/find_battery.h"
 #include "edge/settings/edge_config.h"
@@ -33,9 +32,8 @@ void journal_thresholds(const EdgeConfig& config);
 /// One journal line where others than the price server could write the prices.
 void journal_transport(const EdgeConfig& config);
 
-/// Prints settings, encoded orders, a battery reading and the newest price; true when all is well.
-bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& prices,
-                  const EdgeClock& clock);
+/// What the signature command prints of this build.
+std::string decision_signature_line();
 
 /// True when this machine computes the built-in student as the exporter did.
 bool check_student();

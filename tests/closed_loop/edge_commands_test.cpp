@@ -1,4 +1,4 @@
-// The commands of bess-edge as an operator types them: where the words may stand, what is said of a slip, each exit
+// The commands of bess-edge as an operator types them: each exit
 // code that edge/README.md promises, and what is said of a controller that has tripped or ended.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -17,65 +17,6 @@ using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
-
-constexpr const char* kCommands[] = {"run",       "commission", "status",  "log",
-                                     "hold",      "limit",      "release", "clear",
-                                     "signature", "record",     "map",     "history"};
-
-TEST(EdgeWords, HelpAndVersionAreWordsToo) {
-  const std::string general = edge({"--help"}).text;
-  for (const auto& words :
-       {std::vector<std::string>{"help"}, {"-h"}, {"help", "run"}, {"help", "--help"}}) {
-    const Said said = edge(words);
-    EXPECT_EQ(said.exit_code, 0);
-    EXPECT_EQ(said.text, general);
-  }
-  for (const char* command : kCommands) {
-    const Said said = edge({"help", command});
-    EXPECT_EQ(said.exit_code, 0) << command;
-    EXPECT_EQ(said.text, edge({command, "--help"}).text);
-    EXPECT_EQ(said.text, edge({"--help", command}).text);
-    EXPECT_THAT(said.text, HasSubstr("Exit codes: 0 ")) << command;
-    const bool is_row = general.find("bess-edge " + std::string(command)) != general.npos;
-    EXPECT_TRUE(is_row || std::string(command) == "run") << command;
-  }
-  EXPECT_EQ(edge({"version"}).exit_code, 0);
-  EXPECT_EQ(edge({"version"}).text, edge({"--version"}).text);
-  EXPECT_THAT(edge({"version"}).text, StartsWith("bess-edge "));
-}
-
-TEST(EdgeWords, ASlipIsToldWithWhatWasProbablyMeant) {
-  const std::pair<std::vector<std::string>, const char*> slips[] = {
-      {{"stat"}, "unknown command stat; did you mean status? (see bess-edge --help)"},
-      {{"stauts"}, "unknown command stauts; did you mean status?"},
-      {{"relase", "--yes"}, "unknown command relase; did you mean release?"},
-      {{"hlep"}, "unknown command hlep; did you mean help?"},
-      {{"check"}, "unknown command check; did you mean --check?"},
-      {{"selftest"}, "unknown command selftest; did you mean --self-test?"},
-      {{"help", "stauts"}, "unknown command stauts; did you mean status?"},
-      {{"plutonium"}, "unknown command plutonium (see bess-edge --help)"},
-      {{"--confg", "x"}, "unknown option --confg; did you mean --config? (see bess-edge --help)"},
-      {{"--config=x", "--check"}, "unknown option --config=x; did you mean --config?"},
-      {{"status", "--jsno"},
-       "unknown option --jsno; did you mean --json? (see bess-edge status --help)"},
-      {{"status", "--follw"}, "did you mean --follow?"},
-      {{"log", "--lst", "3"}, "did you mean --last?"},
-      {{"hold", "100", "--fro", "2h"}, "did you mean --for? (see bess-edge hold --help)"},
-      {{"status", "--cycles", "3"}, "unknown option --cycles (see bess-edge status --help)"},
-      {{"--json", "--cycles", "3", "status"},
-       "unknown option --cycles (see bess-edge status --help)"},
-      {{"map", "chek"},
-       "map needs what is to be done: map check --against FILE (see bess-edge map check"},
-      {{"log", "--last"}, "a value is missing after --last (see bess-edge log --help)"},
-      {{"--config"}, "a value is missing after --config (see bess-edge --help)"},
-  };
-  for (const auto& [words, complaint] : slips) {
-    const Said said = edge(words);
-    EXPECT_EQ(said.exit_code, 2) << complaint;
-    EXPECT_THAT(said.text, AllOf(StartsWith("bess-edge: "), HasSubstr(complaint)));
-    EXPECT_EQ(said.text.find('\n'), said.text.size() - 1) << said.text;
-  }
-}
 
 class EdgeCommands : public ::testing::Test {
  protected:

@@ -1,0 +1,211 @@
+#include "edge/commands/check.h"
+
+#include <cstdio>
+#include <memory>
+
+#include "edge/battery/modbus_battery.h"
+#include "edge/battery/modbus_meter.h"
+#include "edge/control/policy.h"
+#include "edge/log/journal.h"
+#include "edge/prices/http_secrets.h"
+#include "edge/prices/price_feed.h"
+#include "edge/program/device_session.h"
+#include "edge/program/find_battery.h"
+#include "edge/program/level_note.h"
+#include "edge/program/threshold_note.h"
+#include "edge/program/wishes_note.h"
+#include "edge/registers/codec.h"
+#include "edge/settings/price_transport.h"
+#include "edge/site/house_watch.h"
+#include "edge/storage/commission_file.h"
+#include "edge/storage/hold_file.h"
+#include "shared/utc_text.h"
+
+namespace bess {
+namespace {
+
+/// What a command would write, by the battery's own scale factors and limits if it was reached.
+void print_registers(const EdgeConfig& config, const ModbusBattery& battery, const char* name,
+                     const PowerOrder& order, Command command) {
+  std::printf("%-10s", name);
+  for (const BlockWrite& write : config.map.sequence(command).writes) {
+    RegisterBlock block;
+    std::uint16_t address = 0;
+    const Status status = battery.preview(write, order, address, block);
+    if (status != Status::kOk) {
+      std::printf(" (%s)", status == Status::kNotConnected ? "known once the battery is read"
+                                                           : status_name(status).data());
+      break;
+    }
+    std::printf(" 0x%04X:[", address);
+    for (int i = 0; i < block.size(); ++i) std::printf(i == 0 ? "%u" : " %u", block[i]);
+    std::printf("]");
+  }
+  std::printf("\n");
+}
+
+void print_orders(const EdgeConfig& config, const ModbusBattery& battery) {
+  const GuardSettings& guard = config.control.guard;
+  PowerOrder order{.soc_min_e4 = guard.soc_min_e4,
+                   .soc_max_e4 = guard.soc_max_e4,
+                   .duration_s = config.control.order_duration_s};
+  order.power_w = guard.power_w;
+  print_registers(config, battery, "charge", order, Command::kCharge);
+  order.power_w = 0;
+  print_registers(config, battery, "idle", order, Command::kIdle);
+  order.power_w = -guard.power_w;
+  print_registers(config, battery, "discharge", order, Command::kDischarge);
+  print_registers(config, battery, "release", order, Command::kRelease);
+}
+
+bool report_price(const EdgeConfig& config, PriceFeed& prices) {
+  PriceRow row;
+  const Status status = prices.fetch_once(row);
+  if (status != Status::kOk) {
+    report(JournalLevel::kError, "price from %s: %s",
+           loggable_url(config.price.http.url.view()).c_str(), price_status_text(status).data());
+    return false;
+  }
+  std::printf("price      %.2f EUR/MWh of minute %s\n", row.price_centi_eur_per_mwh / 100.0,
+              utc_text(row.minute_utc_s).c_str());
+  return true;
+}
+
+void print_thresholds(const EdgeConfig& config) {
+  const ThresholdNote note =
+      compare_thresholds(config.control.guard.thresholds, student_thresholds());
+  if (note.agree) return static_cast<void>(std::printf("guard      %s\n", note.text.c_str()));
+  report(JournalLevel::kWarning, "note: %s", note.text.c_str());
+}
+
+void print_transport(const EdgeConfig& config) {
+  const TransportNote note = transport_note(config);
+  if (!note.is_open) return static_cast<void>(std::printf("transport  %s\n", note.text.c_str()));
+  report(JournalLevel::kWarning, "note: %s", note.text.c_str());
+}
+
+/// Without the sign check a controller would refuse to start; one that only reads does not need it.
+bool report_sign(const EdgeConfig& config) {
+  std::string refusal;
+  if (is_commissioned(config, refusal)) {
+    std::printf("sign       checked by bess-edge commission\n");
+    return true;
+  }
+  const bool is_needed = config.control.control;
+  report(is_needed ? JournalLevel::kError : JournalLevel::kWarning, "%s%s",
+         is_needed ? "" : "note, before control = true: ", refusal.c_str());
+  return !is_needed;
+}
+
+/// A clock that nobody sets is a stop reason in every cycle: it should show before the first.
+bool report_clock(const EdgeConfig& config, const EdgeClock& clock) {
+  if (clock.is_synchronised()) {
+    std::printf("clock      %s\n", !config.clock.is_real_time()        ? "simulated"
+                                   : config.require_synchronised_clock ? "set by NTP"
+                                                                       : "not asked for");
+    return true;
+  }
+  report(config.control.control ? JournalLevel::kError : JournalLevel::kWarning,
+         "the clock is not set by NTP: no order will be given before it is; see timedatectl");
+  return !config.control.control;
+}
+
+/// As "127.0.0.1:502" or the serial device.
+FixedText<159> place_of(const BatteryLinkSettings& link) {
+  char place[160];
+  if (link.rtu) {
+    std::snprintf(place, sizeof place, "%s", link.device.c_str());
+  } else {
+    std::snprintf(place, sizeof place, "%s:%d", link.host.c_str(), link.port);
+  }
+  return FixedText<159>(place);
+}
+
+bool complain_of_meter(const SiteConfig& site, const char* what) {
+  report(JournalLevel::kError, "meter at %s, map %s: %s", place_of(site.link).c_str(),
+         site.map.name.c_str(), what);
+  return false;
+}
+
+bool read_own_map(const SiteConfig& site, ModbusMeter& meter, std::int32_t& grid_power_w) {
+  IdentityFailure failure;
+  Status status = meter.check_identity(failure);
+  if (status == Status::kImplausible && failure.check < site.map.identity.size()) {
+    return complain_of_meter(site, site.map.identity[failure.check].hint.c_str());
+  }
+  if (status == Status::kOk) status = meter.read(grid_power_w);
+  return status == Status::kOk || complain_of_meter(site, status_text(status).data());
+}
+
+/// One reading of the meter, and the house's load that follows from it; true when there is none, or it can be read.
+bool report_site(const EdgeConfig& config, ModbusBattery& battery, ModbusMeter& meter) {
+  const SiteConfig& site = config.site;
+  if (site.settings.meter == MeterSource::kNone) return true;
+  BatteryMeasurement m;
+  const bool has_battery = battery.read(m) == Status::kOk;
+  std::int32_t grid_power_w = m.grid_power_w;
+  if (site.settings.meter == MeterSource::kMap) {
+    if (!read_own_map(site, meter, grid_power_w)) return false;
+  } else if (!m.has_grid_power) {
+    report(JournalLevel::kError, "meter: the battery's grid point cannot be read");
+    return false;
+  }
+  std::printf("meter      grid %d W (import is positive)", grid_power_w);
+  if (has_battery) std::printf(", house %d W", grid_power_w - m.power_w);
+  std::printf("\n");
+  if (!has_battery || is_plausible_house(grid_power_w, m.power_w, site.settings.pv_w_max)) {
+    return true;
+  }
+  report(JournalLevel::kError,
+         "meter: house %d W: a load below zero; the sign of meter or battery, the phase or the "
+         "place of the meter is wrong; where panels do that, set [meter] pv_w_max",
+         grid_power_w - m.power_w);
+  return false;
+}
+
+/// Settings, encoded orders, a battery reading and the newest price; true when all is well.
+bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& prices,
+                  const EdgeClock& clock) {
+  std::printf("student    %s (%d self-checks passed)\n", student_provenance(),
+              student_self_check_count());
+  std::printf("context    %s\n", context_note(student_context()).c_str());
+  std::printf("map        %s%s%s; control = %s\n", config.map.name.c_str(),
+              config.map.variant.empty() ? "" : ", variant ", config.map.variant.c_str(),
+              config.control.control ? "true" : "false (read-only)");
+  std::fflush(stdout);
+  print_thresholds(config);
+  print_transport(config);
+  const std::int64_t now_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
+  const Hold hold = read_newest_hold(hold_paths(config)).hold;
+  std::fputs(wishes_note(config.control, hold, now_utc_s).c_str(), stdout);
+  std::fflush(stdout);
+  std::string trouble;
+  const bool battery_ok = identify_battery(config, battery, trouble) == Status::kOk;
+  if (!battery_ok) report(JournalLevel::kError, "battery at %s", trouble.c_str());
+  print_orders(config, battery);
+  BatteryMeasurement m;
+  if (battery_ok && battery.read(m) == Status::kOk) {
+    char capacity[32] = "capacity not reported";
+    if (m.capacity_wh > 0) std::snprintf(capacity, sizeof capacity, "%d Wh", m.capacity_wh);
+    std::printf("battery    %s: SoC %.1f %%, %d W, %s, dispatch %s\n",
+                battery_place(config).c_str(), m.soc_e4 / 100.0, m.power_w, capacity,
+                m.dispatch_active ? "active" : "off");
+  }
+  const bool sign_ok = report_sign(config);
+  const bool clock_ok = report_clock(config, clock);
+  return report_price(config, prices) && battery_ok && sign_ok && clock_ok;
+}
+
+}  // namespace
+
+int run_check(const EdgeConfig& config) {
+  DeviceSession session;
+  if (!session.begin(config)) return 1;
+  ModbusBattery battery(config.link, config.map, config.clock);
+  ModbusMeter meter(config.site.link, config.site.map, config.clock);
+  const auto prices = std::make_unique<PriceFeed>(config.price, config.clock);
+  const bool is_well = report_check(config, battery, *prices, session.clock());
+  return report_site(config, battery, meter) && is_well ? 0 : 1;
+}
+
+}  // namespace bess
