@@ -3,10 +3,12 @@
 #include <fcntl.h>
 #include <fmt/core.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
+#include <optional>
 #include <utility>
 
 #include "shared/file_descriptor.h"
@@ -43,29 +45,55 @@ std::string provenance_of(const LocalDate& day, std::int64_t minutes, const std:
       BESS_VERSION, source, attribution_of({MarketSource::kElia}), format_local_date(day), minutes);
 }
 
-int locked(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) fail("{}: cannot create: {}", folder.string(), error.message());
-  const std::string path = (folder / kLockName).string();
-  const int fd = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  if (fd < 0) fail("{}: cannot write here: {}", path, std::strerror(errno));
-  if (flock(fd, LOCK_EX | LOCK_NB) == 0) {
-    const std::string pid = fmt::format("{}\n", getpid());
-    // Only a message would miss it.
-    if (ftruncate(fd, 0) != 0 || pwrite(fd, pid.data(), pid.size(), 0) < 0) return fd;
-    return fd;
-  }
-  const int reason = errno;
+/// The recorder that ends takes its lock file away: a lock on what is no longer there is none.
+bool is_still_there(int fd, const std::string& path) {
+  struct stat held {};
+  struct stat named {};
+  return fstat(fd, &held) == 0 && stat(path.c_str(), &named) == 0 && held.st_ino == named.st_ino &&
+         held.st_dev == named.st_dev;
+}
+
+[[noreturn]] void fail_locked(const fs::path& folder, int fd) {
   char pid[16] = "";
   const ssize_t size = pread(fd, pid, sizeof pid - 1, 0);
-  close(fd);
-  if (reason != EWOULDBLOCK) fail("{}: cannot be locked: {}", path, std::strerror(reason));
   fail("{}: another recorder writes here{}; stop it or choose another folder", folder.string(),
        size > 0 ? fmt::format(" (process {})", one_line(pid)) : "");
 }
 
 }  // namespace
+
+/// The folder, made if need be, and this recorder's own. When nothing was recorded, nothing is left.
+class RecordingFolder::Lock {
+ public:
+  explicit Lock(const fs::path& folder) : folder_(folder), path_((folder / kLockName).string()) {
+    std::error_code error;
+    was_made_ = fs::create_directories(folder, error);
+    if (error) fail("{}: cannot create: {}", folder.string(), error.message());
+    do {
+      fd_.emplace(open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644));
+      if (fd_->get() < 0) fail("{}: cannot write here: {}", path_, std::strerror(errno));
+      if (flock(fd_->get(), LOCK_EX | LOCK_NB) == 0) continue;
+      if (errno == EWOULDBLOCK) fail_locked(folder, fd_->get());
+      fail("{}: cannot be locked: {}", path_, std::strerror(errno));
+    } while (!is_still_there(fd_->get(), path_));
+    const std::string pid = fmt::format("{}\n", getpid());
+    // Only a message would miss it.
+    [[maybe_unused]] const bool named =
+        ftruncate(fd_->get(), 0) == 0 && pwrite(fd_->get(), pid.data(), pid.size(), 0) > 0;
+  }
+  Lock(const Lock&) = delete;
+  Lock& operator=(const Lock&) = delete;
+  ~Lock() {
+    unlink(path_.c_str());
+    if (was_made_) rmdir(folder_.c_str());  // stays when a day is in it
+  }
+
+ private:
+  fs::path folder_;
+  std::string path_;
+  bool was_made_ = false;
+  std::optional<FileDescriptor> fd_;
+};
 
 /// One file, open for appending.
 class RecordingFolder::Day {
@@ -185,9 +213,9 @@ RecordingFolder::RecordingFolder(
     : folder_(std::move(folder)),
       source_(std::move(source)),
       tell_mended_(std::move(tell_mended)),
-      lock_(locked(folder_)) {}
+      lock_(std::make_unique<Lock>(folder_)) {}
 
-RecordingFolder::~RecordingFolder() { close(lock_); }
+RecordingFolder::~RecordingFolder() = default;
 
 RecordingFolder::Day& RecordingFolder::day_of(std::int64_t minute_utc_s) {
   const LocalDate date = local_date_of(minute_utc_s);

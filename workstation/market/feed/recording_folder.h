@@ -52,12 +52,13 @@ class RecordingFolder {
 
  private:
   class Day;
+  class Lock;
   Day& day_of(std::int64_t minute_utc_s);
 
   std::filesystem::path folder_;
   std::string source_;
   std::function<void(const std::string&, const std::string&)> tell_mended_;
-  int lock_ = -1;
+  std::unique_ptr<Lock> lock_;
   std::map<LocalDate, std::unique_ptr<Day>> days_;
 };
 

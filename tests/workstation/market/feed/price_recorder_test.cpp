@@ -377,6 +377,33 @@ TEST_F(PriceRecorder, AFullDiskIsAnErrorAndTakesNothing) {
   EXPECT_EQ(lines("2025-06-15").size(), 2u);
 }
 
+/// A lock file or an empty folder would say that something was recorded, or is.
+TEST_F(PriceRecorder, WhatRecordedNothingLeavesNothing) {
+  elia_.set_fault([](const std::string&, httplib::Response& response) {
+    response.status = 404;
+    return true;
+  });
+  EXPECT_THAT(user_error_of([this] { record({}); }), HasSubstr("404"));
+  EXPECT_FALSE(fs::exists(folder()));
+  fs::create_directories(folder());
+  EXPECT_THAT(user_error_of([this] { record({}); }), HasSubstr("404"));
+  EXPECT_TRUE(fs::is_empty(folder())) << "a folder that was there stays";
+}
+
+TEST_F(PriceRecorder, ADiskThatIsFullFromTheStartKeepsNothing) {
+  elia_.publish(kNoon_s - 60, 1, 2);
+  rlimit limit{};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &limit), 0);
+  const rlimit full{0, limit.rlim_max};
+  const auto handler = signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &full), 0);
+  const std::string error = user_error_of([this] { record({}); });
+  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &limit), 0);
+  signal(SIGXFSZ, handler);
+  EXPECT_THAT(error, HasSubstr("2025-06-15.csv"));
+  EXPECT_FALSE(fs::exists(folder()));
+}
+
 /// Half a minute off: each row is there before it can be, and is taken when it can.
 TEST_F(PriceRecorder, AClockThatIsALittleSlowCostsNoRow) {
   elia_.publish(kNoon_s - 60, 1, 2);
