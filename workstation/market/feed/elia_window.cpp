@@ -137,9 +137,9 @@ double next_wait_s(const FetchRequest& request, const FetchWindow& window, const
   const double wait_s = std::max(outcome.wait_s.value_or(0.0), backoff_s);
   if (wait_s > retry.wait_max_s) {
     fail(
-        "{}; the server asks to wait {:.0f} minutes: {}; run the same command again then, finished "
-        "windows are kept",
-        outcome.reason, wait_s / 60, describe_window(request, window));
+        "{}; the server asks to wait {}: {}; run the same command again then, finished windows are "
+        "kept",
+        outcome.reason, describe_wait(wait_s), describe_window(request, window));
   }
   return wait_s;
 }

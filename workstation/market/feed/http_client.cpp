@@ -7,12 +7,15 @@
 #include <cctype>
 #include <charconv>
 #include <chrono>
+#include <cmath>
+#include <cstdlib>
 #include <memory>
 
 #include "shared/host/minute_file.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
+#include "workstation/market/feed/transfer_trouble.h"
 
 namespace bess {
 namespace {
@@ -21,6 +24,7 @@ using Kind = HttpOutcome::Kind;
 
 constexpr long kConnectTimeout_s = 20;
 constexpr std::size_t kReasonMax = 200;  // of a server's own words in a message
+constexpr std::size_t kHeaderBytesMax = 100'000;
 
 struct Received {
   std::string body;
@@ -28,6 +32,7 @@ struct Received {
   bool is_too_large = false;
   std::string retry_after, rate_limit_reset;
   bool has_length = false;
+  std::size_t header_bytes = 0;  ///< of all answers, those of redirects too
 };
 
 std::size_t take_body(char* data, std::size_t size, std::size_t count, void* user) {
@@ -47,6 +52,8 @@ std::string trimmed(std::string_view text) {
 std::size_t take_header(char* data, std::size_t size, std::size_t count, void* user) {
   auto& received = *static_cast<Received*>(user);
   const std::string_view line(data, size * count);
+  received.header_bytes += line.size();
+  if (received.header_bytes > kHeaderBytesMax) return 0;
   // Each redirect and a proxy's CONNECT has headers of its own, which say nothing of the answer.
   if (line.starts_with("HTTP/")) {
     received.retry_after.clear();
@@ -74,31 +81,19 @@ double now_s() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-Kind kind_of_transport_error(CURLcode code) {
-  switch (code) {
-    case CURLE_COULDNT_RESOLVE_HOST:
-    case CURLE_COULDNT_RESOLVE_PROXY:
-    case CURLE_COULDNT_CONNECT:
-      return Kind::kUnreachable;
-    case CURLE_OPERATION_TIMEDOUT:
-    case CURLE_PARTIAL_FILE:
-    case CURLE_GOT_NOTHING:
-    case CURLE_RECV_ERROR:
-    case CURLE_SEND_ERROR:
-    case CURLE_HTTP2:
-    case CURLE_HTTP2_STREAM:
-    case CURLE_BAD_CONTENT_ENCODING:
-      return Kind::kTransient;
-    case CURLE_ABORTED_BY_CALLBACK:
-      return Kind::kInterrupted;
-    default:  // certificate, address, ...
-      return Kind::kRefused;
-  }
-}
-
 /// Of a transfer that did not come to its end.
-HttpOutcome outcome_of_failure(CURLcode code, const Received& received, const HttpLimits& limits,
-                               const char* error_text, double took_s) {
+HttpOutcome outcome_of_failure(CURL* curl, CURLcode code, const Received& received,
+                               const HttpLimits& limits, const char* error_text) {
+  double took_s = 0;
+  curl_easy_getinfo(curl, CURLINFO_TOTAL_TIME, &took_s);
+  // libcurl itself ends a single header of 100 kB, by saying that memory is short.
+  if (received.header_bytes > kHeaderBytesMax || code == CURLE_OUT_OF_MEMORY) {
+    return {Kind::kRefused,
+            {},
+            fmt::format("the answer's headers have no end: more than {} bytes of them are none",
+                        kHeaderBytesMax),
+            {}};
+  }
   if (received.is_too_large) {
     return {Kind::kRefused,
             {},
@@ -121,9 +116,9 @@ HttpOutcome outcome_of_failure(CURLcode code, const Received& received, const Ht
                         limits.bytes_per_s_min, limits.slow_s),
             {}};
   }
-  const std::string reason =
-      one_line(error_text[0] != '\0' ? error_text : curl_easy_strerror(code), kReasonMax);
-  return {kind_of_transport_error(code), {}, reason, {}};
+  const bool is_silent = code == CURLE_RECV_ERROR && received.header_bytes == 0;
+  TransferTrouble trouble = transfer_trouble(is_silent ? CURLE_GOT_NOTHING : code, error_text);
+  return {trouble.kind, {}, std::move(trouble.reason), {}};
 }
 
 HttpOutcome outcome_of_status(long status, Received received) {
@@ -173,19 +168,26 @@ std::string url_encoded(const std::string& text) {
   return result;
 }
 
+std::string describe_wait(double wait_s) {
+  if (wait_s >= kWaitMax_s) return "a day or longer";
+  return wait_s >= 120 ? fmt::format("{:.0f} minutes", wait_s / 60)
+                       : fmt::format("{:.0f} s", wait_s);
+}
+
 std::optional<double> wait_seconds(const std::string& header_value, double now_utc_s) {
   double number = 0;
   const char* end = header_value.data() + header_value.size();
   const auto [stop, error] = std::from_chars(header_value.data(), end, number);
-  if (error == std::errc{} && stop == end) {
+  if (error == std::errc::result_out_of_range && stop == end) return kWaitMax_s;
+  if (error == std::errc{} && stop == end && !std::isnan(number)) {
     constexpr double kSmallestTimestamp = 1e9;  // September 2001; nobody is told to wait so long
-    return std::max(0.0, number < kSmallestTimestamp ? number : number - now_utc_s);
+    return std::clamp(number < kSmallestTimestamp ? number : number - now_utc_s, 0.0, kWaitMax_s);
   }
   std::int64_t utc_s = 0;
   if (!parse_utc(header_value, utc_s, kAlsoBlank))
     utc_s = curl_getdate(header_value.c_str(), nullptr);
   if (utc_s <= 0) return std::nullopt;
-  return std::max(0.0, static_cast<double>(utc_s) - now_utc_s);
+  return std::clamp(static_cast<double>(utc_s) - now_utc_s, 0.0, kWaitMax_s);
 }
 
 HttpOutcome http_get(const std::string& url, const std::atomic<bool>& interrupted,
@@ -201,6 +203,10 @@ HttpOutcome http_get(const std::string& url, const std::atomic<bool>& interrupte
   curl_easy_setopt(curl.get(), CURLOPT_MAXREDIRS, 5L);
   curl_easy_setopt(curl.get(), CURLOPT_SSL_VERIFYPEER, 1L);
   curl_easy_setopt(curl.get(), CURLOPT_SSL_VERIFYHOST, 2L);
+  // As the curl command does: a proxy that opens TLS has an authority of its own.
+  if (const char* const authorities = std::getenv("SSL_CERT_FILE")) {
+    curl_easy_setopt(curl.get(), CURLOPT_CAINFO, authorities);
+  }
   curl_easy_setopt(curl.get(), CURLOPT_CONNECTTIMEOUT, kConnectTimeout_s);
   curl_easy_setopt(curl.get(), CURLOPT_TIMEOUT_MS, static_cast<long>(1000 * limits.deadline_s));
   curl_easy_setopt(curl.get(), CURLOPT_LOW_SPEED_LIMIT, limits.bytes_per_s_min);
@@ -218,9 +224,7 @@ HttpOutcome http_get(const std::string& url, const std::atomic<bool>& interrupte
   curl_easy_setopt(curl.get(), CURLOPT_XFERINFODATA, &interrupted);
   const CURLcode code = curl_easy_perform(curl.get());
   if (code != CURLE_OK) {
-    double took_s = 0;
-    curl_easy_getinfo(curl.get(), CURLINFO_TOTAL_TIME, &took_s);
-    return outcome_of_failure(code, received, limits, error_text, took_s);
+    return outcome_of_failure(curl.get(), code, received, limits, error_text);
   }
   long status = 0;
   curl_easy_getinfo(curl.get(), CURLINFO_RESPONSE_CODE, &status);

@@ -45,8 +45,14 @@ const char* redirect_protocols(const std::string& url);
 /// Percent-encoding of a query value.
 std::string url_encoded(const std::string& text);
 
+/// What a server may ask for at most: more is a mistake of its clock or of its numbers.
+inline constexpr double kWaitMax_s = 86'400;
+
+/// "7 s", "120 minutes", "a day or longer".
+std::string describe_wait(double wait_s);
+
 /// Seconds to wait by a Retry-After or X-RateLimit-Reset value: seconds, seconds since 1970, an ISO
-/// time or an HTTP date; nothing when it is none of them. Never negative.
+/// time or an HTTP date; nothing when it is none of them. From 0 to kWaitMax_s.
 std::optional<double> wait_seconds(const std::string& header_value, double now_utc_s);
 
 }  // namespace bess

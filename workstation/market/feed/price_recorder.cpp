@@ -22,7 +22,6 @@ constexpr std::size_t kRowsPerPage = 100;  // the API's most
 constexpr std::size_t kPageBytesMax = std::size_t{4} << 20;  // of a hundred rows, which are 30 kB
 constexpr std::size_t kRowsMax = 1600;                       // more than the longest day has
 constexpr double kBackoffMax_s = 300;
-constexpr double kToldWaitMax_s = 86'400;
 constexpr std::int64_t kFutureMax_s = 86'400;  // of a clock that is off; a stray date is none
 constexpr std::int64_t kEarlyMax_s =
     60;  // of clocks that are a little apart: the row is left for later
@@ -179,16 +178,18 @@ class Follower {
            outcome.reason);
     }
     const double doubled_s = request_.poll_s * static_cast<double>(1 << std::min(failures_, 10));
-    const double told_s = std::min(outcome.wait_s.value_or(0), kToldWaitMax_s);
+    const double told_s = outcome.wait_s.value_or(0);
     const double wait_s =
         std::max(told_s, std::min(doubled_s, std::max(kBackoffMax_s, request_.poll_s)));
     next_look_s_ = request_.clock.steady_s() + wait_s;
     trouble_ = outcome.reason;
     if (failures_++ == 0) {
       trouble_since_s_ = start_s;
-      request_.tell({RecorderEvent::Kind::kOutage, dataset_,
-                     fmt::format("{}; next look in {:.0f} s, and so on until it answers",
-                                 outcome.reason, wait_s)});
+      request_.tell(
+          {RecorderEvent::Kind::kOutage, dataset_,
+           fmt::format("{}{}; next look in {:.0f} s, and so on until it answers", outcome.reason,
+                       told_s < kWaitMax_s ? "" : "; the server asks to wait a day or longer",
+                       wait_s)});
     }
     return outcome.kind == Kind::kUnreachable || outcome.kind == Kind::kBusy;
   }

@@ -71,6 +71,14 @@ TEST(WaitSeconds, EveryFormServersUse) {
   EXPECT_EQ(wait_seconds("Sun, 15 Jun 2025 15:07:00 GMT", kFetchTime_s), 20);
   EXPECT_EQ(wait_seconds("Sun, 15 Jun 2025 15:00:00 GMT", kFetchTime_s), 0);
   EXPECT_EQ(wait_seconds("-5", kFetchTime_s), 0);
+  for (const char* far : {"99999999999999999999", "1e999", "inf", "86401",
+                          "2026-06-15 00:00:00+00:00", "Fri, 31 Dec 9999 23:59:59 GMT"}) {
+    EXPECT_EQ(wait_seconds(far, kFetchTime_s), kWaitMax_s) << far;
+  }
+  EXPECT_EQ(wait_seconds("nan", kFetchTime_s), std::nullopt);
+  EXPECT_EQ(describe_wait(7), "7 s");
+  EXPECT_EQ(describe_wait(7'200), "120 minutes");
+  EXPECT_EQ(describe_wait(kWaitMax_s), "a day or longer");
   EXPECT_EQ(wait_seconds("soon", kFetchTime_s), std::nullopt);
   EXPECT_EQ(wait_seconds("", kFetchTime_s), std::nullopt);
 }
