@@ -79,7 +79,8 @@ void add_prices_stats(ProgramCommand& prices) {
               "Minute file, a download of Elia (CSV, JSON), or a recorded day; plain or .gz")
       .required();
   command.flag("--json", options->json, "One JSON object");
-  command.option("--plot", options->plot, "Picture to draw with gnuplot (.svg or .png)");
+  command.option("--plot", options->plot,
+                 "Picture to draw with gnuplot (.svg or .png), and NAME_dark beside it");
   command.footer(
       "Sign flips of the system imbalance need a quarter-hour download, convergence by minute "
       "needs "

@@ -28,7 +28,9 @@ struct Cell {
   bool is_text = false;  ///< read from the left, and may be broken
 };
 
-Cell text_cell(const std::string& text) { return {html_escaped(text), text, true}; }
+Cell text_cell(const std::string& text) {
+  return {html_escaped(with_true_minus(text)), text, true};
+}
 Cell no_text_cell() { return {kNothing, {}, true}; }
 
 Cell number_cell(const std::string& text, double value) {

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "workstation/report/palette.h"
+#include "workstation/base/palette.h"
 
 namespace bess {
 

@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "workstation/report/omega_sweep.h"
 
@@ -39,22 +40,33 @@ std::string violations_panel() {
       kNone, rgb(kInk), rgb(kCharge), rgb(kDischarge));
 }
 
-std::string agreement_panel() {
+/// Between tics of a low panel; of equal values gnuplot draws a range about them.
+double few_tics(double low, double high) { return tic_distance(std::max(high - low, 1.0), 4); }
+
+std::string agreement_panel(const std::vector<OmegaPoint>& points) {
+  const auto& [least, most] = std::ranges::minmax(points, {}, &OmegaPoint::agreement);
   return fmt::format(
       "set tmargin at screen 0.575\nset bmargin at screen 0.37\nunset logscale y\n"
-      "set yrange [*:*]\nset ytics auto\nset ylabel 'agreement, %'\n"
+      "set yrange [*:*]\nset ytics auto\nset ytics {}\nset ylabel 'agreement, %'\n"
       "plot $sweep using 1:5 with linespoints lw 2.5 pt 7 ps 0.6 lc {}\n",
-      rgb(kInk));
+      few_tics(100 * least.agreement, 100 * most.agreement), rgb(kInk));
 }
 
-std::string gain_panel() {
+std::string gain_panel(const std::vector<OmegaPoint>& points, const Evaluation& teacher) {
+  std::vector<double> ends;
+  for (const OmegaPoint& p : points) {
+    const PairedDifference gain = paired_difference(p.evaluation, teacher);
+    const double reach = std::isnan(gain.standard_error) ? 0 : gain.standard_error;
+    ends.insert(ends.end(), {gain.mean - reach, gain.mean + reach});
+  }
+  const auto [low, high] = std::ranges::minmax(ends);
   return fmt::format(
       "set tmargin at screen 0.345\nset bmargin at screen 0.13\nset ylabel 'gain, "
-      "EUR/day'\n"
+      "EUR/day'\nset ytics {2}\n"
       "set format x '1e%T'\nset xlabel 'omega'\nset xzeroaxis lt 1 lw 1 lc {0}\n"
       "plot $sweep using 1:6:7 with yerrorbars lw 1.5 pt 7 ps 0.6 lc {1}, "
       "$sweep using 1:6 with lines lw 2 lc {1}\n",
-      rgb(kMuted), rgb(kInk));
+      rgb(kMuted), rgb(kInk), few_tics(low, high));
 }
 
 }  // namespace
@@ -84,8 +96,8 @@ Figure omega_figure(const std::vector<OmegaPoint>& points, const Evaluation& tea
                         "set multiplot\nset lmargin at screen 0.13\nset rmargin at screen 0.96\n"
                         "set logscale x\nset xrange [{:g}:{:g}]\n",
                         least.omega / 1.5, most.omega * 1.5) +
-                    key.set + violations_panel() + key.unset + agreement_panel() + gain_panel() +
-                    "unset multiplot\n";
+                    key.set + violations_panel() + key.unset + agreement_panel(points) +
+                    gain_panel(points, teacher) + "unset multiplot\n";
   return figure;
 }
 

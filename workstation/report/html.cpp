@@ -2,8 +2,8 @@
 
 #include <fmt/core.h>
 
+#include "workstation/base/palette.h"
 #include "workstation/report/page_files.h"
-#include "workstation/report/palette.h"
 
 namespace bess {
 namespace {

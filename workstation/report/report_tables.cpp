@@ -41,7 +41,7 @@ std::string comparison_table(const std::string& caption, std::vector<ComparisonR
   std::erase_if(rows, [](const ComparisonRow& row) { return is_under_rules(row.name); });
   if (rows.empty()) return {};
   HtmlTable table{fmt::format("{}, {} days", caption, rows.front().days),
-                  {"Policy", "EUR/day/MWh", "s.e.", "By month", "Gain", "s.e.", "By month",
+                  {"Policy", "EUR/day/MWh", "s.e.", "By month", "Gain", "Its s.e.", "Gain by month",
                    "Worst day", "Cycles/day", "Switches/day", "% of foresight",
                    fmt::format("At wear {:g}", kReferenceWearEurPerMwh)},
                   {}};
@@ -147,8 +147,9 @@ std::string proof_html(const Certificate* uncorrected, const Certificate* correc
       "{}<p class=\"note\">Checked over the lattice of minute, quarter-hour, context class, charge "
       "and price that the edge can meet: charge at {} EUR/MWh and below{}, discharge at {} and "
       "above{}, and never a larger action at a higher price or a fuller battery.</p>\n",
-      format_table(table), t.low_eur_per_mwh, guard_alone_note(t.low_binds_student()),
-      t.high_eur_per_mwh, guard_alone_note(t.high_binds_student()));
+      format_table(table), with_true_minus(fmt::format("{}", t.low_eur_per_mwh)),
+      guard_alone_note(t.low_binds_student()), t.high_eur_per_mwh,
+      guard_alone_note(t.high_binds_student()));
 }
 
 std::string rules_html(const Certificate* uncorrected, const Certificate* corrected,

@@ -7,8 +7,8 @@
 #include "shared/host/user_error.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/workstation/report/report_test_support.h"
+#include "workstation/base/palette.h"
 #include "workstation/report/headline.h"
-#include "workstation/report/palette.h"
 
 namespace bess {
 namespace {
@@ -158,7 +158,7 @@ TEST(Report, TableNumbersAreThoseOfTheEvaluations) {
     const std::string cells = with_minus(fmt::format(
         "teacher</th><td data-label=\"EUR/day/MWh\">{:.1f}</td><td data-label=\"s.e.\">{:.1f}</td>"
         "<td data-label=\"By month\">{:.1f}</td><td data-label=\"Gain\">{:+.1f}</td>"
-        "<td data-label=\"s.e.\">{:.1f}</td><td data-label=\"By month\">{:.1f}</td>"
+        "<td data-label=\"Its s.e.\">{:.1f}</td><td data-label=\"Gain by month\">{:.1f}</td>"
         "<td data-label=\"Worst day\">{:.1f}</td><td data-label=\"Cycles/day\">{:.2f}</td>"
         "<td data-label=\"Switches/day\">{:.1f}</td>",
         teacher.profit_eur_per_day_per_mwh(), teacher.standard_error(), teacher.errors().by_month,

@@ -3,7 +3,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "shared/host/file.h"
@@ -11,6 +13,7 @@
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
+#include "workstation/base/palette.h"
 
 namespace bess {
 namespace {
@@ -21,10 +24,17 @@ constexpr int kBinEurPerMwh = 20;
 constexpr double kShownMinEurPerMwh = -600;
 constexpr double kShownMaxEurPerMwh = 1000;
 
+/// On light or on dark paper.
+using Shade = std::string_view Colour::*;
+
 std::string_view terminal_for(const fs::path& path) {
-  if (path.extension() == ".svg") return "svg size 900,700 dynamic background 'white'";
-  if (path.extension() == ".png") return "pngcairo size 900,700";
+  if (path.extension() == ".svg") return "svg size 900,700 dynamic noenhanced";
+  if (path.extension() == ".png") return "pngcairo size 900,700 noenhanced";
   fail("{}: a picture is .svg or .png; rename it", path.string());
+}
+
+std::string true_minus(double value) {
+  return fmt::format("{}{}", value < 0 ? "\u2212" : "", std::abs(value));
 }
 
 struct PriceBins {
@@ -49,11 +59,11 @@ PriceBins price_bins(std::span<const double> settled) {
   for (const auto& [bin, hits] : bins) {
     result.data += fmt::format("{} {:.4f}\n", (bin + 0.5) * kBinEurPerMwh, 100.0 * hits / count);
   }
-  result.axis = "settled price, EUR/MWh (-600 to 1000 shown";
+  result.axis = "settled price, EUR/MWh (\u2212600 to 1000 shown";
   if (!beyond.empty()) {
     const auto [least, most] = std::ranges::minmax(beyond);
-    result.axis +=
-        fmt::format("; {} beyond, {} to {}", counted(beyond.size(), "quarter-hour"), least, most);
+    result.axis += fmt::format("; {} beyond, {} to {}", counted(beyond.size(), "quarter-hour"),
+                               true_minus(least), true_minus(most));
   }
   result.axis += ")";
   return result;
@@ -69,29 +79,41 @@ std::string convergence_data(const ConvergenceByMinute& convergence) {
   return data;
 }
 
+/// The look of every figure (report/figure.cpp).
+std::string style(Shade shade) {
+  return fmt::format(
+      "set encoding utf8\nset minussign\nset border 3 lw 1 lc rgb '{0}'\n"
+      "set tics nomirror out scale 0.5 textcolor rgb '{0}'\nset title textcolor rgb '{0}'\n"
+      "set xlabel textcolor rgb '{0}'\nset ylabel textcolor rgb '{0}'\n"
+      "set key top right textcolor rgb '{0}'\nset grid lt 1 lw 1 lc rgb '{1}'\n"
+      "set style fill solid noborder\n",
+      kInk.*shade, kGridLine.*shade);
+}
+
 /// The commands and inline data that gnuplot is fed; the name of `picture` says the format.
-std::string gnuplot_script(const fs::path& picture, const fs::path& output,
+std::string gnuplot_script(const fs::path& picture, const fs::path& output, Shade shade,
                            const MarketStatistics& statistics, std::span<const double> settled) {
   const std::string convergence =
       statistics.convergence ? convergence_data(*statistics.convergence) : std::string();
   const PriceBins bins = price_bins(settled);
   std::string script =
-      fmt::format("set terminal {}\nset output {}\n$prices << EOD\n{}EOD\n", terminal_for(picture),
-                  gnuplot_quoted(output.string()), bins.data);
+      fmt::format("set terminal {} background '{}'\nset output {}\n{}$prices << EOD\n{}EOD\n",
+                  terminal_for(picture), kPaper.*shade, gnuplot_quoted(output.string()),
+                  style(shade), bins.data);
   if (!convergence.empty()) script += fmt::format("$errors << EOD\n{}EOD\n", convergence);
   script += fmt::format(
-      "set multiplot layout {},1\nset grid\nset key top right\nset style fill solid 0.6\n"
-      "set xlabel '{}'\n"
+      "set multiplot layout {},1\nset xlabel '{}'\n"
       "set ylabel '% of quarter-hours'\nset title 'Imbalance prices {} to {}'\n"
-      "plot $prices using 1:2 with boxes notitle\n",
+      "plot $prices using 1:2 with boxes lc rgb '{}' notitle\n",
       convergence.empty() ? 1 : 2, bins.axis, utc_text(statistics.from_utc_s).view(),
-      utc_text(statistics.until_utc_s).view());
+      utc_text(statistics.until_utc_s).view(), kSoft.*shade);
   if (!convergence.empty()) {
-    script +=
+    script += fmt::format(
         "set title 'Indicative against settled price'\nset xlabel 'minute of the quarter-hour'\n"
         "set ylabel 'absolute error, EUR/MWh'\nset yrange [0:*]\n"
-        "plot $errors using 1:2 with linespoints title 'median', "
-        "$errors using 1:3 with linespoints title 'mean'\n";
+        "plot $errors using 1:2 with linespoints pt 7 lw 2 lc rgb '{}' title 'median', "
+        "$errors using 1:3 with linespoints pt 5 lw 2 lc rgb '{}' title 'mean'\n",
+        kCharge.*shade, kDischarge.*shade);
   }
   return script + "unset multiplot\n";
 }
@@ -110,9 +132,14 @@ void plot_statistics(const fs::path& path, const MarketStatistics& statistics,
     fail("{}: nothing to draw: no settled price from {} to {} EUR/MWh", path.string(),
          kShownMinEurPerMwh, kShownMaxEurPerMwh);
   }
-  draw_with_gnuplot(path, [&](const fs::path& output) {
-    return gnuplot_script(path, output, statistics, settled);
-  });
+  fs::path dark = path;
+  dark.replace_filename(path.stem().string() + "_dark" + path.extension().string());
+  for (const auto& [picture, shade] :
+       {std::pair(path, &Colour::light), std::pair(dark, &Colour::dark)}) {
+    draw_with_gnuplot(picture, [&](const fs::path& output) {
+      return gnuplot_script(picture, output, shade, statistics, settled);
+    });
+  }
 }
 
 }  // namespace bess

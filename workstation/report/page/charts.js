@@ -29,6 +29,9 @@ function policyColour(name) {
   return colour(names[name] || "muted");
 }
 
+/** So few that none is left out for want of room: of -30, -20 ... it would be the zero. */
+const kFewTicks = {maxTicksLimit: 7};
+
 /** An axis of the page's look. */
 function axis(options = {}) {
   const {ticks, grid, ...rest} = options;

@@ -12,7 +12,7 @@ function drawLines(id, series, scales) {
         showLine: !radius, order: radius ? 0 : 1,
       })),
     },
-    options: {parsing: false, scales: {x: axis({type: "linear"}), y: axis(), ...scales()}},
+    options: {parsing: false, scales: {x: axis({type: "linear", ticks: {precision: 0}}), y: axis({ticks: kFewTicks}), ...scales()}},
   }));
 }
 

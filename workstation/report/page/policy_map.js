@@ -338,7 +338,7 @@ class PolicyMap {
     for (const percent of [0, 25, 50, 75, 100]) ctx.fillText(`${percent} %`, plot.x - 6, yOf(2 * percent));
     ctx.textAlign = "center";
     ctx.textBaseline = "top";
-    const {first, last} = map.window, step = niceStep((last - first) / (width / 90));
+    const {first, last} = map.window, step = niceStep((last - first) / (width / 60));
     for (let price = Math.ceil(first / step) * step; price <= last; price += step) {
       const label = trueMinus(price), half = ctx.measureText(label).width / 2;
       ctx.fillText(label, Math.min(xOf(price), width - half), plot.y + plot.h + 5);  // the last one ends with the canvas

@@ -124,7 +124,7 @@ class TearSheet {
            order: 1},
         ],
       },
-      options: {scales: {x: axis({stacked: true}), y: axis({stacked: true})}},
+      options: {scales: {x: axis({stacked: true}), y: axis({stacked: true, ticks: kFewTicks})}},
     }));
   }
 

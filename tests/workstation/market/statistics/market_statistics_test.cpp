@@ -9,6 +9,7 @@
 
 #include "shared/host/file.h"
 #include "tests/support/market_test_support.h"
+#include "workstation/base/palette.h"
 #include "workstation/market/feed/market_files.h"
 #include "workstation/market/series/local_date.h"
 #include "workstation/market/statistics/statistics_plot.h"
@@ -99,6 +100,8 @@ TEST(Statistics, PictureIsWrittenOrTheReasonIsGiven) {
   }
   plot_statistics(folder / "p.svg", statistics, settled);
   EXPECT_THAT(read_file(folder / "p.svg"), HasSubstr("<svg"));
+  EXPECT_THAT(read_file(folder / "p.svg"), HasSubstr(std::string(kPaper.light)));
+  EXPECT_THAT(read_file(folder / "p_dark.svg"), HasSubstr(std::string(kPaper.dark)));
   plot_statistics(folder / "none/p.svg", statistics, settled);  // makes its folder
   EXPECT_THAT(read_file(folder / "none/p.svg"), HasSubstr("<svg"));
 }
