@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "edge/account/account_days.h"
 #include "edge/control/cycle_budget.h"
 #include "edge/log/log_reader.h"
-#include "edge/notify/day_account.h"
 #include "edge/notify/journal_line.h"
 #include "edge/notify/mail.h"
 #include "edge/notify/topics.h"
@@ -19,27 +19,6 @@ namespace {
 
 constexpr int kDaysMax = 7;  ///< told at once, after the notifier was away
 constexpr std::int64_t kKeepEnergyEveryS = 3'600;
-
-std::int32_t local_day_at(std::int64_t utc_s) { return local_day_of(local_minute_of(utc_s)); }
-
-/// The days from `first_day` to `last_day`, oldest first, from the newest records backwards.
-std::vector<DayAccount> accounts_of_days(const LogReader& log, std::int32_t first_day,
-                                         std::int32_t last_day) {
-  std::map<std::int32_t, DayAccount> days;
-  CycleRecord record;
-  for (std::uint64_t n = log.newest_number(); n >= log.oldest_number() && n > 0; --n) {
-    if (!log.read(n, record)) continue;
-    const std::int32_t day = local_day_at(record.utc_s);
-    if (day < first_day) break;
-    if (day <= last_day) days.try_emplace(day, day).first->second.add(record);
-  }
-  std::vector<DayAccount> accounts;
-  for (const auto& [day, account] : days) {
-    if (!account.is_empty()) accounts.push_back(account);
-  }
-  if (accounts.size() > kDaysMax) accounts.erase(accounts.begin(), accounts.end() - kDaysMax);
-  return accounts;
-}
 
 /// 0 when no cycle has ended yet.
 std::int64_t newest_utc_of(const ControllerStatus& status) {
@@ -193,7 +172,9 @@ void Notifier::tell_days(const LogReader& log, std::int64_t newest_utc_s, std::i
   if (told_.local_day == 0) told_.local_day = yesterday;     // the days before were not watched
   if (told_.local_day > today) told_.local_day = yesterday;  // told while the clock was wrong
   if (told_.local_day >= yesterday) return;
-  for (const DayAccount& day : accounts_of_days(log, told_.local_day + 1, yesterday)) {
+  std::vector<DayAccount> days = accounts_of_days(log, told_.local_day + 1, yesterday);
+  if (days.size() > kDaysMax) days.erase(days.begin(), days.end() - kDaysMax);
+  for (const DayAccount& day : days) {
     tell({.kind = MessageKind::kDay, .key = day.date(), .text = day.line(), .utc_s = now_utc_s});
     if (mqtt_ != nullptr) mqtt_->retain(topic(settings_.node, "day"), day_json(day));
   }

@@ -1,4 +1,4 @@
-#include "edge/notify/day_account.h"
+#include "edge/account/day_account.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -19,15 +19,35 @@ void DayAccount::add(const CycleRecord& record) {
   if (record.mode == Mode::kStopping) return;  // no cycle
   ++cycles_;
   ++cycles_by_reason_[static_cast<std::size_t>(record.reason)];
+  if (record.mode == Mode::kRunning) ++driven_cycles_;
   if (record.throughput.local_day == local_day_) {
     soc_moved_e4_ = std::max(soc_moved_e4_, record.throughput.soc_moved_e4);
   }
   if (!record.has_measurement) return;
   const std::int64_t power_w = record.measurement.power_w;
   (power_w > 0 ? charged_w_ : discharged_w_) += power_w > 0 ? power_w : -power_w;
+  note_soc(record);
   if (!record.price.has_row) return;
   ++valued_cycles_;
+  price_centi_ += record.price.price_centi_eur_per_mwh;
   watt_centi_ += power_w * record.price.price_centi_eur_per_mwh;
+}
+
+void DayAccount::note_soc(const CycleRecord& record) {
+  if (record.utc_s < first_soc_utc_s_) {
+    first_soc_utc_s_ = record.utc_s;
+    first_soc_e4_ = record.measurement.soc_e4;
+  }
+  if (record.utc_s >= last_soc_utc_s_) {
+    last_soc_utc_s_ = record.utc_s;
+    last_soc_e4_ = record.measurement.soc_e4;
+    capacity_wh_ = record.measurement.capacity_wh;
+  }
+}
+
+double DayAccount::mean_price_eur_per_mwh() const {
+  if (valued_cycles_ == 0) return 0;
+  return static_cast<double>(price_centi_) / valued_cycles_ / kCentiPerEur;
 }
 
 double DayAccount::earned_eur() const {

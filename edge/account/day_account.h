@@ -29,6 +29,20 @@ class DayAccount {
   [[nodiscard]] double discharged_kwh() const;
   [[nodiscard]] double full_cycles() const;
   [[nodiscard]] int cycles() const { return cycles_; }
+  /// In which the battery followed an order, 0 W included.
+  [[nodiscard]] int driven_cycles() const { return driven_cycles_; }
+  /// Of `cycles`, with a measurement and a price: what the money is of.
+  [[nodiscard]] int valued_cycles() const { return valued_cycles_; }
+  /// Over those; 0 where there are none.
+  [[nodiscard]] double mean_price_eur_per_mwh() const;
+  /// State of charge when it was first and last measured, in 1e-4, and the newest capacity: false = never measured.
+  [[nodiscard]] bool has_soc() const { return first_soc_utc_s_ != INT64_MAX; }
+  [[nodiscard]] std::int32_t first_soc_e4() const { return first_soc_e4_; }
+  [[nodiscard]] std::int32_t last_soc_e4() const { return last_soc_e4_; }
+  [[nodiscard]] std::int32_t capacity_wh() const { return capacity_wh_; }
+  [[nodiscard]] int cycles_with(Reason reason) const {
+    return cycles_by_reason_[static_cast<std::size_t>(reason)];
+  }
   [[nodiscard]] int interventions() const;
   /// Local midnight, at which the day begins; 23, 24 or 25 hours before the next.
   [[nodiscard]] std::int64_t start_utc_s() const;
@@ -37,13 +51,22 @@ class DayAccount {
   [[nodiscard]] std::string line() const;
 
  private:
+  void note_soc(const CycleRecord& record);
+
   std::int32_t local_day_;
   std::int64_t watt_centi_ = 0;  ///< sum of W times hundredths of EUR/MWh, over two minutes each
   std::int64_t charged_w_ = 0;   ///< sum of W, over two minutes each
   std::int64_t discharged_w_ = 0;
   std::int32_t soc_moved_e4_ = 0;
   int cycles_ = 0;
-  int valued_cycles_ = 0;  ///< with a measurement and a price
+  int driven_cycles_ = 0;
+  int valued_cycles_ = 0;
+  std::int64_t price_centi_ = 0;  ///< sum over the valued cycles
+  std::int64_t first_soc_utc_s_ = INT64_MAX;
+  std::int64_t last_soc_utc_s_ = INT64_MIN;
+  std::int32_t first_soc_e4_ = 0;
+  std::int32_t last_soc_e4_ = 0;
+  std::int32_t capacity_wh_ = 0;
   std::array<int, kReasonCount> cycles_by_reason_{};
 };
 

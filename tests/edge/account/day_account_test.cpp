@@ -1,5 +1,5 @@
 // The daily line: money by hand, and its text to the letter.
-#include "edge/notify/day_account.h"
+#include "edge/account/day_account.h"
 
 #include <gtest/gtest.h>
 

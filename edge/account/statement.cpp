@@ -1,0 +1,162 @@
+#include "edge/account/statement.h"
+
+#include <cstdarg>
+#include <cstdio>
+
+#include "shared/units_and_limits.h"
+
+namespace bess {
+namespace {
+
+[[gnu::format(printf, 2, 3)]] void add(std::string& text, const char* format, ...) {
+  char line[320];
+  std::va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(line, sizeof line, format, arguments);
+  va_end(arguments);
+  text += line;
+}
+
+double driven_percent(int driven, int cycles) { return cycles == 0 ? 0 : 100.0 * driven / cycles; }
+
+}  // namespace
+
+template <typename OfDay>
+double Statement::sum(const OfDay& of_day) const {
+  double total = 0;
+  for (const DayAccount& day : days_) total += of_day(day);
+  return total;
+}
+
+double Statement::earned_eur() const {
+  return sum([](const DayAccount& day) { return day.earned_eur(); });
+}
+double Statement::charged_kwh() const {
+  return sum([](const DayAccount& day) { return day.charged_kwh(); });
+}
+double Statement::discharged_kwh() const {
+  return sum([](const DayAccount& day) { return day.discharged_kwh(); });
+}
+
+double Statement::stored_kwh() const {
+  const DayAccount* first = nullptr;
+  const DayAccount* last = nullptr;
+  for (const DayAccount& day : days_) {
+    if (!day.has_soc()) continue;
+    if (first == nullptr) first = &day;
+    last = &day;
+  }
+  if (first == nullptr) return 0;
+  return static_cast<double>(last->last_soc_e4() - first->first_soc_e4()) / kSocFullE4 *
+         last->capacity_wh() / 1'000;
+}
+
+double Statement::mean_price_eur_per_mwh() const {
+  const double cycles = sum([](const DayAccount& day) { return day.valued_cycles(); });
+  if (cycles == 0) return 0;
+  return sum([](const DayAccount& day) {
+           return day.mean_price_eur_per_mwh() * day.valued_cycles();
+         }) /
+         cycles;
+}
+
+/// "price_age 12, soc_empty 3": what ordered something else than the student, most first by precedence.
+std::string Statement::reasons() const {
+  std::string text;
+  for (int i = 0; i < kReasonCount; ++i) {
+    const auto reason = static_cast<Reason>(i);
+    const auto count =
+        static_cast<int>(sum([&](const DayAccount& day) { return day.cycles_with(reason); }));
+    if (count == 0 || reason == Reason::kStudent) continue;
+    text.append(text.empty() ? "" : ", ").append(reason_name(reason));
+    text.append(" ").append(std::to_string(count));
+  }
+  return text;
+}
+
+std::string Statement::text() const {
+  std::string text =
+      "day         earned EUR  charged kWh  discharged kWh  full cycles  driven  EUR/MWh\n";
+  int cycles = 0;
+  int driven = 0;
+  double full_cycles = 0;
+  for (const DayAccount& day : days_) {
+    add(text, "%s  %+10.2f  %11.1f  %14.1f  %11.2f  %4.0f %%  %7.2f\n", day.date().c_str(),
+        day.earned_eur(), day.charged_kwh(), day.discharged_kwh(), day.full_cycles(),
+        driven_percent(day.driven_cycles(), day.cycles()), day.mean_price_eur_per_mwh());
+    cycles += day.cycles();
+    driven += day.driven_cycles();
+    full_cycles += day.full_cycles();
+  }
+  if (days_.size() > 1) {
+    add(text, "together    %+10.2f  %11.1f  %14.1f  %11.2f  %4.0f %%  %7.2f\n", earned_eur(),
+        charged_kwh(), discharged_kwh(), full_cycles, driven_percent(driven, cycles),
+        mean_price_eur_per_mwh());
+  }
+  add(text,
+      "at the end %.1f kWh %s are stored than at the beginning, worth %.2f EUR at the mean price: "
+      "%+.2f EUR with the same charge at both ends\n",
+      std::abs(stored_kwh()), stored_kwh() < 0 ? "less" : "more", std::abs(stored_eur()),
+      earned_eur() + stored_eur());
+  const std::string others = reasons();
+  if (!others.empty()) add(text, "cycles that the student did not decide: %s\n", others.c_str());
+  text +=
+      "estimate: the power measured at each tick, at the price decided on; no settlement, fees, "
+      "taxes or losses "
+      "of what is stored\n";
+  return text;
+}
+
+std::string Statement::csv() const {
+  std::string text =
+      "date,earned_eur,charged_kwh,discharged_kwh,full_cycles,cycles,driven_cycles,valued_cycles,"
+      "mean_price_eur_per_mwh,first_soc_percent,last_soc_percent\n";
+  for (const DayAccount& day : days_) {
+    add(text, "%s,%.4f,%.3f,%.3f,%.4f,%d,%d,%d,%.2f", day.date().c_str(), day.earned_eur(),
+        day.charged_kwh(), day.discharged_kwh(), day.full_cycles(), day.cycles(),
+        day.driven_cycles(), day.valued_cycles(), day.mean_price_eur_per_mwh());
+    if (day.has_soc()) {
+      add(text, ",%.2f,%.2f\n", day.first_soc_e4() / 100.0, day.last_soc_e4() / 100.0);
+    } else {
+      text += ",,\n";
+    }
+  }
+  return text;
+}
+
+Json Statement::json() const {
+  Json days = Json::list();
+  for (const DayAccount& day : days_) {
+    Json reasons = Json::object();
+    for (int i = 0; i < kReasonCount; ++i) {
+      const auto reason = static_cast<Reason>(i);
+      if (day.cycles_with(reason) > 0)
+        reasons.set(reason_name(reason).data(), day.cycles_with(reason));
+    }
+    const auto soc = [&](std::int32_t soc_e4) {
+      return day.has_soc() ? Json(Decimals{soc_e4 / 100.0, 2}) : Json::null();
+    };
+    days.add(Json::object({{"date", day.date()},
+                           {"earned_eur", Decimals{day.earned_eur(), 4}},
+                           {"charged_kwh", Decimals{day.charged_kwh(), 3}},
+                           {"discharged_kwh", Decimals{day.discharged_kwh(), 3}},
+                           {"full_cycles", Decimals{day.full_cycles(), 4}},
+                           {"cycles", day.cycles()},
+                           {"driven_cycles", day.driven_cycles()},
+                           {"valued_cycles", day.valued_cycles()},
+                           {"mean_price_eur_per_mwh", Decimals{day.mean_price_eur_per_mwh(), 2}},
+                           {"first_soc_percent", soc(day.first_soc_e4())},
+                           {"last_soc_percent", soc(day.last_soc_e4())},
+                           {"cycles_by_reason", std::move(reasons)}}));
+  }
+  return Json::object({{"earned_eur", Decimals{earned_eur(), 4}},
+                       {"charged_kwh", Decimals{charged_kwh(), 3}},
+                       {"discharged_kwh", Decimals{discharged_kwh(), 3}},
+                       {"stored_kwh", Decimals{stored_kwh(), 3}},
+                       {"stored_eur", Decimals{stored_eur(), 4}},
+                       {"earned_at_equal_soc_eur", Decimals{earned_eur() + stored_eur(), 4}},
+                       {"mean_price_eur_per_mwh", Decimals{mean_price_eur_per_mwh(), 2}},
+                       {"days", std::move(days)}});
+}
+
+}  // namespace bess

@@ -1,0 +1,45 @@
+// What a battery earned in some days, as a table for people, as CSV and as JSON.
+//
+// The money is an estimate: the power that was measured at each tick, at the price that was decided on, without the
+// settlement of the quarter-hour, fees or taxes. What the battery holds more or less at the end than at the beginning
+// is told beside it, at the mean price: a day that ends empty has sold what another one bought.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "edge/account/day_account.h"
+#include "shared/host/json.h"
+
+namespace bess {
+
+class Statement {
+ public:
+  /// Oldest first, without gaps in what each counts; may be empty.
+  explicit Statement(std::vector<DayAccount> days) : days_(std::move(days)) {}
+
+  [[nodiscard]] bool is_empty() const { return days_.empty(); }
+  [[nodiscard]] double earned_eur() const;
+  [[nodiscard]] double charged_kwh() const;
+  [[nodiscard]] double discharged_kwh() const;
+  /// More (negative: less) is stored at the end than at the beginning.
+  [[nodiscard]] double stored_kwh() const;
+  /// Of the valued cycles of all days.
+  [[nodiscard]] double mean_price_eur_per_mwh() const;
+  [[nodiscard]] double stored_eur() const {
+    return stored_kwh() / 1'000 * mean_price_eur_per_mwh();
+  }
+
+  [[nodiscard]] std::string text() const;
+  [[nodiscard]] std::string csv() const;
+  [[nodiscard]] Json json() const;
+
+ private:
+  template <typename OfDay>
+  [[nodiscard]] double sum(const OfDay& of_day) const;
+  [[nodiscard]] std::string reasons() const;
+
+  std::vector<DayAccount> days_;
+};
+
+}  // namespace bess
