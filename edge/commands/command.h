@@ -69,6 +69,16 @@ struct OptionsOf {
               return parse_duration(value, seconds) && seconds >= kShortestS;
             }};
   }
+  /// One word that stands alone and begins no option.
+  template <auto kMember>
+  static constexpr CommandOption word() {
+    return {"", false, [](void* given, std::string_view value, std::string&) {
+              std::string& word = static_cast<Given*>(given)->*kMember;
+              if (!word.empty() || value.empty() || value.front() == '-') return false;
+              word = value;
+              return true;
+            }};
+  }
   /// Whole watts, once; a minus before it begins no option.
   template <auto kMember>
   static constexpr CommandOption power() {

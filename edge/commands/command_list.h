@@ -13,6 +13,8 @@ namespace bess {
   ROW(Clear)               \
   ROW(Status)              \
   ROW(Log)                 \
+  ROW(Why)                 \
+  ROW(Earned)              \
   ROW(Hold)                \
   ROW(Limit)               \
   ROW(Record)              \

@@ -1,0 +1,89 @@
+// `bess-edge earned`: what the battery earned in some local days, from the decision log.
+#include <cstdio>
+
+#include "edge/account/account_days.h"
+#include "edge/account/period.h"
+#include "edge/account/statement.h"
+#include "edge/commands/command_list.h"
+#include "edge/log/journal.h"
+#include "shared/local_time.h"
+
+namespace bess {
+namespace {
+
+struct EarnedGiven {
+  std::string period;  ///< empty = today
+  bool csv = false;
+  bool json = false;
+};
+
+using O = OptionsOf<EarnedGiven>;
+constexpr CommandOption kOptions[] = {O::word<&EarnedGiven::period>(),
+                                      O::flag<&EarnedGiven::csv>("--csv"),
+                                      O::flag<&EarnedGiven::json>("--json")};
+
+constexpr const char* kHelp =
+    R"(bess-edge earned: what the battery earned in some days
+
+  bess-edge earned [PERIOD] [--config FILE] [--csv | --json]
+
+  PERIOD         today, yesterday, week, month, a day as 2026-11-23, or 2026-11-01..2026-11-23; local days,
+                 default today; week and month are those that today lies in
+  --config FILE  the controller's settings; default /etc/bess/edge.toml
+  --csv          one line a day, with a header
+  --json         one JSON object: the days, and all of them together
+
+Money is an estimate: the power measured at each tick, at the price that was decided on; without the
+settlement of the quarter-hour, fees and taxes. What is stored more or less at the end than at the beginning
+is told beside it. Read from the log in [state] folder: days that it no longer holds are not counted.
+Exit codes: 0 done   1 the log cannot be read, or holds nothing of these days   2 the command line is bad
+
+  bess-edge earned
+  bess-edge earned month --csv > november.csv
+)";
+
+const char* complaint(const EarnedGiven& given) {
+  if (given.csv && given.json) return "--csv or --json, not both";
+  Period period;
+  if (given.period.empty() || parse_period(given.period, 19'700'101, period)) return nullptr;
+  return "the period must be today, yesterday, week, month, a day as 2026-11-23, or two with .. "
+         "between";
+}
+
+int fail(const std::string& message) {
+  report(JournalLevel::kError, "%s", message.c_str());
+  return 1;
+}
+
+int run_earned(const EarnedGiven& given, SettingsFile& settings) {
+  set_market_time_zone();
+  const EdgeConfig& config = settings.config;
+  LogReader log;
+  FileMessage error;
+  if (!log.open(config.log, error)) return fail(error.c_str());
+  const std::int32_t today = local_day_at(config.clock.now_utc_ns() / kNanosecondsPerSecond);
+  Period period{today, today};
+  if (!given.period.empty()) parse_period(given.period, today, period);
+  const Statement statement(accounts_of_days(log, period.first_day, period.last_day));
+  if (statement.is_empty()) {
+    return fail("the log holds no cycle of " + DayAccount(period.first_day).date() + " to " +
+                DayAccount(period.last_day).date());
+  }
+  const std::string text = given.json  ? statement.json().text()
+                           : given.csv ? statement.csv()
+                                       : statement.text();
+  std::fputs(text.c_str(), stdout);
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return 0;
+  return fail("the output cannot be written");
+}
+
+}  // namespace
+
+const EdgeCommand kEarnedCommand = {.name = "earned",
+                                    .usage = "earned [PERIOD] [--config FILE] ...",
+                                    .does = "what it earned, by days",
+                                    .help = kHelp,
+                                    .options = kOptions,
+                                    .run = run_with<EarnedGiven, run_earned, complaint>};
+
+}  // namespace bess

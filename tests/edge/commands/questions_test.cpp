@@ -1,0 +1,150 @@
+// `why` and `earned` as an operator asks them: on a configuration and its log, by the clock on the wall.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <ctime>
+
+#include "edge/commands/command_line.h"
+#include "edge/log/ring_log.h"
+#include "edge/why/local_moment.h"
+#include "edge/why/local_text.h"
+#include "shared/host/json.h"
+#include "tests/support/temporary_folder.h"
+
+namespace bess {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+class Questions : public ::testing::Test {
+ protected:
+  Questions() {
+    set_market_time_zone();
+    config_ = folder_.write("edge.toml", R"([battery]
+map = ")" BESS_SOURCE_DIR R"(/edge/maps/simulator.toml"
+host = "127.0.0.1"
+[price]
+url = "http://127.0.0.1:1/prices"
+)");
+    std::filesystem::create_directory(folder_.file("state"));
+    FileMessage error;
+    EXPECT_TRUE(ring_.open(folder_.file("state/decisions.ring").c_str(), 2'000, error))
+        << error.c_str();
+  }
+  /// `cycles` before now and up to it, charging 3 kW at 40 EUR/MWh.
+  void log_until_now(int cycles) {
+    newest_utc_s_ = std::time(nullptr) / kSecondsPerStep * kSecondsPerStep;
+    for (int i = cycles - 1; i >= 0; --i) {
+      CycleRecord r{.utc_s = newest_utc_s_ - i * kSecondsPerStep,
+                    .cycle = cycles - i,
+                    .mode = Mode::kRunning};
+      r.has_measurement = true;
+      r.measurement.soc_e4 = 5'000;
+      r.measurement.power_w = 3'000;
+      r.measurement.capacity_wh = 8'000;
+      r.price = {.has_row = true, .minute_utc_s = r.utc_s - 60, .price_centi_eur_per_mwh = 4'000};
+      r.price_level = PriceLevel::starting_at(9'000);
+      r.has_student_action = true;
+      r.student_action = Action::kCharge;
+      r.context_class = 6;
+      r.reason = Reason::kStudent;
+      r.ordered_power_w = 3'000;
+      ASSERT_TRUE(ring_.append(r));
+    }
+  }
+  struct Said {
+    int exit_code;
+    std::string out;
+    std::string error;
+  };
+  Said ask(std::vector<std::string> words) {
+    words.insert(words.end(), {"--config", config_});
+    testing::internal::CaptureStdout();
+    testing::internal::CaptureStderr();
+    const int exit_code = run_command_line({words.begin(), words.end()});
+    std::string out = testing::internal::GetCapturedStdout();
+    return {exit_code, out, testing::internal::GetCapturedStderr()};
+  }
+
+  const TemporaryFolder folder_;
+  std::string config_;
+  RingLog ring_;
+  std::int64_t newest_utc_s_ = 0;
+};
+
+TEST_F(Questions, WhyAsksForTheNewestCycleOrAnother) {
+  log_until_now(30);
+  const Said newest = ask({"why"});
+  EXPECT_EQ(newest.exit_code, 0) << newest.error;
+  EXPECT_THAT(newest.out, StartsWith(local_text(newest_utc_s_).c_str()));
+  EXPECT_THAT(newest.out, HasSubstr("by the student, since "));
+  EXPECT_THAT(newest.out, HasSubstr("(30 cycles)"));
+  const std::int64_t before_s = newest_utc_s_ - 20 * kSecondsPerStep;
+  for (const std::string& at :
+       {std::string(local_clock_text(before_s + 90).view()),
+        std::string(local_text(before_s).view()), std::string(utc_text(before_s + 119).view())}) {
+    const Said then = ask({"why", "--json", "--at", at});
+    ASSERT_EQ(then.exit_code, 0) << at << ": " << then.error;
+    const Json json = Json::parse(then.out);
+    EXPECT_EQ(json.value()["utc"].text(), std::string(utc_text(before_s).view())) << at;
+    EXPECT_EQ(json.value()["cycles_with_reason"].number().value(), 10) << at;
+  }
+}
+
+TEST_F(Questions, WhyRefusesWhatItCannotAnswer) {
+  EXPECT_EQ(ask({"why"}).exit_code, 1);
+  EXPECT_THAT(ask({"why"}).error, HasSubstr("nothing was decided yet: the log is empty"));
+  log_until_now(5);
+  const Said early = ask({"why", "--at", "2020-01-01 12:00"});
+  EXPECT_EQ(early.exit_code, 1);
+  EXPECT_THAT(early.error,
+              HasSubstr("nothing was decided at 2020-01-01 12:00 local; the log begins at "));
+  for (const char* at : {"noon", "24:00", "14:60", "2026-02-30 12:00", "12:00 ", ""}) {
+    const Said said = ask({"why", "--at", at});
+    EXPECT_EQ(said.exit_code, 2) << at;
+    EXPECT_THAT(said.error, HasSubstr("--at needs a moment such as 14:32"));
+  }
+}
+
+TEST_F(Questions, EarnedAddsTheDaysUp) {
+  log_until_now(60);
+  const std::string span = std::string(local_text(newest_utc_s_ - 7'200).view()).substr(0, 10) +
+                           ".." + std::string(local_text(newest_utc_s_).view()).substr(0, 10);
+  const Said said = ask({"earned", span, "--json"});
+  ASSERT_EQ(said.exit_code, 0) << said.error;
+  const Json json = Json::parse(said.out);
+  EXPECT_NEAR(json.value()["charged_kwh"].number().value(), 3.0 * 2, 1e-9);
+  EXPECT_NEAR(json.value()["earned_eur"].number().value(), -6.0 / 1'000 * 40, 1e-9);
+  EXPECT_THAT(ask({"earned", span}).out, HasSubstr("estimate: "));
+  EXPECT_THAT(ask({"earned", span, "--csv"}).out, StartsWith("date,earned_eur,"));
+}
+
+TEST_F(Questions, EarnedRefusesWhatItCannotAnswer) {
+  log_until_now(1);
+  const Said early = ask({"earned", "2020-01-01..2020-01-31"});
+  EXPECT_EQ(early.exit_code, 1);
+  EXPECT_THAT(early.error, HasSubstr("the log holds no cycle of 2020-01-01 to 2020-01-31"));
+  EXPECT_EQ(ask({"earned", "tomorrow"}).exit_code, 2);
+  EXPECT_THAT(ask({"earned", "tomorrow"}).error, HasSubstr("the period must be today, yesterday"));
+  EXPECT_EQ(ask({"earned", "week", "month"}).exit_code, 2);
+  EXPECT_THAT(ask({"earned", "--csv", "--json"}).error, HasSubstr("--csv or --json, not both"));
+}
+
+TEST_F(Questions, AMomentIsTheNewestThatHasBeen) {
+  const std::int64_t noon_utc_s = utc_from_local({2026, 11, 23, 12, 0, 0});
+  std::int64_t found = 0;
+  ASSERT_TRUE(parse_moment("11:59", noon_utc_s, found));
+  EXPECT_EQ(found, noon_utc_s - 60);
+  ASSERT_TRUE(parse_moment("12:00", noon_utc_s, found));
+  EXPECT_EQ(found, noon_utc_s);
+  ASSERT_TRUE(parse_moment("12:01", noon_utc_s, found));
+  EXPECT_EQ(found, noon_utc_s + 60 - 86'400);
+  ASSERT_TRUE(parse_moment("2026-07-01T08:30", noon_utc_s, found));
+  EXPECT_EQ(utc_text(found).view(), "2026-07-01T06:30:00Z");
+  ASSERT_TRUE(parse_moment("2026-10-25T00:30:00Z", noon_utc_s, found));
+  EXPECT_EQ(utc_text(found).view(), "2026-10-25T00:30:00Z");
+}
+
+}  // namespace
+}  // namespace bess
