@@ -94,16 +94,14 @@ void run_seeds(const RunArguments& options) {
       unproved.push_back({request.out.filename().string(), reason.substr(0, reason.find('\n'))});
     }
   }
-  if (!finished.empty()) {
-    write_seeds_report(options.request.out, finished, unproved);
-    const std::vector<Band> bands = bands_of(finished);
-    if (options.json) {
-      for (const RunSummary& run : finished) fmt::print("{}\n", summary_json(run).line());
-      fmt::print("{}\n", bands_json(bands, finished.size()));
-    } else {
-      fmt::print("\n{}\n{}: seeds.html and seeds.csv, and a folder a seed\n",
-                 format_bands(bands, finished.size()), options.request.out.string());
-    }
+  const std::vector<Band> bands = bands_of(finished);
+  if (!finished.empty()) write_seeds_report(options.request.out, finished, unproved);
+  if (options.json) {
+    for (const RunSummary& run : finished) fmt::print("{}\n", summary_json(run).line());
+    fmt::print("{}\n", bands_json(bands, finished.size()));
+  } else if (!finished.empty()) {
+    fmt::print("\n{}\n{}: seeds.html and seeds.csv, and a folder a seed\n",
+               format_bands(bands, finished.size()), options.request.out.string());
   }
   if (!failures.empty()) {
     fail("{} of {} seeds were not proved; the first is {}", failures.size(), options.seeds,

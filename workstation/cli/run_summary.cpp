@@ -219,6 +219,7 @@ Json summary_json(const RunSummary& run) {
 
 std::vector<Band> bands_of(const std::vector<RunSummary>& runs) {
   std::vector<Band> bands;
+  if (runs.empty()) return bands;
   for (const auto& [soc, field] : kWays) {
     std::optional<Evaluation> first;
     for (const NamedEvaluation& named : runs.front().evaluations) {

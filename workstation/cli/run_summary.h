@@ -38,6 +38,7 @@ struct Band {
   DayErrors errors;                      ///< over days, of the mean over runs
   std::optional<PairedDifference> gain;  ///< of that over the first policy's; none for itself
 };
+/// None of no run.
 std::vector<Band> bands_of(const std::vector<RunSummary>& runs);
 
 /// The value of a key for people, in one line; rules by what they say.
