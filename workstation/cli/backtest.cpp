@@ -16,7 +16,9 @@
 #include "workstation/cli/chain_steps.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
+#include "workstation/cli/folder_lock.h"
 #include "workstation/cli/interruption.h"
+#include "workstation/cli/learnt_for.h"
 #include "workstation/cli/policy_factory.h"
 #include "workstation/cli/price_input.h"
 #include "workstation/cli/run_backtest.h"
@@ -68,6 +70,12 @@ void claim_folder(const fs::path& folder, const std::string& identity) {
   }
 }
 
+/// "2023.csv.gz", "2023.csv.gz and 1 more".
+std::string name_of(const std::vector<std::string>& prices) {
+  return prices.size() == 1 ? prices.front()
+                            : fmt::format("{} and {} more", prices.front(), prices.size() - 1);
+}
+
 fs::path model_path(const fs::path& folder, const Fold& fold, std::string_view name) {
   return folder / (fold.month + (name == kChainName ? ".student.json" : ".teacher.bin"));
 }
@@ -83,37 +91,57 @@ StudentFile distil_fold(const Teacher& teacher, const Fold& fold, const RunConfi
   return require_proof(corrected, config.distil.method, fold.month + ": ").file();
 }
 
+/// What the folds are learnt from, and where they are kept.
+struct Learning {
+  RunConfig config;
+  const MinuteSeries& series;
+  const std::string& prices;  ///< name
+  const fs::path& folder;
+  bool and_student;
+};
+
+/// The days that a fold is fitted on.
+std::vector<MarketDay> fitted_days_of(const Fold& fold) {
+  std::vector<MarketDay> days = fold.market.days;
+  std::erase_if(days, [](const MarketDay& day) { return day.split == Split::kTest; });
+  return days;
+}
+
+/// Its file says the prices and days that it was learnt from; so does its student's.
+Teacher teacher_of_fold(const Fold& fold, const Learning& of) {
+  TrainResult trained =
+      train_teacher(fold.market, of.config.battery, of.config.train, interruption());
+  const std::vector<MarketDay> days = fitted_days_of(fold);
+  trained.teacher.provenance =
+      fmt::format("{}, days {} to {}", training_provenance(of.prices, of.config.train, trained),
+                  days.front().date(), days.back().date());
+  trained.teacher.learnt_for = learnt_for(of.config, of.series, fold.market, days);
+  return std::move(trained.teacher);
+}
+
 /// Of the models of a fold those that are asked for and not there yet.
-void learn_fold(const Fold& fold, const RunConfig& config, const fs::path& folder,
-                bool and_student) {
-  const fs::path path = model_path(folder, fold, kTeacherName);
-  if (!fs::exists(path)) {
-    Teacher teacher =
-        train_teacher(fold.market, config.battery, config.train, interruption()).teacher;
-    teacher.learnt_for = circumstances_of(config_entries(config));
-    save_teacher(path, teacher);
-  }
-  const fs::path student = model_path(folder, fold, kChainName);
-  if (!and_student || fs::exists(student)) return;
-  save_student(student, distil_fold(load_teacher(path), fold, config));
+void learn_fold(const Fold& fold, const Learning& of) {
+  const fs::path path = model_path(of.folder, fold, kTeacherName);
+  if (!fs::exists(path)) save_teacher(path, teacher_of_fold(fold, of));
+  const fs::path student = model_path(of.folder, fold, kChainName);
+  if (!of.and_student || fs::exists(student)) return;
+  save_student(student, distil_fold(load_teacher(path), fold, of.config));
 }
 
 /// Learns what is not there yet, a fold to a thread: with one thread each, a fold repeats to the bit
 /// whatever runs beside it.
-void learn_folds(const Folds& folds, RunConfig config, const fs::path& folder,
-                 const std::vector<std::string>& policies) {
+void learn_folds(const Folds& folds, Learning of, const std::vector<std::string>& policies) {
   const auto is_missing = [&](const Fold& fold) {
     return std::ranges::any_of(policies, [&](const std::string& name) {
-      return is_learnt(name) && !fs::exists(model_path(folder, fold, name));
+      return is_learnt(name) && !fs::exists(model_path(of.folder, fold, name));
     });
   };
-  const bool and_student = std::ranges::find(policies, kChainName) != policies.end();
   std::vector<const Fold*> missing;
   for (const Fold& fold : folds.traded) {
     if (is_missing(fold)) missing.push_back(&fold);
   }
-  const int threads = config.train.threads;
-  config.set_threads(1);
+  const int threads = of.config.train.threads;
+  of.config.set_threads(1);
   Progress progress("learn", "folds", static_cast<double>(folds.traded.size()),
                     static_cast<double>(folds.traded.size() - missing.size()));
   std::mutex mutex;
@@ -129,7 +157,7 @@ void learn_folds(const Folds& folds, RunConfig config, const fs::path& folder,
         fold = missing[next++];
       }
       try {
-        learn_fold(*fold, config, folder, and_student);
+        learn_fold(*fold, of);
         const std::lock_guard lock(mutex);
         progress.update(static_cast<double>(++done), fold->month);
       } catch (...) {
@@ -156,17 +184,22 @@ void run_backtest(const BacktestArguments& options) {
     outputs.push_back({"--out", folder / name});
   }
   require_distinct(outputs, inputs);
+  std::vector<std::string> baselines = options.policies;
+  std::erase_if(baselines, is_learnt);
+  require_policies(baselines);
   const MinuteSeries series = options.price_input.read_joined(options.prices).series;
-  const MarketSteps market = make_market_steps(series, config.market);
+  const std::string prices = name_of(options.prices);
+  const MarketSteps market = market_of(series, config.market, prices);
   const Folds folds = make_folds(market, options.window_days);
   require_writable(folder / "backtest.csv");
+  const FolderLock lock(folder);
   claim_folder(folder, identity_of(config, series, options));
   end_when_interrupted("months that were learnt are kept: the same command goes on");
-  learn_folds(folds, config, folder, options.policies);
+  const bool and_student =
+      std::ranges::find(options.policies, kChainName) != options.policies.end();
+  learn_folds(folds, {config, series, prices, folder, and_student}, options.policies);
   std::vector<std::size_t> fitted_days;
-  for (const Fold& fold : folds.traded) {
-    fitted_days.push_back(fold.market.days.size() - fold.market.days_of(Split::kTest).size());
-  }
+  for (const Fold& fold : folds.traded) fitted_days.push_back(fitted_days_of(fold).size());
   BacktestResults results{{},
                           std::move(fitted_days),
                           folds.skipped,

@@ -99,11 +99,12 @@ void print_json(const std::string& name, const Table& table, const DelaysArgumen
 
 void run_delays(const DelaysArguments& options) {
   RunConfig config = options.common.resolve();
+  require_policies(options.policies);
   const MinuteSeries series = options.price_input.read(options.prices);
   Markets markets;
   for (int delay = 0; delay < kDelays; ++delay) {
     config.market.observation_delay_min = delay;
-    markets.push_back(make_market_steps(series, config.market));
+    markets.push_back(market_of(series, config.market, options.prices));
   }
   if (!options.json) {
     fmt::print("{} split, EUR per day per MWh of capacity, {}; delays in minutes\n", options.split,

@@ -81,7 +81,7 @@ void run_distil(const DistilArguments& options) {
   options.rule_files.apply(config, teacher.context.kind);
   if (!teacher.risk.is_mean()) teacher.provenance += ", risk " + options.risk;
   const MarketSteps market =
-      make_market_steps(options.price_input.read(options.prices), config.market);
+      market_of(options.price_input.read(options.prices), config.market, options.prices);
   const Matrix visited = visited_inputs(teacher, market, config.battery, config.distil);
   const CorrectionResult result =
       correct_and_prove(teacher, visited, config.distil, interruption(),

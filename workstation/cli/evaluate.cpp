@@ -147,8 +147,8 @@ MarketSteps fitting_market(const MinuteSeries& series, const RunConfig& config,
                            const EvaluateArguments& options) {
   MarketOptions market = config.market;
   market.observation_delay_min = options.fit_delay_min.value_or(market.observation_delay_min);
-  return make_market_steps(options.fit.empty() ? series : options.price_input.read(options.fit),
-                           market);
+  if (options.fit.empty()) return market_of(series, market, options.prices);
+  return market_of(options.price_input.read(options.fit), market, options.fit);
 }
 
 /// What every policy is evaluated on.
@@ -212,8 +212,9 @@ void require_outputs_writable(const EvaluateArguments& options) {
 void run_evaluate(const EvaluateArguments& options) {
   require_outputs_writable(options);
   const RunConfig config = options.common.resolve();
+  require_policies(options.policies);
   const MinuteSeries series = options.price_input.read(options.prices);
-  const MarketSteps market = make_market_steps(series, config.market);
+  const MarketSteps market = market_of(series, config.market, options.prices);
   const MarketSteps fitting = fitting_market(series, config, options);
   Trial trial{market,
               fitting,

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "shared/utc_text.h"
+#include "workstation/cli/chain_steps.h"
 #include "workstation/cli/run_plan.h"
 #include "workstation/market/series/price_regime.h"
 #include "workstation/rl/teacher.h"
@@ -17,7 +18,7 @@ namespace {
 
 constexpr const char* kPricesKey = "prices";  // as in a run's record
 
-/// "crc32 1234abcd, 525600 minutes from 2023-01-01T00:00:00Z" (prices_hash()), read back.
+/// What prices_hash() wrote, read back.
 std::optional<UtcSpan> span_of(const Entries& there) {
   const auto prices = std::ranges::find(there, kPricesKey, &Entries::value_type::first);
   if (prices == there.end()) return {};
@@ -41,6 +42,16 @@ std::string date_of(std::int64_t utc_s) {
 Entries learnt_for(const RunConfig& config, const MinuteSeries& series) {
   Entries entries = circumstances_of(config_entries(config));
   entries.emplace_back(kPricesKey, prices_hash(series));
+  return entries;
+}
+
+Entries learnt_for(const RunConfig& config, const MinuteSeries& series, const MarketSteps& market,
+                   const std::vector<MarketDay>& days) {
+  const std::int64_t from_utc_s = market.of(days.front()).front().utc_s;
+  const std::int64_t until_utc_s = market.of(days.back()).back().utc_s + kSecondsPerStep;
+  Entries entries = circumstances_of(config_entries(config));
+  entries.emplace_back(kPricesKey, prices_hash(prices_checksum(series),
+                                               (until_utc_s - from_utc_s) / 60, from_utc_s));
   return entries;
 }
 

@@ -12,6 +12,9 @@ namespace bess {
 
 /// Market, battery and costs of `config`, and the prices: what a teacher is learnt for.
 Entries learnt_for(const RunConfig& config, const MinuteSeries& series);
+/// The same of what was learnt from a stretch of the prices alone: `days` of `market`, not empty.
+Entries learnt_for(const RunConfig& config, const MinuteSeries& series, const MarketSteps& market,
+                   const std::vector<MarketDay>& days);
 
 /// What the model's file or the run beside it says; empty when neither does, and of what is no file.
 Entries learnt_for_of(const std::filesystem::path& model);

@@ -127,7 +127,7 @@ void run_omega_sweep(const OmegaSweepArguments& options) {
   require_writable(out / kCsvName);
   const Teacher teacher = load_teacher(options.teacher);
   const MarketSteps market =
-      make_market_steps(options.price_input.read(options.prices), config.market);
+      market_of(options.price_input.read(options.prices), config.market, options.prices);
   const Matrix visited = visited_inputs(teacher, market, config.battery, config.distil);
   const Bench bench{teacher,
                     visited,

@@ -1,8 +1,10 @@
 #include "workstation/cli/policy_factory.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 
 #include "shared/host/user_error.h"
 #include "workstation/planners/cycle_limit.h"
@@ -88,6 +90,18 @@ std::pair<double, double> training_quartiles(const MarketSteps& market) {
   require_training_days(prices.size());
   std::ranges::sort(prices);
   return {prices[prices.size() / 4], prices[prices.size() * 3 / 4]};
+}
+
+void require_policies(const std::vector<std::string>& names) {
+  constexpr std::array<std::string_view, 9> kKnown{"rbc",      "rbc-quartile", "rbc-tuned",
+                                                   "tabular",  "mpc",          "sdp",
+                                                   "sdp-hour", "foresight",    "compiled"};
+  for (const std::string& name : names) {
+    if (std::ranges::find(kKnown, name) != kKnown.end()) continue;
+    const bool is_pipe = std::filesystem::exists(name) && !std::filesystem::is_regular_file(name);
+    if (is_pipe) continue;  // it can be read once
+    name.starts_with(kGivenRule) ? given_rule(name) : model_policy(name, {});
+  }
 }
 
 std::shared_ptr<Policy> make_policy(const std::string& name, const MarketSteps& market,

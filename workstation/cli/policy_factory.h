@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "workstation/cli/run_config.h"
 #include "workstation/env/policy.h"
@@ -16,6 +17,9 @@ inline constexpr const char* kPolicyHelp =
     "(thresholds that earn most on the training days), tabular, mpc (rolling horizon on a naive "
     "forecast), sdp (stochastic program by hour and price level), sdp-hour (by hour alone), "
     "foresight, compiled (the array in this program), or a teacher's or student's file";
+
+/// Throws UserError when one of them is neither known nor a model's file: before the work, not after.
+void require_policies(const std::vector<std::string>& names);
 
 /// A policy with whatever it is made of; the baselines that are fitted are fitted on the training
 /// days of `market`, which may differ in its delay from the market they run on. Throws UserError for an unknown name or an unreadable file.

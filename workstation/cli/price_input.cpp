@@ -65,6 +65,15 @@ JoinedMarket PriceInput::read_joined(const std::vector<std::string>& files,
   return market;
 }
 
+MarketSteps market_of(const MinuteSeries& series, const MarketOptions& options,
+                      const std::string& name) {
+  try {
+    return make_market_steps(series, options);
+  } catch (const UserError& error) {
+    fail("{}: {}", name, error.what());
+  }
+}
+
 void judge_market(const MinuteSeries& series, std::vector<Finding> found,
                   const std::vector<std::string>& files, const AcceptedFindings& accepted) {
   for (Finding& finding : implausible(series)) found.push_back(std::move(finding));

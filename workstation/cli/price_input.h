@@ -27,6 +27,10 @@ class PriceInput {
   std::string accept_;
 };
 
+/// The prices as decisions; what is wrong with them as a whole is told by `name`, that of their file.
+MarketSteps market_of(const MinuteSeries& series, const MarketOptions& options,
+                      const std::string& name);
+
 /// Judges what was made of `files` by its prices and by what was found while joining; rows are named
 /// by reading the files once more, which happens only when there is something to say.
 void judge_market(const MinuteSeries& series, std::vector<Finding> found,

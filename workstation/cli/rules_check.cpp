@@ -111,7 +111,7 @@ void run_rules_check(const CheckArguments& options) {
     return print_rules(rules, kind, options.json);
   }
   const MarketSteps market =
-      make_market_steps(options.price_input.read(options.prices), config.market);
+      market_of(options.price_input.read(options.prices), config.market, options.prices);
   const ContextClasses classes = context_of_policy(options.policy, market, kind);
   require_consistent(rules, config.distil.correction.thresholds, classes.kind);
   if (!options.json) print_rules(rules, classes.kind, false);

@@ -139,7 +139,7 @@ void run_rules_price(const PriceArguments& options) {
   const RunConfig config = options.common.resolve();
   const RuleSet rules = options.rule_files.read();
   const MarketSteps market =
-      make_market_steps(options.price_input.read(options.prices), config.market);
+      market_of(options.price_input.read(options.prices), config.market, options.prices);
   const Pricing pricing(options, config, market);
   price_by_projection(options, config, market, rules, pricing);
   if (options.teacher.empty()) return;

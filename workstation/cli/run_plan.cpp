@@ -73,9 +73,14 @@ RunConfig config_of(const RunRequest& request, const RunRecord* there, const Run
 
 }  // namespace
 
+std::string prices_hash(std::uint32_t checksum, std::int64_t minutes, std::int64_t from_utc_s) {
+  return fmt::format("crc32 {:08x}, {} minutes from {}", checksum, minutes,
+                     utc_text(from_utc_s).view());
+}
+
 std::string prices_hash(const MinuteSeries& series) {
-  return fmt::format("crc32 {:08x}, {} minutes from {}", prices_checksum(series), series.size(),
-                     utc_text(series.start_utc_s).view());
+  return prices_hash(prices_checksum(series), static_cast<std::int64_t>(series.size()),
+                     series.start_utc_s);
 }
 
 MinuteSeries prices_of_run(const RunRecord& record, const AcceptedFindings& accepted) {
@@ -122,7 +127,7 @@ RunPlan plan_run(const RunRequest& request) {
     require_same(*there, record, plan.folder, request.resume);
     record = *there;
   } else {
-    require_test_days(make_market_steps(plan.series, config.market));
+    require_test_days(market_of(plan.series, config.market, record.prices), record.prices);
   }
   return plan;
 }

@@ -36,5 +36,7 @@ RunPlan plan_run(const RunRequest& request);
 /// The series that a record names, judged. Throws UserError.
 MinuteSeries prices_of_run(const RunRecord& record, const AcceptedFindings& accepted);
 std::string prices_hash(const MinuteSeries& series);
+/// Of a stretch of them: the checksum is of the whole.
+std::string prices_hash(std::uint32_t checksum, std::int64_t minutes, std::int64_t from_utc_s);
 
 }  // namespace bess

@@ -71,9 +71,9 @@ std::string teacher_name(const Teacher& teacher) {
 
 }  // namespace
 
-void require_test_days(const MarketSteps& market) {
+void require_test_days(const MarketSteps& market, const std::string& prices) {
   if (!market.days_of(Split::kTest).empty()) return;
-  fail("no test days (local days 26 to the end) in these prices; add some");
+  fail("{}: no test days (local days 26 to the end); add some", prices);
 }
 
 std::vector<NamedEvaluation> evaluate_run(const RunResults& run) {

@@ -23,8 +23,8 @@ struct RunResults {
   std::vector<StudentCheckpoint> checkpoints = {};
 };
 
-/// Throws UserError: asked before anything is trained.
-void require_test_days(const MarketSteps& market);
+/// Throws UserError, which names `prices`: asked before anything is trained.
+void require_test_days(const MarketSteps& market, const std::string& prices);
 
 /// Test days, day reset and carried over: rule-based first, then the other baselines, the teacher, the
 /// plain and the corrected student, and foresight last.

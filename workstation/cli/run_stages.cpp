@@ -83,7 +83,7 @@ RunStages::RunStages(RunFolder folder, RunRecord record, const MinuteSeries& ser
       record_(std::move(record)),
       config_(record_.config(folder_)),
       series_(series),
-      market_(make_market_steps(series, config_.market)),
+      market_(market_of(series, config_.market, record_.prices_name)),
       messages_(messages) {}
 
 void RunStages::tell(const std::string& text) const {

@@ -204,7 +204,7 @@ void run_train(const TrainArguments& options) {
   const FolderLock folder_lock(fs::path(options.out).parent_path(), FolderLock::Of::kOneFile);
   const FileLock lock(options.out);
   const MinuteSeries series = options.price_input.read(options.prices);
-  const MarketSteps market = make_market_steps(series, config.market);
+  const MarketSteps market = market_of(series, config.market, options.prices);
   warn_untrained_months(market, config.train.context == ContextKind::kMonth);
   if (options.seeds > 1) return run_seeds(options, config, series, market);
   const TrainResult result = train_one(options.out, options, config, series, market);

@@ -77,7 +77,7 @@ void run_verify(const VerifyArguments& options) {
     print_text(name, student);
     MarketSteps market;
     if (!options.prices.empty()) {
-      market = make_market_steps(options.price_input.read(options.prices), config.market);
+      market = market_of(options.price_input.read(options.prices), config.market, options.prices);
     }
     fmt::print("{}", broken_rule_lines(student, market, config));
   }

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "shared/host/file.h"
+#include "shared/host/json.h"
 #include "tests/support/small_market.h"
 #include "tests/support/temporary_folder.h"
 #include "workstation/cli/commands.h"
@@ -83,6 +85,32 @@ TEST_F(LearntFor, AnotherPriceRegimeIsNamed) {
   EXPECT_THAT(evaluated(teacher_, " --config " + dear_, prices),
               AllOf(HasSubstr("its prices are of 20"),
                     HasSubstr("another regime: from 26 November 2024 (PICASSO)")));
+}
+
+/// Each month's teacher is learnt from the days before it, says so, and is kept.
+TEST_F(LearntFor, ABacktestsTeachersNameTheirPricesAndDays) {
+  const std::string out = folder_.file("backtest");
+  const std::string command =
+      "backtest --prices " + prices_ + " --window-days 30 --policy sdp teacher --out " + out;
+  warnings(command);
+  const std::string model = out + "/2023-02.teacher.bin";
+  const Teacher teacher = load_teacher(model);
+  EXPECT_THAT(teacher.provenance, AllOf(HasSubstr(" on prices.csv.gz, by level"),
+                                        HasSubstr(", days 2023-01-02 to 2023-01-31")));
+  EXPECT_THAT(
+      learnt_for_of(model),
+      testing::Contains(testing::Pair("prices", HasSubstr("43200 minutes from 2023-01-01T23:00"))));
+  const std::string kept = read_file(model);
+  const std::string answer = read_file(out + "/backtest.json");
+  warnings(command);
+  EXPECT_EQ(read_file(model), kept);
+  EXPECT_EQ(read_file(out + "/backtest.json"), answer);
+  const Json json = Json::parse(answer);
+  const JsonValue policies = json.value()["policies"];
+  const JsonValue of_teacher = *++policies.begin();
+  EXPECT_EQ(of_teacher["policy"].text_or(""), std::string("teacher"));
+  EXPECT_EQ(of_teacher["days"].number(), 28);
+  EXPECT_GT(of_teacher["profit_eur_per_day_per_mwh"].number().value(), 0);
 }
 
 TEST(PriceRegimes, BeginAtLocalMidnight) {
