@@ -1,6 +1,8 @@
 // bess-train: from prices to a proved, exported student. Each subcommand lives in cli/; this file
 // only wires them together.
 //   exit 0 done   1 the input or its content is bad   2 the command line is bad   3 interrupted   130 by a second Ctrl-C
+#include <csignal>
+
 #include "shared/host/build_info.h"
 #include "shared/host/command_line.h"
 #include "shared/local_time.h"
@@ -8,6 +10,7 @@
 #include "workstation/cli/interruption.h"
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is told like a full disk
   bess::set_market_time_zone();
   bess::CommandLine command_line(
       "bess-train", "bess-train: train, correct, prove and export a battery arbitrage policy",

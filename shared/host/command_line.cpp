@@ -273,6 +273,20 @@ CommandLine::CommandLine(const std::string& program, const std::string& descript
 }
 CommandLine::~CommandLine() = default;
 
+namespace {
+
+/// Of ASCII, or of the second such range of Unicode, as UTF-8.
+bool holds_control(std::string_view text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto c = static_cast<unsigned char>(text[i]);
+    const auto next = i + 1 < text.size() ? static_cast<unsigned char>(text[i + 1]) : 0;
+    if (c < 0x20 || c == 0x7F || (c == 0xC2 && next >= 0x80 && next < 0xA0)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 int CommandLine::run(int argc, const char* const* argv) {
   const char* const program = app_->get_name().c_str();
   const auto refuse = [&](const CLI::App& command, const std::string& complaint) {
@@ -280,6 +294,14 @@ int CommandLine::run(int argc, const char* const* argv) {
                  words_of(command).c_str());
     return 2;
   };
+  // In a message about it a file's name would be two lines, or colours and worse on a terminal.
+  for (int i = 1; i < argc; ++i) {
+    if (!holds_control(argv[i])) continue;
+    return refuse(
+        *app_,
+        std::string("\"") + argv[i] +
+            "\" holds a line end or another control character: leave it out, or rename the file");
+  }
   if (const auto unknown = unknown_subcommand(*app_, argc, argv)) {
     return refuse(*unknown->command,
                   "unknown subcommand \"" + unknown->word + "\"" +

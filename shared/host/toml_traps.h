@@ -25,6 +25,9 @@ class TomlTrapFinder {
       if (static_cast<unsigned char>(c) >= 0x80) {
         return {line_, "a character other than ASCII outside quotes and comments"};
       }
+      if (c == '\r' && !rest_.substr(1).starts_with('\n')) {
+        return {line_, "a line that ends in CR alone: save it with LF or CR LF"};
+      }
       if (c == '#') {
         skip(std::min(rest_.find('\n'), rest_.size()));
       } else if ((c == '"' || c == '\'') && !in_word_) {

@@ -46,6 +46,8 @@ inline std::vector<TomlMistake> toml_mistakes() {
           {"b = 1\n" + std::string(20'000, '\n'), 10'001, "more lines and values"},
           {std::string(300 * 1024, '#'), 1, "longer than 256 KiB"},
           {"a = 1\na = 2\n", 2, "cannot redefine"},
+          {"[a]\rb = 1\r", 1, "ends in CR alone: save it with LF"},
+          {"a = 1\r\nb = 2\r", 2, "ends in CR alone"},
           {"a = \n", 1, "not valid TOML"}};
 }
 

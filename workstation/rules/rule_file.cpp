@@ -351,6 +351,10 @@ void append_rules(std::string_view text, const std::string& name, RuleSet& set) 
   std::string error;
   if (!parse_toml_text(text, name, document, error)) throw UserError(error);
   TomlTable top(&document, name, "", error);
+  const TomlValue* const single = document.find("rule");
+  if (single != nullptr && single->as<TomlMembers>() != nullptr) {
+    fail("{}:{}: [rule] is written [[rule]], as there may be many", name, single->line);
+  }
   const TomlArray* list = top.array("rule");
   top.finish();
   if (!error.empty()) throw UserError(error);

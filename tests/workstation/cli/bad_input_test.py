@@ -2,8 +2,10 @@
 that names the mend, and leaves nothing behind. bad_input_test.py PROGRAM
 """
 
+import fcntl
 import json
 import os
+import resource
 import signal
 import subprocess
 import sys
@@ -46,6 +48,19 @@ CASES = [
     ("prices fetch --from 2023-03-01 --to 2023-03-02 --out new.csv --base-url http://127.0.0.1:99999/a", 1,
      "is not a web address"),
     ("prices record --out new --for 1s --url http://:80/", 1, "is not a web address"),
+    # Told before the work, and by name.
+    ("backtest --prices market.csv --out new --window-days 30 --policy sdp nope", 1, "--policy nope: neither a file"),
+    ("backtest --prices market.csv --out new --window-days 30 --policy teacher scalar.toml", 1,
+     "scalar.toml: not a student file"),
+    ("delays --prices market.csv --policy rbc nope", 1, "--policy nope: neither a file"),
+    ("evaluate --prices market.csv --policy mpc rbc:9:1", 1, "LOW not above HIGH"),
+    ("run --prices few.csv --out new", 1, "few.csv: no test days (local days 26 to the end); add some"),
+    ("evaluate --policy rbc --prices hour.csv", 1, "hour.csv: the prices hold no complete local day"),
+    ("run --prices hour.csv --out new", 1, "hour.csv: the prices hold no complete local day"),
+    ("backtest --prices market.csv --out new", 1, "no month has 60 complete days in the 120 before it"),
+    # Not as TOML writes it.
+    ("config --config cr.toml", 1, "cr.toml:1: not valid TOML: a line that ends in CR alone: save it with LF or CR LF"),
+    ("rules check --rules single.toml", 1, "single.toml:1: [rule] is written [[rule]], as there may be many"),
     # What was right already, and stays so.
     ("evaluate --policy rbc --prices /dev/zero", 1, "holds more than 512 MiB"),
     ("evaluate --policy rbc --prices folder", 1, "is a folder"),
@@ -78,6 +93,10 @@ class BadInputs(unittest.TestCase):
             "swapped.csv": head.replace("indicative_eur_mwh,settled_eur_mwh", "settled_eur_mwh,indicative_eur_mwh"),
             "summer.csv": "Datetime;Resolution code;Imbalance Price\n2023-10-29T02:30:00;PT15M;5\n",
             "scalar.toml": "battery = 3\n",
+            "few.csv": head + "".join(rows[: 15 * 1440]),
+            "hour.csv": head + "".join(rows[:60]),
+            "cr.toml": "[train]\rsteps = 100\r",
+            "single.toml": RULE.replace("[[rule]]", "[rule]"),
             "list.toml": "[[battery]]\npower_w = 1\n",
             "rules.toml": RULE,
             "twice.json": STUDENT_KEYS,
@@ -97,8 +116,9 @@ class BadInputs(unittest.TestCase):
     def path(self, name):
         return os.path.join(self.folder, name)
 
-    def bess(self, arguments):
-        return subprocess.run([PROGRAM, *arguments.split()], cwd=self.folder, capture_output=True, text=True, timeout=120)
+    def bess(self, arguments, before=None):
+        return subprocess.run([PROGRAM, *arguments.split()], cwd=self.folder, capture_output=True, text=True, timeout=120,
+                              preexec_fn=before)
 
     def names(self):
         return {os.path.join(where, name) for where, folders, files in os.walk(self.folder) for name in folders + files}
@@ -114,10 +134,43 @@ class BadInputs(unittest.TestCase):
                 self.assertEqual(len(lines), 1, done.stderr)
                 self.assertEqual(self.names() - before, set())
 
+    def test_a_name_of_two_lines_or_colours_is_refused_in_one(self):
+        for name in ("a\nb.csv", "\x1b[31mred.csv", "bell\a", "back\b", "del\x7f", "carriage\r", "csi\u009bm"):
+            for arguments in (["evaluate", "--policy", "rbc", "--prices", name], ["runs", "compare", name],
+                              ["verify", "--student", name], ["config", "--config=" + name]):
+                with self.subTest(arguments):
+                    done = subprocess.run([PROGRAM, *arguments], cwd=self.folder, capture_output=True, text=True)
+                    self.assertEqual(done.returncode, 2)
+                    self.assertRegex(done.stderr, r'\Abess-train: ".*" holds a line end or another control character: '
+                                                  r"leave it out, or rename the file \(see bess-train --help\)\n\Z")
+                    self.assertTrue(done.stderr[:-1].isprintable(), done.stderr)
+
     def test_a_pipe_with_a_writer_is_read(self):
         with subprocess.Popen(["sh", "-c", "sleep 1; cat market.csv > pipe"], cwd=self.folder):
             done = self.bess("evaluate --policy rbc --json --prices pipe")
         self.assertEqual(json.loads(done.stdout)["policy"], "rbc", done.stderr)
+
+    def test_a_file_that_may_not_grow_is_an_error(self):
+        before = self.names()
+        for arguments in ("prices simulate --days 62 --out new.csv", "train --prices market.csv --out new.bin",
+                          "backtest --prices market.csv --window-days 30 --policy rbc --out new/backtest"):
+            with self.subTest(arguments):
+                done = self.bess(arguments, lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0)))
+                self.assertEqual(done.returncode, 1, done.stderr)
+                self.assertIn("writing failed: File too large; nothing was changed", done.stderr)
+                self.assertEqual({n for n in self.names() - before if os.path.isfile(n)}, set())
+
+    def test_one_backtest_at_a_time_works_in_a_folder(self):
+        os.mkdir(self.path("new"))
+        folder = os.open(self.path("new"), os.O_RDONLY)
+        fcntl.flock(folder, fcntl.LOCK_EX)
+        backtest = "backtest --prices market.csv --window-days 30 --policy rbc --out new"
+        done = self.bess(backtest)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("new: another bess-train is at work here; wait for it, or give another --out", done.stderr)
+        self.assertEqual(os.listdir(self.path("new")), [])
+        os.close(folder)
+        self.assertEqual(self.bess(backtest).returncode, 0)
 
     def test_a_checkpoint_of_another_run_names_the_key(self):
         train = "train --prices market.csv --method dqn --out t.bin --threads 1 --config a.toml"
