@@ -30,6 +30,9 @@ constexpr std::int32_t kSumSteps = 16;    ///< that the sums remember
 constexpr std::int32_t kSumStepsMin = 8;  ///< that a finding by them needs
 constexpr std::int32_t kTrialSteps = 6;   ///< that end a finding
 constexpr std::int64_t kPermilleMax = 4'000;
+constexpr std::int64_t kRatioMin = 450;
+constexpr std::int64_t kRatioMax = 2'000;
+constexpr std::int64_t kRatioStandsS = 1'200;  ///< without a step that shows it again
 
 constexpr std::int64_t kFirstPauseS = 600;
 constexpr std::int64_t kLongestPauseS = 6 * 3'600;
@@ -100,6 +103,7 @@ void MeterWitness::judge_step(const WitnessReading& now) {
   if (now.utc_s - before_.utc_s > settings_.settle_s + kWindowBeyondS) return;
   const Step step = step_to(now);
   if (step.size_w * 1'000 < settings_.power_w * kStepMinPermille) return;
+  note_ratio(step, now.utc_s);
   missed_w_ = 0;
   end_trial(now.utc_s);
   if (contradicts(step)) {
@@ -128,6 +132,28 @@ void MeterWitness::judge_excess(const WitnessReading& now) {
   if (excess_w * 2 <= step.size_w * 3 || excess_w <= 2 * (noise_w_ + kMeterErrorW)) return;
   has_before_ = false;  // counted once
   on_contradiction(now, kContradicts);
+}
+
+/// Less than the least is a contradiction or the house, and says nothing of a ratio.
+void MeterWitness::note_ratio(const Step& step, std::int64_t utc_s) {
+  const std::int64_t error_w = magnitude(step.along_w - step.size_w);
+  const bool follows = error_w <= step.size_w / 10 + kMeterErrorW;
+  const std::int64_t permille = follows ? kTrueRatio : step.along_w * kTrueRatio / step.size_w;
+  std::move(shown_.begin() + 1, shown_.end(), shown_.begin());
+  shown_.back() = {.utc_s = utc_s,
+                   .permille = permille < kRatioMin
+                                   ? kTrueRatio
+                                   : static_cast<std::int32_t>(std::min(permille, kRatioMax))};
+}
+
+MeterRatios MeterWitness::possible_ratios(std::int64_t now_utc_s) const {
+  MeterRatios ratios;
+  for (const ShownRatio& shown : shown_) {
+    if (magnitude(now_utc_s - shown.utc_s) > kRatioStandsS) continue;
+    ratios.least_permille = std::min(ratios.least_permille, shown.permille);
+    ratios.most_permille = std::max(ratios.most_permille, shown.permille);
+  }
+  return ratios;
 }
 
 MeterWitness::Step MeterWitness::step_to(const WitnessReading& now) const {

@@ -15,6 +15,8 @@
 //   - ratios between 0.6 and 1, and above, are found by the sums over the last steps: the error
 //     is more than a quarter and goes with the step (correlation above 0.7), which the house's
 //     own moves do not do for long;
+//   - until that is known, limits have to hold by the ratio of each of the last three steps as well
+//     (`possible_ratios`, 0.45 to 2, for 20 minutes): no finding, and it costs only near a limit;
 //   - a step that shows on the meter later, with the battery standing still, is the meter's and
 //     not the house's, and so is a sign that turns around.
 // A finding ends by itself, for no person can see from afar either whether a meter is right, and
@@ -29,6 +31,8 @@
 // true looks the same: one of the two is wrong, and neither may be relied on.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "edge/control/site_types.h"
@@ -39,6 +43,14 @@ struct MeterWitnessSettings {
   bool judges = true;
   std::int32_t power_w = 4'000;  ///< rated, of the battery
   std::int32_t settle_s = 20;    ///< from an order to the power that answers it
+};
+
+inline constexpr std::int32_t kTrueRatio = 1'000;  ///< in permille
+
+/// Of what the meter shows to what flows, as its last steps have shown it, in permille.
+struct MeterRatios {
+  std::int32_t least_permille = kTrueRatio;  ///< 1000 or less
+  std::int32_t most_permille = kTrueRatio;   ///< 1000 or more
 };
 
 /// The order that the battery follows while meter and battery are read.
@@ -64,6 +76,10 @@ class MeterWitness {
   void restore(const MeterTrust& trust) { trust_ = trust; }
   [[nodiscard]] const MeterTrust& trust() const { return trust_; }
 
+  /// Limits must hold by these as well: a step that shows too little is as likely the meter's as the house's,
+  /// and long before either is known, a limit has been passed.
+  [[nodiscard]] MeterRatios possible_ratios(std::int64_t now_utc_s) const;
+
   /// Found: the meter's value must not decide.
   [[nodiscard]] bool is_mismatch() const { return trust_.is_mismatch; }
   /// Power, of either sign, that may be ordered as things stand; kAnyPowerW: nothing is wrong.
@@ -76,10 +92,16 @@ class MeterWitness {
     std::int64_t along_w;  ///< of the meter, positive: the same way
   };
 
+  struct ShownRatio {
+    std::int64_t utc_s = 0;
+    std::int32_t permille = kTrueRatio;
+  };
+
   void fade_doubt(std::int64_t utc_s);
   void note_house(const WitnessReading& now);
   void judge_step(const WitnessReading& now);
   void judge_excess(const WitnessReading& now);
+  void note_ratio(const Step& step, std::int64_t utc_s);
   [[nodiscard]] Step step_to(const WitnessReading& now) const;
   [[nodiscard]] bool turns_around(std::int64_t from_w, std::int64_t to_w) const;
   [[nodiscard]] bool is_late_answer(std::int64_t house_step_w, std::int64_t utc_s) const;
@@ -103,6 +125,7 @@ class MeterWitness {
   std::int64_t missed_w_ = 0;     ///< the battery's last step that did not show, with its sign
   std::int64_t missed_utc_s_ = 0;
   std::int64_t retreat_until_utc_s_ = 0;
+  std::array<ShownRatio, 3> shown_{};  ///< by the last steps
 };
 
 }  // namespace bess

@@ -107,13 +107,7 @@ class SiteLimits {
     if (witness_.is_mismatch() && !settings_.idle_without_meter) return range;
     if (is_recent(now_utc_s)) {
       const std::int32_t trusted_w = limit_by_trust(now_utc_s, range);
-      const std::int32_t margin_w = settings_.connection.margin_w;
-      limit_at_connection(settings_.connection, margin == Margin::kWhole ? margin_w : margin_w / 2,
-                          {.grid_w = grid_w_,
-                           .battery_w = battery_w_,
-                           .relief_w_max = relief_w_max,
-                           .quarter_hour = energy_.at(now_utc_s)},
-                          range);
+      limit_at_connection_by_ratios(now_utc_s, relief_w_max, margin, range);
       if (trusted_w != kAnyPowerW) range.relief_w = 0;
     } else if (settings_.idle_without_meter) {
       range.forbid(Reason::kMeterLost);
@@ -150,6 +144,25 @@ class SiteLimits {
     range.limit_charge(power_w, Reason::kMeterMismatch);
     range.limit_discharge(power_w, Reason::kMeterMismatch);
     return power_w;
+  }
+
+  /// As the meter shows it, and as it would be if its last steps' ratio were the meter's and not the house's.
+  void limit_at_connection_by_ratios(std::int64_t now_utc_s, std::int32_t relief_w_max,
+                                     Margin margin, SiteRange& range) const {
+    const std::int32_t margin_w = settings_.connection.margin_w;
+    const std::int32_t kept_w = margin == Margin::kWhole ? margin_w : margin_w / 2;
+    ConnectionState state{.grid_w = grid_w_,
+                          .battery_w = battery_w_,
+                          .relief_w_max = relief_w_max,
+                          .quarter_hour = energy_.at(now_utc_s)};
+    const MeterRatios ratios = witness_.possible_ratios(now_utc_s);
+    // 1 is the last: what is given back follows from what was measured.
+    for (const std::int32_t permille : {ratios.least_permille, ratios.most_permille, kTrueRatio}) {
+      const std::int64_t grid_w = std::int64_t{grid_w_} * kTrueRatio / permille;
+      state.grid_w =
+          static_cast<std::int32_t>(std::clamp<std::int64_t>(grid_w, -kAnyPowerW, kAnyPowerW));
+      limit_at_connection(settings_.connection, kept_w, state, range);
+    }
   }
 
   /// A clock that was stepped back makes readings of the future: those are no readings either.

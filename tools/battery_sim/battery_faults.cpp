@@ -81,6 +81,7 @@ constexpr BatteryFaultInfo kFaults[] = {
      "lasts: every --fault-period-s the device ends the order by itself", kLasting},
     {BatteryFault::kGridScaled, "grid-scaled", "lasts: shows a tenth of the grid's power",
      kLasting},
+    {BatteryFault::kGridRatio, "grid-ratio", "lasts: shows 65 % of the grid's power", kLasting},
     {BatteryFault::kGridOffset, "grid-offset", "lasts: shows 1000 W less of the grid's power",
      kLasting},
     {BatteryFault::kGridLate, "grid-late", "lasts: shows the grid's power of a minute before",

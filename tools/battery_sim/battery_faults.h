@@ -60,6 +60,7 @@ enum class BatteryFault : std::uint8_t {
   kMasterMode,
   kEndsOrders,
   kGridScaled,
+  kGridRatio,
   kGridOffset,
   kGridLate,
   kGridOtherPhase,

@@ -106,7 +106,9 @@ double FaultyDevice::gain(std::int64_t utc_ns) const {
 
 void FaultyDevice::show_grid_as_of(std::int64_t utc_ns) {
   const auto lasts = [&](BatteryFault fault) { return plan_.lasts(fault, elapsed_s(utc_ns)); };
-  image_->set_grid_display({.gain = lasts(BatteryFault::kGridScaled) ? 0.1 : 1.0,
+  image_->set_grid_display({.gain = lasts(BatteryFault::kGridScaled)  ? 0.1
+                                    : lasts(BatteryFault::kGridRatio) ? 0.65
+                                                                      : 1.0,
                             .offset_w = lasts(BatteryFault::kGridOffset) ? -1'000.0 : 0.0,
                             .late_s = lasts(BatteryFault::kGridLate) ? 60 : 0,
                             .other_phase = lasts(BatteryFault::kGridOtherPhase)});

@@ -118,6 +118,40 @@ TEST(MeterWitness, ARatioNearOneIsFoundByItsSums) {
   EXPECT_EQ(near.witness.trust().doubt, 0);
 }
 
+TEST(MeterWitness, ARatioThatAStepHasShownIsPossibleFromThenOn) {
+  Connection c;
+  c.cycles(6);
+  EXPECT_EQ(c.witness.possible_ratios(c.utc_s).least_permille, 1'000);
+  EXPECT_EQ(c.witness.possible_ratios(c.utc_s).most_permille, 1'000);
+  c.meter = [](double w) { return 0.65 * w; };
+  c.cycle(4'000);  // from an honest reading to one that is not
+  c.cycle(0);
+  EXPECT_NEAR(c.witness.possible_ratios(c.utc_s).least_permille, 650, 10);
+  EXPECT_EQ(c.witness.possible_ratios(c.utc_s).most_permille, 1'000);
+  EXPECT_EQ(c.witness.trust().doubt, 0) << "and no doubt";
+  EXPECT_EQ(c.witness.possible_ratios(c.utc_s + 1'300).least_permille, 1'000) << "and not for ever";
+  EXPECT_EQ(c.witness.possible_ratios(c.utc_s - 86'400).least_permille, 1'000) << "clock set back";
+  c.meter = [](double w) { return w; };
+  c.cycle(4'000);
+  c.cycle(0);
+  EXPECT_NEAR(c.witness.possible_ratios(c.utc_s).least_permille, 650, 10) << "of three steps";
+  c.cycle(4'000);
+  c.cycle(0);
+  EXPECT_EQ(c.witness.possible_ratios(c.utc_s).least_permille, 1'000);
+  c.meter = [](double w) { return 3 * w; };
+  c.cycle(0);
+  c.cycle(900);
+  EXPECT_EQ(c.witness.possible_ratios(c.utc_s).most_permille, 2'000) << "no further";
+}
+
+TEST(MeterWitness, AContradictionIsNoRatio) {
+  Connection c;
+  c.cycles(6);
+  c.meter = [](double w) { return -w; };
+  c.cycles(2);
+  EXPECT_EQ(c.witness.possible_ratios(c.utc_s).least_permille, 1'000);
+}
+
 TEST(MeterWitness, AFindingIsTestedAfterItsPauseAndEnds) {
   Connection c;
   c.meter = [](double w) { return -w; };

@@ -98,8 +98,8 @@ TEST(Scenarios, WhatAMeterCanDoWrongIsInOne) {
     tried.insert(s.meter.fault.schedule.faults.begin(), s.meter.fault.schedule.faults.end());
   }
   using enum BatteryFault;
-  for (const BatteryFault fault :
-       {kSilence, kFrozen, kWrongSign, kGridScaled, kGridOffset, kGridLate, kGridOtherPhase}) {
+  for (const BatteryFault fault : {kSilence, kFrozen, kWrongSign, kGridScaled, kGridRatio,
+                                   kGridOffset, kGridLate, kGridOtherPhase}) {
     EXPECT_TRUE(tried.contains(fault)) << static_cast<int>(fault);
   }
 }
