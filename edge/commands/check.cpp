@@ -89,6 +89,10 @@ bool report_sign(const EdgeConfig& config) {
   std::string refusal;
   if (is_commissioned(config, refusal)) {
     std::printf("sign       checked by bess-edge commission\n");
+    std::fflush(stdout);
+    for (const std::string& line : commission_file_losses(config)) {
+      report(JournalLevel::kWarning, "note: %s", line.c_str());
+    }
     return true;
   }
   const bool is_needed = config.control.control;

@@ -64,17 +64,19 @@ void print_table(const std::vector<UpdateEvent>& events) {
 
 int run_history(const HistoryGiven& given, SettingsFile&) {
   const std::string& folder = given.folder;
-  const std::vector<UpdateEvent> events = read_update_history(folder);
-  if (events.empty()) {
-    report(JournalLevel::kError,
-           "%s: no history here: it is kept where bess-edge was installed as a package",
-           folder.c_str());
+  const UpdateHistory history = read_update_history(folder);
+  if (!history.trouble.empty()) {
+    report(JournalLevel::kError, "%s", history.trouble.c_str());
     return 1;
   }
+  if (history.damaged_lines > 0) {
+    report(JournalLevel::kWarning, "%s/history: %d damaged lines are left out", folder.c_str(),
+           history.damaged_lines);
+  }
   if (given.json) {
-    print_json(events);
+    print_json(history.events);
   } else {
-    print_table(events);
+    print_table(history.events);
   }
   return 0;
 }

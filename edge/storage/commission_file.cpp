@@ -42,9 +42,12 @@ struct Stored {
   TomlValue document{};
 };
 
+constexpr const char* kHidden = "is not for this user to read";
+
 std::string why_unreadable(int cause) {
   if (cause == ENOENT) return "is gone";
   if (cause == EPERM) return "belongs to another user";
+  if (cause == EACCES) return kHidden;
   return std::string("cannot be read: ") + std::strerror(cause);
 }
 
@@ -97,6 +100,9 @@ AllStored read_places(const EdgeConfig& config) {
 
 std::string why_not_commissioned(const AllStored& all) {
   const Stored& first = all.places.front();
+  if (first.loss == kHidden) {
+    return first.path + " " + kHidden + ": run this as the user of the service, or with sudo";
+  }
   const std::string why =
       all.are_absent()
           ? ": not there: the battery's sign has not been checked (or the disk of [state] "
@@ -172,6 +178,32 @@ std::string file_text(const EdgeConfig& config, const CommissionResult& result,
   return text.str();
 }
 
+/// What every place should hold.
+std::string whole_text(const Stored& good) {
+  std::string text(without_checksum(good.text, kCommentChecksum));
+  text += checksum_end(text, kCommentChecksum).view();
+  return text;
+}
+
+/// Of a place that holds something else. A boot has emptied memory; an older program kept one alone, without a
+/// checksum: neither is a loss.
+bool is_loss(const EdgeConfig& config, const AllStored& all, const Stored& one,
+             const Stored& good) {
+  if (!one.is_absent) return &one != &good;
+  const bool is_in_memory = &one == &all.places.back() && !config.state.run_folder.empty();
+  return !is_in_memory && good.is_checked;
+}
+
+std::string loss_line(const Stored& one, const Stored& good) {
+  std::string line = one.path + " ";
+  if (one.loss.empty()) {
+    line += one.is_checked ? "says something else" : "has lost its checksum";
+  }
+  line += one.loss;
+  if (&one != &good) line += "; " + good.path + " counts";
+  return line;
+}
+
 /// The file's keys, compared one by one; the first that differs is named.
 bool expect_same(TomlTable& table, std::string_view key, const std::string& configured) {
   FixedText<255> found;
@@ -220,26 +252,34 @@ bool is_commissioned(const EdgeConfig& config, std::string& error) {
   return same;
 }
 
+std::vector<std::string> commission_file_losses(const EdgeConfig& config) {
+  std::vector<std::string> lines;
+  const AllStored all = read_places(config);
+  const Stored* const good = all.that_counts();
+  if (good == nullptr) return lines;
+  const std::string text = whole_text(*good);
+  for (const Stored& one : all.places) {
+    if (one.text != text && is_loss(config, all, one, *good)) {
+      lines.push_back(loss_line(one, *good) + "; a start in control writes it again");
+    }
+  }
+  return lines;
+}
+
 std::vector<std::string> mend_commission_file(const EdgeConfig& config) {
   std::vector<std::string> lines;
   const AllStored all = read_places(config);
   const Stored* const good = all.that_counts();
   if (good == nullptr) return lines;
-  std::string text(without_checksum(good->text, kCommentChecksum));
-  text += checksum_end(text, kCommentChecksum).view();
+  const std::string text = whole_text(*good);
   for (const Stored& one : all.places) {
     if (one.text == text) continue;
     const bool is_written = replace_file_durably(one.path.c_str(), text);
     const int cause = errno;
-    const bool is_in_memory = &one == &all.places.back() && !config.state.run_folder.empty();
-    // A boot has emptied memory; an older program kept one alone, without a checksum.
-    const bool is_no_loss = one.is_absent ? is_in_memory || !good->is_checked : &one == good;
-    if (is_written && is_no_loss) continue;
-    std::string line = one.path + " " + (one.loss.empty() ? "has lost its checksum" : one.loss);
-    if (&one != good) line += "; " + good->path + " counts";
-    line += is_written ? ", and it is written again"
-                       : std::string("; it cannot be written: ") + std::strerror(cause);
-    lines.push_back(line);
+    if (is_written && !is_loss(config, all, one, *good)) continue;
+    lines.push_back(loss_line(one, *good) +
+                    (is_written ? ", and it is written again"
+                                : std::string("; it cannot be written: ") + std::strerror(cause)));
   }
   return lines;
 }

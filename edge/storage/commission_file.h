@@ -19,6 +19,9 @@ bool write_commission_file(const EdgeConfig& config, const CommissionResult& res
 /// False with one line in `error`, which says what differs and how to mend it.
 bool is_commissioned(const EdgeConfig& config, std::string& error);
 
+/// A line for each place that was lost or damaged while another counts; nothing is written.
+std::vector<std::string> commission_file_losses(const EdgeConfig& config);
+
 /// Writes the places that have lost it again, from the one that counts. A line for the journal for each loss; a run
 /// folder that a boot has emptied is none.
 std::vector<std::string> mend_commission_file(const EdgeConfig& config);

@@ -1,7 +1,9 @@
 #include "edge/storage/published_status.h"
 
+#include <fcntl.h>
 #include <signal.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -37,7 +39,14 @@ Json read_status(const char* path) {
   std::string text;
   const bool is_believed = is_believable(path);
   if (!is_believed) report(JournalLevel::kWarning, "%s", strangers_file(path).c_str());
-  if (*path == '\0' || !is_believed || !read_text(path, text)) return Json::parse("");
+  if (*path == '\0' || !is_believed) return Json::parse("");
+  if (!read_text(path, text)) {
+    if (faccessat(AT_FDCWD, path, R_OK, AT_EACCESS) != 0 && errno == EACCES) {
+      report(JournalLevel::kWarning,
+             "%s is not for this user to read: ask as the user of the service, or with sudo", path);
+    }
+    return Json::parse("");
+  }
   const TextState state = check_text(text, kJsonChecksum);
   Json status = Json::parse(state == TextState::kIntact
                                 ? std::string(without_checksum(text, kJsonChecksum)) + "\n}\n"

@@ -1,13 +1,17 @@
 #include "edge/storage/update_state.h"
 
+#include <algorithm>
 #include <array>
+#include <cerrno>
 #include <charconv>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string_view>
 
 #include "edge/log/text_checksum.h"
+#include "shared/utc_text.h"
 
 namespace bess {
 namespace {
@@ -38,22 +42,50 @@ void take_line(std::string_view line, UpdateState& state) {
   if (key == "needed") state.needed_cycles = whole_of(value);
 }
 
+/// 0, or an errno.
+int read_all_of(const std::string& path, std::string& text) {
+  errno = 0;
+  std::ifstream file(path);
+  if (!file) return errno == 0 ? EIO : errno;
+  std::ostringstream bytes;
+  bytes << file.rdbuf();
+  text = bytes.str();
+  std::error_code ignored;
+  return std::filesystem::is_directory(path, ignored) ? EISDIR : 0;
+}
+
+std::string why_hidden(const std::string& path) {
+  return path + " cannot be read by this user; sudo chmod a+r makes it readable";
+}
+
+bool is_hexadecimal(std::string_view text) {
+  return text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
+
+/// Of a text without a checksum: what bess-update would not have written.
+bool is_plausible(const UpdateEvent& event) {
+  constexpr std::string_view kEvents[] = {"trying",      "confirmed", "going_back",
+                                          "rolled_back", "failed",    "dismissed"};
+  std::int64_t utc_s = 0;
+  return parse_utc(event.utc, utc_s) &&
+         std::find(std::begin(kEvents), std::end(kEvents), event.event) != std::end(kEvents) &&
+         is_hexadecimal(event.student) && is_hexadecimal(event.header_sha256);
+}
+
 /// One of the two files, as bess-update writes them.
 struct StateText {
   std::string text;
   bool is_there = false;
+  bool is_hidden = false;    ///< from this user
   bool is_readable = false;  ///< a text, which its checksum does not contradict
   bool is_whole = false;     ///< by its checksum, or by its last line where it has none
 };
 
 StateText read_state_text(const std::string& path) {
   StateText state;
-  std::error_code ignored;
-  state.is_there = std::filesystem::exists(path, ignored);
-  std::ifstream file(path);
-  std::ostringstream bytes;
-  bytes << file.rdbuf();
-  state.text = bytes.str();
+  const int cause = read_all_of(path, state.text);
+  state.is_there = cause != ENOENT;
+  state.is_hidden = cause == EACCES;
   const TextState checked = check_text(state.text, kCommentChecksum);
   state.is_readable = state.text.starts_with("phase=") && checked != TextState::kBroken;
   const std::size_t last = state.text.rfind("\nneeded=");
@@ -73,6 +105,12 @@ UpdateState read_update_state(const std::string& folder) {
   if (!main.is_there && !copy.is_there) return state;
   // Without a copy it is of a bess-update that wrote neither that nor a checksum.
   const bool main_counts = main.is_whole || (main.is_readable && !copy.is_there);
+  if (!main_counts && !copy.is_whole && (main.is_hidden || copy.is_hidden)) {
+    state.phase = "hidden";
+    state.reason = "the state of the upgrades is not known: " +
+                   why_hidden(main.is_hidden ? path : path + ".copy");
+    return state;
+  }
   if (!main_counts && !copy.is_whole) {
     state.phase = "failed";
     state.reason = "the state of the upgrades is lost: " + path + " and its copy are damaged";
@@ -96,6 +134,7 @@ std::string update_note(const UpdateState& state) {
   }
   if (state.phase == "confirmed") return state.version + " confirmed";
   if (state.phase == "upgrading") return "a new version is being installed";
+  if (state.phase == "hidden") return state.reason;
   if (state.phase == "failed" && state.version.empty()) return state.reason;
   if (state.phase == "failed") return state.version + " did not confirm: " + state.reason;
   if (state.phase == "going_back") return state.refused + " is being rolled back: " + state.reason;
@@ -103,15 +142,31 @@ std::string update_note(const UpdateState& state) {
 }
 
 std::string update_trouble(const UpdateState& state) {
-  const bool ended_badly =
-      state.phase == "failed" || state.phase == "going_back" || state.phase == "rolled_back";
+  const bool ended_badly = state.phase == "hidden" || state.phase == "failed" ||
+                           state.phase == "going_back" || state.phase == "rolled_back";
   return ended_badly ? update_note(state) : "";
 }
 
-std::vector<UpdateEvent> read_update_history(const std::string& folder) {
-  std::vector<UpdateEvent> events;
-  std::ifstream file(folder + "/history");
-  for (std::string line; std::getline(file, line);) {
+UpdateHistory read_update_history(const std::string& folder) {
+  const std::string path = folder + "/history";
+  UpdateHistory history;
+  std::string text;
+  switch (const int cause = read_all_of(path, text)) {
+    case 0:
+      break;
+    case ENOENT:
+      history.trouble =
+          folder + ": no history here: it is kept where bess-edge was installed as a package";
+      return history;
+    case EACCES:
+      history.trouble = why_hidden(path);
+      return history;
+    default:
+      history.trouble = path + " cannot be read: " + std::strerror(cause);
+      return history;
+  }
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
     constexpr std::size_t kFields = 6;
     std::array<std::string, kFields> fields;
     std::size_t count = 0;
@@ -120,10 +175,15 @@ std::vector<UpdateEvent> read_update_history(const std::string& folder) {
       end = line.find('\t', begin);
       fields[count++] = line.substr(begin, end == std::string::npos ? end : end - begin);
     }
-    if (count != kFields || file.eof()) continue;  // without its line end it was torn
-    events.push_back({fields[0], fields[1], fields[2], fields[3], fields[4], fields[5]});
+    const UpdateEvent event{fields[0], fields[1], fields[2], fields[3], fields[4], fields[5]};
+    const bool is_torn = count != kFields || lines.eof();
+    if (is_torn || !is_plausible(event)) {
+      ++history.damaged_lines;
+    } else {
+      history.events.push_back(event);
+    }
   }
-  return events;
+  return history;
 }
 
 }  // namespace bess

@@ -12,7 +12,7 @@ inline constexpr const char* kUpdateFolder = "/var/lib/bess-update";
 
 struct UpdateState {
   std::string
-      phase;  ///< "upgrading", "trying", "confirmed", "going_back", "rolled_back", "failed"; empty = unknown
+      phase;  ///< "upgrading", "trying", "confirmed", "going_back", "rolled_back", "failed"; "hidden" from this user; empty = unknown
   std::string version;
   std::string previous;  ///< the version that is kept beside; empty = none
   std::string refused;   ///< the version that was rolled back; empty = none
@@ -34,14 +34,18 @@ std::string update_trouble(const UpdateState& state);
 /// One line of the history.
 struct UpdateEvent {
   std::string utc;
-  std::string event;  ///< "trying", "confirmed", "going_back", "rolled_back", "failed"
+  std::string event;  ///< "trying", "confirmed", "going_back", "rolled_back", "failed", "dismissed"
   std::string version;
   std::string student;        ///< hash of the weights, 8 hexadecimal digits
   std::string header_sha256;  ///< of the exported header, which holds the certificate
   std::string reason;
 };
 
-/// Oldest first. A line that a power cut tore is left out.
-std::vector<UpdateEvent> read_update_history(const std::string& folder);
+struct UpdateHistory {
+  std::vector<UpdateEvent> events;  ///< oldest first
+  int damaged_lines = 0;            ///< torn by a power cut, or no such line: left out
+  std::string trouble;              ///< why there is none; empty = it was read
+};
+UpdateHistory read_update_history(const std::string& folder);
 
 }  // namespace bess

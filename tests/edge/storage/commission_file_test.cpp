@@ -7,6 +7,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "tests/support/as_nobody.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bess {
@@ -108,6 +109,7 @@ class CommissionCopies : public CommissionFile {
   }
   void expect_all_whole() {
     for (const char* place : kPlaces) EXPECT_EQ(text_of_file(folder_.file(place)), text_) << place;
+    EXPECT_THAT(commission_file_losses(config_), ::testing::IsEmpty());
     EXPECT_THAT(mend_commission_file(config_), ::testing::IsEmpty());
   }
 
@@ -124,6 +126,11 @@ TEST_F(CommissionCopies, AnyFlippedByteOfAnyPlaceIsToldAndMended) {
       flipped[i] = static_cast<char>(flipped[i] ^ (1 << i % 8));
       static_cast<void>(folder_.write(place, flipped));
       ASSERT_TRUE(is_commissioned(config_, error_)) << error_;
+      ASSERT_THAT(commission_file_losses(config_),
+                  ::testing::ElementsAre(::testing::AllOf(HasSubstr(folder_.file(place)),
+                                                          HasSubstr("a start in control"))))
+          << i;
+      ASSERT_EQ(text_of_file(folder_.file(place)), flipped) << "looking writes nothing";
       ASSERT_THAT(mend_commission_file(config_), ::testing::ElementsAre(::testing::AllOf(
                                                      HasSubstr(folder_.file(place)),
                                                      HasSubstr("counts, and it is written again"))))
@@ -147,6 +154,7 @@ TEST_F(CommissionCopies, WhatIsCutEmptyGoneOrNoFileIsTakenFromTheOthers) {
     fs::remove(path);
     ASSERT_TRUE(is_commissioned(config_, error_)) << error_;
     const bool is_in_memory = std::string(place).starts_with("run/");
+    EXPECT_EQ(commission_file_losses(config_).size(), is_in_memory ? 0U : 1U);
     EXPECT_EQ(mend_commission_file(config_).size(), is_in_memory ? 0U : 1U) << "a boot is no loss";
     expect_all_whole();
     fs::remove(path);
@@ -165,6 +173,16 @@ TEST_F(CommissionCopies, AllOfThemBrokenIsNoProofAndSaysSo) {
                                             HasSubstr("no copy counts"),
                                             HasSubstr("bess-edge commission --config FILE --yes")));
   EXPECT_THAT(mend_commission_file(config_), ::testing::IsEmpty());
+}
+
+TEST_F(CommissionCopies, WhatIsHiddenFromThisUserIsNoDyingDisk) {
+  for (const char* place : kPlaces) {
+    std::filesystem::permissions(folder_.file(place), std::filesystem::perms::none);
+  }
+  const AsNobody reader;
+  EXPECT_THAT(complaint(),
+              ::testing::AllOf(HasSubstr("is not for this user to read"), HasSubstr("or with sudo"),
+                               ::testing::Not(HasSubstr("disk"))));
 }
 
 /// A program before this one kept it once, and without a checksum: no loss.

@@ -2,9 +2,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "edge/log/text_checksum.h"
 #include "edge/storage/storage_health.h"
 #include "edge/storage/update_state.h"
+#include "tests/support/as_nobody.h"
 #include "tests/support/fake_card.h"
 #include "tests/support/temporary_folder.h"
 
@@ -14,6 +17,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 using ::testing::SizeIs;
 
 std::string folder_of(const TemporaryFolder& folder) { return folder.file(""); }
@@ -21,7 +25,8 @@ std::string folder_of(const TemporaryFolder& folder) { return folder.file(""); }
 TEST(UpdateState, WithoutAPackageThereIsNothingToTell) {
   const TemporaryFolder folder;
   EXPECT_EQ(update_note(read_update_state(folder_of(folder))), "");
-  EXPECT_THAT(read_update_history(folder_of(folder)), IsEmpty());
+  EXPECT_THAT(read_update_history(folder_of(folder)).events, IsEmpty());
+  EXPECT_THAT(read_update_history(folder_of(folder)).trouble, HasSubstr("no history here"));
 }
 
 TEST(UpdateState, ATrialTellsItsCyclesAndItsWayBack) {
@@ -113,7 +118,10 @@ TEST(UpdateHistory, OldestFirstAndNotWhatAPowerCutTore) {
                    "2026-11-22T06:00:00Z\ttrying\t2.0\t45d2cbe3\t72c9\t\n"
                    "2026-11-22T06:09:00Z\trolled_back\t2.0\t45d2cbe3\t72c9\tthe unit failed\n"
                    "2026-11-22T07:00:00Z\ttrying\t3.0\t45d2cbe3\t72c9\thal"));
-  const auto events = read_update_history(folder_of(folder));
+  const auto history = read_update_history(folder_of(folder));
+  const auto& events = history.events;
+  EXPECT_EQ(history.trouble, "");
+  EXPECT_EQ(history.damaged_lines, 1);
   ASSERT_THAT(events, SizeIs(2));
   EXPECT_EQ(events[0].event, "trying");
   EXPECT_EQ(events[0].reason, "");
@@ -121,6 +129,39 @@ TEST(UpdateHistory, OldestFirstAndNotWhatAPowerCutTore) {
   EXPECT_EQ(events[1].student, "45d2cbe3");
   EXPECT_EQ(events[1].header_sha256, "72c9");
   EXPECT_EQ(events[1].reason, "the unit failed");
+}
+
+TEST(UpdateHistory, WhatIsNoLineIsCountedAndNotShown) {
+  const TemporaryFolder folder;
+  const std::string line = "2026-11-22T06:00:00Z\ttrying\t2.0\t45d2cbe3\t72c9\t\n";
+  for (const std::string& damaged :
+       {std::string(40, '\0') + "\n", std::string("2O26-11-22T06:00:00Z") + line.substr(20),
+        line.substr(0, 22) + "p" + line.substr(23), line.substr(0, 9) + "\n",
+        line.substr(0, 32) + "G" + line.substr(33)}) {
+    static_cast<void>(folder.write("history", line + damaged + line));
+    const UpdateHistory history = read_update_history(folder_of(folder));
+    EXPECT_EQ(history.damaged_lines, 1) << damaged;
+    EXPECT_THAT(history.events, SizeIs(2)) << damaged;
+  }
+}
+
+TEST(UpdateHistory, WhatCannotBeReadSaysWhy) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder.file("history"));
+  EXPECT_THAT(read_update_history(folder_of(folder)).trouble,
+              HasSubstr("history cannot be read: Is a directory"));
+}
+
+/// Written by a root whose files are for root alone; `status` is asked by anybody.
+TEST_F(UpdateStateCopies, WhatIsHiddenFromThisUserIsToldWithTheMend) {
+  static_cast<void>(folder_.write("history", "x"));
+  for (const char* name : {"state", "state.copy", "history"}) {
+    std::filesystem::permissions(folder_.file(name), std::filesystem::perms::none);
+  }
+  const AsNobody reader;
+  EXPECT_THAT(trouble(), AllOf(HasSubstr("state cannot be read by this user"),
+                               HasSubstr("sudo chmod a+r"), Not(HasSubstr("damaged"))));
+  EXPECT_THAT(read_update_history(folder_of(folder_)).trouble, HasSubstr("sudo chmod a+r"));
 }
 
 TEST(StorageHealth, WearIsTheWorseOfTheTwoKindsOfCells) {
