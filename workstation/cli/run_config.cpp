@@ -190,7 +190,7 @@ void KeyList::list(RunConfig& c) {
   number("fidelity", c.distil.fidelity, 0, 100,
          "construction: following the teacher's every choice, beside losing no money");
   number("level_shift_eur_per_mwh", c.distil.level_shift_eur_per_mwh, 0, 1000,
-         "construction, sdp: deviation of what visited days are moved by, to see other levels");
+         "construction, a teacher with a program: deviation of what visited days are moved by");
   number("omega", c.distil.omega, 1e-8, 1,
          "layer: the paper's trade-off, larger follows the teacher");
   number("temperature_eur_per_h", c.distil.temperature_eur_per_h, 1e-3, 1e6,
@@ -229,7 +229,7 @@ void check_relations(const RunConfig& config, const std::string& name) {
     fail("{}: [train] value_min_eur_per_h must be below value_max_eur_per_h", name);
   }
   if (config.train.residual && config.train.horizon != Horizon::kContinuing) {
-    fail("{}: [train] residual needs horizon = \"continuing\": the program's days have no end",
+    fail("{}: [train] horizon = \"day\" needs residual = false: the program's days have no end",
          name);
   }
   if (config.train.inputs.count() > 0 && config.train.source != Source::kCounterfactual) {

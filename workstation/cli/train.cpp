@@ -257,12 +257,12 @@ void warn_narrow_support(const TrainOptions& options, const TrainResult& result)
 void add_train_command(ProgramCommand& app) {
   auto options = std::make_shared<TrainArguments>();
   ProgramCommand command =
-      app.subcommand("train", "Make the teacher: stochastic program, C51 or DQN");
+      app.subcommand("train", "Make the teacher: C51, DQN or the stochastic program");
   command.option("--prices", options->prices, "Minute file (.csv or .csv.gz)").required();
   options->price_input.add(command);
   command.option("--out", options->out, "Teacher file to write").required();
-  command.option("--method", options->method, "sdp (default), c51 or dqn")
-      .one_of({"sdp", "c51", "dqn"});
+  command.option("--method", options->method, "c51 (default), dqn or sdp")
+      .one_of({"c51", "dqn", "sdp"});
   command.option("--steps", options->steps, "Gradient steps").positive();
   command.option("--curve-out", options->curve_out, "CSV of the learning curve, one a seed");
   command
@@ -280,7 +280,7 @@ void add_train_command(ProgramCommand& app) {
       "Ctrl-C saves the best so far and a checkpoint, and exits with 3; --resume goes on from it.\n"
       "Examples:\n"
       "  bess-train train --prices market.csv.gz --out teacher.bin\n"
-      "  bess-train train --prices market.csv.gz --method c51 --seed 7 --out c51.bin\n"
+      "  bess-train train --prices market.csv.gz --method sdp --out program.bin\n"
       "  bess-train train --prices market.csv.gz --seeds 3 --out best.bin\n"
       "  bess-train train --prices market.csv.gz --config workstation/config/paper.toml --out "
       "paper.bin");

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <string_view>
 
 #include "workstation/report/headline.h"
 #include "workstation/report/html.h"
@@ -14,6 +15,7 @@ namespace {
 constexpr const char* kNoFigure = "\u2013";
 constexpr const char* kProgram = "sdp";
 constexpr const char* kProgramAsTeacher = "sdp teacher";
+constexpr std::string_view kTeacherEnd = " teacher";  ///< of its name, whatever its method
 
 const NamedEvaluation* evaluation_named(const std::vector<NamedEvaluation>& evaluations,
                                         std::string_view name) {
@@ -58,13 +60,20 @@ std::string whole_battery_text(const std::vector<NamedEvaluation>& evaluations) 
 
 std::string same_program_text(const std::vector<NamedEvaluation>& evaluations) {
   const NamedEvaluation* program = evaluation_named(evaluations, kProgram);
-  const NamedEvaluation* teacher = evaluation_named(evaluations, kProgramAsTeacher);
-  if (program == nullptr || teacher == nullptr) return {};
+  const auto is_teacher = [](const NamedEvaluation& e) { return e.name.ends_with(kTeacherEnd); };
+  const auto teacher = std::ranges::find_if(evaluations, is_teacher);
+  if (program == nullptr || teacher == evaluations.end()) return {};
   for (const auto field : {&NamedEvaluation::day_reset, &NamedEvaluation::carried_over}) {
-    if (!std::ranges::equal((program->*field).days, (teacher->*field).days, {},
+    if (!std::ranges::equal((program->*field).days, ((*teacher).*field).days, {},
                             &DayResult::profit_eur, &DayResult::profit_eur)) {
       return {};
     }
+  }
+  if (teacher->name != kProgramAsTeacher) {
+    return fmt::format(
+        "{} and {} decide the same at every step: nothing that was learnt earned more on "
+        "validation days than the program that it began as",
+        kProgram, teacher->name);
   }
   return fmt::format(
       "{} and {} are the same program, fitted on the same days: they decide the same at every step",

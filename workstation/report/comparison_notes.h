@@ -14,8 +14,9 @@ std::string whole_battery_html(const std::vector<NamedEvaluation>& evaluations);
 /// student.
 std::string whole_battery_text(const std::vector<NamedEvaluation>& evaluations);
 
-/// "sdp and sdp teacher are ...", where both earned the same on every day, to the bit: a teacher of the stochastic
-/// program asks the very program that the baseline is. Empty otherwise.
+/// "sdp and sdp teacher are ...", where both earned the same on every day, to the bit: a teacher of
+/// the stochastic program asks the very program that the baseline is, and so does a residual one whose
+/// validation kept step 0. Empty otherwise.
 std::string same_program_text(const std::vector<NamedEvaluation>& evaluations);
 
 }  // namespace bess

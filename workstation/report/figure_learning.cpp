@@ -2,7 +2,10 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
+#include <span>
 
+#include "workstation/env/policy.h"
 #include "workstation/report/curves.h"
 #include "workstation/report/figures.h"
 
@@ -13,14 +16,17 @@ const CurvePoint& best_of(const std::vector<CurvePoint>& curve) {
   return *std::ranges::max_element(curve, {}, &CurvePoint::validation_eur_per_day_per_mwh);
 }
 
+/// Step 0 is a residual's alone.
+bool begins_as_program(std::span<const CurvePoint> curve) { return curve.front().step == 0; }
+
 std::vector<std::string> learning_rows(const std::vector<CurvePoint>& curve) {
   std::vector<double> profit;
   for (const CurvePoint& p : curve) profit.push_back(p.validation_eur_per_day_per_mwh);
   const std::vector<double> smooth = centred_mean(profit, kSmoothingReach);
   std::vector<std::string> rows;
   for (std::size_t i = 0; i < curve.size(); ++i) {
-    rows.push_back(
-        fmt::format("{} {:.3f} {:.3f} {:.6g}", curve[i].step, profit[i], smooth[i], curve[i].loss));
+    const std::string loss = curve[i].step == 0 ? "NaN" : fmt::format("{:.6g}", curve[i].loss);
+    rows.push_back(fmt::format("{} {:.3f} {:.3f} {}", curve[i].step, profit[i], smooth[i], loss));
   }
   return rows;
 }
@@ -39,7 +45,8 @@ Range profit_range(const std::vector<CurvePoint>& curve, double rule) {
   return {all.low - room, all.high + room};
 }
 
-double loss_tic(const std::vector<CurvePoint>& curve) {
+double loss_tic(std::span<const CurvePoint> curve) {
+  if (begins_as_program(curve) && curve.size() > 1) curve = curve.subspan(1);  // nothing was learnt
   const auto [low, high] = std::ranges::minmax_element(curve, {}, &CurvePoint::loss);
   return tic_distance(high->loss - low->loss, 3);
 }
@@ -50,6 +57,16 @@ std::string rule_line(double rule) {
       "set label 1 'rule-based {0:.1f}' at graph 0.99, first {0} right offset 0,0.6 textcolor "
       "{1}\n",
       rule, rgb(kDischarge));
+}
+
+/// What the network began as, and was to better.
+std::string program_line(const std::vector<CurvePoint>& curve) {
+  if (!begins_as_program(curve)) return {};
+  return fmt::format(
+      "set arrow 3 from graph 0, first {0} to graph 1, first {0} nohead dt (2,3) lw 1.5 lc {1}\n"
+      "set label 3 'the program, step 0: {0:.1f}' at graph 0.99, first {0} right offset 0,-0.7 "
+      "textcolor {1}\n",
+      curve.front().validation_eur_per_day_per_mwh, rgb(kMuted));
 }
 
 std::string best_point(const CurvePoint& best, bool label_right) {
@@ -67,7 +84,8 @@ std::string profit_panel(const std::vector<CurvePoint>& curve, double rule) {
              "set tmargin at screen 0.925\nset bmargin at screen 0.42\nset yrange [{}:{}]\n"
              "set ylabel \"validation profit,\\nEUR/day/MWh\"\nset format x ''\nset ytics {}\n",
              range.low, range.high, tic_distance(range.high - range.low, 6)) +
-         rule_line(rule) + best_point(best, best.step * 2 < curve.back().step) +
+         rule_line(rule) + program_line(curve) +
+         best_point(best, best.step * 2 < curve.back().step) +
          fmt::format(
              "plot $curve using 1:2 with lines lw 1.5 lc {}, $curve using 1:3 with lines lw 3 lc "
              "{}\n",
@@ -76,7 +94,7 @@ std::string profit_panel(const std::vector<CurvePoint>& curve, double rule) {
 
 std::string loss_panel(const std::vector<CurvePoint>& curve) {
   return fmt::format(
-      "unset arrow 1\nunset label 1\nunset label 2\n"
+      "unset arrow\nunset label\n"
       "set tmargin at screen 0.36\nset bmargin at screen 0.14\nset yrange [*:*]\nset ytics {}\n"
       "set format x '%g'\nset xlabel 'gradient steps'\nset ylabel 'loss'\n"
       "plot $curve using 1:4 with lines lw 2 lc {}\n",
@@ -113,24 +131,37 @@ Figure regret_figure(const std::vector<DistilPoint>& curve) {
 
 }  // namespace
 
+double rule_validation_profit(const MarketSteps& market, const BatteryParameters& battery) {
+  RuleBasedPolicy rule(kPaperRuleLowEurPerMwh, kPaperRuleHighEurPerMwh);
+  EvaluationOptions options;
+  options.battery = battery;
+  options.carry_soc = true;
+  return evaluate(market, market.days_of(Split::kValidation), rule, options)
+      .profit_eur_per_day_per_mwh();
+}
+
 Figure learning_figure(const std::vector<CurvePoint>& curve, double rule) {
   const CurvePoint& best = best_of(curve);
   const double gain = best.validation_eur_per_day_per_mwh - rule;
+  const bool has_program = begins_as_program(curve);
+  const double over_program =
+      best.validation_eur_per_day_per_mwh - curve.front().validation_eur_per_day_per_mwh;
   Figure figure;
   figure.name = "learning_curve";
   figure.title = "How the teacher learned";
   figure.height_px = 520;
   figure.alt = fmt::format(
       "Line chart: validation profit over {} gradient steps, raw and smoothed, with the rule-based "
-      "controller as a dashed line; below it the training loss.",
-      curve.back().step);
+      "controller{} as a dashed line; below it the training loss.",
+      curve.back().step, has_program ? " and the program that it began as" : "");
   figure.caption = fmt::format(
       "On the validation days the teacher earned most at step {}: {:.1f} EUR per day per MWh, "
       "{:.1f} "
-      "{} than the rule-based controller. Those weights are kept; the smoothed line is the mean "
+      "{} than the rule-based controller{}. Those weights are kept; the smoothed line is the mean "
       "over "
       "up to two points on either side.",
-      best.step, best.validation_eur_per_day_per_mwh, std::abs(gain), gain < 0 ? "less" : "more");
+      best.step, best.validation_eur_per_day_per_mwh, std::abs(gain), gain < 0 ? "less" : "more",
+      has_program ? fmt::format(", {:.1f} more than the program, its step 0", over_program) : "");
   const KeyRow key = key_row(figure, 100,
                              {{"each validation", kSoft, KeyEntry::Kind::kLine, 1.5},
                               {"mean of five", kCharge, KeyEntry::Kind::kLine, 3}});

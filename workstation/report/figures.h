@@ -13,7 +13,12 @@
 
 namespace bess {
 
-/// Validation profit and loss over gradient steps; `curve` not empty.
+/// What the paper's rule earns on the validation days as a teacher is judged there, charge carried
+/// over.
+double rule_validation_profit(const MarketSteps& market, const BatteryParameters& battery);
+
+/// Validation profit and loss over gradient steps, and the rule; `curve` not empty. A curve that has
+/// a step 0 is a residual's, which was the stochastic program then.
 Figure learning_figure(const std::vector<CurvePoint>& curve,
                        double rule_validation_eur_per_day_per_mwh);
 

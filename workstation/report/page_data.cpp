@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "workstation/env/context_fit.h"
+#include "workstation/report/figures.h"
 #include "workstation/report/headline.h"
 #include "workstation/report/page_rules.h"
 #include "workstation/report/price_histogram.h"
@@ -180,6 +181,7 @@ Json learning_json(const ReportInputs& in) {
   Json json = Json::object({{"by_construction", by_construction}});
   json.set("checkpoints", std::move(checkpoints));
   json.set("training", std::move(training));
+  json.set("rule", rule_validation_profit(in.market, in.battery));
   json.set("distil", std::move(distil));
   return json;
 }

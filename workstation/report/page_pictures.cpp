@@ -212,7 +212,11 @@ PictureTable map_table(const ReportInputs& in) {
 }
 
 PictureTable teacher_table(const ReportInputs& in) {
-  PictureTable table{"validation_teacher", {"step", "validation_eur_per_day_per_mwh", "state"}, {}};
+  PictureTable table{
+      "validation_teacher",
+      {"step", "validation_eur_per_day_per_mwh", "state", "rule_eur_per_day_per_mwh"},
+      {}};
+  const std::string rule = exact(rule_validation_profit(in.market, in.battery));
   const auto best =
       std::ranges::max_element(in.training_curve, {}, &CurvePoint::validation_eur_per_day_per_mwh);
   for (auto point = in.training_curve.begin(); point != in.training_curve.end(); ++point) {
@@ -220,7 +224,7 @@ PictureTable teacher_table(const ReportInputs& in) {
         point == best ? CheckpointState::kChosen : CheckpointState::kPassedOver;
     table.rows.push_back({fmt::format("{}", point->step),
                           exact(point->validation_eur_per_day_per_mwh),
-                          std::string(checkpoint_state_name(state))});
+                          std::string(checkpoint_state_name(state)), rule});
   }
   return table;
 }

@@ -32,12 +32,6 @@ constexpr const char* kPageTitle = "Battery arbitrage: what was learned, correct
 constexpr const char* kFailedTitle =
     "Battery arbitrage: what was learned, and where its proof failed";
 
-double rule_validation_profit(const ReportInputs& in) {
-  RuleBasedPolicy rule(kPaperRuleLowEurPerMwh, kPaperRuleHighEurPerMwh);
-  return evaluate(in.market, in.market.days_of(Split::kValidation), rule, {.battery = in.battery})
-      .profit_eur_per_day_per_mwh();
-}
-
 std::vector<NamedPolicyMap> policy_maps(const ReportInputs& in, const PolicyContext& context) {
   std::vector<NamedPolicyMap> maps;
   if (in.teacher) maps.push_back({"teacher", teacher_grid(*in.teacher, context)});
@@ -111,7 +105,8 @@ std::vector<Figure> figures_of(const ReportInputs& in) {
   figures.push_back(widest_day_figure(in, *widest_test_day(in.market)));
   add_policy_maps(in, figures);
   if (in.training_curve.size() > 1) {  // a program is fitted, not trained
-    figures.push_back(learning_figure(in.training_curve, rule_validation_profit(in)));
+    figures.push_back(
+        learning_figure(in.training_curve, rule_validation_profit(in.market, in.battery)));
   }
   if (!in.distil_curve.empty()) figures.push_back(distillation_figure(in.distil_curve));
   figures.push_back(price_density_figure(in.market, thresholds_of(in)));

@@ -106,7 +106,7 @@ Method parse_method(std::string_view name) {
   if (name == "c51") return Method::kC51;
   if (name == "dqn") return Method::kDqn;
   if (name == "sdp") return Method::kSdp;
-  fail("unknown method \"{}\": use sdp, c51 or dqn", name);
+  fail("unknown method \"{}\": use c51, dqn or sdp", name);
 }
 
 std::string_view method_name(Method method) {

@@ -264,7 +264,7 @@ class Training {
     StoppablePolicy policy(teacher, interrupted);
     EvaluationOptions evaluation;
     evaluation.battery = battery_;
-    evaluation.carry_soc = program_ != nullptr;  // the reset flatters one that ends its days empty
+    evaluation.carry_soc = true;  // the reset flatters one that ends its days empty
     double profit = 0;
     try {
       profit = evaluate(market_, validation_, policy, evaluation).profit_eur_per_day_per_mwh();

@@ -1,7 +1,8 @@
 // Training of the teacher: one readable loop of draw, learn, blend the target, look at the
-// validation days. Differences from the paper: Adam; counterfactual experience and a continuing
-// horizon by default (the `paper` preset has replay and daily episodes); the weights that earned
-// most on the validation days win.
+// validation days. Differences from the paper: Adam; by default the network adds to the stochastic
+// program, from counterfactual experience and over a continuing horizon (the `paper` preset learns
+// alone, from a replay of daily episodes); the weights that earned most on the validation days,
+// charge carried over, win. Of a residual the program itself, step 0, is among them.
 #pragma once
 
 #include <atomic>
@@ -20,16 +21,16 @@ namespace bess {
 enum class Source { kCounterfactual, kReplay };
 
 struct TrainOptions {
-  Method method = Method::kSdp;
+  Method method = Method::kC51;
   Source source = Source::kCounterfactual;
   Horizon horizon = Horizon::kContinuing;
-  long steps = 8'000;           ///< gradient steps
+  long steps = 1'500;           ///< gradient steps
   double mean_weight = 30;      ///< C51: of the squared error of the mean beside the cross-entropy
   long batch_size = 4'096;      ///< transitions a step
   double learning_rate = 1e-3;  ///< of Adam, falling to `learning_rate_end` along a cosine
   double learning_rate_end = 5e-5;
   double gamma = 0.999;
-  bool residual = false;         ///< a network adds to the stochastic program (program_residual.h)
+  bool residual = true;          ///< a network adds to the stochastic program (program_residual.h)
   TeacherInputs inputs{};        ///< that the student does not have; counterfactual source only
   double residual_gamma = 0.98;  ///< discount a step of what it adds, in place of gamma
   double tau = 0.05;             ///< target <- tau * online + (1 - tau) * target, each step

@@ -61,7 +61,7 @@ class Answers(unittest.TestCase):
         cls.folder = tempfile.TemporaryDirectory()
         cls.seen, cls.run_commands, cls.tables = set(), set(), set()
         with open(cls.file("few.toml"), "w") as config:
-            config.write("[distil]\nepochs = 60\n")
+            config.write("[train]\nsteps = 20\n[distil]\nepochs = 60\n")
         with open(cls.file("rules.toml"), "w") as rules:
             rules.write('[[rule]]\nname = "no dear charging"\nprice_min = 301\nat_most = "idle"\n'
                         '[[rule]]\nname = "steady"\nnever_rises_with = "minute"\n')
@@ -144,9 +144,10 @@ class Answers(unittest.TestCase):
         self.assertEqual(lines[-1]["prices"], 5)
 
     def test_3_teacher_and_plain_student(self):
-        one = self.answers("train", "--prices", "@market.csv", "--out", "@teacher.bin", "--curve-out", "@curve.csv")
+        one = self.answers("train", "--prices", "@market.csv", "--out", "@teacher.bin", "--steps", "20",
+                           "--curve-out", "@curve.csv")
         self.assertIsNone(one[0]["test_eur_per_day_per_mwh"])
-        two = self.answers("train", "--prices", "@market.csv", "--out", "@best.bin", "--seeds", "2")
+        two = self.answers("train", "--prices", "@market.csv", "--out", "@best.bin", "--steps", "20", "--seeds", "2")
         self.assertEqual([line["seed"] for line in two], [1, 2])
         self.answers("distil", "--prices", "@market.csv", "--teacher", "@teacher.bin", "--out", "@plain.json",
                      "--plain", "--config", "@few.toml", "--curve-out", "@distil.csv", "--rules", "@rules.toml")

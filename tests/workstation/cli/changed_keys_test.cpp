@@ -16,11 +16,11 @@ TEST(ChangedKeys, TheDefaultsChangeNothing) {
 TEST(ChangedKeys, EachIsNamedWithBothValues) {
   const RunConfig config = parse_run_config(
       "[market]\nobservation_delay_min = 2\n[battery]\nwear_eur_per_mwh = 10.5\n"
-      "[train]\nmethod = \"c51\"\ncentre_rewards = true\n",
+      "[train]\nmethod = \"sdp\"\ncentre_rewards = true\n",
       "here");
   EXPECT_EQ(changed_keys_text(config),
             "[market] observation_delay_min = 2 (default 1); [battery] wear_eur_per_mwh = 10.5 "
-            "(default 0); [train] method = \"c51\" (default \"sdp\")");
+            "(default 0); [train] method = \"sdp\" (default \"c51\")");
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ class LearntFor : public testing::Test {
  protected:
   LearntFor() {
     write_minute_file(prices_, small_series(), "");
-    warnings("train --prices " + prices_ + " --out " + teacher_ + " --config " + dear_);
+    warnings("train --prices " + prices_ + " --out " + teacher_ + " --steps 20 --config " + dear_);
   }
   [[nodiscard]] std::string evaluated(const std::string& model, const std::string& more = "",
                                       const std::string& prices = "") const {

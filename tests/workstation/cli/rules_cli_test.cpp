@@ -122,7 +122,7 @@ using RulesLearnt = RulesCli;
 TEST_F(RulesLearnt, EachIsPricedAloneAndAllTogetherByStudentsThatStay) {
   const std::string config = " --config " + folder_.write("a.toml", "[distil]\nepochs = 60\n");
   const std::string teacher = folder_.file("teacher.bin");
-  output("train --out " + teacher + with_prices() + config);
+  output("train --steps 20 --out " + teacher + with_prices() + config);
   const std::string files =
       example_rule_path("quiet_hours") + " " + example_rule_path("no_dear_charging");
   const std::filesystem::path kept = folder_.file("kept");
@@ -168,7 +168,7 @@ TEST_F(RulesLearnt, AStudentThatIsNotProvedIsKeptUnderAnotherName) {
       "[[rule]]\nname = \"buy\"\nprice_max = 100\nhours = \"10:00-14:00\"\nis = \"charge\"\n"
       "[[rule]]\nname = \"sell\"\nprice_min = 104\nhours = \"12:00-13:00\"\nis = \"discharge\"\n");
   const std::string teacher = folder_.file("teacher.bin");
-  output("train --out " + teacher + with_prices() + config);
+  output("train --steps 20 --out " + teacher + with_prices() + config);
   const std::string student = folder_.file("student.json");
   try {
     output("distil --teacher " + teacher + " --rules " + rules + " --out " + student +

@@ -60,9 +60,8 @@ TEST(RunConfig, KeysOverlayTheDefaults) {
   EXPECT_EQ(config.battery.capacity_wh, RunConfig{}.battery.capacity_wh);
 }
 
-TEST(RunConfig, TheFileOfAResidualTeacherIsValid) {
-  const RunConfig config =
-      load_run_config(std::string(BESS_SOURCE_DIR) + "/workstation/config/c51.toml");
+TEST(RunConfig, TheDefaultIsC51OnTheProgramsShoulders) {
+  const RunConfig config = load_run_config({});
   EXPECT_EQ(config.train.method, Method::kC51);
   EXPECT_TRUE(config.train.residual);
 }
@@ -72,6 +71,12 @@ TEST(RunConfig, PaperFileIsValid) {
       load_run_config(std::string(BESS_SOURCE_DIR) + "/workstation/config/paper.toml");
   EXPECT_EQ(config.train.batch_size, 16'384);
   EXPECT_EQ(config.train.source, Source::kReplay);
+  EXPECT_EQ(config.train.steps, 50'000);
+  EXPECT_EQ(config.train.horizon, Horizon::kDay);
+  EXPECT_EQ(config.train.potential, PotentialKind::kNone);
+  EXPECT_EQ(config.train.value_min_eur_per_h, -1e5);
+  EXPECT_EQ(config.train.value_max_eur_per_h, 1e5);
+  EXPECT_FALSE(config.train.residual);
 }
 
 struct BadConfig {
@@ -133,13 +138,12 @@ TEST(RunConfig, MistakesNamePlaceAndMend) {
       {"[battery]\ninitial_soc = 0.05\n", ": ", "[battery] initial_soc 0.05 is outside"},
       {"[battery]\nsoc_max = 0.4\n", ": ", "[battery] initial_soc 0.5 is outside"},
       {"[train]\nvalue_min_eur_per_h = 5e8\n", ": ", "[train] value_min_eur_per_h must be below"},
-      {"[train]\nresidual = true\nhorizon = \"day\"\n", ": ",
-       "[train] residual needs horizon = \"continuing\""},
+      {"[train]\nhorizon = \"day\"\n", ": ", "[train] horizon = \"day\" needs residual = false"},
       {"[train]\ninput_calm = true\nsource = \"replay\"\n", ": ",
        "[train] input_... needs source = \"counterfactual\""},
-      {"[train]\ninput_deviation = true\n", ": ", "[train] input_deviation needs residual = true"},
-      {"[train]\nresidual = true\natoms = 50\n", ": ",
-       "[train] residual needs an odd number of atoms, not 50"},
+      {"[train]\nresidual = false\ninput_deviation = true\n", ": ",
+       "[train] input_deviation needs residual = true"},
+      {"[train]\natoms = 50\n", ": ", "[train] residual needs an odd number of atoms, not 50"},
       {"[correction]\nlow_price_eur_per_mwh = 1500\n", ": ",
        "[correction] low_price_eur_per_mwh must be below"},
       {"[correction]\nlow_price_eur_per_mwh = 9\nhigh_price_eur_per_mwh = 8\n", ": ",

@@ -29,7 +29,11 @@ TEST(ComparisonNotes, AProgramAndItsTeacherAreExplainedWhereTheyAreTheSame) {
   EXPECT_NE(same_program_text({earning("sdp", 5), earning("sdp teacher", 5)}).find("same program"),
             std::string::npos);
   EXPECT_EQ(same_program_text({earning("sdp", 5), earning("sdp teacher", 5.0000001)}), "");
-  EXPECT_EQ(same_program_text({earning("sdp", 5), earning("c51 teacher", 5)}), "");
+  EXPECT_NE(same_program_text({earning("sdp", 5), earning("c51 teacher", 5)})
+                .find("sdp and c51 teacher decide the same at every step"),
+            std::string::npos);
+  EXPECT_EQ(same_program_text({earning("sdp", 5), earning("c51 teacher", 6)}), "");
+  EXPECT_EQ(same_program_text({earning("sdp", 5), earning("plain student", 5)}), "");
 }
 
 }  // namespace

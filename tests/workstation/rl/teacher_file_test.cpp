@@ -236,7 +236,7 @@ TEST(Methods, NamesReadBack) {
   for (const Method method : {Method::kC51, Method::kDqn}) {
     EXPECT_EQ(parse_method(method_name(method)), method);
   }
-  EXPECT_NE(user_error_of([] { (void)parse_method("ppo"); }).find("use sdp, c51 or dqn"),
+  EXPECT_NE(user_error_of([] { (void)parse_method("ppo"); }).find("use c51, dqn or sdp"),
             std::string::npos);
 }
 

@@ -28,6 +28,7 @@ constexpr std::uint64_t kSeed = 20230401;
 constexpr const char* kIdle =
     "[costs]\nimport_adder_eur_per_mwh = 1000\nimport_percent = 100\n"
     "export_fee_eur_per_mwh = 1000\nexport_percent = 100\n"
+    "[train]\nsteps = 60\nbatch_size = 96\nvalidate_every = 20\n"
     "[distil]\nepochs = 16\nlearning_rate = 0.03\nrepair_rounds = 2\nrepair_epochs = 1\n";
 
 class KilledRun : public testing::Test {
@@ -86,7 +87,7 @@ TEST_F(KilledRun, AtRandomAndOnAFullDiskEndsWithTheSameBytes) {
   std::string limited = "trap '' XFSZ; ulimit -f 64; exec";  // no file above 32 KiB
   for (const std::string& word : command(out)) limited += " '" + word + "'";
   ChildProcess full({"/bin/sh", "-c", limited});
-  EXPECT_THAT(full.read_all(), HasSubstr("teacher.bin: writing failed"));
+  EXPECT_THAT(full.read_all(), HasSubstr("teacher.checkpoint: writing failed"));
   EXPECT_EQ(full.wait(), 1);
   EXPECT_FALSE(fs::exists(out + "/teacher.bin"));
 
@@ -136,7 +137,7 @@ TEST_F(KilledRun, AtRandomAndOnAFullDiskEndsWithTheSameBytes) {
 TEST_F(KilledRun, InterruptedItSaysHowToGoOnAndKeepsTheTrainingSoFar) {
   config_ = folder_.write("long.toml",
                           "[train]\nmethod = \"c51\"\nsteps = 10000000\nvalidate_every = 1\n"
-                          "batch_size = 16\npotential = \"none\"\ncentre_rewards = false\n");
+                          "batch_size = 16\n");
   const std::string out = folder_.file("run");
   ChildProcess run(command(out));
   for (int i = 0; i < 30'000 && !fs::exists(out + "/teacher.checkpoint"); ++i) usleep(10'000);

@@ -16,11 +16,15 @@ function drawLines(id, series, scales) {
   }));
 }
 
-function drawTraining({training}) {
+/** Step 0 is a residual's: there it is still the stochastic program. */
+function drawTraining({training, rule}) {
   document.getElementById("training-figure").hidden = training.length < 2;  // a program is fitted, not trained
   if (training.length < 2) return;
   const best = training.find(([, profit]) => profit === Math.max(...training.map((point) => point[1])));
-  drawLines("chart-training", [["checkpoint", training, "line-1"], ["chosen", [best], "line-2", undefined, 6]], () => ({}));
+  const level = (profit) => [training[0], training[training.length - 1]].map(([step]) => [step, profit]);
+  const began = training[0][0] === 0 ? [["the program, step 0", level(training[0][1]), "line-4", [6, 4], 0]] : [];
+  drawLines("chart-training", [["checkpoint", training, "line-1"], ["chosen", [best], "line-2", undefined, 6], ...began,
+    ["rule-based", level(rule), "muted", [2, 3], 0]], () => ({}));
 }
 
 /** Every student that was looked at: [epoch, profit on validation days, "chosen" | "disobeys" | "passed over"]. */

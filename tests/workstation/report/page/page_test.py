@@ -324,6 +324,12 @@ class PageTest(unittest.TestCase):
         self.assertEqual(drawn["checkpoint"], [[row["step"], row["validation_eur_per_day_per_mwh"]] for row in rows])
         chosen = [row for row in rows if row["state"] == "chosen"]
         self.assertEqual(drawn["chosen"], [[chosen[0]["step"], max(y for _, y in drawn["checkpoint"])]])
+        first, last = rows[0], rows[-1]
+        self.assertEqual(first["step"], 0)
+        self.assertEqual(drawn["the program, step 0"], [[row["step"], first["validation_eur_per_day_per_mwh"]] for row in (first, last)])
+        for (step, profit), row in zip(drawn["rule-based"], (first, last), strict=True):
+            self.assertEqual(step, row["step"])
+            self.assertAlmostEqual(profit, row["rule_eur_per_day_per_mwh"], places=5)
         rows = self.csv("validation_student.csv")
         drawn = self.drawn("chart-checkpoints")
         self.assertEqual(len(drawn["checkpoint"]), len(rows))
