@@ -1,8 +1,10 @@
 # The peer of the c51-step benchmarks: the same gradient step in PyTorch, vectorised, in the style of
 # CleanRL's c51.py. Serves steps on request, so that they alternate with ours in one run: each line on
-# standard input is answered with the milliseconds of one step. First line out: "ready", or the
-# reason why not.
+# standard input is answered with the milliseconds of one step. First line out: "ready" and what
+# multiplies its matrices, or the reason why not.
 #   python3 c51_torch.py THREADS
+import ctypes
+import os
 import sys
 import time
 
@@ -15,6 +17,26 @@ except ImportError:
 BATCH, REPLAY, ATOMS, ACTIONS, GAMMA, TAU = 16384, 1_000_000, 51, 3, 0.999, 0.1
 V_MIN, V_MAX = -10.0, 10.0
 STEP = (V_MAX - V_MIN) / (ATOMS - 1)
+
+
+
+def blas():
+    """The library that this process multiplies matrices with, and OpenBLAS's kernel."""
+    with open("/proc/self/maps") as maps:
+        paths = {line.split()[-1] for line in maps if ".so" in line}
+    for path in sorted(paths):
+        name = os.path.basename(path)
+        real = os.path.realpath(path)
+        if "mkl" in name:
+            return "Intel MKL"
+        if "openblas" in real:
+            library = ctypes.CDLL(path)
+            for function in (library.openblas_get_config, library.openblas_get_corename):
+                function.restype = ctypes.c_char_p
+            version = library.openblas_get_config().decode().split()[1]
+            return f"OpenBLAS {version}, kernel {library.openblas_get_corename().decode()}"
+    return "no optimised BLAS (install libopenblas0-openmp)"
+
 
 torch.set_num_threads(int(sys.argv[1]))
 torch.manual_seed(1)
@@ -71,7 +93,7 @@ def gradient_step():
 
 for _ in range(3):
     gradient_step()
-print("ready", flush=True)
+print("ready", blas(), flush=True)
 for _ in sys.stdin:
     start = time.perf_counter()
     gradient_step()

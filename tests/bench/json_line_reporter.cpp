@@ -57,6 +57,7 @@ void JsonLineReporter::ReportRuns(const std::vector<Run>& runs) {
     } else {
       add(name, run.GetAdjustedRealTime(), time_unit);
     }
+    results_[name].label = run.report_label;
     for (const auto& [counter, value] : run.counters) {
       if (counter.starts_with("@")) {
         add(name + counter, value, time_unit);
@@ -91,6 +92,8 @@ void JsonLineReporter::Finalize() {
       } else {
         fmt::print(R"(, "peer": "{}", "peer_value": {:.6g}, "ratio": {:.4g})",
                    peer->substr(name.size() + 1), peer_value, ratio);
+        const std::string& label = results_[name].label;
+        if (!label.empty()) fmt::print(R"(, "peer_works_with": "{}")", label);
       }
     }
     fmt::print("}}\n");

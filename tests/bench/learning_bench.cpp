@@ -91,6 +91,7 @@ void run_step(benchmark::State& state, StepBenchmark& bench) {
     peer_ms += bench.peer->step_ms().value_or(std::numeric_limits<double>::quiet_NaN());
   }
   report_peer(state, "pytorch", peer_ms / kStepsInTurn);
+  state.SetLabel(bench.peer->blas());
   // The peer's threads spin for a while after a step; let them go to sleep.
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
 }
