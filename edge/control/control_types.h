@@ -15,6 +15,7 @@
 #include "edge/control/hold.h"
 #include "edge/control/lost_order_history.h"
 #include "edge/control/mode.h"
+#include "edge/control/reasons.h"
 #include "edge/control/reversal_cap.h"
 #include "edge/control/site_types.h"
 #include "shared/action.h"
@@ -65,106 +66,6 @@ struct PriceReport {
   bool step_held = false;          ///< a newer row does, and waits for one that confirms it
   std::int32_t held_centi_eur_per_mwh = 0;  ///< price of that newer row
 };
-
-/// Why the guard ordered something else than the student. Order is precedence: lower numbers win.
-enum class Reason : std::uint8_t {
-  kStopRequested,
-  kHandOver,
-  kClock,
-  kLink,
-  kAlarm,
-  kTemperature,
-  kOffGrid,
-  kWrongDirection,
-  kUncontrolledPower,
-  kSocMismatch,
-  kStateLost,
-  kOtherMaster,
-  kOrdersFail,
-  kNoAnswer,
-  kBatteryCare,
-  kCapacity,
-  kSocJump,
-  kNoPrice,
-  kPriceAge,
-  kPriceQuarterHour,
-  kFrozenPrice,
-  kLastStopReason = kFrozenPrice,  ///< up to here: the battery must not be driven
-  kSocFull,
-  kSocEmpty,
-  kReserve,
-  kCycleBudget,
-  kReversalCap,
-  kPowerLimit,
-  kOutsideLimit,
-  kMeterLost,
-  kMeterMismatch,
-  kImportLimit,
-  kExportLimit,
-  kQuarterHourPeak,
-  kRamp,
-  kHeld,
-  kRule,
-  kPriceLow,
-  kPriceHigh,
-  kFullCharge,
-  kStudent  ///< no intervention
-};
-
-inline constexpr int kReasonCount = static_cast<int>(Reason::kStudent) + 1;
-
-constexpr bool is_stop_reason(Reason reason) { return reason <= Reason::kLastStopReason; }
-
-/// Whether holding 0 W would be the wrong answer: a house that lives on its battery goes dark, and a
-/// battery that does not follow its orders need not follow this one either.
-constexpr bool is_better_released(Reason reason) {
-  return reason >= Reason::kOffGrid && reason <= Reason::kCapacity;
-}
-
-constexpr std::string_view reason_name(Reason reason) {
-  constexpr std::string_view kNames[] = {"stop_requested",
-                                         "hand_over",
-                                         "clock",
-                                         "link",
-                                         "alarm",
-                                         "temperature",
-                                         "off_grid",
-                                         "wrong_direction",
-                                         "uncontrolled_power",
-                                         "soc_mismatch",
-                                         "state_lost",
-                                         "other_master",
-                                         "orders_fail",
-                                         "no_answer",
-                                         "battery_care",
-                                         "capacity",
-                                         "soc_jump",
-                                         "no_price",
-                                         "price_age",
-                                         "price_qh",
-                                         "frozen_price",
-                                         "soc_full",
-                                         "soc_empty",
-                                         "reserve",
-                                         "cycle_budget",
-                                         "reversal_cap",
-                                         "power_limit",
-                                         "outside_limit",
-                                         "meter_lost",
-                                         "meter_mismatch",
-                                         "import_limit",
-                                         "export_limit",
-                                         "quarter_hour_peak",
-                                         "ramp",
-                                         "held",
-                                         "rule",
-                                         "price_low",
-                                         "price_high",
-                                         "full_charge",
-                                         "student"};
-  static_assert(std::size(kNames) == kReasonCount);
-  return kNames[static_cast<int>(reason)];
-}
 
 /// Found by the supervision of the battery's answers; in force until a person clears it.
 struct Trip {

@@ -3,6 +3,7 @@
 // meaning.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
@@ -28,48 +29,18 @@ struct StableCodes<Action> {
   static constexpr auto kNameOf = action_name;
 };
 
+/// By the codes of the table.
+constexpr std::array<Reason, kReasonCount> reasons_by_code() {
+  std::array<Reason, kReasonCount> list{};
+  for (int i = 0; i < kReasonCount; ++i) {
+    list[static_cast<std::size_t>(kReasons[i].code)] = static_cast<Reason>(i);
+  }
+  return list;
+}
+
 template <>
 struct StableCodes<Reason> {
-  static constexpr Reason kList[] = {Reason::kStopRequested,
-                                     Reason::kClock,
-                                     Reason::kLink,
-                                     Reason::kAlarm,
-                                     Reason::kTemperature,
-                                     Reason::kOffGrid,
-                                     Reason::kNoPrice,
-                                     Reason::kPriceAge,
-                                     Reason::kPriceQuarterHour,
-                                     Reason::kSocFull,
-                                     Reason::kSocEmpty,
-                                     Reason::kPowerLimit,
-                                     Reason::kPriceLow,
-                                     Reason::kPriceHigh,
-                                     Reason::kStudent,
-                                     Reason::kHandOver,
-                                     Reason::kWrongDirection,
-                                     Reason::kCycleBudget,
-                                     Reason::kRamp,
-                                     Reason::kUncontrolledPower,
-                                     Reason::kSocMismatch,
-                                     Reason::kOtherMaster,
-                                     Reason::kOrdersFail,
-                                     Reason::kNoAnswer,
-                                     Reason::kCapacity,
-                                     Reason::kSocJump,
-                                     Reason::kReversalCap,
-                                     Reason::kHeld,
-                                     Reason::kReserve,
-                                     Reason::kFullCharge,
-                                     Reason::kOutsideLimit,
-                                     Reason::kMeterLost,
-                                     Reason::kImportLimit,
-                                     Reason::kExportLimit,
-                                     Reason::kQuarterHourPeak,
-                                     Reason::kRule,
-                                     Reason::kFrozenPrice,
-                                     Reason::kBatteryCare,
-                                     Reason::kMeterMismatch,
-                                     Reason::kStateLost};
+  static constexpr std::array<Reason, kReasonCount> kList = reasons_by_code();
   static constexpr auto kNameOf = reason_name;
 };
 
