@@ -21,7 +21,7 @@ template <auto... kPath>
 consteval StatusKey status_key() {
   const auto find = [](const auto& fields) -> StatusKey {
     for (const auto& field : fields) {
-      if (field.access.read != read_member<kPath...>) continue;
+      if (field.access.id != path_id<kPath...>()) continue;
       if (field.place_in(&Places::last) > 0) return {kLastSection, field.name_in(&Places::last)};
       if (field.place_in(&Places::totals) > 0)
         return {kTotalsSection, field.name_in(&Places::totals)};
