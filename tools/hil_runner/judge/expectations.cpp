@@ -1,0 +1,72 @@
+#include "tools/hil_runner/judge/bench.h"
+
+namespace bess {
+namespace {
+
+bool fits(Expectation::Command wanted, const CommandInForce& c) {
+  using enum Expectation::Command;
+  switch (wanted) {
+    case kAny:
+      return true;
+    case kCharge:
+      return c.power_w > 0;
+    case kDischarge:
+      return c.power_w < 0;
+    case kZero:
+      return c.is_driven && c.power_w == 0;
+    case kNone:
+      return !c.is_driven;
+    case kDriven:
+      return c.is_driven;
+    case kNotDriven:
+      return c.power_w == 0;
+  }
+  return false;
+}
+
+void judge_reasons(Bench& bench, const Expectation& expectation, const Window& span) {
+  bool was_seen = expectation.reason.empty();
+  std::string last = "nothing logged";
+  for (const LoggedCycle& cycle : bench.evidence.log) {
+    const std::int64_t ns = cycle.utc_s * kSecondNs;
+    if (ns < span.from_ns || ns >= span.to_ns) continue;
+    last = cycle.reason;
+    was_seen = was_seen || cycle.reason == expectation.reason;
+    if (!expectation.no_reason.empty() && cycle.reason == expectation.no_reason) {
+      bench.find(ns, "another reason than " + expectation.no_reason, cycle.reason);
+    }
+  }
+  if (!was_seen)
+    bench.find(span.from_ns, "the reason " + expectation.reason + " by the end of its span", last);
+}
+
+}  // namespace
+
+void judge_expectations(Bench& bench) {
+  constexpr const char* kNames[] = {"anything",        "charging",          "discharging",
+                                    "0 W, held",       "no order in force", "an order in force",
+                                    "no power ordered"};
+  int number = 0;
+  for (const Expectation& expectation : bench.scenario.expectations) {
+    bench.rule = fmt::format("expect {}", ++number);
+    const std::int64_t from_ns = bench.scenario.utc_ns_at(expectation.span.from_min);
+    const std::int64_t to_ns = expectation.span.to_min == kNeverMin
+                                   ? bench.scenario.end_utc_ns()
+                                   : bench.scenario.utc_ns_at(expectation.span.to_min);
+    for (std::int64_t t = (from_ns + kStepNs - 1) / kStepNs * kStepNs; t < to_ns; t += kStepNs) {
+      const CommandInForce command = bench.commands.at(bench.settled_ns(t));
+      if (!fits(expectation.command, command)) {
+        bench.find(bench.settled_ns(t), kNames[static_cast<int>(expectation.command)],
+                   watts(command));
+      } else if (command.power_w < expectation.power_w_min ||
+                 command.power_w > expectation.power_w_max) {
+        bench.find(bench.settled_ns(t),
+                   fmt::format("{:g} to {:g} W", expectation.power_w_min, expectation.power_w_max),
+                   watts(command));
+      }
+    }
+    judge_reasons(bench, expectation, {from_ns, to_ns});
+  }
+}
+
+}  // namespace bess
