@@ -170,7 +170,7 @@ void read_price(TomlTable table, EdgeConfig& config) {
   const std::string_view url = price.http.url.view();
   check_history_url(table, config);
   transport.has_header_file = !header_file.empty();
-  check_price_transport(table, config, transport);
+  check_price_transport(table, {price, config.history}, transport);
   const auto folder = std::filesystem::path(table.file()).parent_path();
   const std::string ca_file = (folder / price.http.ca_file.c_str()).string();
   if (!price.http.ca_file.assign(ca_file)) table.fail("ca_file", "is too long a path");
@@ -219,7 +219,7 @@ void read_guard(TomlTable table, EdgeConfig& config) {
   table.integer("reversals_per_hour_max", config.control.reversals_per_hour_max, 0, kStepsPerHour);
   table.integer("order_deadline_s", config.control.order_deadline_s, 1, kSecondsPerStep);
   table.boolean("require_synchronised_clock", config.require_synchronised_clock);
-  read_start_spread(table, config);
+  read_start_spread(table, battery_place(config).view(), config.control);
   table.finish();
   if (!guard.thresholds.are_ordered()) {
     table.fail("low_price_eur_per_mwh", "must be below high_price_eur_per_mwh");

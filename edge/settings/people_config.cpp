@@ -93,15 +93,14 @@ void read_reserve(TomlTable& root, ControlSettings& control) {
   }
 }
 
-void read_start_spread(TomlTable& guard, EdgeConfig& config) {
+void read_start_spread(TomlTable& guard, std::string_view place, ControlSettings& control) {
   std::int32_t spread_s = 0;
   guard.integer("start_spread_s", spread_s, 0, 20);
   if (spread_s == 0) return;
-  if (spread_s >= config.control.order_deadline_s) {
+  if (spread_s >= control.order_deadline_s) {
     guard.fail("start_spread_s", "must be below order_deadline_s, else each order may be late");
   }
-  config.control.start_offset_ms =
-      start_offset_ms(spread_s, machine_id().view(), battery_place(config).view());
+  control.start_offset_ms = start_offset_ms(spread_s, machine_id().view(), place);
 }
 
 }  // namespace bess

@@ -1,8 +1,7 @@
 // What people decide besides trading: a reserve by the hour, full charges, the spread of the starts.
-// Part of edge_config.
 #pragma once
 
-#include "edge/settings/edge_config.h"
+#include "edge/loop/control_settings.h"
 #include "shared/host/toml_reader.h"
 
 namespace bess {
@@ -13,8 +12,8 @@ void read_full_charge(TomlTable& battery, ControlSettings& control);
 /// [[reserve]], an array of tables; bounds and hysteresis of the guard must be known.
 void read_reserve(TomlTable& root, ControlSettings& control);
 
-/// Key start_spread_s of [guard]; the place of the battery must be known.
-void read_start_spread(TomlTable& guard, EdgeConfig& config);
+/// Key start_spread_s of [guard]; `place`: of the battery, which the start is drawn by.
+void read_start_spread(TomlTable& guard, std::string_view place, ControlSettings& control);
 
 /// A full charge that soc_max forbids would be tried for ever.
 void check_full_charge(TomlTable& battery, const ControlSettings& control);

@@ -34,16 +34,17 @@ void check_url(TomlTable& table, std::string_view key, std::string_view url,
 
 }  // namespace
 
-void check_price_transport(TomlTable& table, const EdgeConfig& config,
+void check_price_transport(TomlTable& table, const PriceSources& sources,
                            const PriceTransportKeys& keys) {
-  check_url(table, "url", config.price.http.url.view(), keys);
-  if (!config.history.url.empty()) check_url(table, "history_url", config.history.url.view(), keys);
+  check_url(table, "url", sources.price.http.url.view(), keys);
+  if (!sources.history.url.empty())
+    check_url(table, "history_url", sources.history.url.view(), keys);
 }
 
-TransportNote transport_note(const EdgeConfig& config) {
-  UrlTransport weakest = transport_of(config.price.http.url.view());
-  if (!config.history.url.empty()) {
-    weakest = std::max(weakest, transport_of(config.history.url.view()));
+TransportNote transport_note(const PriceSources& sources) {
+  UrlTransport weakest = transport_of(sources.price.http.url.view());
+  if (!sources.history.url.empty()) {
+    weakest = std::max(weakest, transport_of(sources.history.url.view()));
   }
   switch (weakest) {
     case UrlTransport::kSecure:

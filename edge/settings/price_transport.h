@@ -5,10 +5,17 @@
 #include <string>
 #include <string_view>
 
-#include "edge/settings/edge_config.h"
+#include "edge/prices/history_pages.h"
+#include "edge/prices/price_feed.h"
 #include "shared/host/toml_reader.h"
 
 namespace bess {
+
+/// Where prices come from.
+struct PriceSources {
+  const PriceFeedSettings& price;
+  const HistorySettings& history;
+};
 
 /// What the operator says about the way of the requests.
 struct PriceTransportKeys {
@@ -18,7 +25,7 @@ struct PriceTransportKeys {
 
 /// Complains, with the mend, of a URL of [price] that is none, of plain http that is not allowed, and of
 /// secrets on plain http.
-void check_price_transport(TomlTable& table, const EdgeConfig& config,
+void check_price_transport(TomlTable& table, const PriceSources& sources,
                            const PriceTransportKeys& keys);
 
 struct TransportNote {
@@ -27,6 +34,6 @@ struct TransportNote {
 };
 
 /// One line about the transport of url and history_url, the weaker one of them.
-TransportNote transport_note(const EdgeConfig& config);
+TransportNote transport_note(const PriceSources& sources);
 
 }  // namespace bess
