@@ -20,7 +20,8 @@ namespace bess {
   ROW(Record)              \
   ROW(MapCheck)            \
   ROW(Signature)           \
-  ROW(History)
+  ROW(History)             \
+  ROW(Trial)
 
 #define BESS_ROW(name) extern const EdgeCommand k##name##Command;
 BESS_COMMANDS(BESS_ROW)

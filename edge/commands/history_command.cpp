@@ -4,7 +4,7 @@
 
 #include "edge/commands/command_list.h"
 #include "edge/log/journal.h"
-#include "edge/storage/update_state.h"
+#include "edge/update/trial_state.h"
 #include "shared/host/json.h"
 
 namespace bess {
@@ -27,10 +27,11 @@ constexpr const char* kHelp =
   bess-edge history [--json] [--folder FOLDER]
 
   --json           a list of objects: utc, event, version, student, header_sha256, reason
-  --folder FOLDER  where bess-update keeps it; default /var/lib/bess-update
+  --folder FOLDER  where it is kept; default /var/lib/bess-update
 
-Events: trying (installed, on trial), confirmed, going_back and rolled_back (with the reason), failed (nothing to
-go back to). The column "certificate" is the beginning of header_sha256, of the exported header.
+Events: trying (on trial), confirmed, comparing (the version before runs: does it do better?), going_back and
+rolled_back (with the reason), refused (not let in), failed (nothing to go back to), broken_off (the power went while
+dpkg was at it), dismissed, allowed. The column "certificate" is the beginning of header_sha256, of the exported header.
 Exit codes: 0 done   1 no history   2 the command line is bad
 
   bess-edge history

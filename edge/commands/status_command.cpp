@@ -10,7 +10,7 @@
 #include "edge/log/log_reader.h"
 #include "edge/storage/published_status.h"
 #include "edge/storage/storage_health.h"
-#include "edge/storage/update_state.h"
+#include "edge/update/trial_state.h"
 #include "shared/host/json.h"
 #include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
@@ -256,7 +256,7 @@ void print_controller(JsonValue s, bool is_running) {
 }
 
 void print_text(const EdgeConfig& config, const PublishedStatus& published, const Health& health,
-                const UpdateState& update) {
+                const TrialState& update) {
   const JsonValue status = published.status.value();
   print_health(health);
   if (!published.unknown.empty()) {
@@ -277,17 +277,18 @@ void print_text(const EdgeConfig& config, const PublishedStatus& published, cons
   print_last_orders(config);
 }
 
-Json update_json(const UpdateState& update) {
-  return Json::object({{"phase", update.phase},
+Json update_json(const TrialState& update) {
+  return Json::object({{"phase", trial_phase_name(update.phase)},
                        {"version", update.version},
                        {"previous", update.previous},
                        {"rolled_back", update.refused},
                        {"reason", update.reason},
+                       {"delivered", update.delivered},
                        {"good_cycles", update.good_cycles},
                        {"needed_cycles", update.needed_cycles}});
 }
 
-void print_json(PublishedStatus published, const Health& health, const UpdateState& update) {
+void print_json(PublishedStatus published, const Health& health, const TrialState& update) {
   // What is of another run would say the opposite of "unknown".
   const bool is_known = published.unknown.empty() && published.status.value().is_object();
   Json status = is_known ? std::move(published.status) : Json::object();
@@ -296,7 +297,7 @@ void print_json(PublishedStatus published, const Health& health, const UpdateSta
   for (const std::string& reason : health.reasons) reasons.add(reason);
   status.set("health", health_name(health.level));
   status.set("health_reasons", std::move(reasons));
-  if (!update.phase.empty()) status.set("update", update_json(update));
+  if (update.phase != TrialPhase::kUnknown) status.set("update", update_json(update));
   std::fputs(status.text().c_str(), stdout);
 }
 
@@ -318,7 +319,7 @@ bool print_metrics(const EdgeConfig& config) {
 
 int print_once(const StatusGiven& given, const EdgeConfig& config) {
   PublishedStatus published = read_published_status(config, given.no_lock);
-  const UpdateState update = read_update_state(kUpdateFolder);
+  const TrialState update = read_trial_state(kUpdateFolder).state;
   const Health health = health_of(config, published, update_trouble(update));
   if (given.prometheus) {
     if (!print_metrics(config)) return 1;

@@ -2,7 +2,7 @@
 # users, folders and devices, and what tools/package makes of the built programs (man pages, completion,
 # certificate) in BUILD/package/edge.
 set(package_dir ${CMAKE_SOURCE_DIR}/edge/package)
-install(PROGRAMS ${CMAKE_SOURCE_DIR}/edge/update/bess-update DESTINATION lib/bess COMPONENT edge_package)
+install(PROGRAMS ${CMAKE_SOURCE_DIR}/edge/update/trial DESTINATION lib/bess COMPONENT edge_package)
 install(FILES ${CMAKE_SOURCE_DIR}/edge/update/update.conf DESTINATION /etc/bess RENAME update.conf.example
         COMPONENT edge_package)
 install(FILES ${CMAKE_SOURCE_DIR}/edge/systemd/bess-trial.service ${CMAKE_SOURCE_DIR}/edge/systemd/bess-recover.service

@@ -21,7 +21,7 @@
 namespace bess {
 namespace {
 
-/// Tests have one of their own below a folder, as bess-update has.
+/// Tests have one of their own below a folder, as the supervisor of upgrades has.
 std::string sysfs() {
   const char* const root = std::getenv("BESS_ROOT");
   return std::string(root == nullptr ? "" : root) + "/sys";

@@ -29,7 +29,7 @@ make_base() {
   mkdir -p "$folder"
   [ ! -d "$base" ] || return 0
   if [ ! -f "$folder/root.tar" ]; then
-    mmdebstrap -q --variant=minbase --include=systemd,systemd-sysv,udev,dbus,libcurl4,libcjson1,libmodbus5,libmosquitto1,ca-certificates,dpkg-repack,adduser,python3,iproute2,procps \
+    mmdebstrap -q --variant=minbase --include=systemd,systemd-sysv,udev,dbus,libcurl4,libcjson1,libmodbus5,libmosquitto1,ca-certificates,adduser,python3,iproute2,procps \
       bookworm "$folder/root.tar" >"$folder/mmdebstrap.log" 2>&1 || skip "no Debian archive: $(tail -n 1 "$folder/mmdebstrap.log")"
   fi
   rm -rf "$base.new"

@@ -32,8 +32,9 @@ variant() {
   rm -rf "$tree"
   dpkg-deb -R "$package" "$tree"
   sed -i "s/^Version: .*/Version: $1/" "$tree/DEBIAN/control"
-  sed -i "s/\"version\": \"[^\"]*\"/\"version\": \"$1\"/" "$tree/usr/share/bess/certificate.json"
+  sed -i "s/\"version\": \"[^\"]*\"/\"version\": \"$1\"/" "$tree/usr/lib/bess-edge/share/certificate.json"
   (cd "$tree" && sh -c "${2:-true}")
+  (cd "$tree/usr/lib/bess-edge" && find bin share systemd -type f | LC_ALL=C sort | xargs sha256sum >SUMS)
   dpkg-deb --root-owner-group -Zgzip -b "$tree" "$file" >/dev/null
   rm -rf "$tree"
 }

@@ -7,7 +7,7 @@ source=$(realpath "$1") folder=$2
 . "$source/tests/tools/script_test.sh"
 need dpkg-deb
 enter_folder
-mkdir bin
+mkdir bin tmp
 # shellcheck source=tests/tools/made_up_package.sh
 . "$source/tests/tools/made_up_package.sh"
 stand_in() { cat >"bin/$1" && chmod 755 "bin/$1"; }
@@ -82,6 +82,21 @@ code=0
 flash --package "$package" --config edge.toml || code=$?
 [ $code -eq 1 ] && grep -q "2.0 was rolled back to 1.0: the unit failed" said || fail "a roll-back, exit code $code: $(cat said)"
 
+# Broken while apt-get works; a machine that does not come back; what is left here.
+mv bin/there/apt-get apt-get
+printf '#!/bin/sh\nexit 255\n' >bin/there/apt-get
+chmod 755 bin/there/apt-get
+code=0
+flash --package "$package" || code=$?
+[ $code -eq 1 ] && grep -q "the connection broke while apt-get worked; it goes on there" said || fail "a cut: exit code $code: $(cat said)"
+mv apt-get bin/there/apt-get
+rm machine/state
+code=0
+BESS_FLASH_POLL_S=0 TMPDIR=$folder/tmp flash --package "$package" --config edge.toml || code=$?
+[ $code -eq 1 ] && grep -q "has not answered for 60 looks; 2.0 is on trial there" said || fail "a host that dies: exit code $code: $(cat said)"
+[ -z "$(ls tmp)" ] || fail "left behind: $(ls tmp)"
+printf 'phase=confirmed\nversion=2.0\n' >machine/state
+
 refuses() {  # refuses WHAT LINE ARGUMENTS...
   local what=$1 line=$2 code=0
   shift 2
@@ -107,6 +122,13 @@ flash --package "$old" --force --no-wait || fail "--force: $(cat said)"
 grep -q -- --allow-downgrades machine/installed || fail "--force does not reach apt-get"
 spoil='echo >>student_weights.h'
 refuses "a foreign certificate" "not what was proved" --package "$(made_up_package spoilt arm64 3.0)"
+spoil='rm certificate.json'
+spoil=''
+truncated=$(made_up_package spoilt arm64 3.2)
+truncate -s -200 "$truncated"
+refuses "a truncated package" "its archive cannot be read to the end" --package "$truncated"
+"$source/tools/packaging/check_package" "$truncated" >said 2>&1 && fail "a truncated package is handed on"
+"$source/tools/packaging/check_package" "$package" || fail "a good package is not handed on"
 spoil='rm certificate.json'
 refuses "no certificate" "a package without a certificate is not installed" --package "$(made_up_package spoilt arm64 3.1)"
 spoil=''

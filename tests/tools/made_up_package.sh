@@ -3,13 +3,13 @@
 made_up_package() {
   local tree
   tree=$(mktemp -d)
-  mkdir -p "$tree/DEBIAN" "$tree/usr/share/bess" "$tree/usr/bin" "$1"
+  mkdir -p "$tree/DEBIAN" "$tree/usr/lib/bess-edge/share" "$tree/usr/bin" "$1"
   printf 'Package: bess-edge\nVersion: %s\nArchitecture: %s\nMaintainer: nobody <nobody@localhost>\nInstalled-Size: 2000\nDepends: libc6, libcurl4\nDescription: made up\n' \
     "$3" "$2" >"$tree/DEBIAN/control"
-  cp "$source/edge/generated/student_weights.h" "$tree/usr/share/bess/"
-  "$source/tools/packaging/certificate" make "$tree/usr/share/bess/student_weights.h" "$3" abc \
-    "$(cat "$source/edge/generated/decision_signature.txt")" >"$tree/usr/share/bess/certificate.json"
-  [ -z "${spoil:-}" ] || (cd "$tree/usr/share/bess" && sh -c "$spoil")
+  cp "$source/edge/generated/student_weights.h" "$tree/usr/lib/bess-edge/share/"
+  "$source/tools/packaging/certificate" make "$tree/usr/lib/bess-edge/share/student_weights.h" "$3" abc \
+    "$(cat "$source/edge/generated/decision_signature.txt")" >"$tree/usr/lib/bess-edge/share/certificate.json"
+  [ -z "${spoil:-}" ] || (cd "$tree/usr/lib/bess-edge/share" && sh -c "$spoil")
   dpkg-deb --root-owner-group -Zgzip -b "$tree" "$1/bess-edge_$3_$2.deb" >/dev/null
   rm -rf "$tree"
   echo "$1/bess-edge_$3_$2.deb"

@@ -5,7 +5,7 @@ set -euo pipefail
 source=$(realpath "$1") folder=$2
 # shellcheck source=tests/tools/script_test.sh
 . "$source/tests/tools/script_test.sh"
-need reprepro gpg apt-get dpkg-deb
+need apt-ftparchive gpg apt-get dpkg-deb
 enter_folder
 # shellcheck source=tests/tools/made_up_package.sh
 . "$source/tests/tools/made_up_package.sh"
@@ -27,6 +27,28 @@ repository --key first@example.org --phased 30 || fail "a repository: $(cat said
 code=0
 repository --key second@example.org || code=$?
 [ $code -eq 1 ] && grep -q "is signed with another key" said || fail "another key: $(cat said)"
+# What must not get in leaves what is served as it is.
+export BESS_PACKAGES=$folder/spoilt
+refuses() {  # refuses WHAT LINE OPTIONS...
+  local what=$1 line=$2 code=0 before
+  before=$(cat repository/dists/stable/InRelease | sha256sum)
+  shift 2
+  repository --key first@example.org "$@" || code=$?
+  [ $code -eq 1 ] && grep -qF -- "$line" said || fail "$what: exit code $code: $(cat said)"
+  [ "$before" = "$(cat repository/dists/stable/InRelease | sha256sum)" ] || fail "$what: the repository was changed"
+  rm -rf spoilt
+}
+file=$(made_up_package spoilt amd64 3.0) && truncate -s -200 "$file"
+refuses "a truncated package" "is damaged: its archive cannot be read to the end"
+spoil='echo >>student_weights.h' made_up_package spoilt amd64 3.0 >/dev/null
+refuses "a foreign certificate" "not what was proved"
+spoil='echo other >>notes' made_up_package spoilt amd64 2.0 >/dev/null
+refuses "the same version with other bytes" "version 2.0 is there with other bytes"
+made_up_package spoilt amd64 0.9 >/dev/null
+refuses "an older version" "is older than bess-edge_2.0_amd64.deb; --older"
+made_up_package spoilt amd64 1.0 >/dev/null
+repository --key first@example.org --older --phased 30 || fail "an older version, with the word: $(cat said)"
+export BESS_PACKAGES=$folder/packages
 code=0
 repository --key first@example.org --phased 130 || code=$?
 [ $code -eq 2 ] || fail "130 percent: exit code $code"
@@ -63,6 +85,18 @@ none=$(upgrades)
 repository --key first@example.org && apt update >said 2>&1
 all=$(upgrades)
 [ "$all" -eq 20 ] || fail "at 100 % $all of 20 machines upgrade"
+
+# A newer one is taken back: the one before is served again, and no package is lost.
+made_up_package packages amd64 3.0 >/dev/null
+repository --key first@example.org && apt update >said 2>&1
+apt upgrade -s 2>/dev/null | grep -q '^Inst bess-edge .*(3.0 ' || fail "3.0 is not served"
+repository --key first@example.org --back || fail "back: $(cat said)"
+apt update >said 2>&1 || fail "apt does not take the index before: $(tail -n 2 said)"
+apt upgrade -s 2>/dev/null | grep -q '^Inst bess-edge .*(2.0 ' || fail "2.0 is not served again"
+apt install -s bess-edge=1.0 >said 2>&1 || fail "the version before is gone: $(tail -n 1 said)"
+code=0
+for _ in 1 2 3 4 5 6 7 8; do repository --key first@example.org --back || { code=$?; break; }; done
+[ $code -eq 1 ] && grep -q "there is no index before this one" said || fail "back beyond the first: $code $(cat said)"
 
 [ $failures -eq 0 ] || exit 1
 cd / && rm -rf "$folder"

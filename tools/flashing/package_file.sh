@@ -1,5 +1,6 @@
 # Sourced by the commands of tools/flash: which package is meant, and may it be installed at all.
 #   package_for ARCH [FILE]   prints the file: FILE, or the newest of build-packages/ for ARCH
+#   require_whole FILE        dies unless its archive can be read to the end
 #   require_certified FILE    dies unless the package carries a proved student and the certificate of just that one
 # They use die of the command that sources them.
 
@@ -20,12 +21,19 @@ package_for() {
   echo "$file"
 }
 
+# All of it is read: a package that lost its end is no package.
+require_whole() {
+  dpkg-deb --fsys-tarfile "$1" 2>/dev/null | tar -t >/dev/null 2>&1 ||
+    die "${1##*/} is damaged: its archive cannot be read to the end"
+}
+
 require_certified() {
+  require_whole "$1"
   local work
   work=$(mktemp -d)
-  dpkg-deb --fsys-tarfile "$1" | tar -x -C "$work" ./usr/share/bess/certificate.json ./usr/share/bess/student_weights.h 2>/dev/null || true
+  dpkg-deb --fsys-tarfile "$1" | tar -x -C "$work" ./usr/lib/bess-edge/share/certificate.json ./usr/lib/bess-edge/share/student_weights.h 2>/dev/null || true
   local said
-  said=$("$flashing_root/tools/packaging/certificate" check "$work/usr/share/bess/student_weights.h" "$work/usr/share/bess/certificate.json" 2>&1) || {
+  said=$("$flashing_root/tools/packaging/certificate" check "$work/usr/lib/bess-edge/share/student_weights.h" "$work/usr/lib/bess-edge/share/certificate.json" 2>&1) || {
     rm -rf "$work"
     die "${1##*/}: ${said//$work/}"
   }

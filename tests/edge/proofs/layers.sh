@@ -38,14 +38,15 @@ layer edge/settings                 edge/settings $grounds
 layer edge/recording                edge/recording $grounds
 layer edge/storage                  edge/storage edge/settings $grounds
 layer edge/program                  edge/program edge/storage edge/recording edge/settings $grounds
-layer edge/commands                 edge/commands edge/account edge/why edge/program edge/storage edge/recording edge/settings $grounds
+layer edge/update                   edge/update edge/log edge/control edge/base shared
+layer edge/commands                 edge/commands edge/update edge/account edge/why edge/program edge/storage edge/recording edge/settings $grounds
 layer edge/main.cpp                 edge shared
 # Beside the controller: they read what the log wrote.
 layer edge/account                  edge/account edge/log edge/control edge/base shared
 layer edge/why                      edge/why edge/log edge/loop edge/control edge/base shared
 layer edge/notify                   edge/notify edge/account edge/log edge/control edge/prices/http_secrets.h edge/base shared
-blame "$(includes '"shared/host' edge | grep -vE '^edge/(registers/map_|settings/|recording/|storage/|program/|commands/|account/|why/|notify/)')" \
-  "only start-up and commands use the heap: from settings to commands, account, why, and the reader of register maps"
+blame "$(includes '"shared/host' edge | grep -vE '^edge/(registers/map_|settings/|recording/|storage/|program/|commands/|account/|why/|update/|notify/)')" \
+  "only start-up and commands use the heap: from settings to commands, account, why, update, and the reader of register maps"
 # The simulators.
 layer tools/battery_sim             tools edge/registers edge/base shared
 layer tools/market_sim              tools shared

@@ -6,7 +6,7 @@
 
 #include "edge/log/text_checksum.h"
 #include "edge/storage/storage_health.h"
-#include "edge/storage/update_state.h"
+#include "edge/update/trial_state.h"
 #include "tests/support/as_nobody.h"
 #include "tests/support/fake_card.h"
 #include "tests/support/temporary_folder.h"
@@ -24,7 +24,7 @@ std::string folder_of(const TemporaryFolder& folder) { return folder.file(""); }
 
 TEST(UpdateState, WithoutAPackageThereIsNothingToTell) {
   const TemporaryFolder folder;
-  EXPECT_EQ(update_note(read_update_state(folder_of(folder))), "");
+  EXPECT_EQ(update_note(read_trial_state(folder_of(folder)).state), "");
   EXPECT_THAT(read_update_history(folder_of(folder)).events, IsEmpty());
   EXPECT_THAT(read_update_history(folder_of(folder)).trouble, HasSubstr("no history here"));
 }
@@ -35,7 +35,7 @@ TEST(UpdateState, ATrialTellsItsCyclesAndItsWayBack) {
       folder.write("state",
                    "phase=trying\nversion=2.0\nprevious=1.0\nsince_utc=2026-11-22T06:00:00Z\n"
                    "good=7\nneeded=15\n"));
-  EXPECT_EQ(update_note(read_update_state(folder_of(folder))),
+  EXPECT_EQ(update_note(read_trial_state(folder_of(folder)).state),
             "2.0 on trial since 2026-11-22T06:00:00Z, 7 of 15 good cycles; else back to 1.0");
 }
 
@@ -43,8 +43,54 @@ TEST(UpdateState, ARollBackTellsWhatAndWhyAlsoWithAnEqualsSign) {
   const TemporaryFolder folder;
   static_cast<void>(folder.write(
       "state", "phase=rolled_back\nversion=1.0\nrefused=2.0\nreason=map x: unit = 7\n"));
-  EXPECT_EQ(update_note(read_update_state(folder_of(folder))),
+  EXPECT_EQ(update_note(read_trial_state(folder_of(folder)).state),
             "1.0; 2.0 was rolled back: map x: unit = 7");
+}
+
+TEST(UpdateState, WhatDpkgBelievesIsToldWhereItDiffers) {
+  TrialState state;
+  state.phase = TrialPhase::kRolledBack;
+  state.version = "1.0";
+  state.refused = "2.0";
+  state.reason = "it hangs";
+  state.delivered = "ii 2.0";
+  EXPECT_EQ(update_note(state),
+            "1.0; 2.0 was rolled back: it hangs (dpkg still has it: ii 2.0, it does not run)");
+  state.phase = TrialPhase::kConfirmed;
+  EXPECT_EQ(update_note(state), "1.0 confirmed");
+  state.delivered = "iF 1.0";
+  EXPECT_EQ(update_note(state),
+            "1.0 confirmed; dpkg has it half installed (iF 1.0): dpkg --configure -a");
+}
+
+TEST(UpdateState, AllThatIsKeptIsReadAsItWasWritten) {
+  const TemporaryFolder folder;
+  TrialState state;
+  state.phase = TrialPhase::kComparing;
+  state.version = "2.0";
+  state.previous = "1.0";
+  state.refused_all = "0.8 0.9";
+  state.window = "1101";
+  state.shared = "price,link";
+  state.bad_cause = "link";
+  state.mark = "2026-11-22T06:00:00Z 7";
+  state.restarts = 3;
+  state.needed_cycles = 17;
+  state.is_fresh = true;
+  std::string error;
+  ASSERT_TRUE(write_trial_state(folder_of(folder), state, error)) << error;
+  const ReadTrialState read = read_trial_state(folder_of(folder));
+  EXPECT_EQ(read.damage, "");
+  EXPECT_EQ(trial_phase_name(read.state.phase), "comparing");
+  EXPECT_EQ(read.state.refused_all, state.refused_all);
+  EXPECT_EQ(read.state.window, state.window);
+  EXPECT_EQ(read.state.shared, state.shared);
+  EXPECT_EQ(read.state.bad_cause, state.bad_cause);
+  EXPECT_EQ(read.state.mark, state.mark);
+  EXPECT_EQ(read.state.restarts, 3);
+  EXPECT_EQ(read.state.needed_cycles, 17);
+  EXPECT_TRUE(read.state.is_fresh);
+  EXPECT_FALSE(read.state.is_handed_over);
 }
 
 TEST(UpdateState, OnlyWhatEndedBadlyIsTroubleForHealth) {
@@ -52,7 +98,7 @@ TEST(UpdateState, OnlyWhatEndedBadlyIsTroubleForHealth) {
   const auto trouble_of = [&](const std::string& phase) {
     static_cast<void>(
         folder.write("state", "phase=" + phase + "\nversion=1.0\nrefused=2.0\nreason=it hangs\n"));
-    return update_trouble(read_update_state(folder_of(folder)));
+    return update_trouble(read_trial_state(folder_of(folder)).state);
   };
   EXPECT_EQ(trouble_of("rolled_back"), "1.0; 2.0 was rolled back: it hangs");
   EXPECT_EQ(trouble_of("going_back"), "2.0 is being rolled back: it hangs");
@@ -62,7 +108,7 @@ TEST(UpdateState, OnlyWhatEndedBadlyIsTroubleForHealth) {
   }
 }
 
-/// As bess-update writes it: with its checksum, and a copy.
+/// As it is written: with its checksum, and a copy.
 class UpdateStateCopies : public ::testing::Test {
  protected:
   UpdateStateCopies() {
@@ -76,13 +122,13 @@ class UpdateStateCopies : public ::testing::Test {
     static_cast<void>(folder_.write("state.copy", copy));
   }
   [[nodiscard]] std::string trouble() const {
-    return update_trouble(read_update_state(folder_of(folder_)));
+    return update_trouble(read_trial_state(folder_of(folder_)).state);
   }
 
   static constexpr const char* kTrouble = "1.0; 2.0 was rolled back: it hangs";
   const TemporaryFolder folder_;
   std::string text_;
-  std::string older_;  ///< the same, of a bess-update without checksums
+  std::string older_;  ///< the same, of a program without checksums
 };
 
 TEST_F(UpdateStateCopies, WhatIsDamagedIsTakenFromTheCopy) {
