@@ -214,7 +214,7 @@ for does in good crash; do
   for kind in kill full; do
     for where in announce begin look; do
       n=0
-      while [ $((n += 1)) -le "${BESS_CUTS:-12}" ]; do
+      while [ $((n += 1)) -le "${BESS_CUTS:-3}" ]; do
         machine
         echo $does >does_2.0
         cut_now() { BESS_CUT_AT=$n BESS_CUT_KIND=$kind LD_PRELOAD=$cut "$edge" trial "$@" >said 2>&1; }
