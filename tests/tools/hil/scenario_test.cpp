@@ -2,6 +2,7 @@
 // fault, no map and no event of the list out.
 #include "tools/hil_runner/scenario/scenario.h"
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -118,7 +119,7 @@ TEST(Scenarios, WhatIsWrongOfTheSiteIsSaidWithItsLine) {
               HasSubstr("in the order of time"));
   EXPECT_THAT(refusal("title = \"x\"\n[house]\nsteps = [[0, 1], [60, 2]]\n[meter]\nmap = "
                       "\"simulator\"\n"),
-              HasSubstr("[house] begins at minute 60, after the end"));
+              HasSubstr("s.toml:3: [house] steps is after the end of 60 minutes"));
   EXPECT_THAT(refusal("title = \"x\"\n[meter]\nmap = \"nobody\"\n"),
               HasSubstr("s.toml:3: [meter] map names no register map"));
   EXPECT_THAT(refusal("title = \"x\"\n[meter_fault]\nkinds = [\"frozen\"]\n"),
@@ -176,7 +177,7 @@ TEST(Scenarios, WhatIsWrongIsSaidWithItsLine) {
   EXPECT_THAT(refusal("title = \"x\"\n[[event]]\nat_min = 1\ndoes = \"clock_step\"\nseconds = 3\n"),
               HasSubstr("must be \"virtual\""));
   EXPECT_THAT(refusal("title = \"x\"\n[[event]]\nat_min = 60\ndoes = \"edge_kill\"\n"),
-              HasSubstr("s.toml: [[event]] begins at minute 60, after the end of 60 minutes"));
+              HasSubstr("s.toml:3: [[event]] at_min is after the end of 60 minutes"));
   EXPECT_THAT(refusal("title = \"x\"\n[battery]\nsoc_floor = 0.8\nsoc_ceiling = 0.2\n"),
               HasSubstr("below soc_ceiling"));
   EXPECT_THAT(refusal("title = \"x\"\n[[expect]]\nreason = \"mood\"\n"),
@@ -187,6 +188,111 @@ TEST(Scenarios, WhatIsWrongIsSaidWithItsLine) {
               HasSubstr("in the order of time"));
   EXPECT_THAT(refusal("title = \"x\"\n[price_fault]\nkind = \"frozen\"\nto_min = 9\n"),
               HasSubstr("s.toml:3: [price_fault] kind frozen lasts to the end"));
+}
+
+TEST(Scenarios, AnExpectationThatNoRunCouldBreakIsRefused) {
+  const std::string expect = "title = \"x\"\n[[expect]]\n";
+  EXPECT_EQ(refusal(expect + "command = \"driven\"\n"), "");
+  EXPECT_EQ(refusal(expect + "from_min = 57.5\ncommand = \"driven\"\n"), "");  // the tick of 58
+  EXPECT_THAT(refusal(expect + "from_min = 4\nto_min = 9\n"),
+              HasSubstr("s.toml:2: [[expect]] command or power_w, reason or no_reason: else"));
+  EXPECT_THAT(refusal(expect + "command = \"any\"\n"),
+              HasSubstr("s.toml:3: [[expect]] command or power_w"));
+  EXPECT_THAT(refusal(expect + "from_min = 10.5\nto_min = 12\ncommand = \"zero\"\n"),
+              HasSubstr("s.toml:4: [[expect]] to_min leaves no tick: they are 2 minutes apart"));
+  EXPECT_THAT(refusal(expect + "from_min = 58.5\ncommand = \"zero\"\n"),
+              HasSubstr("s.toml:3: [[expect]] from_min leaves no tick"));
+  EXPECT_THAT(refusal(expect + "power_w = [-4000, 4000]\n"),
+              HasSubstr("s.toml:3: [[expect]] power_w leaves nothing out: the battery has 4000 W"));
+  EXPECT_THAT(refusal(expect + "from_min = 60\ncommand = \"zero\"\n"),
+              HasSubstr("s.toml:3: [[expect]] from_min is after the end of 60 minutes"));
+  EXPECT_THAT(refusal(expect + "to_min = 61\ncommand = \"zero\"\n"),
+              HasSubstr("s.toml:3: [[expect]] to_min is after the end of 60 minutes"));
+}
+
+TEST(Scenarios, AnExpectationThatNoRunCouldKeepIsRefused) {
+  const std::string expect = "title = \"x\"\n[[expect]]\n";
+  const auto ruled_out = HasSubstr("s.toml:4: [[expect]] power_w rules out its command");
+  EXPECT_THAT(refusal(expect + "command = \"charge\"\npower_w = [-9, 0]\n"), ruled_out);
+  EXPECT_THAT(refusal(expect + "command = \"discharge\"\npower_w = [0, 9]\n"), ruled_out);
+  for (const char* const command : {"zero", "none", "not_driven"}) {
+    const std::string line = std::string("command = \"").append(command).append("\"\n");
+    EXPECT_THAT(refusal(expect + line + "power_w = [1, 9]\n"), ruled_out) << command;
+    EXPECT_EQ(refusal(expect + line + "power_w = [0, 9]\n"), "") << command;
+  }
+  EXPECT_THAT(refusal(expect + "reason = \"ramp\"\nno_reason = \"ramp\"\n"),
+              HasSubstr("s.toml:4: [[expect]] no_reason rules out its reason"));
+}
+
+TEST(Scenarios, KeysThatContradictEachOtherOrAreOfNothingHereAreRefused) {
+  const auto of = [](const std::string& lines) { return refusal("title = \"x\"\n" + lines); };
+  EXPECT_THAT(of("[prices]\nsteps = [[0, 1]]\nwave = { mean = 9 }\n"),
+              HasSubstr("s.toml:3: [prices] steps file, steps or wave: at most one"));
+  EXPECT_THAT(of("[prices]\nmissing = [[20, 10]]\n"),
+              HasSubstr("s.toml:3: [prices] missing holds no minute"));
+  EXPECT_THAT(of("[prices]\nmissing = [[20.2, 20.8]]\n"), HasSubstr("missing holds no minute"));
+  EXPECT_THAT(of("[prices]\nsteps = [[3, 1], [3, 2]]\n"), HasSubstr("in the order of time"));
+  EXPECT_THAT(of("time = \"virtual\"\ntime_scale = 9\n"),
+              HasSubstr("s.toml:3: time_scale is of wall time"));
+  const std::string fault = "[battery_fault]\nkinds = [\"silence\"]\n";
+  EXPECT_THAT(of(fault + "every = 2\nprobability = 0.5\n"),
+              HasSubstr("s.toml:4: [battery_fault] every or probability: at most one"));
+  for (const char* const key : {"late_ms", "drip_ms", "exception_code", "period_s"}) {
+    EXPECT_THAT(of(fault + key + " = 9\n"),
+                HasSubstr(std::string("s.toml:4: [battery_fault] ").append(key).append(" is of ")));
+  }
+}
+
+TEST(Scenarios, WhatBeginsOrEndsAfterTheEndIsRefusedWithItsLine) {
+  const auto of = [](const std::string& lines) { return refusal("title = \"x\"\n" + lines); };
+  EXPECT_THAT(of("[battery_fault]\nkinds = [\"silence\"]\nfrom_min = 60\n"),
+              HasSubstr("s.toml:4: [battery_fault] from_min is after the end of 60 minutes"));
+  EXPECT_THAT(of("[price_fault]\nkind = \"null\"\nto_min = 61\n"),
+              HasSubstr("s.toml:4: [price_fault] to_min is after the end"));
+  EXPECT_THAT(of("[house]\npower_w = 1\n[meter]\nmap = \"simulator\"\n[meter_fault]\nkinds = "
+                 "[\"frozen\"]\nfrom_min = 70\n"),
+              HasSubstr("s.toml:8: [meter_fault] from_min is after the end"));
+  EXPECT_THAT(of("[prices]\nsteps = [[0, 1],\n[60, 2]]\n"),
+              HasSubstr("s.toml:4: [prices] steps is after the end"));
+  EXPECT_THAT(of("[prices]\nmissing = [[60, 62]]\n"),
+              HasSubstr("s.toml:3: [prices] missing is after the end"));
+}
+
+TEST(Scenarios, AnEventThatFindsNothingToDoIsRefusedWithItsLine) {
+  const auto of = [](std::initializer_list<const char*> events) {
+    std::string text = "title = \"x\"\ntime = \"virtual\"\n";
+    int at_min = 0;
+    for (const char* const does : events) {
+      text += fmt::format("[[event]]\nat_min = {}\ndoes = \"{}\"\n", ++at_min, does);
+    }
+    return refusal(text);
+  };
+  EXPECT_THAT(of({"edge_start"}),
+              HasSubstr("s.toml:3: [[event]] edge_start at minute 1 is in vain: the edge runs"));
+  EXPECT_THAT(of({"edge_kill", "edge_stop"}), HasSubstr("s.toml:6: [[event]] edge_stop"));
+  for (const char* const end : {"edge_continue", "battery_continue", "market_continue",
+                                "market_start", "clock_back", "hold_release", "limit_clear"}) {
+    EXPECT_THAT(of({end}), HasSubstr("is in vain")) << end;
+  }
+  for (const char* const begin : {"edge_pause", "battery_pause", "market_pause", "market_kill",
+                                  "clock_lost", "edge_hand_over"}) {
+    EXPECT_EQ(of({begin}), "") << begin;
+    EXPECT_THAT(of({begin, begin}), HasSubstr("s.toml:6: [[event]]")) << begin;
+  }
+  EXPECT_THAT(refusal("title = \"x\"\ntime = \"virtual\"\n[[event]]\nat_min = 1\ndoes = "
+                      "\"clock_step\"\n"),
+              HasSubstr("seconds is missing"));
+  EXPECT_THAT(refusal("title = \"x\"\ntime = \"virtual\"\n[[event]]\nat_min = 1\ndoes = "
+                      "\"clock_step\"\nseconds = 0\n"),
+              HasSubstr("s.toml:6: [[event]] seconds must not be 0"));
+}
+
+TEST(Scenarios, AnExcuseIsOfAPartAndSaysWhy) {
+  EXPECT_THAT(refusal("title = \"x\"\n[same_without]\n\"event 1\" = \"why\"\n"),
+              HasSubstr("s.toml:3: [same_without] event 1 is no part of this scenario, which has "
+                        "nothing"));
+  EXPECT_THAT(refusal("title = \"x\"\n[same_without]\nnothing = \"\"\n"),
+              HasSubstr("s.toml:3: [same_without] nothing says not why"));
 }
 
 }  // namespace

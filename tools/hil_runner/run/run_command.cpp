@@ -18,6 +18,7 @@
 #include "tools/hil_runner/base/stop_request.h"
 #include "tools/hil_runner/real/real_options.h"
 #include "tools/hil_runner/run/agreement.h"
+#include "tools/hil_runner/run/each_part.h"
 #include "tools/hil_runner/run/hil_command.h"
 #include "tools/hil_runner/run/junit.h"
 #include "tools/hil_runner/run/report_page.h"
@@ -38,6 +39,7 @@ struct RunOptions {
   bool list = false;
   bool list_invariants = false;
   bool json = false;
+  bool each_part = false;
   std::string junit, report, edge, simulators;
   RealOptions real;
 };
@@ -122,7 +124,7 @@ class Runner {
       return std::move(outcomes_);
     }
     if (options_.times != Times::kWall) {
-      for (const Scenario& scenario : scenarios_) take(run_scenario(scenario, true, site_));
+      for (const Scenario& scenario : scenarios_) take(run_virtually(scenario));
     }
     if (options_.times != Times::kVirtual) run_in_wall_time();
     return std::move(outcomes_);
@@ -139,6 +141,14 @@ class Runner {
         fail("{}: not for a real battery: {} (--list names those that are)", scenario.path, why);
       }
     }
+  }
+
+  [[nodiscard]] Outcome run_virtually(const Scenario& scenario) const {
+    Outcome outcome = run_scenario(scenario, true, site_);
+    if (options_.each_part && outcome.skipped.empty() && outcome.passed()) {
+      outcome.findings = judge_parts(outcome);
+    }
+    return outcome;
   }
 
   /// One after the other; what cannot be run to its end ends them all.
@@ -267,6 +277,9 @@ void add_run_command(ProgramCommand& app) {
   command.flag("--list", options->list,
                "Only name the scenarios, their times, and which may drive a real battery");
   command.flag("--invariants", options->list_invariants, "Only name what is judged");
+  command.flag(
+      "--each-part", options->each_part,
+      "In virtual time, run each that passes also without each of its parts: all must differ");
   command.flag("--json", options->json, "One JSON object instead of lines");
   command.option("--junit", options->junit, "Write JUnit XML here");
   command.option("--report", options->report, "Write a page with pictures here (HTML)");

@@ -37,9 +37,12 @@ std::uint64_t signature_of(const Evidence& evidence) {
   }
   for (const LoggedCycle& c : evidence.log) {
     for (const std::int64_t part :
-         {c.utc_s, std::int64_t{c.soc_e4}, std::int64_t{c.price_centi_eur_per_mwh},
-          std::int64_t{c.context_class}, std::int64_t{c.ordered_power_w},
-          static_cast<std::int64_t>(c.mode), std::int64_t{c.written}}) {
+         {c.utc_s, std::int64_t{c.has_measurement}, std::int64_t{c.soc_e4},
+          std::int64_t{c.battery_power_w}, std::int64_t{c.has_price}, c.price_minute_utc_s,
+          std::int64_t{c.price_centi_eur_per_mwh}, std::int64_t{c.context_class},
+          std::int64_t{c.has_student_action}, static_cast<std::int64_t>(c.student_action),
+          std::int64_t{c.ordered_power_w}, static_cast<std::int64_t>(c.mode),
+          std::int64_t{c.written}}) {
       signature.add(part);
     }
     for (const char letter : c.reason) signature.add(letter);

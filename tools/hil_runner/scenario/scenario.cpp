@@ -4,14 +4,15 @@
 #include <cmath>
 #include <filesystem>
 
-#include "edge/control/control_types.h"
-#include "edge/control/hold.h"
 #include "edge/control/price_history.h"
 #include "shared/host/user_error.h"
 #include "shared/scaled_clock.h"
 #include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
 #include "tools/hil_runner/scenario/rules.h"
+#include "tools/hil_runner/scenario/scenario_event.h"
+#include "tools/hil_runner/scenario/scenario_expectation.h"
+#include "tools/hil_runner/scenario/scenario_parts.h"
 #include "tools/hil_runner/scenario/scenario_reader.h"
 #include "tools/hil_runner/scenario/scenario_site.h"
 
@@ -22,16 +23,8 @@ namespace fs = std::filesystem;
 
 constexpr double kWallMinutesMax = 180;
 
-constexpr std::string_view kEventNames[] = {
-    "edge_kill",    "edge_stop",       "edge_hand_over", "edge_start",
-    "edge_pause",   "edge_continue",   "battery_pause",  "battery_continue",
-    "market_pause", "market_continue", "market_kill",    "market_start",
-    "clock_step",   "clock_lost",      "clock_back",     "hold",
-    "hold_release", "limit",           "limit_clear",    "limit_torn",
-    "clear",        "disk_full"};
-
 void read_battery(TomlTable table, const fs::path& folder, ScenarioBattery& battery) {
-  std::string map = "alphaess";
+  std::string map = kUsualMap;
   read_text(table, "map", map);
   battery.names_map = table.has("map");
   for (const char* key : {"soc", "power_w", "capacity_wh", "soc_floor", "soc_ceiling"}) {
@@ -57,11 +50,15 @@ void read_battery(TomlTable table, const fs::path& folder, ScenarioBattery& batt
   table.finish();
 }
 
-void read_prices(TomlTable table, const fs::path& folder, ScenarioPrices& prices) {
+void read_prices(TomlTable table, const fs::path& folder, Scenario& scenario) {
+  ScenarioPrices& prices = scenario.prices;
+  if (int{table.has("file")} + int{table.has("steps")} + int{table.has("wave")} > 1) {
+    table.fail(table.has("file") ? "file" : "steps", "file, steps or wave: at most one of them");
+  }
   read_text(table, "file", prices.file);
   if (!prices.file.empty()) prices.file = (folder / prices.file).lexically_normal().string();
-  read_pairs(table, "steps", [&](double minute, double price) {
-    prices.steps.push_back({minute, price});
+  read_steps(table, scenario.minutes, prices.steps, [](double from_min, double price) {
+    return ScenarioPrices::Step{from_min, price};
   });
   if (const TomlValue* const node = table.table("wave")) {
     TomlTable wave(node, table.file(), "[prices] wave", table.error());
@@ -74,19 +71,46 @@ void read_prices(TomlTable table, const fs::path& folder, ScenarioPrices& prices
   }
   read_decimal(table, "latency_s", prices.latency_s, 0, 3'600);
   table.integer("history_hours", prices.history_hours, 1, PriceHistory::kHoursMax);
-  read_pairs(table, "missing", [&](double from, double to) {
+  read_pairs(table, "missing", [&](double from, double to) -> std::string {
+    if (std::ceil(from) >= to) return "holds no minute: from one up to, not including, the other";
+    if (from >= scenario.minutes) return after_the_end(scenario.minutes);
     prices.missing.push_back({.from_min = from, .to_min = to});
+    return "";
   });
-  if (table.ok() && !std::ranges::is_sorted(prices.steps, {}, &ScenarioPrices::Step::from_min)) {
-    table.fail("steps", "must be in the order of time");
-  }
   table.finish();
 }
 
-void read_battery_fault(TomlTable table, bool rtu, BatteryFaultWindow& fault) {
+/// Keys of a fault that none of its kinds reads, and what contradicts another.
+void check_battery_fault(TomlTable& table, const FaultSchedule& schedule) {
+  using enum BatteryFault;
+  struct OfKinds {
+    const char* key;
+    std::vector<BatteryFault> kinds;
+    const char* names;
+  };
+  const OfKinds keys[] = {{"late_ms", {kLate, kByteGap}, "late, byte-gap"},
+                          {"drip_ms", {kDrip}, "drip"},
+                          {"exception_code", {kException}, "exception"},
+                          {"period_s",
+                           {kOtherMaster, kMasterStops, kMasterMode, kEndsOrders},
+                           "other-master, master-stops, master-mode, ends-orders"}};
+  const auto& faults = schedule.faults;
+  for (const OfKinds& key : keys) {
+    if (table.has(key.key) && std::ranges::find_first_of(faults, key.kinds) == faults.end()) {
+      table.fail(key.key, fmt::format("is of {} alone", key.names));
+    }
+  }
+  if (table.has("every") && table.has("probability")) {
+    table.fail("every", "or probability: at most one of them");
+  }
+}
+
+void read_battery_fault(TomlTable table, Scenario& scenario) {
   if (table.value() == nullptr) return;
+  BatteryFaultWindow& fault = scenario.battery_fault;
+  const bool rtu = scenario.battery.rtu;
   MinuteSpan window;
-  read_span(table, window);
+  read_span(table, scenario.minutes, window);
   fault.schedule.every = 1;
   fault.schedule.from_s = 60 * window.from_min;
   fault.schedule.to_s = 60 * window.to_min;
@@ -109,12 +133,14 @@ void read_battery_fault(TomlTable table, bool rtu, BatteryFaultWindow& fault) {
     if (rtu ? info.rtu : info.tcp) return std::string();
     return std::string(rtu ? "only without a serial line" : "only on a serial line");
   });
+  check_battery_fault(table, fault.schedule);
   table.finish();
 }
 
-void read_price_fault(TomlTable table, PriceFaultWindow& fault) {
+void read_price_fault(TomlTable table, Scenario& scenario) {
   if (table.value() == nullptr) return;
-  read_span(table, fault.span);
+  PriceFaultWindow& fault = scenario.price_fault;
+  read_span(table, scenario.minutes, fault.span);
   table.integer("every", fault.every, 1, 1'000'000);
   int kind = 0;
   table.require("kind");
@@ -127,90 +153,6 @@ void read_price_fault(TomlTable table, PriceFaultWindow& fault) {
     table.fail("kind", "frozen lasts to the end, in every answer: leave every and to_min out");
   }
   table.finish();
-}
-
-/// How long it holds, in whole seconds, as the command lines take it.
-void read_for_min(TomlTable& table, double minutes_min, std::int64_t& for_s) {
-  constexpr double kWeekMin = 7 * 24 * 60;
-  double minutes = 0;
-  table.require("for_min");
-  read_decimal(table, "for_min", minutes, minutes_min, kWeekMin);
-  for_s = std::llround(60 * minutes);
-}
-
-/// What belongs to one kind of event alone.
-void read_what_is_said(TomlTable& table, ScenarioEvent& event) {
-  using enum ScenarioEvent::Does;
-  constexpr std::int64_t kPowerWMax = 100'000'000;
-  if (event.does == kClockStep) {
-    read_decimal(table, "seconds", event.seconds, -86'400, 86'400);
-  } else if (event.does == kHold) {
-    table.require("power_w");
-    table.integer("power_w", event.power_w, -kPowerWMax, kPowerWMax);
-    read_for_min(table, kHoldSecondsMin / 60.0, event.for_s);
-  } else if (event.does == kLimit || event.does == kLimitTorn) {
-    if (!table.has("charge_w") && !table.has("discharge_w")) table.require("charge_w");
-    table.integer("charge_w", event.charge_w, 0, kPowerWMax);
-    table.integer("discharge_w", event.discharge_w, 0, kPowerWMax);
-    read_for_min(table, 0.1, event.for_s);
-  }
-}
-
-void read_event(TomlTable table, Scenario& scenario) {
-  ScenarioEvent event;
-  table.require("at_min");
-  read_decimal(table, "at_min", event.at_min, 0, kScenarioMinutesMax);
-  table.require("does");
-  const std::string* const does = table.text("does");
-  const auto* const found = std::ranges::find(kEventNames, does == nullptr ? "" : *does);
-  if (table.ok() && found == std::end(kEventNames)) {
-    std::string names;
-    for (const std::string_view name : kEventNames) names += ' ' + std::string(name);
-    return table.fail("does", "must be one of:" + names);
-  }
-  event.does = static_cast<ScenarioEvent::Does>(found - std::begin(kEventNames));
-  read_what_is_said(table, event);
-  table.finish();
-  scenario.events.push_back(event);
-}
-
-bool is_reason(std::string_view name) {
-  for (int i = 0; i < kReasonCount; ++i) {
-    if (reason_name(static_cast<Reason>(i)) == name) return true;
-  }
-  return false;
-}
-
-/// power_w = [least, most]
-void read_expected_power(TomlTable& table, Expectation& expectation) {
-  const TomlArray* const range = table.array("power_w");
-  if (range == nullptr) return;
-  const auto least = range->size() == 2 ? (*range)[0].number() : std::nullopt;
-  const auto most = least ? (*range)[1].number() : std::nullopt;
-  if (!most || *least > *most) return table.fail("power_w", "must be [least, most], in W");
-  expectation.power_w_min = *least;
-  expectation.power_w_max = *most;
-}
-
-void read_expectation(TomlTable table, Scenario& scenario) {
-  Expectation expectation;
-  read_span(table, expectation.span);
-  int command = 0;
-  table.choice("command", command,
-               {"any", "charge", "discharge", "zero", "none", "driven", "not_driven"});
-  expectation.command = static_cast<Expectation::Command>(command);
-  read_expected_power(table, expectation);
-  read_text(table, "reason", expectation.reason);
-  read_text(table, "no_reason", expectation.no_reason);
-  const std::pair<const char*, const std::string*> reasons[] = {
-      {"reason", &expectation.reason}, {"no_reason", &expectation.no_reason}};
-  for (const auto& [key, name] : reasons) {
-    if (table.ok() && !name->empty() && !is_reason(*name)) {
-      table.fail(key, "is no reason of the guard (edge/README.md lists them)");
-    }
-  }
-  table.finish();
-  scenario.expectations.push_back(std::move(expectation));
 }
 
 void read_judge(TomlTable table, Scenario& scenario) {
@@ -259,44 +201,31 @@ void read_time(TomlTable& table, Scenario& scenario) {
   table.choice("time", time, {"both", "virtual", "wall"});
   scenario.runs_virtual = time != 2;
   scenario.runs_wall = time != 1;
+  if (table.has("time_scale") && !scenario.runs_wall) {
+    table.fail("time_scale", "is of wall time, in which this does not run");
+  }
   if (table.ok() && scenario.runs_wall && scenario.minutes > kWallMinutesMax) {
     table.fail("minutes",
                fmt::format("over {:g} is for time = \"virtual\" alone", kWallMinutesMax));
   }
 }
 
-/// What begins after the end would never be, and the scenario would pass without it.
-void check_beginnings(TomlTable& table, const Scenario& scenario) {
-  const auto begins = [&](const char* where, double minute) {
-    if (!table.error().empty() || minute < scenario.minutes) return;
-    table.error() = fmt::format("{}: {} begins at minute {:g}, after the end of {:g} minutes",
-                                scenario.path, where, minute, scenario.minutes);
-  };
-  for (const ScenarioEvent& event : scenario.events) begins("[[event]]", event.at_min);
-  for (const Expectation& e : scenario.expectations) begins("[[expect]]", e.span.from_min);
-  begins("[battery_fault]", scenario.battery_fault.schedule.from_s / 60);
-  begins("[meter_fault]", scenario.meter.fault.schedule.from_s / 60);
-  begins("[price_fault]", scenario.price_fault.span.from_min);
-  for (const ScenarioHouse::Step& step : scenario.house.steps) begins("[house]", step.from_min);
-  for (const MinuteSpan& gap : scenario.prices.missing) begins("[prices] missing", gap.from_min);
-}
-
-/// What only one of the two times can do, and what the edge would refuse.
-void check_events(TomlTable& table, const Scenario& scenario) {
-  using enum ScenarioEvent::Does;
-  for (const ScenarioEvent& event : scenario.events) {
-    if (std::abs(event.power_w) > scenario.battery.physics.power_w_max) {
-      table.fail("event", fmt::format("hold: {} W is more than the battery's {:g}", event.power_w,
-                                      scenario.battery.physics.power_w_max));
-    }
-    const bool of_clock = event.does == kClockStep || event.does == kClockUnsynchronised ||
-                          event.does == kClockSynchronised;
-    if (of_clock && scenario.runs_wall) {
-      table.fail("time", "must be \"virtual\": the clock of this machine is not stepped");
-    }
-    if (event.does == kDiskFull && scenario.runs_virtual) {
-      table.fail("time", "must be \"wall\": in virtual time there is no disk");
-    }
+/// Excuses, each for a part that the scenario has.
+void read_same_without(TomlTable table, Scenario& scenario) {
+  if (table.value() == nullptr) return;
+  const std::vector<ScenarioPart> parts = parts_of(scenario);
+  std::string names = parts.empty() ? std::string(kNothing) : "";
+  for (const ScenarioPart& part : parts) {
+    names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", part.name);
+  }
+  for (const auto& [name, value] : *table.value()->as<TomlMembers>()) {
+    const bool is_part = parts.empty()
+                             ? name == kNothing
+                             : std::ranges::find(parts, name, &ScenarioPart::name) != parts.end();
+    std::string& why = scenario.same_without[name];
+    read_text(table, name, why);
+    if (!is_part) return table.fail(name, "is no part of this scenario, which has " + names);
+    if (table.ok() && why.empty()) table.fail(name, "says not why");
   }
 }
 
@@ -315,10 +244,6 @@ std::string map_path(const std::string& name, const fs::path& folder) {
     return std::string(BESS_MAP_DIR) + "/" + name + ".toml";
   }
   return (folder / name).lexically_normal().string();
-}
-
-std::string_view event_name(ScenarioEvent::Does does) {
-  return kEventNames[static_cast<std::size_t>(does)];
 }
 
 bool Scenario::has_limits() const {
@@ -349,22 +274,22 @@ Scenario read_scenario(const std::string& path) {
   read_text(table, "title", scenario.title);
   read_time(table, scenario);
   read_battery(sub("battery"), folder, scenario.battery);
-  read_prices(sub("prices"), folder, scenario.prices);
-  read_house(sub("house"), scenario.house);
+  read_prices(sub("prices"), folder, scenario);
+  read_house(sub("house"), scenario);
   read_meter(sub("meter"), folder, scenario.meter);
-  read_meter_fault(sub("meter_fault"), scenario.meter);
-  read_battery_fault(sub("battery_fault"), scenario.battery.rtu, scenario.battery_fault);
-  read_price_fault(sub("price_fault"), scenario.price_fault);
+  read_meter_fault(sub("meter_fault"), scenario);
+  read_battery_fault(sub("battery_fault"), scenario);
+  read_price_fault(sub("price_fault"), scenario);
   each(table, "event", [&](TomlTable event) { read_event(std::move(event), scenario); });
   each(table, "expect", [&](TomlTable expect) { read_expectation(std::move(expect), scenario); });
   read_edge(sub("edge"), scenario);
   read_judge(sub("judge"), scenario);
+  std::ranges::stable_sort(scenario.events, {}, &ScenarioEvent::at_min);
+  read_same_without(sub("same_without"), scenario);
   check_site(table, scenario);
   check_events(table, scenario);
-  check_beginnings(table, scenario);
   table.finish();
   if (!error.empty()) throw UserError(error);
-  std::ranges::stable_sort(scenario.events, {}, &ScenarioEvent::at_min);
   return scenario;
 }
 

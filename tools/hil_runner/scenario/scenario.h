@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -25,6 +26,9 @@ struct MinuteSpan {
   double from_min = 0;
   double to_min = kNeverMin;
 };
+
+/// Of a scenario that names none.
+inline constexpr const char* kUsualMap = "alphaess";
 
 struct ScenarioBattery {
   std::string map;      ///< path of the register map
@@ -125,6 +129,7 @@ struct ScenarioEvent {
   std::int64_t for_s = 0;              ///< of a hold, or a limit
   std::int32_t charge_w = kAnyPowerW;  ///< of a limit
   std::int32_t discharge_w = kAnyPowerW;
+  int line = 0;  ///< of its file
 };
 /// Somebody says something to the edge, rather than doing something to it.
 constexpr bool is_of_people(ScenarioEvent::Does does) {
@@ -173,6 +178,8 @@ struct Scenario {
   std::vector<std::string> invariants;  ///< that are judged
   double recovery_min = 12;             ///< after a fault, until the edge must drive again
   std::int32_t exit_code = 0;           ///< of the edge that runs last
+  /// Parts (scenario_parts.h) that change nothing when they are taken away, each with the reason.
+  std::map<std::string, std::string> same_without;
 
   /// The edge has a limit file.
   [[nodiscard]] bool has_limits() const;

@@ -26,11 +26,19 @@ inline void read_decimal(TomlTable& table, std::string_view key, double& value, 
   value = *number;
 }
 
-inline void read_span(TomlTable& table, MinuteSpan& span) {
+/// What begins after the end would never be, and the scenario would pass without it.
+inline std::string after_the_end(double scenario_minutes) {
+  return fmt::format("is after the end of {:g} minutes", scenario_minutes);
+}
+
+inline void read_span(TomlTable& table, double scenario_minutes, MinuteSpan& span) {
   read_decimal(table, "from_min", span.from_min, 0, kScenarioMinutesMax);
   read_decimal(table, "to_min", span.to_min, 0, kScenarioMinutesMax);
-  if (table.ok() && span.to_min <= span.from_min) {
-    table.fail("to_min", "must be later than from_min");
+  if (!table.ok()) return;
+  if (span.to_min <= span.from_min) table.fail("to_min", "must be later than from_min");
+  const bool is_over = table.has("to_min") && span.to_min > scenario_minutes;
+  if (span.from_min >= scenario_minutes || is_over) {
+    table.fail(is_over ? "to_min" : "from_min", after_the_end(scenario_minutes));
   }
 }
 
@@ -38,7 +46,8 @@ inline void read_text(TomlTable& table, std::string_view key, std::string& value
   if (const std::string* const text = table.text(key)) value = *text;
 }
 
-/// Calls `take(first, second)` for each pair of numbers in a list of pairs.
+/// Calls `take(first, second)` for each pair of numbers in a list of pairs; what it returns is
+/// wrong with the pair, empty: nothing.
 template <typename Take>
 void read_pairs(TomlTable& table, std::string_view key, const Take& take) {
   const TomlArray* const list = table.array(key);
@@ -50,8 +59,22 @@ void read_pairs(TomlTable& table, std::string_view key, const Take& take) {
     if (!second) {
       return table.fail_at(item, std::string(key) + " must be a list of pairs of numbers");
     }
-    take(*first, *second);
+    if (const std::string wrong = take(*first, *second); !wrong.empty()) {
+      return table.fail_at(item, fmt::format("{} {} {}", table.where(), key, wrong));
+    }
   }
+}
+
+/// Steps, each until the next: in the order of time, all before the end.
+template <typename Step, typename Make>
+void read_steps(TomlTable& table, double scenario_minutes, std::vector<Step>& steps,
+                const Make& make) {
+  read_pairs(table, "steps", [&](double from_min, double value) -> std::string {
+    if (!steps.empty() && from_min <= steps.back().from_min) return "must be in the order of time";
+    if (from_min >= scenario_minutes) return after_the_end(scenario_minutes);
+    steps.push_back(make(from_min, value));
+    return "";
+  });
 }
 
 /// Key `kinds`, required: faults of bess-sim battery. `refuse(info)` says why one cannot be here; empty: it can.

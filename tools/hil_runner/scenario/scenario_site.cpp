@@ -22,19 +22,17 @@ bool is_of_meter(const BatteryFaultInfo& info) {
 
 }  // namespace
 
-void read_house(TomlTable table, ScenarioHouse& house) {
+void read_house(TomlTable table, Scenario& scenario) {
+  ScenarioHouse& house = scenario.house;
   if (table.value() == nullptr) return;
   const int ways = int{table.has("power_w")} + int{table.has("steps")} + int{table.has("seed")};
   if (ways != 1) table.fail("power_w", "or steps or seed: exactly one of them is needed");
   double power_w = 0;
   read_decimal(table, "power_w", power_w, -kHouseWMax, kHouseWMax);
   if (table.has("power_w")) house.steps = {{.from_min = 0, .power_w = power_w}};
-  read_pairs(table, "steps", [&](double from_min, double step_w) {
-    house.steps.push_back({.from_min = from_min, .power_w = step_w});
+  read_steps(table, scenario.minutes, house.steps, [](double from_min, double step_w) {
+    return ScenarioHouse::Step{.from_min = from_min, .power_w = step_w};
   });
-  if (table.ok() && !std::ranges::is_sorted(house.steps, {}, &ScenarioHouse::Step::from_min)) {
-    table.fail("steps", "must be in the order of time");
-  }
   if (table.has("seed")) {
     std::int64_t seed = 1;
     table.integer("seed", seed, 0, INT64_MAX);
@@ -62,7 +60,8 @@ void read_meter(TomlTable table, const fs::path& folder, ScenarioMeter& meter) {
   if (!fs::exists(meter.map)) table.fail("map", "names no register map: " + meter.map);
 }
 
-void read_meter_fault(TomlTable table, ScenarioMeter& meter) {
+void read_meter_fault(TomlTable table, Scenario& scenario) {
+  ScenarioMeter& meter = scenario.meter;
   if (table.value() == nullptr) return;
   if (meter.source != ScenarioMeter::Source::kMap) {
     table.fail("kinds", meter.source == ScenarioMeter::Source::kNone
@@ -71,7 +70,7 @@ void read_meter_fault(TomlTable table, ScenarioMeter& meter) {
                               "[battery_fault]");
   }
   MinuteSpan window;
-  read_span(table, window);
+  read_span(table, scenario.minutes, window);
   FaultSchedule& schedule = meter.fault.schedule;
   schedule.every = 1;
   schedule.from_s = 60 * window.from_min;

@@ -7,9 +7,9 @@
 
 namespace bess {
 
-void read_house(TomlTable table, ScenarioHouse& house);
+void read_house(TomlTable table, Scenario& scenario);
 void read_meter(TomlTable table, const std::filesystem::path& folder, ScenarioMeter& meter);
-void read_meter_fault(TomlTable table, ScenarioMeter& meter);
+void read_meter_fault(TomlTable table, Scenario& scenario);
 
 /// One without the other, or lines for the edge about what is not there, would be in vain.
 void check_site(TomlTable& root, const Scenario& scenario);
