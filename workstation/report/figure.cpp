@@ -130,12 +130,19 @@ void describe(pugi::xml_node svg, const Figure& figure) {
 
 }  // namespace
 
-void draw_figure(const Figure& figure, const fs::path& folder) {
-  const fs::path light = folder / (figure.name + ".svg");
+std::vector<std::string> draw_figure(const Figure& figure, const fs::path& folder) {
+  std::vector<std::string> names{figure.name + ".svg", figure.name + "_dark.svg"};
+  const fs::path light = folder / names.front();
   draw_with_gnuplot(light, [&](const fs::path& output) { return script_of(figure, output); });
   const std::string drawn = read_file(light);
-  write_file(folder / (figure.name + "_dark.svg"), titled_svg(drawn, figure, true));
+  write_file(folder / names.back(), titled_svg(drawn, figure, true));
   write_file(light, titled_svg(drawn, figure, false));
+  if (figure.numbers.columns.empty()) return names;
+  PictureTable numbers = figure.numbers;
+  numbers.name = figure.name;
+  write_picture(numbers, folder);
+  names.push_back(picture_file(numbers));
+  return names;
 }
 
 std::string titled_svg(std::string_view file, const Figure& figure, bool dark) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "workstation/base/palette.h"
+#include "workstation/report/picture_table.h"
 
 namespace bess {
 
@@ -19,11 +20,13 @@ struct Figure {
   int width_px = 880;
   int height_px = 420;
   std::string commands;  ///< gnuplot, without terminal and output
+  /// What is drawn; no columns where a table of the same results lies beside the picture already.
+  PictureTable numbers{};
 };
 
-/// Writes `folder`/`name`.svg and `name`_dark.svg, each with its title above the picture, beside and renamed.
-/// Throws UserError without gnuplot.
-void draw_figure(const Figure& figure, const std::filesystem::path& folder);
+/// Writes `folder`/`name`.svg and `name`_dark.svg, each with its title above the picture, and
+/// `name`.csv with its numbers; each beside and renamed. Returns the names. Throws UserError without gnuplot.
+std::vector<std::string> draw_figure(const Figure& figure, const std::filesystem::path& folder);
 
 /// gnuplot's `file` as it stands alone: the title above it, its colours for a dark page when asked for. Throws
 /// UserError for a file of another form.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shared/utc_text.h"
 #include "workstation/report/figures.h"
 
 namespace bess {
@@ -59,6 +60,17 @@ std::vector<std::string> band_rows(const DayStory& story, Action action, bool fl
   }
   if (rows.empty()) rows.emplace_back("NaN NaN");
   return rows;
+}
+
+PictureTable numbers_of(const DayStory& story) {
+  PictureTable table{
+      {}, {"utc", "observed_eur_per_mwh", "paid_eur_per_mwh", "soc_frac", "action", "power_w"}, {}};
+  for (const StepRecord& r : story.records) {
+    table.rows.push_back({std::string(utc_text(r.utc_s).view()), exact(r.observed_eur_per_mwh),
+                          exact(r.paid_eur_per_mwh), exact(r.soc_frac),
+                          std::string(action_name(r.action)), exact(r.power_w)});
+  }
+  return table;
 }
 
 constexpr double kFlowingDensity = 0.34;  ///< of a band's tint
@@ -153,6 +165,7 @@ Figure day_figure(const DayStory& story) {
       "coloured bands, and the state of charge below.",
       story.date);
   figure.caption = caption_of(story);
+  figure.numbers = numbers_of(story);
   const KeyRow key =
       key_row(figure, 88,
               {{"charging", kCharge, KeyEntry::Kind::kArea, 0, kFlowingDensity},

@@ -31,6 +31,23 @@ std::vector<std::string> learning_rows(const std::vector<CurvePoint>& curve) {
   return rows;
 }
 
+PictureTable learning_numbers(const std::vector<CurvePoint>& curve, double rule) {
+  std::vector<double> profit;
+  for (const CurvePoint& p : curve) profit.push_back(p.validation_eur_per_day_per_mwh);
+  const std::vector<double> smooth = centred_mean(profit, kSmoothingReach);
+  PictureTable table{{},
+                     {"step", "validation_eur_per_day_per_mwh", "smoothed_eur_per_day_per_mwh",
+                      "rule_eur_per_day_per_mwh", "loss"},
+                     {}};
+  for (std::size_t i = 0; i < curve.size(); ++i) {
+    // At step 0 nothing was learnt: there is no loss.
+    table.rows.push_back(
+        {fmt::format("{}", curve[i].step), exact(profit[i]), exact(smooth[i]), exact(rule),
+         curve[i].step == 0 ? std::string() : fmt::format("{:.9g}", curve[i].loss)});
+  }
+  return table;
+}
+
 struct Range {
   double low, high;
 };
@@ -126,6 +143,7 @@ Figure regret_figure(const std::vector<DistilPoint>& curve) {
                         "set xlabel 'epochs'\nset ylabel 'regret / temperature'\n"
                         "plot $curve using 1:2 with lines lw 2.5 lc {}\n",
                         rgb(kCharge));
+  figure.numbers = distil_losses_table(figure.name, curve);
   return figure;
 }
 
@@ -165,6 +183,7 @@ Figure learning_figure(const std::vector<CurvePoint>& curve, double rule) {
   const KeyRow key = key_row(figure, 100,
                              {{"each validation", kSoft, KeyEntry::Kind::kLine, 1.5},
                               {"mean of five", kCharge, KeyEntry::Kind::kLine, 3}});
+  figure.numbers = learning_numbers(curve, rule);
   figure.commands = data_block("curve", learning_rows(curve)) +
                     fmt::format(
                         "set multiplot\nset lmargin at screen 0.115\n"
@@ -207,6 +226,7 @@ Figure distillation_figure(const std::vector<DistilPoint>& curve) {
           "plot $curve using 1:2 with lines lw 2 lc {}, $curve using 1:4 with lines lw 2.5 lc {}, "
           "$curve using 1:3 with lines lw 2.5 lc {}\n",
           rgb(kSoft), rgb(kCharge), rgb(kDischarge));
+  figure.numbers = distil_losses_table(figure.name, curve);
   return figure;
 }
 

@@ -41,6 +41,26 @@ std::string border_data(const std::string& name, const std::vector<WrongBorder>&
   return data_block(name, rows);
 }
 
+/// Each stretch of states of one map with the same action, ends included; idle is all else.
+PictureTable map_numbers(const std::vector<NamedPolicyMap>& maps) {
+  PictureTable table{{},
+                     {"map", "action", "price_from_eur_per_mwh", "price_to_eur_per_mwh",
+                      "soc_from_frac", "soc_to_frac"},
+                     {}};
+  const auto price = [](int index) { return fmt::format("{}", kLatticePriceMinEurPerMwh + index); };
+  const auto soc = [](int index) { return fmt::format("{:g}", index / double{kSocCount - 1}); };
+  for (const NamedPolicyMap& map : maps) {
+    for (const auto& [name, action] :
+         {std::pair{"charge", Action::kCharge}, {"discharge", Action::kDischarge}}) {
+      for (const GridRectangle& r : rectangles_of(map.grid, action)) {
+        table.rows.push_back({map.name, name, price(r.price_first), price(r.price_last),
+                              soc(r.soc_bottom), soc(r.soc_top)});
+      }
+    }
+  }
+  return table;
+}
+
 std::int64_t wrong_pairs(const std::vector<WrongBorder>& borders) {
   std::int64_t pairs = 0;
   for (const WrongBorder& b : borders) pairs += b.pairs;
@@ -160,6 +180,7 @@ Figure policy_map_figure(const PolicyContext& context, const ContextClasses& cla
     figure.commands += panel(maps[i], i) + (i == 0 ? key.unset : "");
   }
   figure.commands += "unset multiplot\n";
+  figure.numbers = map_numbers(maps);
   return figure;
 }
 

@@ -94,6 +94,7 @@ Figure price_density_figure(const MarketSteps& market, const PriceThresholds& st
       "days as a line, thresholds as dashed lines.",
       shown.low, shown.high);
   figure.caption = caption_of(student, shown);
+  figure.numbers = histogram_table(figure.name, shown);
   const KeyRow key = key_row(figure, 84,
                              {{"training days", kSoft, KeyEntry::Kind::kArea, 0, 0.7},
                               {"test days", kInk, KeyEntry::Kind::kLine, 2}});

@@ -8,6 +8,7 @@
 
 #include "shared/utc_text.h"
 #include "workstation/env/day_risk.h"
+#include "workstation/report/curves.h"
 #include "workstation/report/figure.h"
 #include "workstation/report/headline.h"
 #include "workstation/report/price_histogram.h"
@@ -240,37 +241,19 @@ PictureTable student_table(const ReportInputs& in) {
   return table;
 }
 
-PictureTable distil_table(const ReportInputs& in) {
-  PictureTable table{
-      "distillation", {"epoch", "teacher_loss", "correction_loss", "visited_loss"}, {}};
-  for (const DistilPoint& p : in.distil_curve) {
-    table.rows.push_back({fmt::format("{}", p.epoch), fmt::format("{:.9g}", p.teacher_loss),
-                          fmt::format("{:.9g}", p.correction_loss),
-                          fmt::format("{:.9g}", p.visited_loss)});
-  }
-  return table;
-}
-
 PictureTable price_table(const ReportInputs& in) {
-  const PriceHistogram histogram = price_histogram(in.market);
-  const std::vector<double> train = histogram.percent_by_bin(histogram.train);
-  const std::vector<double> test = histogram.percent_by_bin(histogram.test);
-  PictureTable table{
-      "prices_seen", {"from_eur_per_mwh", "training_days_percent", "test_days_percent"}, {}};
-  for (std::size_t b = 0; b < train.size(); ++b) {
-    table.rows.push_back(
-        {fmt::format("{:g}", histogram.low + static_cast<double>(b) * kPriceBinEurPerMwh),
-         exact(train[b]), exact(test[b])});
-  }
-  return table;
+  return histogram_table("prices_seen", price_histogram(in.market));
 }
 
 }  // namespace
 
 std::vector<PictureTable> page_pictures(const ReportInputs& in, const PageSteps& steps) {
-  return {cumulative_table(in),  drawdown_table(in),    month_table(in), distribution_table(in),
-          hour_table(in, steps), step_table(in, steps), map_table(in),   teacher_table(in),
-          student_table(in),     distil_table(in),      price_table(in)};
+  return {cumulative_table(in),  drawdown_table(in),
+          month_table(in),       distribution_table(in),
+          hour_table(in, steps), step_table(in, steps),
+          map_table(in),         teacher_table(in),
+          student_table(in),     distil_losses_table("distillation", in.distil_curve),
+          price_table(in)};
 }
 
 }  // namespace bess

@@ -1,5 +1,7 @@
 #include "workstation/report/price_histogram.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -53,6 +55,17 @@ PriceHistogram price_histogram(const MarketSteps& market) {
   histogram.high =
       std::ceil(histogram.high / kPriceBinEurPerMwh) * kPriceBinEurPerMwh + kPriceBinEurPerMwh;
   return histogram;
+}
+
+PictureTable histogram_table(const std::string& name, const PriceHistogram& shown) {
+  const std::vector<double> train = shown.percent_by_bin(shown.train);
+  const std::vector<double> test = shown.percent_by_bin(shown.test);
+  PictureTable table{name, {"from_eur_per_mwh", "training_days_percent", "test_days_percent"}, {}};
+  for (std::size_t b = 0; b < train.size(); ++b) {
+    const double from = shown.low + static_cast<double>(b) * kPriceBinEurPerMwh;
+    table.rows.push_back({fmt::format("{:g}", from), exact(train[b]), exact(test[b])});
+  }
+  return table;
 }
 
 }  // namespace bess

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "workstation/env/market_steps.h"
+#include "workstation/report/picture_table.h"
 
 namespace bess {
 
@@ -22,5 +23,8 @@ struct PriceHistogram {
 };
 
 PriceHistogram price_histogram(const MarketSteps& market);
+
+/// A row a bin.
+PictureTable histogram_table(const std::string& name, const PriceHistogram& shown);
 
 }  // namespace bess

@@ -225,9 +225,7 @@ std::vector<std::string> write_report(const ReportInputs& inputs, const fs::path
   if (error) fail("{}: cannot create: {}", folder.string(), error.message());
   std::vector<std::string> names{kPage};
   for (const Figure& figure : figures_of(inputs)) {
-    draw_figure(figure, folder);
-    names.push_back(figure.name + ".svg");
-    names.push_back(figure.name + "_dark.svg");
+    std::ranges::move(draw_figure(figure, folder), std::back_inserter(names));
   }
   const std::vector<DayLoss> losses = losses_of(inputs);
   const PageSteps steps = page_steps(inputs);

@@ -3,11 +3,15 @@
 #include <fmt/core.h>
 #include <stdlib.h>
 
+#include <cmath>
+
+#include "shared/host/csv.h"
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/workstation/report/report_test_support.h"
 #include "workstation/base/palette.h"
+#include "workstation/report/figures.h"
 #include "workstation/report/headline.h"
 
 namespace bess {
@@ -74,7 +78,35 @@ TEST(Report, FiguresLieBesideThePageLightAndDark) {
     EXPECT_NE(light.find(std::string(kPaper.light)), std::string::npos) << name;
     EXPECT_EQ(dark.find(std::string(kPaper.light)), std::string::npos) << name;
     EXPECT_NE(dark.find(std::string(kPaper.dark)), std::string::npos) << name;
+    EXPECT_GT(CsvTable::read(folder.file("run/" + name + ".csv")).row_count(), 0U) << name;
   }
+}
+
+/// A picture's file has what is drawn: a map's stretches hold the states of its grid, each once.
+TEST(Report, TheNumbersOfAMapAreItsStates) {
+  const PolicyContext context{2, 40, 3};
+  const ActionGrid grid = student_grid(compiled_student().net, context);
+  const Figure figure = policy_map_figure(context, {}, {{"the array", grid}}, {}, {}, "");
+  const TemporaryFolder folder;
+  const std::vector<std::string> names = draw_figure(figure, folder.file("maps"));
+  ASSERT_EQ(names.size(), 3U);
+  const CsvTable table = CsvTable::read(folder.file("maps/" + names[2]));
+  ActionGrid drawn(grid.size(), static_cast<std::int8_t>(Action::kIdle));
+  for (std::size_t row = 0; row < table.row_count(); ++row) {
+    const auto number = [&](const char* column) { return table.number(row, table.column(column)); };
+    const bool charges = table.text(row, table.column("action")) == "charge";
+    for (int soc = static_cast<int>(std::lround(200 * number("soc_from_frac")));
+         soc <= std::lround(200 * number("soc_to_frac")); ++soc) {
+      for (int price = static_cast<int>(number("price_from_eur_per_mwh"));
+           price <= number("price_to_eur_per_mwh"); ++price) {
+        auto& cell =
+            drawn[static_cast<std::size_t>(soc * kPriceCount + price - kLatticePriceMinEurPerMwh)];
+        EXPECT_EQ(cell, static_cast<std::int8_t>(Action::kIdle)) << "each once";
+        cell = static_cast<std::int8_t>(charges ? Action::kCharge : Action::kDischarge);
+      }
+    }
+  }
+  EXPECT_EQ(drawn, grid);
 }
 
 TEST(Report, ThePageHoldsAllAndFetchesNothing) {
