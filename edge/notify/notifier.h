@@ -8,11 +8,11 @@
 #include <memory>
 #include <string>
 
+#include "edge/account/day_account.h"
 #include "edge/log/log_reader.h"
 #include "edge/notify/alarm_book.h"
 #include "edge/notify/bell.h"
 #include "edge/notify/controller_status.h"
-#include "edge/account/day_account.h"
 #include "edge/notify/energy_totals.h"
 #include "edge/notify/lane.h"
 #include "edge/notify/message.h"

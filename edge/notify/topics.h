@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "edge/account/day_account.h"
 #include "edge/notify/alarm_book.h"
 #include "edge/notify/controller_status.h"
-#include "edge/account/day_account.h"
 #include "edge/notify/energy_totals.h"
 #include "edge/notify/notify_settings.h"
 
