@@ -31,6 +31,17 @@ if command -v gnuplot >/dev/null; then
   for text in 'battery: silence' 'edge_kill' 'UTC, from 2023-03-26T00:00:00Z' 'power, W' 'SoC, %' 'EUR/MWh'; do
     grep -q "$text" "$work/page.html" || complain "no \"$text\" on the page"
   done
+  # In a dark room, on a narrow screen, by the keyboard and by ear; a minus is no hyphen.
+  "$program" run "$work/wrong.toml" "$scenarios/quiet_hour.toml" "$scenarios/disk_full.toml" \
+    --report "$work/page.html" >/dev/null 2>&1
+  for text in 'prefers-color-scheme:dark' 'width=device-width' 'role="region" tabindex="0"' \
+    '<th scope="col">seen' '<th scope="row">expect 1' '<svg role="img" aria-label="Price, power' \
+    '<td>−[0-9]* W' '<p>1 failed, 1 passed, 1 skipped' '<a href="#virtual-wrong">wrong' \
+    '<section id="virtual-wrong">'; do
+    grep -q -e "$text" "$work/page.html" || complain "no \"$text\" on the page"
+  done
+  grep -m 1 '>-[0-9]' "$work/page.html" && complain "a hyphen for a minus"
+  grep -q '<rect[^>]*fill="#ffffff"' "$work/page.html" && complain "a white ground on a dark page"
 fi
 
 # A file that cannot be read: one line with file, line and the mend; a wrong option: 2.

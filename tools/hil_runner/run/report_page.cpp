@@ -10,23 +10,92 @@ namespace {
 
 constexpr double kPictureMinutesMax = 2 * 1'440;  ///< of a longer run, its beginning
 
-std::string section(const Outcome& o) {
-  const char* const verdict = !o.skipped.empty() ? "skipped" : o.passed() ? "passed" : "failed";
+/// Ink and paper of bess-train's pages. gnuplot draws for white paper: on a dark screen its
+/// lightness is turned round and its hues stay.
+constexpr const char* kStyle =
+    ":root{color-scheme:light dark;--paper:#fff;--ink:#1f2933;--grid:#dde2e6;--bad:#a3271b;"
+    "--good:#00704f;--focus:#0072b2}\n"
+    "@media screen and (prefers-color-scheme:dark){\n"
+    ":root{--paper:#14191e;--ink:#e4e8eb;--grid:#35404a;--bad:#ff9a8d;--good:#5fd6ae;"
+    "--focus:#4ea8dc}\n"
+    "svg{filter:invert(.92) hue-rotate(180deg)}}\n"
+    "body{font:16px/1.5 system-ui,Helvetica,Arial,sans-serif;max-width:920px;margin:2em auto;"
+    "padding:0 12px;color:var(--ink);background:var(--paper);overflow-wrap:anywhere}\n"
+    "table{border-collapse:collapse;overflow-wrap:normal;margin-bottom:1em}"
+    "caption{text-align:left;font-weight:600}time{white-space:nowrap}\n"
+    "nav ul{columns:18em;padding-left:1.2em}\n"
+    "td,th{padding:2px 12px 2px 0;text-align:left;border-bottom:1px solid var(--grid)}\n"
+    "tbody th{font-weight:400}.failed{color:var(--bad)}.passed{color:var(--good)}\n"
+    "a{color:var(--focus)}:focus-visible{outline:3px solid var(--focus);outline-offset:2px}\n"
+    "pre{font-size:12px}.picture{overflow-x:auto}\n"
+    "svg{display:block;min-width:720px;max-width:100%;height:auto}\n";
+
+/// What is wider than the screen scrolls by itself, by the keyboard too.
+std::string scrolling(const char* what, const Outcome& o, const std::string& inside) {
+  return fmt::format(
+      "<div class=\"picture\" role=\"region\" tabindex=\"0\" aria-label=\"{} of {}, {} time\">"
+      "{}</div>\n",
+      what, html_text(o.scenario.name), o.time(), inside);
+}
+
+/// A number's hyphen becomes a minus sign: at the start, or behind a space.
+std::string with_true_minus(const std::string& text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool is_number = i + 1 < text.size() && text[i + 1] >= '0' && text[i + 1] <= '9';
+    const bool is_minus = text[i] == '-' && is_number && (i == 0 || text[i - 1] == ' ');
+    out += is_minus ? "\u2212" : text.substr(i, 1);
+  }
+  return out;
+}
+
+const char* verdict_on(const Outcome& o) {
+  return !o.skipped.empty() ? "skipped" : o.passed() ? "passed" : "failed";
+}
+
+std::string anchor_of(const Outcome& o) { return fmt::format("{}-{}", o.time(), o.scenario.name); }
+
+/// How many passed, and a link to each: those that failed first.
+std::string contents(const std::vector<Outcome>& outcomes) {
+  std::string counts, links;
+  for (const std::string_view verdict : {"failed", "passed", "skipped"}) {
+    std::size_t count = 0;
+    for (const Outcome& o : outcomes) {
+      if (verdict != verdict_on(o)) continue;
+      ++count;
+      links += fmt::format(
+          "<li><a href=\"#{}\">{}, {} time</a>: <span class=\"{}\">{}</span></li>\n",
+          html_text(anchor_of(o)), html_text(o.scenario.name), o.time(), verdict, verdict);
+    }
+    counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", count, verdict);
+  }
+  return fmt::format("<nav aria-label=\"Runs\">\n<p>{}</p>\n<ul>\n{}</ul>\n</nav>\n", counts,
+                     links);
+}
+
+std::string findings_table(const Outcome& o) {
   std::string text =
-      fmt::format("<section><h2 class=\"{0}\">{1}, {2} time: {0}</h2><p>{3}</p>\n", verdict,
-                  html_text(o.scenario.name), o.time(), html_text(o.scenario.title));
+      "<table>\n<caption>What was not as it should be</caption>\n<thead><tr>"
+      "<th scope=\"col\">rule</th><th scope=\"col\">when</th><th scope=\"col\">expected</th>"
+      "<th scope=\"col\">seen</th></tr></thead>\n<tbody>\n";
+  for (const Finding& f : o.findings) {
+    text += fmt::format(
+        "<tr><th scope=\"row\">{}</th><td><time>{}</time></td><td>{}</td><td>{}</td></tr>\n",
+        html_text(f.rule), utc_text(f.utc_s).view(), html_text(with_true_minus(f.expected)),
+        html_text(with_true_minus(f.seen)));
+  }
+  return scrolling("Findings", o, text + "</tbody></table>");
+}
+
+std::string section(const Outcome& o) {
+  std::string text = fmt::format(
+      "<section id=\"{4}\"><h2 class=\"{0}\">{1}, {2} time: {0}</h2><p>{3}</p>\n", verdict_on(o),
+      html_text(o.scenario.name), o.time(), html_text(o.scenario.title), html_text(anchor_of(o)));
   if (!o.skipped.empty()) return text + "<p>" + html_text(o.skipped) + "</p></section>\n";
   if (!o.error.empty()) text += "<p>" + html_text(o.error) + "</p>\n";
-  if (!o.findings.empty()) {
-    text += "<div class=\"picture\"><table><tr><th>rule<th>when<th>expected<th>seen</tr>\n";
-    for (const Finding& f : o.findings) {
-      text += fmt::format("<tr><td>{}<td>{}<td>{}<td>{}</tr>\n", html_text(f.rule),
-                          utc_text(f.utc_s).view(), html_text(f.expected), html_text(f.seen));
-    }
-    text += "</table></div>\n";
-  }
+  if (!o.findings.empty()) text += findings_table(o);
   if (!o.evidence.minutes.empty()) {
-    text += "<div class=\"picture\">" + run_picture(o, {.to_min = kPictureMinutesMax}) + "</div>\n";
+    text += scrolling("Picture", o, run_picture(o, {.to_min = kPictureMinutesMax}));
     if (o.scenario.minutes > kPictureMinutesMax) text += "<p>The first two days of it.</p>\n";
   }
   return text + "</section>\n";
@@ -37,23 +106,33 @@ std::string section(const Outcome& o) {
 std::string html_text(std::string_view text) {
   std::string out;
   for (const char c : text) {
-    out += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : std::string(1, c);
+    switch (c) {
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '&':
+        out += "&amp;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += c;
+    }
   }
   return out;
 }
 
 std::string html_page(std::string_view title, const std::string& body) {
   return fmt::format(
-      "<!DOCTYPE html><html lang=\"en\"><head><meta charset=\"utf-8\">"
-      "<meta name=\"viewport\" content=\"width=device-width\"><title>{0}</title><style>"
-      "body{{font:15px/1.45 Helvetica,Arial,sans-serif;max-width:920px;margin:2em auto;padding:0 "
-      "12px;color:#222}}"
-      "table{{border-collapse:collapse}}td,th{{padding:2px 12px 2px 0;text-align:left}}"
-      ".failed{{color:#b00020}}.passed{{color:#00603a}}pre{{font-size:12px}}.picture{{overflow-x:"
-      "auto}}svg{{min-width:"
-      "720px;max-width:100%;height:auto}}</style></head><body>"
-      "<h1>{0}</h1>\n{1}</body></html>\n",
-      html_text(title), body);
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n"
+      "<title>{0}</title>\n"
+      "<style>\n{1}</style>\n</head>\n<body>\n<main>\n<h1>{0}</h1>\n{2}</main>\n</body>\n</html>\n",
+      html_text(title), kStyle, body);
 }
 
 std::string report_page(const std::vector<Outcome>& outcomes) {
@@ -62,6 +141,7 @@ std::string report_page(const std::vector<Outcome>& outcomes) {
       "record, of a real one by what it shows. Bands: faults of the battery (orange) and of the "
       "prices (grey); dashed: what happens to a "
       "process, its clock or its disk.</p>\n";
+  body += contents(outcomes);
   for (const Outcome& outcome : outcomes) body += section(outcome);
   return html_page("bess-hil", body);
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "shared/host/file.h"
 #include "shared/host/gnuplot.h"
@@ -20,13 +21,15 @@ constexpr const char* kDischargeColour = "#d55e00";
 constexpr const char* kRestColour = "#8a8f98";
 constexpr std::size_t kDrawnPointsMax = 3'000;  ///< a picture is 900 pixels wide
 
-std::string svg_of(const std::string& commands, int height_px) {
+/// `alt`: the picture in words, for those who cannot see it.
+std::string svg_of(const std::string& commands, int height_px, const char* alt) {
   const WorkFolder folder;
   const std::string path = folder.file("picture.svg");
   draw_with_gnuplot(path, [&](const std::filesystem::path& out) {
     return fmt::format(
-               "set terminal svg size 900,{} noenhanced font 'Helvetica,13' background '#ffffff'\n"
-               "set output {}\nset border 3\nset tics nomirror out scale 0.5\nunset key\n"
+               "set terminal svg size 900,{} noenhanced font 'Helvetica,13'\n"
+               "set output {}\nset encoding utf8\nset minussign\nset border 3\n"
+               "set tics nomirror out scale 0.5\nunset key\n"
                "set grid lc rgb '#e3e6ea'\nset lmargin 10\nset rmargin 2\nset bmargin 2\n"
                "set tmargin 1\n",
                height_px, gnuplot_quoted(out.string())) +
@@ -34,7 +37,9 @@ std::string svg_of(const std::string& commands, int height_px) {
   });
   const std::string file = read_file(path);
   const std::size_t begin = file.find("<svg");
-  return begin == std::string::npos ? "" : file.substr(begin);
+  if (begin == std::string::npos) return "";
+  const std::size_t attributes = begin + std::string_view("<svg").size();
+  return fmt::format("<svg role=\"img\" aria-label=\"{}\"{}", alt, file.substr(attributes));
 }
 
 /// `$name << EOD` with one row a point, thinned to what can be seen.
@@ -78,7 +83,7 @@ class RunPicture {
         "set multiplot layout 4,1 margins 0.10,0.975,{},0.90 spacing 0.04\nset format x ''\n"
         "set tics font ',11'\nset key at graph 1,1.02 right bottom horizontal samplen 1.5 font "
         "',11'\n",
-        utc_s_of(from_min_), utc_s_of(to_min_), bands(), is_long ? 0.13 : 0.085);
+        utc_s_of(from_min_), utc_s_of(to_min_), bands(), is_long ? 0.14 : 0.095);
     text += fmt::format(
         "{}set ylabel 'EUR/MWh' offset 1\nset ytics {}\n"
         "plot $prices using 1:2 with steps lc rgb '#333333' notitle\nunset label\n",
@@ -98,7 +103,9 @@ class RunPicture {
         "plot $modes using 1:2 with steps lw 2 lc rgb '#333333' notitle\nunset multiplot\n",
         is_long ? "%d %b\\n%H:%M" : "%H:%M",
         is_long ? "" : fmt::format(", from {}", utc_text(utc_s_of(from_min_)).view()));
-    return svg_of(text, 680);
+    return svg_of(
+        text, 680,
+        "Price, power, state of charge and mode of the edge over the run; faults as bands");
   }
 
  private:
@@ -273,7 +280,7 @@ std::string orders_picture(const Evidence& evidence, const MinuteSeries& prices,
                       "plot $power using 1:2:3 with boxes lc rgb variable\n"
                       "unset multiplot\n",
                       from_utc_s, to_utc_s, utc_text(from_utc_s).view()),
-      420);
+      420, "Price, and measured power in the colour of the order, over four hours");
 }
 
 }  // namespace bess
