@@ -33,15 +33,20 @@ TEST(Plausibility, HonestPricesRaiseNothing) {
 }
 
 TEST(Plausibility, RealDownloadsRaiseNothing) {
-  for (const char* name :
-       {"elia_quarter_hour_2023-01_2023-05.csv.gz", "elia_quarter_hour_2024-05_2024-12.csv.gz",
-        "elia_quarter_hour_2025-01_2025-06.csv.gz", "elia_minute_2024-09-06.csv.gz",
-        "elia_minute_2025-04-08.csv.gz", "raw/ods047_head3000.csv.gz",
-        "raw/ods161_2024-09-06.csv.gz", "raw/ods161_2025-04-08.csv.gz",
-        "benchmark_minutes_2023.csv.gz"}) {
+  for (const char* name : {"elia_quarter_hour_2023-01_2023-05.csv.gz",
+                           "elia_minute_2024-09-06.csv.gz", "elia_minute_2025-04-08.csv.gz",
+                           "raw/ods047_head3000.csv.gz", "raw/ods161_2024-09-06.csv.gz",
+                           "raw/ods161_2025-04-08.csv.gz", "benchmark_minutes_2023.csv.gz"}) {
     const JoinedMarket market = join_market(read_market_files({real_sample(name).string()}), name);
     EXPECT_THAT(names_of(implausible(market.series)), IsEmpty()) << name;
   }
+}
+
+TEST(Plausibility, QuarterHoursOfALaterYearRaiseNothing) {
+  const std::string name = "elia_quarter_hour_2024-05_2024-12.csv.gz";
+  BESS_SKIP_WITHOUT(name);
+  const JoinedMarket market = join_market(read_market_files({outside_sample(name).string()}), name);
+  EXPECT_THAT(names_of(implausible(market.series)), IsEmpty());
 }
 
 /// Belgium settled seven quarter-hours of 2025 at -999.
