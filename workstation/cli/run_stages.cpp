@@ -157,6 +157,7 @@ void RunStages::finish() {
     announce(2, "take the teacher of " + record_.teacher_file);
     stage("teacher", {}, [&] { return take_teacher(); });
   }
+  tidy();  // here, not at the end: a run whose proof fails ends before
   announce(3, "distil without correction, for comparison");
   stage("plain student", {kTeacher}, [&] { return make_plain_student(); });
   announce(4, "correct while distilling, and prove");
@@ -168,7 +169,6 @@ void RunStages::finish() {
   stage(kReporting,
         {kTeacher, kPlainStudent, kPlainViolations, kStudent, kTrainingCurve, kDistilCurve, kDays},
         [&] { return make_report(); });
-  tidy();
 }
 
 void RunStages::report_again() {

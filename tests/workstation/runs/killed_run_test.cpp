@@ -172,6 +172,7 @@ TEST_F(KilledRun, AFailedProofIsToldWithEveryRoundAndNotDoneTwice) {
               AllOf(HasSubstr("Where the proof failed"), HasSubstr("Not proved: it still breaks"),
                     HasSubstr("discharge at or above 201 EUR/MWh: <strong>")));
   EXPECT_FALSE(fs::exists(out + "/student.json"));
+  EXPECT_FALSE(fs::exists(out + "/teacher.checkpoint")) << "it has served";
   const auto before = contents(out);
   const std::string kept = folder_.file("kept");
   fs::copy(out, kept, fs::copy_options::recursive);
