@@ -56,7 +56,7 @@ class Trial {
  private:
   int keep_out(const std::string& version, const std::string& why);
   int confirm_again(const std::string& version);
-  void count_version_before(const std::string& running);
+  void count_version_before(const std::string& running, const std::string& next);
   void let_in(const std::string& version);
   std::string with_last_error(std::string reason) const;
   void lock();
@@ -65,7 +65,7 @@ class Trial {
   bool keep(const char* event, const std::string& version);
   bool write();
   void watch(std::int64_t passed_s);
-  void take(const TrialStep& step);
+  bool take(const TrialStep& step);
   void act();
   void start_other();
   void refuse_version(const std::string& version, const std::string& reason);
@@ -115,11 +115,11 @@ bool Trial::write() {
 }
 
 bool Trial::keep(const char* event, const std::string& version) {
-  const bool is_written = write();
+  if (!write()) return false;
   const std::string of = machine_.store().folder_of(version);
   add_to_history(folder_, {since_now(), event, version, certificate_fact(of, "student"),
                            certificate_fact(of, "header_sha256"), state_.reason});
-  return is_written;
+  return true;
 }
 
 bool Trial::is_refused(const std::string& version) const {
@@ -201,7 +201,7 @@ int Trial::begin() {
       is_proved({store.folder_of(version), machine_.settings(), machine_.share()}, error);
   if (!is_let_in) return keep_out(version, error);
   if (version == confirmed) return confirm_again(version);
-  count_version_before(running);
+  count_version_before(running, version);
   state_.phase = TrialPhase::kTrying;
   state_.version = version;
   state_.previous = store.has_whole(confirmed) ? confirmed : "";
@@ -236,6 +236,7 @@ int Trial::keep_out(const std::string& version, const std::string& why) {
   machine_.pin(state_.refused_all);
   std::string error;
   if (!machine_.settle(state_, error)) report(JournalLevel::kError, "%s", error.c_str());
+  machine_.store().prune({state_.version, state_.previous});
   return running.empty() ? 1 : 0;
 }
 
@@ -247,30 +248,42 @@ int Trial::confirm_again(const std::string& version) {
   if (state_.previous == version) state_.previous.clear();
   state_.is_handed_over = runs;
   keep("confirmed", version);
-  if (!runs) start_other();
+  if (runs) {  // as a link; the process may have ended with a removal, or be of a package since
+    state_.is_handed_over = machine_.hand_over(true);
+  } else {
+    start_other();
+  }
   write();
   return 0;
 }
 
 /// Its last cycles: what a new one must equal, and which trouble is not the new one's.
-void Trial::count_version_before(const std::string& running) {
+/// While one is on trial already, the bar stays that of the version before both.
+void Trial::count_version_before(const std::string& running, const std::string& next) {
   const TrialLimits limits = machine_.limits();
   std::vector<TrialCycle> before;
   std::string mark;
   if (!running.empty()) {
     const bool must_write = wants_control(machine_.settings());
     const std::string program = machine_.store().program_of(running);
+    std::int64_t number = INT64_MAX;
     for (const SeenCycle& seen : last_cycles(program, machine_.settings(), must_write)) {
+      if (seen.number <= number) before.clear();  // of another process, and maybe another version
+      number = seen.number;
       if (seen.is_cycle) before.push_back(seen.cycle);
+      if (seen.name == state_.mark) before.clear();  // until then it was on trial, or another was
       mark = seen.name;
     }
   }
   restart_account(state_);
   state_.mark = mark;
+  // A program that cannot tell must not make its cycles those of the next one.
+  if (mark.empty()) mark_newest_cycle(machine_.store().program_of(next));
   state_.window.clear();
   state_.bad_cause.clear();
-  state_.shared.clear();
   state_.good_cycles = 0;
+  if (running != machine_.store().pointed("confirmed") && state_.needed_cycles > 0) return;
+  state_.shared.clear();
   state_.needed_cycles = needed_good_cycles(before, limits);
   if (!before.empty()) share(state_, before.back().cause);
 }
@@ -281,20 +294,21 @@ void Trial::mark_newest_cycle(const std::string& program) {
   }
 }
 
-/// Another version than before runs from here on: stop, flip, start.
+/// Another version than before runs from here on: flip, stop, start. What runs is not stopped
+/// for a link that cannot be flipped: tried again.
 void Trial::start_other() {
-  machine_.stop();
   std::string error;
   if (!machine_.settle(state_, error)) {
     report(JournalLevel::kError, "%s", error.c_str());
-    static_cast<void>(machine_.start());  // better the version that fails than none; tried again
     return;
   }
+  machine_.stop();
   mark_newest_cycle(machine_.store().program_of(running_version(state_)));
   state_.is_handed_over = machine_.start();
 }
 
-void Trial::take(const TrialStep& step) {
+/// False where the disk does not keep it: then nothing may be done by it.
+bool Trial::take(const TrialStep& step) {
   const std::string version = state_.version;
   const std::string ran = running_version(state_);
   switch (step.phase) {
@@ -342,8 +356,8 @@ void Trial::take(const TrialStep& step) {
            step.phase == TrialPhase::kRolledBack ? state_.refused.c_str() : version.c_str(),
            state_.reason.c_str());
   }
-  keep(trial_phase_name(step.phase).data(),
-       step.phase == TrialPhase::kRolledBack ? state_.refused : version);
+  return keep(trial_phase_name(step.phase).data(),
+              step.phase == TrialPhase::kRolledBack ? state_.refused : version);
 }
 
 /// What the phase asks for and is not done yet.
@@ -358,6 +372,7 @@ void Trial::act() {
     if (!machine_.settle(state_, error)) report(JournalLevel::kError, "%s", error.c_str());
     const std::string refused = state_.refused;
     keep("rolled_back", refused);
+    machine_.store().prune({state_.version});
     report(JournalLevel::kError, "%s is rolled back to %s: %s", refused.c_str(),
            state_.version.c_str(), state_.reason.c_str());
     return;
@@ -398,11 +413,13 @@ void Trial::watch(std::int64_t passed_s) {
                           state_.rest_s / 60 != before.rest_s / 60;  // to spare the card
   const bool has_news = state_.mark != before.mark || state_.restarts != before.restarts;
   if (step.phase != state_.phase) {
-    take(step);
+    if (!take(step)) {
+      state_ = before;  // as on the disk; the time that has passed counts on
+      return;
+    }
     act();
     unkept_s_ = 0;
-  } else if (has_news || has_minute) {
-    write();
+  } else if ((has_news || has_minute) && write()) {
     unkept_s_ = 0;
   }
 }
@@ -482,6 +499,7 @@ int Trial::recover() {
                      state_.phase == TrialPhase::kComparing ||
                      state_.phase == TrialPhase::kGoingBack;
   if (waits && !state_.is_handed_over) {
+    mark_newest_cycle(store.program_of(running_version(state_)));
     state_.is_handed_over = true;  // nothing runs yet: what starts is what the link leads to
     write();
   }
@@ -497,7 +515,7 @@ int Trial::go_back(const std::string& reason) {
            machine_.store().folder().c_str());
     return 1;
   }
-  take({TrialPhase::kGoingBack, reason});
+  if (!take({TrialPhase::kGoingBack, reason})) return 1;
   act();
   return state_.phase == TrialPhase::kRolledBack ? 0 : 1;
 }

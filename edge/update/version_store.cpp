@@ -112,6 +112,8 @@ std::string VersionStore::pointed(std::string_view link) const {
 bool VersionStore::point(std::string_view link, std::string_view version,
                          std::string& error) const {
   if (pointed(link) == version) return true;
+  const std::string program = program_of(version);
+  if (access(program.c_str(), X_OK) != 0) return refuse(error, {program, ": ", errno_text(errno)});
   const std::string path = folder().append("/").append(link);
   const std::string beside = path + ".new";
   const std::string target = std::string("versions/").append(version);

@@ -35,7 +35,7 @@ class VersionStore {
 
   /// The version that a link ("current", "confirmed") leads to; empty = none.
   [[nodiscard]] std::string pointed(std::string_view link) const;
-  /// Flips it, and is on the disk before it returns.
+  /// Flips it, and is on the disk before it returns. Never to a version whose program is not there.
   bool point(std::string_view link, std::string_view version, std::string& error) const;
 
   /// Takes away what is neither listed nor led to, and what a power cut left half copied.

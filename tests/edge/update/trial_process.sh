@@ -3,6 +3,7 @@
 # stand-ins for systemd, dpkg and the versions' programs. Bad packages and bad moments: whatever happens, the version
 # that worked runs, or the new one has shown that it works. Prints a table.
 edge=$1 cut=$2 folder=$3
+script=$(cd "$(dirname "$0")/../../.." && pwd)/edge/update/trial
 failures=0
 rm -rf "$folder"
 mkdir -p "$folder/bin"
@@ -133,6 +134,7 @@ for does in crash hang silent every_second price trip link; do
   grep -q '^stop bess-edge' systemctl || fail "$does: the version that fails is not stopped"
   grep -q '^Pin: version 2.0$' "$BESS_ROOT/etc/apt/preferences.d/bess-edge-rolled-back.pref" || fail "$does: apt may bring it again"
   trial announce 2.0 && fail "$does: it is let in again"
+  [ ! -d "$store/versions/2.0" ] || fail "$does: a refused version takes room"
   grep -q "^delivered=ii 2.0$" "$state" || fail "$does: what dpkg has is not told"
   trial dismiss || fail "$does: a dismissal: $(cat said)"
   [ -s "$BESS_ROOT/etc/apt/preferences.d/bess-edge-rolled-back.pref" ] || fail "$does: a dismissal lets apt bring it"
@@ -174,6 +176,12 @@ upgrade 2.0; judge; expect "the power cut while dpkg unpacks" confirmed 2.0
 machine; echo crash >does_2.0; echo hang >does_3.0
 upgrade 2.0; upgrade 3.0; judge; expect "two in a row, neither works" rolled_back 1.0
 trial announce 2.0 || fail "a version that was never judged is refused"
+machine; echo every_second >does_2.0; echo every_second >does_3.0
+upgrade 2.0; judge 5; upgrade 3.0; judge 60; expect "two in a row that lose every second" rolled_back 1.0
+machine; echo every_second >does_2.0; echo every_second >does_3.0
+upgrade 2.0; judge 60; upgrade 3.0; judge 60; expect "one that does after one that did" rolled_back 1.0
+machine; echo crash >does_3.0
+upgrade 2.0 "sed -i 's/log) cat/log) exit 1; cat/' bin/bess-edge"; upgrade 3.0; judge; expect "the first of two cannot tell" rolled_back 1.0
 machine; echo crash >does_2.0; echo crash >does_3.0
 upgrade 2.0; judge; upgrade 3.0; judge; expect "two that are rolled back" rolled_back 1.0
 for version in 2.0 3.0; do trial announce $version && fail "$version is let in again after two"; done
@@ -182,6 +190,9 @@ machine; upgrade 2.0; judge; upgrade 1.0; judge; expect "a downgrade" confirmed 
 machine; upgrade 2.0; judge; trial go-back "it trades too much"; expect "back by hand" rolled_back 1.0 "trades too much"
 machine; upgrade 2.0; echo inactive >active; for _ in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18; do trial look; done
 [ "$(value phase)" = trying ] || fail "stopped by a person: $(value phase)"
+machine; trial announce 1.0; deliver 1.0; echo inactive >active; trial begin
+expect "removed, and installed again" confirmed 1.0
+[ "$(cat active)" = active ] || fail "removed, and installed again: the controller does not run"
 machine; upgrade 2.0 "" ""; echo "unit of 2.0, spoilt" >"$BESS_ROOT/usr/lib/systemd/system/bess-edge.service"
 echo crash >does_2.0; judge; expect "a unit that is spoilt" rolled_back 1.0
 grep -q "unit of 1.0" "$BESS_ROOT/etc/systemd/system/bess-edge.service" || fail "the version before runs by the new unit"
@@ -193,6 +204,25 @@ machine; short; echo hang >does_2.0; upgrade 2.0; timeout 60 "$edge" trial super
 expect "a service that hangs, by the clock" rolled_back 1.0 "0 of 3 good cycles in"
 machine; short; trial announce 2.0; timeout 60 "$edge" trial supervise >said 2>&1
 expect "dpkg that does not end, by the clock" rolled_back 1.0 "dpkg did not end"
+machine; short; echo hang >does_2.0; upgrade 2.0; : >systemctl
+BESS_CUT_AT=1 BESS_CUT_KIND=full LD_PRELOAD=$cut timeout 10 "$edge" trial supervise >said 2>&1
+[ $? = 124 ] || fail "a disk that takes nothing: the supervisor has ended: $(cat said)"
+grep -q '^stop' systemctl && fail "a disk that takes nothing: what runs is stopped"
+timeout 60 "$edge" trial supervise >said 2>&1; expect "a disk that takes nothing for a while" rolled_back 1.0
+old_state() { printf 'phase=%s\nversion=1.0\nprevious=0.9\nneeded=3\n' "$1" >"$state"; : >systemctl; }
+for phase in trying going_back; do
+  machine; old_state $phase; trial look; trial look
+  [ "$(readlink "$store/current") $(cat running)" = "versions/1.0 1.0" ] || fail "$phase, to a version that is not kept: $(readlink "$store/current")"
+  grep -q '^stop' systemctl && fail "$phase, to a version that is not kept: what runs is stopped"
+done
+# The power between the decision and the start: the cycles in the log are not those of the version that is started.
+machine; echo crash >does_2.0; upgrade 2.0; rm "$state.copy"
+sed -i '/^# crc32/d; s/^mark=.*/mark=/; s/^handed_over=.*/handed_over=0/; s/^fresh=.*/fresh=0/' "$state"
+trial recover; judge; expect "the power before a version is started" rolled_back 1.0
+machine; rm "$store/current" "$store/confirmed"
+sed "s|/var/lib|$BESS_ROOT&|g; s|/usr/lib|$BESS_ROOT&|g" "$script" >x
+sh x announce 2.0 2>said || fail "where nothing can judge, nothing can be installed: $(cat said)"
+sh x begin 2>said && fail "where nothing can judge, a version is let in"
 machine; upgrade 2.0; head -c 40 "$state" >x; mv x "$state"; judge; expect "a damaged state" confirmed 2.0
 for file in state state.copy history; do
   machine; upgrade 2.0; rm "$BESS_ROOT/var/lib/bess-update/$file"; mkdir "$BESS_ROOT/var/lib/bess-update/$file"
