@@ -208,6 +208,7 @@ machine; short; echo hang >does_2.0; upgrade 2.0; : >systemctl
 BESS_CUT_AT=1 BESS_CUT_KIND=full LD_PRELOAD=$cut timeout 10 "$edge" trial supervise >said 2>&1
 [ $? = 124 ] || fail "a disk that takes nothing: the supervisor has ended: $(cat said)"
 grep -q '^stop' systemctl && fail "a disk that takes nothing: what runs is stopped"
+grep -q "good cycles in" said || fail "a disk that takes nothing: the deadline does not count"
 timeout 60 "$edge" trial supervise >said 2>&1; expect "a disk that takes nothing for a while" rolled_back 1.0
 old_state() { printf 'phase=%s\nversion=1.0\nprevious=0.9\nneeded=3\n' "$1" >"$state"; : >systemctl; }
 for phase in trying going_back; do
