@@ -29,6 +29,11 @@ stand_in dpkg-query <<'SH'
 #!/bin/sh
 cat "$BESS_ROOT/fake/dpkg"
 SH
+stand_in dpkg <<'SH'
+#!/bin/sh
+echo "very bad inconsistent state" >&2
+exit 1
+SH
 stand_in journalctl <<'SH'
 #!/bin/sh
 echo "the 'last' error"
@@ -220,10 +225,14 @@ done
 machine; echo crash >does_2.0; upgrade 2.0; rm "$state.copy"
 sed -i '/^# crc32/d; s/^mark=.*/mark=/; s/^handed_over=.*/handed_over=0/; s/^fresh=.*/fresh=0/' "$state"
 trial recover; judge; expect "the power before a version is started" rolled_back 1.0
-machine; rm "$store/current" "$store/confirmed"
-sed "s|/var/lib|$BESS_ROOT&|g; s|/usr/lib|$BESS_ROOT&|g" "$script" >x
+moved_script() { sed "s|/var/lib|$BESS_ROOT&|g; s|/usr/|$BESS_ROOT&|g" "$script" >x; }
+machine; rm "$store/current" "$store/confirmed"; moved_script
 sh x announce 2.0 2>said || fail "where nothing can judge, nothing can be installed: $(cat said)"
 sh x begin 2>said && fail "where nothing can judge, a version is let in"
+machine; moved_script; mkdir "$BESS_ROOT/usr/bin"; ln -s "$store/current/bin/bess-edge" "$BESS_ROOT/usr/bin/"
+echo "iUR2.0" >dpkg; sh x recover >said 2>&1
+cmp -s "$BESS_ROOT/usr/share/bess/maps/alphaess.toml" "$store/versions/1.0/share/maps/alphaess.toml" ||
+  fail "cut in the first upgrade of an old package: its maps are gone: $(cat said)"
 machine; upgrade 2.0; head -c 40 "$state" >x; mv x "$state"; judge; expect "a damaged state" confirmed 2.0
 for file in state state.copy history; do
   machine; upgrade 2.0; rm "$BESS_ROOT/var/lib/bess-update/$file"; mkdir "$BESS_ROOT/var/lib/bess-update/$file"
