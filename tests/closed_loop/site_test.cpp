@@ -328,12 +328,16 @@ double price_at(const std::vector<double>& prices, std::int64_t utc_s) {
 }
 
 constexpr double kNoticeableW = 1;
+constexpr double kSocDigit = 0.001;  ///< in which the battery shows its state of charge
 
 struct Year {
   double money_eur = 0;
   double charged_kwh = 0;
-  double over_w_max = 0;  ///< mean of a quarter-hour above cap or house alone, whichever is more
-  int quarters_over = 0;  ///< such quarter-hours, by more than kNoticeableW
+  /// Mean of a quarter-hour above cap or house alone, whichever is more, and above what an empty
+  /// battery cannot give back of what it took in it: its losses, and less than a digit of its SoC
+  /// (connection_guard.h).
+  double over_w_max = 0;
+  int quarters_over = 0;             ///< such quarter-hours, by more than kNoticeableW
   std::array<double, 12> peak_kw{};  ///< by month of 365 / 12 days
   std::int32_t order_cuts = 0;
 
@@ -350,16 +354,20 @@ struct Year {
 Year account(const std::vector<MinuteRecord>& battery, const HouseLoad& house, double cap_w) {
   Year year;
   for (std::size_t q = 0; q + 15 <= battery.size(); q += 15) {
-    double import_wh = 0, house_import_wh = 0;
+    double import_wh = 0, house_import_wh = 0, charged_wh = 0;
     for (std::size_t m = q; m < q + 15; ++m) {
       const double house_wh = house.power_w(battery[m].minute_utc_s) / 60;
       import_wh += std::max(house_wh + battery[m].energy_wh, 0.0);
       house_import_wh += std::max(house_wh, 0.0);
       year.money_eur -=
           battery[m].energy_wh * 1e-6 * price_at(real_prices().settled, battery[m].minute_utc_s);
-      year.charged_kwh += std::max(battery[m].energy_wh, 0.0) / 1e3;
+      charged_wh += std::max(battery[m].energy_wh, 0.0);
     }
-    const double bound_wh = std::max(cap_w / 4, house_import_wh);
+    year.charged_kwh += charged_wh / 1e3;
+    const double lost_wh =
+        charged_wh * (1 - kHouse.charge_efficiency * kHouse.discharge_efficiency);
+    const double kept_wh = std::min(charged_wh, lost_wh + kSocDigit * kHouse.capacity_wh);
+    const double bound_wh = std::max(cap_w / 4, house_import_wh + kept_wh);
     const double over_w = (import_wh - bound_wh) * 4;
     if (over_w > kNoticeableW) ++year.quarters_over;
     year.over_w_max = std::max(year.over_w_max, over_w);
