@@ -4,6 +4,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "tools/battery_sim/house_load.h"
 #include "tools/battery_sim/simulated_battery.h"
@@ -17,5 +18,9 @@ void write_battery_record(const std::string& path, const SimulatedBattery& batte
 /// `utc_ms,event,power_w,duration_s,soc`: every order that it was given, and how each ended (order, stop,
 /// expiry).
 void write_dispatch_events(const std::string& path, const SimulatedBattery& battery);
+
+/// What the two have written, again. Throws UserError naming file and line.
+std::vector<MinuteRecord> read_battery_record(const std::string& path);
+std::vector<DispatchEvent> read_dispatch_events(const std::string& path);
 
 }  // namespace bess

@@ -6,16 +6,16 @@
 namespace bess {
 namespace {
 
-LoggedCycle cycle(int minute, std::int32_t power_w, Mode mode = Mode::kRunning) {
-  LoggedCycle logged;
+CycleRecord cycle(int minute, std::int32_t power_w, Mode mode = Mode::kRunning) {
+  CycleRecord logged;
   logged.utc_s = 60 * minute;
   logged.mode = mode;
   logged.ordered_power_w = power_w;
-  logged.reason = "student";
+  logged.reason = Reason::kStudent;
   return logged;
 }
 
-Outcome outcome(bool is_virtual, std::vector<LoggedCycle> log) {
+Outcome outcome(bool is_virtual, std::vector<CycleRecord> log) {
   Outcome run;
   run.scenario.name = run.scenario.path = "made up";
   run.is_virtual = is_virtual;

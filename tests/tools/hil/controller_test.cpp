@@ -80,8 +80,7 @@ struct QuietHour {
                                              .physics = battery,
                                              .weather = nullptr,
                                              .state = state,
-                                             .people = people,
-                                             .evidence = evidence});
+                                             .people = people});
     controller.emplace(config, *world);
   }
   QuietHour(const QuietHour&) = delete;
@@ -98,7 +97,6 @@ struct QuietHour {
   std::optional<VirtualBus> bus;
   EdgeState state;
   VirtualPeople people;
-  Evidence evidence;
   sigset_t mask{};
   std::optional<WatchedWorld> world;
   std::optional<Controller<WatchedWorld>> controller;
@@ -116,11 +114,11 @@ TEST(Controller, ReachesBeginsRunsAndEnds) {
               ElementsAre("keep", "cycle done", "keep", "cycle done", "stops", "keep", "stopped"));
   EXPECT_EQ(hour.world->final_mode, Mode::kStopping);
   EXPECT_TRUE(hour.world->complaints.empty());
-  ASSERT_EQ(hour.evidence.log.size(), 3U);
+  ASSERT_EQ(hour.state.records().size(), 3U);
   // The last order kept its whole step; then the battery was given back.
   const DispatchEvent& last = hour.battery.dispatch_events().back();
   EXPECT_EQ(last.kind, DispatchEvent::Kind::kStop);
-  EXPECT_GE(last.utc_ns / kNanosecondsPerSecond, hour.evidence.log[1].utc_s + kSecondsPerStep);
+  EXPECT_GE(last.utc_ns / kNanosecondsPerSecond, hour.state.records()[1].utc_s + kSecondsPerStep);
 }
 
 TEST(Controller, AsksAndTellsNobodyWhereItMayNotRun) {
@@ -149,7 +147,7 @@ TEST(Controller, StartsWithoutABatteryWhereItMay) {
   ASSERT_EQ(hour.world->complaints.size(), 1U);
   EXPECT_TRUE(hour.controller->begin());
   EXPECT_TRUE(hour.controller->run(2)) << "nothing was ordered: there is nothing to give back";
-  for (const LoggedCycle& cycle : hour.evidence.log) EXPECT_FALSE(cycle.written);
+  for (const CycleRecord& cycle : hour.state.records()) EXPECT_FALSE(cycle.written);
 }
 
 TEST(Controller, SaysThatNoPriceIsThereAndStartsAllTheSame) {

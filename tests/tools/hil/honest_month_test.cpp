@@ -51,7 +51,7 @@ TEST_P(HonestMonth, IsNeverStoppedForWhatTheBatteryDoes) {
   const Outcome outcome = run_scenario(scenario, true, {});
   EXPECT_TRUE(outcome.passed()) << complaint(outcome);
   EXPECT_TRUE(outcome.skipped.empty()) << outcome.skipped;
-  const auto lost = std::ranges::count_if(outcome.evidence.log, [](const LoggedCycle& cycle) {
+  const auto lost = std::ranges::count_if(outcome.evidence.log, [](const CycleRecord& cycle) {
     return cycle.mode != Mode::kRunning && cycle.mode != Mode::kStopping;
   });
   std::printf("%-16s %-12s %td of %zu cycles lost in %d days\n", GetParam().map, GetParam().variant,

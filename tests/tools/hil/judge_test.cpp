@@ -35,7 +35,7 @@ struct HandMade {
                                   .soc_frac = 0.5,
                                   .commanded_power_w = 0});
     }
-    LoggedCycle stopping;
+    CycleRecord stopping;
     stopping.utc_s = kStartS + 1'200;
     stopping.mode = Mode::kStopping;
     evidence.log.push_back(stopping);
@@ -221,23 +221,23 @@ TEST(Judge, TakesAnOrderThatTheSiteCutForTheEdgesOwn) {
 
 TEST(Judge, HoldsTheLogAgainstMarketBatteryAndStudent) {
   HandMade run;
-  LoggedCycle cycle;
+  CycleRecord cycle;
   cycle.utc_s = kStartS + 480;
   cycle.mode = Mode::kRunning;
-  cycle.has_measurement = cycle.has_price = cycle.written = true;
-  cycle.soc_e4 = 5'000;
-  cycle.price_minute_utc_s = kStartS + 420;
-  cycle.price_centi_eur_per_mwh = 10'000;
-  cycle.reason = "price_age";
+  cycle.has_measurement = cycle.price.has_row = cycle.written = true;
+  cycle.measurement.soc_e4 = 5'000;
+  cycle.price.minute_utc_s = kStartS + 420;
+  cycle.price.price_centi_eur_per_mwh = 10'000;
+  cycle.reason = Reason::kPriceAge;
   run.evidence.log.insert(run.evidence.log.begin(), cycle);
   EXPECT_EQ(run.broken(), "");
   run.evidence.log[0].ordered_power_w = 4'000;
   EXPECT_EQ(run.broken(), "order");
   run.evidence.log[0] = cycle;
-  run.evidence.log[0].price_centi_eur_per_mwh = 10'010;
+  run.evidence.log[0].price.price_centi_eur_per_mwh = 10'010;
   EXPECT_EQ(run.broken(), "inputs");
   run.evidence.log[0] = cycle;
-  run.evidence.log[0].soc_e4 = 5'600;
+  run.evidence.log[0].measurement.soc_e4 = 5'600;
   EXPECT_EQ(run.broken(), "inputs");
   run.evidence.log[0] = cycle;
   run.evidence.log[0].has_student_action = true;  // of no context class
@@ -247,12 +247,12 @@ TEST(Judge, HoldsTheLogAgainstMarketBatteryAndStudent) {
 /// Half a minute late: a bus with a fault may take so long, one without may not.
 TEST(Judge, GivesAnOrderUntilItsDeadlineWhereTheBusIsDisturbed) {
   HandMade run;
-  LoggedCycle cycle;
+  CycleRecord cycle;
   cycle.utc_s = kStartS + 480;
   cycle.mode = Mode::kRunning;
   cycle.written = true;
   cycle.ordered_power_w = 2'000;
-  cycle.reason = "price_age";
+  cycle.reason = Reason::kPriceAge;
   run.evidence.log.insert(run.evidence.log.begin(), cycle);
   run.order_of(8).power_w = 2'000;
   run.order_of(8).utc_ns = HandMade::at_ns(8, 40);

@@ -58,25 +58,26 @@ TEST(RealBattery, PutsItsLimitsInPlaceOfTheScenarios) {
 }
 
 TEST(RealBattery, LimitsAreBrokenByOrderByFlowAndBySoc) {
-  const LoggedCycle good{
-      .has_measurement = true, .soc_e4 = 5'000, .ordered_power_w = -500, .battery_power_w = -520};
+  const CycleRecord good{.has_measurement = true,
+                         .measurement = {.soc_e4 = 5'000, .power_w = -520},
+                         .ordered_power_w = -500};
   EXPECT_EQ(beyond_limits(good, battery()), "");
-  LoggedCycle cycle = good;
+  CycleRecord cycle = good;
   cycle.ordered_power_w = 501;
   EXPECT_EQ(beyond_limits(cycle, battery()), "501 W were ordered");
   cycle = good;
-  cycle.battery_power_w = 801;
+  cycle.measurement.power_w = 801;
   EXPECT_EQ(beyond_limits(cycle, battery()), "801 W flow");
   cycle = good;
-  cycle.soc_e4 = 7'150;
+  cycle.measurement.soc_e4 = 7'150;
   EXPECT_EQ(beyond_limits(cycle, battery()), "its SoC is 71.5 %");
   cycle.has_measurement = false;
   EXPECT_EQ(beyond_limits(cycle, battery()), "");
 }
 
 TEST(RealBattery, AReadingStandsForTheCycleThatItEnds) {
-  const LoggedCycle cycle{
-      .utc_s = 1'200, .has_measurement = true, .soc_e4 = 5'000, .battery_power_w = 600};
+  const CycleRecord cycle{
+      .utc_s = 1'200, .has_measurement = true, .measurement = {.soc_e4 = 5'000, .power_w = 600}};
   const std::vector<MinuteRecord> minutes = measured_minutes({cycle, {.utc_s = 1'320}});
   ASSERT_EQ(minutes.size(), 2U);
   EXPECT_EQ(minutes[0].minute_utc_s, 1'080);

@@ -97,7 +97,7 @@ TEST(SiteScenarios, AMeterThatIsNotThereIsLostAndNotIgnored) {
   scenario.meter.fault.schedule.to_s = 60 * kNeverMin;
   const Outcome outcome = run_scenario(scenario, true, {});
   ASSERT_FALSE(outcome.evidence.log.empty());
-  for (const LoggedCycle& cycle : outcome.evidence.log) EXPECT_EQ(cycle.ordered_power_w, 0);
+  for (const CycleRecord& cycle : outcome.evidence.log) EXPECT_EQ(cycle.ordered_power_w, 0);
 }
 
 }  // namespace

@@ -27,13 +27,13 @@ bool fits(Expectation::Command wanted, const CommandInForce& c) {
 void judge_reasons(Bench& bench, const Expectation& expectation, const Window& span) {
   bool was_seen = expectation.reason.empty();
   std::string last = "nothing logged";
-  for (const LoggedCycle& cycle : bench.evidence.log) {
+  for (const CycleRecord& cycle : bench.evidence.log) {
     const std::int64_t ns = cycle.utc_s * kSecondNs;
     if (ns < span.from_ns || ns >= span.to_ns) continue;
-    last = cycle.reason;
-    was_seen = was_seen || cycle.reason == expectation.reason;
-    if (!expectation.no_reason.empty() && cycle.reason == expectation.no_reason) {
-      bench.find(ns, "another reason than " + expectation.no_reason, cycle.reason);
+    last = reason_name(cycle.reason);
+    was_seen = was_seen || last == expectation.reason;
+    if (!expectation.no_reason.empty() && last == expectation.no_reason) {
+      bench.find(ns, "another reason than " + expectation.no_reason, last);
     }
   }
   if (!was_seen)

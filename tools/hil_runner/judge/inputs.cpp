@@ -9,17 +9,17 @@ namespace bess {
 void judge_inputs(Bench& bench) {
   constexpr double kSocToleranceE4 =
       100;  // a percent: resolution of registers, and what has flowed
-  for (const LoggedCycle& cycle : bench.evidence.log) {
+  for (const CycleRecord& cycle : bench.evidence.log) {
     if (cycle.mode == Mode::kStopping) continue;
     const std::int64_t tick_ns = cycle.utc_s * kSecondNs;
-    if (cycle.has_price) {
-      const auto price = bench.publication.price_of(cycle.price_minute_utc_s);
-      const double seen = cycle.price_centi_eur_per_mwh / 100.0;
+    if (cycle.price.has_row) {
+      const auto price = bench.publication.price_of(cycle.price.minute_utc_s);
+      const double seen = cycle.price.price_centi_eur_per_mwh / 100.0;
       if (!price || std::abs(*price - seen) > 0.0051) {
         bench.find(
             tick_ns,
             fmt::format("{} for {}", price ? fmt::format("{:.2f} EUR/MWh", *price) : "no price",
-                        utc_text(cycle.price_minute_utc_s).view()),
+                        utc_text(cycle.price.minute_utc_s).view()),
             fmt::format("{:.2f}", seen));
       }
     }
@@ -28,9 +28,9 @@ void judge_inputs(Bench& bench) {
     const double flow_e4 = 1e4 * bench.scenario.battery.physics.power_w_max *
                            (60 + bench.evidence.slack_s) / 3'600 /
                            bench.scenario.battery.physics.capacity_wh;
-    if (std::abs(soc_e4 - cycle.soc_e4) <= kSocToleranceE4 + flow_e4) continue;
+    if (std::abs(soc_e4 - cycle.measurement.soc_e4) <= kSocToleranceE4 + flow_e4) continue;
     bench.find(tick_ns, fmt::format("a SoC near {:.4f}", soc_e4 / 1e4),
-               fmt::format("{:.4f}", cycle.soc_e4 / 1e4));
+               fmt::format("{:.4f}", cycle.measurement.soc_e4 / 1e4));
   }
 }
 

@@ -5,7 +5,7 @@
 namespace bess {
 
 void judge_order(Bench& bench) {
-  for (const LoggedCycle& cycle : bench.evidence.log) {
+  for (const CycleRecord& cycle : bench.evidence.log) {
     const std::int64_t tick_ns = cycle.utc_s * kSecondNs;
     const std::int64_t by_ns = bench.settled_at_worst_ns(tick_ns);
     const bool counts = cycle.mode == Mode::kRunning && cycle.written &&

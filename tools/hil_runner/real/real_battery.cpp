@@ -135,30 +135,30 @@ std::vector<DispatchEvent> orders_on_the_bus(const std::vector<std::string>& rec
   return battery.dispatch_events();
 }
 
-std::vector<MinuteRecord> measured_minutes(const std::vector<LoggedCycle>& log) {
+std::vector<MinuteRecord> measured_minutes(const std::vector<CycleRecord>& log) {
   std::vector<MinuteRecord> minutes;
-  for (const LoggedCycle& cycle : log) {
+  for (const CycleRecord& cycle : log) {
     if (!cycle.has_measurement) continue;
     for (std::int64_t before_s = kSecondsPerStep; before_s > 0; before_s -= 60) {
       minutes.push_back({.minute_utc_s = cycle.utc_s / 60 * 60 - before_s,
-                         .energy_wh = cycle.battery_power_w / 60.0,
-                         .soc_frac = cycle.soc_e4 / 1e4,
+                         .energy_wh = cycle.measurement.power_w / 60.0,
+                         .soc_frac = cycle.measurement.soc_e4 / 1e4,
                          .commanded_power_w = 0});
     }
   }
   return minutes;
 }
 
-std::string beyond_limits(const LoggedCycle& cycle, const RealBattery& battery) {
+std::string beyond_limits(const CycleRecord& cycle, const RealBattery& battery) {
   constexpr double kSocSlackFrac = 0.01;  // a register may show whole percents
   const double most_w = 1.2 * battery.power_w + 200;
-  const double soc_frac = cycle.soc_e4 / 1e4;
+  const double soc_frac = cycle.measurement.soc_e4 / 1e4;
   if (std::abs(cycle.ordered_power_w) > battery.power_w) {
     return fmt::format("{} W were ordered", cycle.ordered_power_w);
   }
   if (!cycle.has_measurement) return "";
-  if (std::abs(cycle.battery_power_w) > most_w) {
-    return fmt::format("{} W flow", cycle.battery_power_w);
+  if (std::abs(cycle.measurement.power_w) > most_w) {
+    return fmt::format("{} W flow", cycle.measurement.power_w);
   }
   const bool is_outside = soc_frac < battery.soc_min_frac - kSocSlackFrac ||
                           soc_frac > battery.soc_max_frac + kSocSlackFrac;

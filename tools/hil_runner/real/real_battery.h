@@ -46,9 +46,9 @@ std::string link_keys(const RealBattery& battery);
 std::vector<DispatchEvent> orders_on_the_bus(const std::vector<std::string>& recordings,
                                              const RegisterMap& map, std::int64_t end_utc_ns);
 /// What it measured, in the edge's log: each reading stands for the cycle that it ends. Commanded power is not known.
-std::vector<MinuteRecord> measured_minutes(const std::vector<LoggedCycle>& log);
+std::vector<MinuteRecord> measured_minutes(const std::vector<CycleRecord>& log);
 
 /// What breaks the limits, in words; empty: nothing does. It stands beside the edge's own guard.
-std::string beyond_limits(const LoggedCycle& cycle, const RealBattery& battery);
+std::string beyond_limits(const CycleRecord& cycle, const RealBattery& battery);
 
 }  // namespace bess

@@ -18,9 +18,9 @@ const Outcome* in_wall_time(const std::vector<Outcome>& outcomes, const Outcome&
 }
 
 void compare(const Outcome& simulated, const Outcome& real, Agreement& agreement) {
-  const std::vector<LoggedCycle>& log = real.evidence.log;
+  const std::vector<CycleRecord>& log = real.evidence.log;
   std::size_t r = 0;
-  for (const LoggedCycle& cycle : simulated.evidence.log) {
+  for (const CycleRecord& cycle : simulated.evidence.log) {
     while (r < log.size() && log[r].utc_s < cycle.utc_s) ++r;
     if (r == log.size()) return;
     // How a run ends is no order, and not at a tick.
@@ -34,7 +34,7 @@ void compare(const Outcome& simulated, const Outcome& real, Agreement& agreement
     agreement.first =
         fmt::format("{} at minute {}: {} W ({}), in wall time {} W ({})", simulated.scenario.name,
                     (cycle.utc_s - simulated.scenario.start_utc_s) / 60, cycle.ordered_power_w,
-                    cycle.reason, log[r].ordered_power_w, log[r].reason);
+                    reason_name(cycle.reason), log[r].ordered_power_w, reason_name(log[r].reason));
   }
 }
 

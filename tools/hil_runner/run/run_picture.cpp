@@ -146,14 +146,14 @@ class RunPicture {
     text += shown("orders", e.orders, [](const DispatchEvent& order) {
       return fmt::format("{} {}\n", order.utc_ns / kNanosecondsPerSecond, order.power_w);
     });
-    text += shown("modes", e.log, [](const LoggedCycle& cycle) {
+    text += shown("modes", e.log, [](const CycleRecord& cycle) {
       return fmt::format("{} {}\n", cycle.utc_s, static_cast<int>(cycle.mode));
     });
     return text;
   }
 
   static std::int64_t utc_s(const MinuteRecord& m) { return m.minute_utc_s; }
-  static std::int64_t utc_s(const LoggedCycle& cycle) { return cycle.utc_s; }
+  static std::int64_t utc_s(const CycleRecord& cycle) { return cycle.utc_s; }
   static std::int64_t utc_s(const DispatchEvent& order) {
     return order.utc_ns / kNanosecondsPerSecond;
   }

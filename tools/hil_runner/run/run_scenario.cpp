@@ -3,52 +3,15 @@
 #include <fmt/core.h>
 
 #include <chrono>
-#include <cmath>
-#include <cstring>
 
-#include "shared/signature.h"
 #include "shared/utc_text.h"
+#include "tools/hil_runner/run/run_signature.h"
 #include "tools/hil_runner/scenario/edge_settings.h"
 #include "tools/hil_runner/scenario/publication.h"
 #include "tools/hil_runner/virtual/virtual_run.h"
 
 namespace bess {
 namespace {
-
-std::int64_t bits(double value) {
-  std::int64_t out = 0;
-  std::memcpy(&out, &value, sizeof out);
-  return out;
-}
-
-/// Every bit of what was recorded: two runs that differ anywhere have two signatures.
-std::uint64_t signature_of(const Evidence& evidence) {
-  Signature signature;
-  for (const DispatchEvent& e : evidence.orders) {
-    for (const std::int64_t part : {e.utc_ns, static_cast<std::int64_t>(e.kind), bits(e.power_w),
-                                    e.duration_s, bits(e.soc_frac)}) {
-      signature.add(part);
-    }
-  }
-  for (const MinuteRecord& m : evidence.minutes) {
-    for (const std::int64_t part : {m.minute_utc_s, bits(m.energy_wh), bits(m.soc_frac)}) {
-      signature.add(part);
-    }
-  }
-  for (const LoggedCycle& c : evidence.log) {
-    for (const std::int64_t part :
-         {c.utc_s, std::int64_t{c.has_measurement}, std::int64_t{c.soc_e4},
-          std::int64_t{c.battery_power_w}, std::int64_t{c.has_price}, c.price_minute_utc_s,
-          std::int64_t{c.price_centi_eur_per_mwh}, std::int64_t{c.context_class},
-          std::int64_t{c.has_student_action}, static_cast<std::int64_t>(c.student_action),
-          std::int64_t{c.ordered_power_w}, static_cast<std::int64_t>(c.mode),
-          std::int64_t{c.written}}) {
-      signature.add(part);
-    }
-    for (const char letter : c.reason) signature.add(letter);
-  }
-  return signature.value();
-}
 
 void run_and_judge(const Scenario& scenario, const WallSite& site, Outcome& outcome,
                    WorkFolder& folder) {

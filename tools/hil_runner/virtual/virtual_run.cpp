@@ -66,19 +66,16 @@ Evidence run_virtual(const Scenario& scenario, const MinuteSeries& prices, const
                           .to_s = 60 * scenario.price_fault.span.to_min});
   Evidence evidence;
   EdgeState state;
+  state.reserve(static_cast<std::size_t>(60 * scenario.minutes / kSecondsPerStep) + 2);
   VirtualPeople people;
   time.on_people([&](const ScenarioEvent& event) {
     people.act(event, time.edge_utc_ns() / kNanosecondsPerSecond, state.trip());
   });
   do {
     try {
-      VirtualWorld world(config, VirtualPrices(config.price, market, faults, scenario, time),
-                         {.time = time,
-                          .physics = battery,
-                          .weather = weather,
-                          .state = state,
-                          .people = people,
-                          .evidence = evidence});
+      VirtualWorld world(
+          config, VirtualPrices(config.price, market, faults, scenario, time),
+          {.time = time, .physics = battery, .weather = weather, .state = state, .people = people});
       evidence.edge_exit_code = run_edge(config, world);
     } catch (const EdgeKilled&) {
       evidence.edge_exit_code = 128 + SIGKILL;
@@ -87,6 +84,7 @@ Evidence run_virtual(const Scenario& scenario, const MinuteSeries& prices, const
   bus.device().advance(time.utc_ns());
   evidence.orders = battery.dispatch_events();
   evidence.minutes = battery.record();
+  evidence.log = state.take_records();
   evidence.is_alive_at_end = true;
   return evidence;
 }

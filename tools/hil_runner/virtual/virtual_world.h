@@ -3,30 +3,33 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "edge/battery/modbus_meter.h"
 #include "edge/log/journal.h"
 #include "edge/program/controller.h"
-#include "tools/hil_runner/evidence/evidence.h"
 #include "tools/hil_runner/virtual/virtual_people.h"
 #include "tools/hil_runner/virtual/virtual_prices.h"
 #include "tools/hil_runner/virtual/virtual_run.h"
 
 namespace bess {
 
-/// What bess-edge keeps on its disk between two runs.
+/// What bess-edge keeps on its disk between two runs: its ring.
 class EdgeState {
  public:
+  /// As the ring has it on its disk: what no field of it keeps is lost.
   void add(const CycleRecord& record);
   [[nodiscard]] bool read_back(std::int64_t records, CycleRecord& record) const;
   /// By the newest record.
   [[nodiscard]] Trip trip() const;
+  [[nodiscard]] const std::vector<CycleRecord>& records() const { return records_; }
+  void reserve(std::size_t records) { records_.reserve(records); }
+  [[nodiscard]] std::vector<CycleRecord> take_records() { return std::move(records_); }
 
  private:
-  static constexpr std::size_t kRecordsMax = 720;  // a day: more than a start reads again
-  std::deque<CycleRecord> records_;
+  std::vector<CycleRecord> records_;
 };
 
 class VirtualWorld {
@@ -46,7 +49,6 @@ class VirtualWorld {
     Weather weather;
     EdgeState& state;
     VirtualPeople& people;
-    Evidence& evidence;
   };
   VirtualWorld(const EdgeConfig& config, const VirtualPrices& prices, const Surroundings& around);
 
@@ -61,7 +63,7 @@ class VirtualWorld {
   bool read_back(std::int64_t records, CycleRecord& record) const {
     return around_.state.read_back(records, record);
   }
-  void keep(const CycleRecord& record);
+  void keep(const CycleRecord& record) { around_.state.add(record); }
   const HoldMailbox& listen() { return around_.people.holds(); }
   [[nodiscard]] bool is_cleared(std::int64_t trip_utc_s) const {
     return around_.people.is_cleared(trip_utc_s);

@@ -15,15 +15,15 @@
 #include <thread>
 
 #include "edge/battery/commission.h"
-#include "edge/control/control_types.h"
+#include "edge/log/log_reader.h"
 #include "edge/storage/commission_file.h"
 #include "shared/host/child_process.h"
-#include "shared/host/csv.h"
 #include "shared/host/file.h"
 #include "shared/host/pty_bridge.h"
 #include "shared/host/user_error.h"
 #include "shared/scaled_clock.h"
 #include "shared/utc_text.h"
+#include "tools/battery_sim/battery_record.h"
 #include "tools/hil_runner/base/stop_request.h"
 #include "tools/hil_runner/scenario/edge_settings.h"
 #include "tools/hil_runner/scenario/limit_line.h"
@@ -66,14 +66,6 @@ std::string line_with(const std::string& text, const std::string& path) {
     if (line.find(text) != std::string::npos) return line;
   }
   return "";
-}
-
-template <typename Enum, typename NameOf>
-Enum by_name(const std::string& text, int count, const NameOf& name_of) {
-  for (int i = 0; i < count; ++i) {
-    if (name_of(static_cast<Enum>(i)) == text) return static_cast<Enum>(i);
-  }
-  return static_cast<Enum>(0);
 }
 
 /// A small file system of its own for the edge's state, where this user may mount one.
@@ -222,25 +214,21 @@ class WallRun {
     heed_stop();
     if (!site_.battery || clock_ns(CLOCK_MONOTONIC) < next_look_ns_) return;
     next_look_ns_ = clock_ns(CLOCK_MONOTONIC) + kNanosecondsPerSecond;
-    Evidence so_far;
-    try {
-      read_log(so_far);
-    } catch (const UserError&) {
-      return;  // its last row is being written
-    }
-    if (so_far.log.empty()) return;
-    const LoggedCycle& cycle = so_far.log.back();
+    LogReader log;
+    FileMessage error;
+    CycleRecord cycle;
+    if (!log.open(config_.log, error) || !log.newest(cycle)) return;
     tell(cycle);
     const std::string broken = beyond_limits(cycle, *site_.battery);
     if (!broken.empty()) fail("stopped: {}, beyond the limits of --real", broken);
   }
 
-  void tell(const LoggedCycle& cycle) const {
+  void tell(const CycleRecord& cycle) const {
     if (isatty(STDERR_FILENO) == 0) return;
     fmt::print(stderr,
                "\r{}: minute {} of {:.0f}, {} W ordered, {} W measured, SoC {:.1f} %; Q ends it  ",
                scenario_.name, (cycle.utc_s - scenario_.start_utc_s) / 60, scenario_.minutes,
-               cycle.ordered_power_w, cycle.battery_power_w, cycle.soc_e4 / 100.0);
+               cycle.ordered_power_w, cycle.measurement.power_w, cycle.measurement.soc_e4 / 100.0);
   }
 
   /// The edge's own check of the sign: half a minute of a small order.
@@ -519,90 +507,28 @@ class WallRun {
           "fewer --jobs, or a smaller time_scale",
           lateness_.worst_s(), scenario_.time_scale);
     }
-    read_log(evidence);
+    evidence.log = read_log();
     if (site_.battery) {
       evidence.orders = orders_on_the_bus(recordings_, config_.map, scenario_.end_utc_ns());
       evidence.minutes = measured_minutes(evidence.log);
     } else {
-      read_orders(evidence);
-      read_minutes(evidence);
+      evidence.orders = read_dispatch_events(folder_.file("orders.csv"));
+      evidence.minutes = read_battery_record(folder_.file("battery.csv"));
     }
     return evidence;
   }
 
-  void read_orders(Evidence& evidence) const {
-    const std::string text = read_file(folder_.file("orders.csv"));
-    if (std::ranges::count(text, '\n') < 2) return;  // it was never given an order
-    const CsvTable table(text, "orders.csv");
-    const std::size_t utc = table.column("utc_ms"), event = table.column("event");
-    const std::size_t power = table.column("power_w"), duration = table.column("duration_s");
-    const std::size_t soc = table.column("soc");
-    for (std::size_t r = 0; r < table.row_count(); ++r) {
-      using enum DispatchEvent::Kind;
-      const std::string& kind = table.text(r, event);
-      evidence.orders.push_back(
-          {.utc_ns = static_cast<std::int64_t>(table.number(r, utc)) * 1'000'000,
-           .kind = kind == "order"  ? kOrder
-                   : kind == "stop" ? kStop
-                                    : kExpiry,
-           .power_w = table.number(r, power),
-           .duration_s = static_cast<std::int64_t>(table.number(r, duration)),
-           .soc_frac = table.number(r, soc)});
+  /// As `bess-edge log` reads it, while it is written or afterwards.
+  [[nodiscard]] std::vector<CycleRecord> read_log() const {
+    std::vector<CycleRecord> records;
+    LogReader log;
+    FileMessage error;
+    if (!log.open(config_.log, error)) return records;
+    CycleRecord record;
+    for (std::uint64_t n = log.oldest_number(); n <= log.newest_number(); ++n) {
+      if (log.read(n, record)) records.push_back(record);
     }
-  }
-
-  void read_minutes(Evidence& evidence) const {
-    const CsvTable table = read_table("battery.csv");
-    const std::size_t utc = table.column("minute_utc"), energy = table.column("energy_wh");
-    const std::size_t soc = table.column("soc"), power = table.column("commanded_power_w");
-    for (std::size_t r = 0; r < table.row_count(); ++r) {
-      evidence.minutes.push_back({.minute_utc_s = table.utc_s(r, utc),
-                                  .energy_wh = table.number(r, energy),
-                                  .soc_frac = table.number(r, soc),
-                                  .commanded_power_w = table.number(r, power)});
-    }
-  }
-
-  void read_log(Evidence& evidence) const {
-    if (!std::filesystem::exists(folder_.file("edge.csv"))) return;
-    const CsvTable table = read_table("edge.csv");
-    const auto column = [&](const char* name) { return table.column(name); };
-    const std::size_t utc = column("utc"), mode = column("mode"), soc = column("soc_e4");
-    const std::size_t minute = column("price_minute_utc"),
-                      price = column("price_centi_eur_per_mwh");
-    const std::size_t student = column("student_action"), context = column("context_class");
-    const std::size_t ordered = column("ordered_power_w"), power = column("battery_power_w");
-    const std::size_t reason = column("reason"), written = column("written");
-    const std::size_t battery_status = column("battery_status");
-    const auto is_known = [&](std::size_t r, std::size_t c) {
-      return !table.text(r, c).empty() && table.text(r, c) != "none";
-    };
-    const auto whole = [&](std::size_t r, std::size_t c) {
-      return is_known(r, c) ? static_cast<std::int32_t>(table.number(r, c)) : 0;
-    };
-    for (std::size_t r = 0; r < table.row_count(); ++r) {
-      LoggedCycle cycle;
-      cycle.utc_s = table.utc_s(r, utc);
-      cycle.mode = by_name<Mode>(table.text(r, mode), kModeCount, mode_name);
-      cycle.soc_e4 = whole(r, soc);
-      // The log has 0 where nothing was measured.
-      cycle.has_measurement = cycle.soc_e4 != 0 || table.text(r, battery_status) == "ok";
-      cycle.has_price = is_known(r, minute);
-      if (cycle.has_price) cycle.price_minute_utc_s = table.utc_s(r, minute);
-      cycle.price_centi_eur_per_mwh = whole(r, price);
-      cycle.has_student_action = whole(r, context) != 0;
-      cycle.student_action = by_name<Action>(table.text(r, student), 3, action_name);
-      cycle.context_class = static_cast<std::int16_t>(whole(r, context));
-      cycle.ordered_power_w = whole(r, ordered);
-      cycle.battery_power_w = whole(r, power);
-      cycle.reason = table.text(r, reason);
-      cycle.written = whole(r, written) != 0;
-      evidence.log.push_back(std::move(cycle));
-    }
-  }
-
-  [[nodiscard]] CsvTable read_table(const char* name) const {
-    return CsvTable::read(folder_.file(name));
+    return records;
   }
 
   const Scenario& scenario_;

@@ -1,0 +1,13 @@
+// One number for a run: of every bit of what the battery did, and of what the edge saw and decided.
+#pragma once
+
+#include <cstdint>
+
+#include "tools/hil_runner/evidence/evidence.h"
+
+namespace bess {
+
+/// Two runs that differ in it anywhere have two signatures.
+std::uint64_t signature_of(const Evidence& evidence);
+
+}  // namespace bess
