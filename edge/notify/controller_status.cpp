@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-#include "edge/notify/child_program.h"
+#include "shared/host/run_program.h"
 #include "shared/host/text.h"
 
 namespace bess {

@@ -1,6 +1,6 @@
 #include "edge/notify/mail.h"
 
-#include "edge/notify/child_program.h"
+#include "shared/host/run_program.h"
 #include "shared/host/text.h"
 #include "shared/utc_text.h"
 

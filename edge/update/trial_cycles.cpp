@@ -5,7 +5,7 @@
 #include <charconv>
 #include <iterator>
 
-#include "edge/update/run_program.h"
+#include "shared/host/run_program.h"
 #include "shared/host/text.h"
 #include "shared/host/toml_document.h"
 
@@ -102,8 +102,8 @@ std::vector<SeenCycle> cycles_of_csv(std::string_view csv, bool must_write) {
 std::vector<SeenCycle> last_cycles(const std::string& program, const std::string& settings,
                                    bool must_write) {
   constexpr std::int64_t kAnswerS = 20;
-  const ProgramRun run =
-      run_program({program, "log", "--csv", "--last", "60", "--config", settings}, kAnswerS);
+  const ProgramResult run =
+      run_and_hear({program, "log", "--csv", "--last", "60", "--config", settings}, kAnswerS);
   return run.is_well() ? cycles_of_csv(run.output, must_write) : std::vector<SeenCycle>();
 }
 

@@ -6,8 +6,8 @@
 #include <filesystem>
 
 #include "edge/log/whole_file.h"
-#include "edge/update/run_program.h"
 #include "edge/update/words.h"
+#include "shared/host/run_program.h"
 #include "shared/host/text.h"
 
 namespace bess {
@@ -36,9 +36,9 @@ void take_setting(std::string_view text, std::string_view key, std::int64_t& val
   }
 }
 
-ProgramRun systemctl(std::vector<std::string> words, std::int64_t timeout_s = kSystemctlS) {
+ProgramResult systemctl(std::vector<std::string> words, std::int64_t timeout_s = kSystemctlS) {
   words.insert(words.begin(), "systemctl");
-  return run_program(std::move(words), timeout_s);
+  return run_and_hear(std::move(words), timeout_s);
 }
 
 std::string value_of(std::string_view text, std::string_view key) {
@@ -64,13 +64,13 @@ TrialLimits TrialMachine::limits() const {
 }
 
 std::string TrialMachine::delivered() {
-  const ProgramRun run =
-      run_program({"dpkg-query", "-W", "-f", "${db:Status-Abbrev}${Version}", "bess-edge"}, 30);
+  const ProgramResult run =
+      run_and_hear({"dpkg-query", "-W", "-f", "${db:Status-Abbrev}${Version}", "bess-edge"}, 30);
   return run.is_well() ? one_line(run.output) : "";
 }
 
 TrialUnit TrialMachine::unit() const {
-  const ProgramRun run = systemctl({"show", "-p", "ActiveState", "-p", "NRestarts", kUnit});
+  const ProgramResult run = systemctl({"show", "-p", "ActiveState", "-p", "NRestarts", kUnit});
   TrialUnit unit;
   const std::string active = value_of(run.output, "ActiveState");
   unit.is_stopped = active == "inactive";
@@ -81,10 +81,10 @@ TrialUnit TrialMachine::unit() const {
 }
 
 std::string TrialMachine::last_error(std::int64_t since_utc_s) {
-  const ProgramRun run =
-      run_program({"journalctl", "_SYSTEMD_UNIT=bess-edge.service", "-p", "err", "-n", "1", "-o",
-                   "cat", "--no-pager", "--since", "@" + std::to_string(since_utc_s)},
-                  20);
+  const ProgramResult run =
+      run_and_hear({"journalctl", "_SYSTEMD_UNIT=bess-edge.service", "-p", "err", "-n", "1", "-o",
+                    "cat", "--no-pager", "--since", "@" + std::to_string(since_utc_s)},
+                   20);
   return run.is_well() ? one_line(run.output, 200) : "";
 }
 

@@ -6,11 +6,11 @@
 
 #include <string_view>
 
-#include "edge/update/run_program.h"
 #include "edge/update/version_store.h"
 #include "edge/update/words.h"
 #include "shared/file_descriptor.h"
 #include "shared/host/json.h"
+#include "shared/host/run_program.h"
 
 namespace bess {
 namespace {
@@ -27,13 +27,13 @@ std::string word_of(std::string_view text, std::string_view name) {
 
 bool is_certified(const std::string& folder, std::string& error) {
   const std::string header = folder + "/share/student_weights.h";
-  const ProgramRun sum = run_program({"sha256sum", "--", header}, kProgramS);
+  const ProgramResult sum = run_and_hear({"sha256sum", "--", header}, kProgramS);
   const std::string found = sum.output.substr(0, sum.output.find(' '));
   const std::string claimed = certificate_fact(folder, "header_sha256");
   if (!sum.is_well() || claimed.empty() || found != claimed) {
     return refuse(error, {"its certificate is of another header: not what was proved"});
   }
-  const ProgramRun decided = run_program({folder + "/bin/bess-edge", "signature"}, kProgramS);
+  const ProgramResult decided = run_and_hear({folder + "/bin/bess-edge", "signature"}, kProgramS);
   if (!decided.is_well()) {
     return refuse(error, {"its program does not run: ", decided.complaint()});
   }
@@ -62,7 +62,7 @@ bool takes_settings(const ProofPlaces& places, std::string& error) {
   const bool is_written = file.get() >= 0 && write(file.get(), text.data(), text.size()) ==
                                                  static_cast<ssize_t>(text.size());
   const std::string& read = is_written ? trial : places.settings;
-  const ProgramRun run = run_program(
+  const ProgramResult run = run_and_hear(
       {places.version_folder + "/bin/bess-edge", "status", "--json", "--no-lock", "--config", read},
       kProgramS);
   unlink(trial.c_str());

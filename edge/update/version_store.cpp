@@ -10,9 +10,9 @@
 #include <filesystem>
 
 #include "edge/log/whole_file.h"
-#include "edge/update/run_program.h"
 #include "edge/update/words.h"
 #include "shared/host/errno_text.h"
+#include "shared/host/run_program.h"
 
 namespace bess {
 namespace {
@@ -58,7 +58,7 @@ bool VersionStore::is_whole(const std::string& folder, std::string& error) {
     if (sums.find(file) != std::string::npos) continue;
     return refuse(error, {folder, "/SUMS: does not name", file.substr(1, file.size() - 2)});
   }
-  const ProgramRun run = run_program(
+  const ProgramResult run = run_and_hear(
       {"env", "-C", folder, "sha256sum", "--check", "--strict", "--quiet", "SUMS"}, kCopyS);
   if (run.is_well()) return true;
   const std::string first = run.output.substr(0, run.output.find('\n'));
@@ -85,8 +85,8 @@ bool VersionStore::keep(std::string_view version, const std::string& from,
   std::error_code failed;
   std::filesystem::create_directories(folder() + "/versions", failed);
   remove(copy);
-  const ProgramRun copied = run_program({"cp", "-a", "--", from, copy}, kCopyS);
-  if (!copied.is_well() || !run_program({"sync", "-f", copy}, kCopyS).is_well() ||
+  const ProgramResult copied = run_and_hear({"cp", "-a", "--", from, copy}, kCopyS);
+  if (!copied.is_well() || !run_and_hear({"sync", "-f", copy}, kCopyS).is_well() ||
       !is_whole(copy, error)) {
     remove(copy);
     return refuse(error, {version, " cannot be kept: ",

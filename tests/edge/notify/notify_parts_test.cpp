@@ -8,13 +8,13 @@
 #include <filesystem>
 #include <fstream>
 
-#include "edge/notify/child_program.h"
 #include "edge/notify/controller_status.h"
 #include "edge/notify/mail.h"
 #include "edge/notify/notify_settings.h"
 #include "edge/notify/told.h"
 #include "edge/notify/topics.h"
 #include "edge/notify/webhook.h"
+#include "shared/host/run_program.h"
 #include "shared/local_time.h"
 #include "tests/support/golden_file.h"
 #include "tests/support/temporary_folder.h"
@@ -154,6 +154,21 @@ TEST(ChildProgram, WhatDoesNotEndIsKilledWithItsChildren) {
               HasSubstr("did not end in time"));
   EXPECT_THAT(run_program({"/usr/bin/yes"}, "", 60'000).trouble, HasSubstr("did not end in time"));
   EXPECT_THAT(run_program({"/no/such"}, "", 100).trouble, HasSubstr("cannot be started: No such"));
+}
+
+TEST(ChildProgram, IsHeardWithItsErrors) {
+  const ProgramResult result =
+      run_and_hear({"sh", "-c", "echo said; echo first >&2; echo last >&2; exit 7"}, 10);
+  EXPECT_EQ(result.output, "said\n");
+  EXPECT_EQ(result.errors, "first\nlast\n");
+  EXPECT_EQ(result.exit_code, 7);
+  EXPECT_FALSE(result.is_well());
+  EXPECT_EQ(result.complaint(), "last");
+  EXPECT_TRUE(run_and_hear({"true"}, 10).is_well());
+  EXPECT_EQ(run_and_hear({"sh", "-c", "kill -9 $$"}, 10).exit_code, 128 + 9);
+  // It closes what it says with, and goes on: not for longer than its time.
+  EXPECT_THAT(run_and_hear({"sh", "-c", "exec >&- 2>&-; sleep 1000"}, 1).complaint(),
+              HasSubstr("did not end in time"));
 }
 
 /// A script that stands for bess-edge.

@@ -1,4 +1,4 @@
-#include "edge/notify/child_program.h"
+#include "shared/host/run_program.h"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include "shared/host/text.h"
 #include "shared/scaled_clock.h"
 
 namespace bess {
@@ -20,8 +21,8 @@ constexpr std::size_t kOutputBytesMax = 1 << 20;
 
 /// Both ends of a pipe; neither reaches another program by accident.
 struct Pipe {
-  Pipe() {
-    if (pipe2(ends, O_CLOEXEC) != 0) ends[0] = ends[1] = -1;
+  explicit Pipe(bool is_wanted = true) {
+    if (!is_wanted || pipe2(ends, O_CLOEXEC) != 0) ends[0] = ends[1] = -1;
   }
   Pipe(const Pipe&) = delete;
   Pipe& operator=(const Pipe&) = delete;
@@ -38,7 +39,8 @@ struct Pipe {
 
 /// Signals are ours to wait for, not the other program's to inherit blocked or ignored. A group of its own: what
 /// it started must end with it.
-pid_t spawn(const std::vector<std::string>& arguments, const Pipe& in, const Pipe& out) {
+pid_t spawn(const std::vector<std::string>& arguments, const Pipe& in, const Pipe& out,
+            const Pipe& errors) {
   std::vector<char*> argv;
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
@@ -46,6 +48,9 @@ pid_t spawn(const std::vector<std::string>& arguments, const Pipe& in, const Pip
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, in.ends[0], STDIN_FILENO);
   posix_spawn_file_actions_adddup2(&actions, out.ends[1], STDOUT_FILENO);
+  if (errors.ends[1] >= 0) {
+    posix_spawn_file_actions_adddup2(&actions, errors.ends[1], STDERR_FILENO);
+  }
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   sigset_t none;
@@ -59,7 +64,7 @@ pid_t spawn(const std::vector<std::string>& arguments, const Pipe& in, const Pip
   posix_spawnattr_setflags(&attributes,
                            POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
   pid_t pid = -1;
-  errno = posix_spawn(&pid, argv[0], &actions, &attributes, argv.data(), environ);
+  errno = posix_spawnp(&pid, argv[0], &actions, &attributes, argv.data(), environ);
   const int spawn_errno = errno;
   posix_spawn_file_actions_destroy(&actions);
   posix_spawnattr_destroy(&attributes);
@@ -78,30 +83,42 @@ struct Patience {
   }
 };
 
-/// Feeds and reads until the program closes its output; false when the time is over or it says too much.
-bool exchange(Pipe& in, Pipe& out, std::string_view input, const Patience& patience,
-              std::string& output) {
+/// What one pipe gives, into `text`; the pipe is closed at its end.
+void take_output(Pipe& pipe, std::string& text) {
+  char buffer[4'096];
+  const ssize_t size = read(pipe.ends[0], buffer, sizeof buffer);
+  if (size == 0) pipe.close_end(0);
+  if (size > 0) text.append(buffer, static_cast<std::size_t>(size));
+}
+
+void give_input(Pipe& in, std::string_view& input) {
+  const ssize_t written = write(in.ends[1], input.data(), input.size());
+  if (written > 0) input.remove_prefix(static_cast<std::size_t>(written));
+  if ((written < 0 && errno != EAGAIN) || input.empty()) in.close_end(1);
+}
+
+/// Feeds and reads until the program closes all that it says; false when the time is over or it says too much.
+bool exchange(Pipe& in, Pipe& out, Pipe& errors, std::string_view input, const Patience& patience,
+              ProgramResult& result) {
   constexpr int kLookMs = 100;
   fcntl(in.ends[1], F_SETFL, O_NONBLOCK);
   if (input.empty()) in.close_end(1);
-  char buffer[4'096];
-  while (output.size() < kOutputBytesMax) {
+  while (out.ends[0] >= 0 || errors.ends[0] >= 0) {
     const int left_ms = patience.left_ms();
     if (left_ms == 0) return false;
     pollfd waiting[] = {{.fd = out.ends[0], .events = POLLIN, .revents = 0},
+                        {.fd = errors.ends[0], .events = POLLIN, .revents = 0},
                         {.fd = in.ends[1], .events = POLLOUT, .revents = 0}};
-    if (poll(waiting, 2, std::min(left_ms, kLookMs)) < 0 && errno != EINTR) return false;
-    if (waiting[1].revents != 0) {
-      const ssize_t written = write(in.ends[1], input.data(), input.size());
-      if (written > 0) input.remove_prefix(static_cast<std::size_t>(written));
-      if ((written < 0 && errno != EAGAIN) || input.empty()) in.close_end(1);
+    if (poll(waiting, 3, std::min(left_ms, kLookMs)) < 0) {
+      if (errno != EINTR) return false;
+      continue;
     }
-    if (waiting[0].revents == 0) continue;
-    const ssize_t size = read(out.ends[0], buffer, sizeof buffer);
-    if (size == 0) return true;
-    if (size > 0) output.append(buffer, static_cast<std::size_t>(size));
+    if (waiting[2].revents != 0) give_input(in, input);
+    if (waiting[0].revents != 0) take_output(out, result.output);
+    if (waiting[1].revents != 0) take_output(errors, result.errors);
+    if (result.output.size() + result.errors.size() >= kOutputBytesMax) return false;
   }
-  return false;
+  return true;
 }
 
 /// Its output may be closed before it ends. False when the time is over.
@@ -114,24 +131,25 @@ bool reap(pid_t pid, const Patience& patience, int& status) {
   return true;
 }
 
-}  // namespace
-
-ProgramResult run_program(const std::vector<std::string>& arguments, std::string_view input,
-                          int time_ms_max, const std::stop_token& stop) {
+ProgramResult run(const std::vector<std::string>& arguments, std::string_view input,
+                  bool hears_errors, const Patience& patience) {
   ProgramResult result;
-  const Patience patience{clock_ns(CLOCK_MONOTONIC) + time_ms_max * 1'000'000LL, stop};
   Pipe in;
   Pipe out;
-  const pid_t pid = in.ends[0] < 0 || out.ends[0] < 0 ? -1 : spawn(arguments, in, out);
+  Pipe errors(hears_errors);
+  const bool has_pipes =
+      in.ends[0] >= 0 && out.ends[0] >= 0 && (!hears_errors || errors.ends[0] >= 0);
+  const pid_t pid = has_pipes ? spawn(arguments, in, out, errors) : -1;
   if (pid < 0) {
     result.trouble = arguments[0] + " cannot be started: " + std::strerror(errno);
     return result;
   }
   in.close_end(0);
   out.close_end(1);
+  errors.close_end(1);
   int status = 0;
   const bool in_time =
-      exchange(in, out, input, patience, result.output) && reap(pid, patience, status);
+      exchange(in, out, errors, input, patience, result) && reap(pid, patience, status);
   if (!in_time) {
     kill(-pid, SIGKILL);
     waitpid(pid, &status, 0);
@@ -140,6 +158,31 @@ ProgramResult run_program(const std::vector<std::string>& arguments, std::string
   }
   result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   return result;
+}
+
+}  // namespace
+
+std::string ProgramResult::complaint() const {
+  if (!trouble.empty()) return trouble;
+  std::string_view rest = errors;
+  std::string last;
+  while (!rest.empty()) {
+    const std::string line = one_line(take_line(rest), 300);
+    if (!line.empty()) last = line;
+  }
+  return last.empty() ? "it says nothing" : last;
+}
+
+ProgramResult run_program(const std::vector<std::string>& arguments, std::string_view input,
+                          int time_ms_max, const std::stop_token& stop) {
+  return run(arguments, input, false,
+             {clock_ns(CLOCK_MONOTONIC) + time_ms_max * 1'000'000LL, stop});
+}
+
+ProgramResult run_and_hear(const std::vector<std::string>& arguments, std::int64_t timeout_s) {
+  const std::stop_token never;
+  return run(arguments, "", true,
+             {clock_ns(CLOCK_MONOTONIC) + timeout_s * kNanosecondsPerSecond, never});
 }
 
 }  // namespace bess
