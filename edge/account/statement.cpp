@@ -1,21 +1,12 @@
 #include "edge/account/statement.h"
 
-#include <cstdarg>
 #include <cstdio>
 
+#include "shared/host/text.h"
 #include "shared/units_and_limits.h"
 
 namespace bess {
 namespace {
-
-[[gnu::format(printf, 2, 3)]] void add(std::string& text, const char* format, ...) {
-  char line[320];
-  std::va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(line, sizeof line, format, arguments);
-  va_end(arguments);
-  text += line;
-}
 
 double driven_percent(int driven, int cycles) { return cycles == 0 ? 0 : 100.0 * driven / cycles; }
 
@@ -81,25 +72,28 @@ std::string Statement::text() const {
   int driven = 0;
   double full_cycles = 0;
   for (const DayAccount& day : days_) {
-    add(text, "%s  %+10.2f  %11.1f  %14.1f  %11.2f  %4.0f %%  %7.2f\n", day.date().c_str(),
-        day.earned_eur(), day.charged_kwh(), day.discharged_kwh(), day.full_cycles(),
-        driven_percent(day.driven_cycles(), day.cycles()), day.mean_price_eur_per_mwh());
+    add_formatted(text, "%s  %+10.2f  %11.1f  %14.1f  %11.2f  %4.0f %%  %7.2f\n",
+                  day.date().c_str(), day.earned_eur(), day.charged_kwh(), day.discharged_kwh(),
+                  day.full_cycles(), driven_percent(day.driven_cycles(), day.cycles()),
+                  day.mean_price_eur_per_mwh());
     cycles += day.cycles();
     driven += day.driven_cycles();
     full_cycles += day.full_cycles();
   }
   if (days_.size() > 1) {
-    add(text, "together    %+10.2f  %11.1f  %14.1f  %11.2f  %4.0f %%  %7.2f\n", earned_eur(),
-        charged_kwh(), discharged_kwh(), full_cycles, driven_percent(driven, cycles),
-        mean_price_eur_per_mwh());
+    add_formatted(text, "together    %+10.2f  %11.1f  %14.1f  %11.2f  %4.0f %%  %7.2f\n",
+                  earned_eur(), charged_kwh(), discharged_kwh(), full_cycles,
+                  driven_percent(driven, cycles), mean_price_eur_per_mwh());
   }
-  add(text,
+  add_formatted(
+      text,
       "at the end %.1f kWh %s are stored than at the beginning, worth %.2f EUR at the mean price: "
       "%+.2f EUR with the same charge at both ends\n",
       std::abs(stored_kwh()), stored_kwh() < 0 ? "less" : "more", std::abs(stored_eur()),
       earned_eur() + stored_eur());
   const std::string others = reasons();
-  if (!others.empty()) add(text, "cycles that the student did not decide: %s\n", others.c_str());
+  if (!others.empty())
+    add_formatted(text, "cycles that the student did not decide: %s\n", others.c_str());
   text +=
       "estimate: the power measured at each tick, at the price decided on; no settlement, fees, "
       "taxes or losses "
@@ -112,11 +106,12 @@ std::string Statement::csv() const {
       "date,earned_eur,charged_kwh,discharged_kwh,full_cycles,cycles,driven_cycles,valued_cycles,"
       "mean_price_eur_per_mwh,first_soc_percent,last_soc_percent\n";
   for (const DayAccount& day : days_) {
-    add(text, "%s,%.4f,%.3f,%.3f,%.4f,%d,%d,%d,%.2f", day.date().c_str(), day.earned_eur(),
-        day.charged_kwh(), day.discharged_kwh(), day.full_cycles(), day.cycles(),
-        day.driven_cycles(), day.valued_cycles(), day.mean_price_eur_per_mwh());
+    add_formatted(text, "%s,%.4f,%.3f,%.3f,%.4f,%d,%d,%d,%.2f", day.date().c_str(),
+                  day.earned_eur(), day.charged_kwh(), day.discharged_kwh(), day.full_cycles(),
+                  day.cycles(), day.driven_cycles(), day.valued_cycles(),
+                  day.mean_price_eur_per_mwh());
     if (day.has_soc()) {
-      add(text, ",%.2f,%.2f\n", day.first_soc_e4() / 100.0, day.last_soc_e4() / 100.0);
+      add_formatted(text, ",%.2f,%.2f\n", day.first_soc_e4() / 100.0, day.last_soc_e4() / 100.0);
     } else {
       text += ",,\n";
     }

@@ -1,23 +1,14 @@
 // An explanation in words and as JSON. Every number stands in both.
-#include <cstdarg>
 #include <cstdio>
 
 #include "edge/control/policy.h"
 #include "edge/why/explanation.h"
 #include "edge/why/local_text.h"
+#include "shared/host/text.h"
 #include "shared/utc_text.h"
 
 namespace bess {
 namespace {
-
-[[gnu::format(printf, 2, 3)]] void add(std::string& text, const char* format, ...) {
-  char line[320];
-  std::va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(line, sizeof line, format, arguments);
-  va_end(arguments);
-  text += line;
-}
 
 double eur(std::int64_t centi) { return static_cast<double>(centi) / kCentiPerEur; }
 double percent(std::int32_t soc_e4) { return soc_e4 / 100.0; }
@@ -29,12 +20,13 @@ const char* doing(std::int32_t power_w) {
 bool is_students(const CycleRecord& record) { return record.reason == Reason::kStudent; }
 
 void add_head(const CycleRecord& record, std::string& text) {
-  add(text, "%s local, cycle %lld: ", local_text(record.utc_s).c_str(),
-      static_cast<long long>(record.cycle));
+  add_formatted(text, "%s local, cycle %lld: ", local_text(record.utc_s).c_str(),
+                static_cast<long long>(record.cycle));
   if (is_stop_reason(record.reason)) {
-    add(text, "not driven, %s\n", mode_name(record.mode).data());
+    add_formatted(text, "not driven, %s\n", mode_name(record.mode).data());
   } else {
-    add(text, "%s %d W\n", doing(record.ordered_power_w), std::abs(record.ordered_power_w));
+    add_formatted(text, "%s %d W\n", doing(record.ordered_power_w),
+                  std::abs(record.ordered_power_w));
   }
 }
 
@@ -43,14 +35,14 @@ void add_decider(const Explanation& explanation, const std::string& end, std::st
   if (is_students(record)) {
     text += "decided    by the student";
   } else {
-    add(text, "decided    by the guard: %s", reason_name(record.reason).data());
+    add_formatted(text, "decided    by the guard: %s", reason_name(record.reason).data());
   }
-  add(text, ", since %s (%d cycle%s)", local_text(explanation.since_utc_s).c_str(),
-      explanation.cycles, explanation.cycles == 1 ? "" : "s");
+  add_formatted(text, ", since %s (%d cycle%s)", local_text(explanation.since_utc_s).c_str(),
+                explanation.cycles, explanation.cycles == 1 ? "" : "s");
   if (!end.empty()) text.append("; ").append(end);
   text += '\n';
   if (!is_students(record) && record.has_student_action) {
-    add(text, "student    would %s\n", action_name(record.student_action).data());
+    add_formatted(text, "student    would %s\n", action_name(record.student_action).data());
   }
 }
 
@@ -60,16 +52,16 @@ void add_price(const Explanation& explanation, std::string& text) {
     text += "price      none\n";
     return;
   }
-  add(text, "price      %.2f EUR/MWh, %d s old", eur(record.price.price_centi_eur_per_mwh),
-      record.price_age_s);
+  add_formatted(text, "price      %.2f EUR/MWh, %d s old",
+                eur(record.price.price_centi_eur_per_mwh), record.price_age_s);
   if (explanation.has_margins) {
     const Margins& at = explanation.margins;
-    add(text, "; it charges up to %.2f", eur(at.charge_up_to_centi));
+    add_formatted(text, "; it charges up to %.2f", eur(at.charge_up_to_centi));
     if (at.discharge_from_centi > at.charge_up_to_centi + 1) {
-      add(text, ", rests from %.2f to %.2f", eur(at.charge_up_to_centi + 1),
-          eur(at.discharge_from_centi - 1));
+      add_formatted(text, ", rests from %.2f to %.2f", eur(at.charge_up_to_centi + 1),
+                    eur(at.discharge_from_centi - 1));
     }
-    add(text, ", discharges from %.2f", eur(at.discharge_from_centi));
+    add_formatted(text, ", discharges from %.2f", eur(at.discharge_from_centi));
   }
   text += '\n';
 }
@@ -80,14 +72,15 @@ void add_soc(const Explanation& explanation, std::string& text) {
     text += "SoC        not measured\n";
     return;
   }
-  add(text, "SoC        %.1f %%", percent(record.measurement.soc_e4));
+  add_formatted(text, "SoC        %.1f %%", percent(record.measurement.soc_e4));
   if (explanation.has_margins) {
     const Margins& at = explanation.margins;
     text += "; at this price it ";
-    if (at.charges_at_some_soc) add(text, "charges up to %.2f %%", percent(at.charge_up_to_soc_e4));
+    if (at.charges_at_some_soc)
+      add_formatted(text, "charges up to %.2f %%", percent(at.charge_up_to_soc_e4));
     if (at.charges_at_some_soc && at.discharges_at_some_soc) text += " and ";
     if (at.discharges_at_some_soc) {
-      add(text, "discharges from %.2f %%", percent(at.discharge_from_soc_e4));
+      add_formatted(text, "discharges from %.2f %%", percent(at.discharge_from_soc_e4));
     }
     if (!at.charges_at_some_soc && !at.discharges_at_some_soc) text += "rests at any SoC";
   }
@@ -96,25 +89,27 @@ void add_soc(const Explanation& explanation, std::string& text) {
 
 void add_level(const CycleRecord& record, std::string& text) {
   if (record.context_class == 0 || student_context().kind != ContextKind::kLevel) return;
-  add(text, "level      %.2f EUR/MWh, class %d of %d\n",
-      eur(record.price_level.centi_eur_per_mwh()), record.context_class, kContextClassCount);
+  add_formatted(text, "level      %.2f EUR/MWh, class %d of %d\n",
+                eur(record.price_level.centi_eur_per_mwh()), record.context_class,
+                kContextClassCount);
 }
 
 void add_limits(const CycleRecord& record, const ControlSettings& settings, std::string& text) {
   const GuardSettings& guard = settings.guard;
-  add(text, "always     charging at or below %d, discharging at or above %d EUR/MWh\n",
-      guard.thresholds.low_eur_per_mwh, guard.thresholds.high_eur_per_mwh);
-  add(text, "limits     full at %.1f %%, empty at %.1f %%", percent(guard.soc_max_e4),
-      percent(guard.soc_min_e4));
-  if (record.reserve_soc_e4 > 0) add(text, ", reserve %.1f %%", percent(record.reserve_soc_e4));
-  add(text, "; %.2f", record.throughput.soc_moved_e4 / (2.0 * kSocFullE4));
+  add_formatted(text, "always     charging at or below %d, discharging at or above %d EUR/MWh\n",
+                guard.thresholds.low_eur_per_mwh, guard.thresholds.high_eur_per_mwh);
+  add_formatted(text, "limits     full at %.1f %%, empty at %.1f %%", percent(guard.soc_max_e4),
+                percent(guard.soc_min_e4));
+  if (record.reserve_soc_e4 > 0)
+    add_formatted(text, ", reserve %.1f %%", percent(record.reserve_soc_e4));
+  add_formatted(text, "; %.2f", record.throughput.soc_moved_e4 / (2.0 * kSocFullE4));
   if (settings.cycles_per_day_max_e4 > 0) {
-    add(text, " of %.2f", settings.cycles_per_day_max_e4 / 10'000.0);
+    add_formatted(text, " of %.2f", settings.cycles_per_day_max_e4 / 10'000.0);
   }
   text += " full cycles today";
   if (settings.reversals_per_hour_max > 0) {
-    add(text, ", %d of %d changes of direction in the last hour", record.reversals.in_hour,
-        settings.reversals_per_hour_max);
+    add_formatted(text, ", %d of %d changes of direction in the last hour",
+                  record.reversals.in_hour, settings.reversals_per_hour_max);
   }
   text += '\n';
 }

@@ -1,23 +1,14 @@
 // What ends each reason: one case a reason, so that a new one does not compile without its own.
-#include <cstdarg>
 #include <cstdio>
 
 #include "edge/control/policy.h"
 #include "edge/control/quarter_hour_energy.h"
 #include "edge/why/explanation.h"
 #include "edge/why/local_text.h"
+#include "shared/host/text.h"
 
 namespace bess {
 namespace {
-
-[[gnu::format(printf, 1, 2)]] std::string text_of(const char* format, ...) {
-  char text[320];
-  std::va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  return text;
-}
 
 double percent(std::int32_t soc_e4) { return soc_e4 / 100.0; }
 
@@ -36,8 +27,8 @@ std::string rules_at(const CycleRecord& record) {
 }
 
 std::string end_of_reserve(const CycleRecord& record, const GuardSettings& guard) {
-  return text_of("until the SoC is above %.1f %%, or the reserve of another hour is lower",
-                 percent(record.reserve_soc_e4 + guard.soc_hysteresis_e4));
+  return formatted("until the SoC is above %.1f %%, or the reserve of another hour is lower",
+                   percent(record.reserve_soc_e4 + guard.soc_hysteresis_e4));
 }
 
 }  // namespace
@@ -45,8 +36,8 @@ std::string end_of_reserve(const CycleRecord& record, const GuardSettings& guard
 std::string what_ends(const CycleRecord& record, const ControlSettings& settings) {
   const GuardSettings& guard = settings.guard;
   if (record.is_tripped && is_stop_reason(record.reason)) {
-    return text_of("tripped at %s: until a person has looked and says `bess-edge clear --yes`",
-                   local_text(record.trip.utc_s).c_str());
+    return formatted("tripped at %s: until a person has looked and says `bess-edge clear --yes`",
+                     local_text(record.trip.utc_s).c_str());
   }
   switch (record.reason) {
     case Reason::kStopRequested:
@@ -59,8 +50,8 @@ std::string what_ends(const CycleRecord& record, const ControlSettings& settings
     case Reason::kAlarm:
       return "until the battery's own alarm is gone";
     case Reason::kTemperature:
-      return text_of("until all of it is between %.1f and %.1f °C",
-                     guard.temperature_min_deci_c / 10.0, guard.temperature_max_deci_c / 10.0);
+      return formatted("until all of it is between %.1f and %.1f °C",
+                       guard.temperature_min_deci_c / 10.0, guard.temperature_max_deci_c / 10.0);
     case Reason::kOffGrid:
       return "until the battery is back on the grid";
     case Reason::kWrongDirection:
@@ -80,22 +71,22 @@ std::string what_ends(const CycleRecord& record, const ControlSettings& settings
     case Reason::kNoPrice:
     case Reason::kPriceAge:
     case Reason::kPriceQuarterHour:
-      return text_of("until there is a price that is at most %d s old", guard.price_age_s_max);
+      return formatted("until there is a price that is at most %d s old", guard.price_age_s_max);
     case Reason::kFrozenPrice:
       return "until the price moves";
     case Reason::kSocFull:
-      return text_of("until the SoC is below %.1f %%",
-                     percent(guard.soc_max_e4 - guard.soc_hysteresis_e4));
+      return formatted("until the SoC is below %.1f %%",
+                       percent(guard.soc_max_e4 - guard.soc_hysteresis_e4));
     case Reason::kSocEmpty:
-      return text_of("until the SoC is above %.1f %%",
-                     percent(guard.soc_min_e4 + guard.soc_hysteresis_e4));
+      return formatted("until the SoC is above %.1f %%",
+                       percent(guard.soc_min_e4 + guard.soc_hysteresis_e4));
     case Reason::kReserve:
       return end_of_reserve(record, guard);
     case Reason::kCycleBudget:
       return "until local midnight";
     case Reason::kReversalCap:
-      return text_of("until fewer than %d changes of direction lie in the last hour",
-                     settings.reversals_per_hour_max);
+      return formatted("until fewer than %d changes of direction lie in the last hour",
+                       settings.reversals_per_hour_max);
     case Reason::kPowerLimit:
       return "as long as the battery itself takes or gives no more";
     case Reason::kOutsideLimit:
@@ -103,25 +94,26 @@ std::string what_ends(const CycleRecord& record, const ControlSettings& settings
     case Reason::kMeterLost:
       return "until the meter can be read";
     case Reason::kMeterMismatch:
-      return text_of("tried again with an eighth of the power at %s",
-                     local_text(record.site.trust.pause_until_utc_s).c_str());
+      return formatted("tried again with an eighth of the power at %s",
+                       local_text(record.site.trust.pause_until_utc_s).c_str());
     case Reason::kImportLimit:
     case Reason::kExportLimit:
       return "as long as the house leaves no more of the connection";
     case Reason::kQuarterHourPeak:
-      return text_of("until the quarter-hour is over at %s",
-                     local_clock_text((quarter_hour_of(record.utc_s) + 1) * kQuarterHourS).c_str());
+      return formatted(
+          "until the quarter-hour is over at %s",
+          local_clock_text((quarter_hour_of(record.utc_s) + 1) * kQuarterHourS).c_str());
     case Reason::kRamp:
-      return text_of("%d W more each cycle", guard.ramp_w_max);
+      return formatted("%d W more each cycle", guard.ramp_w_max);
     case Reason::kHeld:
-      return text_of("until %s; `bess-edge hold --release` ends it before",
-                     local_text(record.hold.until_utc_s).c_str());
+      return formatted("until %s; `bess-edge hold --release` ends it before",
+                       local_text(record.hold.until_utc_s).c_str());
     case Reason::kRule:
       return "as long as it holds: " + rules_at(record);
     case Reason::kPriceLow:
-      return text_of("until the price is above %d EUR/MWh", guard.thresholds.low_eur_per_mwh);
+      return formatted("until the price is above %d EUR/MWh", guard.thresholds.low_eur_per_mwh);
     case Reason::kPriceHigh:
-      return text_of("until the price is below %d EUR/MWh", guard.thresholds.high_eur_per_mwh);
+      return formatted("until the price is below %d EUR/MWh", guard.thresholds.high_eur_per_mwh);
     case Reason::kFullCharge:
       return "until the SoC is at 99.5 %";
     case Reason::kStudent:

@@ -1,5 +1,8 @@
 #include "shared/host/text.h"
 
+#include <cstdarg>
+#include <cstdio>
+
 namespace bess {
 namespace {
 
@@ -20,7 +23,35 @@ std::string_view cut(std::string_view text, std::size_t size_max) {
   return text.substr(0, size_max);
 }
 
+void add_formatted_list(std::string& text, const char* format, std::va_list arguments) {
+  std::va_list again;
+  va_copy(again, arguments);
+  const int size = std::vsnprintf(nullptr, 0, format, arguments);
+  if (size > 0) {
+    const std::size_t before = text.size();
+    text.resize(before + static_cast<std::size_t>(size));
+    std::vsnprintf(text.data() + before, static_cast<std::size_t>(size) + 1, format, again);
+  }
+  va_end(again);
+}
+
 }  // namespace
+
+std::string formatted(const char* format, ...) {
+  std::string text;
+  std::va_list arguments;
+  va_start(arguments, format);
+  add_formatted_list(text, format, arguments);
+  va_end(arguments);
+  return text;
+}
+
+void add_formatted(std::string& text, const char* format, ...) {
+  std::va_list arguments;
+  va_start(arguments, format);
+  add_formatted_list(text, format, arguments);
+  va_end(arguments);
+}
 
 std::string comment_lines(std::string_view text) {
   std::string lines;

@@ -29,6 +29,10 @@ std::string comment_lines(std::string_view text);
 /// become spaces, and neighbouring spaces one.
 std::string one_line(std::string_view text, std::size_t size_max = std::string_view::npos);
 
+/// As printf writes it.
+[[gnu::format(printf, 1, 2)]] std::string formatted(const char* format, ...);
+[[gnu::format(printf, 2, 3)]] void add_formatted(std::string& text, const char* format, ...);
+
 /// "1 minute", "2 minutes".
 std::string counted(std::size_t count, std::string_view noun);
 

@@ -1,17 +1,13 @@
-// The page around the figures: text into HTML, the style sheet, the tables.
+// The page around the figures: the style sheet, the tables.
 #pragma once
 
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "shared/host/html_text.h"
+
 namespace bess {
-
-/// & < > " ' become entities.
-std::string html_escaped(std::string_view text);
-
-/// A number's hyphen becomes a minus sign: at the start, behind a space or a bracket.
-std::string with_true_minus(std::string_view text);
 
 /// A table whose first column names the row and whose other columns are numbers. Each number bears the head of
 /// its column: a narrow screen shows every row as a list.

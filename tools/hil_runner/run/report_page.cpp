@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "shared/host/html_text.h"
 #include "shared/utc_text.h"
 #include "tools/hil_runner/run/run_picture.h"
 
@@ -35,18 +36,7 @@ std::string scrolling(const char* what, const Outcome& o, const std::string& ins
   return fmt::format(
       "<div class=\"picture\" role=\"region\" tabindex=\"0\" aria-label=\"{} of {}, {} time\">"
       "{}</div>\n",
-      what, html_text(o.scenario.name), o.time(), inside);
-}
-
-/// A number's hyphen becomes a minus sign: at the start, or behind a space.
-std::string with_true_minus(const std::string& text) {
-  std::string out;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const bool is_number = i + 1 < text.size() && text[i + 1] >= '0' && text[i + 1] <= '9';
-    const bool is_minus = text[i] == '-' && is_number && (i == 0 || text[i - 1] == ' ');
-    out += is_minus ? "\u2212" : text.substr(i, 1);
-  }
-  return out;
+      what, html_escaped(o.scenario.name), o.time(), inside);
 }
 
 const char* verdict_on(const Outcome& o) {
@@ -65,7 +55,7 @@ std::string contents(const std::vector<Outcome>& outcomes) {
       ++count;
       links += fmt::format(
           "<li><a href=\"#{}\">{}, {} time</a>: <span class=\"{}\">{}</span></li>\n",
-          html_text(anchor_of(o)), html_text(o.scenario.name), o.time(), verdict, verdict);
+          html_escaped(anchor_of(o)), html_escaped(o.scenario.name), o.time(), verdict, verdict);
     }
     counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", count, verdict);
   }
@@ -81,18 +71,19 @@ std::string findings_table(const Outcome& o) {
   for (const Finding& f : o.findings) {
     text += fmt::format(
         "<tr><th scope=\"row\">{}</th><td><time>{}</time></td><td>{}</td><td>{}</td></tr>\n",
-        html_text(f.rule), utc_text(f.utc_s).view(), html_text(with_true_minus(f.expected)),
-        html_text(with_true_minus(f.seen)));
+        html_escaped(f.rule), utc_text(f.utc_s).view(), html_escaped(with_true_minus(f.expected)),
+        html_escaped(with_true_minus(f.seen)));
   }
   return scrolling("Findings", o, text + "</tbody></table>");
 }
 
 std::string section(const Outcome& o) {
-  std::string text = fmt::format(
-      "<section id=\"{4}\"><h2 class=\"{0}\">{1}, {2} time: {0}</h2><p>{3}</p>\n", verdict_on(o),
-      html_text(o.scenario.name), o.time(), html_text(o.scenario.title), html_text(anchor_of(o)));
-  if (!o.skipped.empty()) return text + "<p>" + html_text(o.skipped) + "</p></section>\n";
-  if (!o.error.empty()) text += "<p>" + html_text(o.error) + "</p>\n";
+  std::string text =
+      fmt::format("<section id=\"{4}\"><h2 class=\"{0}\">{1}, {2} time: {0}</h2><p>{3}</p>\n",
+                  verdict_on(o), html_escaped(o.scenario.name), o.time(),
+                  html_escaped(o.scenario.title), html_escaped(anchor_of(o)));
+  if (!o.skipped.empty()) return text + "<p>" + html_escaped(o.skipped) + "</p></section>\n";
+  if (!o.error.empty()) text += "<p>" + html_escaped(o.error) + "</p>\n";
   if (!o.findings.empty()) text += findings_table(o);
   if (!o.evidence.minutes.empty()) {
     text += scrolling("Picture", o, run_picture(o, {.to_min = kPictureMinutesMax}));
@@ -103,36 +94,13 @@ std::string section(const Outcome& o) {
 
 }  // namespace
 
-std::string html_text(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '&':
-        out += "&amp;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
-
 std::string html_page(std::string_view title, const std::string& body) {
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n"
       "<title>{0}</title>\n"
       "<style>\n{1}</style>\n</head>\n<body>\n<main>\n<h1>{0}</h1>\n{2}</main>\n</body>\n</html>\n",
-      html_text(title), kStyle, body);
+      html_escaped(title), kStyle, body);
 }
 
 std::string report_page(const std::vector<Outcome>& outcomes) {

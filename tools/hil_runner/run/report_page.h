@@ -11,7 +11,6 @@ namespace bess {
 
 /// A page without scripts and without anything from elsewhere.
 std::string html_page(std::string_view title, const std::string& body);
-std::string html_text(std::string_view text);
 
 /// Throws UserError without gnuplot.
 std::string report_page(const std::vector<Outcome>& outcomes);

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "shared/host/file.h"
+#include "shared/host/html_text.h"
 #include "shared/host/json.h"
 #include "shared/host/minute_file.h"
 #include "shared/host/user_error.h"
@@ -90,7 +91,7 @@ void run(const TrialOptions& options) {
         options.report,
         html_page(
             "The trial week",
-            "<div class=\"picture\"><pre>" + html_text(text) +
+            "<div class=\"picture\"><pre>" + html_escaped(text) +
                 "</pre></div>\n<h2>Four hours, everything on</h2>\n<div class=\"picture\">" +
                 trial_picture(prices) +
                 "</div>\n<p>Measured power of each minute in the colour of its order: blue charge, "
