@@ -300,7 +300,7 @@ TEST_F(Processes, MarketFaultsDoNotStopTheLoop) {
     EXPECT_GE(running, 9) << fault;
     EXPECT_EQ(SimulatedSite::stop(*site_.battery), 0);
     EXPECT_EQ(SimulatedSite::stop(*site_.market), 0);
-    const std::string end = site_.market->read_all();
+    const std::string end = text_of_file(site_.log_of("market"));
     const std::size_t count = end.find("stopped after ");
     ASSERT_NE(count, std::string::npos) << end;
     EXPECT_GE(std::stoi(end.substr(count + 14)), 2) << fault;
@@ -381,7 +381,7 @@ TEST_F(Processes, AFrozenPriceIsToldAndEndsTheTrade) {
 
 TEST_F(Processes, TheSameOverASerialLine) {
   const PtyBridge line;
-  site_.start_serial_battery(line.device(0));
+  site_.start_battery({"--serial", line.device(0), "--baud", "115200"});
   site_.start_market();
   const std::string config =
       site_.commission({.battery_keys = SimulatedSite::alphaess_keys() +

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include "shared/host/pty_bridge.h"
 #include "tests/support/shipped_maps.h"
@@ -133,9 +134,12 @@ TEST_P(RecordReplay, DecidesTheSameAndTheMapFits) {
 
   start_again({"--replay", recording_});
   EXPECT_EQ(drive("replayed"), recorded);
-  site_.battery->signal(SIGTERM);
-  EXPECT_EQ(site_.battery->read_all(), "bess-sim battery: stopped\n")
-      << "it knew an answer to everything";
+  SimulatedSite::stop(*site_.battery);
+  std::istringstream said(text_of_file(site_.log_of("battery")));
+  std::string first, rest;
+  std::getline(said, first);
+  EXPECT_TRUE(std::getline(said, rest) && rest == "bess-sim battery: stopped" && said.peek() == EOF)
+      << "it knew an answer to everything: " << said.str();
 
   const Outcome fits = check(shipped_map(GetParam().map.map));
   EXPECT_THAT(fits.text, HasSubstr(": 0 of ")) << fits.text;

@@ -26,8 +26,6 @@ class SiteProcesses : public ::testing::Test {
     }
     options.insert(options.end(), meter_options.begin(), meter_options.end());
     site_.start_battery(options);
-    const std::string line = has_meter(meter_options) ? site_.battery->read_line() : "";
-    meter_port_ = std::atoi(line.substr(line.rfind(':', line.rfind(',')) + 1).c_str());
     site_.start_market({}, turns_of(prices));
   }
   static std::string turns_of(const std::vector<int>& prices) {
@@ -40,16 +38,14 @@ class SiteProcesses : public ::testing::Test {
     }
     return text.str();
   }
-  static bool has_meter(const std::vector<std::string>& options) {
-    return !options.empty() && options[0] == "--meter-map";
-  }
   static std::vector<std::string> own_meter(const std::string& map = "simulator") {
     return {"--meter-map", BESS_SOURCE_DIR "/edge/meters/" + map + ".toml"};
   }
   [[nodiscard]] std::string meter_section(const std::string& keys,
                                           const std::string& map = "simulator") const {
     return "[meter]\nmap = \"" BESS_SOURCE_DIR "/edge/meters/" + map +
-           ".toml\"\nresponse_timeout_ms = 30\nport = " + std::to_string(meter_port_) + "\n" + keys;
+           ".toml\"\nresponse_timeout_ms = 30\nport = " + std::to_string(site_.meter_port) + "\n" +
+           keys;
   }
   std::string commission(const std::string& sections) {
     return site_.commission({.guard_keys = sections});
@@ -63,7 +59,6 @@ class SiteProcesses : public ::testing::Test {
   }
 
   SimulatedSite site_{kScale};
-  int meter_port_ = 0;
 };
 
 TEST_F(SiteProcesses, TheBatteryChargesWithWhatTheHouseLeaves) {

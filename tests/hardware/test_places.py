@@ -27,37 +27,14 @@ class Site:
     """A simulated battery and a simulated market on the place, and a controller's configuration between them."""
 
     def __init__(self, place):
-        self.place, folder = place, place.folder
+        folder = place.folder
         place.write(f"{folder}/minutes.csv", prices())
-        self.anchor = place.run(f"{place.sim} clock --in-s 2").strip()
-        clock = f"--utc-start {START} --time-scale {SCALE} --anchor-monotonic-ns {self.anchor}"
-        battery = self.serve(f"battery --map {place.map} --port 0 --soc 0.5 --record {folder}/battery.csv {clock}")
-        market = self.serve(f"market --port 0 --prices {folder}/minutes.csv {clock}")
+        place.start(f"{place.sim} site --program {place.sim} --folder {folder} --prices {folder}/minutes.csv "
+                    f"--map {place.map} --utc-start {START} --time-scale {SCALE} --set battery.response_timeout_ms=500",
+                    f"{folder}/site.log")
+        assert place.command.poll_until_success(f"grep -q settings {folder}/site.log", timeout=20.0, sleepduration=0.2)
         self.config = f"{folder}/edge.toml"
-        place.write(self.config, f"""control = true
-[battery]
-map = "{place.map}"
-port = {battery}
-response_timeout_ms = 500
-[price]
-url = "http://127.0.0.1:{market}/api/explore/v2.1/catalog/datasets/ods161/records?order_by=datetime%20desc&limit=20"
-history_hours = 0
-[state]
-folder = "state"
-lock_folder = "{folder}"
-[simulation]
-time_scale = {SCALE}
-utc_start = "{START}"
-anchor_monotonic_ns = {self.anchor}
-""")
         assert "the sign is right" in place.run(f"{place.edge} commission --config {self.config} --yes")
-
-    def serve(self, command):
-        """Starts a simulator; the port that it took."""
-        log = f"{self.place.folder}/{command.split()[0]}.log"
-        self.place.start(f"{self.place.sim} {command}", log)
-        assert self.place.command.poll_until_success(f"grep -q listening {log}", timeout=20.0, sleepduration=0.2)
-        return int(re.search(r"127\.0\.0\.1:(\d+)", self.place.read(log)).group(1))
 
 
 @pytest.fixture(scope="module")

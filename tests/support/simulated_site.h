@@ -1,11 +1,8 @@
-// bess-sim battery and bess-sim market on free ports, in scaled time, and the configuration with
-// which bess-edge drives the one on the prices of the other. Where closed_loop/, soak/ and peers/
-// start the real programs.
+// A simulated site (tools/site) in a folder of its own, the prices of its market, and the configuration with which
+// bess-edge drives the one on the prices of the other. Where closed_loop/, soak/ and peers/ start the real programs.
 #pragma once
 
 #include <cmath>
-#include <filesystem>
-#include <memory>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -17,32 +14,28 @@
 #include "tests/support/csv_rows.h"
 #include "tests/support/programs_under_test.h"
 #include "tests/support/temporary_folder.h"
+#include "tools/site/controller_settings.h"
+#include "tools/site/site_programs.h"
 
 namespace bess {
 
-class SimulatedSite {
+struct FolderOfASite {
+  TemporaryFolder folder;
+};
+
+class SimulatedSite : public FolderOfASite, public SitePrograms {
  public:
   static constexpr std::int64_t kStartS = 1'679'788'800;  ///< 2023-03-26T00:00:00Z
 
   /// Simulated time starts half a second from now.
-  explicit SimulatedSite(std::int32_t time_scale) : time_scale_(time_scale) { start_clock(); }
-  SimulatedSite(const SimulatedSite&) = delete;
-  SimulatedSite& operator=(const SimulatedSite&) = delete;
-  /// What a killed controller leaves where all controllers of a machine lock their batteries.
-  ~SimulatedSite() {
-    std::error_code ignored;
-    for (const auto& file : std::filesystem::directory_iterator("/run/lock", ignored)) {
-      for (const int port : battery_ports_) {
-        const std::string prefix = "bess-127.0.0.1_" + std::to_string(port) + "_";
-        const bool is_ours = file.path().filename().string().starts_with(prefix);
-        if (is_ours) std::filesystem::remove(file.path(), ignored);
-      }
-    }
+  explicit SimulatedSite(std::int32_t time_scale) : SitePrograms(sim_program(), folder.file("")) {
+    clock = {.start_utc_s = kStartS, .time_scale = time_scale};
+    start_clock();
   }
 
   /// Sets the simulated clock back to its start, for simulators that are started anew.
-  void start_clock() { anchor_ns_ = clock_ns(CLOCK_MONOTONIC) + kNanosecondsPerSecond / 2; }
-  [[nodiscard]] std::int64_t anchor_ns() const { return anchor_ns_; }
+  void start_clock() { SitePrograms::start_clock(0.5); }
+  [[nodiscard]] std::int64_t anchor_ns() const { return clock.anchor_monotonic_ns; }
 
   struct PriceWave {
     double mean_eur_per_mwh = 100;
@@ -63,25 +56,13 @@ class SimulatedSite {
 
   /// `port` 0: any free one. A simulator that comes back is given the port that it had.
   void start_battery(const std::vector<std::string>& options = {}, int port = 0) {
-    battery = start_simulator(
-        {"battery", "--port", std::to_string(port), "--record", folder.file("battery.csv")},
-        options);
-    battery_port = port_of(battery->read_line());
-    battery_ports_.push_back(battery_port);
-  }
-  void start_serial_battery(const std::string& device) {
-    battery = start_simulator({"battery", "--serial", device, "--baud", "115200"}, {});
-    const std::string line = battery->read_line();
-    if (line.find("listening on " + device) == std::string::npos) {
-      throw std::runtime_error("a simulator did not start: " + line);
-    }
+    SitePrograms::start_battery(at(port, options));
   }
   void start_market(const std::vector<std::string>& options = {},
                     const std::string& prices = minute_prices(150), int port = 0) {
-    market = start_simulator(
-        {"market", "--port", std::to_string(port), "--prices", folder.write("minutes.csv", prices)},
-        options);
-    market_port = port_of(market->read_line());
+    std::vector<std::string> all = at(port, options);
+    all.insert(all.end(), {"--prices", folder.write("minutes.csv", prices)});
+    SitePrograms::start_market(all);
   }
 
   /// Lines of TOML for [battery]: the device, and how long it may take to answer.
@@ -101,20 +82,15 @@ class SimulatedSite {
 
   /// All configurations of a site lock in one place.
   [[nodiscard]] std::string write_config(const ConfigOptions& options) const {
-    std::ostringstream text;
-    text
-        << "control = true\n[battery]\n"
-        << options.battery_keys << "port = " << battery_port << "\n[price]\nurl = \""
-        << options.price_server << ":" << market_port
-        << "/api/explore/v2.1/catalog/datasets/ods161/records?order_by=datetime%20desc&limit=20\"\n"
-        << options.price_keys << "[guard]\n"
-        << options.guard_keys << "[state]\nfolder = \"" << options.state << "\"\nlock_folder = \""
-        << folder.file("") << "\"\n"
-        << options.state_keys
-        << "[log]\ncsv = \"edge.csv\"\n[simulation]\ntime_scale = " << time_scale_
-        << "\nutc_start = \"" << utc_text(kStartS).view()
-        << "\"\nanchor_monotonic_ns = " << anchor_ns_ << "\n";
-    return folder.write(options.state + ".toml", text.str());
+    const std::string text = controller_settings(
+        {.battery = options.battery_keys + "port = " + std::to_string(battery_port) + "\n",
+         .market = options.price_server + ":" + std::to_string(market_port),
+         .price = options.price_keys,
+         .guard = options.guard_keys,
+         .state = "folder = \"" + options.state + "\"\nlock_folder = \"" + folder.file("") +
+                  "\"\n" + options.state_keys,
+         .clock = clock});
+    return folder.write(options.state + ".toml", text);
   }
   [[nodiscard]] std::string write_config() const { return write_config(ConfigOptions{}); }
 
@@ -130,43 +106,11 @@ class SimulatedSite {
   }
   [[nodiscard]] std::string commission() const { return commission(ConfigOptions{}); }
 
-  /// Ends a program as an operator would; its exit code.
-  static int stop(ChildProcess& child) {
-    child.signal(SIGTERM);
-    return child.wait();
-  }
-
-  TemporaryFolder folder;
-  int battery_port = 1;  ///< nobody listens there before a simulator does
-  int market_port = 1;
-  std::unique_ptr<ChildProcess> battery;
-  std::unique_ptr<ChildProcess> market;
-
  private:
-  std::unique_ptr<ChildProcess> start_simulator(std::vector<std::string> arguments,
-                                                const std::vector<std::string>& options) const {
-    arguments.insert(arguments.begin(), sim_program());
-    for (const std::string& option :
-         {std::string("--utc-start"), std::string(utc_text(kStartS).view()),
-          std::string("--time-scale"), std::to_string(time_scale_),
-          std::string("--anchor-monotonic-ns"), std::to_string(anchor_ns_)}) {
-      arguments.push_back(option);
-    }
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    return std::make_unique<ChildProcess>(arguments);
+  static std::vector<std::string> at(int port, std::vector<std::string> options) {
+    if (port != 0) options.insert(options.end(), {"--port", std::to_string(port)});
+    return options;
   }
-
-  /// Of "... listening on HOST:PORT, ...".
-  static int port_of(const std::string& line) {
-    const std::size_t colon = line.find(':', line.find("127.0.0.1"));
-    const int port = colon == std::string::npos ? 0 : std::atoi(line.c_str() + colon + 1);
-    if (port == 0) throw std::runtime_error("a simulator did not start: " + line);
-    return port;
-  }
-
-  std::int32_t time_scale_;
-  std::int64_t anchor_ns_ = 0;
-  std::vector<int> battery_ports_;
 };
 
 }  // namespace bess

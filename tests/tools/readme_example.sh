@@ -1,18 +1,15 @@
 #!/bin/sh
 # readme_example.sh SOURCE BUILD FOLDER: runs the first example of tools/README.md as it is printed, in FOLDER, which stands
-# for the top of the clone. Only its ports are others: those in the text may be taken here.
+# for the top of the clone.
 source=$1 build=$2 folder=$3
 fail() { cat "$folder/said"; echo "$*"; exit 1; }
 rm -rf "$folder"
 mkdir -p "$folder/build"
 ln -s "$source/edge" "$folder/edge"
 ln -s "$build/bess-sim" "$build/bess-edge" "$folder/build"
-battery=$((20000 + $$ % 5000))
-market=$((battery + 5000))
 {
   echo "trap 'kill \$(jobs -p) 2>/dev/null || true' EXIT"  # of an example that fails on its way
-  sed -n '/^```sh$/,/^```$/{/^```$/q;/^```/d;p}' "$source/tools/README.md" |
-    sed "s/\b1502\b/$battery/g; s/\b8080\b/$market/g"
+  sed -n '/^```sh$/,/^```$/{/^```$/q;/^```/d;p}' "$source/tools/README.md"
 } >"$folder/example.sh"
 grep -q bess-edge "$folder/example.sh" || fail "tools/README.md shows no example"
 cd "$folder" || exit 1

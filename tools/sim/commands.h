@@ -9,5 +9,6 @@ namespace bess {
 void add_battery_command(ProgramCommand& app);
 void add_market_command(ProgramCommand& app);
 void add_settle_command(ProgramCommand& app);
+void add_site_command(ProgramCommand& app);
 
 }  // namespace bess

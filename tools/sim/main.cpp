@@ -34,6 +34,7 @@ int main(int argc, char** argv) {
   bess::add_battery_command(root);
   bess::add_market_command(root);
   bess::add_settle_command(root);
+  bess::add_site_command(root);
   add_clock_command(root);
   return command_line.run(argc, argv);
 }

@@ -52,11 +52,12 @@ layer tools/battery_sim             tools edge/registers edge/base shared
 layer tools/market_sim              tools shared
 layer tools/settle                  tools shared
 layer tools/sim                     tools shared
+layer tools/site                    tools/site tools/sim shared
 # Independent of the simulators, whose mistakes it must not share.
 layer tests/trial                   tests/trial tests/support/thorough.h edge/program/take_over.h edge/loop edge/control edge/base shared
 # Beside the real programs it runs the edge's own objects in virtual time.
 h=tools/hil_runner
-around="tools/sim tools/battery_sim tools/market_sim edge shared"
+around="tools/sim tools/site tools/battery_sim tools/market_sim edge shared"
 layer $h/base                       $h/base shared
 layer $h/scenario                   $h/scenario $around
 layer $h/evidence                   $h/evidence $around

@@ -8,7 +8,7 @@
 #include "edge/control/price_history.h"
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
-#include "shared/utc_text.h"
+#include "tools/site/controller_settings.h"
 
 namespace bess {
 namespace {
@@ -16,16 +16,13 @@ namespace {
 /// Of a wall-clock run: what is a second on the device passes in a fraction of one.
 constexpr std::int32_t kWallTimeoutMs = 200;
 
-std::string dataset_url(int market_port, const char* dataset) {
-  return fmt::format(
-      "http://127.0.0.1:{}/api/explore/v2.1/catalog/datasets/{}/records"
-      "?order_by=datetime%20desc&limit=20",
-      market_port, dataset);
+std::string market_of(const EdgePlaces& places) {
+  return fmt::format("http://127.0.0.1:{}", places.market_port);
 }
 
 /// Where the scenario's own lines for the table give none.
 std::string wall_timeout(const std::string& lines, const EdgePlaces& places) {
-  const bool is_wall = places.anchor_monotonic_ns != 0;
+  const bool is_wall = places.clock.has_value();
   const bool has_timeout = lines.find("response_timeout_ms") != std::string::npos;
   return is_wall && !has_timeout ? fmt::format("response_timeout_ms = {}\n", kWallTimeoutMs) : "";
 }
@@ -61,10 +58,11 @@ std::string meter_table(const Scenario& scenario, const EdgePlaces& places) {
 }
 
 /// The level that earlier days have led to, or how much of them the edge asks for.
-std::string history_keys(const Scenario& scenario, const MinuteSeries& prices, int market_port) {
+std::string history_keys(const Scenario& scenario, const MinuteSeries& prices,
+                         const EdgePlaces& places) {
   if (scenario.prices.history_hours > 0) {
     return fmt::format("history_hours = {}\nhistory_url = \"{}\"\n", scenario.prices.history_hours,
-                       dataset_url(market_port, "ods133"));
+                       records_url(market_of(places), "ods133"));
   }
   const PriceLevel level = level_before(prices, scenario.start_utc_s);
   if (!level.is_known()) return "history_hours = 0\n";
@@ -86,22 +84,15 @@ PriceLevel level_before(const MinuteSeries& prices, std::int64_t start_utc_s, in
 
 std::string edge_settings(const Scenario& scenario, const MinuteSeries& prices,
                           const EdgePlaces& places) {
-  std::string text = fmt::format("control = true\n[battery]\n{}\n", battery_keys(scenario, places));
-  text += fmt::format("[price]\nurl = \"{}\"\n", dataset_url(places.market_port, "ods161"));
-  text += history_keys(scenario, prices, places.market_port);
-  text += fmt::format("{}\n[guard]\n{}\n[state]\nfolder = \"state\"\n", scenario.edge_price,
-                      scenario.edge_guard);
-  text += meter_table(scenario, places);
-  if (scenario.has_limits()) {
-    text += fmt::format("[limits]\nfile = \"limit\"\n{}\n", scenario.edge_limits);
-  }
-  text += fmt::format("[log]\ncsv = \"edge.csv\"\n{}\n", scenario.edge_other);
-  if (places.anchor_monotonic_ns != 0) {
-    text += fmt::format(
-        "[simulation]\ntime_scale = {}\nutc_start = \"{}\"\nanchor_monotonic_ns = {}\n",
-        scenario.time_scale, utc_text(scenario.start_utc_s).view(), places.anchor_monotonic_ns);
-  }
-  return text;
+  const std::string limits =
+      scenario.has_limits() ? "[limits]\nfile = \"limit\"\n" + scenario.edge_limits + "\n" : "";
+  return controller_settings(
+      {.battery = battery_keys(scenario, places) + "\n",
+       .market = market_of(places),
+       .price = history_keys(scenario, prices, places) + scenario.edge_price + "\n",
+       .guard = scenario.edge_guard + "\n",
+       .tables = meter_table(scenario, places) + limits + scenario.edge_other + "\n",
+       .clock = places.clock});
 }
 
 EdgeConfig load_edge_settings(const Scenario& scenario, const std::string& path,

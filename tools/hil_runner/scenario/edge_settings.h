@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "edge/loop/control_settings.h"
@@ -9,17 +10,18 @@
 #include "shared/host/minute_file.h"
 #include "shared/price_level.h"
 #include "tools/hil_runner/scenario/scenario.h"
+#include "tools/site/site_clock.h"
 
 namespace bess {
 
-/// Where battery and market are, and the clock; zero and empty: virtual time.
+/// Where battery and market are, and the clock; as it stands: virtual time.
 struct EdgePlaces {
   int battery_port = 1;
   std::string serial_device;
   std::string battery_link;  ///< TOML that leads to a real one; empty: a simulated one, here
   int market_port = 1;
   int meter_port = 2;
-  std::int64_t anchor_monotonic_ns = 0;
+  std::optional<SiteClock> clock{};  ///< empty: virtual time
 };
 
 /// The price level that the hours before the start have led to; by default as many as the edge asks for.
