@@ -34,7 +34,7 @@ constexpr const char* kHelp =
   bess-edge trial allow VERSION       let in again what was rolled back
 
 The versions are folders in /var/lib/bess-edge/versions; "current" there is a link to the one that runs. The limits
-are in /etc/bess/update.conf. Needs root. edge/README.md, "Confirm or go back".
+are in /etc/bess/update.conf. Needs root. edge/update/README.md.
 Exit codes: 0 done   1 refused or failed: the line says why   2 the command line is bad
 
   bess-edge trial go-back "it trades too much"

@@ -9,7 +9,7 @@
 
 namespace bess {
 
-/// Three times the measured peak of libcurl and OpenSSL: see the table in README.md.
+/// Three times the measured peak of libcurl and OpenSSL: see the table in README.md here.
 inline constexpr std::size_t kArenaBytes = 8 * 1024 * 1024;
 
 struct ArenaStatistics {

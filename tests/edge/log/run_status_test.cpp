@@ -132,28 +132,28 @@ std::string labels_of(const Family& family) {
   return std::regex_replace(labels, std::regex("=\"[^\"]*\""), "");
 }
 
-/// Who builds a dashboard or an alarm reads the list in edge/README.md: it has every metric, and no other.
+/// Who builds a dashboard or an alarm reads the list in edge/log/README.md: it has every metric, and no other.
 TEST(Prometheus, TheReadmeListsTheseMetricsAndNoOthers) {
   std::set<std::string> published;
   for (const auto& [name, family] :
        parse_prometheus(prometheus_text(totals_after({full_record(1)})))) {
     published.insert(name + labels_of(family));
   }
-  const std::string readme = text_of_file(BESS_SOURCE_DIR "/edge/README.md");
+  const std::string readme = text_of_file(BESS_SOURCE_DIR "/edge/log/README.md");
   const std::size_t begin = readme.find("\n## Metrics\n");
   ASSERT_NE(begin, readme.npos);
   const std::string section = readme.substr(begin, readme.find("\n## ", begin + 1) - begin);
   static const std::regex entry("`(bess_[a-z_]+(\\{[a-z_,]+\\})?)`");
   std::set<std::string> listed;
   for (std::sregex_iterator m(section.begin(), section.end(), entry), end; m != end; ++m) {
-    EXPECT_TRUE(listed.insert((*m)[1]).second) << "twice in edge/README.md: " << (*m)[1];
+    EXPECT_TRUE(listed.insert((*m)[1]).second) << "twice in edge/log/README.md: " << (*m)[1];
   }
   for (const std::string& name : published) {
-    EXPECT_TRUE(listed.contains(name)) << "missing in edge/README.md, Metrics: " << name;
+    EXPECT_TRUE(listed.contains(name)) << "missing in edge/log/README.md, Metrics: " << name;
   }
   for (const std::string& name : listed) {
     EXPECT_TRUE(published.contains(name))
-        << "in edge/README.md, Metrics, but not published: " << name;
+        << "in edge/log/README.md, Metrics, but not published: " << name;
   }
 }
 

@@ -1,4 +1,4 @@
-// The memory budget in README.md against the program: no object is larger than its row says, no row
+// The memory budget in edge/memory/README.md against the program: no object is larger than its row says, no row
 // promises far more than is used, and the sum is the sum.
 #include <gtest/gtest.h>
 
@@ -19,9 +19,9 @@ using Loop = Controller<RealWorld>::Loop;
 
 /// First column to second column of the table under the heading.
 std::map<std::string, std::size_t> read_budget() {
-  std::ifstream file(BESS_SOURCE_DIR "/README.md");
+  std::ifstream file(BESS_SOURCE_DIR "/edge/memory/README.md");
   std::string line;
-  while (std::getline(file, line) && line != "### Memory budget of bess-edge") continue;
+  while (std::getline(file, line) && line != "## Memory budget") continue;
   std::map<std::string, std::size_t> budget;
   while (std::getline(file, line) && !line.starts_with("#")) {
     const std::size_t end = line.find(" | ");
@@ -54,8 +54,8 @@ TEST(MemoryBudget, OfTheReadmeIsTrue) {
   std::map<std::string, std::size_t> budget = read_budget();
   std::size_t sum_kib = 0;
   for (const auto& [name, bytes] : actual_bytes) {
-    ASSERT_TRUE(budget.contains(name)) << name << " is not in README.md's table";
-    EXPECT_LE(bytes, budget[name] * 1'024) << name << " has outgrown README.md";
+    ASSERT_TRUE(budget.contains(name)) << name << " is not in the table of edge/memory/README.md";
+    EXPECT_LE(bytes, budget[name] * 1'024) << name << " has outgrown edge/memory/README.md";
     EXPECT_GE(bytes + 4'096, budget[name] * 1'024 / 2) << name << " is far smaller by now";
     if (name != "HttpClient") sum_kib += budget[name];
   }

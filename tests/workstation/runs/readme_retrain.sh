@@ -1,5 +1,5 @@
 #!/bin/sh
-# readme_retrain.sh SOURCE BUILD FOLDER: runs README.md's flow "retrain and adopt the result" as it is printed, and then
+# readme_retrain.sh SOURCE BUILD FOLDER: runs the flow "retrain and adopt the result" of workstation/cli/README.md as it is printed, and then
 # other thresholds from that run's teacher, in FOLDER, which stands for the top of the clone. What is different: the
 # yardstick stands for what would be fetched from the network; and the run, which takes minutes, learns for a shorter
 # time. BESS_README_FULL=1 in the environment runs it with the default configuration.
@@ -17,9 +17,9 @@ cp "$source/tests/data/benchmark_minutes_2023.csv.gz" 2023.csv.gz
 header_before=$(cksum edge/generated/student_weights.h)
 
 # The commands: what is indented between the two headings.
-sed -n '/^\*\*To retrain on your prices/,/^\*\*What trading costs you/s/^    //p' "$source/README.md" |
+sed -n '/^\*\*To retrain on your prices/,/^\*\*What trading costs you/s/^    //p' "$source/workstation/cli/README.md" |
   grep -v 'prices fetch' >flow.sh
-[ "$(grep -c '^build/bess-train run ' flow.sh)" -eq 2 ] || fail "README.md shows not two runs, but: $(cat flow.sh)"
+[ "$(grep -c '^build/bess-train run ' flow.sh)" -eq 2 ] || fail "workstation/cli/README.md shows not two runs, but: $(cat flow.sh)"
 build/bess-train config >my.toml 2>said || fail "config fails"
 sed -i 's/^low_price_eur_per_mwh = .*/low_price_eur_per_mwh = -300/; s/^high_price_eur_per_mwh = .*/high_price_eur_per_mwh = 1200/' my.toml
 if [ -z "$BESS_README_FULL" ]; then
