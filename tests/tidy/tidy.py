@@ -81,6 +81,11 @@ def check_readmes(tree, names, complain):
         if lines > README_LINES.get(name, lines):
             complain(f"{name}: {lines} lines, {README_LINES[name]} at most")
         folder = (tree / name).parent
+        if name == "shared/README.md":
+            for header in (n for n in names if re.fullmatch(r"shared/(host/)?\w+\.h", n)):
+                stem = pathlib.PurePosixPath(header).stem
+                if not re.search(r"`" + stem + r"\.(h|\*)`", text):
+                    complain(f"{name}: does not name {header}")
         for link in re.findall(r"\]\(([^)#:]+)\)", text):
             if not (folder / link).exists():
                 complain(f"{name}: links to {link}, which is not there")

@@ -1,6 +1,6 @@
-// The whole correction: distil through the layer, quantise, prove over the whole lattice; while the
-// proof finds violations, train on them as counterexamples with wider slope margins, and prove
-// again.
+// The whole correction: distil, inside sign bounds or through the layer, quantise, prove over the
+// whole lattice; while the proof finds violations, train on them as counterexamples (through the
+// layer: with wider slope margins), and prove again.
 #pragma once
 
 #include <atomic>
@@ -25,8 +25,9 @@ struct CorrectionResult {
 using StudentScore = std::function<double(const StudentNet&)>;
 
 /// Never throws for a failed proof: the verdict says it. With options.correct false there is one
-/// round, no repair and no proof: violations are counted in a sample of the contexts. By construction the best by `score` is taken of the students on the way that
-/// are proved; without it, and through the layer, the last one. `watch` is told of each round.
+/// round, no repair and no proof: violations are counted in a sample of the contexts. By
+/// construction the best by `score` is taken of the students on the way that are proved; without
+/// it, and through the layer, the last one. `watch` is told of each round.
 CorrectionResult correct_and_prove(const Teacher& teacher, const Matrix& visited,
                                    const DistilOptions& options,
                                    const std::atomic<bool>& interrupted,
