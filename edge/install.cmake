@@ -2,7 +2,8 @@
 # configuration and the unit are installed with the paths of this installation in them.
 include(GNUInstallDirs)
 
-# install_with_paths(FILE FOLDER NAME FROM TO...): installs FILE as NAME, each FROM replaced; FROM must occur.
+# install_with_paths(FILE FOLDER NAME FROM TO...): installs FILE as NAME, each FROM replaced; FROM
+# must occur.
 function(install_with_paths file folder name)
   file(READ ${file} text)
   set(pairs ${ARGN})

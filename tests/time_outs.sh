@@ -1,5 +1,6 @@
 #!/bin/sh
-# time_outs.sh CTEST BUILD: fails, naming it, when a test of BUILD has no time-out, and when it would not notice.
+# time_outs.sh CTEST BUILD: fails, naming it, when a test of BUILD has no time-out, and when it
+# would not notice.
 list=$("$1" --test-dir "$2" --show-only=json-v1) || exit 1
 check() {  # a list of tests on stdin; one that was not built has no properties yet
   python3 -c '

@@ -1,4 +1,5 @@
-# The second compiler, same warnings as errors. Use: cmake -C toolchains/clang.cmake -S . -B build-clang
+# The second compiler, same warnings as errors. Use: cmake -C toolchains/clang.cmake -S . -B
+# build-clang
 set(CMAKE_C_COMPILER clang CACHE STRING "")
 set(CMAKE_CXX_COMPILER clang++ CACHE STRING "")
 set(CMAKE_BUILD_TYPE Debug CACHE STRING "") # quick to build: it is about the warnings

@@ -1,6 +1,6 @@
-# What only the Debian package of the edge has, besides edge/install.cmake: the supervisor of upgrades, rules for
-# users, folders and devices, and what tools/package makes of the built programs (man pages, completion,
-# certificate) in BUILD/package/edge.
+# What only the Debian package of the edge has, besides edge/install.cmake: the supervisor of
+# upgrades, rules for users, folders and devices, and what tools/package makes of the built programs
+# (man pages, completion, certificate) in BUILD/package/edge.
 set(package_dir ${CMAKE_SOURCE_DIR}/edge/package)
 install(PROGRAMS ${CMAKE_SOURCE_DIR}/edge/update/trial DESTINATION lib/bess COMPONENT edge_package)
 install(FILES ${CMAKE_SOURCE_DIR}/edge/update/update.conf DESTINATION /etc/bess RENAME update.conf.example

@@ -1,5 +1,5 @@
-# Writes HEADER with the commit of the working folder, unless it says so already: GIVEN when that is not
-# empty, otherwise what git says, "unknown" without it. Changed files are told by "-dirty".
+# Writes HEADER with the commit of the working folder, unless it says so already: GIVEN when that is
+# not empty, otherwise what git says, "unknown" without it. Changed files are told by "-dirty".
 set(commit "${GIVEN}")
 if(commit STREQUAL "")
   execute_process(COMMAND git describe --always --dirty --abbrev=12 --exclude=*

@@ -1,6 +1,7 @@
 #!/bin/sh
-# install.sh CMAKE BUILD FOLDER [EMULATOR...]: installs the edge below FOLDER and checks that the pieces name
-# each other: the unit starts the installed program, the example configuration loads the installed map.
+# install.sh CMAKE BUILD FOLDER [EMULATOR...]: installs the edge below FOLDER and checks that the
+# pieces name each other: the unit starts the installed program, the example configuration loads the
+# installed map.
 cmake=$1 build=$2 folder=$3
 shift 3
 fail() { echo "$*"; exit 1; }

@@ -1,6 +1,7 @@
 #!/bin/sh
-# signature.sh EXPECTED [EMULATOR...] PROGRAM: fails when `bess-edge signature` (PROGRAM) does not print the line
-# in the file EXPECTED, and says whether the student or the code has changed, and how to renew the file.
+# signature.sh EXPECTED [EMULATOR...] PROGRAM: fails when `bess-edge signature` (PROGRAM) does not
+# print the line in the file EXPECTED, and says whether the student or the code has changed, and how
+# to renew the file.
 file=$1
 shift
 found=$("$@" signature) || { echo "$* signature: failed"; exit 1; }

@@ -1,6 +1,6 @@
 #!/bin/sh
-# signature_can_fail.sh FOLDER [EMULATOR...] PROGRAM: shows that signature.sh passes the right line alone, tells
-# another student from other decisions, and that the command it names renews the file.
+# signature_can_fail.sh FOLDER [EMULATOR...] PROGRAM: shows that signature.sh passes the right line
+# alone, tells another student from other decisions, and that the command it names renews the file.
 folder=$1
 shift
 fail() { echo "$*"; exit 1; }

@@ -1,6 +1,7 @@
 #!/bin/sh
-# systemd_unit.sh UNIT FOLDER: the unit has no unknown or misspelt setting and its exposure, as systemd
-# itself rates it, is at most 2.0 of 10. FOLDER takes a copy whose program exists. Exit 77 = skipped.
+# systemd_unit.sh UNIT FOLDER: the unit has no unknown or misspelt setting and its exposure, as
+# systemd itself rates it, is at most 2.0 of 10. FOLDER takes a copy whose program exists. Exit 77 =
+# skipped.
 unit=$1 folder=$2
 command -v systemd-analyze >/dev/null || { echo "systemd-analyze is not installed"; exit 77; }
 systemd-analyze security --offline=yes --threshold=20 "$unit" | tail -n 1

@@ -1,5 +1,6 @@
-# Sourced by tests/guest/emulated: one arm64 machine with a kernel of its own in qemu-system-aarch64, on a disk image.
-# A cut kills the emulator: what the guest had not brought to its disk is lost, as on a real machine.
+# Sourced by tests/guest/emulated: one arm64 machine with a kernel of its own in
+# qemu-system-aarch64, on a disk image. A cut kills the emulator: what the guest had not brought to
+# its disk is lost, as on a real machine.
 #   make_arm64_base       FOLDER/arm64: Debian 12 arm64 with systemd, sshd and the simulators, configured by qemu's user
 #                         mode in a user namespace of its own, so that this machine learns no foreign programs
 #   make_initrd           FOLDER/initrd: busybox and what the kernel needs to find its root on a virtio disk
@@ -18,7 +19,8 @@ ssh_options=(-o BatchMode=yes -o StrictHostKeyChecking=no -o UserKnownHostsFile=
 ssh_options+=(-o ConnectTimeout=30 -i "$folder/key" -p "$port")
 on() { ssh "${ssh_options[@]}" root@127.0.0.1 "$@"; }
 
-# as_root_of_arm64 COMMAND...: root in a user namespace whose programs of arm64 run by qemu's user mode (Linux 6.7).
+# as_root_of_arm64 COMMAND...: root in a user namespace whose programs of arm64 run by qemu's user
+# mode (Linux 6.7).
 as_root_of_arm64() {
   local child
   mkfifo "$folder/mapped"
@@ -67,7 +69,8 @@ make_arm64_base() {
   mv "$base.new" "$base"
 }
 
-# libraries_of PROGRAM FOLDER: what it needs beyond the C library, and what they need, out of the sysroot.
+# libraries_of PROGRAM FOLDER: what it needs beyond the C library, and what they need, out of the
+# sysroot.
 libraries_of() {
   local name file
   for name in $(aarch64-linux-gnu-objdump -p "$1" | awk '$1 == "NEEDED" {print $2}' | grep -vE '^(libc|libm)\.so|^ld-linux'); do

@@ -1,11 +1,13 @@
-# Sourced by the tests of tests/guest: machines with systemd as their first process, in containers (systemd-nspawn):
-# Debian 12 of this processor with the simulators inside, no network but their own loopback. Needs root.
+# Sourced by the tests of tests/guest: machines with systemd as their first process, in containers
+# (systemd-nspawn): Debian 12 of this processor with the simulators inside, no network but their own
+# loopback. Needs root.
 #   make_base             what all machines start from, once: FOLDER/base
 #   boot NAME             a machine over a copy of it (made when it is not there) is started
 #   on NAME COMMAND       as root inside;  send NAME FILE PLACE
 #   cut_power NAME        every process of the machine is killed at once;  shut_down NAME;  forget NAME
-# They use $folder, $source and $programs (where bess-sim is). The kernel is this machine's: a cut kills all processes
-# of a machine, but what they had written without waiting for the disk is not lost.
+# They use $folder, $source and $programs (where bess-sim is). The kernel is this machine's: a cut
+# kills all processes of a machine, but what they had written without waiting for the disk is not
+# lost.
 
 # shellcheck source=tests/guest/site.sh
 . "$source/tests/guest/site.sh"

@@ -1,5 +1,6 @@
 #!/bin/sh
-# held.sh FOLDER: list_skips.py accepts the known reasons, and no other: not another, and not silence.
+# held.sh FOLDER: list_skips.py accepts the known reasons, and no other: not another, and not
+# silence.
 set -eu
 folder=$1
 mkdir -p "$folder"

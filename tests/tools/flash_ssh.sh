@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# flash_ssh.sh SOURCE FOLDER: tools/flash ssh with a stand-in for ssh: what it sends, and that each refusal is one line
-# before anything is installed. Exit 77 = skipped.
+# flash_ssh.sh SOURCE FOLDER: tools/flash ssh with a stand-in for ssh: what it sends, and that each
+# refusal is one line before anything is installed. Exit 77 = skipped.
 set -euo pipefail
 source=$(realpath "$1") folder=$2
 # shellcheck source=tests/tools/script_test.sh

@@ -1,5 +1,5 @@
-# Sourced: made_up_package FOLDER ARCH VERSION: a package like bess-edge, certified, without its programs.
-# The source tree is $source.
+# Sourced: made_up_package FOLDER ARCH VERSION: a package like bess-edge, certified, without its
+# programs. The source tree is $source.
 made_up_package() {
   local tree
   tree=$(mktemp -d)

@@ -1,6 +1,6 @@
 #!/bin/sh
-# readme_example.sh SOURCE BUILD FOLDER: runs the first example of tools/README.md as it is printed, in FOLDER, which stands
-# for the top of the clone.
+# readme_example.sh SOURCE BUILD FOLDER: runs the first example of tools/README.md as it is printed,
+# in FOLDER, which stands for the top of the clone.
 source=$1 build=$2 folder=$3
 fail() { cat "$folder/said"; echo "$*"; exit 1; }
 rm -rf "$folder"

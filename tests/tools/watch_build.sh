@@ -1,5 +1,6 @@
 #!/bin/sh
-# watch_build.sh SOURCE FOLDER: tools/watch_build around builds that do nothing but take time or fail.
+# watch_build.sh SOURCE FOLDER: tools/watch_build around builds that do nothing but take time or
+# fail.
 source=$1 folder=$2
 fail() { cat "$folder/said" 2>/dev/null; echo "$*"; exit 1; }
 rm -rf "$folder"

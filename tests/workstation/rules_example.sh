@@ -1,8 +1,9 @@
 #!/bin/sh
-# rules_example.sh SOURCE BUILD FOLDER: runs the example of workstation/README.md, from a rule's text to the proved
-# header, as it is printed, in FOLDER, which stands for the top of the clone. The header must hold the rule, and the
-# teacher must be the one that was trained before there was a rule. What takes most of a minute, the distillation and
-# what follows it, is run with BESS_README_FULL=1 in the environment alone.
+# rules_example.sh SOURCE BUILD FOLDER: runs the example of workstation/README.md, from a rule's
+# text to the proved header, as it is printed, in FOLDER, which stands for the top of the clone. The
+# header must hold the rule, and the teacher must be the one that was trained before there was a
+# rule. What takes most of a minute, the distillation and what follows it, is run with
+# BESS_README_FULL=1 in the environment alone.
 source=$1 build=$2 folder=$3
 fail() { tail -n 40 "$folder/said"; echo "$*"; exit 1; }
 rm -rf "$folder"

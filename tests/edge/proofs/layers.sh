@@ -1,7 +1,7 @@
 #!/bin/sh
-# layers.sh TREE: fails, naming file and line, when a file below TREE includes what its layer must not know:
-# another part of the project, or a library that a part has for itself. A folder that is no longer there
-# fails as well: a renamed one must not slip through.
+# layers.sh TREE: fails, naming file and line, when a file below TREE includes what its layer must
+# not know: another part of the project, or a library that a part has for itself. A folder that is
+# no longer there fails as well: a renamed one must not slip through.
 cd "$1" || exit 1
 status=0
 includes() { grep -rnH --include='*.h' --include='*.cpp' "^#include $1" $2; }  # PATTERN FOLDERS
@@ -85,8 +85,8 @@ layer $w/report                     $w/report $w/backtest $w/student $w/correcti
 layer $w/cli                        $w shared
 layer $w/main.cpp                   $w shared
 
-# only HEADER OWNERS [PLACES]: of PLACES, the edge and shared unless given, only files whose path begins with
-# OWNERS include <HEADER>.
+# only HEADER OWNERS [PLACES]: of PLACES, the edge and shared unless given, only files whose path
+# begins with OWNERS include <HEADER>.
 only() { blame "$(includes "<$1" "${3:-edge shared}" | grep -vE "^($2)")" "only $2 knows $1"; }
 only modbus/ edge/battery/modbus_wire.cpp:
 only curl/   'edge/prices/|edge/notify/curl_handle.h:'

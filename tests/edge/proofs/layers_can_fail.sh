@@ -1,6 +1,6 @@
 #!/bin/sh
-# layers_can_fail.sh TREE FOLDER: shows that layers.sh finds what it forbids. A copy of TREE below FOLDER gets one
-# wrong line at a time, and the line must be named; without it the copy must pass.
+# layers_can_fail.sh TREE FOLDER: shows that layers.sh finds what it forbids. A copy of TREE below
+# FOLDER gets one wrong line at a time, and the line must be named; without it the copy must pass.
 tree=$1 copy=$2
 proof=$tree/tests/edge/proofs/layers.sh
 rm -rf "$copy" && mkdir -p "$copy" && cp -R "$tree/edge" "$tree/shared" "$tree/tools" "$tree/workstation" "$copy" || exit 1

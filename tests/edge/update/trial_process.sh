@@ -1,7 +1,8 @@
 #!/bin/sh
-# trial_process.sh BESS_EDGE CUT_AT_LIBRARY FOLDER: the supervisor of upgrades as a process, on machines of folders, between
-# stand-ins for systemd, dpkg and the versions' programs. Bad packages and bad moments: whatever happens, the version
-# that worked runs, or the new one has shown that it works. Prints a table.
+# trial_process.sh BESS_EDGE CUT_AT_LIBRARY FOLDER: the supervisor of upgrades as a process, on
+# machines of folders, between stand-ins for systemd, dpkg and the versions' programs. Bad packages
+# and bad moments: whatever happens, the version that worked runs, or the new one has shown that it
+# works. Prints a table.
 edge=$1 cut=$2 folder=$3
 script=$(cd "$(dirname "$0")/../../.." && pwd)/edge/update/trial
 failures=0
@@ -221,7 +222,8 @@ for phase in trying going_back; do
   [ "$(readlink "$store/current") $(cat running)" = "versions/1.0 1.0" ] || fail "$phase, to a version that is not kept: $(readlink "$store/current")"
   grep -q '^stop' systemctl && fail "$phase, to a version that is not kept: what runs is stopped"
 done
-# The power between the decision and the start: the cycles in the log are not those of the version that is started.
+# The power between the decision and the start: the cycles in the log are not those of the version
+# that is started.
 machine; echo crash >does_2.0; upgrade 2.0; rm "$state.copy"
 sed -i '/^# crc32/d; s/^mark=.*/mark=/; s/^handed_over=.*/handed_over=0/; s/^fresh=.*/fresh=0/' "$state"
 trial recover; judge; expect "the power before a version is started" rolled_back 1.0

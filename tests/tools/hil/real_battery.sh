@@ -1,6 +1,6 @@
 #!/bin/bash
-# real_battery.sh BESS-HIL BESS-SIM [serial]: --real against a simulated battery, which from outside is a real one:
-# refused unless all is said, driven within its limits, released on every way out.
+# real_battery.sh BESS-HIL BESS-SIM [serial]: --real against a simulated battery, which from outside
+# is a real one: refused unless all is said, driven within its limits, released on every way out.
 hil=$1 sim=$2
 work=$(mktemp -d)
 children=()

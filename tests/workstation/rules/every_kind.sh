@@ -1,8 +1,9 @@
 #!/bin/sh
-# every_kind.sh SOURCE BUILD FOLDER [PRICES]: students of every kind of rule that workstation/README.md documents,
-# learnt and proved; prints what `rules price` says of them: proved, rounds, seconds, and what each costs with its
-# error. PRICES: a minute file; without it a simulated year. The rules of a file of kinds/ together, one seed; with
-# BESS_THOROUGH=1 three seeds, and each rule alone as well. Fails when a student is not proved, after all are told.
+# every_kind.sh SOURCE BUILD FOLDER [PRICES]: students of every kind of rule that
+# workstation/README.md documents, learnt and proved; prints what `rules price` says of them:
+# proved, rounds, seconds, and what each costs with its error. PRICES: a minute file; without it a
+# simulated year. The rules of a file of kinds/ together, one seed; with BESS_THOROUGH=1 three
+# seeds, and each rule alone as well. Fails when a student is not proved, after all are told.
 source=$(cd "$1" && pwd) build=$(cd "$2" && pwd) folder=$3
 [ -z "$4" ] || set -- "$1" "$2" "$3" "$(realpath "$4")"
 train=$build/bess-train

@@ -1,8 +1,9 @@
 #!/bin/sh
-# readme_retrain.sh SOURCE BUILD FOLDER: runs the flow "retrain and adopt the result" of workstation/cli/README.md as it is printed, and then
-# other thresholds from that run's teacher, in FOLDER, which stands for the top of the clone. What is different: the
-# yardstick stands for what would be fetched from the network; and the run, which takes minutes, learns for a shorter
-# time. BESS_README_FULL=1 in the environment runs it with the default configuration.
+# readme_retrain.sh SOURCE BUILD FOLDER: runs the flow "retrain and adopt the result" of
+# workstation/cli/README.md as it is printed, and then other thresholds from that run's teacher, in
+# FOLDER, which stands for the top of the clone. What is different: the yardstick stands for what
+# would be fetched from the network; and the run, which takes minutes, learns for a shorter time.
+# BESS_README_FULL=1 in the environment runs it with the default configuration.
 source=$1 build=$2 folder=$3
 fail() { tail -n 20 "$folder/said"; echo "$*"; exit 1; }
 rm -rf "$folder"

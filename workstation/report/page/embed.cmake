@@ -1,5 +1,5 @@
-# cmake -DOUTPUT=page_files.cpp "-DFILES=a.js|b.css" -P embed.cmake: the files as raw literals in one C++ source, by
-# their names.
+# cmake -DOUTPUT=page_files.cpp "-DFILES=a.js|b.css" -P embed.cmake: the files as raw literals in
+# one C++ source, by their names.
 string(REPLACE "|" ";" FILES "${FILES}")
 set(delimiter embedded_file)
 set(literals "")

@@ -1,4 +1,5 @@
-# The page of a report: its style sheets, its scripts and the chart library, embedded into bess-train.
+# The page of a report: its style sheets, its scripts and the chart library, embedded into
+# bess-train.
 find_package(ZLIB REQUIRED)
 find_file(BESS_CHART_JS chart.min.js PATHS /usr/share/javascript/chart.js NO_DEFAULT_PATH
           DOC "Chart.js 3.9, minified, of Debian's libjs-chart.js")
