@@ -180,7 +180,7 @@ bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& p
   print_thresholds(config);
   print_transport(config);
   const std::int64_t now_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
-  const Hold hold = read_newest_hold(hold_paths(config)).hold;
+  const Hold hold = read_newest_hold(both_places(config, kHoldFileName)).hold;
   std::fputs(wishes_note(config.control, hold, now_utc_s).c_str(), stdout);
   std::fflush(stdout);
   std::string trouble;

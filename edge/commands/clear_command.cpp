@@ -43,7 +43,7 @@ bool leave_word(const char* path, std::int64_t trip_utc_s, FileMessage& error) {
 }
 
 /// In both places; one is enough for the controller to hear it.
-int clear(const EdgeConfig& config, const ClearancePaths& paths, const Trip& trip) {
+int clear(const EdgeConfig& config, const BothPlaces& paths, const Trip& trip) {
   FileMessage state_error;
   FileMessage run_error;
   const bool in_state = leave_word(paths.state.c_str(), trip.utc_s, state_error);
@@ -76,7 +76,7 @@ int run_clear(const ClearGiven& given, SettingsFile& settings) {
     return 1;
   }
   if (!error.empty()) report(JournalLevel::kWarning, "note: %s", error.c_str());
-  const ClearancePaths paths = clearance_paths(config);
+  const BothPlaces paths = both_places(config, kClearedFileName);
   const Trip trip = standing_trip(log.ring(), log.run_ring(), paths);
   if (!trip.is_set()) {
     std::printf("nothing to clear: the supervision has not tripped\n");

@@ -69,7 +69,8 @@ void print_trip(const EdgeConfig& config) {
   LogReader log;
   FileMessage ignored;
   if (!log.open(config.log, ignored)) return;
-  const Trip trip = standing_trip(log.ring(), log.run_ring(), clearance_paths(config));
+  const Trip trip =
+      standing_trip(log.ring(), log.run_ring(), both_places(config, kClearedFileName));
   if (!trip.is_set()) return;
   std::printf(
       "           NOT FOLLOWED yet: tripped, %s at %s; the battery stays released until bess-edge "
@@ -114,7 +115,7 @@ bool is_gone(const char* path) {
   return true;
 }
 
-void warn_of_next_boot(const HoldPaths& paths, const FileMessage& error) {
+void warn_of_next_boot(const BothPlaces& paths, const FileMessage& error) {
   report(JournalLevel::kWarning,
          "%s; kept in %s alone, which the next boot of this machine forgets: repeat it then",
          error.c_str(), paths.run.c_str());
@@ -122,7 +123,7 @@ void warn_of_next_boot(const HoldPaths& paths, const FileMessage& error) {
 
 /// One place is enough for the controller: its word is the newer one.
 int keep_hold(const EdgeConfig& config, const Hold& hold, std::int64_t now_utc_s) {
-  const HoldPaths paths = hold_paths(config);
+  const BothPlaces paths = both_places(config, kHoldFileName);
   FileMessage error;
   FileMessage run_error;
   const bool in_state = is_kept(paths.state.c_str(), hold) ||
@@ -143,7 +144,7 @@ int keep_hold(const EdgeConfig& config, const Hold& hold, std::int64_t now_utc_s
 /// What cannot be taken away is outdone by a newer word in the other place: a hold that is over.
 int release_hold(const EdgeConfig& config) {
   constexpr Hold kOver{.power_w = 0, .until_utc_s = 1};
-  const HoldPaths paths = hold_paths(config);
+  const BothPlaces paths = both_places(config, kHoldFileName);
   const bool has_run = !paths.run.empty();
   FileMessage error;
   const bool of_state = is_gone(paths.state.c_str()) ||

@@ -33,8 +33,7 @@ HoldWatch::~HoldWatch() {
   sem_destroy(&ending_);
 }
 
-void HoldWatch::start(const HoldPaths& paths, const ClearancePaths& cleared,
-                      std::int32_t time_scale) {
+void HoldWatch::start(const BothPlaces& paths, const BothPlaces& cleared, std::int32_t time_scale) {
   constexpr std::int64_t kPeriodNsMin = kNanosecondsPerSecond / 1'000;
   paths_ = paths;
   cleared_ = cleared;

@@ -25,7 +25,7 @@ class HoldWatch {
 
   /// Reads the files once, so that the first cycle knows it, then goes on in the background.
   /// `time_scale`: simulated time is looked at as often as it passes.
-  void start(const HoldPaths& paths, const ClearancePaths& cleared, std::int32_t time_scale);
+  void start(const BothPlaces& paths, const BothPlaces& cleared, std::int32_t time_scale);
   [[nodiscard]] const HoldMailbox& mailbox() const { return mailbox_; }
 
   /// From the control thread, which never waits here: whether a person has cleared the trip of this instant, as
@@ -40,9 +40,9 @@ class HoldWatch {
 
   void tell_of_losses(const HoldReading& reading);
 
-  HoldPaths paths_;
+  BothPlaces paths_;
   HoldReading told_;
-  ClearancePaths cleared_;
+  BothPlaces cleared_;
   std::atomic<std::int64_t> asked_trip_utc_s_{0};
   std::atomic<std::int64_t> cleared_trip_utc_s_{0};
   std::int64_t period_ns_ = 0;

@@ -60,7 +60,8 @@ bool RealWorld::open() {
 Recall RealWorld::recall() { return recall_at_start(config_, log_, published_); }
 
 const HoldMailbox& RealWorld::listen() {
-  people_.start(hold_paths(config_), clearance_paths(config_), config_.clock.scale);
+  people_.start(both_places(config_, kHoldFileName), both_places(config_, kClearedFileName),
+                config_.clock.scale);
   return people_.mailbox();
 }
 

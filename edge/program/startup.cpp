@@ -41,7 +41,7 @@ void report_commission_losses(const EdgeConfig& config) {
 
 Recall recall_at_start(const EdgeConfig& config, const EventLog& log,
                        std::uint64_t published_number) {
-  const ClearancePaths paths = clearance_paths(config);
+  const BothPlaces paths = both_places(config, kClearedFileName);
   for (const FixedText<639>* path : {&paths.state, &paths.run}) {
     if (!read_cleared(path->c_str()).unreadable) continue;
     report(JournalLevel::kError,

@@ -355,6 +355,10 @@ FixedText<639> run_file(const EdgeConfig& config, std::string_view name) {
   return file_in(config.state.run_folder.c_str(), name);
 }
 
+BothPlaces both_places(const EdgeConfig& config, std::string_view name) {
+  return {.state = state_file(config, name), .run = run_file(config, name)};
+}
+
 FixedText<159> battery_place(const EdgeConfig& config) {
   const int unit = config.link.unit >= 0 ? config.link.unit : config.map.unit;
   char place[160];

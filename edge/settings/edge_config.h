@@ -57,6 +57,13 @@ FixedText<639> state_file(const EdgeConfig& config, std::string_view name);
 /// In [state] run_folder; empty where there is none.
 FixedText<639> run_file(const EdgeConfig& config, std::string_view name);
 
+/// The same file in both folders, for what must be known though one of two disks has died.
+struct BothPlaces {
+  FixedText<639> state;
+  FixedText<639> run;  ///< empty = none
+};
+BothPlaces both_places(const EdgeConfig& config, std::string_view name);
+
 /// "127.0.0.1:502 unit 85" or "/dev/ttyUSB0 unit 85": where the battery is looked for.
 FixedText<159> battery_place(const EdgeConfig& config);
 

@@ -204,6 +204,19 @@ std::string loss_line(const Stored& one, const Stored& good) {
   return line;
 }
 
+/// Visits each place that holds something else than it should: the place, the one that counts, what should be there,
+/// and whether that is a loss. None where none counts.
+template <typename Visit>
+void for_each_other(const EdgeConfig& config, const Visit& visit) {
+  const AllStored all = read_places(config);
+  const Stored* const good = all.that_counts();
+  if (good == nullptr) return;
+  const std::string text = whole_text(*good);
+  for (const Stored& one : all.places) {
+    if (one.text != text) visit(one, *good, text, is_loss(config, all, one, *good));
+  }
+}
+
 /// The file's keys, compared one by one; the first that differs is named.
 bool expect_same(TomlTable& table, std::string_view key, const std::string& configured) {
   FixedText<255> found;
@@ -254,33 +267,25 @@ bool is_commissioned(const EdgeConfig& config, std::string& error) {
 
 std::vector<std::string> commission_file_losses(const EdgeConfig& config) {
   std::vector<std::string> lines;
-  const AllStored all = read_places(config);
-  const Stored* const good = all.that_counts();
-  if (good == nullptr) return lines;
-  const std::string text = whole_text(*good);
-  for (const Stored& one : all.places) {
-    if (one.text != text && is_loss(config, all, one, *good)) {
-      lines.push_back(loss_line(one, *good) + "; a start in control writes it again");
-    }
-  }
+  for_each_other(config,
+                 [&](const Stored& one, const Stored& good, const std::string&, bool is_lost) {
+                   if (is_lost)
+                     lines.push_back(loss_line(one, good) + "; a start in control writes it again");
+                 });
   return lines;
 }
 
 std::vector<std::string> mend_commission_file(const EdgeConfig& config) {
   std::vector<std::string> lines;
-  const AllStored all = read_places(config);
-  const Stored* const good = all.that_counts();
-  if (good == nullptr) return lines;
-  const std::string text = whole_text(*good);
-  for (const Stored& one : all.places) {
-    if (one.text == text) continue;
+  for_each_other(config, [&](const Stored& one, const Stored& good, const std::string& text,
+                             bool is_lost) {
     const bool is_written = replace_file_durably(one.path.c_str(), text);
     const int cause = errno;
-    if (is_written && !is_loss(config, all, one, *good)) continue;
-    lines.push_back(loss_line(one, *good) +
+    if (is_written && !is_lost) return;
+    lines.push_back(loss_line(one, good) +
                     (is_written ? ", and it is written again"
                                 : std::string("; it cannot be written: ") + std::strerror(cause)));
-  }
+  });
   return lines;
 }
 

@@ -75,11 +75,7 @@ Hold read_hold(const char* path) {
   return parse_hold({text, static_cast<std::size_t>(size)});
 }
 
-HoldPaths hold_paths(const EdgeConfig& config) {
-  return {.state = state_file(config, "hold"), .run = run_file(config, "hold")};
-}
-
-HoldReading read_newest_hold(const HoldPaths& paths) {
+HoldReading read_newest_hold(const BothPlaces& paths) {
   const Word of_state = read_word(paths.state.c_str());
   const Word of_run = paths.run.empty() ? Word{} : read_word(paths.run.c_str());
   if (!of_state.counts() && !of_run.counts()) {

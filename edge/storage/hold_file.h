@@ -25,13 +25,8 @@ Hold parse_hold(std::string_view text);
 /// What lies at `path`; no file is no hold.
 Hold read_hold(const char* path);
 
-struct HoldPaths {
-  FixedText<639> state;
-  FixedText<639> run;  ///< empty = none
-};
-
-/// Where a controller of this configuration looks for an operator's hold.
-HoldPaths hold_paths(const EdgeConfig& config);
+/// Where a controller looks for an operator's hold, by this name.
+inline constexpr std::string_view kHoldFileName = "hold";
 
 struct HoldReading {
   Hold hold;  ///< unreadable where no file can be understood and one is there
@@ -41,6 +36,6 @@ struct HoldReading {
   friend bool operator==(const HoldReading&, const HoldReading&) = default;
 };
 /// Of both places the newer word; no file at all is no hold.
-HoldReading read_newest_hold(const HoldPaths& paths);
+HoldReading read_newest_hold(const BothPlaces& paths);
 
 }  // namespace bess

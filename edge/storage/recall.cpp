@@ -31,7 +31,7 @@ std::string why_unknown(const RingLog& ring, const RingLog& run_ring,
 
 }  // namespace
 
-Trip standing_trip(const RingLog& ring, const RingLog& run_ring, const ClearancePaths& cleared) {
+Trip standing_trip(const RingLog& ring, const RingLog& run_ring, const BothPlaces& cleared) {
   const bool run_is_newer = run_ring.newest_number() > ring.newest_number();
   const RingLog& newer = run_is_newer ? run_ring : ring;
   const RingLog& other = run_is_newer ? ring : run_ring;
@@ -45,7 +45,7 @@ Trip standing_trip(const RingLog& ring, const RingLog& run_ring, const Clearance
 }
 
 Recall recall(const RingLog& ring, const RingLog& run_ring, std::uint64_t published_number,
-              const ClearancePaths& cleared) {
+              const BothPlaces& cleared) {
   Recall recalled;
   const bool run_is_newer = run_ring.newest_number() > ring.newest_number();
   static_cast<void>((run_is_newer ? run_ring : ring).newest(recalled.before));

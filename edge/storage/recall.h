@@ -17,10 +17,10 @@ struct Recall {
 };
 
 /// The trip by the newest records, wherever they are, that nobody has cleared; not set where there is none.
-Trip standing_trip(const RingLog& ring, const RingLog& run_ring, const ClearancePaths& cleared);
+Trip standing_trip(const RingLog& ring, const RingLog& run_ring, const BothPlaces& cleared);
 
 /// `published_number`: of the newest record that a status.json knows; 0 = none does.
 Recall recall(const RingLog& ring, const RingLog& run_ring, std::uint64_t published_number,
-              const ClearancePaths& cleared);
+              const BothPlaces& cleared);
 
 }  // namespace bess

@@ -72,11 +72,7 @@ ClearedTrips read_cleared(const char* path) {
   return parse_cleared({text, static_cast<std::size_t>(size)});
 }
 
-ClearancePaths clearance_paths(const EdgeConfig& config) {
-  return {.state = state_file(config, "cleared"), .run = run_file(config, "cleared")};
-}
-
-bool is_trip_cleared(const ClearancePaths& paths, std::int64_t trip_utc_s) {
+bool is_trip_cleared(const BothPlaces& paths, std::int64_t trip_utc_s) {
   return read_cleared(paths.state.c_str()).has(trip_utc_s) ||
          read_cleared(paths.run.c_str()).has(trip_utc_s);
 }

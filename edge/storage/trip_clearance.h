@@ -29,14 +29,10 @@ ClearedTrips parse_cleared(std::string_view text);
 /// What lies at `path`; no file, and no path, is nothing cleared. Allocates nothing.
 ClearedTrips read_cleared(const char* path);
 
-struct ClearancePaths {
-  FixedText<639> state;
-  FixedText<639> run;  ///< empty = none
-};
-ClearancePaths clearance_paths(const EdgeConfig& config);
+inline constexpr std::string_view kClearedFileName = "cleared";
 
 /// Whether the trip found at this instant was cleared. Allocates nothing.
-bool is_trip_cleared(const ClearancePaths& paths, std::int64_t trip_utc_s);
+bool is_trip_cleared(const BothPlaces& paths, std::int64_t trip_utc_s);
 
 /// Adds the trip to what was cleared in this file, on the disk before it returns. False with errno set.
 bool clear_trip_of(const char* path, std::int64_t trip_utc_s);

@@ -93,7 +93,7 @@ class TwoHolds : public ::testing::Test {
   [[nodiscard]] HoldReading reading() const { return read_newest_hold(paths_); }
 
   const TemporaryFolder folder_;
-  const HoldPaths paths_;
+  const BothPlaces paths_;
   const Hold other_{.power_w = 3, .until_utc_s = 4};
 };
 

@@ -71,7 +71,7 @@ class TwoPlaces : public ::testing::Test {
     paths_.run = folder_.file("run").c_str();
   }
   const TemporaryFolder folder_;
-  ClearancePaths paths_;
+  BothPlaces paths_;
 };
 
 TEST_F(TwoPlaces, TheWordOfEitherIsEnough) {
