@@ -299,7 +299,9 @@ void RegisterImage::set(int point, std::int64_t value) {
   const RegisterPoint& p = map_.points[point];
   Scaling scaling;
   RegisterBlock block;
-  if (!live_scaling(map_, snapshot(), point, scaling)) return;
+  // All of them are looked at only where one of them scales this one.
+  const bool is_scaled = p.scale_from >= 0 || p.percent_of >= 0;
+  if (is_scaled && !live_scaling(map_, snapshot(), point, scaling)) return;
   if (encode(p, value, Rounding::kNearest, block, scaling) != Status::kOk) return;
   const std::span<std::uint16_t> registers = p.read_function == 4 ? input_ : holding_;
   if (p.mask != 0 && p.register_count() == 1) {  // other points share this register

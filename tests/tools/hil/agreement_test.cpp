@@ -1,7 +1,10 @@
 // Virtual and wall time held against each other: which cycles count, and what is the same order.
 #include "tools/hil_runner/run/agreement.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "tools/hil_runner/wall/wall_run.h"
 
 namespace bess {
 namespace {
@@ -24,25 +27,54 @@ Outcome outcome(bool is_virtual, std::vector<CycleRecord> log) {
 }
 
 TEST(Agreement, ComparesWhatBothHaveLogged) {
+  CycleRecord elsewhere = cycle(6, -4'011);
+  elsewhere.price.has_row = true;
   const std::vector<Outcome> runs = {
       outcome(true, {cycle(2, 4'000), cycle(4, 4'000), cycle(6, -4'000), cycle(8, 0),
                      cycle(9, 0, Mode::kStopping)}),
-      outcome(false, {cycle(0, 1), cycle(2, 4'010), cycle(6, -4'011), cycle(8, 0),
+      outcome(false, {cycle(0, 1), cycle(2, 4'010), elsewhere, cycle(8, 0),
                       cycle(9, 7'000, Mode::kStopping)})};
-  const Agreement found = agreement_of(runs);
-  EXPECT_EQ(found.scenarios, 1);
-  EXPECT_EQ(found.cycles, 3);
-  EXPECT_EQ(found.otherwise, 1);
+  const std::vector<Agreement> found = agreements_of(runs);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0].cycles, 3);
+  ASSERT_EQ(found[0].otherwise.size(), 1U);
+  EXPECT_EQ(found[0].otherwise[0].met, "price");
+  EXPECT_TRUE(found[0].holds());
   EXPECT_EQ(agreement_line(found),
-            "2 of 3 cycles of 1 scenarios ordered alike in both times; not made up at minute 6: "
-            "-4000 W (student), in wall time -4011 W (student)");
+            "2 of 3 cycles of 1 scenarios ordered alike in both times, 1 otherwise on something "
+            "else, 0 on the same");
+  EXPECT_THAT(agreement_table(found), ::testing::HasSubstr("minute   6: -4000 W (student), in wall "
+                                                           "time -4011 W (student): price\n"));
+}
+
+TEST(Agreement, AnotherOrderOnTheSameBreaksIt) {
+  const auto with = [](const auto& change) {
+    CycleRecord record = cycle(2, 0);
+    change(record);
+    const std::vector<Agreement> found =
+        agreements_of({outcome(true, {cycle(2, 4'000)}), outcome(false, {record})});
+    return found.at(0).holds() ? found.at(0).otherwise.at(0).met : "broken";
+  };
+  EXPECT_EQ(with([](CycleRecord&) {}), "broken");
+  EXPECT_EQ(with([](CycleRecord& r) { r.decision_us = 7; }), "broken");
+  EXPECT_EQ(with([](CycleRecord& r) { r.has_measurement = true; }), "link");
+  EXPECT_EQ(with([](CycleRecord& r) { r.price.minute_utc_s = 60; }), "price");
+  EXPECT_EQ(with([](CycleRecord& r) { r.hold.held = true; }), "words");
+  EXPECT_EQ(with([](CycleRecord& r) { r.site.has_grid_power = true; }), "meter");
+  EXPECT_EQ(with([](CycleRecord& r) { r.measurement.soc_e4 = 1; }), "battery");
+  EXPECT_EQ(with([](CycleRecord& r) { r.is_tripped = true; }), "before");
 }
 
 TEST(Agreement, SaysNothingWhereNothingRanInBothTimes) {
-  EXPECT_EQ(agreement_line(agreement_of({outcome(true, {cycle(2, 0)})})), "");
+  EXPECT_EQ(agreement_line(agreements_of({outcome(true, {cycle(2, 0)})})), "");
   Outcome skipped = outcome(false, {cycle(2, 0)});
   skipped.skipped = "for virtual time";
-  EXPECT_EQ(agreement_line(agreement_of({outcome(true, {cycle(2, 0)}), skipped})), "");
+  EXPECT_EQ(agreement_line(agreements_of({outcome(true, {cycle(2, 0)}), skipped})), "");
+  Outcome late = outcome(false, {});
+  late.error = std::string(kTooLate) + " by 3 s";
+  EXPECT_TRUE(agreements_of({outcome(true, {cycle(2, 0)}), late}).at(0).holds());
+  late.error = "bess-edge does not start";
+  EXPECT_FALSE(agreements_of({outcome(true, {cycle(2, 0)}), late}).at(0).holds());
 }
 
 }  // namespace

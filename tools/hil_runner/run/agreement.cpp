@@ -2,7 +2,11 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cstdlib>
+
+#include "shared/utc_text.h"
+#include "tools/hil_runner/wall/wall_run.h"
 
 namespace bess {
 namespace {
@@ -10,54 +14,147 @@ namespace {
 constexpr std::int32_t kAlikeW = 10;
 
 const Outcome* in_wall_time(const std::vector<Outcome>& outcomes, const Outcome& of) {
-  for (const Outcome& o : outcomes) {
-    const bool has_run = !o.is_virtual && o.skipped.empty() && o.error.empty();
-    if (has_run && o.scenario.path == of.scenario.path) return &o;
-  }
-  return nullptr;
+  const auto found = std::ranges::find_if(outcomes, [&](const Outcome& o) {
+    return !o.is_virtual && o.skipped.empty() && o.scenario.path == of.scenario.path;
+  });
+  return found == outcomes.end() ? nullptr : &*found;
+}
+
+bool is_far(std::int32_t one, std::int32_t other, std::int32_t at_most) {
+  return std::abs(one - other) > at_most;
+}
+
+bool met_another_link(const CycleRecord& v, const CycleRecord& w) {
+  return v.has_measurement != w.has_measurement || v.battery_status != w.battery_status;
+}
+
+bool met_another_price(const PriceReport& v, const PriceReport& w) {
+  return v.has_row != w.has_row || v.minute_utc_s != w.minute_utc_s ||
+         v.price_centi_eur_per_mwh != w.price_centi_eur_per_mwh || v.step_held != w.step_held;
+}
+
+bool met_other_words(const CycleRecord& v, const CycleRecord& w) {
+  return v.hold.held != w.hold.held || v.hold.power_w != w.hold.power_w ||
+         v.site.limit_status != w.site.limit_status;
+}
+
+bool met_another_meter(const SiteReport& v, const SiteReport& w) {
+  return v.has_grid_power != w.has_grid_power || v.meter_status != w.meter_status ||
+         is_far(v.grid_power_w, w.grid_power_w, kAlikeW) ||
+         is_far(v.quarter_hour_import_wh, w.quarter_hour_import_wh, 0);
+}
+
+bool met_another_battery(const BatteryMeasurement& v, const BatteryMeasurement& w) {
+  return v.soc_e4 != w.soc_e4 || is_far(v.power_w, w.power_w, kAlikeW) || v.alarm != w.alarm ||
+         v.dispatch_active != w.dispatch_active || v.order_replaced != w.order_replaced ||
+         v.order_ended != w.order_ended;
+}
+
+/// What was decided before stays in force: trips, waits and counts of answers.
+bool met_another_past(const CycleRecord& v, const CycleRecord& w) {
+  return v.is_tripped != w.is_tripped || v.mode != w.mode ||
+         v.unanswered_orders != w.unanswered_orders || v.weak_answers != w.weak_answers ||
+         v.reversals.steps != w.reversals.steps || v.reversals.direction != w.reversals.direction;
+}
+
+std::string met_otherwise(const CycleRecord& v, const CycleRecord& w) {
+  if (met_another_link(v, w)) return "link";
+  if (met_another_price(v.price, w.price)) return "price";
+  if (met_other_words(v, w)) return "words";
+  if (met_another_meter(v.site, w.site)) return "meter";
+  if (met_another_battery(v.measurement, w.measurement)) return "battery";
+  return met_another_past(v, w) ? "before" : "";
 }
 
 void compare(const Outcome& simulated, const Outcome& real, Agreement& agreement) {
   const std::vector<CycleRecord>& log = real.evidence.log;
-  std::size_t r = 0;
+  auto r = log.begin();
   for (const CycleRecord& cycle : simulated.evidence.log) {
-    while (r < log.size() && log[r].utc_s < cycle.utc_s) ++r;
-    if (r == log.size()) return;
+    while (r != log.end() && r->utc_s < cycle.utc_s) ++r;
+    if (r == log.end()) return;
     // How a run ends is no order, and not at a tick.
-    const bool is_both = log[r].utc_s == cycle.utc_s && cycle.mode != Mode::kStopping &&
-                         log[r].mode != Mode::kStopping;
+    const bool is_both =
+        r->utc_s == cycle.utc_s && cycle.mode != Mode::kStopping && r->mode != Mode::kStopping;
     if (!is_both) continue;
     ++agreement.cycles;
-    if (std::abs(log[r].ordered_power_w - cycle.ordered_power_w) <= kAlikeW) continue;
-    ++agreement.otherwise;
-    if (!agreement.first.empty()) continue;
-    agreement.first =
-        fmt::format("{} at minute {}: {} W ({}), in wall time {} W ({})", simulated.scenario.name,
-                    (cycle.utc_s - simulated.scenario.start_utc_s) / 60, cycle.ordered_power_w,
-                    reason_name(cycle.reason), log[r].ordered_power_w, reason_name(log[r].reason));
+    if (!is_far(r->ordered_power_w, cycle.ordered_power_w, kAlikeW)) continue;
+    agreement.otherwise.push_back(
+        {.in_virtual = cycle, .in_wall = *r, .met = met_otherwise(cycle, *r)});
   }
+}
+
+std::string order_text(const CycleRecord& cycle) {
+  return fmt::format("{} W ({})", cycle.ordered_power_w, reason_name(cycle.reason));
 }
 
 }  // namespace
 
-Agreement agreement_of(const std::vector<Outcome>& outcomes) {
-  Agreement agreement;
+bool Agreement::holds() const {
+  if (!not_compared.empty()) return not_compared.starts_with(kTooLate);
+  return std::ranges::none_of(otherwise, [](const OtherOrder& o) { return o.met.empty(); });
+}
+
+std::vector<Agreement> agreements_of(const std::vector<Outcome>& outcomes) {
+  std::vector<Agreement> agreements;
   for (const Outcome& outcome : outcomes) {
     if (!outcome.is_virtual || !outcome.skipped.empty()) continue;
     const Outcome* const real = in_wall_time(outcomes, outcome);
     if (real == nullptr) continue;
-    ++agreement.scenarios;
-    compare(outcome, *real, agreement);
+    Agreement& agreement = agreements.emplace_back(
+        Agreement{.scenario = outcome.scenario.name, .start_utc_s = outcome.scenario.start_utc_s});
+    agreement.not_compared = outcome.error.empty() ? real->error : outcome.error;
+    if (agreement.not_compared.empty()) compare(outcome, *real, agreement);
   }
-  return agreement;
+  return agreements;
 }
 
-std::string agreement_line(const Agreement& agreement) {
-  if (agreement.scenarios == 0) return "";
+std::string agreement_table(const std::vector<Agreement>& agreements) {
+  std::string text = fmt::format("{:32} {:>6} {:>6}  other orders, and what was met otherwise\n",
+                                 "scenario", "cycles", "alike");
+  for (const Agreement& a : agreements) {
+    const auto alike = a.cycles - std::ssize(a.otherwise);
+    text += fmt::format("{:32} {:6} {:6}  {}\n", a.scenario, a.cycles, alike, a.not_compared);
+    for (const OtherOrder& o : a.otherwise) {
+      text += fmt::format("  minute {:3}: {}, in wall time {}: {}\n",
+                          (o.in_virtual.utc_s - a.start_utc_s) / 60, order_text(o.in_virtual),
+                          order_text(o.in_wall), o.met.empty() ? "ON THE SAME" : o.met);
+    }
+  }
+  return text;
+}
+
+Json agreement_json(const std::vector<Agreement>& agreements) {
+  Json all = Json::list();
+  for (const Agreement& a : agreements) {
+    Json otherwise = Json::list();
+    for (const OtherOrder& o : a.otherwise) {
+      otherwise.add(Json::object({{"utc", utc_text(o.in_virtual.utc_s).view()},
+                                  {"virtual_w", o.in_virtual.ordered_power_w},
+                                  {"wall_w", o.in_wall.ordered_power_w},
+                                  {"met", o.met}}));
+    }
+    Json json = Json::object({{"scenario", a.scenario}, {"cycles", a.cycles}});
+    if (!a.not_compared.empty()) json.set("not_compared", a.not_compared);
+    json.set("otherwise", std::move(otherwise));
+    all.add(std::move(json));
+  }
+  return all;
+}
+
+std::string agreement_line(const std::vector<Agreement>& agreements) {
+  if (agreements.empty()) return "";
+  std::int64_t cycles = 0, otherwise = 0, on_the_same = 0;
+  for (const Agreement& a : agreements) {
+    cycles += a.cycles;
+    otherwise += std::ssize(a.otherwise);
+    on_the_same += std::ranges::count_if(a.otherwise, [](const auto& o) { return o.met.empty(); });
+  }
   const std::string line =
-      fmt::format("{} of {} cycles of {} scenarios ordered alike in both times",
-                  agreement.cycles - agreement.otherwise, agreement.cycles, agreement.scenarios);
-  return agreement.first.empty() ? line : line + "; not " + agreement.first;
+      fmt::format("{} of {} cycles of {} scenarios ordered alike in both times", cycles - otherwise,
+                  cycles, agreements.size());
+  if (otherwise == 0) return line;
+  return fmt::format("{}, {} otherwise on something else, {} on the same", line,
+                     otherwise - on_the_same, on_the_same);
 }
 
 }  // namespace bess

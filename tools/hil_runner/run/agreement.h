@@ -1,25 +1,43 @@
-// Whether the two times say the same: what a scenario's edge ordered in virtual time, held against what bess-edge ordered in
-// wall time, cycle by cycle.
+// What the edge ordered in virtual and in wall time, cycle by cycle, and what it met where it ordered otherwise.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
+#include "shared/host/json.h"
 #include "tools/hil_runner/run/outcome.h"
 
 namespace bess {
 
-struct Agreement {
-  int scenarios = 0;    ///< that ran in both times
-  int cycles = 0;       ///< that both of them logged
-  int otherwise = 0;    ///< of those, ordered otherwise
-  std::string first{};  ///< of those, by scenario and minute; empty: none
+/// A cycle that both have logged, and ordered otherwise.
+struct OtherOrder {
+  CycleRecord in_virtual;
+  CycleRecord in_wall;
+  /// What it met otherwise: "link", "price", "words", "meter", "battery", "before"; empty: it decided otherwise on the
+  /// same, which no run may.
+  std::string met;
 };
 
-/// Power that differs by a few watts is the same order: a quarter-hour's energy is counted to the second.
-Agreement agreement_of(const std::vector<Outcome>& outcomes);
+struct Agreement {
+  std::string scenario;
+  std::int64_t start_utc_s = 0;
+  int cycles = 0;  ///< that both of them logged
+  std::vector<OtherOrder> otherwise{};
+  std::string not_compared{};  ///< why there is nothing to compare; empty: there is
 
-/// "1560 of 1563 cycles of 60 scenarios ordered alike in both times, not ..."; empty where none ran in both.
-std::string agreement_line(const Agreement& agreement);
+  /// Every order is the same, or was made on something else; where this machine was too late, nothing is said.
+  [[nodiscard]] bool holds() const;
+};
+
+/// Of each scenario that was to run in both times, in the order of the outcomes. Power that differs by a few watts is the
+/// same order: a quarter-hour's energy is counted to the second.
+std::vector<Agreement> agreements_of(const std::vector<Outcome>& outcomes);
+
+/// A row a scenario, then each order that differs, then the sum.
+std::string agreement_table(const std::vector<Agreement>& agreements);
+Json agreement_json(const std::vector<Agreement>& agreements);
+/// "1560 of 1563 cycles of 60 scenarios ordered alike in both times, 3 on something else"; empty where none ran in both.
+std::string agreement_line(const std::vector<Agreement>& agreements);
 
 }  // namespace bess

@@ -7,8 +7,10 @@
 #include <cstdio>
 #include <filesystem>
 #include <functional>
+#include <iterator>
 #include <memory>
 #include <mutex>
+#include <random>
 #include <thread>
 
 #include "shared/host/file.h"
@@ -40,6 +42,9 @@ struct RunOptions {
   bool list_invariants = false;
   bool json = false;
   bool each_part = false;
+  bool agree = false;
+  int draw = 0;  ///< so many scenarios; 0: all
+  std::uint64_t seed = 0;
   std::string junit, report, edge, simulators;
   RealOptions real;
 };
@@ -112,6 +117,10 @@ class Runner {
     for (const std::string& file : scenario_files(options.places)) {
       scenarios_.push_back(read_scenario(file));
     }
+    if (options.agree) {
+      std::erase_if(scenarios_, [](const Scenario& s) { return !s.runs_virtual || !s.runs_wall; });
+    }
+    if (options.draw > 0) draw();
     if (site_.battery) refuse_unsuited();
   }
 
@@ -123,14 +132,22 @@ class Runner {
       run_on_real_battery();
       return std::move(outcomes_);
     }
-    if (options_.times != Times::kWall) {
+    const Times times = options_.agree ? Times::kBoth : options_.times;
+    if (times != Times::kWall) {
       for (const Scenario& scenario : scenarios_) take(run_virtually(scenario));
     }
-    if (options_.times != Times::kVirtual) run_in_wall_time();
+    if (times != Times::kVirtual) run_in_wall_time();
     return std::move(outcomes_);
   }
 
  private:
+  void draw() {
+    std::vector<Scenario> drawn;
+    std::ranges::sample(scenarios_, std::back_inserter(drawn), options_.draw,
+                        std::mt19937_64(options_.seed));
+    scenarios_ = std::move(drawn);
+  }
+
   /// Of a folder, those that may not are passed over; one that was named is a mistake.
   void refuse_unsuited() const {
     for (const Scenario& scenario : scenarios_) {
@@ -194,7 +211,7 @@ class Runner {
 
   void take(Outcome outcome) {
     const std::lock_guard lock(mutex_);
-    if (!options_.json) print_line(outcome);
+    if (!options_.json && !options_.agree) print_line(outcome);
     outcomes_.push_back(std::move(outcome));
   }
 
@@ -213,6 +230,20 @@ void list_scenarios(const std::vector<Scenario>& scenarios) {
   }
 }
 
+/// Whether the two times agree, whatever is judged of each.
+void tell_agreement(const RunOptions& options, const std::vector<Outcome>& outcomes) {
+  const std::vector<Agreement> agreements = agreements_of(outcomes);
+  if (agreements.empty()) fail("no scenario among these runs in both times here");
+  if (options.json) {
+    fmt::print("{}\n", agreement_json(agreements).line());
+  } else {
+    fmt::print("{}{}\n", agreement_table(agreements), agreement_line(agreements));
+  }
+  const auto broken =
+      std::ranges::count_if(agreements, [](const Agreement& a) { return !a.holds(); });
+  if (broken > 0) fail("{} of {} scenarios are ordered otherwise", broken, agreements.size());
+}
+
 void run(const RunOptions& options) {
   if (options.list_invariants) {
     for (const RuleInfo& info : kRuleInfos) fmt::print("{:12} {}\n", info.name, info.text);
@@ -224,6 +255,7 @@ void run(const RunOptions& options) {
   Runner runner(options);
   if (options.list) return list_scenarios(runner.scenarios());
   const std::vector<Outcome> outcomes = runner.run();
+  if (options.agree) return tell_agreement(options, outcomes);
   const auto failed = std::ranges::count_if(outcomes, [](const Outcome& o) { return !o.passed(); });
   const auto skipped =
       std::ranges::count_if(outcomes, [](const Outcome& o) { return !o.skipped.empty(); });
@@ -238,7 +270,7 @@ void run(const RunOptions& options) {
                            .line());
   } else {
     fmt::print("{} passed, {} failed, {} skipped\n", ran - failed, failed, skipped);
-    const std::string agreement = agreement_line(agreement_of(outcomes));
+    const std::string agreement = agreement_line(agreements_of(outcomes));
     if (!agreement.empty()) fmt::print("{}\n", agreement);
   }
   if (!options.junit.empty()) write_file(options.junit, junit_text(outcomes));
@@ -256,6 +288,7 @@ void add_run_command(ProgramCommand& app) {
       "Examples:\n"
       "  bess-hil run tests/scenarios/quiet_hour.toml\n"
       "  bess-hil run tests/scenarios --time both --junit build/hil.xml\n"
+      "  bess-hil run tests/scenarios --agree --jobs 16\n"
       "  bess-hil run mine.toml --report mine.html\n"
       "  bess-hil run tests/scenarios --list\n"
       "  bess-hil run tests/scenarios/quiet_hour.toml --real 192.168.1.20:502 "
@@ -280,6 +313,11 @@ void add_run_command(ProgramCommand& app) {
   command.flag(
       "--each-part", options->each_part,
       "In virtual time, run each that passes also without each of its parts: all must differ");
+  command.flag("--agree", options->agree,
+               "Run those that are for both times in both, and compare what was ordered, cycle by "
+               "cycle");
+  command.option("--draw", options->draw, "Only so many of them, drawn").range(1, 1'000);
+  command.option("--seed", options->seed, "Of --draw").needs("--draw");
   command.flag("--json", options->json, "One JSON object instead of lines");
   command.option("--junit", options->junit, "Write JUnit XML here");
   command.option("--report", options->report, "Write a page with pictures here (HTML)");

@@ -160,13 +160,15 @@ void VirtualBus::answer(const Pending& pending) {
 }
 
 void VirtualBus::put(const Bytes& bytes, std::int64_t first_ns, std::int64_t gap_ns) {
+  const std::int64_t last_ns = input_.empty() ? first_ns : input_.back().arrives_ns;
   std::int64_t arrives_ns = first_ns;
   for (const std::uint8_t byte : bytes) {
     arrives_ns += line_ns(1);
     input_.push_back({.arrives_ns = arrives_ns, .byte = byte});
     arrives_ns += gap_ns;
   }
-  std::ranges::stable_sort(input_, {}, &ByteOnTheWay::arrives_ns);
+  // Behind what dripped: a later answer may overtake it.
+  if (last_ns > first_ns) std::ranges::stable_sort(input_, {}, &ByteOnTheWay::arrives_ns);
 }
 
 /// Time that so many bytes take on a serial line: 10 bits each.

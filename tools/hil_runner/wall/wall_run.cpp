@@ -45,9 +45,9 @@ double slack_s(const Lateness& lateness, std::int32_t time_scale) {
   const double slack_s = 2 + (kLateS + kLateFactor * lateness.worst_s()) * time_scale;
   if (slack_s <= kSlackMaxS) return slack_s;
   fail(
-      "not judged: this machine was late by {:.2f} s, at time scale {} too late for a cycle of 120 "
-      "s; fewer --jobs, or a smaller time_scale",
-      lateness.worst_s(), time_scale);
+      "{} by {:.2f} s, at time scale {} too late for a cycle of 120 s; fewer --jobs, or a smaller "
+      "time_scale",
+      kTooLate, lateness.worst_s(), time_scale);
 }
 
 class WallRun {

@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "shared/host/minute_file.h"
 #include "tools/hil_runner/base/work_folder.h"
@@ -13,6 +14,9 @@
 #include "tools/hil_runner/scenario/scenario.h"
 
 namespace bess {
+
+/// How the error of a run begins for which this machine was too late.
+inline constexpr std::string_view kTooLate = "not judged: this machine was late";
 
 /// What a run stands on: the programs that are started, and the battery if there is one already.
 struct WallSite {
