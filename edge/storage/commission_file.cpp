@@ -204,8 +204,8 @@ std::string loss_line(const Stored& one, const Stored& good) {
   return line;
 }
 
-/// Visits each place that holds something else than it should: the place, the one that counts, what should be there,
-/// and whether that is a loss. None where none counts.
+/// Visits each place that holds something else than it should: the place, the one that counts,
+/// what should be there, and whether that is a loss. None where none counts.
 template <typename Visit>
 void for_each_other(const EdgeConfig& config, const Visit& visit) {
   const AllStored all = read_places(config);

@@ -1,5 +1,6 @@
 #!/bin/bash
-# year.sh BESS-HIL: a year in virtual time, twice: judged, and the same to the bit. Tells the processor time of each.
+# year.sh BESS-HIL: a year in virtual time, twice: judged, and the same to the bit. Tells the
+# processor time of each.
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cat >"$work/year.toml" <<END

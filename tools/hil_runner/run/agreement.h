@@ -1,4 +1,5 @@
-// What the edge ordered in virtual and in wall time, cycle by cycle, and what it met where it ordered otherwise.
+// What the edge ordered in virtual and in wall time, cycle by cycle, and what it met where it
+// ordered otherwise.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +15,8 @@ namespace bess {
 struct OtherOrder {
   CycleRecord in_virtual;
   CycleRecord in_wall;
-  /// What it met otherwise: "link", "price", "words", "meter", "battery", "before"; empty: it decided otherwise on the
-  /// same, which no run may.
+  /// What it met otherwise: "link", "price", "words", "meter", "battery", "before"; empty: it
+  /// decided otherwise on the same, which no run may.
   std::string met;
 };
 
@@ -26,18 +27,20 @@ struct Agreement {
   std::vector<OtherOrder> otherwise{};
   std::string not_compared{};  ///< why there is nothing to compare; empty: there is
 
-  /// Every order is the same, or was made on something else; where this machine was too late, nothing is said.
+  /// Every order is the same, or was made on something else; where this machine was too late,
+  /// nothing is said.
   [[nodiscard]] bool holds() const;
 };
 
-/// Of each scenario that was to run in both times, in the order of the outcomes. Power that differs by a few watts is the
-/// same order: a quarter-hour's energy is counted to the second.
+/// Of each scenario that was to run in both times, in the order of the outcomes. Power that differs
+/// by a few watts is the same order: a quarter-hour's energy is counted to the second.
 std::vector<Agreement> agreements_of(const std::vector<Outcome>& outcomes);
 
 /// A row a scenario, then each order that differs, then the sum.
 std::string agreement_table(const std::vector<Agreement>& agreements);
 Json agreement_json(const std::vector<Agreement>& agreements);
-/// "1560 of 1563 cycles of 60 scenarios ordered alike in both times, 3 on something else"; empty where none ran in both.
+/// "1560 of 1563 cycles of 60 scenarios ordered alike in both times, 3 otherwise on something else,
+/// 0 on the same"; empty where none ran in both.
 std::string agreement_line(const std::vector<Agreement>& agreements);
 
 }  // namespace bess
