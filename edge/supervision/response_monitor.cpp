@@ -1,6 +1,7 @@
 #include "edge/supervision/response_monitor.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "shared/units_and_limits.h"
 
@@ -18,6 +19,9 @@ constexpr std::int32_t kBalancesFromE4 = 9'500;
 constexpr std::int32_t kBalancingPercentMax = 15;  ///< of the rating
 /// A battery that takes longer from rest to its rating has not followed, whatever it moves.
 constexpr std::int32_t kFullRampS = 180;
+/// A device may begin that much later than its map says. Where readings are a step apart nobody sees it; after a
+/// cut, or in a cycle that a stepped clock makes short, it still shows the order before.
+constexpr std::int32_t kLateS = 10;
 constexpr std::int64_t kReadingGapMaxS = 300;  ///< a reading that was lost, and the time of both
 
 }  // namespace
@@ -31,6 +35,7 @@ void ResponseMonitor::observe(const Response& now) {
   before_s_ = now.steady_s;
   before_power_w_ = now.measurement.power_w;
   before_ordered_w_ = now.ordered_power_w;
+  before_may_be_less_ = may_be_less(now);
 }
 
 ResponseFindings ResponseMonitor::findings() const {
@@ -56,7 +61,7 @@ void ResponseMonitor::trip_if(bool is_found, Reason reason) {
 
 void ResponseMonitor::judge_power(const Response& now) {
   answers_ = needs_no_care_ = false;
-  if (!now.is_driven || now.order_age_s < settings_.band.settle_s) return;
+  if (!now.is_driven || now.order_age_s < settings_.band.settle_s || has_not_begun(now)) return;
   if (power_magnitude_w(now.ordered_power_w) <= settings_.noise_w()) return judge_idle(now);
   judge_driven(now);
 }
@@ -133,14 +138,17 @@ void ResponseMonitor::judge_answer(const Response& now, std::int32_t measured_w)
 /// Whether the power is on its way to a new order, too slow for its map but quicker than a fault that
 /// merely differs from one reading to the next.
 bool ResponseMonitor::note_ramp(const Response& now, std::int32_t from_w) {
-  const bool is_new_order = knows_before(now) && now.order_age_s <= now.steady_s - before_s_;
-  if (!is_new_order) return false;
+  if (!knows_before(now)) return false;
+  // From its order on; of an order that is read a second time on its way, since the reading before.
+  const bool is_young = is_new_order(now) || now.order_age_s <= kFullRampS;
+  const std::int64_t seconds = std::min<std::int64_t>(now.order_age_s, now.steady_s - before_s_);
+  if (!is_young || seconds <= 0) return false;
   const std::int64_t left_w = std::int64_t{now.ordered_power_w} - from_w;
   const std::int64_t moved_w = std::int64_t{now.measurement.power_w} - from_w;
   const std::int64_t towards_w = left_w < 0 ? -moved_w : moved_w;
-  const std::int64_t least_w = std::int64_t{settings_.power_w} * now.order_age_s / kFullRampS;
+  const std::int64_t least_w = std::int64_t{settings_.power_w} * seconds / kFullRampS;
   if (towards_w < least_w || towards_w > std::max(left_w, -left_w)) return false;
-  ramp_w_per_s_ = static_cast<std::int32_t>(towards_w / now.order_age_s);
+  ramp_w_per_s_ = static_cast<std::int32_t>(towards_w / seconds);
   slow_.bad();
   return true;
 }
@@ -151,8 +159,29 @@ bool ResponseMonitor::knows_before(const Response& now) const {
   return has_before_ && seconds > 0 && seconds <= kReadingGapMaxS;
 }
 
+bool ResponseMonitor::is_new_order(const Response& now) const {
+  return knows_before(now) && now.order_age_s <= now.steady_s - before_s_;
+}
+
+/// Just settled by its map, and it still does what it did before the order.
+bool ResponseMonitor::has_not_begun(const Response& now) const {
+  const std::int32_t latest_s = std::min(settings_.band.settle_s + kLateS, kSecondsPerStep / 2);
+  if (!is_new_order(now) || now.order_age_s >= latest_s) return false;
+  const std::int64_t apart_w = std::int64_t{now.measurement.power_w} - before_power_w_;
+  return std::abs(apart_w) <= settings_.tolerance_w(before_power_w_);
+}
+
 bool ResponseMonitor::is_ramp(const Response& now) {
-  return knows_before(now) ? note_ramp(now, before_power_w_) : may_be_ramp(now);
+  if (!knows_before(now)) return may_be_ramp(now);
+  return note_ramp(now, before_power_w_) || is_ramp_of_held_back(now);
+}
+
+/// Near full and near empty less flows than the setpoint of its ramp, which comes from the order before: first that has
+/// to fall below what flows.
+bool ResponseMonitor::is_ramp_of_held_back(const Response& now) {
+  const std::int32_t moved_w =
+      power_magnitude_w(before_power_w_) - power_magnitude_w(now.measurement.power_w);
+  return before_may_be_less_ && moved_w > settings_.noise_w() && note_ramp(now, before_ordered_w_);
 }
 
 /// The first reading of a new order, with nothing known of the one before: it comes from its rating at most.

@@ -86,7 +86,10 @@ class ResponseMonitor {
   void trip_if(bool is_found, Reason reason);
   bool note_ramp(const Response& now, std::int32_t from_w);
   bool is_ramp(const Response& now);
+  bool is_ramp_of_held_back(const Response& now);
   [[nodiscard]] bool knows_before(const Response& now) const;
+  [[nodiscard]] bool is_new_order(const Response& now) const;
+  [[nodiscard]] bool has_not_begun(const Response& now) const;
   [[nodiscard]] bool may_be_ramp(const Response& now) const;
   [[nodiscard]] bool is_care(const BatteryMeasurement& m) const;
   [[nodiscard]] std::int32_t reachable_power_w(const Response& now) const;
@@ -111,6 +114,7 @@ class ResponseMonitor {
   std::int64_t before_s_ = 0;
   std::int32_t before_power_w_ = 0;
   std::int32_t before_ordered_w_ = 0;
+  bool before_may_be_less_ = false;  ///< it may have held back what it was ordered
 };
 
 }  // namespace bess

@@ -378,6 +378,56 @@ TEST(ResponseMonitor, ButDischargingAgainstAnOrderToChargeIsTheWrongDirectionThe
   EXPECT_EQ(site.monitor.trip(), Reason::kWrongDirection);
 }
 
+/// What a clock that is stepped makes of cycles: readings seconds after their order, and soon again.
+struct ShortCycles {
+  ResponseMonitor monitor{ResponseSettings{}};
+  std::int64_t steady_s = 0;
+
+  void read(std::int32_t ordered_w, std::int32_t age_s, std::int32_t power_w,
+            std::int64_t after_s = kStepS, std::int32_t soc_e4 = 5'000) {
+    monitor.observe({.steady_s = steady_s += after_s,
+                     .is_driven = true,
+                     .ordered_power_w = ordered_w,
+                     .order_age_s = age_s,
+                     .measurement = {.soc_e4 = soc_e4, .power_w = power_w, .capacity_wh = 8'000}});
+  }
+};
+
+TEST(ResponseMonitor, SomeSecondsBeyondItsMapTheOrderBeforeIsNoFault) {
+  ShortCycles cycles;
+  cycles.read(4'000, 117, 4'000, kStepS, 5'000);
+  cycles.read(0, 22, 4'000, 25, 5'030);  // of a lag of 25 s, where the map says 20
+  cycles.read(0, 117, 0, 95, 5'030);
+  cycles.read(4'000, 117, 4'000, kStepS, 5'160);
+  cycles.read(0, 22, 4'000, 25, 5'190);
+  EXPECT_EQ(cycles.monitor.trip(), Reason::kStudent);
+  for (int i = 0; i < 2; ++i) cycles.read(0, 31, 4'000, 31, 5'220 + 30 * i);
+  EXPECT_EQ(cycles.monitor.trip(), Reason::kUncontrolledPower) << "after that it is one";
+}
+
+TEST(ResponseMonitor, AnOrderThatIsReadTwiceOnItsWayIsOnItsWay) {
+  ShortCycles cycles;
+  cycles.read(4'000, 117, 4'000);
+  cycles.read(0, 40, 2'900, 40);
+  cycles.read(0, 80, 1'800, 40);
+  cycles.read(0, 117, 800, 37);
+  EXPECT_EQ(cycles.monitor.trip(), Reason::kStudent);
+  for (int i = 0; i < 2; ++i) cycles.read(0, 150 + i, 800, 33);
+  EXPECT_EQ(cycles.monitor.trip(), Reason::kUncontrolledPower) << "what stands is not on its way";
+}
+
+/// Near full 1.6 of 4 kW flow: on the way to 0 W the setpoint is still above that at first.
+TEST(ResponseMonitor, ARampComesFromTheOrderThatWasHeldBack) {
+  for (const std::int32_t soc_e4 : {9'700, 5'000}) {
+    ShortCycles cycles;
+    cycles.read(4'000, 370, 1'629, kStepS, soc_e4);
+    for (int i = 0; i < 2; ++i) cycles.read(0, 107, 942 - i, 107, soc_e4);
+    const bool is_near_full = soc_e4 == 9'700;
+    EXPECT_EQ(cycles.monitor.trip(), is_near_full ? Reason::kStudent : Reason::kUncontrolledPower)
+        << soc_e4;
+  }
+}
+
 /// Thirty days of a real battery's habits: 2 % noise, 5 % losses each way, power that falls from 85 %
 /// up and below 25 %, an idle draw, a counter of charge in 0.1 % that lags.
 TEST(ResponseMonitor, ThirtyDaysOfAnHonestBatteryRaiseNothing) {
