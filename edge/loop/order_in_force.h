@@ -120,10 +120,11 @@ class OrderInForce {
   }
 
   /// Only the order that the battery really follows can be answered: one that it refused, or that
-  /// has run out, leaves it in its own mode, which goes any way.
+  /// has run out, leaves it in its own mode, which goes any way. Of one that a run before gave, under a
+  /// clock that was stepped since, nobody knows for how long it has been followed.
   [[nodiscard]] Response response(const BatteryMeasurement& m) const {
     const std::int64_t read_s = time_.now_s();
-    const bool is_known = m.has_order_power || is_confirmed_;
+    const bool is_known = (m.has_order_power || is_confirmed_) && read_s > since_s_;
     return {.utc_s = now_utc_s(),
             .steady_s = read_s,
             .is_driven =

@@ -47,11 +47,7 @@ void SocMonitor::observe(const Response& now) {
   capacity_wh_ = m.capacity_wh > 0 ? m.capacity_wh : settings_.capacity_wh;
   shown_step_e4_ = std::gcd(shown_step_e4_, m.soc_e4);
   const std::int64_t seconds = now.steady_s - before_.steady_s;
-  // Of an order that a run before gave, under a clock that was stepped meanwhile, nobody knows for how long it has
-  // been followed, and so not what flowed.
-  const bool is_of_unknown_age = now.is_driven && now.order_age_s <= 0;
-  const bool is_gap = seconds <= 0 || seconds > kReadingGapMaxS || is_of_unknown_age;
-  if (!has_before_ || is_gap) return begin_anew(now);
+  if (!has_before_ || seconds <= 0 || seconds > kReadingGapMaxS) return begin_anew(now);
   if (seldom_.is_seldom()) {
     seldom_.note_power(now, flow_power_w_);
     seldom_.observe(now);
