@@ -13,6 +13,13 @@
 
 namespace bess {
 
+/// When the power of a record's order was ordered first, to some seconds: the battery was read a little before its tick.
+inline std::int64_t ordered_since_utc_s(const CycleRecord& record) {
+  const FollowedOrder& before = record.followed;
+  const bool goes_on = before.is_judged && before.power_w == record.ordered_power_w;
+  return goes_on ? record.utc_s - before.age_s : record.utc_s;
+}
+
 template <typename Battery, typename Clock>
 class OrderInForce {
  public:
@@ -53,12 +60,12 @@ class OrderInForce {
     if (is_expected) since_s_ -= utc_s - expected_since_utc_s_;
   }
 
-  /// The newest order of the run before, by its log, and since when it has been that power: found in force, it
-  /// is that old, and its answer counts.
-  void expect(std::int32_t power_w, std::int64_t utc_s, std::int64_t since_utc_s) {
-    expected_power_w_ = power_w;
-    expected_utc_s_ = utc_s;
-    expected_since_utc_s_ = since_utc_s;
+  /// The newest order of the run before, by its log: found in force, it is as old as its power, and its answer
+  /// counts.
+  void expect(const CycleRecord& newest) {
+    expected_power_w_ = newest.ordered_power_w;
+    expected_utc_s_ = newest.utc_s;
+    expected_since_utc_s_ = ordered_since_utc_s(newest);
   }
 
   /// Of steady time before UTC: it goes on from what was recalled.

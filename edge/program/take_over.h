@@ -5,26 +5,13 @@
 
 namespace bess {
 
-/// When the power of a record's order was ordered first, to some seconds: the battery was read a little before its tick.
-inline std::int64_t ordered_since_utc_s(const CycleRecord& record) {
-  const FollowedOrder& before = record.followed;
-  const bool goes_on = before.is_judged && before.power_w == record.ordered_power_w;
-  return goes_on ? record.utc_s - before.age_s : record.utc_s;
-}
-
-/// `trip`: the one in force, which another log than that of `before` may know.
-inline TakeOver take_over_of(const CycleRecord& before, const Trip& trip, const PriceLevel& level) {
-  return {.throughput = before.throughput,
-          .price_level = level,
-          .trip = trip,
-          .lost_orders = before.lost_orders,
-          .reversals = before.reversals,
-          .last_full_day = last_full_day_of(before.utc_s, before.days_since_full),
-          .site = before.site,
-          .standing_price = before.standing_price,
-          .ordered_power_w = before.ordered_power_w,
-          .ordered_since_utc_s = ordered_since_utc_s(before),
-          .utc_s = before.utc_s};
+/// The newest record, but for the trip in force, which another log than its own may know, and the level to start from.
+inline CycleRecord take_over_of(const CycleRecord& newest, const Trip& trip,
+                                const PriceLevel& level) {
+  CycleRecord before = newest;
+  before.trip = trip;
+  before.price_level = level;
+  return before;
 }
 
 /// Supervision judges at a start what it has judged in the last hours, so that a kill between two readings

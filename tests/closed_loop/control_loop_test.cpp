@@ -293,10 +293,9 @@ int runs_until_trip(int cycles_per_run, const std::function<void(FakeBattery&, i
     for (const CycleRecord& record : log) loop.recall(record);
     if (!log.empty()) {
       const CycleRecord& newest = log.back();
-      loop.take_over({.trip = newest.is_tripped ? newest.trip : Trip{},
+      loop.take_over({.utc_s = newest.utc_s,
                       .ordered_power_w = newest.ordered_power_w,
-                      .ordered_since_utc_s = newest.utc_s,
-                      .utc_s = newest.utc_s});
+                      .trip = newest.is_tripped ? newest.trip : Trip{}});
     }
     for (int i = 0; i < cycles_per_run; ++i) {
       fault(plant.battery, static_cast<int>(log.size()));

@@ -70,7 +70,7 @@ TEST(PriceLies, ReversalsStayUnderTheCapWhateverThePricesAsk) {
 TEST(PriceLies, ARestartDoesNotStartTheHourAgain) {
   Liar liar;
   std::vector<CycleRecord> records;
-  TakeOver before;
+  CycleRecord before;
   for (int run = 0; run < 20; ++run) {
     Loop loop({.control = true, .guard = {}, .reversals_per_hour_max = 6}, liar.battery,
               liar.prices, liar.clock);

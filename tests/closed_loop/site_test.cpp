@@ -248,7 +248,7 @@ TEST(Site, ARestartCountsWhatItsLogDoesNotKnowAsTheCap) {
   const std::int64_t quarter_s =
       (kDayStartS / 1'800 + 1) * 1'800;  // where ticks meet quarter-hours
   house.clock.now_ns = (quarter_s + 470) * kNanosecondsPerSecond;
-  house.loop.take_over({.site = {.quarter_hour_import_wh = 100}, .utc_s = quarter_s + 360});
+  house.loop.take_over({.utc_s = quarter_s + 360, .site = {.quarter_hour_import_wh = 100}});
   const CycleRecord record = house.cycle();  // the tick at 480
   // 100 Wh until 360 s, the cap until the first reading at about 470 s.
   EXPECT_NEAR(record.site.quarter_hour_import_wh, 100 + 110 * 3'000 / 3'600, 12);

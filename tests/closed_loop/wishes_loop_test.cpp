@@ -136,8 +136,8 @@ TEST(LoopWithFullCharges, ARestartGoesOnCounting) {
   settings.full_charge_every_days = 3;
   Site site(0.5, settings);
   site.prices.price = [](std::int64_t) { return 5'000; };
-  const std::int32_t today = local_day_number(local_minute_of(kDayStartS));
-  site.loop.take_over({.price_level = PriceLevel::starting_at(8'000), .last_full_day = today - 3});
+  site.loop.take_over(
+      {.utc_s = kDayStartS, .price_level = PriceLevel::starting_at(8'000), .days_since_full = 3});
   const CycleRecord record = site.cycle();
   EXPECT_EQ(record.days_since_full, 3);
   EXPECT_EQ(record.reason, Reason::kFullCharge);

@@ -110,7 +110,7 @@ TEST(TakeOver, TheTripIsTheOneThatIsGivenAndTheRestTheRecords) {
   record.lost_orders.judged = 7;
   record.standing_price.unchanged_s = 840;
   const Trip trip{.reason = Reason::kWrongDirection, .utc_s = 9};
-  const TakeOver taken = take_over_of(record, trip, PriceLevel{});
+  const CycleRecord taken = take_over_of(record, trip, PriceLevel{});
   EXPECT_EQ(taken.trip.reason, Reason::kWrongDirection);
   EXPECT_EQ(taken.trip.utc_s, 9);
   EXPECT_EQ(taken.ordered_power_w, -1'500);
