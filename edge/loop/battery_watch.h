@@ -1,5 +1,6 @@
-// Battery and site, read for a cycle and looked after between two: the watchdog is fed as often as its map asks, and
-// what the site no longer bears of the order in force is taken off it. Only a tick gives it back.
+// Battery and site, read for a cycle and looked after between two: the watchdog is fed as often as
+// its map asks, and what the site no longer bears of the order in force is taken off it. Only a
+// tick gives it back.
 #pragma once
 
 #include <algorithm>
@@ -72,8 +73,8 @@ class BatteryWatch {
     if (bearable(known, Margin::kHalf).power_w == order_.power_w() && !cut_failed_) return;
     const Bearable left = bearable(known, Margin::kWhole);
     if (!site().needs_battery()) is_read = battery_.read(measurement) == Status::kOk;
-    // What became of our order is for the tick to see, and not to be hidden by the next one. Some follow
-    // none of 0 W: there is nothing to hide.
+    // What became of our order is for the tick to see, and not to be hidden by the next one. Some
+    // follow none of 0 W: there is nothing to hide.
     const bool has_ended = measurement.order_ended && order_.drives();
     if (is_read && (measurement.order_replaced || has_ended)) return;
     // What flowed under the order until now would be taken for the next one's at the next reading.

@@ -1,4 +1,5 @@
-// All that has a say in a cycle, one row each, in the order in which it is asked (parts/cycle_part.h has the face).
+// All that has a say in a cycle, one row each, in the order in which it is asked
+// (parts/cycle_part.h has the face).
 #pragma once
 
 #include <tuple>

@@ -1,4 +1,5 @@
-// What a decision is made from besides what the parts of a cycle put: the record's reading and price, and the student.
+// What a decision is made from besides what the parts of a cycle put: the record's reading and
+// price, and the student.
 #pragma once
 
 #include <cstdint>
@@ -35,8 +36,8 @@ inline void ask_student(const PriceLevel& level, CycleRecord& record, GuardInput
   in.rules = student_rule_limits(now, state, price_centi);
 }
 
-/// A device that answers, but no longer as the right one, was stopped for what it is, and not because it could not be
-/// read.
+/// A device that answers, but no longer as the right one, was stopped for what it is, and not
+/// because it could not be read.
 constexpr Reason cause_of(Reason reason, Reason supervision, Status battery_status) {
   const bool is_known = battery_status == Status::kImplausible && is_stop_reason(supervision);
   return reason == Reason::kLink && is_known ? supervision : reason;

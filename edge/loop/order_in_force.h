@@ -1,5 +1,5 @@
-// The order that the battery follows, or may follow: found after a restart, written, fed to its watchdog, bound to
-// its tick, released. Battery and Clock as in control_loop.h.
+// The order that the battery follows, or may follow: found after a restart, written, fed to its
+// watchdog, bound to its tick, released. Battery and Clock as in control_loop.h.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,8 @@
 
 namespace bess {
 
-/// When the power of a record's order was ordered first, to some seconds: the battery was read a little before its tick.
+/// When the power of a record's order was ordered first, to some seconds: the battery was read a
+/// little before its tick.
 inline std::int64_t ordered_since_utc_s(const CycleRecord& record) {
   const FollowedOrder& before = record.followed;
   const bool goes_on = before.is_judged && before.power_w == record.ordered_power_w;
@@ -60,8 +61,8 @@ class OrderInForce {
     if (is_expected) since_s_ -= utc_s - expected_since_utc_s_;
   }
 
-  /// The newest order of the run before, by its log: found in force, it is as old as its power, and its answer
-  /// counts.
+  /// The newest order of the run before, by its log: found in force, it is as old as its power, and
+  /// its answer counts.
   void expect(const CycleRecord& newest) {
     expected_power_w_ = newest.ordered_power_w;
     expected_utc_s_ = newest.utc_s;
@@ -71,8 +72,8 @@ class OrderInForce {
   /// Of steady time before UTC: it goes on from what was recalled.
   void set_ahead(std::int64_t ahead_s) { time_.set_ahead(ahead_s); }
 
-  /// An order belongs to its tick: a process that was stopped and goes on later neither writes it nor
-  /// feeds it, for the price that it was decided on is gone.
+  /// An order belongs to its tick: a process that was stopped and goes on later neither writes it
+  /// nor feeds it, for the price that it was decided on is gone.
   void bind(std::int64_t tick_utc_s) {
     const std::int32_t write_s = settings_.order_deadline_s;
     const std::int32_t feed_s = kSecondsPerStep + settings_.price_wait_s + write_s;
@@ -111,7 +112,8 @@ class OrderInForce {
   /// Without control: what would be in force, for the ramp goes from there.
   void imagine(std::int32_t power_w) { power_w_ = power_w; }
 
-  /// When the battery's watchdog is to be fed next; never where it has none, or nothing is in force.
+  /// When the battery's watchdog is to be fed next; never where it has none, or nothing is in
+  /// force.
   [[nodiscard]] std::int64_t refresh_due_utc_ns() const {
     const std::int32_t interval_s = battery_.refresh_interval_s();
     if (!settings_.control || !exists_ || interval_s <= 0) return INT64_MAX;
@@ -127,8 +129,8 @@ class OrderInForce {
   }
 
   /// Only the order that the battery really follows can be answered: one that it refused, or that
-  /// has run out, leaves it in its own mode, which goes any way. Of one that a run before gave, under a
-  /// clock that was stepped since, nobody knows for how long it has been followed.
+  /// has run out, leaves it in its own mode, which goes any way. Of one that a run before gave,
+  /// under a clock that was stepped since, nobody knows for how long it has been followed.
   [[nodiscard]] Response response(const BatteryMeasurement& m) const {
     const std::int64_t read_s = time_.now_s();
     const bool is_known = (m.has_order_power || is_confirmed_) && read_s > since_s_;

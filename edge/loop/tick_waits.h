@@ -1,5 +1,6 @@
-// The waits of a cycle: for its tick, for the price of the minute before, for its start. Meanwhile the battery is
-// looked after. None is without a deadline, and a clock that is stepped back ends each.
+// The waits of a cycle: for its tick, for the price of the minute before, for its start. Meanwhile
+// the battery is looked after. None is without a deadline, and a clock that is stepped back ends
+// each.
 #pragma once
 
 #include <algorithm>
@@ -22,8 +23,8 @@ class TickWaits {
   TickWaits(const TickWaits&) = delete;
   TickWaits& operator=(const TickWaits&) = delete;
 
-  /// Sleeps until `read_lead_s` before the next tick; false when asked to stop. A clock that is stepped back
-  /// meanwhile has other ticks.
+  /// Sleeps until `read_lead_s` before the next tick; false when asked to stop. A clock that is
+  /// stepped back meanwhile has other ticks.
   bool await_next_tick(std::int64_t& tick_utc_s) {
     do {
       tick_utc_s = next_tick_utc_s(now_utc_s());
@@ -62,8 +63,8 @@ class TickWaits {
     return price.has_row && price.received_monotonic_ns >= request_ns_;
   }
 
-  /// Before the decision, so that what is decided is ordered at once. What was late already, a price
-  /// or a battery, is not made later.
+  /// Before the decision, so that what is decided is ordered at once. What was late already, a
+  /// price or a battery, is not made later.
   bool await_start() {
     if (settings_.start_offset_ms == 0) return true;
     return sleep_until_ns(tick_utc_s_ * kNanosecondsPerSecond +
@@ -77,8 +78,8 @@ class TickWaits {
 
   bool sleep_until_s(std::int64_t utc_s) { return sleep_until_ns(utc_s * kNanosecondsPerSecond); }
 
-  /// False when asked to stop. Returns early when the clock was stepped back: the instant may lie hours ahead
-  /// by now.
+  /// False when asked to stop. Returns early when the clock was stepped back: the instant may lie
+  /// hours ahead by now.
   bool sleep_until_ns(std::int64_t until_ns) {
     while (true) {
       const std::int64_t before_ns = clock_.now_utc_ns();

@@ -5,7 +5,8 @@
 
 namespace bess {
 
-/// The newest record, but for the trip in force, which another log than its own may know, and the level to start from.
+/// The newest record, but for the trip in force, which another log than its own may know, and the
+/// level to start from.
 inline CycleRecord take_over_of(const CycleRecord& newest, const Trip& trip,
                                 const PriceLevel& level) {
   CycleRecord before = newest;
@@ -14,9 +15,10 @@ inline CycleRecord take_over_of(const CycleRecord& newest, const Trip& trip,
   return before;
 }
 
-/// Supervision judges at a start what it has judged in the last hours, so that a kill between two readings
-/// hides no finding. A trip ends what is recalled: it is taken over by itself, or a person has looked.
-/// `Log`: bool read_back(std::int64_t records, CycleRecord&), 0 = the newest, false = not readable.
+/// Supervision judges at a start what it has judged in the last hours, so that a kill between two
+/// readings hides no finding. A trip ends what is recalled: it is taken over by itself, or a person
+/// has looked. `Log`: bool read_back(std::int64_t records, CycleRecord&), 0 = the newest, false =
+/// not readable.
 template <typename Log, typename Loop>
 void recall_cycles(const Log& log, std::int64_t now_utc_s, Loop& loop) {
   constexpr std::int64_t kRecalledS = 8 * 3'600;  // the longest pause, and what led to it

@@ -13,14 +13,16 @@ constexpr std::int32_t kSlowFromE4 = 8'000;
 constexpr std::int32_t kSlowAboveFloorE4 = 2'000;
 /// Below this, in 0.1 degC, charging is slowed down or refused.
 constexpr std::int32_t kColdDeciC = 80;
-/// Up to here a battery saves itself from being empty, with any power; from there on it balances its cells.
+/// Up to here a battery saves itself from being empty, with any power; from there on it balances
+/// its cells.
 constexpr std::int32_t kSavesItselfE4 = 1'200;
 constexpr std::int32_t kBalancesFromE4 = 9'500;
 constexpr std::int32_t kBalancingPercentMax = 15;  ///< of the rating
 /// A battery that takes longer from rest to its rating has not followed, whatever it moves.
 constexpr std::int32_t kFullRampS = 180;
-/// A device may begin that much later than its map says. Where readings are a step apart nobody sees it; after a
-/// cut, or in a cycle that a stepped clock makes short, it still shows the order before.
+/// A device may begin that much later than its map says. Where readings are a step apart nobody
+/// sees it; after a cut, or in a cycle that a stepped clock makes short, it still shows the order
+/// before.
 constexpr std::int32_t kLateS = 10;
 constexpr std::int64_t kReadingGapMaxS = 300;  ///< a reading that was lost, and the time of both
 
@@ -135,8 +137,8 @@ void ResponseMonitor::judge_answer(const Response& now, std::int32_t measured_w)
   if (!is_on_its_way) ++weak_answers_;
 }
 
-/// Whether the power is on its way to a new order, too slow for its map but quicker than a fault that
-/// merely differs from one reading to the next.
+/// Whether the power is on its way to a new order, too slow for its map but quicker than a fault
+/// that merely differs from one reading to the next.
 bool ResponseMonitor::note_ramp(const Response& now, std::int32_t from_w) {
   if (!knows_before(now)) return false;
   // From its order on; of an order that is read a second time on its way, since the reading before.
@@ -176,15 +178,16 @@ bool ResponseMonitor::is_ramp(const Response& now) {
   return note_ramp(now, before_power_w_) || is_ramp_of_held_back(now);
 }
 
-/// Near full and near empty less flows than the setpoint of its ramp, which comes from the order before: first that has
-/// to fall below what flows.
+/// Near full and near empty less flows than the setpoint of its ramp, which comes from the order
+/// before: first that has to fall below what flows.
 bool ResponseMonitor::is_ramp_of_held_back(const Response& now) {
   const std::int32_t moved_w =
       power_magnitude_w(before_power_w_) - power_magnitude_w(now.measurement.power_w);
   return before_may_be_less_ && moved_w > settings_.noise_w() && note_ramp(now, before_ordered_w_);
 }
 
-/// The first reading of a new order, with nothing known of the one before: it comes from its rating at most.
+/// The first reading of a new order, with nothing known of the one before: it comes from its rating
+/// at most.
 bool ResponseMonitor::may_be_ramp(const Response& now) const {
   if (now.order_age_s > kSecondsPerStep) return false;
   const std::int64_t apart_w = std::int64_t{now.measurement.power_w} - now.ordered_power_w;

@@ -1,7 +1,8 @@
-// The one face of whatever has a say in a cycle besides price and student: site, hold, reserve, full charge, frozen
-// price, budget, cap, supervision. The loop asks them all, in the order of cycle_parts.h, and the record that a part
-// reports to is the state that the next run restores it from. One more is one file here and one row there; it derives
-// from CyclePart and hides what it needs. Nothing is virtual, nothing allocates.
+// The one face of whatever has a say in a cycle besides price and student: site, hold, reserve,
+// full charge, frozen price, budget, cap, supervision. The loop asks them all, in the order of
+// cycle_parts.h, and the record that a part reports to is the state that the next run restores it
+// from. One more is one file here and one row there; it derives from CyclePart and hides what it
+// needs. Nothing is virtual, nothing allocates.
 #pragma once
 
 #include <cstdint>
@@ -47,8 +48,9 @@ struct CyclePart {
   /// A cycle of an earlier run, oldest first and before `restore`.
   void recall(const CycleRecord&, bool /*is_under_control*/) {}
   void observe(const Reading&) {}
-  /// What the guard is to know; what holds in this cycle alone is noted in its record as well. A limit of one more
-  /// reason needs nothing of the guard: `in.site.limit_charge(power_w, reason)`, `limit_discharge` or `forbid`.
+  /// What the guard is to know; what holds in this cycle alone is noted in its record as well. A
+  /// limit of one more reason needs nothing of the guard: `in.site.limit_charge(power_w, reason)`,
+  /// `limit_discharge` or `forbid`.
   void put(const Moment&, CycleRecord&, GuardInputs&) {}
   /// That power is ordered now.
   void note(std::int32_t) {}

@@ -1,5 +1,5 @@
-// What earlier prices have to do with this cycle: the level that student and full charge hold a price against, and a
-// price that stands still.
+// What earlier prices have to do with this cycle: the level that student and full charge hold a
+// price against, and a price that stands still.
 #pragma once
 
 #include "edge/control/frozen_price.h"

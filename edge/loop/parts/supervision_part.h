@@ -1,5 +1,5 @@
-// Does the battery do as it is told? What an earlier run has found by its readings, short of a trip, is found again:
-// who kills the program between two of them hides nothing.
+// Does the battery do as it is told? What an earlier run has found by its readings, short of a
+// trip, is found again: who kills the program between two of them hides nothing.
 #pragma once
 
 #include "edge/loop/parts/cycle_part.h"

@@ -1,5 +1,5 @@
-// What counts as following an order: every fault is found in two readings, and a battery that is only
-// slow, noisy or near an end of its charge is left alone.
+// What counts as following an order: every fault is found in two readings, and a battery that is
+// only slow, noisy or near an end of its charge is left alone.
 #include "edge/supervision/response_monitor.h"
 
 #include <gtest/gtest.h>
@@ -291,7 +291,8 @@ TEST(ResponseMonitor, ASocThatMovesTheWrongWayIsFound) {
   EXPECT_LE(readings, 5);
 }
 
-/// Full power for the first half of every step, none for the second: what a meter's limit makes of it.
+/// Full power for the first half of every step, none for the second: what a meter's limit makes of
+/// it.
 TEST(ResponseMonitor, AnOrderThatIsCutWithinItsStepHasMovedWhatItMoved) {
   ResponseMonitor monitor{ResponseSettings{}};
   double soc_frac = 0.2;
@@ -378,7 +379,8 @@ TEST(ResponseMonitor, ButDischargingAgainstAnOrderToChargeIsTheWrongDirectionThe
   EXPECT_EQ(site.monitor.trip(), Reason::kWrongDirection);
 }
 
-/// What a clock that is stepped makes of cycles: readings seconds after their order, and soon again.
+/// What a clock that is stepped makes of cycles: readings seconds after their order, and soon
+/// again.
 struct ShortCycles {
   ResponseMonitor monitor{ResponseSettings{}};
   std::int64_t steady_s = 0;
@@ -428,8 +430,8 @@ TEST(ResponseMonitor, ARampComesFromTheOrderThatWasHeldBack) {
   }
 }
 
-/// Thirty days of a real battery's habits: 2 % noise, 5 % losses each way, power that falls from 85 %
-/// up and below 25 %, an idle draw, a counter of charge in 0.1 % that lags.
+/// Thirty days of a real battery's habits: 2 % noise, 5 % losses each way, power that falls from 85
+/// % up and below 25 %, an idle draw, a counter of charge in 0.1 % that lags.
 TEST(ResponseMonitor, ThirtyDaysOfAnHonestBatteryRaiseNothing) {
   for (const double capacity_scale : {0.85, 1.0, 1.15}) {
     MonitoredSite site;
