@@ -10,7 +10,6 @@
 #include <fstream>
 #include <iterator>
 
-#include "shared/host/pty_bridge.h"
 #include "tests/support/simulated_site.h"
 #include "tests/support/toml_mistakes.h"
 
@@ -274,17 +273,6 @@ TEST_F(Processes, EachCommandHasItsHelp) {
   }
 }
 
-TEST_F(Processes, AKilledEdgesOrderIsEndedByTheBatterysWatchdog) {
-  start_simulators();
-  ChildProcess edge({edge_program(), "--config", site_.commission()});
-  ASSERT_THAT(line_with_power(edge), HasSubstr("mode=running"));
-  edge.signal(SIGKILL);
-  EXPECT_EQ(edge.wait(), 128 + SIGKILL);
-  sleep_until_monotonic(clock_ns(CLOCK_MONOTONIC) + kNanosecondsPerSecond / 2);  // 450 s
-  EXPECT_EQ(SimulatedSite::stop(*site_.battery), 0);
-  EXPECT_EQ(read_csv(site_.folder.file("battery.csv")).back().at("commanded_power_w"), "0");
-}
-
 TEST_F(Processes, MarketFaultsDoNotStopTheLoop) {
   for (const char* fault : {"null", "http-500", "stale", "garbage", "trailing", "twice"}) {
     site_.start_clock();
@@ -377,25 +365,6 @@ TEST_F(Processes, AFrozenPriceIsToldAndEndsTheTrade) {
   }
   EXPECT_THAT(line, AllOf(HasSubstr(" mode=holding "), HasSubstr(" ordered_power_w=0 ")));
   EXPECT_EQ(SimulatedSite::stop(edge), 0);
-}
-
-TEST_F(Processes, TheSameOverASerialLine) {
-  const PtyBridge line;
-  site_.start_battery({"--serial", line.device(0), "--baud", "115200"});
-  site_.start_market();
-  const std::string config =
-      site_.commission({.battery_keys = SimulatedSite::alphaess_keys() +
-                                        "transport = \"rtu\"\nbaud = 115200\ndevice = \"" +
-                                        line.device(1) + "\"\n"});
-  ChildProcess edge({edge_program(), "--config", config, "--cycles", "15"});
-  EXPECT_THAT(edge.read_all(), HasSubstr("stopped: battery released"));
-  EXPECT_EQ(edge.wait(), 0);
-  int written = 0;
-  for (const CsvRow& row : read_csv(site_.folder.file("edge.csv"))) {
-    if (row.at("written") == "1") ++written;
-  }
-  EXPECT_GE(written, 12);  // of 16; an order's minute is 67 ms here, after which it is not written
-  EXPECT_EQ(SimulatedSite::stop(*site_.battery), 0);
 }
 
 /// Whatever the bus does, what the log calls written is what the battery was commanded.
