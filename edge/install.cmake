@@ -47,3 +47,11 @@ if(BESS_NOTIFY)
     "/usr/bin/bess-notify" "${CMAKE_INSTALL_FULL_BINDIR}/bess-notify"
     "/usr/share/doc/bess" "${CMAKE_INSTALL_FULL_DOCDIR}")
 endif()
+if(BESS_PAGE)
+  install(TARGETS bess-page DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT edge)
+  install_with_paths(${CMAKE_CURRENT_SOURCE_DIR}/systemd/bess-page.service lib/systemd/system
+    bess-page.service
+    "/usr/bin/bess-page" "${CMAKE_INSTALL_FULL_BINDIR}/bess-page"
+    "/usr/share/doc/bess" "${CMAKE_INSTALL_FULL_DOCDIR}")
+  install(FILES systemd/bess-page-orders.conf DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT edge)
+endif()

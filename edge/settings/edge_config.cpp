@@ -323,8 +323,8 @@ bool load_edge_config(const std::string& path, EdgeConfig& config, std::string& 
   read_simulation(section(root, "simulation"), config.clock);
   read_meter(section(root, "meter"), {config.link, config.map}, config.site);
   read_limits(section(root, "limits"), config.site);
-  static_cast<void>(
-      root.table("notify"));  // bess-notify's: a slip there must not stop the controller
+  // Of bess-notify and bess-page: a slip there must not stop the controller.
+  for (const char* const others : {"notify", "page"}) static_cast<void>(root.table(others));
   root.finish();
   config.control.price_wait_s = config.price.wait_s;
   set_supervision(config);

@@ -21,9 +21,9 @@ list(JOIN page_files "|" page_files_in_one)
 set(page_source ${CMAKE_CURRENT_BINARY_DIR}/page_files.cpp)
 add_custom_command(
   OUTPUT ${page_source}
-  COMMAND ${CMAKE_COMMAND} -DOUTPUT=${page_source} "-DFILES=${page_files_in_one}"
-          -P ${CMAKE_CURRENT_LIST_DIR}/embed.cmake
-  DEPENDS ${page_files} ${CMAKE_CURRENT_LIST_DIR}/embed.cmake
+  COMMAND ${CMAKE_COMMAND} -DOUTPUT=${page_source} -DHEADER=workstation/report/page_files.h
+          "-DFILES=${page_files_in_one}" -P ${CMAKE_SOURCE_DIR}/shared/host/embed.cmake
+  DEPENDS ${page_files} ${CMAKE_SOURCE_DIR}/shared/host/embed.cmake
   COMMENT "Embedding the report's page" VERBATIM)
 target_sources(report PRIVATE ${page_source})
 set_source_files_properties(${page_source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON

@@ -1,5 +1,5 @@
-# cmake -DOUTPUT=page_files.cpp "-DFILES=a.js|b.css" -P embed.cmake: the files as raw literals in
-# one C++ source, by their names.
+# cmake -DOUTPUT=page_files.cpp -DHEADER=PATH "-DFILES=a.js|b.css" -P embed.cmake
+# The files as raw literals in one C++ source, by their names; HEADER declares page_file().
 string(REPLACE "|" ";" FILES "${FILES}")
 set(delimiter embedded_file)
 set(literals "")
@@ -11,12 +11,13 @@ foreach(file ${FILES})
     message(FATAL_ERROR "${file}: is empty, or holds what ends a literal")
   endif()
   get_filename_component(name "${file}" NAME)
-  string(APPEND literals "constexpr std::string_view kFile${index} = R\"${delimiter}(${text})${delimiter}\";\n")
+  string(APPEND literals "constexpr std::string_view kFile${index} = "
+                         "R\"${delimiter}(${text})${delimiter}\";\n")
   string(APPEND choices "  if (name == \"${name}\") return kFile${index};\n")
   math(EXPR index "${index} + 1")
 endforeach()
-file(WRITE "${OUTPUT}.new" "// Made by report/page/embed.cmake.
-#include \"workstation/report/page_files.h\"
+file(WRITE "${OUTPUT}.new" "// Made by shared/host/embed.cmake.
+#include \"${HEADER}\"
 
 #include <stdexcept>
 #include <string>
