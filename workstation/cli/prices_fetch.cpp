@@ -7,9 +7,11 @@
 #include "shared/host/file.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
+#include "workstation/cli/day_ahead_input.h"
 #include "workstation/cli/interruption.h"
 #include "workstation/cli/price_input.h"
 #include "workstation/cli/prices.h"
+#include "workstation/market/feed/day_ahead_fetch.h"
 #include "workstation/market/feed/elia_fetch.h"
 #include "workstation/market/feed/market_files.h"
 
@@ -19,18 +21,43 @@ namespace {
 struct PricesFetchArguments {
   PriceInput price_input;
   std::string from, to, out;
-  std::string base_url = kEliaBaseUrl;
+  std::string base_url;
+  std::string zone;
+  bool day_ahead = false;
   bool strict = true;
   bool allow_gaps = false;
 };
 
+std::string base_url_of(const PricesFetchArguments& options, const char* usual) {
+  return checked_base_url(options.base_url.empty() ? usual : options.base_url, "--base-url");
+}
+
+void fetch_day_ahead_prices(const PricesFetchArguments& options) {
+  const DayAheadRequest request{
+      .span = {parse_local_date(options.from, "--from"), parse_local_date(options.to, "--to")},
+      .zone = options.zone.empty() ? "BE" : options.zone,
+      .base_url = base_url_of(options, kEnergyChartsBaseUrl),
+      .now_utc_s = std::time(nullptr),
+      .retry = {},
+      .allow_gaps = options.allow_gaps,
+      .sleep = sleep_unless};
+  const std::optional<JoinedDayAhead> fetched = fetch_day_ahead(request, interruption());
+  if (!fetched) throw Interrupted{};
+  write_judged_day_ahead(*fetched, options.price_input.accepted(), {request.base_url},
+                         fmt::format("Day-ahead prices of {} fetched from {} (Fraunhofer ISE; the "
+                                     "licence stands in its answer) by bess-train {}",
+                                     request.zone, request.base_url, BESS_VERSION),
+                         options.out);
+}
+
 void run_prices_fetch(const PricesFetchArguments& options) {
   watch_interruption();
   require_writable(options.out);
+  if (options.day_ahead) return fetch_day_ahead_prices(options);
   const std::optional<FetchedPrices> fetched = fetch_prices(
       {.span = {parse_local_date(options.from, "--from"), parse_local_date(options.to, "--to")},
        .out = options.out,
-       .base_url = checked_base_url(options.base_url, "--base-url"),
+       .base_url = base_url_of(options, kEliaBaseUrl),
        .now_utc_s = std::time(nullptr),
        .retry = {},
        .allow_gaps = options.allow_gaps,
@@ -62,8 +89,13 @@ void add_prices_fetch(ProgramCommand& prices) {
             "Write the file also when rows are missing, and say which")
       .excludes("--strict");
   options->price_input.add(command);
-  command.option("--base-url", options->base_url, "API root, ends in /api/explore/v2.1")
-      .with_default();
+  command.flag("--day-ahead", options->day_ahead,
+               "Day-ahead prices instead, from energy-charts: a day-ahead file");
+  command.option("--zone", options->zone, "Bidding zone of --day-ahead (default BE)")
+      .needs("--day-ahead");
+  command.option(
+      "--base-url", options->base_url,
+      fmt::format("API root (default {}; of --day-ahead {})", kEliaBaseUrl, kEnergyChartsBaseUrl));
   command.footer(
       "Interrupted? Run the same command again: finished months are kept in OUT.fetch until the "
       "end.\n"
@@ -76,7 +108,9 @@ void add_prices_fetch(ProgramCommand& prices) {
       "Behind a proxy set https_proxy. No key is needed.\n"
       "Examples:\n"
       "  bess-train prices fetch --from 2023-01-01 --to 2023-12-31 --out 2023.csv.gz\n"
-      "  bess-train prices fetch --from 2025-06-01 --to 2025-06-07 --out week.csv");
+      "  bess-train prices fetch --from 2025-06-01 --to 2025-06-07 --out week.csv\n"
+      "  bess-train prices fetch --day-ahead --from 2024-05-22 --to 2025-06-30 --out "
+      "day_ahead.csv.gz");
   command.runs([options] { run_prices_fetch(*options); });
 }
 

@@ -5,6 +5,7 @@
 
 #include "shared/host/distinct_files.h"
 #include "shared/host/file.h"
+#include "workstation/cli/day_ahead_input.h"
 #include "workstation/cli/price_input.h"
 #include "workstation/cli/prices.h"
 
@@ -15,11 +16,25 @@ struct PricesImportArguments {
   PriceInput price_input;
   std::vector<std::string> files;
   std::string out;
+  bool day_ahead = false;
 };
+
+void import_day_ahead(const PricesImportArguments& options) {
+  std::vector<DayAheadRow> rows;
+  for (const std::string& file : options.files) {
+    for (const DayAheadRow& row : parse_day_ahead_text(read_file(file), file)) rows.push_back(row);
+  }
+  write_judged_day_ahead(join_day_ahead(std::move(rows), options.files.front()),
+                         options.price_input.accepted(), options.files,
+                         fmt::format("Day-ahead prices imported by bess-train {} from {}",
+                                     BESS_VERSION, file_names(options.files)),
+                         options.out);
+}
 
 void run_prices_import(const PricesImportArguments& options) {
   require_distinct({{"--out", options.out}}, given_paths("files", options.files));
   require_writable(options.out);
+  if (options.day_ahead) return import_day_ahead(options);
   std::set<MarketSource> sources;
   const JoinedMarket market = options.price_input.read_joined(options.files, &sources);
   const std::string attribution = attribution_of(sources);
@@ -41,6 +56,9 @@ void add_prices_import(ProgramCommand& prices) {
               "Downloads of ods046, ods047, ods133, ods134, ods161, ods162, ENTSO-E A85 (XML), "
               "days of 'prices record', or minute files; plain or .gz")
       .required();
+  command.flag("--day-ahead", options->day_ahead,
+               "The files hold day-ahead prices: ENTSO-E A44 (XML), energy-charts JSON, CSV with "
+               "datetime_utc and price_eur_mwh, or day-ahead files");
   options->price_input.add(command);
   command.option("--out", options->out, "Minute file to write (.csv or .csv.gz)").required();
   command.footer(
@@ -53,6 +71,7 @@ void add_prices_import(ProgramCommand& prices) {
       "  bess-train prices import ods133.csv ods134.csv --out prices.csv.gz\n"
       "  bess-train prices import today/*.json --out today.csv\n"
       "  bess-train prices import 2023.csv.gz 2024.csv.gz --out both.csv.gz\n"
+      "  bess-train prices import --day-ahead a44_2024.xml a44_2025.xml --out day_ahead.csv.gz\n"
       "  bess-train prices import recorded/2025-06-*.csv ods134.csv --out june.csv.gz");
   command.runs([options] { run_prices_import(*options); });
 }

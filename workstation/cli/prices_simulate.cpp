@@ -3,12 +3,14 @@
 
 #include <memory>
 
+#include "shared/host/distinct_files.h"
 #include "shared/host/file.h"
 #include "shared/host/minute_file.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "workstation/cli/prices.h"
 #include "workstation/market/model/quarter_hours_to_minutes.h"
+#include "workstation/market/model/simulated_day_ahead.h"
 #include "workstation/market/model/simulated_market.h"
 #include "workstation/market/series/local_date.h"
 
@@ -20,11 +22,14 @@ struct PricesSimulateArguments {
   std::uint64_t seed = 1;
   std::string start = "2023-01-01";
   std::string out;
+  std::string day_ahead_out;
 };
 
 void run_prices_simulate(const PricesSimulateArguments& options) {
   const LocalDate start = parse_local_date(options.start, "--start");
+  require_distinct({{"--out", options.out}, {"--day-ahead-out", options.day_ahead_out}}, {});
   require_writable(options.out);
+  if (!options.day_ahead_out.empty()) require_writable(options.day_ahead_out);
   const SimulationPeriod period{local_midnight_utc_s(start),
                                 local_midnight_utc_s(add_days(start, options.days))};
   const std::vector<QuarterHour> quarter_hours = simulate_quarter_hours(period, options.seed);
@@ -35,6 +40,13 @@ void run_prices_simulate(const PricesSimulateArguments& options) {
                   "{}\nParameters fitted to Elia open data (CC BY 4.0): ods047 2023-01-01 to "
                   "2023-05-23, ods045, ods161",
                   BESS_VERSION, options.days, options.seed, format_local_date(start)));
+  if (!options.day_ahead_out.empty()) {
+    write_day_ahead_file(
+        options.day_ahead_out, simulate_day_ahead(quarter_hours, options.seed),
+        fmt::format("Simulated, not real: day-ahead prices of bess-train {} prices simulate --days "
+                    "{} --seed {} --start {}",
+                    BESS_VERSION, options.days, options.seed, format_local_date(start)));
+  }
   fmt::print("{}: {} from {}, seed {}, {} minutes\n", options.out,
              counted(static_cast<std::size_t>(options.days), "simulated day"),
              format_local_date(start), options.seed, series.size());
@@ -50,10 +62,13 @@ void add_prices_simulate(ProgramCommand& prices) {
   command.option("--seed", options->seed, "Same seed, same market").non_negative().with_default();
   command.option("--start", options->start, "First local day, YYYY-MM-DD").with_default();
   command.option("--out", options->out, "Minute file to write (.csv or .csv.gz)").required();
+  command.option("--day-ahead-out", options->day_ahead_out,
+                 "Also day-ahead prices of that market, for sdp-outlook");
   command.footer(
       "Examples:\n"
       "  bess-train prices simulate --out market.csv.gz\n"
-      "  bess-train prices simulate --days 30 --seed 7 --start 2024-03-15 --out spring.csv");
+      "  bess-train prices simulate --days 30 --seed 7 --start 2024-03-15 --out spring.csv\n"
+      "  bess-train prices simulate --out market.csv.gz --day-ahead-out day_ahead.csv.gz");
   command.runs([options] { run_prices_simulate(*options); });
 }
 

@@ -9,6 +9,7 @@
 #include "workstation/cli/price_input.h"
 #include "workstation/cli/prices.h"
 #include "workstation/market/feed/recorded_day.h"
+#include "workstation/market/series/day_ahead_plausibility.h"
 #include "workstation/market/series/judged_prices.h"
 #include "workstation/market/statistics/statistics_plot.h"
 #include "workstation/market/statistics/statistics_report.h"
@@ -48,12 +49,25 @@ Described describe_download(std::string_view text, const std::string& name) {
   return {statistics_of_quarter_hours(quarter_hours), settled_by_quarter_hour(market.series)};
 }
 
+/// A day-ahead file has the statistics of settled quarter-hours, what is wrong with it as warnings.
+Described describe_day_ahead_file(std::string_view text, const std::string& name) {
+  const DayAheadSeries series = parse_day_ahead_csv(text, name);
+  judge(implausible_day_ahead(series), AcceptedFindings::all(), {{name, text}});
+  std::vector<QuarterHour> quarter_hours;
+  for (std::size_t q = 0; q < series.size(); ++q) {
+    if (!is_published(series.eur_per_mwh[q])) continue;
+    quarter_hours.push_back({.utc_s = series.utc_s(q), .price_eur_per_mwh = series.eur_per_mwh[q]});
+  }
+  return {statistics_of_quarter_hours(quarter_hours), series.eur_per_mwh};
+}
+
 void run_prices_stats(const PricesStatsArguments& options) {
   require_distinct({{"--plot", options.plot}}, {{"the prices", options.file}});
   if (!options.plot.empty()) require_drawable(options.plot);
   const std::string text = read_file(options.file);
-  const Described described = is_minute_csv(text) ? describe_minute_file(text, options.file)
-                                                  : describe_download(text, options.file);
+  const Described described = is_minute_csv(text)      ? describe_minute_file(text, options.file)
+                              : is_day_ahead_csv(text) ? describe_day_ahead_file(text, options.file)
+                                                       : describe_download(text, options.file);
   if (options.json) {
     fmt::print("{}\n", format_statistics_json(described.statistics));
   } else {
@@ -76,7 +90,8 @@ void add_prices_stats(ProgramCommand& prices) {
       "stats", "Quartiles, tails, memory, convergence, gaps and clock changes of a price file");
   command
       .option("file", options->file,
-              "Minute file, a download of Elia (CSV, JSON), or a recorded day; plain or .gz")
+              "Minute file, day-ahead file, a download of Elia (CSV, JSON), or a recorded day; "
+              "plain or .gz")
       .required();
   command.flag("--json", options->json, "One JSON object");
   command.option("--plot", options->plot,

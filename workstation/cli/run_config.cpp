@@ -110,6 +110,9 @@ void KeyList::list(RunConfig& c) {
           "newest row visible at minute t is t - delay; 0 is the paper's ideal");
   choice("settlement", c.market.settlement, {"minute", "step"},
          "pay each minute at its own quarter-hour, or the step at the one it starts in");
+  integer(
+      "day_ahead_published_min", c.market.day_ahead_published_min, 0, 1439,
+      "local minute of the day before from which day-ahead prices count as known; 780 is 13:00");
 
   section("battery");
   number("power_w", c.battery.power_w_max, 1, 1e9, "both directions, grid side");

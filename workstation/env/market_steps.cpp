@@ -200,4 +200,9 @@ MarketSteps make_market_steps(const MinuteSeries& series, const MarketOptions& o
   return market;
 }
 
+void attach_day_ahead(MarketSteps& market, std::shared_ptr<const DayAheadPublication> day_ahead) {
+  market.day_ahead = std::move(day_ahead);
+  for (MarketStep& step : market.steps) step.day_ahead = market.day_ahead.get();
+}
+
 }  // namespace bess

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -15,6 +16,7 @@
 
 #include "shared/host/minute_file.h"
 #include "shared/units_and_limits.h"
+#include "workstation/market/series/day_ahead_publication.h"
 
 namespace bess {
 
@@ -38,6 +40,7 @@ Settlement parse_settlement(std::string_view name);
 struct MarketOptions {
   int observation_delay_min = 1;  ///< 0..5; the newest visible row at minute t is t - delay
   Settlement settlement = Settlement::kMinute;
+  int day_ahead_published_min = kDayAheadPublishedMin;  ///< local, of the day before
 };
 
 /// What a teacher may know of the rows before the newest one; the student is not shown it.
@@ -59,7 +62,13 @@ struct MarketStep {
   std::int8_t month;                     ///< local, 1..12
   std::int8_t half_hour_phase;           ///< (minute of the half-hour) / 2, 0..14
   RecentPrices recent{};                 ///< what rows before the newest one tell
+  const DayAheadPublication* day_ahead = nullptr;  ///< MarketSteps::day_ahead; asked below alone
 
+  /// Day-ahead price of the quarter-hour that holds the instant, as it was known at this step; NaN
+  /// when it was not, or when there are no day-ahead prices.
+  [[nodiscard]] double day_ahead_eur_per_mwh(std::int64_t at_utc_s) const {
+    return day_ahead == nullptr ? kNotPublished : day_ahead->known_eur_per_mwh(at_utc_s, utc_s);
+  }
   [[nodiscard]] double level_eur_per_mwh() const {
     return static_cast<double>(level_centi_eur_per_mwh) / kCentiPerEur;
   }
@@ -92,6 +101,7 @@ struct MarketDay {
 struct MarketSteps {
   std::vector<MarketStep> steps;  ///< ascending in time; steps that cannot be settled are absent
   std::vector<MarketDay> days;    ///< complete days only
+  std::shared_ptr<const DayAheadPublication> day_ahead{};  ///< none unless attached
 
   [[nodiscard]] std::span<const MarketStep> of(const MarketDay& day) const {
     return {steps.data() + day.first_step, day.step_count};
@@ -108,5 +118,8 @@ void require_training_days(std::size_t count);
 /// Throws UserError when the options are out of range, a settled price is beyond all sense, or no
 /// complete day remains.
 MarketSteps make_market_steps(const MinuteSeries& series, const MarketOptions& options);
+
+/// Gives every step of `market` what was known of these prices by then.
+void attach_day_ahead(MarketSteps& market, std::shared_ptr<const DayAheadPublication> day_ahead);
 
 }  // namespace bess

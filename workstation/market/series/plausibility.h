@@ -15,11 +15,12 @@
 
 namespace bess {
 
-/// Every name that a finding may have; errors first.
-inline constexpr std::array<std::string_view, 14> kFindingNames{
-    "dates",       "row-step",      "constant",         "sentinel",     "price-unit",
-    "price-range", "cut-end",       "settled-changes",  "overlap",      "gaps",
-    "frozen",      "copied-column", "untrained-months", "unusual-price"};
+/// Every name that a finding may have; errors first, then warnings, then what is of day-ahead prices alone.
+inline constexpr std::array<std::string_view, 16> kFindingNames{
+    "dates",       "row-step",      "constant",         "sentinel",      "price-unit",
+    "price-range", "cut-end",       "settled-changes",  "overlap",       "gaps",
+    "frozen",      "copied-column", "untrained-months", "unusual-price", "repeated-day",
+    "shifted-day"};
 
 struct Finding {
   std::string_view name;                ///< of kFindingNames

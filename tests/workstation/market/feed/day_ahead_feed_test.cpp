@@ -1,0 +1,309 @@
+// Day-ahead prices as others publish them: documents, answers and tables; the download; and the
+// commands.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <httplib.h>
+
+#include <atomic>
+#include <thread>
+
+#include "shared/host/child_process.h"
+#include "shared/host/file.h"
+#include "shared/utc_text.h"
+#include "tests/support/market_series.h"
+#include "tests/support/market_test_support.h"
+#include "workstation/market/feed/day_ahead_fetch.h"
+#include "workstation/market/feed/day_ahead_rows.h"
+#include "workstation/market/series/local_date.h"
+
+namespace bess {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+std::string a44_point(int position, const std::string& amount) {
+  return fmt::format("<Point><position>{}</position><price.amount>{}</price.amount></Point>",
+                     position, amount);
+}
+
+/// One local day of summer, 2025-06-01.
+std::string a44(const std::string& points, const std::string& curve = "A03",
+                const std::string& resolution = "PT60M", const std::string& unit = "EUR") {
+  return "<?xml version=\"1.0\"?>\n<Publication_MarketDocument xmlns=\"urn:x\">\n<TimeSeries>"
+         "<currency_Unit.name>" +
+         unit + "</currency_Unit.name><price_Measure_Unit.name>MWH</price_Measure_Unit.name>" +
+         "<curveType>" + curve +
+         "</curveType><Period><timeInterval><start>2025-05-31T22:00Z</start>"
+         "<end>2025-06-01T22:00Z</end></timeInterval><resolution>" +
+         resolution + "</resolution>" + points +
+         "</Period></TimeSeries></Publication_MarketDocument>\n";
+}
+
+JoinedDayAhead joined(const std::string& text) {
+  return join_day_ahead(parse_day_ahead_text(text, "da"), "da");
+}
+
+std::string error_of(const std::string& text) {
+  return user_error_of([&] { joined(text); });
+}
+
+TEST(DayAheadRows, HoursOfA44AreRepeatedAndMarked) {
+  const JoinedDayAhead day =
+      joined(a44(a44_point(1, "71.82") + a44_point(3, "-5") + a44_point(24, "9")));
+  ASSERT_EQ(day.series.size(), 96u);  // A03: what is left out repeats the one before
+  EXPECT_EQ(day.series.start_utc_s, utc_of("2025-05-31T22:00:00Z"));
+  EXPECT_EQ(day.series.eur_per_mwh[0], 71.82);
+  EXPECT_EQ(day.series.eur_per_mwh[7], 71.82);
+  EXPECT_EQ(day.series.eur_per_mwh[8], -5);
+  EXPECT_EQ(day.series.eur_per_mwh[95], 9);
+  EXPECT_EQ(day.series.resolution_min[50], 60);
+  EXPECT_EQ(day.repeated_hours, 24u);
+  const JoinedDayAhead gap = joined(a44(a44_point(1, "71.82") + a44_point(3, "-5"), "A01"));
+  EXPECT_EQ(gap.series.size(), 12u);
+  EXPECT_TRUE(std::isnan(gap.series.eur_per_mwh[4]));
+  const JoinedDayAhead quarters =
+      joined(a44(a44_point(1, "1") + a44_point(2, "2"), "A03", "PT15M"));
+  EXPECT_EQ(quarters.series.size(), 96u);
+  EXPECT_EQ(quarters.series.resolution_min[1], 15);
+}
+
+TEST(DayAheadRows, BrokenDocumentsAreToldInTheirOwnWords) {
+  EXPECT_THAT(error_of(a44(a44_point(1, "x"))), HasSubstr("is not a number"));
+  EXPECT_THAT(error_of(a44(a44_point(25, "1"))), HasSubstr("outside its period"));
+  EXPECT_THAT(error_of(a44(a44_point(1, "1") + a44_point(1, "2"))), HasSubstr("comes twice"));
+  EXPECT_THAT(error_of(a44(a44_point(1, "1"), "A03", "P1D")), HasSubstr("resolution"));
+  EXPECT_THAT(error_of(a44(a44_point(1, "1"), "A03", "PT60M", "PLN")), HasSubstr("EUR is needed"));
+  EXPECT_THAT(error_of(a44("")), HasSubstr("holds no day-ahead prices"));
+  const std::string whole = a44(a44_point(1, "1"));
+  EXPECT_THAT(error_of(whole.substr(0, whole.size() / 2)), HasSubstr("cut short"));
+  EXPECT_THAT(error_of("<Balancing_MarketDocument/>"), HasSubstr("(A44)"));
+  EXPECT_THAT(error_of("<Acknowledgement_MarketDocument><Reason><text>No matching data"
+                       "</text></Reason></Acknowledgement_MarketDocument>"),
+              HasSubstr("No matching data"));
+}
+
+std::string charts(const std::string& seconds, const std::string& prices,
+                   const std::string& unit = "EUR / MWh") {
+  return "{\"license_info\":\"CC BY 4.0\",\"unix_seconds\":[" + seconds + "],\"price\":[" + prices +
+         "],\"unit\":\"" + unit + "\",\"deprecated\":false}";
+}
+
+TEST(DayAheadRows, EnergyChartsOfHoursAndItsDamages) {
+  const JoinedDayAhead day = joined(charts("1748728800,1748732400,1748736000", "10.5,null,12"));
+  ASSERT_EQ(day.series.size(), 12u);
+  EXPECT_EQ(day.series.eur_per_mwh[3], 10.5);
+  EXPECT_TRUE(std::isnan(day.series.eur_per_mwh[4]));
+  EXPECT_EQ(day.series.eur_per_mwh[11], 12);
+  EXPECT_THAT(error_of(charts("1748728800,1748732400", "10.5")), HasSubstr("cut short"));
+  EXPECT_THAT(error_of(charts("1748728800,-5", "1,2")), HasSubstr("unix_seconds[1]"));
+  EXPECT_THAT(error_of(charts("1748728800,1e300", "1,2")), HasSubstr("unix_seconds[1]"));
+  EXPECT_THAT(error_of(charts("1748728800,1748732400", "1,\"2\"")), HasSubstr("price[1]"));
+  EXPECT_THAT(error_of(charts("1748728800,1748732400", "1,2", "GBP / MWh")),
+              HasSubstr("EUR / MWh"));
+  EXPECT_THAT(error_of("{\"unix_seconds\":[1748"), HasSubstr("energy-charts"));
+  EXPECT_THAT(error_of(charts("1748728800,1748729400", "1,2")), HasSubstr("quarter-hour"));
+  EXPECT_THAT(error_of(charts("1748728800,1748736000", "1,2")), HasSubstr("every 15, 30 or 60"));
+}
+
+std::string table_of_day(const LocalDate& date, std::int64_t step_s, bool repeats_hours) {
+  std::string text = "datetime_utc,price_eur_mwh\n";
+  const std::int64_t end = local_midnight_utc_s(add_days(date, 1));
+  for (std::int64_t utc_s = local_midnight_utc_s(date); utc_s < end; utc_s += step_s) {
+    text += fmt::format("{},{}\n", utc_text(utc_s).view(),
+                        repeats_hours ? utc_s / 3600 % 97 : utc_s / 900 % 97);
+  }
+  return text;
+}
+
+TEST(DayAheadRows, TablesOfHoursQuarterHoursAndClockChanges) {
+  EXPECT_EQ(joined(table_of_day({2025, 3, 30}, 3600, true)).series.size(), 92u);
+  EXPECT_EQ(joined(table_of_day({2024, 10, 27}, 3600, true)).series.size(), 100u);
+  const JoinedDayAhead repeated = joined(table_of_day({2025, 6, 1}, 900, true));
+  EXPECT_EQ(repeated.series.resolution_min[0], 60);
+  EXPECT_EQ(repeated.repeated_hours, 24u);
+  const JoinedDayAhead own = joined(table_of_day({2025, 10, 1}, 900, false));
+  EXPECT_EQ(own.series.resolution_min[0], 15);
+  EXPECT_EQ(own.repeated_hours, 0u);
+  // Semicolons and decimal commas; and the file that was written, once more.
+  const JoinedDayAhead commas =
+      joined("Datetime;Price\n2025-06-01T00:00:00+02:00;1,5\n2025-06-01T00:15:00+02:00;-2\n");
+  EXPECT_EQ(commas.series.eur_per_mwh[0], 1.5);
+  const std::string written = format_day_ahead_csv(repeated.series, "");
+  EXPECT_EQ(format_day_ahead_csv(joined(written).series, ""), written);
+}
+
+TEST(DayAheadRows, BrokenTablesAreToldByLine) {
+  EXPECT_THAT(error_of("datetime_utc,load\n"), HasSubstr("no column for the price"));
+  EXPECT_THAT(error_of("when,price\n"), HasSubstr("no column for the time"));
+  const std::string head = "datetime_utc,price_eur_mwh\n2025-06-01T00:00:00Z,1\n";
+  EXPECT_THAT(error_of(head + "2025-06-01T00:15:00Z\n"), HasSubstr("da:3: 1 columns"));
+  EXPECT_THAT(error_of(head + "2025-06-01T00:15:00,1\n"), HasSubstr("da:3: "));
+  EXPECT_THAT(error_of(head + "2025-06-01T00:15:00Z,inf\n"), HasSubstr("is not a price"));
+  EXPECT_THAT(error_of(""), HasSubstr("empty"));
+  EXPECT_THAT(error_of(std::string("PK\3\4zip")), HasSubstr("ZIP"));
+  EXPECT_EQ(joined(head + "2025-06-01T00:15:00Z,2\n2025-06-01T00:00:00Z,3\n").findings.size(), 1u);
+}
+
+/// Answers like energy-charts: hours of the asked local days.
+class FakeCharts {
+ public:
+  explicit FakeCharts(int failures = 0) : failures_(failures) {
+    server_.Get("/price", [this](const httplib::Request& request, httplib::Response& response) {
+      ++requests;
+      if (failures_-- > 0) {
+        response.status = 503;
+        return;
+      }
+      const LocalDate from = parse_local_date(request.get_param_value("start"), "start");
+      const LocalDate to = parse_local_date(request.get_param_value("end"), "end");
+      std::string seconds, prices;
+      for (std::int64_t utc_s = local_midnight_utc_s(from);
+           utc_s < local_midnight_utc_s(add_days(to, 1)); utc_s += 3600) {
+        if (utc_s == missing_utc_s) continue;
+        const char* comma = seconds.empty() ? "" : ",";
+        seconds += comma + std::to_string(utc_s);
+        prices += comma + std::to_string(utc_s / 3600 % 89);
+      }
+      response.set_content(charts(seconds, prices), "application/json");
+    });
+    port_ = server_.bind_to_any_port("127.0.0.1");
+    thread_ = std::thread([this] { server_.listen_after_bind(); });
+    while (!server_.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  ~FakeCharts() {
+    server_.stop();
+    thread_.join();
+  }
+  [[nodiscard]] std::string base_url() const { return "http://127.0.0.1:" + std::to_string(port_); }
+  std::atomic<int> requests{0};
+  std::int64_t missing_utc_s = 0;
+
+ private:
+  std::atomic<int> failures_;
+  httplib::Server server_;
+  int port_ = 0;
+  std::thread thread_;
+};
+
+DayAheadRequest request_of(const FakeCharts& server, const FetchSpan& span) {
+  return {.span = span,
+          .base_url = server.base_url(),
+          .now_utc_s = utc_of("2026-01-01T12:00:00Z"),
+          .retry = {},
+          .sleep = [](double, const std::atomic<bool>&) {}};
+}
+
+TEST(DayAheadFetch, AsksYearByYearAndTriesAgain) {
+  FakeCharts server(2);
+  const std::atomic<bool> interrupted{false};
+  const auto fetched =
+      fetch_day_ahead(request_of(server, {{2024, 1, 1}, {2025, 6, 30}}), interrupted);
+  ASSERT_TRUE(fetched);
+  EXPECT_EQ(server.requests, 4);
+  EXPECT_EQ(fetched->series.size(), (366u + 181u) * 96 - 4);  // clock changes: -4 +4 -4
+  EXPECT_TRUE(incomplete_days(fetched->series).empty());
+}
+
+TEST(DayAheadFetch, AHoleIsAnErrorUnlessItIsAllowed) {
+  FakeCharts server;
+  server.missing_utc_s = utc_of("2025-06-03T10:00:00Z");
+  const std::atomic<bool> interrupted{false};
+  DayAheadRequest request = request_of(server, {{2025, 6, 1}, {2025, 6, 7}});
+  EXPECT_THAT(user_error_of([&] { fetch_day_ahead(request, interrupted); }),
+              AllOf(HasSubstr("92 of 96"), HasSubstr("2025-06-03")));
+  request.allow_gaps = true;
+  EXPECT_TRUE(fetch_day_ahead(request, interrupted));
+  EXPECT_THAT(user_error_of([&] {
+                fetch_day_ahead(request_of(server, {{2025, 6, 7}, {2025, 6, 1}}), interrupted);
+              }),
+              HasSubstr("lies before"));
+}
+
+class DayAheadCli : public testing::Test {
+ protected:
+  struct Result {
+    int exit_code;
+    std::string output;
+  };
+  static Result run(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), BESS_TRAIN_PROGRAM);
+    ChildProcess program(arguments);
+    std::string output = program.read_all();
+    return {program.wait(), std::move(output)};
+  }
+  [[nodiscard]] std::string path(const std::string& name) const {
+    return (folder_ / name).string();
+  }
+  [[nodiscard]] std::string written(const std::string& name, std::string_view text) const {
+    write_file(folder_ / name, text);
+    return path(name);
+  }
+  ScratchFolder folder_;
+};
+
+TEST_F(DayAheadCli, ImportsJudgesAndLeavesNothingOfWhatIsBad) {
+  const std::string good = written("good.csv", table_of_day({2025, 6, 1}, 3600, true));
+  const Result imported = run({"prices", "import", "--day-ahead", good, "--out", path("da.csv")});
+  EXPECT_EQ(imported.exit_code, 0) << imported.output;
+  EXPECT_THAT(imported.output, HasSubstr("96 quarter-hours of day-ahead prices"));
+  EXPECT_THAT(read_file(path("da.csv")), HasSubstr("2025-05-31T22:15:00Z,"));
+  EXPECT_THAT(run({"prices", "stats", path("da.csv")}).output, HasSubstr("quartile"));
+  const std::string other = written("other.csv",
+                                    "datetime_utc,price_eur_mwh\n"
+                                    "2025-05-31T22:00:00Z,-9999\n"
+                                    "2025-05-31T23:00:00Z,5\n");
+  for (const auto& files : {std::vector<std::string>{other}, {good, other}, {path("absent.xml")}}) {
+    std::vector<std::string> arguments{"prices", "import", "--day-ahead", "--out", path("bad.csv")};
+    arguments.insert(arguments.end(), files.begin(), files.end());
+    const Result result = run(arguments);
+    EXPECT_EQ(result.exit_code, 1) << result.output;
+    EXPECT_FALSE(std::filesystem::exists(path("bad.csv")));
+  }
+  // Of the other kind: each says what to do.
+  const std::string document = written("a44.xml", a44(a44_point(1, "5")));
+  EXPECT_THAT(run({"prices", "import", document, "--out", path("bad.csv")}).output,
+              HasSubstr("--day-ahead"));
+  EXPECT_FALSE(std::filesystem::exists(path("bad.csv")));
+}
+
+TEST_F(DayAheadCli, FetchWritesAFileOrNothing) {
+  FakeCharts server;
+  const std::vector<std::string> fetch{"prices",          "fetch", "--day-ahead",    "--from",
+                                       "2025-06-01",      "--to",  "2025-06-07",     "--base-url",
+                                       server.base_url(), "--out", path("da.csv.gz")};
+  const Result fetched = run(fetch);
+  EXPECT_EQ(fetched.exit_code, 0) << fetched.output;
+  EXPECT_EQ(parse_day_ahead_csv(read_file(path("da.csv.gz")), "da").size(), 7u * 96);
+  std::filesystem::remove(path("da.csv.gz"));
+  server.missing_utc_s = utc_of("2025-06-03T10:00:00Z");
+  const Result refused = run(fetch);
+  EXPECT_EQ(refused.exit_code, 1) << refused.output;
+  EXPECT_FALSE(std::filesystem::exists(path("da.csv.gz")));
+}
+
+// The planted look-ahead: every price filed a day early says today what only tomorrow's auction
+// will.
+TEST_F(DayAheadCli, AnOutlookFiledUnderTheWrongDayIsRefused) {
+  const Result simulated = run({"prices", "simulate", "--days", "90", "--out",
+                                path("market.csv.gz"), "--day-ahead-out", path("da.csv")});
+  ASSERT_EQ(simulated.exit_code, 0) << simulated.output;
+  std::vector<std::string> evaluate{
+      "evaluate", "--prices", path("market.csv.gz"), "--policy",    "sdp", "sdp-outlook",
+      "--split",  "val",      "--day-ahead",         path("da.csv")};
+  const Result traded = run(evaluate);
+  EXPECT_EQ(traded.exit_code, 0) << traded.output;
+  EXPECT_THAT(traded.output, HasSubstr("sdp-outlook"));
+  DayAheadSeries series = parse_day_ahead_csv(read_file(path("da.csv")), "da.csv");
+  series.start_utc_s -= 86'400;
+  write_day_ahead_file(path("shifted.csv"), series, "");
+  evaluate.back() = path("shifted.csv");
+  const Result refused = run(evaluate);
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.output, HasSubstr("wrong day"));
+  evaluate.resize(evaluate.size() - 2);
+  EXPECT_THAT(run(evaluate).output, HasSubstr("give their file with --day-ahead"));
+}
+
+}  // namespace
+}  // namespace bess
