@@ -2,7 +2,9 @@
 #include "tests/bench/registry.h"
 #include "tests/bench/simulated_year.h"
 #include "workstation/env/evaluate.h"
+#include "workstation/market/model/simulated_day_ahead.h"
 #include "workstation/planners/foresight.h"
+#include "workstation/planners/outlook_program.h"
 #include "workstation/planners/tabular.h"
 
 namespace bess {
@@ -11,6 +13,19 @@ namespace {
 double evaluate_year(Policy& policy) {
   const MarketSteps& market = year_of_steps();
   return evaluate(market, market.days, policy, {}).profit_eur_per_day_per_mwh();
+}
+
+/// The year with the day-ahead prices of its own settled ones.
+MarketSteps year_with_outlook() {
+  const MinuteSeries& minutes = year_of_minutes();
+  std::vector<QuarterHour> quarter_hours;
+  for (std::size_t m = 0; m + 15 <= minutes.size(); m += 15) {
+    quarter_hours.push_back({.utc_s = minutes.utc_s(m), .price_eur_per_mwh = minutes.settled[m]});
+  }
+  MarketSteps market = year_of_steps();
+  attach_day_ahead(market,
+                   std::make_shared<DayAheadPublication>(simulate_day_ahead(quarter_hours, 1)));
+  return market;
 }
 
 }  // namespace
@@ -36,6 +51,19 @@ void register_market_benchmarks() {
   add_benchmark("foresight-year", benchmark::kSecond, 3, [](benchmark::State& state) {
     ForesightPolicy policy{BatteryParameters{}};
     for (auto _ : state) benchmark::DoNotOptimize(evaluate_year(policy));
+  });
+  // Midnight's plan and the first decision on it: a day's plan for the two levels that it lies between.
+  add_benchmark("outlook-day-plan", benchmark::kMillisecond, 5, [](benchmark::State& state) {
+    const MarketSteps market = year_with_outlook();
+    const std::vector<MarketDay> training(market.days.begin(), market.days.begin() + 60);
+    const OutlookProgram program(market, training, BatteryParameters{});
+    std::size_t day = 60;
+    for (auto _ : state) {
+      const MarketStep& step = market.of(market.days[day]).front();
+      OutlookProgram::Plan plan = program.plan_of(step);
+      benchmark::DoNotOptimize(program.action_values(step, 0.5, plan));
+      day = day + 1 < market.days.size() ? day + 1 : 60;
+    }
   });
   add_benchmark("tabular-fit", benchmark::kSecond, 3, [](benchmark::State& state) {
     const std::vector<MarketDay> training = year_of_steps().days_of(Split::kTrain);

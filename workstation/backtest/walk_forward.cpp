@@ -39,6 +39,7 @@ MarketSteps cut_out(const MarketSteps& market, std::size_t first, std::size_t en
     }
     cut.days.push_back(day);
   }
+  cut.day_ahead = market.day_ahead;  // its steps point to it
   return cut;
 }
 
@@ -99,7 +100,7 @@ double WalkForward::drawdown_eur_per_mwh() const { return day_risk(daily_profits
 
 WalkForward walk_forward(const std::string& name, const Folds& folds, const FoldPolicy& make,
                          const BatteryParameters& battery, double initial_soc_frac,
-                         const MarketSteps& market) {
+                         const MarketSteps& market, bool and_day_reset) {
   WalkForward result{.name = name, .total = {}, .months = {}, .by_month = {}};
   EvaluationOptions options{battery, initial_soc_frac, true};
   for (const Fold& fold : folds.traded) {
@@ -113,6 +114,14 @@ WalkForward walk_forward(const std::string& name, const Folds& folds, const Fold
     } else {
       evaluation = evaluate(fold.market, traded, *policy, options);
       options.initial_soc_frac = evaluation.days.back().soc_end_frac;
+    }
+    if (and_day_reset) {
+      const Evaluation reset =
+          evaluate(fold.market, traded, *policy, {battery, initial_soc_frac, false});
+      result.day_reset.capacity_mwh = reset.capacity_mwh;
+      result.day_reset.wear_eur_per_mwh = reset.wear_eur_per_mwh;
+      result.day_reset.days.insert(result.day_reset.days.end(), reset.days.begin(),
+                                   reset.days.end());
     }
     result.total.capacity_mwh = evaluation.capacity_mwh;
     result.total.wear_eur_per_mwh = evaluation.wear_eur_per_mwh;

@@ -40,6 +40,7 @@ struct WalkForward {
   Evaluation total;
   std::vector<std::string> months;   ///< as in Folds::traded
   std::vector<Evaluation> by_month;  ///< parallel to `months`
+  Evaluation day_reset{};  ///< the days, each from the initial SoC; empty unless asked for
 
   /// As day_risk.h defines it, EUR per MWh of capacity.
   [[nodiscard]] double drawdown_eur_per_mwh() const;
@@ -53,6 +54,6 @@ using FoldPolicy = std::function<std::shared_ptr<Policy>(const Fold&)>;
 /// Trades fold after fold. A policy that sees the future, the bound, plans over `market` as a whole.
 WalkForward walk_forward(const std::string& name, const Folds& folds, const FoldPolicy& make,
                          const BatteryParameters& battery, double initial_soc_frac,
-                         const MarketSteps& market);
+                         const MarketSteps& market, bool and_day_reset = false);
 
 }  // namespace bess

@@ -16,6 +16,7 @@
 #include "workstation/cli/chain_steps.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
+#include "workstation/cli/day_ahead_input.h"
 #include "workstation/cli/folder_lock.h"
 #include "workstation/cli/interruption.h"
 #include "workstation/cli/learnt_for.h"
@@ -44,7 +45,9 @@ struct BacktestArguments {
   std::vector<std::string> prices;
   std::vector<std::string> policies{"rbc-tuned", "tabular",  "mpc",
                                     "sdp",       kChainName, kForesightName};
+  DayAheadInput day_ahead;
   int window_days = 120;
+  bool and_day_reset = false;
   std::string out;
   bool json = false;
 };
@@ -178,6 +181,7 @@ void run_backtest(const BacktestArguments& options) {
   const fs::path folder = options.out;
   std::vector<GivenPath> inputs = given_paths("--prices", options.prices);
   inputs.push_back({"--config", options.common.config_path});
+  inputs.push_back({"--day-ahead", options.day_ahead.path()});
   std::vector<GivenPath> outputs;
   for (const char* name : {"backtest.csv", "backtest_days.csv", "backtest_curve.csv",
                            "backtest.json", "backtest.html"}) {
@@ -187,9 +191,12 @@ void run_backtest(const BacktestArguments& options) {
   std::vector<std::string> baselines = options.policies;
   std::erase_if(baselines, is_learnt);
   require_policies(baselines);
+  require_outlook(baselines, options.day_ahead.path());
   const MinuteSeries series = options.price_input.read_joined(options.prices).series;
   const std::string prices = name_of(options.prices);
-  const MarketSteps market = market_of(series, config.market, prices);
+  MarketSteps market = market_of(series, config.market, prices);
+  attach_day_ahead(market, options.day_ahead.read(series, options.price_input.accepted(),
+                                                  config.market.day_ahead_published_min));
   const Folds folds = make_folds(market, options.window_days);
   require_writable(folder / "backtest.csv");
   const FolderLock lock(folder);
@@ -215,8 +222,8 @@ void run_backtest(const BacktestArguments& options) {
       const std::string model = is_learnt(name) ? model_path(folder, fold, name).string() : name;
       return make_policy(model, fold.market, config.battery);
     };
-    results.policies.push_back(
-        walk_forward(name, folds, make, config.battery, config.initial_soc_frac, market));
+    results.policies.push_back(walk_forward(
+        name, folds, make, config.battery, config.initial_soc_frac, market, options.and_day_reset));
     progress.update(static_cast<double>(results.policies.size()), name);
   }
   write_file(folder / "backtest.csv", backtest_csv(results));
@@ -255,6 +262,9 @@ void add_backtest_command(ProgramCommand& app) {
   command.option("--window-days", options->window_days, "Days before a month that it is fitted on")
       .range(30, 3650)
       .with_default();
+  options->day_ahead.add(command);
+  command.flag("--day-reset", options->and_day_reset,
+               "In the table also: each day from the same SoC, its end given away");
   command.flag("--json", options->json, "One JSON object");
   options->common.add_market(command);
   options->common.add_config(command);
@@ -264,7 +274,9 @@ void add_backtest_command(ProgramCommand& app) {
       "learns on one thread, so that it repeats to the bit.\n"
       "Examples:\n"
       "  bess-train backtest --prices 2023.csv.gz 2024.csv.gz --out backtests/first\n"
-      "  bess-train backtest --prices 2024.csv.gz --window-days 60 --policy rbc sdp --out quick");
+      "  bess-train backtest --prices 2024.csv.gz --window-days 60 --policy rbc sdp --out quick\n"
+      "  bess-train backtest --prices 2024.csv.gz --day-ahead day_ahead.csv.gz --policy sdp "
+      "sdp-outlook --out outlook");
   command.runs([options] { run_backtest(*options); });
 }
 

@@ -14,6 +14,7 @@
 #include "workstation/base/answer.h"
 #include "workstation/cli/commands.h"
 #include "workstation/cli/common_options.h"
+#include "workstation/cli/day_ahead_input.h"
 #include "workstation/cli/learnt_for.h"
 #include "workstation/cli/policy_factory.h"
 #include "workstation/cli/price_input.h"
@@ -27,6 +28,7 @@ namespace {
 struct EvaluateArguments {
   CommonOptions common;
   PriceInput price_input;
+  DayAheadInput day_ahead;
   std::string prices;
   std::vector<std::string> policies;
   std::string split = "test";
@@ -199,6 +201,7 @@ void require_outputs_writable(const EvaluateArguments& options) {
   std::vector<GivenPath> inputs = given_paths("--policy", options.policies);
   inputs.push_back({"--prices", options.prices});
   inputs.push_back({"--fit", options.fit});
+  inputs.push_back({"--day-ahead", options.day_ahead.path()});
   inputs.push_back({"--config", options.common.config_path});
   require_distinct({{"--csv", options.csv},
                     {"--days-out", options.days_out},
@@ -213,9 +216,14 @@ void run_evaluate(const EvaluateArguments& options) {
   require_outputs_writable(options);
   const RunConfig config = options.common.resolve();
   require_policies(options.policies);
+  require_outlook(options.policies, options.day_ahead.path());
   const MinuteSeries series = options.price_input.read(options.prices);
-  const MarketSteps market = market_of(series, config.market, options.prices);
-  const MarketSteps fitting = fitting_market(series, config, options);
+  MarketSteps market = market_of(series, config.market, options.prices);
+  MarketSteps fitting = fitting_market(series, config, options);
+  const auto day_ahead = options.day_ahead.read(series, options.price_input.accepted(),
+                                                config.market.day_ahead_published_min);
+  attach_day_ahead(market, day_ahead);
+  attach_day_ahead(fitting, day_ahead);
   Trial trial{market,
               fitting,
               market.days_of(parse_split(options.split)),
@@ -254,6 +262,7 @@ void add_evaluate_command(ProgramCommand& app) {
   ProgramCommand command = app.subcommand("evaluate", "What a policy would have earned");
   command.option("--prices", options->prices, "Minute file (.csv or .csv.gz)").required();
   options->price_input.add(command);
+  options->day_ahead.add(command);
   command.option("--policy", options->policies, std::string("One or more of ") + kPolicyHelp)
       .required();
   command
@@ -296,7 +305,9 @@ void add_evaluate_command(ProgramCommand& app) {
       "--carry-soc --json\n"
       "  bess-train evaluate --prices market.csv.gz --policy compiled --date widest --steps-out "
       "day.csv\n"
-      "  bess-train evaluate --prices market.csv.gz --policy teacher.bin --risk cvar:0.1");
+      "  bess-train evaluate --prices market.csv.gz --policy teacher.bin --risk cvar:0.1\n"
+      "  bess-train evaluate --prices market.csv.gz --day-ahead day_ahead.csv.gz --policy sdp "
+      "sdp-outlook");
   command.runs([options] { run_evaluate(*options); });
 }
 

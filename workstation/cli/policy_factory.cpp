@@ -9,6 +9,7 @@
 #include "shared/host/user_error.h"
 #include "workstation/planners/cycle_limit.h"
 #include "workstation/planners/foresight.h"
+#include "workstation/planners/outlook_program.h"
 #include "workstation/planners/rolling_horizon.h"
 #include "workstation/planners/stochastic_program.h"
 #include "workstation/planners/tabular.h"
@@ -19,6 +20,7 @@ namespace bess {
 namespace {
 
 constexpr std::string_view kGivenRule = "rbc:";
+constexpr std::string_view kOutlook = "sdp-outlook";
 
 /// Keeps a model alive as long as the policy that reads it.
 template <typename Model, typename ModelPolicy, typename View>
@@ -93,15 +95,20 @@ std::pair<double, double> training_quartiles(const MarketSteps& market) {
 }
 
 void require_policies(const std::vector<std::string>& names) {
-  constexpr std::array<std::string_view, 9> kKnown{"rbc",      "rbc-quartile", "rbc-tuned",
-                                                   "tabular",  "mpc",          "sdp",
-                                                   "sdp-hour", "foresight",    "compiled"};
+  constexpr std::array<std::string_view, 10> kKnown{
+      "rbc", "rbc-quartile", "rbc-tuned", "tabular",   "mpc",
+      "sdp", "sdp-hour",     kOutlook,    "foresight", "compiled"};
   for (const std::string& name : names) {
     if (std::ranges::find(kKnown, name) != kKnown.end()) continue;
     const bool is_pipe = std::filesystem::exists(name) && !std::filesystem::is_regular_file(name);
     if (is_pipe) continue;  // it can be read once
     name.starts_with(kGivenRule) ? given_rule(name) : model_policy(name, {});
   }
+}
+
+void require_outlook(const std::vector<std::string>& names, const std::string& day_ahead) {
+  if (!day_ahead.empty() || std::ranges::find(names, kOutlook) == names.end()) return;
+  fail("--policy {} plans on day-ahead prices: give their file with --day-ahead", kOutlook);
 }
 
 std::shared_ptr<Policy> make_policy(const std::string& name, const MarketSteps& market,
@@ -117,6 +124,7 @@ std::shared_ptr<Policy> make_policy(const std::string& name, const MarketSteps& 
     return fit_planner<TabularPolicy>(market, battery);
   }
   if (name == "sdp") return fit_planner<StochasticProgramPolicy>(market, battery);
+  if (name == kOutlook) return fit_planner<OutlookPolicy>(market, battery);
   if (name == "sdp-hour") {
     return fit_planner<StochasticProgramPolicy>(market, battery,
                                                 StochasticProgramOptions{.level_weight = 0});

@@ -16,7 +16,11 @@ inline constexpr const char* kPolicyHelp =
     "rbc (thresholds 11/179), rbc:LOW:HIGH, rbc-quartile (training days' quartiles), rbc-tuned "
     "(thresholds that earn most on the training days), tabular, mpc (rolling horizon on a naive "
     "forecast), sdp (stochastic program by hour and price level), sdp-hour (by hour alone), "
+    "sdp-outlook (planned each day on --day-ahead), "
     "foresight, compiled (the array in this program), or a teacher's or student's file";
+
+/// Throws UserError when sdp-outlook is among them and `day_ahead` is no file.
+void require_outlook(const std::vector<std::string>& names, const std::string& day_ahead);
 
 /// Throws UserError when one of them is neither known nor a model's file: before the work, not after.
 void require_policies(const std::vector<std::string>& names);

@@ -1,26 +1,18 @@
 #include "workstation/planners/stochastic_program.h"
 
-#include <Eigen/Core>
-
 #include <algorithm>
 #include <cmath>
 
 #include "shared/exchange_cost.h"
+#include "workstation/planners/smoothing_kernel.h"
+#include "workstation/planners/storage_recursion.h"
 
 namespace bess {
 namespace {
 
 constexpr int kSmoothedQuarterHours = 24;  ///< reach of the smoothing, on both sides
-constexpr int kSmoothedBins = 3;
-constexpr int kDays = 4;           ///< of backward induction: greedy actions change no more
-constexpr double kLevelReach = 3;  ///< standard deviations of the level around its mean
-
-using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-double kernel(int distance, double sigma) {
-  if (sigma <= 0) return distance == 0 ? 1.0 : 0.0;
-  return std::exp(-0.5 * distance * distance / (sigma * sigma));
-}
+constexpr int kDays = 4;                   ///< of backward induction: greedy actions change no more
+constexpr double kLevelReach = 3;          ///< standard deviations of the level around its mean
 
 int step_of_day(const MarketStep& step) {
   return (step.quarter_hour * kMinutesPerQuarterHour + step.minute_of_quarter_hour) /
@@ -48,8 +40,7 @@ StochasticProgram::StochasticProgram(const MarketSteps& market, const std::vecto
     : battery_(battery), options_(options), grid_(battery, kSocPoints) {
   require_training_days(days.size());
   fit_usual(market, days);
-  fit_bins(market, days);
-  count_chain(market, days);
+  fit_chain(market, days);
   solve();
 }
 
@@ -61,10 +52,7 @@ void StochasticProgram::save(BinaryWriter& out) const {
   out.put(usual_);
   out.put(row_age_);
   out.put_list(levels_);
-  out.put_list(bin_edges_);
-  out.put_list(bin_centres_);
-  out.put_list(paid_);
-  out.put_list(transition_);
+  chain_.save(out);
 }
 
 StochasticProgram::StochasticProgram(BinaryReader& in)
@@ -75,14 +63,8 @@ StochasticProgram::StochasticProgram(BinaryReader& in)
   usual_ = in.take<decltype(usual_)>();
   row_age_ = in.take<decltype(row_age_)>();
   levels_ = in.take_list<double>();
-  bin_edges_ = in.take_list<double>();
-  bin_centres_ = in.take_list<double>();
-  paid_ = in.take_list<double>();
-  transition_ = in.take_list<float>();
-  if (levels_.empty() || bin_edges_.size() != kBins - 1 || bin_centres_.size() != kBins ||
-      paid_.size() != kPhases * kBins || transition_.size() != kPhases * kBins * kBins) {
-    in.damaged("is of another size of the stochastic program");
-  }
+  chain_ = DeviationChain(in);
+  if (levels_.empty()) in.damaged("is of another size of the stochastic program");
   solve();
 }
 
@@ -101,18 +83,6 @@ double StochasticProgram::usual(int quarter_hour, double level) const {
 double StochasticProgram::usual_paid(int step, double level) const {
   const auto [first, second] = paid_quarter_hours(step);
   return 0.5 * (usual(first, level) + usual(second, level));
-}
-
-int StochasticProgram::bin_of(double deviation) const {
-  return static_cast<int>(std::ranges::lower_bound(bin_edges_, deviation) - bin_edges_.begin());
-}
-
-StochasticProgram::Between StochasticProgram::between_bins(double deviation) const {
-  const auto upper = std::ranges::upper_bound(bin_centres_, deviation) - bin_centres_.begin();
-  const int lower = std::clamp(static_cast<int>(upper) - 1, 0, kBins - 2);
-  const double width = bin_centres_[lower + 1] - bin_centres_[lower];
-  const double weight = width > 0 ? (deviation - bin_centres_[lower]) / width : 0.0;
-  return {lower, std::clamp(weight, 0.0, 1.0)};
 }
 
 StochasticProgram::Between StochasticProgram::between_levels(double level) const {
@@ -144,7 +114,7 @@ void StochasticProgram::fit_usual(const MarketSteps& market, const std::vector<M
   for (int q = 0; q < kQuarterHours; ++q) {
     double weighted = 0, weight = 0;
     for (int d = -kSmoothedQuarterHours; d <= kSmoothedQuarterHours; ++d) {
-      const double k = kernel(d, options_.hour_smoothing);
+      const double k = smoothing_kernel(d, options_.hour_smoothing);
       const int near = (q + d + kQuarterHours) % kQuarterHours;
       weighted += k * sum[near];
       weight += k * count[near];
@@ -160,104 +130,41 @@ void StochasticProgram::fit_usual(const MarketSteps& market, const std::vector<M
   }
 }
 
-void StochasticProgram::fit_bins(const MarketSteps& market, const std::vector<MarketDay>& days) {
-  std::vector<double> deviations;
-  for_each_step(market, days, [&](const MarketStep& step) {
-    const Situation at = situation_of(step);
-    deviations.push_back(at.price_eur_per_mwh - usual(at.row_quarter_hour, at.level_eur_per_mwh));
-  });
-  std::ranges::sort(deviations);
-  const std::size_t n = deviations.size();
-  for (int b = 0; b < kBins; ++b) {
-    const std::size_t first = n * static_cast<std::size_t>(b) / kBins;
-    const std::size_t end = std::max(first + 1, n * static_cast<std::size_t>(b + 1) / kBins);
-    if (b > 0) bin_edges_.push_back(deviations[first]);
-    double sum = 0;
-    for (std::size_t i = first; i < end; ++i) sum += deviations[i];
-    bin_centres_.push_back(sum / static_cast<double>(end - first));
-  }
-}
-
-void StochasticProgram::count_chain(const MarketSteps& market, const std::vector<MarketDay>& days) {
-  constexpr int kCells = kPhases * kBins;
-  Eigen::MatrixXd next = Eigen::MatrixXd::Zero(kCells, kBins);
-  Eigen::VectorXd paid = Eigen::VectorXd::Zero(kCells), visits = Eigen::VectorXd::Zero(kCells);
-  int cell = -1;  // of the step before, when this one follows it
+void StochasticProgram::fit_chain(const MarketSteps& market, const std::vector<MarketDay>& days) {
+  std::vector<DeviationChain::Sample> samples;
   std::int64_t follows_utc_s = 0;
   for_each_step(market, days, [&](const MarketStep& step) {
     const Situation at = situation_of(step);
     const double level = at.level_eur_per_mwh;
-    const int bin = bin_of(at.price_eur_per_mwh - usual(at.row_quarter_hour, level));
-    if (cell >= 0 && step.utc_s == follows_utc_s) next(cell, bin) += 1;
-    cell = step.half_hour_phase * kBins + bin;
+    samples.push_back(
+        {step.half_hour_phase, at.price_eur_per_mwh - usual(at.row_quarter_hour, level),
+         step.paid_eur_per_mwh - usual_paid(at.step_of_day, level), step.utc_s == follows_utc_s});
     follows_utc_s = step.utc_s + kSecondsPerStep;
-    visits[cell] += 1;
-    paid[cell] += step.paid_eur_per_mwh - usual_paid(at.step_of_day, level);
   });
-  paid_.assign(kCells, 0.0);
-  transition_.assign(kCells * kBins, 0.0F);
-  for (int phase = 0; phase < kPhases; ++phase) {
-    for (int b = 0; b < kBins; ++b) {
-      const int to = phase * kBins + b;
-      Eigen::RowVectorXd smoothed = Eigen::RowVectorXd::Zero(kBins);
-      double sum = 0, weight = 0;
-      for (int d = -kSmoothedBins; d <= kSmoothedBins; ++d) {
-        if (b + d < 0 || b + d >= kBins) continue;
-        const double k = kernel(d, options_.bin_smoothing);
-        smoothed += k * next.row(to + d);
-        sum += k * paid[to + d];
-        weight += k * visits[to + d];
-      }
-      const double total = smoothed.sum();
-      if (total <= 0) smoothed[b] = 1;  // never seen: it stays
-      paid_[to] = weight > 0 ? sum / weight : bin_centres_[b];
-      for (int n = 0; n < kBins; ++n) {
-        transition_[to * kBins + n] = static_cast<float>(smoothed[n] / std::max(total, 1.0));
-      }
-    }
-  }
+  chain_ = DeviationChain(samples, options_.bin_smoothing);
 }
 
 void StochasticProgram::solve() {
-  const std::vector<GridMove> moves = tabulate_moves(battery_, grid_);
+  const StorageRecursion recursion(battery_, grid_, options_.gamma);
   continuation_.assign(levels_.size() * kStepsPerDay * kBins * kSocPoints, 0.0F);
   for (std::size_t l = 0; l < levels_.size(); ++l) {
-    Rows value = Rows::Zero(kBins, kSocPoints);
+    std::vector<float> value(std::size_t{kBins} * kSocPoints, 0.0F);
     for (int step = kDays * kStepsPerDay - 1; step >= 0; --step) {
       const int of_day = step % kStepsPerDay;
-      const int phase = of_day % kPhases;
-      Eigen::Map<Rows> ahead(&continuation_[continuation_at(static_cast<int>(l), of_day, 0)], kBins,
-                             kSocPoints);
-      const Eigen::Map<const Rows> chain(&transition_[phase * kBins * kBins], kBins, kBins);
-      ahead.noalias() = static_cast<float>(options_.gamma) * (chain * value);
-      const double usual_price = usual_paid(of_day, levels_[l]);
-      for (int b = 0; b < kBins; ++b) {
-        const double price = paid_[phase * kBins + b] + usual_price;
-        value.row(b) = ahead.row(b);  // idle
-        for (const Action action : {Action::kDischarge, Action::kCharge}) {
-          const GridMove* move = &moves[static_cast<int>(action) * kSocPoints];
-          const auto full = static_cast<double>(
-              action == Action::kCharge ? move[0].energy_mwh : move[kSocPoints - 1].energy_mwh);
-          const auto cost = static_cast<float>(exchange_cost_eur(battery_, full, price) / full);
-          for (int i = 0; i < kSocPoints; ++i) {
-            const float worth = interpolate(&ahead(b, 0), move[i].next) - move[i].energy_mwh * cost;
-            value(b, i) = std::max(value(b, i), worth);
-          }
-        }
-      }
+      recursion.step_back(chain_, of_day % kPhases, usual_paid(of_day, levels_[l]),
+                          &continuation_[continuation_at(static_cast<int>(l), of_day, 0)],
+                          value.data());
     }
   }
 }
 
 StochasticProgram::Outlook StochasticProgram::outlook(const Situation& at) const {
   const double level = at.level_eur_per_mwh;
-  const Between bins = between_bins(at.price_eur_per_mwh - usual(at.row_quarter_hour, level));
+  const Between bins = chain_.between(at.price_eur_per_mwh - usual(at.row_quarter_hour, level));
   const Between anchors = between_levels(level);
   const int phase = at.step_of_day % kPhases;
-  const double* paid = &paid_[phase * kBins + bins.lower];
   Outlook outlook{};
-  outlook.price_eur_per_mwh =
-      paid[0] + bins.weight * (paid[1] - paid[0]) + usual_paid(at.step_of_day, level);
+  outlook.price_eur_per_mwh = chain_.paid(phase, bins) + usual_paid(at.step_of_day, level);
   for (int l = 0; l < 2; ++l) {
     const double level_weight = l == 0 ? 1 - anchors.weight : anchors.weight;
     if (level_weight == 0) continue;
@@ -296,7 +203,7 @@ double StochasticProgram::expected_price(const Situation& at) const {
 
 double StochasticProgram::deviation_frac(const Situation& at) const {
   const double usual_price = usual(at.row_quarter_hour, at.level_eur_per_mwh);
-  const Between bins = between_bins(at.price_eur_per_mwh - usual_price);
+  const Between bins = chain_.between(at.price_eur_per_mwh - usual_price);
   return (bins.lower + bins.weight) / (kBins - 1);
 }
 

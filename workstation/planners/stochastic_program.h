@@ -16,6 +16,7 @@
 #include "shared/battery_model.h"
 #include "workstation/base/binary_file.h"
 #include "workstation/env/policy.h"
+#include "workstation/planners/deviation_chain.h"
 #include "workstation/planners/soc_grid.h"
 
 namespace bess {
@@ -30,8 +31,8 @@ struct StochasticProgramOptions {
 
 class StochasticProgram {
  public:
-  static constexpr int kPhases = 15;
-  static constexpr int kBins = 48;
+  static constexpr int kPhases = DeviationChain::kPhases;
+  static constexpr int kBins = DeviationChain::kBins;
   static constexpr int kSocPoints = 121;
   static constexpr int kQuarterHours = 96;
 
@@ -75,19 +76,12 @@ class StochasticProgram {
   [[nodiscard]] const BatteryParameters& battery() const { return battery_; }
 
  private:
-  /// How far between two neighbours of a table something lies.
-  struct Between {
-    int lower;
-    double weight;  ///< of the upper neighbour
-  };
+  using Between = DeviationChain::Between;
   [[nodiscard]] double usual(int quarter_hour, double level) const;
   [[nodiscard]] double usual_paid(int step_of_day, double level) const;
-  [[nodiscard]] int bin_of(double deviation) const;
-  [[nodiscard]] Between between_bins(double deviation) const;
   [[nodiscard]] Between between_levels(double level) const;
   void fit_usual(const MarketSteps& market, const std::vector<MarketDay>& days);
-  void fit_bins(const MarketSteps& market, const std::vector<MarketDay>& days);
-  void count_chain(const MarketSteps& market, const std::vector<MarketDay>& days);
+  void fit_chain(const MarketSteps& market, const std::vector<MarketDay>& days);
   void solve();
   /// The rows of `continuation_` that a situation lies between, with their weights, and what is
   /// expected to be paid.
@@ -110,11 +104,8 @@ class StochasticProgram {
   std::array<int, kMinutesPerQuarterHour>
       row_age_{};  ///< quarter-hours ago, by minute of the quarter-hour
   double level_mean_ = 0;
-  std::vector<double> levels_;       ///< that values are known for, ascending
-  std::vector<double> bin_edges_;    ///< [47] ascending
-  std::vector<double> bin_centres_;  ///< [48] mean deviation of each
-  std::vector<double> paid_;         ///< [phase][bin] mean paid deviation
-  std::vector<float> transition_;    ///< [phase][bin][next bin]
+  std::vector<double> levels_;  ///< that values are known for, ascending
+  DeviationChain chain_;
   std::vector<float>
       continuation_;  ///< [level][step][bin][SoC point] discounted expected value, EUR
 };

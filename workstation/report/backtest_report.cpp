@@ -279,6 +279,26 @@ Json policy_json(const WalkForward& policy, const WalkForward& first) {
   return json;
 }
 
+/// The same days, each from the same SoC; empty unless that was asked for.
+std::string day_reset_table(const BacktestResults& results, std::size_t width) {
+  const Evaluation& first = results.policies.front().day_reset;
+  if (first.days.empty()) return {};
+  std::string text = fmt::format(
+      "\nEach day starts at the same SoC and its end is given away\n"
+      "{:<{}}  {:>8} {:>6} {:>8}  {:>8} {:>6} {:>8}\n",
+      "policy", width, "profit", "s.e.", "by month", "gain", "s.e.", "by month");
+  for (const WalkForward& policy : results.policies) {
+    const DayErrors errors = policy.day_reset.errors();
+    const PairedDifference gain = paired_difference(policy.day_reset, first);
+    text +=
+        fmt::format("{:<{}}  {:>8.1f} {:>6} {:>8}  {:>+8.1f} {:>6} {:>8}\n", policy.name, width,
+                    policy.day_reset.profit_eur_per_day_per_mwh(), error_text(errors.plain, 1),
+                    error_text(errors.by_month, 1), gain.mean, error_text(gain.standard_error, 1),
+                    error_text(gain.standard_error_by_month, 1));
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string format_backtest_table(const BacktestResults& results) {
@@ -298,6 +318,7 @@ std::string format_backtest_table(const BacktestResults& results) {
         error_text(row.gain.standard_error_by_month, 1), row.at_reference_wear,
         row.turnover_per_day, policy.drawdown_eur_per_mwh());
   }
+  text += day_reset_table(results, width);
   text += fmt::format("\nprofit by month\n{:<{}}", "policy", width);
   for (const std::string& month : first.months) text += fmt::format("  {:>8}", month);
   text += "\n";
