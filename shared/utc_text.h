@@ -47,6 +47,25 @@ constexpr int days_in_month(int year, int month) {
   return month == 2 && leap ? 29 : kDays[month - 1];
 }
 
+/// "2026-11-23", a day that there is.
+constexpr bool take_date(std::string_view& text, CivilTime& t) {
+  t.year = take_digits(text, 4);
+  if (!take(text, '-')) return false;
+  t.month = take_digits(text, 2);
+  if (!take(text, '-')) return false;
+  t.day = take_digits(text, 2);
+  return t.year >= 1970 && t.month >= 1 && t.month <= 12 && t.day >= 1 &&
+         t.day <= days_in_month(t.year, t.month);
+}
+
+/// "14:32".
+constexpr bool take_clock(std::string_view& text, CivilTime& t) {
+  t.hour = take_digits(text, 2);
+  if (!take(text, ':')) return false;
+  t.minute = take_digits(text, 2);
+  return t.hour >= 0 && t.hour <= 23 && t.minute >= 0 && t.minute <= 59;
+}
+
 /// "Z", "+hh:mm" or "-hh:mm", and nothing after it.
 constexpr bool take_offset(std::string_view& text, int& offset_s) {
   offset_s = 0;
@@ -74,16 +93,10 @@ inline bool parse_utc(std::string_view text, std::int64_t& utc_s,
                       std::string_view separators = "T") {
   using namespace detail;
   CivilTime t{};
-  t.year = take_digits(text, 4);
-  if (!take(text, '-')) return false;
-  t.month = take_digits(text, 2);
-  if (!take(text, '-')) return false;
-  t.day = take_digits(text, 2);
+  if (!take_date(text, t)) return false;
   if (text.empty() || separators.find(text.front()) == separators.npos) return false;
   text.remove_prefix(1);
-  t.hour = take_digits(text, 2);
-  if (!take(text, ':')) return false;
-  t.minute = take_digits(text, 2);
+  if (!take_clock(text, t)) return false;
   if (take(text, ':')) {
     t.second = take_digits(text, 2);
     if (take(text, '.')) {
@@ -93,9 +106,6 @@ inline bool parse_utc(std::string_view text, std::int64_t& utc_s,
   }
   int offset_s = 0;
   if (!take_offset(text, offset_s)) return false;
-  if (t.year < 1970 || t.month < 1 || t.month > 12) return false;
-  if (t.day < 1 || t.day > days_in_month(t.year, t.month)) return false;
-  if (t.hour < 0 || t.hour > 23 || t.minute < 0 || t.minute > 59) return false;
   if (t.second < 0 || t.second > 59) return false;
   utc_s = utc_from_civil(t) - offset_s;
   return true;

@@ -78,6 +78,17 @@ std::string DayAccount::date() const {
   return text;
 }
 
+std::string interventions_text(const CyclesByReason& cycles) {
+  std::string text;
+  for (int i = 0; i < kReasonCount; ++i) {
+    const int count = cycles[static_cast<std::size_t>(i)];
+    if (count == 0 || static_cast<Reason>(i) == Reason::kStudent) continue;
+    text.append(text.empty() ? "" : ", ").append(reason_name(static_cast<Reason>(i)));
+    text.append(" ").append(std::to_string(count));
+  }
+  return text;
+}
+
 std::string DayAccount::line() const {
   char text[512];
   std::snprintf(
@@ -87,15 +98,7 @@ std::string DayAccount::line() const {
       date().c_str(), earned_eur(), valued_cycles_, cycles_, charged_kwh(), discharged_kwh(),
       full_cycles(), interventions());
   std::string line = text;
-  const char* separator = " (";
-  for (int i = 0; i < kReasonCount; ++i) {
-    const int count = cycles_by_reason_[static_cast<std::size_t>(i)];
-    if (count == 0 || static_cast<Reason>(i) == Reason::kStudent) continue;
-    line.append(separator).append(reason_name(static_cast<Reason>(i)));
-    line.append(" ").append(std::to_string(count));
-    separator = ", ";
-  }
-  if (interventions() > 0) line += ")";
+  if (interventions() > 0) line += " (" + interventions_text(cycles_by_reason_) + ")";
   return line;
 }
 

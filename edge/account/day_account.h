@@ -14,6 +14,10 @@
 
 namespace bess {
 
+using CyclesByReason = std::array<int, kReasonCount>;
+/// "price_age 12, soc_empty 3": what ordered something else than the student.
+std::string interventions_text(const CyclesByReason& cycles);
+
 class DayAccount {
  public:
   /// `local_day` as 20231126 (cycle_budget.h).
@@ -43,6 +47,7 @@ class DayAccount {
   [[nodiscard]] int cycles_with(Reason reason) const {
     return cycles_by_reason_[static_cast<std::size_t>(reason)];
   }
+  [[nodiscard]] const CyclesByReason& cycles_by_reason() const { return cycles_by_reason_; }
   [[nodiscard]] int interventions() const;
   /// Local midnight, at which the day begins; 23, 24 or 25 hours before the next.
   [[nodiscard]] std::int64_t start_utc_s() const;
@@ -67,7 +72,7 @@ class DayAccount {
   std::int32_t first_soc_e4_ = 0;
   std::int32_t last_soc_e4_ = 0;
   std::int32_t capacity_wh_ = 0;
-  std::array<int, kReasonCount> cycles_by_reason_{};
+  CyclesByReason cycles_by_reason_{};
 };
 
 }  // namespace bess

@@ -24,15 +24,9 @@ std::int32_t day_of(Days days) {
 
 /// "2026-11-23" and nothing else.
 bool parse_date(std::string_view text, std::int32_t& day) {
-  using namespace detail;
-  const int year = take_digits(text, 4);
-  if (!take(text, '-')) return false;
-  const int month = take_digits(text, 2);
-  if (!take(text, '-')) return false;
-  const int day_of_month = take_digits(text, 2);
-  if (!text.empty() || year < 1970 || month < 1 || month > 12) return false;
-  if (day_of_month < 1 || day_of_month > days_in_month(year, month)) return false;
-  day = year * 10'000 + month * 100 + day_of_month;
+  CivilTime date{};
+  if (!detail::take_date(text, date) || !text.empty()) return false;
+  day = date.year * 10'000 + date.month * 100 + date.day;
   return true;
 }
 

@@ -51,18 +51,12 @@ double Statement::mean_price_eur_per_mwh() const {
          cycles;
 }
 
-/// "price_age 12, soc_empty 3": what ordered something else than the student, most first by precedence.
-std::string Statement::reasons() const {
-  std::string text;
-  for (int i = 0; i < kReasonCount; ++i) {
-    const auto reason = static_cast<Reason>(i);
-    const auto count =
-        static_cast<int>(sum([&](const DayAccount& day) { return day.cycles_with(reason); }));
-    if (count == 0 || reason == Reason::kStudent) continue;
-    text.append(text.empty() ? "" : ", ").append(reason_name(reason));
-    text.append(" ").append(std::to_string(count));
+CyclesByReason Statement::cycles_by_reason() const {
+  CyclesByReason together{};
+  for (const DayAccount& day : days_) {
+    for (std::size_t i = 0; i < together.size(); ++i) together[i] += day.cycles_by_reason()[i];
   }
-  return text;
+  return together;
 }
 
 std::string Statement::text() const {
@@ -91,7 +85,7 @@ std::string Statement::text() const {
       "%+.2f EUR with the same charge at both ends\n",
       std::abs(stored_kwh()), stored_kwh() < 0 ? "less" : "more", std::abs(stored_eur()),
       earned_eur() + stored_eur());
-  const std::string others = reasons();
+  const std::string others = interventions_text(cycles_by_reason());
   if (!others.empty())
     add_formatted(text, "cycles that the student did not decide: %s\n", others.c_str());
   text +=

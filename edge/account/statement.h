@@ -37,7 +37,7 @@ class Statement {
  private:
   template <typename OfDay>
   [[nodiscard]] double sum(const OfDay& of_day) const;
-  [[nodiscard]] std::string reasons() const;
+  [[nodiscard]] CyclesByReason cycles_by_reason() const;
 
   std::vector<DayAccount> days_;
 };

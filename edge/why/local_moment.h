@@ -10,33 +10,12 @@
 
 namespace bess {
 
-namespace detail {
-
-inline bool take_wall_clock(std::string_view text, CivilTime& wall) {
-  wall.hour = take_digits(text, 2);
-  if (!take(text, ':')) return false;
-  wall.minute = take_digits(text, 2);
-  wall.second = 0;
-  return text.empty() && wall.hour >= 0 && wall.hour < 24 && wall.minute >= 0 && wall.minute < 60;
-}
-
-inline bool take_date(std::string_view& text, CivilTime& wall) {
-  wall.year = take_digits(text, 4);
-  if (!take(text, '-')) return false;
-  wall.month = take_digits(text, 2);
-  if (!take(text, '-')) return false;
-  wall.day = take_digits(text, 2);
-  return wall.year >= 1970 && wall.month >= 1 && wall.month <= 12 && wall.day >= 1 &&
-         wall.day <= days_in_month(wall.year, wall.month);
-}
-
-}  // namespace detail
-
 /// False when it is none of these.
 inline bool parse_moment(std::string_view text, std::int64_t now_utc_s, std::int64_t& utc_s) {
   if (parse_utc(text, utc_s)) return true;
   CivilTime wall{};
-  if (detail::take_wall_clock(text, wall)) {
+  std::string_view clock = text;
+  if (detail::take_clock(clock, wall) && clock.empty()) {
     for (const std::int64_t day_of : {now_utc_s, now_utc_s - 86'400}) {
       const LocalMinute day = local_minute_of(day_of);
       wall.year = day.year;
@@ -49,7 +28,7 @@ inline bool parse_moment(std::string_view text, std::int64_t now_utc_s, std::int
   }
   if (!detail::take_date(text, wall)) return false;
   if (!detail::take(text, ' ') && !detail::take(text, 'T')) return false;
-  if (!detail::take_wall_clock(text, wall)) return false;
+  if (!detail::take_clock(text, wall) || !text.empty()) return false;
   utc_s = utc_from_local(wall);
   return true;
 }

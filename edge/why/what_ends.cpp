@@ -1,5 +1,7 @@
-// What ends each reason: one case a reason, so that a new one does not compile without its own.
-#include <cstdio>
+// What ends a reason: the last column of the table of reasons, with the values of this cycle and
+// these settings.
+#include <string>
+#include <string_view>
 
 #include "edge/control/policy.h"
 #include "edge/control/quarter_hour_energy.h"
@@ -10,7 +12,12 @@
 namespace bess {
 namespace {
 
-double percent(std::int32_t soc_e4) { return soc_e4 / 100.0; }
+std::string percent(std::int32_t soc_e4) { return formatted("%.1f", soc_e4 / 100.0); }
+std::string celsius(std::int32_t deci_c) { return formatted("%.1f", deci_c / 10.0); }
+template <typename Text>
+std::string string(const Text& text) {
+  return std::string(text.view());
+}
 
 /// Names of the rules that have a say at this point.
 std::string rules_at(const CycleRecord& record) {
@@ -26,100 +33,69 @@ std::string rules_at(const CycleRecord& record) {
   return names;
 }
 
-std::string end_of_reserve(const CycleRecord& record, const GuardSettings& guard) {
-  return formatted("until the SoC is above %.1f %%, or the reserve of another hour is lower",
-                   percent(record.reserve_soc_e4 + guard.soc_hysteresis_e4));
+using Cycle = const CycleRecord&;
+using Settings = const ControlSettings&;
+
+/// What a row of the table may name in braces.
+struct NamedValue {
+  std::string_view name;
+  std::string (*text)(Cycle, Settings);
+};
+const NamedValue kValues[] = {
+    {"temperature_min_c",
+     [](Cycle, Settings s) { return celsius(s.guard.temperature_min_deci_c); }},
+    {"temperature_max_c",
+     [](Cycle, Settings s) { return celsius(s.guard.temperature_max_deci_c); }},
+    {"price_age_s_max", [](Cycle, Settings s) { return std::to_string(s.guard.price_age_s_max); }},
+    {"soc_below_full",
+     [](Cycle, Settings s) { return percent(s.guard.soc_max_e4 - s.guard.soc_hysteresis_e4); }},
+    {"soc_above_empty",
+     [](Cycle, Settings s) { return percent(s.guard.soc_min_e4 + s.guard.soc_hysteresis_e4); }},
+    {"soc_above_reserve",
+     [](Cycle c, Settings s) { return percent(c.reserve_soc_e4 + s.guard.soc_hysteresis_e4); }},
+    {"reversals_per_hour_max",
+     [](Cycle, Settings s) { return std::to_string(s.reversals_per_hour_max); }},
+    {"meter_pause_end",
+     [](Cycle c, Settings) { return string(local_text(c.site.trust.pause_until_utc_s)); }},
+    {"quarter_hour_end",
+     [](Cycle c, Settings) {
+       return string(local_clock_text((quarter_hour_of(c.utc_s) + 1) * kQuarterHourS));
+     }},
+    {"ramp_w_max", [](Cycle, Settings s) { return std::to_string(s.guard.ramp_w_max); }},
+    {"hold_end", [](Cycle c, Settings) { return string(local_text(c.hold.until_utc_s)); }},
+    {"rules", [](Cycle c, Settings) { return rules_at(c); }},
+    {"low_price",
+     [](Cycle, Settings s) { return std::to_string(s.guard.thresholds.low_eur_per_mwh); }},
+    {"high_price",
+     [](Cycle, Settings s) { return std::to_string(s.guard.thresholds.high_eur_per_mwh); }},
+};
+
+/// A name that nobody knows stays as it is, braces and all: the test of the table finds it.
+std::string value_of(std::string_view name, Cycle record, Settings settings) {
+  for (const NamedValue& value : kValues) {
+    if (value.name == name) return value.text(record, settings);
+  }
+  return "{" + std::string(name) + "}";
 }
 
 }  // namespace
 
 std::string what_ends(const CycleRecord& record, const ControlSettings& settings) {
-  const GuardSettings& guard = settings.guard;
   if (record.is_tripped && is_stop_reason(record.reason)) {
     return formatted("tripped at %s: until a person has looked and says `bess-edge clear --yes`",
                      local_text(record.trip.utc_s).c_str());
   }
-  switch (record.reason) {
-    case Reason::kStopRequested:
-    case Reason::kHandOver:
-      return "until a bess-edge is started again";
-    case Reason::kClock:
-      return "until NTP has set this machine's clock";
-    case Reason::kLink:
-      return "until the battery can be read";
-    case Reason::kAlarm:
-      return "until the battery's own alarm is gone";
-    case Reason::kTemperature:
-      return formatted("until all of it is between %.1f and %.1f °C",
-                       guard.temperature_min_deci_c / 10.0, guard.temperature_max_deci_c / 10.0);
-    case Reason::kOffGrid:
-      return "until the battery is back on the grid";
-    case Reason::kWrongDirection:
-    case Reason::kUncontrolledPower:
-    case Reason::kSocMismatch:
-    case Reason::kStateLost:
-      return "until a person has looked and says `bess-edge clear --yes`";
-    case Reason::kOtherMaster:
-    case Reason::kOrdersFail:
-    case Reason::kNoAnswer:
-    case Reason::kBatteryCare:
-      return "tried again after 10 minutes, then 20, up to 6 hours, until it works";
-    case Reason::kCapacity:
-      return "until it reports the capacity that is configured";
-    case Reason::kSocJump:
-      return "until three readings of the SoC agree";
-    case Reason::kNoPrice:
-    case Reason::kPriceAge:
-    case Reason::kPriceQuarterHour:
-      return formatted("until there is a price that is at most %d s old", guard.price_age_s_max);
-    case Reason::kFrozenPrice:
-      return "until the price moves";
-    case Reason::kSocFull:
-      return formatted("until the SoC is below %.1f %%",
-                       percent(guard.soc_max_e4 - guard.soc_hysteresis_e4));
-    case Reason::kSocEmpty:
-      return formatted("until the SoC is above %.1f %%",
-                       percent(guard.soc_min_e4 + guard.soc_hysteresis_e4));
-    case Reason::kReserve:
-      return end_of_reserve(record, guard);
-    case Reason::kCycleBudget:
-      return "until local midnight";
-    case Reason::kReversalCap:
-      return formatted("until fewer than %d changes of direction lie in the last hour",
-                       settings.reversals_per_hour_max);
-    case Reason::kPowerLimit:
-      return "as long as the battery itself takes or gives no more";
-    case Reason::kOutsideLimit:
-      return "until the limit from outside lapses or is taken away";
-    case Reason::kMeterLost:
-      return "until the meter can be read";
-    case Reason::kMeterMismatch:
-      return formatted("tried again with an eighth of the power at %s",
-                       local_text(record.site.trust.pause_until_utc_s).c_str());
-    case Reason::kImportLimit:
-    case Reason::kExportLimit:
-      return "as long as the house leaves no more of the connection";
-    case Reason::kQuarterHourPeak:
-      return formatted(
-          "until the quarter-hour is over at %s",
-          local_clock_text((quarter_hour_of(record.utc_s) + 1) * kQuarterHourS).c_str());
-    case Reason::kRamp:
-      return formatted("%d W more each cycle", guard.ramp_w_max);
-    case Reason::kHeld:
-      return formatted("until %s; `bess-edge hold --release` ends it before",
-                       local_text(record.hold.until_utc_s).c_str());
-    case Reason::kRule:
-      return "as long as it holds: " + rules_at(record);
-    case Reason::kPriceLow:
-      return formatted("until the price is above %d EUR/MWh", guard.thresholds.low_eur_per_mwh);
-    case Reason::kPriceHigh:
-      return formatted("until the price is below %d EUR/MWh", guard.thresholds.high_eur_per_mwh);
-    case Reason::kFullCharge:
-      return "until the SoC is at 99.5 %";
-    case Reason::kStudent:
-      break;
+  std::string text;
+  std::string_view rest = info_of(record.reason).ends;
+  while (!rest.empty()) {
+    const std::size_t open = rest.find('{');
+    text += rest.substr(0, open);
+    const std::size_t close = rest.find('}');
+    if (open == rest.npos || close == rest.npos) break;
+    text += value_of(rest.substr(open + 1, close - open - 1), record, settings);
+    rest.remove_prefix(close + 1);
   }
-  return {};
+  return text;
 }
 
 }  // namespace bess

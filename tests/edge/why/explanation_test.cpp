@@ -124,8 +124,9 @@ TEST_F(Why, EveryReasonButTheStudentsHasAnEnd) {
   for (int i = 0; i < kReasonCount; ++i) {
     CycleRecord r = decided(i, 5'000);
     r.reason = static_cast<Reason>(i);
-    EXPECT_EQ(what_ends(r, settings_).empty(), r.reason == Reason::kStudent)
-        << reason_name(r.reason);
+    const std::string end = what_ends(r, settings_);
+    EXPECT_EQ(end.empty(), r.reason == Reason::kStudent) << reason_name(r.reason);
+    EXPECT_EQ(end.find_first_of("{}"), end.npos) << "a value that nobody knows: " << end;
   }
 }
 
