@@ -31,7 +31,7 @@ constexpr const char* kHelp =
 
 Events: trying (on trial), confirmed, comparing (the version before runs: does it do better?), going_back and
 rolled_back (with the reason), refused (not let in), failed (nothing to go back to), broken_off (the power went while
-dpkg was at it), dismissed, allowed. The column "certificate" is the beginning of header_sha256, of the exported header.
+dpkg was at it), withdrawn (dpkg gave it up), dismissed, allowed. The column "certificate" is the beginning of header_sha256, of the exported header.
 Exit codes: 0 done   1 no history   2 the command line is bad
 
   bess-edge history

@@ -25,6 +25,7 @@ constexpr const char* kHelp =
     R"(bess-edge trial: judges a new version on this machine, and goes back to the one before
 
   bess-edge trial announce VERSION    before dpkg unpacks it (preinst); exit code 1: it was rolled back here
+  bess-edge trial withdraw VERSION    dpkg has given that up (postrm, postinst): no fault of its own
   bess-edge trial begin               after dpkg has delivered it (postinst): proved, kept, handed over to
   bess-edge trial supervise           until it has confirmed itself or is rolled back (bess-trial.service)
   bess-edge trial look                one look of that, for a supervisor of one's own

@@ -206,6 +206,12 @@ void restart_account(TrialState& state) {
   state.is_fresh = state.is_handed_over = false;
 }
 
+TrialPhase phase_without_announcement(const TrialState& state) {
+  if (state.version.empty()) return TrialPhase::kUnknown;
+  if (!state.refused.empty()) return TrialPhase::kRolledBack;
+  return state.reason.empty() ? TrialPhase::kConfirmed : TrialPhase::kFailed;
+}
+
 std::string running_version(const TrialState& state) {
   const bool is_old =
       state.phase == TrialPhase::kGoingBack || state.phase == TrialPhase::kComparing;

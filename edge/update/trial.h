@@ -133,6 +133,9 @@ TrialStep next_phase(const TrialState& state, const TrialUnit& unit, const Trial
 /// What is begun anew whenever another version is started.
 void restart_account(TrialState& state);
 
+/// Where dpkg has taken its announcement back: the phase before it.
+TrialPhase phase_without_announcement(const TrialState& state);
+
 /// The version that must run in this state, and the one that judges; empty = leave it as it is.
 std::string running_version(const TrialState& state);
 std::string judging_version(const TrialState& state);

@@ -45,6 +45,7 @@ class Trial {
   Trial() : machine_(test_root()), folder_(machine_.path(kUpdateFolder)) {}
 
   int announce(const std::string& version);
+  int withdraw(const std::string& version);
   int begin();
   int supervise();
   int look();
@@ -70,10 +71,12 @@ class Trial {
   void start_other();
   void refuse_version(const std::string& version, const std::string& reason);
   bool is_refused(const std::string& version) const;
+  bool is_unended(const std::string& version) const;
   void mark_newest_cycle(const std::string& program);
   void count_boot();
   std::string since_now() const { return std::string(utc_text(now_utc_s()).view()); }
   bool is_over() const;
+  bool awaits_dpkg(std::int64_t waited_s);
 
   TrialMachine machine_;
   std::string folder_;
@@ -120,6 +123,11 @@ bool Trial::keep(const char* event, const std::string& version) {
   add_to_history(folder_, {since_now(), event, version, certificate_fact(of, "student"),
                            certificate_fact(of, "header_sha256"), state_.reason});
   return true;
+}
+
+/// Told as refused, and may come again: dpkg was at fault.
+bool Trial::is_unended(const std::string& version) const {
+  return state_.refused == version && !version.empty() && !is_refused(version);
 }
 
 bool Trial::is_refused(const std::string& version) const {
@@ -182,6 +190,24 @@ int Trial::announce(const std::string& version) {
   return write() ? 0 : 1;
 }
 
+/// dpkg could not bring what it announced, and has what it had: no fault of that version, which may
+/// come again.
+int Trial::withdraw(const std::string& version) {
+  lock();
+  read();
+  const bool was_too_late = state_.phase == TrialPhase::kRolledBack && is_unended(version);
+  if (state_.announced != version && !was_too_late) return 0;
+  state_.announced.clear();
+  if (was_too_late) {
+    state_.refused.clear();
+    state_.reason.clear();
+  }
+  if (state_.phase == TrialPhase::kUpgrading || was_too_late) {
+    state_.phase = phase_without_announcement(state_);
+  }
+  return keep("withdrawn", version) ? 0 : 1;
+}
+
 /// dpkg has delivered; what runs is another version until this one is proved.
 int Trial::begin() {
   lock();
@@ -196,8 +222,13 @@ int Trial::begin() {
   const std::string running = store.pointed("current");
   const std::string confirmed = store.pointed("confirmed");
   std::string error;
+  const VersionStore::Kept kept = store.keep(version, store.delivery(), error);
+  if (kept == VersionStore::Kept::kNoRoom) {  // no fault of the version's: dpkg may try again
+    report(JournalLevel::kError, "%s; what runs stays; then dpkg --configure -a", error.c_str());
+    return 1;
+  }
   const bool is_let_in =
-      store.keep(version, store.delivery(), error) &&
+      kept == VersionStore::Kept::kWhole &&
       is_proved({store.folder_of(version), machine_.settings(), machine_.share()}, error);
   if (!is_let_in) return keep_out(version, error);
   if (version == confirmed) return confirm_again(version);
@@ -341,8 +372,9 @@ bool Trial::take(const TrialStep& step) {
                                                                   : step.reason);
       break;
     case TrialPhase::kRolledBack:  // dpkg did not end: what runs was never touched
-      refuse_version(std::exchange(state_.announced, ""), step.reason);
-      machine_.pin(state_.refused_all);
+      // Nor judged: it may come again, and dpkg may need it to mend its half work.
+      state_.refused = std::exchange(state_.announced, "");
+      state_.reason = step.reason;
       break;
     case TrialPhase::kUnknown:
     case TrialPhase::kUpgrading:
@@ -449,19 +481,34 @@ void Trial::count_boot() {
   write();
 }
 
+/// Where dpkg ends its work after the trial: what it has is told anew. False once there is nothing
+/// to wait for.
+bool Trial::awaits_dpkg(std::int64_t waited_s) {
+  if (state_.phase == TrialPhase::kUnknown || state_.phase == TrialPhase::kHidden) return false;
+  if (state_.delivered != TrialMachine::delivered() && !write()) return false;
+  return !dpkg_mend(state_.delivered).empty() && waited_s < machine_.limits().upgrade_s;
+}
+
 int Trial::supervise() {
   std::int64_t seen_s = uptime_s();
+  std::int64_t waited_s = 0;
   while (true) {
     lock();
     read();
-    if (is_over()) return 0;
+    if (is_over()) {
+      if (!awaits_dpkg(waited_s)) return 0;
+      unlock();
+      waited_s += machine_.limits().poll_s;
+      sleep(static_cast<unsigned>(machine_.limits().poll_s));
+      continue;
+    }
     count_boot();
     const std::int64_t passed_s = uptime_s() - seen_s;
     seen_s += passed_s;
     act();
     if (!is_over()) watch(passed_s);
-    if (is_over()) return 0;
     unlock();
+    if (is_over()) continue;
     sleep(static_cast<unsigned>(machine_.limits().poll_s));
   }
 }
@@ -472,7 +519,7 @@ int Trial::recover() {
   read();
   if (state_.phase == TrialPhase::kUpgrading) {
     // The power went while dpkg was at it: no fault of that version. dpkg is asked to end it.
-    state_.phase = TrialPhase::kConfirmed;
+    state_.phase = phase_without_announcement(state_);
     const std::string announced = std::exchange(state_.announced, "");
     report(JournalLevel::kWarning, "the installation of %s was broken off", announced.c_str());
     keep("broken_off", announced);
@@ -572,6 +619,7 @@ int run_trial_verb(const std::string& verb, const std::string& argument) {
                               {"recover", &Trial::recover},
                               {"dismiss", &Trial::dismiss}};
   constexpr Argued kArgued[] = {{"announce", &Trial::announce, "a version"},
+                                {"withdraw", &Trial::withdraw, "a version"},
                                 {"allow", &Trial::allow, "a version"},
                                 {"go-back", &Trial::go_back, "a reason, which the history keeps"}};
   Trial trial;

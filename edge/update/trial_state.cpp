@@ -161,6 +161,13 @@ std::string plain(std::string_view text) {
   return kept;
 }
 
+/// Empty where dpkg is content.
+std::string half_installed(const TrialState& state) {
+  const std::string mend = dpkg_mend(state.delivered);
+  if (mend.empty()) return "";
+  return joined({"dpkg has it half installed (", state.delivered, "): ", mend});
+}
+
 void add_gauge(std::string& text, std::string_view name, std::string_view help,
                std::string_view value) {
   text.append("# HELP ").append(name).append(" ").append(help).append("\n# TYPE ").append(name);
@@ -239,6 +246,16 @@ std::string trial_metrics(const TrialState& state) {
   return text;
 }
 
+std::string dpkg_mend(std::string_view delivered) {
+  constexpr std::size_t kLetters = 3;  // dpkg-query's ${db:Status-Abbrev}: wanted, status, error
+  if (delivered.size() < kLetters) return "";
+  const char status = delivered[1];
+  // Unpacked in part: the package itself is needed again. `configure` does not end that.
+  if (delivered[2] == 'R' || status == 'H') return "apt install --reinstall bess-edge";
+  const bool waits_for_scripts = status == 'U' || status == 'F' || status == 'W' || status == 't';
+  return waits_for_scripts ? "dpkg --configure -a" : "";
+}
+
 std::string update_note(const TrialState& state) {
   const std::string cycles = std::to_string(state.good_cycles) + " of " +
                              std::to_string(state.needed_cycles) + " good cycles";
@@ -255,12 +272,10 @@ std::string update_note(const TrialState& state) {
     case TrialPhase::kComparing:
       return joined(
           {state.previous, " runs to compare it with ", state.version, ": ", state.reason});
-    case TrialPhase::kConfirmed:
-      if (state.delivered.empty() || state.delivered.starts_with("ii ")) {
-        return state.version + " confirmed";
-      }
-      return joined({state.version, " confirmed; dpkg has it half installed (", state.delivered,
-                     "): dpkg --configure -a"});
+    case TrialPhase::kConfirmed: {
+      const std::string half = half_installed(state);
+      return joined({state.version, " confirmed", half.empty() ? "" : "; ", half});
+    }
     case TrialPhase::kUpgrading:
       return joined(
           {state.announced.empty() ? "a new version" : state.announced, " is being installed"});
@@ -275,10 +290,12 @@ std::string update_note(const TrialState& state) {
       break;
   }
   // dpkg goes on believing in what it unpacked.
-  const bool dpkg_differs = state.delivered.ends_with(" " + state.refused);
+  const std::string half = half_installed(state);
+  const bool dpkg_differs = half.empty() && state.delivered.ends_with(" " + state.refused);
   return joined({state.version, "; ", state.refused, " was rolled back: ", state.reason,
                  dpkg_differs ? " (dpkg still has it: " + state.delivered + ", it does not run)"
-                              : std::string()});
+                              : std::string(),
+                 half.empty() ? "" : "; ", half});
 }
 
 std::string update_trouble(const TrialState& state) {
@@ -286,7 +303,9 @@ std::string update_trouble(const TrialState& state) {
       state.phase == TrialPhase::kHidden || state.phase == TrialPhase::kFailed ||
       state.phase == TrialPhase::kComparing || state.phase == TrialPhase::kGoingBack ||
       state.phase == TrialPhase::kRolledBack;
-  return ended_badly ? update_note(state) : "";
+  // apt installs nothing at all on such a machine, no security update either.
+  const bool is_half = state.phase == TrialPhase::kConfirmed && !dpkg_mend(state.delivered).empty();
+  return ended_badly || is_half ? update_note(state) : "";
 }
 
 UpdateHistory read_update_history(const std::string& folder) {

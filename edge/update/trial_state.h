@@ -28,13 +28,17 @@ std::string trial_metrics(const TrialState& state);
 /// For people, in one line; empty without phase.
 std::string update_note(const TrialState& state);
 
+/// What a person does about dpkg's half work; empty where it needs nothing. `delivered` is "iHR1.0"
+/// or "ii 1.0".
+std::string dpkg_mend(std::string_view delivered);
+
 /// What health says of the last upgrade, until the next one or `bess-edge trial dismiss`; empty when it did not end
 /// badly.
 std::string update_trouble(const TrialState& state);
 
 inline constexpr std::string_view kUpdateEvents[] = {
-    "trying", "confirmed",  "comparing", "going_back", "rolled_back",
-    "failed", "broken_off", "refused",   "dismissed",  "allowed"};
+    "trying",     "confirmed", "comparing", "going_back", "rolled_back", "failed",
+    "broken_off", "refused",   "dismissed", "allowed",    "withdrawn"};
 
 /// One line of the history.
 struct UpdateEvent {

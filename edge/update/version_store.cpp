@@ -70,16 +70,24 @@ bool VersionStore::has_whole(std::string_view version) const {
   return is_version_name(version) && is_whole(folder_of(version), ignored);
 }
 
-bool VersionStore::keep(std::string_view version, const std::string& from,
-                        std::string& error) const {
-  if (!is_version_name(version)) return refuse(error, {version, ": is no version of a package"});
-  if (!is_whole(from, error)) return false;
+VersionStore::Kept VersionStore::keep(std::string_view version, const std::string& from,
+                                      std::string& error) const {
+  const auto no_room = [&](std::initializer_list<std::string_view> why) {
+    refuse(error, why);
+    return Kept::kNoRoom;
+  };
+  if (!is_version_name(version)) {
+    refuse(error, {version, ": is no version of a package"});
+    return Kept::kRefused;
+  }
+  if (!is_whole(from, error)) return Kept::kRefused;
   const std::string place = folder_of(version);
   const bool is_known = text_of(place + "/SUMS") == text_of(from + "/SUMS");
-  if (is_known && is_whole(place, error)) return true;
+  if (is_known && is_whole(place, error)) return Kept::kWhole;
   const bool is_in_use = pointed("current") == version || pointed("confirmed") == version;
   if (is_in_use && !is_known) {
-    return refuse(error, {version, " is kept already, with other bytes: give it another version"});
+    refuse(error, {version, " is kept already, with other bytes: give it another version"});
+    return Kept::kRefused;
   }
   const std::string copy = place + ".new";
   std::error_code failed;
@@ -89,15 +97,15 @@ bool VersionStore::keep(std::string_view version, const std::string& from,
   if (!copied.is_well() || !run_and_hear({"sync", "-f", copy}, kCopyS).is_well() ||
       !is_whole(copy, error)) {
     remove(copy);
-    return refuse(error, {version, " cannot be kept: ",
-                          copied.is_well() ? std::string_view(error) : copied.complaint()});
+    const std::string why(copied.is_well() ? std::string_view(error) : copied.complaint());
+    return no_room({version, " cannot be kept: ", why});
   }
   remove(place);
   if (rename(copy.c_str(), place.c_str()) != 0) {
-    return refuse(error, {place, ": ", errno_text(errno)});
+    return no_room({place, ": ", errno_text(errno)});
   }
   sync_folder_of(place.c_str());
-  return true;
+  return Kept::kWhole;
 }
 
 std::string VersionStore::pointed(std::string_view link) const {

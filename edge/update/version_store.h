@@ -8,6 +8,7 @@
 //   /var/lib/bess-edge/confirmed -> versions/VERSION
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,9 +30,15 @@ class VersionStore {
   static bool is_whole(const std::string& folder, std::string& error);
   [[nodiscard]] bool has_whole(std::string_view version) const;
 
-  /// Copies a folder that is whole, under this name, onto the disk. The same bytes again are nothing to do; other
-  /// bytes under the name of a version that a link leads to are refused.
-  bool keep(std::string_view version, const std::string& from, std::string& error) const;
+  enum class Kept : std::uint8_t {
+    kWhole,
+    kRefused,  ///< it is not whole, or is another version than its name says
+    kNoRoom,   ///< this machine's disk does not take it
+  };
+  /// Copies a folder that is whole, under this name, onto the disk. The same bytes again are nothing
+  /// to do; other bytes under the name of a version that a link leads to are refused. One line in
+  /// `error` unless kWhole.
+  Kept keep(std::string_view version, const std::string& from, std::string& error) const;
 
   /// The version that a link ("current", "confirmed") leads to; empty = none.
   [[nodiscard]] std::string pointed(std::string_view link) const;

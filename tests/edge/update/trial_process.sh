@@ -1,8 +1,9 @@
 #!/bin/sh
 # trial_process.sh BESS_EDGE CUT_AT_LIBRARY FOLDER: the supervisor of upgrades as a process, on
-# machines of folders, between stand-ins for systemd, dpkg and the versions' programs. Bad packages
-# and bad moments: whatever happens, the version that worked runs, or the new one has shown that it
-# works. Prints a table.
+# machines of folders, between
+# stand-ins for systemd, dpkg and the versions' programs. Bad packages and bad moments: whatever
+# happens, the version
+# that worked runs, or the new one has shown that it works. Prints a table.
 edge=$1 cut=$2 folder=$3
 script=$(cd "$(dirname "$0")/../../.." && pwd)/edge/update/trial
 failures=0
@@ -34,6 +35,11 @@ stand_in dpkg <<'SH'
 #!/bin/sh
 echo "very bad inconsistent state" >&2
 exit 1
+SH
+stand_in cp <<'SH'
+#!/bin/sh
+[ ! -e "$BESS_ROOT/fake/no_room" ] || { echo "cp: No space left on device" >&2; exit 1; }
+exec /bin/cp "$@"
 SH
 stand_in journalctl <<'SH'
 #!/bin/sh
@@ -96,7 +102,8 @@ tick() {  # two minutes of whatever runs
     price) row=holding,none,no_price,ok,timeout,1,0,none,none ;;
     trip) row=safe,t,wrong_direction,ok,ok,0,0,wrong_direction,none ;;
     link) row=safe,t,link,timeout,ok,0,0,none,none ;;
-    every_second) [ $((minute % 2)) = 0 ] && row=running,t,student,ok,ok,1,0,none,none || row=safe,t,link,timeout,ok,0,0,none,none ;;
+    every_second) [ $((minute % 2)) = 0 ] && row=running,t,student,ok,ok,1,0,none,none ||
+      row=safe,t,link,timeout,ok,0,0,none,none ;;
     *) row=running,t,student,ok,ok,1,0,none,none ;;
   esac
   echo "2023-01-01T00:$minute:00Z,$(cat cycle),$row" >>log.csv
@@ -138,20 +145,24 @@ for does in crash hang silent every_second price trip link; do
   machine; echo $does >does_2.0
   upgrade 2.0; judge 60; expect "a version that $does" rolled_back 1.0
   grep -q '^stop bess-edge' systemctl || fail "$does: the version that fails is not stopped"
-  grep -q '^Pin: version 2.0$' "$BESS_ROOT/etc/apt/preferences.d/bess-edge-rolled-back.pref" || fail "$does: apt may bring it again"
+  grep -q '^Pin: version 2.0$' "$BESS_ROOT/etc/apt/preferences.d/bess-edge-rolled-back.pref" ||
+    fail "$does: apt may bring it again"
   trial announce 2.0 && fail "$does: it is let in again"
   [ ! -d "$store/versions/2.0" ] || fail "$does: a refused version takes room"
   grep -q "^delivered=ii 2.0$" "$state" || fail "$does: what dpkg has is not told"
   trial dismiss || fail "$does: a dismissal: $(cat said)"
-  [ -s "$BESS_ROOT/etc/apt/preferences.d/bess-edge-rolled-back.pref" ] || fail "$does: a dismissal lets apt bring it"
+  [ -s "$BESS_ROOT/etc/apt/preferences.d/bess-edge-rolled-back.pref" ] ||
+    fail "$does: a dismissal lets apt bring it"
 done
 machine; echo price >site; tick; upgrade 2.0; judge 8
 [ "$(value phase)" = trying ] || fail "a market that is away: $(value phase) $(value reason)"
 rm site; judge; expect "a market that was away before" confirmed 2.0
 machine; upgrade 2.0; judge 1; echo price >site; judge 9
-[ "$(cat running)" = 2.0 ] || fail "a market that goes away in the trial: $(cat running) runs, $(value phase)"
+[ "$(cat running)" = 2.0 ] ||
+  fail "a market that goes away in the trial: $(cat running) runs, $(value phase)"
 rm site; judge; expect "a market that goes away in the trial" confirmed 2.0
-grep -q '	comparing	2.0	' "$BESS_ROOT/var/lib/bess-update/history" || fail "the version before was not asked"
+grep -q '	comparing	2.0	' "$BESS_ROOT/var/lib/bess-update/history" ||
+  fail "the version before was not asked"
 machine; echo trip >site; tick; upgrade 2.0; judge 30
 [ "$(value phase)" = trying ] || fail "a trip from before: $(value phase)"
 rm site; judge; expect "a trip from before" confirmed 2.0
@@ -177,7 +188,47 @@ machine; upgrade ../x; refused "a version that leads out of the folder" "no vers
 machine; trial announce 2.0
 for _ in $(seq 31); do trial look; done
 expect "dpkg that does not end" rolled_back 1.0 "dpkg did not end"
-machine; trial announce 2.0; trial recover; [ "$(value phase)" = confirmed ] || fail "a cut in dpkg: $(value phase)"
+may_come() {  # may_come WHAT: 2.0 was never judged: apt may bring it, and it gets in
+  [ ! -s "$BESS_ROOT/etc/apt/preferences.d/bess-edge-rolled-back.pref" ] ||
+    fail "$1: a version that was never judged is pinned"
+  upgrade 2.0; judge; expect "$1, and then does" confirmed 2.0
+}
+may_come "dpkg that does not end"
+gives_up() {  # gives_up WHAT PHASE: dpkg calls the scripts' abort-upgrade
+  trial withdraw 2.0 || fail "$1: $(cat said)"
+  expect "$1" "$2" 1.0
+  grep -qE '^(stop|reload|restart bess-edge|start)' systemctl && fail "$1: what runs was touched"
+}
+machine; trial announce 2.0; gives_up "dpkg that gives up" confirmed; may_come "dpkg that gave up"
+grep -q '	withdrawn	2.0	' "$BESS_ROOT/var/lib/bess-update/history" ||
+  fail "the history does not tell what dpkg gave up"
+machine; trial announce 2.0; for _ in $(seq 31); do trial look; done
+gives_up "dpkg that gives up late" confirmed; may_come "dpkg that gave up late"
+machine; trial announce 2.0; trial withdraw 1.9; [ "$(value phase)" = upgrading ] ||
+  fail "another version is withdrawn: $(value phase)"
+machine; echo crash >does_2.0; upgrade 2.0; judge; trial announce 3.0; : >systemctl; trial withdraw 3.0
+expect "dpkg gives up after a roll-back" rolled_back 1.0 "last"
+trial announce 2.0 && fail "what was rolled back is let in by another's withdrawal"
+trial withdraw 2.0; trial announce 2.0 &&
+  fail "what was rolled back is let in by its own withdrawal"
+machine; upgrade 2.0; trial announce 3.0; trial withdraw 3.0; judge; expect "dpkg gives up in a trial" confirmed 2.0
+machine; touch no_room; upgrade 2.0 &&
+  fail "a disk that does not take the version: dpkg is told that all is well"
+grep -q "2.0 cannot be kept: cp: No space left" said ||
+  fail "a disk that does not take the version: $(cat said)"
+[ "$(value phase) $(cat running)" = "upgrading 1.0" ] ||
+  fail "a disk that does not take the version: $(value phase)"
+rm no_room; trial begin; judge; expect "a disk that takes it at the second try" confirmed 2.0
+# What dpkg has when its scripts run is not what it has when it ends: the supervisor looks until it
+# has.
+machine; printf 'poll_s = 1\nupgrade_s = 60\n' >"$BESS_ROOT/etc/bess/update.conf"
+echo iHR1.0 >dpkg; trial announce 2.0; trial withdraw 2.0; [ "$(value delivered)" = iHR1.0 ] ||
+  fail "dpkg's half work: $(value delivered)"
+(sleep 2; echo "ii 1.0" >dpkg) &
+timeout 50 "$edge" trial supervise >said 2>&1 || fail "after dpkg has ended, the supervisor has not"
+[ "$(value delivered)" = "ii 1.0" ] || fail "what dpkg has in the end: $(value delivered)"
+machine; trial announce 2.0; trial recover; [ "$(value phase)" = confirmed ] ||
+  fail "a cut in dpkg: $(value phase)"
 upgrade 2.0; judge; expect "the power cut while dpkg unpacks" confirmed 2.0
 machine; echo crash >does_2.0; echo hang >does_3.0
 upgrade 2.0; upgrade 3.0; judge; expect "two in a row, neither works" rolled_back 1.0
@@ -190,7 +241,8 @@ machine; echo crash >does_3.0
 upgrade 2.0 "sed -i 's/log) cat/log) exit 1; cat/' bin/bess-edge"; upgrade 3.0; judge; expect "the first of two cannot tell" rolled_back 1.0
 machine; echo crash >does_2.0; echo crash >does_3.0
 upgrade 2.0; judge; upgrade 3.0; judge; expect "two that are rolled back" rolled_back 1.0
-for version in 2.0 3.0; do trial announce $version && fail "$version is let in again after two"; done
+for version in 2.0 3.0; do trial announce $version &&
+  fail "$version is let in again after two"; done
 trial allow 2.0; rm does_2.0; upgrade 2.0; judge; expect "allowed again, and mended" confirmed 2.0
 machine; upgrade 2.0; judge; upgrade 1.0; judge; expect "a downgrade" confirmed 1.0
 machine; upgrade 2.0; judge; trial go-back "it trades too much"; expect "back by hand" rolled_back 1.0 "trades too much"
@@ -201,7 +253,8 @@ expect "removed, and installed again" confirmed 1.0
 [ "$(cat active)" = active ] || fail "removed, and installed again: the controller does not run"
 machine; upgrade 2.0 "" ""; echo "unit of 2.0, spoilt" >"$BESS_ROOT/usr/lib/systemd/system/bess-edge.service"
 echo crash >does_2.0; judge; expect "a unit that is spoilt" rolled_back 1.0
-grep -q "unit of 1.0" "$BESS_ROOT/etc/systemd/system/bess-edge.service" || fail "the version before runs by the new unit"
+grep -q "unit of 1.0" "$BESS_ROOT/etc/systemd/system/bess-edge.service" ||
+  fail "the version before runs by the new unit"
 machine; upgrade 2.0; judge; echo torn >"$store/versions/2.0/bin/bess-edge"; echo 1.0 >running; trial recover
 expect "a card that damages what runs" rolled_back 1.0 "damaged"
 # As the service runs it: looks of a second each, and time that is not on the disk at each of them.
@@ -219,7 +272,8 @@ timeout 60 "$edge" trial supervise >said 2>&1; expect "a disk that takes nothing
 old_state() { printf 'phase=%s\nversion=1.0\nprevious=0.9\nneeded=3\n' "$1" >"$state"; : >systemctl; }
 for phase in trying going_back; do
   machine; old_state $phase; trial look; trial look
-  [ "$(readlink "$store/current") $(cat running)" = "versions/1.0 1.0" ] || fail "$phase, to a version that is not kept: $(readlink "$store/current")"
+  [ "$(readlink "$store/current") $(cat running)" = "versions/1.0 1.0" ] ||
+    fail "$phase, to a version that is not kept: $(readlink "$store/current")"
   grep -q '^stop' systemctl && fail "$phase, to a version that is not kept: what runs is stopped"
 done
 # The power between the decision and the start: the cycles in the log are not those of the version
@@ -239,10 +293,12 @@ machine; upgrade 2.0; head -c 40 "$state" >x; mv x "$state"; judge; expect "a da
 for file in state state.copy history; do
   machine; upgrade 2.0; rm "$BESS_ROOT/var/lib/bess-update/$file"; mkdir "$BESS_ROOT/var/lib/bess-update/$file"
   judge; expect "a folder in place of $file" confirmed 2.0
-  grep -q confirmed "$BESS_ROOT/var/lib/bess-update/history" || fail "a folder in place of $file: no history"
+  grep -q confirmed "$BESS_ROOT/var/lib/bess-update/history" ||
+    fail "a folder in place of $file: no history"
 done
 machine; upgrade 2.0; : >"$state"; : >"$state.copy"; trial look
-[ "$(value phase) $(cat running)" = "failed 2.0" ] || fail "both states damaged: $(value phase) $(cat running)"
+[ "$(value phase) $(cat running)" = "failed 2.0" ] ||
+  fail "both states damaged: $(value phase) $(cat running)"
 
 # The power at every step, and a disk that is full from every step on.
 ends() {

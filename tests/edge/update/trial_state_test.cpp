@@ -63,6 +63,35 @@ TEST(UpdateState, WhatDpkgBelievesIsToldWhereItDiffers) {
             "1.0 confirmed; dpkg has it half installed (iF 1.0): dpkg --configure -a");
 }
 
+TEST(UpdateState, WhatDpkgHalfDidIsTroubleWithTheMendThatEndsIt) {
+  EXPECT_EQ(dpkg_mend("ii 2.0"), "");
+  EXPECT_EQ(dpkg_mend(""), "");
+  EXPECT_EQ(dpkg_mend("rc 2.0"), "");
+  EXPECT_EQ(dpkg_mend("iU 2.0"), "dpkg --configure -a");
+  EXPECT_EQ(dpkg_mend("iF 2.0"), "dpkg --configure -a");
+  EXPECT_EQ(dpkg_mend("iW 2.0"), "dpkg --configure -a");
+  // dpkg --configure answers these with "very bad inconsistent state".
+  EXPECT_EQ(dpkg_mend("iHR2.0"), "apt install --reinstall bess-edge");
+  EXPECT_EQ(dpkg_mend("iUR2.0"), "apt install --reinstall bess-edge");
+  EXPECT_EQ(dpkg_mend("iH 2.0"), "apt install --reinstall bess-edge");
+  TrialState state;
+  state.version = "1.0";
+  state.delivered = "iHR1.0";
+  state.phase = TrialPhase::kConfirmed;
+  EXPECT_EQ(update_trouble(state),
+            "1.0 confirmed; dpkg has it half installed (iHR1.0): apt install --reinstall "
+            "bess-edge");
+  state.delivered = "ii 1.0";
+  EXPECT_EQ(update_trouble(state), "");
+  state.phase = TrialPhase::kRolledBack;
+  state.refused = "2.0";
+  state.reason = "dpkg did not end";
+  state.delivered = "iF 2.0";
+  EXPECT_EQ(update_trouble(state),
+            "1.0; 2.0 was rolled back: dpkg did not end; dpkg has it half installed (iF 2.0): "
+            "dpkg --configure -a");
+}
+
 TEST(UpdateState, AllThatIsKeptIsReadAsItWasWritten) {
   const TemporaryFolder folder;
   TrialState state;
