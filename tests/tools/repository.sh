@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # repository.sh SOURCE FOLDER: tools/repository with a throw-away key: apt takes what it signed, as
-# many of twenty machines as the phase says upgrade, and a foreign key is refused. Exit 77 =
-# skipped.
+# many of twenty
+# machines as the phase says upgrade, and a foreign key is refused. Exit 77 = skipped.
 set -euo pipefail
 source=$(realpath "$1") folder=$2
 # shellcheck source=tests/tools/script_test.sh
 . "$source/tests/tools/script_test.sh"
-need apt-ftparchive gpg apt-get dpkg-deb
+need aptly apt-ftparchive gpg apt-get dpkg-deb
 enter_folder
 # shellcheck source=tests/tools/made_up_package.sh
 . "$source/tests/tools/made_up_package.sh"
@@ -17,14 +17,16 @@ for name in first second; do
   gpg --batch --quiet --pinentry-mode loopback --passphrase '' --quick-generate-key "$name@example.org" ed25519 sign 2>/dev/null
 done
 made_up_package packages amd64 1.0 >/dev/null
-made_up_package packages amd64 2.0 >/dev/null
 export BESS_PACKAGES=$folder/packages
 repository() { "$source/tools/package" --repository repository "$@" >said 2>&1; }
 
 code=0
 repository --key absent@example.org || code=$?
-[ $code -eq 1 ] && grep -q 'gpg has no secret key "absent@example.org"' said || fail "a key that is not there: $(cat said)"
-repository --key first@example.org --phased 30 || fail "a repository: $(cat said)"
+[ $code -eq 1 ] && grep -q 'gpg has no secret key "absent@example.org"' said ||
+  fail "a key that is not there: $(cat said)"
+repository --key first@example.org || fail "a repository: $(cat said)"
+made_up_package packages amd64 2.0 >/dev/null
+repository --key first@example.org --phased 30 || fail "a newer version: $(cat said)"
 code=0
 repository --key second@example.org || code=$?
 [ $code -eq 1 ] && grep -q "is signed with another key" said || fail "another key: $(cat said)"
@@ -36,7 +38,8 @@ refuses() {  # refuses WHAT LINE OPTIONS...
   shift 2
   repository --key first@example.org "$@" || code=$?
   [ $code -eq 1 ] && grep -qF -- "$line" said || fail "$what: exit code $code: $(cat said)"
-  [ "$before" = "$(cat repository/dists/stable/InRelease | sha256sum)" ] || fail "$what: the repository was changed"
+  [ "$before" = "$(cat repository/dists/stable/InRelease | sha256sum)" ] ||
+    fail "$what: the repository was changed"
   rm -rf spoilt
 }
 file=$(made_up_package spoilt amd64 3.0) && truncate -s -200 "$file"
@@ -47,8 +50,15 @@ spoil='echo other >>notes' made_up_package spoilt amd64 2.0 >/dev/null
 refuses "the same version with other bytes" "version 2.0 is there with other bytes"
 made_up_package spoilt amd64 0.9 >/dev/null
 refuses "an older version" "is older than bess-edge_2.0_amd64.deb; --older"
-made_up_package spoilt amd64 1.0 >/dev/null
-repository --key first@example.org --older --phased 30 || fail "an older version, with the word: $(cat said)"
+made_up_package spoilt amd64 3.0 >/dev/null
+mkdir no_gpg && printf '#!/bin/sh\ncase "$*" in *--clearsign*) exit 2 ;; esac\nexec %s "$@"\n' "$(command -v gpg)" >no_gpg/gpg && chmod 755 no_gpg/gpg
+PATH=$folder/no_gpg:$PATH refuses "a key that does not sign" "what is served is as it was"
+packages_now() { grep -h ^Version: repository/dists/stable/main/binary-amd64/Packages | sort | tr '\n' ' '; }
+made_up_package spoilt amd64 0.8 >/dev/null
+repository --key first@example.org --older --phased 30 ||
+  fail "an older version, with the word: $(cat said)"
+[ "$(packages_now)" = "Version: 0.8 Version: 1.0 Version: 2.0 " ] ||
+  fail "after refusals there is: $(packages_now)"
 export BESS_PACKAGES=$folder/packages
 code=0
 repository --key first@example.org --phased 130 || code=$?
@@ -60,7 +70,7 @@ printf 'Package: bess-edge\nStatus: install ok installed\nVersion: 1.0\nArchitec
 for name in libc6 libcurl4; do
   printf 'Package: %s\nStatus: install ok installed\nVersion: 9\nArchitecture: amd64\nMaintainer: x <x@example.org>\nDescription: x\n\n' $name >>apt/status
 done
-sources() { echo "deb [signed-by=$folder/$1] file:$folder/repository stable main" >apt/sources.list; }
+sources() { echo "deb [signed-by=$folder/$1] file:$folder/repository ${2:-stable} main" >apt/sources.list; }
 apt() {
   apt-get -o Dir::Etc::SourceList="$folder/apt/sources.list" -o Dir::Etc::SourceParts="$folder/apt/parts" -o Dir::State="$folder/apt" \
     -o Dir::State::Lists="$folder/apt/lists" -o Dir::State::Status="$folder/apt/status" -o Dir::Cache="$folder/apt" -o APT::Sandbox::User=root \
@@ -80,6 +90,19 @@ upgrades() {  # of twenty machines
 }
 some=$(upgrades)
 { [ "$some" -gt 0 ] && [ "$some" -lt 14 ]; } || fail "at 30 % $some of 20 machines upgrade"
+# A new machine is not an upgrade: no percentage keeps the newest from it. The suite of full
+# versions does.
+cp apt/status apt/status.kept
+awk 'BEGIN { RS = ""; ORS = "\n\n" } !/^Package: bess-edge\n/' apt/status.kept >apt/status
+for suite in stable full; do
+  sources repository/bess.gpg $suite
+  apt update >said 2>&1 || fail "apt does not take $suite: $(tail -n 2 said)"
+  apt install -s bess-edge 2>/dev/null | sed -n "s/^Inst bess-edge (\([^ ]*\).*/$suite \1/p" >>new_machines
+done
+[ "$(cat new_machines)" = "stable 2.0
+full 1.0" ] || fail "new machines get $(tr '\n' ' ' <new_machines)"
+mv apt/status.kept apt/status
+sources repository/bess.gpg
 repository --key first@example.org --phased 0 && apt update >said 2>&1
 none=$(upgrades)
 [ "$none" -eq 0 ] || fail "at 0 % $none of 20 machines upgrade"
@@ -89,7 +112,8 @@ all=$(upgrades)
 
 # A newer one is taken back: the one before is served again, and no package is lost.
 made_up_package packages amd64 3.0 >/dev/null
-repository --key first@example.org && apt update >said 2>&1
+repository --key first@example.org || fail "a newer one: $(cat said)"
+apt update >said 2>&1
 apt upgrade -s 2>/dev/null | grep -q '^Inst bess-edge .*(3.0 ' || fail "3.0 is not served"
 repository --key first@example.org --back || fail "back: $(cat said)"
 apt update >said 2>&1 || fail "apt does not take the index before: $(tail -n 2 said)"
@@ -97,7 +121,8 @@ apt upgrade -s 2>/dev/null | grep -q '^Inst bess-edge .*(2.0 ' || fail "2.0 is n
 apt install -s bess-edge=1.0 >said 2>&1 || fail "the version before is gone: $(tail -n 1 said)"
 code=0
 for _ in 1 2 3 4 5 6 7 8; do repository --key first@example.org --back || { code=$?; break; }; done
-[ $code -eq 1 ] && grep -q "there is no index before this one" said || fail "back beyond the first: $code $(cat said)"
+[ $code -eq 1 ] && grep -q "there is no snapshot before this one" said ||
+  fail "back beyond the first: $code $(cat said)"
 
 [ $failures -eq 0 ] || exit 1
 cd / && rm -rf "$folder"
