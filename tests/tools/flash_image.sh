@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # flash_image.sh SOURCE FOLDER: tools/flash image on made-up images: the two partitions of Raspberry
-# Pi OS with the few files that tell bookworm from trixie (the real images are not here). Needs no
-# root. Exit 77 = skipped.
+# Pi OS with the few
+# files that tell bookworm from trixie (the real images are not here). Needs no root. Exit 77 =
+# skipped.
 set -euo pipefail
 source=$(realpath "$1") folder=$2
 # shellcheck source=tests/tools/script_test.sh
@@ -33,7 +34,11 @@ image_of bullseye bullseye
 image_of old_trixie trixie
 package=$(made_up_package packages arm64 1.0)
 echo "ssh-ed25519 AAAAC3NzaC1lZDI1NTE5AAAAIHJ1c3Q= ops" >key.pub
-printf 'control = false\n# settings\n' >edge.toml
+settings() {  # settings [LINE...]: what the edge takes, and then these lines
+  sed -e 's/^control = true/control = false/' -e '/^\[simulation\]/,$d' "$source/tests/guest/edge.toml.in" >edge.toml
+  [ $# -eq 0 ] || printf '%s\n' "$@" >>edge.toml
+}
+settings
 echo 'pass "word' >wifi
 
 flash() { "$source/tools/flash" image "$@" --host-name bess1 --user ops --ssh-key key.pub --config edge.toml >said 2>&1; }
@@ -48,15 +53,19 @@ flash bookworm.img --out out.img --package "$package" --wifi "the house" --wifi-
 custom=$(boot_file out.img custom.toml)
 for line in 'hostname = "bess1"' 'name = "ops"' 'authorized_keys = ["ssh-ed25519 AAAA' 'timezone = "Europe/Brussels"' \
   'ssid = "the house"' 'password = "pass \"word"' 'country = "BE"'; do expect "$custom" "$line" "bookworm's custom.toml"; done
-python3 -c 'import tomllib, sys; tomllib.loads(sys.argv[1])' "$custom" || fail "custom.toml is no TOML"
-[ "$(root_file out.img /etc/bess/edge.toml)" = "$(cat edge.toml)" ] || fail "the settings are not inside"
-root_file out.img /var/lib/bess-first-boot/bess-edge_1.0_arm64.deb | cmp -s - "$package" || fail "the package is not inside"
+python3 -c 'import tomllib, sys; tomllib.loads(sys.argv[1])' "$custom" ||
+  fail "custom.toml is no TOML"
+[ "$(root_file out.img /etc/bess/edge.toml)" = "$(cat edge.toml)" ] ||
+  fail "the settings are not inside"
+root_file out.img /var/lib/bess-first-boot/bess-edge_1.0_arm64.deb | cmp -s - "$package" ||
+  fail "the package is not inside"
 expect "$(root_file out.img /etc/systemd/timesyncd.conf.d/bess.conf)" "NTP=be.pool.ntp.org" "NTP"
 expect "$(debugfs -R "stat /var/lib/bess-first-boot/install" "out.img?offset=$((34816 * 512))" 2>/dev/null)" "Mode:  0755" "the installer's mode"
 expect "$(debugfs -R "stat /etc/systemd/system/multi-user.target.wants/bess-first-boot.service" "out.img?offset=$((34816 * 512))" 2>/dev/null)" \
   "symlink" "the unit is enabled"
 
-flash older.img --out out.img --package "$package" || fail "bookworm without custom.toml's reader: $(cat said)"
+flash older.img --out out.img --package "$package" ||
+  fail "bookworm without custom.toml's reader: $(cat said)"
 expect "$(boot_file out.img firstrun.sh)" "set_hostname 'bess1'" "firstrun.sh"
 expect "$(boot_file out.img cmdline.txt)" "systemd.run=/boot/firmware/firstrun.sh" "cmdline.txt"
 
@@ -65,10 +74,26 @@ flash trixie.img.xz --out out.img --package "$package" --wifi "the house" --wifi
 expect "$(boot_file out.img user-data)" 'hostname: "bess1"' "trixie's user-data"
 expect "$(boot_file out.img network-config)" '"the house":' "trixie's network-config"
 expect "$(boot_file out.img meta-data)" 'instance-id: bess-' "trixie's meta-data"
+# By the boot partition alone: the system's own is as it was.
+boot_file out.img bess/bess-edge_1.0_arm64.deb | cmp -s - "$package" ||
+  fail "trixie: the package is not on the boot partition"
+[ "$(boot_file out.img bess/edge.toml)" = "$(cat edge.toml)" ] ||
+  fail "trixie: the settings are not on the boot partition"
+expect "$(boot_file out.img bess/install)" "cd /boot/firmware/bess" "trixie's installer"
+expect "$(boot_file out.img user-data)" "/boot/firmware/bess/start" "trixie's user-data starts the installer"
+boot_file out.img bess/install | sh -n || fail "trixie's installer is no shell"
+cmp -s <(tail -c +$((34816 * 512 + 1)) out.img) <(tail -c +$((34816 * 512 + 1)) trixie.img) ||
+  fail "trixie: the system partition was written"
+if command -v cloud-init >/dev/null; then
+  boot_file out.img user-data >user-data
+  cloud-init schema --config-file user-data >said 2>&1 ||
+    fail "cloud-init does not take user-data: $(cat said)"
+fi
 if python3 -c 'import yaml' 2>/dev/null; then
   boot_file out.img user-data | python3 -c '
 import sys, yaml
 found = yaml.safe_load(sys.stdin)
+assert found["bootcmd"][0][:2] == ["sh", "-c"] and "bess/start" in found["bootcmd"][0][2], found
 assert found["users"][0]["name"] == "ops" and found["timezone"] == "Europe/Brussels", found' || fail "user-data is no YAML of cloud-init"
 fi
 
@@ -101,18 +126,41 @@ refuses "no certificate" "a package without a certificate is not installed" book
 spoil='sed -i "s/PROPERTY_3 0/PROPERTY_3 7/" student_weights.h'
 refuses "violations" "violations of properties 1 / 2 / 3: [0, 0, 7]" bookworm.img --package "$(made_up_package spoilt arm64 1.3)"
 spoil=''
+settings_refused() {  # settings_refused WHAT LINE: by the edge's reader, before anything is written
+  refuses "$1" "$2" bookworm.img --package "$package"
+  settings
+}
+if [ -x "${BESS_PROGRAMS:-$source/build}/bess-edge" ]; then
+  settings '[guard]' 'unknown_key = 1'
+  settings_refused "settings with a key that the edge does not know" "edge.toml:"
+  settings '[guard]' 'soc_min = 7'
+  settings_refused "settings with a value that the edge does not take" "edge.toml:"
+fi
+wifi_refused() {  # wifi_refused WHAT LINE PASSWORD COUNTRY
+  printf '%s\n' "$3" >wifi
+  refuses "$1" "$2" bookworm.img --package "$package" --wifi house --wifi-password-file wifi --wifi-country "$4"
+}
+wifi_refused "a short Wi-Fi password" "7 characters are no password of WPA" seven77 BE
+wifi_refused "a country of three letters" "--wifi-country BEL: is no country" "long enough" BEL
+wifi_refused "a country in small letters" "--wifi-country be: is no country" "long enough" be
+code=0
+"$source/tools/flash" image bookworm.img --out none.img --host-name bess1 --user root --ssh-key key.pub --config edge.toml >said 2>&1 || code=$?
+[ $code -eq 2 ] && grep -q -- "--user root: Raspberry Pi OS gives root no key" said ||
+  fail "user root, exit code $code: $(cat said)"
 printf 'control = = true\n' >edge.toml
 refuses "settings that are no TOML" "edge.toml: Invalid value (at line 1" bookworm.img --package "$package"
-echo "control = false" >edge.toml
+settings
 cp bookworm.img none.img
 before=$(sha256sum none.img)
 code=0
 flash none.img --out none.img --package "$package" || code=$?
-[ $code -eq 1 ] && grep -q "is the image that was given" said && [ "$before" = "$(sha256sum none.img)" ] ||
+[ $code -eq 1 ] && grep -q "is the image that was given" said &&
+  [ "$before" = "$(sha256sum none.img)" ] ||
   fail "an image over itself, exit code $code: $(cat said)"
 code=0
 flash bookworm.img --out absent/out.img --package "$package" || code=$?
-[ $code -eq 1 ] && grep -q "absent/out.img: there is no such folder" said || fail "no folder for the image: $(cat said)"
+[ $code -eq 1 ] && grep -q "absent/out.img: there is no such folder" said ||
+  fail "no folder for the image: $(cat said)"
 # The archive out of reach; apt still asks, and is told no at once by a port that nobody serves.
 sed -i '/^Package: libcurl4$/,/^$/d' tree-bookworm/var/lib/dpkg/status
 image_of lacking bookworm init_config 2>/dev/null || true

@@ -1,0 +1,117 @@
+"""The two partitions of an image file, without root and without mounting: FAT for the boot by
+mtools, ext4 for the system by debugfs. What is written is read back. Used by tools/flash image."""
+import json
+import os
+import subprocess
+import tempfile
+
+
+class Refused(Exception):
+    """One line for the person, with the mend."""
+
+
+def run(*command, text=None, check=True, binary=False):
+    """Output of a program; Refused with its last line when it fails."""
+    data = text.encode() if isinstance(text, str) else text
+    done = subprocess.run(command, input=data, capture_output=True)
+    if check and done.returncode != 0:
+        lines = (done.stderr or done.stdout).decode(errors="replace").strip().splitlines()
+        raise Refused(f"{command[0]}: {lines[-1] if lines else 'no reason given'}")
+    return done.stdout if binary else done.stdout.decode(errors="replace")
+
+
+class Image:
+    """The two partitions of an image file: FAT for the boot, ext4 for the system."""
+
+    def __init__(self, path):
+        self.path = path
+        try:
+            table = json.loads(run("sfdisk", "--json", path))["partitiontable"]
+        except (Refused, ValueError, KeyError):
+            raise Refused("is no disk image: it has no partition table")
+        sector = int(table.get("sectorsize", 512))
+        self.boot = self.root = None
+        for part in table["partitions"]:
+            start = int(part["start"]) * sector
+            if start + int(part["size"]) * sector > os.path.getsize(path):
+                raise Refused("is not whole: its partition table names more than is there;"
+                              " download it again")
+            with open(path, "rb") as file:
+                file.seek(start)
+                head = file.read(2048)
+            if self.boot is None and head[510:512] == b"\x55\xaa" and b"FAT" in head[:90]:
+                self.boot = f"{path}@@{start}"
+            if self.root is None and len(head) == 2048 and head[1080:1082] == b"\x53\xef":
+                self.root = f"{path}?offset={start}"
+        if self.boot is None or self.root is None:
+            raise Refused("has not the two partitions of Raspberry Pi OS, FAT and ext4:"
+                          " is it whole?")
+
+    # Boot partition.
+    def read_boot(self, name):
+        return run("mcopy", "-n", "-i", self.boot, f"::{name}", "-", binary=True)
+
+    def make_boot_folder(self, name):
+        found = subprocess.run(["mdir", "-b", "-i", self.boot, f"::{name}"], capture_output=True)
+        if found.returncode != 0:
+            run("mmd", "-i", self.boot, f"::{name}")
+
+    def write_boot(self, name, text):
+        try:
+            run("mcopy", "-o", "-i", self.boot, "-", f"::{name}", text=text)
+        except Refused as refused:
+            raise Refused(f"{name} does not go onto the boot partition: {refused}")
+        if self.read_boot(name) != (text.encode() if isinstance(text, str) else text):
+            raise Refused(f"{name} reads back differently from the boot partition: is it full?")
+
+    # System partition.
+    def debugfs(self, *commands, write=False):
+        with tempfile.NamedTemporaryFile("w", suffix=".debugfs") as script:
+            script.write("\n".join(commands) + "\n")
+            script.flush()
+            options = ["-w"] if write else []
+            return run("debugfs", *options, "-f", script.name, self.root)
+
+    def exists(self, path):
+        return "Inode:" in self.debugfs(f"stat {path}")
+
+    def read(self, path):
+        with tempfile.TemporaryDirectory() as folder:
+            self.debugfs(f"dump {path} {folder}/file")
+            try:
+                return open(f"{folder}/file", "rb").read()
+            except OSError:
+                raise Refused(f"{path} is missing inside: is it a Raspberry Pi OS image?")
+
+    def make_folder(self, path, mode=0o755):
+        if path in ("", "/") or self.exists(path):
+            return
+        self.make_folder(os.path.dirname(path))
+        self.debugfs(f"mkdir {path}", f"sif {path} mode 0{0o40000 | mode:o}", f"sif {path} uid 0",
+                     f"sif {path} gid 0", write=True)
+
+    def write(self, path, data, mode=0o644):
+        """Owned by root; what is there is replaced. Read back."""
+        data = data.encode() if isinstance(data, str) else data
+        self.make_folder(os.path.dirname(path))
+        with tempfile.NamedTemporaryFile() as file:
+            file.write(data)
+            file.flush()
+            commands = [f"rm {path}"] if self.exists(path) else []
+            commands += [f"write {file.name} {path}", f"sif {path} mode 0{0o100000 | mode:o}",
+                         f"sif {path} uid 0", f"sif {path} gid 0"]
+            self.debugfs(*commands, write=True)
+        if self.read(path) != data:
+            raise Refused(f"{path} reads back differently: its system partition is full")
+
+    def link(self, path, target):
+        self.make_folder(os.path.dirname(path))
+        self.debugfs(f"symlink {path} {target}", write=True)
+        if target not in self.debugfs(f"stat {path}"):
+            raise Refused(f"{path} reads back differently: its system partition is full")
+
+    def check(self):
+        done = subprocess.run(["e2fsck", "-fn", self.root], capture_output=True)
+        if done.returncode != 0:
+            lines = done.stdout.decode(errors="replace").strip().splitlines()
+            raise Refused(f"its system partition is not clean: {lines[-1]}")
