@@ -29,9 +29,11 @@ make_base() {
   done
   [ "$(id -u)" = 0 ] || skip "machines need root"
   mkdir -p "$folder"
+  # Of an older test, without what this one needs.
+  [ ! -d "$base" ] || [ -x "$base/usr/bin/unattended-upgrade" ] || rm -rf "$base" "$folder/root.tar"
   [ ! -d "$base" ] || return 0
   if [ ! -f "$folder/root.tar" ]; then
-    mmdebstrap -q --variant=minbase --include=systemd,systemd-sysv,udev,dbus,libcurl4,libcjson1,libmodbus5,libmosquitto1,ca-certificates,adduser,python3,iproute2,procps \
+    mmdebstrap -q --variant=minbase --include=systemd,systemd-sysv,udev,dbus,libcurl4,libcjson1,libmodbus5,libmosquitto1,ca-certificates,adduser,python3,iproute2,procps,unattended-upgrades \
       bookworm "$folder/root.tar" >"$folder/mmdebstrap.log" 2>&1 || skip "no Debian archive: $(tail -n 1 "$folder/mmdebstrap.log")"
   fi
   rm -rf "$base.new"
@@ -39,6 +41,10 @@ make_base() {
   tar -C "$base.new" -xf "$folder/root.tar"
   rm -rf "$base.new"/boot/*
   site_into "$base.new"
+  # Upgrades come when a test says so.
+  for program in apt-daily.timer apt-daily-upgrade.timer unattended-upgrades.service; do
+    ln -sf /dev/null "$base.new/etc/systemd/system/$program"
+  done
   ldd "$programs/bess-sim" | awk '$3 ~ /^\// {print $3}' | grep -vE '/(libc|libm)\.so' | xargs -I{} cp -L {} "$base.new/opt/bess-site/lib/"
   mv "$base.new" "$base"
 }

@@ -2,6 +2,7 @@
 #   site_into ROOT        simulated battery and market, started at each boot before bess-edge; ROOT/opt/bess-site/lib is
 #                         for the libraries of bess-sim
 #   raspberry_image FILE ROOT   an image in the layout of Raspberry Pi OS, FAT before ext4, with that system
+#   program LINE          for variant: a program that answers as ever, and controls by that line
 #   variant VERSION [COMMAND]   FOLDER/bess-edge_VERSION.deb: $package with another version, spoilt by the command in its tree
 # Uses $source, $folder and $programs (where bess-sim is).
 site_into() {
@@ -27,6 +28,8 @@ raspberry_image() {
   mke2fs -q -t ext4 -d "$2" -E offset=$raspberry_root_offset "$1" $((size_mb - 2))M
 }
 
+program() { printf '%s' "cd usr/lib/bess-edge/bin && mv bess-edge real && printf '#!/bin/sh\\ncase \"\$1\" in status|log|signature|trial|history) exec \$(dirname \$(readlink -f \$0))/real \"\$@\" ;; esac\\n$1\\n' >bess-edge && chmod 755 bess-edge"; }
+
 variant() {
   local tree=$folder/variant file=$folder/bess-edge_$1.deb
   rm -rf "$tree"
@@ -34,7 +37,8 @@ variant() {
   sed -i "s/^Version: .*/Version: $1/" "$tree/DEBIAN/control"
   sed -i "s/\"version\": \"[^\"]*\"/\"version\": \"$1\"/" "$tree/usr/lib/bess-edge/share/certificate.json"
   (cd "$tree" && sh -c "${2:-true}")
-  (cd "$tree/usr/lib/bess-edge" && find bin share systemd -type f | LC_ALL=C sort | xargs sha256sum >SUMS)
+  (cd "$tree/usr/lib/bess-edge" &&
+    find bin share systemd -type f | LC_ALL=C sort | xargs sha256sum >SUMS)
   dpkg-deb --root-owner-group -Zgzip -b "$tree" "$file" >/dev/null
   rm -rf "$tree"
 }
