@@ -1,0 +1,362 @@
+#!/usr/bin/python3
+"""Hundreds of small defects of the edge, each of which a scenario or a unit test must find.
+
+  mutate.py make --out FOLDER                    the mutated copy of the tree, built (tests/mutation/README.md)
+  mutate.py run --out FOLDER [--sample N --seed S] [--only TEXT]   each of them, against scenarios and unit tests
+  mutate.py report --out FOLDER                  the score by folder, and who survived
+
+survivors.txt says of those that are known to survive why. Exit codes: 0 done; 1 fewer than --at-least are caught of
+those that are not equivalent, or something could not be built; 2 the command line.
+"""
+import argparse
+import collections
+import json
+import os
+import random
+import re
+import subprocess
+import sys
+import time
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+ROOT = os.path.dirname(os.path.dirname(HERE))
+ROOMS = ["control", "registers", "battery", "prices", "site", "supervision", "loop"]
+TARGETS = ["bess-hil", "edge_test", "control_loop_test", "site_test", "tools_test", "bus_faults_test"]
+UNIT_TESTS = TARGETS[1:]
+NUMBERS_PER_FILE = 1000
+LIMIT_S = 120  # of one run without a mutant
+
+RUN_TIME = """// Which of the mutants is awake, and which were passed by (tests/mutation).
+#pragma once
+#include <cstdio>
+#include <cstdlib>
+#include <type_traits>
+struct BessMutants {{
+  int awake = -1;
+  unsigned char passed[{count}] = {{}};
+  BessMutants() {{
+    if (const char* number = std::getenv("BESS_MUTANT")) awake = std::atoi(number);
+  }}
+  ~BessMutants() {{
+    const char* path = std::getenv("BESS_MUTANTS_PASSED");
+    std::FILE* file = path != nullptr ? std::fopen(path, "we") : nullptr;
+    if (file == nullptr) return;
+    for (int i = 0; i < {count}; ++i) {{
+      if (passed[i] != 0) std::fprintf(file, "%d\\n", i);
+    }}
+    std::fclose(file);
+  }}
+}};
+inline BessMutants bess_mutants;
+constexpr bool bess_mutant(int number) {{
+  if (std::is_constant_evaluated()) return false;
+  bess_mutants.passed[number] = 1;
+  return bess_mutants.awake == number;
+}}
+"""
+
+
+def key_of(mutant):
+    nth = f" #{mutant['nth']}" if mutant["nth"] > 1 else ""
+    return f"{mutant['file']} | {mutant['function']} | {mutant['was']} -> {mutant['is']}{nth}"
+
+
+# --- make ------------------------------------------------------------------------------------------
+def tracked():
+    out = subprocess.run(["git", "ls-files", "-co", "--exclude-standard"], cwd=ROOT, check=True,
+                         capture_output=True, text=True).stdout
+    return [f for f in out.splitlines() if os.path.isfile(os.path.join(ROOT, f))]
+
+
+def write_if_new(path, data, mode=None):
+    os.makedirs(os.path.dirname(path), exist_ok=True)
+    if os.path.islink(path):
+        os.unlink(path)
+    elif os.path.exists(path):
+        with open(path, "rb") as f:
+            if f.read() == data:
+                return
+    with open(path, "wb") as f:
+        f.write(data)
+    if mode is not None:
+        os.chmod(path, mode)
+
+
+def mutated(path, first, mutants, left_out):
+    """The text of one file with all of its mutants, which are added to the list."""
+    import schemata
+    full = os.path.join(ROOT, path)
+    file = schemata.File(full, ["-x", "c++", "-std=c++20", "-DNDEBUG", "-I" + ROOT,
+                                "-I" + os.path.join(ROOT, "edge/generated"), "-I/usr/include/modbus"])
+    for error in file.errors:
+        print(f"{path}: {error}", file=sys.stderr)
+    seen = collections.Counter()
+    numbers = [first - 1]
+
+    def number(_, node, alternative):
+        mutant = {"file": path, "function": node.function, "was": alternative[0], "is": alternative[1],
+                  "line": schemata.line_of(file, node.start)}
+        name = (node.function, alternative[0], alternative[1])
+        seen[name] += 1
+        mutant["nth"] = seen[name]
+        if key_of(mutant) in left_out:
+            return None
+        numbers[0] += 1
+        mutant["number"] = numbers[0]
+        mutants.append(mutant)
+        return mutant["number"]
+
+    tree = file.tree()
+    text = schemata.render(file, tree, 0, len(file.text), number)
+    return '#include "bess_mutant.h"\n#line 1\n' + text
+
+
+def copy_tree(out):
+    source = os.path.join(out, "source")
+    mutants, first = [], 0
+    left_out = set()  # what does not compile: see not_compiling
+    path = os.path.join(HERE, "not_compiling.txt")
+    if os.path.exists(path):
+        left_out = set(lines_of(path))
+    wanted = re.compile("edge/(" + "|".join(ROOMS) + r")/\w+\.(h|cpp)$")
+    for path in tracked():
+        if path.startswith("tests/mutation/"):
+            continue
+        with open(os.path.join(ROOT, path), "rb") as f:
+            data = f.read()
+        if wanted.match(path):
+            data = mutated(path, first, mutants, left_out).encode()
+            first += NUMBERS_PER_FILE  # a change in one file leaves the others' numbers alone
+        if path == "tests/tools/hil/mutants.txt":
+            data = b"# none here: the texts that they look for have changed\n"
+        write_if_new(os.path.join(source, path), data, os.stat(os.path.join(ROOT, path)).st_mode)
+    write_if_new(os.path.join(source, "bess_mutant.h"), RUN_TIME.format(count=first).encode())
+    with open(os.path.join(out, "mutants.json"), "w") as f:
+        json.dump(mutants, f, indent=0)
+    return source, mutants
+
+
+def lines_of(path):
+    with open(path) as f:
+        return [line.rstrip("\n") for line in f if line.strip() and not line.startswith("#")]
+
+
+def make(options):
+    started = time.time()
+    source, mutants = copy_tree(options.out)
+    count = collections.Counter(m["file"].split("/")[1] for m in mutants)
+    print(f"{len(mutants)} mutants:", ", ".join(f"{room} {n}" for room, n in count.items()))
+    if options.text_only:
+        return 0
+    build = os.path.join(options.out, "build")
+    if not os.path.exists(os.path.join(build, "build.ninja")):
+        launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if options.ccache else []
+        subprocess.run(["cmake", "-G", "Ninja", "-S", source, "-B", build, "-DBESS_WORKSTATION=OFF",
+                        "-DBESS_SIMULATORS=ON", "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG",
+                        "-DCMAKE_CXX_FLAGS=-w -Wno-narrowing"] + launcher, check=True, stdout=subprocess.DEVNULL)
+    code = subprocess.run(["ninja", "-C", build, "-j", str(options.jobs), "-k", "0"] + TARGETS).returncode
+    print(f"built in {time.time() - started:.0f} s")
+    return code
+
+
+# --- run -------------------------------------------------------------------------------------------
+class Runner:
+    def __init__(self, options):
+        self.out = options.out
+        self.build = os.path.join(options.out, "build")
+        self.source = os.path.join(options.out, "source")
+        with open(os.path.join(options.out, "mutants.json")) as f:
+            self.mutants = json.load(f)
+        self.passed = os.path.join(options.out, "passed.txt")
+        self.kills = collections.Counter()
+        self.key = {m["number"]: key_of(m) for m in self.mutants}
+        self.covered = self.coverage()
+
+    def environment(self, **more):
+        return dict(os.environ, **more)
+
+    def ends_well(self, command, limit_s=LIMIT_S, **more):
+        try:
+            done = subprocess.run(command, env=self.environment(**more), stdout=subprocess.DEVNULL,
+                                  stderr=subprocess.DEVNULL, stdin=subprocess.DEVNULL, timeout=limit_s,
+                                  cwd=self.build)
+            return done.returncode == 0
+        except subprocess.TimeoutExpired:
+            return False
+
+    def tests(self, kind):
+        """Of all scenarios, or of one program, the names."""
+        if kind == "scenario":
+            folder = os.path.join(self.source, "tests/scenarios")
+            return [f[:-5] for f in sorted(os.listdir(folder)) if f.endswith(".toml")]
+        listed = subprocess.run([os.path.join(self.build, kind), "--gtest_list_tests"], capture_output=True,
+                                text=True, cwd=self.build)
+        suite, names = "", []
+        for line in listed.stdout.splitlines():
+            name = line.split("#")[0].rstrip()
+            if name.startswith(" "):
+                names.append(suite + name.strip())
+            else:
+                suite = name
+        return names
+
+    def command(self, kind, names):
+        if kind == "scenario":
+            return [os.path.join(self.build, "bess-hil"), "run"] + [
+                os.path.join(self.source, "tests/scenarios", n + ".toml") for n in names]
+        return [os.path.join(self.build, kind), "--gtest_brief=1", "--gtest_fail_fast",
+                "--gtest_filter=" + ":".join(names)]
+
+    def coverage(self):
+        """Which tests pass which mutant; found once for a build and kept."""
+        covered = collections.defaultdict(list)
+        for kind in ["scenario"] + UNIT_TESTS:
+            program = os.path.join(self.build, "bess-hil" if kind == "scenario" else kind)
+            if not os.path.exists(program):
+                print(f"{kind}: not built, left out")
+                continue
+            path = os.path.join(self.out, f"coverage-{kind}.json")
+            kept = {}
+            if os.path.exists(path) and os.path.getmtime(path) > os.path.getmtime(program):
+                with open(path) as f:
+                    kept = json.load(f)
+            kept = {name: kept.get(name) or self.passed_by(kind, name) for name in self.tests(kind)}
+            with open(path, "w") as f:
+                json.dump(kept, f)
+            for name, (took_s, numbers) in kept.items():
+                for number in numbers:
+                    covered[number].append([kind, name, took_s])
+        return covered
+
+    def passed_by(self, kind, name):
+        """Of one test: its seconds, and the mutants that it passes; none where it fails without any."""
+        if os.path.exists(self.passed):
+            os.unlink(self.passed)
+        started = time.time()
+        well = self.ends_well(self.command(kind, [name]), BESS_MUTANTS_PASSED=self.passed)
+        took_s = round(time.time() - started, 2)
+        if not os.path.exists(self.passed) or not well:
+            print(f"left out: {kind} {name}: {'fails' if not well else 'tells nothing'} without a mutant")
+            return [took_s, []]
+        with open(self.passed) as f:
+            return [took_s, [int(line) for line in f]]
+
+    def finder(self, number):
+        """The kind of test that finds this mutant and its name, or None. Scenarios first."""
+        by_kind = collections.defaultdict(list)
+        for kind, name, took_s in self.covered.get(number, []):
+            by_kind[kind].append((name, took_s))
+        for kind in ["scenario"] + UNIT_TESTS:
+            # What has found many goes first and alone, so that it is known which one it was.
+            tests = sorted(by_kind[kind], key=lambda t: (-self.kills[kind, t[0]], t[1]))
+            at, size = 0, 1
+            while at < len(tests):
+                some = tests[at:at + size]
+                limit_s = 20 + 20 * sum(t[1] for t in some)
+                if not self.ends_well(self.command(kind, [t[0] for t in some]), limit_s, BESS_MUTANT=str(number)):
+                    for test in some:
+                        self.kills[kind, test[0]] += 1 / len(some)
+                    return kind, some[0][0] if size == 1 else f"one of {len(some)}"
+                at += size
+                size *= 4
+        return None
+
+
+def chosen(mutants, options):
+    numbers = [m["number"] for m in mutants if not options.only or options.only in key_of(m)]
+    if options.sample and options.sample < len(numbers):
+        numbers = sorted(random.Random(options.seed).sample(numbers, options.sample))
+    random.Random(options.seed).shuffle(numbers)  # a run that is cut short is a sample
+    return numbers
+
+
+def survivors_known():
+    path = os.path.join(HERE, "survivors.txt")
+    known = {}
+    if os.path.exists(path):
+        for line in lines_of(path):
+            reason, _, key = line.partition(" | ")
+            known[key] = reason
+    return known
+
+
+def run(options):
+    runner = Runner(options)
+    path = os.path.join(options.out, options.results)
+    done = {}
+    if os.path.exists(path) and options.resume:
+        with open(path) as f:
+            done = {r["key"]: r for r in map(json.loads, f)}
+    with open(path, "a" if options.resume else "w") as out:
+        for number in chosen(runner.mutants, options):
+            key = runner.key[number]
+            if key in done and not (options.again and not done[key]["by"]):
+                continue
+            found = runner.finder(number)
+            result = {"key": key, "by": list(found) if found else None,
+                      "passed": len(runner.covered.get(number, []))}
+            print(json.dumps(result), file=out, flush=True)
+    return report(options)
+
+
+# --- report ----------------------------------------------------------------------------------------
+def report(options):
+    with open(os.path.join(options.out, options.results)) as f:
+        results = list({r["key"]: r for r in map(json.loads, f)}.values())
+    known = survivors_known()
+    rooms = collections.defaultdict(collections.Counter)
+    unknown = []
+    for r in results:
+        room = rooms["/".join(r["key"].split("/")[:2])]
+        room["all"] += 1
+        if r["by"]:
+            room["scenario" if r["by"][0] == "scenario" else "unit"] += 1
+            continue
+        reason = known.get(r["key"])
+        room["equivalent" if reason and reason.startswith("equivalent") else "survived"] += 1
+        if not reason:
+            unknown.append(r)
+    total = sum(rooms.values(), collections.Counter())
+    print("| room | mutants | by a scenario | by a unit test | equivalent | survived | caught of the others |")
+    print("|---|---|---|---|---|---|---|")
+    for name, c in sorted(rooms.items()) + [("all", total)]:
+        print(f"| {name} | {c['all']} | {c['scenario']} | {c['unit']} | {c['equivalent']} | {c['survived']} | "
+              f"{caught_percent(c):.1f} % |")
+    for r in sorted(unknown, key=lambda r: r["key"]):
+        print(("not reached: " if r["passed"] == 0 else "survived:    ") + r["key"])
+    if caught_percent(total) < options.at_least:
+        print(f"mutate.py: {caught_percent(total):.1f} % are caught, {options.at_least} % are asked for: add a scenario or "
+              "a test, or the reason to survivors.txt", file=sys.stderr)
+        return 1
+    return 0
+
+
+def caught_percent(counts):
+    """Of those that are not equivalent."""
+    return 100 * (counts["scenario"] + counts["unit"]) / max(1, counts["all"] - counts["equivalent"])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("what", choices=["make", "run", "report"])
+    parser.add_argument("--out", default=os.path.join(ROOT, "build-mutation"), help="default: build-mutation")
+    parser.add_argument("--jobs", type=int, default=2, help="compilations beside each other")
+    parser.add_argument("--ccache", action="store_true", help="compile through ccache")
+    parser.add_argument("--text-only", action="store_true", help="write the mutated tree, do not build it")
+    parser.add_argument("--sample", type=int, default=0, help="only so many, drawn by --seed")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--only", default="", help="only those whose line holds this text")
+    parser.add_argument("--at-least", type=float, default=0, help="percent that must be caught")
+    parser.add_argument("--results", default="results.jsonl", help="the file in --out that keeps what was found")
+    parser.add_argument("--resume", action="store_true", help="go on with what was found before")
+    parser.add_argument("--again", action="store_true", help="with --resume: survivors once more")
+    options = parser.parse_args()
+    options.out = os.path.abspath(options.out)
+    os.makedirs(options.out, exist_ok=True)
+    return {"make": make, "run": run, "report": report}[options.what](options)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
