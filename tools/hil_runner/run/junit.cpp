@@ -17,7 +17,7 @@ std::string junit_text(const std::vector<Outcome>& outcomes) {
   suite.append_attribute("name") = "bess-hil";
   suite.append_attribute("tests") = static_cast<unsigned>(outcomes.size());
   suite.append_attribute("failures") =
-      static_cast<unsigned>(count([](const Outcome& o) { return o.error.empty() && !o.passed(); }));
+      static_cast<unsigned>(count([](const Outcome& o) { return o.error.empty() && o.failed(); }));
   suite.append_attribute("errors") =
       static_cast<unsigned>(count([](const Outcome& o) { return !o.error.empty(); }));
   suite.append_attribute("skipped") =
@@ -31,7 +31,7 @@ std::string junit_text(const std::vector<Outcome>& outcomes) {
       test.append_child("skipped").append_attribute("message") = outcome.skipped.c_str();
     } else if (!outcome.error.empty()) {
       test.append_child("error").append_attribute("message") = outcome.error.c_str();
-    } else if (!outcome.passed()) {
+    } else if (outcome.failed()) {
       pugi::xml_node failure = test.append_child("failure");
       failure.append_attribute("message") = complaint(outcome).c_str();
       std::string all;

@@ -26,7 +26,7 @@ constexpr const char* kStyle =
     "caption{text-align:left;font-weight:600}time{white-space:nowrap}\n"
     "nav ul{columns:18em;padding-left:1.2em}\n"
     "td,th{padding:2px 12px 2px 0;text-align:left;border-bottom:1px solid var(--grid)}\n"
-    "tbody th{font-weight:400}.failed{color:var(--bad)}.passed{color:var(--good)}\n"
+    "tbody th{font-weight:400}.failed,.late{color:var(--bad)}.passed{color:var(--good)}\n"
     "a{color:var(--focus)}:focus-visible{outline:3px solid var(--focus);outline-offset:2px}\n"
     "pre{font-size:12px}.picture{overflow-x:auto}\n"
     "svg{display:block;min-width:720px;max-width:100%;height:auto}\n";
@@ -39,24 +39,21 @@ std::string scrolling(const char* what, const Outcome& o, const std::string& ins
       what, html_escaped(o.scenario.name), o.time(), inside);
 }
 
-const char* verdict_on(const Outcome& o) {
-  return !o.skipped.empty() ? "skipped" : o.passed() ? "passed" : "failed";
-}
-
 std::string anchor_of(const Outcome& o) { return fmt::format("{}-{}", o.time(), o.scenario.name); }
 
 /// How many passed, and a link to each: those that failed first.
 std::string contents(const std::vector<Outcome>& outcomes) {
   std::string counts, links;
-  for (const std::string_view verdict : {"failed", "passed", "skipped"}) {
+  for (const std::string_view verdict : {"failed", "late", "passed", "skipped"}) {
     std::size_t count = 0;
     for (const Outcome& o : outcomes) {
-      if (verdict != verdict_on(o)) continue;
+      if (verdict != o.verdict()) continue;
       ++count;
       links += fmt::format(
           "<li><a href=\"#{}\">{}, {} time</a>: <span class=\"{}\">{}</span></li>\n",
           html_escaped(anchor_of(o)), html_escaped(o.scenario.name), o.time(), verdict, verdict);
     }
+    if (verdict == "late" && count == 0) continue;
     counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", count, verdict);
   }
   return fmt::format("<nav aria-label=\"Runs\">\n<p>{}</p>\n<ul>\n{}</ul>\n</nav>\n", counts,
@@ -80,7 +77,7 @@ std::string findings_table(const Outcome& o) {
 std::string section(const Outcome& o) {
   std::string text =
       fmt::format("<section id=\"{4}\"><h2 class=\"{0}\">{1}, {2} time: {0}</h2><p>{3}</p>\n",
-                  verdict_on(o), html_escaped(o.scenario.name), o.time(),
+                  o.verdict(), html_escaped(o.scenario.name), o.time(),
                   html_escaped(o.scenario.title), html_escaped(anchor_of(o)));
   if (!o.skipped.empty()) return text + "<p>" + html_escaped(o.skipped) + "</p></section>\n";
   if (!o.error.empty()) text += "<p>" + html_escaped(o.error) + "</p>\n";

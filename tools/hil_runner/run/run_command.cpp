@@ -99,6 +99,7 @@ Json json_of(const Outcome& outcome) {
   Json json = Json::object({{"scenario", outcome.scenario.name},
                             {"time", outcome.time()},
                             {"passed", outcome.passed()},
+                            {"verdict", outcome.verdict()},
                             {"seconds", Decimals{outcome.seconds, 3}}});
   if (!outcome.skipped.empty()) json.set("skipped", outcome.skipped);
   if (!outcome.error.empty()) json.set("error", outcome.error);
@@ -222,12 +223,24 @@ class Runner {
   std::vector<Outcome> outcomes_;
 };
 
-void list_scenarios(const std::vector<Scenario>& scenarios) {
+void list_scenarios(const std::vector<Scenario>& scenarios, bool as_json) {
+  Json list = Json::list();
   for (const Scenario& s : scenarios) {
     const char* const times = !s.runs_wall ? "virtual" : s.runs_virtual ? "both" : "wall";
-    const char* const real = why_not_real(s).empty() ? "real" : "-";
-    fmt::print("{:32} {:7} {:4} {:5.0f} min  {}\n", s.name, times, real, s.minutes, s.title);
+    const bool is_real = why_not_real(s).empty();
+    if (as_json) {
+      list.add(Json::object({{"scenario", s.name},
+                             {"file", s.path},
+                             {"title", s.title},
+                             {"time", times},
+                             {"real", is_real},
+                             {"minutes", Decimals{s.minutes, 1}}}));
+    } else {
+      fmt::print("{:32} {:7} {:4} {:5.0f} min  {}\n", s.name, times, is_real ? "real" : "-",
+                 s.minutes, s.title);
+    }
   }
+  if (as_json) fmt::print("{}\n", Json::object({{"scenarios", std::move(list)}}).line());
 }
 
 /// Whether the two times agree, whatever is judged of each.
@@ -253,10 +266,11 @@ void run(const RunOptions& options) {
     if (!path.empty()) require_writable(path);
   }
   Runner runner(options);
-  if (options.list) return list_scenarios(runner.scenarios());
+  if (options.list) return list_scenarios(runner.scenarios(), options.json);
   const std::vector<Outcome> outcomes = runner.run();
   if (options.agree) return tell_agreement(options, outcomes);
-  const auto failed = std::ranges::count_if(outcomes, [](const Outcome& o) { return !o.passed(); });
+  const auto failed = std::ranges::count_if(outcomes, [](const Outcome& o) { return o.failed(); });
+  const auto late = std::ranges::count_if(outcomes, [](const Outcome& o) { return o.is_late; });
   const auto skipped =
       std::ranges::count_if(outcomes, [](const Outcome& o) { return !o.skipped.empty(); });
   const auto ran = std::ssize(outcomes) - skipped;
@@ -264,18 +278,21 @@ void run(const RunOptions& options) {
     Json runs = Json::list();
     for (const Outcome& outcome : outcomes) runs.add(json_of(outcome));
     fmt::print("{}\n", Json::object({{"passed", ran - failed},
-                                     {"failed", failed},
+                                     {"failed", failed - late},
+                                     {"late", late},
                                      {"skipped", skipped},
                                      {"runs", std::move(runs)}})
                            .line());
   } else {
-    fmt::print("{} passed, {} failed, {} skipped\n", ran - failed, failed, skipped);
+    fmt::print("{} passed, {} failed, {} skipped{}\n", ran - failed, failed - late, skipped,
+               late == 0 ? "" : fmt::format(", {} not judged: this machine was late", late));
     const std::string agreement = agreement_line(agreements_of(outcomes));
     if (!agreement.empty()) fmt::print("{}\n", agreement);
   }
   if (!options.junit.empty()) write_file(options.junit, junit_text(outcomes));
   if (!options.report.empty()) write_file(options.report, report_page(outcomes));
-  if (failed > 0) fail("{} of {} runs failed", failed, ran);
+  if (failed > late) fail("{} of {} runs failed", failed - late, ran);
+  if (late > 0) fail("{} of {} runs were not judged: this machine was late", late, ran);
   if (ran == 0) fail("nothing ran: all scenarios were skipped");
 }
 

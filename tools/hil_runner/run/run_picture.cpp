@@ -92,7 +92,7 @@ class RunPicture {
         "set ylabel 'power, W'\nset yrange [{0}:{1}]\nset ytics {2}\nplot $minutes using 1:2 with "
         "fillsteps fc rgb '#f2b68c' fs solid noborder title 'measured', $orders using 1:2 with "
         "steps "
-        "lw 1.5 lc rgb '#0072b2' title 'ordered'\n",
+        "lw 1.5 lc rgb '#0072b2' title 'ordered, 0 W included'\n",
         -1.15 * rated_w, 1.15 * rated_w, tic_step(2 * rated_w));
     text +=
         "set ylabel 'SoC, %'\nset yrange [0:100]\nset ytics 25\nplot $minutes using "
@@ -143,8 +143,13 @@ class RunPicture {
     text += shown("minutes", e.minutes, [](const MinuteRecord& m) {
       return fmt::format("{} {} {}\n", m.minute_utc_s, 60 * m.energy_wh, m.soc_frac);
     });
-    text += shown("orders", e.orders, [](const DispatchEvent& order) {
-      return fmt::format("{} {}\n", order.utc_ns / kNanosecondsPerSecond, order.power_w);
+    double in_force_w = 0;
+    text += shown("orders", e.orders, [&](const DispatchEvent& order) {
+      const bool is_order = order.kind == DispatchEvent::Kind::kOrder;
+      if (is_order) in_force_w = order.power_w;
+      // An order of 0 W is a line, a battery in its own mode is none.
+      return fmt::format("{} {}\n{}", order.utc_ns / kNanosecondsPerSecond, in_force_w,
+                         is_order ? "" : "\n");
     });
     text += shown("modes", e.log, [](const CycleRecord& cycle) {
       return fmt::format("{} {}\n", cycle.utc_s, static_cast<int>(cycle.mode));

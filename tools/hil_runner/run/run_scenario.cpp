@@ -55,10 +55,13 @@ Outcome run_scenario(const Scenario& scenario, bool in_virtual_time, const WallS
   WorkFolder folder;
   try {
     run_and_judge(outcome.scenario, site, outcome, folder);
+  } catch (const MachineTooLate& late) {
+    outcome.error = late.what();
+    outcome.is_late = true;
   } catch (const std::exception& error) {
     outcome.error = error.what();
   }
-  if (!in_virtual_time && !outcome.passed()) {
+  if (!in_virtual_time && outcome.failed()) {
     folder.keep();
     outcome.kept_folder = folder.file("");
   }

@@ -36,18 +36,18 @@ bool fills_a_disk(const Scenario& scenario) {
 
 std::string seconds_text(const ScenarioEvent& event) { return std::to_string(event.for_s) + "s"; }
 
-/// Simulated seconds by which an order may be late for what this machine oversleeps. Throws UserError where it would
-/// be judged by the next cycle's price.
+/// Simulated seconds by which an order may be late for what this machine oversleeps. Throws MachineTooLate where it
+/// would be judged by the next cycle's price.
 double slack_s(const Lateness& lateness, std::int32_t time_scale) {
   constexpr double kLateS = 0.15;  // wall, that an order may need
   constexpr double kLateFactor = 2;
   constexpr double kSlackMaxS = 60;
   const double slack_s = 2 + (kLateS + kLateFactor * lateness.worst_s()) * time_scale;
   if (slack_s <= kSlackMaxS) return slack_s;
-  fail(
-      "{} by {:.2f} s, at time scale {} too late for a cycle of 120 s; fewer --jobs, or a smaller "
-      "time_scale",
-      kTooLate, lateness.worst_s(), time_scale);
+  throw MachineTooLate(
+      fmt::format("{} by {:.2f} s, at time scale {} too late for a cycle of 120 s; fewer --jobs, "
+                  "or a smaller time_scale",
+                  kTooLate, lateness.worst_s(), time_scale));
 }
 
 class WallRun {

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "shared/host/minute_file.h"
+#include "shared/host/user_error.h"
 #include "tools/hil_runner/base/work_folder.h"
 #include "tools/hil_runner/evidence/evidence.h"
 #include "tools/hil_runner/real/real_battery.h"
@@ -25,7 +26,13 @@ struct WallSite {
   std::optional<RealBattery> battery{};  ///< nothing: a simulated one is started
 };
 
-/// Throws UserError when a program cannot be started or says why it does not run, or a real battery's limits
+/// What was run cannot be judged: the machine woke whoever slept too late for the scenario's pace.
+class MachineTooLate : public UserError {
+ public:
+  using UserError::UserError;
+};
+
+/// Throws MachineTooLate; UserError when a program cannot be started or says why it does not run, or a real battery's limits
 /// are broken; Interrupted when a stop was requested. A real battery is released, however it ends.
 Evidence run_wall(const Scenario& scenario, const MinuteSeries& prices, const WallSite& site,
                   const WorkFolder& folder);
