@@ -146,7 +146,10 @@ void FaultyDevice::apply_lasting_faults(std::int64_t utc_ns) {
        .soc_is_inverted = lasts(BatteryFault::kSocInverted),
        .soc_offset_frac = lasts(BatteryFault::kSocRecalibrates) ? 0.06 : 0.0,
        .capacity_factor = lasts(BatteryFault::kOtherCapacity) ? 5.0 : 1.0,
-       .order_as_power = lasts(BatteryFault::kEcho) || lasts(BatteryFault::kHalfFlow)});
+       .order_as_power = lasts(BatteryFault::kEcho) || lasts(BatteryFault::kHalfFlow),
+       .alarm = lasts(BatteryFault::kAlarm),
+       .off_grid = lasts(BatteryFault::kOffGrid),
+       .is_hot = lasts(BatteryFault::kHot)});
 }
 
 void FaultyDevice::act_on_order(std::int64_t utc_ns) {

@@ -12,6 +12,7 @@ namespace bess {
 namespace {
 
 constexpr double kRoomTemperatureDeciC = 200;
+constexpr double kHotDeciC = 700;
 constexpr std::int64_t kForEverS = 100LL * 365 * 86'400;
 constexpr int kCommonModelRegisters = 66;
 
@@ -147,7 +148,9 @@ void RegisterImage::refresh(std::int64_t utc_ns) {
   set("charge_power_max", p.power_w_max * battery_.derating());
   set("discharge_power_max", p.power_w_max * battery_.derating());
   set("temperature_min", kRoomTemperatureDeciC);
-  set("temperature_max", kRoomTemperatureDeciC);
+  set("temperature_max", display_.is_hot ? kHotDeciC : kRoomTemperatureDeciC);
+  if (!map_.alarms.empty()) show_state(map_.alarms[0], display_.alarm, before_alarm_);
+  show_state(map_.off_grid, display_.off_grid, before_off_grid_);
   if (map_.alive.point >= 0) {
     const RegisterPoint& alive = map_.points[map_.alive.point];
     set(map_.alive.point, alive.value_min + utc_s_ % (alive.value_max - alive.value_min + 1));
@@ -155,6 +158,15 @@ void RegisterImage::refresh(std::int64_t utc_ns) {
   if (map_.watchdog.remaining >= 0) {
     set(map_.watchdog.remaining, is_running_ ? std::max<std::int64_t>(end_utc_s_ - utc_s_, 0) : 0);
   }
+}
+
+void RegisterImage::show_state(const Condition& state, bool lasts, StateBefore& before) {
+  if (state.point < 0 || lasts == before.is_kept) return;
+  const bool is_other = state.test == Condition::Test::kNotEqual;
+  const std::int64_t shown = is_other ? state.value + 1 : state.value;
+  if (lasts) before.value = value(state.point);
+  set(state.point, lasts ? shown : before.value);
+  before.is_kept = lasts;
 }
 
 void RegisterImage::set_display(const Display& display) {

@@ -46,6 +46,9 @@ class RegisterImage {
     double soc_offset_frac = 0;
     double capacity_factor = 1;
     bool order_as_power = false;  ///< what was ordered, not what flows
+    bool alarm = false;           ///< the map's first
+    bool off_grid = false;
+    bool is_hot = false;
   };
   void set_display(const Display& display);
   /// How the grid point shows the power at the connection.
@@ -73,6 +76,12 @@ class RegisterImage {
   void set(int point, std::int64_t value);
   void set(std::string_view name, double value);
   void show_soc();
+  /// A state as long as it lasts; afterwards what stood there before.
+  struct StateBefore {
+    bool is_kept = false;
+    std::int64_t value = 0;
+  };
+  void show_state(const Condition& state, bool lasts, StateBefore& before);
   [[nodiscard]] double shown_grid_w();
   void show_power(const StaticVector<PowerCase, 4>& cases, std::int64_t power_w);
   void assign(const Assignment& assignment);
@@ -97,6 +106,7 @@ class RegisterImage {
   bool timer_counts_minutes_ = false;
   int soc_limit_ = -1, soc_min_ = -1, soc_max_ = -1;
   Display display_{};
+  StateBefore before_alarm_, before_off_grid_;
   double mirror_soc_frac_ = 0;
   bool is_running_ = false;  ///< an order, at the last refresh or write
   std::int64_t utc_s_ = 0;

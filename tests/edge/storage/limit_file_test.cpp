@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <cctype>
 #include <string>
 
 #include "tests/support/temporary_folder.h"
@@ -44,6 +45,27 @@ TEST(LimitFile, WhatCannotBeUnderstoodIsMalformed) {
     EXPECT_EQ(reading.status, Status::kMalformed);
     EXPECT_FALSE(reading.is_set);
   }
+}
+
+/// Any program may write it, so that it has no checksum: a digit that was flipped into another is another limit. Nothing
+/// else passes, and none of them says that there is no limit.
+TEST(LimitFile, AFlippedBitIsMalformedOrAnotherDigit) {
+  const TemporaryFolder folder;
+  const std::string line = "1500 2750 2023-03-26T00:15:00Z\n";
+  int accepted = 0;
+  for (std::size_t bit = 0; bit < 8 * line.size(); ++bit) {
+    std::string flipped = line;
+    flipped[bit / 8] = static_cast<char>(flipped[bit / 8] ^ (1 << bit % 8));
+    const Reading reading(folder.write("limit", flipped));
+    EXPECT_TRUE(reading.is_set || reading.status == Status::kMalformed) << flipped;
+    if (!reading.is_set) continue;
+    ++accepted;
+    EXPECT_TRUE(std::isdigit(static_cast<unsigned char>(line[bit / 8])) != 0 &&
+                std::isdigit(static_cast<unsigned char>(flipped[bit / 8])) != 0)
+        << flipped;
+    EXPECT_TRUE(reading.limit.charge_w_max >= 0 && reading.limit.charge_w_max <= 9'999) << flipped;
+  }
+  EXPECT_GT(accepted, 0);
 }
 
 TEST(LimitFile, APipeOrAFolderIsNotWaitedFor) {
