@@ -120,7 +120,7 @@ def copy_tree(out):
     path = os.path.join(HERE, "not_compiling.txt")
     if os.path.exists(path):
         left_out = set(lines_of(path))
-    wanted = re.compile("edge/(" + "|".join(ROOMS) + r")/\w+\.(h|cpp)$")
+    wanted = re.compile("edge/(" + "|".join(ROOMS) + r")/[\w/]+\.(h|cpp)$")
     for path in tracked():
         if path.startswith("tests/mutation/"):
             continue

@@ -64,8 +64,10 @@ around="tools/sim tools/site tools/battery_sim tools/market_sim edge shared"
 layer $h/base                       $h/base shared
 layer $h/scenario                   $h/scenario $around
 layer $h/evidence                   $h/evidence $around
+# It shares nothing with what it looks at.
+layer $h/witness                    $h/witness
 layer $h/judge                      $h/judge $h/evidence $h/scenario $around
-layer $h/virtual                    $h/virtual $h/evidence $h/scenario $h/base $around
+layer $h/virtual                    $h/virtual $h/witness $h/evidence $h/scenario $h/base $around
 layer $h/real                       $h/real $h/evidence $h/scenario $h/base $around
 layer $h/wall                       $h/wall $h/real $h/evidence $h/scenario $h/base $around
 layer $h/run                        $h $around

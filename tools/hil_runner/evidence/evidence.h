@@ -8,6 +8,7 @@
 
 #include "edge/control/control_types.h"
 #include "tools/battery_sim/simulated_battery.h"
+#include "tools/hil_runner/evidence/wire_sight.h"
 
 namespace bess {
 
@@ -15,6 +16,7 @@ struct Evidence {
   std::vector<DispatchEvent> orders;  ///< that the battery was given, and how each ended
   std::vector<MinuteRecord> minutes;  ///< that it exchanged
   std::vector<CycleRecord> log;       ///< as the edge's ring keeps it, the oldest first
+  std::vector<WireSight> wire;        ///< as a witness reads it; empty: nobody was asked
   bool order_ends_by_itself = true;   ///< the device has a timer, by its map
   std::int32_t order_duration_s = 0;  ///< of that timer
   std::int32_t edge_exit_code = 0;    ///< of the last edge; 128 + signal where one ended it

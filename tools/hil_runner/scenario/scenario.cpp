@@ -272,6 +272,7 @@ Scenario read_scenario(const std::string& path) {
   };
   table.require("title");
   read_text(table, "title", scenario.title);
+  table.boolean("witness", scenario.witness);
   read_time(table, scenario);
   read_battery(sub("battery"), folder, scenario.battery);
   read_prices(sub("prices"), folder, scenario);

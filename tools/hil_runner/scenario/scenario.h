@@ -176,6 +176,7 @@ struct Scenario {
   std::vector<ScenarioEvent> events;  ///< in the order of time
   std::vector<Expectation> expectations;
   std::vector<std::string> invariants;  ///< that are judged
+  bool witness = false;                 ///< the wire is read by the maker's table too; virtual time
   double recovery_min = 12;             ///< after a fault, until the edge must drive again
   std::int32_t exit_code = 0;           ///< of the edge that runs last
   /// Parts (scenario_parts.h) that change nothing when they are taken away, each with the reason.

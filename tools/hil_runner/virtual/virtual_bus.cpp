@@ -150,6 +150,12 @@ void VirtualBus::answer(const Pending& pending) {
   }
   const Bytes bytes = device_.answer(pending.request, pending.fault, due_utc_ns);
   if (!is_heard) return;
+  if (witness_ && pending.fault == BatteryFault::kNone) {
+    const auto header = static_cast<std::size_t>(pending.request.header);
+    const auto size = static_cast<std::size_t>(pending.request.size);
+    witness_({pending.request.bytes + header, size - header}, std::span(bytes).subspan(header),
+             due_utc_ns);
+  }
   if (pending.fault == BatteryFault::kDrip) {
     return put(bytes, pending.due_ns, settings_.fault.drip_ms * kMillisecondNs);
   }

@@ -5,7 +5,10 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <memory>
+#include <span>
+#include <utility>
 
 #include "edge/base/status.h"
 #include "edge/battery/modbus_frame.h"
@@ -46,6 +49,11 @@ class VirtualBus {
 
   [[nodiscard]] FaultyDevice& device() { return device_; }
 
+  /// Called with each request and its unspoilt answer, both from the unit's byte on.
+  using Witness = std::function<void(std::span<const std::uint8_t> request,
+                                     std::span<const std::uint8_t> answer, std::int64_t utc_ns)>;
+  void show_to(Witness witness) { witness_ = std::move(witness); }
+
  private:
   struct FreeContext {
     void operator()(modbus_t* context) const { modbus_free(context); }
@@ -73,6 +81,7 @@ class VirtualBus {
   FaultyDevice device_;
   std::deque<Pending> pending_;
   std::deque<ByteOnTheWay> input_;
+  Witness witness_;
   std::int64_t connection_ = 0;
   bool is_cut_ = false;        ///< by the device
   bool is_half_open_ = false;  ///< the device never answers on this connection again

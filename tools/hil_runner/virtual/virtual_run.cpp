@@ -6,12 +6,14 @@
 #include <optional>
 
 #include "edge/program/controller.h"
+#include "shared/host/user_error.h"
 #include "shared/scaled_clock.h"
 #include "tools/hil_runner/scenario/scenario_house.h"
 #include "tools/hil_runner/virtual/virtual_bus.h"
 #include "tools/hil_runner/virtual/virtual_prices.h"
 #include "tools/hil_runner/virtual/virtual_time.h"
 #include "tools/hil_runner/virtual/virtual_world.h"
+#include "tools/hil_runner/witness/maker_table.h"
 
 namespace bess {
 namespace {
@@ -26,6 +28,31 @@ class KeptSignalMask {
 
  private:
   sigset_t mask_{};
+};
+
+/// Who reads the wire by the maker's table alone.
+class Witness {
+ public:
+  Witness(const RegisterMap& map, std::vector<WireSight>& sights)
+      : table_(maker_table(map.name.view(), map.variant.view())), sights_(sights) {
+    if (table_ == nullptr) {
+      fail("witness: nobody has written down the maker's table of the map \"{}\"", map.name.view());
+    }
+  }
+
+  void see(WireMemory::Frame request, WireMemory::Frame answer, std::int64_t utc_ns) {
+    if (!wire_.exchanged(request, answer)) return;
+    const WireSight sight{.utc_ns = utc_ns,
+                          .soc_frac = table_->soc_frac(wire_),
+                          .power_w = table_->power_w(wire_),
+                          .ordered_w = table_->ordered_w(wire_)};
+    if (sights_.empty() || !sight.shows_the_same(sights_.back())) sights_.push_back(sight);
+  }
+
+ private:
+  const MakerTable* table_;
+  WireMemory wire_;
+  std::vector<WireSight>& sights_;
 };
 
 /// From its start to its end; the exit code.
@@ -65,6 +92,13 @@ Evidence run_virtual(const Scenario& scenario, const MinuteSeries& prices, const
                           .from_s = 60 * scenario.price_fault.span.from_min,
                           .to_s = 60 * scenario.price_fault.span.to_min});
   Evidence evidence;
+  std::optional<Witness> witness;
+  if (scenario.witness) {
+    witness.emplace(config.map, evidence.wire);
+    bus.show_to([&](auto request, auto answer, std::int64_t utc_ns) {
+      witness->see(request, answer, utc_ns);
+    });
+  }
   EdgeState state;
   state.reserve(static_cast<std::size_t>(60 * scenario.minutes / kSecondsPerStep) + 2);
   VirtualPeople people;
