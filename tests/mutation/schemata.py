@@ -1,14 +1,16 @@
 #!/usr/bin/python3
 """Writes every mutant of a file into one copy of it: each is chosen at run time, by its number.
 
-A mutant is one change that a slip of the hand could make: a comparison off by one, an operand left out, a sign, a
-number, a condition that is always or never true, a statement left out. `a < b && c` becomes
+A mutant is one change that a slip of the hand could make: a comparison off by one, an operand left
+out, a sign, a number, a condition that is always or never true, a statement left out. `a < b && c`
+becomes
 
-    (::bess_mutant(4) ? (c) : ::bess_mutant(5) ? (a < b) : ((::bess_mutant(3) ? (a <= b) : (a < b)) && c))
+    (::bess_mutant(4) ? (c) : ::bess_mutant(5) ? (a < b)
+                            : ((::bess_mutant(3) ? (a <= b) : (a < b)) && c))
 
-so that hundreds of mutants are one compilation (mutant schemata: Untch, Offutt, Harrold 1993). libclang says where an
-expression begins and ends; the text stays the file's own. What is computed while compiling is left as it is: constants,
-default values, template arguments, static_assert.
+so that hundreds of mutants are one compilation (mutant schemata: Untch, Offutt, Harrold 1993).
+libclang says where an expression begins and ends; the text stays the file's own. What is computed
+while compiling is left as it is: constants, default values, template arguments, static_assert.
 """
 import bisect
 import re
@@ -27,7 +29,8 @@ COMPOUND = {"+=": "-=", "-=": "+=", "*=": "/=", "/=": "*=", "|=": "&=", "&=": "|
 NOT_AT_RUN_TIME = {
     CursorKind.STATIC_ASSERT, CursorKind.ENUM_DECL, CursorKind.TEMPLATE_NON_TYPE_PARAMETER,
     CursorKind.TEMPLATE_TYPE_PARAMETER, CursorKind.USING_DECLARATION, CursorKind.TYPE_ALIAS_DECL,
-    CursorKind.TYPEDEF_DECL, CursorKind.CONCEPT_DECL if hasattr(CursorKind, "CONCEPT_DECL") else None,
+    CursorKind.TYPEDEF_DECL, CursorKind.CONCEPT_DECL if hasattr(CursorKind, "CONCEPT_DECL")
+            else None,
 }
 FUNCTIONS = {CursorKind.FUNCTION_DECL, CursorKind.CXX_METHOD, CursorKind.CONSTRUCTOR,
              CursorKind.DESTRUCTOR, CursorKind.FUNCTION_TEMPLATE, CursorKind.CONVERSION_FUNCTION}
@@ -74,7 +77,7 @@ class File:
         if alternatives:
             self.nodes.append(Node(start, end, function, alternatives, cast))
 
-    # --- which pieces ---------------------------------------------------------------------------
+    # --- which pieces ---
     def walk(self, cursor, parents, function):
         kind = cursor.kind
         if kind in NOT_AT_RUN_TIME or kind == CursorKind.FIELD_DECL:
@@ -82,7 +85,8 @@ class File:
         start, end = self.at(cursor)
         if kind in FUNCTIONS:
             function = cursor.spelling.split("<")[0]
-            if re.search(r"\bconsteval\b|= *default *;|= *delete *;", self.source(start, end)[:400]):
+            if re.search(r"\bconsteval\b|= *default *;|= *delete *;", self.source(start,
+                    end)[:400]):
                 return
         if kind == CursorKind.VAR_DECL and re.search(r"\b(constexpr|static|thread_local)\b",
                                                      self.source(start, end).split("=")[0]):
@@ -119,7 +123,8 @@ class File:
     def is_made_by_macro(self, children, start, end):
         """libclang then says where the macro stands, or only half of what belongs to it."""
         at = [self.at(c) for c in children]
-        return any(s < start or e > end for s, e in at) or self.source(start, end).startswith("cJSON_ArrayForEach")
+        return any(s < start or e > end for s, e in at) or self.source(start,
+                end).startswith("cJSON_ArrayForEach")
 
     def operator_between(self, left, right):
         between = re.sub(r"//[^\n]*", "", self.source(left[1], right[0])).strip()
@@ -133,7 +138,8 @@ class File:
         if op in ("&&", "||"):
             self.add(start, end, function, [(was, one_line(b), f"static_cast<bool>({b})"),
                                             (was, one_line(a), f"static_cast<bool>({a})")])
-        elif op in EXPRESSIONS and TypeKind.POINTER not in (children[0].type.kind, children[1].type.kind):
+        elif op in EXPRESSIONS and TypeKind.POINTER not in (children[0].type.kind,
+                children[1].type.kind):
             self.add(start, end, function,
                      [(was, one_line(f"{a} {o} {b}"), f"({a} {o} {b})") for o in EXPRESSIONS[op]])
 
@@ -143,7 +149,8 @@ class File:
         if op in COMPOUND and children[0].type.kind != TypeKind.POINTER:
             a, b = self.source(*left), self.source(*right)
             text = f"{a} {COMPOUND[op]} {b}"
-            self.add(start, end, function, [(one_line(self.source(start, end)), one_line(text), f"({text})")])
+            self.add(start, end, function, [(one_line(self.source(start, end)), one_line(text),
+                    f"({text})")])
 
     def unary(self, start, end, child, function):
         text = self.source(start, end)
@@ -154,7 +161,8 @@ class File:
         elif text[:1] == "-" and not text.startswith("--"):
             self.add(start, end, function, [(one_line(text), one_line(inner), f"({inner})")])
         elif text[:1] == "!":
-            self.add(start, end, function, [(one_line(text), one_line(inner), f"static_cast<bool>({inner})")])
+            self.add(start, end, function, [(one_line(text), one_line(inner),
+                    f"static_cast<bool>({inner})")])
 
     def literal(self, cursor, start, end, parents, function):
         text = self.source(start, end)
@@ -169,7 +177,8 @@ class File:
         number = re.match(r"0[xX][0-9a-fA-F']+|[0-9][0-9']*", text).group()
         value = int(number.replace("'", ""), 16 if number[:2] in ("0x", "0X") else 10)
         other = f"{value + 1}{text[len(number):]}"
-        context = one_line(self.text[max(0, start - 24):start] + "[" + text + "]" + self.text[end:end + 16])
+        context = one_line(self.text[max(0,
+                start - 24):start] + "[" + text + "]" + self.text[end:end + 16])
         self.add(start, end, function, [(context, other, other)])
 
     def condition(self, kind, start, children, function):
@@ -210,10 +219,12 @@ class File:
             self.add(s, e, function, [(f"return {text}", other, other)])
 
     def statement(self, cursor, kind, start, end, parent, function):
-        if not (kind.is_expression() or kind == CursorKind.UNEXPOSED_EXPR) or not self.is_statement(parent, cursor):
+        if not (kind.is_expression()
+                or kind == CursorKind.UNEXPOSED_EXPR) or not self.is_statement(parent, cursor):
             return
         text = self.source(start, end)
-        if self.text[end:].lstrip()[:1] != ";" or re.match(r"(return|delete|throw|static_assert|assert)\b", text):
+        if self.text[end:].lstrip()[:1] != ";" or re.match(
+                r"(return|delete|throw|static_assert|assert)\b", text):
             return
         if re.match(r"static_cast<void>\(\w+\)$", text):
             return
@@ -234,7 +245,7 @@ class File:
             return cursor != children[0]
         return False
 
-    # --- one tree, one text ---------------------------------------------------------------------
+    # --- one tree, one text ---
     def tree(self):
         """Pieces inside each other; one that crosses another's border is left out."""
         self.nodes.sort(key=lambda n: (n.start, -n.end))
@@ -254,7 +265,7 @@ class File:
 
 
 def render(file, nodes, start, end, number):
-    """The text from start to end with its pieces replaced; number(node, alternative) or None to leave one out."""
+    """The text from start to end, its pieces replaced; number() is None for what is left out."""
     out, at = [], start
     for node in nodes:
         out.append(file.source(at, node.start))

@@ -47,8 +47,8 @@ TEST(LimitFile, WhatCannotBeUnderstoodIsMalformed) {
   }
 }
 
-/// Any program may write it, so that it has no checksum: a digit that was flipped into another is another limit. Nothing
-/// else passes, and none of them says that there is no limit.
+/// Any program may write it, so that it has no checksum: a digit that was flipped into another is
+/// another limit. Nothing else passes, and none of them says that there is no limit.
 TEST(LimitFile, AFlippedBitIsMalformedOrAnotherDigit) {
   const TemporaryFolder folder;
   const std::string line = "1500 2750 2023-03-26T00:15:00Z\n";

@@ -8,9 +8,11 @@ complain() { echo "$*"; exit 1; }
 
 "$program" run --help | grep -q 'bess-hil run tests/scenarios --time both' || complain "no example in --help"
 "$program" run "$scenarios" --list | grep -q '^quiet_hour .*An hour in which nothing goes wrong' || complain "--list"
-"$program" run "$scenarios" --list --json | grep -q '"scenario": *"quiet_hour",.*"time": *"both","real"' || complain "--list --json"
-"$program" run "$scenarios/quiet_hour.toml" "$scenarios/disk_full.toml" --json >"$work/skip.json" || complain "a skipped run fails"
-grep -q '"scenario": *"disk_full","time": *"virtual","passed": *false,"verdict": *"skipped"' "$work/skip.json" ||
+"$program" run "$scenarios" --list --json |
+  grep -q '"scenario": *"quiet_hour",.*"time": *"both","real"' || complain "--list --json"
+"$program" run "$scenarios/quiet_hour.toml" "$scenarios/disk_full.toml" --json >"$work/skip.json" ||
+  complain "a skipped run fails"
+grep -q '"disk_full","time": *"virtual","passed": *false,"verdict": *"skipped"' "$work/skip.json" ||
   complain "skipped is passed: $(cat "$work/skip.json")"
 "$program" run "$scenarios/quiet_hour.toml" --json --junit "$work/a.xml" >"$work/a.json" || complain "quiet_hour failed"
 grep -q '"passed": *1' "$work/a.json" || complain "--json: $(cat "$work/a.json")"

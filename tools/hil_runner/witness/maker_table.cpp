@@ -13,8 +13,8 @@ Value times(const Value& value, double factor) {
 Value of(const std::optional<std::uint16_t>& word) { return word ? Value(*word) : std::nullopt; }
 Value minus(const Value& a, const Value& b) { return a && b ? Value(*a - *b) : std::nullopt; }
 
-/// AlphaESS, manual V1.23: 0x0102 SoC in 0.1 %; 0x0126 power, discharge positive; dispatch at 0x0880: start, then
-/// 32000 + W in two registers, below 32000 charge.
+/// AlphaESS, manual V1.23: 0x0102 SoC in 0.1 %; 0x0126 power, discharge positive; dispatch at
+/// 0x0880: start, then 32000 + W in two registers, below 32000 charge.
 struct AlphaEss : MakerTable {
   static constexpr int kUnit = 85;
   Value soc_frac(const WireMemory& wire) const override {
@@ -40,8 +40,9 @@ struct Simulator : MakerTable {
   }
 };
 
-/// SunSpec 124, by offsets from the model's id: 2 WChaMax, 5 StorCtl_Mod (1: limit of charging, 2: of discharging), 8
-/// ChaState, 12 OutWRte and 13 InWRte in the percent of WChaMax. A negative limit of one is the other.
+/// SunSpec 124, by offsets from the model's id: 2 WChaMax, 5 StorCtl_Mod (1: limit of charging, 2:
+/// of discharging), 8 ChaState, 12 OutWRte and 13 InWRte in the percent of WChaMax. A negative
+/// limit of one is the other.
 struct StorageModel : MakerTable {
   static constexpr double kWhole = 10'000;  // with the scale of -2 that both devices have
   virtual std::optional<int> model(const WireMemory& wire) const = 0;
@@ -59,7 +60,8 @@ struct StorageModel : MakerTable {
   }
 };
 
-/// Fronius GEN24 with integers: model 124 at 40343, SoC in 0.01 %; 40314 power that charges, 40334 that discharges.
+/// Fronius GEN24 with integers: model 124 at 40343, SoC in 0.01 %; 40314 power that charges, 40334
+/// that discharges.
 struct FroniusGen24 : StorageModel {
   std::optional<int> model(const WireMemory&) const override { return 40'343; }
   Value soc_frac(const WireMemory& wire) const override {
@@ -70,7 +72,8 @@ struct FroniusGen24 : StorageModel {
   }
 };
 
-/// Where a chain of models has this one, by what was read of it: "SunS" at 40000, then id and length of each.
+/// Where a chain of models has this one, by what was read of it: "SunS" at 40000, then id and
+/// length of each.
 std::optional<int> find_model(const WireMemory& wire, int id) {
   if (wire.word(1, 40'000) != 0x5375 || wire.word(1, 40'001) != 0x6E53) return std::nullopt;
   for (int at = 40'002;;) {
@@ -87,7 +90,8 @@ Value scaled(const Value& value, const Value& exponent) {
   return value && exponent ? Value(*value * std::pow(10, *exponent)) : std::nullopt;
 }
 
-/// SunSpec 103 and 124: 103 +14 AC power and +15 its exponent, discharge positive; 124 +22 is the SoC's exponent.
+/// SunSpec 103 and 124: 103 +14 AC power and +15 its exponent, discharge positive; 124 +22 is the
+/// SoC's exponent.
 struct SunSpec124 : StorageModel {
   std::optional<int> model(const WireMemory& wire) const override { return find_model(wire, 124); }
   Value soc_frac(const WireMemory& wire) const override {
@@ -102,8 +106,8 @@ struct SunSpec124 : StorageModel {
   }
 };
 
-/// SunSpec 704 and 802: 704 +22 on, +24 W in two registers, discharge positive, +55 its exponent; 802 +11 SoC, its exponent
-/// at +56, +47 power, its exponent at +63.
+/// SunSpec 704 and 802: 704 +22 on, +24 W in two registers, discharge positive, +55 its exponent;
+/// 802 +11 SoC, its exponent at +56, +47 power, its exponent at +63.
 struct SunSpec704 : MakerTable {
   Value soc_frac(const WireMemory& wire) const override {
     const auto at = find_model(wire, 802);
@@ -122,8 +126,8 @@ struct SunSpec704 : MakerTable {
   }
 };
 
-/// Victron GX, CCGX register list: unit 100, 842 power, 843 SoC in %, 2902 ESS mode, 3 while ours; unit 228, 37, 40 and 41
-/// what each phase is to take, charge positive.
+/// Victron GX, CCGX register list: unit 100, 842 power, 843 SoC in %, 2902 ESS mode, 3 while ours;
+/// unit 228, 37, 40 and 41 what each phase is to take, charge positive.
 struct VictronEss3 : MakerTable {
   explicit VictronEss3(int of_phases) : phases(of_phases) {}
   Value soc_frac(const WireMemory& wire) const override {
@@ -142,8 +146,8 @@ struct VictronEss3 : MakerTable {
   int phases;
 };
 
-/// Sungrow SH: input registers 13000 running state (bit 1 charges, bit 2 discharges), 13021 power without a sign, 13022 SoC
-/// in 0.1 %; holding registers 13049 mode, 13050 command, 13051 power.
+/// Sungrow SH: input registers 13000 running state (bit 1 charges, bit 2 discharges), 13021 power
+/// without a sign, 13022 SoC in 0.1 %; holding registers 13049 mode, 13050 command, 13051 power.
 struct SungrowSh : MakerTable {
   explicit SungrowSh(int ours) : mode(ours) {}
   Value soc_frac(const WireMemory& wire) const override {
@@ -164,7 +168,8 @@ struct SungrowSh : MakerTable {
   int mode;
 };
 
-/// Huawei LUNA2000: 37760 SoC in 0.1 %, 37765 power, charge positive; 47100 charges at 47247 or discharges at 47249.
+/// Huawei LUNA2000: 37760 SoC in 0.1 %, 37765 power, charge positive; 47100 charges at 47247 or
+/// discharges at 47249.
 struct HuaweiLuna : MakerTable {
   Value soc_frac(const WireMemory& wire) const override {
     return times(of(wire.word(1, 37'760)), 0.001);
@@ -178,8 +183,9 @@ struct HuaweiLuna : MakerTable {
   }
 };
 
-/// SMA: 30845 SoC in %, input registers 31393 charging and 31395 discharging power. Either 40151 external control (802) and
-/// 40149 power, discharge positive; or 40236 mode, and 40795 and 40799 the most power in each direction.
+/// SMA: 30845 SoC in %, input registers 31393 charging and 31395 discharging power. Either 40151
+/// external control (802) and 40149 power, discharge positive; or 40236 mode, and 40795 and 40799
+/// the most power in each direction.
 struct Sma : MakerTable {
   explicit Sma(bool by_setpoint) : has_setpoint(by_setpoint) {}
   Value soc_frac(const WireMemory& wire) const override {

@@ -1,5 +1,6 @@
-// Every register that was read or written on a bus, as it was last seen there. It takes the frames apart by itself: no
-// code and no table is shared with what drives the battery, or with what acts it.
+// Every register that was read or written on a bus, as it was last seen there. It takes the frames
+// apart by itself: no code and no table is shared with what drives the battery, or with what acts
+// it.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +17,8 @@ enum class Table : std::uint8_t { kHolding = 3, kInput = 4 };
 class WireMemory {
  public:
   using Frame = std::span<const std::uint8_t>;
-  /// A request and its answer, both from the unit's byte on. False: an exception, or no reading and no writing.
+  /// A request and its answer, both from the unit's byte on. False: an exception, or no reading and
+  /// no writing.
   bool exchanged(Frame request, Frame answer);
 
   [[nodiscard]] std::optional<std::uint16_t> word(int unit, int address,
