@@ -186,6 +186,8 @@ void KeyList::list(RunConfig& c) {
   number("average_decay", c.train.average_decay, 0, 0.999999,
          "of the averaged weights that are validated and kept");
   integer("validate_every", c.train.validate_every, 1, 1'000'000, "gradient steps");
+  boolean("bf16", c.train.bf16,
+          "c51, dqn: products of the gradient step in bf16, sums in fp32; needs avx512_bf16");
 
   section("distil");
   choice("method", c.distil.method, {"construction", "layer"},
