@@ -6,8 +6,8 @@
 #include "shared/host/build_info.h"
 #include "shared/host/command_line.h"
 #include "shared/local_time.h"
+#include "workstation/chain/interruption.h"
 #include "workstation/cli/commands.h"
-#include "workstation/cli/interruption.h"
 
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is told like a full disk

@@ -1,7 +1,7 @@
 // Configurations of bess-train.
 #include "shared/host/user_error.h"
 #include "tests/fuzz/fuzz_target.h"
-#include "workstation/cli/run_config.h"
+#include "workstation/chain/run_config.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace bess;

@@ -7,7 +7,7 @@
 
 #include "shared/local_time.h"
 #include "tests/support/market_series.h"
-#include "workstation/cli/run_config.h"
+#include "workstation/chain/run_config.h"
 #include "workstation/planners/stochastic_program.h"
 #include "workstation/planners/tabular.h"
 #include "workstation/rl/train.h"

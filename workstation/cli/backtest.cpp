@@ -13,20 +13,20 @@
 #include "shared/host/user_error.h"
 #include "workstation/backtest/walk_forward.h"
 #include "workstation/base/progress.h"
-#include "workstation/cli/chain_steps.h"
+#include "workstation/chain/chain_steps.h"
+#include "workstation/chain/common_options.h"
+#include "workstation/chain/day_ahead_input.h"
+#include "workstation/chain/folder_lock.h"
+#include "workstation/chain/interruption.h"
+#include "workstation/chain/policy_factory.h"
+#include "workstation/chain/price_input.h"
 #include "workstation/cli/commands.h"
-#include "workstation/cli/common_options.h"
-#include "workstation/cli/day_ahead_input.h"
-#include "workstation/cli/folder_lock.h"
-#include "workstation/cli/interruption.h"
-#include "workstation/cli/learnt_for.h"
-#include "workstation/cli/policy_factory.h"
-#include "workstation/cli/price_input.h"
-#include "workstation/cli/run_backtest.h"
-#include "workstation/cli/run_plan.h"
-#include "workstation/cli/run_record.h"
 #include "workstation/report/backtest_report.h"
 #include "workstation/report/comparison.h"
+#include "workstation/run/learnt_for.h"
+#include "workstation/run/run_backtest.h"
+#include "workstation/run/run_plan.h"
+#include "workstation/run/run_record.h"
 #include "workstation/student/correct_and_prove.h"
 #include "workstation/student/student_file.h"
 #include "workstation/student/student_policy.h"
@@ -39,12 +39,17 @@ namespace fs = std::filesystem;
 /// The teacher of the whole chain's fold.
 constexpr const char* kTeacherName = "teacher";
 
+std::vector<std::string> compared_with_the_chain() {
+  std::vector<std::string> names = baseline_names(kUnlessToldOther);
+  names.insert(names.end(), {kChainName, kForesightName});
+  return names;
+}
+
 struct BacktestArguments {
   CommonOptions common;
   PriceInput price_input;
   std::vector<std::string> prices;
-  std::vector<std::string> policies{"rbc-tuned", "tabular",  "mpc",
-                                    "sdp",       kChainName, kForesightName};
+  std::vector<std::string> policies = compared_with_the_chain();
   DayAheadInput day_ahead;
   int window_days = 120;
   bool and_day_reset = false;
@@ -257,7 +262,7 @@ void add_backtest_command(ProgramCommand& app) {
       .option("--policy", options->policies,
               std::string("Gains are over the first. ") + kChainName +
                   " is the whole chain, learnt anew for each month, " + kTeacherName +
-                  " its teacher; the others: " + kPolicyHelp)
+                  " its teacher; the others: " + policy_help())
       .with_default();
   command.option("--window-days", options->window_days, "Days before a month that it is fitted on")
       .range(30, 3650)

@@ -6,11 +6,19 @@
 
 namespace bess {
 
-void add_prices_commands(
-    ProgramCommand& app);  ///< simulate, reconstruct, import, fetch, record, stats
+void add_prices_commands(ProgramCommand& app);
+void add_prices_simulate(ProgramCommand& prices);
+void add_prices_reconstruct(ProgramCommand& prices);
+void add_prices_import(ProgramCommand& prices);
+void add_prices_fetch(ProgramCommand& prices);
+void add_prices_record(ProgramCommand& prices);
+void add_prices_stats(ProgramCommand& prices);
 void add_train_command(ProgramCommand& app);
 void add_distil_command(ProgramCommand& app);
-void add_rules_commands(ProgramCommand& app);  ///< check, price
+void add_rules_commands(ProgramCommand& app);
+void add_rules_check(ProgramCommand& rules);
+void add_rules_map(ProgramCommand& rules);
+void add_rules_price(ProgramCommand& rules);
 void add_verify_command(ProgramCommand& app);
 void add_evaluate_command(ProgramCommand& app);
 void add_backtest_command(ProgramCommand& app);

@@ -3,8 +3,8 @@
 
 #include <memory>
 
+#include "workstation/chain/run_config.h"
 #include "workstation/cli/commands.h"
-#include "workstation/cli/run_config.h"
 
 namespace bess {
 

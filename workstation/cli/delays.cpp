@@ -9,10 +9,10 @@
 #include "shared/host/json.h"
 #include "shared/host/user_error.h"
 #include "workstation/base/answer.h"
+#include "workstation/chain/common_options.h"
+#include "workstation/chain/policy_factory.h"
+#include "workstation/chain/price_input.h"
 #include "workstation/cli/commands.h"
-#include "workstation/cli/common_options.h"
-#include "workstation/cli/policy_factory.h"
-#include "workstation/cli/price_input.h"
 #include "workstation/env/evaluate.h"
 #include "workstation/report/comparison.h"
 
@@ -25,7 +25,7 @@ struct DelaysArguments {
   CommonOptions common;
   PriceInput price_input;
   std::string prices;
-  std::vector<std::string> policies = {"rbc-tuned", "tabular", "mpc", "sdp"};
+  std::vector<std::string> policies = baseline_names(kUnlessToldOther);
   std::string split = "test";
   bool carry_soc = false;
   bool json = false;
@@ -128,7 +128,7 @@ void add_delays_command(ProgramCommand& app) {
       app.subcommand("delays", "The cost of seeing prices late: fitted at 0-3 min, run at 0-3");
   command.option("--prices", options->prices, "Minute file (.csv or .csv.gz)").required();
   options->price_input.add(command);
-  command.option("--policy", options->policies, std::string("One or more of ") + kPolicyHelp)
+  command.option("--policy", options->policies, std::string("One or more of ") + policy_help())
       .with_default();
   command
       .option("--split", options->split,

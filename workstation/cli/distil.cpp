@@ -9,15 +9,15 @@
 #include "shared/host/json.h"
 #include "shared/host/user_error.h"
 #include "workstation/base/answer.h"
-#include "workstation/cli/chain_steps.h"
+#include "workstation/chain/chain_steps.h"
+#include "workstation/chain/common_options.h"
+#include "workstation/chain/interruption.h"
+#include "workstation/chain/price_input.h"
+#include "workstation/chain/rule_files.h"
+#include "workstation/chain/rule_report.h"
 #include "workstation/cli/commands.h"
-#include "workstation/cli/common_options.h"
-#include "workstation/cli/interruption.h"
-#include "workstation/cli/learnt_for.h"
-#include "workstation/cli/price_input.h"
-#include "workstation/cli/rule_files.h"
-#include "workstation/cli/rule_report.h"
 #include "workstation/report/curves.h"
+#include "workstation/run/learnt_for.h"
 #include "workstation/student/correct_and_prove.h"
 #include "workstation/student/failed_proof.h"
 
@@ -54,8 +54,8 @@ void print_result(const DistilArguments& options, const CorrectionResult& result
     return;
   }
   fmt::print("{}: {} states checked, violations {} / {} / {} after {} round{}\n", options.out,
-             c.states_checked, c.violations_property_1, c.violations_property_2,
-             c.violations_property_3, rounds, rounds == 1 ? "" : "s");
+             c.states_checked, c.violations_of(1), c.violations_of(2), c.violations_of(3), rounds,
+             rounds == 1 ? "" : "s");
   fmt::print("{}", rule_count_lines(c));
 }
 
@@ -101,13 +101,6 @@ void run_distil(const DistilArguments& options) {
 }
 
 }  // namespace
-
-const ProvedStudent& require_proof(const CorrectionResult& result, CorrectionMethod method,
-                                   const std::string& where, const std::string& note) {
-  if (const auto* proved = std::get_if<ProvedStudent>(&result.verdict)) return *proved;
-  throw ProofFailed(
-      describe_failed_proof(student_of(result.verdict), result.rounds, method, where, note));
-}
 
 void add_distil_command(ProgramCommand& app) {
   auto options = std::make_shared<DistilArguments>();

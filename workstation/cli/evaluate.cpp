@@ -1,5 +1,6 @@
 // bess-train evaluate: what a policy would have earned.
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <memory>
@@ -12,15 +13,15 @@
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
 #include "workstation/base/answer.h"
+#include "workstation/chain/common_options.h"
+#include "workstation/chain/day_ahead_input.h"
+#include "workstation/chain/policy_factory.h"
+#include "workstation/chain/price_input.h"
 #include "workstation/cli/commands.h"
-#include "workstation/cli/common_options.h"
-#include "workstation/cli/day_ahead_input.h"
-#include "workstation/cli/learnt_for.h"
-#include "workstation/cli/policy_factory.h"
-#include "workstation/cli/price_input.h"
 #include "workstation/env/charge_left.h"
 #include "workstation/report/comparison.h"
 #include "workstation/report/judged_days.h"
+#include "workstation/run/learnt_for.h"
 
 namespace bess {
 namespace {
@@ -263,7 +264,7 @@ void add_evaluate_command(ProgramCommand& app) {
   command.option("--prices", options->prices, "Minute file (.csv or .csv.gz)").required();
   options->price_input.add(command);
   options->day_ahead.add(command);
-  command.option("--policy", options->policies, std::string("One or more of ") + kPolicyHelp)
+  command.option("--policy", options->policies, std::string("One or more of ") + policy_help())
       .required();
   command
       .option("--split", options->split,
@@ -278,14 +279,13 @@ void add_evaluate_command(ProgramCommand& app) {
                "Chain the days instead of resetting SoC (several policies: both, unless given)");
   command.flag("--json", options->json, "One JSON object a line and policy");
   command.option("--csv", options->csv, "Write the comparison as CSV");
+  const std::string fitted = fmt::format("{}", fmt::join(baseline_names(kFitted), ", "));
   command.option(
       "--fit", options->fit,
-      "Minute file whose training days rbc-quartile, rbc-tuned, tabular, sdp and mpc are "
-      "fitted on (default: --prices)");
+      fmt::format("Minute file whose training days {} are fitted on (default: --prices)", fitted));
   command
       .option("--fit-delay", options->fit_delay_min,
-              "Delay at which rbc-quartile, rbc-tuned, tabular, sdp and mpc are fitted (default: "
-              "--delay)")
+              fmt::format("Delay at which {} are fitted (default: --delay)", fitted))
       .range(0, 5);
   command
       .option("--risk", options->risk,

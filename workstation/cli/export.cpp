@@ -8,9 +8,9 @@
 #include "shared/host/distinct_files.h"
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
+#include "workstation/chain/common_options.h"
+#include "workstation/chain/source_tree.h"
 #include "workstation/cli/commands.h"
-#include "workstation/cli/common_options.h"
-#include "workstation/cli/source_tree.h"
 #include "workstation/student/demand_counts.h"
 
 namespace bess {

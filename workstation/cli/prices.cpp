@@ -1,6 +1,4 @@
 // bess-train prices: where minute files come from.
-#include "workstation/cli/prices.h"
-
 #include "workstation/cli/commands.h"
 
 namespace bess {

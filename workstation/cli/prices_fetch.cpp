@@ -5,12 +5,11 @@
 #include <memory>
 
 #include "shared/host/file.h"
+#include "workstation/chain/common_options.h"
+#include "workstation/chain/day_ahead_input.h"
+#include "workstation/chain/interruption.h"
+#include "workstation/chain/price_input.h"
 #include "workstation/cli/commands.h"
-#include "workstation/cli/common_options.h"
-#include "workstation/cli/day_ahead_input.h"
-#include "workstation/cli/interruption.h"
-#include "workstation/cli/price_input.h"
-#include "workstation/cli/prices.h"
 #include "workstation/market/feed/day_ahead_fetch.h"
 #include "workstation/market/feed/elia_fetch.h"
 #include "workstation/market/feed/market_files.h"

@@ -5,9 +5,9 @@
 
 #include "shared/host/distinct_files.h"
 #include "shared/host/file.h"
-#include "workstation/cli/day_ahead_input.h"
-#include "workstation/cli/price_input.h"
-#include "workstation/cli/prices.h"
+#include "workstation/chain/day_ahead_input.h"
+#include "workstation/chain/price_input.h"
+#include "workstation/cli/commands.h"
 
 namespace bess {
 namespace {

@@ -12,9 +12,9 @@
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
 #include "workstation/base/answer.h"
-#include "workstation/cli/common_options.h"
-#include "workstation/cli/interruption.h"
-#include "workstation/cli/prices.h"
+#include "workstation/chain/common_options.h"
+#include "workstation/chain/interruption.h"
+#include "workstation/cli/commands.h"
 #include "workstation/market/feed/elia_fetch.h"
 #include "workstation/market/feed/price_recorder.h"
 

@@ -8,7 +8,7 @@
 #include "shared/host/minute_file.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
-#include "workstation/cli/prices.h"
+#include "workstation/cli/commands.h"
 #include "workstation/market/model/quarter_hours_to_minutes.h"
 #include "workstation/market/model/simulated_day_ahead.h"
 #include "workstation/market/model/simulated_market.h"

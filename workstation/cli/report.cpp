@@ -6,11 +6,13 @@
 
 #include "shared/host/distinct_files.h"
 #include "shared/host/user_error.h"
+#include "workstation/chain/chain_steps.h"
+#include "workstation/chain/folder_lock.h"
+#include "workstation/chain/price_input.h"
 #include "workstation/cli/commands.h"
-#include "workstation/cli/folder_lock.h"
-#include "workstation/cli/price_input.h"
-#include "workstation/cli/run_plan.h"
-#include "workstation/cli/run_stages.h"
+#include "workstation/run/run_plan.h"
+#include "workstation/run/run_stages.h"
+#include "workstation/run/stage_table.h"
 
 namespace bess {
 namespace {
@@ -23,7 +25,7 @@ void run_report(const std::string& path, const std::string& prices) {
          run_file::kRecord, path);
   }
   std::vector<GivenPath> outputs;
-  for (const char* name : run_file::kAll) outputs.push_back({"--run", folder.file(name)});
+  for (const std::string& name : run_files()) outputs.push_back({"--run", folder.file(name)});
   if (record->prices != run_file::kSimulatedPrices) {
     require_distinct(outputs, {{"--prices", prices}});
   }

@@ -1,6 +1,4 @@
 // bess-train rules: an operator's rules before anybody commits to them.
-#include "workstation/cli/rules.h"
-
 #include "workstation/cli/commands.h"
 
 namespace bess {

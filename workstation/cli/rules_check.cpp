@@ -8,14 +8,15 @@
 #include "shared/host/json.h"
 #include "shared/host/user_error.h"
 #include "workstation/base/answer.h"
-#include "workstation/cli/common_options.h"
-#include "workstation/cli/policy_factory.h"
-#include "workstation/cli/price_input.h"
-#include "workstation/cli/rule_files.h"
-#include "workstation/cli/rules.h"
+#include "workstation/chain/common_options.h"
+#include "workstation/chain/policy_factory.h"
+#include "workstation/chain/price_input.h"
+#include "workstation/chain/rule_files.h"
+#include "workstation/cli/commands.h"
 #include "workstation/env/context_fit.h"
 #include "workstation/env/evaluate.h"
 #include "workstation/rl/teacher.h"
+#include "workstation/rules/properties.h"
 #include "workstation/rules/rule_conflicts.h"
 #include "workstation/rules/rule_watch.h"
 #include "workstation/student/student_file.h"
@@ -126,14 +127,6 @@ void run_rules_check(const CheckArguments& options) {
 
 }  // namespace
 
-ContextClasses context_of_policy(const std::string& policy, const MarketSteps& market,
-                                 ContextKind otherwise) {
-  if (policy == "compiled") return compiled_student().net.context;
-  if (!std::filesystem::exists(policy)) return fit_context_classes(market, otherwise);
-  if (is_teacher_file(policy)) return load_teacher(policy).context;
-  return load_student(policy).net.context;
-}
-
 void add_rules_check(ProgramCommand& rules) {
   auto options = std::make_shared<CheckArguments>();
   ProgramCommand command = rules.subcommand(
@@ -144,7 +137,7 @@ void add_rules_check(ProgramCommand& rules) {
               "What the student sees: level or month (default: that of the configuration)")
       .one_of({"level", "month"});
   command.option("--policy", options->policy,
-                 std::string("Counts on real days how often it breaks them: ") + kPolicyHelp);
+                 std::string("Counts on real days how often it breaks them: ") + policy_help());
   command.option("--prices", options->prices, "Minute file, for --policy");
   options->price_input.add(command);
   command.option("--split", options->split, "Days of --prices")

@@ -10,9 +10,9 @@
 
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
-#include "workstation/cli/common_options.h"
-#include "workstation/cli/rule_files.h"
-#include "workstation/cli/rules.h"
+#include "workstation/chain/common_options.h"
+#include "workstation/chain/rule_files.h"
+#include "workstation/cli/commands.h"
 #include "workstation/report/figures.h"
 #include "workstation/student/student_file.h"
 

@@ -6,13 +6,13 @@
 #include <memory>
 
 #include "shared/host/user_error.h"
-#include "workstation/cli/common_options.h"
-#include "workstation/cli/distilled_prices.h"
-#include "workstation/cli/policy_factory.h"
-#include "workstation/cli/price_input.h"
-#include "workstation/cli/rule_files.h"
-#include "workstation/cli/rule_price_json.h"
-#include "workstation/cli/rules.h"
+#include "workstation/chain/common_options.h"
+#include "workstation/chain/distilled_prices.h"
+#include "workstation/chain/policy_factory.h"
+#include "workstation/chain/price_input.h"
+#include "workstation/chain/rule_files.h"
+#include "workstation/chain/rule_price_json.h"
+#include "workstation/cli/commands.h"
 #include "workstation/env/evaluate.h"
 #include "workstation/rules/rule_conflicts.h"
 #include "workstation/rules/ruled_policy.h"
@@ -165,7 +165,7 @@ void add_rules_price(ProgramCommand& rules) {
   options->price_input.add(command);
   command
       .option("--policy", options->policy,
-              std::string("Whose decisions are projected; one of ") + kPolicyHelp)
+              std::string("Whose decisions are projected; one of ") + policy_help())
       .with_default();
   command.option("--teacher", options->teacher,
                  "Also distil this teacher with all rules and without (minutes)");

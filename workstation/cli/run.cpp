@@ -6,15 +6,16 @@
 
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
-#include "workstation/cli/chain_steps.h"
+#include "workstation/chain/chain_steps.h"
+#include "workstation/chain/config_plausibility.h"
+#include "workstation/chain/folder_lock.h"
+#include "workstation/chain/interruption.h"
 #include "workstation/cli/commands.h"
-#include "workstation/cli/config_plausibility.h"
-#include "workstation/cli/folder_lock.h"
-#include "workstation/cli/interruption.h"
-#include "workstation/cli/learnt_for.h"
-#include "workstation/cli/run_plan.h"
-#include "workstation/cli/run_seeds.h"
-#include "workstation/cli/run_stages.h"
+#include "workstation/run/learnt_for.h"
+#include "workstation/run/run_plan.h"
+#include "workstation/run/run_seeds.h"
+#include "workstation/run/run_stages.h"
+#include "workstation/run/stage_table.h"
 
 namespace bess {
 namespace {
@@ -41,8 +42,8 @@ void run_one(const RunRequest& request, std::FILE* messages) {
   if (plan.record.teacher_file.empty()) warn_long_training(plan.record.config(plan.folder));
   require_writable(plan.folder.record());
   if (!lock) lock.emplace(plan.folder.path);
-  fmt::print(messages, "[1/6] prices: {} ({} minutes)\n", plan.record.prices_name,
-             plan.series.size());
+  fmt::print(messages, "[{}/{}] prices: {} ({} minutes)\n", stage_named(stage_name::kPrices).number,
+             stage_count(), plan.record.prices_name, plan.series.size());
   if (!load_run_record(plan.folder)) save_run_record(plan.folder, plan.record);
   end_when_interrupted(how_to_go_on(plan.folder));
   RunStages(plan.folder, plan.record, plan.series, messages).finish();
@@ -135,7 +136,8 @@ void add_run_command(ProgramCommand& app) {
   request.common.add_seed_and_threads(command);
   command.footer(
       "Each stage is written when it is done: after Ctrl-C, a full disk or a failed proof nothing "
-      "is lost.\n"
+      "is lost.\n" +
+      stages_help() +
       "Examples:\n"
       "  bess-train run --out runs/first\n"
       "  bess-train run --resume --out runs/first\n"

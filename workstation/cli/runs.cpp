@@ -9,8 +9,8 @@
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "workstation/cli/commands.h"
-#include "workstation/cli/run_summary.h"
-#include "workstation/cli/runs_page.h"
+#include "workstation/run/run_summary.h"
+#include "workstation/run/runs_page.h"
 
 namespace bess {
 namespace {

@@ -8,23 +8,21 @@
 #include <filesystem>
 #include <memory>
 
-#include "shared/crc32.h"
 #include "shared/host/distinct_files.h"
 #include "shared/host/file.h"
 #include "shared/host/json.h"
 #include "shared/host/user_error.h"
 #include "workstation/base/answer.h"
-#include "workstation/cli/chain_steps.h"
+#include "workstation/chain/chain_steps.h"
+#include "workstation/chain/common_options.h"
+#include "workstation/chain/config_plausibility.h"
+#include "workstation/chain/folder_lock.h"
+#include "workstation/chain/interruption.h"
+#include "workstation/chain/price_input.h"
 #include "workstation/cli/commands.h"
-#include "workstation/cli/common_options.h"
-#include "workstation/cli/config_plausibility.h"
-#include "workstation/cli/folder_lock.h"
-#include "workstation/cli/interruption.h"
-#include "workstation/cli/learnt_for.h"
-#include "workstation/cli/price_input.h"
-#include "workstation/cli/run_plan.h"
 #include "workstation/env/evaluate.h"
 #include "workstation/report/curves.h"
+#include "workstation/run/learnt_for.h"
 
 namespace bess {
 namespace {
@@ -219,40 +217,6 @@ void run_train(const TrainArguments& options) {
 }
 
 }  // namespace
-
-std::uint32_t prices_checksum(const MinuteSeries& series) {
-  Crc32 prices;
-  prices.add_bytes(series.indicative.data(), sizeof(double) * series.size());
-  prices.add_bytes(series.settled.data(), sizeof(double) * series.size());
-  return prices.value();
-}
-
-std::string training_provenance(const std::string& prices, const TrainOptions& options,
-                                const TrainResult& result) {
-  std::string text =
-      fmt::format("bess-train {} {} on {}, by {}", BESS_VERSION, method_name(options.method),
-                  fs::path(prices).filename().string(), context_name(options.context));
-  if (options.method == Method::kSdp) return text;  // there is no chance in it, and no step
-  if (options.residual) {
-    text += fmt::format(" on the stochastic program, {} atoms to +-{:.0f} EUR/h", options.atoms,
-                        double{result.teacher.support.v_max} / double{kRewardScale});
-  }
-  return fmt::format("{}, seed {}, best at step {} of {}", text, options.seed, result.best_step,
-                     options.steps);
-}
-
-void warn_narrow_support(const TrainOptions& options, const TrainResult& result) {
-  constexpr double kEdgeMassMax = 0.01;
-  constexpr double kResidualEdgeMassMax = 0.005;  // its support is measured, not given
-  if (options.method != Method::kC51 || result.curve.empty()) return;
-  const double edge_mass_frac = result.curve.back().edge_mass_frac;
-  if (edge_mass_frac <= (options.residual ? kResidualEdgeMassMax : kEdgeMassMax)) return;
-  fmt::print(stderr,
-             "bess-train: warning: {:.1f} % of the value distribution sits on the end atoms; {}\n",
-             100 * edge_mass_frac,
-             options.residual ? "lower [train] residual_gamma"
-                              : "widen [train] value_min_eur_per_h and value_max_eur_per_h");
-}
 
 void add_train_command(ProgramCommand& app) {
   auto options = std::make_shared<TrainArguments>();

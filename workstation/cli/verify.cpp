@@ -6,11 +6,11 @@
 #include "shared/host/json.h"
 #include "shared/host/user_error.h"
 #include "workstation/base/answer.h"
+#include "workstation/chain/common_options.h"
+#include "workstation/chain/price_input.h"
+#include "workstation/chain/rule_files.h"
+#include "workstation/chain/rule_report.h"
 #include "workstation/cli/commands.h"
-#include "workstation/cli/common_options.h"
-#include "workstation/cli/price_input.h"
-#include "workstation/cli/rule_files.h"
-#include "workstation/cli/rule_report.h"
 #include "workstation/rules/rule_conflicts.h"
 #include "workstation/student/demand_counts.h"
 #include "workstation/student/prove.h"
@@ -47,14 +47,11 @@ void print_text(const std::string& name, const StudentFile& student) {
   fmt::print("{} (weights {:08x})\n", name, student_weights_hash(student.net));
   fmt::print("  {} states checked, {} of them evaluated one by one, {:.1f} s\n", c.states_checked,
              c.states_evaluated, c.seconds);
-  fmt::print("  property 1, charge at or below {} EUR/MWh:    {} violations{}\n",
-             c.thresholds.low_eur_per_mwh, c.violations_property_1,
-             guard_alone_note(c.thresholds.low_binds_student()));
-  fmt::print("  property 2, discharge at or above {} EUR/MWh: {} violations{}\n",
-             c.thresholds.high_eur_per_mwh, c.violations_property_2,
-             guard_alone_note(c.thresholds.high_binds_student()));
-  fmt::print("  property 3, monotone in price and SoC:          {} violations\n",
-             c.violations_property_3);
+  for (const DemandCount& count : demand_counts(c)) {
+    if (count.is_rule) continue;
+    fmt::print("  {:<47} {} violations{}\n", fmt::format("{}, {}:", count.name, count.text),
+               count.violations, guard_alone_note(count.binds_student));
+  }
   fmt::print("{}", rule_count_lines(c));
   fmt::print("{}\n", c.covers_lattice_without_violation() ? "PROVED" : "NOT PROVED");
 }

@@ -8,6 +8,7 @@
 #include "workstation/base/progress.h"
 #include "workstation/correction/policy_loss.h"
 #include "workstation/correction/rule_rows.h"
+#include "workstation/rules/properties.h"
 
 namespace bess {
 namespace {
@@ -18,7 +19,6 @@ constexpr float kLeak = 0.05F;  ///< of the gradient through a saturated unit: i
 constexpr double kRandomShare = 0.25;  ///< lessons from anywhere, per visited one
 constexpr double kAverageDecay = 0.998;
 constexpr int kBatch = 2048;
-constexpr int kThresholdStates = 64;   ///< per batch and threshold
 constexpr int kRuleStates = 64;        ///< per batch and rule
 constexpr float kForbiddenRegret = 4;  ///< at least, over the temperature, of what a rule forbids
 
@@ -103,7 +103,7 @@ MonotoneDistiller::MonotoneDistiller(const Teacher& teacher, const LessonStates&
       lessons_(lessons),
       options_(options),
       random_(derive_seed(options.seed, kSeedBatches)),
-      rules_(options.rules, teacher.context.kind),
+      rules_(with_built_in(options.correction.thresholds, options.rules), teacher.context.kind),
       bounds_(options.correct ? SignBounds::monotone(options.rules.directions())
                               : SignBounds::none()),
       student_(initial_parameters(kStudentShape, derive_seed(options.seed, kSeedStudent))),
@@ -161,36 +161,10 @@ void MonotoneDistiller::forward(const Parameters& parameters, Worker& w) const {
   w.z.colwise() += net.b3;
 }
 
-/// By monotony the hardest state of property 1 is the low price at the highest SoC, of property 2 the high
-/// price at the lowest.
-void MonotoneDistiller::draw_threshold_state(const std::vector<LatticeState>& counterexamples,
-                                             bool low, float* x) {
-  const PriceThresholds& thresholds = options_.correction.thresholds;
-  const int price = std::clamp(low ? thresholds.low_eur_per_mwh : thresholds.high_eur_per_mwh,
-                               kLatticePriceMinEurPerMwh, kLatticePriceMaxEurPerMwh);
-  LatticeState state{};
-  if (!counterexamples.empty() && random_.uniform() < 0.5) {
-    state = counterexamples[random_.index(counterexamples.size())];
-  } else {
-    state.minute_of_quarter_hour =
-        static_cast<std::int16_t>(random_.index(kMinuteOfQuarterHourCount));
-    state.quarter_hour = static_cast<std::int16_t>(random_.index(kQuarterHourCount));
-    state.context_class = static_cast<std::int16_t>(1 + random_.index(kContextClassCount));
-  }
-  write_input(network_context(state.minute_of_quarter_hour, state.quarter_hour, state.context_class,
-                              teacher_.price_map(price)),
-              0, x);
-  x[3] = scaled_input(low ? kSocCount - 1 : 0, kSocScale);
-}
-
 void MonotoneDistiller::draw_batch(const std::vector<LatticeState>& counterexamples, Worker& w) {
-  const PriceThresholds& thresholds = options_.correction.thresholds;
   w.learnt = kBatch / static_cast<Eigen::Index>(workers_.size());
-  w.at_low = options_.correct && thresholds.low_binds_student() ? kThresholdStates : 0;
-  w.at_high = options_.correct && thresholds.high_binds_student() ? kThresholdStates : 0;
-  const std::size_t rules = options_.correct ? rules_.count() : 0;
-  const Eigen::Index hinged = w.at_low + w.at_high;
-  w.x.resize(kNetworkInputs, w.learnt + hinged + static_cast<Eigen::Index>(rules * kRuleStates));
+  const std::size_t hinged = options_.correct ? rules_.count() * kRuleStates : 0;
+  w.x.resize(kNetworkInputs, w.learnt + static_cast<Eigen::Index>(hinged));
   w.target.resize(kActionCount, w.learnt);
   w.regret.resize(kActionCount, w.learnt);
   for (Eigen::Index c = 0; c < w.learnt; ++c) {
@@ -200,13 +174,10 @@ void MonotoneDistiller::draw_batch(const std::vector<LatticeState>& counterexamp
     w.target.col(c) = lessons_.teacher_frac.col(from);
     w.regret.col(c) = lessons_.regret.col(from);
   }
-  for (Eigen::Index c = 0; c < hinged; ++c) {
-    draw_threshold_state(counterexamples, c < w.at_low, w.x.col(w.learnt + c).data());
-  }
   w.allowed.clear();
-  for (std::size_t n = 0; n < rules * kRuleStates; ++n) {
+  for (std::size_t n = 0; n < hinged; ++n) {
     const HardState hard = rules_.draw(n / kRuleStates, counterexamples, random_);
-    float* x = w.x.col(w.learnt + hinged + static_cast<Eigen::Index>(n)).data();
+    float* x = w.x.col(w.learnt + static_cast<Eigen::Index>(n)).data();
     write_input(
         network_context(hard.state.minute_of_quarter_hour, hard.state.quarter_hour,
                         hard.state.context_class, teacher_.price_map(hard.state.price_eur_per_mwh)),
@@ -240,22 +211,11 @@ void MonotoneDistiller::learn(Worker& w, double scale) const {
           share * (fidelity * (p[a] - w.target(a, c)) + p[a] * (w.regret(a, c) - expected));
     }
   }
-  // Properties 1 and 2: hinges on u = charge - idle and v = idle - discharge.
-  const Eigen::Index ruled = w.learnt + w.at_low + w.at_high;
-  for (Eigen::Index c = w.learnt; c < ruled; ++c) {
-    const bool low = c < w.learnt + w.at_low;
-    const float u = w.z(2, c) - w.z(1, c);
-    const float v = w.z(1, c) - w.z(0, c);
-    const float push = 4 * share;
-    if (low && u < margin) w.dz(2, c) -= push, w.dz(1, c) += push;
-    if (low && v < 0) w.dz(1, c) -= push, w.dz(0, c) += push;
-    if (!low && v > -margin) w.dz(1, c) += push, w.dz(0, c) -= push;
-    if (!low && u > 0) w.dz(2, c) += push, w.dz(1, c) -= push;
-  }
-  for (Eigen::Index c = ruled; c < w.z.cols(); ++c) {
-    const double u = double{w.z(2, c)} - double{w.z(1, c)};
-    const double v = double{w.z(1, c)} - double{w.z(0, c)};
-    const ActionSet allowed = w.allowed[static_cast<std::size_t>(c - ruled)];
+  // Hinges of the rules, the built-in ones too, on u = charge - idle and v = idle - discharge.
+  for (Eigen::Index c = w.learnt; c < w.z.cols(); ++c) {
+    const double u = w.z(2, c) - w.z(1, c);
+    const double v = w.z(1, c) - w.z(0, c);
+    const ActionSet allowed = w.allowed[static_cast<std::size_t>(c - w.learnt)];
     for (const ScoreRow& row : ScoreRows(allowed, u, v, double{margin})) {
       if (row.on_u * u + row.on_v * v >= row.at_least) continue;
       const auto push_u = static_cast<float>(4 * scale * row.on_u);

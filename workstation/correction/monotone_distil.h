@@ -3,8 +3,8 @@
 //
 //   L = fidelity KL(mu || pi') + E_pi'[regret] / temperature      mu = softmax(values / temperature)
 //
-// over states that the teacher visits and some from anywhere, with hinges where properties 1 and 2 bind: by
-// monotony one state for each context tells. Hidden activations saturate at 0 and at 1, so that sums of them
+// over states that the teacher visits and some from anywhere, with hinges where a rule binds, built-in
+// (properties 1 and 2) or an operator's: by monotony a state or two for each context tell. Hidden activations saturate at 0 and at 1, so that sums of them
 // bend both ways.
 #pragma once
 
@@ -12,7 +12,6 @@
 #include <functional>
 #include <vector>
 
-#include "shared/price_thresholds.h"
 #include "workstation/correction/distil.h"
 #include "workstation/correction/rule_lessons.h"
 #include "workstation/correction/sign_bounds.h"
@@ -41,8 +40,8 @@ class MonotoneDistiller {
   MonotoneDistiller(const Teacher& teacher, const LessonStates& lessons,
                     const DistilOptions& options);
 
-  /// Trains for `epochs`; `counterexamples` are states that properties 1 and 2 must be learnt in, besides
-  /// random ones. Calls `look` now and then, at the end for certain, with the share of epochs done.
+  /// Trains for `epochs`; `counterexamples` are states that the rules must be learnt in, besides random
+  /// ones. Calls `look` now and then, at the end for certain, with the share of epochs done.
   void run(int epochs, const std::vector<LatticeState>& counterexamples,
            const std::atomic<bool>& interrupted, const std::function<void(double done)>& look);
 
@@ -54,16 +53,12 @@ class MonotoneDistiller {
     Parameters gradient;
     double loss = 0;
     Matrix x, target, regret, a1, h1, a2, h2, z, dz, d1, d2;
-    Eigen::Index
-        learnt;  ///< columns that follow the teacher; the others are held to properties 1 and 2
-    Eigen::Index at_low;             ///< and of those, how many lie at the low threshold
-    Eigen::Index at_high;            ///< behind them at the high one; the rest is held to the rules
-    std::vector<ActionSet> allowed;  ///< of that rest
+    Eigen::Index learnt;             ///< columns that follow the teacher; the others obey the rules
+    std::vector<ActionSet> allowed;  ///< of those others
   };
 
   void spread_activations();
   void draw_batch(const std::vector<LatticeState>& counterexamples, Worker& worker);
-  void draw_threshold_state(const std::vector<LatticeState>& counterexamples, bool low, float* x);
   void forward(const Parameters& parameters, Worker& worker) const;
   void learn(Worker& worker, double scale) const;
 

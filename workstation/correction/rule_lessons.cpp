@@ -43,25 +43,34 @@ HardState RuleLessons::corner(const Asked& asked, LatticeState context, bool at_
   return {context, asked.rule.actions, asked.index};
 }
 
+/// An operator's rule draws its hour before the minute, a built-in one behind it: so the students
+/// were made that are in use, and a seed gives them again.
+LatticeState RuleLessons::draw_context(const Asked& asked, Random& random) const {
+  const RuleBox& box = asked.rule.box;
+  const bool hour_first = asked.rule.property == 0;
+  const auto draw_hour = [&] {
+    return static_cast<int>(random.index(static_cast<std::size_t>(box.quarter_hour_count)));
+  };
+  int since = hour_first ? draw_hour() : 0;
+  LatticeState context{};
+  context.minute_of_quarter_hour =
+      static_cast<std::int16_t>(random.index(kMinuteOfQuarterHourCount));
+  if (!hour_first) since = draw_hour();
+  context.quarter_hour =
+      static_cast<std::int16_t>((box.quarter_hour_first + since) % kQuarterHourCount);
+  const auto classes = std::popcount(static_cast<unsigned>(asked.box.classes));
+  context.context_class = static_cast<std::int16_t>(
+      class_at(asked.box.classes, random.index(static_cast<std::size_t>(classes))));
+  return context;
+}
+
 HardState RuleLessons::draw(std::size_t index, const std::vector<LatticeState>& counterexamples,
                             Random& random) const {
   const Asked& asked = asked_[index];
-  const RuleBox& box = asked.rule.box;
   LatticeState context{};
   const bool wants_known = !counterexamples.empty() && random.uniform() < 0.5;
   if (wants_known) context = counterexamples[random.index(counterexamples.size())];
-  if (!wants_known || !holds(asked, context)) {
-    const auto since =
-        static_cast<int>(random.index(static_cast<std::size_t>(box.quarter_hour_count)));
-    const auto classes =
-        static_cast<std::size_t>(std::popcount(static_cast<unsigned>(asked.box.classes)));
-    context.minute_of_quarter_hour =
-        static_cast<std::int16_t>(random.index(kMinuteOfQuarterHourCount));
-    context.quarter_hour =
-        static_cast<std::int16_t>((box.quarter_hour_first + since) % kQuarterHourCount);
-    context.context_class =
-        static_cast<std::int16_t>(class_at(asked.box.classes, random.index(classes)));
-  }
+  if (!wants_known || !holds(asked, context)) context = draw_context(asked, random);
   if (!asked.has_corners) {
     const auto between = [&random](int first, int last) {
       return first + static_cast<int>(random.index(static_cast<std::size_t>(last - first) + 1));

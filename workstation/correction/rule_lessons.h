@@ -1,6 +1,7 @@
-// How a student learns an operator's rules while it is distilled, the teacher untouched: what the teacher would do
-// against a rule is taken out of the lessons, and some states of every batch are held to the rules by hinges. Of
-// a monotone student one or two corners of a rule's box tell for all of it, in each context.
+// How a student learns rules while it is distilled, the teacher untouched: what the teacher would
+// do against an operator's rule is taken out of the lessons, and some states of every batch are
+// held to every rule, the built-in ones too, by hinges. Of a monotone student one or two corners of
+// a rule's box tell for all of it, in each context.
 #pragma once
 
 #include <vector>
@@ -19,8 +20,8 @@ struct HardState {
   std::size_t rule = 0;  ///< index in the set
 };
 
-/// Which states of a rule decide it, for the hinges and for a quick look before a proof. Rules that do not bind
-/// the student's states are left out.
+/// Which states of a rule decide it, for the hinges and for a quick look before a proof. Rules that
+/// do not bind the student's states are left out; a direction is the signs' (sign_bounds.h).
 class RuleLessons {
  public:
   RuleLessons(const RuleSet& rules, ContextKind kind);
@@ -36,7 +37,7 @@ class RuleLessons {
   /// What a monotone student is held to in this context; rules without corners are left out.
   void corners(const LatticeState& context, std::vector<HardState>& states) const;
 
-  /// The actions that the rules leave at a network input.
+  /// The actions that the operator's rules leave at a network input.
   [[nodiscard]] ActionSet actions_at(const float* x, const PriceMap& price_map) const;
 
  private:
@@ -47,6 +48,7 @@ class RuleLessons {
     bool has_corners;  ///< else any state of the box may be the worst
   };
   [[nodiscard]] bool holds(const Asked& asked, const LatticeState& context) const;
+  [[nodiscard]] LatticeState draw_context(const Asked& asked, Random& random) const;
   static HardState corner(const Asked& asked, LatticeState context, bool at_least);
 
   ContextKind kind_;

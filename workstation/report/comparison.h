@@ -8,6 +8,7 @@
 
 #include "shared/host/json.h"
 #include "workstation/env/evaluate.h"
+#include "workstation/planners/baselines.h"
 
 namespace bess {
 
@@ -18,9 +19,6 @@ struct NamedEvaluation {
   Evaluation carried_over;
   std::string description{};  ///< what was chosen in fitting it; may be empty
 };
-
-/// The name by which the perfect-foresight bound is recognised.
-inline constexpr const char* kForesightName = "foresight";
 
 /// Wear at which every table shows the profit once more, whatever wear is configured: policies that trade
 /// more or less are compared by what wearing out the battery leaves of it.

@@ -13,7 +13,6 @@ namespace bess {
 namespace {
 
 constexpr const char* kNoFigure = "\u2013";
-constexpr const char* kProgram = "sdp";
 constexpr const char* kProgramAsTeacher = "sdp teacher";
 constexpr std::string_view kTeacherEnd = " teacher";  ///< of its name, whatever its method
 
@@ -59,7 +58,7 @@ std::string whole_battery_text(const std::vector<NamedEvaluation>& evaluations) 
 }
 
 std::string same_program_text(const std::vector<NamedEvaluation>& evaluations) {
-  const NamedEvaluation* program = evaluation_named(evaluations, kProgram);
+  const NamedEvaluation* program = evaluation_named(evaluations, kProgramName);
   const auto is_teacher = [](const NamedEvaluation& e) { return e.name.ends_with(kTeacherEnd); };
   const auto teacher = std::ranges::find_if(evaluations, is_teacher);
   if (program == nullptr || teacher == evaluations.end()) return {};
@@ -73,11 +72,11 @@ std::string same_program_text(const std::vector<NamedEvaluation>& evaluations) {
     return fmt::format(
         "{} and {} decide the same at every step: nothing that was learnt earned more on "
         "validation days than the program that it began as",
-        kProgram, teacher->name);
+        kProgramName, teacher->name);
   }
   return fmt::format(
       "{} and {} are the same program, fitted on the same days: they decide the same at every step",
-      kProgram, kProgramAsTeacher);
+      kProgramName, kProgramAsTeacher);
 }
 
 }  // namespace bess

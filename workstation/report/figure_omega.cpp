@@ -21,9 +21,9 @@ std::vector<std::string> rows_of(const std::vector<OmegaPoint>& points, const Ev
   for (const OmegaPoint& p : points) {
     const PairedDifference gain = paired_difference(p.evaluation, teacher);
     rows.push_back(fmt::format("{:g} {:g} {:g} {:g} {:.4f} {:.4f} {:.4f}", p.omega,
-                               shown_count(p.certificate.violations_property_1),
-                               shown_count(p.certificate.violations_property_2),
-                               shown_count(p.certificate.violations_property_3), 100 * p.agreement,
+                               shown_count(p.certificate.violations_of(1)),
+                               shown_count(p.certificate.violations_of(2)),
+                               shown_count(p.certificate.violations_of(3)), 100 * p.agreement,
                                gain.mean, gain.standard_error));
   }
   return rows;

@@ -12,20 +12,6 @@
 namespace bess {
 namespace {
 
-struct Rival {
-  std::string_view name;
-  std::string_view meaning;
-};
-
-/// In the order of the table; what was not evaluated is left out.
-constexpr std::array kRivals{
-    Rival{kPlainName, "the student without correction"},
-    Rival{"rbc-tuned", "the best pair of thresholds"},
-    Rival{"mpc", "rolling horizon"},
-    Rival{"sdp", "stochastic program"},
-    Rival{kForesightName, "knows every price: a bound, no rival"},
-};
-
 const NamedEvaluation* find(const std::vector<NamedEvaluation>& evaluations,
                             std::string_view name) {
   const auto found = std::ranges::find(evaluations, name, &NamedEvaluation::name);
@@ -164,10 +150,12 @@ std::optional<Headline> headline_of(const std::vector<NamedEvaluation>& evaluati
                     .rules = {},
                     .gains = {}};
   if (!reset.days.empty()) headline.reset_profit = reset.profit_eur_per_day_per_mwh();
-  for (const Rival& rival : kRivals) {
-    const NamedEvaluation* other = find(evaluations, rival.name);
-    if (other != nullptr) headline.gains.push_back(gain_over(*exported, *other, rival.meaning));
-  }
+  const auto add = [&](const std::string& name, const std::string& meaning) {
+    const NamedEvaluation* other = find(evaluations, name);  // what was not evaluated is left out
+    if (other != nullptr) headline.gains.push_back(gain_over(*exported, *other, meaning));
+  };
+  add(kPlainName, "the student without correction");
+  for (const std::string& rival : rival_names()) add(rival, find_baseline(rival)->meaning);
   const bool is_finished = headline.student == kCorrectedName;
   if (const auto prices = rule_prices_of(evaluations)) {
     if (is_finished) headline.correction = prices->correction;

@@ -20,8 +20,8 @@ std::string format_omega_table(const std::vector<OmegaPoint>& points, const Eval
     const PairedDifference gain = paired_difference(p.evaluation, teacher);
     table += fmt::format(
         "{:>8g} {:>12} {:>12} {:>12} {:9.4f} {:7.2f} % {:8.1f} {:>6} {:>8} {:>+8.1f} {:>6} {:>8}\n",
-        p.omega, p.certificate.violations_property_1, p.certificate.violations_property_2,
-        p.certificate.violations_property_3, p.divergence_nats, 100 * p.agreement,
+        p.omega, p.certificate.violations_of(1), p.certificate.violations_of(2),
+        p.certificate.violations_of(3), p.divergence_nats, 100 * p.agreement,
         p.evaluation.profit_eur_per_day_per_mwh(), error_text(p.evaluation.errors().plain, 1),
         error_text(p.evaluation.errors().by_month, 1), gain.mean,
         error_text(gain.standard_error, 1), error_text(gain.standard_error_by_month, 1));
@@ -32,7 +32,7 @@ std::string format_omega_table(const std::vector<OmegaPoint>& points, const Eval
 std::string omega_csv(const std::vector<OmegaPoint>& points, const Evaluation& teacher) {
   // standard_error and gain_over_teacher are names of before schema version 1, until the next release.
   std::string csv =
-      "omega,states_checked,violations_property_1,violations_property_2,violations_property_3,"
+      "omega,states_checked,violations_of(1),violations_of(2),violations_of(3),"
       "divergence_nats,agreement,profit_eur_per_day_per_mwh,standard_error,gain_over_teacher,"
       "gain_standard_error,profit_standard_error,gain_eur_per_day_per_mwh,"
       "profit_standard_error_by_month,gain_standard_error_by_month\n";
@@ -41,8 +41,8 @@ std::string omega_csv(const std::vector<OmegaPoint>& points, const Evaluation& t
     const double profit_error = p.evaluation.standard_error();
     csv += fmt::format(
         "{:g},{},{},{},{},{:.6g},{:.6f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{},{}\n", p.omega,
-        p.certificate.states_checked, p.certificate.violations_property_1,
-        p.certificate.violations_property_2, p.certificate.violations_property_3, p.divergence_nats,
+        p.certificate.states_checked, p.certificate.violations_of(1),
+        p.certificate.violations_of(2), p.certificate.violations_of(3), p.divergence_nats,
         p.agreement, p.evaluation.profit_eur_per_day_per_mwh(), profit_error, gain.mean,
         gain.standard_error, profit_error, gain.mean,
         error_text(p.evaluation.errors().by_month, 4, ""),

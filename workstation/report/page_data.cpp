@@ -265,6 +265,15 @@ PolicyContext first_map(const ReportInputs& in) {
   return {static_cast<int>(most), kNoonQuarterHour, kMiddleMinute};
 }
 
+/// Name and colour of each baseline that is drawn beside the exported policy.
+Json rivals_json() {
+  Json list = Json::list();
+  for (const std::string& name : rival_names()) {
+    list.add(Json::object({{"name", name}, {"colour", find_baseline(name)->colour}}));
+  }
+  return list;
+}
+
 Json page_data(const ReportInputs& in, const PageSteps& steps) {
   const std::vector<MarketDay>& days = steps.days;
   const ContextClasses classes = context_classes_of(in);
@@ -277,6 +286,7 @@ Json page_data(const ReportInputs& in, const PageSteps& steps) {
   data.set("battery", battery_json(in.battery));
   data.set("dates", std::move(dates));
   data.set("policies", policies_json(in.evaluations));
+  data.set("rivals", rivals_json());
   data.set("archive", archive_json(in, steps));
   data.set("lattice", lattice_json());
   data.set("contexts", contexts_json(classes));

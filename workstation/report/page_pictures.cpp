@@ -20,9 +20,9 @@ namespace {
 constexpr int kBars = 14;  ///< at most, of the distribution of days: as tear_sheet.js has them
 constexpr int kHours = 24;
 
-/// The exported policy, or the first, and of `rivals` those that were evaluated.
-std::vector<const NamedEvaluation*> shown(const ReportInputs& in,
-                                          const std::vector<std::string_view>& rivals) {
+/// The exported policy, or the first, and of the first `rivals` of the baselines beside it those
+/// that were evaluated.
+std::vector<const NamedEvaluation*> shown(const ReportInputs& in, std::size_t rivals) {
   std::vector<const NamedEvaluation*> found;
   const auto add = [&](std::string_view name) {
     const auto at = std::ranges::find(in.evaluations, name, &NamedEvaluation::name);
@@ -31,7 +31,10 @@ std::vector<const NamedEvaluation*> shown(const ReportInputs& in,
   };
   if (!add(kCorrectedName) && !add(kUnprovedName) && !in.evaluations.empty())
     found.push_back(&in.evaluations.front());
-  for (const std::string_view rival : rivals) add(rival);
+  for (const std::string& rival : rival_names()) {
+    if (rivals-- == 0) break;
+    add(rival);
+  }
   return found;
 }
 
@@ -56,7 +59,7 @@ std::vector<std::string> dates_of(const NamedEvaluation& policy) {
 }
 
 PictureTable cumulative_table(const ReportInputs& in) {
-  const auto policies = shown(in, {"rbc-tuned", "mpc", "sdp", kForesightName});
+  const auto policies = shown(in, rival_names().size());
   std::vector<std::vector<double>> sums;
   for (const auto* policy : policies)
     sums.push_back(cumulative(daily_profits(policy->carried_over)));
@@ -65,7 +68,7 @@ PictureTable cumulative_table(const ReportInputs& in) {
 }
 
 PictureTable drawdown_table(const ReportInputs& in) {
-  const auto policies = shown(in, {"rbc-tuned"});
+  const auto policies = shown(in, 1);
   std::vector<std::vector<double>> falls;
   for (const auto* policy : policies) {
     falls.push_back(below_peak(cumulative(daily_profits(policy->carried_over))));
@@ -75,7 +78,7 @@ PictureTable drawdown_table(const ReportInputs& in) {
 }
 
 PictureTable month_table(const ReportInputs& in) {
-  const auto policies = shown(in, {"rbc-tuned", "mpc"});
+  const auto policies = shown(in, 2);
   std::vector<std::string> months;
   std::vector<std::vector<double>> means;
   for (const auto* policy : policies) {
@@ -96,7 +99,7 @@ PictureTable month_table(const ReportInputs& in) {
 }
 
 PictureTable distribution_table(const ReportInputs& in) {
-  const auto policies = shown(in, {"rbc-tuned"});
+  const auto policies = shown(in, 1);
   std::vector<std::vector<double>> profits;
   double low = 0;
   double high = 0;

@@ -50,8 +50,8 @@ std::string comparison_table(const std::string& caption, std::vector<ComparisonR
 }
 
 std::vector<std::string> proof_cells(const std::string& name, const Certificate& c) {
-  return {name, grouped(c.states_checked), grouped(c.violations_property_1),
-          grouped(c.violations_property_2), grouped(c.violations_property_3)};
+  return {name, grouped(c.states_checked), grouped(c.violations_of(1)), grouped(c.violations_of(2)),
+          grouped(c.violations_of(3))};
 }
 
 std::string percent_broken(const DemandCount& count) {
@@ -207,7 +207,7 @@ std::string proof_sentence(const Certificate& c) {
         "Not proved: it still breaks its constraints {} times ({}) and may not be exported",
         grouped(c.violations()), which);
   }
-  const auto bound = std::ranges::count_if(c.rule_counts, &RuleCount::binds_student);
+  const auto bound = std::ranges::count_if(c.rule_counts(), &RuleCount::binds_student);
   return fmt::format(
       "{}: no violation {}in {} states",
       c.covers_lattice_without_violation() ? "Proved" : "Looked at in part",

@@ -42,7 +42,8 @@ struct Rule {
   std::int32_t power_permille_max = kFullPowerPermille;
   bool enforce = false;       ///< by the guard, whatever the student says
   bool is_threshold = false;  ///< stands for a threshold of properties 1 and 2
-  std::string place{};        ///< "FILE:LINE", for messages
+  int property = 0;     ///< 1 to 3: one of the built-in rules (properties.h); 0: an operator's
+  std::string place{};  ///< "FILE:LINE", for messages
 
   [[nodiscard]] Action lowest() const;   ///< of the allowed actions
   [[nodiscard]] Action highest() const;  ///< of the allowed actions

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "shared/host/user_error.h"
+#include "workstation/rules/properties.h"
 
 namespace bess {
 namespace {
@@ -32,26 +33,18 @@ std::string state_text(int quarter_hour, int context_class, int soc_index, int p
 /// The thresholds of properties 1 and 2 as rules, unless the set has its own.
 RuleSet with_thresholds(const RuleSet& rules, const PriceThresholds& thresholds) {
   RuleSet all = rules;
-  const auto has = [&rules](Action action) {
-    return std::ranges::any_of(
-        rules.rules, [&](const Rule& r) { return r.is_threshold && r.lowest() == action; });
-  };
-  const auto add = [&](Action action, const char* key, const RuleBox& box) {
-    if (has(action)) return;
-    Rule rule;
-    rule.name = fmt::format("[correction] {}", key);
+  for (Rule rule : built_in_rules(thresholds).rules) {
+    if (rule.demand != Demand::kActions) continue;
+    const bool has_own = std::ranges::any_of(rules.rules, [&](const Rule& own) {
+      return own.is_threshold && own.lowest() == rule.lowest();
+    });
+    if (has_own) continue;
+    rule.name = rule.property == 1 ? "[correction] low_price_eur_per_mwh"
+                                   : "[correction] high_price_eur_per_mwh";
     rule.place = "the configuration";
-    rule.actions = action_bit(action);
-    rule.box = box;
     rule.is_threshold = true;
-    all.rules.push_back(rule);
-  };
-  RuleBox low;
-  low.price_max_eur_per_mwh = thresholds.low_eur_per_mwh;
-  RuleBox high;
-  high.price_min_eur_per_mwh = thresholds.high_eur_per_mwh;
-  add(Action::kCharge, "low_price_eur_per_mwh", low);
-  add(Action::kDischarge, "high_price_eur_per_mwh", high);
+    all.rules.push_back(std::move(rule));
+  }
   return all;
 }
 

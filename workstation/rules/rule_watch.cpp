@@ -55,27 +55,4 @@ Action RuleWatch::decide(const MarketStep& step, std::size_t index, double soc_f
   return action;
 }
 
-RuleSet with_properties(const RuleSet& rules, const PriceThresholds& thresholds) {
-  const PriceThresholds bound = rules.thresholds(thresholds);
-  Rule cheap;
-  cheap.name = "property 1";
-  cheap.actions = action_bit(Action::kCharge);
-  cheap.box.price_max_eur_per_mwh = bound.low_eur_per_mwh;
-  Rule dear;
-  dear.name = "property 2";
-  dear.actions = action_bit(Action::kDischarge);
-  dear.box.price_min_eur_per_mwh = bound.high_eur_per_mwh;
-  RuleSet all{{cheap, dear}};
-  for (const auto& [name, input] : {std::pair{"property 3, price", RuleInput::kPrice},
-                                    std::pair{"property 3, SoC", RuleInput::kSoc}}) {
-    Rule rule;
-    rule.name = name;
-    rule.demand = Demand::kDirection;
-    rule.direction = {input, -1};
-    all.rules.push_back(rule);
-  }
-  all.rules.insert(all.rules.end(), rules.rules.begin(), rules.rules.end());
-  return all;
-}
-
 }  // namespace bess

@@ -52,7 +52,4 @@ class RuleWatch final : public Policy {
   mutable std::int64_t decisions_ = 0;
 };
 
-/// The rules, and properties 1 to 3 as rules of their own, for a policy that is held to all of them.
-RuleSet with_properties(const RuleSet& rules, const PriceThresholds& thresholds);
-
 }  // namespace bess

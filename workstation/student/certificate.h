@@ -1,12 +1,15 @@
 // What the prover found out about an integer student over the lattice, and against which thresholds
-// [SPEC 6]. Anybody can write these numbers down: only a ProvedStudent (prove.h) is more than a claim.
+// [SPEC 6]. Anybody can write these numbers down: only a ProvedStudent (prove.h) is more than a
+// claim.
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "shared/features.h"
 #include "shared/price_thresholds.h"
+#include "workstation/rules/properties.h"
 #include "workstation/student/rule_proof.h"
 
 namespace bess {
@@ -15,24 +18,27 @@ struct Certificate {
   PriceThresholds thresholds = {};    ///< of properties 1 and 2
   std::int64_t states_checked = 0;    ///< 0: nobody has looked yet
   std::int64_t states_evaluated = 0;  ///< by the net itself; the rest is covered by bounds
-  std::int64_t violations_property_1 = 0;
-  std::int64_t violations_property_2 = 0;
-  std::int64_t violations_property_3 = 0;
+  RuleSet rules = {};                 ///< the operator's, besides the properties
+  /// Of each of demands(); shorter: nobody has counted the rest, and none of the operator's is
+  /// known to hold. A file tells the violations of property 3 as one number, which then stands with
+  /// the first of its rules.
+  std::vector<RuleCount> counts = {};
   std::vector<LatticeState> counterexamples = {};  ///< evenly thinned; not kept in files
   double seconds = 0;                              ///< not kept in files
-  RuleSet rules = {};                              ///< the operator's, besides the properties
-  std::vector<RuleCount> rule_counts = {};         ///< of each rule; empty: nobody has looked yet
 
-  [[nodiscard]] std::int64_t violations() const {
-    std::int64_t sum = violations_property_1 + violations_property_2 + violations_property_3;
-    for (const RuleCount& count : rule_counts) sum += count.violations;
-    return sum;
+  /// The four built-in rules, then the operator's.
+  [[nodiscard]] RuleSet demands() const { return with_built_in(thresholds, rules); }
+  /// Of the operator's rules.
+  [[nodiscard]] std::span<const RuleCount> rule_counts() const {
+    if (counts.size() <= kBuiltInRuleCount) return {};
+    return std::span(counts).subspan(kBuiltInRuleCount);
   }
+  [[nodiscard]] std::int64_t violations() const;
+  /// Of property 1 to 3.
+  [[nodiscard]] std::int64_t violations_of(int property) const;
+  void set_violations_of(int property, std::int64_t violations);
   /// Every lattice state was checked and none violates a property.
-  [[nodiscard]] bool covers_lattice_without_violation() const {
-    return states_checked == kLatticeStateCount && rule_counts.size() == rules.rules.size() &&
-           violations() == 0;
-  }
+  [[nodiscard]] bool covers_lattice_without_violation() const;
 };
 
 }  // namespace bess

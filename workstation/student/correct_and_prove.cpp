@@ -68,41 +68,22 @@ struct Look {
   ProofRound round;                  ///< how many of which demand
 };
 
-/// Contexts in which a monotone student disobeys a threshold or a rule: one state of each tells, the low price
-/// at the highest SoC, the high price at the lowest, the corners of a rule's box. Quick, where a proof takes
-/// seconds.
+/// Contexts in which a monotone student disobeys a rule: the corners of its box tell, of a threshold the one at its
+/// price. Quick, where a proof takes seconds.
 Look look_at_corners(const StudentNet& net, const DistilOptions& options,
                      const RuleLessons& rules) {
-  const PriceThresholds& thresholds = options.correction.thresholds;
-  Certificate found{.thresholds = thresholds, .rules = options.rules};
-  for (const Rule& rule : options.rules.rules) {
-    found.rule_counts.push_back({binds_student(rule, net.context.kind)});
+  Certificate found{.thresholds = options.correction.thresholds, .rules = options.rules};
+  for (const Rule& rule : found.demands().rules) {
+    found.counts.push_back({binds_student(rule, net.context.kind)});
   }
   Look look;
   std::vector<HardState> corners;
-  const auto require = [&](LatticeState state, int soc_index, int price, Action action,
-                           std::int64_t& violations) {
-    state.soc_index = static_cast<std::int16_t>(soc_index);
-    state.price_eur_per_mwh = static_cast<std::int16_t>(price);
-    if (net.decide(state) == action) return;
-    look.states.push_back(state);
-    ++violations;
-  };
-  const auto low = std::min(thresholds.low_eur_per_mwh, kLatticePriceMaxEurPerMwh);
-  const auto high = std::max(thresholds.high_eur_per_mwh, kLatticePriceMinEurPerMwh);
   for (int c = 0; c < kContextCount; ++c) {
-    const LatticeState context = context_at(c);
-    if (thresholds.low_binds_student()) {
-      require(context, kSocCount - 1, low, Action::kCharge, found.violations_property_1);
-    }
-    if (thresholds.high_binds_student()) {
-      require(context, 0, high, Action::kDischarge, found.violations_property_2);
-    }
-    rules.corners(context, corners);
+    rules.corners(context_at(c), corners);
     for (const HardState& corner : corners) {
       if (allows(corner.actions, net.decide(corner.state))) continue;
       look.states.push_back(corner.state);
-      ++found.rule_counts[corner.rule].violations;
+      ++found.counts[corner.rule].violations;
     }
   }
   look.round = round_of(found);
@@ -147,7 +128,8 @@ CorrectionResult construct_and_prove(const Teacher& teacher, const Matrix& visit
   constexpr int kLooks = 16;
   const LessonStates lessons = make_lessons(teacher, visited, options);
   MonotoneDistiller distiller(teacher, lessons, options);
-  const RuleLessons rules(options.rules, teacher.context.kind);
+  const RuleLessons rules(with_built_in(options.correction.thresholds, options.rules),
+                          teacher.context.kind);
   CorrectionResult result{.verdict = student, .curve = {}, .rounds = {}};
   int epochs_before = 0;
   std::vector<LatticeState> counterexamples;

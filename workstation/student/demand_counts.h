@@ -9,8 +9,6 @@
 
 namespace bess {
 
-inline constexpr std::size_t kPropertyCount = 3;
-
 struct DemandCount {
   std::string name;           ///< "property 1", or the rule's
   std::string text;           ///< what it asks, for people
@@ -18,6 +16,7 @@ struct DemandCount {
   bool binds_student = true;  ///< false: the guard's alone, nothing was counted
   std::int64_t states = 0;    ///< states, or pairs of neighbours, that it was held against
   std::int64_t violations = 0;
+  std::vector<Rule> rules = {};  ///< that it stands for: of property 3 two
 
   /// "property 1", or "rule \"quiet hours\"".
   [[nodiscard]] std::string label() const;

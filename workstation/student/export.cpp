@@ -102,11 +102,11 @@ std::string preamble(const Certificate& c) {
       "shared/nn/student_net.h.\n"
       "   Proved over all {} lattice states, {} of them evaluated one by one, with no violation "
       "of\n"
-      "     1  charge at or below {} EUR/MWh{}\n"
-      "     2  discharge at or above {} EUR/MWh{}\n"
+      "     1  {}{}\n"
+      "     2  {}{}\n"
       "     3  never a larger action at a higher price or SoC{} */\n",
-      c.states_checked, c.states_evaluated, c.thresholds.low_eur_per_mwh,
-      guard_alone_note(c.thresholds.low_binds_student()), c.thresholds.high_eur_per_mwh,
+      c.states_checked, c.states_evaluated, property_text(1, c.thresholds),
+      guard_alone_note(c.thresholds.low_binds_student()), property_text(2, c.thresholds),
       guard_alone_note(c.thresholds.high_binds_student()), rule_lines(c));
 }
 
@@ -120,8 +120,7 @@ std::string certificate_macros(const Certificate& c) {
       "#define BESS_STUDENT_VIOLATIONS_PROPERTY_2 {}\n"
       "#define BESS_STUDENT_VIOLATIONS_PROPERTY_3 {}\n",
       c.thresholds.low_eur_per_mwh, c.thresholds.high_eur_per_mwh, c.states_checked,
-      c.states_evaluated, c.violations_property_1, c.violations_property_2,
-      c.violations_property_3);
+      c.states_evaluated, c.violations_of(1), c.violations_of(2), c.violations_of(3));
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "workstation/rules/rule_conflicts.h"
-#include "workstation/rules/rule_watch.h"
 #include "workstation/student/demand_counts.h"
 
 namespace bess {
@@ -68,15 +67,6 @@ std::optional<Example> example_of(const StudentFile& student, const Rule& rule) 
   return {};
 }
 
-/// The rules that a demand stands for: of property 3 two directions.
-std::vector<Rule> rules_of(const Certificate& certificate, std::size_t demand) {
-  const RuleSet all = with_properties(certificate.rules, certificate.thresholds);
-  constexpr std::size_t kOrder = 2;  // property 3, of which there are two here
-  if (demand < kOrder) return {all.rules[demand]};
-  if (demand == kOrder) return {all.rules[kOrder], all.rules[kOrder + 1]};
-  return {all.rules[demand + 1]};
-}
-
 std::string room_text(const Opposite& opposite) {
   std::string room;
   if (opposite.price_gap_eur_per_mwh > 0) {
@@ -89,10 +79,10 @@ std::string room_text(const Opposite& opposite) {
   return room;
 }
 
-std::string advice_of(const Certificate& certificate, ContextKind kind, const DemandCount& count,
-                      const Rule& rule, CorrectionMethod method) {
+std::string advice_of(const Certificate& certificate, ContextKind kind, const Rule& rule,
+                      CorrectionMethod method) {
   const bool by_layer = method == CorrectionMethod::kLayer;
-  if (by_layer && !count.is_rule) {
+  if (by_layer && rule.property != 0) {
     return "raise [correction] price_slope and soc_slope or [distil] repair_rounds";
   }
   if (by_layer && (rule.demand == Demand::kDirection || rule.has_gap())) {
@@ -115,17 +105,15 @@ std::string state_text(const LatticeState& s, ContextKind kind) {
 
 std::vector<BrokenDemand> broken_demands(const StudentFile& student, CorrectionMethod method) {
   std::vector<BrokenDemand> broken;
-  const std::vector<DemandCount> counts = demand_counts(student.certificate);
-  for (std::size_t d = 0; d < counts.size(); ++d) {
-    if (counts[d].violations == 0) continue;
-    const std::vector<Rule> rules = rules_of(student.certificate, d);
+  for (const DemandCount& count : demand_counts(student.certificate)) {
+    if (count.violations == 0) continue;
     std::optional<Example> example;
-    for (const Rule& rule : rules) {
+    for (const Rule& rule : count.rules) {
       if (!example) example = example_of(student, rule);
     }
     BrokenDemand demand{
-        counts[d], "",
-        advice_of(student.certificate, student.net.context.kind, counts[d], rules.front(), method)};
+        count, "",
+        advice_of(student.certificate, student.net.context.kind, count.rules.front(), method)};
     if (example) {
       demand.example = example->text;
       demand.state = example->state;

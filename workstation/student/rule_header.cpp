@@ -69,7 +69,7 @@ std::string rule_lines(const Certificate& certificate) {
   std::string text;
   for (std::size_t r = 0; r < certificate.rules.rules.size(); ++r) {
     const Rule& rule = certificate.rules.rules[r];
-    const bool is_proved = certificate.rule_counts[r].binds_student;
+    const bool is_proved = certificate.rule_counts()[r].binds_student;
     text += fmt::format("\n     -  {}: {}{}{}", rule.name, rule.text(), guard_alone_note(is_proved),
                         is_proved && rule.enforce ? " (the guard's too)" : "");
   }

@@ -9,39 +9,8 @@ namespace bess {
 namespace {
 
 constexpr int kKeptPerContext = 4;
+constexpr int kKeptOfPropertiesPerContext = 16;  ///< of the four together
 constexpr std::size_t kKeptPerRule = 4096;
-
-/// Adds violations up, and keeps the first few states of each context.
-class Tally {
- public:
-  Tally(const LatticeState& context, RuleCount& count) : context_(context), count_(count) {}
-
-  /// Cells [begin, end) of a row of the grid, of which `violates(cell)` tells.
-  template <typename Violates>
-  void add_row(int soc, int begin, int end, Violates violates) {
-    count_.states += std::max(0, end - begin);
-    std::int8_t any = 0;  // as wide as an action, branch-free: vectorises
-    for (int p = begin; p < end; ++p) any |= static_cast<std::int8_t>(violates(p));
-    if (any == 0) return;
-    for (int p = begin; p < end; ++p) {
-      if (violates(p)) add(soc, p);
-    }
-  }
-  void add(int soc, int price) {
-    ++count_.violations;
-    if (kept_ == kKeptPerContext || count_.counterexamples.size() >= kKeptPerRule) return;
-    ++kept_;
-    LatticeState state = context_;
-    state.soc_index = static_cast<std::int16_t>(soc);
-    state.price_eur_per_mwh = static_cast<std::int16_t>(kLatticePriceMinEurPerMwh + price);
-    count_.counterexamples.push_back(state);
-  }
-
- private:
-  const LatticeState& context_;
-  RuleCount& count_;
-  int kept_ = 0;
-};
 
 const std::int8_t* row_of(const ActionGrid& grid, int soc) {
   return &grid[static_cast<std::size_t>(soc) * kPriceCount];
@@ -76,10 +45,15 @@ std::optional<LatticeState> next_context(LatticeState context, RuleInput input) 
 }
 
 RuleChecker::RuleChecker(const RuleSet& rules, ContextKind kind)
-    : rules_(rules), kind_(kind), counts_(rules.rules.size()) {
+    : rules_(rules),
+      kind_(kind),
+      boxes_(rules.rules.size()),
+      counts_(rules.rules.size()),
+      kept_(rules.rules.size()) {
   for (std::size_t i = 0; i < counts_.size(); ++i) {
     const Rule& rule = rules.rules[i];
     counts_[i].binds_student = binds_student(rule, kind);
+    if (counts_[i].binds_student) boxes_[i] = lattice_box_of(rule.box, kind);
     const RuleInput input = rule.direction.input;
     const bool is_in_grid = input == RuleInput::kSoc || input == RuleInput::kPrice;
     if (rule.demand != Demand::kDirection || is_in_grid) continue;
@@ -89,71 +63,81 @@ RuleChecker::RuleChecker(const RuleSet& rules, ContextKind kind)
 
 void RuleChecker::check(const LatticeState& context, const ActionGrid& grid,
                         const std::vector<ActionGrid>& neighbours) {
+  context_ = context;
+  std::ranges::fill(kept_, 0);
+  holding_.clear();
   for (std::size_t i = 0; i < counts_.size(); ++i) {
-    const Rule& rule = rules_.rules[i];
-    if (!counts_[i].binds_student ||
-        !holds_in_context(rule.box, kind_, context.quarter_hour, context.context_class)) {
-      continue;
+    if (counts_[i].binds_student &&
+        holds_in_context(rules_.rules[i].box, kind_, context.quarter_hour, context.context_class)) {
+      holding_.push_back(i);
     }
-    switch (rule.demand) {
-      case Demand::kActions:
-        check_actions(rule, context, grid, counts_[i]);
-        break;
-      case Demand::kDirection:
-        check_direction(rule, context, grid, neighbours, counts_[i]);
-        break;
-      case Demand::kPower:
-        break;
-    }
+  }
+  for (int s = 0; s < kSocCount;
+       ++s) {  // outside: a row is held against every rule while it is near
+    for (const std::size_t rule : holding_) check_row(rule, s, grid, neighbours);
   }
 }
 
-void RuleChecker::check_actions(const Rule& rule, const LatticeState& context,
-                                const ActionGrid& grid, RuleCount& count) const {
-  const LatticeBox box = lattice_box_of(rule.box, kind_);
-  const auto lowest = static_cast<std::int8_t>(rule.lowest());
-  const auto highest = static_cast<std::int8_t>(rule.highest());
-  constexpr auto kIdle = static_cast<std::int8_t>(Action::kIdle);
-  const std::int8_t forbidden = rule.has_gap() ? kIdle : std::int8_t{-1};
-  Tally tally(context, count);
-  for (int s = box.soc_first; s <= box.soc_last; ++s) {
-    const std::int8_t* row = row_of(grid, s);
-    tally.add_row(s, box.price_first, box.price_last + 1, [&](int p) {
+void RuleChecker::check_row(std::size_t index, int soc, const ActionGrid& grid,
+                            const std::vector<ActionGrid>& neighbours) {
+  const Rule& rule = rules_.rules[index];
+  const std::int8_t* row = row_of(grid, soc);
+  if (rule.demand == Demand::kActions) {
+    const LatticeBox& box = boxes_[index];
+    if (soc < box.soc_first || soc > box.soc_last) return;
+    const auto lowest = static_cast<std::int8_t>(rule.lowest());
+    const auto highest = static_cast<std::int8_t>(rule.highest());
+    constexpr auto kIdle = static_cast<std::int8_t>(Action::kIdle);
+    const std::int8_t forbidden = rule.has_gap() ? kIdle : std::int8_t{-1};
+    count_row(index, soc, box.price_first, box.price_last + 1, [=](int p) {
       return (row[p] < lowest) | (row[p] > highest) | (row[p] == forbidden);
     });
+  } else if (const std::int8_t* next = next_row(rule.direction.input, soc, grid, neighbours)) {
+    const int pairs = rule.direction.input == RuleInput::kPrice ? kPriceCount - 1 : kPriceCount;
+    if (rule.direction.sign < 0) {
+      count_row(index, soc, 0, pairs, [=](int p) { return next[p] > row[p]; });
+    } else {
+      count_row(index, soc, 0, pairs, [=](int p) { return next[p] < row[p]; });
+    }
   }
 }
 
-void RuleChecker::check_direction(const Rule& rule, const LatticeState& context,
-                                  const ActionGrid& grid, const std::vector<ActionGrid>& neighbours,
-                                  RuleCount& count) const {
-  Tally tally(context, count);
-  const auto count_pairs = [&](int soc, int pairs, const std::int8_t* row,
-                               const std::int8_t* next) {
-    if (rule.direction.sign < 0) {
-      tally.add_row(soc, 0, pairs, [&](int p) { return next[p] > row[p]; });
-    } else {
-      tally.add_row(soc, 0, pairs, [&](int p) { return next[p] < row[p]; });
-    }
-  };
-  if (rule.direction.input == RuleInput::kPrice) {
-    for (int s = 0; s < kSocCount; ++s) {
-      count_pairs(s, kPriceCount - 1, row_of(grid, s), row_of(grid, s) + 1);
-    }
-    return;
-  }
-  if (rule.direction.input == RuleInput::kSoc) {
-    for (int s = 0; s + 1 < kSocCount; ++s) {
-      count_pairs(s, kPriceCount, row_of(grid, s), row_of(grid, s + 1));
-    }
-    return;
-  }
-  const auto which = std::ranges::find(neighbours_, rule.direction.input) - neighbours_.begin();
+const std::int8_t* RuleChecker::next_row(RuleInput input, int soc, const ActionGrid& grid,
+                                         const std::vector<ActionGrid>& neighbours) const {
+  if (input == RuleInput::kPrice) return row_of(grid, soc) + 1;
+  if (input == RuleInput::kSoc) return soc + 1 < kSocCount ? row_of(grid, soc + 1) : nullptr;
+  const auto which = std::ranges::find(neighbours_, input) - neighbours_.begin();
   const ActionGrid& next = neighbours[static_cast<std::size_t>(which)];
-  if (next.empty()) return;
-  for (int s = 0; s < kSocCount; ++s) {
-    count_pairs(s, kPriceCount, row_of(grid, s), row_of(next, s));
+  return next.empty() ? nullptr : row_of(next, soc);
+}
+
+/// Cells [begin, end) of a row, of which `violates(cell)` tells.
+template <typename Violates>
+void RuleChecker::count_row(std::size_t rule, int soc, int begin, int end, Violates violates) {
+  RuleCount& count = counts_[rule];
+  count.states += std::max(0, end - begin);
+  std::int8_t any = 0;  // as wide as an action, branch-free: vectorises
+  for (int p = begin; p < end; ++p) any |= static_cast<std::int8_t>(violates(p));
+  if (any == 0) return;
+  for (int p = begin; p < end; ++p) {
+    if (!violates(p)) continue;
+    ++count.violations;
+    keep(rule, soc, p);
   }
+}
+
+/// The first few of each context, those of the built-in rules as they come along.
+void RuleChecker::keep(std::size_t rule, int soc, int price) {
+  const bool is_built_in = rules_.rules[rule].property != 0;
+  const std::size_t with = is_built_in ? 0 : rule;
+  std::vector<LatticeState>& states = counts_[with].counterexamples;
+  if (kept_[with] == (is_built_in ? kKeptOfPropertiesPerContext : kKeptPerContext)) return;
+  if (!is_built_in && states.size() >= kKeptPerRule) return;
+  ++kept_[with];
+  LatticeState state = context_;
+  state.soc_index = static_cast<std::int16_t>(soc);
+  state.price_eur_per_mwh = static_cast<std::int16_t>(kLatticePriceMinEurPerMwh + price);
+  states.push_back(state);
 }
 
 std::optional<WorstState> worst_state(const StudentNet& net, const Rule& rule,

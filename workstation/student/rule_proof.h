@@ -1,5 +1,5 @@
-// The proof of an operator's rules: each a predicate over the lattice, counted by name on the action grids that
-// verify.h fills.
+// The proof of rules, the built-in ones and an operator's: each a predicate over the lattice,
+// counted by name on the action grids that verify.h fills.
 //   actions    states of the box whose action is not allowed
 //   direction  pairs of neighbours along the input between which the action moves the wrong way
 #pragma once
@@ -18,7 +18,9 @@ struct RuleCount {
   bool binds_student = false;  ///< false: the guard's alone, nothing was counted
   std::int64_t states = 0;     ///< lattice states, or pairs or rows, that it was held against
   std::int64_t violations = 0;
-  std::vector<LatticeState> counterexamples = {};  ///< some of them; not kept in files
+  /// Some of them; those of the built-in rules all stand with the first of these. Not kept in
+  /// files.
+  std::vector<LatticeState> counterexamples = {};
 
   void add(const RuleCount& other);
 };
@@ -32,7 +34,8 @@ class RuleChecker {
   /// Keeps a reference: `rules` must outlive it.
   RuleChecker(const RuleSet& rules, ContextKind kind);
 
-  /// Contexts beside this one, by input, whose grids check() needs: the next minute, quarter-hour or class.
+  /// Contexts beside this one, by input, whose grids check() needs: the next minute, quarter-hour
+  /// or class.
   [[nodiscard]] const std::vector<RuleInput>& neighbours_needed() const { return neighbours_; }
 
   /// `neighbour` of each input that is needed, in order; empty where there is none.
@@ -42,23 +45,31 @@ class RuleChecker {
   [[nodiscard]] const std::vector<RuleCount>& counts() const { return counts_; }
 
  private:
-  void check_actions(const Rule& rule, const LatticeState& context, const ActionGrid& grid,
-                     RuleCount& count) const;
-  void check_direction(const Rule& rule, const LatticeState& context, const ActionGrid& grid,
-                       const std::vector<ActionGrid>& neighbours, RuleCount& count) const;
+  void check_row(std::size_t rule, int soc, const ActionGrid& grid,
+                 const std::vector<ActionGrid>& neighbours);
+  /// The row that a direction compares with this one; null where there is none.
+  [[nodiscard]] const std::int8_t* next_row(RuleInput input, int soc, const ActionGrid& grid,
+                                            const std::vector<ActionGrid>& neighbours) const;
+  template <typename Violates>
+  void count_row(std::size_t rule, int soc, int begin, int end, Violates violates);
+  void keep(std::size_t rule, int soc, int price);
 
   const RuleSet& rules_;
   ContextKind kind_;
+  std::vector<LatticeBox> boxes_;  ///< of each rule that binds the student
   std::vector<RuleInput> neighbours_;
   std::vector<RuleCount> counts_;
+  LatticeState context_{};
+  std::vector<std::size_t> holding_;  ///< rules that hold in this context
+  std::vector<int> kept_;             ///< counterexamples of this context, of each rule
 };
 
 /// The context after this one along an input; none after its last value.
 std::optional<LatticeState> next_context(LatticeState context, RuleInput input);
 
-/// The violated state that the student is surest of, by the lead in logits of what it does over the best that is
-/// allowed: of the counterexamples and of the box's corners, where a monotone student is worst. None for other
-/// demands than actions.
+/// The violated state that the student is surest of, by the lead in logits of what it does over the
+/// best that is allowed: of the counterexamples and of the box's corners, where a monotone student
+/// is worst. None for other demands than actions.
 struct WorstState {
   LatticeState state;
   Action action;

@@ -1,5 +1,7 @@
 #include "workstation/student/student_file.h"
 
+#include <fmt/core.h>
+
 #include <numeric>
 #include <span>
 
@@ -45,14 +47,17 @@ PriceThresholds parse_thresholds(const JsonReader& in, const std::string& name) 
 
 constexpr std::int64_t kExactInDouble = std::int64_t{1} << 53;
 
+std::string violations_key(int property) { return fmt::format("violations_property_{}", property); }
+
 Certificate parse_certificate(const JsonReader& in, const std::string& name) {
   const auto count = [&in](const char* key) { return in.whole(key, 0, kExactInDouble); };
-  return {.thresholds = parse_thresholds(in, name),
-          .states_checked = count("states_checked"),
-          .states_evaluated = count("states_evaluated"),
-          .violations_property_1 = count("violations_property_1"),
-          .violations_property_2 = count("violations_property_2"),
-          .violations_property_3 = count("violations_property_3")};
+  Certificate certificate{.thresholds = parse_thresholds(in, name),
+                          .states_checked = count("states_checked"),
+                          .states_evaluated = count("states_evaluated")};
+  for (int property = 1; property <= kPropertyCount; ++property) {
+    certificate.set_violations_of(property, count(violations_key(property).c_str()));
+  }
+  return certificate;
 }
 
 ContextClasses parse_context_classes(const JsonReader& in, const std::string& name) {
@@ -97,7 +102,7 @@ void parse_rule_claims(const JsonValue& file, const JsonReader& in, const std::s
   const auto states = has_counts ? parse_counts(file, "rule_states", rules, name) : none;
   const auto violations = has_counts ? parse_counts(file, "rule_violations", rules, name) : none;
   for (std::size_t r = 0; r < rules; ++r) {
-    certificate.rule_counts.push_back(
+    certificate.counts.push_back(
         {binds_student(certificate.rules.rules[r], kind), states[r], violations[r]});
   }
 }
@@ -105,7 +110,7 @@ void parse_rule_claims(const JsonValue& file, const JsonReader& in, const std::s
 void add_rule_claims(const Certificate& certificate, Json& json) {
   std::vector<std::int64_t> states;
   std::vector<std::int64_t> violations;
-  for (const RuleCount& count : certificate.rule_counts) {
+  for (const RuleCount& count : certificate.rule_counts()) {
     states.push_back(count.states);
     violations.push_back(count.violations);
   }
@@ -132,16 +137,21 @@ Entries parse_learnt_for(const JsonValue& object, const std::string& name) {
 }
 
 Json certificate_json(const Certificate& c) {
-  return Json::object({{"low_price_eur_per_mwh", c.thresholds.low_eur_per_mwh},
-                       {"high_price_eur_per_mwh", c.thresholds.high_eur_per_mwh},
-                       {"states_checked", c.states_checked},
-                       {"states_evaluated", c.states_evaluated},
-                       {"violations_property_1", c.violations_property_1},
-                       {"violations_property_2", c.violations_property_2},
-                       {"violations_property_3", c.violations_property_3}});
+  Json json = Json::object({{"low_price_eur_per_mwh", c.thresholds.low_eur_per_mwh},
+                            {"high_price_eur_per_mwh", c.thresholds.high_eur_per_mwh},
+                            {"states_checked", c.states_checked},
+                            {"states_evaluated", c.states_evaluated}});
+  add_property_violations(c, json);
+  return json;
 }
 
 }  // namespace
+
+void add_property_violations(const Certificate& certificate, Json& json) {
+  for (int property = 1; property <= kPropertyCount; ++property) {
+    json.set(violations_key(property).c_str(), certificate.violations_of(property));
+  }
+}
 
 void check_net(const StudentNet& net, const std::string& name) {
   constexpr int kShiftMax = 30;
@@ -227,10 +237,10 @@ StudentFile compiled_student() {
   student.provenance = BESS_STUDENT_PROVENANCE;
 #ifdef BESS_STUDENT_RULES
   student.certificate.rules = parse_rules(BESS_STUDENT_RULES, "compiled rules");
-  for (const Rule& rule : student.certificate.rules.rules) {
-    student.certificate.rule_counts.push_back({binds_student(rule, student.net.context.kind)});
-  }
 #endif
+  for (const Rule& rule : student.certificate.demands().rules) {
+    student.certificate.counts.push_back({binds_student(rule, student.net.context.kind)});
+  }
   return student;
 }
 

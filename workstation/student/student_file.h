@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 
+#include "shared/host/json.h"
 #include "shared/nn/student_net.h"
 #include "workstation/base/entries.h"
 #include "workstation/student/certificate.h"
@@ -29,6 +30,9 @@ StudentFile parse_student(const std::string& text, const std::string& name);
 
 /// The array that this program was compiled with (edge/generated/student_weights.h).
 StudentFile compiled_student();
+
+/// "violations_property_1" to 3, as files and answers have them.
+void add_property_violations(const Certificate& certificate, Json& json);
 
 /// Throws UserError, with `name` in front, for a net that neither code nor bounds hold for: a price map
 /// that does not rise, a shift out of range, weights whose accumulators could overflow.

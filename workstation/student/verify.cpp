@@ -4,6 +4,7 @@
 #include <atomic>
 #include <chrono>
 #include <thread>
+#include <utility>
 
 #include "workstation/base/progress.h"
 
@@ -239,63 +240,6 @@ class GridFiller {
   std::int64_t evaluated_ = 0;
 };
 
-/// Counts violations of one context's grid into `certificate` and keeps their states.
-class GridChecker {
- public:
-  GridChecker(const VerifyOptions& options, Certificate& certificate)
-      : options_(options), certificate_(certificate) {}
-
-  void check(const LatticeState& context, const std::vector<std::int8_t>& grid) {
-    context_ = context;
-    kept_in_context_ = 0;
-    const PriceThresholds& thresholds = options_.thresholds;
-    const int low =
-        std::clamp(thresholds.low_eur_per_mwh - kLatticePriceMinEurPerMwh, -1, kPriceCount - 1);
-    const int high =
-        std::clamp(thresholds.high_eur_per_mwh - kLatticePriceMinEurPerMwh, 0, kPriceCount);
-    constexpr auto kCharge = static_cast<std::int8_t>(Action::kCharge);
-    constexpr auto kDischarge = static_cast<std::int8_t>(Action::kDischarge);
-    for (int s = 0; s < kSocCount; ++s) {
-      const std::int8_t* row = &grid[static_cast<std::size_t>(s) * kPriceCount];
-      count(certificate_.violations_property_1, s, 0, low + 1,
-            [&](int p) { return row[p] != kCharge; });
-      count(certificate_.violations_property_2, s, high, kPriceCount,
-            [&](int p) { return row[p] != kDischarge; });
-      count(certificate_.violations_property_3, s, 0, kPriceCount - 1,
-            [&](int p) { return row[p + 1] > row[p]; });
-      if (s + 1 == kSocCount) break;
-      count(certificate_.violations_property_3, s, 0, kPriceCount,
-            [&](int p) { return row[p + kPriceCount] > row[p]; });
-    }
-  }
-
- private:
-  template <typename Violates>
-  void count(std::int64_t& total, int soc, int begin, int end, Violates violates) {
-    std::int8_t any = 0;  // as wide as an action, branch-free: vectorises
-    for (int p = begin; p < end; ++p) any |= static_cast<std::int8_t>(violates(p));
-    if (any == 0) return;
-    for (int p = begin; p < end; ++p) {
-      if (!violates(p)) continue;
-      ++total;
-      if (kept_in_context_ < kKeptPerContext) keep(soc, p);
-    }
-  }
-  void keep(int soc, int price) {
-    ++kept_in_context_;
-    LatticeState state = context_;
-    state.soc_index = static_cast<std::int16_t>(soc);
-    state.price_eur_per_mwh = static_cast<std::int16_t>(kLatticePriceMinEurPerMwh + price);
-    certificate_.counterexamples.push_back(state);
-  }
-
-  static constexpr int kKeptPerContext = 16;
-  const VerifyOptions& options_;
-  Certificate& certificate_;
-  LatticeState context_{};
-  int kept_in_context_ = 0;
-};
-
 void thin_out(std::vector<LatticeState>& states, std::size_t count_max) {
   if (states.size() <= count_max) return;
   for (std::size_t i = 0; i < count_max; ++i) states[i] = states[i * states.size() / count_max];
@@ -327,52 +271,45 @@ Certificate verify_student(const StudentNet& net, const VerifyOptions& options) 
   const auto start = std::chrono::steady_clock::now();
   const BoxBounds bounds(net);
   const int contexts = (kContextCount + options.context_stride - 1) / options.context_stride;
+  Certificate total{.thresholds = options.thresholds, .rules = options.rules};
+  const RuleSet demands = total.demands();
   std::vector<Certificate> parts(static_cast<std::size_t>(options.threads));
   std::atomic<int> done{0};
   Progress progress("verify", "contexts", contexts);
   const auto work = [&](int worker) {
     Certificate& part = parts[static_cast<std::size_t>(worker)];
     GridFiller filler(net, bounds);
-    GridChecker checker(options, part);
-    RuleChecker rule_checker(options.rules, net.context.kind);
-    std::vector<ActionGrid> neighbours(rule_checker.neighbours_needed().size());
-    std::vector<std::int8_t> grid;
+    RuleChecker checker(demands, net.context.kind);
+    std::vector<ActionGrid> neighbours(checker.neighbours_needed().size());
+    ActionGrid grid;
     for (int c = worker; c < contexts; c += options.threads) {
       const LatticeState context = context_at(c * options.context_stride);
       part.states_evaluated += filler.fill(context, options.exhaustive, grid);
-      checker.check(context, grid);
       for (std::size_t n = 0; n < neighbours.size(); ++n) {
-        const auto next = next_context(context, rule_checker.neighbours_needed()[n]);
+        const auto next = next_context(context, checker.neighbours_needed()[n]);
         neighbours[n].clear();
         if (next) filler.fill(*next, options.exhaustive, neighbours[n]);
       }
-      rule_checker.check(context, grid, neighbours);
+      checker.check(context, grid, neighbours);
       part.states_checked += std::int64_t{kSocCount} * kPriceCount;
       const int finished = ++done;
       if (worker == 0) progress.update(finished);
     }
-    part.rule_counts = rule_checker.counts();
+    part.counts = checker.counts();
   };
   std::vector<std::thread> threads;
   for (int w = 1; w < options.threads; ++w) threads.emplace_back(work, w);
   work(0);
   for (std::thread& thread : threads) thread.join();
-  Certificate total{.thresholds = options.thresholds, .rules = options.rules};
-  total.rule_counts.resize(options.rules.rules.size());
+  total.counts.resize(demands.rules.size());
   for (const Certificate& part : parts) {
     total.states_checked += part.states_checked;
     total.states_evaluated += part.states_evaluated;
-    total.violations_property_1 += part.violations_property_1;
-    total.violations_property_2 += part.violations_property_2;
-    total.violations_property_3 += part.violations_property_3;
-    total.counterexamples.insert(total.counterexamples.end(), part.counterexamples.begin(),
-                                 part.counterexamples.end());
-    for (std::size_t r = 0; r < total.rule_counts.size(); ++r) {
-      total.rule_counts[r].add(part.rule_counts[r]);
-    }
+    for (std::size_t d = 0; d < demands.rules.size(); ++d) total.counts[d].add(part.counts[d]);
   }
+  total.counterexamples = std::exchange(total.counts.front().counterexamples, {});
   thin_out(total.counterexamples, options.counterexamples_max);
-  for (const RuleCount& count : total.rule_counts) {
+  for (const RuleCount& count : total.counts) {
     total.counterexamples.insert(total.counterexamples.end(), count.counterexamples.begin(),
                                  count.counterexamples.end());
   }

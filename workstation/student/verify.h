@@ -1,13 +1,12 @@
 // The proof: the integer student's action on EVERY lattice state [SPEC 6], 6,950,033,280 of them.
 //
 // For each of the 17,280 contexts (T_qh, qh, mo) the action grid over SoC x price is filled, then
-// checked:
+// held against every rule (rule_proof.h), of which four are built in (rules/properties.h):
 //   property 1   states with price <= low whose action is not charge
 //   property 2   states with price >= high whose action is not discharge
 //   property 3   neighbour pairs (price + 1, or SoC + 1) where the action increases; the order of
-//   any two
-//                comparable states follows from neighbours, so none violates if and only if no pair
-//                does
+//                any two comparable states follows from neighbours, so none violates if and only if
+//                no pair does
 // Filling is exhaustive, or by sound bounds: interval arithmetic through the very integers of the
 // net, whose every operation is monotone, shows that a box of states has one action; a box it
 // cannot decide is halved, down to states that are evaluated by the code that the edge runs. Both
@@ -24,7 +23,7 @@ namespace bess {
 
 struct VerifyOptions {
   PriceThresholds thresholds = {};
-  RuleSet rules = {};       ///< counted by name (rule_proof.h)
+  RuleSet rules = {};       ///< the operator's
   bool exhaustive = false;  ///< evaluate every state, no bounds
   int context_stride = 1;   ///< check every n-th context only (a quick look, not a proof)
   std::size_t counterexamples_max = 4096;

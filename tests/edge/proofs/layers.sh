@@ -86,7 +86,11 @@ layer $w/backtest                   $w/backtest $w/env $w/market/series $w/base 
 layer $w/rl                         $w/rl $w/nn $w/planners $w/env $w/base shared
 layer $w/correction                 $w/correction $w/rules $w/rl $w/nn $w/env $w/base shared
 layer $w/student                    $w/student $w/correction $w/rules $w/rl $w/nn $w/env $w/base shared student_weights.h
-layer $w/report                     $w/report $w/backtest $w/student $w/correction $w/rl $w/rules $w/planners/foresight.h $w/env $w/market/statistics $w/base shared
+layer $w/report                     $w/report $w/backtest $w/student $w/correction $w/rl $w/rules $w/planners/foresight.h $w/planners/baselines.h $w/env $w/market/statistics $w/base shared
+market="$w/market/series $w/market/feed $w/market/model $w/market/statistics"
+learnt="$w/student $w/correction $w/rules $w/rl $w/nn $w/planners $w/env $market $w/base"
+layer $w/chain                      $w/chain $learnt shared
+layer $w/run                        $w/run $w/chain $w/report $w/backtest $learnt shared
 layer $w/cli                        $w shared
 layer $w/main.cpp                   $w shared
 

@@ -6,7 +6,7 @@
 
 #include "shared/host/user_error.h"
 #include "tests/support/small_market.h"
-#include "workstation/cli/policy_factory.h"
+#include "workstation/planners/baselines.h"
 
 namespace bess {
 namespace {
@@ -18,7 +18,7 @@ MarketSteps four_months(std::uint64_t seed = 7) {
 }
 
 FoldPolicy fitted(const char* name) {
-  return [name](const Fold& fold) { return make_policy(name, fold.market, {}); };
+  return [name](const Fold& fold) { return make_baseline(name, fold.market, {}); };
 }
 
 TEST(Folds, HoldTheirWindowAndTheirMonthAndNothingElse) {
@@ -66,7 +66,7 @@ TEST(WalkForward, RepeatsToTheBitAndCarriesTheCharge) {
   }
   // The second month starts where the first one ended: traded alone from there it brings the same.
   const Fold& second = folds.traded[1];
-  const auto policy = make_policy("sdp", second.market, {});
+  const auto policy = make_baseline("sdp", second.market, {});
   const Evaluation alone = evaluate(second.market, second.market.days_of(Split::kTest), *policy,
                                     {{}, once.by_month[0].days.back().soc_end_frac, true});
   EXPECT_EQ(alone.profit_eur_per_day_per_mwh(), once.by_month[1].profit_eur_per_day_per_mwh());
@@ -120,7 +120,7 @@ std::shared_ptr<Policy> fit_on_the_traded_month(const Fold& fold) {
   for (MarketDay& day : cheating.market.days) {
     day.split = day.split == Split::kTest ? Split::kTrain : Split::kAll;
   }
-  return make_policy("rbc-quartile", cheating.market, {});
+  return make_baseline("rbc-quartile", cheating.market, {});
 }
 
 /// Prices shifted by one step: each decision sees what is published two minutes later.

@@ -11,8 +11,8 @@
 #include "tests/support/small_market.h"
 #include "tests/support/student_nets.h"
 #include "tests/support/temporary_folder.h"
+#include "workstation/chain/distilled_prices.h"
 #include "workstation/cli/commands.h"
-#include "workstation/cli/distilled_prices.h"
 #include "workstation/student/student_file.h"
 
 namespace bess {
@@ -181,7 +181,7 @@ TEST_F(RulesLearnt, AStudentThatIsNotProvedIsKeptUnderAnotherName) {
   }
   EXPECT_FALSE(std::filesystem::exists(student));
   const Certificate kept = load_student(folder_.file("student_unproved.json")).certificate;
-  EXPECT_GT(kept.rule_counts.at(1).violations, 0);
+  EXPECT_GT(kept.rule_counts()[1].violations, 0);
 }
 
 TEST_F(RulesCli, WhatIsAboutDistillingNeedsATeacher) {

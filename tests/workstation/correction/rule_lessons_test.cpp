@@ -61,7 +61,7 @@ TEST(RuleLessons, CornersDecideABoxOfAMonotoneStudent) {
       const Certificate found =
           verify_student(net, {.rules = rules, .context_stride = kContextCount, .threads = 1});
       std::int64_t violations = 0;
-      for (const RuleCount& count : found.rule_counts) violations += count.violations;
+      for (const RuleCount& count : found.rule_counts()) violations += count.violations;
       EXPECT_EQ(keeps, violations == 0) << charge_below << ' ' << gap;
       verdicts.insert(keeps);
     }

@@ -4,7 +4,7 @@
 
 #include "shared/host/user_error.h"
 #include "tests/support/small_market.h"
-#include "workstation/cli/policy_factory.h"
+#include "workstation/planners/baselines.h"
 #include "workstation/planners/bellman_sweep.h"
 #include "workstation/planners/foresight.h"
 #include "workstation/planners/tuned_rule.h"
@@ -13,7 +13,7 @@ namespace bess {
 namespace {
 
 double profit(const std::string& name, const MarketSteps& market, Split split, bool carry_soc) {
-  const auto policy = make_policy(name, market, {});
+  const auto policy = make_baseline(name, market, {});
   return evaluate(market, market.days_of(split), *policy, {.battery = {}, .carry_soc = carry_soc})
       .profit_eur_per_day_per_mwh();
 }
@@ -22,10 +22,10 @@ TEST(GivenRule, TakesItsThresholdsFromTheName) {
   const MarketSteps market = make_market_steps(small_series(), {});
   EXPECT_EQ(profit("rbc:11:179", market, Split::kTest, false),
             profit("rbc", market, Split::kTest, false));
-  EXPECT_NO_THROW(make_policy("rbc:-50.5:80", market, {}));
+  EXPECT_NO_THROW(make_baseline("rbc:-50.5:80", market, {}));
   for (const char* bad :
        {"rbc:", "rbc:1", "rbc:1:", "rbc:a:b", "rbc:2:1", "rbc:1:2x", "rbc:1:nan"}) {
-    EXPECT_THROW(make_policy(bad, market, {}), UserError) << bad;
+    EXPECT_THROW(make_baseline(bad, market, {}), UserError) << bad;
   }
 }
 
@@ -51,7 +51,7 @@ TEST(Foresight, IsAboveEveryOtherPolicyOnEveryDay) {
   ForesightPolicy foresight({});
   const Evaluation bound = evaluate(market, days, foresight, {});
   for (const char* name : {"rbc", "rbc-tuned", "tabular", "mpc"}) {
-    const auto policy = make_policy(name, market, {});
+    const auto policy = make_baseline(name, market, {});
     const Evaluation e = evaluate(market, days, *policy, {});
     for (std::size_t d = 0; d < days.size(); ++d) {
       EXPECT_GE(bound.days[d].profit_eur, e.days[d].profit_eur - 0.5) << name << ' ' << d;
@@ -75,7 +75,7 @@ TEST(Foresight, CarriedOverIsThePlanOfTheWholeSeries) {
   }
   // Over all days it is a bound on every chained policy.
   for (const char* name : {"tabular", "mpc"}) {
-    const auto policy = make_policy(name, market, {});
+    const auto policy = make_baseline(name, market, {});
     EXPECT_GT(all.profit_eur_per_day_per_mwh(),
               evaluate(market, market.days, *policy, carried).profit_eur_per_day_per_mwh());
   }

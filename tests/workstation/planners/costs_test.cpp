@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/support/small_market.h"
-#include "workstation/cli/policy_factory.h"
+#include "workstation/planners/baselines.h"
 
 namespace bess {
 namespace {
@@ -27,13 +27,13 @@ const MarketSteps& market() {
 
 /// Fitted with `planned`, run with what is really charged.
 Evaluation evaluate_planned(const std::string& name, const BatteryParameters& planned) {
-  const auto policy = make_policy(name, market(), planned);
+  const auto policy = make_baseline(name, market(), planned);
   return evaluate(market(), market().days_of(Split::kTest), *policy,
                   {costly_battery(), 0.5, false});
 }
 
 TEST(Costs, EachStepIsPaidAtItsImportOrExportPrice) {
-  const auto policy = make_policy("mpc", market(), costly_battery());
+  const auto policy = make_baseline("mpc", market(), costly_battery());
   std::vector<StepRecord> records;
   evaluate(market(), market().days_of(Split::kTest), *policy, {costly_battery(), 0.5, false},
            &records);
@@ -79,7 +79,7 @@ TEST(Costs, WhereNoSpreadPaysPlannersSellWhatIsThereAndRest) {
   battery.costs.import_adder_eur_per_mwh = 1000;
   const auto days = market().days_of(Split::kTest);
   for (const char* name : {"tabular", "mpc", "sdp", "foresight"}) {
-    const auto policy = make_policy(name, market(), battery);
+    const auto policy = make_baseline(name, market(), battery);
     std::vector<StepRecord> records;
     evaluate(market(), days, *policy, {battery, 0.5, true}, &records);
     for (const StepRecord& r : records) ASSERT_LE(r.power_w, 0) << name;
@@ -88,14 +88,14 @@ TEST(Costs, WhereNoSpreadPaysPlannersSellWhatIsThereAndRest) {
 
 TEST(Costs, TheSameDecisionsEarnLessByEachCost) {
   const Evaluation free =
-      evaluate(market(), market().days, *make_policy("rbc:60:140", market(), {}),
+      evaluate(market(), market().days, *make_baseline("rbc:60:140", market(), {}),
                {.battery = {}, .carry_soc = true});
   for (const TradingCosts& costs :
        {TradingCosts{.import_adder_eur_per_mwh = 1}, TradingCosts{.import_percent = 1},
         TradingCosts{.export_fee_eur_per_mwh = 1}, TradingCosts{.export_percent = 1}}) {
     BatteryParameters battery;
     battery.costs = costs;
-    const auto rule = make_policy("rbc:60:140", market(), battery);
+    const auto rule = make_baseline("rbc:60:140", market(), battery);
     const Evaluation paid =
         evaluate(market(), market().days, *rule, {.battery = battery, .carry_soc = true});
     EXPECT_LT(paid.profit_eur_per_day_per_mwh(), free.profit_eur_per_day_per_mwh());
@@ -104,7 +104,7 @@ TEST(Costs, TheSameDecisionsEarnLessByEachCost) {
 }
 
 TEST(Costs, TheReferenceWearTakesThePlaceOfTheConfiguredOne) {
-  const auto rule = make_policy("rbc:60:140", market(), {});
+  const auto rule = make_baseline("rbc:60:140", market(), {});
   const auto days = market().days_of(Split::kTest);
   const auto run = [&](double wear) {
     BatteryParameters battery;

@@ -7,15 +7,23 @@
 #include <memory>
 
 #include "tests/support/small_market.h"
-#include "workstation/cli/policy_factory.h"
+#include "workstation/planners/baselines.h"
 #include "workstation/planners/foresight.h"
 
 namespace bess {
 namespace {
 
 constexpr double kHoursPerTestStep = 2.0 / 60;
-const char* const kCausal[] = {"rbc",     "rbc:60:140", "rbc-quartile", "rbc-tuned",
-                               "tabular", "mpc",        "sdp",          "sdp-hour"};
+
+/// Every baseline but the bound, and a rule of given thresholds.
+std::vector<std::string> causal_baselines() {
+  std::vector<std::string> names{"rbc:60:140"};
+  for (const Baseline& baseline : baselines()) {
+    if (baseline.name != kForesightName && !baseline.is_for(kNeedsDayAhead))
+      names.push_back(baseline.name);
+  }
+  return names;
+}
 
 BatteryParameters random_battery(Random& random) {
   BatteryParameters b;
@@ -74,7 +82,7 @@ TEST(Properties, EnergyAndMoneyAreConservedForAnyBattery) {
       std::vector<StepRecord> records;
       // Days next to each other, so that each step follows from the one before it.
       const std::vector<MarketDay> days(market.days.begin() + 20, market.days.begin() + 25);
-      const auto policy = make_policy(name, market, battery);
+      const auto policy = make_baseline(name, market, battery);
       const Evaluation e = evaluate(market, days, *policy, options, &records);
       SCOPED_TRACE(name);
       expect_conserved(records, e, battery);
@@ -113,8 +121,8 @@ TEST(Properties, NoPolicyLooksAhead) {
   for (int delay = 0; delay <= 3; ++delay) {
     const MarketOptions options{.observation_delay_min = delay};
     const MarketSteps market = make_market_steps(series, options);
-    for (const char* name : kCausal) {
-      const auto policy = make_policy(name, market, {});
+    for (const std::string& name : causal_baselines()) {
+      const auto policy = make_baseline(name, market, {});
       EXPECT_FALSE(looks_ahead(*policy, series, options)) << name << " at delay " << delay;
     }
   }
@@ -156,7 +164,7 @@ double energy_exchanged_mwh(const std::string& name, double price, double wear) 
   const MarketSteps market = make_market_steps(constant_series(price), {});
   BatteryParameters battery;
   battery.wear_eur_per_mwh = wear;
-  const auto policy = make_policy(name, market, battery);
+  const auto policy = make_baseline(name, market, battery);
   double cycles = 0;
   const std::vector<MarketDay> days(market.days.begin(), market.days.begin() + 3);
   for (const DayResult& d : evaluate(market, days, *policy, {battery, 0.5, true}).days) {

@@ -3,8 +3,7 @@
 
 #include "shared/host/user_error.h"
 #include "tests/support/small_market.h"
-#include "workstation/cli/policy_factory.h"
-#include "workstation/cli/run_config.h"
+#include "workstation/planners/baselines.h"
 #include "workstation/rl/experience.h"
 
 namespace bess {
@@ -14,7 +13,7 @@ Evaluation evaluate_name(const char* name, const MarketSteps& market, double pla
                          double charged_wear) {
   BatteryParameters battery;
   battery.wear_eur_per_mwh = planned_wear;
-  const auto policy = make_policy(name, market, battery);
+  const auto policy = make_baseline(name, market, battery);
   battery.wear_eur_per_mwh = charged_wear;
   return evaluate(market, market.days_of(Split::kTest), *policy, {battery, 0.5, false});
 }
@@ -69,7 +68,7 @@ TEST(CycleLimit, NoOrderAfterItIsReachedUntilMidnight) {
   battery.cycles_per_day_max = 1.5;
   const double step_cycles = 4.0 / 30 / 16;
   for (const char* name : {"rbc:60:140", "tabular", "foresight"}) {
-    const auto policy = make_policy(name, market, battery);
+    const auto policy = make_baseline(name, market, battery);
     for (const bool carry_soc : {false, true}) {
       const Evaluation e =
           evaluate(market, limited_days(market), *policy, {battery, 0.5, carry_soc});
@@ -89,36 +88,27 @@ TEST(CycleLimitPlans, SaveTheCyclesForTheBestHours) {
   const auto profit = [&](Policy& policy) {
     return evaluate(market, days, policy, {battery, 0.5, false}).profit_eur_per_day_per_mwh();
   };
-  const double foresight = profit(*make_policy("foresight", market, battery));
+  const double foresight = profit(*make_baseline("foresight", market, battery));
   for (const char* name : {"rbc:60:140", "rbc-tuned", "tabular"}) {
-    EXPECT_LT(profit(*make_policy(name, market, battery)), foresight) << name;
+    EXPECT_LT(profit(*make_baseline(name, market, battery)), foresight) << name;
   }
-  const double rolling = profit(*make_policy("mpc", market, battery));
+  const double rolling = profit(*make_baseline("mpc", market, battery));
   EXPECT_LT(rolling, foresight);
   // Fitted without knowing of the limit they run into it before the evening.
   BatteryParameters unlimited = battery;
   unlimited.cycles_per_day_max = 0;
-  EXPECT_GT(rolling, profit(*make_policy("mpc", market, unlimited)));
-  EXPECT_GT(foresight, profit(*make_policy("foresight", market, unlimited)));
+  EXPECT_GT(rolling, profit(*make_baseline("mpc", market, unlimited)));
+  EXPECT_GT(foresight, profit(*make_baseline("foresight", market, unlimited)));
 }
 
 TEST(TunedRule, DoesNothingWhereNoSpreadPaysForTheWear) {
   const MarketSteps market = make_market_steps(small_series(28), {});
   BatteryParameters battery;
   battery.wear_eur_per_mwh = 1000;
-  const auto tuned = make_policy("rbc-tuned", market, battery);
+  const auto tuned = make_baseline("rbc-tuned", market, battery);
   const Evaluation e =
       evaluate(market, market.days_of(Split::kTrain), *tuned, {battery, 0.5, true});
   EXPECT_EQ(e.profit_eur_per_day_per_mwh(), 0);
-}
-
-TEST(CycleLimit, AndWearAreKeysWithRanges) {
-  const RunConfig config =
-      parse_run_config("[battery]\nwear_eur_per_mwh = 7.5\ncycles_per_day_max = 2\n", "a.toml");
-  EXPECT_EQ(config.battery.wear_eur_per_mwh, 7.5);
-  EXPECT_EQ(config.battery.cycles_per_day_max, 2);
-  EXPECT_EQ(parse_run_config(format_run_config(config), "b.toml").battery.wear_eur_per_mwh, 7.5);
-  EXPECT_THROW(parse_run_config("[battery]\nwear_eur_per_mwh = -1\n", "c.toml"), UserError);
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ OmegaPoint point(double omega, std::int64_t order_violations, double agreement,
                  const Evaluation& evaluation) {
   OmegaPoint p{omega, {}, 0.25, agreement, evaluation};
   p.certificate.states_checked = 1000;
-  p.certificate.violations_property_3 = order_violations;
+  p.certificate.set_violations_of(3, order_violations);
   return p;
 }
 

@@ -42,7 +42,7 @@ TEST(ReportTables, AProofIsClaimedOfTheWholeLatticeOnly) {
   EXPECT_EQ(proof_sentence(certificate), "Proved: no violation in 6,950,033,280 states");
   certificate.states_checked = 1000;
   EXPECT_EQ(proof_sentence(certificate), "Looked at in part: no violation in 1,000 states");
-  certificate.violations_property_1 = 1;
+  certificate.set_violations_of(1, 1);
   EXPECT_EQ(proof_sentence(certificate),
             "Not proved: it still breaks its constraints 1 times (property 1: 1) and may not be "
             "exported");
@@ -54,7 +54,7 @@ Certificate ruled_certificate(std::int64_t violations) {
   certificate.states_checked = kLatticeStateCount;
   certificate.rules = one_rule("price_min = 0\nprice_max = 9\nis = \"idle\"", "rest");
   certificate.rules.rules.push_back(one_rule("power_max = 0.5\nenforce = true", "cap").rules[0]);
-  certificate.rule_counts = {{true, 1234, violations}, {}};
+  certificate.counts = {{}, {}, {}, {}, {true, 1234, violations}, {}};
   return certificate;
 }
 

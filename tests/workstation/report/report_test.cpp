@@ -27,7 +27,7 @@ struct FinishedRun {
   static Certificate failed_certificate() {
     Certificate certificate;
     certificate.states_checked = 6'950'033'280;
-    certificate.violations_property_3 = 42;
+    certificate.set_violations_of(3, 42);
     certificate.counterexamples = {{3, 20, 2, 100, 50}};
     return certificate;
   }
@@ -166,7 +166,7 @@ TEST(Report, APageOfAFailedProofIsAboutTheUnprovedStudent) {
   EXPECT_NE(html.find("\"counterexamples_of\":\"unproved student\""), std::string::npos);
   in.broken.clear();
   StudentFile proved = run.student;
-  proved.certificate.violations_property_3 = 0;
+  proved.certificate.set_violations_of(3, 0);
   proved.certificate.counterexamples.clear();
   in.corrected = &proved;
   EXPECT_GT(count_of(html_of(in, folder.file("proved")), "corrected and proved</h1>"), 0);

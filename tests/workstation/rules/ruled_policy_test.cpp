@@ -1,5 +1,6 @@
 // A policy that obeys: the nearest action that is left, nothing else changed, and its money counted.
 #include "workstation/rules/ruled_policy.h"
+#include "workstation/rules/properties.h"
 
 #include <gtest/gtest.h>
 

@@ -350,10 +350,11 @@ TEST(RuledStudentFile, KeepsItsRulesAndWhatWasCountedOfThem) {
             format_rules(ruled_student().certificate().rules));
   EXPECT_TRUE(again.certificate.covers_lattice_without_violation());
   const Certificate& proved = ruled_student().certificate();
-  ASSERT_EQ(again.certificate.rule_counts.size(), proved.rule_counts.size());
-  for (std::size_t r = 0; r < proved.rule_counts.size(); ++r) {
-    EXPECT_EQ(again.certificate.rule_counts[r].states, proved.rule_counts[r].states);
-    EXPECT_EQ(again.certificate.rule_counts[r].binds_student, proved.rule_counts[r].binds_student);
+  ASSERT_EQ(again.certificate.rule_counts().size(), proved.rule_counts().size());
+  for (std::size_t r = 0; r < proved.rule_counts().size(); ++r) {
+    EXPECT_EQ(again.certificate.rule_counts()[r].states, proved.rule_counts()[r].states);
+    EXPECT_EQ(again.certificate.rule_counts()[r].binds_student,
+              proved.rule_counts()[r].binds_student);
   }
   save_student(folder.file("plain.json"), crowded_student().file());
   EXPECT_THAT(read_file(folder.file("plain.json")), testing::Not(HasSubstr("rules")));

@@ -55,9 +55,9 @@ TEST(Prove, AForgedCertificateIsReplacedByWhatIsFound) {
   const StudentFile& left = student_of(verdict);
   EXPECT_EQ(student_weights_hash(left.net), student_weights_hash(forged.net));
   EXPECT_EQ(left.certificate.states_checked, kLatticeStateCount);
-  EXPECT_EQ(left.certificate.violations_property_1, kContextCount * kSocCount);
-  EXPECT_EQ(left.certificate.violations_property_2, 0);
-  EXPECT_EQ(left.certificate.violations_property_3, 0);
+  EXPECT_EQ(left.certificate.violations_of(1), kContextCount * kSocCount);
+  EXPECT_EQ(left.certificate.violations_of(2), 0);
+  EXPECT_EQ(left.certificate.violations_of(3), 0);
   EXPECT_FALSE(left.certificate.counterexamples.empty());
   for (const LatticeState& state : left.certificate.counterexamples) {
     ASSERT_EQ(state.price_eur_per_mwh, kLatticePriceMinEurPerMwh);
@@ -78,8 +78,8 @@ TEST(Prove, ASampleCountsInEverySeventhContextAndProvesNothing) {
   const StudentFile never_charges{LinearNet{.charge_below = 0}.net(), flawless_claim(), ""};
   const Certificate sample = sample_violations(never_charges, 2).certificate;
   EXPECT_EQ(sample.states_checked, kContexts * kSocCount * kPriceCount);
-  EXPECT_EQ(sample.violations_property_1, kContexts * kSocCount);
-  EXPECT_EQ(sample.violations(), sample.violations_property_1);
+  EXPECT_EQ(sample.violations_of(1), kContexts * kSocCount);
+  EXPECT_EQ(sample.violations(), sample.violations_of(1));
   const StudentFile flawless{crowded_net(), {.thresholds = kCrowdedThresholds}, ""};
   const Certificate no_proof = sample_violations(flawless, 2).certificate;
   EXPECT_EQ(no_proof.violations(), 0);
@@ -92,11 +92,9 @@ TEST(Certificate, CoversTheLatticeOnlyAsAWhole) {
   Certificate quick_look = flawless_claim();
   quick_look.states_checked /= 2;
   EXPECT_FALSE(quick_look.covers_lattice_without_violation());
-  for (const auto violations :
-       {&Certificate::violations_property_1, &Certificate::violations_property_2,
-        &Certificate::violations_property_3}) {
+  for (int property = 1; property <= kPropertyCount; ++property) {
     Certificate broken = flawless_claim();
-    broken.*violations = 1;
+    broken.set_violations_of(property, 1);
     EXPECT_FALSE(broken.covers_lattice_without_violation());
   }
 }

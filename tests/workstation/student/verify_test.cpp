@@ -79,7 +79,7 @@ std::ostream& operator<<(std::ostream& out, const Counts& c) {
 }
 
 Counts counts_of(const Certificate& c) {
-  return {c.violations_property_1, c.violations_property_2, c.violations_property_3};
+  return {c.violations_of(1), c.violations_of(2), c.violations_of(3)};
 }
 
 /// Straight from the definitions, over one context.
@@ -183,9 +183,9 @@ TEST(Verify, CountsMatchTheDefinitions) {
     const Certificate certificate = verify_student(net, options);
     const auto answer = [&c](const LatticeState& s) { return c.net.action(s); };
     EXPECT_EQ(counts_of(certificate), brute_force(answer, {0, 0, 1, 0, 0}, c.low, c.high));
-    EXPECT_EQ(certificate.violations_property_1 > 0, c.breaks_low);
-    EXPECT_EQ(certificate.violations_property_2 > 0, c.breaks_high);
-    EXPECT_EQ(certificate.violations_property_3 > 0, c.breaks_order);
+    EXPECT_EQ(certificate.violations_of(1) > 0, c.breaks_low);
+    EXPECT_EQ(certificate.violations_of(2) > 0, c.breaks_high);
+    EXPECT_EQ(certificate.violations_of(3) > 0, c.breaks_order);
     EXPECT_EQ(certificate.thresholds, options.thresholds);
     EXPECT_EQ(certificate.counterexamples.empty(), certificate.violations() == 0);
     for (const LatticeState& state : certificate.counterexamples) {

@@ -11,6 +11,7 @@
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
 #include "workstation/market/feed/http_client.h"
+#include "workstation/market/feed/market_text.h"
 
 namespace bess {
 namespace {

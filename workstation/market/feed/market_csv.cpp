@@ -1,4 +1,5 @@
-// CSV downloads: `;` (portal and API) or `,` (tidy), optional quotes, any column order.
+#include "workstation/market/feed/market_csv.h"
+
 #include <fmt/core.h>
 
 #include <string>
@@ -6,7 +7,6 @@
 #include "shared/host/csv.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
-#include "workstation/market/feed/market_rows.h"
 
 namespace bess {
 namespace {

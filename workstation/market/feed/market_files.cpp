@@ -4,6 +4,7 @@
 
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
+#include "workstation/market/feed/market_text.h"
 #include "workstation/market/feed/overlap.h"
 
 namespace bess {

@@ -1,5 +1,5 @@
-// JSON downloads: the API's records (`results`), exports (a bare array) and version 1
-// (`records[].fields`).
+#include "workstation/market/feed/market_json.h"
+
 #include <algorithm>
 #include <string>
 #include <string_view>
@@ -8,7 +8,6 @@
 #include "shared/host/json.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
-#include "workstation/market/feed/market_rows.h"
 
 namespace bess {
 namespace {

@@ -1,5 +1,5 @@
-// Minute files as rows, so that what `prices import` wrote can be joined with more, or its settled
-// prices be the ground of a reconstruction.
+#include "workstation/market/feed/market_minutes.h"
+
 #include <algorithm>
 
 #include "shared/host/csv.h"
@@ -7,7 +7,6 @@
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
-#include "workstation/market/feed/market_rows.h"
 
 namespace bess {
 namespace {

@@ -6,12 +6,8 @@
 #include <string>
 #include <utility>
 
-#include "shared/host/minute_file.h"
-#include "shared/host/plain_text.h"
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
-#include "workstation/market/feed/entsoe_xml.h"
-#include "workstation/market/feed/recorded_day.h"
 
 namespace bess {
 namespace {
@@ -161,20 +157,6 @@ void append_rows(MarketRows& all, const MarketRows& rows) {
   unite(all.dual_priced_minutes, rows.dual_priced_minutes);
   unite(all.dual_priced_quarter_hours, rows.dual_priced_quarter_hours);
   unite(all.sources, rows.sources);
-}
-
-MarketRows parse_market_text(std::string_view text, std::string_view name) {
-  if (is_recorded_csv(text)) return parse_recorded_rows(text, name);  // also with a torn end
-  text = plain_text(text, name);
-  const std::size_t first = text.find_first_not_of(" \t\r\n");
-  if (first == std::string_view::npos) fail("{}: the file is empty; download it again", name);
-  if (looks_like_xml(text)) return parse_entsoe_xml(text, name);
-  if (is_minute_csv(text)) return parse_minute_file_rows(text, name);
-  if (is_spreadsheet_minute_csv(text)) {
-    return parse_minute_file_rows(from_spreadsheet(text), name);
-  }
-  const bool json = text[first] == '{' || text[first] == '[';
-  return json ? parse_market_json(text, name) : parse_market_csv(text, name);
 }
 
 }  // namespace bess

@@ -102,21 +102,4 @@ class MarketRowBuilder {
   bool has_decimal_commas_;
 };
 
-/// Reads CSV (`,` or `;`, any column order). `name` is used in messages.
-MarketRows parse_market_csv(std::string_view text, std::string_view name);
-/// Reads JSON: a bare array of records (exports), {"results": [...]} or version 1's {"records":
-/// [...]}.
-MarketRows parse_market_json(std::string_view text, std::string_view name);
-/// A minute file's indicative prices as minutes, its settled ones as quarter-hours; its sources are
-/// those that its comments name.
-MarketRows parse_minute_file_rows(std::string_view text, std::string_view name);
-/// True of a minute file that a spreadsheet saved with semicolons, and that file with commas and
-/// decimal points again, row by row.
-bool is_spreadsheet_minute_csv(std::string_view text);
-std::string from_spreadsheet(std::string_view text);
-/// A day of `prices record` as minutes; of a minute that was revised, the first price.
-MarketRows parse_recorded_rows(std::string_view text, std::string_view name);
-/// Any of them or ENTSO-E's XML, told apart by their content.
-MarketRows parse_market_text(std::string_view text, std::string_view name);
-
 }  // namespace bess

@@ -10,6 +10,7 @@
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
 #include "workstation/market/feed/http_client.h"
+#include "workstation/market/feed/market_json.h"
 #include "workstation/market/feed/recording_folder.h"
 
 namespace bess {

@@ -76,4 +76,7 @@ Lateness lateness_of(const std::vector<RecordedLine>& lines);
 /// One line for people.
 std::string describe_lateness(const Lateness& lateness);
 
+/// As minutes; of a minute that was revised, the first price.
+MarketRows parse_recorded_rows(std::string_view text, std::string_view name);
+
 }  // namespace bess

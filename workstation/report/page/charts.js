@@ -22,11 +22,12 @@ function colour(name) {
   return getComputedStyle(document.documentElement).getPropertyValue("--" + name).trim();
 }
 
+/** The colours of the chain's own policies; page.js adds those of its rivals. */
+const kPolicyColours = {"corrected student": "line-1", "unproved student": "line-1", "plain student": "line-2", "teacher": "line-3"};
+
 /** The colour of each policy, everywhere on the page. */
 function policyColour(name) {
-  const names = {"corrected student": "line-1", "unproved student": "line-1", "plain student": "line-2", "rbc-tuned": "line-2", "mpc": "line-3",
-                 "sdp": "line-4", "teacher": "line-3", "foresight": "muted"};
-  return colour(names[name] || "muted");
+  return colour(kPolicyColours[name] || "muted");
 }
 
 /** So few that none is left out for want of room: of -30, -20 ... it would be the zero. */

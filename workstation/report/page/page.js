@@ -6,6 +6,7 @@ const page = {};
 
 async function openPage() {
   page.data = JSON.parse(document.getElementById("data").textContent);
+  for (const rival of page.data.rivals) kPolicyColours[rival.name] = rival.colour;
   showMapKeys((page.data.rules || []).length > 0);
   drawTraining(page.data.learning);
   drawCheckpoints(page.data.learning);

@@ -2,7 +2,6 @@
 "use strict";
 
 const kReferenceWear = 10;  // EUR/MWh
-const kShownRivals = ["rbc-tuned", "mpc", "sdp", "foresight"];
 const kBars = 14;
 
 class TearSheet {
@@ -17,9 +16,14 @@ class TearSheet {
     });
   }
 
-  /** The exported policy and its rivals, as far as they were evaluated. */
+  /** Of these, those that were evaluated. */
   policies(names) {
     return names.map((name) => this.data.policies.find((policy) => policy.name === name)).filter(Boolean);
+  }
+
+  /** The first `count` rivals, or all. */
+  rivals(count) {
+    return this.policies(this.data.rivals.slice(0, count).map((rival) => rival.name));
   }
 
   /** EUR per MWh of capacity, by day. */
@@ -45,7 +49,7 @@ class TearSheet {
       type: "line",
       data: {
         labels: this.data.dates,
-        datasets: [exported, ...this.policies(kShownRivals)].map((policy) => ({
+        datasets: [exported, ...this.rivals()].map((policy) => ({
           label: policy.name, data: cumulative(this.profits(policy)), borderColor: policyColour(policy.name),
           backgroundColor: policyColour(policy.name), pointRadius: 0, pointHitRadius: 8,
           borderWidth: policy === exported ? 3 : 1.5, hidden: policy.name === this.data.foresight,
@@ -63,7 +67,7 @@ class TearSheet {
   }
 
   drawDrawdown(exported) {
-    const falls = [exported, ...this.policies(["rbc-tuned"])].map((policy) => [policy.name, this.drawdowns(policy)]);
+    const falls = [exported, ...this.rivals(1)].map((policy) => [policy.name, this.drawdowns(policy)]);
     const anyFalls = falls.some(([, values]) => Math.min(...values) < 0);
     document.getElementById("drawdown-none").hidden = anyFalls;
     document.getElementById("chart-drawdown").parentElement.hidden = !anyFalls;
@@ -79,12 +83,12 @@ class TearSheet {
         return own.reduce((sum, profit) => sum + profit, 0) / own.length;
       });
     };
-    this.drawBars("chart-months", months, [exported, ...this.policies(["rbc-tuned", "mpc"])].map(
+    this.drawBars("chart-months", months, [exported, ...this.rivals(2)].map(
       (policy) => [policy.name, means(policy)]));
   }
 
   drawDistribution(exported) {
-    const shown = [exported, ...this.policies(["rbc-tuned"])];
+    const shown = [exported, ...this.rivals(1)];
     const all = shown.map((policy) => this.profits(policy));
     const low = Math.min(...all.flat()), high = Math.max(...all.flat());
     const width = niceStep((high - low) / kBars), first = Math.floor(low / width) * width;

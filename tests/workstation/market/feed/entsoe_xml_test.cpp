@@ -7,6 +7,7 @@
 #include <regex>
 
 #include "tests/support/market_test_support.h"
+#include "workstation/market/feed/market_text.h"
 #include "workstation/market/model/quarter_hours_to_minutes.h"
 
 namespace bess {

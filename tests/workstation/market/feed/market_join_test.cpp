@@ -8,6 +8,7 @@
 #include "shared/utc_text.h"
 #include "tests/support/market_test_support.h"
 #include "workstation/market/feed/market_files.h"
+#include "workstation/market/feed/market_text.h"
 
 namespace bess {
 namespace {

@@ -9,6 +9,8 @@
 #include "shared/host/text.h"
 #include "tests/support/market_test_support.h"
 #include "workstation/market/feed/market_files.h"
+#include "workstation/market/feed/market_json.h"
+#include "workstation/market/feed/market_text.h"
 
 namespace bess {
 namespace {

@@ -6,10 +6,10 @@
 
 #include "shared/host/file.h"
 #include "shared/units_and_limits.h"
-#include "workstation/cli/run_record.h"
-#include "workstation/cli/run_summary.h"
 #include "workstation/report/evaluation_days.h"
 #include "workstation/rules/rule_file.h"
+#include "workstation/run/run_record.h"
+#include "workstation/run/run_summary.h"
 
 namespace bess {
 namespace {

@@ -19,8 +19,7 @@
 #include "shared/local_time.h"
 #include "tests/workstation/report/page/many_runs.h"
 #include "tests/workstation/report/report_test_support.h"
-#include "workstation/cli/policy_factory.h"
-#include "workstation/cli/run_seeds.h"
+#include "workstation/chain/policy_factory.h"
 #include "workstation/report/backtest_report.h"
 #include "workstation/report/headline.h"
 #include "workstation/report/policy_map.h"
@@ -28,6 +27,7 @@
 #include "workstation/report/shown_policies.h"
 #include "workstation/rules/rule_file.h"
 #include "workstation/rules/ruled_policy.h"
+#include "workstation/run/run_seeds.h"
 #include "workstation/student/exported_policy.h"
 #include "workstation/student/student_policy.h"
 #include "workstation/student/verify.h"
@@ -307,8 +307,8 @@ void write_runs(const std::filesystem::path& folder) {
   run.corrected.certificate.states_checked = kLatticeStateCount;
   run.plain.certificate = run.corrected.certificate;
   run.plain.certificate.counterexamples = disordered_states(run.plain.net);
-  run.plain.certificate.violations_property_3 =
-      static_cast<std::int64_t>(run.plain.certificate.counterexamples.size());
+  run.plain.certificate.set_violations_of(
+      3, static_cast<std::int64_t>(run.plain.certificate.counterexamples.size()));
   write_run_page(run, folder);
 
   const FixtureRun ruled =

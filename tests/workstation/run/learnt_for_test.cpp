@@ -1,0 +1,135 @@
+// A model tells what it was learnt for, wherever its file lies: evaluate warns of other costs,
+// another battery and another price regime.
+#include "workstation/run/learnt_for.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "shared/host/file.h"
+#include "shared/host/json.h"
+#include "tests/support/small_market.h"
+#include "tests/support/temporary_folder.h"
+#include "workstation/cli/commands.h"
+#include "workstation/market/series/price_regime.h"
+#include "workstation/rl/teacher.h"
+#include "workstation/student/student_file.h"
+
+namespace bess {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr std::int64_t kDay_s = 86'400;
+constexpr std::int64_t kPicasso_s = 1'732'575'600;
+
+/// What a command tells on the standard error.
+std::string warnings(const std::string& arguments) {
+  CommandLine command_line("bess-train", "", "");
+  ProgramCommand root = command_line.root();
+  add_commands(root);
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  command_line.parse(arguments);
+  testing::internal::GetCapturedStdout();
+  return testing::internal::GetCapturedStderr();
+}
+
+class LearntFor : public testing::Test {
+ protected:
+  LearntFor() {
+    write_minute_file(prices_, small_series(), "");
+    warnings("train --prices " + prices_ + " --out " + teacher_ + " --steps 20 --config " + dear_);
+  }
+  [[nodiscard]] std::string evaluated(const std::string& model, const std::string& more = "",
+                                      const std::string& prices = "") const {
+    return warnings("evaluate --split all --prices " + (prices.empty() ? prices_ : prices) +
+                    " --policy " + model + more);
+  }
+
+  TemporaryFolder folder_;
+  std::string prices_ = folder_.file("prices.csv.gz");
+  std::string dear_ = folder_.write("dear.toml", "[costs]\nimport_adder_eur_per_mwh = 42\n");
+  std::string teacher_ = folder_.file("teacher.bin");
+};
+
+TEST_F(LearntFor, IsInTheTeachersFileAndInThatOfItsStudent) {
+  const Entries told = load_teacher(teacher_).learnt_for;
+  EXPECT_THAT(told,
+              testing::Contains(Entries::value_type("[costs] import_adder_eur_per_mwh", "42")));
+  EXPECT_EQ(evaluated(teacher_, " --config " + dear_), "");
+  const char* const other = "[costs] import_adder_eur_per_mwh is 42 there and 0 here";
+  EXPECT_THAT(evaluated(teacher_), HasSubstr(other));
+  EXPECT_THAT(
+      evaluated(teacher_,
+                " --delay 3 --config " + folder_.write("small.toml",
+                                                       "[battery]\npower_w = 1000000\n"
+                                                       "[costs]\nimport_adder_eur_per_mwh = 42\n")),
+      AllOf(HasSubstr("observation_delay_min is 1 there and 3 here"),
+            HasSubstr("power_w is 4000000 there and 1000000 here"), Not(HasSubstr("costs"))));
+  const std::string student = folder_.file("student.json");
+  StudentFile file = compiled_student();
+  file.learnt_for = told;
+  save_student(student, file);
+  EXPECT_EQ(load_student(student).learnt_for, told);
+  EXPECT_THAT(evaluated(student), HasSubstr(other));
+}
+
+TEST_F(LearntFor, AnotherPriceRegimeIsNamed) {
+  EXPECT_THAT(evaluated(teacher_, " --config " + dear_), Not(HasSubstr("regime")));
+  MinuteSeries later = small_series();
+  later.start_utc_s += 731 * kDay_s;  // January 2025
+  const std::string prices = folder_.file("later.csv.gz");
+  write_minute_file(prices, later, "");
+  EXPECT_THAT(evaluated(teacher_, " --config " + dear_, prices),
+              AllOf(HasSubstr("its prices are of 20"),
+                    HasSubstr("another regime: from 26 November 2024 (PICASSO)")));
+}
+
+/// Each month's teacher is learnt from the days before it, says so, and is kept.
+TEST_F(LearntFor, ABacktestsTeachersNameTheirPricesAndDays) {
+  const std::string out = folder_.file("backtest");
+  const std::string command =
+      "backtest --prices " + prices_ + " --window-days 30 --policy sdp teacher --out " + out;
+  warnings(command);
+  const std::string model = out + "/2023-02.teacher.bin";
+  const Teacher teacher = load_teacher(model);
+  EXPECT_THAT(teacher.provenance, AllOf(HasSubstr(" on prices.csv.gz, by level"),
+                                        HasSubstr(", days 2023-01-02 to 2023-01-31")));
+  EXPECT_THAT(
+      learnt_for_of(model),
+      testing::Contains(testing::Pair("prices", HasSubstr("43200 minutes from 2023-01-01T23:00"))));
+  const std::string kept = read_file(model);
+  const std::string answer = read_file(out + "/backtest.json");
+  warnings(command);
+  EXPECT_EQ(read_file(model), kept);
+  EXPECT_EQ(read_file(out + "/backtest.json"), answer);
+  const Json json = Json::parse(answer);
+  const JsonValue policies = json.value()["policies"];
+  const JsonValue of_teacher = *++policies.begin();
+  EXPECT_EQ(of_teacher["policy"].text_or(""), std::string("teacher"));
+  EXPECT_EQ(of_teacher["days"].number(), 28);
+  EXPECT_GT(of_teacher["profit_eur_per_day_per_mwh"].number().value(), 0);
+}
+
+TEST(PriceRegimes, BeginAtLocalMidnight) {
+  const auto day = [](std::int64_t from_s) { return UtcSpan{from_s, from_s + kDay_s}; };
+  const UtcSpan before = day(kPicasso_s - kDay_s);
+  EXPECT_EQ(regimes_not_learnt(before, before), "");
+  EXPECT_THAT(regimes_not_learnt(before, day(kPicasso_s)), HasSubstr("PICASSO"));
+  EXPECT_THAT(regimes_not_learnt(day(kPicasso_s), before), HasSubstr("22 May 2024"));
+  EXPECT_EQ(regimes_not_learnt(day(kPicasso_s - 60), before), "") << "it learnt a minute of it";
+}
+
+/// A file of version 2 ends where its parameters do, and says nothing of what it was learnt for.
+TEST_F(LearntFor, AFileThatDoesNotSayIsReadAsBefore) {
+  StudentFile silent = compiled_student();
+  const std::string student = folder_.file("silent.json");
+  save_student(student, silent);
+  EXPECT_TRUE(load_student(student).learnt_for.empty());
+  EXPECT_EQ(evaluated(student), "") << "nobody knows";
+}
+
+}  // namespace
+}  // namespace bess

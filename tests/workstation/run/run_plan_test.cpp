@@ -1,0 +1,229 @@
+// What a run's folder refuses, and what it fills in, before anything is written.
+#include "workstation/run/run_plan.h"
+#include "workstation/student/student_file.h"
+
+#include <gmock/gmock.h>
+
+#include "shared/host/file.h"
+#include "shared/host/user_error.h"
+#include "tests/support/small_market.h"
+#include "tests/support/temporary_folder.h"
+#include "workstation/chain/folder_lock.h"
+#include "workstation/run/learnt_for.h"
+
+namespace bess {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+class RunPlanning : public testing::Test {
+ protected:
+  RunPlanning() {
+    write_minute_file(prices_, small_series(), "");
+    request_.prices = prices_;
+    request_.out = folder_.file("run");
+    request_.common.seed = 5;
+    request_.common.threads = 3;
+    request_.common.config_path = folder_.write("my.toml", "[battery]\npower_w = 5000000\n");
+    const RunPlan plan = plan_run(request_);
+    save_run_record(plan.folder, plan.record);  // as `run` begins
+  }
+
+  static std::string refusal(const RunRequest& request) {
+    try {
+      (void)plan_run(request);
+    } catch (const UserError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  TemporaryFolder folder_;
+  std::string prices_ = folder_.file("prices.csv.gz");
+  RunRequest request_;
+};
+
+TEST_F(RunPlanning, AnotherRunIsRefusedNamingEveryKeyAndBothValues) {
+  const std::string before = read_file(request_.out / "run.json");
+  RunRequest other = request_;
+  other.common.seed = 6;
+  other.common.config_path =
+      folder_.write("other.toml", "[battery]\npower_w = 2500000\n[distil]\nepochs = 7\n");
+  for (const bool resume : {false, true}) {
+    other.resume = resume;
+    EXPECT_THAT(refusal(other),
+                AllOf(HasSubstr("seed is 5 there and 6 here"),
+                      HasSubstr("[battery] power_w is 5000000 there and 2500000 here"),
+                      HasSubstr("[distil] epochs is "), HasSubstr("give another --out"),
+                      Not(HasSubstr("threads"))));
+  }
+  EXPECT_EQ(read_file(request_.out / "run.json"), before);
+  EXPECT_EQ(std::distance(fs::directory_iterator(request_.out), {}), 1) << "something was written";
+}
+
+TEST_F(RunPlanning, OtherPricesAreRefused) {
+  RunRequest other = request_;
+  other.resume = true;
+  other.prices = folder_.file("others.csv.gz");
+  write_minute_file(other.prices, small_series(59, 8), "");
+  EXPECT_THAT(refusal(other), HasSubstr("prices is crc32 "));
+}
+
+TEST_F(RunPlanning, TheSameRunIsGoneOnWithOnlyWhenAsked) {
+  EXPECT_THAT(refusal(request_),
+              AllOf(HasSubstr("this very run, just begun"), HasSubstr("--resume")));
+  request_.resume = true;
+  EXPECT_EQ(refusal(request_), "");
+}
+
+TEST_F(RunPlanning, WhatIsNotGivenIsTheFolders) {
+  RunRequest bare;
+  bare.out = request_.out;
+  bare.resume = true;
+  const RunPlan plan = plan_run(bare);
+  const RunConfig config = plan.record.config(plan.folder);
+  EXPECT_EQ(config.battery.power_w_max, 5e6);
+  EXPECT_EQ(config.train.seed, 5U);
+  EXPECT_EQ(config.distil.threads, 3);
+  EXPECT_EQ(plan.record.prices, prices_);
+  EXPECT_EQ(plan.series.settled, read_minute_file(prices_).settled);
+}
+
+/// It was undone without a word: what a run is made of stands in run.json.
+TEST_F(RunPlanning, AnEditedConfigurationIsRefusedNamingKeyAndBothValues) {
+  request_.resume = true;
+  const RunPlan plan = plan_run(request_);
+  const fs::path file = request_.out / "config.toml";
+  const std::string written = format_run_config(plan.record.config(plan.folder));
+  write_file(file, written);
+  RunRequest bare;
+  bare.out = request_.out;
+  bare.resume = true;
+  EXPECT_EQ(refusal(bare), "");
+  write_file(file, "# only a remark\n" + written);
+  EXPECT_EQ(refusal(bare), "") << "says the same";
+  write_file(file, written + "\n");
+  std::string edited = written;
+  const std::size_t at = edited.find("\npower_w = 5000000");
+  ASSERT_NE(at, std::string::npos);
+  edited.replace(at + 11, 7, "4000000");
+  write_file(file, edited);
+  for (const RunRequest& request : {bare, request_}) {
+    EXPECT_THAT(refusal(request),
+                AllOf(HasSubstr("config.toml: was edited: [battery] power_w is 5000000 in the run "
+                                "and 4000000 in the file"),
+                      HasSubstr("--config " + file.string() + " --out ANOTHER")));
+  }
+  EXPECT_EQ(read_file(file), edited) << "left as it is";
+}
+
+/// A model of before does not say what it was learnt for: then the run beside it does.
+TEST_F(RunPlanning, AModelIsToldThatWasLearntForOthers) {
+  request_.resume = true;
+  const RunPlan plan = plan_run(request_);
+  const fs::path model = request_.out / "student.json";
+  save_student(model, compiled_student());
+  RunConfig config = plan.record.config(plan.folder);
+  const auto otherwise = [&] {
+    return learnt_otherwise(learnt_for_of(model), circumstances_of(config_entries(config)));
+  };
+  EXPECT_EQ(otherwise(), "");
+  config.battery.power_w_max = 1e6;
+  config.battery.costs.import_adder_eur_per_mwh = 42;
+  config.market.observation_delay_min = 3;
+  config.distil.epochs = 7;
+  EXPECT_THAT(otherwise(),
+              AllOf(HasSubstr("[battery] power_w is 5000000 there and 1000000 here"),
+                    HasSubstr("[costs] import_adder_eur_per_mwh is 0 there and 42 here"),
+                    HasSubstr("[market] "), Not(HasSubstr("epochs"))));
+  EXPECT_TRUE(learnt_for_of("rbc-tuned").empty());
+}
+
+/// A whole folder excludes all others in it; single files are made side by side, each by one
+/// program.
+TEST_F(RunPlanning, OneProgramAtATimeIsAtWork) {
+  const fs::path folder = request_.out;
+  using Of = FolderLock::Of;
+  const auto is_busy = [](auto lock) {
+    try {
+      lock();
+    } catch (const UserError& error) {
+      return std::string_view(error.what()).find("another bess-train is at work here") !=
+             std::string_view::npos;
+    }
+    return false;
+  };
+  const auto whole = [&] { const FolderLock lock(folder); };
+  const auto part = [&] { const FolderLock lock(folder, Of::kOneFile); };
+  const auto file = [&] { const FileLock lock(folder / "teacher.bin"); };
+  {
+    const FolderLock lock(folder);
+    EXPECT_TRUE(is_busy(whole));
+    EXPECT_TRUE(is_busy(part));
+  }
+  {
+    const FolderLock lock(folder, Of::kOneFile);
+    const FileLock of_file(folder / "teacher.bin");
+    EXPECT_TRUE(is_busy(whole));
+    EXPECT_FALSE(is_busy(part)) << "another file of the folder";
+    EXPECT_TRUE(is_busy(file));
+  }
+  EXPECT_FALSE(is_busy(whole));
+  EXPECT_FALSE(is_busy(file));
+  EXPECT_FALSE(fs::exists(folder / "teacher.bin.lock"));
+}
+
+TEST_F(RunPlanning, PricesThatMovedAreTheSamePrices) {
+  const std::string moved = folder_.file("moved.csv.gz");
+  fs::rename(prices_, moved);
+  request_.prices = moved;
+  request_.resume = true;
+  EXPECT_EQ(plan_run(request_).record.prices_name, "prices.csv.gz");
+}
+
+TEST_F(RunPlanning, FilesOfARunWithoutItsRecordAreNotOverwritten) {
+  fs::remove(request_.out / "run.json");
+  write_file(request_.out / "teacher.bin", "somebody's");
+  for (const bool resume : {false, true}) {
+    request_.resume = resume;
+    EXPECT_THAT(refusal(request_), HasSubstr("holds teacher.bin but no run.json"));
+  }
+}
+
+TEST_F(RunPlanning, ARecordOfAnotherKindIsNamed) {
+  for (const char* text : {"{", "{\"version\":\"0.1.0\",\"prices\":\"a.csv\"}", "[]"}) {
+    write_file(request_.out / "run.json", text);
+    EXPECT_THAT(refusal(request_),
+                AllOf(HasSubstr("run.json: not a run's record"), HasSubstr("another folder")));
+  }
+}
+
+TEST_F(RunPlanning, AStageHoldsOnlyWhileItsFilesAreWhatTheyWere) {
+  RunPlan plan = plan_run([&] {
+    request_.resume = true;
+    return request_;
+  }());
+  const fs::path in = plan.folder.path / "in";
+  const fs::path out = plan.folder.path / "out";
+  write_file(in, "in");
+  write_file(out, "out");
+  plan.record.stages.push_back({"work", {{"in", file_mark(in)}}, {{"out", file_mark(out)}}, false});
+  save_run_record(plan.folder, plan.record);
+  const RunRecord record = *load_run_record(plan.folder);
+  EXPECT_NE(record.holds("work", {"in"}, plan.folder), nullptr);
+  EXPECT_EQ(record.holds("other work", {"in"}, plan.folder), nullptr);
+  for (const fs::path& changed : {in, out}) {
+    const std::string before = read_file(changed);
+    write_file(changed, "ouT");
+    EXPECT_EQ(record.holds("work", {"in"}, plan.folder), nullptr);
+    write_file(changed, before);
+  }
+  fs::remove(out);
+  EXPECT_EQ(record.holds("work", {"in"}, plan.folder), nullptr);
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,286 @@
+// Finished runs as figures: bands over seeds, the table of runs, and the days that both are made
+// of.
+#include "workstation/run/run_summary.h"
+
+#include <fmt/core.h>
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "shared/host/file.h"
+#include "shared/host/user_error.h"
+#include "tests/support/temporary_folder.h"
+#include "workstation/env/charge_left.h"
+#include "workstation/report/evaluation_days.h"
+#include "workstation/report/headline.h"
+#include "workstation/report/rule_prices.h"
+#include "workstation/run/run_seeds.h"
+
+namespace bess {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+/// Three days of which the first earned `profit_eur`; thirds do not end in binary.
+Evaluation evaluation_of(double profit_eur) {
+  Evaluation evaluation;
+  evaluation.capacity_mwh = BatteryParameters{}.capacity_wh / 1e6;
+  evaluation.days = {{"2023-01-26", profit_eur, 1 / 3.0, 4, 0.5, 2 / 3.0},
+                     {"2023-01-27", -1 / 3.0, 0, 0, 0.1, 0},
+                     {"2023-01-28", 7, 2, 9, 1, 3}};
+  return evaluation;
+}
+
+std::vector<NamedEvaluation> evaluations_of(double profit_eur) {
+  return {{"rbc", evaluation_of(1), evaluation_of(2)},
+          {kExportedPolicy, evaluation_of(profit_eur), evaluation_of(2 * profit_eur)}};
+}
+
+RunSummary run_of(const char* seed, double profit_eur) {
+  RunSummary run{{std::string("runs/seed-") + seed}, {}, evaluations_of(profit_eur)};
+  run.record.identity = {{"prices", "the same"}, {"seed", seed}};
+  run.record.figures = RunFigures{"made by hand", "0123abcd", 1, 2, 0};
+  return run;
+}
+
+TEST(EvaluationDays, ReadBackToTheBit) {
+  const auto written = evaluations_of(10 / 3.0);
+  const std::string text = evaluation_days_csv(written);
+  const auto read = parse_evaluation_days_csv(text, "days.csv", {});
+  EXPECT_EQ(evaluation_days_csv(read), text);
+  EXPECT_EQ(comparison_csv(read), comparison_csv(written));
+  EXPECT_THROW((void)parse_evaluation_days_csv(text + "rbc,half,2023-01-29,0,0,0,0,0,true,0\n",
+                                               "days.csv", {}),
+               UserError);
+}
+
+/// The page's, the summary's, the JSON's and the table of runs': one figure, carried over, to the
+/// digit.
+TEST(RunSummaries, TheSameFigureStandsEverywhere) {
+  RunSummary run = run_of("1", 24.7);
+  run.record.figures->last_learnt_day = "2023-01-25";
+  for (NamedEvaluation& named : run.evaluations) value_charge_left(named.carried_over, {}, 87.3);
+  // As a finished run is read back from its folder.
+  run.evaluations = parse_evaluation_days_csv(evaluation_days_csv(run.evaluations), "days", {});
+  const std::string figure =
+      fmt::format("{:.1f}", run.evaluations[1].carried_over.profit_eur_per_day_per_mwh());
+  const std::string friendlier =
+      fmt::format("{:.1f}", run.evaluations[1].day_reset.profit_eur_per_day_per_mwh());
+  ASSERT_NE(figure, friendlier);
+  const Headline headline = headline_of(run.evaluations).value();
+  EXPECT_THAT(headline_html(headline), AllOf(HasSubstr("\"headline-profit\">" + figure + "<"),
+                                             HasSubstr("says " + friendlier)));
+  EXPECT_THAT(headline_text(headline),
+              AllOf(HasSubstr("earned " + figure + " EUR"), HasSubstr("says " + friendlier)));
+  const Json json = Json::parse(summary_json(run).line());
+  const JsonValue told = json.value()["headline"];
+  EXPECT_EQ(fmt::format("{:.1f}", told["profit_eur_per_day_per_mwh"].number().value()), figure);
+  EXPECT_EQ(
+      fmt::format("{:.1f}", told["profit_from_same_soc_eur_per_day_per_mwh"].number().value()),
+      friendlier);
+  EXPECT_EQ(told["carry_soc"].boolean(), true);
+  EXPECT_EQ(told["charge_price_eur_per_mwh"].number(), 87.3);
+  for (const JsonValue row : json.value()["policies"]) {
+    if (row["policy"].text_or("") != std::string_view(kExportedPolicy)) continue;
+    const bool is_carried = row["soc"].text_or("") == std::string_view("carried");
+    EXPECT_EQ(fmt::format("{:.1f}", row["profit_eur_per_day_per_mwh"].number().value()),
+              is_carried ? figure : friendlier);
+  }
+  EXPECT_THAT(
+      format_runs_table({run}),
+      AllOf(HasSubstr("  " + figure + " "), HasSubstr(" " + friendlier + " "),
+            HasSubstr("Test days: local days 26 to the end of each month, 3 days in 1 month "
+                      "from 2023-01-26 to 2023-01-28. All of them come after"),
+            HasSubstr("No walk-forward figure")));
+  EXPECT_THAT(format_comparison_table(run.evaluations),
+              AllOf(HasSubstr(figure), HasSubstr("valued at 87.30 EUR/MWh")));
+}
+
+/// A run of an older bess-train did not value the charge: its figures are not mixed with others.
+TEST(EvaluationDays, OfAnOlderProgramAreRefusedWithTheMend) {
+  try {
+    (void)parse_evaluation_days_csv(
+        "policy,soc,date,profit_eur,cycles,switches,soc_end,throughput_mwh\n"
+        "rbc,reset,2023-01-26,1,1,1,0.5,1\n",
+        "run/evaluation_days.csv", {});
+    ADD_FAILURE() << "believed";
+  } catch (const UserError& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("run/evaluation_days.csv: an older bess-train"),
+                                    HasSubstr("bess-train report --run")));
+  }
+}
+
+TEST(RunSummaries, BandsSpanTheRuns) {
+  const std::vector<Band> bands = bands_of({run_of("1", 24), run_of("2", 48), run_of("3", 72)});
+  ASSERT_EQ(bands.size(), 4U);
+  const Band& band = bands[1];
+  EXPECT_EQ(band.policy, kExportedPolicy);
+  EXPECT_EQ(band.soc, "reset");
+  EXPECT_NEAR(band.high - band.low, 48 / 3.0 / 8, 1e-12);  // EUR a day and MWh of 8
+  EXPECT_NEAR(band.mean, (band.low + band.high) / 2, 1e-12);
+  EXPECT_NEAR(band.deviation, (band.high - band.low) / 2, 1e-12);
+  EXPECT_EQ(bands[0].deviation, 0) << "a baseline knows no seed";
+}
+
+TEST(RunSummaries, BandsAreInTableReportAndJson) {
+  const TemporaryFolder folder;
+  const std::vector<RunSummary> runs{run_of("1", 24), run_of("2", 48)};
+  const std::vector<Band> bands = bands_of(runs);
+  EXPECT_THAT(format_bands(bands, 2), AllOf(HasSubstr("lowest"), HasSubstr(kExportedPolicy)));
+  EXPECT_THAT(bands_json(bands, 2), AllOf(HasSubstr("\"runs\":2"), HasSubstr("\"highest\":")));
+  write_seeds_report(folder.file(""), runs);
+  EXPECT_THAT(read_file(folder.file("seeds.html")),
+              AllOf(HasSubstr("seed-2"), HasSubstr("Highest")));
+  EXPECT_EQ(std::ranges::count(read_file(folder.file("seeds.csv")), '\n'), 1 + 4);
+}
+
+/// Four days of two months: what seeds differ in is one thing, what days differ in another.
+TEST(RunSummaries, SeedsTellDayErrorsBesideTheirSpreadAndWhereTheyComeFrom) {
+  const auto days = [](double january_eur, double february_eur) {
+    Evaluation evaluation = evaluation_of(0);
+    evaluation.days.clear();
+    for (const char* date : {"2023-01-30", "2023-01-31"}) {
+      evaluation.days.push_back({date, january_eur, 1, 1, 0.5});
+    }
+    for (const char* date : {"2023-02-27", "2023-02-28"}) {
+      evaluation.days.push_back({date, february_eur, 1, 1, 0.5});
+    }
+    return evaluation;
+  };
+  std::vector<RunSummary> runs{run_of("1", 0), run_of("2", 0)};
+  for (RunSummary& run : runs) {
+    const double seed_eur = run.record.value("seed") == "2" ? 16 : 0;
+    run.record.prices_name = "market.csv.gz";
+    run.evaluations = {
+        {"rbc", days(0, 0), days(0, 0)},
+        {kExportedPolicy, days(16 + seed_eur, 32 + seed_eur), days(80 + seed_eur, 160 + seed_eur)}};
+  }
+  // Carried over: 11 and 21 a MWh and day in January and February, the mean of both seeds.
+  const std::vector<Band> bands = bands_of(runs);
+  const Band& band = bands.back();
+  EXPECT_DOUBLE_EQ(band.mean, 16);
+  EXPECT_DOUBLE_EQ(band.errors.by_month, 5);
+  EXPECT_DOUBLE_EQ(band.errors.plain, std::sqrt(100.0 / 3 / 4));
+  EXPECT_DOUBLE_EQ(band.deviation, std::sqrt(2.0));
+  EXPECT_DOUBLE_EQ(band.gain.value().mean, 16);
+  EXPECT_DOUBLE_EQ(band.gain.value().standard_error_by_month, 5);
+  EXPECT_FALSE(bands.front().gain.has_value());
+  EXPECT_THAT(format_bands(bands, 2),
+              AllOf(HasSubstr("    16.0    2.9      5.0    +16.0    2.9      5.0      1.4 "),
+                    HasSubstr("2 months tell it to within 71 % only")));
+  EXPECT_THAT(bands_json(bands, 2), AllOf(HasSubstr("\"profit_standard_error_by_month\":5"),
+                                          HasSubstr("\"gain_standard_error_by_month\":5")));
+  const TemporaryFolder folder;
+  write_seeds_report(folder.file(""), runs, {{"seed-3", "41 violations <left>"}});
+  EXPECT_THAT(read_file(folder.file("seeds.html")),
+              AllOf(HasSubstr("<a href=\"seed-1/report.html\">seed-1</a>"),
+                    HasSubstr("<a href=\"seed-2/report.html\">seed-2</a>"),
+                    HasSubstr("<a href=\"seed-3/report.html\">seed-3</a> was not proved"),
+                    HasSubstr("41 violations &lt;left&gt;"),
+                    HasSubstr("standard error over days is 2.9, and 5.0 by month"),
+                    HasSubstr("<td data-label=\"Gain by month\">5.0</td>"),
+                    HasSubstr("<dt>prices</dt><dd>market.csv.gz: the same</dd>"),
+                    HasSubstr("<dt>command</dt><dd>report_test"),
+                    HasSubstr("local days 26 to the end of each month")));
+}
+
+TEST(RunSummaries, TheTableSaysWhatRunsEarnedAndDifferIn) {
+  const std::string table = format_runs_table({run_of("1", 24), run_of("2", 48)});
+  EXPECT_THAT(table, AllOf(HasSubstr("runs/seed-2"), HasSubstr("+2.0"), HasSubstr("seed: 1 | 2"),
+                           Not(HasSubstr("prices: "))));
+}
+
+/// Rules are said, not printed as the file's text; a key that only a later run has is a difference
+/// too.
+TEST(RunSummaries, RulesOfEitherRunAreADifference) {
+  const char* const rules = "[[rule]]\nname = \"rest\"\nhours = \"23:00-06:00\"\nis = \"idle\"\n";
+  for (const bool first_has_them : {true, false}) {
+    std::vector<RunSummary> runs{run_of("1", 24), run_of("2", 48)};
+    Entries& identity = runs[first_has_them ? 0 : 1].record.identity;
+    identity.emplace_back(kRulesKey, rules);
+    identity.emplace_back("[new] key", "7");
+    const std::string table = format_runs_table(runs);
+    const std::string said = "\"rest\" (23:00-06:00: the action is idle)";
+    EXPECT_THAT(table, HasSubstr(first_has_them ? "rules: " + said + " | none\n"
+                                                : "rules: none | " + said + "\n"));
+    EXPECT_THAT(
+        table, HasSubstr(first_has_them ? "[new] key: 7 | unknown\n" : "[new] key: unknown | 7\n"));
+    EXPECT_THAT(table, Not(HasSubstr("[[rule]]")));
+  }
+}
+
+/// What each rule cost is a part of a price, no rival; violations are told apart by demand.
+TEST(RunSummaries, ARunWithRulesTellsWhatEachOneCostAndWhoBrokeIt) {
+  RunSummary run = run_of("1", 24);
+  run.evaluations.insert(run.evaluations.begin() + 1,
+                         {{kPlainName, evaluation_of(48), evaluation_of(48)},
+                          {under_rule_name("rest"), evaluation_of(40), evaluation_of(40)},
+                          {kUnderAllRules, evaluation_of(40), evaluation_of(40)}});
+  run.record.figures->demands = {{"property 3", 7, 0}, {"rule \"rest\"", 68'924'057, 0}};
+  const std::string json = summary_json(run).line();
+  EXPECT_THAT(json, AllOf(HasSubstr("{\"demand\":\"property 3\",\"violations_plain\":7,"),
+                          HasSubstr("\"violations_plain\":68924057,\"violations_corrected\":0}"),
+                          HasSubstr("{\"part\":\"rule\",\"rule\":\"rest\","),
+                          HasSubstr("{\"part\":\"correction\",")));
+  EXPECT_THAT(format_bands(bands_of({run, run}), 2), Not(HasSubstr("under")));
+  EXPECT_THAT(format_comparison_table(run.evaluations), Not(HasSubstr("under")));
+  const RulePrices prices = rule_prices_of(run.evaluations).value();
+  ASSERT_EQ(prices.rules.size(), 1U);
+  EXPECT_EQ(prices.rules[0].meaning, "rest");
+  // Of three days one differs, by EUR a day over 8 MWh.
+  EXPECT_NEAR(prices.rules[0].difference[0].mean, -8 / 3.0 / 8, 1e-12);
+  EXPECT_NEAR(prices.correction.difference[0].mean, 8 / 3.0 / 8, 1e-12);
+  EXPECT_NEAR(prices.total.difference[0].mean, 0, 1e-12);
+}
+
+TEST(RunSummaries, AnEvaluationThatWasEditedIsNotBelieved) {
+  const TemporaryFolder folder;
+  const RunFolder run{folder.file("run")};
+  const std::string days = evaluation_days_csv(evaluations_of(24));
+  write_file(run.file(run_file::kDays), days);
+  RunRecord record = run_of("1", 24).record;
+  record.stages = {
+      {"evaluation", {}, {{run_file::kDays, file_mark(run.file(run_file::kDays))}}, false}};
+  save_run_record(run, record);
+  EXPECT_EQ(load_run_summary(run).evaluations.size(), 2U);
+  for (const std::string& other : {days + "rbc,reset,2023-01-29,1e9,0,0,0,0\n", std::string()}) {
+    write_file(run.file(run_file::kDays), other);
+    try {
+      (void)load_run_summary(run);
+      ADD_FAILURE() << "believed";
+    } catch (const UserError& error) {
+      EXPECT_THAT(error.what(), AllOf(HasSubstr("is not what the run wrote"),
+                                      HasSubstr("bess-train report --run")));
+    }
+  }
+}
+
+TEST(RunSummaries, ARunThatIsNotFinishedIsNamedWithTheMend) {
+  const TemporaryFolder folder;
+  const RunFolder run{folder.file("run")};
+  const auto refusal = [&] {
+    try {
+      (void)load_run_summary(run);
+    } catch (const UserError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(refusal(), HasSubstr("holds no run"));
+  RunRecord record;
+  record.stages = {{"teacher", {}, {}, false}};
+  save_run_record(run, record);
+  EXPECT_THAT(refusal(),
+              AllOf(HasSubstr("stopped after the teacher"), HasSubstr("run --resume --out")));
+  record.stages.push_back({"corrected student", {}, {}, true});
+  record.stages.push_back({"report of the failed proof", {}, {}, false});
+  save_run_record(run, record);
+  EXPECT_THAT(refusal(), AllOf(HasSubstr("ended without a proof, "), HasSubstr("report.html shows"),
+                               HasSubstr("run --from-teacher"), Not(HasSubstr("--resume"))));
+}
+
+}  // namespace
+}  // namespace bess

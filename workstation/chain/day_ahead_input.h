@@ -1,0 +1,35 @@
+// --day-ahead: the outlook that policies may plan on, read, judged and given to the market.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "shared/host/command_line.h"
+#include "workstation/chain/price_input.h"
+#include "workstation/market/feed/day_ahead_rows.h"
+#include "workstation/market/series/day_ahead_publication.h"
+
+namespace bess {
+
+class DayAheadInput {
+ public:
+  /// Declares --day-ahead.
+  void add(ProgramCommand& command);
+  [[nodiscard]] const std::string& path() const { return path_; }
+  /// Nothing when none is given. Judged by itself and by what was settled: prices filed under the
+  /// wrong day are look-ahead. Throws UserError.
+  [[nodiscard]] std::shared_ptr<const DayAheadPublication> read(const MinuteSeries& settled,
+                                                                const AcceptedFindings& accepted,
+                                                                int published_min) const;
+
+ private:
+  std::string path_;
+};
+
+/// Judges what was joined of `files`, writes it and says what it is. Throws UserError, and nothing
+/// is written.
+void write_judged_day_ahead(const JoinedDayAhead& joined, const AcceptedFindings& accepted,
+                            const std::vector<std::string>& files, const std::string& provenance,
+                            const std::string& out);
+
+}  // namespace bess

@@ -1,0 +1,91 @@
+#include "workstation/chain/policy_factory.h"
+
+#include <filesystem>
+
+#include "shared/host/user_error.h"
+#include "workstation/env/context_fit.h"
+#include "workstation/planners/baselines.h"
+#include "workstation/student/exported_policy.h"
+
+namespace bess {
+namespace {
+
+constexpr std::string_view kCompiled = "compiled";
+
+/// Keeps a model alive as long as the policy that reads it.
+template <typename Model, typename ModelPolicy, typename View>
+std::shared_ptr<Policy> owning(Model model, View view) {
+  struct Holder {
+    Model model;
+    ModelPolicy policy;
+    Holder(Model m, View v) : model(std::move(m)), policy(v(model)) {}
+  };
+  auto holder = std::make_shared<Holder>(std::move(model), view);
+  return {holder, &holder->policy};
+}
+
+std::shared_ptr<Policy> student_policy(StudentFile student) {
+  struct Holder {
+    StudentFile student;
+    std::unique_ptr<Policy> policy;
+  };
+  const auto holder = std::make_shared<Holder>(std::move(student), nullptr);
+  holder->policy = exported_policy(holder->student);
+  return {holder, holder->policy.get()};
+}
+
+std::shared_ptr<Policy> model_policy(const std::string& path, const Risk& risk) {
+  if (!std::filesystem::exists(path)) {
+    fail("--policy {}: neither a file nor one of: {}", path, policy_help());
+  }
+  if (is_teacher_file(path)) {
+    return owning<Teacher, TeacherPolicy>(load_teacher(path, risk),
+                                          [](const Teacher& t) -> const Teacher& { return t; });
+  }
+  return student_policy(load_student(path));
+}
+
+}  // namespace
+
+std::string policy_help() {
+  std::string text;
+  for (const Baseline& baseline : baselines()) {
+    text += baseline.name + (baseline.help.empty() ? "" : " (" + baseline.help + ")") + ", ";
+  }
+  return text +
+         "rbc:LOW:HIGH, compiled (the array in this program), or a teacher's or student's file";
+}
+
+void require_policies(const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    if (name == kCompiled || find_baseline(name) != nullptr) continue;
+    const bool is_pipe = std::filesystem::exists(name) && !std::filesystem::is_regular_file(name);
+    if (is_pipe) continue;  // it can be read once
+    name.starts_with(kGivenRule) ? given_rule(name) : model_policy(name, {});
+  }
+}
+
+void require_outlook(const std::vector<std::string>& names, const std::string& day_ahead) {
+  for (const std::string& name : names) {
+    const Baseline* baseline = find_baseline(name);
+    if (!day_ahead.empty() || baseline == nullptr || !baseline->is_for(kNeedsDayAhead)) continue;
+    fail("--policy {} plans on day-ahead prices: give their file with --day-ahead", name);
+  }
+}
+
+std::shared_ptr<Policy> make_policy(const std::string& name, const MarketSteps& market,
+                                    const BatteryParameters& battery, const Risk& risk) {
+  if (const auto baseline = make_baseline(name, market, battery)) return baseline;
+  if (name == kCompiled) return student_policy(compiled_student());
+  return model_policy(name, risk);
+}
+
+ContextClasses context_of_policy(const std::string& policy, const MarketSteps& market,
+                                 ContextKind otherwise) {
+  if (policy == kCompiled) return compiled_student().net.context;
+  if (!std::filesystem::exists(policy)) return fit_context_classes(market, otherwise);
+  if (is_teacher_file(policy)) return load_teacher(policy).context;
+  return load_student(policy).net.context;
+}
+
+}  // namespace bess

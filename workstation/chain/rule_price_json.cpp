@@ -1,0 +1,61 @@
+#include "workstation/chain/rule_price_json.h"
+
+#include "workstation/base/answer.h"
+
+namespace bess {
+namespace {
+
+template <typename Whole>
+Json whole_or_null(const std::optional<Whole>& number) {
+  return number ? Json(*number) : Json::null();
+}
+
+void add_gain(const RuleGain& gain, bool carry_soc, Json& json) {
+  json.set(key::kCarrySoc, carry_soc);
+  json.set(key::kProfit, Decimals{gain.profit, 4});
+  json.set("profit_without_rules_eur_per_day_per_mwh", Decimals{gain.without, 4});
+  json.set(key::kGain, Decimals{gain.gain, 4});
+  json.set(key::kGainError, Decimals{gain.gain_error, 4});
+  json.set(key::kGainErrorByMonth, Decimals{gain.gain_error_by_month, 4});
+  json.set("gain_deviation_over_seeds", Decimals{gain.spread, 4});
+}
+
+/// Names of before schema version 1, until the next release.
+void add_names_of_before(const RulePriceRow& row, Json& json) {
+  json.set("without_eur_per_day_per_mwh", Decimals{row.reset.without, 4});
+  json.set("difference", Decimals{row.reset.gain, 4});
+  json.set("standard_error", Decimals{row.reset.gain_error, 4});
+  json.set("spread", Decimals{row.reset.spread, 4});
+  json.set("carried_profit_eur_per_day_per_mwh", Decimals{row.carried.profit, 4});
+  json.set("carried_without_eur_per_day_per_mwh", Decimals{row.carried.without, 4});
+  json.set("carried_difference", Decimals{row.carried.gain, 4});
+  json.set("carried_standard_error", Decimals{row.carried.gain_error, 4});
+  json.set("carried_spread", Decimals{row.carried.spread, 4});
+  json.set("decisions_changed", Decimals{row.changed_share, 6});
+}
+
+}  // namespace
+
+Json rule_price_json(const RulePriceRow& row) {
+  Json json = answer("rule_price");
+  json.set("rule", row.rule);
+  json.set("by", row.by);
+  json.set(key::kGainOver, row.gain_over);
+  json.set("split", row.split);
+  json.set("days", row.days);
+  json.set("seeds", whole_or_null(row.seeds));
+  json.set("states_checked", whole_or_null(row.states_checked));
+  json.set("violations", whole_or_null(row.violations));
+  json.set("proved", whole_or_null(row.proved));
+  json.set("rounds", whole_or_null(row.rounds));
+  json.set("seconds_per_student", Decimals{row.seconds_per_student, 1});
+  json.set("share_of_decisions_changed", Decimals{row.changed_share, 6});
+  add_gain(row.reset, false, json);
+  Json carried = Json::object();
+  add_gain(row.carried, true, carried);
+  json.set(key::kCarriedOver, std::move(carried));
+  add_names_of_before(row, json);
+  return json;
+}
+
+}  // namespace bess

@@ -1,0 +1,26 @@
+// The paper's three properties [SPEC 5] as rules like an operator's, built in: charge at or below
+// the low price, discharge at or above the high one, and two directions, since property 3 speaks of
+// price and SoC. Whatever counts, teaches, draws or tells of a rule does so of these four by the
+// same code.
+#pragma once
+
+#include <string>
+
+#include "workstation/rules/rule.h"
+
+namespace bess {
+
+inline constexpr int kPropertyCount = 3;
+inline constexpr std::size_t kBuiltInRuleCount = 4;
+
+/// The four, for these thresholds.
+RuleSet built_in_rules(const PriceThresholds& thresholds);
+/// They, and then the rules.
+RuleSet with_built_in(const PriceThresholds& thresholds, const RuleSet& rules);
+/// The same with the thresholds that the rules leave of these.
+RuleSet with_properties(const RuleSet& rules, const PriceThresholds& thresholds);
+
+/// "charge at or below -500 EUR/MWh"; of property 1 to 3.
+std::string property_text(int property, const PriceThresholds& thresholds);
+
+}  // namespace bess

@@ -1,0 +1,100 @@
+#include "workstation/run/learnt_for.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cinttypes>
+#include <cstdio>
+
+#include "shared/utc_text.h"
+#include "workstation/chain/chain_steps.h"
+#include "workstation/market/series/price_regime.h"
+#include "workstation/rl/teacher.h"
+#include "workstation/student/student_file.h"
+
+namespace bess {
+namespace {
+
+constexpr const char* kPricesKey = "prices";  // as in a run's record
+
+/// What prices_hash() wrote, read back.
+std::optional<UtcSpan> span_of(const Entries& there) {
+  const auto prices = std::ranges::find(there, kPricesKey, &Entries::value_type::first);
+  if (prices == there.end()) return {};
+  std::int64_t minutes = 0;
+  char from[32] = {};
+  std::int64_t from_utc_s = 0;
+  if (std::sscanf(prices->second.c_str(), "crc32 %*8x, %" SCNd64 " minutes from %31s", &minutes,
+                  from) != 2 ||
+      !parse_utc(from, from_utc_s)) {
+    return {};
+  }
+  return UtcSpan{from_utc_s, from_utc_s + 60 * minutes};
+}
+
+std::string date_of(std::int64_t utc_s) {
+  return std::string(utc_text(utc_s).view().substr(0, 10));
+}
+
+}  // namespace
+
+Entries learnt_for(const RunConfig& config, const MinuteSeries& series) {
+  Entries entries = circumstances_of(config_entries(config));
+  entries.emplace_back(kPricesKey, prices_hash(series));
+  return entries;
+}
+
+Entries learnt_for(const RunConfig& config, const MinuteSeries& series, const MarketSteps& market,
+                   const std::vector<MarketDay>& days) {
+  const std::int64_t from_utc_s = market.of(days.front()).front().utc_s;
+  const std::int64_t until_utc_s = market.of(days.back()).back().utc_s + kSecondsPerStep;
+  Entries entries = circumstances_of(config_entries(config));
+  entries.emplace_back(kPricesKey, prices_hash(prices_checksum(series),
+                                               (until_utc_s - from_utc_s) / 60, from_utc_s));
+  return entries;
+}
+
+Entries learnt_for_of(const std::filesystem::path& model) {
+  if (!std::filesystem::is_regular_file(model)) return {};
+  Entries own =
+      is_teacher_file(model) ? load_teacher(model).learnt_for : load_student(model).learnt_for;
+  if (!own.empty()) return own;
+  const auto run = load_run_record({model.parent_path()});
+  if (!run) return {};
+  Entries of_run = circumstances_of(run->identity);
+  of_run.emplace_back(kPricesKey, run->value(kPricesKey));
+  return of_run;
+}
+
+std::string learnt_otherwise(const Entries& there, const Entries& here) {
+  if (there.empty()) return {};
+  Entries of_both;
+  std::ranges::copy_if(there, std::back_inserter(of_both), [&](const auto& entry) {
+    return std::ranges::find(here, entry.first, &Entries::value_type::first) != here.end();
+  });
+  return differences(of_both, here);
+}
+
+std::string unknown_regimes(const Entries& there, const MarketSteps& market,
+                            const std::vector<MarketDay>& days) {
+  const auto learnt = span_of(there);
+  if (!learnt || days.empty()) return {};
+  const UtcSpan traded{market.of(days.front()).front().utc_s, market.of(days.back()).back().utc_s};
+  const std::string regimes = regimes_not_learnt(*learnt, traded);
+  if (regimes.empty()) return {};
+  return fmt::format("its prices are of {} to {}, these days of another regime: {}",
+                     date_of(learnt->from_s), date_of(learnt->until_s - 1), regimes);
+}
+
+void warn_learnt_otherwise(const std::filesystem::path& model, const Entries& here,
+                           const MarketSteps& market, const std::vector<MarketDay>& days) {
+  const Entries there = learnt_for_of(model);
+  std::string other = learnt_otherwise(there, here);
+  const std::string regimes = unknown_regimes(there, market, days);
+  if (!regimes.empty()) other += (other.empty() ? "" : "; ") + regimes;
+  if (other.empty()) return;
+  fmt::print(stderr, "bess-train: warning: {} was learnt for other circumstances: {}\n",
+             model.string(), other);
+}
+
+}  // namespace bess

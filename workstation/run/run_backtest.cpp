@@ -1,0 +1,77 @@
+#include "workstation/run/run_backtest.h"
+
+#include <fmt/core.h>
+
+#include <limits>
+
+#include "shared/crc32.h"
+#include "shared/host/file.h"
+#include "shared/host/json.h"
+#include "workstation/base/answer.h"
+
+namespace bess {
+namespace {
+
+namespace fs = std::filesystem;
+
+double number(const JsonValue& value) {
+  return value.number().value_or(std::numeric_limits<double>::quiet_NaN());
+}
+
+JsonValue chain_of(const JsonValue& backtest) {
+  for (const JsonValue policy : backtest["policies"]) {
+    if (policy["policy"].text_or("") == std::string_view(kChainName)) return policy;
+  }
+  return JsonValue{};
+}
+
+/// Without the folder's place: the same run says the same wherever it lies.
+std::string how_to_make_one(const RunRecord& record) {
+  return fmt::format(
+      "'bess-train backtest --prices FILE --config RUN/{} --seed {} --out RUN/{}', of the run's "
+      "prices, makes one",
+      run_file::kConfig, record.value("seed"), kRunsBacktest);
+}
+
+}  // namespace
+
+std::string learning_identity(const std::string& prices_hash, const RunConfig& config) {
+  const std::string keys = format_run_config(config);
+  Crc32 crc;
+  crc.add_bytes(keys.data(), keys.size());
+  return fmt::format("{}, seed {}, configuration crc32 {:08x}", prices_hash, config.train.seed,
+                     crc.value());
+}
+
+WalkForwardOfRun walk_forward_of(const RunFolder& folder, const RunRecord& record) {
+  if (!record.value(kRulesKey).empty()) {
+    return {std::nullopt, "this run has rules, and a backtest learns without any"};
+  }
+  if (!record.teacher_file.empty()) {
+    return {std::nullopt,
+            "this run took its teacher from elsewhere, and a backtest trains its own"};
+  }
+  const std::string name = fmt::format("{}/{}", kRunsBacktest, kBacktestJson);
+  const fs::path path = folder.path / name;
+  if (!fs::exists(path)) return {std::nullopt, how_to_make_one(record)};
+  const Json json = Json::parse(read_file(path));
+  const JsonValue chain = chain_of(json.value());
+  const auto profit = chain[key::kProfit].number();
+  if (!profit) {
+    return {std::nullopt, fmt::format("{} has none of the policy {}", name, kChainName)};
+  }
+  const std::string identity = learning_identity(record.value("prices"), record.config(folder));
+  if (json.value()["learnt_from"].text_or("") != identity) {
+    return {std::nullopt, fmt::format("{} is of other prices, another seed or configuration; "
+                                      "remove its folder, then {}",
+                                      name, how_to_make_one(record))};
+  }
+  return {WalkForwardFigure{
+              *profit,
+              {number(chain[key::kProfitError]), number(chain[key::kProfitErrorByMonth]),
+               static_cast<int>(number(chain["months"])), static_cast<int>(number(chain["days"]))},
+              fmt::format("{}/{}", kRunsBacktest, kBacktestPage)},
+          ""};
+}
+
+}  // namespace bess

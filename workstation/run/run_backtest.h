@@ -1,0 +1,24 @@
+// The backtest that belongs to a run: the folder "backtest" in the run's own, made of the same
+// prices, seed and configuration.
+#pragma once
+
+#include "workstation/report/walk_forward_figure.h"
+#include "workstation/run/run_record.h"
+
+namespace bess {
+
+/// Where it lies in a run's folder, and its files' names.
+inline constexpr const char* kRunsBacktest = "backtest";
+inline constexpr const char* kBacktestJson = "backtest.json";
+inline constexpr const char* kBacktestPage = "backtest.html";
+/// The whole chain, learnt anew for each fold.
+inline constexpr const char* kChainName = "student";
+
+/// What a backtest is made of, to be held against a run: prices, seed and every key, in one text.
+std::string learning_identity(const std::string& prices_hash, const RunConfig& config);
+
+/// The figure of the backtest in the run's folder. None when there is none, or it is of something
+/// else.
+WalkForwardOfRun walk_forward_of(const RunFolder& folder, const RunRecord& record);
+
+}  // namespace bess

@@ -1,0 +1,79 @@
+// A run as stages, each from files of the run's folder to files of it: what is done and whole is
+// kept, what is not is done, in order. Every stage reads its inputs from the disk, so that a run
+// that was interrupted anywhere ends with the same bytes as one that was not.
+#pragma once
+
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "shared/host/minute_file.h"
+#include "workstation/run/run_record.h"
+#include "workstation/run/run_report.h"
+#include "workstation/run/stage_table.h"
+#include "workstation/student/prove.h"
+
+namespace bess {
+
+class RunStages {
+ public:
+  /// What it is about goes to `messages`. The folder is locked by the caller.
+  RunStages(RunFolder folder, RunRecord record, const MinuteSeries& series, std::FILE* messages);
+
+  /// Every stage. Throws ProofFailed when the corrected student was not proved, now or before.
+  void finish();
+  /// The report once more. Throws UserError naming what is missing.
+  void report_again();
+  /// The closing table.
+  [[nodiscard]] std::string summary() const;
+
+ private:
+  using Names = std::vector<std::string>;
+
+  [[nodiscard]] bool is_due(const Stage& stage) const;
+  /// Keeps what is whole, else makes it. Throws ProofFailed.
+  void go_through(const Stage& stage);
+  Names make(std::string_view stage);
+  /// Notes that the stage is done and took `seconds`.
+  void note(StageRecord stage, double seconds);
+  void announce(const Stage& stage) const;
+  void tell(const std::string& text) const;
+  /// Removes what was left behind half-written, and a checkpoint that has served.
+  void tidy() const;
+
+  Names make_configuration() const;
+  Names make_prices() const;
+  Names make_teacher();
+  Names take_teacher() const;
+  Names make_plain_student();
+  Names make_corrected_student();
+  [[noreturn]] void fail_the_proof();
+  void report_the_failure();
+  [[nodiscard]] StudentFile unproved_student() const;
+  Names make_failure_report();
+  Names make_header();
+  Names make_evaluation();
+  Names make_report();
+
+  [[nodiscard]] std::filesystem::path path(const char* name) const { return folder_.file(name); }
+  const Teacher& teacher();
+  const Matrix& visited();
+  RunResults results(StudentFile corrected);
+
+  RunFolder folder_;
+  RunRecord record_;
+  RunConfig config_;
+  const MinuteSeries& series_;
+  MarketSteps market_;
+  std::FILE* messages_;
+  std::optional<Teacher> teacher_;       ///< once it is needed
+  std::optional<Matrix> visited_;        ///< the same
+  std::optional<ProvedStudent> proved_;  ///< when it was proved just now
+  bool unproved_ = false;                ///< the stage that is being made ended without a proof
+};
+
+/// One line for whoever interrupts the run.
+std::string how_to_go_on(const RunFolder& folder);
+
+}  // namespace bess
