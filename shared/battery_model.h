@@ -15,8 +15,8 @@ struct BatteryParameters {
   double discharge_efficiency = 0.9486832980505138;
   double soc_min_frac = 0.10;
   double soc_max_frac = 1.00;
-  // What using it costs, and how much it may be used: battery_step knows nothing of these three, accounting
-  // and planning do (exchange_cost.h).
+  // What using it costs, and how much it may be used: battery_step knows nothing of these three,
+  // accounting and planning do (exchange_cost.h).
   double wear_eur_per_mwh = 0;    ///< of throughput: charged and discharged energy, grid side
   TradingCosts costs{};           ///< beside the price
   double cycles_per_day_max = 0;  ///< equivalent full cycles a local day; 0 = no limit

@@ -1,5 +1,6 @@
-// One request to a Modbus device and what came of it, in fixed size: what the edge's link tells a listener,
-// what a line of a recording holds (host/bus_recording.h), and what the simulator replays.
+// One request to a Modbus device and what came of it, in fixed size: what the edge's link tells a
+// listener, what a line of a recording holds (host/bus_recording.h), and what the simulator
+// replays.
 #pragma once
 
 #include <array>

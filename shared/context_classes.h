@@ -1,6 +1,7 @@
-// The student's third input [SPEC 4]: one of twelve context classes. By `month` it is the paper's local
-// month, which learns the level of the training year's prices by heart; by `level` it is the class of the
-// trailing price level (price_level.h), which holds in another year. The proof covers all twelve either way.
+// The student's third input [SPEC 4]: one of twelve context classes. By `month` it is the paper's
+// local month, which learns the level of the training year's prices by heart; by `level` it is the
+// class of the trailing price level (price_level.h), which holds in another year. The proof covers
+// all twelve either way.
 #pragma once
 
 #include <cstdint>

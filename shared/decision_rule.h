@@ -1,6 +1,7 @@
-// A rule of an operator in integers: a box of states, and what may be decided in it. Proof and guard look it
-// up with the same rounding, so that a rule that a student is proved for never makes the guard step in.
-// A rule holds on whole EUR/MWh, not clamped to the lattice: what lies outside it is the guard's alone.
+// A rule of an operator in integers: a box of states, and what may be decided in it. Proof and
+// guard look it up with the same rounding, so that a rule that a student is proved for never makes
+// the guard step in. A rule holds on whole EUR/MWh, not clamped to the lattice: what lies outside
+// it is the guard's alone.
 #pragma once
 
 #include <cstdint>
@@ -45,8 +46,8 @@ struct RulePoint {
   std::int16_t context_class;      ///< 1..12
 };
 
-/// Nearest whole EUR/MWh, halves up, as lattice_price_of() before it clamps; a price beyond all ends that a
-/// rule may have is at that end, so that a rule without an end there holds for it.
+/// Nearest whole EUR/MWh, halves up, as lattice_price_of() before it clamps; a price beyond all
+/// ends that a rule may have is at that end, so that a rule without an end there holds for it.
 constexpr std::int32_t whole_price_of(std::int32_t price_centi_eur_per_mwh) {
   return clamp_to(rounding_divide(price_centi_eur_per_mwh, kCentiPerEur), -kThresholdMaxEurPerMwh,
                   kThresholdMaxEurPerMwh);

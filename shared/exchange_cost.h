@@ -1,5 +1,5 @@
-// What one exchange costs: the single place where energy becomes money, for accounting, planning, learning
-// and for settling what the edge did.
+// What one exchange costs: the single place where energy becomes money, for accounting, planning,
+// learning and for settling what the edge did.
 #pragma once
 
 #include <cmath>
@@ -8,8 +8,8 @@
 
 namespace bess {
 
-/// What exchanging `energy_mwh` (grid side, charge positive) costs at this price, trading costs and wear
-/// included. Negative: it earns.
+/// What exchanging `energy_mwh` (grid side, charge positive) costs at this price, trading costs and
+/// wear included. Negative: it earns.
 inline double exchange_cost_eur(const BatteryParameters& battery, double energy_mwh,
                                 double price_eur_per_mwh) {
   const double paid_eur_per_mwh = energy_mwh > 0

@@ -30,8 +30,8 @@ struct CivilTime {
   int year, month, day, hour, minute, second;
 };
 
-/// The instant at which the wall clock shows this; of an hour that comes twice the first, of one that is left out what
-/// would have been that long after the hour before.
+/// The instant at which the wall clock shows this; of an hour that comes twice the first, of one
+/// that is left out what would have been that long after the hour before.
 std::int64_t utc_from_local(const CivilTime& wall);
 
 /// Seconds since 1970 of a UTC calendar time (proleptic Gregorian); fields must be in range.

@@ -1,9 +1,9 @@
-// The trailing price level [SPEC 8]: an exponentially weighted mean of the prices that decisions were made
-// on, time constant one day. In integers, so that the workstation, the simulator and the edge have the
-// same level to the bit after the same rows, whatever machine they run on.
+// The trailing price level [SPEC 8]: an exponentially weighted mean of the prices that decisions
+// were made on, time constant one day. In integers, so that the workstation, the simulator and the
+// edge have the same level to the bit after the same rows, whatever machine they run on.
 //
-// Each row counts once, at the first decision that sees it. A gap lets the level rest: an hour without
-// prices, or a year without the program, leaves it where it was.
+// Each row counts once, at the first decision that sees it. A gap lets the level rest: an hour
+// without prices, or a year without the program, leaves it where it was.
 #pragma once
 
 #include <cstdint>
@@ -37,8 +37,8 @@ struct PriceLevel {
            row_minute_utc_s >= 0;
   }
 
-  /// The newest row that a decision saw. The first one sets the level. Prices count as the student sees
-  /// them, clamped to the lattice: one spike must not move a day.
+  /// The newest row that a decision saw. The first one sets the level. Prices count as the student
+  /// sees them, clamped to the lattice: one spike must not move a day.
   constexpr void observe(std::int64_t minute_utc_s, std::int32_t price_centi_eur_per_mwh) {
     if (minute_utc_s <= row_minute_utc_s) return;
     const std::int64_t price_q16 = to_q16(price_centi_eur_per_mwh);

@@ -1,10 +1,10 @@
-// What buying and selling a MWh costs beside its price: grid fees, taxes, the supplier's margin. The two
-// directions differ, so a price alone no longer says what an exchange is worth:
+// What buying and selling a MWh costs beside its price: grid fees, taxes, the supplier's margin.
+// The two directions differ, so a price alone no longer says what an exchange is worth:
 //   import price = price + adder + percent of |price|
 //   export price = price - fee   - percent of |price|
-// A percentage is of the price's size, never of its sign: it always costs. At -100 EUR/MWh and 5 % one is
-// paid 95 for taking a MWh and pays 105 for giving one. (Taken of the signed price it would add to what one
-// is paid for taking: a fee that turns into a gift is no supplier's contract.)
+// A percentage is of the price's size, never of its sign: it always costs. At -100 EUR/MWh and 5 %
+// one is paid 95 for taking a MWh and pays 105 for giving one. (Taken of the signed price it would
+// add to what one is paid for taking: a fee that turns into a gift is no supplier's contract.)
 #pragma once
 
 namespace bess {

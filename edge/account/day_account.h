@@ -1,9 +1,9 @@
-// A local day in one line: money, energy, cycles, interventions, from the decision log's records. Integers
-// until they are written.
+// A local day in one line: money, energy, cycles, interventions, from the decision log's records.
+// Integers until they are written.
 //
-// A record's power was measured 3 s before its tick, and its price is of the minute before it: both stand
-// for the two minutes that end there. The money is an estimate: the measured power of one instant, at the
-// indicative price, without the settlement of the quarter-hour, fees or taxes.
+// A record's power was measured 3 s before its tick, and its price is of the minute before it: both
+// stand for the two minutes that end there. The money is an estimate: the measured power of one
+// instant, at the indicative price, without the settlement of the quarter-hour, fees or taxes.
 #pragma once
 
 #include <array>
@@ -39,7 +39,8 @@ class DayAccount {
   [[nodiscard]] int valued_cycles() const { return valued_cycles_; }
   /// Over those; 0 where there are none.
   [[nodiscard]] double mean_price_eur_per_mwh() const;
-  /// State of charge when it was first and last measured, in 1e-4, and the newest capacity: false = never measured.
+  /// State of charge when it was first and last measured, in 1e-4, and the newest capacity: false =
+  /// never measured.
   [[nodiscard]] bool has_soc() const { return first_soc_utc_s_ != INT64_MAX; }
   [[nodiscard]] std::int32_t first_soc_e4() const { return first_soc_e4_; }
   [[nodiscard]] std::int32_t last_soc_e4() const { return last_soc_e4_; }

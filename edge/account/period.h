@@ -1,4 +1,5 @@
-// Local days as a person asks for them: today, yesterday, week, month, 2026-11-23, 2026-11-01..2026-11-23.
+// Local days as a person asks for them: today, yesterday, week, month, 2026-11-23,
+// 2026-11-01..2026-11-23.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +14,8 @@ struct Period {
   friend constexpr bool operator==(const Period&, const Period&) = default;
 };
 
-/// A week begins on Monday; week and month end today. False when it is none of these, or ends before it begins.
+/// A week begins on Monday; week and month end today. False when it is none of these, or ends
+/// before it begins.
 bool parse_period(std::string_view text, std::int32_t today, Period& period);
 
 }  // namespace bess

@@ -1,8 +1,9 @@
 // What a battery earned in some days, as a table for people, as CSV and as JSON.
 //
-// The money is an estimate: the power that was measured at each tick, at the price that was decided on, without the
-// settlement of the quarter-hour, fees or taxes. What the battery holds more or less at the end than at the beginning
-// is told beside it, at the mean price: a day that ends empty has sold what another one bought.
+// The money is an estimate: the power that was measured at each tick, at the price that was decided
+// on, without the settlement of the quarter-hour, fees or taxes. What the battery holds more or
+// less at the end than at the beginning is told beside it, at the mean price: a day that ends empty
+// has sold what another one bought.
 #pragma once
 
 #include <string>

@@ -23,7 +23,8 @@ class AnswerCurve {
   AnswerCurve(std::int32_t ordered_w, std::int32_t band_w)
       : ordered_w_(ordered_w), band_w_(band_w) {}
 
-  /// More than fit are left out: the first ones tell of lag and ramp, and `outside_until_ms` goes on.
+  /// More than fit are left out: the first ones tell of lag and ramp, and `outside_until_ms` goes
+  /// on.
   void add(const AnswerReading& reading) {
     if (!is_within(reading.along_w)) {
       outside_until_ms_ = reading.begin_ms;

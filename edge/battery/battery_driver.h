@@ -35,8 +35,8 @@ class BatteryDriver {
   BatteryDriver(const BatteryDriver&) = delete;
   BatteryDriver& operator=(const BatteryDriver&) = delete;
 
-  /// Connects if needed and reads everything that the map measures. Where an identity check finds another
-  /// capacity, that is all there is of the measurement.
+  /// Connects if needed and reads everything that the map measures. Where an identity check finds
+  /// another capacity, that is all there is of the measurement.
   Status read(BatteryMeasurement& measurement) {
     measurement = BatteryMeasurement{};
     IdentityFailure failure;
@@ -94,8 +94,8 @@ class BatteryDriver {
   }
 
   /// Gives the battery back to its own mode and reads that back. Has a reserve of the budget to
-  /// itself, and is not refused because measurements fail: scale factors that were read once will do.
-  /// Nor because the device has changed since it was known, which an order would be.
+  /// itself, and is not refused because measurements fail: scale factors that were read once will
+  /// do. Nor because the device has changed since it was known, which an order would be.
   Status release() {
     const Status known = identify();
     if (known != Status::kOk && !(known == Status::kImplausible && may_be_released_)) return known;
@@ -222,8 +222,8 @@ class BatteryDriver {
                 left_s < map_.watchdog.refresh_s;
   }
 
-  /// An order in force is looked for where it was written. `active`: the device says that it follows
-  /// one, as far as it can say so.
+  /// An order in force is looked for where it was written. `active`: the device says that it
+  /// follows one, as far as it can say so.
   void watch_order(bool active) {
     if (!in_force_) return;
     if (!active && !is_within_its_time()) return lose_order();  // nobody has fed it: nobody's fault
@@ -260,7 +260,8 @@ class BatteryDriver {
     return !map_.active.empty() && map_.watchdog.expiry_visible;
   }
 
-  /// Fed so recently that only somebody's will can have ended it; clocks that are a tenth apart agree.
+  /// Fed so recently that only somebody's will can have ended it; clocks that are a tenth apart
+  /// agree.
   [[nodiscard]] bool is_within_its_time() const {
     if (map_.watchdog.kind == Watchdog::Kind::kNone) return true;
     const std::int64_t duration_ns = map_.watchdog.duration_s * kNanosecondsPerSecond;

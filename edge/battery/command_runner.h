@@ -65,8 +65,8 @@ class CommandRunner {
     return true;
   }
 
-  /// What stands in the registers of an order that was read back. What the device counts itself, and
-  /// what was not read back, proves nothing.
+  /// What stands in the registers of an order that was read back. What the device counts itself,
+  /// and what was not read back, proves nothing.
   Status trace(Command command, OrderTrace& found) {
     found = OrderTrace::kOurs;
     StaticVector<std::int8_t, kPointsMax> points;
@@ -213,8 +213,8 @@ class CommandRunner {
     return false;
   }
 
-  /// Calls `visit(write, value)` for every value that the sequence leaves in a register and that can
-  /// be read back: of several writes of one point, the last.
+  /// Calls `visit(write, value)` for every value that the sequence leaves in a register and that
+  /// can be read back: of several writes of one point, the last.
   template <typename Visit>
   static void for_each_read_back(const CommandSequence& sequence, const Visit& visit) {
     for (int i = 0; i < sequence.writes.size(); ++i) {
@@ -225,8 +225,8 @@ class CommandRunner {
     }
   }
 
-  /// Calls `visit(write, point)` for what is known to have been left in the registers by an order and by
-  /// what enabled it.
+  /// Calls `visit(write, point)` for what is known to have been left in the registers by an order
+  /// and by what enabled it.
   template <typename Visit>
   void for_each_of_order(Command command, const Visit& visit) {
     const auto visit_known = [&](const BlockWrite& write, const WriteValue& value) {

@@ -50,8 +50,8 @@ struct LinkCounters {
   std::int64_t register_writes = 0;  ///< write requests that left for the device
 };
 
-/// Is told every request and what came of it, on the thread that asked: it may neither wait nor allocate.
-/// The time of an exchange is left to it.
+/// Is told every request and what came of it, on the thread that asked: it may neither wait nor
+/// allocate. The time of an exchange is left to it.
 struct ExchangeListener {
   void (*tell)(void* owner, const BusExchange& exchange) = nullptr;
   void* owner = nullptr;
@@ -65,8 +65,8 @@ class ModbusLink {
   /// Connects if needed. `registers` holds at least `span.count` and is filled only on kOk.
   Status read(const RegisterSpan& span, std::uint16_t* registers);
   /// `function` 6 writes the first register alone, 16 writes `count` of them at once.
-  /// Nothing leaves after `send_until_ns` (CLOCK_MONOTONIC), which connecting and the device's gap may
-  /// take it past: kTooLate.
+  /// Nothing leaves after `send_until_ns` (CLOCK_MONOTONIC), which connecting and the device's gap
+  /// may take it past: kTooLate.
   Status write(std::int32_t unit, std::uint8_t function, std::uint16_t address,
                const std::uint16_t* registers, int count, std::int64_t send_until_ns = INT64_MAX);
   void close();

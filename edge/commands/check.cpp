@@ -141,7 +141,8 @@ bool read_own_map(const SiteConfig& site, ModbusMeter& meter, std::int32_t& grid
   return status == Status::kOk || complain_of_meter(site, status_text(status).data());
 }
 
-/// One reading of the meter, and the house's load that follows from it; true when there is none, or it can be read.
+/// One reading of the meter, and the house's load that follows from it; true when there is none, or
+/// it can be read.
 bool report_site(const EdgeConfig& config, ModbusBattery& battery, ModbusMeter& meter) {
   const SiteConfig& site = config.site;
   if (site.settings.meter == MeterSource::kNone) return true;

@@ -1,7 +1,8 @@
-// What a command of bess-edge is: one file with one row, its row, that command_list.h names. Its options go into
-// a struct of its own, its function gets that struct and the settings; parsing, help and what is said of a slip are
-// the same for all (command_line.cpp). By hand and not CLI11: options may stand before their command, the edge needs
-// nothing of it on its target, and nothing here throws.
+// What a command of bess-edge is: one file with one row, its row, that command_list.h names. Its
+// options go into a struct of its own, its function gets that struct and the settings; parsing,
+// help and what is said of a slip are the same for all (command_line.cpp). By hand and not CLI11:
+// options may stand before their command, the edge needs nothing of it on its target, and nothing
+// here throws.
 #pragma once
 
 #include <charconv>
@@ -18,8 +19,8 @@
 
 namespace bess {
 
-/// How an option is called, and how its value gets into the struct of its command. Without a name: a word that
-/// stands alone.
+/// How an option is called, and how its value gets into the struct of its command. Without a name:
+/// a word that stands alone.
 struct CommandOption {
   std::string_view name;
   bool takes_value = false;
@@ -137,7 +138,8 @@ int usage_error(const EdgeCommand& command, const std::string& message);
 std::optional<int> take_options(const EdgeCommand& command, const Words& words, void* given,
                                 SettingsFile& settings);
 
-/// Of --config, or the installed ones. Otherwise the exit code: 2 where there are none, 1 where they are bad.
+/// Of --config, or the installed ones. Otherwise the exit code: 2 where there are none, 1 where
+/// they are bad.
 std::optional<int> load_settings(const EdgeCommand& command, SettingsFile& settings);
 
 /// What is wrong with options that are right each by itself; null: nothing.

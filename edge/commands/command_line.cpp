@@ -80,8 +80,8 @@ int print_version() {
   return 0;
 }
 
-/// The first word that is neither an option nor its value: options may stand before the command. Behind an option
-/// that no command knows nothing can be told.
+/// The first word that is neither an option nor its value: options may stand before the command.
+/// Behind an option that no command knows nothing can be told.
 std::size_t find_command_word(const Words& words) {
   for (std::size_t i = 0; i < words.size(); ++i) {
     if (!words[i].starts_with('-')) return i;

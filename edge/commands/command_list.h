@@ -1,5 +1,5 @@
-// The commands of bess-edge, in the order of its help. A row is a command: NAME_command.cpp defines it:
-// kNAMECommand.
+// The commands of bess-edge, in the order of its help. A row is a command: NAME_command.cpp defines
+// it: kNAMECommand.
 #pragma once
 
 #include "edge/commands/command.h"

@@ -7,8 +7,8 @@
 
 namespace bess {
 
-/// Seconds of whole numbers, each with s, m, h or d behind it; false when it is none, 0, or more than a
-/// week.
+/// Seconds of whole numbers, each with s, m, h or d behind it; false when it is none, 0, or more
+/// than a week.
 inline bool parse_duration(std::string_view text, std::int64_t& seconds) {
   constexpr std::int64_t kWeekS = 7 * 86'400;
   constexpr std::string_view kUnits = "smhd";

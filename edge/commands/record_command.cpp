@@ -1,5 +1,6 @@
-// bess-edge record: reads what the register map names, again and again, and writes every request and reply to a
-// file that can be given away. Writes nothing to the device. `bess-edge run --record` records a controller at work.
+// bess-edge record: reads what the register map names, again and again, and writes every request
+// and reply to a file that can be given away. Writes nothing to the device. `bess-edge run
+// --record` records a controller at work.
 #include <unistd.h>
 
 #include <algorithm>
@@ -71,8 +72,8 @@ std::string path_of(const RecordGiven& given, std::int64_t utc_s) {
   return "bess-" + name + ".jsonl";
 }
 
-/// Where the SunSpec models lie, and every point by itself, so that one that is refused takes no other with it.
-/// What a command would write is asked for as the holding register that it is.
+/// Where the SunSpec models lie, and every point by itself, so that one that is refused takes no
+/// other with it. What a command would write is asked for as the holding register that it is.
 void read_everything(const RegisterMap& map, const PointPlaces& places, Bus& bus,
                      EdgeClock& clock) {
   static_cast<void>(bus.locate_models());

@@ -1,5 +1,5 @@
-// `bess-edge --self-test`: can this machine run the controller at this site? Each part that it stands on is tried
-// once; nothing is written to the battery.
+// `bess-edge --self-test`: can this machine run the controller at this site? Each part that it
+// stands on is tried once; nothing is written to the battery.
 #pragma once
 
 #include "edge/settings/edge_config.h"

@@ -1,5 +1,5 @@
-// `bess-edge why`: who decided a cycle, since when, what ends it, and at which prices and states of charge it would have
-// been decided otherwise.
+// `bess-edge why`: who decided a cycle, since when, what ends it, and at which prices and states of
+// charge it would have been decided otherwise.
 #include <cstdio>
 
 #include "edge/commands/command_list.h"

@@ -74,7 +74,8 @@ struct Trip {
   [[nodiscard]] constexpr bool is_set() const { return reason != Reason::kStudent; }
 };
 
-/// The order that the battery followed when it was read, for a later run to judge the reading again by.
+/// The order that the battery followed when it was read, for a later run to judge the reading again
+/// by.
 struct FollowedOrder {
   bool is_judged = false;  ///< it was followed since the reading before, unchanged by a limit
   std::int32_t power_w = 0;

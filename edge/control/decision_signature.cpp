@@ -10,7 +10,8 @@
 namespace bess {
 namespace {
 
-/// The paper's house battery in whole watt-seconds, with 90 % of the energy left after a round trip.
+/// The paper's house battery in whole watt-seconds, with 90 % of the energy left after a round
+/// trip.
 class IntegerBattery {
  public:
   [[nodiscard]] std::int32_t soc_e4() const {

@@ -1,6 +1,7 @@
-// A full charge every N days, so that the battery's management can balance its cells and set its SoC right.
-// Counts local days since the SoC was last full. When N are over, nothing is discharged, and the battery
-// charges while the price is not above the trailing level; one day later at any price. Pure integers.
+// A full charge every N days, so that the battery's management can balance its cells and set its
+// SoC right. Counts local days since the SoC was last full. When N are over, nothing is discharged,
+// and the battery charges while the price is not above the trailing level; one day later at any
+// price. Pure integers.
 #pragma once
 
 #include <cstdint>
@@ -35,8 +36,8 @@ class FullCharge {
   /// `last_full_day` as `last_full_day_of` gives it.
   constexpr void restore(std::int32_t last_full_day) { last_full_day_ = last_full_day; }
 
-  /// Once a cycle in which the battery was read. Where nothing is known the days count from now on, as they
-  /// do after a clock that was in the future.
+  /// Once a cycle in which the battery was read. Where nothing is known the days count from now on,
+  /// as they do after a clock that was in the future.
   constexpr void update(std::int32_t local_day, std::int32_t soc_e4) {
     const bool is_unknown = last_full_day_ == 0 || last_full_day_ > local_day;
     if (is_unknown || soc_e4 >= kFullE4) last_full_day_ = local_day;

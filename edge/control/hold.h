@@ -1,6 +1,6 @@
-// An operator's hold: so many watts until an instant, whatever prices and student say. It crosses from the
-// thread that reads its file to the control thread in one atomic word, so that neither waits for the
-// other, nor the control thread for a disk.
+// An operator's hold: so many watts until an instant, whatever prices and student say. It crosses
+// from the thread that reads its file to the control thread in one atomic word, so that neither
+// waits for the other, nor the control thread for a disk.
 #pragma once
 
 #include <atomic>
@@ -29,8 +29,8 @@ struct HoldReport {
   std::uint32_t until_utc_s = 0;
 };
 
-/// A hold that ends later than any can that was ever allowed was made by a wrong clock, or is judged
-/// by one: it is not followed, and is told of as unreadable.
+/// A hold that ends later than any can that was ever allowed was made by a wrong clock, or is
+/// judged by one: it is not followed, and is told of as unreadable.
 constexpr HoldReport hold_at(const Hold& hold, std::int64_t now_utc_s) {
   const std::int64_t left_s = std::int64_t{hold.until_utc_s} - now_utc_s;
   if (hold.unreadable || left_s > kHoldSecondsMax + kHoldSecondsMin) return {.unreadable = true};

@@ -23,8 +23,9 @@ struct LevelStart {
   bool refused_log = false;  ///< the log had a level that no prices lead to
 };
 
-/// The level of the newest record, as far as it may be believed. A row later than any that can exist was
-/// logged while the clock was wrong: what the level is stands, but rows of now must count again.
+/// The level of the newest record, as far as it may be believed. A row later than any that can
+/// exist was logged while the clock was wrong: what the level is stands, but rows of now must count
+/// again.
 constexpr PriceLevel level_from_log(const PriceLevel& logged, std::int64_t now_utc_s) {
   if (!logged.is_known() || !logged.is_sound()) return {};
   const std::int64_t newest_possible_utc_s = std::max<std::int64_t>(now_utc_s / 60 * 60 - 60, 1);

@@ -1,5 +1,5 @@
-// What the controller wants of the battery, in the project's own units: the word that control passes down
-// to the register codec, which knows how a device says it.
+// What the controller wants of the battery, in the project's own units: the word that control
+// passes down to the register codec, which knows how a device says it.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
-// The prices of the last hours before the program started, and the level that a controller which had run
-// all the time would have by now. Filled in any order: servers answer with the newest rows first.
+// The prices of the last hours before the program started, and the level that a controller which
+// had run all the time would have by now. Filled in any order: servers answer with the newest rows
+// first.
 #pragma once
 
 #include <array>

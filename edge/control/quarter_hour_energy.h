@@ -1,7 +1,7 @@
 // What has been imported, and what the battery has taken, in the quarter-hour under way: the sum
-// that the Belgian capacity tariff takes its mean of. Pure integers, fed with every reading. Between
-// two readings import is the mean of both (export pays nothing back), and the battery's power the
-// higher of the two: orders change it between readings, and it must not be counted short.
+// that the Belgian capacity tariff takes its mean of. Pure integers, fed with every reading.
+// Between two readings import is the mean of both (export pays nothing back), and the battery's
+// power the higher of the two: orders change it between readings, and it must not be counted short.
 //
 // What nobody measured (a gap longer than `gap_s_max`, the time before the first reading) counts as
 // the cap, or as the reading after or before it if that is more: after a restart the rest of the

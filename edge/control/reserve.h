@@ -1,5 +1,6 @@
-// The backup reserve: a state of charge that is kept for a black-out, by the hour of the local day and, where
-// wanted, by month. Apart from soc_min, which is for the battery's health. Pure integers.
+// The backup reserve: a state of charge that is kept for a black-out, by the hour of the local day
+// and, where wanted, by month. Apart from soc_min, which is for the battery's health. Pure
+// integers.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
-// How often orders have changed between charging and discharging in the last hour, against the operator's
-// cap: what bounds the harm of a price source that lies. Idling in between does not make two reversals of
-// one, nor none. Pure integers; one bit for each step of the hour.
+// How often orders have changed between charging and discharging in the last hour, against the
+// operator's cap: what bounds the harm of a price source that lies. Idling in between does not make
+// two reversals of one, nor none. Pure integers; one bit for each step of the hour.
 #pragma once
 
 #include <bit>

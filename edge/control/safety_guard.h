@@ -1,8 +1,8 @@
 // The guard between student and battery [SPEC 7]: pure integers, no memory but the SoC hysteresis.
-// Precedence: stop reasons (clock, link, alarm, temperature, off-grid, supervision, price) > limits of
-// SoC, reserve, cycles, reversals, power and site > ramp > an operator's hold > the operator's rules > price
-// thresholds > full charge > student. Every intervention carries its reason. A hold needs no price: its stop
-// reasons do not count meanwhile.
+// Precedence: stop reasons (clock, link, alarm, temperature, off-grid, supervision, price) > limits
+// of SoC, reserve, cycles, reversals, power and site > ramp > an operator's hold > the operator's
+// rules > price thresholds > full charge > student. Every intervention carries its reason. A hold
+// needs no price: its stop reasons do not count meanwhile.
 #pragma once
 
 #include <cstdint>

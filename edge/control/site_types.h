@@ -26,7 +26,8 @@ struct MeterTrust {
   std::int64_t error_squares = 0;
 };
 
-/// The site's part of one cycle, for the log. All zero where neither meter nor limits are configured.
+/// The site's part of one cycle, for the log. All zero where neither meter nor limits are
+/// configured.
 struct SiteReport {
   bool has_grid_power = false;  ///< the meter was read, and lately enough to decide by it
   std::int32_t grid_power_w = 0;

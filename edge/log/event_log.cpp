@@ -164,7 +164,8 @@ void EventLog::run() {
   }
 }
 
-/// The rings first, status last: whoever is told of a record finds it in a ring, a next run as well.
+/// The rings first, status last: whoever is told of a record finds it in a ring, a next run as
+/// well.
 void EventLog::keep(const CycleRecord& record) {
   const std::uint64_t number = newer_ring().newest_number() + 1;
   const std::int64_t dropped = dropped_;
@@ -233,8 +234,9 @@ bool EventLog::append_to_ring(const CycleRecord& record, std::uint64_t number) {
          ring_.append(record, number);
 }
 
-/// The state folder is another one: unmounted, mounted, replaced. An empty one, or one that this run has written to,
-/// is gone on with. The log of others may hold a trip: the next start has to read it.
+/// The state folder is another one: unmounted, mounted, replaced. An empty one, or one that this
+/// run has written to, is gone on with. The log of others may hold a trip: the next start has to
+/// read it.
 bool EventLog::follow_the_folder() {
   RingLog there;
   FileMessage ignored;

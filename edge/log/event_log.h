@@ -2,8 +2,8 @@
 // log thread of its own, on a static stack, writes it everywhere:
 //   CycleRecord -> queue -> log thread -> run folder (memory): short ring, metrics, status
 //                                      -> stdout (journal), ring log, CSV, metrics, status
-// The run folder comes first: what is in it holds, however the disk dies. A disk may stand still for
-// seconds: 64 records, two hours, fit into the queue; what does not fit is dropped and counted.
+// The run folder comes first: what is in it holds, however the disk dies. A disk may stand still
+// for seconds: 64 records, two hours, fit into the queue; what does not fit is dropped and counted.
 // After `open` neither thread allocates here.
 #pragma once
 
@@ -41,9 +41,9 @@ class EventLog {
   EventLog& operator=(const EventLog&) = delete;
   ~EventLog();
 
-  /// Opens the files, publishes a first status and starts the log thread. False with one line. A disk
-  /// that is full, read-only or broken is told and no reason to fail: what it refuses is tried again
-  /// with every record.
+  /// Opens the files, publishes a first status and starts the log thread. False with one line. A
+  /// disk that is full, read-only or broken is told and no reason to fail: what it refuses is tried
+  /// again with every record.
   bool open(const EventLogSettings& settings, const RunIdentity& identity, FileMessage& error);
   /// The newest record of earlier runs, for counters that a restart must take over; false = none.
   /// Only before the first `write`.

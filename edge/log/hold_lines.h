@@ -1,5 +1,5 @@
-// What the journal says of an operator's hold: a line when it begins, when it changes, when it is over, and
-// once when its file cannot be read. Written by the log thread; nothing allocates.
+// What the journal says of an operator's hold: a line when it begins, when it changes, when it is
+// over, and once when its file cannot be read. Written by the log thread; nothing allocates.
 #pragma once
 
 #include "edge/control/control_types.h"

@@ -1,5 +1,5 @@
-// Folders of the installed services (systemd/*.service): StateDirectory on the disk and RuntimeDirectory in memory.
-// Where the one is configured and the other is not, it is meant.
+// Folders of the installed services (systemd/*.service): StateDirectory on the disk and
+// RuntimeDirectory in memory. Where the one is configured and the other is not, it is meant.
 #pragma once
 
 #include <string_view>

@@ -1,5 +1,5 @@
-// The decision log for who only reads it: the ring of the state folder and, where there is one, the short ring of
-// the run folder, which goes on when the disk under the other has died.
+// The decision log for who only reads it: the ring of the state folder and, where there is one, the
+// short ring of the run folder, which goes on when the disk under the other has died.
 #pragma once
 
 #include <cstdint>

@@ -50,8 +50,8 @@ struct PathStart {
 template <auto... kPath>
 using SourceOf = typename detail::PathStart<kPath...>::Source;
 
-/// Tells one path from another at compile time: FNV-1a over its spelling. The address of `read_member` would not do:
-/// under a sanitizer that is no constant.
+/// Tells one path from another at compile time: FNV-1a over its spelling. The address of
+/// `read_member` would not do: under a sanitizer that is no constant.
 template <auto... kPath>
 constexpr std::uint64_t path_id() {
   std::uint64_t id = 0xcbf29ce484222325;

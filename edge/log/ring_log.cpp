@@ -150,8 +150,8 @@ bool RingLog::replace(const char* path, FileMessage& error) {
   return true;
 }
 
-/// At its full size, with its header and the newest record that is known, on the disk: what a restart needs is
-/// never in one process alone. Negative with errno set, and nothing left.
+/// At its full size, with its header and the newest record that is known, on the disk: what a
+/// restart needs is never in one process alone. Negative with errno set, and nothing left.
 int RingLog::make_whole(const char* path) const {
   const int made = make_afresh(path);
   if (made < 0) return -1;
@@ -235,7 +235,8 @@ bool RingLog::fits(const Geometry& geometry) {
   return scan.misplaced == 0 && (scan.whole > 0 || is_empty);
 }
 
-/// Headers as they must be, the file at its full size. Where the disk refuses, the next start tries again.
+/// Headers as they must be, the file at its full size. Where the disk refuses, the next start tries
+/// again.
 void RingLog::mend() {
   const bool is_written = write_header(fd_);
   const bool is_long = damage_.missing_records == 0 || posix_fallocate(fd_, 0, file_bytes()) == 0;

@@ -32,15 +32,16 @@ class RingLog {
 
   /// For writing. A missing file is made; one of another capacity, of smaller records or of which
   /// nothing can be understood is set aside as "PATH.old", its numbers and newest record are taken
-  /// over as far as they can be read. Where the disk has no room for another one, a sound log goes on
-  /// at the size that it has. On a read-only disk it fails, and what is in the log can be read all
-  /// the same. False with one line and errno; may be tried again.
+  /// over as far as they can be read. Where the disk has no room for another one, a sound log goes
+  /// on at the size that it has. On a read-only disk it fails, and what is in the log can be read
+  /// all the same. False with one line and errno; may be tried again.
   bool open(const char* path, std::int64_t capacity, FileMessage& error);
   /// For reading, beside a writer.
   bool open_to_read(const char* path, FileMessage& error);
 
   /// For what it was opened for.
-  /// Whether the file that is open is still the one of that name: a disk may be unmounted below it, or mounted over it.
+  /// Whether the file that is open is still the one of that name: a disk may be unmounted below it,
+  /// or mounted over it.
   [[nodiscard]] bool is_at(const char* path) const;
   [[nodiscard]] bool is_open() const { return fd_ >= 0 && !is_read_only_; }
   [[nodiscard]] std::int64_t capacity() const { return capacity_; }

@@ -14,12 +14,12 @@
 
 namespace bess {
 
-/// What the state folder's device tells of its wear, and its file system of itself; read at the start.
+/// What the state folder's device tells of its wear, and its file system of itself; read at the
+/// start.
 struct CardWear {
   int used_life_percent = 0;  ///< of an eMMC, the upper end of its tenth; 0 = not told
-  int spare_level =
-      0;  ///< its pre_eol_info: 1 normal, 2 four fifths of the spare blocks are used, 3 nine tenths;
-          ///< 0 = not told
+  int spare_level = 0;  ///< its pre_eol_info: 1 normal, 2 four fifths of the spare blocks are used,
+                        ///< 3 nine tenths; 0 = not told
   std::int64_t file_system_errors =
       -1;  ///< that the kernel has counted (ext4); negative = not told
 };
@@ -61,7 +61,8 @@ struct RunTotals {
 inline constexpr std::size_t kStatusBytes = 6'144;
 inline constexpr std::size_t kMetricsBytes = 12'288;
 
-/// Both end with a checksum of what stands before (text_checksum.h): as JSON's last member, as a comment.
+/// Both end with a checksum of what stands before (text_checksum.h): as JSON's last member, as a
+/// comment.
 void format_status_json(const RunIdentity& identity, const RunTotals& totals,
                         std::int64_t written_monotonic_ns, TextBuffer& json);
 void format_prometheus(const RunIdentity& identity, const RunTotals& totals, TextBuffer& text);

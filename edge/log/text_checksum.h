@@ -1,5 +1,5 @@
-// A checksum as the end of a text that other programs and people read as well: a comment of TOML and of Prometheus,
-// or the last member of a JSON object. Nothing here allocates.
+// A checksum as the end of a text that other programs and people read as well: a comment of TOML
+// and of Prometheus, or the last member of a JSON object. Nothing here allocates.
 #pragma once
 
 #include <string_view>
@@ -8,7 +8,8 @@
 
 namespace bess {
 
-/// What stands before and behind the eight hexadecimal digits. The checksum is of all that stands before.
+/// What stands before and behind the eight hexadecimal digits. The checksum is of all that stands
+/// before.
 struct ChecksumFrame {
   std::string_view before;
   std::string_view after;

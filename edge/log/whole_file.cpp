@@ -21,8 +21,8 @@ struct Belonging {
   mode_t mode;
 };
 
-/// What lies in a folder is for whoever may enter it, whatever the umask says and whoever makes it: what root
-/// leaves there, the service must be able to read and to replace.
+/// What lies in a folder is for whoever may enter it, whatever the umask says and whoever makes it:
+/// what root leaves there, the service must be able to read and to replace.
 void belong(int fd, const Belonging& wanted) {
   struct stat made {};
   if (fstat(fd, &made) != 0) return;

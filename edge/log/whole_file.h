@@ -18,37 +18,39 @@ using FileMessage = FixedText<767>;
 /// power cut it would be wrong anyway.
 bool replace_file(const char* path, std::string_view text);
 
-/// The same; where the disk has no room for a new one, the old text is taken away first: none says less that
-/// is wrong than an old one. False with errno set.
+/// The same; where the disk has no room for a new one, the old text is taken away first: none says
+/// less that is wrong than an old one. False with errno set.
 bool replace_or_remove_file(const char* path, std::string_view text);
 
 /// As `replace_file`, and on the disk before it returns: for what must outlast a power cut.
 bool replace_file_durably(const char* path, std::string_view text);
 
-/// Root, the user of this process, and whoever owns the folder around `path`, who can put anything there.
+/// Root, the user of this process, and whoever owns the folder around `path`, who can put anything
+/// there.
 bool is_of_the_house(uid_t owner, const char* path);
 
 /// Whether a path may lead through a link to what another user pointed it at, and be of any owner.
 enum class Links { kRefused, kFollowed };
 
-/// Reads the beginning of a regular file, never what could block (a pipe). Returns the bytes read, at most
-/// `text.size()`; negative with errno set: ENOENT where there is no such file, EPERM where it is a stranger's.
+/// Reads the beginning of a regular file, never what could block (a pipe). Returns the bytes read,
+/// at most `text.size()`; negative with errno set: ENOENT where there is no such file, EPERM where
+/// it is a stranger's.
 ssize_t read_beginning(const char* path, std::span<char> text, Links links);
 
-/// A new file of that name, for writing and reading: what lies there, a link as well, is removed and not
-/// followed. Whoever may enter the folder may read it; made by root, it belongs to the folder's owner. Negative
-/// with errno set.
+/// A new file of that name, for writing and reading: what lies there, a link as well, is removed
+/// and not followed. Whoever may enter the folder may read it; made by root, it belongs to the
+/// folder's owner. Negative with errno set.
 int make_afresh(const char* path);
 
-/// Makes a folder that everybody may enter, where there is none; made by root, it belongs to the owner of the one
-/// around it. False with errno set.
+/// Makes a folder that everybody may enter, where there is none; made by root, it belongs to the
+/// owner of the one around it. False with errno set.
 bool make_folder(const char* path);
 
 /// The folder that holds a file, "." for a bare name.
 FixedText<639> folder_of(const char* path);
 
-/// Of an errno: the disk is full, read-only or broken. That keeps no battery from being driven; anything else is
-/// the operator's to mend.
+/// Of an errno: the disk is full, read-only or broken. That keeps no battery from being driven;
+/// anything else is the operator's to mend.
 bool is_disk_trouble(int error);
 
 /// Makes a rename in this file's folder outlast a power cut.

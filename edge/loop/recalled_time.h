@@ -1,6 +1,7 @@
-// When the readings in a log were taken, without the steps of the clock of then: records bear ticks, and a clock that
-// was stepped between two of them has made the time between them look shorter or longer. The age of the order that the
-// battery followed was measured steadily, and tells.
+// When the readings in a log were taken, without the steps of the clock of then: records bear
+// ticks, and a clock that was stepped between two of them has made the time between them look
+// shorter or longer. The age of the order that the battery followed was measured steadily, and
+// tells.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +13,8 @@ namespace bess {
 
 class RecalledTime {
  public:
-  /// Of the next reading, oldest first, `read_lead_s` before its tick; in UTC, ahead of it by `ahead_s`.
+  /// Of the next reading, oldest first, `read_lead_s` before its tick; in UTC, ahead of it by
+  /// `ahead_s`.
   std::int64_t steady_s(const CycleRecord& record, std::int32_t read_lead_s) {
     const std::int64_t utc_s = record.utc_s - read_lead_s;
     if (utc_s_ == 0) utc_s_ = utc_s;

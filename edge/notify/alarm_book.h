@@ -1,4 +1,5 @@
-// Which troubles have been told, so that each is told once, and its end once: pure, over UTC seconds.
+// Which troubles have been told, so that each is told once, and its end once: pure, over UTC
+// seconds.
 //   a trouble that lasts `after_s`            is told
 //   one that comes back within `after_s`      is still the same
 //   a told one that stays away `after_s`      is over, and that is told
@@ -11,8 +12,8 @@
 
 namespace bess {
 
-/// Something that is wrong now. Two looks see the same trouble when the key is the same; the text may differ,
-/// by a number that grows.
+/// Something that is wrong now. Two looks see the same trouble when the key is the same; the text
+/// may differ, by a number that grows.
 struct Trouble {
   std::string key{};
   std::string text{};

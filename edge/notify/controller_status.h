@@ -1,5 +1,5 @@
-// How the controller is, as anybody may ask: what `bess-edge status --json` says, and the troubles in it. It is
-// asked without locks, so that nobody who asks can be in a controller's way.
+// How the controller is, as anybody may ask: what `bess-edge status --json` says, and the troubles
+// in it. It is asked without locks, so that nobody who asks can be in a controller's way.
 #pragma once
 
 #include <string>

@@ -1,8 +1,10 @@
-// What the battery has charged and discharged since the notifier first looked: two counters that only grow,
-// over restarts of notifier and controller, for whoever draws energy by the day (Home Assistant).
+// What the battery has charged and discharged since the notifier first looked: two counters that
+// only grow, over restarts of notifier and controller, for whoever draws energy by the day (Home
+// Assistant).
 //
-// A record's power stands for the two minutes that end at its tick, as in day_account.h, but never for time that
-// an earlier record stands for already. Where no record is, or none with a measurement, nothing is counted.
+// A record's power stands for the two minutes that end at its tick, as in day_account.h, but never
+// for time that an earlier record stands for already. Where no record is, or none with a
+// measurement, nothing is counted.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +14,8 @@
 
 namespace bess {
 
-/// Kept over restarts as it is: what follows in the ring gives the same sums whenever it is counted.
+/// Kept over restarts as it is: what follows in the ring gives the same sums whenever it is
+/// counted.
 struct EnergyTotals {
   std::int64_t charged_ws = 0;
   std::int64_t discharged_ws = 0;

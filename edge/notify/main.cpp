@@ -1,6 +1,6 @@
-// bess-notify: calls for help. A program of its own, outside the control process: it asks `bess-edge status`
-// and reads the decision log, and tells what is wrong by mail, webhook and MQTT. Killed, stuck or absent,
-// it changes nothing for the controller.
+// bess-notify: calls for help. A program of its own, outside the control process: it asks
+// `bess-edge status` and reads the decision log, and tells what is wrong by mail, webhook and MQTT.
+// Killed, stuck or absent, it changes nothing for the controller.
 #include <poll.h>
 #include <signal.h>
 #include <sys/signalfd.h>

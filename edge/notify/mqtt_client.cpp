@@ -91,8 +91,8 @@ MqttClient::~MqttClient() {
     mosquitto_lib_cleanup();
     return;
   }
-  // It sits in a connect, or a look-up, of minutes: cut there it would keep the library's locks. It ends with the
-  // process, and calls nobody any more.
+  // It sits in a connect, or a look-up, of minutes: cut there it would keep the library's locks. It
+  // ends with the process, and calls nobody any more.
   mosquitto_connect_callback_set(client_, nullptr);
   mosquitto_disconnect_callback_set(client_, nullptr);
   mosquitto_publish_callback_set(client_, nullptr);

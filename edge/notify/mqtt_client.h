@@ -1,5 +1,5 @@
-// A broker, reached in the background: libmosquitto's own thread connects again whenever it is lost. Retained
-// values are published as they come and again after each connect.
+// A broker, reached in the background: libmosquitto's own thread connects again whenever it is
+// lost. Retained values are published as they come and again after each connect.
 #pragma once
 
 #include <chrono>
@@ -33,10 +33,12 @@ class MqttClient {
 
   /// Held by the broker for whoever comes later. Kept here as well, for the next connect.
   void retain(const std::string& topic, const std::string& payload);
-  /// Until the broker has all that is retained; false when it has not within that time, nor within the settings'.
+  /// Until the broker has all that is retained; false when it has not within that time, nor within
+  /// the settings'.
   bool wait_until_retained(std::chrono::milliseconds patience);
-  /// Waits for a connection, then until the broker has it, each as long as the settings say. Empty, or why it has it
-  /// not: then the next call with the same payload waits for this one, so that it comes once.
+  /// Waits for a connection, then until the broker has it, each as long as the settings say. Empty,
+  /// or why it has it not: then the next call with the same payload waits for this one, so that it
+  /// comes once.
   std::string send(const std::string& topic, const std::string& payload,
                    const std::stop_token& stop);
 
@@ -46,7 +48,8 @@ class MqttClient {
   void on_published(int message_id);
 
  private:
-  /// What was handed to libmosquitto, which sends it again after each connect until it is acknowledged.
+  /// What was handed to libmosquitto, which sends it again after each connect until it is
+  /// acknowledged.
   struct OnItsWay {
     int id = -1;  ///< -1: nothing
     std::string payload{};

@@ -1,4 +1,5 @@
-// One notifier to one memory: two would tell everything twice, and each would forget what the other told.
+// One notifier to one memory: two would tell everything twice, and each would forget what the other
+// told.
 #pragma once
 
 #include <string>
@@ -15,8 +16,9 @@ class NotifyLock {
   NotifyLock& operator=(const NotifyLock&) = delete;
   ~NotifyLock();
 
-  /// Makes the folder if it is missing. False with one line where another notifier holds it; where the disk does
-  /// not let it be made, nothing is refused: an alarm that is told twice is better than none.
+  /// Makes the folder if it is missing. False with one line where another notifier holds it; where
+  /// the disk does not let it be made, nothing is refused: an alarm that is told twice is better
+  /// than none.
   bool take(const std::string& path, std::string& error);
 
  private:

@@ -1,6 +1,6 @@
-// [notify] of the controller's configuration, and what else of it the notifier needs. Read apart from the
-// controller's own reader: when the configuration keeps the controller from starting, somebody must still
-// be able to tell.
+// [notify] of the controller's configuration, and what else of it the notifier needs. Read apart
+// from the controller's own reader: when the configuration keeps the controller from starting,
+// somebody must still be able to tell.
 #pragma once
 
 #include <cstdint>

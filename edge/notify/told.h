@@ -1,6 +1,7 @@
-// What must outlast a restart of the notifier: the alarms that were told, the last day that was, what each way
-// has not taken yet, and the counters of energy. One JSON text with a checksum, in several files, each replaced at
-// once: twice in [notify] folder, for a card that forgets, and in run_folder, for one that dies.
+// What must outlast a restart of the notifier: the alarms that were told, the last day that was,
+// what each way has not taken yet, and the counters of energy. One JSON text with a checksum, in
+// several files, each replaced at once: twice in [notify] folder, for a card that forgets, and in
+// run_folder, for one that dies.
 #pragma once
 
 #include <cstdint>
@@ -34,8 +35,8 @@ ToldReading read_newest_told(const std::vector<std::string>& paths);
 
 std::string told_text(const Told& told);
 
-/// What `told_text` gave, to every place; a folder that is missing is made. Empty, or one line: which place could
-/// not be written first, and what follows from it.
+/// What `told_text` gave, to every place; a folder that is missing is made. Empty, or one line:
+/// which place could not be written first, and what follows from it.
 std::string write_told(const std::vector<std::string>& paths, const std::string& text);
 
 }  // namespace bess

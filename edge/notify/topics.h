@@ -1,4 +1,5 @@
-// What stands where in the broker: a versioned tree, so that no later version moves what users have built upon.
+// What stands where in the broker: a versioned tree, so that no later version moves what users have
+// built upon.
 //   bess/v1/NODE/status   online | offline (the last will), retained
 //   bess/v1/NODE/state    the newest values, one JSON object, retained
 //   bess/v1/NODE/alarms   the alarms that are told and not over, JSON list, retained

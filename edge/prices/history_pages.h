@@ -1,6 +1,7 @@
-// The rows of the last days, page by page from the price server, before the loop starts: what the price
-// level of a first start is made from. Pages as Opendatasoft v2.1 has them (limit, offset), newest
-// rows first: what came in before a failure or the deadline is then the part that weighs most.
+// The rows of the last days, page by page from the price server, before the loop starts: what the
+// price level of a first start is made from. Pages as Opendatasoft v2.1 has them (limit, offset),
+// newest rows first: what came in before a failure or the deadline is then the part that weighs
+// most.
 #pragma once
 
 #include <algorithm>
@@ -59,9 +60,9 @@ class HistoryPages {
   Status status_ = Status::kOk;
 };
 
-/// Fills the history within `wait_s` of the clock. Anything but kOk: it ended before its time, what came in
-/// is there. On the caller's thread. Names apart, which the price feed has just looked up, nothing
-/// waits longer.
+/// Fills the history within `wait_s` of the clock. Anything but kOk: it ended before its time, what
+/// came in is there. On the caller's thread. Names apart, which the price feed has just looked up,
+/// nothing waits longer.
 ///   Prices  Status fetch_page(const char* url, int32 timeout_ms, const PriceRowTaker&, int& items)
 ///   Clock   monotonic_ns(), scaled(), stop_requested()
 template <typename Prices, typename Clock>

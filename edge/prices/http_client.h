@@ -37,7 +37,8 @@ class HttpClient {
 
   /// kOk: `body` is the whole answer of a 200, until the next call.
   Status get(std::string_view& body);
-  /// The same of another URL of that host (kMalformed: of another one), within at most `timeout_ms`.
+  /// The same of another URL of that host (kMalformed: of another one), within at most
+  /// `timeout_ms`.
   Status get(const char* url, std::int32_t timeout_ms, std::string_view& body);
 
  private:

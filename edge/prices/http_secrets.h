@@ -22,8 +22,8 @@ struct UrlParts {
 };
 UrlParts url_parts(std::string_view url);
 
-/// A URL as it may be logged: without user and password, and with "..." for the value of every query
-/// name that is not known to be harmless.
+/// A URL as it may be logged: without user and password, and with "..." for the value of every
+/// query name that is not known to be harmless.
 FixedText<511> loggable_url(std::string_view url);
 
 }  // namespace bess

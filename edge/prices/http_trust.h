@@ -1,5 +1,5 @@
-// What is known of a price on its way here: who could have written it, who could have read what was sent.
-// Start-up only: asked by the configuration, told at the start.
+// What is known of a price on its way here: who could have written it, who could have read what was
+// sent. Start-up only: asked by the configuration, told at the start.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,8 @@ enum class UrlTransport : std::uint8_t {
   kOpen       ///< plain http: whoever is on the way can write the prices
 };
 
-/// Loopback is 127.0.0.0/8 and [::1] as numbers: the name localhost is what the resolver says it is.
+/// Loopback is 127.0.0.0/8 and [::1] as numbers: the name localhost is what the resolver says it
+/// is.
 UrlTransport transport_of(std::string_view url);
 
 /// True when the URL holds a user or a password, which are sent with every request.

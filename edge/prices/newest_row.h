@@ -1,5 +1,5 @@
-// The newest usable price row so far, out of all that requests have brought: what the control loop is
-// told. No io and no time of its own. Between price_json, which reads an answer, and price_feed.
+// The newest usable price row so far, out of all that requests have brought: what the control loop
+// is told. No io and no time of its own. Between price_json, which reads an answer, and price_feed.
 #pragma once
 
 #include "edge/control/control_types.h"
@@ -28,8 +28,8 @@ class NewestRow {
   [[nodiscard]] const PriceReport& report() const { return report_; }
 
  private:
-  /// A newer minute, or the same one: a duplicate changes nothing, a correction replaces the price. False
-  /// when the row before stays: this one is a duplicate, or is held.
+  /// A newer minute, or the same one: a duplicate changes nothing, a correction replaces the price.
+  /// False when the row before stays: this one is a duplicate, or is held.
   [[nodiscard]] bool accept(const PriceRow& row) {
     const PriceRow before{.minute_utc_s = report_.minute_utc_s,
                           .price_centi_eur_per_mwh = report_.price_centi_eur_per_mwh};

@@ -26,8 +26,9 @@ struct PriceRow {
 /// Newest usable row of an answer: a list at `fields.rows`, or a bare list, in any order.
 /// Its time is text with an offset (2023-03-26T01:02:00+00:00) or a number of seconds or
 /// milliseconds since 1970. Rows without price, later than now, or beyond +-100,000 EUR/MWh are
-/// passed over. Malformed is also an answer with anything behind its end, and one in which a field on the
-/// way to rows, times or prices stands twice in its object: which of the two is meant nobody knows.
+/// passed over. Malformed is also an answer with anything behind its end, and one in which a field
+/// on the way to rows, times or prices stands twice in its object: which of the two is meant nobody
+/// knows.
 Status parse_newest_price(std::string_view json, const PriceFields& fields, std::int64_t now_utc_s,
                           PriceRow& row);
 

@@ -1,5 +1,5 @@
-// One row alone does not move the battery: a price that lies further from the one before than configured is
-// held until the next row tells whether it was real. Below price_feed; pure integers.
+// One row alone does not move the battery: a price that lies further from the one before than
+// configured is held until the next row tells whether it was real. Below price_feed; pure integers.
 #pragma once
 
 #include <cstdint>
@@ -19,9 +19,10 @@ class StepHold {
   constexpr StepHold(std::int32_t step_centi_eur_per_mwh, bool is_holding)
       : step_centi_eur_per_mwh_(step_centi_eur_per_mwh), is_holding_(is_holding) {}
 
-  /// Of a row that is not older than `before`, the newest one taken so far. What is held is confirmed by a
-  /// later row within the step of it, and given up for a row within the step of `before`; a row far from
-  /// both is held in its place. A row older than what is held is a stale cache's.
+  /// Of a row that is not older than `before`, the newest one taken so far. What is held is
+  /// confirmed by a later row within the step of it, and given up for a row within the step of
+  /// `before`; a row far from both is held in its place. A row older than what is held is a stale
+  /// cache's.
   constexpr Verdict judge(const PriceRow& before, const PriceRow& row) {
     if (has_held_ && row.minute_utc_s < held_.minute_utc_s) return {};
     if (!is_large(before, row)) return take(false);

@@ -1,6 +1,7 @@
-// The controller, the same in every world: reach the battery, begin with what runs before left, run cycle by cycle,
-// end in a safe state. What a world supplies is below: the machine that bess-edge runs on (real_world.h), or
-// virtual time and memory (tools/hil_runner/virtual/virtual_world.h), so that what is tested there is what drives a battery.
+// The controller, the same in every world: reach the battery, begin with what runs before left, run
+// cycle by cycle, end in a safe state. What a world supplies is below: the machine that bess-edge
+// runs on (real_world.h), or virtual time and memory (tools/hil_runner/virtual/virtual_world.h), so
+// that what is tested there is what drives a battery.
 //   reach   is the battery there, and is it the right one?
 //   begin   greet the price server, recall log and trip, come by the price level, listen to people
 //   run     cycles, each kept and told of; then the end: hand over, or 0 W and release
@@ -23,8 +24,9 @@
 
 namespace bess {
 
-/// Where a controller lives. Of its types the loop asks what control_loop.h and site_limits.h say, and the start
-/// that Prices can fetch_once and fetch_page. `Seal` exists as long as cycles run: nothing may allocate.
+/// Where a controller lives. Of its types the loop asks what control_loop.h and site_limits.h say,
+/// and the start that Prices can fetch_once and fetch_page. `Seal` exists as long as cycles run:
+/// nothing may allocate.
 template <typename World>
 concept ControllerWorld = requires(World& world, const World& known, CycleRecord& record,
                                    const CycleRecord& done, std::int64_t number,
@@ -91,8 +93,8 @@ class Controller {
     return true;
   }
 
-  /// Until a stop is requested or so many cycles are done (negative: no such number); the last order keeps its
-  /// whole step. False when the battery could not be given back.
+  /// Until a stop is requested or so many cycles are done (negative: no such number); the last
+  /// order keeps its whole step. False when the battery could not be given back.
   bool run(std::int64_t cycles) {
     CycleRecord record{};
     const typename World::Seal seal;  // from here on this thread calls no allocator

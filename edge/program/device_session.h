@@ -1,5 +1,5 @@
-// What everything that talks to the battery begins with: memory as it must be, the student as it was exported, the
-// battery for this process alone, a clock.
+// What everything that talks to the battery begins with: memory as it must be, the student as it
+// was exported, the battery for this process alone, a clock.
 #pragma once
 
 #include <optional>
@@ -11,8 +11,8 @@ namespace bess {
 
 class DeviceSession {
  public:
-  /// Before any thread is started. False when somebody else has the battery, or this machine is not fit; one line on
-  /// stderr says it.
+  /// Before any thread is started. False when somebody else has the battery, or this machine is not
+  /// fit; one line on stderr says it.
   bool begin(const EdgeConfig& config);
 
   /// After `begin`.

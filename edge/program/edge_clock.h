@@ -33,8 +33,8 @@ class EdgeClock {
   [[nodiscard]] const ScaledClock& scaled() const { return clock_; }
 
   /// Waits for an instant; false when a stop was requested. Re-read every second, because the real
-  /// clock may be stepped while waiting. Stepped back, the instant may lie hours ahead: then the wait
-  /// is over, and whoever waited finds out what the time is.
+  /// clock may be stepped while waiting. Stepped back, the instant may lie hours ahead: then the
+  /// wait is over, and whoever waited finds out what the time is.
   bool sleep_until_utc_ns(std::int64_t utc_ns) {
     constexpr std::int64_t kStepNs = 5 * kNanosecondsPerSecond;
     std::int64_t left_before_ns = INT64_MAX - kStepNs;

@@ -1,6 +1,7 @@
-// Looks every second at the files through which people speak to the controller, and publishes what they say: the
-// hold, and whether a trip was cleared. A thread of its own, on a static stack, because a card that stands still
-// must not keep the control thread waiting. After `start` it allocates nothing.
+// Looks every second at the files through which people speak to the controller, and publishes what
+// they say: the hold, and whether a trip was cleared. A thread of its own, on a static stack,
+// because a card that stands still must not keep the control thread waiting. After `start` it
+// allocates nothing.
 #pragma once
 
 #include <semaphore.h>
@@ -28,8 +29,8 @@ class HoldWatch {
   void start(const BothPlaces& paths, const BothPlaces& cleared, std::int32_t time_scale);
   [[nodiscard]] const HoldMailbox& mailbox() const { return mailbox_; }
 
-  /// From the control thread, which never waits here: whether a person has cleared the trip of this instant, as
-  /// far as it is known by now. It is looked for from the first question on.
+  /// From the control thread, which never waits here: whether a person has cleared the trip of this
+  /// instant, as far as it is known by now. It is looked for from the first question on.
   bool is_cleared(std::int64_t trip_utc_s);
 
  private:

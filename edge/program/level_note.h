@@ -1,5 +1,5 @@
-// What a person is told of the student's context: what it is, and how its price level was come by at the
-// start.
+// What a person is told of the student's context: what it is, and how its price level was come by
+// at the start.
 #pragma once
 
 #include <string>

@@ -1,5 +1,6 @@
-// The machine that bess-edge runs on, for its controller (controller.h): Modbus battery and meter, the price
-// server, the decision log on disk, the files through which people and other programs speak, journal and systemd.
+// The machine that bess-edge runs on, for its controller (controller.h): Modbus battery and meter,
+// the price server, the decision log on disk, the files through which people and other programs
+// speak, journal and systemd.
 #pragma once
 
 #include <string>
@@ -41,11 +42,13 @@ class RealWorld {
   ModbusMeter& meter() { return devices_.meter; }
   LimitFile& limits() { return limits_; }
 
-  /// From now on what the battery's link says and hears goes to a file; no path: nowhere. False with one line.
+  /// From now on what the battery's link says and hears goes to a file; no path: nowhere. False
+  /// with one line.
   bool record_battery(const std::string& path, FileMessage& error);
   bool finish_recording(FileMessage& error) { return recorder_.finish(error); }
 
-  /// The log. Before it, that the sign was checked: a run that is refused leaves the status of the one before.
+  /// The log. Before it, that the sign was checked: a run that is refused leaves the status of the
+  /// one before.
   bool open();
   Recall recall();
   bool read_back(std::int64_t records, CycleRecord& record) const {

@@ -12,8 +12,8 @@ namespace {
 ModbusBattery* battery_of_check_handler = nullptr;
 pthread_t control_thread;
 
-/// Not from another thread, which would talk into the control thread's requests: the watchdog ends the order then.
-/// Nor twice, should the release be what broke.
+/// Not from another thread, which would talk into the control thread's requests: the watchdog ends
+/// the order then. Nor twice, should the release be what broke.
 void release_after_failed_check(const char*, const char*, int) {
   ModbusBattery* const battery = std::exchange(battery_of_check_handler, nullptr);
   if (battery == nullptr || pthread_equal(pthread_self(), control_thread) == 0) return;

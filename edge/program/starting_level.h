@@ -1,5 +1,5 @@
-// The price level that a controller starts with: kept by the log, or for a student by level filled from what the
-// price server still has.
+// The price level that a controller starts with: kept by the log, or for a student by level filled
+// from what the price server still has.
 #pragma once
 
 #include <optional>
@@ -12,8 +12,8 @@
 
 namespace bess {
 
-/// `logged` is the newest record's, `greeting` what the server has just answered with; `history` is where the rows
-/// are kept, so that no stack needs to.
+/// `logged` is the newest record's, `greeting` what the server has just answered with; `history` is
+/// where the rows are kept, so that no stack needs to.
 template <typename Prices, typename Clock>
 LevelNews starting_level(const EdgeConfig& config, const PriceLevel& logged, Status greeting,
                          Prices& prices, Clock& clock, std::optional<PriceHistory>& history) {

@@ -18,11 +18,13 @@ void prepare_process();
 /// on stderr says what to mend.
 bool reach_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& clock);
 
-/// Of the sign check's copies: each that was lost or damaged is a line of the journal, and written again.
+/// Of the sign check's copies: each that was lost or damaged is a line of the journal, and written
+/// again.
 void report_commission_losses(const EdgeConfig& config);
 
-/// What earlier runs left. Where that cannot be read, a journal line says why, and the battery is not driven until
-/// a person clears it, unless [state] drive_without_state allows it. `published_number`: recall.h.
+/// What earlier runs left. Where that cannot be read, a journal line says why, and the battery is
+/// not driven until a person clears it, unless [state] drive_without_state allows it.
+/// `published_number`: recall.h.
 Recall recall_at_start(const EdgeConfig& config, const EventLog& log,
                        std::uint64_t published_number);
 

@@ -1,6 +1,6 @@
-// The guard's price thresholds beside those that the student is proved for. The one comes from the operator's
-// file, the other with the weights; where they differ, a price lies between them for which only one of the two
-// answers, or neither. Said at every start, never a reason to refuse it.
+// The guard's price thresholds beside those that the student is proved for. The one comes from the
+// operator's file, the other with the weights; where they differ, a price lies between them for
+// which only one of the two answers, or neither. Said at every start, never a reason to refuse it.
 #pragma once
 
 #include <string>

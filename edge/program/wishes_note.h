@@ -8,7 +8,8 @@
 
 namespace bess {
 
-/// Lines with their ends; empty when nothing is wanted. `now_utc_s` decides which reserve and hold are in force.
+/// Lines with their ends; empty when nothing is wanted. `now_utc_s` decides which reserve and hold
+/// are in force.
 std::string wishes_note(const ControlSettings& control, const Hold& hold, std::int64_t now_utc_s);
 
 }  // namespace bess

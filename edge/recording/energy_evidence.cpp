@@ -15,7 +15,8 @@ constexpr double kOrderWMin = 200;      // smaller powers drown in what the devi
 
 }  // namespace
 
-/// A reading's power is taken as that of the time before it: a controller reads just before it orders.
+/// A reading's power is taken as that of the time before it: a controller reads just before it
+/// orders.
 void EnergyEvidence::add(const EnergyReading& reading) {
   const std::int64_t passed_ns = reading.utc_ns - last_utc_ns_;
   const bool is_next = last_utc_ns_ != 0 && passed_ns > 0 && passed_ns <= kGapNsMax;

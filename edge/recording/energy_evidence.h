@@ -1,6 +1,7 @@
-// A battery's readings held against each other: the state of charge must move as the measured power explains, and
-// power must flow the way that was ordered. Shows wrong signs and scales whose values stay in their ranges. Pure;
-// for recordings, not for the control path (supervision.h judges a battery at work).
+// A battery's readings held against each other: the state of charge must move as the measured power
+// explains, and power must flow the way that was ordered. Shows wrong signs and scales whose values
+// stay in their ranges. Pure; for recordings, not for the control path (supervision.h judges a
+// battery at work).
 #pragma once
 
 #include <cstdint>
@@ -24,8 +25,9 @@ class EnergyEvidence {
 
   void add(const EnergyReading& reading);
 
-  /// How many times as far as the measured power explains the state of charge has moved: 1 where all is right,
-  /// negative where a sign is wrong. Empty when the SoC has changed less than three times. `capacity_wh` above 0.
+  /// How many times as far as the measured power explains the state of charge has moved: 1 where
+  /// all is right, negative where a sign is wrong. Empty when the SoC has changed less than three
+  /// times. `capacity_wh` above 0.
   [[nodiscard]] std::optional<double> soc_per_energy(double capacity_wh) const;
   /// Energy has flowed, and the state of charge has not moved at all.
   [[nodiscard]] bool soc_stands_still(double capacity_wh) const;

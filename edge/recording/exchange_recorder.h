@@ -1,7 +1,8 @@
-// Writes what a Modbus link says and hears to a recording (shared/host/bus_recording.h), for a device that is
-// somewhere else. The link's thread leaves each exchange in a fixed queue and goes on; a thread on a static stack
-// hides what is private and writes, so that no disk holds up an order. What does not fit is dropped and counted.
-// Written to FILE.part and renamed at the end; a process that dies leaves FILE.part, cut behind a whole line.
+// Writes what a Modbus link says and hears to a recording (shared/host/bus_recording.h), for a
+// device that is somewhere else. The link's thread leaves each exchange in a fixed queue and goes
+// on; a thread on a static stack hides what is private and writes, so that no disk holds up an
+// order. What does not fit is dropped and counted. Written to FILE.part and renamed at the end; a
+// process that dies leaves FILE.part, cut behind a whole line.
 #pragma once
 
 #include <atomic>
@@ -32,14 +33,16 @@ class ExchangeRecorder {
   ExchangeRecorder& operator=(const ExchangeRecorder&) = delete;
   ~ExchangeRecorder();  ///< ends the recording, if nobody did
 
-  /// Start-up only. False with one line when the file cannot be made. `map` must outlive this object; `head` is
-  /// what the first line says. Beyond `bytes_max` nothing more is recorded, and the journal says so.
+  /// Start-up only. False with one line when the file cannot be made. `map` must outlive this
+  /// object; `head` is what the first line says. Beyond `bytes_max` nothing more is recorded, and
+  /// the journal says so.
   bool start(const char* path, const RecordingHead& head, const RegisterMap& map,
              const ScaledClock& clock, FileMessage& error,
              std::int64_t bytes_max = kRecordingBytesMax);
   /// For the link, whose thread then calls nothing here that waits or allocates.
   [[nodiscard]] ExchangeListener listener();
-  /// Writes what is still queued and the last line, and gives the file its name. False with one line.
+  /// Writes what is still queued and the last line, and gives the file its name. False with one
+  /// line.
   bool finish(FileMessage& error);
 
   [[nodiscard]] std::int64_t exchanges() const { return written_; }

@@ -114,7 +114,8 @@ void MapCheck::add(const BusExchange& exchange) {
   note_order(exchange.utc_ns);
 }
 
-/// What is measured is read in rounds. One ends where something of it is read again, or an order follows it.
+/// What is measured is read in rounds. One ends where something of it is read again, or an order
+/// follows it.
 bool MapCheck::begins_round(const BusExchange& exchange) const {
   if (exchange.is_write()) return true;
   for (int i = 0; i < map_.points.size(); ++i) {
@@ -155,7 +156,8 @@ void MapCheck::take(const BusExchange& exchange, int point, int offset) {
   }
   Seen& seen = seen_[point];
   ++seen.asked;
-  // One refused register takes its neighbours with it: a point is refused when it was asked for alone.
+  // One refused register takes its neighbours with it: a point is refused when it was asked for
+  // alone.
   const bool is_alone = exchange.count == map_.points[point].register_count();
   if (exchange.outcome == BusOutcome::kException && is_alone) seen.exception = exchange.exception;
   if (exchange.outcome != BusOutcome::kAnswered) return;
@@ -298,7 +300,8 @@ std::string MapCheck::energy_finding(int point) const {
   return "";
 }
 
-/// A wrong scale of the power shows against the order as well; where nothing was ordered, it may be any of three.
+/// A wrong scale of the power shows against the order as well; where nothing was ordered, it may be
+/// any of three.
 std::string MapCheck::power_finding(double capacity) const {
   const bool knows_capacity = capacity > 0;
   const auto ratio = energy_.soc_per_energy(knows_capacity ? capacity : 1);

@@ -1,7 +1,7 @@
-// What of a device a recording must not tell: it is made to be given away. Kept are the registers that the
-// register map names, the walk over SunSpec models, and of a text the beginning that an identity check asks for.
-// Everything else becomes 0, of a text X: serial numbers, points that the map marks as private, and what lies
-// between the points of one read.
+// What of a device a recording must not tell: it is made to be given away. Kept are the registers
+// that the register map names, the walk over SunSpec models, and of a text the beginning that an
+// identity check asks for. Everything else becomes 0, of a text X: serial numbers, points that the
+// map marks as private, and what lies between the points of one read.
 #pragma once
 
 #include <cstdint>

@@ -201,7 +201,8 @@ void check_reserve(TomlTable& root, const RegisterMap& map) {
   }
 }
 
-/// The time that goes out with every order: a power that the registers hold is not to be blamed for it.
+/// The time that goes out with every order: a power that the registers hold is not to be blamed for
+/// it.
 void prove_watchdog_duration(TomlTable& root, const RegisterMap& map) {
   const std::string told = "duration_s = " + std::to_string(map.watchdog.duration_s) + " is ";
   const LivePoints assumed = assumed_live_points(map, false);

@@ -54,7 +54,8 @@ bool parse_value(const RegisterMap& map, int point, std::string_view text, std::
 
 namespace {
 
-/// Bits that can be set in what the point reads as: beyond its mask, registers and range nothing is read.
+/// Bits that can be set in what the point reads as: beyond its mask, registers and range nothing is
+/// read.
 std::uint64_t readable_bits(const RegisterPoint& point) {
   const int width = 16 * point.register_count();
   const std::uint64_t all = point.mask != 0 ? point.mask >> std::countr_zero(point.mask)

@@ -1,5 +1,6 @@
-// Where a map's points lie in a device that is only overheard: exchanges of somebody else's connection, or of
-// a recording. SunSpec models are found by following the walk that the master makes over them.
+// Where a map's points lie in a device that is only overheard: exchanges of somebody else's
+// connection, or of a recording. SunSpec models are found by following the walk that the master
+// makes over them.
 #pragma once
 
 #include <array>
@@ -20,8 +21,8 @@ class PointPlaces {
 
   /// The newest exchange was a step of the walk: id and length of a model, or "SunS".
   [[nodiscard]] bool is_model_head() const { return is_model_head_; }
-  /// Offset of the point's first register among those of the exchange; -1 when it is not wholly among
-  /// them, or lies where nobody has looked yet.
+  /// Offset of the point's first register among those of the exchange; -1 when it is not wholly
+  /// among them, or lies where nobody has looked yet.
   [[nodiscard]] int offset_in(const BusExchange& exchange, int point) const;
   /// False while the point's SunSpec model has not been found.
   [[nodiscard]] bool is_placed(int point) const;

@@ -194,7 +194,8 @@ void read_threshold(TomlTable& table, std::string_view key, std::int32_t& eur_pe
   eur_per_mwh = centi_eur_per_mwh / kCentiPerEur;
 }
 
-/// Twelve for a battery that is full in an hour, fewer for a slower one: what honest prices have needed.
+/// Twelve for a battery that is full in an hour, fewer for a slower one: what honest prices have
+/// needed.
 std::int32_t default_cycles_per_day_e4(const EdgeConfig& config) {
   const std::int64_t cycles_e4 =
       std::int64_t{120'000} * config.control.guard.power_w / config.capacity_wh;

@@ -10,8 +10,8 @@
 
 namespace bess {
 
-/// transport, host, port, device, baud, parity, stop_bits, unit, response_timeout_ms; units is asked
-/// for, and read by load_linked_map. To be called before `finish`.
+/// transport, host, port, device, baud, parity, stop_bits, unit, response_timeout_ms; units is
+/// asked for, and read by load_linked_map. To be called before `finish`.
 void read_link(TomlTable& table, BatteryLinkSettings& link);
 
 /// What cannot be a connection; to be called after `finish`.

@@ -1,4 +1,5 @@
-// What people decide besides trading: a reserve by the hour, full charges, the spread of the starts.
+// What people decide besides trading: a reserve by the hour, full charges, the spread of the
+// starts.
 #pragma once
 
 #include "edge/loop/control_settings.h"

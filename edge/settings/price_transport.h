@@ -1,5 +1,5 @@
-// Over what prices come, and what may be sent for them: refused at the start where the configuration does not
-// allow it, told where it does.
+// Over what prices come, and what may be sent for them: refused at the start where the
+// configuration does not allow it, told where it does.
 #pragma once
 
 #include <string>
@@ -23,8 +23,8 @@ struct PriceTransportKeys {
   bool has_header_file = false;  ///< secrets are sent with every request
 };
 
-/// Complains, with the mend, of a URL of [price] that is none, of plain http that is not allowed, and of
-/// secrets on plain http.
+/// Complains, with the mend, of a URL of [price] that is none, of plain http that is not allowed,
+/// and of secrets on plain http.
 void check_price_transport(TomlTable& table, const PriceSources& sources,
                            const PriceTransportKeys& keys);
 

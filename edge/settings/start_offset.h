@@ -1,4 +1,5 @@
-// How long after each tick this controller orders, so that a thousand of them do not switch at one instant.
+// How long after each tick this controller orders, so that a thousand of them do not switch at one
+// instant.
 #pragma once
 
 #include <cstdint>
@@ -8,8 +9,9 @@
 
 namespace bess {
 
-/// Between 0 and `spread_s`, the same at every start. From a checksum of the machine and of the battery's
-/// place: most sites have their battery at the same address, and one machine may drive two.
+/// Between 0 and `spread_s`, the same at every start. From a checksum of the machine and of the
+/// battery's place: most sites have their battery at the same address, and one machine may drive
+/// two.
 std::int32_t start_offset_ms(std::int32_t spread_s, std::string_view machine_id,
                              std::string_view battery_place);
 

@@ -8,8 +8,8 @@ namespace bess {
 namespace {
 
 // Points, chosen on houses drawn from seeds (tests/closed_loop/meter_liars_test.cpp): with 7
-// two of 96 months of 30 days accuse an honest meter, with 10 none; a step under doubt is taken back at
-// once, so that the fourth contradiction costs no more of a limit than the third.
+// two of 96 months of 30 days accuse an honest meter, with 10 none; a step under doubt is taken
+// back at once, so that the fourth contradiction costs no more of a limit than the third.
 constexpr std::int32_t kContradicts = 3;
 constexpr std::int32_t kLateAnswer = 3;
 constexpr std::int32_t kTurnsAround = 2;
@@ -177,7 +177,8 @@ void MeterWitness::on_contradiction(const WitnessReading& now, std::int32_t poin
   if (trust_.is_mismatch || trust_.doubt >= kFoundFrom) find(now.utc_s);
 }
 
-/// In sums over the last steps, in permille of the rating: x the battery's step, e the meter's error.
+/// In sums over the last steps, in permille of the rating: x the battery's step, e the meter's
+/// error.
 void MeterWitness::add_to_sums(const Step& step) {
   const auto permille = [this](std::int64_t power_w, std::int64_t limit) {
     const std::int64_t within_w = std::clamp(power_w, -kBeyondAnyW, kBeyondAnyW);

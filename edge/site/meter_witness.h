@@ -76,8 +76,8 @@ class MeterWitness {
   void restore(const MeterTrust& trust) { trust_ = trust; }
   [[nodiscard]] const MeterTrust& trust() const { return trust_; }
 
-  /// Limits must hold by these as well: a step that shows too little is as likely the meter's as the house's,
-  /// and long before either is known, a limit has been passed.
+  /// Limits must hold by these as well: a step that shows too little is as likely the meter's as
+  /// the house's, and long before either is known, a limit has been passed.
   [[nodiscard]] MeterRatios possible_ratios(std::int64_t now_utc_s) const;
 
   /// Found: the meter's value must not decide.

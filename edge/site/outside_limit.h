@@ -42,8 +42,8 @@ inline bool take_word(std::string_view& text, std::string_view& word) {
   return true;
 }
 
-/// kMalformed unless the whole text is that one line with its end of line: a file that was cut short
-/// must not be taken for a smaller number.
+/// kMalformed unless the whole text is that one line with its end of line: a file that was cut
+/// short must not be taken for a smaller number.
 inline Status parse_outside_limit(std::string_view text, OutsideLimit& limit) {
   limit = OutsideLimit{};
   if (!text.ends_with('\n')) return Status::kMalformed;

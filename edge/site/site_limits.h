@@ -5,11 +5,11 @@
 //   Meter          Status read(int32& grid_power_w)       must end by a deadline of its own
 //   OutsideLimits  Status read(OutsideLimit&, bool& is_set)
 //
-// Between two ticks the loop looks again every `check_every_s` and cuts an order that has become too
-// large; it never gives back before the next tick, so that reading and order cannot chase each
-// other. A tick's order leaves `margin_w` free; one in force is cut when half of that is used up, so
-// that a refrigerator costs no write. A meter that does not step with the battery is as good as lost
-// (meter_witness.h).
+// Between two ticks the loop looks again every `check_every_s` and cuts an order that has become
+// too large; it never gives back before the next tick, so that reading and order cannot chase each
+// other. A tick's order leaves `margin_w` free; one in force is cut when half of that is used up,
+// so that a refrigerator costs no write. A meter that does not step with the battery is as good as
+// lost (meter_witness.h).
 #pragma once
 
 #include <algorithm>
@@ -146,7 +146,8 @@ class SiteLimits {
     return power_w;
   }
 
-  /// As the meter shows it, and as it would be if its last steps' ratio were the meter's and not the house's.
+  /// As the meter shows it, and as it would be if its last steps' ratio were the meter's and not
+  /// the house's.
   void limit_at_connection_by_ratios(std::int64_t now_utc_s, std::int32_t relief_w_max,
                                      Margin margin, SiteRange& range) const {
     const std::int32_t margin_w = settings_.connection.margin_w;

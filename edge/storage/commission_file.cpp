@@ -22,7 +22,8 @@ namespace {
 /// Far more than is ever written.
 constexpr std::size_t kBytesMax = 8'192;
 
-/// Where it lies, the one that counts first. The copy outlasts a flipped byte, that in memory a dead disk.
+/// Where it lies, the one that counts first. The copy outlasts a flipped byte, that in memory a
+/// dead disk.
 std::vector<std::string> places_of(const EdgeConfig& config) {
   std::vector<std::string> places = {state_file(config, "commissioned.toml").c_str(),
                                      state_file(config, "commissioned.copy").c_str()};
@@ -77,7 +78,8 @@ Stored read_place(const std::string& path) {
 struct AllStored {
   std::vector<Stored> places;
 
-  /// A checksum is better than none, which an older program wrote or a cut has left; then the order of places.
+  /// A checksum is better than none, which an older program wrote or a cut has left; then the order
+  /// of places.
   [[nodiscard]] const Stored* that_counts() const {
     const Stored* best = nullptr;
     for (const Stored& one : places) {
@@ -185,8 +187,8 @@ std::string whole_text(const Stored& good) {
   return text;
 }
 
-/// Of a place that holds something else. A boot has emptied memory; an older program kept one alone, without a
-/// checksum: neither is a loss.
+/// Of a place that holds something else. A boot has emptied memory; an older program kept one
+/// alone, without a checksum: neither is a loss.
 bool is_loss(const EdgeConfig& config, const AllStored& all, const Stored& one,
              const Stored& good) {
   if (!one.is_absent) return &one != &good;

@@ -1,6 +1,7 @@
-// The file through which `bess-edge hold` tells the running controller: one line of fixed length in the
-// state folder and in its run_folder, replaced at once. It outlives restarts; when its end has passed it means
-// nothing. The younger file is the newer word: a disk that dies may have kept an older one.
+// The file through which `bess-edge hold` tells the running controller: one line of fixed length in
+// the state folder and in its run_folder, replaced at once. It outlives restarts; when its end has
+// passed it means nothing. The younger file is the newer word: a disk that dies may have kept an
+// older one.
 //   bess-hold 1 power_w=+000002000 until=2026-11-22T14:00:00Z crc32=0123abcd
 // Nothing here allocates.
 #pragma once

@@ -16,9 +16,9 @@ class InstanceLock {
   ~InstanceLock();
 
   /// Tries for a second, because a predecessor may be on its way out and `holder_of` looks by
-  /// locking. False with one line; `what` names the locked thing in it. A lock file of another user,
-  /// root apart, is refused: he could take it away. On a full or read-only disk it goes on without a
-  /// lock, and says so.
+  /// locking. False with one line; `what` names the locked thing in it. A lock file of another
+  /// user, root apart, is refused: he could take it away. On a full or read-only disk it goes on
+  /// without a lock, and says so.
   bool take(const char* path, const char* what, FileMessage& error);
 
  private:
@@ -34,8 +34,8 @@ class InstanceLock {
 
 inline constexpr int kHolderHidden = -2;
 
-/// Process that holds the lock, 0 = nobody, or nobody who is to be believed; -1 = somebody whose number
-/// is unknown; kHolderHidden = this user may not ask.
+/// Process that holds the lock, 0 = nobody, or nobody who is to be believed; -1 = somebody whose
+/// number is unknown; kHolderHidden = this user may not ask.
 int holder_of(const char* path);
 
 }  // namespace bess

@@ -12,8 +12,8 @@ class LimitFile {
   /// `path` must outlive this object.
   explicit LimitFile(const char* path) : path_(path) {}
 
-  /// `is_set` is false where there is no such file. kMalformed: it cannot be understood, or is there
-  /// and cannot be read.
+  /// `is_set` is false where there is no such file. kMalformed: it cannot be understood, or is
+  /// there and cannot be read.
   Status read(OutsideLimit& limit, bool& is_set) const;
 
  private:

@@ -63,7 +63,8 @@ std::int64_t written_ns(const char* path) {
   return info.st_mtim.tv_sec * kNanosecondsPerSecond + info.st_mtim.tv_nsec;
 }
 
-/// Of both places the one that was written last. One of before the last boot is older than any other.
+/// Of both places the one that was written last. One of before the last boot is older than any
+/// other.
 Json read_newer_status(const EdgeConfig& config) {
   Json of_state = read_status(config.log.status.c_str());
   Json of_run = read_status(config.log.run_status.c_str());
@@ -74,8 +75,8 @@ Json read_newer_status(const EdgeConfig& config) {
   return state_is_newer ? std::move(of_state) : std::move(of_run);
 }
 
-/// The process that wrote the status, while it lives; 0 = none. A status of before the last boot is nobody's,
-/// nor is a number that another program has by now, where that can be seen.
+/// The process that wrote the status, while it lives; 0 = none. A status of before the last boot is
+/// nobody's, nor is a number that another program has by now, where that can be seen.
 int living_writer_of(JsonValue status) {
   const auto pid = static_cast<int>(whole(status["pid"]));
   if (pid <= 0 || age_ms_of(status) < 0) return 0;

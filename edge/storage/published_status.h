@@ -1,6 +1,6 @@
-// How the controller is, put together from all that it leaves: status.json of the state folder and of the run
-// folder, and the decision log in both. A disk that dies leaves an old one behind: the newest counts, whatever says
-// it, and where nothing does although a controller runs, that is said.
+// How the controller is, put together from all that it leaves: status.json of the state folder and
+// of the run folder, and the decision log in both. A disk that dies leaves an old one behind: the
+// newest counts, whatever says it, and where nothing does although a controller runs, that is said.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
-// What a start takes over from the runs before, from wherever it can still be read. That there was nothing before
-// is not the same as that nothing can be read: the first is a new battery, the second may have been a trip.
+// What a start takes over from the runs before, from wherever it can still be read. That there was
+// nothing before is not the same as that nothing can be read: the first is a new battery, the
+// second may have been a trip.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +17,8 @@ struct Recall {
   std::string unknown;   ///< not empty: what earlier runs left cannot be read, why
 };
 
-/// The trip by the newest records, wherever they are, that nobody has cleared; not set where there is none.
+/// The trip by the newest records, wherever they are, that nobody has cleared; not set where there
+/// is none.
 Trip standing_trip(const RingLog& ring, const RingLog& run_ring, const BothPlaces& cleared);
 
 /// `published_number`: of the newest record that a status.json knows; 0 = none does.

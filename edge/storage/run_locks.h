@@ -10,8 +10,8 @@ namespace bess {
 FixedText<639> battery_lock_path(const EdgeConfig& config, std::string_view folder);
 /// Where every controller of this machine locks its battery; no configuration leads past it.
 std::string_view standard_lock_folder();
-/// Process of the controller of this configuration, as `holder_of` has it: by the lock of its state folder or, where
-/// that could not be made there, of its run folder.
+/// Process of the controller of this configuration, as `holder_of` has it: by the lock of its state
+/// folder or, where that could not be made there, of its run folder.
 int controller_holding(const EdgeConfig& config);
 bool is_controller_running(const EdgeConfig& config);
 
@@ -24,8 +24,8 @@ struct RunLocks {
 
 /// --check needs the battery alone. False with one line.
 bool lock_battery(const EdgeConfig& config, RunLocks& locks, FileMessage& error);
-/// Makes state and run folder if they are missing; refuses files of another user in them. A run folder that cannot
-/// be made is told and no reason to fail.
+/// Makes state and run folder if they are missing; refuses files of another user in them. A run
+/// folder that cannot be made is told and no reason to fail.
 bool lock_state(const EdgeConfig& config, RunLocks& locks, FileMessage& error);
 
 }  // namespace bess

@@ -49,7 +49,8 @@ std::string block_device_of(const std::string& folder) {
          std::to_string(minor(at.st_dev));
 }
 
-/// By the options of the file system that the folder lies on: "36 35 8:1 / /var rw - ext4 /dev/sda1 rw,emergency_ro".
+/// By the options of the file system that the folder lies on: "36 35 8:1 / /var rw - ext4 /dev/sda1
+/// rw,emergency_ro".
 bool was_set_read_only(const char* folder) {
   struct stat at {};
   if (stat(folder, &at) != 0) return true;

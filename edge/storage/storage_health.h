@@ -1,5 +1,5 @@
-// The disk that the state folder lies on: room, how long a synced write takes, and how worn it is where it says so
-// (eMMC; an SD card does not). For the self-test and for `status`.
+// The disk that the state folder lies on: room, how long a synced write takes, and how worn it is
+// where it says so (eMMC; an SD card does not). For the self-test and for `status`.
 #pragma once
 
 #include <cstdint>
@@ -13,18 +13,20 @@ namespace bess {
 /// A card that has used more of its life is to be replaced.
 inline constexpr int kUsedLifePercentMax = 90;
 
-/// Used share of its life from an eMMC's life_time file ("0x01 0x03": two kinds of cells, in tenths), the worse one,
-/// as the upper end in percent; 0 when it does not tell.
+/// Used share of its life from an eMMC's life_time file ("0x01 0x03": two kinds of cells, in
+/// tenths), the worse one, as the upper end in percent; 0 when it does not tell.
 int used_life_percent(std::string_view life_time);
 
 /// From its pre_eol_info file ("0x01"): CardWear::spare_level.
 int spare_level(std::string_view pre_eol_info);
 
-/// Of the device and the file system that the folder lies on, as far as /sys tells; below BESS_ROOT, for tests.
+/// Of the device and the file system that the folder lies on, as far as /sys tells; below
+/// BESS_ROOT, for tests.
 CardWear card_wear_of(const std::string& folder);
 
-/// Whether nothing can be written in that folder: mounted so, or set so by the kernel after an error, which ext4 does
-/// not tell statvfs of (emergency_ro of Linux 6.15 and later). Also where nobody can say.
+/// Whether nothing can be written in that folder: mounted so, or set so by the kernel after an
+/// error, which ext4 does not tell statvfs of (emergency_ro of Linux 6.15 and later). Also where
+/// nobody can say.
 bool is_read_only(const char* folder);
 
 /// The same, or no new file for want of room, without root's reserve: the log goes on in its place.
@@ -38,7 +40,8 @@ struct StorageHealth {
   CardWear wear;
 };
 
-/// Writes 4 KiB beside what is in `folder` and takes them away again; a folder that is missing is made.
+/// Writes 4 KiB beside what is in `folder` and takes them away again; a folder that is missing is
+/// made.
 StorageHealth look_at_storage(const std::string& folder);
 
 }  // namespace bess

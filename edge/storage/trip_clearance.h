@@ -1,7 +1,7 @@
-// How a person's word that the battery may be driven again reaches the controller: a small file names the trips
-// that were cleared, by the instant each was found at, newest first. It lies in the [state] folder and in its
-// run_folder, because a trip that was cleared stays cleared if either says so: a disk that dies may have kept the
-// trip and not the word.
+// How a person's word that the battery may be driven again reaches the controller: a small file
+// names the trips that were cleared, by the instant each was found at, newest first. It lies in the
+// [state] folder and in its run_folder, because a trip that was cleared stays cleared if either
+// says so: a disk that dies may have kept the trip and not the word.
 //   bess-cleared 1 1679788800 1679702400 crc32=0123abcd
 #pragma once
 
@@ -34,7 +34,8 @@ inline constexpr std::string_view kClearedFileName = "cleared";
 /// Whether the trip found at this instant was cleared. Allocates nothing.
 bool is_trip_cleared(const BothPlaces& paths, std::int64_t trip_utc_s);
 
-/// Adds the trip to what was cleared in this file, on the disk before it returns. False with errno set.
+/// Adds the trip to what was cleared in this file, on the disk before it returns. False with errno
+/// set.
 bool clear_trip_of(const char* path, std::int64_t trip_utc_s);
 
 }  // namespace bess

@@ -8,8 +8,8 @@ namespace {
 
 using Kind = EnergyInterval::Kind;
 
-// Shares of the measured energy in percent. A capacity 15 % off, losses of 10 % each way and a battery
-// that follows its order half a minute late stay within 70 and 150.
+// Shares of the measured energy in percent. A capacity 15 % off, losses of 10 % each way and a
+// battery that follows its order half a minute late stay within 70 and 150.
 constexpr std::int64_t kToldBelow = 70;
 constexpr std::int64_t kToldAbove = 150;
 constexpr std::int64_t kContradictedBelow = 40;
@@ -21,8 +21,8 @@ constexpr int kIntervalsBeyondDelay = 15;
 constexpr int kIntervalsOfRest = 5;        ///< until what is lost unmeasured is told
 constexpr int kIntervalsOfShownRest = 10;  ///< until what is measured at 0 W is
 
-/// Under orders that go both ways, what leaves or comes besides: beyond what is lost on the way, and what another
-/// capacity makes of the energy that did not come back.
+/// Under orders that go both ways, what leaves or comes besides: beyond what is lost on the way,
+/// and what another capacity makes of the energy that did not come back.
 constexpr std::int64_t kLostOnTheWayPercent = 15;
 constexpr std::int64_t kUsuallyLostPercent = 5;
 constexpr std::int64_t kWrongScalePercent = 35;
@@ -87,8 +87,9 @@ std::int64_t lack(std::int64_t percent, std::int64_t energy_e4, std::int64_t soc
   return (percent * energy_e4 - kPercent * soc_e4) * energy_e4;
 }
 
-/// As above, against the least of an honest battery. Where the order has changed, what was late cannot be
-/// told from what is missing: then only what is beyond any delay counts, and nothing speaks against it.
+/// As above, against the least of an honest battery. Where the order has changed, what was late
+/// cannot be told from what is missing: then only what is beyond any delay counts, and nothing
+/// speaks against it.
 std::int64_t lack_beyond_delay(const EnergyInterval& interval) {
   const std::int64_t energy = interval.energy_e4;
   const std::int64_t late = interval.late_energy_e4;
@@ -193,7 +194,8 @@ void EnergyBalance::judge_rest(std::int64_t soc_variance) {
   }
 }
 
-/// Under orders: s_i = k e_i + b t_i, with a loss b that no meter shows. Orders that go both ways tell it from k.
+/// Under orders: s_i = k e_i + b t_i, with a loss b that no meter shows. Orders that go both ways
+/// tell it from k.
 void EnergyBalance::judge_drift(std::int64_t soc_variance) {
   const std::int64_t capacity_ws = std::int64_t{3'600} * settings_.capacity_wh;
   const std::int64_t allowed_w = std::int64_t{settings_.noise_w} * 5 / 4;

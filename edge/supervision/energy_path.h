@@ -1,5 +1,6 @@
-// How much energy had flowed by when, for as long as a state of charge may be old: a reading of it tells of some
-// instant within a window that ends now, and the energy of that instant lies between the least and the most of it.
+// How much energy had flowed by when, for as long as a state of charge may be old: a reading of it
+// tells of some instant within a window that ends now, and the energy of that instant lies between
+// the least and the most of it.
 #pragma once
 
 #include <algorithm>

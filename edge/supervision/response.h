@@ -24,7 +24,8 @@ struct ResponseSettings {
   std::int32_t power_w = 4'000;      ///< rated
   std::int32_t capacity_wh = 8'000;  ///< where the device tells none
 
-  /// What measured power may be off by at any power; also 2.5 % of the rating: a large battery's pumps and fans.
+  /// What measured power may be off by at any power; also 2.5 % of the rating: a large battery's
+  /// pumps and fans.
   [[nodiscard]] constexpr std::int32_t noise_w() const {
     return std::max(band.tolerance_w, power_w / 40);
   }

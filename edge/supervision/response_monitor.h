@@ -1,7 +1,7 @@
-// Does the battery do what it is told? Registers that read back as written prove only that they were
-// stored: some batteries acknowledge and do nothing, a map with a wrong sign charges when it should
-// discharge, and values can stand still while power flows. Pure integers, fed with every reading
-// and the order that was in force, 0 W included.
+// Does the battery do what it is told? Registers that read back as written prove only that they
+// were stored: some batteries acknowledge and do nothing, a map with a wrong sign charges when it
+// should discharge, and values can stand still while power flows. Pure integers, fed with every
+// reading and the order that was in force, 0 W included.
 //
 //   what is seen                                      what follows
 //   opposite direction; more power than ordered       trip: a person has to look
@@ -12,9 +12,9 @@
 //   less power than ordered, energy that does not     told, not stopped
 //   arrive, loss at 0 W, a slow ramp, limits of
 //   its own that allow nothing
-// Each kind of fault has counts of its own (leaky_count.h), so that one that comes and goes is found. A
-// reading that could not show a fault leaves its count as it is: a battery that goes the wrong way at every
-// other order, with idle between, is found as well.
+// Each kind of fault has counts of its own (leaky_count.h), so that one that comes and goes is
+// found. A reading that could not show a fault leaves its count as it is: a battery that goes the
+// wrong way at every other order, with idle between, is found as well.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,8 @@
 
 namespace bess {
 
-/// Of a fault that may be of orders of one sign alone: right answers to the others do not forgive it.
+/// Of a fault that may be of orders of one sign alone: right answers to the others do not forgive
+/// it.
 class DirectedCount {
  public:
   void bad(bool is_charging) {

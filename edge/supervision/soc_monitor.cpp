@@ -11,10 +11,12 @@ namespace {
 /// Beyond these its count of its charge is set right, or clings to the end.
 constexpr std::int32_t kSocEndHighE4 = 9'500;
 constexpr std::int32_t kSocEndLowE4 = 1'000;
-/// What is left to an end, and by how much an honest count is wrong: beyond, the energy goes elsewhere.
+/// What is left to an end, and by how much an honest count is wrong: beyond, the energy goes
+/// elsewhere.
 constexpr std::int64_t kExcusedE4Max = 2'000;
 
-/// Full and empty as displayed: a count that was set right beyond them shows nothing else for a while.
+/// Full and empty as displayed: a count that was set right beyond them shows nothing else for a
+/// while.
 constexpr std::int32_t kShownFullE4 = 9'990;
 constexpr std::int32_t kShownEmptyE4 = 10;
 
@@ -107,8 +109,8 @@ std::int64_t SocMonitor::flowed_ws(const Response& now, std::int64_t delay_s) co
          std::int64_t{flow_power_w_} * (seconds - of_order_s);
 }
 
-/// As if the battery had followed its order as late as its map allows, and its SoC shown it as late. One that
-/// has not reached its order is on its way there all the time.
+/// As if the battery had followed its order as late as its map allows, and its SoC shown it as
+/// late. One that has not reached its order is on its way there all the time.
 std::int64_t SocMonitor::late_ws(const Response& now) const {
   const std::int64_t late_ws =
       flowed_ws(now, settings_.band.settle_s + settings_.band.soc_refresh_s);
@@ -225,8 +227,8 @@ EnergyInterval SocMonitor::interval_of(const Response& now, const Flow& flow) co
           .power_w = now.measurement.power_w};
 }
 
-/// Whenever the battery followed its order, and whatever its meter is off by: nothing where it may have gone
-/// either way.
+/// Whenever the battery followed its order, and whatever its meter is off by: nothing where it may
+/// have gone either way.
 std::int64_t SocMonitor::surely_moved_e4(const Flow& flow, std::int64_t seconds) const {
   if ((flow.energy_e4 < 0) != (flow.late_energy_e4 < 0)) return 0;
   const std::int64_t measured_e4 =

@@ -59,7 +59,8 @@ class Supervision {
   explicit Supervision(const SupervisionSettings& settings)
       : settings_(settings), response_(settings.response), lost_(settings.response) {}
 
-  /// Every reading of a battery that is under control. `holds_nothing`: what it follows is not ours.
+  /// Every reading of a battery that is under control. `holds_nothing`: what it follows is not
+  /// ours.
   void observe(const Response& now, bool holds_nothing) {
     note_capacity(now.measurement.capacity_wh);
     end_pause(now.utc_s);
@@ -74,7 +75,8 @@ class Supervision {
     if (!trip_.is_set()) judge(then);
   }
 
-  /// What a battery reports, also where it could not be read any further; 0 or less: it does not say.
+  /// What a battery reports, also where it could not be read any further; 0 or less: it does not
+  /// say.
   void note_capacity(std::int32_t capacity_wh) { capacity_fits_ = is_right_capacity(capacity_wh); }
 
   /// A reading in the middle of a step, just before the order changes: nothing is judged by it.

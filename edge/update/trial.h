@@ -1,5 +1,5 @@
-// The judge of an upgrade: what the cycles of a version on trial say of it. Pure: what is seen comes in, a phase comes
-// out; trial_run.cpp sees and acts.
+// The judge of an upgrade: what the cycles of a version on trial say of it. Pure: what is seen
+// comes in, a phase comes out; trial_run.cpp sees and acts.
 //
 //   confirmed --announce--> upgrading --begin--> trying --enough good cycles--> confirmed
 //                               |                 |  ^
@@ -9,8 +9,8 @@
 //                               v                 | the version before does better
 //                           rolled_back <--- going_back <--- too late, a trip, no way to tell
 //
-// Good cycles follow each other: so many of the last so many. A cycle that is lost for a cause that the version before
-// had as well counts for nothing, until the first cycle without that cause.
+// Good cycles follow each other: so many of the last so many. A cycle that is lost for a cause that
+// the version before had as well counts for nothing, until the first cycle without that cause.
 #pragma once
 
 #include <cstdint>
@@ -72,7 +72,8 @@ struct TrialLimits {
 inline constexpr std::int64_t kStandingCycles = 5;  ///< so many in a row: not a passing trouble
 inline constexpr std::int64_t kSameCycles = 3;  ///< of the version before, with that trouble too
 
-/// All that is kept of an upgrade (trial_state.h), each change of it on the disk before it is acted on.
+/// All that is kept of an upgrade (trial_state.h), each change of it on the disk before it is acted
+/// on.
 struct TrialState {
   TrialPhase phase = TrialPhase::kUnknown;
   std::string version;      ///< on trial, or the one that runs; empty = none

@@ -1,5 +1,5 @@
-// The cycles of a controller, as its own program tells them: `bess-edge log --csv`, whose columns keep their names
-// over versions. A program that cannot tell has no good cycle.
+// The cycles of a controller, as its own program tells them: `bess-edge log --csv`, whose columns
+// keep their names over versions. A program that cannot tell has no good cycle.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
-// What the supervisor of upgrades does to this machine: units started and stopped, links flipped, apt told. Each step
-// can be done again from its begin.
+// What the supervisor of upgrades does to this machine: units started and stopped, links flipped,
+// apt told. Each step can be done again from its begin.
 #pragma once
 
 #include <string>
@@ -28,8 +28,8 @@ class TrialMachine {
   static std::string last_error(std::int64_t since_utc_s);
   static std::string boot_id();
 
-  /// The links and the unit file that this state asks for. False with one line in `error`; what a full disk refuses
-  /// is tried once more with the reserve.
+  /// The links and the unit file that this state asks for. False with one line in `error`; what a
+  /// full disk refuses is tried once more with the reserve.
   bool settle(const TrialState& state, std::string& error) const;
   /// Reloads (its order stays in force), or restarts, or starts it.
   [[nodiscard]] bool hand_over(bool keeps_order) const;

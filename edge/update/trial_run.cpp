@@ -38,8 +38,8 @@ std::int64_t uptime_s() {
   return now.tv_sec;
 }
 
-/// One upgrade on one machine: every verb is a method. The state is on the disk before anything is done by it, so that
-/// what a power cut breaks off is done again from there.
+/// One upgrade on one machine: every verb is a method. The state is on the disk before anything is
+/// done by it, so that what a power cut breaks off is done again from there.
 class Trial {
  public:
   Trial() : machine_(test_root()), folder_(machine_.path(kUpdateFolder)) {}
@@ -513,7 +513,8 @@ int Trial::supervise() {
   }
 }
 
-/// At boot, before the controller: what was broken off is made whole, and what a card has damaged is not run.
+/// At boot, before the controller: what was broken off is made whole, and what a card has damaged
+/// is not run.
 int Trial::recover() {
   lock();
   read();

@@ -40,7 +40,8 @@ struct NumberKey {
   std::string_view key;
   std::int64_t S::*member;
 };
-/// `needed` is the last line: a text of an older program, without checksum, is whole when it ends with it.
+/// `needed` is the last line: a text of an older program, without checksum, is whole when it ends
+/// with it.
 constexpr NumberKey kNumbers[] = {
     {"good", &S::good_cycles}, {"elapsed_s", &S::elapsed_s}, {"rest_s", &S::rest_s},
     {"bad_run", &S::bad_run},  {"same", &S::same},           {"other", &S::other},

@@ -1,6 +1,7 @@
-// What is kept of this machine's upgrades, in /var/lib/bess-update: `state` (key=value lines and their checksum), its
-// copy beside it, the history of all upgrades, and metrics. `bess-edge trial` alone writes it; `status` and `history`
-// read it. Where a card forgets, the copy counts; where both are lost, that is told, and what runs stays.
+// What is kept of this machine's upgrades, in /var/lib/bess-update: `state` (key=value lines and
+// their checksum), its copy beside it, the history of all upgrades, and metrics. `bess-edge trial`
+// alone writes it; `status` and `history` read it. Where a card forgets, the copy counts; where
+// both are lost, that is told, and what runs stays.
 #pragma once
 
 #include <string>
@@ -32,8 +33,8 @@ std::string update_note(const TrialState& state);
 /// or "ii 1.0".
 std::string dpkg_mend(std::string_view delivered);
 
-/// What health says of the last upgrade, until the next one or `bess-edge trial dismiss`; empty when it did not end
-/// badly.
+/// What health says of the last upgrade, until the next one or `bess-edge trial dismiss`; empty
+/// when it did not end badly.
 std::string update_trouble(const TrialState& state);
 
 inline constexpr std::string_view kUpdateEvents[] = {

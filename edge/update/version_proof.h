@@ -1,12 +1,14 @@
-// Whether a version may be let in at all, before the one that works is handed over from: its files are whole, its header
-// is the one of its certificate, its program decides what the certificate says, and it takes this machine's settings.
+// Whether a version may be let in at all, before the one that works is handed over from: its files
+// are whole, its header is the one of its certificate, its program decides what the certificate
+// says, and it takes this machine's settings.
 #pragma once
 
 #include <string>
 
 namespace bess {
 
-/// `share`: the path under which settings name maps (/usr/share/bess); read from the version's own folder.
+/// `share`: the path under which settings name maps (/usr/share/bess); read from the version's own
+/// folder.
 struct ProofPlaces {
   std::string version_folder;
   std::string settings;  ///< may not be there yet

@@ -1,6 +1,6 @@
-// Why a cycle ordered what it did, with everything that a person asks next: who decided, since when and until when, on
-// which inputs, and at which prices and states of charge it would have been another order. Made from the decision log
-// and the settings, beside the controller.
+// Why a cycle ordered what it did, with everything that a person asks next: who decided, since when
+// and until when, on which inputs, and at which prices and states of charge it would have been
+// another order. Made from the decision log and the settings, beside the controller.
 #pragma once
 
 #include <cstdint>
@@ -29,10 +29,12 @@ struct Explanation {
 bool explain(const LogReader& log, std::uint64_t number, const PriceThresholds& thresholds,
              Explanation& explanation);
 
-/// The record whose order was in force at that instant, the newest where the clock was stepped; 0 = none.
+/// The record whose order was in force at that instant, the newest where the clock was stepped; 0 =
+/// none.
 std::uint64_t number_at(const LogReader& log, std::int64_t utc_s);
 
-/// What ends the reason, and when: "until the SoC is above 10.5 %". Empty for the student's own decision.
+/// What ends the reason, and when: "until the SoC is above 10.5 %". Empty for the student's own
+/// decision.
 std::string what_ends(const CycleRecord& record, const ControlSettings& settings);
 
 /// Some lines, each ended, in local time.

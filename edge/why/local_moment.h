@@ -1,5 +1,5 @@
-// A moment as a person says it, on the market's wall clock: 14:32, the newest one that has been; 2026-11-23 14:32; or, to
-// be exact where an hour comes twice, UTC: 2026-11-23T13:32:00Z.
+// A moment as a person says it, on the market's wall clock: 14:32, the newest one that has been;
+// 2026-11-23 14:32; or, to be exact where an hour comes twice, UTC: 2026-11-23T13:32:00Z.
 #pragma once
 
 #include <cstdint>

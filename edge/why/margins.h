@@ -1,6 +1,7 @@
-// Where a decision would change: the student and the price thresholds are monotone in price and in SoC, which is
-// proved over the whole lattice, so that along either axis there is one price up to which it charges and one from
-// which it discharges. Binary search finds both exactly, in 38 evaluations at most.
+// Where a decision would change: the student and the price thresholds are monotone in price and in
+// SoC, which is proved over the whole lattice, so that along either axis there is one price up to
+// which it charges and one from which it discharges. Binary search finds both exactly, in 38
+// evaluations at most.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +16,8 @@ namespace bess {
 /// What the student, or one of the tests in its place, does at a point of the lattice.
 using Policy = Action (*)(const LatticeState&);
 
-/// Along one axis of the lattice, by its index or price. Charge holds up to `charge_last`, discharge from
-/// `discharge_first` on, idle between; one below the axis or one above it: never.
+/// Along one axis of the lattice, by its index or price. Charge holds up to `charge_last`,
+/// discharge from `discharge_first` on, idle between; one below the axis or one above it: never.
 struct ChangePoints {
   int charge_last;
   int discharge_first;
@@ -43,7 +44,8 @@ constexpr ChangePoints find_change_points(int first, int last, const ActionAt& a
   return {.charge_last = charge_end - 1, .discharge_first = first_below(charge_end, Action::kIdle)};
 }
 
-/// Of one decision, everything else staying as it is; in the units of the edge, the ends belonging to the action.
+/// Of one decision, everything else staying as it is; in the units of the edge, the ends belonging
+/// to the action.
 struct Margins {
   std::int32_t charge_up_to_centi = 0;  ///< EUR/MWh / 100; the threshold at the least
   std::int32_t discharge_from_centi = 0;
@@ -53,8 +55,8 @@ struct Margins {
   std::int32_t discharge_from_soc_e4 = 0;
 };
 
-/// Of the student with the guard's thresholds around it, at a price in hundredths of EUR/MWh. Rules of the operator
-/// and what the battery and its site allow are not in it.
+/// Of the student with the guard's thresholds around it, at a price in hundredths of EUR/MWh. Rules
+/// of the operator and what the battery and its site allow are not in it.
 Margins find_margins(const LatticeState& state, std::int32_t price_centi_eur_per_mwh,
                      const PriceThresholds& thresholds, Policy policy);
 

@@ -1,4 +1,5 @@
-// How a program was built, for --version: commit, compiler, and the instructions it was compiled for.
+// How a program was built, for --version: commit, compiler, and the instructions it was compiled
+// for.
 #pragma once
 
 #include <string>

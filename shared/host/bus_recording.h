@@ -1,5 +1,5 @@
-// A recording of a Modbus device: JSON, one object a line. The head says whose it is, each further line is one
-// request and what came of it, the last line counts them:
+// A recording of a Modbus device: JSON, one object a line. The head says whose it is, each further
+// line is one request and what came of it, the last line counts them:
 //   {"bess_recording":1,"version":"0.1.0","map":"alphaess","variant":"block","unit":85,"units":{},
 //    "transport":"tcp","begin":"2026-11-22T06:00:00Z","time_scale":1}
 //   {"utc":"2026-11-22T06:00:01.204511Z","unit":85,"function":3,"address":258,"count":1,"latency_us":8120,
@@ -7,8 +7,8 @@
 //   {"utc":...,"unit":85,"function":3,"address":9999,"count":1,"latency_us":7300,"exception":2}
 //   {"utc":...,"unit":85,"function":3,"address":258,"count":1,"latency_us":1000000,"error":"timeout"}
 //   {"end":"2026-11-22T07:00:00Z","exchanges":3,"dropped":0}
-// Addresses are PDU addresses. `values` is what was read, or written. `dropped` counts exchanges that came faster
-// than the disk took them.
+// Addresses are PDU addresses. `values` is what was read, or written. `dropped` counts exchanges
+// that came faster than the disk took them.
 #pragma once
 
 #include <cstdint>

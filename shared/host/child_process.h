@@ -1,4 +1,5 @@
-// A program that is run by another one: started with arguments, its output read line by line, stopped by signal.
+// A program that is run by another one: started with arguments, its output read line by line,
+// stopped by signal.
 #pragma once
 
 #include <fcntl.h>

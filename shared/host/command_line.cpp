@@ -60,8 +60,8 @@ struct UnknownSubcommand {
   std::string word;
 };
 
-/// The first word that names no subcommand where one is due. CLI11 would only say that a subcommand is
-/// missing.
+/// The first word that names no subcommand where one is due. CLI11 would only say that a subcommand
+/// is missing.
 std::optional<UnknownSubcommand> unknown_subcommand(const CLI::App& root, int argc,
                                                     const char* const* argv) {
   const CLI::App* command = &root;
@@ -93,8 +93,8 @@ std::string in_our_words(const std::string& what) {
          " times; give it once (a list with commas, where it takes one)";
 }
 
-/// What is wrong with the command line. A word that nobody takes comes first: it may be the slip of the
-/// finger for which CLI11 calls another option missing.
+/// What is wrong with the command line. A word that nobody takes comes first: it may be the slip of
+/// the finger for which CLI11 calls another option missing.
 std::string complaint_of(const CLI::ParseError& error, const CLI::App& root) {
   const CLI::App& command = asked_command(root);
   const std::vector<std::string> left = root.remaining(true);
@@ -113,8 +113,8 @@ bool is_bare(const CLI::App& command, int argc) {
   return argc == words;
 }
 
-/// A rule for numbers in words; what is no number at all is CLI11's to refuse. (Its own PositiveNumber
-/// prints the largest double with all its 309 digits.)
+/// A rule for numbers in words; what is no number at all is CLI11's to refuse. (Its own
+/// PositiveNumber prints the largest double with all its 309 digits.)
 std::function<std::string(std::string&)> number_rule(std::function<bool(double)> holds,
                                                      const std::string& rule) {
   return [holds = std::move(holds), rule](const std::string& given) {

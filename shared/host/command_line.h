@@ -1,6 +1,7 @@
-// The command line of a program with subcommands: options into variables, help, errors, exit codes. CLI11
-// does the work; only command_line.cpp includes it, because its header takes a compiler longer than
-// all else in a command. Declare in this order: program, subcommands, their options; then run().
+// The command line of a program with subcommands: options into variables, help, errors, exit codes.
+// CLI11 does the work; only command_line.cpp includes it, because its header takes a compiler
+// longer than all else in a command. Declare in this order: program, subcommands, their options;
+// then run().
 //   exit 0 done   1 the input or its content is bad   2 the command line is bad   3 interrupted
 #pragma once
 
@@ -20,8 +21,8 @@ namespace bess {
 /// Thrown when Ctrl-C stopped a command after it saved what it had.
 struct Interrupted {};
 
-/// One option or positional argument while it is declared. Rules add up; a value that breaks one ends the
-/// program with one line and exit code 2.
+/// One option or positional argument while it is declared. Rules add up; a value that breaks one
+/// ends the program with one line and exit code 2.
 class ProgramOption {
  public:
   explicit ProgramOption(CLI::Option* option) : option_(option) {}
@@ -54,8 +55,8 @@ class ProgramCommand {
   /// One of the subcommands must be given.
   void requires_subcommand();
   /// A name without dashes is a positional argument. Text, whole and decimal numbers, each also
-  /// std::optional (stays empty unless given), and lists of text. An empty value, and a number too large to
-  /// hold, are refused.
+  /// std::optional (stays empty unless given), and lists of text. An empty value, and a number too
+  /// large to hold, are refused.
   template <typename T>
   ProgramOption option(const std::string& name, T& value, const std::string& help);
   ProgramOption flag(const std::string& name, bool& value, const std::string& help);
@@ -89,9 +90,9 @@ class CommandLine {
   CommandLine& operator=(const CommandLine&) = delete;
 
   [[nodiscard]] ProgramCommand root() { return ProgramCommand(app_.get()); }
-  /// Parses, runs the command's action, and turns every error into one line on stderr, which names the
-  /// nearest known word and the help of the command that was asked for; a command that is given nothing
-  /// shows that help as well. Returns the exit code.
+  /// Parses, runs the command's action, and turns every error into one line on stderr, which names
+  /// the nearest known word and the help of the command that was asked for; a command that is given
+  /// nothing shows that help as well. Returns the exit code.
   int run(int argc, const char* const* argv);
   /// Parses one line and runs its action; errors are thrown. For tests.
   void parse(const std::string& line);

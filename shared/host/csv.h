@@ -11,7 +11,8 @@ namespace bess {
 /// A field as it is written: quoted where it must be.
 std::string csv_field(std::string_view text);
 
-/// The line that names the columns: the first that is neither empty nor a comment. A view into `text`.
+/// The line that names the columns: the first that is neither empty nor a comment. A view into
+/// `text`.
 std::string_view csv_header(std::string_view text);
 
 /// The fields of one line, without copying them. Quotes keep a separator inside.

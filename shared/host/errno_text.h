@@ -1,4 +1,5 @@
-// What an errno says of a file, for people: the common slips in plain words, the rest in the system's.
+// What an errno says of a file, for people: the common slips in plain words, the rest in the
+// system's.
 #pragma once
 
 #include <cerrno>

@@ -24,7 +24,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Opened for reading. A pipe is waited for until somebody writes: without end, a forgotten writer would hang us.
+/// Opened for reading. A pipe is waited for until somebody writes: without end, a forgotten writer
+/// would hang us.
 int open_to_read(const fs::path& path) {
   const int fd = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
   struct stat info {};
@@ -60,7 +61,8 @@ std::string gzip(std::string_view contents) {
   return out;
 }
 
-/// Removes what a killed process left beside `target`: `target.part.PID` of a PID that runs no more.
+/// Removes what a killed process left beside `target`: `target.part.PID` of a PID that runs no
+/// more.
 void remove_stale_parts(const fs::path& target) {
   const std::string prefix = target.filename().string() + ".part.";
   std::error_code error;
@@ -85,9 +87,9 @@ fs::path resolved(const fs::path& path) {
   return target;
 }
 
-/// What will be found under a name once it is committed: a temporary file beside it, which takes the
-/// permissions of the file that it replaces and disappears unless it is committed; or the device or
-/// pipe of that name itself, which is written to at once.
+/// What will be found under a name once it is committed: a temporary file beside it, which takes
+/// the permissions of the file that it replaces and disappears unless it is committed; or the
+/// device or pipe of that name itself, which is written to at once.
 class TemporaryFile {
  public:
   explicit TemporaryFile(const fs::path& name) : target_(resolved(name)) {
@@ -161,8 +163,8 @@ void create_parent(const fs::path& path) {
   if (error) fail("{}: cannot create: {}", path.parent_path().string(), error.message());
 }
 
-/// A file's bytes as they are read, unpacked where they are gzip: one member or more, nothing behind them.
-/// Bounded while it is read: some thousand bytes of gzip may stand for gigabytes.
+/// A file's bytes as they are read, unpacked where they are gzip: one member or more, nothing
+/// behind them. Bounded while it is read: some thousand bytes of gzip may stand for gigabytes.
 class WholeFile {
  public:
   WholeFile(std::string name, std::size_t bytes_max)

@@ -1,6 +1,7 @@
-// JSON, read and written through cJSON, which json.cpp alone includes. Numbers are written in the shortest form
-// that reads back to them, whole numbers exactly; JSON has no NaN: what is not finite becomes null.
-// A text is read with json_reader.h where it must hold something, with JsonValue where it may.
+// JSON, read and written through cJSON, which json.cpp alone includes. Numbers are written in the
+// shortest form that reads back to them, whole numbers exactly; JSON has no NaN: what is not finite
+// becomes null. A text is read with json_reader.h where it must hold something, with JsonValue
+// where it may.
 #pragma once
 
 #include <concepts>
@@ -70,7 +71,8 @@ class Json {
   /// Does not exist when `text` is anything else than one JSON value.
   static Json parse(std::string_view text);
 
-  // Whatever can be a value is one: Json::object({{"policy", name}, {"days", 90}, {"profit_eur", Decimals{x, 4}}}).
+  // Whatever can be a value is one: Json::object({{"policy", name}, {"days", 90}, {"profit_eur",
+  // Decimals{x, 4}}}).
   Json(std::string_view text);                                      // NOLINT: implicit on purpose
   Json(const std::string& text) : Json(std::string_view(text)) {}   // NOLINT
   Json(const char* text) : Json(std::string_view(text)) {}          // NOLINT

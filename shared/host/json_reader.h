@@ -1,4 +1,5 @@
-// Strict reading of a JSON object: what is missing or of the wrong kind is an error that names file and member.
+// Strict reading of a JSON object: what is missing or of the wrong kind is an error that names file
+// and member.
 #pragma once
 
 #include <cstdint>

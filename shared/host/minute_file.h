@@ -40,8 +40,9 @@ bool is_minute_csv(std::string_view text);
 MinuteSeries parse_minute_csv(std::string_view text, std::string_view name);
 MinuteSeries read_minute_file(const std::filesystem::path& path);
 
-/// CSV text of a series, each price in the shortest form that reads back to it; minutes without any price are left out.
-/// `provenance` becomes # comment lines at the head (one per line of the string, may be empty).
+/// CSV text of a series, each price in the shortest form that reads back to it; minutes without any
+/// price are left out. `provenance` becomes # comment lines at the head (one per line of the
+/// string, may be empty).
 std::string format_minute_csv(const MinuteSeries& series, std::string_view provenance);
 void write_minute_file(const std::filesystem::path& path, const MinuteSeries& series,
                        std::string_view provenance);

@@ -8,7 +8,8 @@ namespace {
 
 constexpr std::size_t kLettersMax = 40;  // longer words are no slips of the finger
 
-/// Letters to insert, remove, replace or swap with their neighbour (the restricted distance of Damerau).
+/// Letters to insert, remove, replace or swap with their neighbour (the restricted distance of
+/// Damerau).
 std::size_t distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before_last(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
   std::iota(last.begin(), last.end(), 0);

@@ -37,8 +37,8 @@ struct Pipe {
   int ends[2];
 };
 
-/// Signals are ours to wait for, not the other program's to inherit blocked or ignored. A group of its own: what
-/// it started must end with it.
+/// Signals are ours to wait for, not the other program's to inherit blocked or ignored. A group of
+/// its own: what it started must end with it.
 pid_t spawn(const std::vector<std::string>& arguments, const Pipe& in, const Pipe& out,
             const Pipe& errors) {
   std::vector<char*> argv;
@@ -97,7 +97,8 @@ void give_input(Pipe& in, std::string_view& input) {
   if ((written < 0 && errno != EAGAIN) || input.empty()) in.close_end(1);
 }
 
-/// Feeds and reads until the program closes all that it says; false when the time is over or it says too much.
+/// Feeds and reads until the program closes all that it says; false when the time is over or it
+/// says too much.
 bool exchange(Pipe& in, Pipe& out, Pipe& errors, std::string_view input, const Patience& patience,
               ProgramResult& result) {
   constexpr int kLookMs = 100;

@@ -1,5 +1,5 @@
-// Another program, run to its end or to its time: given a text, what it says taken. Needs poll and posix_spawn alone,
-// so that the judge of an upgrade can rely on it when little else works.
+// Another program, run to its end or to its time: given a text, what it says taken. Needs poll and
+// posix_spawn alone, so that the judge of an upgrade can rely on it when little else works.
 #pragma once
 
 #include <cstdint>
@@ -22,10 +22,10 @@ struct ProgramResult {
   [[nodiscard]] std::string complaint() const;
 };
 
-/// `arguments[0]` is looked for in PATH unless it is a path. Killed, with all that it started, when it takes longer
-/// than `time_ms_max`, says more than a megabyte, or within a tenth of a second after it is not wanted any more. Its
-/// errors go where ours go. SIGPIPE must be ignored where `input` is not empty: a program need not read what it is
-/// given.
+/// `arguments[0]` is looked for in PATH unless it is a path. Killed, with all that it started, when
+/// it takes longer than `time_ms_max`, says more than a megabyte, or within a tenth of a second
+/// after it is not wanted any more. Its errors go where ours go. SIGPIPE must be ignored where
+/// `input` is not empty: a program need not read what it is given.
 ProgramResult run_program(const std::vector<std::string>& arguments, std::string_view input,
                           int time_ms_max, const std::stop_token& stop = {});
 

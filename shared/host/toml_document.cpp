@@ -9,8 +9,8 @@
 #include <toml++/impl/preprocessor.h>
 #undef TOML_ASSERT_ASSUME
 #define TOML_ASSERT_ASSUME(expr) static_cast<void>(0)
-// And its test for white space ends in "unreachable" for most letters other than ASCII, which a line
-// continued in a string reaches: let it answer no.
+// And its test for white space ends in "unreachable" for most letters other than ASCII, which a
+// line continued in a string reaches: let it answer no.
 #pragma push_macro("TOML_UNREACHABLE")
 #undef TOML_UNREACHABLE
 #define TOML_UNREACHABLE return false

@@ -1,5 +1,5 @@
-// A TOML text as a tree of plain values, each with the place where it was written. toml++ itself is known to
-// toml_document.cpp alone: it takes ten seconds to compile, and needs mends.
+// A TOML text as a tree of plain values, each with the place where it was written. toml++ itself is
+// known to toml_document.cpp alone: it takes ten seconds to compile, and needs mends.
 #pragma once
 
 #include <cstddef>
@@ -40,7 +40,8 @@ struct TomlValue {
   [[nodiscard]] const TomlValue* find(std::string_view key) const;
 };
 
-/// No configuration and no register map comes near: a larger file is a mistake, and is not read to its end.
+/// No configuration and no register map comes near: a larger file is a mistake, and is not read to
+/// its end.
 inline constexpr std::size_t kTomlBytesMax = 256 * 1024;
 
 /// Parses a text; false with `error` set ("name:line: message") when it is not TOML.

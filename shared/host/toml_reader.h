@@ -1,6 +1,6 @@
-// Strict reading of a TOML table: unknown key, wrong type or out-of-range value becomes one line with file,
-// line and the mend. Start-up only: after loading, everything lives in fixed-size structs.
-// Nothing is thrown; the first error wins and later reads are harmless.
+// Strict reading of a TOML table: unknown key, wrong type or out-of-range value becomes one line
+// with file, line and the mend. Start-up only: after loading, everything lives in fixed-size
+// structs. Nothing is thrown; the first error wins and later reads are harmless.
 #pragma once
 
 #include <set>
@@ -15,8 +15,8 @@ namespace bess {
 /// One table of a file. Every key that the file may hold must be asked for before `finish`.
 class TomlTable {
  public:
-  /// `table` may be null or no table: absent, all values keep their defaults. `where` is its name in
-  /// messages, e.g. "[battery]". Table and `error` outlive this object.
+  /// `table` may be null or no table: absent, all values keep their defaults. `where` is its name
+  /// in messages, e.g. "[battery]". Table and `error` outlive this object.
   TomlTable(const TomlValue* table, std::string file, std::string where, std::string& error)
       : table_(table != nullptr && table->as<TomlMembers>() != nullptr ? table : nullptr),
         file_(std::move(file)),

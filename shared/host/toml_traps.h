@@ -1,7 +1,8 @@
-// What toml++ 3.3 must not be shown, looked for before it parses. TOML wants ASCII outside quotes and comments,
-// and toml++ does not check: one accented letter there is undefined behaviour. Nor does it limit the parts of a
-// key: each becomes a table in a table, and some ten thousand of them overflow the stack. Nor the number of
-// values: each takes some 200 bytes, and the edge has 8 MiB for everything.
+// What toml++ 3.3 must not be shown, looked for before it parses. TOML wants ASCII outside quotes
+// and comments, and toml++ does not check: one accented letter there is undefined behaviour. Nor
+// does it limit the parts of a key: each becomes a table in a table, and some ten thousand of them
+// overflow the stack. Nor the number of values: each takes some 200 bytes, and the edge has 8 MiB
+// for everything.
 #pragma once
 
 #include <algorithm>
@@ -52,7 +53,8 @@ class TomlTrapFinder {
     rest_.remove_prefix(bytes);
   }
 
-  /// To behind the closing quote. A string of one line that is not closed ends there: the parser's business.
+  /// To behind the closing quote. A string of one line that is not closed ends there: the parser's
+  /// business.
   constexpr void skip_string(char quote_mark) {
     const std::string_view triple = quote_mark == '"' ? "\"\"\"" : "'''";
     const std::string_view quote = rest_.starts_with(triple) ? triple : triple.substr(0, 1);
@@ -65,8 +67,8 @@ class TomlTrapFinder {
     skip(quote.size());
   }
 
-  /// A quote opens a string only where a key or a value begins: in 30''' or 5["" it is part of a mistake in a
-  /// number, which toml++ reads on and on.
+  /// A quote opens a string only where a key or a value begins: in 30''' or 5["" it is part of a
+  /// mistake in a number, which toml++ reads on and on.
   constexpr void pass(char c) {
     if (c == '\n' || c == ',') {
       in_word_ = in_value_ = false;

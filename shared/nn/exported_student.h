@@ -124,7 +124,8 @@ constexpr StudentSelfCheck exported_self_check(int index) {
           .logits = {z[0], z[1], z[2]}};
 }
 
-/// Number of self-check vectors, those of the rules included, that this machine answers differently from the exporter: must be 0.
+/// Number of self-check vectors, those of the rules included, that this machine answers differently
+/// from the exporter: must be 0.
 inline int count_exported_self_check_failures() {
   int failures = count_exported_rule_check_failures();
   for (int i = 0; i < kExportedSelfCheckCount; ++i) {

@@ -95,8 +95,8 @@ constexpr std::uint32_t student_architecture_hash() {
   return crc.value();
 }
 
-/// Hash of every number of the net, in declaration order, independent of the machine's byte order. By month
-/// the context adds nothing: nets of before have the hash that they had.
+/// Hash of every number of the net, in declaration order, independent of the machine's byte order.
+/// By month the context adds nothing: nets of before have the hash that they had.
 constexpr std::uint32_t student_weights_hash(const StudentNet& net) {
   Crc32 crc;
   if (net.context.kind == ContextKind::kLevel) {

@@ -1,5 +1,6 @@
-// The projection: exact isotonic regression with bounds, and NLopt or the general program on the same problem where
-// that is bearable; the general program on an order of so many variables and on rows of any kind, and cvxopt on the same.
+// The projection: exact isotonic regression with bounds, and NLopt or the general program on the
+// same problem where that is bearable; the general program on an order of so many variables and on
+// rows of any kind, and cvxopt on the same.
 #include <fmt/core.h>
 #include <nlopt.hpp>
 
@@ -18,7 +19,8 @@ namespace bess {
 namespace {
 
 constexpr int kRepetitions = 5;
-/// Short turns beside a peer in a process of its own: the pace of a shared machine changes by the second.
+/// Short turns beside a peer in a process of its own: the pace of a shared machine changes by the
+/// second.
 constexpr int kTurns = 11;
 constexpr double kTurnS = 0.1;
 constexpr std::size_t kGeneralSolutions = 15;
@@ -99,8 +101,8 @@ void nlopt_projection(benchmark::State& state, unsigned rows, unsigned columns) 
   }
 }
 
-/// The same projection as rows for the general program: no cell exceeds the one before it in its row or column, the
-/// first row is at least the lower bound, the last at most the upper.
+/// The same projection as rows for the general program: no cell exceeds the one before it in its
+/// row or column, the first row is at least the lower bound, the last at most the upper.
 LinearConstraints order_with_bounds(int rows, int columns, const RowBounds& bounds) {
   const int cells = rows * columns;
   RowBuilder builder(Eigen::VectorXd::Zero(cells));
@@ -148,8 +150,8 @@ double thread_cpu_s() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// A program solved, by cvxopt too; its derivative, which cvxopt has not, stands beside it as `gradient_us`. CPU time
-/// of one thread each, which a busy machine disturbs least.
+/// A program solved, by cvxopt too; its derivative, which cvxopt has not, stands beside it as
+/// `gradient_us`. CPU time of one thread each, which a busy machine disturbs least.
 void quadratic_program(benchmark::State& state, ProgramKind kind, int variables) {
   Random random(4);
   const std::vector<TestProgram> programs{random_program(kind, variables, random)};

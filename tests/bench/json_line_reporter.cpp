@@ -18,8 +18,9 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// How much better than its peer: a rate by its size, a time by its shortness. The median of the repetitions' own
-/// ratios: where the two take turns, a machine that changes its pace disturbs both of a pair.
+/// How much better than its peer: a rate by its size, a time by its shortness. The median of the
+/// repetitions' own ratios: where the two take turns, a machine that changes its pace disturbs both
+/// of a pair.
 double median_ratio(const std::vector<double>& values, const std::vector<double>& peers,
                     bool is_rate) {
   std::vector<double> ratios;

@@ -1,7 +1,7 @@
-// Prints one JSON object a line and benchmark: name, value, unit, its counters, and peer and ratio where
-// a peer was measured beside it in the same run; all are medians over the repetitions. A peer of
-// benchmark "x" is registered as "x@peer-name", or is the counter "@peer-name" of x, whose label then
-// says what the peer works with.
+// Prints one JSON object a line and benchmark: name, value, unit, its counters, and peer and ratio
+// where a peer was measured beside it in the same run; all are medians over the repetitions. A peer
+// of benchmark "x" is registered as "x@peer-name", or is the counter "@peer-name" of x, whose label
+// then says what the peer works with.
 #pragma once
 
 #include <benchmark/benchmark.h>

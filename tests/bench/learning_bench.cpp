@@ -1,5 +1,6 @@
-// One gradient step as the paper takes it: minibatch 16,384 drawn from a replay of a million, 5-256-128,
-// C51 with 51 atoms or DQN, Adam, target blend. And what handing out a minibatch costs by itself.
+// One gradient step as the paper takes it: minibatch 16,384 drawn from a replay of a million,
+// 5-256-128, C51 with 51 atoms or DQN, Adam, target blend. And what handing out a minibatch costs
+// by itself.
 #include <chrono>
 #include <limits>
 #include <memory>
@@ -19,7 +20,8 @@ namespace {
 constexpr std::size_t kMinibatch = 16'384;
 constexpr std::size_t kReplay = 1'000'000;
 constexpr int kRepetitions = 15;
-/// Each side takes a few steps in a row, as in training; the first finds the caches full of the other.
+/// Each side takes a few steps in a row, as in training; the first finds the caches full of the
+/// other.
 constexpr int kStepsInTurn = 4;
 constexpr double kGamma = 0.999;
 const Support kSupport{-10, 10, 51};
@@ -55,8 +57,9 @@ RandomReplay& random_replay() {
   return replay;
 }
 
-/// Multiply-adds of a step that no exact method can leave out, times two: the target network forward
-/// with all outputs; online forward, and back to weights and activations, with one action's.
+/// Multiply-adds of a step that no exact method can leave out, times two: the target network
+/// forward with all outputs; online forward, and back to weights and activations, with one
+/// action's.
 double flops_of_step(const MlpShape& s) {
   const double hidden = s.inputs * s.hidden1 + s.hidden1 * s.hidden2;
   const double head = s.hidden2 * s.outputs;

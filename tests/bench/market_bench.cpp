@@ -52,7 +52,8 @@ void register_market_benchmarks() {
     ForesightPolicy policy{BatteryParameters{}};
     for (auto _ : state) benchmark::DoNotOptimize(evaluate_year(policy));
   });
-  // Midnight's plan and the first decision on it: a day's plan for the two levels that it lies between.
+  // Midnight's plan and the first decision on it: a day's plan for the two levels that it lies
+  // between.
   add_benchmark("outlook-day-plan", benchmark::kMillisecond, 5, [](benchmark::State& state) {
     const MarketSteps market = year_with_outlook();
     const std::vector<MarketDay> training(market.days.begin(), market.days.begin() + 60);

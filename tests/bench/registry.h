@@ -1,5 +1,5 @@
-// The benchmarks by name: each file registers its own; a peer is registered beside the benchmark it is
-// measured against and runs after it, or reports its time from within, when the two take turns.
+// The benchmarks by name: each file registers its own; a peer is registered beside the benchmark it
+// is measured against and runs after it, or reports its time from within, when the two take turns.
 #pragma once
 
 #include <benchmark/benchmark.h>

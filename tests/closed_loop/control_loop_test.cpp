@@ -283,7 +283,8 @@ TEST(ClosedLoop, ABatteryThatGoesTheOtherWayIsLeftAlone) {
   EXPECT_EQ(plant.battery.releases, 1);
 }
 
-/// Cycles from one run to the next, killed after each, until one finds what `fault` did to the battery.
+/// Cycles from one run to the next, killed after each, until one finds what `fault` did to the
+/// battery.
 int runs_until_trip(int cycles_per_run, const std::function<void(FakeBattery&, int)>& fault) {
   Plant plant;
   plant.prices.price = [](std::int64_t) { return -60'000; };

@@ -1,6 +1,7 @@
-// A disk that dies under the real programs: full, read-only, without answer, gone, with flipped bytes. Whatever it
-// does, status, metrics and alarms never say the opposite of what the controller has just decided, and a trip stays
-// until a person clears it. Each row is printed; together they are the table.
+// A disk that dies under the real programs: full, read-only, without answer, gone, with flipped
+// bytes. Whatever it does, status, metrics and alarms never say the opposite of what the controller
+// has just decided, and a trip stays until a person clears it. Each row is printed; together they
+// are the table.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -81,7 +82,8 @@ class StateDisk {
                              " && mount -o loop,errors=remount-ro " + image + " " + folder_;
     return std::system((make + " 2>/dev/null").c_str()) == 0;
   }
-  /// What the kernel does to a card after an error, under whatever has files open. No shim has a part in it.
+  /// What the kernel does to a card after an error, under whatever has files open. No shim has a
+  /// part in it.
   void fail_for_real() const {
     struct stat at {};
     ASSERT_EQ(stat(folder_.c_str(), &at), 0);
@@ -216,8 +218,8 @@ class DyingDisk : public ::testing::Test {
     return answers;
   }
 
-  /// What everybody says of the controller is what it has just decided. Asked again when it was stopped between
-  /// deciding and telling.
+  /// What everybody says of the controller is what it has just decided. Asked again when it was
+  /// stopped between deciding and telling.
   void expect_all_agree(bool may_be_unknown) {
     Answers answers = ask_all();
     for (int i = 0; i < 20; ++i) {
@@ -376,7 +378,8 @@ class DyingDiskNotify : public DyingDiskRun {
     }
     return count;
   }
-  /// False after half a minute. The controller's lines are read meanwhile, so that it never waits for a reader.
+  /// False after half a minute. The controller's lines are read meanwhile, so that it never waits
+  /// for a reader.
   bool is_mailed(const std::string& piece) {
     for (int cycle = 0; cycle < 90 && mails_with(piece) == 0; ++cycle) await_cycle("mode", "-", 1);
     return mails_with(piece) > 0;
@@ -624,7 +627,8 @@ TEST_F(DyingDisk, ANewBatteryStarts) {
   print_row("first start", "driven");
 }
 
-/// It has never run here, and cannot keep anything: not driven, and said so, unless a key allows it.
+/// It has never run here, and cannot keep anything: not driven, and said so, unless a key allows
+/// it.
 TEST_F(DyingDisk, FullOrReadOnlyFromTheStartItIsNotDrivenUnlessAllowed) {
   for (const Death& death : kDeaths) {
     if (std::string(death.name) == "I/O errors" || death.is_real)

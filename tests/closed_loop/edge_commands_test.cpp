@@ -159,7 +159,8 @@ TEST_F(EdgeCommands, TheStatusOfAnEndedControllerSaysWhatItWasAndWhenItEnded) {
                     ContainsRegex("\nwas        [a-z]+ at ")));
 }
 
-/// A hold cannot make a battery be driven that the supervision has given back: that is said where it is asked for.
+/// A hold cannot make a battery be driven that the supervision has given back: that is said where
+/// it is asked for.
 TEST_F(EdgeCommands, AHoldWhileTrippedSaysThatItIsNotFollowed) {
   start_site();
   const int port = site_.battery_port;

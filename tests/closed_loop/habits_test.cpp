@@ -1,5 +1,5 @@
-// On every shipped map, through its registers: faults that come and go, a battery that echoes its order, and what a
-// healthy battery does that looks like a fault.
+// On every shipped map, through its registers: faults that come and go, a battery that echoes its
+// order, and what a healthy battery does that looks like a fault.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -22,7 +22,8 @@ const int kDays = few_or_all(2, 30);
 
 class EveryMapHabits : public ::testing::TestWithParam<MapVariant> {
  protected:
-  /// Cycles until it is stopped, with `fault` in force at every so manieth; `cycles_max` + 1: never.
+  /// Cycles until it is stopped, with `fault` in force at every so manieth; `cycles_max` + 1:
+  /// never.
   static int cycles_to_stop(SupervisedSite& site, int every, int cycles_max,
                             const std::function<void(SupervisedSite&, bool)>& fault) {
     for (int cycle = 0; cycle <= cycles_max; ++cycle) {

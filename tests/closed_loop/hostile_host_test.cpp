@@ -1,5 +1,5 @@
-// The real programs on a machine that is not on their side: prices that lie, configurations that lead past each
-// other, a full disk, files of somebody else.
+// The real programs on a machine that is not on their side: prices that lie, configurations that
+// lead past each other, a full disk, files of somebody else.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/mount.h>

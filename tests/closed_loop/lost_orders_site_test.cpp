@@ -1,7 +1,7 @@
-// Orders that are not in force until their end, on every shipped map: somebody gives the battery back,
-// writes another mode or another power, or the device ends them, at each, every other or every third
-// tick: after how many cycles it is found, and what is delivered of what was ordered. And what is
-// nobody's intention: then nothing may be found.
+// Orders that are not in force until their end, on every shipped map: somebody gives the battery
+// back, writes another mode or another power, or the device ends them, at each, every other or
+// every third tick: after how many cycles it is found, and what is delivered of what was ordered.
+// And what is nobody's intention: then nothing may be found.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -182,7 +182,8 @@ TEST_P(EveryMapsOrders, WhoInsistsIsToldAndGivesUpAfterAnHour) {
   }
 }
 
-/// What ends orders and is nobody's intention: asked at each half minute, true when it has happened.
+/// What ends orders and is nobody's intention: asked at each half minute, true when it has
+/// happened.
 struct Innocent {
   const char* name;
   std::function<bool(SupervisedSite&, std::int64_t cycle, std::int64_t second)> happens;
@@ -318,7 +319,8 @@ TEST_P(EveryMapsOrders, WhatIsNobodysIntentionIsNotFound) {
       record = site.cycle();
       ++reasons[record.reason];
     }
-    // Where the registers show no end, the simulator's next one waits for the next order that differs.
+    // Where the registers show no end, the simulator's next one waits for the next order that
+    // differs.
     EXPECT_GE(happened, what_it_shows(GetParam()).ended ? 20 : 0);
     EXPECT_EQ(reasons[Reason::kOtherMaster], 0);
     EXPECT_EQ(reasons[Reason::kNoAnswer], 0);
@@ -332,7 +334,8 @@ TEST_P(EveryMapsOrders, WhatIsNobodysIntentionIsNotFound) {
   }
 }
 
-/// A new process finds the order of the one before, and what became of it in between is not its to judge.
+/// A new process finds the order of the one before, and what became of it in between is not its to
+/// judge.
 TEST_P(EveryMapsOrders, RestartsLoseNone) {
   SupervisedSite site(GetParam());
   trade_both_ways(site);

@@ -1,6 +1,6 @@
-// The control loop behind a meter that lies, against houses that move: how long limits are passed once a step
-// of the battery has contradicted the meter, after how many cycles it is found, and that an honest meter is
-// never accused. Prints both tables.
+// The control loop behind a meter that lies, against houses that move: how long limits are passed
+// once a step of the battery has contradicted the meter, after how many cycles it is found, and
+// that an honest meter is never accused. Prints both tables.
 #include <gtest/gtest.h>
 
 #include <cmath>

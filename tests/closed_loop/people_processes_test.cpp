@@ -1,4 +1,5 @@
-// People and the real programs: a hold that the running controller finds, a notifier that it does not notice.
+// People and the real programs: a hold that the running controller finds, a notifier that it does
+// not notice.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>

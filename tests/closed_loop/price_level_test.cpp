@@ -1,6 +1,6 @@
-// The price level on both sides: the real control loop, on a market that is served as bess-sim serves it and
-// read as the edge reads it, against what the workstation makes of the same minutes. Bit for bit, over
-// gaps, restarts, prices beyond every range and both clock changes.
+// The price level on both sides: the real control loop, on a market that is served as bess-sim
+// serves it and read as the edge reads it, against what the workstation makes of the same minutes.
+// Bit for bit, over gaps, restarts, prices beyond every range and both clock changes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -25,8 +25,8 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// Prices as bess-sim serves them, kept as PriceFeed keeps them: the newest row of this process's life. At a
-/// stale tick the answer is ten minutes old, so the newest row comes a second time.
+/// Prices as bess-sim serves them, kept as PriceFeed keeps them: the newest row of this process's
+/// life. At a stale tick the answer is ten minutes old, so the newest row comes a second time.
 class ServedPrices {
  public:
   ServedPrices(const MarketView& view, const std::vector<std::int64_t>& stale_ticks)
@@ -99,7 +99,8 @@ class Replay {
   }
   [[nodiscard]] std::int64_t end_utc_s() const { return series_.utc_s(series_.size() - 1); }
 
-  /// The minutes as this edge saw them: of the rows between two decisions it saw the newest at most.
+  /// The minutes as this edge saw them: of the rows between two decisions it saw the newest at
+  /// most.
   [[nodiscard]] MinuteSeries seen() const {
     MinuteSeries seen = series_;
     std::int64_t before_utc_s =
@@ -137,7 +138,8 @@ class Replay {
   std::unique_ptr<Loop> loop_;
 };
 
-/// The level after each tick, counted once more and by hand: the newest row that there is at the tick.
+/// The level after each tick, counted once more and by hand: the newest row that there is at the
+/// tick.
 std::map<std::int64_t, PriceLevel> levels_by_hand(const MinuteSeries& series) {
   std::map<std::int64_t, PriceLevel> levels;
   PriceLevel level;
@@ -185,8 +187,8 @@ void round_prices(MinuteSeries& series) {
   for (double& price : series.indicative) price = std::round(price * 100) / 100;
 }
 
-/// Rows without a price for minutes (fewer than one answer has rows), no rows for hours, and prices beyond the
-/// lattice and beyond belief.
+/// Rows without a price for minutes (fewer than one answer has rows), no rows for hours, and prices
+/// beyond the lattice and beyond belief.
 void disturb(MinuteSeries& series, std::uint64_t seed) {
   Random random(seed);
   const auto at = [&](int minutes) {

@@ -22,8 +22,8 @@ using ::testing::Not;
 
 constexpr std::int32_t kScale = 900;  // from an hour before summer time on
 
-/// Notes are about the machine that the test runs on: no seccomp, memory that may not be locked. The
-/// guard's thresholds are said at every start, and by level how the price level was come by.
+/// Notes are about the machine that the test runs on: no seccomp, memory that may not be locked.
+/// The guard's thresholds are said at every start, and by level how the price level was come by.
 std::string line_after_notes(ChildProcess& child) {
   std::string line = child.read_line();
   while (line.starts_with("bess-edge: note:") || line.starts_with("guard: ") ||
@@ -305,7 +305,8 @@ std::string one_price(const char* price) {
   return text;
 }
 
-/// What markets have settled at and where bids end: on the wire, in journal, CSV, ring, status, metrics.
+/// What markets have settled at and where bids end: on the wire, in journal, CSV, ring, status,
+/// metrics.
 TEST_F(Processes, ExtremePricesAreExactWhereverTheyAreTold) {
   for (const char* const price : {"25907.54", "-25907.54", "99999.00", "-99999.00"}) {
     site_.start_clock();
@@ -433,7 +434,8 @@ TEST_F(Processes, CheckReportsAndReadsButWritesNothing) {
   EXPECT_THAT(text, HasSubstr("EUR/MWh of minute"));
 }
 
-/// The operator's guard and the weights come from two people; where they differ is said, not refused.
+/// The operator's guard and the weights come from two people; where they differ is said, not
+/// refused.
 TEST_F(Processes, ThresholdsOtherThanTheProvedOnesAreSaidAtStart) {
   start_simulators();
   sleep_until_monotonic(site_.anchor_ns());

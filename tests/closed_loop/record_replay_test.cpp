@@ -1,5 +1,5 @@
-// A device is recorded while bess-edge drives it, and replayed: the real programs decide the same against the
-// recording. The map fits the recording, and a map with a mistake does not.
+// A device is recorded while bess-edge drives it, and replayed: the real programs decide the same
+// against the recording. The map fits the recording, and a map with a mistake does not.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -17,7 +17,8 @@ constexpr std::int32_t kScale = 120;
 
 class SiteProcesses : public ::testing::Test {
  protected:
-  /// Prices at which the battery charges all the time, or by turns of six minutes; the house takes 1500 W.
+  /// Prices at which the battery charges all the time, or by turns of six minutes; the house takes
+  /// 1500 W.
   void start(const std::vector<std::string>& meter_options,
              const std::vector<int>& prices = {-600}) {
     std::vector<std::string> options = {"--soc", "0.3"};

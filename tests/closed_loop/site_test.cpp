@@ -272,8 +272,8 @@ TEST(Site, PeakShavingKeepsTheHouseItselfUnderTheCap) {
   EXPECT_LT(house.battery.physics.soc_frac(), 0.5);
 }
 
-/// Weeks of a household's load, with a meter that is silent now and then: what passes a limit through
-/// the battery does so until the next check, or until a silent meter counts as lost.
+/// Weeks of a household's load, with a meter that is silent now and then: what passes a limit
+/// through the battery does so until the next check, or until a silent meter counts as lost.
 TEST(Site, ALimitIsPassedForNoLongerThanACheckTakes) {
   constexpr double kImportW = 4'500, kExportW = 500;
   SiteSettings settings = metered({.import_w_max = 4'500, .export_w_max = 500});

@@ -1,6 +1,7 @@
-// The small files of controller and notifier, damaged between two runs of the real programs: what is drawn at random
-// from a named seed, over all files and all ways in which a card forgets. The sign check, an operator's hold and what
-// was told are kept by another copy, each loss is a line, nothing is believed that was not written so.
+// The small files of controller and notifier, damaged between two runs of the real programs: what
+// is drawn at random from a named seed, over all files and all ways in which a card forgets. The
+// sign check, an operator's hold and what was told are kept by another copy, each loss is a line,
+// nothing is believed that was not written so.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -210,7 +211,8 @@ TEST_F(StateFiles, WhateverACardForgetsNothingIsForgottenOrBelieved) {
   }
 }
 
-/// Each copy of the sign check lost is a refusal, each copy of the hold lost is told and not followed.
+/// Each copy of the sign check lost is a refusal, each copy of the hold lost is told and not
+/// followed.
 TEST_F(StateFiles, AllCopiesLostIsSaidAndNotDefaulted) {
   for (const char* path : {"state/hold", "run/hold"}) {
     std::ofstream(site_.folder.file(path)) << std::string(73, '\0');

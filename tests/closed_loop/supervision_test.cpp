@@ -1,6 +1,7 @@
-// The real control loop and driver against the simulated battery of every shipped map that does not do
-// what it is told, in moved time: how soon it is noticed, what was ordered meanwhile, how much energy
-// moved against the order; and a battery that is only slow, noisy and throttled, for a month.
+// The real control loop and driver against the simulated battery of every shipped map that does not
+// do what it is told, in moved time: how soon it is noticed, what was ordered meanwhile, how much
+// energy moved against the order; and a battery that is only slow, noisy and throttled, for a
+// month.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -105,7 +106,8 @@ TEST_P(EveryMapSupervised, EveryFaultIsNoticedWithinTwoCyclesAndDrivenNoFurther)
     // What charges a hybrid too much may be the sun: only the discharging cycles show it.
     const bool may_be_sun =
         map.response.charges_by_itself && fault.reason == Reason::kUncontrolledPower;
-    // A SoC in whole percents that may be a minute old says little where the order turns every four minutes.
+    // A SoC in whole percents that may be a minute old says little where the order turns every four
+    // minutes.
     const bool is_coarse = map.response.soc_step_e4 >= 100 && fault.reason == Reason::kSocMismatch;
     EXPECT_LE(cycles, may_be_sun ? 5 : is_coarse ? 7 : 3) << fault.name;
     EXPECT_EQ(record.mode, Mode::kSafe) << fault.name;
@@ -120,8 +122,9 @@ TEST_P(EveryMapSupervised, EveryFaultIsNoticedWithinTwoCyclesAndDrivenNoFurther)
   }
 }
 
-/// The identity checks that are made every ten minutes know the capacity too, and end the reading: whichever of the
-/// two finds it first, what is told is the cause, as long as it lasts. Then the battery is driven again.
+/// The identity checks that are made every ten minutes know the capacity too, and end the reading:
+/// whichever of the two finds it first, what is told is the cause, as long as it lasts. Then the
+/// battery is driven again.
 TEST_P(EveryMapSupervised, AnotherCapacityStaysTheReasonThatIsTold) {
   for (int phase = 0; phase < 5; ++phase) {
     SupervisedSite site(GetParam());
@@ -183,7 +186,8 @@ TEST_P(EveryMapSupervised, DaysOfASlowNoisyThrottledBatteryRaisesNothing) {
   EXPECT_GT(driven, kDays * kStepsPerDay / 4);
 }
 
-/// Operators hold, a reserve is kept, it is filled on every other day, and a meter cuts orders between cycles.
+/// Operators hold, a reserve is kept, it is filled on every other day, and a meter cuts orders
+/// between cycles.
 TEST_P(EveryMapSupervised, DaysOfHoldsReserveAndCutOrdersRaiseNothing) {
   const int kDays = kMonthDays / 3;
   set_market_time_zone();
@@ -227,8 +231,8 @@ TEST_P(EveryMapSupervised, DaysOfHoldsReserveAndCutOrdersRaiseNothing) {
   EXPECT_GT(record.site.order_cuts, kDays * 10);
 }
 
-/// Stopped between two cycles, continued twenty minutes later: the watchdog has ended the order, and
-/// nothing brings it back before a new price is decided on.
+/// Stopped between two cycles, continued twenty minutes later: the watchdog has ended the order,
+/// and nothing brings it back before a new price is decided on.
 TEST_P(EveryMapSupervised, AProcessThatWasStoppedDoesNotGoOnWithItsOldOrder) {
   constexpr std::int64_t kStoppedS = 1'230;
   SupervisedSite site(GetParam());

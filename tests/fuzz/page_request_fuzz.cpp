@@ -1,5 +1,5 @@
-// What reaches bess-page from outside: a host, an origin, an order's fields, and the file of tokens.
-// Lines: host, origin, fields as name=value&..., a token, then the file.
+// What reaches bess-page from outside: a host, an origin, an order's fields, and the file of
+// tokens. Lines: host, origin, fields as name=value&..., a token, then the file.
 #include "edge/page/access_tokens.h"
 #include "edge/page/page_orders.h"
 #include "edge/page/request_guard.h"

@@ -1,4 +1,5 @@
-// Student files: whatever is accepted has sane thresholds and evaluates without overflow on any state.
+// Student files: whatever is accepted has sane thresholds and evaluates without overflow on any
+// state.
 #include "shared/host/user_error.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/support/integer_nets.h"

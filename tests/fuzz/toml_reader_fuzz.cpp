@@ -1,4 +1,5 @@
-// The one TOML reader, under every program's configurations and maps: each value is asked for as everything.
+// The one TOML reader, under every program's configurations and maps: each value is asked for as
+// everything.
 #include "shared/host/toml_reader.h"
 #include "tests/fuzz/fuzz_target.h"
 

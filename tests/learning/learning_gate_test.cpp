@@ -1,7 +1,7 @@
-// The gate on learning: the teacher that `bess-train train` makes by default, trained on the yardstick,
-// earns more than the rule-based controller and no less than tabular value iteration and the stochastic
-// program that it began as, on days that it was not trained on. The seed is fixed and training repeats to
-// the bit, so the verdict on a build is the same every time.
+// The gate on learning: the teacher that `bess-train train` makes by default, trained on the
+// yardstick, earns more than the rule-based controller and no less than tabular value iteration and
+// the stochastic program that it began as, on days that it was not trained on. The seed is fixed
+// and training repeats to the bit, so the verdict on a build is the same every time.
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
@@ -71,8 +71,8 @@ TEST(LearningGate, TheTeacherIsAboveTheRuleAndLevelWithTabularAndTheProgram) {
           .profit_eur_per_day_per_mwh())
       << "step 0 is the program";
   EXPECT_LT(training.curve.back().edge_mass_frac, 5e-3) << "the default warns of its own support";
-  // 42 days judge better than the 20 test days alone. Of the validation days the teacher knows which of its
-  // seven sets of weights they liked.
+  // 42 days judge better than the 20 test days alone. Of the validation days the teacher knows
+  // which of its seven sets of weights they liked.
   const std::vector<MarketDay> days = market.days_of(Split::kHeldOut);
   for (const bool carry_soc : {false, true}) {
     const EvaluationOptions options{config.battery, config.initial_soc_frac, carry_soc};

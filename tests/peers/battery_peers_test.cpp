@@ -1,5 +1,6 @@
-// bess-sim's battery between independent masters (pymodbus, mbpoll), one for each shipped map: what they order flows, what
-// they read is that, and the energy of the simulator's own record is power times time, worked out by hand.
+// bess-sim's battery between independent masters (pymodbus, mbpoll), one for each shipped map: what
+// they order flows, what they read is that, and the energy of the simulator's own record is power
+// times time, worked out by hand.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -91,8 +92,9 @@ INSTANTIATE_TEST_SUITE_P(
              (*info.param.variant == '\0' ? "" : std::string("_") + info.param.variant);
     });
 
-/// 2 kW for 2 h, -1.5 kW for 2 h, 4 kW for 1 h, -3.6 kW for 1 h: 8000 Wh in, 6600 Wh out. The battery loses the square root
-/// of its round trip (90 %) each way: SoC 0.2 + 8000 * 0.948683 / 8000 - 6600 / 0.948683 / 8000 = 0.279057.
+/// 2 kW for 2 h, -1.5 kW for 2 h, 4 kW for 1 h, -3.6 kW for 1 h: 8000 Wh in, 6600 Wh out. The
+/// battery loses the square root of its round trip (90 %) each way: SoC 0.2 + 8000 * 0.948683 /
+/// 8000 - 6600 / 0.948683 / 8000 = 0.279057.
 TEST_F(BatteryPeers, TheEnergyOfADayIsTheHandCalculation) {
   constexpr int kScale = 7'200;  // a day in 12 s
   SimulatedSite site(kScale);

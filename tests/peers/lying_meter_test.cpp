@@ -1,7 +1,8 @@
-// The real bess-edge between bess-sim's battery and an independent meter (pymodbus) at the connection of a house that
-// moves, who lies: frozen, inverted, of another ratio, late, on another phase, now and then. How long the limit is
-// passed from the battery's first step under the lie on, by the meter's own record of the truth, and how soon it is
-// found; with `judged = false` the same as it was before.
+// The real bess-edge between bess-sim's battery and an independent meter (pymodbus) at the
+// connection of a house that moves, who lies: frozen, inverted, of another ratio, late, on another
+// phase, now and then. How long the limit is passed from the battery's first step under the lie on,
+// by the meter's own record of the truth, and how soon it is found; with `judged = false` the same
+// as it was before.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>

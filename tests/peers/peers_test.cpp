@@ -135,7 +135,8 @@ class Peers : public ::testing::TestWithParam<Setup> {
     }
     return registers;
   }
-  /// The sign check rests, drives and rests again, each way that the SoC leaves room for, and releases.
+  /// The sign check rests, drives and rests again, each way that the SoC leaves room for, and
+  /// releases.
   [[nodiscard]] std::ptrdiff_t sign_check_writes() const {
     const bool is_block = std::string(GetParam().variant) == "block";
     const std::ptrdiff_t ways = soc_permille_ == 1'000 ? 1 : 2;
@@ -191,7 +192,8 @@ TEST_P(Peers, AStoppedEdgeLeavesTheBlockReleased) {
   EXPECT_THAT(take_writes(), ElementsAreArray(expected));
 }
 
-/// A battery that breaks after two good orders, at a price that asks for the same order in every cycle.
+/// A battery that breaks after two good orders, at a price that asks for the same order in every
+/// cycle.
 struct Breakdown {
   const char* fault;
   const char* reason = "";
@@ -264,8 +266,8 @@ TEST_P(PeersBreakdown, IsNoticedAndDrivenNoFurther) {
   const std::string reason = std::string("reason=") + GetParam().reason + " ";
   const int noticed = cycle_with(edge, reason, kGoodCycles + 2 + GetParam().cycles_until_noticed);
   EXPECT_GT(noticed, kGoodCycles);
-  // One for the tick at which the fault first shows, one that a busy machine may lose: exact counts are the trial's, in
-  // virtual time.
+  // One for the tick at which the fault first shows, one that a busy machine may lose: exact counts
+  // are the trial's, in virtual time.
   EXPECT_LE(noticed, kGoodCycles + 2 + GetParam().cycles_until_noticed);
   edge.signal(SIGTERM);
   EXPECT_THAT(edge.read_all(), ::testing::Not(HasSubstr("mode=running")));
@@ -274,34 +276,35 @@ TEST_P(PeersBreakdown, IsNoticedAndDrivenNoFurther) {
 
 INSTANTIATE_TEST_SUITE_P(
     Bus, PeersBreakdown,
-    ::testing::Values(
-        Breakdown{"reversed", "wrong_direction", 2}, Breakdown{"twice", "uncontrolled_power", 2},
-        Breakdown{"idle-discharge", "uncontrolled_power", 2, "soc_max = 0.3\n"},
-        Breakdown{"soc-stuck", "soc_mismatch", 3}, Breakdown{"dead", "no_answer", 2},
-        Breakdown{"echo", "soc_mismatch", 3},
-        // What comes and goes, and the end of the SoC.
-        Breakdown{.fault = "reversed",
-                  .reason = "wrong_direction",
-                  .cycles_until_noticed = 6,
-                  .every = 2},
-        Breakdown{.fault = "twice",
-                  .reason = "uncontrolled_power",
-                  .cycles_until_noticed = 9,
-                  .every = 3},
-        Breakdown{.fault = "soc-stuck",
-                  .reason = "soc_mismatch",
-                  .cycles_until_noticed = 3,
-                  .soc_permille = 1'000,
-                  .price_eur_per_mwh = 1'600},
-        Breakdown{.fault = "soc-inverted",
-                  .reason = "soc_mismatch",
-                  .cycles_until_noticed = 4,
-                  .soc_permille = 1'000,
-                  .price_eur_per_mwh = 1'600},
-        Breakdown{"capacity", "capacity", 1}, Breakdown{"other-master", "other_master", 2},
-        // An order that fails is taken back at once: three of them are no danger. Nor can the
-        // release be confirmed.
-        Breakdown{"wrong-echo", "orders_fail", 3, "", 1}),
+    ::testing::Values(Breakdown{"reversed", "wrong_direction", 2},
+                      Breakdown{"twice", "uncontrolled_power", 2},
+                      Breakdown{"idle-discharge", "uncontrolled_power", 2, "soc_max = 0.3\n"},
+                      Breakdown{"soc-stuck", "soc_mismatch", 3}, Breakdown{"dead", "no_answer", 2},
+                      Breakdown{"echo", "soc_mismatch", 3},
+                      // What comes and goes, and the end of the SoC.
+                      Breakdown{.fault = "reversed",
+                                .reason = "wrong_direction",
+                                .cycles_until_noticed = 6,
+                                .every = 2},
+                      Breakdown{.fault = "twice",
+                                .reason = "uncontrolled_power",
+                                .cycles_until_noticed = 9,
+                                .every = 3},
+                      Breakdown{.fault = "soc-stuck",
+                                .reason = "soc_mismatch",
+                                .cycles_until_noticed = 3,
+                                .soc_permille = 1'000,
+                                .price_eur_per_mwh = 1'600},
+                      Breakdown{.fault = "soc-inverted",
+                                .reason = "soc_mismatch",
+                                .cycles_until_noticed = 4,
+                                .soc_permille = 1'000,
+                                .price_eur_per_mwh = 1'600},
+                      Breakdown{"capacity", "capacity", 1},
+                      Breakdown{"other-master", "other_master", 2},
+                      // An order that fails is taken back at once: three of them are no danger. Nor
+                      // can the release be confirmed.
+                      Breakdown{"wrong-echo", "orders_fail", 3, "", 1}),
     breakdown_name);
 
 class PeersTold : public PeersBreakdown {};

@@ -1,6 +1,7 @@
-// The real bess-edge and bess-sim's battery, and a second master (pymodbus) who writes stop, or another mode, thirty
-// seconds after each tick, or each other: by the makers' tables, worked out by hand. It is found, the battery is
-// given back, and what was delivered until then of what was ordered is printed.
+// The real bess-edge and bess-sim's battery, and a second master (pymodbus) who writes stop, or
+// another mode, thirty seconds after each tick, or each other: by the makers' tables, worked out by
+// hand. It is found, the battery is given back, and what was delivered until then of what was
+// ordered is printed.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -81,7 +82,8 @@ class SecondMasterPeer : public ::testing::TestWithParam<SecondMaster> {
     int cycles = 0;
     double ordered_wh = 0, delivered_wh = 0;
   };
-  /// From the first tick that was touched until the battery was given back, by the logs of both ends.
+  /// From the first tick that was touched until the battery was given back, by the logs of both
+  /// ends.
   [[nodiscard]] Energies energies_from(std::int64_t first_utc_s) const {
     Energies sum;
     std::int64_t end_utc_s = first_utc_s;
@@ -117,7 +119,8 @@ TEST_P(SecondMasterPeer, IsFoundAndTheBatteryGivenBack) {
   // Lines of cycles that ended before are still in the pipe.
   const std::string found =
       line_with(edge, {"reason=other_master ", "reason=no_answer "}, most + 3);
-  // Nothing of it can be read back, and it is written again every half minute: who comes between is outdone.
+  // Nothing of it can be read back, and it is written again every half minute: who comes between is
+  // outdone.
   const bool is_blind = std::string(GetParam().map.variant) == "setpoint";
   EXPECT_EQ(found.empty(), is_blind);
   other.signal(SIGKILL);

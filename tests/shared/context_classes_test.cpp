@@ -1,4 +1,5 @@
-// The student's third input: the month, or the class of the price level, and what makes its edges valid.
+// The student's third input: the month, or the class of the price level, and what makes its edges
+// valid.
 #include "shared/context_classes.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// Each cost by hand on one exchange, at a price above and below zero; without costs nothing changes.
+// Each cost by hand on one exchange, at a price above and below zero; without costs nothing
+// changes.
 #include "shared/exchange_cost.h"
 
 #include <gtest/gtest.h>

@@ -59,7 +59,8 @@ TEST(PriceLevel, CountsPricesAsTheStudentSeesThem) {
   EXPECT_EQ(level_after(INT32_MIN, INT32_MIN).centi_eur_per_mwh(), -50'000);
 }
 
-/// Halves go up on both sides of zero, in the mean as well as in what is shown of it: the same on every machine.
+/// Halves go up on both sides of zero, in the mean as well as in what is shown of it: the same on
+/// every machine.
 TEST(PriceLevel, RoundsNegativePricesAsPositiveOnes) {
   const struct {
     std::int64_t centi_q16;

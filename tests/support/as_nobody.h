@@ -1,4 +1,5 @@
-// For a while, a user who may not read what the test has made for itself alone: root reads everything.
+// For a while, a user who may not read what the test has made for itself alone: root reads
+// everything.
 #pragma once
 
 #include <gtest/gtest.h>

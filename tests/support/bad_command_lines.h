@@ -1,4 +1,5 @@
-// Command lines that a program refuses: each with its exit code and words of the one line that says why.
+// Command lines that a program refuses: each with its exit code and words of the one line that says
+// why.
 #pragma once
 
 #include <gmock/gmock.h>

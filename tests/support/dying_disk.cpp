@@ -1,8 +1,9 @@
-// A disk that dies under a running program, for LD_PRELOAD: while the file that BESS_DYING_DISK names holds
-// "EROFS FOLDER" or "EIO FOLDER", calls that touch what is in FOLDER fail as on a card that the kernel has
-// remounted read-only, or that no longer answers. A real remount is refused as long as a log is open for writing; what
-// the kernel does by itself after an error is tried where a test may mount (dying_disk_test).
-// Straight to the kernel: nothing here allocates, or looks up other libraries.
+// A disk that dies under a running program, for LD_PRELOAD: while the file that BESS_DYING_DISK
+// names holds "EROFS FOLDER" or "EIO FOLDER", calls that touch what is in FOLDER fail as on a card
+// that the kernel has remounted read-only, or that no longer answers. A real remount is refused as
+// long as a log is open for writing; what the kernel does by itself after an error is tried where a
+// test may mount (dying_disk_test). Straight to the kernel: nothing here allocates, or looks up
+// other libraries.
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <sys/statfs.h>

@@ -1,4 +1,5 @@
-// A text held against a file of the repository; BESS_UPDATE_GOLDEN in the environment writes it anew.
+// A text held against a file of the repository; BESS_UPDATE_GOLDEN in the environment writes it
+// anew.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -41,7 +41,8 @@ inline MinuteSeries random_series(std::string_view start_utc, int minutes, std::
   return series;
 }
 
-/// The yardstick [SPEC 8]: real settled quarter-hours of January to May 2023, see tests/data/README.md.
+/// The yardstick [SPEC 8]: real settled quarter-hours of January to May 2023, see
+/// tests/data/README.md.
 inline MinuteSeries read_yardstick() {
   return read_minute_file(BESS_SOURCE_DIR "/tests/data/benchmark_minutes_2023.csv.gz");
 }

@@ -13,7 +13,8 @@ inline std::filesystem::path real_sample(const std::string& name) {
   return std::filesystem::path(BESS_SOURCE_DIR) / "tests/data" / name;
 }
 
-/// Real prices that are kept beside the checkout; a test that needs them skips where they are absent.
+/// Real prices that are kept beside the checkout; a test that needs them skips where they are
+/// absent.
 inline std::filesystem::path outside_sample(const std::string& name) {
   return std::filesystem::path(BESS_SOURCE_DIR) / "../shared/data" / name;
 }

@@ -1,5 +1,5 @@
-// Houses whose load moves within seconds, drawn from a seed: what a meter at the connection sees besides the
-// battery. One sample every two seconds, for days.
+// Houses whose load moves within seconds, drawn from a seed: what a meter at the connection sees
+// besides the battery. One sample every two seconds, for days.
 #pragma once
 
 #include <algorithm>

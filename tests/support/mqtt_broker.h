@@ -24,7 +24,8 @@ class Broker {
  public:
   static constexpr const char* kProgram = "/usr/sbin/mosquitto";
 
-  /// `keys`: more lines of its configuration. Started by root it stays root, and may read a test's files.
+  /// `keys`: more lines of its configuration. Started by root it stays root, and may read a test's
+  /// files.
   Broker(const TemporaryFolder& folder, std::uint16_t port,
          const std::string& keys = "allow_anonymous true\n")
       : port_(port) {

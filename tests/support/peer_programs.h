@@ -14,7 +14,8 @@ inline constexpr const char* kPython = "/usr/bin/python3";
 inline constexpr const char* kMbpoll = "/usr/bin/mbpoll";
 inline constexpr const char* kSocat = "/usr/bin/socat";
 
-/// "X is not installed" for the first that is not, Python and its `modules` ("a, b") included; else nothing.
+/// "X is not installed" for the first that is not, Python and its `modules` ("a, b") included; else
+/// nothing.
 inline std::string missing_peer(const std::string& modules,
                                 std::initializer_list<const char*> programs = {}) {
   for (const char* program : programs) {

@@ -1,5 +1,6 @@
-// The programs that the tests of processes start: those of this build, or those of another one, whose compiler or
-// sanitizer looks at the programs alone (BESS_EDGE_UNDER_TEST, BESS_SIM_UNDER_TEST: paths).
+// The programs that the tests of processes start: those of this build, or those of another one,
+// whose compiler or sanitizer looks at the programs alone (BESS_EDGE_UNDER_TEST,
+// BESS_SIM_UNDER_TEST: paths).
 #pragma once
 
 #include <cstdlib>

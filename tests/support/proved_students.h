@@ -11,8 +11,8 @@ inline Certificate flawless_claim() {
   return {.states_checked = kLatticeStateCount, .states_evaluated = 1};
 }
 
-/// A LinearNet among hidden units that hold numbers but move no difference of logits: every array can be
-/// told from every other, and bounds still prove it in few boxes.
+/// A LinearNet among hidden units that hold numbers but move no difference of logits: every array
+/// can be told from every other, and bounds still prove it in few boxes.
 inline StudentNet crowded_net() {
   StudentNet n = LinearNet{.price_weight = 2}.net();
   n.relu1.shift = 1;
@@ -36,7 +36,8 @@ inline StudentNet crowded_net() {
 inline constexpr PriceThresholds kCrowdedThresholds{-400, 1400};
 inline constexpr const char* kCrowdedProvenance = "made by hand \"q\" ?";
 
-/// Proved once for all tests of a program: the whole lattice takes seconds. It claims nothing good before.
+/// Proved once for all tests of a program: the whole lattice takes seconds. It claims nothing good
+/// before.
 inline const ProvedStudent& crowded_student() {
   static const Verdict verdict = prove({crowded_net(),
                                         {.thresholds = kCrowdedThresholds,

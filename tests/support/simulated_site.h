@@ -1,5 +1,6 @@
-// A simulated site (tools/site) in a folder of its own, the prices of its market, and the configuration with which
-// bess-edge drives the one on the prices of the other. Where closed_loop/, soak/ and peers/ start the real programs.
+// A simulated site (tools/site) in a folder of its own, the prices of its market, and the
+// configuration with which bess-edge drives the one on the prices of the other. Where closed_loop/,
+// soak/ and peers/ start the real programs.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,5 @@
-// TOML that is not, as users write it and fuzzing found it. toml++ 3.3 as it comes crashes on most of it.
+// TOML that is not, as users write it and fuzzing found it. toml++ 3.3 as it comes crashes on most
+// of it.
 #pragma once
 
 #include <string>

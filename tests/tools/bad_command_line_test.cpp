@@ -1,5 +1,5 @@
-// bess-sim refuses what nobody can have meant before it listens: one clear line, exit code 2 for a bad command
-// line and 1 for bad input.
+// bess-sim refuses what nobody can have meant before it listens: one clear line, exit code 2 for a
+// bad command line and 1 for bad input.
 #include "tests/support/bad_command_lines.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,8 @@
 namespace bess {
 namespace {
 
-// GOOD is a minute file, MAPS the folder of the register maps, NONE nothing, FOLDER a folder, EMPTY and GARBAGE files.
+// GOOD is a minute file, MAPS the folder of the register maps, NONE nothing, FOLDER a folder, EMPTY
+// and GARBAGE files.
 constexpr BadCommandLine kCases[] = {
     {"", 2, "subcommand is required (see bess-sim --help)"},
     {"batery", 2, "did you mean battery? (see bess-sim --help)"},

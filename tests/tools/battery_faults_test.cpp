@@ -151,7 +151,8 @@ TEST(BatteryFaults, BalancingBurnsPowerWhileItIsFull) {
   EXPECT_EQ(battery.power_w(), -1'000);
 }
 
-/// Twelve minutes of 4 kW from 50 %: what is shown and what is true, in what an honest one would have moved.
+/// Twelve minutes of 4 kW from 50 %: what is shown and what is true, in what an honest one would
+/// have moved.
 TEST(BatteryFaults, DisplaysLieAsTheirNamesSay) {
   struct Row {
     BatteryFault fault;

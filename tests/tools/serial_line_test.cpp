@@ -1,5 +1,6 @@
-// The simulated battery on a serial line that several units share: each unit of its map answers, others are not there,
-// and a torn or spoilt request costs no more than itself. mbpoll, which shares nothing with bess, is one of the masters.
+// The simulated battery on a serial line that several units share: each unit of its map answers,
+// others are not there, and a torn or spoilt request costs no more than itself. mbpoll, which
+// shares nothing with bess, is one of the masters.
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 

@@ -1,5 +1,5 @@
-// What a healthy battery is like: the habits of the batteries of the trial, and the variants of them
-// that supervision must leave alone. Nothing here is a fault.
+// What a healthy battery is like: the habits of the batteries of the trial, and the variants of
+// them that supervision must leave alone. Nothing here is a fault.
 #pragma once
 
 #include <cstdint>

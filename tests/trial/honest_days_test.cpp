@@ -40,7 +40,8 @@ TEST_P(HonestBattery, TripsNothingAmongKills) {
 }
 
 TEST_P(HonestBattery, TripsNothingUnderAClockThatIsStepped) {
-  // Slower than its map says: of cycles that a step makes short, two after one another look like anything.
+  // Slower than its map says: of cycles that a step makes short, two after one another look like
+  // anything.
   const bool is_beyond_its_map = GetParam().name == std::string_view("ramp_30_w_per_s");
   const Disturbances cases[] = {{.kill_every = 2, .step_every = 3},
                                 {.step_every = is_beyond_its_map ? 7 : 3},

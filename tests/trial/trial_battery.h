@@ -1,6 +1,7 @@
 // The battery of the trial behind the control loop's battery interface: cells, a power stage and a
-// battery management that counts, shows and errs, in steps of a second. Written from what batteries do,
-// not from tools/battery_sim, whose mistakes it must not share. Faults change what flows or is shown.
+// battery management that counts, shows and errs, in steps of a second. Written from what batteries
+// do, not from tools/battery_sim, whose mistakes it must not share. Faults change what flows or is
+// shown.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// The control loop against the battery of the trial, in moved time: orders from prices or from a hold,
-// a fault that begins at a tick, and what came of it.
+// The control loop against the battery of the trial, in moved time: orders from prices or from a
+// hold, a fault that begins at a tick, and what came of it.
 #pragma once
 
 #include <cstdint>

@@ -15,8 +15,8 @@ namespace bess {
 void write_battery_record(const std::string& path, const SimulatedBattery& battery,
                           const HouseLoad* house = nullptr);
 
-/// `utc_ms,event,power_w,duration_s,soc`: every order that it was given, and how each ended (order, stop,
-/// expiry).
+/// `utc_ms,event,power_w,duration_s,soc`: every order that it was given, and how each ended (order,
+/// stop, expiry).
 void write_dispatch_events(const std::string& path, const SimulatedBattery& battery);
 
 /// What the two have written, again. Throws UserError naming file and line.

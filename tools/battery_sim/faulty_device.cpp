@@ -114,8 +114,8 @@ void FaultyDevice::show_grid_as_of(std::int64_t utc_ns) {
                             .other_phase = lasts(BatteryFault::kGridOtherPhase)});
 }
 
-/// What another master did between two requests is done at its own time; other lasting faults come into
-/// force with the next request.
+/// What another master did between two requests is done at its own time; other lasting faults come
+/// into force with the next request.
 void FaultyDevice::live_until(std::int64_t utc_ns) {
   show_grid_as_of(utc_ns);
   if (map_.is_meter) return;

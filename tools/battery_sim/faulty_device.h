@@ -1,6 +1,6 @@
-// The simulated battery (or meter) behind its bus, without the bus: registers that answer, and the faults
-// that change what they hold or what is answered. Between battery_server, which has the sockets, or
-// whoever has another bus, and register_image. Time is given with every call.
+// The simulated battery (or meter) behind its bus, without the bus: registers that answer, and the
+// faults that change what they hold or what is answered. Between battery_server, which has the
+// sockets, or whoever has another bus, and register_image. Time is given with every call.
 #pragma once
 
 #include <modbus/modbus.h>
@@ -21,8 +21,8 @@ namespace bess {
 
 class FaultyDevice {
  public:
-  /// All but the schedule must outlive this object. `context` makes the frames; with a `house` the map's
-  /// grid point shows it, and a meter's map makes this a meter.
+  /// All but the schedule must outlive this object. `context` makes the frames; with a `house` the
+  /// map's grid point shows it, and a meter's map makes this a meter.
   FaultyDevice(const RegisterMap& map, SimulatedBattery& battery, modbus_t* context,
                const FaultSchedule& faults, bool rtu, std::int64_t start_utc_ns,
                MeteredHouse* house = nullptr);

@@ -15,7 +15,8 @@ namespace bess {
 class HouseLoad {
  public:
   static HouseLoad constant(double power_w);
-  /// A year of a household: refrigerator, evenings, kettle, oven, washing; 0.2 to 8 kW, hours of UTC.
+  /// A year of a household: refrigerator, evenings, kettle, oven, washing; 0.2 to 8 kW, hours of
+  /// UTC.
   static HouseLoad daily(std::uint64_t seed);
   /// `minute_utc,house_w`, strictly one row a minute. Throws UserError naming the line.
   static HouseLoad from_csv(std::string_view text, std::string_view name);

@@ -83,8 +83,8 @@ std::string RecordedDevice::answer(BusExchange& request) {
   return request_text(request) + ": was never recorded, answered with exception 2";
 }
 
-/// The next answer of this request, unless its time has not come: then the one before it again. The first is given
-/// at any time.
+/// The next answer of this request, unless its time has not come: then the one before it again. The
+/// first is given at any time.
 const RecordedDevice::Entry& RecordedDevice::now_in(Course& course, std::int64_t utc_ns) const {
   const auto entry = [&](std::size_t i) -> const Entry& { return entries_[course.entries[i]]; };
   const std::size_t count = course.entries.size();

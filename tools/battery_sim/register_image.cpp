@@ -55,8 +55,8 @@ RegisterImage::RegisterImage(const RegisterMap& map, SimulatedBattery& battery,
   for (const IdentityCheck& check : map_.identity) identify(check);
 }
 
-/// Shows what the check asks for. What is measured as well is measured afterwards: a capacity may be
-/// another than the device has.
+/// Shows what the check asks for. What is measured as well is measured afterwards: a capacity may
+/// be another than the device has.
 void RegisterImage::identify(const IdentityCheck& check) {
   const RegisterPoint& p = map_.points[check.point];
   if (p.type != RegisterType::kText) {

@@ -33,7 +33,8 @@ class RegisterImage {
   /// Acts on a write that has just changed holding registers; call `refresh` before the write.
   void apply_write(int address, int count);
 
-  // What another master does who knows this map: registers are written as by a command of it, and acted on.
+  // What another master does who knows this map: registers are written as by a command of it, and
+  // acted on.
   void order_from_outside(std::int32_t power_w);
   void release_from_outside();
   /// Of what shows that an order is in force, the last: another value than its order's.

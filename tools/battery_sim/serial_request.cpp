@@ -28,7 +28,8 @@ int missing_bytes(const BusRequest& request) {
   }
 }
 
-/// Over a whole frame, its CRC included, it is 0. Not the edge's own: two ends that share it share its mistakes.
+/// Over a whole frame, its CRC included, it is 0. Not the edge's own: two ends that share it share
+/// its mistakes.
 std::uint16_t crc_of(const BusRequest& request) {
   std::uint16_t crc = 0xFFFF;
   for (int i = 0; i < request.size; ++i) {

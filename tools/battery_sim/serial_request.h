@@ -1,5 +1,5 @@
-// Requests of a serial line: whole frames, whichever unit they are for. libmodbus reads those of one unit
-// alone, and takes what follows a request to another for that one's reply.
+// Requests of a serial line: whole frames, whichever unit they are for. libmodbus reads those of
+// one unit alone, and takes what follows a request to another for that one's reply.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,8 @@ enum class SerialRead : std::uint8_t {
   kGone,   ///< the line itself
 };
 
-/// Waits `byte_timeout_ms` for each next byte of a frame. Calls for function 3, 4, 6 and 16 are known by their
-/// length, others end with such a silence.
+/// Waits `byte_timeout_ms` for each next byte of a frame. Calls for function 3, 4, 6 and 16 are
+/// known by their length, others end with such a silence.
 SerialRead read_serial_request(int fd, int byte_timeout_ms, BusRequest& request);
 
 }  // namespace bess

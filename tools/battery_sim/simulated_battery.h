@@ -32,7 +32,8 @@ struct DispatchEvent {
   double soc_frac = 0;
 };
 
-/// How a battery follows its orders. The defaults are a model's; real ones are slower, noisier, or broken.
+/// How a battery follows its orders. The defaults are a model's; real ones are slower, noisier, or
+/// broken.
 struct BatteryHabits {
   double gain = 1;                 ///< of the ordered power that flows
   double idle_power_w = 0;         ///< flows, whatever the SoC, while 0 W is ordered

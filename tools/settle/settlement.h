@@ -1,6 +1,7 @@
-// What a closed-loop run earned, counted twice: from the battery's own record of energy, minute by minute,
-// and from the edge's log of what it read and ordered. The two never share a number, so their difference
-// is the error of the whole loop: latency, rounding of SoC, and orders that were not carried out.
+// What a closed-loop run earned, counted twice: from the battery's own record of energy, minute by
+// minute, and from the edge's log of what it read and ordered. The two never share a number, so
+// their difference is the error of the whole loop: latency, rounding of SoC, and orders that were
+// not carried out.
 #pragma once
 
 #include <vector>
@@ -37,8 +38,8 @@ struct RunSettlement {
   Latency decision, write, total;
 };
 
-/// Only minutes from the edge's first to the end of its last cycle count. Throws UserError when a minute has
-/// no settled price.
+/// Only minutes from the edge's first to the end of its last cycle count. Throws UserError when a
+/// minute has no settled price.
 RunSettlement settle(const CsvTable& battery_record, const CsvTable& edge_log,
                      const MinuteSeries& prices, const BatteryParameters& battery);
 

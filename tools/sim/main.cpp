@@ -1,5 +1,5 @@
-// bess-sim: the other two ends of the edge, a Modbus battery and a price server, in scaled time, and the
-// settlement of what they exchanged.
+// bess-sim: the other two ends of the edge, a Modbus battery and a price server, in scaled time,
+// and the settlement of what they exchanged.
 //   exit 0 stopped   1 the input is bad or a port is in use   2 the command line is bad
 
 #include <cstdio>

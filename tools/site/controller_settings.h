@@ -1,5 +1,5 @@
-// The configuration with which bess-edge drives a site's battery on the prices of its market: the one text of it, for
-// demonstrations, scenarios and tests of processes.
+// The configuration with which bess-edge drives a site's battery on the prices of its market: the
+// one text of it, for demonstrations, scenarios and tests of processes.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,5 @@
-// bess-sim site: battery, market and the controller's configuration in one folder, until it is stopped.
+// bess-sim site: battery, market and the controller's configuration in one folder, until it is
+// stopped.
 #include <cstdio>
 #include <filesystem>
 #include <map>

@@ -1,5 +1,5 @@
-// The programs of a simulated site: bess-sim battery, with its house and its meter, and bess-sim market, on free ports
-// and one clock. They end with whoever started them, however that ends.
+// The programs of a simulated site: bess-sim battery, with its house and its meter, and bess-sim
+// market, on free ports and one clock. They end with whoever started them, however that ends.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,8 @@
 
 namespace bess {
 
-/// A program whose output goes to a file: a pipe that nobody reads would stop it. It ends with this one.
+/// A program whose output goes to a file: a pipe that nobody reads would stop it. It ends with this
+/// one.
 std::unique_ptr<ChildProcess> start_logged(std::vector<std::string> arguments,
                                            const std::string& log);
 /// That is not empty; empty: there is none.
@@ -24,14 +25,15 @@ class SitePrograms {
   SitePrograms(std::string simulators, std::string folder);
   SitePrograms(const SitePrograms&) = delete;
   SitePrograms& operator=(const SitePrograms&) = delete;
-  /// What a killed controller leaves where all controllers of a machine lock their batteries goes too.
+  /// What a killed controller leaves where all controllers of a machine lock their batteries goes
+  /// too.
   ~SitePrograms();
 
   /// Simulated time begins so long from now, for simulators that are started after this.
   void start_clock(double in_s);
 
-  /// On any free port unless the options name one, or a serial line; recorded in battery.csv and orders.csv. Throws
-  /// UserError with its last line when it does not listen.
+  /// On any free port unless the options name one, or a serial line; recorded in battery.csv and
+  /// orders.csv. Throws UserError with its last line when it does not listen.
   void start_battery(const std::vector<std::string>& options);
   /// Options say at least --prices.
   void start_market(const std::vector<std::string>& options);

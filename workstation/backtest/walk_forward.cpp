@@ -21,7 +21,8 @@ bool same_month(const MarketDay& a, const MarketDay& b) {
 
 LocalDate date_of(const MarketDay& day) { return {day.year, day.month, day.day}; }
 
-/// The days [first, end) of `market` with their steps and nothing else; the last `traded` are test days.
+/// The days [first, end) of `market` with their steps and nothing else; the last `traded` are test
+/// days.
 MarketSteps cut_out(const MarketSteps& market, std::size_t first, std::size_t end,
                     std::size_t traded) {
   const std::size_t first_step = market.days[first].first_step;

@@ -1,6 +1,6 @@
-// Walk-forward backtest: fit on the days before a month, freeze, trade that month, roll on. A fold holds
-// nothing later than its own month, so what is fitted in it cannot have seen what it is judged by; the
-// battery's charge goes over from fold to fold as it would.
+// Walk-forward backtest: fit on the days before a month, freeze, trade that month, roll on. A fold
+// holds nothing later than its own month, so what is fitted in it cannot have seen what it is
+// judged by; the battery's charge goes over from fold to fold as it would.
 #pragma once
 
 #include <functional>
@@ -12,8 +12,8 @@
 
 namespace bess {
 
-/// One traded month with the window that its policies are fitted on. Of the window, local days 21 to 25 are
-/// validation days and all others training days; the month's are test days.
+/// One traded month with the window that its policies are fitted on. Of the window, local days 21
+/// to 25 are validation days and all others training days; the month's are test days.
 struct Fold {
   std::string month;  ///< "2024-06"
   MarketSteps market;
@@ -30,8 +30,8 @@ struct Folds {
   std::vector<SkippedMonth> skipped;
 };
 
-/// A fold for each month that has at least half of `window_days` complete days before it, and training and
-/// validation days among them. Throws UserError when no month has.
+/// A fold for each month that has at least half of `window_days` complete days before it, and
+/// training and validation days among them. Throws UserError when no month has.
 Folds make_folds(const MarketSteps& market, int window_days);
 
 /// What a policy did, in the order of the days.
@@ -51,7 +51,8 @@ struct WalkForward {
 /// Makes the policy of a fold, from its training and validation days alone.
 using FoldPolicy = std::function<std::shared_ptr<Policy>(const Fold&)>;
 
-/// Trades fold after fold. A policy that sees the future, the bound, plans over `market` as a whole.
+/// Trades fold after fold. A policy that sees the future, the bound, plans over `market` as a
+/// whole.
 WalkForward walk_forward(const std::string& name, const Folds& folds, const FoldPolicy& make,
                          const BatteryParameters& battery, double initial_soc_frac,
                          const MarketSteps& market, bool and_day_reset = false);

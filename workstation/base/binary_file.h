@@ -50,7 +50,8 @@ class BinaryWriter {
 
 class BinaryReader {
  public:
-  /// Reads the whole file and checks magic, version (`version`, or from `version_min` on if that is given) and checksum. `kind` ("teacher file") and `mend`
+  /// Reads the whole file and checks magic, version (`version`, or from `version_min` on if that is
+  /// given) and checksum. `kind` ("teacher file") and `mend`
   /// ("train again") are used in messages.
   BinaryReader(const std::filesystem::path& path, std::string_view magic, std::uint32_t version,
                std::string_view kind, std::string_view mend, std::uint32_t version_min = 0);

@@ -1,5 +1,6 @@
 // One progress line on stderr for anything that takes more than two seconds: done, rate, ETA.
-// On a terminal it redraws in place, in one row; elsewhere it prints a line a minute, so logs stay short.
+// On a terminal it redraws in place, in one row; elsewhere it prints a line a minute, so logs stay
+// short.
 #pragma once
 
 #include <chrono>

@@ -1,5 +1,5 @@
-// Random numbers that repeat on every machine: std::mt19937_64 is fixed by the standard, the distributions
-// of <random> are not, so they are written here. Every use starts from a named seed.
+// Random numbers that repeat on every machine: std::mt19937_64 is fixed by the standard, the
+// distributions of <random> are not, so they are written here. Every use starts from a named seed.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,8 @@ class Random {
   std::size_t index(std::size_t count) {
     return static_cast<std::size_t>(high_product(engine_(), count));
   }
-  /// Everything that the next numbers depend on, as text; and back. False when the text is not that.
+  /// Everything that the next numbers depend on, as text; and back. False when the text is not
+  /// that.
   [[nodiscard]] std::string state() const;
   [[nodiscard]] bool restore(const std::string& state);
 

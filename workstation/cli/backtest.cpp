@@ -1,5 +1,5 @@
-// bess-train backtest: what policies would have earned month after month, each month traded by what was
-// fitted before it.
+// bess-train backtest: what policies would have earned month after month, each month traded by what
+// was fitted before it.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -136,8 +136,8 @@ void learn_fold(const Fold& fold, const Learning& of) {
   save_student(student, distil_fold(load_teacher(path), fold, of.config));
 }
 
-/// Learns what is not there yet, a fold to a thread: with one thread each, a fold repeats to the bit
-/// whatever runs beside it.
+/// Learns what is not there yet, a fold to a thread: with one thread each, a fold repeats to the
+/// bit whatever runs beside it.
 void learn_folds(const Folds& folds, Learning of, const std::vector<std::string>& policies) {
   const auto is_missing = [&](const Fold& fold) {
     return std::ranges::any_of(policies, [&](const std::string& name) {

@@ -1,6 +1,6 @@
 // bess-train delays: what it costs to see prices late, and what it costs to have been fitted for
-// another delay than the one that is met. For each policy a square table: fitted at delay 0..3 (rows)
-// and run at delay 0..3 (columns).
+// another delay than the one that is met. For each policy a square table: fitted at delay 0..3
+// (rows) and run at delay 0..3 (columns).
 #include <fmt/core.h>
 
 #include <array>

@@ -50,7 +50,8 @@ struct EvaluateArguments {
 
 /// Per-day and per-step records of every policy and way of counting, as CSV.
 struct Records {
-  // soc_mode, soc_end, soc and ..._eur_mwh are names of before schema version 1, until the next release.
+  // soc_mode, soc_end, soc and ..._eur_mwh are names of before schema version 1, until the next
+  // release.
   std::string days =
       "date,profit_eur,cycles,switches,soc_end,policy,soc_mode,carry_soc,soc_end_frac\n";
   std::string steps =

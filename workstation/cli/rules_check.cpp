@@ -1,5 +1,5 @@
-// bess-train rules check: whether rules can be obeyed together and whom they bind; with a policy, how often it
-// breaks them on real days.
+// bess-train rules check: whether rules can be obeyed together and whom they bind; with a policy,
+// how often it breaks them on real days.
 #include <fmt/core.h>
 
 #include <filesystem>

@@ -1,5 +1,5 @@
-// bess-train rules map: what rules change of the policy, seen: maps of the teacher and of students before and after,
-// over price and charge, with the boxes where the rules hold.
+// bess-train rules map: what rules change of the policy, seen: maps of the teacher and of students
+// before and after, over price and charge, with the boxes where the rules hold.
 #include <fmt/core.h>
 
 #include <algorithm>

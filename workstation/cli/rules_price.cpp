@@ -1,5 +1,6 @@
-// bess-train rules price: what each rule costs or earns a day, alone and all together. First by projecting a
-// policy's decisions, in seconds; then, if a teacher is given, by distilling a student with them and one without.
+// bess-train rules price: what each rule costs or earns a day, alone and all together. First by
+// projecting a policy's decisions, in seconds; then, if a teacher is given, by distilling a student
+// with them and one without.
 #include <fmt/core.h>
 
 #include <cstdio>

@@ -72,8 +72,8 @@ void ActiveSetFactors::image_of(std::span<const int> variables, std::span<const 
   finish(from, image);
 }
 
-/// d without the rounding of what is 0, and what follows from it. Without branches: which are 0 follows no
-/// pattern.
+/// d without the rounding of what is 0, and what follows from it. Without branches: which are 0
+/// follows no pattern.
 void ActiveSetFactors::finish(Eigen::Index from, RowImage& image) const {
   auto d = image.d.tail(size() - from);
   d = (d.array().abs() < kRounding).select(0.0, d);
@@ -129,9 +129,9 @@ void ActiveSetFactors::add_combination(const Eigen::VectorXd& y, Eigen::VectorXd
   x.noalias() += basis_.leftCols(active_) * y.head(active_);
 }
 
-/// The column that the row meets most becomes the first of J2. Then d2 becomes (corner, 0, ..., 0) by
-/// I - 2 w w' / w'w with w = d2 - corner e1, and J2 changes by the outer product of
-/// J2 w = z - corner J2 e1 and 2 w / w'w: w is 0 where d2 is.
+/// The column that the row meets most becomes the first of J2. Then d2 becomes (corner, 0, ..., 0)
+/// by I - 2 w w' / w'w with w = d2 - corner e1, and J2 changes by the outer product of J2 w = z -
+/// corner J2 e1 and 2 w / w'w: w is 0 where d2 is.
 void ActiveSetFactors::add(RowImage& image, Eigen::VectorXd& z) {
   Eigen::VectorXd& d = image.d;
   int& most = *std::ranges::max_element(image.free, {}, [&d](int k) { return std::fabs(d[k]); });
@@ -156,10 +156,10 @@ void ActiveSetFactors::add(RowImage& image, Eigen::VectorXd& z) {
   ++active_;
 }
 
-/// The columns of the group behind the row's own each have one entry more than they should when they take the
-/// place of the one before. It is turned away, in a column by the rotations of those before and one of its
-/// own, and in J by all of them. Other groups' columns do not feel it. What remains is the place of the last
-/// one, which is free now and goes behind the active ones.
+/// The columns of the group behind the row's own each have one entry more than they should when
+/// they take the place of the one before. It is turned away, in a column by the rotations of those
+/// before and one of its own, and in J by all of them. Other groups' columns do not feel it. What
+/// remains is the place of the last one, which is free now and goes behind the active ones.
 std::span<const int> ActiveSetFactors::drop(Eigen::Index position) {
   const int group[] = {groups_.of_column(position)};
   groups_.list_columns(group, position, active_, places_);
@@ -189,8 +189,9 @@ void ActiveSetFactors::turn_rows(Eigen::Index row) {
   basis_.col(places_.back()).segment<Count>(row) = carried;
 }
 
-/// The columns of R at places k to k + Count - 1, k > 0, move to the places before. Each rotation of a column
-/// waits for the one before it, so the columns go through the rotations that all of them need side by side.
+/// The columns of R at places k to k + Count - 1, k > 0, move to the places before. Each rotation
+/// of a column waits for the one before it, so the columns go through the rotations that all of
+/// them need side by side.
 template <int Count>
 void ActiveSetFactors::turn_columns(std::size_t k) {
   const int first = places_.front();
@@ -222,7 +223,8 @@ void ActiveSetFactors::turn_columns(std::size_t k) {
   }
 }
 
-/// Column `gap` of J, which no row of R belongs to any more, goes behind the active ones, which move up.
+/// Column `gap` of J, which no row of R belongs to any more, goes behind the active ones, which
+/// move up.
 void ActiveSetFactors::close_gap(Eigen::Index gap) {
   for (Eigen::Index column = gap; column + 1 < active_; ++column) {
     basis_.col(column).swap(basis_.col(column + 1));

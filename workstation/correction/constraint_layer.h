@@ -1,11 +1,12 @@
-// The differentiable optimisation layer [Paper, Eq. 11] for any linear constraints: maps the logits of a
-// batch of states to the nearest ones that satisfy a plain list of rows. It gives the answer of the
-// CorrectionLayer on the paper's three properties (property_rows), which stays the fast way for those alone.
+// The differentiable optimisation layer [Paper, Eq. 11] for any linear constraints: maps the logits
+// of a batch of states to the nearest ones that satisfy a plain list of rows. It gives the answer
+// of the CorrectionLayer on the paper's three properties (property_rows), which stays the fast way
+// for those alone.
 //
-// Metric as there: sum (u-u')^2 + (v-v')^2 over the batch, the mean of a state's logits passes through.
-// States that no row ties together are projected apart: a block is a set of differences connected by
-// rows, each one dense quadratic program (quadratic_program.h), whose time grows with the cube of its
-// size. A difference that is in no row stays as it is.
+// Metric as there: sum (u-u')^2 + (v-v')^2 over the batch, the mean of a state's logits passes
+// through. States that no row ties together are projected apart: a block is a set of differences
+// connected by rows, each one dense quadratic program (quadratic_program.h), whose time grows with
+// the cube of its size. A difference that is in no row stays as it is.
 #pragma once
 
 #include <Eigen/Core>
@@ -29,17 +30,18 @@ struct RowClash {
 
 class ConstraintLayer {
  public:
-  /// For batches of `states` columns. Throws UserError, naming the rule, for a row with a state outside
-  /// the batch or a number that is not finite.
+  /// For batches of `states` columns. Throws UserError, naming the rule, for a row with a state
+  /// outside the batch or a number that is not finite.
   ConstraintLayer(std::vector<DifferenceRow> rows, int states);
 
-  /// Corrects logits [3 x states]. Throws UserError naming the rules when rows contradict each other.
+  /// Corrects logits [3 x states]. Throws UserError naming the rules when rows contradict each
+  /// other.
   void forward(const Eigen::MatrixXd& logits, Eigen::MatrixXd& corrected);
   /// dL/dlogits from dL/dcorrected at the last forward.
   void backward(const Eigen::MatrixXd& gradient_corrected, Eigen::MatrixXd& gradient_logits);
 
-  /// The rows that contradict each other, if any do; whether rows can be satisfied does not depend on
-  /// logits.
+  /// The rows that contradict each other, if any do; whether rows can be satisfied does not depend
+  /// on logits.
   [[nodiscard]] std::optional<RowClash> clash();
 
   [[nodiscard]] const std::vector<DifferenceRow>& rows() const { return rows_; }
@@ -64,8 +66,8 @@ class ConstraintLayer {
   Eigen::VectorXd differences_;  ///< [2 * states] u and v of state 0, of state 1, ...
 };
 
-/// The paper's three properties on one context lattice, as the CorrectionLayer demands them; state = price
-/// index * SoCs + SoC index.
+/// The paper's three properties on one context lattice, as the CorrectionLayer demands them; state
+/// = price index * SoCs + SoC index.
 std::vector<DifferenceRow> property_rows(const CorrectionOptions& options, const LatticeAxes& axes);
 
 }  // namespace bess

@@ -34,8 +34,9 @@ struct LatticeAxes {
   std::vector<double> soc;
 };
 
-/// Bounds on x = difference + ramp for a difference that must be at least `lower` at prices <= low and at
-/// most `upper` at prices >= high. The ramp differs inside a row, so the row's strictest cell counts.
+/// Bounds on x = difference + ramp for a difference that must be at least `lower` at prices <= low
+/// and at most `upper` at prices >= high. The ramp differs inside a row, so the row's strictest
+/// cell counts.
 RowBounds ramped_bounds(const CorrectionOptions& options, const LatticeAxes& axes, double lower,
                         double upper);
 

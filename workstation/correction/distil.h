@@ -53,9 +53,9 @@ struct DistilOptions {
 inline constexpr MlpShape kStudentShape{kStudentInputs, kStudentHidden1, kStudentHidden2,
                                         kActionCount};
 
-/// The teacher's inputs, the student's five first, of states that the teacher's policy meets on the training days, with some exploration. All but the
-/// first pass move the prices of each day when the teacher knows such days: a stochastic program does, a
-/// network knows what it was shown.
+/// The teacher's inputs, the student's five first, of states that the teacher's policy meets on the
+/// training days, with some exploration. All but the first pass move the prices of each day when
+/// the teacher knows such days: a stochastic program does, a network knows what it was shown.
 Matrix visited_inputs(const Teacher& teacher, const MarketSteps& market,
                       const BatteryParameters& battery, const DistilOptions& options);
 
@@ -63,8 +63,8 @@ Matrix visited_inputs(const Teacher& teacher, const MarketSteps& market,
 Eigen::MatrixXd teacher_logits(const Teacher& teacher, const DistilOptions& options,
                                const MatrixRef& x, MlpTile& tile);
 
-/// By construction there are no lattices: their losses are 0, and that of the visited states is the mean
-/// regret over the temperature.
+/// By construction there are no lattices: their losses are 0, and that of the visited states is the
+/// mean regret over the temperature.
 struct DistilPoint {
   int epoch;
   double teacher_loss;     ///< mean KL(pi || mu) over lattices
@@ -78,8 +78,9 @@ struct DistilPoint {
 
 class Distiller {
  public:
-  /// Keeps references: `teacher` and `visited` must outlive it. With rules that name states the general layer
-  /// projects where they hold; its time grows with the cube of a lattice, so lattices are smaller and more.
+  /// Keeps references: `teacher` and `visited` must outlive it. With rules that name states the
+  /// general layer projects where they hold; its time grows with the cube of a lattice, so lattices
+  /// are smaller and more.
   Distiller(const Teacher& teacher, const Matrix& visited, const DistilOptions& options);
 
   /// Trains for `epochs`. Half of the lattices are laid around `counterexamples` when there are

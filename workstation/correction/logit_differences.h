@@ -1,5 +1,5 @@
-// Logits [3] of a state and what the layers project: u = z_charge - z_idle and v = z_idle - z_discharge, while
-// their mean passes through. z = mean + A (u, v):
+// Logits [3] of a state and what the layers project: u = z_charge - z_idle and v = z_idle -
+// z_discharge, while their mean passes through. z = mean + A (u, v):
 //   z_dis = mean - (2v+u)/3     z_idle = mean + (v-u)/3     z_cha = mean + (v+2u)/3
 #pragma once
 

@@ -116,8 +116,8 @@ MonotoneDistiller::MonotoneDistiller(const Teacher& teacher, const LessonStates&
   average_ = student_;
 }
 
-/// Moves and scales each hidden unit so that over the lessons its sum has mean 1/2 and deviation 1/2:
-/// bent where the states are.
+/// Moves and scales each hidden unit so that over the lessons its sum has mean 1/2 and deviation
+/// 1/2: bent where the states are.
 void MonotoneDistiller::spread_activations() {
   Worker& worker = workers_.front();
   const Eigen::Index count = std::min<Eigen::Index>(4096, lessons_.inputs.cols());

@@ -10,8 +10,8 @@ namespace bess {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// Rows have unit length in the metric of G^-1, so slacks and multipliers are distances; all tolerances on
-// them are times the size of the terms that a slack is summed from.
+// Rows have unit length in the metric of G^-1, so slacks and multipliers are distances; all
+// tolerances on them are times the size of the terms that a slack is summed from.
 constexpr double kViolation = 1e-12;     ///< a row is violated by more than this
 constexpr double kContradiction = 1e-9;  ///< rows clash by more than this; below, they just meet
 constexpr double kWeakly = 1e-9;         ///< to the derivative, slacks and multipliers below are 0
@@ -21,7 +21,8 @@ constexpr double kDependent = 1e-9;
 /// Of the largest: smaller entries of r are rounding, and limit no step.
 constexpr double kFallingMultiplier = 1e-10;
 constexpr int kRebuildsMax = 3;
-/// From this share of factors that are not 0 on, rows are taken for dense: products then run over all.
+/// From this share of factors that are not 0 on, rows are taken for dense: products then run over
+/// all.
 constexpr double kDenseShare = 0.2;
 constexpr int kStepsMaxPerRow = 50;
 
@@ -126,8 +127,9 @@ void QuadraticProgram::start(const Eigen::VectorXd& g) {
   measure();
 }
 
-/// Rows that share no variable do not feel each other: at the start of a projection each is met by itself, the
-/// most violated first. The dearer steps, which look at all active rows, begin with these.
+/// Rows that share no variable do not feel each other: at the start of a projection each is met by
+/// itself, the most violated first. The dearer steps, which look at all active rows, begin with
+/// these.
 void QuadraticProgram::take_in_disjoint_rows() {
   candidates_.clear();
   for (int row = 0; row < slacks_.size(); ++row) {
@@ -200,8 +202,8 @@ double QuadraticProgram::slack_of(int row) const {
   return sum;
 }
 
-/// x += step z, where z is the direction of the image; slacks follow where x moves. Their rounding is gone when
-/// they are measured at the end.
+/// x += step z, where z is the direction of the image; slacks follow where x moves. Their rounding
+/// is gone when they are measured at the end.
 void QuadraticProgram::move(double step) {
   if (dense_.size() > 0) {
     z_ *= step;
@@ -258,8 +260,8 @@ void QuadraticProgram::keep_signs() {
   signed_ones = signed_ones.cwiseMax(0);
 }
 
-/// Step 2 of the paper: towards the row until it is tight, letting go of active rows on the way. False when
-/// the row contradicts the active ones.
+/// Step 2 of the paper: towards the row until it is tight, letting go of active rows on the way.
+/// False when the row contradicts the active ones.
 bool QuadraticProgram::take_in(int row, double sign) {
   double multiplier = 0;
   while (true) {
@@ -331,9 +333,9 @@ void QuadraticProgram::let_go(std::size_t position) {
   active_.pop_back();
 }
 
-/// The row is the sum of r times active ones, and no r of an inequality is positive: row - sum = 0 while
-/// its bounds sum to the violation. The active rows are independent, so there is no other such sum:
-/// without any one of these rows the others can be satisfied.
+/// The row is the sum of r times active ones, and no r of an inequality is positive: row - sum = 0
+/// while its bounds sum to the violation. The active rows are independent, so there is no other
+/// such sum: without any one of these rows the others can be satisfied.
 void QuadraticProgram::keep_clash(int row, double sign) {
   const double least =
       kFallingMultiplier * std::max(1.0, r_.head(factors_.active()).cwiseAbs().sum());

@@ -1,9 +1,9 @@
-// A set of allowed actions as linear constraints on the scores of one state [SPEC 5], u = z_charge - z_idle and
-// v = z_idle - z_discharge:
+// A set of allowed actions as linear constraints on the scores of one state [SPEC 5], u = z_charge
+// - z_idle and v = z_idle - z_discharge:
 //   at least charge  u >= m, v >= 0          at most discharge  -v >= m, -u >= 0
 //   at least idle    v >= m                  at most idle       -u >= m
-// Each is a little stronger than needed, and keeps u and v apart. "Not idle" is not convex: the side on which the
-// scores are already is asked for.
+// Each is a little stronger than needed, and keeps u and v apart. "Not idle" is not convex: the
+// side on which the scores are already is asked for.
 #pragma once
 
 #include <array>

@@ -1,10 +1,10 @@
 // Variables that the Hessian or active rows tie together, and the columns of J that lie among them.
 //
-// Rows that share no variable, not even by way of other active rows, do not feel each other: sorted by group, J
-// and R are block diagonal. Of an order between neighbours the groups are the blocks of equal values, and a row
-// meets two of them, however many rows are active. A group has as many columns as variables.
-// Groups grow together and are not parted before reset(): one too large costs time, not correctness.
-// All memory is taken in the constructor.
+// Rows that share no variable, not even by way of other active rows, do not feel each other: sorted
+// by group, J and R are block diagonal. Of an order between neighbours the groups are the blocks of
+// equal values, and a row meets two of them, however many rows are active. A group has as many
+// columns as variables. Groups grow together and are not parted before reset(): one too large costs
+// time, not correctness. All memory is taken in the constructor.
 #pragma once
 
 #include <Eigen/Core>
@@ -25,8 +25,8 @@ class VariableGroups {
 
   /// The groups of these variables, each once; `groups` must hold n of them without growing.
   void find(std::span<const int> variables, std::vector<int>& groups) const;
-  /// The variables of these groups, or their columns from `from` to before `end`; rising. `list` must hold n
-  /// without growing.
+  /// The variables of these groups, or their columns from `from` to before `end`; rising. `list`
+  /// must hold n without growing.
   void list_variables(std::span<const int> groups, std::vector<int>& list) const;
   void list_columns(std::span<const int> groups, Eigen::Index from, Eigen::Index end,
                     std::vector<int>& list) const;

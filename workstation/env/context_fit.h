@@ -1,5 +1,5 @@
-// The context classes of a market [SPEC 4]: what the twelve values of the student's third input mean,
-// fitted on training days.
+// The context classes of a market [SPEC 4]: what the twelve values of the student's third input
+// mean, fitted on training days.
 #pragma once
 
 #include <string>
@@ -13,11 +13,12 @@ namespace bess {
 /// "month", "level"; throws UserError otherwise.
 ContextKind parse_context(std::string_view name);
 
-/// By level the classes are evenly wide and reach beyond the training days' levels on both sides: another
-/// year lies elsewhere. Throws UserError when there are no training days.
+/// By level the classes are evenly wide and reach beyond the training days' levels on both sides:
+/// another year lies elsewhere. Throws UserError when there are no training days.
 ContextClasses fit_context_classes(const MarketSteps& market, ContextKind kind);
 
-/// The level that stands for a class, EUR/MWh: its middle; of the open ones as far out as their neighbours'.
+/// The level that stands for a class, EUR/MWh: its middle; of the open ones as far out as their
+/// neighbours'.
 double class_level_eur_per_mwh(const ContextClasses& classes, int context_class);
 
 /// For people, after a time of day: "in March", "at a price level from 84 to 96 EUR/MWh".

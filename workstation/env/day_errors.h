@@ -1,23 +1,23 @@
-// How sure a mean over days is: its standard error as if each day were drawn by itself, and with the
-// days of a local calendar month taken as one draw.
+// How sure a mean over days is: its standard error as if each day were drawn by itself, and with
+// the days of a local calendar month taken as one draw.
 //
-// Days side by side are alike: a dear week lifts all of its days, and the plain error takes them for
-// so many witnesses. Errors clustered by month let the days of a month depend on each other in any
-// way, and only the months not. With n days d_i of mean m in G months g:
+// Days side by side are alike: a dear week lifts all of its days, and the plain error takes them
+// for so many witnesses. Errors clustered by month let the days of a month depend on each other in
+// any way, and only the months not. With n days d_i of mean m in G months g:
 //
 //   plain       sqrt( sum_i (d_i - m)^2 / (n - 1) / n )
 //   by month    sqrt( G / (G - 1) * sum_g S_g^2 ) / n,   S_g = sum over the days of g of (d_i - m)
 //
 // (Liang and Zeger 1986, for a mean, with the correction of Cameron and Miller 2015; of months of
-// equal length it is the deviation of their means over sqrt(G).) The test days of a month, 26 to the
-// end, lie three weeks from those of the next: months are blocks already. A moving-block bootstrap
-// (Kuensch 1989) would join days that are no neighbours, and draw from as few blocks, with a seed,
-// what is a formula here.
+// equal length it is the deviation of their means over sqrt(G).) The test days of a month, 26 to
+// the end, lie three weeks from those of the next: months are blocks already. A moving-block
+// bootstrap (Kuensch 1989) would join days that are no neighbours, and draw from as few blocks,
+// with a seed, what is a formula here.
 //
 // Of few months the error itself is hardly known: its relative error is about 1 / sqrt(2 (G - 1)),
 // 41 % of four. The mean over it is then Student's t with G - 1 degrees (Bester, Conley and Hansen
-// 2011), which the interval counts with. It is never narrower than the plain one, since the error by
-// few months may be small by chance (Angrist and Pischke 2009, 8.2.3).
+// 2011), which the interval counts with. It is never narrower than the plain one, since the error
+// by few months may be small by chance (Angrist and Pischke 2009, 8.2.3).
 #pragma once
 
 #include <string>

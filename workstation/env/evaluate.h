@@ -2,16 +2,16 @@
 // Day reset: every day starts at the initial SoC and ends free. Carried over: the days of the split
 // are chained, each starts where the one before it ended and only the first starts at the initial
 // SoC. Chained days are not neighbours in time (26 to 31 January, then 26 February), which a policy
-// that cannot see ahead never notices; perfect foresight would arrange its SoC for a price jump that
-// no market ever made. So with the SoC carried over it plans and runs the whole series, all days of
-// the file, and the split's days are summed: what they bring to the best run of the whole period.
-// (On the yardstick 939.9; one plan over the chained days would claim 954.)
+// that cannot see ahead never notices; perfect foresight would arrange its SoC for a price jump
+// that no market ever made. So with the SoC carried over it plans and runs the whole series, all
+// days of the file, and the split's days are summed: what they bring to the best run of the whole
+// period. (On the yardstick 939.9; one plan over the chained days would claim 954.)
 //
-// Profit is net of trading costs and wear (shared/exchange_cost.h). A step is paid at the mean price of
-// its two minutes, and a percentage is taken of that mean: where a quarter-hour ends inside a step and
-// the price changes its sign, a bill by quarter-hours takes a little more.
-// Once a local day has used up cycles_per_day_max no further order is given until midnight, whatever
-// the policy says.
+// Profit is net of trading costs and wear (shared/exchange_cost.h). A step is paid at the mean
+// price of its two minutes, and a percentage is taken of that mean: where a quarter-hour ends
+// inside a step and the price changes its sign, a bill by quarter-hours takes a little more. Once a
+// local day has used up cycles_per_day_max no further order is given until midnight, whatever the
+// policy says.
 #pragma once
 
 #include <cmath>
@@ -43,8 +43,8 @@ struct DayResult {
   double charge_value_eur = 0;  ///< part of the profit: the charge left at the end (charge_left.h)
 };
 
-/// The charge left at the end as a part of the profit, EUR per day per MWh of capacity; NaN where it
-/// is not valued.
+/// The charge left at the end as a part of the profit, EUR per day per MWh of capacity; NaN where
+/// it is not valued.
 struct ChargeLeft {
   double price_eur_per_mwh;
   double value_eur_per_day_per_mwh;

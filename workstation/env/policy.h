@@ -26,8 +26,8 @@ class Policy {
     (void)ahead;
     (void)soc_frac;
   }
-  /// True of the bound alone: when the SoC is carried over, evaluate() then plans and runs the whole
-  /// series (evaluate.h).
+  /// True of the bound alone: when the SoC is carried over, evaluate() then plans and runs the
+  /// whole series (evaluate.h).
   [[nodiscard]] virtual bool sees_future() const { return false; }
   /// What was chosen in fitting it, for people; empty when there is nothing to say in a line.
   [[nodiscard]] virtual std::string description() const { return {}; }

@@ -1,6 +1,6 @@
 // The network as the gradient step uses it: weights packed for the tile kernels, the activations of
-// one tile, gradients in the kernels' layout. The head is cut into groups of outputs (one an action):
-// a sample goes forward and back through one group only.
+// one tile, gradients in the kernels' layout. The head is cut into groups of outputs (one an
+// action): a sample goes forward and back through one group only.
 #pragma once
 
 #include <vector>

@@ -5,8 +5,9 @@
 // packets, accumulated in registers over the whole depth. A step of depth loads two packets and
 // kBlockRows single values and does 2 * kBlockRows multiply-adds, so the multiply-add units are the
 // limit, not the loads. What follows a product (bias, ReLU, mask, sums) happens while the block is
-// still in registers. Measured 2026-11, one AVX-512 core, a C51 step of 16,384 samples: 24.5 ms against
-// 44 ms of the plain twin; with drawing the minibatch 83 % of the core's measured multiply-add peak.
+// still in registers. Measured 2026-11, one AVX-512 core, a C51 step of 16,384 samples: 24.5 ms
+// against 44 ms of the plain twin; with drawing the minibatch 83 % of the core's measured
+// multiply-add peak.
 //
 // [[gnu::flatten]] inlines everything into each kernel. Without it blocks are passed through memory
 // between the product and what follows: 33 ms.

@@ -18,8 +18,8 @@ class BellmanSweep {
   BellmanSweep(const BatteryParameters& battery, const SocGrid& grid);
 
   /// `next` and `now` hold one value (EUR) for each point of the grid and must not overlap.
-  /// `price_eur_per_mwh` is the market's: trading costs and wear come on top, and `shadow_eur_per_mwh` is
-  /// counted like wear.
+  /// `price_eur_per_mwh` is the market's: trading costs and wear come on top, and
+  /// `shadow_eur_per_mwh` is counted like wear.
   void run(const float* next, float price_eur_per_mwh, float* now,
            float shadow_eur_per_mwh = 0) const;
 

@@ -1,6 +1,6 @@
-// A planner that keeps a limit on daily cycles: fitted for a battery whose wear holds the limit's shadow
-// price (shadow_price.h), so that it keeps the limit on the mean of the days it was fitted on. The evaluation
-// enforces it each day.
+// A planner that keeps a limit on daily cycles: fitted for a battery whose wear holds the limit's
+// shadow price (shadow_price.h), so that it keeps the limit on the mean of the days it was fitted
+// on. The evaluation enforces it each day.
 #pragma once
 
 #include <vector>

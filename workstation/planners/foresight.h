@@ -25,9 +25,9 @@ class ForesightPolicy final : public Policy {
   [[nodiscard]] bool sees_future() const override { return true; }
   [[nodiscard]] Action decide(const MarketStep& step, std::size_t index,
                               double soc_frac) const override;
-  /// What exchanging `wanted_power_w` (charge positive) at this step and SoC is worth when every later decision
-  /// is the best one: EUR of the step and of what is left to earn. Within a local day two of them can be
-  /// compared; under a limit on cycles throughput costs its shadow price.
+  /// What exchanging `wanted_power_w` (charge positive) at this step and SoC is worth when every
+  /// later decision is the best one: EUR of the step and of what is left to earn. Within a local
+  /// day two of them can be compared; under a limit on cycles throughput costs its shadow price.
   [[nodiscard]] double worth_eur(std::size_t index, double soc_frac, double wanted_power_w) const;
 
  private:

@@ -118,8 +118,8 @@ std::string legend_html(const BacktestResults& results) {
   return fmt::format("<ul class=\"legend\">{}</ul>\n", items);
 }
 
-/// Cumulative profit of every policy but the bound, above; how far each is below its peak, below, unless none
-/// ever is.
+/// Cumulative profit of every policy but the bound, above; how far each is below its peak, below,
+/// unless none ever is.
 Figure cumulative_figure(const BacktestResults& results) {
   const std::vector<const WalkForward*> shown = shown_in_figure(results);
   std::vector<std::string> rows;
@@ -343,7 +343,8 @@ std::string format_backtest_table(const BacktestResults& results) {
 }
 
 std::string backtest_csv(const BacktestResults& results) {
-  // standard_error and turnover_per_day are names of before schema version 1, until the next release.
+  // standard_error and turnover_per_day are names of before schema version 1, until the next
+  // release.
   std::string text =
       "month,policy,days,profit_eur_per_day_per_mwh,standard_error,gain_eur_per_day_per_mwh,"
       "gain_standard_error,turnover_per_day,profit_at_wear_10_eur_per_day_per_mwh,fitted_days,"

@@ -1,5 +1,5 @@
-// What a walk-forward backtest brought: by month and in total, as a table for the terminal, CSV, JSON and a
-// page with the cumulative profit and its falls.
+// What a walk-forward backtest brought: by month and in total, as a table for the terminal, CSV,
+// JSON and a page with the cumulative profit and its falls.
 #pragma once
 
 #include <filesystem>

@@ -81,7 +81,8 @@ std::string table_block(const std::string& title, const std::vector<ComparisonRo
   return text;
 }
 
-/// What had another name before schema version 1 stands under both until the next release: see kCsvHeader.
+/// What had another name before schema version 1 stands under both until the next release: see
+/// kCsvHeader.
 std::string csv_line(const ComparisonRow& row, const std::string& first, bool carry_soc) {
   const auto& d = row.difference;
   const std::string profit_error = error_text(row.errors.plain, 4, "");

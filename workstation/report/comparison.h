@@ -20,8 +20,8 @@ struct NamedEvaluation {
   std::string description{};  ///< what was chosen in fitting it; may be empty
 };
 
-/// Wear at which every table shows the profit once more, whatever wear is configured: policies that trade
-/// more or less are compared by what wearing out the battery leaves of it.
+/// Wear at which every table shows the profit once more, whatever wear is configured: policies that
+/// trade more or less are compared by what wearing out the battery leaves of it.
 inline constexpr double kReferenceWearEurPerMwh = 10;
 inline constexpr const char* kReferenceWearKey = "profit_at_wear_10_eur_per_day_per_mwh";
 

@@ -1,4 +1,5 @@
-// What stands below a comparison of policies: the same money for the whole battery, and why two lines are alike.
+// What stands below a comparison of policies: the same money for the whole battery, and why two
+// lines are alike.
 #pragma once
 
 #include <string>
@@ -8,15 +9,16 @@
 
 namespace bess {
 
-/// A table of EUR per day of the whole battery, in both ways of counting. Empty without evaluations.
+/// A table of EUR per day of the whole battery, in both ways of counting. Empty without
+/// evaluations.
 std::string whole_battery_html(const std::vector<NamedEvaluation>& evaluations);
-/// "the whole battery of 8 MWh: the corrected student 4,908.8 EUR a day, ..." with its line end; empty without that
-/// student.
+/// "the whole battery of 8 MWh: the corrected student 4,908.8 EUR a day, ..." with its line end;
+/// empty without that student.
 std::string whole_battery_text(const std::vector<NamedEvaluation>& evaluations);
 
 /// "sdp and sdp teacher are ...", where both earned the same on every day, to the bit: a teacher of
-/// the stochastic program asks the very program that the baseline is, and so does a residual one whose
-/// validation kept step 0. Empty otherwise.
+/// the stochastic program asks the very program that the baseline is, and so does a residual one
+/// whose validation kept step 0. Empty otherwise.
 std::string same_program_text(const std::vector<NamedEvaluation>& evaluations);
 
 }  // namespace bess

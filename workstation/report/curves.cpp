@@ -14,7 +14,8 @@ constexpr std::string_view kTrainingHeader =
     "step,loss,validation_eur_per_day_per_mwh,validation_smoothed,edge_mass_frac";
 constexpr std::string_view kDistilHeader = "epoch,teacher_loss,correction_loss,visited_loss";
 
-/// Rows of `kColumns` numbers under a known header; none for a run that was over before its first point.
+/// Rows of `kColumns` numbers under a known header; none for a run that was over before its first
+/// point.
 template <std::size_t kColumns>
 std::vector<std::array<double, kColumns>> parse_rows(std::string_view text, std::string_view header,
                                                      std::string_view name) {

@@ -1,4 +1,5 @@
-// Learning and distillation curves as CSV, out and back in, and the smoothing that their figures show.
+// Learning and distillation curves as CSV, out and back in, and the smoothing that their figures
+// show.
 #pragma once
 
 #include <string>

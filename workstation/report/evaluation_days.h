@@ -1,5 +1,5 @@
-// Every day of every policy's evaluation as CSV, each number in the shortest form that reads back to it:
-// tables and paired differences are made again from it, to the bit.
+// Every day of every policy's evaluation as CSV, each number in the shortest form that reads back
+// to it: tables and paired differences are made again from it, to the bit.
 #pragma once
 
 #include <string>
@@ -11,11 +11,12 @@
 namespace bess {
 
 /// Header `policy,soc,date,profit_eur,cycles,switches,soc_end,throughput_mwh,soc_start,
-/// charge_value_eur,charge_price_eur_mwh`; soc is "reset" or "carried"; no price: the charge is not valued.
+/// charge_value_eur,charge_price_eur_mwh`; soc is "reset" or "carried"; no price: the charge is not
+/// valued.
 std::string evaluation_days_csv(const std::vector<NamedEvaluation>& evaluations);
 
-/// Reads it back for the battery that was evaluated; policies keep their order. Throws UserError naming
-/// `name` and the line.
+/// Reads it back for the battery that was evaluated; policies keep their order. Throws UserError
+/// naming `name` and the line.
 std::vector<NamedEvaluation> parse_evaluation_days_csv(std::string_view text,
                                                        const std::string& name,
                                                        const BatteryParameters& battery);

@@ -25,15 +25,17 @@ struct Figure {
 };
 
 /// Writes `folder`/`name`.svg and `name`_dark.svg, each with its title above the picture, and
-/// `name`.csv with its numbers; each beside and renamed. Returns the names. Throws UserError without gnuplot.
+/// `name`.csv with its numbers; each beside and renamed. Returns the names. Throws UserError
+/// without gnuplot.
 std::vector<std::string> draw_figure(const Figure& figure, const std::filesystem::path& folder);
 
-/// gnuplot's `file` as it stands alone: the title above it, its colours for a dark page when asked for. Throws
-/// UserError for a file of another form.
+/// gnuplot's `file` as it stands alone: the title above it, its colours for a dark page when asked
+/// for. Throws UserError for a file of another form.
 std::string titled_svg(std::string_view file, const Figure& figure, bool dark);
 
-/// The SVG element of such a file alone, without the title, which the page shows: its ids made unique, its colours made variables of the
-/// page, with title and description for screen readers. Throws UserError for a file of another form.
+/// The SVG element of such a file alone, without the title, which the page shows: its ids made
+/// unique, its colours made variables of the page, with title and description for screen readers.
+/// Throws UserError for a file of another form.
 std::string inline_svg(std::string_view file, const Figure& figure);
 
 /// One entry of a figure's key.

@@ -1,5 +1,6 @@
-// What an operator asks first of a run: what would the policy that would be exported have earned, what did its
-// correction cost, and how does it stand against each alternative, without wear and with it.
+// What an operator asks first of a run: what would the policy that would be exported have earned,
+// what did its correction cost, and how does it stand against each alternative, without wear and
+// with it.
 #pragma once
 
 #include <array>
@@ -22,7 +23,8 @@ inline constexpr const char* kUnprovedName = "unproved student";
 /// The wears, EUR/MWh, at which gains are shown, whatever is configured.
 inline constexpr std::array<double, 2> kHeadlineWears{0, kReferenceWearEurPerMwh};
 
-/// Exported policy minus another one, same days, EUR per day per MWh of capacity, at each of kHeadlineWears.
+/// Exported policy minus another one, same days, EUR per day per MWh of capacity, at each of
+/// kHeadlineWears.
 struct HeadlineGain {
   std::string against;  ///< name of the evaluation
   std::string meaning;  ///< for people
@@ -52,11 +54,12 @@ struct Headline {
 /// The same decisions, had wear cost this much instead.
 Evaluation at_wear(const Evaluation& evaluation, double wear_eur_per_mwh);
 
-/// The policy that a run is about: corrected student or, where its proof failed, unproved one; null without both.
+/// The policy that a run is about: corrected student or, where its proof failed, unproved one; null
+/// without both.
 const NamedEvaluation* find_own_student(const std::vector<NamedEvaluation>& evaluations);
 
-/// None without an evaluation of the run's own student, SoC carried over. An unproved student has no price of
-/// correction: its correction was not finished.
+/// None without an evaluation of the run's own student, SoC carried over. An unproved student has
+/// no price of correction: its correction was not finished.
 std::optional<Headline> headline_of(const std::vector<NamedEvaluation>& evaluations);
 
 /// Beyond the interval of 95 %; never of one day.
@@ -65,7 +68,8 @@ bool is_shown(const PairedDifference& difference);
 /// "+5.2 ± 1.1 (1.4 by month)", with a true minus; an error that is not known is left out.
 std::string difference_text(const PairedDifference& difference);
 
-/// How the figure counts: carried over, the charge left at what price, and the friendlier figure. For people.
+/// How the figure counts: carried over, the charge left at what price, and the friendlier figure.
+/// For people.
 std::string headline_accounting(const Headline& headline);
 /// The figure in a line, for the terminal, with how it counts.
 std::string headline_text(const Headline& headline);

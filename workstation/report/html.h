@@ -9,8 +9,8 @@
 
 namespace bess {
 
-/// A table whose first column names the row and whose other columns are numbers. Each number bears the head of
-/// its column: a narrow screen shows every row as a list.
+/// A table whose first column names the row and whose other columns are numbers. Each number bears
+/// the head of its column: a narrow screen shows every row as a list.
 struct HtmlTable {
   std::string caption;
   std::vector<std::string> header;

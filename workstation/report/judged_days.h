@@ -1,5 +1,5 @@
-// Which days a figure is about, and whether what is judged had learnt from later ones: days 26 to the end
-// of each month are kept from learning, but the months after them are not.
+// Which days a figure is about, and whether what is judged had learnt from later ones: days 26 to
+// the end of each month are kept from learning, but the months after them are not.
 #pragma once
 
 #include <string>

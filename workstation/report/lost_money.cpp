@@ -43,7 +43,8 @@ double median_paid(const std::vector<StepRecord>& records) {
   return paid[paid.size() / 2];
 }
 
-/// What the day still holds behind each step: the prices at which the battery is at an end of its window.
+/// What the day still holds behind each step: the prices at which the battery is at an end of its
+/// window.
 struct EndsAhead {
   std::vector<double> dearest_while_empty;  ///< paid, EUR/MWh; -inf: it is not empty any more
   std::vector<double> cheapest_while_full;  ///< +inf
@@ -68,7 +69,8 @@ struct EndsAhead {
     }
   }
 
-  /// Whether being empty later is the reason: at a price above this one, and further from the usual.
+  /// Whether being empty later is the reason: at a price above this one, and further from the
+  /// usual.
   [[nodiscard]] bool empty_is_to_blame(std::size_t i, double paid) const {
     const double dear = dearest_while_empty[i];
     return dear >= paid && dear - usual_eur_per_mwh >= usual_eur_per_mwh - paid;
@@ -105,7 +107,8 @@ class DayJudge {
     for (std::size_t i = 0; i < steps.size(); ++i) judge_step(i, steps[i], records[i], ends, loss);
     double sum = 0;
     for (const double part : loss.part_eur) sum += part;
-    // Under a limit of cycles the plan counts throughput at its shadow price, which no profit holds.
+    // Under a limit of cycles the plan counts throughput at its shadow price, which no profit
+    // holds.
     const LossCause rest =
         battery_.cycles_per_day_max > 0 ? LossCause::kCycleLimit : LossCause::kRounding;
     loss.part_eur[static_cast<std::size_t>(rest)] += loss.missed_eur() - sum;

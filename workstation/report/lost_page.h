@@ -1,4 +1,5 @@
-// The page's chapter on what was missed: by cause, by hour and month, and the worst days with their causes.
+// The page's chapter on what was missed: by cause, by hour and month, and the worst days with their
+// causes.
 #pragma once
 
 #include <string>
@@ -10,7 +11,8 @@
 
 namespace bess {
 
-/// Of the exported policy over the test days, or of what there is of its chain; empty without any student.
+/// Of the exported policy over the test days, or of what there is of its chain; empty without any
+/// student.
 std::vector<DayLoss> losses_of(const ReportInputs& inputs);
 
 /// Days in the order of what was missed, the worst first.

@@ -30,7 +30,8 @@ std::string format_omega_table(const std::vector<OmegaPoint>& points, const Eval
 }
 
 std::string omega_csv(const std::vector<OmegaPoint>& points, const Evaluation& teacher) {
-  // standard_error and gain_over_teacher are names of before schema version 1, until the next release.
+  // standard_error and gain_over_teacher are names of before schema version 1, until the next
+  // release.
   std::string csv =
       "omega,states_checked,violations_of(1),violations_of(2),violations_of(3),"
       "divergence_nats,agreement,profit_eur_per_day_per_mwh,standard_error,gain_over_teacher,"

@@ -1,6 +1,6 @@
-// The paper's trade-off omega [Paper, Eq. 12] as table, CSV and picture: students distilled through the
-// layer from one teacher, each with its own omega and before any repair, so that what a larger omega costs
-// in violations is seen, and what it brings in fidelity and money.
+// The paper's trade-off omega [Paper, Eq. 12] as table, CSV and picture: students distilled through
+// the layer from one teacher, each with its own omega and before any repair, so that what a larger
+// omega costs in violations is seen, and what it brings in fidelity and money.
 #pragma once
 
 #include <string>

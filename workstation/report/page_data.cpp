@@ -75,7 +75,8 @@ std::vector<double> profits_by_day(const std::vector<MarketDay>& days, const Pol
   return profits;
 }
 
-/// Less what perfect foresight would have earned, where it was evaluated: how bad a day was, as the page ranks them.
+/// Less what perfect foresight would have earned, where it was evaluated: how bad a day was, as the
+/// page ranks them.
 std::vector<double> against_foresight(const ReportInputs& in, std::vector<double> profits) {
   const auto bound = std::ranges::find(in.evaluations, kForesightName, &NamedEvaluation::name);
   if (bound == in.evaluations.end() || bound->day_reset.days.size() != profits.size()) {

@@ -1,5 +1,5 @@
-// What the page's scripts draw, as JSON: every day of every policy, the steps of the days, the integer students,
-// and how they were learned. page/*.js reads it.
+// What the page's scripts draw, as JSON: every day of every policy, the steps of the days, the
+// integer students, and how they were learned. page/*.js reads it.
 #pragma once
 
 #include "shared/host/json.h"

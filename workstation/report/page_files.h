@@ -6,7 +6,8 @@
 
 namespace bess {
 
-/// Contents of report/page/`name`, of "chart.min.js" or "answers.schema.json". Throws std::logic_error for another name.
+/// Contents of report/page/`name`, of "chart.min.js" or "answers.schema.json". Throws
+/// std::logic_error for another name.
 std::string_view page_file(std::string_view name);
 
 }  // namespace bess

@@ -1,5 +1,6 @@
-// The numbers of every picture that the page's scripts draw, wear as configured: page/*.js computes them once more from
-// the page's data, and a browser test holds the two against each other. Those of lost_page.h are its own.
+// The numbers of every picture that the page's scripts draw, wear as configured: page/*.js computes
+// them once more from the page's data, and a browser test holds the two against each other. Those
+// of lost_page.h are its own.
 #pragma once
 
 #include <vector>

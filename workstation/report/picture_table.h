@@ -1,4 +1,5 @@
-// The numbers of a picture as a CSV file beside the page. Each picture of a page has one and links it.
+// The numbers of a picture as a CSV file beside the page. Each picture of a page has one and links
+// it.
 #pragma once
 
 #include <filesystem>

@@ -42,7 +42,8 @@ struct WrongBorder {
 };
 std::vector<WrongBorder> wrong_borders_of(const ActionGrid& grid);
 
-/// The boxes of the rules that bind a student of this kind in this context, by name; directions have none.
+/// The boxes of the rules that bind a student of this kind in this context, by name; directions
+/// have none.
 struct RuleOutline {
   std::string name;
   GridRectangle box;

@@ -1,6 +1,6 @@
-// The report of a run: one HTML page that needs nothing beside it, and the figures as SVG files, light and dark,
-// from results that the caller already has. Only what nobody kept is computed here: the rule-based validation
-// profit, the teacher's map, and the steps of the test days.
+// The report of a run: one HTML page that needs nothing beside it, and the figures as SVG files,
+// light and dark, from results that the caller already has. Only what nobody kept is computed here:
+// the rule-based validation profit, the teacher's map, and the steps of the test days.
 #pragma once
 
 #include <filesystem>
@@ -44,14 +44,15 @@ ContextClasses context_classes_of(const ReportInputs& inputs);
 /// What the students were checked against.
 PriceThresholds thresholds_of(const ReportInputs& inputs);
 
-/// Whose counterexamples are shown: the corrected student's when it has any, else the uncorrected one's; may be null.
+/// Whose counterexamples are shown: the corrected student's when it has any, else the uncorrected
+/// one's; may be null.
 const StudentFile* shown_as_wrong(const ReportInputs& inputs);
 /// What it is called on the page.
 const char* shown_as_wrong_name(const ReportInputs& inputs);
 
-/// Writes the SVG figures, the CSV file of each picture and report.html into `folder`, which is created; each
-/// file appears complete or not at all. Returns the names of all of them. Throws UserError without gnuplot or room
-/// to write, or without test days.
+/// Writes the SVG figures, the CSV file of each picture and report.html into `folder`, which is
+/// created; each file appears complete or not at all. Returns the names of all of them. Throws
+/// UserError without gnuplot or room to write, or without test days.
 std::vector<std::string> write_report(const ReportInputs& inputs,
                                       const std::filesystem::path& folder);
 

@@ -1,4 +1,5 @@
-// The page of a report, put together: page/report.html with its style, its scripts and its data inside.
+// The page of a report, put together: page/report.html with its style, its scripts and its data
+// inside.
 #pragma once
 
 #include <map>
@@ -8,11 +9,13 @@
 
 namespace bess {
 
-/// Complete document: light and dark, phone and print, nothing fetched from outside. `parts` fill the
+/// Complete document: light and dark, phone and print, nothing fetched from outside. `parts` fill
+/// the
 /// {{placeholders}} of page/report.html by name, as HTML; `data` is for the scripts.
 std::string format_report_page(const std::map<std::string, std::string>& parts, const Json& data);
 
-/// `template_text` with every {{name}} replaced by its part. Throws std::logic_error for a name without a part.
+/// `template_text` with every {{name}} replaced by its part. Throws std::logic_error for a name
+/// without a part.
 std::string filled_in(std::string_view template_text,
                       const std::map<std::string, std::string>& parts);
 

@@ -12,19 +12,20 @@
 
 namespace bess {
 
-/// Both ways of counting, each left out when nothing was evaluated that way; with what the columns mean.
+/// Both ways of counting, each left out when nothing was evaluated that way; with what the columns
+/// mean.
 std::string comparison_html(const std::vector<NamedEvaluation>& evaluations);
 
 /// Violations before and after; either may be null.
 std::string proof_html(const Certificate* uncorrected, const Certificate* corrected);
-/// Where a proof failed, demand by demand; empty when none is broken. A button has the index of its demand as
-/// data-broken.
+/// Where a proof failed, demand by demand; empty when none is broken. A button has the index of its
+/// demand as data-broken.
 std::string failure_html(const std::vector<BrokenDemand>& broken);
 /// "Proved: ..." or why the student may not be exported.
 std::string proof_sentence(const Certificate& certificate);
 
-/// The operator's rules: what each asks, who is held to it, who breaks it how often, and what it costs. Empty without
-/// rules; `kind` is the students' context; `prices` may be null.
+/// The operator's rules: what each asks, who is held to it, who breaks it how often, and what it
+/// costs. Empty without rules; `kind` is the students' context; `prices` may be null.
 std::string rules_html(const Certificate* uncorrected, const Certificate* corrected,
                        ContextKind kind, const RulePrices* prices);
 

@@ -1,6 +1,7 @@
-// What the correction cost, split into what each rule of the operator costs and what is left for the correction
-// itself. A rule's price is that of the plain student's decisions moved to the nearest ones that the rule leaves
-// (ruled_policy.h), alone and with all others; what lies between that and the corrected student is the correction's.
+// What the correction cost, split into what each rule of the operator costs and what is left for
+// the correction itself. A rule's price is that of the plain student's decisions moved to the
+// nearest ones that the rule leaves (ruled_policy.h), alone and with all others; what lies between
+// that and the corrected student is the correction's.
 #pragma once
 
 #include <optional>
@@ -13,7 +14,8 @@
 
 namespace bess {
 
-/// Names of the evaluations that it is made from: parts of a price, no rivals, left out of tables of policies.
+/// Names of the evaluations that it is made from: parts of a price, no rivals, left out of tables
+/// of policies.
 inline constexpr const char* kUnderAllRules = "plain student under all rules";
 std::string under_rule_name(const std::string& rule);
 bool is_under_rules(std::string_view policy);

@@ -1,5 +1,5 @@
-// The policies of a run's own chain, whose steps the report shows: corrected student (or the unproved one), plain
-// student, teacher.
+// The policies of a run's own chain, whose steps the report shows: corrected student (or the
+// unproved one), plain student, teacher.
 #pragma once
 
 #include <memory>
@@ -18,8 +18,8 @@ struct ShownPolicy {
 /// What a run's own student is called: kCorrectedName, or kUnprovedName with violations left.
 const char* own_student_name(const Certificate& certificate);
 
-/// Those that there are, the last link of the chain first; without any, the paper's rule. `inputs` must outlive
-/// them.
+/// Those that there are, the last link of the chain first; without any, the paper's rule. `inputs`
+/// must outlive them.
 std::vector<ShownPolicy> shown_policies(const ReportInputs& inputs);
 
 }  // namespace bess

@@ -39,9 +39,9 @@ struct C51Tile {
 
 /// Adds to `gradient` (of the mean over the minibatch) and returns the summed cross-entropy
 ///   -sum_i m_i log p_i(s, a)   [Paper, Eq. 8 up to the entropy of m]
-/// and, with w = step.mean_weight, w / 2 (E_p[z] - E_m[z])^2: decisions hang on differences of means of
-/// a percent of the support, which the cross-entropy alone learns late.
-/// Next actions are greedy by mean under the target network, ties to the lowest action.
+/// and, with w = step.mean_weight, w / 2 (E_p[z] - E_m[z])^2: decisions hang on differences of
+/// means of a percent of the support, which the cross-entropy alone learns late. Next actions are
+/// greedy by mean under the target network, ties to the lowest action.
 double c51_tile_gradient(const GradientStep& step, const TileRange& range, C51Tile& tile,
                          PackedGradient& gradient);
 

@@ -101,7 +101,8 @@ double TrainingMarket::make_transition(std::size_t index, double soc_frac, Actio
   write_input(step.context, soc_frac, out.state);
   write_input(step.next, moved.soc_frac, out.next_state);
   // r = -p * price in EUR/h for a battery of the paper's 4 MW: scaled by P, so that the same
-  // support and learning rate serve every size [SPEC 3, 4]. The money of exchange_cost.h, in floats.
+  // support and learning rate serve every size [SPEC 3, 4]. The money of exchange_cost.h, in
+  // floats.
   const auto power_frac = static_cast<float>(moved.power_w / battery_.power_w_max);
   const auto wear = static_cast<float>(battery_.wear_eur_per_mwh);
   const float price = power_frac > 0 ? step.import_eur_per_mwh : step.export_eur_per_mwh;

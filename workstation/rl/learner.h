@@ -1,7 +1,7 @@
-// One gradient step of the teacher: each thread takes an equal run of the minibatch's samples, cuts it
-// into tiles and sums their gradients into its own buffer; the buffers are added in order, Adam moves
-// the weights and the target follows. Static split: the same seed, threads and build give the same
-// weights to the bit.
+// One gradient step of the teacher: each thread takes an equal run of the minibatch's samples, cuts
+// it into tiles and sums their gradients into its own buffer; the buffers are added in order, Adam
+// moves the weights and the target follows. Static split: the same seed, threads and build give the
+// same weights to the bit.
 #pragma once
 
 #include <vector>

@@ -1,9 +1,9 @@
 // Potential of a state, for shaping rewards [Ng, Harada, Russell 1999]:
 //   r' = r + gamma Phi(s') - Phi(s)
 // changes no decision, whatever Phi is, and what is left to learn is what Phi does not know: with a
-// plan's value function the network learns to correct the plan, not that energy has a price. (On the
-// yardstick the step from `price` to `plan` brought both methods from under the tabular baseline to
-// 4 % above it on validation days.)
+// plan's value function the network learns to correct the plan, not that energy has a price. (On
+// the yardstick the step from `price` to `plan` brought both methods from under the tabular
+// baseline to 4 % above it on validation days.)
 #pragma once
 
 #include <cstdint>

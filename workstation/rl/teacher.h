@@ -1,6 +1,6 @@
 // The teacher: action values over the five inputs. A network that learnt them (DQN) or their
-// distributions (C51), or the stochastic program that knows them for its model of the market (SDP). One
-// file holds everything needed to use it again: method, support, price map, parameters.
+// distributions (C51), or the stochastic program that knows them for its model of the market (SDP).
+// One file holds everything needed to use it again: method, support, price map, parameters.
 #pragma once
 
 #include <filesystem>
@@ -72,8 +72,8 @@ void save_teacher(const std::filesystem::path& path, const Teacher& teacher);
 Teacher load_teacher(const std::filesystem::path& path);
 /// True when the file starts like a teacher's.
 bool is_teacher_file(const std::filesystem::path& path);
-/// load_teacher() that decides by `risk`. Throws UserError when that is not the mean and the teacher
-/// knows nothing else.
+/// load_teacher() that decides by `risk`. Throws UserError when that is not the mean and the
+/// teacher knows nothing else.
 Teacher load_teacher(const std::filesystem::path& path, const Risk& risk);
 
 /// Greedy by action value, ties to the lowest action.

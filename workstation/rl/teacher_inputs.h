@@ -1,5 +1,6 @@
-// What a teacher may see beside the student's five inputs: each by a key of [train], none by default.
-// The student never sees them; distillation shows it what the teacher did with them, state by state.
+// What a teacher may see beside the student's five inputs: each by a key of [train], none by
+// default. The student never sees them; distillation shows it what the teacher did with them, state
+// by state.
 #pragma once
 
 #include <algorithm>

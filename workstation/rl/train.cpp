@@ -115,8 +115,8 @@ std::shared_ptr<const StochasticProgram> fit_program(const MarketSteps& market,
       options);
 }
 
-/// Half as far again, on both sides, as all but a thousandth of the returns that the program leaves:
-/// zero is the middle atom.
+/// Half as far again, on both sides, as all but a thousandth of the returns that the program
+/// leaves: zero is the middle atom.
 Support residual_support(const TrainingMarket& market, const TrainOptions& options) {
   constexpr double kLeftOut = 1e-3;
   constexpr float kRoom = 1.5F;
@@ -270,8 +270,8 @@ class Training {
            step_ != (result_.curve.empty() ? nothing_yet : result_.curve.back().step);
   }
 
-  /// Adds a point to the curve and keeps the averaged weights when they earn more than any before. False
-  /// when it was stopped: nothing has changed then.
+  /// Adds a point to the curve and keeps the averaged weights when they earn more than any before.
+  /// False when it was stopped: nothing has changed then.
   bool validate(const std::function<bool()>& interrupted) {
     current_.parameters = average_;
     TeacherPolicy teacher(current_);

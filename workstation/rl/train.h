@@ -66,19 +66,20 @@ struct TrainResult {
   double seconds;
 };
 
-/// Where a run can be taken up again after an interruption. A checkpoint is written beside and renamed
-/// at every validation and at an interruption; continuing from one gives the same weights, to the
-/// bit, as never having stopped.
+/// Where a run can be taken up again after an interruption. A checkpoint is written beside and
+/// renamed at every validation and at an interruption; continuing from one gives the same weights,
+/// to the bit, as never having stopped.
 struct CheckpointOptions {
   std::filesystem::path path;  ///< empty: none is kept
   bool resume = false;         ///< continue from `path`; an error when it is not there
   std::string identity;        ///< configuration and prices: a checkpoint of others is refused
 };
 
-/// Trains on the training days of `market` and selects on its validation days. `interrupted` is asked
-/// before every gradient step and every day of a validation: true ends it early with what is best so far;
-/// a validation that was broken off is the first thing when it is resumed. Throws UserError for
-/// missing days; ranges of the options are checked where they are read (cli/run_config.cpp).
+/// Trains on the training days of `market` and selects on its validation days. `interrupted` is
+/// asked before every gradient step and every day of a validation: true ends it early with what is
+/// best so far; a validation that was broken off is the first thing when it is resumed. Throws
+/// UserError for missing days; ranges of the options are checked where they are read
+/// (cli/run_config.cpp).
 TrainResult train_teacher(const MarketSteps& market, const BatteryParameters& battery,
                           const TrainOptions& options, const std::function<bool()>& interrupted,
                           const CheckpointOptions& checkpoint = {});

@@ -15,8 +15,8 @@ void group_by_action(std::size_t size, const TransitionOf& transition_of, MiniBa
   batch.next_advantage.resize(kActionCount, count);
   batch.reward.resize(count);
   batch.terminal.resize(size);
-  // Counting sort. The first pass also fetches the records: from a ring of a million each is a cache
-  // miss, and as the pass depends on nothing else, many are under way at once.
+  // Counting sort. The first pass also fetches the records: from a ring of a million each is a
+  // cache miss, and as the pass depends on nothing else, many are under way at once.
   Eigen::Index taken[kActionCount] = {};
   for (std::size_t i = 0; i < size; ++i) ++taken[transition_of(i).action];
   Eigen::Index next[kActionCount];

@@ -57,8 +57,8 @@ struct MiniBatch {
   }
 };
 
-/// Groups the given transitions by action, stable within each group. `sights`, one a transition, may be
-/// left out where the teacher has no inputs of its own.
+/// Groups the given transitions by action, stable within each group. `sights`, one a transition,
+/// may be left out where the teacher has no inputs of its own.
 void fill_minibatch(std::span<const Transition> transitions, MiniBatch& batch,
                     std::span<const TeacherSight> sights = {}, int teacher_inputs = 0);
 /// The same of those in the given slots of a ring, one of which may come more than once.

@@ -12,7 +12,8 @@
 namespace bess {
 namespace {
 
-/// Ends of a range to which a demand reaches along an input: "at least" to where actions are larger.
+/// Ends of a range to which a demand reaches along an input: "at least" to where actions are
+/// larger.
 template <typename Index>
 void reach(int sign, bool at_least, Index& first, Index& last, Index lowest, Index highest) {
   if (sign == 0) return;
@@ -214,7 +215,8 @@ void require_consistent(const RuleSet& rules, const PriceThresholds& thresholds,
   const ImpliedRanges implied(all, kind);
   using Claim = ImpliedRanges::Claim;
   using Side = ImpliedRanges::Side;
-  // A corner of the states that claims have in common; every such set is a box, or hours and classes of boxes.
+  // A corner of the states that claims have in common; every such set is a box, or hours and
+  // classes of boxes.
   const auto meet = [kind](std::initializer_list<const Claim*> claims, std::string& state) {
     LatticeBox common{0, kPriceCount - 1, 0, kSocCount - 1, kAllTwelve};
     for (const Claim* claim : claims) {

@@ -1,9 +1,9 @@
 // Whether rules can be obeyed together, found out before anything is trained.
 //
-// On the lattice a demand reaches further than its box: where the action never rises with price and SoC, "at
-// least A" holds at every lower price and SoC too, and "at most A" at every higher one. So a rule claims the
-// states that its box implies, which is a box again, and two rules clash where one claims more than the other
-// allows. What the guard enforces is held against the bare boxes.
+// On the lattice a demand reaches further than its box: where the action never rises with price and
+// SoC, "at least A" holds at every lower price and SoC too, and "at most A" at every higher one. So
+// a rule claims the states that its box implies, which is a box again, and two rules clash where
+// one claims more than the other allows. What the guard enforces is held against the bare boxes.
 #pragma once
 
 #include <optional>
@@ -13,12 +13,13 @@
 
 namespace bess {
 
-/// Throws UserError naming the rules and one state when they contradict each other or the thresholds of
-/// properties 1 and 2, or when a rule binds nobody: neither a student of this context nor the guard.
+/// Throws UserError naming the rules and one state when they contradict each other or the
+/// thresholds of properties 1 and 2, or when a rule binds nobody: neither a student of this context
+/// nor the guard.
 void require_consistent(const RuleSet& rules, const PriceThresholds& thresholds, ContextKind kind);
 
-/// The demand nearest to a rule that asks the opposite in some hour and class of both, and how far off it is: of
-/// what lies between, a student must turn from one to the other.
+/// The demand nearest to a rule that asks the opposite in some hour and class of both, and how far
+/// off it is: of what lies between, a student must turn from one to the other.
 struct Opposite {
   std::string name;
   int price_gap_eur_per_mwh = 0;  ///< 0: they meet in price, and lie apart in charge
@@ -28,8 +29,8 @@ struct Opposite {
 std::optional<Opposite> nearest_opposite(const RuleSet& rules, const PriceThresholds& thresholds,
                                          ContextKind kind, const Rule& rule);
 
-/// The actions that are left at a lattice state when all rules that bind a student are obeyed, and the action
-/// keeps its directions: `lowest` to `highest`, without idling where `has_gap`.
+/// The actions that are left at a lattice state when all rules that bind a student are obeyed, and
+/// the action keeps its directions: `lowest` to `highest`, without idling where `has_gap`.
 struct ActionRange {
   Action lowest = Action::kDischarge;
   Action highest = Action::kCharge;

@@ -1,6 +1,6 @@
-// Counts, while a policy runs, how often it breaks each rule: in the states that it visits and, at each of them, at
-// some other SoCs drawn at random. For policies whose states cannot all be looked at, float teachers first; and for
-// how much of what really happens a violation touches.
+// Counts, while a policy runs, how often it breaks each rule: in the states that it visits and, at
+// each of them, at some other SoCs drawn at random. For policies whose states cannot all be looked
+// at, float teachers first; and for how much of what really happens a violation touches.
 #pragma once
 
 #include <memory>
@@ -11,9 +11,9 @@
 
 namespace bess {
 
-/// Of one rule: looked at and broken, in visited states and in those drawn beside them. A direction with price
-/// or SoC is looked at as a pair with the next price or SoC of the lattice; other demands than that and actions
-/// cannot be seen in single states, and stay 0.
+/// Of one rule: looked at and broken, in visited states and in those drawn beside them. A direction
+/// with price or SoC is looked at as a pair with the next price or SoC of the lattice; other
+/// demands than that and actions cannot be seen in single states, and stay 0.
 struct WatchCount {
   std::int64_t visited = 0;
   std::int64_t visited_broken = 0;

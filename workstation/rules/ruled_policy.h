@@ -1,8 +1,8 @@
-// A policy that obeys rules: what it would decide, moved to the nearest action that is left. On the lattice that
-// is the nearest of all policies that obey the rules and keep their directions, where the policy has the
-// directions itself, as every proved student has; what is the guard's alone is cut as the guard cuts it.
-// It tells what rules cost before anything is trained. A direction of another input than price and SoC is no
-// demand on single states: it is not projected.
+// A policy that obeys rules: what it would decide, moved to the nearest action that is left. On the
+// lattice that is the nearest of all policies that obey the rules and keep their directions, where
+// the policy has the directions itself, as every proved student has; what is the guard's alone is
+// cut as the guard cuts it. It tells what rules cost before anything is trained. A direction of
+// another input than price and SoC is no demand on single states: it is not projected.
 #pragma once
 
 #include <memory>

@@ -47,7 +47,8 @@ struct Candidate {
   int epoch;
 };
 
-/// Appends the candidates of a round, which are ordered by score, in time; those before `chosen` disobey.
+/// Appends the candidates of a round, which are ordered by score, in time; those before `chosen`
+/// disobey.
 void note_checkpoints(const std::vector<Candidate>& candidates, std::size_t chosen, int round,
                       std::vector<StudentCheckpoint>& checkpoints) {
   const auto before = static_cast<std::ptrdiff_t>(checkpoints.size());
@@ -68,8 +69,8 @@ struct Look {
   ProofRound round;                  ///< how many of which demand
 };
 
-/// Contexts in which a monotone student disobeys a rule: the corners of its box tell, of a threshold the one at its
-/// price. Quick, where a proof takes seconds.
+/// Contexts in which a monotone student disobeys a rule: the corners of its box tell, of a
+/// threshold the one at its price. Quick, where a proof takes seconds.
 Look look_at_corners(const StudentNet& net, const DistilOptions& options,
                      const RuleLessons& rules) {
   Certificate found{.thresholds = options.correction.thresholds, .rules = options.rules};

@@ -33,8 +33,8 @@ CorrectionResult correct_and_prove(const Teacher& teacher, const Matrix& visited
                                    const std::atomic<bool>& interrupted,
                                    const StudentScore& score = {}, const RoundWatch& watch = {});
 
-/// Profit on the validation days of `market`, SoC carried over: a day that begins anew flatters a student
-/// that empties the battery every night.
+/// Profit on the validation days of `market`, SoC carried over: a day that begins anew flatters a
+/// student that empties the battery every night.
 StudentScore validation_score(const MarketSteps& market, const BatteryParameters& battery,
                               double initial_soc_frac);
 

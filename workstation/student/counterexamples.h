@@ -1,4 +1,5 @@
-// States in which a student violates a property, as CSV: where a report looks, without another proof.
+// States in which a student violates a property, as CSV: where a report looks, without another
+// proof.
 #pragma once
 
 #include <string>

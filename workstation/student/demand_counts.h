@@ -1,5 +1,5 @@
-// What a proof counted, as one list: the three properties and then the operator's rules, each by its name. Whatever
-// tells of a proof, in lines, tables, JSON or CSV, goes through it.
+// What a proof counted, as one list: the three properties and then the operator's rules, each by
+// its name. Whatever tells of a proof, in lines, tables, JSON or CSV, goes through it.
 #pragma once
 
 #include <string>
@@ -22,7 +22,8 @@ struct DemandCount {
   [[nodiscard]] std::string label() const;
 };
 
-/// The properties, and all rules; of rules that nobody has looked at the counts are 0 and none binds.
+/// The properties, and all rules; of rules that nobody has looked at the counts are 0 and none
+/// binds.
 std::vector<DemandCount> demand_counts(const Certificate& certificate);
 
 /// "property 3: 12, rule \"quiet hours\": 23994": what is broken; empty when nothing is.

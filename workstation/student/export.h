@@ -12,8 +12,8 @@ namespace bess {
 /// seed.
 std::string format_weight_header(const ProvedStudent& student);
 
-/// A C string literal of `text`: no byte of it can end the literal, nor start an escape or a trigraph; what
-/// is not printable ASCII becomes a question mark.
+/// A C string literal of `text`: no byte of it can end the literal, nor start an escape or a
+/// trigraph; what is not printable ASCII becomes a question mark.
 std::string c_string_literal(const std::string& text);
 
 }  // namespace bess

@@ -1,5 +1,6 @@
-// What the edge does with a student: its decisions, and behind them what its guard enforces of the rules. A power
-// that the guard alone limits is nowhere in the student, and is paid for all the same.
+// What the edge does with a student: its decisions, and behind them what its guard enforces of the
+// rules. A power that the guard alone limits is nowhere in the student, and is paid for all the
+// same.
 #pragma once
 
 #include <memory>

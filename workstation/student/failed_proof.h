@@ -1,5 +1,5 @@
-// Why a proof failed, for whoever has to do something about it: each demand that is broken with its count, a state,
-// what the student does there, and what to change.
+// Why a proof failed, for whoever has to do something about it: each demand that is broken with its
+// count, a state, what the student does there, and what to change.
 #pragma once
 
 #include <optional>
@@ -19,11 +19,12 @@ struct BrokenDemand {
   std::optional<LatticeState> state{};  ///< that of the example
 };
 
-/// Of a student with the certificate of its proof. Counterexamples help; without them the states that decide a
-/// monotone student are searched.
+/// Of a student with the certificate of its proof. Counterexamples help; without them the states
+/// that decide a monotone student are searched.
 std::vector<BrokenDemand> broken_demands(const StudentFile& student, CorrectionMethod method);
 
-/// One line, and one below it for each broken demand, with its advice. `where` in front, `note` behind the count.
+/// One line, and one below it for each broken demand, with its advice. `where` in front, `note`
+/// behind the count.
 std::string describe_failed_proof(const StudentFile& student, const std::vector<ProofRound>& rounds,
                                   CorrectionMethod method, const std::string& where = "",
                                   const std::string& note = "");

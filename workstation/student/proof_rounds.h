@@ -1,5 +1,5 @@
-// What the rounds of a correction ended with, demand by demand: for whoever waits for them, and as CSV for whoever
-// asks later.
+// What the rounds of a correction ended with, demand by demand: for whoever waits for them, and as
+// CSV for whoever asks later.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,8 @@ struct DemandLeft {
 };
 
 struct ProofRound {
-  /// The whole lattice, or a sample of it; else the states that decide a monotone student alone, which spares it a
-  /// proof that would fail.
+  /// The whole lattice, or a sample of it; else the states that decide a monotone student alone,
+  /// which spares it a proof that would fail.
   bool is_whole = true;
   std::vector<DemandLeft> left;  ///< of every demand that binds the student
 
@@ -40,10 +40,12 @@ struct RoundsState {
 };
 using RoundWatch = std::function<void(const ProofRound&, const RoundsState&)>;
 
-/// "round 2 of at most 13: rule \"quiet hours\": 23994 left; at most 4 min more and a proof", for RoundWatch.
+/// "round 2 of at most 13: rule \"quiet hours\": 23994 left; at most 4 min more and a proof", for
+/// RoundWatch.
 std::string round_line(const ProofRound& round, const RoundsState& state);
 
-/// Header `round,looked_at,demand,violations`, a row a round and demand; looked_at is "lattice" or "corners".
+/// Header `round,looked_at,demand,violations`, a row a round and demand; looked_at is "lattice" or
+/// "corners".
 std::string proof_rounds_csv(const std::vector<ProofRound>& rounds);
 /// Reads it back; throws UserError naming `name` and the line.
 std::vector<ProofRound> parse_proof_rounds_csv(std::string_view text, const std::string& name);

@@ -44,8 +44,8 @@ int weight_bits(const Eigen::MatrixXd& w, const Eigen::VectorXd& b, const Range&
   fail("the student's weights are too large for int16; distil again with a smaller learning rate");
 }
 
-/// Largest scale at which the activation's upper bound stays inside int16; where activations saturate, the
-/// one at which int16 ends there too.
+/// Largest scale at which the activation's upper bound stays inside int16; where activations
+/// saturate, the one at which int16 ends there too.
 int activation_bits(const Range& x, double saturation) {
   constexpr int kInt16Bits = 15;
   if (std::isfinite(saturation)) return kInt16Bits - static_cast<int>(std::log2(saturation));

@@ -12,8 +12,8 @@
 namespace bess {
 
 /// Throws UserError when the weights are so large that no scale fits.
-/// `saturation`: where the float student's hidden activations were cut off, a power of two; infinite for
-/// plain ReLU, whose integer activations never reach their end.
+/// `saturation`: where the float student's hidden activations were cut off, a power of two;
+/// infinite for plain ReLU, whose integer activations never reach their end.
 StudentNet quantise_student(const Parameters& student, const PriceMap& price_map,
                             double saturation = std::numeric_limits<double>::infinity());
 

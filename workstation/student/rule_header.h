@@ -1,6 +1,6 @@
-// The operator's rules in the exported header: what was proved of them, for people; the rule file's text, so that
-// the proof can be made again; and what the guard enforces, as constant tables with golden points. Without rules
-// nothing is written.
+// The operator's rules in the exported header: what was proved of them, for people; the rule file's
+// text, so that the proof can be made again; and what the guard enforces, as constant tables with
+// golden points. Without rules nothing is written.
 #pragma once
 
 #include <string>

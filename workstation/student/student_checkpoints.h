@@ -1,4 +1,5 @@
-// The students that a correction looked at on its way, what each earned on validation days, and which was taken.
+// The students that a correction looked at on its way, what each earned on validation days, and
+// which was taken.
 #pragma once
 
 #include <string>

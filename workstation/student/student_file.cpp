@@ -89,8 +89,8 @@ std::vector<std::int64_t> parse_counts(const JsonValue& file, const char* key, s
   return counts;
 }
 
-/// The rules themselves, as a rule file's text, and what was counted of each. A file of before has the sum alone:
-/// when that is 0 so is each count, and else nobody knows which is not.
+/// The rules themselves, as a rule file's text, and what was counted of each. A file of before has
+/// the sum alone: when that is 0 so is each count, and else nobody knows which is not.
 void parse_rule_claims(const JsonValue& file, const JsonReader& in, const std::string& name,
                        ContextKind kind, Certificate& certificate) {
   certificate.rules = parse_rules(in.text("rules"), name + ": rules");

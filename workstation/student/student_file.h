@@ -23,8 +23,8 @@ struct StudentFile {
 void save_student(const std::filesystem::path& path, const StudentFile& student);
 
 /// Throws UserError naming the file and what is wrong: not JSON, another architecture, a number out
-/// of range, a hash that differs, a net that check_net refuses. Reads the files of before too: version 1
-/// has thresholds but no counts, 1 and 2 are by month.
+/// of range, a hash that differs, a net that check_net refuses. Reads the files of before too:
+/// version 1 has thresholds but no counts, 1 and 2 are by month.
 StudentFile load_student(const std::filesystem::path& path);
 StudentFile parse_student(const std::string& text, const std::string& name);
 
@@ -34,8 +34,8 @@ StudentFile compiled_student();
 /// "violations_property_1" to 3, as files and answers have them.
 void add_property_violations(const Certificate& certificate, Json& json);
 
-/// Throws UserError, with `name` in front, for a net that neither code nor bounds hold for: a price map
-/// that does not rise, a shift out of range, weights whose accumulators could overflow.
+/// Throws UserError, with `name` in front, for a net that neither code nor bounds hold for: a price
+/// map that does not rise, a shift out of range, weights whose accumulators could overflow.
 void check_net(const StudentNet& net, const std::string& name);
 
 }  // namespace bess

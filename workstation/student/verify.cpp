@@ -36,8 +36,8 @@ struct Interval {
   }
 };
 
-/// Weights above zero, then those below: with the ends of an interval, low before high, their products add
-/// up to the least that the weighted sum can be, and in the other order to the most.
+/// Weights above zero, then those below: with the ends of an interval, low before high, their
+/// products add up to the least that the weighted sum can be, and in the other order to the most.
 template <typename Weight, int kCount>
 void split_by_sign(int i, Weight weight, Weight (&split)[2 * kCount]) {
   split[i] = std::max<Weight>(weight, 0);
@@ -82,7 +82,8 @@ struct Layer1Bounds {
   }
 };
 
-/// Second layer and its ReLU. Many inputs: the loop over the inputs vectorises, two products at once.
+/// Second layer and its ReLU. Many inputs: the loop over the inputs vectorises, two products at
+/// once.
 struct Layer2Bounds {
   std::int16_t weight[kStudentHidden2][2 * kStudentHidden1];  ///< split by sign
   const StudentNet& net;
@@ -160,7 +161,8 @@ class BoxBounds {
   const StudentNet& net_;
   Layer1Bounds layer1_;
   Layer2Bounds layer2_;
-  /// What the logit of one action is above that of another: weights of the last layer, split by sign.
+  /// What the logit of one action is above that of another: weights of the last layer, split by
+  /// sign.
   std::int32_t lead_weight_[kActionCount][kActionCount][2 * kStudentHidden2];
   std::int64_t lead_bias_[kActionCount][kActionCount];
 };
@@ -191,8 +193,9 @@ class GridFiller {
     state.price_eur_per_mwh = static_cast<std::int16_t>(kLatticePriceMinEurPerMwh + price);
     return state;
   }
-  /// Flattened: the net is inlined here, with this file's optimisation. As a function of its own the linker
-  /// keeps one copy of it, which in a test program is one that was compiled for a quick build.
+  /// Flattened: the net is inlined here, with this file's optimisation. As a function of its own
+  /// the linker keeps one copy of it, which in a test program is one that was compiled for a quick
+  /// build.
   [[gnu::flatten]] void evaluate(const Box& box) {
     for (int s = box.soc_begin; s < box.soc_end; ++s) {
       for (int p = box.price_begin; p < box.price_end; ++p) {

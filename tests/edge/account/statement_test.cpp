@@ -1,4 +1,5 @@
-// Some days together: sums by hand, the charge at both ends, and the same numbers as text, CSV and JSON.
+// Some days together: sums by hand, the charge at both ends, and the same numbers as text, CSV and
+// JSON.
 #include "edge/account/statement.h"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
-// The words of bess-edge in this process: where they may stand, what is said of a slip, and what each command refuses
-// before it reads a file.
+// The words of bess-edge in this process: where they may stand, what is said of a slip, and what
+// each command refuses before it reads a file.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -124,7 +124,8 @@ TEST(EdgeWords, CommandsRunInThisProcess) {
               HasSubstr("no history here"));
 }
 
-/// Nobody listens: it says what it would write all the same, what cannot be reached, and that it is not well.
+/// Nobody listens: it says what it would write all the same, what cannot be reached, and that it is
+/// not well.
 TEST(EdgeWords, ACheckRunsInThisProcess) {
   const TemporaryFolder folder;
   const std::string config = folder.write("edge.toml", R"([battery]

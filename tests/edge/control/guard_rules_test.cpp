@@ -1,4 +1,5 @@
-// The operator's rules in the guard: above student and thresholds, below holds, limits and stop reasons.
+// The operator's rules in the guard: above student and thresholds, below holds, limits and stop
+// reasons.
 #include <gtest/gtest.h>
 
 #include "edge/control/policy.h"

@@ -1,5 +1,5 @@
-// How the price level is come by at a start: what of the log is believed, what is asked when the log has
-// none, and that a student by month asks for nothing.
+// How the price level is come by at a start: what of the log is believed, what is asked when the
+// log has none, and that a student by month asks for nothing.
 #include "edge/control/level_start.h"
 
 #include <gtest/gtest.h>
@@ -75,7 +75,8 @@ TEST(LevelFromLog, ARowOfTheFutureDoesNotFreezeTheLevel) {
   }
 }
 
-/// A machine without a clock of its own starts in 1970: the level stays, and rows count once the time is set.
+/// A machine without a clock of its own starts in 1970: the level stays, and rows count once the
+/// time is set.
 TEST(LevelFromLog, AClockInThePastKeepsTheLevel) {
   for (const std::int64_t now : {0, 30, 90, 600}) {  // seconds since 1970
     PriceLevel level = level_from_log(kLogged, now);

@@ -1,5 +1,5 @@
-// Which orders count as lost, how soon that is found, what is nobody's intention, and how long control
-// insists.
+// Which orders count as lost, how soon that is found, what is nobody's intention, and how long
+// control insists.
 #include "edge/supervision/lost_orders.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// The meter's witness, reading by reading: what a doubt is, what a finding, and how it ends. Whole days
-// with houses that move are in tests/closed_loop/meter_liars_test.cpp.
+// The meter's witness, reading by reading: what a doubt is, what a finding, and how it ends. Whole
+// days with houses that move are in tests/closed_loop/meter_liars_test.cpp.
 #include "edge/site/meter_witness.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// A log whose clock was stepped between its records: how long it really was from one reading to the next.
+// A log whose clock was stepped between its records: how long it really was from one reading to the
+// next.
 #include "edge/loop/recalled_time.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// The state of charge against measured power: what is found, how soon, and what an honest count may do.
+// The state of charge against measured power: what is found, how soon, and what an honest count may
+// do.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +22,8 @@ std::int32_t discharge(int) { return -4'000; }
 std::int32_t rest(int) { return 0; }
 std::int32_t alternating(int i) { return i % 2 == 0 ? 4'000 : -4'000; }
 
-/// 4 kW and 8 kWh, read 3 s before every tick: what is stored, what the SoC says, what the meter says.
+/// 4 kW and 8 kWh, read 3 s before every tick: what is stored, what the SoC says, what the meter
+/// says.
 struct CountedBattery {
   explicit CountedBattery(double soc_frac, std::int32_t shown_step_e4 = 10)
       : monitor({.band = {.soc_step_e4 = shown_step_e4}}),
@@ -249,8 +251,8 @@ TEST(SocMonitor, EnergyThatDoesNotArriveInOneDirectionIsAShareAndNoDrain) {
   EXPECT_EQ(battery.monitor.trip(), Reason::kStudent);
 }
 
-/// 4 kW all the time, 120 s of refresh and 20 s of lag at both ends: three quarters are sure after 560 s; where
-/// nothing is known of before, 140 s either way, after twice as long.
+/// 4 kW all the time, 120 s of refresh and 20 s of lag at both ends: three quarters are sure after
+/// 560 s; where nothing is known of before, 140 s either way, after twice as long.
 TEST(SeldomSoc, AnIntervalIsAsLongAsThreeQuartersOfItAreSure) {
   const ResponseSettings settings{.band = {.soc_refresh_s = 120}};
   SeldomSoc soc(settings);

@@ -1,5 +1,5 @@
-// What people want besides trading: holds, a reserve by the hour, full charges. Each by itself, then what
-// the guard makes of them.
+// What people want besides trading: holds, a reserve by the hour, full charges. Each by itself,
+// then what the guard makes of them.
 #include <gtest/gtest.h>
 
 #include <array>

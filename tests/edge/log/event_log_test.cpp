@@ -136,7 +136,8 @@ void make_room() {
   setrlimit(RLIMIT_FSIZE, &all);
 }
 
-/// No file can be made at all: the first records are lost, and as soon as there is room everything is.
+/// No file can be made at all: the first records are lost, and as soon as there is room everything
+/// is.
 TEST_F(Log, AStartWithoutAnyRoomGoesOnAndWritesOnceThereIs) {
   const int code = exit_code_with_room_for(0, [&] {
     const auto log = std::make_unique<EventLog>();

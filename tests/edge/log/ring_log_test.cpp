@@ -40,7 +40,8 @@ void seal(RecordBytes& bytes) {
   }
 }
 
-/// The ring as programs with records of 256 bytes wrote it: their header, and their part of each record.
+/// The ring as programs with records of 256 bytes wrote it: their header, and their part of each
+/// record.
 std::string older_ring(std::int64_t capacity, std::int64_t records) {
   const auto put = [](std::string& out, std::uint64_t value, int bytes) {
     for (int i = 0; i < bytes; ++i) out += static_cast<char>(value >> (8 * i));

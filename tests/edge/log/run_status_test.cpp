@@ -132,7 +132,8 @@ std::string labels_of(const Family& family) {
   return std::regex_replace(labels, std::regex("=\"[^\"]*\""), "");
 }
 
-/// Who builds a dashboard or an alarm reads the list in edge/log/README.md: it has every metric, and no other.
+/// Who builds a dashboard or an alarm reads the list in edge/log/README.md: it has every metric,
+/// and no other.
 TEST(Prometheus, TheReadmeListsTheseMetricsAndNoOthers) {
   std::set<std::string> published;
   for (const auto& [name, family] :

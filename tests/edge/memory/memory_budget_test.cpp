@@ -1,5 +1,5 @@
-// The memory budget in edge/memory/README.md against the program: no object is larger than its row says, no row
-// promises far more than is used, and the sum is the sum.
+// The memory budget in edge/memory/README.md against the program: no object is larger than its row
+// says, no row promises far more than is used, and the sum is the sum.
 #include <gtest/gtest.h>
 
 #include <fstream>

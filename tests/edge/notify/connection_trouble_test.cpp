@@ -1,5 +1,5 @@
-// Why a webhook or a broker cannot be reached is told by its cause: each cause by a real server, or a real broker,
-// that has it.
+// Why a webhook or a broker cannot be reached is told by its cause: each cause by a real server, or
+// a real broker, that has it.
 #include "edge/notify/connection_trouble.h"
 
 #include <gmock/gmock.h>

@@ -1,4 +1,5 @@
-// Counters that never go down: by hand, over restarts, gaps, stops, other rings and clocks that step.
+// Counters that never go down: by hand, over restarts, gaps, stops, other rings and clocks that
+// step.
 #include "edge/notify/energy_totals.h"
 
 #include <gtest/gtest.h>
@@ -61,7 +62,8 @@ TEST_F(EnergyTotalsTest, BeginAtTheFirstLookAndCountEachRecordOnce) {
   EXPECT_DOUBLE_EQ(totals_.discharged_kwh(), 1);
 }
 
-/// Counted in one go or by many runs of the notifier, and from a state that was kept an hour ago: the same sums.
+/// Counted in one go or by many runs of the notifier, and from a state that was kept an hour ago:
+/// the same sums.
 TEST_F(EnergyTotalsTest, AreTheSameWheneverTheyAreCounted) {
   append(0, 0);
   count(totals_);

@@ -1,5 +1,6 @@
-// Ways that hang, beside ways that do not: the whole program with a mailer that sleeps, servers that are silent or
-// drip, and a broker that comes and goes. What is told, when, how often, and what of it outlasts a kill.
+// Ways that hang, beside ways that do not: the whole program with a mailer that sleeps, servers
+// that are silent or drip, and a broker that comes and goes. What is told, when, how often, and
+// what of it outlasts a kill.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -63,8 +64,8 @@ class Lanes : public Mqtt {
   }
 };
 
-/// Stuck ways cost 80 s a round when all were served one after the other: alarms that came and went were never
-/// told, and the others far too late.
+/// Stuck ways cost 80 s a round when all were served one after the other: alarms that came and went
+/// were never told, and the others far too late.
 TEST_F(Lanes, AnAlarmReachesTheGoodWayWithinARoundWhateverTheOthersAreAt) {
   Broker broker(folder_, port());
   Listener all(port(), "bess/#");
@@ -95,7 +96,8 @@ TEST_F(Lanes, AnAlarmReachesTheGoodWayWithinARoundWhateverTheOthersAreAt) {
   EXPECT_EQ(all.await("/status", "offline"), "offline");
 }
 
-/// Two rounds of margin for a busy machine: told with stuck ways it had been five seconds, whatever it was.
+/// Two rounds of margin for a busy machine: told with stuck ways it had been five seconds, whatever
+/// it was.
 TEST_F(Lanes, AnOutageIsToldAsLongAsItWas) {
   Broker broker(folder_, port());
   Listener all(port(), "bess/#");
@@ -131,8 +133,8 @@ TEST_F(Lanes, FortyFiveSecondsAreFortyFiveSeconds) {
   EXPECT_THAT(all.await("/event", "over"), HasSubstr("an outage (lasted 45 s)"));
 }
 
-/// The broker stands still for longer than a delivery waits, goes away, and is there again: each event comes once and
-/// in order, and the mail goes out meanwhile.
+/// The broker stands still for longer than a delivery waits, goes away, and is there again: each
+/// event comes once and in order, and the mail goes out meanwhile.
 TEST_F(Lanes, ABrokerThatComesAndGoesIsToldEverythingOnce) {
   Broker broker(folder_, port());
   auto all = std::make_unique<Listener>(port(), "bess/#");
@@ -174,7 +176,8 @@ TEST_F(Lanes, ABrokerThatStandsStillDoesNotHoldUpTheEnd) {
   EXPECT_EQ(owed("mqtt").messages.size(), 1U) << "told after the next start";
 }
 
-/// Killed again and again while its mailer takes its time: no alarm is lost, and the file is whole each time.
+/// Killed again and again while its mailer takes its time: no alarm is lost, and the file is whole
+/// each time.
 TEST_F(Lanes, AKillLosesNothing) {
   settings_.mail_to = "a@b.example";
   settings_.sendmail = write_script("slow", "echo x >>" + folder_.file("mailer_began") +

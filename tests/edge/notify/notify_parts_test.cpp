@@ -1,5 +1,5 @@
-// The notifier's parts: settings and their mistakes, a child program, troubles of a status, mail, topics, what
-// is kept over restarts.
+// The notifier's parts: settings and their mistakes, a child program, troubles of a status, mail,
+// topics, what is kept over restarts.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>

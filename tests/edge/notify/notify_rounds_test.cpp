@@ -1,5 +1,5 @@
-// Whole rounds of the notifier: a status that changes, a mailer that is a script, a webhook's server and a real
-// broker on loopback. Time is an argument.
+// Whole rounds of the notifier: a status that changes, a mailer that is a script, a webhook's
+// server and a real broker on loopback. Time is an argument.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <mutex>
@@ -93,7 +93,8 @@ TEST_F(Rounds, TheDayIsToldWhenTheNextBegins) {
                         "kWh, 0.00 full cycles, 0 interventions"));
 }
 
-/// A card wears by writing: what the log can give again is kept once an hour, and what has not changed not at all.
+/// A card wears by writing: what the log can give again is kept once an hour, and what has not
+/// changed not at all.
 TEST_F(Rounds, WhatWasToldIsWrittenWhenItChanges) {
   RingLog ring;
   FileMessage error;
@@ -195,8 +196,8 @@ TEST_F(Mqtt, ComesBackWithItsRetainedValues) {
   EXPECT_NE(again.await("/config", "components"), "");
 }
 
-/// What Home Assistant adds up: by a controller and a notifier that both start again and again, and by one that was
-/// killed before it could keep what it had counted.
+/// What Home Assistant adds up: by a controller and a notifier that both start again and again, and
+/// by one that was killed before it could keep what it had counted.
 TEST_F(Mqtt, TheCountersOfEnergyOnlyGrowOverRestarts) {
   Broker broker(folder_, port());
   RingLog ring;

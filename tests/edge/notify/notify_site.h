@@ -1,5 +1,5 @@
-// What the tests of whole rounds stand on: a site without a controller, whose status is a file and whose mailer is a
-// script.
+// What the tests of whole rounds stand on: a site without a controller, whose status is a file and
+// whose mailer is a script.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -278,8 +278,8 @@ TEST(MarketOutage, NineHoursOfOldRowsGiveNoOrder) {
   EXPECT_GT(running_after, 5);
 }
 
-/// A server with pages as Opendatasoft has them, or with less; its rows lie before kNowS, one a minute, and cost
-/// as many EUR/MWh as minutes have passed since.
+/// A server with pages as Opendatasoft has them, or with less; its rows lie before kNowS, one a
+/// minute, and cost as many EUR/MWh as minutes have passed since.
 class HistoryTest : public ::testing::Test {
  protected:
   static std::int32_t centi_of(int age_min) { return 100 * age_min; }

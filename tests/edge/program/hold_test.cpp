@@ -1,4 +1,5 @@
-// A hold from the command to the mailbox: the file's text, what is no such text, and the thread that looks.
+// A hold from the command to the mailbox: the file's text, what is no such text, and the thread
+// that looks.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 

@@ -1,4 +1,5 @@
-// What a start takes over from the log: which cycles are recalled, in which order, and how old an order is.
+// What a start takes over from the log: which cycles are recalled, in which order, and how old an
+// order is.
 #include "edge/program/take_over.h"
 
 #include <gtest/gtest.h>

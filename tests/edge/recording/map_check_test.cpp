@@ -1,4 +1,5 @@
-// A register map against what a device answered: each kind of mistake is named, with what would fit.
+// A register map against what a device answered: each kind of mistake is named, with what would
+// fit.
 #include "edge/recording/map_check.h"
 
 #include <gmock/gmock.h>
@@ -13,7 +14,8 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// A battery of 8 kWh: SoC at 0 in 0.1 %, power at 1 (+ charge), capacity at 2 in two registers (Wh), the order at 10.
+/// A battery of 8 kWh: SoC at 0 in 0.1 %, power at 1 (+ charge), capacity at 2 in two registers
+/// (Wh), the order at 10.
 constexpr const char* kPlainMap = R"([map]
 name = "plain"
 unit = 1
@@ -114,7 +116,8 @@ class MapCheckTest : public ::testing::Test {
     std::copy(values.begin(), values.end(), exchange.registers.begin());
     check_->add(exchange);
   }
-  /// An hour and a half of charging and discharging in turns, read every 10 s. `gain`: SoC against power.
+  /// An hour and a half of charging and discharging in turns, read every 10 s. `gain`: SoC against
+  /// power.
   void drive(double gain = 1, int power_sign = 1) {
     double soc_permille = 500;
     for (int turn = 0; turn < 6; ++turn) {

@@ -1,5 +1,5 @@
-// What is recorded of a device: the mask hides what is nobody else's business, the recorder writes whole lines, keeps
-// within its bound and renames at the end.
+// What is recorded of a device: the mask hides what is nobody else's business, the recorder writes
+// whole lines, keeps within its bound and renames at the end.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -18,7 +18,8 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-/// A map of a device that tells its type and serial number in one text, and a meter's number beside it.
+/// A map of a device that tells its type and serial number in one text, and a meter's number beside
+/// it.
 constexpr const char* kMap = R"([map]
 name = "talkative"
 unit = 1

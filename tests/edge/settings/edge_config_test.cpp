@@ -60,7 +60,8 @@ TEST(EdgeConfig, ReadsEveryUnit) {
   EXPECT_EQ(config.clock.anchor_monotonic_ns, 5);
 }
 
-/// They bound what a price source that lies can do, and honest prices never come near: edge/prices/README.md.
+/// They bound what a price source that lies can do, and honest prices never come near:
+/// edge/prices/README.md.
 TEST(EdgeConfig, CyclesAndReversalsAreBoundedUnlessToldOtherwise) {
   const TemporaryFolder folder;
   EdgeConfig config;

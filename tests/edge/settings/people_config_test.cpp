@@ -1,4 +1,5 @@
-// Reserve, full charge and spread of starts in the operator's configuration, and every mistake in them.
+// Reserve, full charge and spread of starts in the operator's configuration, and every mistake in
+// them.
 #include "edge/settings/people_config.h"
 #include "edge/settings/edge_config.h"
 

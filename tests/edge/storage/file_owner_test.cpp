@@ -1,4 +1,5 @@
-// Files that a stranger could have put there. Only root can act the stranger: else these are skipped.
+// Files that a stranger could have put there. Only root can act the stranger: else these are
+// skipped.
 #include "edge/storage/file_owner.h"
 
 #include <fcntl.h>
@@ -61,7 +62,8 @@ TEST_F(FileOwner, AStrangersStatusOrLogIsRefusedBeforeTheStart) {
   }
 }
 
-/// A run as root, for a test, that was killed: the service's user may neither open what it left nor remove it.
+/// A run as root, for a test, that was killed: the service's user may neither open what it left nor
+/// remove it.
 TEST_F(FileOwner, TheLockOfAKilledRootRunNamesTheCommandThatRemovesIt) {
   const std::string path = folder_.file("bess-127.0.0.1_502_unit_85.lock");
   ASSERT_EQ(chmod(folder_.file("").c_str(), 01777), 0);  // as /run/lock

@@ -1,4 +1,5 @@
-// The file of cleared trips: its text, what is no such text, and that one word in either place is enough.
+// The file of cleared trips: its text, what is no such text, and that one word in either place is
+// enough.
 #include "edge/storage/trip_clearance.h"
 
 #include <gtest/gtest.h>

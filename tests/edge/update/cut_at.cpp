@@ -1,4 +1,5 @@
-// Preloaded before a program: the power goes, or the disk is full, at its n-th call that changes a disk.
+// Preloaded before a program: the power goes, or the disk is full, at its n-th call that changes a
+// disk.
 //   BESS_CUT_AT=N   which call;  BESS_CUT_KIND=kill (at it) or full (from it on: ENOSPC)
 // Only in the program named bess-edge; what that one starts is left alone.
 #include <dlfcn.h>

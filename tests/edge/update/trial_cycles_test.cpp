@@ -1,4 +1,5 @@
-// What the judge reads out of a controller's decision log, and which cycles of it are the new version's.
+// What the judge reads out of a controller's decision log, and which cycles of it are the new
+// version's.
 #include "edge/update/trial_cycles.h"
 
 #include <gmock/gmock.h>

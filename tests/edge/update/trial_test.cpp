@@ -28,7 +28,8 @@ TrialState comparing(TrialCause cause) {
   return state;
 }
 
-/// '1' a good cycle, '0' one that is lost by the version itself, and the first letter of what a site may do.
+/// '1' a good cycle, '0' one that is lost by the version itself, and the first letter of what a
+/// site may do.
 TrialCycle cycle_of(char letter) {
   switch (letter) {
     case '1':

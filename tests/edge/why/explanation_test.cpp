@@ -1,4 +1,5 @@
-// Explanations made from a log: who decided, since when, what ends it, and the margins in words and as JSON.
+// Explanations made from a log: who decided, since when, what ends it, and the margins in words and
+// as JSON.
 #include "edge/why/explanation.h"
 
 #include <gmock/gmock.h>

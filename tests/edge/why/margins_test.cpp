@@ -1,5 +1,5 @@
-// The margins against the student itself: over whole columns of the lattice for drawn states, at their edges for
-// every context there is, and against the guard in hundredths of EUR/MWh.
+// The margins against the student itself: over whole columns of the lattice for drawn states, at
+// their edges for every context there is, and against the guard in hundredths of EUR/MWh.
 #include "edge/why/margins.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// Recordings of a device as files: what is written is read, and whatever is cut or damaged is one line that names file
-// and line.
+// Recordings of a device as files: what is written is read, and whatever is cut or damaged is one
+// line that names file and line.
 #include "shared/host/bus_recording.h"
 
 #include <gmock/gmock.h>

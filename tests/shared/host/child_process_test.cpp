@@ -6,7 +6,8 @@
 namespace bess {
 namespace {
 
-/// Once it was waited for it has no number any more, and -1 would mean every process of this user: 0 only asks.
+/// Once it was waited for it has no number any more, and -1 would mean every process of this user:
+/// 0 only asks.
 TEST(ChildProcess, ASignalToOneThatHasEndedReachesNobodyElse) {
   ChildProcess child({"/bin/cat", "/dev/null"});
   EXPECT_EQ(child.wait(), 0);

@@ -1,4 +1,5 @@
-// The one TOML reader: what it makes of a text, and that every mistake is one line with file and line.
+// The one TOML reader: what it makes of a text, and that every mistake is one line with file and
+// line.
 #include "shared/host/toml_document.h"
 
 #include <gmock/gmock.h>
@@ -77,7 +78,8 @@ TEST(TomlDocument, AFileThatCannotBeReadIsNamed) {
   EXPECT_THAT(error, HasSubstr("is it a folder?"));
 }
 
-/// A device that never ends stands for a file of any size: neither memory nor time may grow with it.
+/// A device that never ends stands for a file of any size: neither memory nor time may grow with
+/// it.
 TEST(TomlDocument, AFileIsReadNoFurtherThanItCouldBeParsed) {
   TomlValue document;
   std::string error;

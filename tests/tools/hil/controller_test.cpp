@@ -1,5 +1,5 @@
-// The controller's start and end in virtual time: what it asks of its world and whom it tells, in which order, and
-// what it does where its world refuses.
+// The controller's start and end in virtual time: what it asks of its world and whom it tells, in
+// which order, and what it does where its world refuses.
 #include "edge/program/controller.h"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,6 @@
-// A month of real prices on every shipped map in virtual time, through the edge's own link, frames and registers, with a
-// battery that is slow, noisy and slow near its limits: never stopped for what the battery does.
+// A month of real prices on every shipped map in virtual time, through the edge's own link, frames
+// and registers, with a battery that is slow, noisy and slow near its limits: never stopped for
+// what the battery does.
 #include <gtest/gtest.h>
 
 #include <algorithm>

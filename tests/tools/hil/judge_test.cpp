@@ -1,4 +1,5 @@
-// The judge: each invariant finds what breaks it in a record made by hand, and finds nothing in a good one.
+// The judge: each invariant finds what breaks it in a record made by hand, and finds nothing in a
+// good one.
 #include <gtest/gtest.h>
 
 #include "shared/scaled_clock.h"

@@ -1,4 +1,5 @@
-// A real battery: which scenarios may drive it, what it was told by the bytes on its bus, and when its limits are broken.
+// A real battery: which scenarios may drive it, what it was told by the bytes on its bus, and when
+// its limits are broken.
 #include "tools/hil_runner/real/real_battery.h"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,5 @@
-// Scenario files: what is read, what is refused with one clear line, and that the shipped ones leave no
-// fault, no map and no event of the list out.
+// Scenario files: what is read, what is refused with one clear line, and that the shipped ones
+// leave no fault, no map and no event of the list out.
 #include "tools/hil_runner/scenario/scenario.h"
 
 #include <fmt/core.h>

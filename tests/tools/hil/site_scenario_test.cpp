@@ -1,5 +1,5 @@
-// What the scenarios of meter, limits, people, reserve, ramp and history are about decides them: each passes, and without
-// what it is about its own expectations fail.
+// What the scenarios of meter, limits, people, reserve, ramp and history are about decides them:
+// each passes, and without what it is about its own expectations fail.
 #include <gtest/gtest.h>
 
 #include <algorithm>

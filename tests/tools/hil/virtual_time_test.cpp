@@ -1,5 +1,5 @@
-// Runs in virtual time: they repeat to the bit, the energy is what a hand calculation says, and the process is
-// left as it was.
+// Runs in virtual time: they repeat to the bit, the energy is what a hand calculation says, and the
+// process is left as it was.
 #include "tools/hil_runner/virtual/virtual_time.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// A fold holds nothing later than the month it trades, and nothing of that month is fitted on; a look-ahead
-// that is planted is found.
+// A fold holds nothing later than the month it trades, and nothing of that month is fitted on; a
+// look-ahead that is planted is found.
 #include "workstation/backtest/walk_forward.h"
 
 #include <gtest/gtest.h>
@@ -86,8 +86,8 @@ std::vector<Action> actions_before(const MinuteSeries& series, const FoldPolicy&
   return actions;
 }
 
-/// Moves all prices from an instant in the middle of a traded month on, for `instants` instants in a row, and
-/// tells whether any decision changes that was taken before they could be seen.
+/// Moves all prices from an instant in the middle of a traded month on, for `instants` instants in
+/// a row, and tells whether any decision changes that was taken before they could be seen.
 bool looks_ahead(const FoldPolicy& make, int instants) {
   const MinuteSeries series = small_series(65);
   std::int64_t noon_utc_s = 0;

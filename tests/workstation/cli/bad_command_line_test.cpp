@@ -1,5 +1,5 @@
-// bess-train refuses what nobody can have meant: one clear line with the mend, exit code 2 for a bad command
-// line and 1 for bad input, and nothing is written.
+// bess-train refuses what nobody can have meant: one clear line with the mend, exit code 2 for a
+// bad command line and 1 for bad input, and nothing is written.
 #include "tests/support/bad_command_lines.h"
 
 #include <gtest/gtest.h>
@@ -14,8 +14,8 @@
 namespace bess {
 namespace {
 
-// GOOD is a minute file, STUDENT a student's, NONE nothing, FOLDER a folder, EMPTY and GARBAGE files, OUT
-// what must not appear.
+// GOOD is a minute file, STUDENT a student's, NONE nothing, FOLDER a folder, EMPTY and GARBAGE
+// files, OUT what must not appear.
 constexpr BadCommandLine kCases[] = {
     // Subcommands.
     {"", 2, "subcommand is required (see bess-train --help)"},

@@ -1,5 +1,5 @@
-// Price files that no command may use, each through the program: one clear line that names the file,
-// exit code 1 or 2, and no crash.
+// Price files that no command may use, each through the program: one clear line that names the
+// file, exit code 1 or 2, and no crash.
 #include <gmock/gmock.h>
 
 #include <fstream>
@@ -122,7 +122,8 @@ TEST_F(BadPrices, EveryCommandLooks) {
   EXPECT_THAT(stats.output, HasSubstr("warning: " + bad + ":1997: settled price -9999"));
 }
 
-/// What Belgium settled at, what another country did, and where bids end: in every command, to the digit.
+/// What Belgium settled at, what another country did, and where bids end: in every command, to the
+/// digit.
 TEST_F(BadPrices, ExtremePricesPassThroughEveryCommand) {
   const struct {
     const char* price;

@@ -118,7 +118,8 @@ TEST_F(RulesCli, PriceTellsEachRuleAloneAndAllTogether) {
 
 using RulesLearnt = RulesCli;
 
-/// Two seeds of three kinds of student, all of them proved; what is told of them, `evaluate` tells of those kept.
+/// Two seeds of three kinds of student, all of them proved; what is told of them, `evaluate` tells
+/// of those kept.
 TEST_F(RulesLearnt, EachIsPricedAloneAndAllTogetherByStudentsThatStay) {
   const std::string config = " --config " + folder_.write("a.toml", "[distil]\nepochs = 60\n");
   const std::string teacher = folder_.file("teacher.bin");
@@ -196,8 +197,8 @@ Evaluation two_days(double first_eur, double second_eur) {
   return {.days = {{"a", first_eur, 0, 0, 0}, {"b", second_eur, 0, 0, 0}}, .capacity_mwh = 2};
 }
 
-/// Two seeds whose differences are 1, 3 and 3, 5 EUR on two days of 2 MWh: means 1 and 2 a MWh; over seeds 2, 4
-/// EUR a day.
+/// Two seeds whose differences are 1, 3 and 3, 5 EUR on two days of 2 MWh: means 1 and 2 a MWh;
+/// over seeds 2, 4 EUR a day.
 TEST(DistilledPrices, TheErrorIsOverDaysAndTheSpreadOverSeeds) {
   const std::vector<Evaluation> without{two_days(10, 20), two_days(30, 40)};
   const std::vector<Evaluation> with{two_days(11, 23), two_days(33, 45)};

@@ -9,7 +9,8 @@
 namespace bess {
 namespace {
 
-/// Rows of a few terms among neighbours, so that groups form, meet and stay apart; added and dropped at random.
+/// Rows of a few terms among neighbours, so that groups form, meet and stay apart; added and
+/// dropped at random.
 class FactorsTest : public ::testing::TestWithParam<int> {
  protected:
   struct Row {
@@ -136,7 +137,8 @@ TEST_P(FactorsTest, OfAHessianInBlocks) {
 
 INSTANTIATE_TEST_SUITE_P(Sizes, FactorsTest, ::testing::Values(2, 7, 24, 45));
 
-/// What the solver's speed on orders rests on: a row looks at its own groups, however many rows are active.
+/// What the solver's speed on orders rests on: a row looks at its own groups, however many rows are
+/// active.
 TEST(ActiveSetFactors, ARowMeetsItsOwnGroupsAlone) {
   ActiveSetFactors factors(Eigen::MatrixXd::Identity(12, 12));
   RowImage image(12);

@@ -1,4 +1,5 @@
-// Distillation inside the bounds learns from its teacher, obeys the thresholds, and repeats to the bit.
+// Distillation inside the bounds learns from its teacher, obeys the thresholds, and repeats to the
+// bit.
 #include "workstation/correction/monotone_distil.h"
 
 #include <gtest/gtest.h>

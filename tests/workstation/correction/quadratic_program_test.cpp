@@ -243,8 +243,8 @@ TEST(QuadraticProgram, AgreesWithCvxopt) {
   }
 }
 
-/// Weighted by the certificate the rows sum to 0 >= a positive number; and without any one of them the
-/// others have a point.
+/// Weighted by the certificate the rows sum to 0 >= a positive number; and without any one of them
+/// the others have a point.
 void expect_certificate(const TestProgram& program, const QuadraticProgram& solver) {
   const auto& [normals, bounds, equalities] = program.constraints;
   Vector sum = Vector::Zero(program.g.size());

@@ -1,4 +1,5 @@
-// Rules in the distillation: rows that imply what is allowed, corners that decide a box, lessons that obey.
+// Rules in the distillation: rows that imply what is allowed, corners that decide a box, lessons
+// that obey.
 #include "workstation/correction/rule_lessons.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +14,8 @@
 namespace bess {
 namespace {
 
-/// Any scores that keep the rows have an allowed action, and every set but "all" asks for something.
+/// Any scores that keep the rows have an allowed action, and every set but "all" asks for
+/// something.
 TEST(ScoreRows, ImplyTheActions) {
   Random random(3);
   for (ActionSet set = 1; set <= kAllActions; ++set) {
@@ -35,7 +37,8 @@ TEST(ScoreRows, ImplyTheActions) {
   }
 }
 
-/// A monotone student that keeps the corners of a rule keeps all of its box; corners that are left out show.
+/// A monotone student that keeps the corners of a rule keeps all of its box; corners that are left
+/// out show.
 TEST(RuleLessons, CornersDecideABoxOfAMonotoneStudent) {
   const RuleSet rules = parse_rules(
       "[[rule]]\nname = \"a\"\nprice_min = 0\nprice_max = 300\nsoc_max = 0.5\nat_least = \"idle\"\n"

@@ -84,7 +84,8 @@ TEST(SignBounds, AWrongSignAnywhereIsOutside) {
     other[i] = -1;
     bound_weights += up && bounds.contain(other) ? 0 : 1;
   }
-  // Price and SoC into every unit of hidden 1, 40 of those into all of hidden 2, and all of the head.
+  // Price and SoC into every unit of hidden 1, 40 of those into all of hidden 2, and all of the
+  // head.
   EXPECT_EQ(bound_weights, 2 * kStudentHidden1 + 40 * kStudentHidden2 + 3 * kStudentHidden2);
 }
 

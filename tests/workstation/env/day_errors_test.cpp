@@ -28,7 +28,8 @@ TEST(StudentT, IsThatOfTheTables) {
   EXPECT_NEAR(student_t_within(0.95, 100'000), 1.96, 5e-4);
 }
 
-/// Two months of two days, 1 3 and 6 10: mean 5, deviations -4 -2 and 1 5, squares 46, sums -6 and 6.
+/// Two months of two days, 1 3 and 6 10: mean 5, deviations -4 -2 and 1 5, squares 46, sums -6
+/// and 6.
 TEST(DayErrors, ByHand) {
   const DayErrors errors =
       day_errors({{"2023-01-26", 1}, {"2023-01-27", 3}, {"2023-02-26", 6}, {"2023-02-27", 10}});
@@ -102,8 +103,8 @@ struct Coverage {
   double plain_68 = 0, plain_95 = 0, clustered_68 = 0, clustered_95 = 0;
 };
 
-/// Days of which each keeps `persistence` of the one before, AR(1), over months of 30; only `first_day` and later
-/// of each month are judged by. Seeded, so that it repeats.
+/// Days of which each keeps `persistence` of the one before, AR(1), over months of 30; only
+/// `first_day` and later of each month are judged by. Seeded, so that it repeats.
 Coverage coverage_of(double persistence, int months, int first_day, std::uint64_t seed) {
   constexpr int kTrials = 2000;
   constexpr int kDaysOfMonth = 30;
@@ -135,8 +136,8 @@ Coverage coverage_of(double persistence, int months, int first_day, std::uint64_
   return held;
 }
 
-/// Days 26 to 30 of each month, as test days lie: the plain interval of 95 % holds the truth in three of four
-/// cases, the clustered one as often as it says, of a dozen months and of four.
+/// Days 26 to 30 of each month, as test days lie: the plain interval of 95 % holds the truth in
+/// three of four cases, the clustered one as often as it says, of a dozen months and of four.
 TEST(DayErrors, TestDaysThatFollowEachOtherAreCoveredAsNamed) {
   for (const int months : {12, 4}) {
     const Coverage held = coverage_of(0.7, months, 26, 1);
@@ -161,7 +162,8 @@ TEST(DayErrors, WholeMonthsAreCoveredAlmostAsNamed) {
   EXPECT_NEAR(held.clustered_68, 0.68, 0.06);
 }
 
-/// Days that are independent lose nothing but width: the interval holds the truth at least as often as it says.
+/// Days that are independent lose nothing but width: the interval holds the truth at least as often
+/// as it says.
 TEST(DayErrors, IndependentDaysAreCoveredToo) {
   for (const int months : {12, 4}) {
     const Coverage held = coverage_of(0, months, 26, 3);

@@ -1,5 +1,5 @@
-// Costs that differ between taking and giving count wherever money does, and a planner that knows them does
-// not earn less for it.
+// Costs that differ between taking and giving count wherever money does, and a planner that knows
+// them does not earn less for it.
 #include <gtest/gtest.h>
 
 #include "tests/support/small_market.h"

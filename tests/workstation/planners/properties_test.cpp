@@ -1,6 +1,6 @@
 // What must hold for every battery and every policy, whatever the prices: energy is conserved, the
-// money is the energy times the price, nobody acts on what was not published, and a price that never
-// moves is no reason to move energy to and fro.
+// money is the energy times the price, nobody acts on what was not published, and a price that
+// never moves is no reason to move energy to and fro.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -180,8 +180,8 @@ TEST(Properties, AConstantPositivePriceMovesEnergyOnceAtMost) {
   }
 }
 
-// At -50 EUR/MWh the 10 % that a cycle loses is paid for: an optimum without wear burns it, and rightly
-// so. The property is that this is all it gets, and that wear above it ends the churning.
+// At -50 EUR/MWh the 10 % that a cycle loses is paid for: an optimum without wear burns it, and
+// rightly so. The property is that this is all it gets, and that wear above it ends the churning.
 TEST(Properties, AConstantNegativePriceChurnsOnlyForTheLossesItIsPaidFor) {
   for (const char* name : {"rbc", "rbc-quartile", "rbc-tuned", "tabular", "mpc", "foresight"}) {
     EXPECT_LE(energy_exchanged_mwh(name, -50, 5), 4.3) << name;

@@ -1,5 +1,5 @@
-// The stochastic program reaches the figures of the spikes [SPEC 8], knows what it must know, and comes back
-// from its file to the bit.
+// The stochastic program reaches the figures of the spikes [SPEC 8], knows what it must know, and
+// comes back from its file to the bit.
 #include "workstation/planners/stochastic_program.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,5 @@
-// A backtest says what it did: on how many days each month was fitted, and which months were not traded.
+// A backtest says what it did: on how many days each month was fitted, and which months were not
+// traded.
 #include "workstation/report/backtest_report.h"
 
 #include <gmock/gmock.h>
@@ -15,7 +16,8 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-/// Two months of three days; each policy earns so much on its second day, and 10 EUR on every other one.
+/// Two months of three days; each policy earns so much on its second day, and 10 EUR on every other
+/// one.
 WalkForward traded(const std::string& name, double second_day_eur) {
   WalkForward result{.name = name, .total = {}, .months = {"2023-04", "2023-05"}, .by_month = {}};
   for (const std::string& month : result.months) {
@@ -60,7 +62,8 @@ TEST(BacktestReport, SaysOnHowManyDaysEachMonthWasFitted) {
   EXPECT_THAT(format_backtest_table(fitted), HasSubstr("fitted on the 120 days before it; SoC"));
 }
 
-/// April earned 10 a day more than the first, May 20: of two months the error is 5, whatever the days say.
+/// April earned 10 a day more than the first, May 20: of two months the error is 5, whatever the
+/// days say.
 TEST(BacktestReport, TellsErrorsByMonthBesideThePlainOnes) {
   BacktestResults fitted = results(10);
   WalkForward& sdp = fitted.policies[1];

@@ -1,4 +1,5 @@
-// Made-up days on which exactly one cause acts, and days on which all do: the parts add up to what was missed.
+// Made-up days on which exactly one cause acts, and days on which all do: the parts add up to what
+// was missed.
 #include "workstation/report/lost_money.h"
 
 #include <gtest/gtest.h>

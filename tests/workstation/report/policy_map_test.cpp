@@ -63,8 +63,8 @@ TEST(PolicyMap, GridsAreThePoliciesThemselves) {
   EXPECT_LE(disagreements, 1);
 }
 
-/// Midnight lies inside the first rule's hours; the second is of another month, the third a direction, the fourth
-/// beyond the lattice and the guard's alone.
+/// Midnight lies inside the first rule's hours; the second is of another month, the third a
+/// direction, the fourth beyond the lattice and the guard's alone.
 TEST(PolicyMap, OutlinesAreTheBoxesOfTheRulesThatHoldThen) {
   const RuleSet rules = parse_rules(
       "[[rule]]\nname = \"night\"\nhours = \"23:00-06:00\"\nprice_min = -100\nprice_max = 400\n"

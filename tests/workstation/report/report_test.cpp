@@ -138,7 +138,8 @@ TEST(Report, TheLearningCurveShowsTheProgramWhereTheNetworkBeganAsIt) {
   EXPECT_EQ(alone.caption.find("the program"), std::string::npos);
 }
 
-/// Of a run whose proof failed nothing is called corrected, and each broken demand leads to its state on the map.
+/// Of a run whose proof failed nothing is called corrected, and each broken demand leads to its
+/// state on the map.
 TEST(Report, APageOfAFailedProofIsAboutTheUnprovedStudent) {
   const TemporaryFolder folder;
   const FinishedRun run;

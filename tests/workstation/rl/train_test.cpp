@@ -55,8 +55,8 @@ TrainResult train(const TrainOptions& options) {
   return train_teacher(small_market(), {}, options, interrupted);
 }
 
-/// Answers the question whether a run is interrupted: after so many looks, each before a step or before a
-/// day of a validation.
+/// Answers the question whether a run is interrupted: after so many looks, each before a step or
+/// before a day of a validation.
 auto interrupted_after(long looks) {
   return [asked = 0L, looks]() mutable { return asked++ >= looks; };
 }

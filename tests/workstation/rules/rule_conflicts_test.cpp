@@ -1,5 +1,5 @@
-// Rules that cannot be obeyed together are refused, naming them and one state; what rules imply beyond their boxes
-// is what brute force over all monotone ways says.
+// Rules that cannot be obeyed together are refused, naming them and one state; what rules imply
+// beyond their boxes is what brute force over all monotone ways says.
 #include "workstation/rules/rule_conflicts.h"
 
 #include <gmock/gmock.h>
@@ -120,7 +120,8 @@ TEST(Conflicts, OppositeDirectionsAreRefused) {
               HasSubstr("\"up\" contradicts \"down\""));
 }
 
-/// Straight from the definition: a state's range is bound by every rule whose box holds a comparable state.
+/// Straight from the definition: a state's range is bound by every rule whose box holds a
+/// comparable state.
 // Any set is decided beforehand: those that pass have a policy, those that are refused have none.
 
 /// Rules of few boxes, so that all states of a box of the grid below are alike.
@@ -146,7 +147,8 @@ class Cells {
     }
   }
 
-  /// Sets of a chain and its order: when nothing more can be struck out, what is left can be chosen from.
+  /// Sets of a chain and its order: when nothing more can be struck out, what is left can be chosen
+  /// from.
   [[nodiscard]] bool have_a_policy() {
     for (bool changed = true; changed;) {
       changed = false;

@@ -1,4 +1,5 @@
-// A policy that obeys: the nearest action that is left, nothing else changed, and its money counted.
+// A policy that obeys: the nearest action that is left, nothing else changed, and its money
+// counted.
 #include "workstation/rules/ruled_policy.h"
 #include "workstation/rules/properties.h"
 

@@ -1,5 +1,6 @@
-// The program itself: a run that is killed again and again, meets a full disk, is interrupted or not proved.
-// Its battery pays so much for every exchange that it idles, which is learnt and proved in seconds.
+// The program itself: a run that is killed again and again, meets a full disk, is interrupted or
+// not proved. Its battery pays so much for every exchange that it idles, which is learnt and proved
+// in seconds.
 #include <gmock/gmock.h>
 #include <signal.h>
 

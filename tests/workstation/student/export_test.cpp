@@ -253,7 +253,8 @@ const ProvedStudent& ruled_student() {
   return std::get<ProvedStudent>(verdict);
 }
 
-/// Whatever stands behind the rules' first line is added; all before it is the header without rules.
+/// Whatever stands behind the rules' first line is added; all before it is the header without
+/// rules.
 TEST(Export, RulesAreAddedToTheHeader) {
   const std::string header = format_weight_header(ruled_student());
   const std::string plain = format_weight_header(crowded_student());
@@ -296,8 +297,8 @@ TEST(Export, DamagedRulesDoNotCompile) {
   expect_header_is_refused(edited(first, ""), damaged);
 }
 
-/// The points that are shipped tell every field of every rule from its neighbours, so that a machine that looks
-/// rules up otherwise is found out at its start.
+/// The points that are shipped tell every field of every rule from its neighbours, so that a
+/// machine that looks rules up otherwise is found out at its start.
 TEST(RuleHeader, TheGoldenPointsTellEveryField) {
   const std::vector<GuardRule> rules = parse_rules(kHeaderRules, "test.toml").guard_rules();
   const std::vector<RulePoint> points = rule_check_points(rules);

@@ -26,7 +26,8 @@ StudentFile counted(const StudentNet& net, const PriceThresholds& thresholds,
           ""};
 }
 
-/// LinearNet charges below 0, idles to 1000 and discharges from there: each demand is broken by a known state.
+/// LinearNet charges below 0, idles to 1000 and discharges from there: each demand is broken by a
+/// known state.
 TEST(FailedProof, NamesTheRuleAStateWhatIsDoneThereAndTheMend) {
   RuleSet rules = one_rule("price_max = 1400\nat_least = \"idle\"", "never sell");
   rules.rules.push_back(

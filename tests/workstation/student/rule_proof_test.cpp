@@ -1,5 +1,5 @@
-// The proof of an operator's rules: each predicate against brute force from its definition, on nets that keep it and
-// on nets that break it alone.
+// The proof of an operator's rules: each predicate against brute force from its definition, on nets
+// that keep it and on nets that break it alone.
 #include "workstation/student/rule_proof.h"
 
 #include <gtest/gtest.h>
@@ -70,7 +70,8 @@ std::int64_t brute_force(const Rule& rule, const Actions& actions, const Lattice
   return found;
 }
 
-/// Each demand in a shape of its own: a predicate that is left out, or looks elsewhere, miscounts some.
+/// Each demand in a shape of its own: a predicate that is left out, or looks elsewhere, miscounts
+/// some.
 std::vector<const char*> rule_shapes() {
   return {"is = \"idle\"\nprice_min = -20\nprice_max = 700\nsoc_min = 0.1\nsoc_max = 0.8",
           "is = \"charge\"\nprice_max = -300",
@@ -157,7 +158,8 @@ TEST(RuleProof, CountsAreThoseOfTheDefinitions) {
   }
 }
 
-/// Over a sample of contexts: hours, classes and the last values of an input, which have no next one.
+/// Over a sample of contexts: hours, classes and the last values of an input, which have no next
+/// one.
 TEST(RuleProof, CountsOfManyContextsAddUp) {
   const RuleSet rules = all_shapes();
   StudentNet net = seeded_net(5);

@@ -1,5 +1,5 @@
-// Where the files of a run lie while it goes on: below the system's folder for temporary files, removed at
-// the end unless they are to be kept.
+// Where the files of a run lie while it goes on: below the system's folder for temporary files,
+// removed at the end unless they are to be kept.
 #pragma once
 
 #include <stdlib.h>

@@ -1,5 +1,5 @@
-// What a run leaves behind to be judged: the battery's own record, and the records of the edge's ring to hold against
-// it. The same in virtual and in wall time.
+// What a run leaves behind to be judged: the battery's own record, and the records of the edge's
+// ring to hold against it. The same in virtual and in wall time.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// What a rule is judged by: what was asked and left behind, when something was wrong, and what the edge could know.
-// Each rule is a function judge_NAME in a file of its own.
+// What a rule is judged by: what was asked and left behind, when something was wrong, and what the
+// edge could know. Each rule is a function judge_NAME in a file of its own.
 #pragma once
 
 #include <fmt/core.h>
@@ -47,7 +47,8 @@ class Bench {
   [[nodiscard]] std::int64_t settled_ns(std::int64_t tick_ns) const {
     return tick_ns + (config.control.price_wait_s + 5) * kSecondNs + slack_ns();
   }
-  /// The same where the bus or a process is disturbed: requests are repeated until the order's deadline.
+  /// The same where the bus or a process is disturbed: requests are repeated until the order's
+  /// deadline.
   [[nodiscard]] std::int64_t settled_at_worst_ns(std::int64_t tick_ns) const {
     return is_disturbed_in_cycle(tick_ns)
                ? tick_ns + config.control.order_deadline_s * kSecondNs + slack_ns()
@@ -78,7 +79,8 @@ class Bench {
   [[nodiscard]] double soc_margin_frac() const;
 
   // What a site's limits may have done.
-  /// Between two ticks it only cuts, but what was taken in a quarter-hour is given back for its peak.
+  /// Between two ticks it only cuts, but what was taken in a quarter-hour is given back for its
+  /// peak.
   [[nodiscard]] bool may_be_cut(double from_w, double to_w) const;
   [[nodiscard]] bool was_cut(std::int64_t tick_ns, std::int64_t by_ns, double ordered_w) const;
 

@@ -11,8 +11,8 @@ void judge_energy(Bench& bench) {
   double unknown_wh = 0.5;
   double before_wh = 0;
   for (const MinuteRecord& m : bench.evidence.minutes) {
-    // Of a minute that was charged and discharged in, the record knows the sum; the slowest battery that
-    // is simulated turns 5 s after its order.
+    // Of a minute that was charged and discharged in, the record knows the sum; the slowest battery
+    // that is simulated turns 5 s after its order.
     if (m.energy_wh * before_wh < 0) {
       unknown_wh += p.power_w_max * (6 + bench.evidence.slack_s) / 3'600 *
                     (1 / p.discharge_efficiency - p.charge_efficiency);

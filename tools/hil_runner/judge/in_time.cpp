@@ -17,7 +17,8 @@ void judge_in_time(Bench& bench) {
     const bool is_judged = e.utc_ns >= bench.start_ns() && e.utc_ns < bench.scenario.end_utc_ns();
     const std::int64_t most_ns =
         bench.config.control.order_deadline_s * kSecondNs + bench.slack_ns();
-    // The wait for a reply to the last write of an order counts, that order's bytes are on their way.
+    // The wait for a reply to the last write of an order counts, that order's bytes are on their
+    // way.
     if (!is_new || !is_judged || after_tick_ns <= most_ns) continue;
     bench.find(
         e.utc_ns,

@@ -1,5 +1,5 @@
-// What must hold in every scenario, judged by the battery's own record: the edge's log is only held against
-// it. A scenario may leave some out, by name.
+// What must hold in every scenario, judged by the battery's own record: the edge's log is only held
+// against it. A scenario may leave some out, by name.
 #pragma once
 
 #include <cstdint>

@@ -24,7 +24,8 @@ bool is_for_simulators(ScenarioEvent::Does does) {
 
 using Registers = std::vector<std::uint16_t>;
 
-/// What the device itself has said, or was told: an order may be in percent of a rating that it shows.
+/// What the device itself has said, or was told: an order may be in percent of a rating that it
+/// shows.
 class KnownRegisters {
  public:
   void learn(const BusExchange& exchange) {

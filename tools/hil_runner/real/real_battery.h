@@ -1,6 +1,6 @@
-// A battery that is there already, and may be hurt: where it is, the limits that it is driven within, and
-// which scenarios may drive it. Of a real one only its bus is known: what it was told is read off the recorded
-// bytes, what it did is what it measured.
+// A battery that is there already, and may be hurt: where it is, the limits that it is driven
+// within, and which scenarios may drive it. Of a real one only its bus is known: what it was told
+// is read off the recorded bytes, what it did is what it measured.
 #pragma once
 
 #include <cstdint>
@@ -41,11 +41,12 @@ Scenario on_real_battery(Scenario scenario, const RealBattery& battery);
 /// Lines of the edge's [battery] table that lead to it.
 std::string link_keys(const RealBattery& battery);
 
-/// What a device that acts by its map was told, by recordings of its bus in the order of time, and what became of
-/// that until `end_utc_ns`. Throws UserError when one is damaged.
+/// What a device that acts by its map was told, by recordings of its bus in the order of time, and
+/// what became of that until `end_utc_ns`. Throws UserError when one is damaged.
 std::vector<DispatchEvent> orders_on_the_bus(const std::vector<std::string>& recordings,
                                              const RegisterMap& map, std::int64_t end_utc_ns);
-/// What it measured, in the edge's log: each reading stands for the cycle that it ends. Commanded power is not known.
+/// What it measured, in the edge's log: each reading stands for the cycle that it ends. Commanded
+/// power is not known.
 std::vector<MinuteRecord> measured_minutes(const std::vector<CycleRecord>& log);
 
 /// What breaks the limits, in words; empty: nothing does. It stands beside the edge's own guard.

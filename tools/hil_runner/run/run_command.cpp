@@ -187,7 +187,8 @@ class Runner {
     }
   }
 
-  /// Most of it is waiting: several beside each other, the longest first, so that none is left at the end.
+  /// Most of it is waiting: several beside each other, the longest first, so that none is left at
+  /// the end.
   void run_in_wall_time() {
     require_programs();
     std::ranges::stable_sort(scenarios_, std::greater<>(), [](const Scenario& s) {

@@ -1,4 +1,5 @@
-// One run as a picture: price, orders and measured power, SoC, the edge's modes; faults as named bands. Axes are UTC.
+// One run as a picture: price, orders and measured power, SoC, the edge's modes; faults as named
+// bands. Axes are UTC.
 #pragma once
 
 #include <string>

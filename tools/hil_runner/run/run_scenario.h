@@ -6,7 +6,8 @@
 
 namespace bess {
 
-/// Never throws for what the scenario does, that is an outcome; throws Interrupted when a stop was requested.
+/// Never throws for what the scenario does, that is an outcome; throws Interrupted when a stop was
+/// requested.
 Outcome run_scenario(const Scenario& scenario, bool in_virtual_time, const WallSite& site);
 
 }  // namespace bess

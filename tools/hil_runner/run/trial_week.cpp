@@ -25,7 +25,8 @@ namespace {
 constexpr int kTrialMinutes = kTrialDays * kMinutesPerDay;
 constexpr double kWattHoursPerMegawattHour = 1e6;
 
-// How strong each of them is; the paper's house gives 3 s to fetch and decide and 2 s to the battery.
+// How strong each of them is; the paper's house gives 3 s to fetch and decide and 2 s to the
+// battery.
 constexpr double kDelayedRowS = 3;
 constexpr std::int32_t kDelayedReplyMs = 200;  ///< of each of the ten requests of an order
 constexpr double kMissingRowProbability = 0.02;
@@ -143,7 +144,8 @@ double money_of(const WeekRun& run, const MinuteSeries& prices) {
   return purse.eur(run.scenario.battery.physics, run.scenario.battery.soc_frac, soc_end);
 }
 
-/// Student, guard and battery model, each order in force from its tick on: nothing is late or missing.
+/// Student, guard and battery model, each order in force from its tick on: nothing is late or
+/// missing.
 double plain_money(const MinuteSeries& prices, std::int64_t start_utc_s) {
   const ScenarioBattery house;
   BatteryParameters battery = house.physics;
@@ -168,7 +170,8 @@ double plain_money(const MinuteSeries& prices, std::int64_t start_utc_s) {
   return purse.eur(battery, house.soc_frac, soc);
 }
 
-/// Midnights, UTC, at which eight days begin that the file holds whole, with three days before them.
+/// Midnights, UTC, at which eight days begin that the file holds whole, with three days before
+/// them.
 std::vector<std::int64_t> week_starts(const MinuteSeries& prices) {
   constexpr std::int64_t kDayS = 86'400;
   std::vector<std::int64_t> starts;

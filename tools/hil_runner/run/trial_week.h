@@ -1,7 +1,8 @@
-// The trial week: what the loop around the student costs. Eight days of a minute file, 5,760 cycles, in
-// virtual time, with delay, missing data, temperature and the battery's response switched on one at a time
-// and together, each against the plain simulation of the same days: student, guard and battery model
-// alone. Several weeks are paired: what differs is the loop, not the prices.
+// The trial week: what the loop around the student costs. Eight days of a minute file, 5,760
+// cycles, in virtual time, with delay, missing data, temperature and the battery's response
+// switched on one at a time and together, each against the plain simulation of the same days:
+// student, guard and battery model alone. Several weeks are paired: what differs is the loop, not
+// the prices.
 #pragma once
 
 #include <array>
@@ -29,8 +30,8 @@ struct Disturbance {
 inline constexpr int kDisturbanceCount = 6;
 const std::array<Disturbance, kDisturbanceCount>& disturbances();
 
-/// EUR of the paper's house battery, 4 kW and 8 kWh, over eight days; what is left in the battery at the
-/// end counts at the week's mean price.
+/// EUR of the paper's house battery, 4 kW and 8 kWh, over eight days; what is left in the battery
+/// at the end counts at the week's mean price.
 struct TrialWeek {
   std::int64_t start_utc_s = 0;
   double plain_eur = 0;
@@ -38,14 +39,15 @@ struct TrialWeek {
   std::vector<Finding> findings;  ///< broken invariants of any of them
 };
 
-/// Mean loss of one disturbance against the plain simulation, over the weeks, with the standard error of
-/// the paired difference; in percent of the plain simulation's mean.
+/// Mean loss of one disturbance against the plain simulation, over the weeks, with the standard
+/// error of the paired difference; in percent of the plain simulation's mean.
 struct TrialLoss {
   double percent = 0;
   double percent_error = 0;
 };
 
-/// Calls `tell(weeks done, weeks in all)` after each. Throws UserError when the file holds fewer weeks.
+/// Calls `tell(weeks done, weeks in all)` after each. Throws UserError when the file holds fewer
+/// weeks.
 std::vector<TrialWeek> run_trial(const MinuteSeries& prices, int weeks,
                                  const std::function<void(int, int)>& tell);
 TrialLoss loss_of(const std::vector<TrialWeek>& weeks, std::size_t disturbance);

@@ -24,14 +24,15 @@ struct EdgePlaces {
   std::optional<SiteClock> clock{};  ///< empty: virtual time
 };
 
-/// The price level that the hours before the start have led to; by default as many as the edge asks for.
+/// The price level that the hours before the start have led to; by default as many as the edge asks
+/// for.
 PriceLevel level_before(const MinuteSeries& prices, std::int64_t start_utc_s, int hours = 72);
 
 std::string edge_settings(const Scenario& scenario, const MinuteSeries& prices,
                           const EdgePlaces& places);
 
-/// Writes the text to `path` and reads it as bess-edge does. Throws UserError that names the scenario: its [edge] is
-/// what can be wrong.
+/// Writes the text to `path` and reads it as bess-edge does. Throws UserError that names the
+/// scenario: its [edge] is what can be wrong.
 EdgeConfig load_edge_settings(const Scenario& scenario, const std::string& path,
                               const std::string& text);
 

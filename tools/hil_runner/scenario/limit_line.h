@@ -16,7 +16,8 @@ inline std::string limit_power_text(std::int32_t power_w) {
   return power_w == kAnyPowerW ? std::string(kAnyPowerText) : std::to_string(power_w);
 }
 
-/// Of an event that limits; one that tears leaves what a program writes that is interrupted: half of it.
+/// Of an event that limits; one that tears leaves what a program writes that is interrupted: half
+/// of it.
 inline std::string limit_line(const ScenarioEvent& event, std::int64_t now_utc_s) {
   const std::string line =
       fmt::format("{} {} {}\n", limit_power_text(event.charge_w),

@@ -1,5 +1,5 @@
-// The prices of a scenario: the minute file that the market serves, and the truth about what the edge can
-// know of it at an instant, by which its orders are judged.
+// The prices of a scenario: the minute file that the market serves, and the truth about what the
+// edge can know of it at an instant, by which its orders are judged.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace bess {
 
-/// Minutes from four days before the start to the end, rows that are never published without a price.
-/// Throws UserError when the scenario's own file does not hold its time.
+/// Minutes from four days before the start to the end, rows that are never published without a
+/// price. Throws UserError when the scenario's own file does not hold its time.
 MinuteSeries scenario_prices(const Scenario& scenario);
 
 class Publication {
@@ -23,7 +23,8 @@ class Publication {
 
   Publication(const Scenario& scenario, const MinuteSeries& prices);
 
-  /// The newest row with a price that an edge can have fetched by then, faults of the server counted.
+  /// The newest row with a price that an edge can have fetched by then, faults of the server
+  /// counted.
   [[nodiscard]] std::optional<Row> newest(std::int64_t utc_ns) const;
   /// Of a minute; nothing where none was published.
   [[nodiscard]] std::optional<double> price_of(std::int64_t minute_utc_s) const;

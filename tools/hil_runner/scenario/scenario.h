@@ -1,6 +1,6 @@
-// A scenario: which battery, which prices, what goes wrong and when, what is expected of the edge. Read
-// from a commented TOML file (tests/scenarios/README.md is the format); times are simulated minutes
-// since the start.
+// A scenario: which battery, which prices, what goes wrong and when, what is expected of the edge.
+// Read from a commented TOML file (tests/scenarios/README.md is the format); times are simulated
+// minutes since the start.
 #pragma once
 
 #include <cstdint>
@@ -96,7 +96,8 @@ struct PriceFaultWindow {
   MinuteSpan span;
 };
 
-/// What happens to a process, its clock or its disk, and what people and other programs say to the edge.
+/// What happens to a process, its clock or its disk, and what people and other programs say to the
+/// edge.
 struct ScenarioEvent {
   enum class Does : std::uint8_t {
     kEdgeKill,         ///< SIGKILL

@@ -8,7 +8,8 @@
 
 namespace bess {
 
-/// A file for bess-sim battery --house, an hour wider than the scenario on both sides. Of a house with steps alone.
+/// A file for bess-sim battery --house, an hour wider than the scenario on both sides. Of a house
+/// with steps alone.
 std::string house_csv(const Scenario& scenario);
 
 HouseLoad house_load(const Scenario& scenario);

@@ -1,4 +1,5 @@
-// What the tables of a scenario file have in common: numbers with a range, spans of minutes, lists of pairs.
+// What the tables of a scenario file have in common: numbers with a range, spans of minutes, lists
+// of pairs.
 #pragma once
 
 #include <fmt/core.h>
@@ -77,7 +78,8 @@ void read_steps(TomlTable& table, double scenario_minutes, std::vector<Step>& st
   });
 }
 
-/// Key `kinds`, required: faults of bess-sim battery. `refuse(info)` says why one cannot be here; empty: it can.
+/// Key `kinds`, required: faults of bess-sim battery. `refuse(info)` says why one cannot be here;
+/// empty: it can.
 template <typename Refuse>
 void read_fault_kinds(TomlTable& table, std::vector<BatteryFault>& faults, const Refuse& refuse) {
   table.require("kinds");

@@ -1,5 +1,5 @@
-// The tables of a scenario that are about the site: the house behind the same meter, the meter, and what is wrong
-// with it.
+// The tables of a scenario that are about the site: the house behind the same meter, the meter, and
+// what is wrong with it.
 #pragma once
 
 #include "shared/host/toml_reader.h"

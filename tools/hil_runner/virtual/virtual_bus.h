@@ -1,6 +1,7 @@
-// A device of a virtual run and the bus to it: what the edge's ModbusWire sends to its port arrives here, and the
-// answer comes when the device has it, byte by byte if a fault says so. virtual_wire.cpp is the edge's
-// end. Over TCP one connection, over RTU a line that keeps what was sent too late.
+// A device of a virtual run and the bus to it: what the edge's ModbusWire sends to its port arrives
+// here, and the answer comes when the device has it, byte by byte if a fault says so.
+// virtual_wire.cpp is the edge's end. Over TCP one connection, over RTU a line that keeps what was
+// sent too late.
 #pragma once
 
 #include <cstdint>
@@ -30,8 +31,8 @@ struct VirtualBusSettings {
 
 class VirtualBus {
  public:
-  /// All but the settings must outlive this object. One of a port at a time in a process. With a house the map's
-  /// grid point shows it, and a meter's map makes this a meter.
+  /// All but the settings must outlive this object. One of a port at a time in a process. With a
+  /// house the map's grid point shows it, and a meter's map makes this a meter.
   VirtualBus(const VirtualBusSettings& settings, const RegisterMap& map, SimulatedBattery& battery,
              VirtualTime& time, MeteredHouse* house = nullptr);
   VirtualBus(const VirtualBus&) = delete;

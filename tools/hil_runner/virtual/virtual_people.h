@@ -1,5 +1,6 @@
-// Whoever speaks to the controller in a virtual run: an operator's hold, the limits of another program, and that a
-// trip was cleared. What they say outlives the edge, as their files do; it is formed and read by the edge's own code.
+// Whoever speaks to the controller in a virtual run: an operator's hold, the limits of another
+// program, and that a trip was cleared. What they say outlives the edge, as their files do; it is
+// formed and read by the edge's own code.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
-// The control loop's price source in virtual time: the answers of the simulated market, read by the edge's
-// own parser into its own newest row. Asks as often as the edge's PriceFeed would, without its thread.
+// The control loop's price source in virtual time: the answers of the simulated market, read by the
+// edge's own parser into its own newest row. Asks as often as the edge's PriceFeed would, without
+// its thread.
 #pragma once
 
 #include <cstdint>

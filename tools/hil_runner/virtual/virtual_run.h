@@ -1,5 +1,5 @@
-// A scenario in virtual time: the edge's own loop, driver, link and guard against the simulated battery
-// and market, as quick as the machine, the same to the byte every time.
+// A scenario in virtual time: the edge's own loop, driver, link and guard against the simulated
+// battery and market, as quick as the machine, the same to the byte every time.
 #pragma once
 
 #include <string>

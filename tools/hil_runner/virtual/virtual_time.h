@@ -1,7 +1,7 @@
-// Time that this process makes itself. While a VirtualTime lives, the edge's calls of clock_gettime,
-// clock_nanosleep, sigtimedwait and adjtimex reach it instead of the kernel (the linker's --wrap, see
-// virtual_time.cpp): EdgeClock, the Modbus link and the driver run as they are, an hour passes as soon
-// as nobody has anything to do in it, and a run repeats to the byte.
+// Time that this process makes itself. While a VirtualTime lives, the edge's calls of
+// clock_gettime, clock_nanosleep, sigtimedwait and adjtimex reach it instead of the kernel (the
+// linker's --wrap, see virtual_time.cpp): EdgeClock, the Modbus link and the driver run as they
+// are, an hour passes as soon as nobody has anything to do in it, and a run repeats to the byte.
 #pragma once
 
 #include <cstdint>
@@ -42,8 +42,8 @@ class VirtualTime {
   enum class Market : std::uint8_t { kServes, kPaused, kDead };
   [[nodiscard]] Market market() const { return market_; }
 
-  /// Lets time pass to an instant, or to the first event that the edge has to see before it, and further
-  /// while the edge is paused. Throws EdgeKilled.
+  /// Lets time pass to an instant, or to the first event that the edge has to see before it, and
+  /// further while the edge is paused. Throws EdgeKilled.
   void advance_to(std::int64_t monotonic_ns);
   /// A signal that waits for the edge, taken; 0 = none.
   int take_signal();

@@ -1,5 +1,6 @@
-// Virtual time and memory as the world of a controller (edge/program/controller.h): the edge's own clock, driver,
-// link and meter on virtual buses, the simulated market's answers, and of what outlives a run what EdgeState keeps.
+// Virtual time and memory as the world of a controller (edge/program/controller.h): the edge's own
+// clock, driver, link and meter on virtual buses, the simulated market's answers, and of what
+// outlives a run what EdgeState keeps.
 #pragma once
 
 #include <cstdint>

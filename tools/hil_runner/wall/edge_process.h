@@ -1,5 +1,5 @@
-// bess-edge as a process of a run in wall time: started again and again on one configuration, spoken to by its own
-// commands, read by its own log.
+// bess-edge as a process of a run in wall time: started again and again on one configuration,
+// spoken to by its own commands, read by its own log.
 #pragma once
 
 #include <cstdint>
@@ -37,7 +37,8 @@ class EdgeProcess {
   [[nodiscard]] bool runs() const { return process_ != nullptr && !process_->has_ended(); }
   [[nodiscard]] bool is_started() const { return process_ != nullptr; }
 
-  /// What a person says to it, by a command of bess-edge beside it. Throws UserError when it is refused.
+  /// What a person says to it, by a command of bess-edge beside it. Throws UserError when it is
+  /// refused.
   void say(std::vector<std::string> words) const;
 
   /// Of the controller that was ended last.

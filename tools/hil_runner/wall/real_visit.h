@@ -1,5 +1,5 @@
-// A real battery in a run: its sign is checked first, it is looked at every second, and however the run ends it is
-// given back.
+// A real battery in a run: its sign is checked first, it is looked at every second, and however the
+// run ends it is given back.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,5 @@
-// What a scenario asks of battery, house, meter and market, in the words of bess-sim's command line.
+// What a scenario asks of battery, house, meter and market, in the words of bess-sim's command
+// line.
 #pragma once
 
 #include <string>
@@ -9,7 +10,8 @@
 
 namespace bess {
 
-/// `serial_device`: the battery's end of a line; empty: over TCP. Of a house with steps a file is written.
+/// `serial_device`: the battery's end of a line; empty: over TCP. Of a house with steps a file is
+/// written.
 std::vector<std::string> battery_options(const Scenario& scenario, const std::string& serial_device,
                                          const WorkFolder& folder);
 

@@ -36,8 +36,8 @@ bool fills_a_disk(const Scenario& scenario) {
 
 std::string seconds_text(const ScenarioEvent& event) { return std::to_string(event.for_s) + "s"; }
 
-/// Simulated seconds by which an order may be late for what this machine oversleeps. Throws MachineTooLate where it
-/// would be judged by the next cycle's price.
+/// Simulated seconds by which an order may be late for what this machine oversleeps. Throws
+/// MachineTooLate where it would be judged by the next cycle's price.
 double slack_s(const Lateness& lateness, std::int32_t time_scale) {
   constexpr double kLateS = 0.15;  // wall, that an order may need
   constexpr double kLateFactor = 2;

@@ -1,6 +1,7 @@
-// A scenario in wall time, scaled: the real bess-edge between the real bess-sim battery and bess-sim market,
-// over Modbus TCP or a pair of pseudo terminals, and over HTTP. Processes are killed, stopped and
-// continued as the scenario says. Or the real bess-edge and a battery that is there already.
+// A scenario in wall time, scaled: the real bess-edge between the real bess-sim battery and
+// bess-sim market, over Modbus TCP or a pair of pseudo terminals, and over HTTP. Processes are
+// killed, stopped and continued as the scenario says. Or the real bess-edge and a battery that is
+// there already.
 #pragma once
 
 #include <optional>
@@ -32,8 +33,9 @@ class MachineTooLate : public UserError {
   using UserError::UserError;
 };
 
-/// Throws MachineTooLate; UserError when a program cannot be started or says why it does not run, or a real battery's limits
-/// are broken; Interrupted when a stop was requested. A real battery is released, however it ends.
+/// Throws MachineTooLate; UserError when a program cannot be started or says why it does not run,
+/// or a real battery's limits are broken; Interrupted when a stop was requested. A real battery is
+/// released, however it ends.
 Evidence run_wall(const Scenario& scenario, const MinuteSeries& prices, const WallSite& site,
                   const WorkFolder& folder);
 

@@ -27,8 +27,8 @@ fs::path window_path(const FetchRequest& request, const FetchWindow& window) {
                                                    server.value());
 }
 
-/// Rows of a window that an earlier run finished; a damaged or empty copy counts as none, and so does
-/// one with a gap unless gaps are allowed: the server may have mended it.
+/// Rows of a window that an earlier run finished; a damaged or empty copy counts as none, and so
+/// does one with a gap unless gaps are allowed: the server may have mended it.
 std::optional<WindowRows> kept_rows(const FetchRequest& request, const FetchWindow& window) {
   const fs::path path = window_path(request, window);
   if (window.settles_later || !fs::exists(path)) return std::nullopt;
@@ -54,8 +54,8 @@ std::optional<WindowRows> fetch_window(const FetchRequest& request, const FetchW
   return std::move(download->rows);
 }
 
-/// Rows of each window, or nothing when interrupted. Kept windows come first, so that the rate shown
-/// is that of the downloads.
+/// Rows of each window, or nothing when interrupted. Kept windows come first, so that the rate
+/// shown is that of the downloads.
 std::optional<std::vector<WindowRows>> fetch_windows(const FetchRequest& request,
                                                      const std::vector<FetchWindow>& windows,
                                                      const std::atomic<bool>& interrupted) {

@@ -276,8 +276,8 @@ class Pager {
     add_around({part.from_utc_s, part.until_utc_s}, page.rows.rows);
   }
 
-  /// What is left of a stretch before the first and after the last row that came: a server that cuts
-  /// its answers leaves one of them.
+  /// What is left of a stretch before the first and after the last row that came: a server that
+  /// cuts its answers leaves one of them.
   void add_around(const Gap& stretch, const MarketRows& rows) {
     const std::set<std::int64_t> times = times_of(window_, rows);
     if (times.empty()) {

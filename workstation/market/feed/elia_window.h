@@ -27,8 +27,8 @@ struct WindowRows {
   [[nodiscard]] bool lacks_rows_of_total() const { return total && distinct + unended < *total; }
 };
 
-/// The rows of a text that lie in the window and have ended. An empty text holds none. Throws UserError
-/// when it cannot be read.
+/// The rows of a text that lie in the window and have ended. An empty text holds none. Throws
+/// UserError when it cannot be read.
 WindowRows rows_in_window(std::string_view text, const std::string& name, const FetchWindow& window,
                           std::int64_t now_utc_s);
 

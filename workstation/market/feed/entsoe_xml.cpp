@@ -78,8 +78,8 @@ struct Prices {
 };
 using QuarterHourPrices = std::map<std::int64_t, Prices>;  ///< by start, UTC seconds
 
-/// A price of a longer interval is that of each of its quarter-hours; where points repeat, one holds
-/// until the next of its own category.
+/// A price of a longer interval is that of each of its quarter-hours; where points repeat, one
+/// holds until the next of its own category.
 void add_period(const Period& period, bool repeats, QuarterHourPrices& prices) {
   std::array<std::optional<Point>, kCategoryCount> current;
   auto next = period.points.begin();

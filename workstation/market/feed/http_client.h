@@ -34,8 +34,8 @@ struct HttpLimits {
   std::size_t bytes_max = std::size_t{512} << 20;  ///< of the body, unpacked
 };
 
-/// Returns soon after `interrupted` is raised, and at the latest as `limits` say: too slow or too large is
-/// told as such.
+/// Returns soon after `interrupted` is raised, and at the latest as `limits` say: too slow or too
+/// large is told as such.
 HttpOutcome http_get(const std::string& url, const std::atomic<bool>& interrupted,
                      const HttpLimits& limits);
 

@@ -11,7 +11,8 @@
 namespace bess {
 namespace {
 
-/// By what the comments at the head say; the words are those of attribution_of() and of the commands.
+/// By what the comments at the head say; the words are those of attribution_of() and of the
+/// commands.
 std::set<MarketSource> sources_of(std::string_view text) {
   std::set<MarketSource> sources;
   while (!text.empty()) {

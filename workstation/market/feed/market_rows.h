@@ -21,7 +21,8 @@
 
 namespace bess {
 
-/// A quality flag: "Validated", "NotValidated", "DataIssue" and their spellings; longer ones are cut.
+/// A quality flag: "Validated", "NotValidated", "DataIssue" and their spellings; longer ones are
+/// cut.
 using QualityStatus = FixedText<15>;
 
 /// Indicative price computed at the END of the minute that starts at `utc_s`.

@@ -1,5 +1,5 @@
-// Minute files that are joined must agree where they overlap: both claim to be the market. Downloads
-// are another matter, a later one corrects an earlier one.
+// Minute files that are joined must agree where they overlap: both claim to be the market.
+// Downloads are another matter, a later one corrects an earlier one.
 #pragma once
 
 #include <cstdint>

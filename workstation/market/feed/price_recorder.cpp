@@ -117,7 +117,8 @@ class Follower {
     return row.utc_s + 60 - arrived_utc_s;
   }
 
-  /// A row so early that one of the two clocks is wrong: then no row of the page has arrived when it seems.
+  /// A row so early that one of the two clocks is wrong: then no row of the page has arrived when
+  /// it seems.
   static const MinuteRow* row_of_the_future(const Page& page) {
     for (const MinuteRow& row : page.rows) {
       const std::int64_t by_s = early_s(row, page.arrived_utc_s);

@@ -1,15 +1,15 @@
 // Follows the live minutes of Elia, price (ods161) and system imbalance (ods169), into a folder of
-// recorded days. The archives keep the minutes' last values; when each was there for the first time, and
-// what it said then, nobody keeps.
+// recorded days. The archives keep the minutes' last values; when each was there for the first
+// time, and what it said then, nobody keeps.
 //
-// A look asks for the newest 60 rows, the hour that the source promises, and pages back when it does not
-// meet what is known: at the start, and after an outage. A row's arrival counts as seen when the look
-// before it reached as far back, did not show it, and was at most two polls ago; otherwise it was found.
-// No row arrives before its minute has ended: one that seems to, by up to a minute, is left for a later look;
-// by more, one of the two clocks is wrong, and no row of that answer is taken. At the first look that is an
-// error, later an outage.
-// Nothing of the network ends a recorder: it backs off, waits as told, says once that there is trouble
-// and once that it is over.
+// A look asks for the newest 60 rows, the hour that the source promises, and pages back when it
+// does not meet what is known: at the start, and after an outage. A row's arrival counts as seen
+// when the look before it reached as far back, did not show it, and was at most two polls ago;
+// otherwise it was found. No row arrives before its minute has ended: one that seems to, by up to a
+// minute, is left for a later look; by more, one of the two clocks is wrong, and no row of that
+// answer is taken. At the first look that is an error, later an outage. Nothing of the network ends
+// a recorder: it backs off, waits as told, says once that there is trouble and once that it is
+// over.
 #pragma once
 
 #include <atomic>
@@ -65,8 +65,9 @@ struct RecordSummary {
   bool answered = false;    ///< prices were, at least once
 };
 
-/// Until `until_utc_s` or interrupted. Throws UserError when the folder is another recorder's or cannot
-/// be written, or when the first answer says that there is no such data set, or has rows of the future.
+/// Until `until_utc_s` or interrupted. Throws UserError when the folder is another recorder's or
+/// cannot be written, or when the first answer says that there is no such data set, or has rows of
+/// the future.
 RecordSummary record_prices(const RecordRequest& request, const std::atomic<bool>& interrupted);
 
 }  // namespace bess

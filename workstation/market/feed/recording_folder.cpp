@@ -62,7 +62,8 @@ bool is_still_there(int fd, const std::string& path) {
 
 }  // namespace
 
-/// The folder, made if need be, and this recorder's own. When nothing was recorded, nothing is left.
+/// The folder, made if need be, and this recorder's own. When nothing was recorded, nothing is
+/// left.
 class RecordingFolder::Lock {
  public:
   explicit Lock(const fs::path& folder) : folder_(folder), path_((folder / kLockName).string()) {

@@ -1,9 +1,9 @@
-// A folder of recorded days, one file a local day: 2025-06-15.csv. Local, because Elia's near-real-time
-// datasets begin anew at local midnight, because `prices fetch` and the split into training, validation
-// and test count local days, and because the file of a day then holds what that day's policy saw: 1,380,
-// 1,440 or 1,500 minutes. Times inside are UTC.
-// Files only grow. A line is on the disk when append() returns; what a crash tore off is cut when the
-// day is opened again. One folder belongs to one recorder.
+// A folder of recorded days, one file a local day: 2025-06-15.csv. Local, because Elia's
+// near-real-time datasets begin anew at local midnight, because `prices fetch` and the split into
+// training, validation and test count local days, and because the file of a day then holds what
+// that day's policy saw: 1,380, 1,440 or 1,500 minutes. Times inside are UTC. Files only grow. A
+// line is on the disk when append() returns; what a crash tore off is cut when the day is opened
+// again. One folder belongs to one recorder.
 #pragma once
 
 #include <cstdint>
@@ -47,7 +47,8 @@ class RecordingFolder {
   [[nodiscard]] RecordedMinute recorded(std::int64_t minute_utc_s);
   /// Throws UserError when they cannot be written; then none of its day's is.
   void append(std::span<const RecordedLine> lines);
-  /// Days that ended an hour before `newest_minute_utc_s` are closed; those appended to are told of.
+  /// Days that ended an hour before `newest_minute_utc_s` are closed; those appended to are told
+  /// of.
   std::vector<RecordedDaySummary> close_days_before(std::int64_t newest_minute_utc_s);
 
  private:

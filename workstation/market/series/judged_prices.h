@@ -35,7 +35,8 @@ struct PriceText {
 void judge(const std::vector<Finding>& findings, const AcceptedFindings& accepted,
            const std::vector<PriceText>& texts);
 
-/// Number of the row that holds the time, counted from 1 with comments and header; 0 when none does.
+/// Number of the row that holds the time, counted from 1 with comments and header; 0 when none
+/// does.
 std::size_t row_of_time(std::string_view text, std::int64_t utc_s);
 
 /// Reads a minute file and judges it.

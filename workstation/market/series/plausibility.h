@@ -1,7 +1,7 @@
-// Whether prices can be what they claim to be: EUR/MWh of an imbalance market, one row a minute, one
-// settled price a quarter-hour. Each finding has a name, so that a user who means it can accept it.
-// What is wrong with the text of a file (no number, no time, disorder) its reader says; what is wrong
-// with numbers that can be read is said here, once, for every command.
+// Whether prices can be what they claim to be: EUR/MWh of an imbalance market, one row a minute,
+// one settled price a quarter-hour. Each finding has a name, so that a user who means it can accept
+// it. What is wrong with the text of a file (no number, no time, disorder) its reader says; what is
+// wrong with numbers that can be read is said here, once, for every command.
 #pragma once
 
 #include <array>
@@ -15,7 +15,8 @@
 
 namespace bess {
 
-/// Every name that a finding may have; errors first, then warnings, then what is of day-ahead prices alone.
+/// Every name that a finding may have; errors first, then warnings, then what is of day-ahead
+/// prices alone.
 inline constexpr std::array<std::string_view, 16> kFindingNames{
     "dates",       "row-step",      "constant",         "sentinel",      "price-unit",
     "price-range", "cut-end",       "settled-changes",  "overlap",       "gaps",
@@ -30,11 +31,12 @@ struct Finding {
 };
 
 /// All findings about a series, the most telling error first: a wrong unit is also a wrong range.
-/// Honest data has none. Judgements of a whole column (unit, constant) need a day's worth of prices.
+/// Honest data has none. Judgements of a whole column (unit, constant) need a day's worth of
+/// prices.
 std::vector<Finding> implausible(const MinuteSeries& series);
 
-/// A text that does not end with a line end may have lost a part of its last row: an error when that
-/// row contradicts its quarter-hour, otherwise a warning. `series` is what was read of it.
+/// A text that does not end with a line end may have lost a part of its last row: an error when
+/// that row contradicts its quarter-hour, otherwise a warning. `series` is what was read of it.
 std::vector<Finding> implausible_end(std::string_view text, const MinuteSeries& series);
 
 }  // namespace bess

@@ -1,5 +1,5 @@
-// How the Belgian imbalance price came about, by date: a policy that learnt one way knows little of another. Margins
-// halved from 2024 to 2025.
+// How the Belgian imbalance price came about, by date: a policy that learnt one way knows little of
+// another. Margins halved from 2024 to 2025.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,8 @@ struct UtcSpan {
   std::int64_t from_s, until_s;
 };
 
-/// Names of the regimes that `traded` meets and `learnt` does not, "from 26 November 2024 (PICASSO)"; or empty.
+/// Names of the regimes that `traded` meets and `learnt` does not, "from 26 November 2024
+/// (PICASSO)"; or empty.
 std::string regimes_not_learnt(const UtcSpan& learnt, const UtcSpan& traded);
 
 }  // namespace bess

@@ -12,8 +12,9 @@ namespace bess {
 /// Throws UserError unless a picture can be made at `path`, creating its folder.
 void require_drawable(const std::filesystem::path& path);
 
-/// Writes .svg or .png by the name of `path`, and beside it the same on dark paper, NAME_dark. `settled` holds one price a quarter-hour. Throws
-/// UserError when there is nothing to draw, or gnuplot is missing or fails; then nothing is left under the final name.
+/// Writes .svg or .png by the name of `path`, and beside it the same on dark paper, NAME_dark.
+/// `settled` holds one price a quarter-hour. Throws UserError when there is nothing to draw, or
+/// gnuplot is missing or fails; then nothing is left under the final name.
 void plot_statistics(const std::filesystem::path& path, const MarketStatistics& statistics,
                      std::span<const double> settled);
 

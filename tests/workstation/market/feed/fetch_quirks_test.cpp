@@ -1,5 +1,5 @@
-// The download against a server with one quirk at a time: the file is whole, or there is none and one
-// line says why, and what cannot succeed is not asked for again and again.
+// The download against a server with one quirk at a time: the file is whole, or there is none and
+// one line says why, and what cannot succeed is not asked for again and again.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -656,7 +656,8 @@ TEST_F(FetchQuirks, ASettledHoleIsOneWhateverItIsMadeOf) {
   }
 }
 
-/// Kept windows have the hole as well: a second run asks again, and takes what the server has mended.
+/// Kept windows have the hole as well: a second run asks again, and takes what the server has
+/// mended.
 TEST_F(FetchQuirks, AKeptWindowWithASettledHoleIsAskedForAgain) {
   std::atomic<bool> is_mended{false};
   const QuirkyElia elia([&is_mended](const Ask& ask, Answer& answer) {

@@ -1,6 +1,6 @@
-// The program itself, killed while it downloads, at each request and at random: whatever lies under a
-// final name is whole and right, an earlier file stays until the new one is, and the next run goes on
-// and cleans up.
+// The program itself, killed while it downloads, at each request and at random: whatever lies under
+// a final name is whole and right, an earlier file stays until the new one is, and the next run
+// goes on and cleans up.
 #include <gmock/gmock.h>
 #include <signal.h>
 

@@ -1,5 +1,5 @@
-// A local server with the /records of Elia's near-real-time data sets, whose rows a test adds, revises and
-// takes away while it is asked.
+// A local server with the /records of Elia's near-real-time data sets, whose rows a test adds,
+// revises and takes away while it is asked.
 #pragma once
 
 #include <httplib.h>

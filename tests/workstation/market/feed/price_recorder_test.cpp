@@ -1,5 +1,5 @@
-// The recorder against a local server that behaves like Elia's near-real-time data sets on good and bad
-// days. Time is the test's own: each pause of the recorder is one step of the script.
+// The recorder against a local server that behaves like Elia's near-real-time data sets on good and
+// bad days. Time is the test's own: each pause of the recorder is one step of the script.
 #include "workstation/market/feed/price_recorder.h"
 
 #include <gmock/gmock.h>
@@ -38,8 +38,8 @@ const std::int64_t kNoon_s = utc("2025-06-15T10:00:00Z");
 
 class PriceRecorder : public testing::Test {
  protected:
-  /// One script step for each pause of the recorder, at the end of which `pause` seconds have passed; the
-  /// recorder looks once more after the last one.
+  /// One script step for each pause of the recorder, at the end of which `pause` seconds have
+  /// passed; the recorder looks once more after the last one.
   using Script = std::vector<std::function<void()>>;
 
   RecordSummary record(const Script& script) {
@@ -419,7 +419,8 @@ TEST_F(PriceRecorder, AClockThatIsALittleSlowCostsNoRow) {
   EXPECT_FALSE(fs::exists(file("2025-09-23"))) << "a stray date makes no file";
 }
 
-/// What came was stamped hours ahead, or this clock is hours behind: no row of it has arrived when it seems.
+/// What came was stamped hours ahead, or this clock is hours behind: no row of it has arrived when
+/// it seems.
 TEST_F(PriceRecorder, ASourceAheadOfTheClockIsAnErrorAtTheStart) {
   for (int minute = 0; minute < 240; ++minute) {
     elia_.publish(kNoon_s + 7'200 - 60 * (minute + 1), minute, minute);
@@ -431,7 +432,8 @@ TEST_F(PriceRecorder, ASourceAheadOfTheClockIsAnErrorAtTheStart) {
   EXPECT_FALSE(fs::exists(file("2025-06-15")));
 }
 
-/// Later it is told as an outage; nothing of such an answer is recorded, and it goes on when they agree.
+/// Later it is told as an outage; nothing of such an answer is recorded, and it goes on when they
+/// agree.
 TEST_F(PriceRecorder, ASourceThatJumpsAheadIsAnOutage) {
   elia_.publish(kNoon_s - 60, 1, 2);
   const RecordSummary summary = record({[this] {

@@ -1,5 +1,5 @@
-// The download over TLS from servers that are set up wrongly: one line says what, nothing is written, and what cannot
-// succeed is asked once.
+// The download over TLS from servers that are set up wrongly: one line says what, nothing is
+// written, and what cannot succeed is asked once.
 #include <gmock/gmock.h>
 
 #include <algorithm>

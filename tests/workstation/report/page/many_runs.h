@@ -1,5 +1,5 @@
-// Run folders made by hand, for the page of many runs: finished ones, one that failed, one that was stopped and one whose
-// numbers were edited.
+// Run folders made by hand, for the page of many runs: finished ones, one that failed, one that was
+// stopped and one whose numbers were edited.
 #pragma once
 
 #include <filesystem>
