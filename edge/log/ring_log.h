@@ -36,7 +36,8 @@ class RingLog {
   /// on at the size that it has. On a read-only disk it fails, and what is in the log can be read
   /// all the same. False with one line and errno; may be tried again.
   bool open(const char* path, std::int64_t capacity, FileMessage& error);
-  /// For reading, beside a writer.
+  /// For reading, beside a writer. Damage is counted only where the newest record cannot be told
+  /// without.
   bool open_to_read(const char* path, FileMessage& error);
 
   /// For what it was opened for.
@@ -86,6 +87,7 @@ class RingLog {
   bool write_header(int fd) const;
   bool write_newest(int fd) const;
   Scan find_newest();
+  bool find_newest_by_number();
   void look_at(std::span<const std::uint8_t> stored, std::int64_t slot, Scan& scan);
   [[nodiscard]] bool is_lost_at(std::uint64_t number) const;
   [[nodiscard]] std::int64_t offset_of(std::uint64_t number) const;

@@ -33,7 +33,7 @@ std::string omega_csv(const std::vector<OmegaPoint>& points, const Evaluation& t
   // standard_error and gain_over_teacher are names of before schema version 1, until the next
   // release.
   std::string csv =
-      "omega,states_checked,violations_of(1),violations_of(2),violations_of(3),"
+      "omega,states_checked,violations_property_1,violations_property_2,violations_property_3,"
       "divergence_nats,agreement,profit_eur_per_day_per_mwh,standard_error,gain_over_teacher,"
       "gain_standard_error,profit_standard_error,gain_eur_per_day_per_mwh,"
       "profit_standard_error_by_month,gain_standard_error_by_month\n";

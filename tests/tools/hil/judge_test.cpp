@@ -102,6 +102,15 @@ TEST(Judge, SeesAThresholdThatIsNotFollowed) {
   EXPECT_EQ(run.broken(), "");
 }
 
+TEST(Judge, SeesMoreWritesOfFlashThanTheMapAllows) {
+  HandMade run;
+  run.scenario.battery.map = BESS_SOURCE_DIR "/edge/maps/huawei_luna2000.toml";
+  run.evidence.log.back().counters.flash_writes_today = 48;
+  EXPECT_EQ(run.broken(), "");
+  run.evidence.log.back().counters.flash_writes_today = 49;
+  EXPECT_EQ(run.broken(), "flash");
+}
+
 TEST(Judge, SeesAnOrderThatComesTooLate) {
   HandMade run;
   run.order_of(8) = {.utc_ns = HandMade::at_ns(9, 30),

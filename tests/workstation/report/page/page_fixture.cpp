@@ -183,7 +183,7 @@ struct FixtureRun {
   std::vector<BrokenDemand> broken;
 };
 
-const std::vector<NamedEvaluation>& baselines() {
+const std::vector<NamedEvaluation>& judged_baselines() {
   static const std::vector<NamedEvaluation> evaluations = [] {
     std::vector<NamedEvaluation> all;
     for (const char* name : {"rbc", "rbc-tuned", "sdp", kForesightName}) {
@@ -197,7 +197,7 @@ const std::vector<NamedEvaluation>& baselines() {
 
 /// In the order of a run: rule-based first, foresight last.
 std::vector<NamedEvaluation> evaluations_of(const FixtureRun& run) {
-  std::vector<NamedEvaluation> all = baselines();
+  std::vector<NamedEvaluation> all = judged_baselines();
   const NamedEvaluation foresight = all.back();
   all.pop_back();
   const auto plain = std::make_shared<StudentPolicy>(run.plain.net);
@@ -328,8 +328,8 @@ void write_seeds(const std::filesystem::path& folder) {
   std::vector<RunSummary> runs;
   std::string json;
   for (const std::uint64_t seed : {1, 2, 3}) {
-    RunSummary run{{seed_folder(folder, seed)}, {}, baselines()};
-    NamedEvaluation student = baselines()[2];  // what each seed earned differs a little
+    RunSummary run{{seed_folder(folder, seed)}, {}, judged_baselines()};
+    NamedEvaluation student = judged_baselines()[2];  // what each seed earned differs a little
     for (Evaluation* evaluation : {&student.day_reset, &student.carried_over}) {
       for (DayResult& day : evaluation->days) {
         day.profit_eur *= 1 + 0.01 * (static_cast<double>(seed) - 2);
@@ -367,7 +367,7 @@ void write_backtest(const std::filesystem::path& folder) {
                           .window_days = 31,
                           .capacity_mwh = BatteryParameters{}.capacity_wh / 1e6,
                           .provenance = "made by hand"};
-  for (const NamedEvaluation& named : baselines()) {
+  for (const NamedEvaluation& named : judged_baselines()) {
     if (named.name == kForesightName) continue;
     WalkForward traded{
         .name = named.name, .total = named.carried_over, .months = months, .by_month = {}};
@@ -393,6 +393,6 @@ int main(int argc, char** argv) {
   bess::write_runs(folder);
   bess::write_seeds(folder / "seeds");
   bess::write_backtest(folder / "backtest");
-  bess::write_many_runs(folder / "many", bess::baselines());
+  bess::write_many_runs(folder / "many", bess::judged_baselines());
   return 0;
 }
