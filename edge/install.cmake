@@ -25,9 +25,11 @@ install(DIRECTORY maps meters DESTINATION ${CMAKE_INSTALL_DATADIR}/bess COMPONEN
         FILES_MATCHING PATTERN "*.toml")
 install(FILES README.md systemd/bess-edge-serial.conf systemd/bess-notify-mailer.conf
         DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT edge)
-foreach(room battery control log maps memory notify prices recording site storage supervision systemd update)
+foreach(room battery control log maps memory notify page prices recording site storage supervision systemd update)
   install(FILES ${room}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/${room} COMPONENT edge)
 endforeach()
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/tools/monitoring DESTINATION ${CMAKE_INSTALL_DOCDIR}
+        COMPONENT edge)
 install(FILES systemd/bess.sysusers DESTINATION lib/sysusers.d RENAME bess.conf COMPONENT edge)
 # Absolute: bess-edge looks in /etc whatever the prefix. An example, so that no edited file is lost.
 install_with_paths(${CMAKE_CURRENT_SOURCE_DIR}/bess-edge.toml /etc/bess edge.toml.example
