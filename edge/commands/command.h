@@ -15,7 +15,7 @@
 
 #include "edge/commands/duration_text.h"
 #include "edge/settings/edge_config.h"
-#include "shared/utc_text.h"
+#include "edge/why/local_moment.h"
 
 namespace bess {
 
@@ -53,11 +53,14 @@ struct OptionsOf {
               return is_whole(value, number) && number > 0;
             }};
   }
+  /// A text that parse_moment() takes; what "14:32" means is known when the command runs.
   template <auto kMember>
-  static constexpr CommandOption instant(std::string_view name) {
+  static constexpr CommandOption moment(std::string_view name) {
     return {name, true, [](void* given, std::string_view value, std::string& wants) {
-              wants = "an instant such as 2026-11-21T06:00:00Z";
-              return parse_utc(value, static_cast<Given*>(given)->*kMember);
+              wants = "a moment such as 14:32, \"2026-11-23 14:32\" or 2026-11-23T13:32:00Z";
+              static_cast<Given*>(given)->*kMember = value;
+              std::int64_t ignored = 0;
+              return parse_moment(value, 0, ignored);
             }};
   }
   template <auto kMember, std::int64_t kShortestS>

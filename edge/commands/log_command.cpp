@@ -2,53 +2,111 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "edge/account/cycle_account.h"
 #include "edge/commands/command_list.h"
 #include "edge/log/journal.h"
 #include "edge/log/log_reader.h"
 #include "edge/log/log_text.h"
+#include "edge/why/explanation.h"
+#include "edge/why/local_text.h"
 
 namespace bess {
 namespace {
 
 struct LogGiven {
   bool csv = false;
-  std::int64_t last = -1;                ///< -1 = all
-  std::int64_t since_utc_s = INT64_MIN;  ///< INT64_MIN = all
+  bool local = false;
+  std::int64_t last = -1;  ///< -1 = all
+  std::string since;       ///< moments; empty = all
+  std::string until;
+  std::string at;
 };
 
 using O = OptionsOf<LogGiven>;
 constexpr CommandOption kOptions[] = {
-    O::flag<&LogGiven::csv>("--csv"),
-    O::count<&LogGiven::last>("--last"),
-    O::instant<&LogGiven::since_utc_s>("--since"),
+    O::flag<&LogGiven::csv>("--csv"),       O::flag<&LogGiven::local>("--local"),
+    O::count<&LogGiven::last>("--last"),    O::moment<&LogGiven::since>("--since"),
+    O::moment<&LogGiven::until>("--until"), O::moment<&LogGiven::at>("--at"),
 };
 
 constexpr const char* kHelp =
     R"(bess-edge log: what was decided in each cycle, and why
 
-  bess-edge log [--config FILE] [--csv] [--last N] [--since UTC]
+  bess-edge log [--config FILE] [--csv] [--local] [--last N] [--since MOMENT] [--until MOMENT]
+  bess-edge log --at MOMENT ...
 
-  --config FILE  the controller's settings; default /etc/bess/edge.toml
-  --csv          comma-separated with a header; otherwise one key=value line a cycle
-  --last N       only the newest N cycles
-  --since UTC    only from this instant on, e.g. 2026-11-21T06:00:00Z
+  --config FILE   the controller's settings; default /etc/bess/edge.toml
+  --csv           comma-separated with a header; otherwise one key=value line a cycle
+  --local         and local time, energy in Wh (charged is positive) and money in EUR of each cycle
+  --last N        only the newest N cycles
+  --since MOMENT  only from then on
+  --until MOMENT  only up to then
+  --at MOMENT     only the cycle whose order was in force then
 
+A moment is the market's wall clock, 14:32 (the newest that has been) or "2026-11-23 14:32", or UTC:
+2026-11-23T13:32:00Z. Energy and money are estimates, as bess-edge earned has them: the power measured at
+the tick, for two minutes, at the price decided on.
 Read from the ring in [state] folder, oldest first, while the controller runs or not.
 Exit codes: 0 done   1 the log cannot be read   2 the command line is bad
 
   bess-edge log --last 10
+  bess-edge log --local --since 14:00 --until 15:00
   bess-edge log --csv --since 2026-11-01T00:00:00Z > november.csv
 )";
 
-/// Number of the first record to print: torn ones count as records, time may have been stepped.
-std::uint64_t first_number(const LogReader& log, std::int64_t last) {
-  const std::uint64_t oldest = log.oldest_number();
-  const std::uint64_t newest = log.newest_number();
-  if (last < 0 || static_cast<std::uint64_t>(last) > newest) return oldest;
-  return std::max(oldest, newest - static_cast<std::uint64_t>(last) + 1);
+const char* complaint(const LogGiven& given) {
+  const bool has_span = given.last > 0 || !given.since.empty() || !given.until.empty();
+  return !given.at.empty() && has_span ? "--at is one cycle: without --last, --since and --until"
+                                       : nullptr;
+}
+
+/// Which records, by number and by time.
+struct LogSpan {
+  std::uint64_t first = 1;
+  std::uint64_t last = 0;
+  std::int64_t since_utc_s = INT64_MIN;
+  std::int64_t until_utc_s = INT64_MAX;
+};
+
+/// Torn records count, and time may have been stepped: by number first.
+LogSpan span_of(const LogGiven& given, const LogReader& log, std::int64_t now_utc_s) {
+  LogSpan span{.first = log.oldest_number(), .last = log.newest_number()};
+  std::int64_t at_utc_s = 0;
+  if (!given.at.empty() && parse_moment(given.at, now_utc_s, at_utc_s)) {
+    const std::uint64_t number = number_at(log, at_utc_s);
+    return {.first = std::max<std::uint64_t>(number, 1), .last = number};  // 0: none
+  }
+  if (given.last >= 0 && static_cast<std::uint64_t>(given.last) <= span.last) {
+    span.first = std::max(span.first, span.last - static_cast<std::uint64_t>(given.last) + 1);
+  }
+  if (!given.since.empty()) parse_moment(given.since, now_utc_s, span.since_utc_s);
+  if (!given.until.empty()) parse_moment(given.until, now_utc_s, span.until_utc_s);
+  return span;
+}
+
+void print_csv(const CycleRecord& record, bool local) {
+  char line[kLogLineBytes];
+  format_csv_line(record, line);
+  std::fputs(line, stdout);
+  if (local) {
+    std::printf(",%s,%.2f,%.6f", local_text(record.utc_s).c_str(), cycle_energy_wh(record),
+                cycle_earned_eur(record));
+  }
+  std::putchar('\n');
+}
+
+void print_text(const CycleRecord& record, bool local) {
+  char line[kLogLineBytes];
+  format_log_line(record, line);
+  if (local) {
+    std::printf("%s  %+8.1f Wh  %+8.4f EUR  ", local_text(record.utc_s).c_str(),
+                cycle_energy_wh(record), cycle_earned_eur(record));
+  }
+  std::puts(line);
 }
 
 int run_log(const LogGiven& given, SettingsFile& settings) {
+  set_market_time_zone();
   const EdgeConfig& config = settings.config;
   LogReader log;
   FileMessage error;
@@ -56,16 +114,17 @@ int run_log(const LogGiven& given, SettingsFile& settings) {
     report(JournalLevel::kError, "%s", error.c_str());
     return 1;
   }
-  char line[kLogLineBytes];
   if (given.csv) {
-    format_csv_header(line);
-    std::puts(line);
+    char header[kLogLineBytes];
+    format_csv_header(header);
+    std::printf("%s%s\n", header, given.local ? ",local,energy_wh,earned_eur" : "");
   }
+  const LogSpan span = span_of(given, log, config.clock.now_utc_ns() / kNanosecondsPerSecond);
   CycleRecord record;
-  for (std::uint64_t n = first_number(log, given.last); n <= log.newest_number(); ++n) {
-    if (!log.read(n, record) || record.utc_s < given.since_utc_s) continue;
-    given.csv ? format_csv_line(record, line) : format_log_line(record, line);
-    std::puts(line);
+  for (std::uint64_t n = span.first; n <= span.last; ++n) {
+    if (!log.read(n, record)) continue;
+    if (record.utc_s < span.since_utc_s || record.utc_s > span.until_utc_s) continue;
+    given.csv ? print_csv(record, given.local) : print_text(record, given.local);
   }
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return 0;
   report(JournalLevel::kError, "the output cannot be written");
@@ -79,6 +138,6 @@ const EdgeCommand kLogCommand = {.name = "log",
                                  .does = "what was decided, and why",
                                  .help = kHelp,
                                  .options = kOptions,
-                                 .run = run_with<LogGiven, run_log>};
+                                 .run = run_with<LogGiven, run_log, complaint>};
 
 }  // namespace bess

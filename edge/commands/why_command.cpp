@@ -5,7 +5,6 @@
 #include "edge/commands/command_list.h"
 #include "edge/log/journal.h"
 #include "edge/why/explanation.h"
-#include "edge/why/local_moment.h"
 #include "edge/why/local_text.h"
 
 namespace bess {
@@ -16,15 +15,9 @@ struct WhyGiven {
   bool json = false;
 };
 
-bool store_moment(void* given, std::string_view value, std::string& wants) {
-  wants = "a moment such as 14:32, \"2026-11-23 14:32\" or 2026-11-23T13:32:00Z";
-  static_cast<WhyGiven*>(given)->at = value;
-  std::int64_t ignored = 0;
-  return parse_moment(value, 0, ignored);
-}
-
-constexpr CommandOption kOptions[] = {{"--at", true, store_moment},
-                                      OptionsOf<WhyGiven>::flag<&WhyGiven::json>("--json")};
+using O = OptionsOf<WhyGiven>;
+constexpr CommandOption kOptions[] = {O::moment<&WhyGiven::at>("--at"),
+                                      O::flag<&WhyGiven::json>("--json")};
 
 constexpr const char* kHelp =
     R"(bess-edge why: why the battery does what it does, and at which price it would do something else

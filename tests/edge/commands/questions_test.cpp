@@ -108,6 +108,27 @@ TEST_F(Questions, WhyRefusesWhatItCannotAnswer) {
   }
 }
 
+TEST_F(Questions, TheLogIsAskedByTheClockOnTheWall) {
+  log_until_now(30);
+  const auto lines = [](const std::string& text) { return std::ranges::count(text, '\n'); };
+  const auto ago = [&](int cycles) {
+    return std::string(local_text(newest_utc_s_ - cycles * kSecondsPerStep).view());
+  };
+  EXPECT_EQ(lines(ask({"log"}).out), 30);
+  EXPECT_EQ(lines(ask({"log", "--since", ago(9)}).out), 10);
+  EXPECT_EQ(lines(ask({"log", "--since", ago(9), "--until", ago(5)}).out), 5);
+  EXPECT_EQ(lines(ask({"log", "--until", ago(5), "--last", "10"}).out), 5);
+  EXPECT_EQ(lines(ask({"log", "--since", ago(5), "--until", ago(9)}).out), 0);
+  const std::string one = ask({"log", "--at", ago(7), "--local"}).out;
+  EXPECT_EQ(lines(one), 1);
+  // 3 kW for two minutes, at 40 EUR/MWh.
+  EXPECT_THAT(one, StartsWith(ago(7) + "    +100.0 Wh   -0.0040 EUR  utc="));
+  const std::string csv = ask({"log", "--csv", "--local", "--at", ago(7)}).out;
+  EXPECT_THAT(csv, HasSubstr(",local,energy_wh,earned_eur\n"));
+  EXPECT_THAT(csv, HasSubstr("," + ago(7) + ",100.00,-0.004000\n"));
+  EXPECT_EQ(ask({"log", "--at", "2020-01-01 12:00"}).out, "");
+}
+
 TEST_F(Questions, EarnedAddsTheDaysUp) {
   log_until_now(60);
   const std::string span = std::string(local_text(newest_utc_s_ - 7'200).view()).substr(0, 10) +
