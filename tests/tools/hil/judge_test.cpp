@@ -229,6 +229,30 @@ TEST(Judge, TakesAnOrderThatTheSiteCutForTheEdgesOwn) {
   EXPECT_EQ(run.broken(), "");
 }
 
+/// An order that the tick finds in force is not written again; a rise of the house some seconds
+/// later cuts it before the judge looks.
+TEST(Judge, TakesAnOrderThatStoodAndWasCutAtOnceForTheEdgesOwn) {
+  HandMade run = with_house("import_w_max = 3000");
+  run.scenario.invariants = {"order"};
+  CycleRecord cycle;
+  cycle.utc_s = kStartS + 600;
+  cycle.mode = Mode::kRunning;
+  cycle.written = true;
+  cycle.ordered_power_w = 2'000;
+  run.evidence.log.insert(run.evidence.log.begin(), cycle);
+  run.order_of(8).power_w = 2'000;
+  run.order_of(10).utc_ns = HandMade::at_ns(10, 11);  // the cut; nothing at the tick itself
+  EXPECT_EQ(run.broken(), "");
+  run.order_of(8).power_w = 1'000;  // it was never in force
+  EXPECT_EQ(run.broken(), "order");
+  run.order_of(8).power_w = 2'000;
+  run.order_of(10).power_w = 2'500;  // nothing was cut
+  EXPECT_EQ(run.broken(), "order");
+  run.order_of(10).power_w = 0;
+  run.order_of(8).kind = DispatchEvent::Kind::kExpiry;  // it had run out
+  EXPECT_EQ(run.broken(), "order");
+}
+
 TEST(Judge, HoldsTheLogAgainstMarketBatteryAndStudent) {
   HandMade run;
   CycleRecord cycle;

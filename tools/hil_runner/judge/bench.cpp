@@ -172,8 +172,12 @@ bool Bench::may_be_cut(double from_w, double to_w) const {
 
 bool Bench::was_cut(std::int64_t tick_ns, std::int64_t by_ns, double ordered_w) const {
   if (!may_be_cut(ordered_w, commands.at(by_ns).power_w)) return false;
+  const auto is_ordered = [&](double power_w) { return std::abs(power_w - ordered_w) <= 2; };
+  // What stands already is not written again: then it is the order that the tick found.
+  const CommandInForce found = commands.at(tick_ns);
+  if (found.is_driven && is_ordered(found.power_w)) return true;
   return std::ranges::any_of(evidence.orders, [&](const DispatchEvent& e) {
-    return e.utc_ns >= tick_ns && e.utc_ns <= by_ns && std::abs(e.power_w - ordered_w) <= 2;
+    return e.utc_ns >= tick_ns && e.utc_ns <= by_ns && is_ordered(e.power_w);
   });
 }
 
