@@ -11,6 +11,7 @@
 #include <cstring>
 #include <string>
 
+#include "edge/beside/stop_signals.h"
 #include "edge/notify/journal_line.h"
 #include "edge/notify/notifier.h"
 #include "edge/notify/notify_lock.h"
@@ -91,16 +92,6 @@ void print_check(const NotifySettings& settings) {
   }
 }
 
-/// Blocked, and taken while waiting: a round is never cut in the middle.
-sigset_t block_stop_signals() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGTERM);
-  sigaddset(&signals, SIGINT);
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  return signals;
-}
-
 /// Until an instant of the monotonic clock; false when it is to end before.
 bool wait_until(std::int64_t until_ns, int stop_fd, Notifier& notifier) {
   pollfd waiting[] = {{.fd = stop_fd, .events = POLLIN, .revents = 0},
@@ -146,7 +137,6 @@ int run(const Options& options) {
         "alone");
   }
   const sigset_t stop_signals = block_stop_signals();
-  signal(SIGPIPE, SIG_IGN);
   set_market_time_zone();
   prepare_webhooks();
   if (options.task == Task::kTest) {  // beside one that watches

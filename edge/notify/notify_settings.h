@@ -1,11 +1,11 @@
-// [notify] of the controller's configuration, and what else of it the notifier needs. Read apart
-// from the controller's own reader: when the configuration keeps the controller from starting,
-// somebody must still be able to tell.
+// [notify] of the controller's configuration, and what else of it the notifier needs.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
+
+#include "edge/beside/controller_places.h"
 
 namespace bess {
 
@@ -19,11 +19,7 @@ struct MqttSettings {
   std::int32_t wait_ms_max = 5'000;  ///< for a connection, and for an acknowledgement
 };
 
-struct NotifySettings {
-  std::string config_path;
-  std::string program;                     ///< bess-edge
-  std::string ring;                        ///< the decision log
-  std::string run_ring;                    ///< what of it is in memory; empty = none
+struct NotifySettings : ControllerPlaces {
   std::string memory;                      ///< file of what was told
   std::vector<std::string> memory_copies;  ///< the same, for a disk that forgets or dies
   std::string lock;                        ///< file that the one notifier of this memory holds

@@ -8,6 +8,7 @@
 #include <string>
 #include <thread>
 
+#include "edge/beside/stop_signals.h"
 #include "edge/page/page_server.h"
 #include "edge/page/page_settings.h"
 #include "shared/local_time.h"
@@ -92,12 +93,7 @@ int run(const Options& options) {
   if (!load_page_settings(options.config_path, settings, error)) return fail(error);
   if (options.port >= 0) settings.port = options.port;
   if (options.is_check) return print_check(settings), 0;
-  sigset_t stop_signals;
-  sigemptyset(&stop_signals);
-  sigaddset(&stop_signals, SIGTERM);
-  sigaddset(&stop_signals, SIGINT);
-  pthread_sigmask(SIG_BLOCK, &stop_signals, nullptr);  // before any thread is there
-  signal(SIGPIPE, SIG_IGN);
+  const sigset_t stop_signals = block_stop_signals();
   set_market_time_zone();
   PageServer server(settings);
   if (!server.bind(error)) return fail(error);

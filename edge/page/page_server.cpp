@@ -5,7 +5,7 @@
 
 #include <functional>
 
-#include "edge/page/journal_line.h"
+#include "edge/log/journal.h"
 #include "edge/page/page_files.h"
 #include "edge/page/page_html.h"
 #include "edge/page/page_orders.h"
@@ -149,7 +149,8 @@ void PageServer::take_order(const httplib::Request& request, httplib::Response& 
   const std::string who(settings_.tokens.owner_of(token_of(request)));
   if (who.empty()) {
     wrong_tokens_.count(now_ns);
-    say_on_page(JournalLevel::kWarning, "an order with a wrong token, from " + request.remote_addr);
+    write_journal_line(JournalLevel::kWarning,
+                       "bess-page: an order with a wrong token, from " + request.remote_addr);
     return refuse(response, 401, "the token is wrong");
   }
   OrderOutcome outcome;
@@ -164,8 +165,8 @@ void PageServer::take_order(const httplib::Request& request, httplib::Response& 
     const ProgramResult result = run_and_hear(order.words, kOrderS);
     outcome = {result.is_well() ? one_line(result.output, 400) : result.complaint(),
                !result.is_well()};
-    say_on_page(JournalLevel::kNotice,
-                who + " orders:" + said + ": " + (outcome.is_refused ? outcome.text : "done"));
+    write_journal_line(JournalLevel::kNotice, "bess-page: " + who + " orders:" + said + ": " +
+                                                  (outcome.is_refused ? outcome.text : "done"));
     views_.expire();
   }
   response.status = outcome.is_refused ? 422 : 200;

@@ -1,21 +1,16 @@
-// [page] of the controller's configuration, and where the controller's log lies. Read apart from
-// the controller's own reader, as [notify] is: a configuration that keeps the controller from
-// starting must still be seen.
+// [page] of the controller's configuration, and where the controller's log lies.
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "edge/beside/controller_places.h"
 #include "edge/page/access_tokens.h"
 
 namespace bess {
 
-struct PageSettings {
-  std::string config_path;
-  std::string program;             ///< bess-edge, which answers
-  std::string ring;                ///< the decision log
-  std::string run_ring;            ///< what of it is in memory; empty = none
+struct PageSettings : ControllerPlaces {
   std::string name;                ///< in the title
   std::string host = "127.0.0.1";  ///< numeric; where it listens
   std::int32_t port = 8745;

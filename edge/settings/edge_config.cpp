@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <filesystem>
 
 #include "edge/prices/http_secrets.h"
 #include "edge/registers/codec.h"
@@ -171,8 +170,7 @@ void read_price(TomlTable table, EdgeConfig& config) {
   check_history_url(table, config);
   transport.has_header_file = !header_file.empty();
   check_price_transport(table, {price, config.history}, transport);
-  const auto folder = std::filesystem::path(table.file()).parent_path();
-  const std::string ca_file = (folder / price.http.ca_file.c_str()).string();
+  const std::string ca_file = table.resolved(price.http.ca_file.view());
   if (!price.http.ca_file.assign(ca_file)) table.fail("ca_file", "is too long a path");
   if (url.starts_with("https://") && access(price.http.ca_file.c_str(), R_OK) != 0) {
     table.fail("ca_file", "= " + ca_file +
@@ -180,7 +178,7 @@ void read_price(TomlTable table, EdgeConfig& config) {
                               "or name your own file");
   }
   if (header_file.empty() || !table.ok()) return;
-  load_http_headers((folder / header_file.c_str()).c_str(), price.http.headers, table.error());
+  load_http_headers(table.resolved(header_file.view()).c_str(), price.http.headers, table.error());
 }
 
 /// In whole EUR/MWh, as the proof counts them: 1500 as well as 1500.0.
@@ -239,11 +237,6 @@ void keep_path(TomlTable& table, std::string_view key, const std::string& path,
   if (!kept.assign(path)) table.fail(key, "is too long");
 }
 
-/// Paths are relative to the configuration file's folder; an absolute one stays as it is.
-std::string resolved(const TomlTable& table, std::string_view path) {
-  return (std::filesystem::path(table.file()).parent_path() / path).string();
-}
-
 void keep_run_paths(TomlTable& table, const std::string& path, EdgeConfig& config) {
   keep_path(table, "run_folder", path, config.state.run_folder);
   keep_path(table, "run_folder", path + "/decisions.ring", config.log.run_ring);
@@ -257,12 +250,12 @@ void read_state(TomlTable table, EdgeConfig& config) {
   if (folder.empty()) table.fail("folder", "must not be empty");
   table.text("lock_folder", config.state.lock_folder);
   table.boolean("drive_without_state", config.state.drive_without_state);
-  const std::string path = resolved(table, folder.view());
+  const std::string path = table.resolved(folder.view());
   // As the service has it; elsewhere nobody says which folder is in memory.
   FixedText<255> run_folder(kInstalledEdge.run_beside(path));
   table.text("run_folder", run_folder);
   table.finish();
-  if (!run_folder.empty()) keep_run_paths(table, resolved(table, run_folder.view()), config);
+  if (!run_folder.empty()) keep_run_paths(table, table.resolved(run_folder.view()), config);
   keep_path(table, "folder", path, config.state.folder);
   keep_path(table, "folder", path + "/decisions.ring", config.log.ring);
   keep_path(table, "folder", path + "/status.json", config.log.status);
@@ -274,7 +267,7 @@ void read_metrics(TomlTable table, EdgeConfig& config) {
   table.text("prometheus", prometheus);
   table.finish();
   if (!prometheus.empty()) {
-    keep_path(table, "prometheus", resolved(table, prometheus.view()), config.log.metrics);
+    keep_path(table, "prometheus", table.resolved(prometheus.view()), config.log.metrics);
   }
 }
 
@@ -283,7 +276,7 @@ void read_log(TomlTable table, EdgeConfig& config) {
   table.text("csv", csv);
   table.integer("days", config.log.ring_days, 1, 3'660);
   table.finish();
-  if (!csv.empty()) keep_path(table, "csv", resolved(table, csv.view()), config.log.csv);
+  if (!csv.empty()) keep_path(table, "csv", table.resolved(csv.view()), config.log.csv);
 }
 
 void read_simulation(TomlTable table, ScaledClock& clock) {

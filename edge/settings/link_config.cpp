@@ -5,7 +5,6 @@
 
 #include <cerrno>
 #include <cstring>
-#include <filesystem>
 
 #include "edge/registers/map_file.h"
 
@@ -61,8 +60,7 @@ void check_link(TomlTable& table, const BatteryLinkSettings& link) {
 bool load_linked_map(TomlTable& table, std::string_view map_file, std::string_view variant,
                      BatteryLinkSettings& link, RegisterMap& map, FixedText<511>& path) {
   if (!table.ok()) return false;
-  const auto folder = std::filesystem::path(table.file()).parent_path();
-  const std::string map_path = (folder / map_file).string();
+  const std::string map_path = table.resolved(map_file);
   if (!path.assign(map_path)) table.fail("map", "is too long");
   if (access(map_path.c_str(), R_OK) != 0) {
     table.fail("map", "= " + map_path + " cannot be read: " + std::strerror(errno) +

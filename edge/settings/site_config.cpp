@@ -106,8 +106,7 @@ void read_limits(TomlTable table, SiteConfig& site) {
   table.choice("on_timeout", on_timeout, {"release_limits", "idle"});
   table.finish();
   if (!table.ok()) return;
-  const auto folder = std::filesystem::path(table.file()).parent_path();
-  if (!site.limit_file.assign((folder / file.c_str()).string())) {
+  if (!site.limit_file.assign(table.resolved(file.view()))) {
     table.fail("file", "is too long a path");
   }
   site.settings.has_outside_limits = true;

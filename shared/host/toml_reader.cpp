@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 
 #include "shared/host/text.h"
 
@@ -89,6 +90,19 @@ void TomlTable::scaled(std::string_view key, std::int32_t& value, double scale, 
 
 const std::string* TomlTable::text(std::string_view key) {
   return expect<std::string>(key, "must be text in quotes");
+}
+
+void TomlTable::line(std::string_view key, std::string& value) {
+  const std::string* const found = text(key);
+  if (found == nullptr) return;
+  for (const char c : *found) {
+    if (static_cast<unsigned char>(c) < 0x20) return fail(key, "must be one line of text");
+  }
+  value = *found;
+}
+
+std::string TomlTable::resolved(std::string_view path) const {
+  return (std::filesystem::path(file_).parent_path() / path).string();
 }
 
 void TomlTable::choice(std::string_view key, int& index,

@@ -47,9 +47,14 @@ class TomlTable {
   void choice(std::string_view key, int& index, std::initializer_list<std::string_view> choices);
   /// What the key holds; null when it is absent, or is something else, which is an error.
   const std::string* text(std::string_view key);
+  /// Text without control characters.
+  void line(std::string_view key, std::string& value);
   const TomlValue* table(std::string_view key);
   const TomlArray* array(std::string_view key);
   const TomlValue* node(std::string_view key);
+
+  /// Paths are relative to the file's folder; an absolute one stays as it is.
+  [[nodiscard]] std::string resolved(std::string_view path) const;
 
   /// Complains about every key that was not asked for.
   void finish();

@@ -1,0 +1,28 @@
+// What programs beside the controller know of it by its configuration: which program answers, and
+// where its decision log lies. Read apart from the controller's own reader: a configuration that
+// keeps the controller from starting must still be seen, and told.
+#pragma once
+
+#include <string>
+
+#include "shared/host/toml_reader.h"
+
+namespace bess {
+
+struct ControllerPlaces {
+  std::string config_path;
+  std::string program;   ///< bess-edge, which answers
+  std::string ring;      ///< the decision log
+  std::string run_ring;  ///< what of it is in memory; empty = none
+};
+
+/// Of the whole configuration. `program` is bess-edge beside this program, as both are installed.
+ControllerPlaces controller_places(TomlTable& root);
+
+/// Key program of a section: another one than that.
+void read_program(TomlTable& table, ControllerPlaces& places);
+
+/// Of this machine; "bess" where it has no name.
+std::string host_name();
+
+}  // namespace bess
