@@ -1,5 +1,6 @@
 #include "edge/account/statement.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "shared/host/text.h"
@@ -29,17 +30,26 @@ double Statement::discharged_kwh() const {
   return sum([](const DayAccount& day) { return day.discharged_kwh(); });
 }
 
+const DayAccount* Statement::first_measured() const {
+  const auto found = std::ranges::find_if(days_, &DayAccount::has_soc);
+  return found == days_.end() ? nullptr : &*found;
+}
+
+const DayAccount* Statement::last_measured() const {
+  const auto found = std::find_if(days_.rbegin(), days_.rend(),
+                                  [](const DayAccount& day) { return day.has_soc(); });
+  return found == days_.rend() ? nullptr : &*found;
+}
+
+double Statement::first_soc_frac() const {
+  return has_soc() ? static_cast<double>(first_measured()->first_soc_e4()) / kSocFullE4 : 0;
+}
+double Statement::capacity_wh() const { return has_soc() ? last_measured()->capacity_wh() : 0; }
+
 double Statement::stored_kwh() const {
-  const DayAccount* first = nullptr;
-  const DayAccount* last = nullptr;
-  for (const DayAccount& day : days_) {
-    if (!day.has_soc()) continue;
-    if (first == nullptr) first = &day;
-    last = &day;
-  }
-  if (first == nullptr) return 0;
-  return static_cast<double>(last->last_soc_e4() - first->first_soc_e4()) / kSocFullE4 *
-         last->capacity_wh() / 1'000;
+  if (!has_soc()) return 0;
+  const std::int32_t moved_e4 = last_measured()->last_soc_e4() - first_measured()->first_soc_e4();
+  return static_cast<double>(moved_e4) / kSocFullE4 * capacity_wh() / 1'000;
 }
 
 double Statement::mean_price_eur_per_mwh() const {
@@ -84,7 +94,7 @@ std::string Statement::text() const {
       "at the end %.1f kWh %s are stored than at the beginning, worth %.2f EUR at the mean price: "
       "%+.2f EUR with the same charge at both ends\n",
       std::abs(stored_kwh()), stored_kwh() < 0 ? "less" : "more", std::abs(stored_eur()),
-      earned_eur() + stored_eur());
+      earned_at_equal_soc_eur());
   const std::string others = interventions_text(cycles_by_reason());
   if (!others.empty())
     add_formatted(text, "cycles that the student did not decide: %s\n", others.c_str());
@@ -143,7 +153,7 @@ Json Statement::json() const {
                        {"discharged_kwh", Decimals{discharged_kwh(), 3}},
                        {"stored_kwh", Decimals{stored_kwh(), 3}},
                        {"stored_eur", Decimals{stored_eur(), 4}},
-                       {"earned_at_equal_soc_eur", Decimals{earned_eur() + stored_eur(), 4}},
+                       {"earned_at_equal_soc_eur", Decimals{earned_at_equal_soc_eur(), 4}},
                        {"mean_price_eur_per_mwh", Decimals{mean_price_eur_per_mwh(), 2}},
                        {"days", std::move(days)}});
 }

@@ -25,6 +25,12 @@ class Statement {
   [[nodiscard]] double discharged_kwh() const;
   /// More (negative: less) is stored at the end than at the beginning.
   [[nodiscard]] double stored_kwh() const;
+  [[nodiscard]] double earned_at_equal_soc_eur() const { return earned_eur() + stored_eur(); }
+  /// As it was first measured; false: never.
+  [[nodiscard]] bool has_soc() const { return first_measured() != nullptr; }
+  [[nodiscard]] double first_soc_frac() const;
+  /// Of the newest day that it was measured on.
+  [[nodiscard]] double capacity_wh() const;
   /// Of the valued cycles of all days.
   [[nodiscard]] double mean_price_eur_per_mwh() const;
   [[nodiscard]] double stored_eur() const {
@@ -39,6 +45,9 @@ class Statement {
   template <typename OfDay>
   [[nodiscard]] double sum(const OfDay& of_day) const;
   [[nodiscard]] CyclesByReason cycles_by_reason() const;
+  /// Null: none.
+  [[nodiscard]] const DayAccount* first_measured() const;
+  [[nodiscard]] const DayAccount* last_measured() const;
 
   std::vector<DayAccount> days_;
 };

@@ -3,6 +3,7 @@
 
 #include "edge/account/account_days.h"
 #include "edge/account/period.h"
+#include "edge/account/rivals.h"
 #include "edge/account/statement.h"
 #include "edge/commands/command_list.h"
 #include "edge/log/journal.h"
@@ -13,23 +14,26 @@ namespace {
 
 struct EarnedGiven {
   std::string period;  ///< empty = today
+  bool beside = false;
   bool csv = false;
   bool json = false;
 };
 
 using O = OptionsOf<EarnedGiven>;
-constexpr CommandOption kOptions[] = {O::word<&EarnedGiven::period>(),
-                                      O::flag<&EarnedGiven::csv>("--csv"),
-                                      O::flag<&EarnedGiven::json>("--json")};
+constexpr CommandOption kOptions[] = {
+    O::word<&EarnedGiven::period>(), O::flag<&EarnedGiven::beside>("--beside"),
+    O::flag<&EarnedGiven::csv>("--csv"), O::flag<&EarnedGiven::json>("--json")};
 
 constexpr const char* kHelp =
     R"(bess-edge earned: what the battery earned in some days
 
-  bess-edge earned [PERIOD] [--config FILE] [--csv | --json]
+  bess-edge earned [PERIOD] [--config FILE] [--beside] [--csv | --json]
 
   PERIOD         today, yesterday, week, month, a day as 2026-11-23, or 2026-11-01..2026-11-23; local days,
                  default today; week and month are those that today lies in
   --config FILE  the controller's settings; default /etc/bess/edge.toml
+  --beside       and what rest, a rule, the student undisturbed, and foresight would have earned on the
+                 same prices with this battery (90 % there and back), from the same charge to the same
   --csv          one line a day, with a header
   --json         one JSON object: the days, and all of them together
 
@@ -39,11 +43,13 @@ is told beside it. Read from the log in [state] folder: days that it no longer h
 Exit codes: 0 done   1 the log cannot be read, or holds nothing of these days   2 the command line is bad
 
   bess-edge earned
+  bess-edge earned week --beside
   bess-edge earned month --csv > november.csv
 )";
 
 const char* complaint(const EarnedGiven& given) {
   if (given.csv && given.json) return "--csv or --json, not both";
+  if (given.csv && given.beside) return "--beside is of all days together: not with --csv";
   Period period;
   if (given.period.empty() || parse_period(given.period, 19'700'101, period)) return nullptr;
   return "the period must be today, yesterday, week, month, a day as 2026-11-23, or two with .. "
@@ -53,6 +59,28 @@ const char* complaint(const EarnedGiven& given) {
 int fail(const std::string& message) {
   report(JournalLevel::kError, "%s", message.c_str());
   return 1;
+}
+
+/// As the controller may use it.
+BatteryParameters battery_of(const EdgeConfig& config, const Statement& statement) {
+  const GuardSettings& guard = config.control.guard;
+  BatteryParameters battery;
+  battery.power_w_max = guard.power_w;
+  battery.capacity_wh = statement.capacity_wh();
+  battery.soc_min_frac = static_cast<double>(guard.soc_min_e4) / kSocFullE4;
+  battery.soc_max_frac = static_cast<double>(guard.soc_max_e4) / kSocFullE4;
+  return battery;
+}
+
+std::string text_of(const EarnedGiven& given, const Statement& statement, const Rivals& rivals) {
+  const double earned_eur = statement.earned_at_equal_soc_eur();
+  if (given.csv) return statement.csv();
+  if (!given.json) {
+    return statement.text() + (given.beside ? rivals_text(rivals, earned_eur) : "");
+  }
+  Json json = statement.json();
+  if (given.beside) json.set("beside", rivals_json(rivals, earned_eur));
+  return json.text();
 }
 
 int run_earned(const EarnedGiven& given, SettingsFile& settings) {
@@ -69,10 +97,13 @@ int run_earned(const EarnedGiven& given, SettingsFile& settings) {
     return fail("the log holds no cycle of " + DayAccount(period.first_day).date() + " to " +
                 DayAccount(period.last_day).date());
   }
-  const std::string text = given.json  ? statement.json().text()
-                           : given.csv ? statement.csv()
-                                       : statement.text();
-  std::fputs(text.c_str(), stdout);
+  Rivals rivals;
+  if (given.beside) {
+    rivals = find_rivals(priced_cycles(log, period.first_day, period.last_day),
+                         statement.first_soc_frac(), battery_of(config, statement),
+                         config.control.guard.thresholds);
+  }
+  std::fputs(text_of(given, statement, rivals).c_str(), stdout);
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return 0;
   return fail("the output cannot be written");
 }

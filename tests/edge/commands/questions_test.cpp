@@ -140,6 +140,11 @@ TEST_F(Questions, EarnedAddsTheDaysUp) {
   EXPECT_NEAR(json.value()["earned_eur"].number().value(), -6.0 / 1'000 * 40, 1e-9);
   EXPECT_THAT(ask({"earned", span}).out, HasSubstr("estimate: "));
   EXPECT_THAT(ask({"earned", span, "--csv"}).out, StartsWith("date,earned_eur,"));
+  EXPECT_THAT(ask({"earned", span, "--beside"}).out, HasSubstr("the student undisturbed "));
+  const Json beside = Json::parse(ask({"earned", span, "--beside", "--json"}).out);
+  EXPECT_DOUBLE_EQ(beside.value()["beside"]["this_battery_eur"].number().value(),
+                   beside.value()["earned_at_equal_soc_eur"].number().value());
+  EXPECT_THAT(ask({"earned", span, "--beside", "--csv"}).error, HasSubstr("not with --csv"));
 }
 
 TEST_F(Questions, EarnedRefusesWhatItCannotAnswer) {
