@@ -29,18 +29,20 @@ constexpr const char* kHelp =
 
   bess-edge earned [PERIOD] [--config FILE] [--beside] [--csv | --json]
 
-  PERIOD         today, yesterday, week, month, a day as 2026-11-23, or 2026-11-01..2026-11-23; local days,
-                 default today; week and month are those that today lies in
+  PERIOD         today, yesterday, week, month, a day as 2026-11-23, or 2026-11-01..2026-11-23;
+                 local days, default today; week and month are those that today lies in
   --config FILE  the controller's settings; default /etc/bess/edge.toml
-  --beside       and what rest, a rule, the student undisturbed, and foresight would have earned on the
-                 same prices with this battery (90 % there and back), from the same charge to the same
+  --beside       and what rest, a rule, the student undisturbed, and foresight would have earned
+                 on the same prices with this battery (90 % there and back), from the same charge
+                 to the same
   --csv          one line a day, with a header
   --json         one JSON object: the days, and all of them together
 
 Money is an estimate: the power measured at each tick, at the price that was decided on; without the
-settlement of the quarter-hour, fees and taxes. What is stored more or less at the end than at the beginning
-is told beside it. Read from the log in [state] folder: days that it no longer holds are not counted.
-Exit codes: 0 done   1 the log cannot be read, or holds nothing of these days   2 the command line is bad
+settlement of the quarter-hour, fees and taxes. What is stored more or less at the end than at the
+beginning is told beside it. Read from the log in [state] folder: days that it no longer holds are
+not counted.
+Exit codes: 0 done   1 the log cannot be read, or has nothing of these days   2 bad command line
 
   bess-edge earned
   bess-edge earned week --beside

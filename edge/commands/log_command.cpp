@@ -44,8 +44,8 @@ constexpr const char* kHelp =
   --at MOMENT     only the cycle whose order was in force then
 
 A moment is the market's wall clock, 14:32 (the newest that has been) or "2026-11-23 14:32", or UTC:
-2026-11-23T13:32:00Z. Energy and money are estimates, as bess-edge earned has them: the power measured at
-the tick, for two minutes, at the price decided on.
+2026-11-23T13:32:00Z. Energy and money are estimates, as bess-edge earned has them: the power
+measured at the tick, for two minutes, at the price decided on.
 Read from the ring in [state] folder, oldest first, while the controller runs or not.
 Exit codes: 0 done   1 the log cannot be read   2 the command line is bad
 
