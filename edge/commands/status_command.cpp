@@ -8,9 +8,11 @@
 #include "edge/log/health.h"
 #include "edge/log/journal.h"
 #include "edge/log/log_reader.h"
+#include "edge/settings/idle_keys.h"
 #include "edge/storage/published_status.h"
 #include "edge/storage/storage_health.h"
 #include "edge/update/trial_state.h"
+#include "edge/why/next_decision.h"
 #include "shared/host/json.h"
 #include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
@@ -44,6 +46,8 @@ constexpr const char* kHelp =
   --follow       again every two seconds, until Ctrl-C
   --no-lock      whether it runs is told by its process number alone: its lock is not even tried
 
+What comes next is told while it runs: the next decision if price and SoC stay, reserves and full
+charges of the plan, and keys of the settings that have no effect.
 Health is ok, degraded (with the reasons) or not running. A status older than two cycles is a WARN,
 older than four CRITICAL. Of a controller that has ended, what it was last and when that was.
 Exit codes: 0 ok   1 degraded, or the files cannot be read   2 the command line is bad   3 not running
@@ -236,6 +240,27 @@ void print_last_orders(const EdgeConfig& config) {
   }
 }
 
+/// What comes next, from the newest record; false where the log has none.
+bool find_next(const EdgeConfig& config, NextDecision& next) {
+  LogReader log;
+  FileMessage ignored;
+  CycleRecord newest;
+  if (!log.open(config.log, ignored) || !log.read(log.newest_number(), newest)) return false;
+  const std::int64_t now_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
+  next = find_next_decision(newest, now_utc_s, config.control);
+  return true;
+}
+
+void print_next(const EdgeConfig& config) {
+  NextDecision next;
+  if (find_next(config, next)) std::fputs(next_decision_text(next).c_str(), stdout);
+  const char* head = "no effect";
+  for (const std::string& key : keys_without_effect(config)) {
+    std::printf("%-10s %s\n", head, key.c_str());
+    head = "";
+  }
+}
+
 /// Who decides; of one that has ended, what it was and when its last record was made.
 void print_controller(JsonValue s, bool is_running) {
   const char* const part = is_true(s["control"]) ? "in control" : "read-only";
@@ -270,6 +295,7 @@ void print_text(const EdgeConfig& config, const PublishedStatus& published, cons
                 text_of(status["battery"]), text_of(status["map"]),
                 *variant == '\0' ? "" : ", variant ", variant);
     if (whole(field<&T::cycles>(status)) > 0) print_last_cycle(status, is_running);
+    if (is_running) print_next(config);
     print_counters(status);
   }
   const std::string note = update_note(update);
@@ -288,7 +314,8 @@ Json update_json(const TrialState& update) {
                        {"needed_cycles", update.needed_cycles}});
 }
 
-void print_json(PublishedStatus published, const Health& health, const TrialState& update) {
+void print_json(const EdgeConfig& config, PublishedStatus published, const Health& health,
+                const TrialState& update) {
   // What is of another run would say the opposite of "unknown".
   const bool is_known = published.unknown.empty() && published.status.value().is_object();
   Json status = is_known ? std::move(published.status) : Json::object();
@@ -297,6 +324,13 @@ void print_json(PublishedStatus published, const Health& health, const TrialStat
   for (const std::string& reason : health.reasons) reasons.add(reason);
   status.set("health", health_name(health.level));
   status.set("health_reasons", std::move(reasons));
+  NextDecision next;
+  if (health.level != HealthLevel::kNotRunning && find_next(config, next)) {
+    status.set("next", next_decision_json(next));
+  }
+  Json no_effect = Json::list();
+  for (const std::string& key : keys_without_effect(config)) no_effect.add(key);
+  status.set("no_effect", std::move(no_effect));
   if (update.phase != TrialPhase::kUnknown) status.set("update", update_json(update));
   std::fputs(status.text().c_str(), stdout);
 }
@@ -324,7 +358,7 @@ int print_once(const StatusGiven& given, const EdgeConfig& config) {
   if (given.prometheus) {
     if (!print_metrics(config)) return 1;
   } else if (given.json) {
-    print_json(std::move(published), health, update);
+    print_json(config, std::move(published), health, update);
   } else {
     print_text(config, published, health, update);
   }
@@ -333,6 +367,7 @@ int print_once(const StatusGiven& given, const EdgeConfig& config) {
 }
 
 int run_status(const StatusGiven& given, SettingsFile& settings) {
+  set_market_time_zone();
   const EdgeConfig& config = settings.config;
   constexpr const char* kClearScreen = "\033[H\033[2J";
   while (true) {

@@ -264,7 +264,7 @@ TEST_F(Processes, EachCommandHasItsHelp) {
   };
   const Help helps[] = {{{edge_program(), "--help"}, "bess-edge --config /etc/bess/edge.toml"},
                         {{edge_program(), "status", "--help"}, "3 not running"},
-                        {{edge_program(), "log", "-h"}, "--since UTC"},
+                        {{edge_program(), "log", "-h"}, "--since MOMENT"},
                         {{edge_program(), "--version"}, ", student "}};
   for (const Help& help : helps) {
     ChildProcess child(help.arguments);
@@ -477,7 +477,7 @@ TEST_F(Processes, BadStartsEndWithOneClearLine) {
       {{edge_program(), "status", "--csv"}, 2, "unknown option --csv"},
       {{edge_program(), "status", "--json", "--prometheus"}, 2, "exclude each other"},
       {{edge_program(), "log", "--last"}, 2, "a value is missing after --last"},
-      {{edge_program(), "log", "--since", "today"}, 2, "needs an instant such as"},
+      {{edge_program(), "log", "--since", "today"}, 2, "needs a moment such as"},
       {{edge_program(), "log", "--config", "/nonexistent"}, 1, "cannot open"},
       {{sim_program(), "batery"}, 2, "unknown subcommand \"batery\""},
       {{sim_program(), "market", "--prices", "/nonexistent"}, 1, "cannot open"},

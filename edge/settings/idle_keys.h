@@ -1,0 +1,15 @@
+// Keys of a configuration that are set and do nothing, with the reason: what an operator believes
+// to be in force and is not.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "edge/settings/edge_config.h"
+
+namespace bess {
+
+/// "guard.ramp_w_max: no change of order is larger than 8000 W".
+std::vector<std::string> keys_without_effect(const EdgeConfig& config);
+
+}  // namespace bess

@@ -1,0 +1,110 @@
+// What comes next, by hand; and keys that do nothing.
+#include "edge/why/next_decision.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "edge/settings/idle_keys.h"
+#include "edge/why/local_text.h"
+#include "shared/local_time.h"
+
+namespace bess {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::StartsWith;
+
+constexpr std::int64_t kNoon = 1'679'824'800;  // 2023-03-26T10:00:00Z, 12:00 in Brussels
+
+CycleRecord at_noon(double price_eur) {
+  set_market_time_zone();
+  CycleRecord r{.utc_s = kNoon, .mode = Mode::kRunning, .reason = Reason::kStudent};
+  r.has_measurement = true;
+  r.measurement.soc_e4 = 5'000;
+  r.price = {.has_row = true,
+             .minute_utc_s = kNoon - 60,
+             .price_centi_eur_per_mwh = static_cast<std::int32_t>(price_eur * 100)};
+  r.price_level = PriceLevel::starting_at(9'000);
+  return r;
+}
+
+TEST(NextDecision, IsThatOfTheNextTickAtTheNewestPrice) {
+  const ControlSettings settings;
+  const NextDecision cheap = find_next_decision(at_noon(-480), kNoon + 119, settings);
+  EXPECT_EQ(cheap.utc_s, kNoon + 120);
+  EXPECT_EQ(cheap.action, Action::kCharge);
+  EXPECT_EQ(cheap.power_w, 4'000);
+  EXPECT_EQ(next_decision_text(cheap), "next       12:02, charging 4000 W if price and SoC stay\n");
+  EXPECT_EQ(find_next_decision(at_noon(1'400), kNoon + 120, settings).action, Action::kDischarge);
+  EXPECT_EQ(find_next_decision(at_noon(1'400), kNoon + 120, settings).utc_s, kNoon + 240);
+}
+
+TEST(NextDecision, NamesWhatStandsAboveTheStudent) {
+  CycleRecord late = at_noon(60);
+  late.reason = Reason::kPriceAge;
+  const std::string text = next_decision_text(find_next_decision(late, kNoon, {}));
+  EXPECT_THAT(text, HasSubstr("; price_age stands above it, "));
+  late.price.has_row = false;
+  const NextDecision blind = find_next_decision(late, kNoon, {});
+  EXPECT_THAT(next_decision_text(blind), HasSubstr("without a price or a measurement"));
+  const Json json = Json::parse(next_decision_json(blind).text());
+  EXPECT_STREQ(json.value()["reason"].text(), "price_age");
+  EXPECT_FALSE(json.value()["power_w"].number().has_value());
+}
+
+TEST(NextDecision, LooksADayAheadInThePlan) {
+  ControlSettings settings;
+  settings.reserve.push_back({.from_minute = 18 * 60, .to_minute = 22 * 60, .soc_e4 = 4'000});
+  settings.full_charge_every_days = 14;
+  CycleRecord newest = at_noon(60);
+  newest.days_since_full = 11;
+  const NextDecision next = find_next_decision(newest, kNoon, settings);
+  EXPECT_THAT(next_decision_text(next),
+              HasSubstr("\nahead      reserve SoC 40.0 % from 18:00, no reserve from 22:00, "
+                        "a full charge in 3 days\n"));
+  newest.days_since_full = 20;
+  EXPECT_THAT(next_decision_text(find_next_decision(newest, kNoon, settings)),
+              HasSubstr("a full charge is due"));
+  // The clock goes forward in this night: 22:00 on the day before is as far as it looks.
+  EXPECT_EQ(next.reserve_changes.size(), 2u);
+}
+
+TEST(KeysWithoutEffect, AreNamedWithTheReason) {
+  EdgeConfig config;
+  config.control.control = true;
+  EXPECT_THAT(keys_without_effect(config), IsEmpty());
+  config.control.guard.ramp_w_max = 8'000;
+  config.control.cycles_per_day_max_e4 = 62'501;
+  config.control.reversals_per_hour_max = 30;
+  config.control.reserve.push_back({.soc_e4 = 1'000});
+  config.site.settings.meter = MeterSource::kBattery;
+  EXPECT_THAT(keys_without_effect(config),
+              ElementsAre(StartsWith("ramp_w_max: no change of order is larger than 8000 W"),
+                          StartsWith("cycles_per_day_max: this battery can do 6.2"),
+                          StartsWith("reversals_per_hour_max"), StartsWith("a reserve of 10.0 %"),
+                          StartsWith("[meter]: it is read, and limits nothing")));
+  config.site.settings.connection.import_w_max = 5'000;
+  config.site.settings.connection.peak_w_max = 5'000;
+  EXPECT_THAT(keys_without_effect(config).back(), StartsWith("peak_w_max: import_w_max is lower"));
+  config.control.control = false;
+  EXPECT_THAT(keys_without_effect(config).front(), StartsWith("all limits: control = false"));
+}
+
+/// One below each bound, and they do something again.
+TEST(KeysWithoutEffect, AtTheirBoundsTheyHaveOne) {
+  EdgeConfig config;
+  config.control.control = true;
+  config.control.guard.ramp_w_max = 7'999;
+  config.control.cycles_per_day_max_e4 = 62'500;
+  config.control.reversals_per_hour_max = 29;
+  config.control.reserve.push_back({.soc_e4 = 1'001});
+  config.site.settings.meter = MeterSource::kBattery;
+  config.site.settings.connection.import_w_max = 5'001;
+  config.site.settings.connection.peak_w_max = 5'000;
+  EXPECT_THAT(keys_without_effect(config), IsEmpty());
+}
+
+}  // namespace
+}  // namespace bess
