@@ -15,6 +15,7 @@ namespace bess {
   ROW(Log)                 \
   ROW(Why)                 \
   ROW(Earned)              \
+  ROW(Replay)              \
   ROW(Hold)                \
   ROW(Limit)               \
   ROW(Record)              \

@@ -6,6 +6,7 @@
 #include <ctime>
 
 #include "edge/commands/command_line.h"
+#include "edge/control/policy.h"
 #include "edge/log/ring_log.h"
 #include "edge/why/local_moment.h"
 #include "edge/why/local_text.h"
@@ -35,6 +36,11 @@ url = "http://127.0.0.1:1/prices"
   }
   /// `cycles` before now and up to it, charging 3 kW at 40 EUR/MWh.
   void log_until_now(int cycles) {
+    log_until_now(cycles, [](const CycleRecord&) { return Action::kCharge; });
+  }
+  /// `decided` by the student.
+  template <typename Decided>
+  void log_until_now(int cycles, const Decided& decided) {
     newest_utc_s_ = std::time(nullptr) / kSecondsPerStep * kSecondsPerStep;
     for (int i = cycles - 1; i >= 0; --i) {
       CycleRecord r{.utc_s = newest_utc_s_ - i * kSecondsPerStep,
@@ -47,8 +53,8 @@ url = "http://127.0.0.1:1/prices"
       r.price = {.has_row = true, .minute_utc_s = r.utc_s - 60, .price_centi_eur_per_mwh = 4'000};
       r.price_level = PriceLevel::starting_at(9'000);
       r.has_student_action = true;
-      r.student_action = Action::kCharge;
       r.context_class = 6;
+      r.student_action = decided(r);
       r.reason = Reason::kStudent;
       r.ordered_power_w = 3'000;
       ASSERT_TRUE(ring_.append(r));
@@ -156,6 +162,52 @@ TEST_F(Questions, EarnedRefusesWhatItCannotAnswer) {
   EXPECT_THAT(ask({"earned", "tomorrow"}).error, HasSubstr("the period must be today, yesterday"));
   EXPECT_EQ(ask({"earned", "week", "month"}).exit_code, 2);
   EXPECT_THAT(ask({"earned", "--csv", "--json"}).error, HasSubstr("--csv or --json, not both"));
+}
+
+Action of_this_student(const CycleRecord& r) {
+  return decide_with_student(make_lattice_state(local_minute_of(r.utc_s), r.context_class,
+                                                r.measurement.soc_e4,
+                                                r.price.price_centi_eur_per_mwh));
+}
+
+std::string last_two_days(std::int64_t utc_s) {
+  return std::string(local_text(utc_s - 43'200).view()).substr(0, 10) + ".." +
+         std::string(local_text(utc_s).view()).substr(0, 10);
+}
+
+TEST_F(Questions, ReplayOfTheSameStudentDiffersNowhere) {
+  log_until_now(60, of_this_student);
+  const Said said = ask({"replay", last_two_days(newest_utc_s_), "--limit", "1"});
+  EXPECT_EQ(said.exit_code, 0) << said.error;
+  EXPECT_THAT(said.out, HasSubstr("would decide otherwise in 0 of 60 cycles (0.00 %), "));
+}
+
+TEST_F(Questions, ReplayCountsWhatDiffersAndWhatItIsWorth) {
+  int cycle = 0;
+  int turned = 0;
+  log_until_now(60, [&](const CycleRecord& r) {
+    const Action own = of_this_student(r);
+    const bool is_turned = ++cycle % 6 == 0;  // a version before, which did the contrary there
+    turned += is_turned ? 1 : 0;
+    return !is_turned ? own : own == Action::kIdle ? Action::kCharge : Action::kIdle;
+  });
+  const std::string days = last_two_days(newest_utc_s_);
+  const Json json = Json::parse(ask({"replay", days, "--json"}).out);
+  EXPECT_EQ(json.value()["differing"].number().value(), turned);
+  EXPECT_NEAR(json.value()["differing_percent"].number().value(), 100.0 / 6, 1e-3);
+  // All prices are the day's mean: no decision is worth anything.
+  EXPECT_NEAR(json.value()["gained_eur"].number().value(), 0, 1e-9);
+  EXPECT_EQ(ask({"replay", days, "--limit", "17"}).exit_code, 0);
+  const Said over = ask({"replay", days, "--limit", "16"});
+  EXPECT_EQ(over.exit_code, 3);
+  EXPECT_THAT(over.error, HasSubstr("16.67 % of the decisions would be others"));
+}
+
+TEST_F(Questions, ReplayRefusesWhatItCannotAnswer) {
+  log_until_now(1);
+  EXPECT_EQ(ask({"replay", "2020-01-01..2020-01-31"}).exit_code, 1);
+  EXPECT_EQ(ask({"replay", "--limit", "101"}).exit_code, 2);
+  EXPECT_EQ(ask({"replay", "soon"}).exit_code, 2);
 }
 
 TEST_F(Questions, AMomentIsTheNewestThatHasBeen) {

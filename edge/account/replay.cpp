@@ -1,0 +1,116 @@
+#include "edge/account/replay.h"
+
+#include <algorithm>
+#include <map>
+
+#include "edge/account/account_days.h"
+#include "edge/account/day_account.h"
+#include "edge/control/policy.h"
+#include "shared/host/text.h"
+
+namespace bess {
+namespace {
+
+std::size_t index(Action action) { return static_cast<std::size_t>(action); }
+
+Action decide_again(const CycleRecord& record) {
+  return decide_with_student(make_lattice_state(local_minute_of(record.utc_s), record.context_class,
+                                                record.measurement.soc_e4,
+                                                record.price.price_centi_eur_per_mwh));
+}
+
+/// A day while its mean price is not known yet.
+struct OpenDay {
+  ReplayedDay day;
+  DayAccount account;
+  double mwh_moved = 0;  ///< that the new decisions charge more
+  double paid_eur = 0;   ///< for it
+};
+
+void compare(const CycleRecord& record, double cycle_mwh, OpenDay& open, Replay& replay) {
+  const Action before = record.student_action;
+  const Action now = decide_again(record);
+  ++open.day.compared;
+  ++replay.decisions[index(before)][index(now)];
+  if (before == now) return;
+  const double more_mwh = (power_sign(now) - power_sign(before)) * cycle_mwh;
+  ++open.day.differing;
+  open.mwh_moved += more_mwh;
+  open.paid_eur += more_mwh * record.price.price_centi_eur_per_mwh / kCentiPerEur;
+}
+
+std::string day_line(const ReplayedDay& day) {
+  return formatted("%s: %d of %d, %+.2f EUR", DayAccount(day.local_day).date().c_str(),
+                   day.differing, day.compared, day.gained_eur);
+}
+
+}  // namespace
+
+const ReplayedDay* Replay::worst_day() const {
+  const auto worst = std::ranges::min_element(days, {}, &ReplayedDay::gained_eur);
+  return worst == days.end() ? nullptr : &*worst;
+}
+
+Replay replay_days(const LogReader& log, std::int32_t first_day, std::int32_t last_day,
+                   std::int32_t power_w) {
+  const double cycle_mwh = power_w * kHoursPerStep / kWattsPerMegawatt;
+  Replay replay;
+  std::map<std::int32_t, OpenDay> days;
+  for_each_record(log, first_day, last_day, [&](std::int32_t day, const CycleRecord& record) {
+    OpenDay& open =
+        days.try_emplace(day, OpenDay{{.local_day = day}, DayAccount(day)}).first->second;
+    open.account.add(record);
+    if (record.has_student_action && record.context_class > 0) {
+      compare(record, cycle_mwh, open, replay);
+    }
+  });
+  for (auto& [day, open] : days) {
+    if (open.day.compared == 0) continue;
+    open.day.gained_eur = open.mwh_moved * open.account.mean_price_eur_per_mwh() - open.paid_eur;
+    replay.compared += open.day.compared;
+    replay.differing += open.day.differing;
+    replay.gained_eur += open.day.gained_eur;
+    replay.days.push_back(open.day);
+  }
+  return replay;
+}
+
+std::string replay_text(const Replay& replay) {
+  std::string text = formatted(
+      "student %08x would decide otherwise in %d of %d cycles (%.2f %%), for about %+.2f EUR\n",
+      student_hash(), replay.differing, replay.compared, 100 * replay.differing_share(),
+      replay.gained_eur);
+  for (int before = 0; before < kActionCount; ++before) {
+    for (int now = 0; now < kActionCount; ++now) {
+      const int cycles =
+          replay.decisions[static_cast<std::size_t>(before)][static_cast<std::size_t>(now)];
+      if (before == now || cycles == 0) continue;
+      add_formatted(text, "%-9s -> %-9s %6d\n", action_name(static_cast<Action>(before)).data(),
+                    action_name(static_cast<Action>(now)).data(), cycles);
+    }
+  }
+  if (replay.differing == 0) return text;
+  text += "worst day  " + day_line(*replay.worst_day()) + "\n";
+  text +=
+      "estimate: each decision by itself, at full power for two minutes, what it moves given back "
+      "at the day's mean price\n";
+  return text;
+}
+
+Json replay_json(const Replay& replay) {
+  Json days = Json::list();
+  for (const ReplayedDay& day : replay.days) {
+    days.add(Json::object({{"date", DayAccount(day.local_day).date()},
+                           {"compared", day.compared},
+                           {"differing", day.differing},
+                           {"gained_eur", Decimals{day.gained_eur, 4}}}));
+  }
+  return Json::object({{"student", formatted("%08x", student_hash())},
+                       {"compared", replay.compared},
+                       {"differing", replay.differing},
+                       {"differing_percent", Decimals{100 * replay.differing_share(), 4}},
+                       {"gained_eur", Decimals{replay.gained_eur, 4}},
+                       {"days", std::move(days)}});
+}
+
+}  // namespace bess

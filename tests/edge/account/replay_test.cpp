@@ -1,0 +1,82 @@
+// A log decided again: which cycles differ, by days, and what they are worth, by hand.
+#include "edge/account/replay.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "edge/control/policy.h"
+#include "edge/log/ring_log.h"
+#include "shared/local_time.h"
+#include "tests/support/temporary_folder.h"
+
+namespace bess {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr std::int64_t kMidnight = 1'679'698'800;  // 2023-03-24T23:00:00Z, in Brussels
+
+/// Cheap and dear by turns, so that this student charges and discharges; the version before rested.
+class RestedBefore : public ::testing::Test {
+ protected:
+  RestedBefore() {
+    set_market_time_zone();
+    std::filesystem::create_directory(folder_.file("state"));
+    FileMessage error;
+    EXPECT_TRUE(ring_.open(folder_.file("state/decisions.ring").c_str(), 2'000, error));
+  }
+  void log(std::int64_t utc_s, std::int32_t price_eur, bool asked = true) {
+    CycleRecord r{.utc_s = utc_s, .mode = Mode::kRunning, .reason = Reason::kStudent};
+    r.has_measurement = true;
+    r.measurement.soc_e4 = 5'000;
+    r.price = {.has_row = true, .minute_utc_s = utc_s - 60};
+    r.price.price_centi_eur_per_mwh = price_eur * 100;
+    r.has_student_action = asked;
+    r.student_action = Action::kIdle;
+    r.context_class = 6;
+    ASSERT_TRUE(ring_.append(r));
+  }
+  Replay replay() {
+    EventLogSettings settings;
+    settings.ring.assign(folder_.file("state/decisions.ring"));
+    LogReader reader;
+    FileMessage error;
+    EXPECT_TRUE(reader.open(settings, error)) << error.c_str();
+    return replay_days(reader, 20'230'325, 20'230'326, 3'000);
+  }
+  TemporaryFolder folder_;
+  RingLog ring_;
+};
+
+TEST_F(RestedBefore, WhatItWouldHaveMovedIsWorthItsDistanceFromTheDaysMean) {
+  log(kMidnight, -400);
+  log(kMidnight + 120, 1'400);
+  log(kMidnight + 240, 500, false);  // not asked: not compared, its price is of the day
+  log(kMidnight + 86'400, -400);     // alone in its day: at its mean
+  const Replay found = replay();
+  EXPECT_EQ(found.compared, 3);
+  EXPECT_EQ(found.differing, 3);
+  ASSERT_EQ(found.days.size(), 2u);
+  // 0.1 kWh each: charged at 900 below the mean of 500, discharged at 900 above it.
+  EXPECT_NEAR(found.days[0].gained_eur, 0.18, 1e-12);
+  EXPECT_NEAR(found.days[1].gained_eur, 0, 1e-12);
+  EXPECT_EQ(found.worst_day()->local_day, 20'230'326);
+  EXPECT_EQ(found.decisions[1][2], 2);
+  EXPECT_EQ(found.decisions[1][0], 1);
+  const std::string text = replay_text(found);
+  EXPECT_THAT(text, HasSubstr("in 3 of 3 cycles (100.00 %), for about +0.18 EUR\n"));
+  EXPECT_THAT(text, HasSubstr("idle      -> charge         2\n"));
+  EXPECT_THAT(text, HasSubstr("worst day  2023-03-26: 1 of 1, +0.00 EUR\n"));
+  EXPECT_EQ(Json::parse(replay_json(found).text()).value()["days"].size(), 2u);
+}
+
+TEST_F(RestedBefore, NothingComparedIsNothing) {
+  log(kMidnight, 40, false);
+  const Replay none = replay();
+  EXPECT_EQ(none.compared, 0);
+  EXPECT_EQ(none.differing_share(), 0);
+  EXPECT_EQ(none.worst_day(), nullptr);
+}
+
+}  // namespace
+}  // namespace bess
