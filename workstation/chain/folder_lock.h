@@ -15,8 +15,8 @@ class FolderLock {
   /// Whoever works in the whole folder, and whoever writes one file of it.
   enum class Of : std::uint8_t { kFolder, kOneFile };
 
-  /// Throws UserError when another program holds it: one in the whole folder excludes all others. A
-  /// file system without locks gives none.
+  /// Throws UserError when another program holds it: one in the whole folder excludes all others.
+  /// On a file system without locks it warns, and locks nothing.
   explicit FolderLock(const std::filesystem::path& folder, Of what = Of::kFolder);
 
  private:

@@ -33,9 +33,12 @@ struct Place {
   }
 };
 
+using enum KeyUse;
+
 struct Key {
   std::string section;
   std::string name;
+  KeyUse use;
   std::string comment;
   std::function<void(const Place&)> set;
   std::function<std::string()> get;
@@ -50,8 +53,9 @@ class KeyList {
  private:
   void section(std::string name) { section_ = std::move(name); }
 
-  void number(const char* name, double& field, double low, double high, const char* comment) {
-    keys_.push_back({section_, name, fmt::format("{} ({:g} .. {:g})", comment, low, high),
+  void number(const char* name, KeyUse use, double& field, double low, double high,
+              const char* comment) {
+    keys_.push_back({section_, name, use, fmt::format("{} ({:g} .. {:g})", comment, low, high),
                      [&field, low, high](const Place& place) {
                        const auto value = place.value.number();
                        if (!value) place.complain("expected a number");
@@ -64,9 +68,9 @@ class KeyList {
                      [&field] { return fmt::format("{}", field + 0.0); }});  // + 0.0: never -0
   }
   template <typename Integer>
-  void integer(const char* name, Integer& field, std::int64_t low, std::int64_t high,
+  void integer(const char* name, KeyUse use, Integer& field, std::int64_t low, std::int64_t high,
                const char* comment) {
-    keys_.push_back({section_, name, fmt::format("{} ({} .. {})", comment, low, high),
+    keys_.push_back({section_, name, use, fmt::format("{} ({} .. {})", comment, low, high),
                      [&field, low, high](const Place& place) {
                        const auto value = place.expect<std::int64_t>("a whole number");
                        if (value < low || value > high) {
@@ -77,16 +81,16 @@ class KeyList {
                      },
                      [&field] { return fmt::format("{}", field); }});
   }
-  void boolean(const char* name, bool& field, const char* comment) {
-    keys_.push_back({section_, name, comment,
+  void boolean(const char* name, KeyUse use, bool& field, const char* comment) {
+    keys_.push_back({section_, name, use, comment,
                      [&field](const Place& place) { field = place.expect<bool>("true or false"); },
                      [&field] { return std::string(field ? "true" : "false"); }});
   }
   template <typename Enum>
-  void choice(const char* name, Enum& field, std::vector<std::string> choices,
+  void choice(const char* name, KeyUse use, Enum& field, std::vector<std::string> choices,
               const char* comment) {
     keys_.push_back(
-        {section_, name, fmt::format("{} ({})", comment, fmt::join(choices, " | ")),
+        {section_, name, use, fmt::format("{} ({})", comment, fmt::join(choices, " | ")),
          [&field, choices](const Place& place) {
            const auto* text = place.value.as<std::string>();
            const auto found = text == nullptr ? choices.end() : std::ranges::find(choices, *text);
@@ -106,119 +110,131 @@ class KeyList {
 
 void KeyList::list(RunConfig& c) {
   section("market");
-  integer("observation_delay_min", c.market.observation_delay_min, 0, 5,
+  integer("observation_delay_min", kLearning, c.market.observation_delay_min, 0, 5,
           "newest row visible at minute t is t - delay; 0 is the paper's ideal");
-  choice("settlement", c.market.settlement, {"minute", "step"},
+  choice("settlement", kLearning, c.market.settlement, {"minute", "step"},
          "pay each minute at its own quarter-hour, or the step at the one it starts in");
   integer(
-      "day_ahead_published_min", c.market.day_ahead_published_min, 0, 1439,
+      "day_ahead_published_min", kEvaluation, c.market.day_ahead_published_min, 0, 1439,
       "local minute of the day before from which day-ahead prices count as known; 780 is 13:00");
 
   section("battery");
-  number("power_w", c.battery.power_w_max, 1, 1e9, "both directions, grid side");
-  number("capacity_wh", c.battery.capacity_wh, 1, 1e10, "usable and not usable");
-  number("charge_efficiency", c.battery.charge_efficiency, 0.5, 1, "grid to battery");
-  number("discharge_efficiency", c.battery.discharge_efficiency, 0.5, 1, "battery to grid");
-  number("soc_min", c.battery.soc_min_frac, 0, 0.95, "lower end of the SoC window");
-  number("soc_max", c.battery.soc_max_frac, 0.05, 1, "upper end of the SoC window");
-  number("wear_eur_per_mwh", c.battery.wear_eur_per_mwh, 0, 1000,
+  number("power_w", kLearning, c.battery.power_w_max, 1, 1e9, "both directions, grid side");
+  number("capacity_wh", kLearning, c.battery.capacity_wh, 1, 1e10, "usable and not usable");
+  number("charge_efficiency", kLearning, c.battery.charge_efficiency, 0.5, 1, "grid to battery");
+  number("discharge_efficiency", kLearning, c.battery.discharge_efficiency, 0.5, 1,
+         "battery to grid");
+  number("soc_min", kLearning, c.battery.soc_min_frac, 0, 0.95, "lower end of the SoC window");
+  number("soc_max", kLearning, c.battery.soc_max_frac, 0.05, 1, "upper end of the SoC window");
+  number("wear_eur_per_mwh", kLearning, c.battery.wear_eur_per_mwh, 0, 1000,
          "cost of throughput, charged and discharged; every profit and reward is net of it");
-  number("cycles_per_day_max", c.battery.cycles_per_day_max, 0, 1000,
+  number("cycles_per_day_max", kLearning, c.battery.cycles_per_day_max, 0, 1000,
          "equivalent full cycles a local day, then no further order that day; 0 is no limit");
-  number("initial_soc", c.initial_soc_frac, 0, 1, "at the start of each evaluated day");
+  number("initial_soc", kLearning, c.initial_soc_frac, 0, 1, "at the start of each evaluated day");
 
   section("costs");
   TradingCosts& costs = c.battery.costs;
-  number("import_adder_eur_per_mwh", costs.import_adder_eur_per_mwh, 0, 1000,
+  number("import_adder_eur_per_mwh", kLearning, costs.import_adder_eur_per_mwh, 0, 1000,
          "on top of the price of what is charged: grid fee, taxes, supplier");
-  number("import_percent", costs.import_percent, 0, 100,
+  number("import_percent", kLearning, costs.import_percent, 0, 100,
          "the same as a share of the price's size: at -100 and 5 %, one is paid 95");
-  number("export_fee_eur_per_mwh", costs.export_fee_eur_per_mwh, 0, 1000,
+  number("export_fee_eur_per_mwh", kLearning, costs.export_fee_eur_per_mwh, 0, 1000,
          "off the price of what is discharged: grid fee, supplier");
-  number("export_percent", costs.export_percent, 0, 100,
+  number("export_percent", kLearning, costs.export_percent, 0, 100,
          "the same as a share of the price's size: at -100 and 5 %, one pays 105");
 
   section("train");
-  choice("method", c.train.method, {"c51", "dqn", "sdp"},
+  choice("method", kLearning, c.train.method, {"c51", "dqn", "sdp"},
          "distributional or plain Q-learning, or the stochastic program, exact for its model");
-  choice("context", c.train.context, {"month", "level"},
+  choice("context", kLearning, c.train.context, {"month", "level"},
          "the student's third input: local month, or class of the trailing price level");
-  choice("source", c.train.source, {"counterfactual", "replay"},
+  choice("source", kLearning, c.train.source, {"counterfactual", "replay"},
          "experience: one price move serves every SoC and action, or epsilon-greedy days");
-  choice("horizon", c.train.horizon, {"continuing", "day"}, "midnight is a truncation, or the end");
-  integer("steps", c.train.steps, 1, 10'000'000, "gradient steps");
-  integer("batch_size", c.train.batch_size, 1, 1 << 20, "transitions a step");
-  number("learning_rate", c.train.learning_rate, 1e-7, 1, "of Adam, at the start");
-  number("learning_rate_end", c.train.learning_rate_end, 0, 1, "at the end of a cosine");
-  number("gamma", c.train.gamma, 0, 0.999999, "discount a step");
-  boolean("residual", c.train.residual,
+  choice("horizon", kLearning, c.train.horizon, {"continuing", "day"},
+         "midnight is a truncation, or the end");
+  integer("steps", kLearning, c.train.steps, 1, 10'000'000, "gradient steps");
+  integer("batch_size", kLearning, c.train.batch_size, 1, 1 << 20, "transitions a step");
+  number("learning_rate", kLearning, c.train.learning_rate, 1e-7, 1, "of Adam, at the start");
+  number("learning_rate_end", kLearning, c.train.learning_rate_end, 0, 1, "at the end of a cosine");
+  number("gamma", kLearning, c.train.gamma, 0, 0.999999, "discount a step");
+  boolean("residual", kLearning, c.train.residual,
           "c51, dqn: the network adds to the stochastic program and begins at adding nothing");
-  number("residual_gamma", c.train.residual_gamma, 0, 0.9995,
+  number("residual_gamma", kLearning, c.train.residual_gamma, 0, 0.9995,
          "discount a step of what it adds, in place of gamma: beyond its reach the program stands");
-  boolean("input_previous", c.train.inputs.previous,
+  boolean("input_previous", kLearning, c.train.inputs.previous,
           "c51, dqn: the teacher sees the last price of the quarter-hour before; the student not");
-  boolean("input_earlier", c.train.inputs.earlier, "and the mean of the three before that one");
-  boolean("input_slope", c.train.inputs.slope, "and what the last three minutes added");
-  boolean("input_calm", c.train.inputs.calm,
+  boolean("input_earlier", kLearning, c.train.inputs.earlier,
+          "and the mean of the three before that one");
+  boolean("input_slope", kLearning, c.train.inputs.slope, "and what the last three minutes added");
+  boolean("input_calm", kLearning, c.train.inputs.calm,
           "and the time since a price was 100 EUR/MWh off its level");
-  boolean("input_deviation", c.train.inputs.deviation,
+  boolean("input_deviation", kLearning, c.train.inputs.deviation,
           "residual: and where the price lies among the usual ones, by the program");
-  number("tau", c.train.tau, 1e-6, 1, "target <- tau * online + (1 - tau) * target, each step");
-  integer("atoms", c.train.atoms, 2, 1001, "of the value distribution");
-  number("value_min_eur_per_h", c.train.value_min_eur_per_h, -1e9, 1e9, "lowest atom");
-  number("value_max_eur_per_h", c.train.value_max_eur_per_h, -1e9, 1e9, "highest atom");
-  number("mean_weight", c.train.mean_weight, 0, 1000,
+  number("tau", kLearning, c.train.tau, 1e-6, 1,
+         "target <- tau * online + (1 - tau) * target, each step");
+  integer("atoms", kLearning, c.train.atoms, 2, 1001, "of the value distribution");
+  number("value_min_eur_per_h", kLearning, c.train.value_min_eur_per_h, -1e9, 1e9, "lowest atom");
+  number("value_max_eur_per_h", kLearning, c.train.value_max_eur_per_h, -1e9, 1e9, "highest atom");
+  number("mean_weight", kLearning, c.train.mean_weight, 0, 1000,
          "c51: of the squared error of the mean beside the cross-entropy; 0 is plain C51");
   choice(
-      "potential", c.train.potential, {"none", "price", "plan", "sdp"},
+      "potential", kLearning, c.train.potential, {"none", "price", "plan", "sdp"},
       "shapes rewards without changing what is best: nothing, energy at the mean price, a plan's "
       "value, or the stochastic program's");
-  boolean("centre_rewards", c.train.centre_rewards,
+  boolean("centre_rewards", kLearning, c.train.centre_rewards,
           "subtract the mean reward (continuing horizon): values lie around zero");
-  number("jitter_quarter_hours", c.train.jitter.quarter_hours, 0, 96,
+  number("jitter_quarter_hours", kLearning, c.train.jitter.quarter_hours, 0, 96,
          "standard deviation of a random shift of the quarter-hour: keeps days from being learnt "
          "by heart");
-  number("jitter_classes", c.train.jitter.classes, 0, 12, "the same for the context class");
-  number("jitter_price", c.train.jitter.price, 0, 1, "the same for the price input, of its range");
-  integer("replay_capacity", c.train.replay_capacity, 1, 100'000'000, "transitions in the ring");
-  number("epsilon_start", c.train.epsilon_start, 0, 1, "share of random actions at the start");
-  number("epsilon_end", c.train.epsilon_end, 0, 1, "and from half of the steps on");
-  number("average_decay", c.train.average_decay, 0, 0.999999,
+  number("jitter_classes", kLearning, c.train.jitter.classes, 0, 12,
+         "the same for the context class");
+  number("jitter_price", kLearning, c.train.jitter.price, 0, 1,
+         "the same for the price input, of its range");
+  integer("replay_capacity", kLearning, c.train.replay_capacity, 1, 100'000'000,
+          "transitions in the ring");
+  number("epsilon_start", kLearning, c.train.epsilon_start, 0, 1,
+         "share of random actions at the start");
+  number("epsilon_end", kLearning, c.train.epsilon_end, 0, 1, "and from half of the steps on");
+  number("average_decay", kLearning, c.train.average_decay, 0, 0.999999,
          "of the averaged weights that are validated and kept");
-  integer("validate_every", c.train.validate_every, 1, 1'000'000, "gradient steps");
-  boolean("bf16", c.train.bf16,
+  integer("validate_every", kLearning, c.train.validate_every, 1, 1'000'000, "gradient steps");
+  boolean("bf16", kLearning, c.train.bf16,
           "c51, dqn: products of the gradient step in bf16, sums in fp32; needs avx512_bf16");
 
   section("distil");
-  choice("method", c.distil.method, {"construction", "layer"},
+  choice("method", kLearning, c.distil.method, {"construction", "layer"},
          "monotone by the signs of its weights, or the paper's optimisation layer");
-  number("fidelity", c.distil.fidelity, 0, 100,
+  number("fidelity", kLearning, c.distil.fidelity, 0, 100,
          "construction: following the teacher's every choice, beside losing no money");
-  number("level_shift_eur_per_mwh", c.distil.level_shift_eur_per_mwh, 0, 1000,
+  number("level_shift_eur_per_mwh", kLearning, c.distil.level_shift_eur_per_mwh, 0, 1000,
          "construction, a teacher with a program: deviation of what visited days are moved by");
-  number("omega", c.distil.omega, 1e-8, 1,
+  number("omega", kLearning, c.distil.omega, 1e-8, 1,
          "layer: the paper's trade-off, larger follows the teacher");
-  number("temperature_eur_per_h", c.distil.temperature_eur_per_h, 1e-3, 1e6,
+  number("temperature_eur_per_h", kLearning, c.distil.temperature_eur_per_h, 1e-3, 1e6,
          "of the teacher's softmax over action values");
-  integer("epochs", c.distil.epochs, 1, 1'000'000,
+  integer("epochs", kLearning, c.distil.epochs, 1, 1'000'000,
           "of 16 Adam steps (construction), or of 64 lattices and 32,768 visited states (layer)");
-  integer("steps_per_epoch", c.distil.steps_per_epoch, 1, 64, "Adam steps that share an epoch");
-  number("learning_rate", c.distil.learning_rate, 1e-7, 1, "of Adam, falling to a tenth");
-  integer("repair_rounds", c.distil.repair_rounds, 0, 1000,
+  integer("steps_per_epoch", kLearning, c.distil.steps_per_epoch, 1, 64,
+          "Adam steps that share an epoch");
+  number("learning_rate", kLearning, c.distil.learning_rate, 1e-7, 1,
+         "of Adam, falling to a tenth");
+  integer("repair_rounds", kLearning, c.distil.repair_rounds, 0, 1000,
           "proofs that may fail before giving up; each trains on its counterexamples");
-  integer("repair_epochs", c.distil.repair_epochs, 1, 1'000'000, "of each repair");
+  integer("repair_epochs", kLearning, c.distil.repair_epochs, 1, 1'000'000, "of each repair");
 
   section("correction");
   PriceThresholds& thresholds = c.distil.correction.thresholds;
-  integer("low_price_eur_per_mwh", thresholds.low_eur_per_mwh, -kThresholdMaxEurPerMwh,
+  integer("low_price_eur_per_mwh", kLearning, thresholds.low_eur_per_mwh, -kThresholdMaxEurPerMwh,
           kThresholdMaxEurPerMwh, "property 1: charge at or below; binds the student from -500 up");
-  integer("high_price_eur_per_mwh", thresholds.high_eur_per_mwh, -kThresholdMaxEurPerMwh,
+  integer("high_price_eur_per_mwh", kLearning, thresholds.high_eur_per_mwh, -kThresholdMaxEurPerMwh,
           kThresholdMaxEurPerMwh,
           "property 2: discharge at or above; binds the student up to 1500");
-  number("logit_margin", c.distil.correction.logit_margin, 0.01, 100, "at the thresholds");
-  number("price_slope", c.distil.correction.price_slope, 0, 100,
+  number("logit_margin", kLearning, c.distil.correction.logit_margin, 0.01, 100,
+         "at the thresholds");
+  number("price_slope", kLearning, c.distil.correction.price_slope, 0, 100,
          "logits over the price range by which the order must fall at least");
-  number("soc_slope", c.distil.correction.soc_slope, 0, 100, "the same over the SoC range");
+  number("soc_slope", kLearning, c.distil.correction.soc_slope, 0, 100,
+         "the same over the SoC range");
 }
 
 void check_relations(const RunConfig& config, const std::string& name) {
@@ -297,19 +313,52 @@ void apply_document(const TomlValue& document, const std::vector<Key>& keys) {
 
 RunConfig parse_run_config(std::string_view text, const std::string& name) {
   RunConfig config;
-  const KeyList list(config);
-  TomlValue document;
-  std::string error;
-  if (!parse_toml_text(text, name, document, error)) throw UserError(error);
-  apply_document(document, list.keys());
-  check_relations(config, name);
-  require_plausible(config, name);
+  apply_config_text(config, text, name);
+  require_consistent(config, name);
   return config;
 }
 
 RunConfig load_run_config(const std::filesystem::path& path) {
   if (path.empty()) return {};
   return parse_run_config(read_file(path, kTomlBytesMax), path.string());
+}
+
+void set_config_key(RunConfig& config, std::string_view key, const TomlValue& value) {
+  const std::size_t dot = key.find('.');
+  const std::string name(key.substr(dot == key.npos ? key.size() : dot + 1));
+  TomlValue section = value;
+  section.held = TomlMembers{{name, value}};
+  TomlValue document = section;
+  document.held = TomlMembers{{std::string(key.substr(0, dot)), section}};
+  if (name.empty()) {
+    fail("{}:{}: \"{}\" is no key of a configuration: write section.key, such as distil.fidelity",
+         *value.file, value.line, one_line(key));
+  }
+  const KeyList list(config);
+  apply_document(document, list.keys());
+}
+
+void apply_config_text(RunConfig& config, std::string_view text, const std::string& name) {
+  const KeyList list(config);
+  TomlValue document;
+  std::string error;
+  if (!parse_toml_text(text, name, document, error)) throw UserError(error);
+  apply_document(document, list.keys());
+}
+
+void require_consistent(const RunConfig& config, const std::string& name) {
+  check_relations(config, name);
+  require_plausible(config, name);
+}
+
+std::vector<ConfigKey> config_keys() {
+  RunConfig config;
+  const KeyList list(config);
+  std::vector<ConfigKey> keys;
+  for (const Key& key : list.keys()) {
+    keys.push_back({fmt::format("[{}] {}", key.section, key.name), key.use});
+  }
+  return keys;
 }
 
 std::vector<std::pair<std::string, std::string>> config_entries(const RunConfig& config) {

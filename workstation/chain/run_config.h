@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "shared/battery_model.h"
+#include "shared/host/toml_document.h"
 #include "workstation/correction/distil.h"
 #include "workstation/env/market_steps.h"
 #include "workstation/rl/train.h"
@@ -31,6 +32,23 @@ struct RunConfig {
 /// Defaults overlaid with the file's keys; an empty path gives the defaults.
 RunConfig load_run_config(const std::filesystem::path& path);
 RunConfig parse_run_config(std::string_view text, const std::string& name);
+
+/// Sets one key, "section.name", and says file, line and mend of a value that it cannot have. What
+/// keys are to each other is looked at by require_consistent() once all are set.
+void set_config_key(RunConfig& config, std::string_view key, const TomlValue& value);
+/// Sets the keys of a TOML text as a configuration's file has them; the others stay.
+void apply_config_text(RunConfig& config, std::string_view text, const std::string& name);
+/// Throws UserError when keys contradict each other or cannot be meant; `name` is the file's.
+void require_consistent(const RunConfig& config, const std::string& name);
+
+/// Who reads a key. What only evaluation reads changes no byte of a student; each key says it where
+/// it is defined, and none is without.
+enum class KeyUse : std::uint8_t { kLearning, kEvaluation };
+struct ConfigKey {
+  std::string name;  ///< "[section] name"
+  KeyUse use;
+};
+std::vector<ConfigKey> config_keys();
 
 /// Every key as "[section] name", and its value as TOML writes it.
 std::vector<std::pair<std::string, std::string>> config_entries(const RunConfig& config);

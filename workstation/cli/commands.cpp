@@ -5,6 +5,7 @@ namespace bess {
 void add_commands(ProgramCommand& app) {
   add_run_command(app);
   add_runs_commands(app);
+  add_sweep_commands(app);
   add_prices_commands(app);
   add_train_command(app);
   add_distil_command(app);

@@ -28,6 +28,13 @@ void add_export_command(ProgramCommand& app);
 void add_report_command(ProgramCommand& app);
 void add_run_command(ProgramCommand& app);
 void add_runs_commands(ProgramCommand& app);  ///< compare
+void add_sweep_commands(ProgramCommand& app);
+void add_sweep_plan(ProgramCommand& sweep);
+void add_sweep_run(ProgramCommand& sweep);
+void add_sweep_task(ProgramCommand& sweep);
+void add_sweep_status(ProgramCommand& sweep);
+void add_sweep_collect(ProgramCommand& sweep);
+void add_sweep_check(ProgramCommand& sweep);
 void add_config_command(ProgramCommand& app);
 void add_schema_command(ProgramCommand& app);
 

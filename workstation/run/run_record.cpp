@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "shared/crc32.h"
+#include "shared/host/build_info.h"
 #include "shared/host/file.h"
 #include "shared/host/json.h"
 #include "shared/host/json_reader.h"
@@ -183,6 +184,7 @@ std::optional<RunRecord> load_run_record(const RunFolder& folder) {
   record.prices = reader.text("prices");
   record.prices_name = reader.text("prices_name");
   if (const char* file = json.value()["teacher_file"].text()) record.teacher_file = file;
+  record.commit = json.value()["commit"].text_or("");
   record.identity = entries_of(json.value()["identity"], folder);
   for (const JsonValue stage : json.value()["stages"]) {
     record.stages.push_back(stage_of(stage, folder));
@@ -211,6 +213,7 @@ std::optional<RunRecord> load_run_record(const RunFolder& folder) {
 void save_run_record(const RunFolder& folder, const RunRecord& record) {
   Json json = Json::object({{"prices", record.prices}, {"prices_name", record.prices_name}});
   if (!record.teacher_file.empty()) json.set("teacher_file", record.teacher_file);
+  json.set("commit", std::string(build_commit()));
   json.set("identity", json_of(record.identity));
   Json stages = Json::object();
   for (const StageRecord& stage : record.stages) {

@@ -54,16 +54,23 @@ struct RunFigures {
 
 /// In `identity`: the text of a rule file, if there are any rules.
 inline constexpr const char* kRulesKey = "rules";
+/// In `identity` of a run on one fold of a walk-forward alone (run_fold.h): its month.
+inline constexpr const char* kFoldKey = "fold";
+/// In `identity` of a lean run, which makes no plain student, no figures and no page: "lean".
+inline constexpr const char* kStagesKey = "stages";
+inline constexpr const char* kLean = "lean";
 
 struct RunRecord {
   std::string prices;        ///< the minute file; without a folder when it is the run's own
   std::string prices_name;   ///< as students tell where they come from
   std::string teacher_file;  ///< that the run began with; empty when it trains its own
   Entries identity;          ///< all that the run's bytes depend on: options and every key
+  std::string commit = {};   ///< of the bess-train that wrote it last; empty: not told
   std::vector<StageRecord> stages;
   std::optional<RunFigures> figures;
 
   [[nodiscard]] std::string value(const std::string& key) const;  ///< of `identity`; or empty
+  [[nodiscard]] bool is_lean() const { return value(kStagesKey) == kLean; }
   [[nodiscard]] RunConfig config(const RunFolder& folder) const;
   /// Null unless the stage was done with these `inputs` as they are now, and its outputs are as
   /// they were.

@@ -64,6 +64,19 @@ std::string violations_text(const Certificate& plain, const Certificate& correct
   return text;
 }
 
+/// The plain student, also as each rule would hold it.
+void evaluate_plain(const RunResults& run, std::vector<NamedEvaluation>& all) {
+  const auto plain = std::make_shared<StudentPolicy>(run.plain->net);
+  all.push_back(evaluate_both(kPlainName, *plain, run));
+  const auto under = [&](const std::string& name, const RuleSet& rules) {
+    RuledPolicy ruled(plain, rules, run.plain->net.context);
+    all.push_back(evaluate_both(name, ruled, run));
+  };
+  const RuleSet projected = projected_rules(run.corrected.certificate.rules);
+  for (const Rule& rule : projected.rules) under(under_rule_name(rule.name), {{rule}});
+  if (!projected.empty()) under(kUnderAllRules, projected);
+}
+
 std::string teacher_name(const Teacher& teacher) {
   return fmt::format("{} teacher", method_name(teacher.method));
 }
@@ -94,15 +107,7 @@ std::vector<NamedEvaluation> evaluate_run(const RunResults& run) {
       all.push_back(evaluate_both(risk_name(teacher_name(run.teacher), share), policy, run));
     }
   }
-  const auto plain = std::make_shared<StudentPolicy>(run.plain.net);
-  all.push_back(evaluate_both(kPlainName, *plain, run));
-  const auto under = [&](const std::string& name, const RuleSet& rules) {
-    RuledPolicy ruled(plain, rules, run.plain.net.context);
-    all.push_back(evaluate_both(name, ruled, run));
-  };
-  const RuleSet projected = projected_rules(run.corrected.certificate.rules);
-  for (const Rule& rule : projected.rules) under(under_rule_name(rule.name), {{rule}});
-  if (!projected.empty()) under(kUnderAllRules, projected);
+  if (run.plain) evaluate_plain(run, all);
   all.push_back(evaluate_both(own_student_name(run.corrected.certificate),
                               *exported_policy(run.corrected), run));
   baseline(kForesightName);
@@ -121,7 +126,7 @@ std::vector<std::string> write_run_report(const RunResults& run,
       .distil_curve = run.distil_curve,
       .checkpoints = run.checkpoints,
       .teacher = &run.teacher,
-      .uncorrected = &run.plain,
+      .uncorrected = &*run.plain,
       .corrected = &run.corrected,
       .broken = broken_demands(run.corrected, run.config.distil.method),
       .walk_forward = run.walk_forward,
@@ -137,7 +142,7 @@ std::vector<std::string> write_run_report(const RunResults& run,
                "\n" + walk_forward_text(run.walk_forward) + "\n\n";
   }
   summary += format_comparison_table(evaluations) + (alike.empty() ? "" : alike + "\n") +
-             whole_battery_text(evaluations) + violations_text(run.plain.certificate, certificate);
+             whole_battery_text(evaluations) + violations_text(run.plain->certificate, certificate);
   if (const std::string risks = risk_table(evaluations, teacher_name(run.teacher));
       !risks.empty()) {
     summary += '\n' + risks;

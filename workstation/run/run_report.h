@@ -1,6 +1,7 @@
 // The evaluation and the report of one run, from what its folder holds.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,8 +16,8 @@ struct RunResults {
   const RunConfig& config;
   const MarketSteps& market;
   const Teacher& teacher;
-  StudentFile plain;  ///< both with the certificate of the proof that the run made
-  StudentFile corrected;
+  std::optional<StudentFile> plain;  ///< none of a lean run
+  StudentFile corrected;             ///< both with the certificate of the proof that the run made
   std::vector<CurvePoint> training_curve;
   std::vector<DistilPoint> distil_curve;
   WalkForwardOfRun walk_forward;  ///< of the same prices and configuration
@@ -27,10 +28,12 @@ struct RunResults {
 void require_test_days(const MarketSteps& market, const std::string& prices);
 
 /// Test days, day reset and carried over: rule-based first, then the other baselines, the teacher,
-/// the plain and the corrected student, and foresight last.
+/// the plain and the corrected student, and foresight last. Without a plain student,
+/// what stands on it is left out.
 std::vector<NamedEvaluation> evaluate_run(const RunResults& run);
 
-/// Writes the figures with their CSV files, report.html and the summary; returns the names of all.
+/// Precondition: there is a plain student. Writes the figures with their CSV files, report.html and
+/// the summary; returns the names of all.
 std::vector<std::string> write_run_report(const RunResults& run,
                                           const std::vector<NamedEvaluation>& evaluations,
                                           const RunFolder& folder);

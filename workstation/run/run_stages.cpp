@@ -20,6 +20,7 @@
 #include "workstation/report/judged_days.h"
 #include "workstation/run/learnt_for.h"
 #include "workstation/run/run_backtest.h"
+#include "workstation/run/run_fold.h"
 #include "workstation/run/stage_table.h"
 #include "workstation/student/correct_and_prove.h"
 #include "workstation/student/counterexamples.h"
@@ -66,6 +67,14 @@ std::vector<std::string> sorted(std::vector<std::string> names) {
   return names;
 }
 
+/// All of the prices, or what the record's fold may see of them.
+MarketSteps market_of_run(const MinuteSeries& series, const RunConfig& config,
+                          const RunRecord& record) {
+  const std::string month = record.value(kFoldKey);
+  MarketSteps market = market_of(series, config.market, record.prices_name);
+  return month.empty() ? std::move(market) : market_of_fold(market, month);
+}
+
 /// A file's name while it is written (file.cpp), whoever wrote it: the folder is locked.
 bool is_half_written(const std::string& name) {
   const std::size_t at = name.rfind(".part.");
@@ -80,7 +89,7 @@ RunStages::RunStages(RunFolder folder, RunRecord record, const MinuteSeries& ser
       record_(std::move(record)),
       config_(record_.config(folder_)),
       series_(series),
-      market_(market_of(series, config_.market, record_.prices_name)),
+      market_(market_of_run(series, config_, record_)),
       messages_(messages) {}
 
 void RunStages::tell(const std::string& text) const {
@@ -167,6 +176,8 @@ void RunStages::finish() {
 
 bool RunStages::is_due(const Stage& stage) const {
   if (stage.name == stage_name::kPrices) return record_.prices == kSimulatedPrices;
+  const bool is_shown = stage.name == stage_name::kPlain || stage.name == stage_name::kReport;
+  if (is_shown && record_.is_lean()) return false;
   return stage.name != stage_name::kFailureReport;  // fail_the_proof() goes there
 }
 
@@ -235,7 +246,9 @@ RunStages::Names RunStages::make_teacher() {
   end_when_interrupted(how_to_go_on(folder_));
   warn_narrow_support(config_.train, trained);
   trained.teacher.provenance = training_provenance(record_.prices_name, config_.train, trained);
-  trained.teacher.learnt_for = learnt_for(config_, series_);
+  trained.teacher.learnt_for = record_.value(kFoldKey).empty()
+                                   ? learnt_for(config_, series_)
+                                   : learnt_for(config_, series_, market_, fitted_days(market_));
   save_teacher(path(kTeacher), trained.teacher);
   write_file(path(kTrainingCurve), training_curve_csv(trained.curve));
   tell(fmt::format("best at step {}: {:.1f} EUR/day/MWh on validation days, {:.0f} s",
@@ -300,12 +313,13 @@ StudentFile RunStages::unproved_student() const {
 }
 
 void RunStages::fail_the_proof() {
+  const std::string rounds = path(kProofRounds).string();
+  const std::string what = describe_failed_proof(
+      unproved_student(), parse_proof_rounds_csv(read_file(rounds), rounds), config_.distil.method);
+  if (record_.is_lean()) throw ProofFailed(what);
   announce(stage_named(stage_name::kFailureReport));
   report_the_failure();
-  const std::string rounds = path(kProofRounds).string();
-  throw ProofFailed(describe_failed_proof(unproved_student(),
-                                          parse_proof_rounds_csv(read_file(rounds), rounds),
-                                          config_.distil.method) +
+  throw ProofFailed(what +
                     fmt::format("\n  {} shows where; then start at the correction: bess-train run "
                                 "--from-teacher {} --config NEW --out ANOTHER",
                                 path(kReport).string(), folder_.path.string()));
@@ -336,7 +350,7 @@ RunResults RunStages::results(StudentFile corrected) {
   RunResults results{config_,
                      market_,
                      teacher(),
-                     load_student(path(kPlainStudent)),
+                     {},
                      std::move(corrected),
                      parse_training_curve_csv(text(kTrainingCurve), path(kTrainingCurve).string()),
                      parse_distil_curve_csv(text(kDistilCurve), path(kDistilCurve).string()),
@@ -344,17 +358,33 @@ RunResults RunStages::results(StudentFile corrected) {
   if (fs::exists(path(kCheckpoints))) {  // an older run has none
     results.checkpoints = parse_student_checkpoints_csv(text(kCheckpoints), kCheckpoints);
   }
-  results.plain.certificate.counterexamples =
+  if (record_.is_lean()) return results;
+  results.plain = load_student(path(kPlainStudent));
+  results.plain->certificate.counterexamples =
       parse_counterexamples_csv(text(kPlainViolations), path(kPlainViolations).string());
   return results;
 }
 
 RunStages::Names RunStages::make_evaluation() {
-  const std::vector<NamedEvaluation> evaluations =
-      evaluate_run(results(load_student(path(kStudent))));
+  const RunResults run = results(load_student(path(kStudent)));
+  const std::vector<NamedEvaluation> evaluations = evaluate_run(run);
+  if (record_.is_lean()) record_.figures = figures_of(run);
   write_file(path(kTable), comparison_csv(evaluations));
   write_file(path(kDays), evaluation_days_csv(evaluations));
   return {kTable, kDays};
+}
+
+RunFigures RunStages::figures_of(const RunResults& run) const {
+  const Certificate& certificate = run.corrected.certificate;
+  const Certificate plain = run.plain ? run.plain->certificate : Certificate{};
+  return {run.corrected.provenance,
+          fmt::format("{:08x}", student_weights_hash(run.corrected.net)),
+          certificate.states_checked,
+          plain.states_checked,
+          plain.violations(),
+          certificate.violations(),
+          demand_figures(plain, certificate),
+          last_learnt_day(market_)};
 }
 
 RunStages::Names RunStages::make_report() {
@@ -362,15 +392,7 @@ RunStages::Names RunStages::make_report() {
   const auto evaluations =
       parse_evaluation_days_csv(read_file(path(kDays)), path(kDays).string(), config_.battery);
   Names names = write_run_report(run, evaluations, folder_);
-  const Certificate& certificate = run.corrected.certificate;
-  record_.figures = {run.corrected.provenance,
-                     fmt::format("{:08x}", student_weights_hash(run.corrected.net)),
-                     certificate.states_checked,
-                     run.plain.certificate.states_checked,
-                     run.plain.certificate.violations(),
-                     certificate.violations(),
-                     demand_figures(run.plain.certificate, certificate),
-                     last_learnt_day(market_)};
+  record_.figures = figures_of(run);
   return sorted(std::move(names));
 }
 

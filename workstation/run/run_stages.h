@@ -60,6 +60,7 @@ class RunStages {
   const Teacher& teacher();
   const Matrix& visited();
   RunResults results(StudentFile corrected);
+  [[nodiscard]] RunFigures figures_of(const RunResults& run) const;
 
   RunFolder folder_;
   RunRecord record_;

@@ -12,67 +12,13 @@
 #include "workstation/report/html.h"
 #include "workstation/report/page_files.h"
 #include "workstation/report/report_tables.h"
+#include "workstation/report/sort_table.h"
 #include "workstation/student/proof_rounds.h"
 
 namespace bess {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char* kNothing = "\u2013";
-
-/// What a cell shows, and what it is sorted by; what is not known comes last.
-struct Cell {
-  std::string html;
-  std::string sort{};
-  bool is_text = false;  ///< read from the left, and may be broken
-};
-
-Cell text_cell(const std::string& text) {
-  return {html_escaped(with_true_minus(text)), text, true};
-}
-Cell no_text_cell() { return {kNothing, {}, true}; }
-
-Cell number_cell(const std::string& text, double value) {
-  if (std::isnan(value)) return {kNothing};
-  return {html_escaped(with_true_minus(text)), fmt::format("{}", value)};
-}
-
-Cell number_cell(double value, int decimals) {
-  return number_cell(fmt::format("{:.{}f}", value, decimals), value);
-}
-
-struct SortTable {
-  std::string id, caption;
-  std::vector<std::string> header;
-  std::vector<std::vector<Cell>> rows;
-};
-
-std::string table_html(const SortTable& table) {
-  std::string text = fmt::format(
-      "<div class=\"wide\"><table class=\"sortable\" id=\"{}\">\n"
-      "<caption>{}</caption>\n<thead><tr>",
-      table.id, html_escaped(table.caption));
-  for (std::size_t c = 0; c < table.header.size(); ++c) {
-    const bool is_text =
-        std::ranges::any_of(table.rows, [&](const auto& row) { return row[c].is_text; });
-    text += fmt::format("<th scope=\"col\"{}><button type=\"button\">{}</button></th>",
-                        is_text ? " class=\"text\"" : "", html_escaped(table.header[c]));
-  }
-  text += "</tr></thead>\n<tbody>\n";
-  for (const auto& row : table.rows) {
-    text += "<tr>";
-    for (std::size_t c = 0; c < row.size(); ++c) {
-      const std::string sort = fmt::format("data-sort=\"{}\"", html_escaped(row[c].sort));
-      text += c == 0 ? fmt::format("<th scope=\"row\" {}>{}</th>", sort, row[c].html)
-                     : fmt::format("<td data-label=\"{}\" {}{}><span>{}</span></td>",
-                                   html_escaped(table.header[c]), sort,
-                                   row[c].is_text ? " class=\"text\"" : "", row[c].html);
-    }
-    text += "</tr>\n";
-  }
-  return text + "</tbody></table></div>\n";
-}
 
 Cell run_cell(const RunLine& run, const fs::path& page) {
   const std::string name = run.folder.path.string();
@@ -117,25 +63,25 @@ const Evaluation* exported_days(const RunLine& run, EvaluationField field) {
 Cell gain_cell(const Evaluation& days, const Evaluation& first) {
   const bool same =
       std::ranges::equal(days.days, first.days, {}, &DayResult::date, &DayResult::date);
-  if (&days == &first || !same) return {kNothing};
+  if (&days == &first || !same) return {kNoValue};
   const PairedDifference gain = paired_difference(days, first);
   return number_cell(
-      fmt::format("{:+.1f} \u00b1 {} ({})", gain.mean, error_text(gain.standard_error, 1, kNothing),
-                  error_text(gain.standard_error_by_month, 1, kNothing)),
+      fmt::format("{:+.1f} \u00b1 {} ({})", gain.mean, error_text(gain.standard_error, 1, kNoValue),
+                  error_text(gain.standard_error_by_month, 1, kNoValue)),
       gain.mean);
 }
 
 std::vector<Cell> figure_cells(const RunLine& run, const Evaluation* first) {
   const Evaluation* carried = exported_days(run, &NamedEvaluation::carried_over);
-  if (carried == nullptr || carried->days.empty()) return std::vector<Cell>(7, Cell{kNothing});
+  if (carried == nullptr || carried->days.empty()) return std::vector<Cell>(7, Cell{kNoValue});
   const auto rows = comparison_rows(run.summary->evaluations, &NamedEvaluation::carried_over);
   const auto row = std::ranges::find(rows, kExportedPolicy, &ComparisonRow::name);
   const double reset =
       exported_days(run, &NamedEvaluation::day_reset)->profit_eur_per_day_per_mwh();
   return {number_cell(static_cast<double>(row->days), 0),
           number_cell(fmt::format("{:.1f} \u00b1 {} ({})", row->profit,
-                                  error_text(row->errors.plain, 1, kNothing),
-                                  error_text(row->errors.by_month, 1, kNothing)),
+                                  error_text(row->errors.plain, 1, kNoValue),
+                                  error_text(row->errors.by_month, 1, kNoValue)),
                       row->profit),
           gain_cell(*carried, *first),
           number_cell(row->profit * carried->capacity_mwh, 1),
@@ -205,7 +151,7 @@ std::string runs_page(const std::vector<RunLine>& runs, const fs::path& page) {
   const std::string title = counted(runs.size(), "run");
   const SortTable settings = settings_table(runs);
   const std::string differ = settings.header.size() > 1
-                                 ? table_html(settings)
+                                 ? sort_table_html(settings)
                                  : "<p class=\"note\">They differ in no setting.</p>\n";
   return format_page(
       title,
@@ -216,7 +162,7 @@ std::string runs_page(const std::vector<RunLine>& runs, const fs::path& page) {
           "difference to the first run with figures, where both have the same days. A head sorts "
           "by its column, once more the other way round; what is not known comes last.</p>\n{}"
           "<script>\n{}</script>\n",
-          title, table_html(run_table(runs, page)), differ, page_file("sort.js")));
+          title, sort_table_html(run_table(runs, page)), differ, page_file("sort.js")));
 }
 
 }  // namespace bess

@@ -87,7 +87,7 @@ class Answers(unittest.TestCase):
     def answers(self, *arguments, code=0):
         """What a command answers, each line held; all keys of a kind are always there."""
         arguments = [self.file(a[1:]) if a.startswith("@") else a for a in arguments]
-        self.run_commands.add(re.match(r"((runs|rules|prices) )?\S+", " ".join(arguments))[0])
+        self.run_commands.add(re.match(r"((runs|rules|prices|sweep) )?\S+", " ".join(arguments))[0])
         lines = [json.loads(line) for line in self.bess([*arguments, "--json"], code).splitlines()]
         self.assertTrue(lines, arguments)
         for line in lines:
@@ -219,6 +219,13 @@ class Answers(unittest.TestCase):
                      "lost_hours.csv"):
             self.table(run + name)
         self.table(run + "student_plain_violations.csv", "violations.csv")
+
+    def test_8_sweep(self):
+        planned = self.answers("sweep", "plan", "--prices", "@market.csv", "--out", "@sweeps",
+                               "--set", "distil.fidelity=1,2", "--seeds", "3")[0]
+        self.assertEqual([planned["tasks"], planned["tasks_new"], planned["written"]], [6, 6, True])
+        status = self.answers("sweep", "status", "@sweeps")[0]
+        self.assertEqual([status["tasks"], status["missing"], status["proved"]], [6, 6, 0])
 
     def test_9_nothing_is_left_out(self):
         """Every command that knows --json was asked, and every kind of answer and table was met."""

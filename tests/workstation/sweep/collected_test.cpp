@@ -1,0 +1,120 @@
+// What a sweep came to, from results made by hand: tables, folded seeds, sites and the page.
+#include "workstation/sweep/collected.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "shared/host/file.h"
+#include "shared/host/user_error.h"
+#include "tests/support/temporary_folder.h"
+#include "workstation/report/comparison.h"
+#include "workstation/run/run_folder.h"
+#include "workstation/run/run_summary.h"
+#include "workstation/sweep/sweep_page.h"
+
+namespace bess {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+class Collected : public testing::Test {
+ protected:
+  /// Published: earned `eur` a day with 8 MWh, on two days.
+  void publish(int task, double eur) {
+    const std::filesystem::path result = folder_.result(task);
+    Evaluation days;
+    days.capacity_mwh = 8;
+    days.days = {{"2023-01-26", eur, 1, 2, 0.5, 3}, {"2023-02-26", eur, 1, 2, 0.5, 3}};
+    write_file(result / run_file::kTable,
+               comparison_csv({{"rbc", days, days}, {kExportedPolicy, days, days}}));
+    write_file(result / run_file::kRecord, R"({"figures":{"weights_hash":"0123abcd"}})");
+    write_file(result / run_file::kTimes, R"({"teacher":{"seconds":2.5},"header":{"seconds":1}})");
+    write_file(result / run_file::kStudent, "{}");
+  }
+  std::vector<CollectedTask> collected() {
+    return collect_tasks(folder_, tasks_, task_states(folder_, static_cast<int>(tasks_.size())));
+  }
+
+  TemporaryFolder root_;
+  SweepFolder folder_{root_.file("sweep")};
+  std::vector<SweepTask> tasks_{{1, {{"seed", "1"}, {"distil.fidelity", "1"}}},
+                                {2, {{"seed", "2"}, {"distil.fidelity", "1"}}},
+                                {3, {{"seed", "1"}, {"distil.fidelity", "10"}}},
+                                {4, {{"seed", "2"}, {"distil.fidelity", "10"}}}};
+};
+
+TEST_F(Collected, ARowATaskWithWhatBecameOfIt) {
+  publish(1, 80);
+  write_file(folder_.result(3) / run_file::kUnprovedStudent, "{}");
+  const std::string csv = tasks_csv(collected());
+  EXPECT_THAT(csv, HasSubstr("task,state,seed,distil.fidelity,days,"));
+  EXPECT_THAT(csv, HasSubstr("\n1,proved,1,1,2,10.0000,"));
+  EXPECT_THAT(csv, HasSubstr(",0123abcd,3.50\n"));
+  EXPECT_THAT(csv, HasSubstr("\n2,missing,2,1,,"));
+  EXPECT_THAT(csv, HasSubstr("\n3,not proved,1,10,,"));
+}
+
+TEST_F(Collected, SeedsAreFoldedWithTheirError) {
+  publish(1, 80);
+  publish(2, 96);
+  publish(3, 40);
+  const auto rows = fold_seeds(collected());
+  ASSERT_EQ(rows.size(), 2);
+  EXPECT_EQ(rows[0].tasks, 2);
+  EXPECT_DOUBLE_EQ(rows[0].mean, 11);
+  EXPECT_DOUBLE_EQ(*rows[0].standard_error, 1) << "sqrt(((10 - 11)^2 + (12 - 11)^2) / 1 / 2)";
+  EXPECT_DOUBLE_EQ(rows[0].low, 10);
+  EXPECT_DOUBLE_EQ(rows[0].high, 12);
+  EXPECT_EQ(rows[1].proved, 1);
+  EXPECT_FALSE(rows[1].standard_error.has_value());
+  EXPECT_THAT(varying_settings(collected()), ElementsAre("seed", "distil.fidelity"));
+}
+
+TEST_F(Collected, OfMonthsTheErrorIsOverMonths) {
+  tasks_ = {{1, {{"seed", "1"}, {"fold", "2023-07"}}},
+            {2, {{"seed", "2"}, {"fold", "2023-07"}}},
+            {3, {{"seed", "1"}, {"fold", "2023-08"}}},
+            {4, {{"seed", "2"}, {"fold", "2023-08"}}}};
+  publish(1, 80);
+  publish(2, 96);  // July 11
+  publish(3, 40);
+  publish(4, 40);  // August 5
+  const auto rows = fold_seeds(collected());
+  ASSERT_EQ(rows.size(), 1);
+  EXPECT_DOUBLE_EQ(rows[0].mean, 8);
+  EXPECT_DOUBLE_EQ(*rows[0].standard_error, 3);
+}
+
+TEST_F(Collected, ASiteEarnsByItsCapacityWhatItsClassDoes) {
+  for (SweepTask& task : tasks_) task.settings.emplace_back(setting::kClass, "c");
+  publish(1, 80);
+  publish(2, 96);
+  const auto sites = collect_sites(folder_, collected(),
+                                   {{"a", "north", 4e3, 8e3, 0.5, "c"}, {"b", "", 1, 1, 0.5, "d"}});
+  EXPECT_DOUBLE_EQ(*sites[0].profit, 11);
+  EXPECT_DOUBLE_EQ(*sites[0].eur_per_day, 0.088);
+  EXPECT_EQ(sites[0].header, "tasks/000/000001/student_weights.h");
+  EXPECT_FALSE(sites[1].profit.has_value());
+  EXPECT_THAT(sites_csv(sites), AllOf(HasSubstr("\na,north,c,4000,8000,4,2,11.0000,0.0880,tasks/"),
+                                      HasSubstr("\nb,,d,1,1,0,0,,,\n")));
+}
+
+TEST_F(Collected, ThePageHasMapDotsAndTables) {
+  for (int task = 1; task <= 3; ++task) publish(task, 80 - 10 * task);
+  const SweepRecord record{"id", "bess-train", "crc32 1", "market <1>.csv", "lean", 0};
+  const std::string page = sweep_page(record, collected(), {}, {});
+  EXPECT_THAT(page, AllOf(HasSubstr("<table id=\"map\">"), HasSubstr("distil.fidelity across"),
+                          HasSubstr("<table class=\"sortable\" id=\"tasks\">"),
+                          HasSubstr("<circle"), HasSubstr("market &lt;1&gt;.csv"),
+                          HasSubstr("1 without a result"), Not(HasSubstr("id=\"sites\""))));
+  EXPECT_LT(page.find(">1</th>"), page.find(">10</th>")) << "numbers are sorted as numbers";
+  EXPECT_THROW(sweep_page(record, collected(), {}, {"train.steps"}), UserError);
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,34 @@
+// A table that sorts by its heads (page/sort.js): each cell is what it shows and what it is sorted
+// by. On a narrow screen every row is a list.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace bess {
+
+/// What a cell shows that has nothing to say.
+inline constexpr const char* kNoValue = "\u2013";
+
+/// What a cell shows, and what it is sorted by; what is not known comes last.
+struct Cell {
+  std::string html;
+  std::string sort{};
+  bool is_text = false;  ///< read from the left, and may be broken
+};
+
+Cell text_cell(const std::string& text);
+Cell no_text_cell();
+/// NaN: nothing.
+Cell number_cell(const std::string& text, double value);
+Cell number_cell(double value, int decimals);
+
+struct SortTable {
+  std::string id, caption;
+  std::vector<std::string> header;
+  std::vector<std::vector<Cell>> rows;
+};
+
+std::string sort_table_html(const SortTable& table);
+
+}  // namespace bess
