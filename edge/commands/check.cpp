@@ -28,7 +28,7 @@ namespace {
 void print_registers(const EdgeConfig& config, const ModbusBattery& battery, const char* name,
                      const PowerOrder& order, Command command) {
   std::printf("%-10s", name);
-  for (const BlockWrite& write : config.map.sequence(command).writes) {
+  for (const BlockWrite& write : config.battery.map.sequence(command).writes) {
     RegisterBlock block;
     std::uint16_t address = 0;
     const Status status = battery.preview(write, order, address, block);
@@ -63,7 +63,8 @@ bool report_price(const EdgeConfig& config, PriceFeed& prices) {
   const Status status = prices.fetch_once(row);
   if (status != Status::kOk) {
     report(JournalLevel::kError, "price from %s: %s",
-           loggable_url(config.price.http.url.view()).c_str(), price_status_text(status).data());
+           loggable_url(config.price.feed.http.url.view()).c_str(),
+           price_status_text(status).data());
     return false;
   }
   std::printf("price      %.2f EUR/MWh of minute %s\n", row.price_centi_eur_per_mwh / 100.0,
@@ -79,7 +80,7 @@ void print_thresholds(const EdgeConfig& config) {
 }
 
 void print_transport(const EdgeConfig& config) {
-  const TransportNote note = transport_note({config.price, config.history});
+  const TransportNote note = transport_note({config.price.feed, config.price.history});
   if (!note.is_open) return static_cast<void>(std::printf("transport  %s\n", note.text.c_str()));
   report(JournalLevel::kWarning, "note: %s", note.text.c_str());
 }
@@ -174,8 +175,9 @@ bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& p
   std::printf("student    %s (%d self-checks passed)\n", student_provenance(),
               student_self_check_count());
   std::printf("context    %s\n", context_note(student_context()).c_str());
-  std::printf("map        %s%s%s; control = %s\n", config.map.name.c_str(),
-              config.map.variant.empty() ? "" : ", variant ", config.map.variant.c_str(),
+  std::printf("map        %s%s%s; control = %s\n", config.battery.map.name.c_str(),
+              config.battery.map.variant.empty() ? "" : ", variant ",
+              config.battery.map.variant.c_str(),
               config.control.control ? "true" : "false (read-only)");
   std::fflush(stdout);
   print_thresholds(config);
@@ -193,7 +195,7 @@ bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& p
     char capacity[32] = "capacity not reported";
     if (m.capacity_wh > 0) std::snprintf(capacity, sizeof capacity, "%d Wh", m.capacity_wh);
     std::printf("battery    %s: SoC %.1f %%, %d W, %s, dispatch %s\n",
-                battery_place(config).c_str(), m.soc_e4 / 100.0, m.power_w, capacity,
+                battery_place(config.battery).c_str(), m.soc_e4 / 100.0, m.power_w, capacity,
                 m.dispatch_active ? "active" : "off");
   }
   const bool sign_ok = report_sign(config);
@@ -206,9 +208,9 @@ bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& p
 int run_check(const EdgeConfig& config) {
   DeviceSession session;
   if (!session.begin(config)) return 1;
-  ModbusBattery battery(config.link, config.map, config.clock);
+  ModbusBattery battery(config.battery.link, config.battery.map, config.clock);
   ModbusMeter meter(config.site.link, config.site.map, config.clock);
-  const auto prices = std::make_unique<PriceFeed>(config.price, config.clock);
+  const auto prices = std::make_unique<PriceFeed>(config.price.feed, config.clock);
   const bool is_well = report_check(config, battery, *prices, session.clock());
   return report_site(config, battery, meter) && is_well ? 0 : 1;
 }

@@ -65,12 +65,12 @@ class SiteMeter {
 CommissionSettings settings_of(const EdgeConfig& config) {
   const GuardSettings& guard = config.control.guard;
   CommissionSettings settings;
-  const Commissioning& test = config.map.commissioning;
+  const Commissioning& test = config.battery.map.commissioning;
   settings.power_w = std::min(test.power_w, guard.power_w);
   settings.rest_s = test.settle_s;
   settings.drive_s = test.duration_s;
   settings.tolerance_percent = test.tolerance_percent;
-  settings.response = config.map.response;
+  settings.response = config.battery.map.response;
   settings.step_w_max =
       guard.ramp_w_max > 0 ? std::min(guard.ramp_w_max, 2 * guard.power_w) : 2 * guard.power_w;
   settings.soc_min_e4 = guard.soc_min_e4;
@@ -83,7 +83,8 @@ int ask_for_yes(const EdgeConfig& config, const CommissionSettings& settings) {
   report(JournalLevel::kError,
          "commission orders the battery at %s to rest for %d s, then to charge and to discharge %d "
          "W for %d s each, then releases it; add --yes to do that",
-         battery_place(config).c_str(), settings.rest_s, settings.power_w, settings.drive_s);
+         battery_place(config.battery).c_str(), settings.rest_s, settings.power_w,
+         settings.drive_s);
   return 2;
 }
 
@@ -96,7 +97,7 @@ void complain_about_release(const EdgeConfig& config, const CommissionResult& re
   report(JournalLevel::kError,
          "commission %s: the battery could not be released (%s) and may still follow an order of "
          "%d W%s",
-         battery_place(config).c_str(), status_text(result.release_status).data(),
+         battery_place(config.battery).c_str(), status_text(result.release_status).data(),
          result.ordered_power_w, timer);
 }
 
@@ -135,15 +136,15 @@ void print_measured(const EdgeConfig& config, const CommissionResult& result) {
 /// With which it would pass.
 void print_proposal(const EdgeConfig& config, const CommissionResult& result) {
   if (result.wanted_settle_s > 0 || result.wanted_tolerance_w > 0) {
-    std::printf("[response]   # of the map, %s\n", config.map_path.c_str());
+    std::printf("[response]   # of the map, %s\n", config.battery.map_path.c_str());
   }
   if (result.wanted_settle_s > 0) {
     std::printf("settle_s = %d   # it says %d\n", result.wanted_settle_s,
-                config.map.response.settle_s);
+                config.battery.map.response.settle_s);
   }
   if (result.wanted_tolerance_w > 0) {
     std::printf("tolerance_w = %d   # it says %d\n", result.wanted_tolerance_w,
-                config.map.response.tolerance_w);
+                config.battery.map.response.tolerance_w);
   }
   if (result.wanted_ramp_w_max > 0) {
     std::printf(
@@ -160,7 +161,7 @@ bool is_link(CommissionVerdict verdict) {
 int refuse(const EdgeConfig& config, const CommissionResult& result) {
   const bool has_status = is_link(result.verdict);
   report(JournalLevel::kError, "commission %s: ordered %d W, measured %d W: %s%s%s",
-         battery_place(config).c_str(), result.ordered_power_w, result.measured_power_w,
+         battery_place(config.battery).c_str(), result.ordered_power_w, result.measured_power_w,
          commission_text(result.verdict).data(), has_status ? ": " : "",
          has_status ? status_text(result.status).data() : "");
   print_proposal(config, result);
@@ -174,12 +175,13 @@ int run_commission(const CommissionGiven& given, SettingsFile& settings) {
   EdgeClock& clock = session.clock();
   const CommissionSettings test = settings_of(config);
   if (!given.yes) return ask_for_yes(config, test);
-  static ModbusBattery battery(config.link, config.map, config.clock);  // outlives a failed check
+  static ModbusBattery battery(config.battery.link, config.battery.map,
+                               config.clock);  // outlives a failed check
   ModbusMeter meter(config.site.link, config.site.map, config.clock);
   release_if_a_check_fails(battery);
   if (!reach_battery(config, battery, clock)) return 1;
   std::printf("commission %s: resting %d s, then %d W for %d s each way ...\n",
-              battery_place(config).c_str(), test.rest_s, test.power_w, test.drive_s);
+              battery_place(config.battery).c_str(), test.rest_s, test.power_w, test.drive_s);
   std::fflush(stdout);
   const CommissionResult result = SignCheck<ModbusBattery, EdgeClock, SiteMeter>(
                                       test, battery, clock, SiteMeter(config.site.settings, meter))

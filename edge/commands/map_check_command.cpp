@@ -124,7 +124,7 @@ std::optional<int> find_map(const MapCheckGiven& given, SettingsFile& settings) 
   }
   if (!settings.path.empty()) return complain("--map and --config exclude each other");
   std::string error;
-  RegisterMap& map = settings.config.map;
+  RegisterMap& map = settings.config.battery.map;
   if (load_register_map(given.map_path, given.variant, map, error)) return std::nullopt;
   return refuse(error);
 }
@@ -133,7 +133,7 @@ std::optional<int> find_map(const MapCheckGiven& given, SettingsFile& settings) 
 
 int run_map_check(const MapCheckGiven& given, SettingsFile& settings) {
   if (const auto code = find_map(given, settings)) return *code;
-  RegisterMap& map = settings.config.map;
+  RegisterMap& map = settings.config.battery.map;
   std::string error;
   BusRecordingReader recording;
   const CutRecording cut = given.accept_cut ? CutRecording::kAccepted : CutRecording::kRefused;

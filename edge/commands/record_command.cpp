@@ -114,13 +114,13 @@ void poll_device(const RecordGiven& given, const EdgeConfig& config, Bus& bus, E
   const std::int64_t every_s = given.every_s > 0 ? given.every_s : kEveryDefaultS;
   const std::int64_t begin_ns = clock.now_utc_ns();
   const std::int64_t end_ns = begin_ns + given.for_s * kNanosecondsPerSecond;
-  const PointPlaces places(config.map, config.link.unit);
+  const PointPlaces places(config.battery.map, config.battery.link.unit);
   const Progress progress(given.for_s);
   std::int64_t next_all_ns = begin_ns;
   std::int64_t next_ns = begin_ns;
   while (!clock.stop_requested()) {
     if (next_ns >= next_all_ns) {
-      read_everything(config.map, places, bus, clock);
+      read_everything(config.battery.map, places, bus, clock);
       next_all_ns += kAllEveryS * kNanosecondsPerSecond;
     }
     static_cast<void>(bus.read_due());
@@ -138,16 +138,17 @@ int run_record(const RecordGiven& given, SettingsFile& settings) {
   DeviceSession session;
   if (!session.begin(config)) return 1;
   EdgeClock& clock = session.clock();
-  const RecordingHead head = recording_head_of(config.map, config.link, config.clock);
+  const RecordingHead head =
+      recording_head_of(config.battery.map, config.battery.link, config.clock);
   const std::string path = path_of(given, head.begin_utc_s);
   const auto recorder = std::make_unique<ExchangeRecorder>();
   FileMessage error;
-  if (!recorder->start(path.c_str(), head, config.map, config.clock, error)) {
+  if (!recorder->start(path.c_str(), head, config.battery.map, config.clock, error)) {
     report(JournalLevel::kError, "%s", error.c_str());
     return 1;
   }
-  Bus bus(config.map, DeviceTime(config.clock), config.link.unit, config.link,
-          timing_of(config.map), config.clock);
+  Bus bus(config.battery.map, DeviceTime(config.clock), config.battery.link.unit,
+          config.battery.link, timing_of(config.battery.map), config.clock);
   bus.link().tell_exchanges(recorder->listener());
   poll_device(given, config, bus, clock);
   bus.link().tell_exchanges({});
@@ -156,15 +157,16 @@ int run_record(const RecordGiven& given, SettingsFile& settings) {
     return 1;
   }
   const LinkCounters& counters = bus.link().counters();
-  std::printf(
-      "recorded   %s: %" PRId64 " requests, %" PRId64 " failed; nothing was written to %s\n",
-      path.c_str(), counters.requests, counters.failed_requests, battery_place(config).c_str());
+  std::printf("recorded   %s: %" PRId64 " requests, %" PRId64
+              " failed; nothing was written to %s\n",
+              path.c_str(), counters.requests, counters.failed_requests,
+              battery_place(config.battery).c_str());
   if (counters.failed_requests < counters.requests) return 0;
   report(JournalLevel::kError,
          "battery at %s: no request had a good answer (are host, port and unit right, does another "
          "program "
          "hold its one connection?)",
-         battery_place(config).c_str());
+         battery_place(config.battery).c_str());
   return 1;
 }
 

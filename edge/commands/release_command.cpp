@@ -39,8 +39,8 @@ int run_release(const ReleaseGiven& given, SettingsFile& settings) {
   const EdgeConfig& config = settings.config;
   DeviceSession session;
   if (!session.begin(config)) return 1;
-  ModbusBattery battery(config.link, config.map, config.clock);
-  const auto place = battery_place(config);
+  ModbusBattery battery(config.battery.link, config.battery.map, config.clock);
+  const auto place = battery_place(config.battery);
   if (!given.yes) {
     report(JournalLevel::kError,
            "release gives the battery at %s back to its own mode; add --yes to do that",

@@ -71,9 +71,9 @@ int fail(const FileMessage& error) {
 int run_controller(const RunGiven& given, const EdgeConfig& config) {
   static DeviceSession session;
   if (!session.begin(config)) return 1;
-  static ModbusBattery battery(config.link, config.map, config.clock);
+  static ModbusBattery battery(config.battery.link, config.battery.map, config.clock);
   static ModbusMeter meter(config.site.link, config.site.map, config.clock);
-  static PriceFeed prices(config.price, config.clock);
+  static PriceFeed prices(config.price.feed, config.clock);
   FileMessage error;
   if (!lock_state(config, session.locks(), error)) return fail(error);
   static RealWorld world(

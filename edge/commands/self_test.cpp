@@ -131,7 +131,7 @@ void test_clock(const EdgeConfig& config, const EdgeClock& clock, Table& table) 
 }
 
 void test_network(const EdgeConfig& config, PriceFeed& prices, Table& table) {
-  const std::string server = loggable_url(config.price.http.url.view()).c_str();
+  const std::string server = loggable_url(config.price.feed.http.url.view()).c_str();
   PriceRow row;
   const Status status = prices.fetch_once(row);
   if (status != Status::kOk) {
@@ -143,8 +143,8 @@ void test_network(const EdgeConfig& config, PriceFeed& prices, Table& table) {
 }
 
 void test_ca_file(const EdgeConfig& config, Table& table) {
-  const std::string path = config.price.http.ca_file.c_str();
-  if (!config.price.http.url.view().starts_with("https")) {
+  const std::string path = config.price.feed.http.ca_file.c_str();
+  if (!config.price.feed.http.url.view().starts_with("https")) {
     return table.add("ca_file", Verdict::kNote, "not needed: the prices come over plain http");
   }
   std::ifstream file(path);
@@ -176,12 +176,12 @@ void test_storage(const EdgeConfig& config, Table& table) {
 
 /// Reads the identity and the measurements; writes nothing.
 void test_battery(const EdgeConfig& config, EdgeClock& clock, Table& table) {
-  const std::string place = battery_place(config).c_str();
+  const std::string place = battery_place(config.battery).c_str();
   RunLocks locks;
   FileMessage in_use;
   if (!lock_battery(config, locks, in_use))
     return table.add("battery", Verdict::kNote, in_use.c_str());
-  ModbusBattery battery(config.link, config.map, config.clock);
+  ModbusBattery battery(config.battery.link, config.battery.map, config.clock);
   BatteryMeasurement m;
   std::string trouble;
   const bool is_there = find_battery(config, battery, clock, trouble) == Status::kOk;
@@ -190,7 +190,7 @@ void test_battery(const EdgeConfig& config, EdgeClock& clock, Table& table) {
     return table.add("battery", false, place + ": " + std::string(status_text(status)));
   }
   table.add("battery", true,
-            text("%s, map %s: SoC %.1f %%, %d W", place.c_str(), config.map.name.c_str(),
+            text("%s, map %s: SoC %.1f %%, %d W", place.c_str(), config.battery.map.name.c_str(),
                  m.soc_e4 / 100.0, m.power_w));
 }
 
@@ -206,7 +206,7 @@ int run_self_test(const EdgeConfig& config) {
   EdgeClock clock(config.clock, config.require_synchronised_clock);
   test_clock(config, clock, table);
   test_ca_file(config, table);
-  test_network(config, *std::make_unique<PriceFeed>(config.price, config.clock), table);
+  test_network(config, *std::make_unique<PriceFeed>(config.price.feed, config.clock), table);
   test_storage(config, table);
   test_battery(config, clock, table);
   std::printf("self-test  %s\n",

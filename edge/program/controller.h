@@ -74,7 +74,7 @@ class Controller {
 
   /// True when the battery is found, or when the configuration allows to start without it.
   bool reach() {
-    world_.needs_time(config_.start_timeout_s + kStartMarginS);
+    world_.needs_time(config_.battery.start_timeout_s + kStartMarginS);
     std::string trouble;
     const Status status = find_battery(config_, world_.battery(), world_.clock(), trouble);
     if (status == Status::kOk) return true;
@@ -126,14 +126,14 @@ class Controller {
     if (status == Status::kOk) return status;
     world_.complain(JournalLevel::kWarning,
                     "note: price from " +
-                        std::string(loggable_url(config_.price.http.url.view()).view()) + ": " +
-                        std::string(price_status_text(status)) + "; waiting in safe state");
+                        std::string(loggable_url(config_.price.feed.http.url.view()).view()) +
+                        ": " + std::string(price_status_text(status)) + "; waiting in safe state");
     return status;
   }
 
   void take_over(Status greeting) {
     const bool needs_level = student_context().kind == ContextKind::kLevel;
-    if (needs_level) world_.needs_time(config_.history.wait_s + kStartMarginS);
+    if (needs_level) world_.needs_time(config_.price.history.wait_s + kStartMarginS);
     const Recall recalled = world_.recall();
     const BatteryCounters& counters = recalled.before.counters;
     world_.battery().restore_flash_writes(counters.flash_day, counters.flash_writes_today);

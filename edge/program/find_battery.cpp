@@ -8,12 +8,12 @@ namespace {
 
 /// "PLACE: what is wrong there".
 std::string trouble_at(const EdgeConfig& config, std::string_view what) {
-  return std::string(battery_place(config).view()) + ": " + std::string(what);
+  return std::string(battery_place(config.battery).view()) + ": " + std::string(what);
 }
 
 /// What the link's trouble means for this transport.
 std::string_view link_text(const EdgeConfig& config, Status status) {
-  if (!config.link.rtu || status != Status::kNotConnected) return status_text(status);
+  if (!config.battery.link.rtu || status != Status::kNotConnected) return status_text(status);
   return "the serial line cannot be opened (is device right and plugged in, is this user in the "
          "group dialout?)";
 }
@@ -24,10 +24,10 @@ Status identify_battery(const EdgeConfig& config, ModbusBattery& battery, std::s
   IdentityFailure failure;
   Status status = battery.check_identity(failure);
   if (status == Status::kImplausible) {
-    const IdentityCheck& check = config.map.identity[failure.check];
+    const IdentityCheck& check = config.battery.map.identity[failure.check];
     char text[256];
     std::snprintf(text, sizeof text, "%s reads %lld, not %lld to %lld: %s",
-                  config.map.points[check.point].name.c_str(),
+                  config.battery.map.points[check.point].name.c_str(),
                   static_cast<long long>(failure.value), static_cast<long long>(check.value_min),
                   static_cast<long long>(check.value_max), check.hint.c_str());
     trouble = trouble_at(config, text);
@@ -42,9 +42,9 @@ Status identify_battery(const EdgeConfig& config, ModbusBattery& battery, std::s
 Status find_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock& clock,
                     std::string& trouble) {
   const std::int64_t deadline_ns =
-      clock.monotonic_ns() + config.start_timeout_s * kNanosecondsPerSecond;
+      clock.monotonic_ns() + config.battery.start_timeout_s * kNanosecondsPerSecond;
   while (!clock.stop_requested()) {
-    const bool last = clock.monotonic_ns() >= deadline_ns || config.start_without_battery;
+    const bool last = clock.monotonic_ns() >= deadline_ns || config.battery.start_without_battery;
     const Status status = identify_battery(config, battery, trouble);
     // The wrong device stays the wrong device.
     if (status == Status::kOk || status == Status::kImplausible || last) return status;
@@ -54,7 +54,7 @@ Status find_battery(const EdgeConfig& config, ModbusBattery& battery, EdgeClock&
 }
 
 bool may_start_without(const EdgeConfig& config, Status status) {
-  return status != Status::kImplausible && config.start_without_battery;
+  return status != Status::kImplausible && config.battery.start_without_battery;
 }
 
 }  // namespace bess

@@ -35,8 +35,9 @@ RealWorld::RealWorld(const EdgeConfig& config, const Devices& devices)
 
 bool RealWorld::record_battery(const std::string& path, FileMessage& error) {
   if (path.empty()) return true;
-  if (!recorder_.start(path.c_str(), recording_head_of(config_.map, config_.link, config_.clock),
-                       config_.map, config_.clock, error)) {
+  if (!recorder_.start(path.c_str(),
+                       recording_head_of(config_.battery.map, config_.battery.link, config_.clock),
+                       config_.battery.map, config_.clock, error)) {
     return false;
   }
   battery().link().tell_exchanges(recorder_.listener());

@@ -18,19 +18,19 @@ template <typename Prices, typename Clock>
 LevelNews starting_level(const EdgeConfig& config, const PriceLevel& logged, Status greeting,
                          Prices& prices, Clock& clock, std::optional<PriceHistory>& history) {
   const std::int64_t now_utc_s = clock.now_utc_ns() / kNanosecondsPerSecond;
-  LevelNews news{.hours_wanted = config.history.hours, .status = greeting};
+  LevelNews news{.hours_wanted = config.price.history.hours, .status = greeting};
   const auto fetch = [&]() -> PriceLevel {
     // A server that has just not answered would only hold up the start.
     const bool has_answered = greeting == Status::kOk || greeting == Status::kNoRow;
     if (news.hours_wanted == 0 || !has_answered) return {};
     history.emplace(news.hours_wanted, now_utc_s);
-    news.status = fetch_history(prices, config.price, config.history, clock, *history);
+    news.status = fetch_history(prices, config.price.feed, config.price.history, clock, *history);
     news.hours = history->hours_covered();
     news.rows = history->rows();
     return history->level();
   };
   news.start = find_start_level(student_context().kind, logged, now_utc_s,
-                                config.level_start_centi_eur_per_mwh, fetch);
+                                config.price.level_start_centi_eur_per_mwh, fetch);
   return news;
 }
 

@@ -10,8 +10,9 @@ constexpr int kCyclesPerHour = 30;
 
 /// The most that this battery can do in a day of 25 hours, in 1e-4 full cycles.
 std::int64_t cycles_per_day_possible_e4(const EdgeConfig& config) {
-  if (config.capacity_wh <= 0) return 0;
-  return std::int64_t{25} * 10'000 * config.control.guard.power_w / (2 * config.capacity_wh);
+  if (config.battery.capacity_wh <= 0) return 0;
+  return std::int64_t{25} * 10'000 * config.control.guard.power_w /
+         (2 * config.battery.capacity_wh);
 }
 
 void add_guard(const EdgeConfig& config, std::vector<std::string>& keys) {

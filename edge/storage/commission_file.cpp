@@ -125,7 +125,7 @@ void add_file(const std::string& path, Crc32& crc) {
 
 /// Of the bytes of the map file and of the one that it includes: an edited map is another map.
 std::string map_checksum(const EdgeConfig& config) {
-  const std::string path(config.map_path.view());
+  const std::string path(config.battery.map_path.view());
   Crc32 crc;
   add_file(path, crc);
   TomlValue document;
@@ -142,8 +142,8 @@ std::string map_checksum(const EdgeConfig& config) {
 
 /// Where it is, with the unit ids of the map's groups: another id is another inverter.
 std::string battery_text(const EdgeConfig& config) {
-  std::string text(battery_place(config).view());
-  for (const UnitGroup& group : config.map.unit_groups) {
+  std::string text(battery_place(config.battery).view());
+  for (const UnitGroup& group : config.battery.map.unit_groups) {
     text.append(", ").append(group.name.view()).append(" ").append(std::to_string(group.unit));
   }
   return text;
@@ -165,8 +165,8 @@ std::string file_text(const EdgeConfig& config, const CommissionResult& result,
   text << "# Written by: bess-edge commission, which also renews it. It lies here, beside as "
           "commissioned.copy,\n"
           "# and in [state] run_folder: one that is lost or damaged is taken from the others.\n"
-       << "map = \"" << config.map.name.view() << "\"\n"
-       << "variant = \"" << config.map.variant.view() << "\"\n"
+       << "map = \"" << config.battery.map.name.view() << "\"\n"
+       << "variant = \"" << config.battery.map.variant.view() << "\"\n"
        << "map_crc32 = \"" << map_checksum(config) << "\"\n"
        << "battery = \"" << battery_text(config) << "\"\n"
        << "ordered_power_w = " << result.ordered_power_w << "\n"
@@ -259,8 +259,8 @@ bool is_commissioned(const EdgeConfig& config, std::string& error) {
     return false;
   }
   TomlTable table(&stored->document, stored->path, "", error);
-  const bool same = expect_same(table, "map", std::string(config.map.name.view())) &&
-                    expect_same(table, "variant", std::string(config.map.variant.view())) &&
+  const bool same = expect_same(table, "map", std::string(config.battery.map.name.view())) &&
+                    expect_same(table, "variant", std::string(config.battery.map.variant.view())) &&
                     expect_same(table, "map_crc32", map_checksum(config)) &&
                     expect_same(table, "battery", battery_text(config));
   if (!same) error += "; check the sign again: bess-edge commission --config FILE --yes";

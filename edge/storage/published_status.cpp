@@ -207,7 +207,7 @@ void believe_the_log(const EdgeConfig& config, PublishedStatus& published) {
 }
 
 std::string why_unknown(const EdgeConfig& config, const PublishedStatus& published) {
-  const std::int64_t start_ms = (std::int64_t{config.start_timeout_s} + 60) * 1'000;
+  const std::int64_t start_ms = (std::int64_t{config.battery.start_timeout_s} + 60) * 1'000;
   const bool is_starting = lock_age_ms(config).value_or(INT64_MAX) < start_ms;
   if (is_starting && has_place_for_status(config)) return "";
   const std::string who = published.holder > 0

@@ -13,9 +13,9 @@ RunIdentity identity_of_run(const EdgeConfig& config) {
   identity.student_hash = student_hash();
   identity.student_provenance = student_provenance();
   identity.context = context_name(student_context().kind);
-  identity.map = config.map.name.view();
-  identity.variant = config.map.variant.view();
-  identity.battery = battery_place(config);
+  identity.map = config.battery.map.name.view();
+  identity.variant = config.battery.map.variant.view();
+  identity.battery = battery_place(config.battery);
   identity.control = config.control.control;
   identity.pid = getpid();
   identity.start_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;

@@ -16,10 +16,10 @@ namespace {
 /// /dev/serial/by-id/... and /dev/ttyUSB0 may be one device: its real name counts. On a serial line
 /// two masters cannot even share the wire, so the unit does not matter there.
 FixedText<159> locked_thing(const EdgeConfig& config) {
-  if (!config.link.rtu) return battery_place(config);
+  if (!config.battery.link.rtu) return battery_place(config.battery);
   char real[PATH_MAX];
-  const char* const found = realpath(config.link.device.c_str(), real);
-  return {found != nullptr ? found : config.link.device.c_str()};
+  const char* const found = realpath(config.battery.link.device.c_str(), real);
+  return {found != nullptr ? found : config.battery.link.device.c_str()};
 }
 
 bool lock_run_folder(const EdgeConfig& config, RunLocks& locks, FileMessage& error) {
@@ -75,7 +75,7 @@ bool is_controller_running(const EdgeConfig& config) { return controller_holding
 
 bool lock_battery(const EdgeConfig& config, RunLocks& locks, FileMessage& error) {
   char what[200];
-  std::snprintf(what, sizeof what, "the battery at %s", battery_place(config).c_str());
+  std::snprintf(what, sizeof what, "the battery at %s", battery_place(config.battery).c_str());
   const std::string_view standard = standard_lock_folder();
   if (!locks.battery.take(battery_lock_path(config, standard).c_str(), what, error)) return false;
   const FixedText<255>& other = config.state.lock_folder;

@@ -41,7 +41,7 @@ TEST(EdgeConfig, TheDocumentedExampleIsValidAndReadOnly) {
   EXPECT_TRUE(config.clock.is_real_time());
   EXPECT_EQ(config.control.guard.thresholds, (PriceThresholds{-500, 1500}));
   EXPECT_EQ(config.control.order_duration_s, 300);
-  EXPECT_EQ(config.map.unit, 85);
+  EXPECT_EQ(config.battery.map.unit, 85);
 }
 
 TEST(EdgeConfig, ReadsEveryUnit) {
@@ -95,10 +95,11 @@ TEST(EdgeConfig, UnitGroupsOfTheMapAreTheOperatorsToSet) {
   EdgeConfig config;
   std::string error;
   ASSERT_TRUE(load_edge_config(folder.write("edge.toml", text), config, error)) << error;
-  const RegisterPoint& set_point = config.map.points[find_point(config.map, "set_l1")];
-  EXPECT_EQ(config.map.unit_of(set_point), 246);
-  EXPECT_EQ(config.map.unit, 100);
-  EXPECT_EQ(config.link.port, 502);
+  const RegisterPoint& set_point =
+      config.battery.map.points[find_point(config.battery.map, "set_l1")];
+  EXPECT_EQ(config.battery.map.unit_of(set_point), 246);
+  EXPECT_EQ(config.battery.map.unit, 100);
+  EXPECT_EQ(config.battery.link.port, 502);
   text.replace(text.find("vebus"), 5, "vecan");
   EXPECT_FALSE(load_edge_config(folder.write("edge.toml", text), config, error));
   EXPECT_THAT(error, HasSubstr("vecan is not a known key here (known: battery, vebus)"));
@@ -113,11 +114,11 @@ TEST(EdgeConfig, ReadsTheSerialLinesSettings) {
   EdgeConfig config;
   std::string error;
   ASSERT_TRUE(load_edge_config(folder.write("edge.toml", text), config, error)) << error;
-  EXPECT_TRUE(config.link.rtu);
-  EXPECT_EQ(config.link.device.view(), "/dev/ttyS1");
-  EXPECT_EQ(config.link.baud, 19'200);
-  EXPECT_EQ(config.link.parity, Parity::kEven);
-  EXPECT_EQ(config.link.stop_bits, 2);
+  EXPECT_TRUE(config.battery.link.rtu);
+  EXPECT_EQ(config.battery.link.device.view(), "/dev/ttyS1");
+  EXPECT_EQ(config.battery.link.baud, 19'200);
+  EXPECT_EQ(config.battery.link.parity, Parity::kEven);
+  EXPECT_EQ(config.battery.link.stop_bits, 2);
 }
 
 TEST(EdgeConfig, StateLogAndMetricsPathsAreRelativeToTheFile) {
@@ -164,15 +165,15 @@ TEST(EdgeConfig, ARelativeConfigurationKeepsItsStateBesideIt) {
 TEST(EdgeConfig, TheBatterysLockIsNamedByItsPlace) {
   const TemporaryFolder folder;
   EdgeConfig config;
-  config.map.unit = 85;
+  config.battery.map.unit = 85;
   EXPECT_EQ(battery_lock_path(config, "/locks"), "/locks/bess-127.0.0.1_502_unit_85.lock");
-  config.link.unit = 1;
+  config.battery.link.unit = 1;
   EXPECT_EQ(battery_lock_path(config, "/locks"), "/locks/bess-127.0.0.1_502_unit_1.lock");
-  config.link.rtu = true;
-  config.link.device = folder.write("ttyUSB0", "").c_str();
+  config.battery.link.rtu = true;
+  config.battery.link.device = folder.write("ttyUSB0", "").c_str();
   const FixedText<639> direct = battery_lock_path(config, "/locks");
   std::filesystem::create_symlink(folder.file("ttyUSB0"), folder.file("by-id"));
-  config.link.device = folder.file("by-id").c_str();
+  config.battery.link.device = folder.file("by-id").c_str();
   EXPECT_EQ(battery_lock_path(config, "/locks"), direct.view());
 }
 
@@ -255,19 +256,19 @@ TEST(EdgeConfig, ReadsWhatAFirstStartIsToldOfThePriceLevel) {
   EdgeConfig config;
   std::string error;
   ASSERT_TRUE(load_edge_config(folder.write("edge.toml", valid_text()), config, error)) << error;
-  EXPECT_EQ(config.history.hours, 72);
-  EXPECT_EQ(config.history.wait_s, 20);
-  EXPECT_TRUE(config.history.url.empty());
-  EXPECT_FALSE(config.level_start_centi_eur_per_mwh.has_value());
+  EXPECT_EQ(config.price.history.hours, 72);
+  EXPECT_EQ(config.price.history.wait_s, 20);
+  EXPECT_TRUE(config.price.history.url.empty());
+  EXPECT_FALSE(config.price.level_start_centi_eur_per_mwh.has_value());
   std::string text = valid_text();
   text.insert(text.find("[guard]"),
               "history_hours = 0\nhistory_wait_s = 5\nhistory_url = \"http://127.0.0.1:1/past\"\n"
               "level_start_eur_per_mwh = -12.5\n");
   ASSERT_TRUE(load_edge_config(folder.write("edge.toml", text), config, error)) << error;
-  EXPECT_EQ(config.history.hours, 0);
-  EXPECT_EQ(config.history.wait_s, 5);
-  EXPECT_EQ(config.history.url, "http://127.0.0.1:1/past");
-  EXPECT_EQ(config.level_start_centi_eur_per_mwh, -1'250);
+  EXPECT_EQ(config.price.history.hours, 0);
+  EXPECT_EQ(config.price.history.wait_s, 5);
+  EXPECT_EQ(config.price.history.url, "http://127.0.0.1:1/past");
+  EXPECT_EQ(config.price.level_start_centi_eur_per_mwh, -1'250);
 }
 
 TEST(EdgeConfig, ReadsTheKeysOfAnotherPriceServer) {
@@ -283,11 +284,11 @@ TEST(EdgeConfig, ReadsTheKeysOfAnotherPriceServer) {
   EdgeConfig config;
   std::string error;
   ASSERT_TRUE(load_edge_config(folder.write("edge.toml", text), config, error)) << error;
-  EXPECT_EQ(config.price.http.headers, "X-Api-Key: k");
-  EXPECT_EQ(config.price.http.ca_file, headers);  // relative to the configuration
-  EXPECT_EQ(config.price.http.resolve_every_s, 30);
-  EXPECT_EQ(config.price.fields.rows, "data.rows");
-  EXPECT_EQ(config.price.step_flag_centi_eur_per_mwh, 100'050);
+  EXPECT_EQ(config.price.feed.http.headers, "X-Api-Key: k");
+  EXPECT_EQ(config.price.feed.http.ca_file, headers);  // relative to the configuration
+  EXPECT_EQ(config.price.feed.http.resolve_every_s, 30);
+  EXPECT_EQ(config.price.feed.fields.rows, "data.rows");
+  EXPECT_EQ(config.price.feed.step_flag_centi_eur_per_mwh, 100'050);
 }
 
 TEST(EdgeConfig, AByteOrderMarkIsPassedOver) {

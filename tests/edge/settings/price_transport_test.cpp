@@ -39,18 +39,18 @@ TEST_F(PriceTransport, PlainHttpToAnotherMachineNeedsTheKeyAndIsSaid) {
   EXPECT_THAT(error_, HasSubstr("add allow_http = true"));
   EXPECT_FALSE(load("url = \"http://localhost/records\"\n"));
   ASSERT_TRUE(load("url = \"http://192.168.1.9/records\"\nallow_http = true\n")) << error_;
-  const TransportNote note = transport_note({config_.price, config_.history});
+  const TransportNote note = transport_note({config_.price.feed, config_.price.history});
   EXPECT_TRUE(note.is_open);
   EXPECT_THAT(note.text, HasSubstr("prices come over plain http"));
 }
 
 TEST_F(PriceTransport, InsideThisMachineAndOverTlsNoKeyIsNeeded) {
   ASSERT_TRUE(load("url = \"http://127.0.0.1:8080/records\"\n")) << error_;
-  EXPECT_FALSE(transport_note({config_.price, config_.history}).is_open);
-  EXPECT_EQ(transport_note({config_.price, config_.history}).text,
+  EXPECT_FALSE(transport_note({config_.price.feed, config_.price.history}).is_open);
+  EXPECT_EQ(transport_note({config_.price.feed, config_.price.history}).text,
             "plain http inside this machine");
   ASSERT_TRUE(load("ca_file = \"headers\"\nurl = \"https://a.example/records\"\n")) << error_;
-  EXPECT_EQ(transport_note({config_.price, config_.history}).text, "https");
+  EXPECT_EQ(transport_note({config_.price.feed, config_.price.history}).text, "https");
 }
 
 /// https and http may share host and port in a URL.
@@ -61,7 +61,7 @@ TEST_F(PriceTransport, TheHistorysUrlIsHeldToTheSame) {
   EXPECT_FALSE(load(urls));
   EXPECT_THAT(error_, StartsWith(path_ + ":4: [price] history_url is plain http to another"));
   ASSERT_TRUE(load(urls + "allow_http = true\n")) << error_;
-  EXPECT_TRUE(transport_note({config_.price, config_.history}).is_open);
+  EXPECT_TRUE(transport_note({config_.price.feed, config_.price.history}).is_open);
   EXPECT_FALSE(load(urls + "allow_http = true\nheader_file = \"headers\"\n"));
   EXPECT_THAT(error_, HasSubstr("header_file holds secrets, which are never sent over plain http"));
 }
@@ -93,9 +93,9 @@ TEST_F(PriceTransport, AUrlWithoutAHostIsRefusedWithoutItsText) {
 
 TEST_F(PriceTransport, AFlaggedStepIsHeldUnlessToldOtherwise) {
   ASSERT_TRUE(load("url = \"http://127.0.0.1/\"\n")) << error_;
-  EXPECT_TRUE(config_.price.hold_flagged_step);
+  EXPECT_TRUE(config_.price.feed.hold_flagged_step);
   ASSERT_TRUE(load("url = \"http://127.0.0.1/\"\nhold_flagged_step = false\n")) << error_;
-  EXPECT_FALSE(config_.price.hold_flagged_step);
+  EXPECT_FALSE(config_.price.feed.hold_flagged_step);
 }
 
 }  // namespace

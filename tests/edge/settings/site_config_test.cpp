@@ -62,7 +62,7 @@ TEST(SiteConfig, TheBatterysGridPointIsReadWithItsMeasurements) {
   const Loaded loaded("[meter]\nsource = \"battery\"\nimport_w_max = 9200\n");
   ASSERT_TRUE(loaded.is_good) << loaded.error;
   EXPECT_EQ(loaded.config->site.settings.meter, MeterSource::kBattery);
-  const RegisterMap& map = loaded.config->map;
+  const RegisterMap& map = loaded.config->battery.map;
   const auto point = static_cast<std::int8_t>(find_point(map, "grid_power"));
   EXPECT_TRUE(std::find(map.measure.begin(), map.measure.end(), point) != map.measure.end());
 }
@@ -107,7 +107,7 @@ TEST(SiteConfig, AMeterIsHeldAgainstThisBatterysSteps) {
   const SiteSettings& site = loaded.config->site.settings;
   EXPECT_TRUE(site.witness.judges);
   EXPECT_EQ(site.witness.power_w, 3'000);
-  EXPECT_EQ(site.witness.settle_s, loaded.config->map.response.settle_s);
+  EXPECT_EQ(site.witness.settle_s, loaded.config->battery.map.response.settle_s);
   const Loaded told(meter("judged = false\npv_w_max = 6000\n"));
   ASSERT_TRUE(told.is_good) << told.error;
   EXPECT_FALSE(told.config->site.settings.witness.judges);

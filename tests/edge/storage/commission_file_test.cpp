@@ -18,9 +18,9 @@ using ::testing::HasSubstr;
 class CommissionFile : public ::testing::Test {
  protected:
   CommissionFile() {
-    config_.map.name = "simulator";
-    config_.map.variant = "block";
-    config_.map_path.assign(folder_.write("map.toml", "# version 1\n"));
+    config_.battery.map.name = "simulator";
+    config_.battery.map.variant = "block";
+    config_.battery.map_path.assign(folder_.write("map.toml", "# version 1\n"));
     config_.state.folder.assign(folder_.file("state"));
     EXPECT_TRUE(write_commission_file(
         config_,
@@ -44,16 +44,16 @@ TEST_F(CommissionFile, FitsTheConfigurationThatItWasMadeWith) {
 }
 
 TEST_F(CommissionFile, AnotherAddressIsAnotherBattery) {
-  config_.link.host = "192.168.1.20";
+  config_.battery.link.host = "192.168.1.20";
   EXPECT_THAT(complaint(), HasSubstr("commissioned.toml:6: battery is \"127.0.0.1:502 unit 1\""));
   EXPECT_THAT(error_, HasSubstr("bess-edge commission --config FILE --yes"));
 }
 
 TEST_F(CommissionFile, AnotherVariantOrMapMustBeCheckedAgain) {
-  config_.map.variant = "five_writes";
+  config_.battery.map.variant = "five_writes";
   EXPECT_THAT(complaint(), HasSubstr("variant"));
-  config_.map.variant = "block";
-  config_.map.name = "other";
+  config_.battery.map.variant = "block";
+  config_.battery.map.name = "other";
   EXPECT_THAT(complaint(), HasSubstr("map is \"simulator\""));
 }
 
@@ -63,10 +63,10 @@ TEST_F(CommissionFile, AnEditedMapMustBeCheckedAgain) {
 }
 
 TEST_F(CommissionFile, AnotherUnitOfAGroupMustBeCheckedAgain) {
-  config_.map.unit_groups.push_back({.name = "vebus", .unit = 228});
+  config_.battery.map.unit_groups.push_back({.name = "vebus", .unit = 228});
   ASSERT_TRUE(write_commission_file(config_, {}, 1'679'788'800, error_)) << error_;
   EXPECT_TRUE(is_commissioned(config_, error_)) << error_;
-  config_.map.unit_groups[0].unit = 246;
+  config_.battery.map.unit_groups[0].unit = 246;
   EXPECT_THAT(complaint(), HasSubstr("battery is \"127.0.0.1:502 unit 1, vebus 228\""));
 }
 
@@ -199,11 +199,11 @@ TEST_F(CommissionCopies, AnOlderProgramsFileIsTakenOver) {
 TEST_F(CommissionCopies, ANewCheckLeavesNoCopyOfTheOneBefore) {
   std::filesystem::remove(folder_.file(kPlaces[1]));
   std::filesystem::create_directory(folder_.file(kPlaces[1]));
-  config_.link.host = "192.168.1.20";
+  config_.battery.link.host = "192.168.1.20";
   ASSERT_TRUE(write_commission_file(config_, {}, 1'679'788'800, error_)) << error_;
   std::filesystem::remove(folder_.file(kPlaces[0]));
   EXPECT_TRUE(is_commissioned(config_, error_)) << error_;
-  config_.link.host = "127.0.0.1";
+  config_.battery.link.host = "127.0.0.1";
   EXPECT_THAT(complaint(), HasSubstr("battery is \"192.168.1.20"));
 }
 

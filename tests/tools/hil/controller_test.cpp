@@ -72,10 +72,11 @@ struct QuietHour {
     config =
         load_edge_settings(scenario, folder.file("edge.toml"), edge_settings(scenario, prices, {}));
     if (has_device) {
-      bus.emplace(VirtualBusSettings{.port = config.link.port}, config.map, battery, time);
+      bus.emplace(VirtualBusSettings{.port = config.battery.link.port}, config.battery.map, battery,
+                  time);
     }
     pthread_sigmask(SIG_SETMASK, nullptr, &mask);
-    world.emplace(config, VirtualPrices(config.price, market, faults, scenario, time),
+    world.emplace(config, VirtualPrices(config.price.feed, market, faults, scenario, time),
                   VirtualWorld::Surroundings{.time = time,
                                              .physics = battery,
                                              .weather = nullptr,

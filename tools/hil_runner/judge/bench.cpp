@@ -16,7 +16,7 @@ PriceLevel level_at_start(const Trial& trial) {
   if (const int hours = trial.scenario.prices.history_hours; hours > 0) {
     return level_before(trial.prices, trial.scenario.start_utc_s - 60, hours);
   }
-  const auto& setting = trial.config.level_start_centi_eur_per_mwh;
+  const auto& setting = trial.config.price.level_start_centi_eur_per_mwh;
   return setting ? PriceLevel::starting_at(*setting) : PriceLevel{};
 }
 
@@ -143,7 +143,7 @@ double Bench::soc_at(std::int64_t utc_ns) const {
 }
 
 bool Bench::device_has_soc_limits() const {
-  for (const CommandSequence& sequence : config.map.command) {
+  for (const CommandSequence& sequence : config.battery.map.command) {
     for (const BlockWrite& write : sequence.writes) {
       for (const WriteValue& value : write.values) {
         const bool is_limit = value.argument == Argument::kSocLimit ||

@@ -3,7 +3,7 @@
 namespace bess {
 
 void judge_flash(Bench& bench) {
-  const std::int32_t most = bench.config.map.writes.eeprom_writes_per_day;
+  const std::int32_t most = bench.config.battery.map.writes.eeprom_writes_per_day;
   if (most == 0) return;
   for (const CycleRecord& cycle : bench.evidence.log) {
     const std::int32_t writes = cycle.counters.flash_writes_today;

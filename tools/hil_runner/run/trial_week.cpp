@@ -130,7 +130,7 @@ WeekRun run_week(const MinuteSeries& prices, std::int64_t start_utc_s, const Dis
   run.evidence =
       run_virtual(run.scenario, run.prices, run.config, on.temperature ? cold_nights : nullptr);
   run.evidence.order_ends_by_itself = run.config.control.has_watchdog;
-  run.evidence.order_duration_s = run.config.map.watchdog.duration_s;
+  run.evidence.order_duration_s = run.config.battery.map.watchdog.duration_s;
   return run;
 }
 

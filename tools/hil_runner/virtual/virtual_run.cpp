@@ -72,12 +72,12 @@ Evidence run_virtual(const Scenario& scenario, const MinuteSeries& prices, const
   SimulatedBattery battery(scenario.battery.physics, scenario.battery.soc_frac, time.utc_ns());
   std::optional<MeteredHouse> house;
   if (scenario.house.exists()) house.emplace(house_load(scenario));
-  VirtualBus bus({.port = config.link.port,
-                  .rtu = config.link.rtu,
+  VirtualBus bus({.port = config.battery.link.port,
+                  .rtu = config.battery.link.rtu,
                   .response_delay_ms = scenario.battery.response_delay_ms,
                   .fault = scenario.battery_fault,
                   .start_utc_ns = scenario.utc_ns_at(0)},
-                 config.map, battery, time, house ? &*house : nullptr);
+                 config.battery.map, battery, time, house ? &*house : nullptr);
   std::optional<VirtualBus> meter;
   if (scenario.meter.source == ScenarioMeter::Source::kMap) {
     meter.emplace(VirtualBusSettings{.port = config.site.link.port,
@@ -94,7 +94,7 @@ Evidence run_virtual(const Scenario& scenario, const MinuteSeries& prices, const
   Evidence evidence;
   std::optional<Witness> witness;
   if (scenario.witness) {
-    witness.emplace(config.map, evidence.wire);
+    witness.emplace(config.battery.map, evidence.wire);
     bus.show_to([&](auto request, auto answer, std::int64_t utc_ns) {
       witness->see(request, answer, utc_ns);
     });
@@ -108,7 +108,7 @@ Evidence run_virtual(const Scenario& scenario, const MinuteSeries& prices, const
   do {
     try {
       VirtualWorld world(
-          config, VirtualPrices(config.price, market, faults, scenario, time),
+          config, VirtualPrices(config.price.feed, market, faults, scenario, time),
           {.time = time, .physics = battery, .weather = weather, .state = state, .people = people});
       evidence.edge_exit_code = run_edge(config, world);
     } catch (const EdgeKilled&) {

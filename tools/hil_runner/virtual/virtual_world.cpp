@@ -30,7 +30,7 @@ VirtualWorld::VirtualWorld(const EdgeConfig& config, const VirtualPrices& prices
                            const Surroundings& around)
     : around_(around),
       clock_(config.clock, config.require_synchronised_clock),
-      battery_(config.link, config.map, config.clock),
+      battery_(config.battery.link, config.battery.map, config.clock),
       meter_(config.site.link, config.site.map, config.clock),
       prices_(prices) {}
 

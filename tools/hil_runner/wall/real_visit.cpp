@@ -63,7 +63,8 @@ void RealVisit::give_back() {
 }
 
 void RealVisit::tell(Evidence& evidence) const {
-  evidence.orders = orders_on_the_bus(recordings_, edge_.config().map, scenario_.end_utc_ns());
+  evidence.orders =
+      orders_on_the_bus(recordings_, edge_.config().battery.map, scenario_.end_utc_ns());
   evidence.minutes = measured_minutes(evidence.log);
 }
 

@@ -1,0 +1,38 @@
+// [battery]: which one it is, where it is reached, and what may be done with it.
+#pragma once
+
+#include <cstdint>
+
+#include "edge/battery/modbus_wire.h"
+#include "edge/loop/control_settings.h"
+#include "edge/registers/register_map.h"
+#include "shared/fixed_text.h"
+#include "shared/host/toml_reader.h"
+
+namespace bess {
+
+struct BatteryConfig {
+  BatteryLinkSettings link;
+  RegisterMap map;
+  FixedText<511> map_path;
+  std::int32_t capacity_wh = 8'000;  ///< what the battery must report, within the tolerance
+  std::int32_t capacity_tolerance_percent = 25;
+  bool allow_without_watchdog = false;  ///< drive a battery that keeps its order if we die
+  std::int32_t start_timeout_s = 10;    ///< wall time to reach the battery at start
+  bool start_without_battery = false;   ///< true: keep trying in safe mode instead of exiting
+};
+
+/// Its power and what people ask of it go to the control loop.
+void read_battery(TomlTable table, BatteryConfig& battery, ControlSettings& control);
+
+/// A power that the map cannot express must stop the start.
+void check_battery_against_map(TomlTable table, const BatteryConfig& battery,
+                               const ControlSettings& control);
+
+/// What counts as an answer of this battery, by its map and its rating.
+void set_supervision(const BatteryConfig& battery, ControlSettings& control);
+
+/// "127.0.0.1:502 unit 85" or "/dev/ttyUSB0 unit 85": where the battery is looked for.
+FixedText<159> battery_place(const BatteryConfig& battery);
+
+}  // namespace bess

@@ -1,0 +1,30 @@
+// [state], [log] and [metrics]: what the controller keeps, and where; and the paths below.
+#pragma once
+
+#include <string_view>
+
+#include "edge/log/event_log.h"
+#include "shared/fixed_text.h"
+#include "shared/host/toml_reader.h"
+
+namespace bess {
+
+/// Where the controller keeps what outlives it, and where it locks battery and state.
+struct StateSettings {
+  FixedText<511> folder;
+  FixedText<511> run_folder;   ///< on a memory file system, beside `folder`; empty = none
+  FixedText<255> lock_folder;  ///< besides the standard one; empty = none
+  /// Drives although nothing can be known of what earlier runs left, a trip for one.
+  bool drive_without_state = false;
+};
+
+/// The log lies in the [state] folders, unless it is said otherwise.
+struct KeptFiles {
+  StateSettings& state;
+  EventLogSettings& log;
+};
+void read_state(TomlTable table, KeptFiles kept);
+void read_log(TomlTable table, EventLogSettings& log);
+void read_metrics(TomlTable table, EventLogSettings& log);
+
+}  // namespace bess
