@@ -177,7 +177,8 @@ class Runner:
         self.source = os.path.join(options.out, "source")
         with open(os.path.join(options.out, "mutants.json")) as f:
             self.mutants = json.load(f)
-        self.passed = os.path.join(options.out, "passed.txt")
+        self.passed = os.path.join(options.out, f"passed-{os.getpid()}.txt")
+        self.kinds = options.kinds.split(",") if options.kinds else ["scenario"] + UNIT_TESTS
         self.kills = collections.Counter()
         self.key = {m["number"]: key_of(m) for m in self.mutants}
         self.covered = self.coverage()
@@ -222,7 +223,7 @@ class Runner:
     def coverage(self):
         """Which tests pass which mutant; found once for a build and kept."""
         covered = collections.defaultdict(list)
-        for kind in ["scenario"] + UNIT_TESTS:
+        for kind in self.kinds:
             program = os.path.join(self.build, "bess-hil" if kind == "scenario" else kind)
             if not os.path.exists(program):
                 print(f"{kind}: not built, left out")
@@ -259,7 +260,7 @@ class Runner:
         by_kind = collections.defaultdict(list)
         for kind, name, took_s in self.covered.get(number, []):
             by_kind[kind].append((name, took_s))
-        for kind in ["scenario"] + UNIT_TESTS:
+        for kind in self.kinds:
             # What has found many goes first and alone, so that it is known which one it was.
             tests = sorted(by_kind[kind], key=lambda t: (-self.kills[kind, t[0]], t[1]))
             at, size = 0, 1
@@ -365,6 +366,8 @@ def main():
     parser.add_argument("--sample", type=int, default=0, help="only so many, drawn by --seed")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", default="", help="only those whose line holds this text")
+    parser.add_argument("--kinds", default="",
+            help="by these alone, in this order: scenario, edge_walks_test, edge_test, ...")
     parser.add_argument("--at-least", type=float, default=0, help="percent that must be caught")
     parser.add_argument("--results", default="results.jsonl",
             help="the file in --out that keeps what was found")

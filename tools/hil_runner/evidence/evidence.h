@@ -17,6 +17,7 @@ struct Evidence {
   std::vector<MinuteRecord> minutes;  ///< that it exchanged
   std::vector<CycleRecord> log;       ///< as the edge's ring keeps it, the oldest first
   std::vector<WireSight> wire;        ///< as a witness reads it; empty: nobody was asked
+  std::uint64_t sent = 0;             ///< all frames of the edge and when, in one number; virtual
   bool order_ends_by_itself = true;   ///< the device has a timer, by its map
   std::int32_t order_duration_s = 0;  ///< of that timer
   std::int32_t edge_exit_code = 0;    ///< of the last edge; 128 + signal where one ended it

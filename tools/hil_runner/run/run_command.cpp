@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <iterator>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <random>
 #include <thread>
 
@@ -23,6 +25,7 @@
 #include "tools/hil_runner/run/each_part.h"
 #include "tools/hil_runner/run/hil_command.h"
 #include "tools/hil_runner/run/junit.h"
+#include "tools/hil_runner/run/pinned_runs.h"
 #include "tools/hil_runner/run/report_page.h"
 #include "tools/hil_runner/run/run_scenario.h"
 #include "tools/hil_runner/scenario/rules.h"
@@ -45,7 +48,7 @@ struct RunOptions {
   bool agree = false;
   int draw = 0;  ///< so many scenarios; 0: all
   std::uint64_t seed = 0;
-  std::string junit, report, edge, simulators;
+  std::string junit, report, pinned, edge, simulators;
   RealOptions real;
 };
 
@@ -123,6 +126,9 @@ class Runner {
     }
     if (options.draw > 0) draw();
     if (site_.battery) refuse_unsuited();
+    if (!options.pinned.empty()) {
+      pinned_.emplace(options.pinned, std::getenv("BESS_UPDATE_GOLDEN") != nullptr);
+    }
   }
 
   [[nodiscard]] const std::vector<Scenario>& scenarios() const { return scenarios_; }
@@ -136,6 +142,7 @@ class Runner {
     const Times times = options_.agree ? Times::kBoth : options_.times;
     if (times != Times::kWall) {
       for (const Scenario& scenario : scenarios_) take(run_virtually(scenario));
+      if (pinned_) pinned_->write();
     }
     if (times != Times::kVirtual) run_in_wall_time();
     return std::move(outcomes_);
@@ -161,8 +168,11 @@ class Runner {
     }
   }
 
-  [[nodiscard]] Outcome run_virtually(const Scenario& scenario) const {
+  [[nodiscard]] Outcome run_virtually(const Scenario& scenario) {
     Outcome outcome = run_scenario(scenario, true, site_);
+    if (pinned_ && outcome.skipped.empty() && outcome.passed()) {
+      outcome.findings = pinned_->judge(outcome);
+    }
     if (options_.each_part && outcome.skipped.empty() && outcome.passed()) {
       outcome.findings = judge_parts(outcome);
     }
@@ -219,6 +229,7 @@ class Runner {
 
   const RunOptions& options_;
   WallSite site_;
+  std::optional<PinnedRuns> pinned_;
   std::vector<Scenario> scenarios_;
   std::mutex mutex_;
   std::vector<Outcome> outcomes_;
@@ -331,6 +342,10 @@ void add_run_command(ProgramCommand& app) {
   command.flag(
       "--each-part", options->each_part,
       "In virtual time, run each that passes also without each of its parts: all must differ");
+  command
+      .option("--pinned", options->pinned,
+              "In virtual time, each must do what this file says that it did before")
+      .value_name("FILE");
   command.flag("--agree", options->agree,
                "Run those that are for both times in both, and compare what was ordered, cycle by "
                "cycle");

@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include "edge/log/record_codec.h"
 #include "shared/signature.h"
 
 namespace bess {
@@ -43,6 +44,18 @@ std::uint64_t signature_of(const Evidence& evidence) {
     }
   }
   for (const CycleRecord& cycle : evidence.log) add(cycle, signature);
+  return signature.value();
+}
+
+std::uint64_t pinned_number_of(const Evidence& evidence) {
+  Signature signature;
+  RecordBytes bytes;
+  for (const CycleRecord& cycle : evidence.log) {
+    encode_record(cycle, 0, bytes);
+    for (const std::uint8_t byte : bytes) signature.add(byte);
+  }
+  signature.add(static_cast<std::int64_t>(evidence.sent));
+  signature.add(evidence.edge_exit_code);
   return signature.value();
 }
 

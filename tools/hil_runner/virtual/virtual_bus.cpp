@@ -76,6 +76,8 @@ void VirtualBus::discard_input() {
 }
 
 Status VirtualBus::send(const ModbusFrame& frame) {
+  sent_.add(time_.monotonic_ns());
+  for (int i = 0; i < frame.size; ++i) sent_.add(frame.bytes[i]);
   if (is_cut_) return Status::kNotConnected;
   answer_due();
   Pending pending{

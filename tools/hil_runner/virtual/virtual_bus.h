@@ -14,6 +14,7 @@
 #include "edge/base/status.h"
 #include "edge/battery/modbus_frame.h"
 #include "edge/registers/register_map.h"
+#include "shared/signature.h"
 #include "tools/battery_sim/faulty_device.h"
 #include "tools/hil_runner/scenario/scenario.h"
 #include "tools/hil_runner/virtual/virtual_time.h"
@@ -50,6 +51,9 @@ class VirtualBus {
 
   [[nodiscard]] FaultyDevice& device() { return device_; }
 
+  /// Every frame that was sent so far, heard or not, and when.
+  [[nodiscard]] std::uint64_t sent() const { return sent_.value(); }
+
   /// Called with each request and its unspoilt answer, both from the unit's byte on.
   using Witness = std::function<void(std::span<const std::uint8_t> request,
                                      std::span<const std::uint8_t> answer, std::int64_t utc_ns)>;
@@ -83,6 +87,7 @@ class VirtualBus {
   std::deque<Pending> pending_;
   std::deque<ByteOnTheWay> input_;
   Witness witness_;
+  Signature sent_;
   std::int64_t connection_ = 0;
   bool is_cut_ = false;        ///< by the device
   bool is_half_open_ = false;  ///< the device never answers on this connection again

@@ -118,6 +118,7 @@ Evidence run_virtual(const Scenario& scenario, const MinuteSeries& prices, const
   bus.device().advance(time.utc_ns());
   evidence.orders = battery.dispatch_events();
   evidence.minutes = battery.record();
+  evidence.sent = bus.sent() ^ (meter ? 31 * meter->sent() : 0);
   evidence.log = state.take_records();
   evidence.is_alive_at_end = true;
   return evidence;
