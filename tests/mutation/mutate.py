@@ -215,7 +215,8 @@ class Runner:
 
     def command(self, kind, names):
         if kind == "scenario":
-            return [os.path.join(self.build, "bess-hil"), "run"] + [
+            pinned = os.path.join(self.source, "tests/golden/scenarios.txt")
+            return [os.path.join(self.build, "bess-hil"), "run", "--pinned", pinned] + [
                 os.path.join(self.source, "tests/scenarios", n + ".toml") for n in names]
         return [os.path.join(self.build, kind), "--gtest_brief=1", "--gtest_fail_fast",
                 "--gtest_filter=" + ":".join(names)]

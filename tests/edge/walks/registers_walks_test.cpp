@@ -342,13 +342,124 @@ TEST(RegistersWalk, MapsWithSlips) {
   for (const auto& [file, variant] : kMapTexts) {
     const std::vector<std::string> lines =
         lines_of(std::string(BESS_SOURCE_DIR) + "/edge/" + file + ".toml");
-    for (int i = 0; i < 700; ++i) {
+    for (int i = 0; i < 300; ++i) {
       std::vector<std::string> changed = lines;
       const int slips = i == 0 ? 0 : walk.number(1, 3);
       for (int s = 0; s < slips; ++s) slip(walk, changed);
       map.write_lines(changed);
       see_loaded(walk, map.path(), map.path(), walk.once_in(90) ? "none_such" : variant);
       if (i % 100 == 99) walk.end_line(std::string(file) + " " + variant + " " + std::to_string(i));
+    }
+  }
+  walk.hold();
+}
+
+/// More of it than fits, and a list that is none.
+std::vector<std::string> overfull_lines() {
+  const auto many = [](const char* key, const char* item, int count) {
+    std::string line = std::string(key) + " = [";
+    for (int i = 0; i < count; ++i) line += std::string(i > 0 ? ", " : "") + item;
+    return line + "]";
+  };
+  std::vector<std::string> lines;
+  for (const char* key : {"measure", "alarms", "warnings", "active", "precondition", "charge",
+                          "idle", "enable", "refresh", "rollback", "release", "save", "apply_on",
+                          "initial", "at_expiry", "read_points"}) {
+    for (const int count : {1, 4, 5, 6, 7, 8, 9, 16, 17, 40, 41}) {
+      lines.push_back(many(key, "\"soc = 1\"", count));
+    }
+    lines.push_back(many(key, "[\"soc = 1\", \"soc = 2\"]", 1));
+    lines.push_back(many(key, "{ delay_ms = 10 }", 1));
+    lines.push_back(many(key, "1", 1));
+    lines.push_back(std::string(key) + " = \"soc\"");
+    lines.push_back(std::string(key) + " = { soc = 1 }");
+  }
+  for (const char* key : {"measured_power", "order_power", "grid_power"}) {
+    for (const int count : {1, 2, 4, 5}) {
+      lines.push_back(many(key, "{ when = \"soc = 1\", power = \"soc\" }", count));
+      lines.push_back(std::string(key) + " = [{ power = " + many("x", "\"soc\"", count).substr(4) +
+                      " }]");
+    }
+    lines.push_back(std::string(key) + " = [{ power = \"-soc\" }]");
+    lines.push_back(std::string(key) + " = \"-soc\"");
+  }
+  for (const char* key : {"not_implemented", "retry", "not_permitted", "models", "bases"}) {
+    for (const int count : {0, 1, 3, 4, 5, 6, 7}) lines.push_back(many(key, "1", count));
+    for (const char* item : {"0", "-1", "255", "256", "65535", "65536", "4294967296"}) {
+      lines.push_back(many(key, item, 1));
+    }
+  }
+  for (const char* key : {"bits", "names"}) {
+    for (const char* value : {"0", "31", "32", "-1", "65535", "65536"}) {
+      lines.push_back(std::string(key) + " = { a = " + value + " }");
+    }
+    std::string full = std::string(key) + " = {";
+    for (int i = 0; i < 97; ++i) full += (i > 0 ? ", n" : " n") + std::to_string(i) + " = 1";
+    lines.push_back(full + " }");
+    lines.push_back(std::string(key) + " = { a_name_that_is_too_long_for_one = 1 }");
+  }
+  return lines;
+}
+
+/// Numbers at the ends of what keys may hold, in each line that holds one.
+constexpr const char* kNumbers[] = {"-1",    "0",     "1",     "2",       "6",      "16",
+                                    "17",    "24",    "31",    "32",      "100",    "101",
+                                    "125",   "247",   "248",   "3600",    "3601",   "65535",
+                                    "65536", "86400", "86401", "1000000", "1000001"};
+
+std::vector<std::string> with_line(const std::vector<std::string>& lines, std::size_t at,
+                                   const std::string& line, bool replaces) {
+  std::vector<std::string> changed = lines;
+  if (replaces) {
+    changed[at] = line;
+  } else {
+    changed.insert(changed.begin() + static_cast<std::ptrdiff_t>(at) + 1, line);
+  }
+  return changed;
+}
+
+constexpr MapText kMapTextsOfEachKind[] = {{"maps/simulator", ""},
+                                           {"maps/sungrow_sh", "external_ems"},
+                                           {"maps/sunspec_704", ""},
+                                           {"maps/victron_ess3", "three_phase"}};
+
+TEST(RegistersWalk, EverySlipAlone) {
+  Walk walk("every_slip_alone");
+  const MemoryFile map;
+  const auto see = [&](const std::vector<std::string>& lines, const char* variant) {
+    map.write_lines(lines);
+    see_loaded(walk, map.path(), map.path(), variant);
+  };
+  const std::vector<std::string> overfull = overfull_lines();
+  for (const auto& [file, variant] : kMapTextsOfEachKind) {
+    const std::vector<std::string> lines =
+        lines_of(std::string(BESS_SOURCE_DIR) + "/edge/" + file + ".toml");
+    for (std::size_t at = 0; at < lines.size(); ++at) {
+      see(with_line(lines, at, "", true), variant);
+      see(with_line(lines, at, lines[at], false), variant);
+      const std::size_t equals = lines[at].find("= ");
+      const bool is_number = equals != std::string::npos &&
+                             lines[at].find_first_of("-0123456789", equals) == equals + 2;
+      for (const char* number : kNumbers) {
+        if (!is_number || (at * 7 + static_cast<std::size_t>(number[0])) % 3 != 0) continue;
+        see(with_line(lines, at, lines[at].substr(0, equals + 2) + number, true), variant);
+      }
+    }
+    walk.end_line(std::string(file) + " " + variant + " lines");
+    for (const char* table : {"[state]", "[command]", "[[point]]", "[simulator]", "[sunspec]",
+                              "[exceptions]", "[map]"}) {
+      const auto at = std::find(lines.begin(), lines.end(), table);
+      if (at == lines.end()) continue;
+      for (const std::string& line : overfull) {
+        std::vector<std::string> changed = lines;  // in place of what it says there, if it does
+        const std::string key = line.substr(0, line.find('=') + 1);
+        const auto place = at - lines.begin();
+        for (auto i = place + 1; i < std::ssize(changed) && changed[i][0] != '['; ++i) {
+          if (changed[i].starts_with(key)) changed.erase(changed.begin() + i);
+        }
+        see(with_line(changed, static_cast<std::size_t>(place), line, false), variant);
+      }
+      walk.end_line(std::string(file) + " " + variant + " " + table);
     }
   }
   walk.hold();

@@ -345,6 +345,9 @@ TEST(SupervisionWalk, LostOrders) {
       walk.see(lost.is_to_be_given_up(steady_s, true), lost.is_to_be_given_up(steady_s, false),
                lost.reason(), lost.has_settled(), lost.history().orders, lost.history().judged,
                lost.history().lost, lost.history().is_found, lost.replaced(), lost.ended());
+      for (std::int64_t later_s = 0; later_s < 4'000; later_s += 120) {
+        walk.see(lost.is_to_be_given_up(steady_s + later_s, false));
+      }
       if (walk.once_in(90)) lost.forget_findings();
     }
     walk.end_line(block);
