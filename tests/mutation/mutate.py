@@ -25,8 +25,8 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(HERE))
 ROOMS = ["control", "registers", "battery", "prices", "site", "supervision", "loop"]
 # Quickest first: a mutant is tried by what is dear only where nothing before has found it.
-UNIT_TESTS = ["edge_walks_test", "edge_test", "edge_commands_unit_test", "hil_test", "price_feed_test", "tools_test",
-              "control_loop_test", "site_test", "trial_test"]
+UNIT_TESTS = ["edge_walks_test", "edge_test", "edge_commands_unit_test", "hil_test",
+              "price_feed_test", "tools_test", "control_loop_test", "site_test", "trial_test"]
 TARGETS = ["bess-hil"] + UNIT_TESTS
 NUMBERS_PER_FILE = 1000
 LIMIT_S = 120  # of one run without a mutant

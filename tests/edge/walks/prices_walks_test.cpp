@@ -1,4 +1,5 @@
-// Walks over edge/prices: answers with a slip in them, addresses, steps that wait, pages of history.
+// Walks over edge/prices: answers with a slip in them, addresses, steps that wait, pages of
+// history.
 #include <cstdio>
 #include <fstream>
 
