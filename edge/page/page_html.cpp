@@ -125,6 +125,47 @@ std::string why_section(const ControllerView& view) {
   return text + margins(why);
 }
 
+std::string next_decision(JsonValue next) {
+  if (!next.is_object()) return "<p>No controller runs: nothing is decided next.</p>\n";
+  std::string text = "<p>At " + escaped(next["local"]);
+  if (next["power_w"].number()) {
+    text += " it would <strong>" + escaped(next["action"]) + "</strong>, " +
+            html_number(next["power_w"], "status/next/power_w", kWatts) +
+            ", if price and state of charge stay.";
+  } else {
+    text += " nothing is driven without a price and a measurement.";
+  }
+  const std::string reason = next["reason"].text_or("");
+  if (!reason.empty()) {
+    text += " <strong>" + html_escaped(reason) + "</strong> stands above it";
+    const std::string ends = next["ends"].text_or("");
+    text += (ends.empty() ? "" : ", " + html_escaped(ends)) + ".";
+  }
+  text += "</p>\n";
+  std::size_t index = 0;
+  for (const JsonValue change : next["reserve_changes"]) {
+    text +=
+        "<p>Reserve from " + escaped(change["utc"]) + ": " +
+        html_number(change["soc_percent"],
+                    formatted("status/next/reserve_changes/%zu/soc_percent", index++), kPercent) +
+        ".</p>\n";
+  }
+  const JsonValue days = next["full_charge_in_days"];
+  if (!days.number()) return text;
+  return text + "<p>Days to the next full charge: " +
+         html_number(days, "status/next/full_charge_in_days", kCount) + ".</p>\n";
+}
+
+std::string next_section(const ControllerView& view) {
+  const JsonValue status = view.status.json.value();
+  std::string text = next_decision(status["next"]);
+  const JsonValue no_effect = status["no_effect"];
+  if (no_effect.size() == 0) return text;
+  text += "<p>Set, and without effect:</p>\n<ul>\n";
+  for (const JsonValue key : no_effect) text += "<li>" + escaped(key) + "</li>\n";
+  return text + "</ul>\n";
+}
+
 std::string legend(bool has_idle) {
   return std::string("<ul class=\"legend\"><li><i class=\"charge\"></i>charging</li>") +
          (has_idle ? "<li><i class=\"idle\"></i>resting</li>" : "") +
@@ -275,6 +316,7 @@ std::string page_html(const ControllerView& view, const PageSettings& settings,
                      alarms(view);
   text += section("now", "Now", now_tiles(view));
   text += section("why", "Why", why_section(view));
+  text += section("next", "What next", next_section(view));
   text += section("day", "Today", day_section(view));
   text += section("map", "What would change it", map_section(view));
   text += section("month", "This month", month_table(view));

@@ -9,6 +9,7 @@
 #include "edge/page/day_chart.h"
 #include "edge/page/decision_map.h"
 #include "edge/page/html_number.h"
+#include "edge/page/page_html.h"
 #include "edge/page/page_orders.h"
 #include "edge/page/request_guard.h"
 #include "edge/page/svg.h"
@@ -230,6 +231,34 @@ TEST_F(PageSettingsTest, WhatIsWrongNamesFileLineAndMend) {
     EXPECT_THAT(error_of(page), HasSubstr(mend)) << page;
     EXPECT_THAT(error_of(page), HasSubstr("edge.toml:")) << page;
   }
+}
+
+std::string page_of_status(const std::string& status) {
+  ControllerView view;
+  view.status.json = Json::parse(status);
+  return page_html(view, PageSettings{});
+}
+
+TEST(WhatNext, IsSaidWithItsNumbersAndWhatStandsAboveIt) {
+  const std::string page = page_of_status(
+      R"({"next": {"local": "2026-11-23 14:34", "action": "charge", "power_w": 4000,
+          "reason": "price_age", "ends": "until a <new> price",
+          "reserve_changes": [{"utc": "2026-11-23T17:00:00Z", "soc_percent": 40.00}],
+          "full_charge_in_days": 3}, "no_effect": ["ramp_w_max: too large & idle"]})");
+  EXPECT_THAT(page, HasSubstr("At 2026-11-23 14:34 it would <strong>charge</strong>, <span"));
+  EXPECT_THAT(page, HasSubstr("data-of=\"status/next/power_w\""));
+  EXPECT_THAT(page, HasSubstr("<strong>price_age</strong> stands above it, until a &lt;new&gt;"));
+  EXPECT_THAT(page, HasSubstr("data-of=\"status/next/reserve_changes/0/soc_percent\""));
+  EXPECT_THAT(page, HasSubstr("data-of=\"status/next/full_charge_in_days\""));
+  EXPECT_THAT(page, HasSubstr("<li>ramp_w_max: too large &amp; idle</li>"));
+}
+
+TEST(WhatNext, IsNothingWithoutAControllerOrAPrice) {
+  const std::string page = page_of_status("{}");
+  EXPECT_THAT(page, HasSubstr("No controller runs: nothing is decided next."));
+  EXPECT_THAT(page, Not(HasSubstr("without effect")));
+  EXPECT_THAT(page_of_status(R"({"next": {"local": "14:34", "action": null, "power_w": null}})"),
+              HasSubstr("At 14:34 nothing is driven without a price and a measurement.</p>"));
 }
 
 }  // namespace
