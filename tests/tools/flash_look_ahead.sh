@@ -28,10 +28,16 @@ touch edge.toml
 look_ahead() {
   : >asked
   code=0
-  PATH=$folder/bin:$PATH sh "$source/tools/flashing/look_ahead.sh" "$package" "${settings:-edge.toml}" maps "$@" \
-    >out 2>err || code=$?
+  PATH=$folder/bin:$PATH sh "$source/tools/flashing/look_ahead.sh" "$package" \
+    "${settings:-edge.toml}" maps "$@" >out 2>err || code=$?
 }
-machine() { echo "$1" >status; echo "$2" >replay_code; echo "$3" >replay; echo "${4:-}" >complaint; echo 0 >check_code; }
+machine() {  # STATUS REPLAY_CODE REPLAY [COMPLAINT]
+  echo "$1" >status
+  echo "$2" >replay_code
+  echo "$3" >replay
+  echo "${4:-}" >complaint
+  echo 0 >check_code
+}
 
 machine '{"health": "ok"}' 0 "student 1 would decide otherwise in 2 of 99 cycles"
 touch runs
@@ -40,9 +46,10 @@ look_ahead ""
 grep -q "^replay: student 1 would decide otherwise" out || fail "the replay is not told: $(cat out)"
 grep -q "^replay month --config edge.toml$" asked || fail "no limit was given: $(cat asked)"
 look_ahead 10
-grep -q "^replay month --config edge.toml --limit 10$" asked || fail "the limit was not asked: $(cat asked)"
+grep -q "^replay month --config edge.toml --limit 10$" asked ||
+  fail "the limit was not asked: $(cat asked)"
 
-machine '{"health": "ok"}' 3 "student 1 would decide otherwise in 40 of 99 cycles" "40.40 % of the decisions"
+machine '{"health": "ok"}' 3 "student 1 would decide otherwise in 40 of 99" "40.40 % of them"
 look_ahead 10
 [ $code -eq 3 ] || fail "too many others: exit code $code"
 grep -q "40.40 %" err || fail "why is not told: $(cat err)"
@@ -60,13 +67,16 @@ grep -q -- "^--config edge.toml --check$" asked || fail "it was not checked: $(c
 
 machine '{"health": "ok"}' 1 "" "bess-edge: cannot open the log"
 look_ahead ""
-[ $code -eq 0 ] && ! grep -q "nothing was replayed" err || fail "no log, and nobody asked: $code, $(cat err)"
+[ $code -eq 0 ] || fail "no log, and nobody asked: exit code $code"
+grep -q "nothing was replayed" err && fail "no log is told though nobody asked: $(cat err)"
 look_ahead 10
 [ $code -eq 0 ] || fail "no log: exit code $code"
-grep -q "nothing was replayed: bess-edge: cannot open the log" err || fail "no log is not told: $(cat err)"
+grep -q "nothing was replayed: bess-edge: cannot open the log" err ||
+  fail "no log is not told: $(cat err)"
 
 settings=absent.toml look_ahead 10
-[ $code -eq 0 ] && [ ! -s asked ] || fail "no settings: exit code $code, asked $(cat asked)"
+[ $code -eq 0 ] || fail "no settings: exit code $code"
+[ ! -s asked ] || fail "no settings, and yet asked: $(cat asked)"
 
 [ $failures -eq 0 ] || exit 1
 rm -rf "$folder"

@@ -11,15 +11,16 @@ dpkg-deb -x "$package" "$work" && chmod 755 "$work"
 edge=$work/usr/lib/bess-edge/bin/bess-edge
 "$edge" --version >/dev/null 2>&1 || exit 0   # its libraries come with the installation
 if systemctl is-active --quiet bess-edge; then
-  # While a controller holds the battery, that is all it can look at. That it answers is what counts:
-  # its exit code tells of the controller, and on stderr others speak as well.
+  # While a controller holds the battery, that is all it can look at. That it answers is what
+  # counts: its exit code tells of the controller, and on stderr others speak as well.
   status=$($as_root "$edge" status --config "$settings" --json --no-lock 2>"$work/said" || true)
   case $status in *'"health"'*) ;; *) cat "$work/said" >&2; exit 1 ;; esac
 else
   $as_root "$edge" --config "$settings" --check >&2 || echo "note: --check is not content yet" >&2
 fi
 code=0
-$as_root "$edge" replay month --config "$settings" ${limit:+--limit "$limit"} >"$work/replay" 2>"$work/said" || code=$?
+$as_root "$edge" replay month --config "$settings" ${limit:+--limit "$limit"} \
+  >"$work/replay" 2>"$work/said" || code=$?
 case $code in
   0 | 3) sed 's/^/replay: /' "$work/replay"; [ $code -eq 0 ] || { cat "$work/said" >&2; exit 3; } ;;
   *)  # a machine without a log of its own has nothing to compare with; one that asked is told

@@ -50,7 +50,7 @@ layer edge/page         edge/page edge/beside edge/why edge/log edge/loop edge/c
 blame "$(includes '"shared/host' edge |
   grep -vE '^edge/(registers/map_|settings/|recording/|storage/|program/|commands/|account/)' |
   grep -vE '^edge/(why/|update/|beside/|notify/|page/)')" \
-  "only start-up and commands use the heap: from settings to commands, account, why, update, beside, and the reader of register maps"
+  "the heap is of start-up, commands, programs beside, and the reader of register maps"
 # The simulators.
 layer tools/battery_sim             tools edge/registers edge/base shared
 layer tools/market_sim              tools shared
