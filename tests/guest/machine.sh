@@ -30,10 +30,11 @@ make_base() {
   [ "$(id -u)" = 0 ] || skip "machines need root"
   mkdir -p "$folder"
   # Of an older test, without what this one needs.
-  [ ! -d "$base" ] || [ -x "$base/usr/bin/unattended-upgrade" ] || rm -rf "$base" "$folder/root.tar"
+  [ ! -d "$base" ] || [ -d "$base/usr/share/doc/libcpp-httplib0.11" ] ||
+    rm -rf "$base" "$folder/root.tar"
   [ ! -d "$base" ] || return 0
   if [ ! -f "$folder/root.tar" ]; then
-    mmdebstrap -q --variant=minbase --include=systemd,systemd-sysv,udev,dbus,libcurl4,libcjson1,libmodbus5,libmosquitto1,ca-certificates,adduser,python3,iproute2,procps,unattended-upgrades \
+    mmdebstrap -q --variant=minbase --include=systemd,systemd-sysv,udev,dbus,libcurl4,libcjson1,libmodbus5,libmosquitto1,libcpp-httplib0.11,ca-certificates,adduser,python3,iproute2,procps,unattended-upgrades \
       bookworm "$folder/root.tar" >"$folder/mmdebstrap.log" 2>&1 || skip "no Debian archive: $(tail -n 1 "$folder/mmdebstrap.log")"
   fi
   rm -rf "$base.new"
