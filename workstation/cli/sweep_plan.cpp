@@ -21,21 +21,14 @@ struct PlanArguments {
   bool json = false;
 };
 
-/// Of the tasks that are new.
-TaskEstimate estimate_all(const SweepPlan& plan) {
-  TaskEstimate all;
-  const bool is_lean = plan.record.kind != "full";
-  for (std::size_t t = plan.known; t < plan.tasks.size(); ++t) {
-    const RunConfig config = plan.base;
-    const TaskEstimate one = estimate_of(config, is_lean);
-    all.seconds += one.seconds;
-    all.bytes += one.bytes;
-  }
-  return all;
+/// "12 minutes", "3.4 hours".
+std::string core_time(double seconds) {
+  return seconds < 3600 ? fmt::format("{:.0f} minutes", seconds / 60)
+                        : fmt::format("{:.1f} hours", seconds / 3600);
 }
 
 void tell_plan(const PlanArguments& options, const SweepPlan& plan) {
-  const TaskEstimate all = estimate_all(plan);
+  const SweepEstimate all = estimate_of(plan);
   const std::size_t added = plan.tasks.size() - plan.known;
   if (options.json) {
     Json json = answer("sweep_plan");
@@ -59,7 +52,7 @@ void tell_plan(const PlanArguments& options, const SweepPlan& plan) {
   if (added == 0) return;
   fmt::print("  first: {}\n  last:  {}\n", settings_shown(plan.tasks[plan.known].settings),
              settings_shown(plan.tasks.back().settings));
-  fmt::print("what is new takes about {:.1f} hours of one core and {:.1f} MB\n", all.seconds / 3600,
+  fmt::print("what is new takes about {} of one core and {:.1f} MB\n", core_time(all.seconds),
              all.bytes / 1e6);
 }
 

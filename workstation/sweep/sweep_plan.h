@@ -64,11 +64,12 @@ std::vector<Site> load_sites(const SweepFolder& folder);
 /// The configuration of a task, its rules and its one thread included.
 RunConfig config_of_task(const SweepFolder& folder, const RunConfig& base, const SweepTask& task);
 
-/// What a task is likely to take on one core, and its result on the disk.
-struct TaskEstimate {
+/// What tasks are likely to take of one core, and of the disk.
+struct SweepEstimate {
   double seconds = 0;
   double bytes = 0;
 };
-TaskEstimate estimate_of(const RunConfig& config, bool is_lean);
+/// Of the tasks that are new.
+SweepEstimate estimate_of(const SweepPlan& plan);
 
 }  // namespace bess
