@@ -19,8 +19,21 @@ std::string risk_name(const std::string& teacher, double worst_share);
 /// fewer than twenty. There must be a day.
 double bad_day_eur_per_mwh(const Evaluation& evaluation);
 
-/// Profit, bad day and worst day, SoC carried over, of the policy named `teacher` and of its
-/// cautious twins; empty when there are none.
+/// One way of choosing, and what it did, SoC carried over.
+struct RiskChoice {
+  std::string name;  ///< "mean", "cvar:0.1"
+  const Evaluation* evaluation;
+};
+
+/// The policy named `teacher` and its cautious twins; empty when there are none. `evaluations` must
+/// outlive them.
+std::vector<RiskChoice> risk_choices(const std::vector<NamedEvaluation>& evaluations,
+                                     const std::string& teacher);
+
+/// Their profit, bad day and worst day; empty when there are no twins.
 std::string risk_table(const std::vector<NamedEvaluation>& evaluations, const std::string& teacher);
+/// The same for the page.
+std::string risk_choice_html(const std::vector<NamedEvaluation>& evaluations,
+                             const std::string& teacher);
 
 }  // namespace bess

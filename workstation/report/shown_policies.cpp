@@ -1,10 +1,16 @@
 #include "workstation/report/shown_policies.h"
 
+#include <fmt/core.h>
+
 #include "workstation/report/headline.h"
 #include "workstation/student/exported_policy.h"
 #include "workstation/student/student_policy.h"
 
 namespace bess {
+
+std::string teacher_name(const Teacher& teacher) {
+  return fmt::format("{} teacher", method_name(teacher.method));
+}
 
 const char* own_student_name(const Certificate& certificate) {
   return certificate.violations() == 0 ? kCorrectedName : kUnprovedName;

@@ -15,6 +15,9 @@ struct ShownPolicy {
   std::unique_ptr<Policy> policy;
 };
 
+/// What a run's teacher is called: "c51 teacher".
+std::string teacher_name(const Teacher& teacher);
+
 /// What a run's own student is called: kCorrectedName, or kUnprovedName with violations left.
 const char* own_student_name(const Certificate& certificate);
 

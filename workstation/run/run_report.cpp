@@ -77,10 +77,6 @@ void evaluate_plain(const RunResults& run, std::vector<NamedEvaluation>& all) {
   if (!projected.empty()) under(kUnderAllRules, projected);
 }
 
-std::string teacher_name(const Teacher& teacher) {
-  return fmt::format("{} teacher", method_name(teacher.method));
-}
-
 }  // namespace
 
 void require_test_days(const MarketSteps& market, const std::string& prices) {

@@ -37,6 +37,16 @@ TEST(RiskTable, ShowsTheTeacherAndItsCautiousTwins) {
   EXPECT_EQ(table.find("cvar:0.25"), std::string::npos);
   EXPECT_EQ(table.find("rbc"), std::string::npos);
   EXPECT_EQ(risk_table({}, name), "");
+
+  const std::string html = risk_choice_html(all, name);
+  EXPECT_THAT(html, HasSubstr("What the c51 teacher chooses by"));
+  EXPECT_THAT(html, HasSubstr(R"(<th scope="row">mean</th><td data-label="Profit">30.5</td>)"
+                              R"(<td data-label="5 % day">12.0</td>)"
+                              R"(<td data-label="Worst day">10.0</td>)"));
+  EXPECT_THAT(html, HasSubstr("cvar:0.1</th>"));
+  EXPECT_EQ(html.find("cvar:0.25</th>"), std::string::npos);
+  all.pop_back();
+  EXPECT_EQ(risk_choice_html(all, name), "");
 }
 
 }  // namespace
