@@ -2,6 +2,7 @@
 // 5-256-128, C51 with 51 atoms or DQN, Adam, target blend. And what handing out a minibatch costs
 // by itself.
 #include <chrono>
+#include <ctime>
 #include <limits>
 #include <memory>
 #include <thread>
@@ -80,10 +81,15 @@ struct StepBenchmark {
 };
 
 /// One repetition: steps of ours, the machine's peak, steps of the peer.
+/// `on_cpu` is the share of the time in which the team's threads ran: what is missing at one thread
+/// was taken by other programs, at two also by what a single thread does.
 void run_step(benchmark::State& state, StepBenchmark& bench) {
   const auto start = std::chrono::steady_clock::now();
+  const std::clock_t cpu_start = std::clock();
   for (auto _ : state) bench.step();
+  const double cpu_s = static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC;
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+  state.counters["on_cpu"] = cpu_s / elapsed.count() / bench.learner.team().size();
   const double gflops =
       1e-9 * kStepsInTurn * flops_of_step(bench.learner.shape()) / elapsed.count();
   state.counters["gflops"] = gflops;
