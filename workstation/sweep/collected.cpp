@@ -233,7 +233,7 @@ std::string tasks_csv(const std::vector<CollectedTask>& tasks) {
     }
   }
   std::string text = "task,state";
-  for (const std::string& name : names) text += "," + csv_field(name);
+  for (const std::string& name : names) text.append(",").append(csv_field(name));
   text +=
       ",days,profit_eur_per_day_per_mwh,profit_standard_error,profit_standard_error_by_month,"
       "gain_eur_per_day_per_mwh,profit_at_wear_10_eur_per_day_per_mwh,"
@@ -241,7 +241,7 @@ std::string tasks_csv(const std::vector<CollectedTask>& tasks) {
       "seconds\n";
   for (const CollectedTask& task : tasks) {
     text += fmt::format("{},{}", task.task.number, state_name(task.state));
-    for (const std::string& name : names) text += "," + csv_field(task.task.value(name));
+    for (const std::string& name : names) text.append(",").append(csv_field(task.task.value(name)));
     if (const auto& f = task.figures) {
       text += fmt::format(",{},{:.4f},{},{},{},{:.4f},{:.4f},{:.4f},{},{}", f->days, f->profit,
                           optional_text(f->standard_error, 4),
