@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <type_traits>
 
 #include "shared/action.h"
 #include "shared/crc32.h"
@@ -94,12 +95,35 @@ struct GuardRule {
   friend constexpr bool operator==(const GuardRule&, const GuardRule&) = default;
 };
 
-/// As a row of the exported header: the fields in their order.
-inline constexpr int kGuardRuleFields = 10;
+/// Each field in the order of a row of the exported header, which is written, read and hashed so.
+template <typename Rule, typename Visit>
+constexpr void for_each_field(Rule& rule, Visit visit) {
+  visit(rule.box.price_min_eur_per_mwh);
+  visit(rule.box.price_max_eur_per_mwh);
+  visit(rule.box.soc_index_min);
+  visit(rule.box.soc_index_max);
+  visit(rule.box.quarter_hour_first);
+  visit(rule.box.quarter_hour_count);
+  visit(rule.box.months);
+  visit(rule.box.context_classes);
+  visit(rule.limits.actions);
+  visit(rule.limits.power_permille_max);
+}
+
+inline constexpr int kGuardRuleFields = [] {
+  int count = 0;
+  const GuardRule rule{};
+  for_each_field(rule, [&count](std::int32_t) { ++count; });
+  return count;
+}();
 
 constexpr GuardRule guard_rule_of(const std::int32_t (&row)[kGuardRuleFields]) {
-  return {{row[0], row[1], row[2], row[3], row[4], row[5], row[6], row[7]},
-          {static_cast<ActionSet>(row[8]), row[9]}};
+  GuardRule rule;
+  const std::int32_t* next = row;
+  for_each_field(rule, [&next](auto& field) {
+    field = static_cast<std::remove_cvref_t<decltype(field)>>(*next++);
+  });
+  return rule;
 }
 
 /// All rules at one point; `Rules` is a range of GuardRule.
@@ -124,13 +148,7 @@ constexpr std::uint32_t ruled_hash(std::uint32_t weights_hash, const Rules& rule
   crc.add_integer(static_cast<std::int32_t>(weights_hash));
   for (const GuardRule& rule : rules) {
     any = true;
-    for (const std::int32_t field :
-         {rule.box.price_min_eur_per_mwh, rule.box.price_max_eur_per_mwh, rule.box.soc_index_min,
-          rule.box.soc_index_max, rule.box.quarter_hour_first, rule.box.quarter_hour_count,
-          rule.box.months, rule.box.context_classes, std::int32_t{rule.limits.actions},
-          rule.limits.power_permille_max}) {
-      crc.add_integer(field);
-    }
+    for_each_field(rule, [&crc](std::int32_t field) { crc.add_integer(field); });
   }
   return any ? crc.value() : weights_hash;
 }

@@ -186,40 +186,4 @@ int ConstraintLayer::largest_block() const {
   return static_cast<int>(largest);
 }
 
-std::vector<DifferenceRow> property_rows(const CorrectionOptions& options,
-                                         const LatticeAxes& axes) {
-  const auto prices = static_cast<int>(axes.price_eur_per_mwh.size());
-  const auto socs = static_cast<int>(axes.soc.size());
-  std::vector<DifferenceRow> rows;
-  const auto add_difference = [&](Difference which, double lower, double upper) {
-    const RowBounds bounds = ramped_bounds(options, axes, lower, upper);
-    for (int i = 0; i < prices; ++i) {
-      for (int j = 0; j < socs; ++j) {
-        const int state = i * socs + j;
-        const double ramp =
-            options.price_slope * axes.mapped_price[i] + options.soc_slope * axes.soc[j];
-        if (i < bounds.lower_rows) {
-          rows.push_back({"low price charges", {{state, which, 1}}, bounds.lower - ramp});
-        }
-        if (i >= prices - bounds.upper_rows) {
-          rows.push_back({"high price discharges", {{state, which, -1}}, ramp - bounds.upper});
-        }
-        if (i + 1 < prices) {
-          rows.push_back({"monotone in price",
-                          {{state, which, 1}, {state + socs, which, -1}},
-                          options.price_slope * (axes.mapped_price[i + 1] - axes.mapped_price[i])});
-        }
-        if (j + 1 < socs) {
-          rows.push_back({"monotone in SoC",
-                          {{state, which, 1}, {state + 1, which, -1}},
-                          options.soc_slope * (axes.soc[j + 1] - axes.soc[j])});
-        }
-      }
-    }
-  };
-  add_difference(Difference::kU, options.logit_margin, 0);
-  add_difference(Difference::kV, 0, -options.logit_margin);
-  return rows;
-}
-
 }  // namespace bess

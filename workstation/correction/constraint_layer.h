@@ -1,6 +1,6 @@
 // The differentiable optimisation layer [Paper, Eq. 11] for any linear constraints: maps the logits
 // of a batch of states to the nearest ones that satisfy a plain list of rows. It gives the answer
-// of the CorrectionLayer on the paper's three properties (property_rows), which stays the fast way
+// of the CorrectionLayer on the paper's three properties (lattice_rows.h), which stays the fast way
 // for those alone.
 //
 // Metric as there: sum (u-u')^2 + (v-v')^2 over the batch, the mean of a state's logits passes
@@ -16,7 +16,6 @@
 #include <string>
 #include <vector>
 
-#include "workstation/correction/correction_layer.h"
 #include "workstation/correction/difference_row.h"
 #include "workstation/correction/quadratic_program.h"
 
@@ -65,9 +64,5 @@ class ConstraintLayer {
   std::vector<Block> blocks_;
   Eigen::VectorXd differences_;  ///< [2 * states] u and v of state 0, of state 1, ...
 };
-
-/// The paper's three properties on one context lattice, as the CorrectionLayer demands them; state
-/// = price index * SoCs + SoC index.
-std::vector<DifferenceRow> property_rows(const CorrectionOptions& options, const LatticeAxes& axes);
 
 }  // namespace bess

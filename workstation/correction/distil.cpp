@@ -7,7 +7,7 @@
 
 #include "shared/host/user_error.h"
 #include "workstation/base/progress.h"
-#include "workstation/correction/lattice_rule_rows.h"
+#include "workstation/correction/lattice_rows.h"
 #include "workstation/correction/policy_loss.h"
 #include "workstation/rl/transition.h"
 
@@ -219,8 +219,8 @@ std::optional<ConstraintLayer> Distiller::layer_with_rules(
   context.minute_of_quarter_hour = static_cast<std::int16_t>(lattice.minute_of_quarter_hour);
   context.quarter_hour = static_cast<std::int16_t>(lattice.quarter_hour);
   context.context_class = static_cast<std::int16_t>(lattice.context_class);
-  std::vector<DifferenceRow> rows = lattice_rule_rows(
-      options_.rules, teacher_.context.kind, context, lattice.axes, correction.logit_margin);
+  std::vector<DifferenceRow> rows =
+      lattice_rows(options_.rules, teacher_.context.kind, context, lattice.axes, correction);
   if (rows.empty()) return {};
   std::ranges::move(property_rows(correction, lattice.axes), std::back_inserter(rows));
   return ConstraintLayer(std::move(rows), options_.lattice_prices * options_.lattice_socs);

@@ -25,7 +25,7 @@ RuleLessons::RuleLessons(const RuleSet& rules, ContextKind kind)
     : kind_(kind), implied_(rules, kind) {
   for (std::size_t r = 0; r < rules.rules.size(); ++r) {
     const Rule& rule = rules.rules[r];
-    if (!binds_student(rule, kind) || rule.demand != Demand::kActions) continue;
+    if (!binds_student(rule, kind) || !rule.restricts_actions()) continue;
     asked_.push_back({r, rule, lattice_box_of(rule.box, kind), !rule.has_gap()});
   }
 }
@@ -40,7 +40,7 @@ HardState RuleLessons::corner(const Asked& asked, LatticeState context, bool at_
   context.soc_index = static_cast<std::int16_t>(at_least ? box.soc_last : box.soc_first);
   context.price_eur_per_mwh = static_cast<std::int16_t>(
       kLatticePriceMinEurPerMwh + (at_least ? box.price_last : box.price_first));
-  return {context, asked.rule.actions, asked.index};
+  return {context, asked.rule.actions(), asked.index};
 }
 
 /// An operator's rule draws its hour before the minute, a built-in one behind it: so the students
@@ -78,7 +78,7 @@ HardState RuleLessons::draw(std::size_t index, const std::vector<LatticeState>& 
     context.soc_index = static_cast<std::int16_t>(between(asked.box.soc_first, asked.box.soc_last));
     context.price_eur_per_mwh = static_cast<std::int16_t>(
         kLatticePriceMinEurPerMwh + between(asked.box.price_first, asked.box.price_last));
-    return {context, asked.rule.actions, asked.index};
+    return {context, asked.rule.actions(), asked.index};
   }
   const bool has_lower = asked.rule.lowest() > Action::kDischarge;
   const bool has_upper = asked.rule.highest() < Action::kCharge;

@@ -18,7 +18,7 @@ Json pair(int first, int second) {
 Json forbidden_actions(const Rule& rule) {
   Json list = Json::list();
   for (int a = 0; a < kActionCount; ++a) {
-    if (!allows(rule.actions, static_cast<Action>(a))) list.add(a);
+    if (!allows(rule.actions(), static_cast<Action>(a))) list.add(a);
   }
   return list;
 }
@@ -28,10 +28,10 @@ Json rule_json(const Rule& rule, ContextKind kind) {
                             {"text", rule.text()},
                             {"held_by", held_by(rule, kind)},
                             {"binds_student", binds_student(rule, kind)}});
-  if (rule.demand == Demand::kDirection) {
+  if (const Direction direction = rule.demand->direction(); direction.sign != 0) {
     json.set("direction",
-             Json::object({{"input", kInputNames[static_cast<std::size_t>(rule.direction.input)]},
-                           {"sign", rule.direction.sign}}));
+             Json::object({{"input", kInputNames[static_cast<std::size_t>(direction.input)]},
+                           {"sign", direction.sign}}));
     return json;
   }
   const LatticeBox box = lattice_box_of(rule.box, kind);
@@ -42,7 +42,7 @@ Json rule_json(const Rule& rule, ContextKind kind) {
     json.set("price", pair(kLatticePriceMinEurPerMwh + box.price_first,
                            kLatticePriceMinEurPerMwh + box.price_last));
   }
-  if (rule.demand == Demand::kActions && !rule.is_threshold) {
+  if (rule.restricts_actions() && !rule.is_threshold) {
     json.set("forbidden", forbidden_actions(rule));
   }
   return json;

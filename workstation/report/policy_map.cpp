@@ -88,7 +88,7 @@ std::vector<RuleOutline> rule_outlines(const RuleSet& rules, ContextKind kind,
                                        const PolicyContext& context) {
   std::vector<RuleOutline> outlines;
   for (const Rule& rule : rules.rules) {
-    if (rule.demand == Demand::kDirection || !binds_student(rule, kind)) continue;
+    if (rule.demand->pairs_along() || !binds_student(rule, kind)) continue;
     if (!holds_in_context(rule.box, kind, context.quarter_hour, context.context_class)) continue;
     const LatticeBox box = lattice_box_of(rule.box, kind);
     outlines.push_back({rule.name, {box.price_first, box.price_last, box.soc_first, box.soc_last}});

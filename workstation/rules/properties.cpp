@@ -9,7 +9,7 @@ Rule threshold(int property, Action action) {
   Rule rule;
   rule.name = fmt::format("property {}", property);
   rule.property = property;
-  rule.actions = action_bit(action);
+  rule.demand = action_demand(action_bit(action));
   return rule;
 }
 
@@ -17,8 +17,7 @@ Rule never_rises_with(RuleInput input, const char* name) {
   Rule rule;
   rule.name = fmt::format("property 3, {}", name);
   rule.property = 3;
-  rule.demand = Demand::kDirection;
-  rule.direction = {input, -1};
+  rule.demand = direction_demand({input, -1});
   return rule;
 }
 

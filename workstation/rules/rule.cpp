@@ -52,48 +52,13 @@ std::string box_text(const RuleBox& box) {
   return parts.empty() ? "always" : fmt::format("{}", fmt::join(parts, ", "));
 }
 
-std::string actions_text(const Rule& rule) {
-  const std::string_view low = action_name(rule.lowest());
-  const std::string_view high = action_name(rule.highest());
-  if (rule.has_gap()) return "the action is not idle";
-  if (low == high) return fmt::format("the action is {}", low);
-  return rule.highest() == Action::kCharge ? fmt::format("the action is at least {}", low)
-                                           : fmt::format("the action is at most {}", high);
-}
-
-std::string_view input_text(RuleInput input) {
-  constexpr std::string_view kTexts[kRuleInputCount] = {"the minute of the quarter-hour",
-                                                        "the quarter-hour", "the context class",
-                                                        "the SoC", "the price"};
-  return kTexts[static_cast<int>(input)];
-}
-
 }  // namespace
 
 std::string hour_text(int quarter_hour) {
   return fmt::format("{:02}:{:02}", quarter_hour / 4, quarter_hour % 4 * kMinutesPerQuarterHour);
 }
 
-Action Rule::lowest() const { return nearest_allowed(actions, Action::kDischarge); }
-Action Rule::highest() const { return nearest_allowed(actions, Action::kCharge); }
-bool Rule::has_gap() const {
-  return lowest() == Action::kDischarge && highest() == Action::kCharge &&
-         !allows(actions, Action::kIdle);
-}
-
-std::string Rule::text() const {
-  switch (demand) {
-    case Demand::kActions:
-      return fmt::format("{}: {}", box_text(box), actions_text(*this));
-    case Demand::kDirection:
-      return fmt::format("the action never {} with {}", direction.sign > 0 ? "falls" : "rises",
-                         input_text(direction.input));
-    case Demand::kPower:
-      return fmt::format("{}: at most {:g} % of the rated power", box_text(box),
-                         power_permille_max / 10.0);
-  }
-  return {};
-}
+std::string Rule::text() const { return demand->text(box_text(box)); }
 
 PriceThresholds RuleSet::thresholds(PriceThresholds otherwise) const {
   for (const Rule& rule : rules) {
@@ -110,8 +75,9 @@ PriceThresholds RuleSet::thresholds(PriceThresholds otherwise) const {
 std::vector<Direction> RuleSet::directions() const {
   std::vector<Direction> all{{RuleInput::kSoc, -1}, {RuleInput::kPrice, -1}};
   for (const Rule& rule : rules) {
-    if (rule.demand != Demand::kDirection) continue;
-    if (std::ranges::find(all, rule.direction) == all.end()) all.push_back(rule.direction);
+    const Direction direction = rule.demand->direction();
+    if (direction.sign == 0 || std::ranges::find(all, direction) != all.end()) continue;
+    all.push_back(direction);
   }
   return all;
 }
@@ -119,7 +85,8 @@ std::vector<Direction> RuleSet::directions() const {
 std::vector<GuardRule> RuleSet::guard_rules() const {
   std::vector<GuardRule> enforced;
   for (const Rule& rule : rules) {
-    if (rule.enforce) enforced.push_back({rule.box, {rule.actions, rule.power_permille_max}});
+    if (!rule.enforce) continue;
+    enforced.push_back({rule.box, {rule.actions(), rule.demand->power_permille_max()}});
   }
   return enforced;
 }
@@ -133,7 +100,7 @@ std::vector<std::string> RuleSet::guard_rule_names() const {
 }
 
 bool binds_student(const Rule& rule, ContextKind kind) {
-  if (rule.demand == Demand::kPower || !overlaps_lattice(rule.box)) return false;
+  if (!rule.demand->binds_student() || !overlaps_lattice(rule.box)) return false;
   return kind == ContextKind::kMonth || rule.box.months == kAllTwelve;
 }
 

@@ -1,11 +1,13 @@
-// What an operator asks of every decision, as read from a rule file (rule_file.h). A rule has a name, which
-// every report uses, and one demand:
+// What an operator asks of every decision, as read from a rule file (rule_file.h). A rule has a
+// name, which every report uses, a box of states and one demand (demand.h):
 //
-//   actions    in a box of states only some actions                    predicate of each state
-//   direction  the action never falls, or never rises, with one input  predicate of each pair of neighbours
-//   power      in a box at most so much of the rated power             the guard's alone
+//   actions    in the box only some actions                            of each state
+//   direction  the action never falls, or never rises, with one input  of each pair of neighbours
+//   power      in the box at most so much of the rated power           the guard's alone
+//   threshold  property 1 or 2 at another price
 //
-// The student is bound on the lattice alone: by what lies inside it, and by months only if it sees months.
+// The student is bound on the lattice alone: by what lies inside it, and by months only if it sees
+// months.
 #pragma once
 
 #include <cstdint>
@@ -14,41 +16,38 @@
 #include <vector>
 
 #include "shared/context_classes.h"
-#include "shared/decision_rule.h"
 #include "shared/features.h"
 #include "shared/price_thresholds.h"
+#include "workstation/rules/demand.h"
 
 namespace bess {
 
-enum class Demand : std::uint8_t { kActions, kDirection, kPower };
-
-/// Inputs of the student, in its order.
-enum class RuleInput : std::uint8_t { kMinute, kQuarterHour, kContextClass, kSoc, kPrice };
-inline constexpr int kRuleInputCount = 5;
-
-/// How the action may move when an input rises; +1 never falls, -1 never rises, 0 as it likes.
-struct Direction {
-  RuleInput input = RuleInput::kPrice;
-  int sign = 0;
-  friend bool operator==(const Direction&, const Direction&) = default;
-};
+constexpr Action lowest_of(ActionSet actions) {
+  return nearest_allowed(actions, Action::kDischarge);
+}
+constexpr Action highest_of(ActionSet actions) { return nearest_allowed(actions, Action::kCharge); }
+/// Discharging and charging are allowed, and idling is not.
+constexpr bool has_gap(ActionSet actions) {
+  return actions == (action_bit(Action::kDischarge) | action_bit(Action::kCharge));
+}
 
 struct Rule {
   std::string name;
-  Demand demand = Demand::kActions;
   RuleBox box;
-  ActionSet actions = kAllActions;
-  Direction direction{};
-  std::int32_t power_permille_max = kFullPowerPermille;
+  DemandPointer demand = action_demand(kAllActions);
   bool enforce = false;       ///< by the guard, whatever the student says
   bool is_threshold = false;  ///< stands for a threshold of properties 1 and 2
   int property = 0;     ///< 1 to 3: one of the built-in rules (properties.h); 0: an operator's
   std::string place{};  ///< "FILE:LINE", for messages
 
-  [[nodiscard]] Action lowest() const;   ///< of the allowed actions
-  [[nodiscard]] Action highest() const;  ///< of the allowed actions
-  /// Discharging and charging are allowed, and idling is not.
-  [[nodiscard]] bool has_gap() const;
+  [[nodiscard]] ActionSet actions() const { return demand->actions(); }
+  [[nodiscard]] Action lowest() const { return lowest_of(actions()); }
+  [[nodiscard]] Action highest() const { return highest_of(actions()); }
+  [[nodiscard]] bool has_gap() const { return bess::has_gap(actions()); }
+  /// Whether something is asked of single states, for a student to learn.
+  [[nodiscard]] bool restricts_actions() const { return actions() != kAllActions; }
+  /// Whether the layer can be asked for it: "not idle" is not convex.
+  [[nodiscard]] bool has_rows() const { return restricts_actions() && !has_gap(); }
   /// "17:00-20:00, SoC at most 30 %: the action is at least idle".
   [[nodiscard]] std::string text() const;
 };

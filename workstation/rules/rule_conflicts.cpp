@@ -35,7 +35,7 @@ std::string state_text(int quarter_hour, int context_class, int soc_index, int p
 RuleSet with_thresholds(const RuleSet& rules, const PriceThresholds& thresholds) {
   RuleSet all = rules;
   for (Rule rule : built_in_rules(thresholds).rules) {
-    if (rule.demand != Demand::kActions) continue;
+    if (!rule.restricts_actions()) continue;
     const bool has_own = std::ranges::any_of(rules.rules, [&](const Rule& own) {
       return own.is_threshold && own.lowest() == rule.lowest();
     });
@@ -63,8 +63,7 @@ std::optional<int> common_quarter_hour(const RuleBox& a, const RuleBox& b) {
 
 /// What the guard would have to obey at once.
 void check_boxes(const Rule& a, const Rule& b, ContextKind kind) {
-  if (a.demand != Demand::kActions || b.demand != Demand::kActions) return;
-  if ((a.actions & b.actions) != 0) return;
+  if ((a.actions() & b.actions()) != 0) return;
   const int price = std::max(a.box.price_min_eur_per_mwh, b.box.price_min_eur_per_mwh);
   const int soc = std::max(a.box.soc_index_min, b.box.soc_index_min);
   const std::int32_t months = a.box.months & b.box.months;
@@ -84,8 +83,9 @@ void check_boxes(const Rule& a, const Rule& b, ContextKind kind) {
 void check_directions(const RuleSet& rules) {
   for (const Rule& a : rules.rules) {
     for (const Rule& b : rules.rules) {
-      if (a.demand != Demand::kDirection || b.demand != Demand::kDirection) continue;
-      if (a.direction.input == b.direction.input && a.direction.sign > b.direction.sign) {
+      const Direction up = a.demand->direction();
+      const Direction down = b.demand->direction();
+      if (up.input == down.input && up.sign > 0 && down.sign < 0) {
         clash(a, b, "every state: only an action that never changes with that input obeys both");
       }
     }
@@ -159,7 +159,7 @@ ImpliedRanges::ImpliedRanges(const RuleSet& rules, ContextKind kind) {
   const std::vector<Direction> directions = rules.directions();
   for (std::size_t i = 0; i < rules.rules.size(); ++i) {
     const Rule& rule = rules.rules[i];
-    if (rule.demand != Demand::kActions || !binds_student(rule, kind)) continue;
+    if (!binds_student(rule, kind)) continue;
     if (rule.has_gap()) add_claim(rule, i, Side::kNotIdle, Action::kIdle, directions, kind);
     if (rule.lowest() > Action::kDischarge) {
       add_claim(rule, i, Side::kAtLeast, rule.lowest(), directions, kind);
@@ -265,7 +265,7 @@ std::optional<Opposite> nearest_opposite(const RuleSet& rules, const PriceThresh
   using Side = ImpliedRanges::Side;
   const auto is_asked = [&](const Claim& claim) {
     const Rule& other = all.rules[claim.rule];
-    return other.box == rule.box && other.actions == rule.actions && other.demand == rule.demand;
+    return other.box == rule.box && other.actions() == rule.actions();
   };
   const auto meet_in_time = [](const Claim& a, const Claim& b) {
     if ((a.box.classes & b.box.classes) == 0) return false;

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <map>
@@ -19,19 +18,6 @@ namespace {
 constexpr std::string_view kNameCharacters =
     "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789 -_.,:()%+";
 constexpr int kSocStepsPerOne = kSocCount - 1;
-constexpr std::array<std::string_view, kRuleInputCount> kInputNames{
-    "minute", "quarter_hour", "context_class", "soc", "price"};
-
-/// The keys that make a demand; a rule has one of them.
-constexpr std::array<std::string_view, 9> kDemandKeys{"is",
-                                                      "is_not",
-                                                      "at_least",
-                                                      "at_most",
-                                                      "never_rises_with",
-                                                      "never_falls_with",
-                                                      "power_max",
-                                                      "charge_at_or_below",
-                                                      "discharge_at_or_above"};
 
 bool parse_digits(std::string_view text, int& value) {
   const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -71,7 +57,6 @@ class RuleReader {
     read_range_of_price();
     table_.boolean("enforce", rule_.enforce);
     read_demand();
-    check_enforcement();
     table_.finish();
     return rule_;
   }
@@ -153,65 +138,26 @@ class RuleReader {
     }
   }
 
-  Action read_action(std::string_view key) {
-    int action = 0;
-    table_.choice(key, action, {"discharge", "idle", "charge"});
-    return static_cast<Action>(action);
-  }
-
   void read_demand() {
     if (table_.node("switches_max") != nullptr) return refuse_switches();
+    const DemandKind* kind = nullptr;
     std::string_view found;
-    for (const std::string_view key : kDemandKeys) {
-      if (table_.node(key) == nullptr) continue;
-      if (!found.empty()) {
-        return table_.fail(key, fmt::format("is a second demand beside {}: make it a rule of its "
-                                            "own",
-                                            found));
+    std::vector<std::string_view> keys;
+    for (const DemandKind& candidate : demand_kinds()) {
+      for (const std::string_view key : candidate.keys) {
+        keys.push_back(key);
+        if (table_.node(key) == nullptr) continue;
+        if (kind != nullptr) {
+          return table_.fail(
+              key, fmt::format("is a second demand beside {}: make it a rule of its own", found));
+        }
+        kind = &candidate;
+        found = key;
       }
-      found = key;
     }
-    if (found.empty()) {
-      table_.finish();  // a demand that is misspelt is told by its name
-      return table_.fail(
-          "", fmt::format("asks for nothing: add one of {}", fmt::join(kDemandKeys, ", ")));
-    }
-    if (found == "never_rises_with" || found == "never_falls_with") return read_direction(found);
-    if (found == "power_max") return read_power();
-    if (found == "charge_at_or_below" || found == "discharge_at_or_above") {
-      return read_threshold(found);
-    }
-    read_actions(found);
-  }
-
-  void read_actions(std::string_view key) {
-    const Action action = read_action(key);
-    rule_.demand = Demand::kActions;
-    rule_.actions = 0;
-    for (int a = 0; a < kActionCount; ++a) {
-      const auto other = static_cast<Action>(a);
-      const bool allowed = key == "is"         ? other == action
-                           : key == "is_not"   ? other != action
-                           : key == "at_least" ? other >= action
-                                               : other <= action;
-      if (allowed) rule_.actions = static_cast<ActionSet>(rule_.actions | action_bit(other));
-    }
-    if (rule_.actions == kAllActions) table_.fail(key, "allows every action: it asks for nothing");
-  }
-
-  void read_direction(std::string_view key) {
-    int input = 0;
-    table_.choice(key, input,
-                  {kInputNames[0], kInputNames[1], kInputNames[2], kInputNames[3], kInputNames[4]});
-    rule_.demand = Demand::kDirection;
-    rule_.direction = {static_cast<RuleInput>(input), key == "never_rises_with" ? -1 : 1};
-    if (rule_.box != RuleBox{}) {
-      table_.fail(key, "holds everywhere: leave hours, months, classes, SoC and price out");
-    }
-    const bool is_ordered = input >= static_cast<int>(RuleInput::kSoc);
-    if (is_ordered && rule_.direction.sign > 0) {
-      table_.fail(key, "contradicts property 3: the action never rises with price or SoC");
-    }
+    if (kind != nullptr) return kind->read(table_, found, rule_);
+    table_.finish();  // a demand that is misspelt is told by its name
+    table_.fail("", fmt::format("asks for nothing: add one of {}", fmt::join(keys, ", ")));
   }
 
   /// It was documented once, and no student was ever proved with it.
@@ -221,43 +167,6 @@ class RuleReader {
                 "changes at most twice as it is; for once, without a rest between charging and "
                 "discharging, write is_not = \"idle\"; against to and fro keep a dead band, is = "
                 "\"idle\" with price_min and price_max");
-  }
-
-  void read_power() {
-    rule_.demand = Demand::kPower;
-    table_.scaled("power_max", rule_.power_permille_max, kFullPowerPermille, 0, 1);
-    if (rule_.power_permille_max == kFullPowerPermille) {
-      table_.fail("power_max", "is all there is: use less than 1");
-    }
-  }
-
-  void read_threshold(std::string_view key) {
-    if (rule_.box != RuleBox{}) {
-      table_.fail(key, "holds at every hour and SoC: use is = with a box for less");
-    }
-    rule_.is_threshold = true;
-    if (key == "charge_at_or_below") {
-      rule_.actions = action_bit(Action::kCharge);
-      read_price(key, rule_.box.price_max_eur_per_mwh);
-    } else {
-      rule_.actions = action_bit(Action::kDischarge);
-      read_price(key, rule_.box.price_min_eur_per_mwh);
-    }
-  }
-
-  void check_enforcement() {
-    if (rule_.demand == Demand::kPower && !rule_.enforce) {
-      table_.fail("power_max", "is for the guard alone: add enforce = true");
-    }
-    if (!rule_.enforce) return;
-    if (rule_.demand == Demand::kDirection) {
-      table_.fail("enforce", "needs a demand on single states: the guard sees one state at a time");
-    }
-    if (rule_.is_threshold) {
-      table_.fail("enforce",
-                  "is not for thresholds: the guard has its own, [guard] low_price_eur_per_mwh and "
-                  "high_price_eur_per_mwh of bess-edge.toml");
-    }
   }
 
   TomlTable& table_;
@@ -287,31 +196,6 @@ void check_thresholds(const RuleSet& set) {
       first = &rule;
     }
   }
-}
-
-std::string demand_line(const Rule& rule) {
-  const std::string_view low = action_name(rule.lowest());
-  const std::string_view high = action_name(rule.highest());
-  switch (rule.demand) {
-    case Demand::kActions:
-      if (rule.is_threshold && rule.lowest() == Action::kCharge) {
-        return fmt::format("charge_at_or_below = {}\n", rule.box.price_max_eur_per_mwh);
-      }
-      if (rule.is_threshold) {
-        return fmt::format("discharge_at_or_above = {}\n", rule.box.price_min_eur_per_mwh);
-      }
-      if (rule.has_gap()) return "is_not = \"idle\"\n";
-      if (low == high) return fmt::format("is = \"{}\"\n", low);
-      return rule.highest() == Action::kCharge ? fmt::format("at_least = \"{}\"\n", low)
-                                               : fmt::format("at_most = \"{}\"\n", high);
-    case Demand::kDirection:
-      return fmt::format("never_{}_with = \"{}\"\n", rule.direction.sign > 0 ? "falls" : "rises",
-                         kInputNames[static_cast<std::size_t>(rule.direction.input)]);
-    case Demand::kPower:
-      return fmt::format("power_max = {:g}\n",
-                         rule.power_permille_max / double{kFullPowerPermille});
-  }
-  return {};
 }
 
 std::string members_line(std::string_view key, std::int32_t bits) {
@@ -390,7 +274,7 @@ std::string format_rules(const RuleSet& rules) {
   for (const Rule& rule : rules.rules) {
     text += fmt::format("{}[[rule]]\nname = \"{}\"\n", text.empty() ? "" : "\n", rule.name);
     if (!rule.is_threshold) text += box_lines(rule.box);
-    text += demand_line(rule);
+    text += rule.demand->line(rule.box);
     if (rule.enforce) text += "enforce = true\n";
   }
   return text;

@@ -15,22 +15,24 @@ RuleWatch::RuleWatch(std::shared_ptr<Policy> policy, const RuleSet& rules,
 
 RuleWatch::Look RuleWatch::look(const Rule& rule, Action action, const MarketStep& step,
                                 std::size_t index, double soc_frac) const {
-  if (rule.demand == Demand::kActions) {
+  const Demand& demand = *rule.demand;
+  if (!demand.binds_student()) return {false, false};
+  const std::optional<RuleInput> along = demand.pairs_along();
+  if (!along) {
     return {rule.box.contains(rule_point_of(step, soc_frac, classes_)),
-            !allows(rule.actions, action)};
+            demand.is_broken(action, action)};
   }
-  if (rule.demand != Demand::kDirection) return {false, false};
   MarketStep next = step;
   double next_soc_frac = soc_frac;
-  if (rule.direction.input == RuleInput::kPrice) {
+  if (along == RuleInput::kPrice) {
     next.observed_eur_per_mwh += 1;
-  } else if (rule.direction.input == RuleInput::kSoc) {
+  } else if (along == RuleInput::kSoc) {
     next_soc_frac += 1.0 / (kSocCount - 1);
   } else {
     return {false, false};
   }
   const Action after = policy_->decide(next, index, next_soc_frac);
-  return {next_soc_frac <= 1, rule.direction.sign < 0 ? after > action : after < action};
+  return {next_soc_frac <= 1, demand.is_broken(action, after)};
 }
 
 Action RuleWatch::decide(const MarketStep& step, std::size_t index, double soc_frac) const {

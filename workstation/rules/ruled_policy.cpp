@@ -5,9 +5,7 @@
 
 namespace bess {
 
-bool can_be_projected(const Rule& rule) {
-  return rule.demand == Demand::kActions || rule.demand == Demand::kPower;
-}
+bool can_be_projected(const Rule& rule) { return !rule.demand->pairs_along(); }
 
 RuleSet projected_rules(const RuleSet& rules) {
   RuleSet projected;

@@ -48,18 +48,19 @@ std::optional<Example> example_of(const StudentFile& student, const Rule& rule) 
   std::ranges::copy_if(student.certificate.counterexamples,
                        std::back_inserter(known.counterexamples),
                        [&](const LatticeState& s) { return holds_at(rule, kind, s); });
-  if (rule.demand == Demand::kActions) {
+  const std::optional<RuleInput> along = rule.demand->pairs_along();
+  if (!along) {
     const auto worst = worst_state(net, rule, known);
     if (!worst) return {};
     return Example{worst->state, fmt::format("{} at {}", action_name(worst->action),
                                              state_text(worst->state, kind))};
   }
   for (const LatticeState& state : known.counterexamples) {
-    const auto next = next_state(state, rule.direction.input);
+    const auto next = next_state(state, *along);
     if (!next) continue;
     const Action here = net.decide(state);
     const Action there = net.decide(*next);
-    if (rule.direction.sign < 0 ? there <= here : there >= here) continue;
+    if (!rule.demand->is_broken(here, there)) continue;
     return Example{state,
                    fmt::format("{} at {}, and {} at {}", action_name(here), state_text(state, kind),
                                action_name(there), state_text(*next, kind))};
@@ -85,7 +86,7 @@ std::string advice_of(const Certificate& certificate, ContextKind kind, const Ru
   if (by_layer && rule.property != 0) {
     return "raise [correction] price_slope and soc_slope or [distil] repair_rounds";
   }
-  if (by_layer && (rule.demand == Demand::kDirection || rule.has_gap())) {
+  if (by_layer && !rule.has_rows()) {
     return "the layer has no rows for it: use [distil] method = \"construction\"";
   }
   const auto opposite = nearest_opposite(certificate.rules, certificate.thresholds, kind, rule);

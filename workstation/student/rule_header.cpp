@@ -24,11 +24,9 @@ std::string literal_lines(std::string_view text) {
 }
 
 std::string row_text(const GuardRule& rule) {
-  const RuleBox& b = rule.box;
-  return fmt::format("{{{},{},{},{},{},{},{},{},{},{}}},\n", b.price_min_eur_per_mwh,
-                     b.price_max_eur_per_mwh, b.soc_index_min, b.soc_index_max,
-                     b.quarter_hour_first, b.quarter_hour_count, b.months, b.context_classes,
-                     rule.limits.actions, rule.limits.power_permille_max);
+  std::vector<std::int32_t> fields;
+  for_each_field(rule, [&fields](std::int32_t field) { fields.push_back(field); });
+  return fmt::format("{{{}}},\n", fmt::join(fields, ","));
 }
 
 int lowest_member(std::int32_t bits) { return std::countr_zero(static_cast<unsigned>(bits)) + 1; }

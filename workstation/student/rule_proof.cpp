@@ -54,10 +54,9 @@ RuleChecker::RuleChecker(const RuleSet& rules, ContextKind kind)
     const Rule& rule = rules.rules[i];
     counts_[i].binds_student = binds_student(rule, kind);
     if (counts_[i].binds_student) boxes_[i] = lattice_box_of(rule.box, kind);
-    const RuleInput input = rule.direction.input;
-    const bool is_in_grid = input == RuleInput::kSoc || input == RuleInput::kPrice;
-    if (rule.demand != Demand::kDirection || is_in_grid) continue;
-    if (std::ranges::find(neighbours_, input) == neighbours_.end()) neighbours_.push_back(input);
+    const std::optional<RuleInput> along = rule.demand->pairs_along();
+    if (!along || along == RuleInput::kSoc || along == RuleInput::kPrice) continue;
+    if (std::ranges::find(neighbours_, *along) == neighbours_.end()) neighbours_.push_back(*along);
   }
 }
 
@@ -80,26 +79,21 @@ void RuleChecker::check(const LatticeState& context, const ActionGrid& grid,
 
 void RuleChecker::check_row(std::size_t index, int soc, const ActionGrid& grid,
                             const std::vector<ActionGrid>& neighbours) {
-  const Rule& rule = rules_.rules[index];
-  const std::int8_t* row = row_of(grid, soc);
-  if (rule.demand == Demand::kActions) {
-    const LatticeBox& box = boxes_[index];
-    if (soc < box.soc_first || soc > box.soc_last) return;
-    const auto lowest = static_cast<std::int8_t>(rule.lowest());
-    const auto highest = static_cast<std::int8_t>(rule.highest());
-    constexpr auto kIdle = static_cast<std::int8_t>(Action::kIdle);
-    const std::int8_t forbidden = rule.has_gap() ? kIdle : std::int8_t{-1};
-    count_row(index, soc, box.price_first, box.price_last + 1, [=](int p) {
-      return (row[p] < lowest) | (row[p] > highest) | (row[p] == forbidden);
-    });
-  } else if (const std::int8_t* next = next_row(rule.direction.input, soc, grid, neighbours)) {
-    const int pairs = rule.direction.input == RuleInput::kPrice ? kPriceCount - 1 : kPriceCount;
-    if (rule.direction.sign < 0) {
-      count_row(index, soc, 0, pairs, [=](int p) { return next[p] > row[p]; });
-    } else {
-      count_row(index, soc, 0, pairs, [=](int p) { return next[p] < row[p]; });
-    }
-  }
+  const LatticeBox& box = boxes_[index];
+  if (soc < box.soc_first || soc > box.soc_last) return;
+  const Demand& demand = *rules_.rules[index].demand;
+  const std::optional<RuleInput> along = demand.pairs_along();
+  const std::int8_t* here = row_of(grid, soc);
+  const std::int8_t* beside = along ? next_row(*along, soc, grid, neighbours) : here;
+  if (beside == nullptr) return;
+  const int last = along == RuleInput::kPrice ? kPriceCount - 1 : kPriceCount;
+  const int end = std::min(box.price_last + 1, last);
+  RuleCount& count = counts_[index];
+  count.states += std::max(0, end - box.price_first);
+  broken_.clear();
+  demand.broken({here, beside, box.price_first, end}, broken_);
+  count.violations += static_cast<std::int64_t>(broken_.size());
+  for (const int price : broken_) keep(index, soc, price);
 }
 
 const std::int8_t* RuleChecker::next_row(RuleInput input, int soc, const ActionGrid& grid,
@@ -109,21 +103,6 @@ const std::int8_t* RuleChecker::next_row(RuleInput input, int soc, const ActionG
   const auto which = std::ranges::find(neighbours_, input) - neighbours_.begin();
   const ActionGrid& next = neighbours[static_cast<std::size_t>(which)];
   return next.empty() ? nullptr : row_of(next, soc);
-}
-
-/// Cells [begin, end) of a row, of which `violates(cell)` tells.
-template <typename Violates>
-void RuleChecker::count_row(std::size_t rule, int soc, int begin, int end, Violates violates) {
-  RuleCount& count = counts_[rule];
-  count.states += std::max(0, end - begin);
-  std::int8_t any = 0;  // as wide as an action, branch-free: vectorises
-  for (int p = begin; p < end; ++p) any |= static_cast<std::int8_t>(violates(p));
-  if (any == 0) return;
-  for (int p = begin; p < end; ++p) {
-    if (!violates(p)) continue;
-    ++count.violations;
-    keep(rule, soc, p);
-  }
 }
 
 /// The first few of each context, those of the built-in rules as they come along.
@@ -142,7 +121,7 @@ void RuleChecker::keep(std::size_t rule, int soc, int price) {
 
 std::optional<WorstState> worst_state(const StudentNet& net, const Rule& rule,
                                       const RuleCount& count) {
-  if (rule.demand != Demand::kActions) return {};
+  if (rule.demand->pairs_along()) return {};
   std::optional<WorstState> worst;
   const LatticeBox box = lattice_box_of(rule.box, net.context.kind);
   const auto look = [&](const LatticeState& state) {
@@ -151,11 +130,11 @@ std::optional<WorstState> worst_state(const StudentNet& net, const Rule& rule,
     net.quantise(state, x);
     net.propagate(x, logits);
     const Action action = argmax_action(logits);
-    if (allows(rule.actions, action)) return;
+    if (allows(rule.actions(), action)) return;
     std::int64_t best = std::numeric_limits<std::int64_t>::min();
     for (int a = 0; a < kActionCount; ++a) {
-      if (allows(rule.actions, static_cast<Action>(a)))
-        best = std::max<std::int64_t>(best, logits[a]);
+      if (!allows(rule.actions(), static_cast<Action>(a))) continue;
+      best = std::max<std::int64_t>(best, logits[a]);
     }
     const std::int64_t lead = logits[static_cast<int>(action)] - best;
     if (!worst || lead > worst->lead) worst = WorstState{state, action, lead};

@@ -50,8 +50,6 @@ class RuleChecker {
   /// The row that a direction compares with this one; null where there is none.
   [[nodiscard]] const std::int8_t* next_row(RuleInput input, int soc, const ActionGrid& grid,
                                             const std::vector<ActionGrid>& neighbours) const;
-  template <typename Violates>
-  void count_row(std::size_t rule, int soc, int begin, int end, Violates violates);
   void keep(std::size_t rule, int soc, int price);
 
   const RuleSet& rules_;
@@ -61,6 +59,7 @@ class RuleChecker {
   std::vector<RuleCount> counts_;
   LatticeState context_{};
   std::vector<std::size_t> holding_;  ///< rules that hold in this context
+  std::vector<int> broken_;           ///< prices of the row that is looked at
   std::vector<int> kept_;             ///< counterexamples of this context, of each rule
 };
 

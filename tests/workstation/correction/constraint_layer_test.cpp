@@ -5,6 +5,7 @@
 
 #include "shared/host/user_error.h"
 #include "tests/support/correction_cases.h"
+#include "workstation/correction/lattice_rows.h"
 
 namespace bess {
 namespace {

@@ -137,9 +137,9 @@ class Cells {
 
   explicit Cells(const RuleSet& rules) {
     for (const Rule& rule : rules.rules) {
-      if (rule.demand == Demand::kDirection) continue;
+      if (rule.demand->pairs_along()) continue;
       for (int at = 0; at < kCount; ++at) {
-        if (rule.box.contains(point_of(at))) left_[at] = left_[at] & rule.actions;
+        if (rule.box.contains(point_of(at))) left_[at] = left_[at] & rule.actions();
       }
     }
     for (const Direction& direction : rules.directions()) {

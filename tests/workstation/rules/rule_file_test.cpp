@@ -22,7 +22,7 @@ TEST(RuleFile, EveryKeyIsRead) {
   const Rule& rule = set.rules[0];
   EXPECT_EQ(rule.name, "quiet, but (not) all");
   EXPECT_EQ(rule.box, (RuleBox{-100, 400, 20, 61, 89, 31, 0xc01, kAllTwelve}));
-  EXPECT_EQ(rule.actions, action_bit(Action::kDischarge) | action_bit(Action::kIdle));
+  EXPECT_EQ(rule.actions(), action_bit(Action::kDischarge) | action_bit(Action::kIdle));
   EXPECT_TRUE(rule.enforce);
   EXPECT_EQ(rule.place, "test.toml:1");
   EXPECT_EQ(
@@ -33,40 +33,35 @@ TEST(RuleFile, EveryKeyIsRead) {
 
 struct DemandCase {
   const char* lines;
-  Demand demand;
   const char* text;
 };
 
 TEST(RuleFile, EveryDemandIsReadAndSaid) {
   const DemandCase cases[] = {
-      {"is = \"idle\"", Demand::kActions, "always: the action is idle"},
-      {"is_not = \"idle\"", Demand::kActions, "always: the action is not idle"},
-      {"at_least = \"idle\"", Demand::kActions, "always: the action is at least idle"},
-      {"at_most = \"discharge\"", Demand::kActions, "always: the action is discharge"},
-      {"charge_at_or_below = -20", Demand::kActions,
-       "price at most -20 EUR/MWh: the action is charge"},
-      {"discharge_at_or_above = 900", Demand::kActions,
-       "price at least 900 EUR/MWh: the action is discharge"},
-      {"never_rises_with = \"soc\"", Demand::kDirection, "the action never rises with the SoC"},
-      {"never_falls_with = \"context_class\"", Demand::kDirection,
-       "the action never falls with the context class"},
-      {"hours = \"18:00-24:00\"\npower_max = 0.25\nenforce = true", Demand::kPower,
+      {"is = \"idle\"", "always: the action is idle"},
+      {"is_not = \"idle\"", "always: the action is not idle"},
+      {"at_least = \"idle\"", "always: the action is at least idle"},
+      {"at_most = \"discharge\"", "always: the action is discharge"},
+      {"charge_at_or_below = -20", "price at most -20 EUR/MWh: the action is charge"},
+      {"discharge_at_or_above = 900", "price at least 900 EUR/MWh: the action is discharge"},
+      {"never_rises_with = \"soc\"", "the action never rises with the SoC"},
+      {"never_falls_with = \"context_class\"", "the action never falls with the context class"},
+      {"hours = \"18:00-24:00\"\npower_max = 0.25\nenforce = true",
        "18:00-00:00: at most 25 % of the rated power"},
-      {"context_classes = [2, 1]\nat_most = \"idle\"", Demand::kActions,
-       "classes 1, 2: the action is at most idle"},
+      {"context_classes = [2, 1]\nat_most = \"idle\"", "classes 1, 2: the action is at most idle"},
   };
   for (const DemandCase& c : cases) {
     SCOPED_TRACE(c.lines);
     const RuleSet set = one_rule(c.lines);
-    EXPECT_EQ(set.rules[0].demand, c.demand);
     EXPECT_EQ(set.rules[0].text(), c.text);
     const RuleSet again = parse_rules(format_rules(set), "again.toml");
     ASSERT_EQ(again.rules.size(), 1U);
     EXPECT_EQ(again.rules[0].text(), c.text);
     EXPECT_EQ(again.rules[0].box, set.rules[0].box);
-    EXPECT_EQ(again.rules[0].actions, set.rules[0].actions);
-    EXPECT_EQ(again.rules[0].direction, set.rules[0].direction);
-    EXPECT_EQ(again.rules[0].power_permille_max, set.rules[0].power_permille_max);
+    EXPECT_EQ(again.rules[0].actions(), set.rules[0].actions());
+    EXPECT_EQ(again.rules[0].demand->direction(), set.rules[0].demand->direction());
+    EXPECT_EQ(again.rules[0].demand->power_permille_max(),
+              set.rules[0].demand->power_permille_max());
     EXPECT_EQ(again.rules[0].enforce, set.rules[0].enforce);
     EXPECT_EQ(again.rules[0].is_threshold, set.rules[0].is_threshold);
   }

@@ -55,16 +55,17 @@ std::int64_t brute_force(const Rule& rule, const Actions& actions, const Lattice
                             context.context_class};
       if (!rule.box.contains(point)) continue;
       const Action action = actions.at(soc, price);
-      if (rule.demand == Demand::kActions) found += allows(rule.actions, action) ? 0 : 1;
-      if (rule.demand != Demand::kDirection) continue;
-      const RuleInput input = rule.direction.input;
+      const Direction direction = rule.demand->direction();
+      found += allows(rule.actions(), action) ? 0 : 1;
+      if (direction.sign == 0) continue;
+      const RuleInput input = direction.input;
       std::optional<Action> after = actions.beside(input, soc, price);
       if (input == RuleInput::kPrice && price < kLatticePriceMaxEurPerMwh) {
         after = actions.at(soc, price + 1);
       }
       if (input == RuleInput::kSoc && soc < kSocCount - 1) after = actions.at(soc + 1, price);
       if (!after) continue;
-      found += (rule.direction.sign < 0 ? *after > action : *after < action) ? 1 : 0;
+      found += (direction.sign < 0 ? *after > action : *after < action) ? 1 : 0;
     }
   }
   return found;

@@ -1,8 +1,10 @@
 // Rules through the optimisation layer: rows of one lattice, and a student that learns them.
-#include "workstation/correction/lattice_rule_rows.h"
+#include "workstation/correction/lattice_rows.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
 #include <set>
 
 #include "shared/action.h"
@@ -24,17 +26,23 @@ LatticeAxes lattice_axes(const std::vector<int>& prices, const std::vector<int>&
   return axes;
 }
 
+CorrectionOptions margin_of(double logit_margin) {
+  CorrectionOptions options;
+  options.logit_margin = logit_margin;
+  return options;
+}
+
 constexpr const char* kReserve =
     "hours = \"17:00-20:00\"\nsoc_max = 0.3\nprice_min = 0\nprice_max = 300\nat_least = \"idle\"";
 
 /// Every state of the lattice is in the box or not, ends included.
-TEST(LatticeRuleRows, StatesOfTheBoxAndNoOthers) {
+TEST(LatticeRows, StatesOfTheBoxAndNoOthers) {
   const RuleSet rules = one_rule(kReserve, "reserve");
   const LatticeAxes axes = lattice_axes({-1, 0, 300, 301}, {0, 59, 60, 61, 200});
   LatticeState context{};
   context.quarter_hour = 17 * 4;
   context.context_class = 3;
-  const auto rows = lattice_rule_rows(rules, ContextKind::kMonth, context, axes, 0.5);
+  const auto rows = lattice_rows(rules, ContextKind::kMonth, context, axes, margin_of(0.5));
   std::set<int> states;
   for (const DifferenceRow& row : rows) {
     EXPECT_EQ(row.rule, "reserve");
@@ -56,10 +64,10 @@ TEST(LatticeRuleRows, StatesOfTheBoxAndNoOthers) {
   EXPECT_EQ(states, expected);
   EXPECT_EQ(states, (std::set<int>{5, 6, 7, 10, 11, 12}));
   context.quarter_hour = 20 * 4;
-  EXPECT_TRUE(lattice_rule_rows(rules, ContextKind::kMonth, context, axes, 0.5).empty());
+  EXPECT_TRUE(lattice_rows(rules, ContextKind::kMonth, context, axes, margin_of(0.5)).empty());
 }
 
-TEST(LatticeRuleRows, TheCorrectedActionsObey) {
+TEST(LatticeRows, TheCorrectedActionsObey) {
   const RuleSet rules = example_rules();
   Random random(17);
   const LatticeAxes axes = lattice_axes({-500, -80, 0, 40, 99, 150, 300, 301, 400, 999, 1500},
@@ -70,7 +78,7 @@ TEST(LatticeRuleRows, TheCorrectedActionsObey) {
     context.quarter_hour = static_cast<std::int16_t>(quarter_hour);
     context.context_class = static_cast<std::int16_t>(1 + random.index(12));
     std::vector<DifferenceRow> rows =
-        lattice_rule_rows(rules, ContextKind::kMonth, context, axes, 0.5);
+        lattice_rows(rules, ContextKind::kMonth, context, axes, margin_of(0.5));
     bound += rows.empty() ? 0 : 1;
     const auto properties = property_rows({}, axes);
     rows.insert(rows.end(), properties.begin(), properties.end());
@@ -84,20 +92,38 @@ TEST(LatticeRuleRows, TheCorrectedActionsObey) {
       const auto soc =
           std::lround(axes.soc[static_cast<std::size_t>(c % 6)] * kInputOne / kSocScale);
       for (const Rule& rule : rules.rules) {
-        if (rule.demand != Demand::kActions) continue;
         const RulePoint point{axes.price_eur_per_mwh[static_cast<std::size_t>(c / 6)],
                               static_cast<std::int16_t>(soc), context.quarter_hour,
                               context.context_class, context.context_class};
         if (!rule.box.contains(point)) continue;
-        EXPECT_TRUE(allows(rule.actions, action)) << rule.name << ", state " << c;
+        EXPECT_TRUE(allows(rule.actions(), action)) << rule.name << ", state " << c;
       }
     }
   }
   EXPECT_GT(bound, 5);
 }
 
+/// Of the built-in rules: each state and pair as the properties say, by difference and state.
+TEST(LatticeRows, ThePropertiesAreRowsOfTheBuiltInRules) {
+  const LatticeAxes axes = lattice_axes({-500, -499, 300, 301}, {0, 100, 200});
+  const CorrectionOptions options{.thresholds = {-499, 301}};
+  std::map<std::string, int> count;
+  const std::vector<DifferenceRow> rows = property_rows(options, axes);
+  for (const DifferenceRow& row : rows) ++count[row.rule];
+  EXPECT_EQ(count, (std::map<std::string, int>{{"property 1", 2 * 2 * 3},
+                                               {"property 2", 2 * 1 * 3},
+                                               {"property 3, price", 2 * 3 * 3},
+                                               {"property 3, SoC", 2 * 4 * 2}}));
+  EXPECT_EQ(rows.front().rule, "property 1");
+  EXPECT_EQ(rows[1].rule, "property 3, price");
+  EXPECT_EQ(rows[2].rule, "property 3, SoC");
+  EXPECT_TRUE(std::ranges::is_sorted(rows, {}, [](const DifferenceRow& row) {
+    return std::pair(row.terms.front().difference, row.terms.front().state);
+  }));
+}
+
 /// Through the layer alone a student comes to keep a rule that its teacher breaks.
-TEST(LatticeRuleRows, AStudentLearnsARule) {
+TEST(LatticeRows, AStudentLearnsARule) {
   constexpr Support kNoSupport{-30, 30, 11};
   const MlpShape shape = teacher_shape(Method::kDqn, kNoSupport);
   const Teacher teacher{
