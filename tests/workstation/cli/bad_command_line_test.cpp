@@ -9,6 +9,7 @@
 #include "shared/host/minute_file.h"
 #include "tests/support/small_market.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/train_commands.h"
 #include "workstation/student/student_file.h"
 
 namespace bess {
@@ -250,20 +251,18 @@ TEST_F(BadTrainCommandLine, SoIsEveryMistakeInAConfiguration) {
 }
 
 TEST_F(BadTrainCommandLine, ABareCommandShowsItsHelp) {
-  ChildProcess bare({BESS_TRAIN_PROGRAM, "prices", "fetch"});
-  const std::string text = bare.read_all();
-  EXPECT_THAT(text, testing::HasSubstr("Usage: bess-train prices fetch"));
-  EXPECT_THAT(text, testing::HasSubstr("--allow-gaps"));
-  EXPECT_EQ(bare.wait(), 2);
+  const CommandResult bare = run_train({"prices", "fetch"});
+  EXPECT_THAT(bare.output, testing::HasSubstr("Usage: bess-train prices fetch"));
+  EXPECT_THAT(bare.output, testing::HasSubstr("--allow-gaps"));
+  EXPECT_EQ(bare.exit_code, 2);
 }
 
 TEST_F(BadTrainCommandLine, TheVersionTellsCommitCompilerAndInstructions) {
-  ChildProcess program({BESS_TRAIN_PROGRAM, "--version"});
-  EXPECT_THAT(
-      program.read_all(),
-      testing::MatchesRegex("bess-train [0-9.]+\ncommit [-0-9a-z]+, (g\\+\\+|clang) [0-9].*, "
-                            "(x86-64|aarch64|arm).*\n"));
-  EXPECT_EQ(program.wait(), 0);
+  const CommandResult version = run_train({"--version"});
+  EXPECT_THAT(version.output, testing::MatchesRegex(
+                                  "bess-train [0-9.]+\ncommit [-0-9a-z]+, (g\\+\\+|clang) [0-9].*, "
+                                  "(x86-64|aarch64|arm).*\n"));
+  EXPECT_EQ(version.exit_code, 0);
 }
 
 }  // namespace

@@ -4,10 +4,9 @@
 
 #include <fstream>
 
-#include "shared/host/child_process.h"
-#include "shared/host/file.h"
 #include "tests/support/market_test_support.h"
 #include "tests/support/price_cases.h"
+#include "tests/support/train_commands.h"
 
 namespace bess {
 namespace {
@@ -16,33 +15,14 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-class BadPrices : public testing::Test {
+class BadPrices : public TrainCommands {
  protected:
-  struct Result {
-    int exit_code;
-    std::string output;
-  };
-  static Result run(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), BESS_TRAIN_PROGRAM);
-    ChildProcess program(arguments);
-    std::string output = program.read_all();
-    return {program.wait(), std::move(output)};
-  }
-  [[nodiscard]] std::string path(const std::string& name) const {
-    return (folder_ / name).string();
-  }
-  [[nodiscard]] std::string written(const std::string& name, const std::string& text) const {
-    write_file(folder_ / name, text);
-    return path(name);
-  }
   [[nodiscard]] Result evaluated(const std::string& text, const std::string& accept = "") const {
     std::vector<std::string> arguments{
         "evaluate", "--prices", written("prices.csv", text), "--policy", "rbc", "--split", "all"};
     if (!accept.empty()) arguments.insert(arguments.end(), {"--accept", accept});
     return run(arguments);
   }
-
-  ScratchFolder folder_;
 };
 
 TEST_F(BadPrices, EachIsOneClearLine) {

@@ -1,9 +1,8 @@
 // The prices commands as a user runs them.
 #include <gmock/gmock.h>
 
-#include "shared/host/child_process.h"
-#include "shared/host/file.h"
 #include "tests/support/market_test_support.h"
+#include "tests/support/train_commands.h"
 
 namespace bess {
 namespace {
@@ -21,28 +20,12 @@ constexpr const char* kEntsoeDocument =
 constexpr const char* kEliaQuarterHour =
     "datetime;resolutioncode;imbalanceprice\n2023-01-01T00:15:00Z;PT15M;-30.258\n";
 
-class PricesCli : public testing::Test {
+class PricesCli : public TrainCommands {
  protected:
-  struct Result {
-    int exit_code;
-    std::string output;
-  };
-
   static Result run(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), {BESS_TRAIN_PROGRAM, "prices"});
-    ChildProcess program(arguments);
-    std::string output = program.read_all();
-    return {program.wait(), std::move(output)};
+    arguments.insert(arguments.begin(), "prices");
+    return TrainCommands::run(std::move(arguments));
   }
-  [[nodiscard]] std::string path(const std::string& name) const {
-    return (folder_ / name).string();
-  }
-  [[nodiscard]] std::string written(const std::string& name, std::string_view text) const {
-    write_file(folder_ / name, text);
-    return path(name);
-  }
-
-  ScratchFolder folder_;
 };
 
 TEST_F(PricesCli, ImportNamesTheSource) {

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "shared/host/child_process.h"
 #include "shared/host/toml_document.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/toml_mistakes.h"
+#include "tests/support/train_commands.h"
 
 namespace bess {
 namespace {
@@ -30,9 +30,8 @@ TEST(Program, BrokenTomlIsOneClearLine) {
   for (const TomlMistake& mistake : toml_mistakes()) {
     SCOPED_TRACE(mistake.text.substr(0, 40));
     const std::string config = folder.write("broken.toml", mistake.text);
-    ChildProcess program({BESS_TRAIN_PROGRAM, "config", "--config", config});
-    const std::string text = program.read_all();
-    EXPECT_EQ(program.wait(), 1) << text;
+    const auto [exit_code, text] = run_train({"config", "--config", config});
+    EXPECT_EQ(exit_code, 1) << text;
     // What is too long is not even read to its end.
     const bool is_too_long = mistake.text.size() > kTomlBytesMax;
     const std::string place = "broken.toml:" + std::to_string(mistake.line) + ": not valid TOML: ";
@@ -44,9 +43,9 @@ TEST(Program, BrokenTomlIsOneClearLine) {
 TEST(Program, AByteOrderMarkBeforeTheConfigurationIsPassedOver) {
   const TemporaryFolder folder;
   const std::string config = folder.write("run.toml", "\xEF\xBB\xBF[train]\nsteps = 7\n");
-  ChildProcess program({BESS_TRAIN_PROGRAM, "config", "--config", config});
-  EXPECT_THAT(program.read_all(), HasSubstr("steps = 7 "));
-  EXPECT_EQ(program.wait(), 0);
+  const CommandResult result = run_train({"config", "--config", config});
+  EXPECT_THAT(result.output, HasSubstr("steps = 7 "));
+  EXPECT_EQ(result.exit_code, 0);
 }
 
 TEST(Program, CtrlCEndsACommandThatHasNothingToSave) {

@@ -2,16 +2,14 @@
 // commands.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
-#include <httplib.h>
 
 #include <atomic>
-#include <thread>
 
-#include "shared/host/child_process.h"
-#include "shared/host/file.h"
 #include "shared/utc_text.h"
+#include "tests/support/local_server.h"
 #include "tests/support/market_series.h"
 #include "tests/support/market_test_support.h"
+#include "tests/support/train_commands.h"
 #include "workstation/market/feed/day_ahead_fetch.h"
 #include "workstation/market/feed/day_ahead_rows.h"
 #include "workstation/market/series/local_date.h"
@@ -149,41 +147,34 @@ TEST(DayAheadRows, BrokenTablesAreToldByLine) {
 class FakeCharts {
  public:
   explicit FakeCharts(int failures = 0) : failures_(failures) {
-    server_.Get("/price", [this](const httplib::Request& request, httplib::Response& response) {
-      ++requests;
-      if (failures_-- > 0) {
-        response.status = 503;
-        return;
-      }
-      const LocalDate from = parse_local_date(request.get_param_value("start"), "start");
-      const LocalDate to = parse_local_date(request.get_param_value("end"), "end");
-      std::string seconds, prices;
-      for (std::int64_t utc_s = local_midnight_utc_s(from);
-           utc_s < local_midnight_utc_s(add_days(to, 1)); utc_s += 3600) {
-        if (utc_s == missing_utc_s) continue;
-        const char* comma = seconds.empty() ? "" : ",";
-        seconds += comma + std::to_string(utc_s);
-        prices += comma + std::to_string(utc_s / 3600 % 89);
-      }
-      response.set_content(charts(seconds, prices), "application/json");
-    });
-    port_ = server_.bind_to_any_port("127.0.0.1");
-    thread_ = std::thread([this] { server_.listen_after_bind(); });
-    while (!server_.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    server_.routes().Get(
+        "/price", [this](const httplib::Request& request, httplib::Response& response) {
+          ++requests;
+          if (failures_-- > 0) {
+            response.status = 503;
+            return;
+          }
+          const LocalDate from = parse_local_date(request.get_param_value("start"), "start");
+          const LocalDate to = parse_local_date(request.get_param_value("end"), "end");
+          std::string seconds, prices;
+          for (std::int64_t utc_s = local_midnight_utc_s(from);
+               utc_s < local_midnight_utc_s(add_days(to, 1)); utc_s += 3600) {
+            if (utc_s == missing_utc_s) continue;
+            const char* comma = seconds.empty() ? "" : ",";
+            seconds += comma + std::to_string(utc_s);
+            prices += comma + std::to_string(utc_s / 3600 % 89);
+          }
+          response.set_content(charts(seconds, prices), "application/json");
+        });
+    server_.start();
   }
-  ~FakeCharts() {
-    server_.stop();
-    thread_.join();
-  }
-  [[nodiscard]] std::string base_url() const { return "http://127.0.0.1:" + std::to_string(port_); }
+  [[nodiscard]] std::string base_url() const { return server_.url(); }
   std::atomic<int> requests{0};
   std::int64_t missing_utc_s = 0;
 
  private:
   std::atomic<int> failures_;
-  httplib::Server server_;
-  int port_ = 0;
-  std::thread thread_;
+  LocalServer server_;  ///< the last: it stops before what its thread uses
 };
 
 DayAheadRequest request_of(const FakeCharts& server, const FetchSpan& span) {
@@ -220,27 +211,7 @@ TEST(DayAheadFetch, AHoleIsAnErrorUnlessItIsAllowed) {
               HasSubstr("lies before"));
 }
 
-class DayAheadCli : public testing::Test {
- protected:
-  struct Result {
-    int exit_code;
-    std::string output;
-  };
-  static Result run(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), BESS_TRAIN_PROGRAM);
-    ChildProcess program(arguments);
-    std::string output = program.read_all();
-    return {program.wait(), std::move(output)};
-  }
-  [[nodiscard]] std::string path(const std::string& name) const {
-    return (folder_ / name).string();
-  }
-  [[nodiscard]] std::string written(const std::string& name, std::string_view text) const {
-    write_file(folder_ / name, text);
-    return path(name);
-  }
-  ScratchFolder folder_;
-};
+using DayAheadCli = TrainCommands;
 
 TEST_F(DayAheadCli, ImportsJudgesAndLeavesNothingOfWhatIsBad) {
   const std::string good = written("good.csv", table_of_day({2025, 6, 1}, 3600, true));

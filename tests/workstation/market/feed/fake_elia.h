@@ -2,18 +2,16 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <httplib.h>
 
 #include <algorithm>
-#include <chrono>
 #include <functional>
 #include <map>
 #include <mutex>
 #include <string>
-#include <thread>
 
 #include "shared/host/minute_file.h"
 #include "shared/utc_text.h"
+#include "tests/support/local_server.h"
 #include "workstation/market/series/local_date.h"
 
 namespace bess {
@@ -30,28 +28,18 @@ class FakeElia {
 
   explicit FakeElia(Fault fault = {}, FakeRows served = FakeRows::kMidnights)
       : fault_(std::move(fault)), served_(served) {
-    server_.Get(R"(/api/explore/v2\.1/catalog/datasets/(ods\d+)/exports/csv)",
-                [this](const httplib::Request& request, httplib::Response& response) {
-                  answer(request, response);
-                });
-    server_.Get(R"(/api/explore/v2\.1/catalog/datasets/(ods\d+)/records)",
-                [this](const httplib::Request& request, httplib::Response& response) {
-                  answer_total(request, response);
-                });
-    port_ = server_.bind_to_any_port("127.0.0.1");
-    thread_ = std::thread([this] { server_.listen_after_bind(); });
-    while (!server_.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    server_.routes().Get(R"(/api/explore/v2\.1/catalog/datasets/(ods\d+)/exports/csv)",
+                         [this](const httplib::Request& request, httplib::Response& response) {
+                           answer(request, response);
+                         });
+    server_.routes().Get(R"(/api/explore/v2\.1/catalog/datasets/(ods\d+)/records)",
+                         [this](const httplib::Request& request, httplib::Response& response) {
+                           answer_total(request, response);
+                         });
+    server_.start();
   }
-  ~FakeElia() {
-    server_.stop();
-    thread_.join();
-  }
-  FakeElia(const FakeElia&) = delete;
-  FakeElia& operator=(const FakeElia&) = delete;
 
-  [[nodiscard]] std::string base_url() const {
-    return "http://127.0.0.1:" + std::to_string(port_) + "/api/explore/v2.1";
-  }
+  [[nodiscard]] std::string base_url() const { return server_.url() + "/api/explore/v2.1"; }
   /// Requests seen so far, by dataset.
   std::map<std::string, int> requests() {
     const std::lock_guard lock(mutex_);
@@ -118,12 +106,10 @@ class FakeElia {
 
   Fault fault_;
   FakeRows served_;
-  httplib::Server server_;
-  int port_ = 0;
-  std::thread thread_;
   std::mutex mutex_;
   std::map<std::string, int> requests_;
   std::map<std::string, bool> is_faulty_;
+  LocalServer server_;  ///< the last: it stops before what its thread uses
 };
 
 }  // namespace bess

@@ -2,19 +2,16 @@
 // revises and takes away while it is asked.
 #pragma once
 
-#include <httplib.h>
-
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <map>
 #include <mutex>
 #include <optional>
 #include <string>
-#include <thread>
 
 #include "shared/host/json.h"
 #include "shared/utc_text.h"
+#include "tests/support/local_server.h"
 
 namespace bess {
 
@@ -25,24 +22,14 @@ class LiveElia {
   using Fault = std::function<bool(const std::string& dataset, httplib::Response&)>;
 
   LiveElia() {
-    server_.Get(R"(/api/explore/v2\.1/catalog/datasets/(ods\d+)/records)",
-                [this](const httplib::Request& request, httplib::Response& response) {
-                  answer(request, response);
-                });
-    port_ = server_.bind_to_any_port("127.0.0.1");
-    thread_ = std::thread([this] { server_.listen_after_bind(); });
-    while (!server_.is_running()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    server_.routes().Get(R"(/api/explore/v2\.1/catalog/datasets/(ods\d+)/records)",
+                         [this](const httplib::Request& request, httplib::Response& response) {
+                           answer(request, response);
+                         });
+    server_.start();
   }
-  ~LiveElia() {
-    server_.stop();
-    thread_.join();
-  }
-  LiveElia(const LiveElia&) = delete;
-  LiveElia& operator=(const LiveElia&) = delete;
 
-  [[nodiscard]] std::string base_url() const {
-    return "http://127.0.0.1:" + std::to_string(port_) + "/api/explore/v2.1";
-  }
+  [[nodiscard]] std::string base_url() const { return server_.url() + "/api/explore/v2.1"; }
   /// NaN is published as null.
   void publish_price(std::int64_t utc_s, double price, const std::string& quality = "DataIssue") {
     const std::lock_guard lock(mutex_);
@@ -110,13 +97,11 @@ class LiveElia {
     return Json::object({{"total_count", all.size()}, {"results", std::move(results)}}).line();
   }
 
-  httplib::Server server_;
-  int port_ = 0;
-  std::thread thread_;
   std::mutex mutex_;
   std::map<std::int64_t, Row> prices_, imbalances_;
   Fault fault_;
   int requests_ = 0;
+  LocalServer server_;  ///< the last: it stops before what its thread uses
 };
 
 }  // namespace bess

@@ -1,0 +1,44 @@
+// bess-train as a user runs it, in a folder of the test's own. For targets that define
+// BESS_TRAIN_PROGRAM.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "shared/host/child_process.h"
+#include "shared/host/file.h"
+#include "tests/support/temporary_folder.h"
+
+namespace bess {
+
+struct CommandResult {
+  int exit_code;
+  std::string output;
+};
+
+inline CommandResult run_train(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), BESS_TRAIN_PROGRAM);
+  ChildProcess program(arguments);
+  std::string output = program.read_all();
+  return {program.wait(), std::move(output)};
+}
+
+class TrainCommands : public testing::Test {
+ protected:
+  using Result = CommandResult;
+
+  static Result run(std::vector<std::string> arguments) { return run_train(std::move(arguments)); }
+  [[nodiscard]] std::string path(const std::string& name) const { return folder_.file(name); }
+  [[nodiscard]] std::string written(const std::string& name, std::string_view text) const {
+    write_file(path(name), text);
+    return path(name);
+  }
+
+  TemporaryFolder folder_;
+};
+
+}  // namespace bess
