@@ -17,14 +17,4 @@ file(GLOB page_files CONFIGURE_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/*.js ${CMAKE_CU
      ${CMAKE_CURRENT_LIST_DIR}/*.html)
 # Of the answers of --json: 'bess-train schema' prints it, and the package installs it.
 list(APPEND page_files ${BESS_CHART_JS} ${CMAKE_CURRENT_LIST_DIR}/../answers.schema.json)
-list(JOIN page_files "|" page_files_in_one)
-set(page_source ${CMAKE_CURRENT_BINARY_DIR}/page_files.cpp)
-add_custom_command(
-  OUTPUT ${page_source}
-  COMMAND ${CMAKE_COMMAND} -DOUTPUT=${page_source} -DHEADER=workstation/report/page_files.h
-          "-DFILES=${page_files_in_one}" -P ${CMAKE_SOURCE_DIR}/shared/host/embed.cmake
-  DEPENDS ${page_files} ${CMAKE_SOURCE_DIR}/shared/host/embed.cmake
-  COMMENT "Embedding the report's page" VERBATIM)
-target_sources(report PRIVATE ${page_source})
-set_source_files_properties(${page_source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON
-                            SKIP_PRECOMPILE_HEADERS ON COMPILE_OPTIONS -Wno-overlength-strings)
+bess_embed(report workstation/report/page_files.h ${page_files})
