@@ -3,8 +3,8 @@
 //   exit 0 done   1 the input or its content is bad   2 the command line is bad   3 interrupted   130 by a second Ctrl-C
 #include <csignal>
 
-#include "shared/host/build_info.h"
 #include "shared/host/command_line.h"
+#include "shared/host/made/build_info.h"
 #include "shared/local_time.h"
 #include "workstation/chain/interruption.h"
 #include "workstation/cli/commands.h"

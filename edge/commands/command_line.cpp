@@ -8,7 +8,7 @@
 #include "edge/commands/command_list.h"
 #include "edge/control/policy.h"
 #include "edge/log/journal.h"
-#include "shared/host/build_info.h"
+#include "shared/host/made/build_info.h"
 #include "shared/host/nearest_word.h"
 
 namespace bess {

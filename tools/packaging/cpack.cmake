@@ -7,7 +7,7 @@ if(TARGET bess-train)
   # Its own copies: on a workstation bess-edge need not be installed, and may be.
   install(DIRECTORY ${CMAKE_SOURCE_DIR}/edge/maps ${CMAKE_SOURCE_DIR}/edge/meters DESTINATION share/bess-workstation
           COMPONENT workstation FILES_MATCHING PATTERN *.toml)
-  install(FILES ${CMAKE_SOURCE_DIR}/workstation/report/answers.schema.json DESTINATION share/bess-workstation
+  install(FILES ${CMAKE_SOURCE_DIR}/workstation/report/page/answers.schema.json DESTINATION share/bess-workstation
           COMPONENT workstation)
   install(DIRECTORY ${CMAKE_BINARY_DIR}/package/workstation/ DESTINATION . COMPONENT workstation)
 endif()

@@ -4,7 +4,7 @@
 
 #include <cstdio>
 
-#include "shared/host/build_info.h"
+#include "shared/host/made/build_info.h"
 #include "shared/local_time.h"
 #include "shared/scaled_clock.h"
 #include "tools/sim/commands.h"

@@ -1,7 +1,7 @@
 // How every answer of --json begins, and the names that more than one of them has. What each name
-// means, its unit and where it is null stands in report/answers.schema.json ('bess-train schema');
-// a test holds every answer and every table against it. A figure is FIGURE_UNIT, its error
-// FIGURE_standard_error in the same unit. An answer has the same keys whatever the options.
+// means, its unit and where it is null stands in report/page/answers.schema.json ('bess-train
+// schema'); a test holds every answer and every table against it. A figure is FIGURE_UNIT, its
+// error FIGURE_standard_error in the same unit. An answer has the same keys whatever the options.
 #pragma once
 
 #include <string>

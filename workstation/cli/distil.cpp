@@ -16,7 +16,7 @@
 #include "workstation/chain/rule_files.h"
 #include "workstation/chain/rule_report.h"
 #include "workstation/cli/commands.h"
-#include "workstation/report/curves.h"
+#include "workstation/report/figures/curves.h"
 #include "workstation/run/learnt_for.h"
 #include "workstation/student/correct_and_prove.h"
 #include "workstation/student/failed_proof.h"

@@ -15,7 +15,7 @@
 #include "workstation/chain/price_input.h"
 #include "workstation/chain/rule_report.h"
 #include "workstation/cli/commands.h"
-#include "workstation/report/omega_sweep.h"
+#include "workstation/report/figures/omega_sweep.h"
 #include "workstation/student/correct_and_prove.h"
 #include "workstation/student/student_policy.h"
 

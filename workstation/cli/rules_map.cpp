@@ -13,7 +13,7 @@
 #include "workstation/chain/common_options.h"
 #include "workstation/chain/rule_files.h"
 #include "workstation/cli/commands.h"
-#include "workstation/report/figures.h"
+#include "workstation/report/figures/figures.h"
 #include "workstation/student/student_file.h"
 
 namespace bess {

@@ -2,7 +2,7 @@
 #include <fmt/core.h>
 
 #include "workstation/cli/commands.h"
-#include "workstation/report/page_files.h"
+#include "workstation/report/figures/page_files.h"
 
 namespace bess {
 

@@ -21,7 +21,7 @@
 #include "workstation/chain/price_input.h"
 #include "workstation/cli/commands.h"
 #include "workstation/env/evaluate.h"
-#include "workstation/report/curves.h"
+#include "workstation/report/figures/curves.h"
 #include "workstation/run/learnt_for.h"
 
 namespace bess {

@@ -12,9 +12,9 @@
 #include "workstation/base/answer.h"
 #include "workstation/env/day_risk.h"
 #include "workstation/report/comparison.h"
-#include "workstation/report/figure.h"
-#include "workstation/report/html.h"
-#include "workstation/report/picture_table.h"
+#include "workstation/report/figures/figure.h"
+#include "workstation/report/figures/html.h"
+#include "workstation/report/figures/picture_table.h"
 
 namespace bess {
 namespace {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <string_view>
 
+#include "workstation/report/figures/html.h"
 #include "workstation/report/headline.h"
-#include "workstation/report/html.h"
 #include "workstation/report/rule_prices.h"
 
 namespace bess {

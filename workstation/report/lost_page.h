@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "workstation/report/figures/picture_table.h"
 #include "workstation/report/lost_money.h"
-#include "workstation/report/picture_table.h"
 #include "workstation/report/report.h"
 
 namespace bess {

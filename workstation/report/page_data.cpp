@@ -8,10 +8,10 @@
 #include <string_view>
 
 #include "workstation/env/context_fit.h"
-#include "workstation/report/figures.h"
+#include "workstation/report/figures/figures.h"
+#include "workstation/report/figures/price_histogram.h"
 #include "workstation/report/headline.h"
 #include "workstation/report/page_rules.h"
-#include "workstation/report/price_histogram.h"
 #include "workstation/report/rule_prices.h"
 #include "workstation/report/shown_policies.h"
 #include "workstation/report/step_archive.h"

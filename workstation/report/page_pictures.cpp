@@ -8,10 +8,10 @@
 
 #include "shared/utc_text.h"
 #include "workstation/env/day_risk.h"
-#include "workstation/report/curves.h"
-#include "workstation/report/figure.h"
+#include "workstation/report/figures/curves.h"
+#include "workstation/report/figures/figure.h"
+#include "workstation/report/figures/price_histogram.h"
 #include "workstation/report/headline.h"
-#include "workstation/report/price_histogram.h"
 #include "workstation/report/shown_policies.h"
 
 namespace bess {

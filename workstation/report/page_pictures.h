@@ -5,8 +5,8 @@
 
 #include <vector>
 
+#include "workstation/report/figures/picture_table.h"
 #include "workstation/report/page_data.h"
-#include "workstation/report/picture_table.h"
 
 namespace bess {
 

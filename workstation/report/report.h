@@ -9,9 +9,9 @@
 
 #include "workstation/correction/distil.h"
 #include "workstation/report/comparison.h"
-#include "workstation/report/figures.h"
+#include "workstation/report/figures/figures.h"
+#include "workstation/report/figures/walk_forward_figure.h"
 #include "workstation/report/provenance.h"
-#include "workstation/report/walk_forward_figure.h"
 #include "workstation/rl/train.h"
 #include "workstation/student/failed_proof.h"
 #include "workstation/student/student_checkpoints.h"

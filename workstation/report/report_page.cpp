@@ -4,8 +4,8 @@
 
 #include <stdexcept>
 
-#include "workstation/report/html.h"
-#include "workstation/report/page_files.h"
+#include "workstation/report/figures/html.h"
+#include "workstation/report/figures/page_files.h"
 
 namespace bess {
 namespace {

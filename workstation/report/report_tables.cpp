@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "shared/host/text.h"
-#include "workstation/report/html.h"
+#include "workstation/report/figures/html.h"
 #include "workstation/report/shown_policies.h"
 #include "workstation/student/demand_counts.h"
 

@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 
 #include "workstation/env/day_risk.h"
-#include "workstation/report/html.h"
+#include "workstation/report/figures/html.h"
 #include "workstation/report/rule_prices.h"
 
 namespace bess {

@@ -2,7 +2,7 @@
 // prices, seed and configuration.
 #pragma once
 
-#include "workstation/report/walk_forward_figure.h"
+#include "workstation/report/figures/walk_forward_figure.h"
 #include "workstation/run/run_record.h"
 
 namespace bess {

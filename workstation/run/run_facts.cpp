@@ -10,9 +10,9 @@
 #include <optional>
 
 #include "shared/crc32.h"
-#include "shared/host/build_info.h"
 #include "shared/host/file.h"
 #include "shared/host/json.h"
+#include "shared/host/made/build_info.h"
 #include "shared/utc_text.h"
 #include "workstation/chain/changed_keys.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "workstation/chain/run_config.h"
-#include "workstation/report/curves.h"
+#include "workstation/report/figures/curves.h"
 #include "workstation/report/report.h"
 #include "workstation/run/run_folder.h"
 

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "shared/host/file.h"
-#include "workstation/report/figure.h"
+#include "workstation/report/figures/figure.h"
+#include "workstation/report/figures/html.h"
 #include "workstation/report/headline.h"
-#include "workstation/report/html.h"
 #include "workstation/report/judged_days.h"
 #include "workstation/report/report_tables.h"
 #include "workstation/report/rule_prices.h"

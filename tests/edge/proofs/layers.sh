@@ -87,7 +87,10 @@ layer $w/backtest                   $w/backtest $w/env $w/market/series $w/base 
 layer $w/rl                         $w/rl $w/nn $w/planners $w/env $w/base shared
 layer $w/correction                 $w/correction $w/rules $w/rl $w/nn $w/env $w/base shared
 layer $w/student                    $w/student $w/correction $w/rules $w/rl $w/nn $w/env $w/base shared student_weights.h
-layer $w/report                     $w/report $w/backtest $w/student $w/correction $w/rl $w/rules $w/planners/foresight.h $w/planners/baselines.h $w/env $w/market/statistics $w/base shared
+taught="$w/student $w/correction $w/rl $w/rules $w/env $w/base"
+layer $w/report/figures             $w/report/figures $w/backtest $w/market/statistics $taught shared
+shown="$w/planners/foresight.h $w/planners/baselines.h"
+layer $w/report                     $w/report $w/backtest $w/market/statistics $shown $taught shared
 market="$w/market/series $w/market/feed $w/market/model $w/market/statistics"
 learnt="$w/student $w/correction $w/rules $w/rl $w/nn $w/planners $w/env $market $w/base"
 layer $w/chain                      $w/chain $learnt shared
@@ -104,7 +107,7 @@ only curl/   'edge/prices/|edge/notify/curl_handle.h:'
 only mosquitto.h edge/notify/mqtt_client.cpp: 'edge shared workstation tools'
 only cjson/  'edge/prices/|shared/host/json.cpp:' 'edge shared workstation tools'
 only toml++/ shared/host/toml_document.cpp: 'edge shared workstation tools'
-only pugixml '(workstation/market/feed/entsoe_element.h|(workstation/report/figure|tools/hil_runner/run/junit).cpp):' 'edge shared workstation tools'
+only pugixml '(workstation/market/feed/entsoe_element.h|(workstation/report/figures/figure|tools/hil_runner/run/junit).cpp):' 'edge shared workstation tools'
 
 # The control layer knows neither files, sockets, threads nor signals.
 io='<(sys/|arpa/|net|poll|unistd|fcntl|pthread|signal|semaphore|cstdio|stdio|fstream|iostream|thread|mutex)'

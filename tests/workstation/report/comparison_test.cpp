@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "shared/host/user_error.h"
-#include "workstation/report/curves.h"
+#include "workstation/report/figures/curves.h"
 
 namespace bess {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "workstation/report/figures.h"
+#include "workstation/report/figures/figures.h"
 
 namespace bess {
 namespace {

@@ -1,9 +1,9 @@
-#include "workstation/report/figure.h"
+#include "workstation/report/figures/figure.h"
 
 #include <gtest/gtest.h>
 
 #include "shared/host/user_error.h"
-#include "workstation/report/html.h"
+#include "workstation/report/figures/html.h"
 
 namespace bess {
 namespace {

@@ -1,4 +1,4 @@
-#include "workstation/report/omega_sweep.h"
+#include "workstation/report/figures/omega_sweep.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "workstation/report/policy_map.h"
+#include "workstation/report/figures/policy_map.h"
 
 #include "tests/support/rule_sets.h"
 #include "tests/workstation/report/report_test_support.h"

@@ -5,8 +5,8 @@
 #include <stdexcept>
 
 #include "tests/support/rule_sets.h"
-#include "workstation/report/html.h"
-#include "workstation/report/page_files.h"
+#include "workstation/report/figures/html.h"
+#include "workstation/report/figures/page_files.h"
 #include "workstation/report/report_tables.h"
 
 namespace bess {

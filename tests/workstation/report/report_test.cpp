@@ -11,7 +11,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/workstation/report/report_test_support.h"
 #include "workstation/base/palette.h"
-#include "workstation/report/figures.h"
+#include "workstation/report/figures/figures.h"
 #include "workstation/report/headline.h"
 
 namespace bess {

@@ -10,8 +10,8 @@
 #include "shared/host/file.h"
 #include "tests/support/temporary_folder.h"
 #include "workstation/report/backtest_report.h"
-#include "workstation/report/html.h"
-#include "workstation/report/page_files.h"
+#include "workstation/report/figures/html.h"
+#include "workstation/report/figures/page_files.h"
 #include "workstation/run/run_seeds.h"
 
 namespace bess {

@@ -16,5 +16,5 @@ endif()
 file(GLOB page_files CONFIGURE_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/*.js ${CMAKE_CURRENT_LIST_DIR}/*.css
      ${CMAKE_CURRENT_LIST_DIR}/*.html)
 # Of the answers of --json: 'bess-train schema' prints it, and the package installs it.
-list(APPEND page_files ${BESS_CHART_JS} ${CMAKE_CURRENT_LIST_DIR}/../answers.schema.json)
-bess_embed(report workstation/report/page_files.h ${page_files})
+list(APPEND page_files ${BESS_CHART_JS} ${CMAKE_CURRENT_LIST_DIR}/answers.schema.json)
+bess_embed(figures workstation/report/figures/page_files.h ${page_files})

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "workstation/market/statistics/market_statistics.h"
-#include "workstation/report/figures.h"
-#include "workstation/report/price_histogram.h"
+#include "workstation/report/figures/figures.h"
+#include "workstation/report/figures/price_histogram.h"
 
 namespace bess {
 namespace {

@@ -1,4 +1,4 @@
-#include "workstation/report/curves.h"
+#include "workstation/report/figures/curves.h"
 
 #include <fmt/core.h>
 

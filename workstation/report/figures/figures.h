@@ -7,8 +7,8 @@
 #include "shared/price_thresholds.h"
 #include "workstation/correction/distil.h"
 #include "workstation/env/evaluate.h"
-#include "workstation/report/figure.h"
-#include "workstation/report/policy_map.h"
+#include "workstation/report/figures/figure.h"
+#include "workstation/report/figures/policy_map.h"
 #include "workstation/rl/train.h"
 
 namespace bess {

@@ -1,4 +1,4 @@
-#include "workstation/report/figure.h"
+#include "workstation/report/figures/figure.h"
 
 #include <fmt/core.h>
 
@@ -39,7 +39,8 @@ std::string script_of(const Figure& figure, const fs::path& output) {
 constexpr const char* kTitleId = "title-above";
 constexpr int kTitleHeightPx = 40;
 
-/// gnuplot writes a colour as `rgb( 31,  41,  51)`, `#ffffff` or `black`; null when it is not of the palette.
+/// gnuplot writes a colour as `rgb( 31,  41,  51)`, `#ffffff` or `black`; null when it is not of the
+/// palette.
 const Colour* palette_colour(const std::string& colour) {
   std::string hex = colour == "black" ? std::string(kInk.light) : colour;
   if (colour.starts_with("rgb(")) {

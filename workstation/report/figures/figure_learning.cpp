@@ -6,8 +6,8 @@
 #include <span>
 
 #include "workstation/env/policy.h"
-#include "workstation/report/curves.h"
-#include "workstation/report/figures.h"
+#include "workstation/report/figures/curves.h"
+#include "workstation/report/figures/figures.h"
 
 namespace bess {
 namespace {

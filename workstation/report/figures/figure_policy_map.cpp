@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "workstation/env/context_fit.h"
-#include "workstation/report/figures.h"
+#include "workstation/report/figures/figures.h"
 
 namespace bess {
 namespace {

@@ -1,4 +1,4 @@
-#include "workstation/report/policy_map.h"
+#include "workstation/report/figures/policy_map.h"
 
 #include "workstation/rl/network_input.h"
 #include "workstation/student/verify.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "shared/utc_text.h"
-#include "workstation/report/figures.h"
+#include "workstation/report/figures/figures.h"
 
 namespace bess {
 namespace {

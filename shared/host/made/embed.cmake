@@ -16,7 +16,7 @@ foreach(file ${FILES})
   string(APPEND choices "  if (name == \"${name}\") return kFile${index};\n")
   math(EXPR index "${index} + 1")
 endforeach()
-file(WRITE "${OUTPUT}.new" "// Made by shared/host/embed.cmake.
+file(WRITE "${OUTPUT}.new" "// Made by shared/host/made/embed.cmake.
 #include \"${HEADER}\"
 
 #include <stdexcept>

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "workstation/correction/distil.h"
-#include "workstation/report/picture_table.h"
+#include "workstation/report/figures/picture_table.h"
 #include "workstation/rl/train.h"
 
 namespace bess {

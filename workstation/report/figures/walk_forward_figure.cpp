@@ -1,10 +1,10 @@
-#include "workstation/report/walk_forward_figure.h"
+#include "workstation/report/figures/walk_forward_figure.h"
 
 #include <fmt/core.h>
 
 #include "shared/host/text.h"
 #include "workstation/base/answer.h"
-#include "workstation/report/html.h"
+#include "workstation/report/figures/html.h"
 
 namespace bess {
 namespace {

@@ -1,10 +1,10 @@
-#include "workstation/report/picture_table.h"
+#include "workstation/report/figures/picture_table.h"
 
 #include <fmt/core.h>
 
 #include "shared/host/csv.h"
 #include "shared/host/file.h"
-#include "workstation/report/html.h"
+#include "workstation/report/figures/html.h"
 
 namespace bess {
 namespace {

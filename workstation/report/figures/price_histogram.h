@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "workstation/env/market_steps.h"
-#include "workstation/report/picture_table.h"
+#include "workstation/report/figures/picture_table.h"
 
 namespace bess {
 

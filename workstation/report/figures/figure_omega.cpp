@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "workstation/report/omega_sweep.h"
+#include "workstation/report/figures/omega_sweep.h"
 
 namespace bess {
 namespace {

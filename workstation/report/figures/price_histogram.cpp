@@ -1,4 +1,4 @@
-#include "workstation/report/price_histogram.h"
+#include "workstation/report/figures/price_histogram.h"
 
 #include <fmt/core.h>
 

@@ -1,4 +1,4 @@
-#include "workstation/report/omega_sweep.h"
+#include "workstation/report/figures/omega_sweep.h"
 
 #include <fmt/core.h>
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "workstation/env/evaluate.h"
-#include "workstation/report/figure.h"
+#include "workstation/report/figures/figure.h"
 #include "workstation/student/certificate.h"
 
 namespace bess {

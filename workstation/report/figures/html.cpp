@@ -1,9 +1,9 @@
-#include "workstation/report/html.h"
+#include "workstation/report/figures/html.h"
 
 #include <fmt/core.h>
 
 #include "workstation/base/palette.h"
-#include "workstation/report/page_files.h"
+#include "workstation/report/figures/page_files.h"
 
 namespace bess {
 namespace {

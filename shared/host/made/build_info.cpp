@@ -1,4 +1,4 @@
-#include "shared/host/build_info.h"
+#include "shared/host/made/build_info.h"
 
 #include "shared/host/commit.h"  // written by ask_commit.cmake
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "workstation/base/palette.h"
-#include "workstation/report/picture_table.h"
+#include "workstation/report/figures/picture_table.h"
 
 namespace bess {
 
