@@ -7,10 +7,10 @@
 #include <fstream>
 
 #include "shared/crc32.h"
-#include "shared/host/build_info.h"
 #include "shared/host/file.h"
 #include "shared/host/json.h"
 #include "shared/host/json_reader.h"
+#include "shared/host/made/build_info.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "workstation/rules/rule_file.h"

@@ -11,8 +11,8 @@
 #include "workstation/env/day_errors.h"
 #include "workstation/report/figures/html.h"
 #include "workstation/report/figures/page_files.h"
+#include "workstation/report/figures/sort_table.h"
 #include "workstation/report/report_tables.h"
-#include "workstation/report/sort_table.h"
 #include "workstation/student/proof_rounds.h"
 
 namespace bess {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <map>
 
-#include "workstation/report/html.h"
-#include "workstation/report/sort_table.h"
+#include "workstation/report/figures/html.h"
+#include "workstation/report/figures/sort_table.h"
 
 namespace bess {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "shared/host/html_text.h"
-#include "workstation/report/figure.h"
+#include "workstation/report/figures/figure.h"
 
 namespace bess {
 namespace {

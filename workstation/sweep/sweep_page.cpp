@@ -8,9 +8,9 @@
 
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
-#include "workstation/report/html.h"
-#include "workstation/report/page_files.h"
-#include "workstation/report/sort_table.h"
+#include "workstation/report/figures/html.h"
+#include "workstation/report/figures/page_files.h"
+#include "workstation/report/figures/sort_table.h"
 #include "workstation/sweep/heat_map.h"
 #include "workstation/sweep/profit_cycles.h"
 

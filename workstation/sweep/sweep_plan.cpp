@@ -7,11 +7,11 @@
 #include <unordered_set>
 
 #include "shared/crc32.h"
-#include "shared/host/build_info.h"
 #include "shared/host/distinct_files.h"
 #include "shared/host/file.h"
 #include "shared/host/json.h"
 #include "shared/host/json_reader.h"
+#include "shared/host/made/build_info.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "workstation/chain/chain_steps.h"

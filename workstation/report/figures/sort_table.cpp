@@ -1,11 +1,11 @@
-#include "workstation/report/sort_table.h"
+#include "workstation/report/figures/sort_table.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "workstation/report/html.h"
+#include "workstation/report/figures/html.h"
 
 namespace bess {
 
