@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "workstation/report/html.h"
+#include "workstation/report/figures/html.h"
 
 namespace bess {
 namespace {
