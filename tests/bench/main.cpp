@@ -10,6 +10,14 @@
 
 namespace {
 
+constexpr const char* kHelp =
+    "bess-bench: ratios to named peers, measured in one run; one JSON object a line\n"
+    "Usage: bess-bench [NAME...]     these benchmarks, or all\n"
+    "       bess-bench --list        their names\n\n"
+    "Examples:\n"
+    "  bess-bench c51-step-1t c51-step-2t\n"
+    "  bess-bench | tee bench.jsonl\n";
+
 int usage(const char* what, const std::string& name) {
   std::fprintf(stderr, "bess-bench: %s \"%s\" (bess-bench --list prints the names)\n", what,
                name.c_str());
@@ -29,6 +37,10 @@ int main(int argc, char** argv) {
   std::string filter;
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
+    if (word == "--help" || word == "-h") {
+      std::fputs(kHelp, stdout);
+      return 0;
+    }
     if (word == "--list") {
       for (const std::string& name : names) std::printf("%s\n", name.c_str());
       return 0;

@@ -32,6 +32,18 @@ std::optional<UtcSpan> span_of(const Entries& there) {
   return UtcSpan{from_utc_s, from_utc_s + 60 * minutes};
 }
 
+/// Keys that `there` has not, with the value that they have unless set: a file from before a key
+/// was learnt as if the key were not set.
+Entries with_defaults(Entries there, const Entries& here) {
+  const Entries defaults = circumstances_of(config_entries(RunConfig{}));
+  for (const auto& entry : here) {
+    const bool known =
+        std::ranges::find(there, entry.first, &Entries::value_type::first) != there.end();
+    if (!known && std::ranges::find(defaults, entry) != defaults.end()) there.push_back(entry);
+  }
+  return there;
+}
+
 std::string date_of(std::int64_t utc_s) {
   return std::string(utc_text(utc_s).view().substr(0, 10));
 }
@@ -72,7 +84,7 @@ std::string learnt_otherwise(const Entries& there, const Entries& here) {
   std::ranges::copy_if(there, std::back_inserter(of_both), [&](const auto& entry) {
     return std::ranges::find(here, entry.first, &Entries::value_type::first) != here.end();
   });
-  return differences(of_both, here);
+  return differences(with_defaults(std::move(of_both), here), here);
 }
 
 std::string unknown_regimes(const Entries& there, const MarketSteps& market,

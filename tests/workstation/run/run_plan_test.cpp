@@ -142,6 +142,21 @@ TEST_F(RunPlanning, AModelIsToldThatWasLearntForOthers) {
   EXPECT_TRUE(learnt_for_of("rbc-tuned").empty());
 }
 
+/// A key that came after the model was learnt is told when it is set, not for being new.
+TEST_F(RunPlanning, AModelFromBeforeAKeyIsNotToldOfIt) {
+  RunConfig config;
+  Entries here = circumstances_of(config_entries(config));
+  Entries before = here;
+  std::erase_if(
+      before, [](const auto& entry) { return entry.first == "[market] day_ahead_published_min"; });
+  ASSERT_EQ(before.size() + 1, here.size());
+  EXPECT_EQ(learnt_otherwise(before, here), "");
+  config.market.day_ahead_published_min = 840;
+  here = circumstances_of(config_entries(config));
+  EXPECT_EQ(learnt_otherwise(before, here),
+            "[market] day_ahead_published_min is unknown there and 840 here");
+}
+
 /// A whole folder excludes all others in it; single files are made side by side, each by one
 /// program.
 TEST_F(RunPlanning, OneProgramAtATimeIsAtWork) {
