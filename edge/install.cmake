@@ -24,6 +24,7 @@ install(TARGETS bess-edge DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT edge)
 install(DIRECTORY maps meters DESTINATION ${CMAKE_INSTALL_DATADIR}/bess COMPONENT edge
         FILES_MATCHING PATTERN "*.toml")
 install(FILES README.md systemd/bess-edge-serial.conf systemd/bess-notify-mailer.conf
+        systemd/bess-notify-orders.conf
         DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT edge)
 foreach(room battery control log maps memory notify page prices recording site storage supervision systemd update)
   install(FILES ${room}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/${room} COMPONENT edge)

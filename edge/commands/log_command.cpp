@@ -16,6 +16,7 @@ namespace {
 struct LogGiven {
   bool csv = false;
   bool local = false;
+  bool explain = false;
   std::int64_t last = -1;  ///< -1 = all
   std::string since;       ///< moments; empty = all
   std::string until;
@@ -24,20 +25,24 @@ struct LogGiven {
 
 using O = OptionsOf<LogGiven>;
 constexpr CommandOption kOptions[] = {
-    O::flag<&LogGiven::csv>("--csv"),       O::flag<&LogGiven::local>("--local"),
-    O::count<&LogGiven::last>("--last"),    O::moment<&LogGiven::since>("--since"),
-    O::moment<&LogGiven::until>("--until"), O::moment<&LogGiven::at>("--at"),
+    O::flag<&LogGiven::csv>("--csv"),         O::flag<&LogGiven::local>("--local"),
+    O::flag<&LogGiven::explain>("--explain"), O::count<&LogGiven::last>("--last"),
+    O::moment<&LogGiven::since>("--since"),   O::moment<&LogGiven::until>("--until"),
+    O::moment<&LogGiven::at>("--at"),
 };
 
 constexpr const char* kHelp =
     R"(bess-edge log: what was decided in each cycle, and why
 
-  bess-edge log [--config FILE] [--csv] [--local] [--last N] [--since MOMENT] [--until MOMENT]
+  bess-edge log [--config FILE] [--csv] [--local] [--explain] [--last N] [--since MOMENT]
+                [--until MOMENT]
   bess-edge log --at MOMENT ...
 
   --config FILE   the controller's settings; default /etc/bess/edge.toml
   --csv           comma-separated with a header; otherwise one key=value line a cycle
   --local         and local time, energy in Wh (charged is positive) and money in EUR of each cycle
+  --explain       and the price up to which the student would have charged in each cycle, and that
+                  from which it would have discharged (bess-edge why tells more of one cycle)
   --last N        only the newest N cycles
   --since MOMENT  only from then on
   --until MOMENT  only up to then
@@ -51,6 +56,7 @@ Exit codes: 0 done   1 the log cannot be read   2 the command line is bad
 
   bess-edge log --last 10
   bess-edge log --local --since 14:00 --until 15:00
+  bess-edge log --explain --last 30
   bess-edge log --csv --since 2026-11-01T00:00:00Z > november.csv
 )";
 
@@ -84,25 +90,41 @@ LogSpan span_of(const LogGiven& given, const LogReader& log, std::int64_t now_ut
   return span;
 }
 
-void print_csv(const CycleRecord& record, bool local) {
+double eur(std::int32_t centi) { return static_cast<double>(centi) / kCentiPerEur; }
+
+void print_csv(const CycleRecord& record, const LogGiven& given,
+               const PriceThresholds& thresholds) {
   char line[kLogLineBytes];
   format_csv_line(record, line);
   std::fputs(line, stdout);
-  if (local) {
+  if (given.local) {
     std::printf(",%s,%.2f,%.6f", local_text(record.utc_s).c_str(), cycle_energy_wh(record),
                 cycle_earned_eur(record));
+  }
+  Margins at;
+  if (given.explain && margins_of(record, thresholds, at)) {
+    std::printf(",%.2f,%.2f", eur(at.charge_up_to_centi), eur(at.discharge_from_centi));
+  } else if (given.explain) {
+    std::fputs(",,", stdout);  // nobody was asked
   }
   std::putchar('\n');
 }
 
-void print_text(const CycleRecord& record, bool local) {
+void print_text(const CycleRecord& record, const LogGiven& given,
+                const PriceThresholds& thresholds) {
   char line[kLogLineBytes];
   format_log_line(record, line);
-  if (local) {
+  if (given.local) {
     std::printf("%s  %+8.1f Wh  %+8.4f EUR  ", local_text(record.utc_s).c_str(),
                 cycle_energy_wh(record), cycle_earned_eur(record));
   }
-  std::puts(line);
+  std::fputs(line, stdout);
+  Margins at;
+  if (given.explain && margins_of(record, thresholds, at)) {
+    std::printf(" charge_up_to=%.2f discharge_from=%.2f", eur(at.charge_up_to_centi),
+                eur(at.discharge_from_centi));
+  }
+  std::putchar('\n');
 }
 
 int run_log(const LogGiven& given, SettingsFile& settings) {
@@ -117,14 +139,16 @@ int run_log(const LogGiven& given, SettingsFile& settings) {
   if (given.csv) {
     char header[kLogLineBytes];
     format_csv_header(header);
-    std::printf("%s%s\n", header, given.local ? ",local,energy_wh,earned_eur" : "");
+    std::printf("%s%s%s\n", header, given.local ? ",local,energy_wh,earned_eur" : "",
+                given.explain ? ",charge_up_to_eur_per_mwh,discharge_from_eur_per_mwh" : "");
   }
+  const PriceThresholds& thresholds = config.control.guard.thresholds;
   const LogSpan span = span_of(given, log, config.clock.now_utc_ns() / kNanosecondsPerSecond);
   CycleRecord record;
   for (std::uint64_t n = span.first; n <= span.last; ++n) {
     if (!log.read(n, record)) continue;
     if (record.utc_s < span.since_utc_s || record.utc_s > span.until_utc_s) continue;
-    given.csv ? print_csv(record, given.local) : print_text(record, given.local);
+    given.csv ? print_csv(record, given, thresholds) : print_text(record, given, thresholds);
   }
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return 0;
   report(JournalLevel::kError, "the output cannot be written");

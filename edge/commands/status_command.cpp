@@ -14,6 +14,7 @@
 #include "edge/update/trial_state.h"
 #include "edge/why/next_decision.h"
 #include "shared/host/json.h"
+#include "shared/host/text.h"
 #include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
 
@@ -335,7 +336,16 @@ void print_json(const EdgeConfig& config, PublishedStatus published, const Healt
   std::fputs(status.text().c_str(), stdout);
 }
 
-bool print_metrics(const EdgeConfig& config) {
+/// Why the newest cycle was decided as it was, as labels.
+std::string decision_info(JsonValue status) {
+  return formatted(
+      "# HELP bess_decision_info Who decided the last cycle, and in which mode.\n"
+      "# TYPE bess_decision_info gauge\n"
+      "bess_decision_info{reason=\"%s\",mode=\"%s\"} 1\n",
+      text_of(field<&R::reason>(status)), text_of(field<&R::mode>(status)));
+}
+
+bool print_metrics(const EdgeConfig& config, JsonValue status, bool is_running) {
   std::string text;
   if (!read_published_metrics(config, text)) {
     report(JournalLevel::kError,
@@ -344,6 +354,11 @@ bool print_metrics(const EdgeConfig& config) {
     return false;
   }
   std::fputs(text.c_str(), stdout);
+  NextDecision next;
+  if (is_running && status.exists()) std::fputs(decision_info(status).c_str(), stdout);
+  if (is_running && find_next(config, next)) {
+    std::fputs(next_decision_metrics(next).c_str(), stdout);
+  }
   std::string updates;  // bess-update's own, where this is a package
   if (read_text((std::string(kUpdateFolder) + "/update.prom").c_str(), updates)) {
     std::fputs(updates.c_str(), stdout);
@@ -356,7 +371,8 @@ int print_once(const StatusGiven& given, const EdgeConfig& config) {
   const TrialState update = read_trial_state(kUpdateFolder).state;
   const Health health = health_of(config, published, update_trouble(update));
   if (given.prometheus) {
-    if (!print_metrics(config)) return 1;
+    const bool is_running = health.level != HealthLevel::kNotRunning;
+    if (!print_metrics(config, published.status.value(), is_running)) return 1;
   } else if (given.json) {
     print_json(config, std::move(published), health, update);
   } else {

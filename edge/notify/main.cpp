@@ -86,9 +86,9 @@ void print_check(const NotifySettings& settings) {
   if (settings.mqtt.host.empty()) {
     std::printf("mqtt       none\n");
   } else {
-    std::printf("mqtt       %s:%d%s, topics bess/v1/%s/...\n", settings.mqtt.host.c_str(),
+    std::printf("mqtt       %s:%d%s, topics bess/v1/%s/...%s\n", settings.mqtt.host.c_str(),
                 settings.mqtt.port, settings.mqtt.ca_file.empty() ? "" : " with TLS",
-                settings.node.c_str());
+                settings.node.c_str(), settings.mqtt.orders ? ", holds may be ordered" : "");
   }
 }
 
@@ -101,7 +101,10 @@ bool wait_until(std::int64_t until_ns, int stop_fd, Notifier& notifier) {
     if (left_ns <= 0) return true;
     if (poll(waiting, 2, static_cast<int>(left_ns / 1'000'000 + 1)) <= 0) continue;
     if (waiting[0].revents != 0) return false;
-    if (waiting[1].revents != 0) notifier.keep();
+    if (waiting[1].revents != 0) {
+      notifier.keep();
+      notifier.follow_orders();
+    }
   }
 }
 

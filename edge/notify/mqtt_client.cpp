@@ -33,8 +33,13 @@ int publish(mosquitto* client, int* id, const std::string& topic, const std::str
 
 }  // namespace
 
-MqttClient::MqttClient(const MqttSettings& settings, const std::string& node, MqttPresence presence)
-    : settings_(settings), presence_(presence), status_topic_(topic(node, "status")) {
+MqttClient::MqttClient(const MqttSettings& settings, const std::string& node, MqttPresence presence,
+                       MqttOrderBox* orders)
+    : settings_(settings),
+      presence_(presence),
+      orders_(orders),
+      status_topic_(topic(node, "status")),
+      order_topics_{topic(node, kHoldTopic), topic(node, kHoldPowerTopic)} {
   mosquitto_lib_init();
   client_ = mosquitto_new(client_name(node, presence).c_str(), true, this);
   if (client_ == nullptr) {
@@ -60,6 +65,16 @@ void MqttClient::set_up() {
   mosquitto_publish_callback_set(client_, [](mosquitto*, void* self, int id) {
     static_cast<MqttClient*>(self)->on_published(id);
   });
+  if (orders_ != nullptr) {
+    mosquitto_message_callback_set(client_,
+                                   [](mosquitto*, void* self, const mosquitto_message* message) {
+                                     static_cast<MqttClient*>(self)->on_message(
+                                         message->topic,
+                                         std::string(static_cast<const char*>(message->payload),
+                                                     static_cast<std::size_t>(message->payloadlen)),
+                                         message->retain);
+                                   });
+  }
   int code = leave_will();
   if (code == MOSQ_ERR_SUCCESS && !settings_.user.empty()) {
     code = mosquitto_username_pw_set(client_, settings_.user.c_str(),
@@ -96,6 +111,7 @@ MqttClient::~MqttClient() {
   mosquitto_connect_callback_set(client_, nullptr);
   mosquitto_disconnect_callback_set(client_, nullptr);
   mosquitto_publish_callback_set(client_, nullptr);
+  mosquitto_message_callback_set(client_, nullptr);
 }
 
 /// False when libmosquitto's thread does not end within twice the pause between two connects.
@@ -186,6 +202,11 @@ void MqttClient::on_connect(int code) {
     unacknowledged_.clear();
     publish_retained(status_topic_, "online");
     for (const auto& [topic, payload] : retained_) publish_retained(topic, payload);
+    if (orders_ != nullptr) {
+      for (const std::string& topic : order_topics_) {
+        static_cast<void>(mosquitto_subscribe(client_, nullptr, topic.c_str(), kQos));
+      }
+    }
   }
   changed_.notify_all();
 }
@@ -193,6 +214,12 @@ void MqttClient::on_connect(int code) {
 void MqttClient::on_disconnect() {
   const std::lock_guard lock(mutex_);
   is_connected_ = false;
+}
+
+void MqttClient::on_message(const std::string& topic, std::string payload, bool is_retained) {
+  if (is_retained) return;  // given when nobody was here: not meant for now
+  if (topic == order_topics_[0]) orders_->add({kHoldTopic, std::move(payload)});
+  if (topic == order_topics_[1]) orders_->add({kHoldPowerTopic, std::move(payload)});
 }
 
 void MqttClient::on_published(int message_id) {

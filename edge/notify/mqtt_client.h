@@ -10,6 +10,7 @@
 #include <stop_token>
 #include <string>
 
+#include "edge/notify/mqtt_orders.h"
 #include "edge/notify/notify_settings.h"
 
 struct mosquitto;
@@ -21,8 +22,10 @@ enum class MqttPresence { kStays, kVisits };
 
 class MqttClient {
  public:
-  /// Nothing is sent yet; who stays leaves `status` as the last will.
-  MqttClient(const MqttSettings& settings, const std::string& node, MqttPresence presence);
+  /// Nothing is sent yet; who stays leaves `status` as the last will. `orders` gets what may be
+  /// ordered; null: nothing may.
+  MqttClient(const MqttSettings& settings, const std::string& node, MqttPresence presence,
+             MqttOrderBox* orders = nullptr);
   MqttClient(const MqttClient&) = delete;
   MqttClient& operator=(const MqttClient&) = delete;
   /// Says offline, and goes.
@@ -46,6 +49,7 @@ class MqttClient {
   void on_connect(int code);
   void on_disconnect();
   void on_published(int message_id);
+  void on_message(const std::string& topic, std::string payload, bool is_retained);
 
  private:
   /// What was handed to libmosquitto, which sends it again after each connect until it is
@@ -66,7 +70,9 @@ class MqttClient {
   const MqttSettings settings_;
   const MqttPresence presence_;
   mosquitto* client_ = nullptr;
+  MqttOrderBox* const orders_;
   std::string status_topic_;
+  std::string order_topics_[2];
   std::string trouble_;
   std::mutex mutex_;
   std::condition_variable_any changed_;

@@ -10,6 +10,7 @@
 #include "edge/notify/mail.h"
 #include "edge/notify/topics.h"
 #include "edge/notify/webhook.h"
+#include "shared/host/run_program.h"
 #include "shared/local_time.h"
 #include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
@@ -18,6 +19,7 @@ namespace bess {
 namespace {
 
 constexpr int kDaysMax = 7;  ///< told at once, after the notifier was away
+constexpr std::int64_t kOrderS = 10;
 constexpr std::int64_t kKeepEnergyEveryS = 3'600;
 
 /// 0 when no cycle has ended yet.
@@ -54,6 +56,7 @@ Notifier::Notifier(const NotifySettings& settings, MqttPresence presence)
       told_(recall(settings)),
       energy_(told_.energy),
       book_(settings.after_s, told_.alarms),
+      desk_(settings.mqtt.hold_minutes),
       kept_(told_text(told_)) {
   if (!settings_.mail_to.empty()) {
     open_lane("mail", [this](const Message& message, const std::stop_token& stop) {
@@ -69,7 +72,9 @@ Notifier::Notifier(const NotifySettings& settings, MqttPresence presence)
 }
 
 void Notifier::open_mqtt(MqttPresence presence) {
-  mqtt_ = std::make_unique<MqttClient>(settings_.mqtt, settings_.node, presence);
+  const bool takes_orders = settings_.mqtt.orders && presence == MqttPresence::kStays;
+  mqtt_ = std::make_unique<MqttClient>(settings_.mqtt, settings_.node, presence,
+                                       takes_orders ? &orders_ : nullptr);
   if (!settings_.mqtt.discovery_prefix.empty()) {
     mqtt_->retain(discovery_topic(settings_), discovery_json(settings_, BESS_VERSION));
   }
@@ -99,6 +104,26 @@ void Notifier::run_round(std::int64_t now_utc_s) {
   publish(status);
   keep();  // before it is sent: killed in between, a message is sent late and not never
   for (auto& [name, lane] : lanes_) lane.begin_round(now_utc_s);
+}
+
+void Notifier::follow_orders() {
+  bool has_changed = false;
+  while (const std::optional<MqttOrder> asked = orders_.take()) {
+    Order order = desk_.follow(*asked, is_held_);
+    has_changed = true;
+    if (order.words.empty()) {
+      if (!order.complaint.empty()) say(JournalLevel::kWarning, "mqtt order: " + order.complaint);
+      continue;
+    }
+    std::string said;
+    for (const std::string& word : order.words) said += ' ' + word;
+    order.words.insert(order.words.begin(), settings_.program);
+    order.words.insert(order.words.end(), {"--config", settings_.config_path});
+    const ProgramResult result = run_and_hear(order.words, kOrderS);
+    say(result.is_well() ? JournalLevel::kNotice : JournalLevel::kWarning,
+        "mqtt orders:" + said + ": " + (result.is_well() ? "done" : result.complaint()));
+  }
+  if (has_changed) publish(ask_controller(settings_.program, settings_.config_path));
 }
 
 bool Notifier::wait_for_ways(std::chrono::milliseconds patience) {
@@ -183,11 +208,13 @@ void Notifier::tell_days(const LogReader& log, std::int64_t newest_utc_s, std::i
 
 void Notifier::publish(const ControllerStatus& status) {
   if (mqtt_ == nullptr) return;
+  is_held_ = status.json.value()["last"]["held"].boolean().value_or(false);
   const std::vector<Alarm>& alarms = book_.alarms();
   const auto told =
       std::count_if(alarms.begin(), alarms.end(), [](const Alarm& alarm) { return alarm.is_told; });
   mqtt_->retain(topic(settings_.node, "state"),
-                state_json(status, static_cast<std::size_t>(told), {energy_, today_}));
+                state_json(status, static_cast<std::size_t>(told),
+                           {energy_, today_, settings_.mqtt.orders ? &desk_ : nullptr}));
   mqtt_->retain(topic(settings_.node, "alarms"), alarms_json(alarms));
 }
 

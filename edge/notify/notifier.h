@@ -17,6 +17,7 @@
 #include "edge/notify/lane.h"
 #include "edge/notify/message.h"
 #include "edge/notify/mqtt_client.h"
+#include "edge/notify/mqtt_orders.h"
 #include "edge/notify/notify_settings.h"
 #include "edge/notify/told.h"
 
@@ -32,7 +33,10 @@ class Notifier {
   ~Notifier();
 
   void run_round(std::int64_t now_utc_s);
-  /// Readable when a way has taken something: `keep` is due.
+  /// Carries out what the broker has ordered since, and publishes what came of it.
+  void follow_orders();
+  /// Readable when a way has taken something, or an order has come: `follow_orders` and `keep` are
+  /// due.
   [[nodiscard]] int bell() const { return taken_.fd(); }
   /// Writes down what was told and what is owed, where that has changed.
   void keep();
@@ -58,6 +62,9 @@ class Notifier {
   std::int64_t read_up_to_utc_s_ = 0;  ///< the cycle behind which the log was read last
   AlarmBook book_;
   Bell taken_;
+  MqttOrderBox orders_{taken_};
+  HoldDesk desk_;
+  bool is_held_ = false;  ///< by the newest status
   std::unique_ptr<MqttClient> mqtt_;
   std::map<std::string, Lane> lanes_;  ///< after what their threads use
   std::string kept_;                   ///< the text that was written last

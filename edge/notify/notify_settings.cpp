@@ -94,7 +94,13 @@ void read_mqtt(TomlTable& table, MqttSettings& mqtt) {
   table.line("mqtt_user", mqtt.user);
   table.line("mqtt_password_file", password_file);
   table.line("mqtt_discovery_prefix", mqtt.discovery_prefix);
+  table.boolean("mqtt_orders", mqtt.orders);
+  table.integer("mqtt_hold_minutes", mqtt.hold_minutes, 2, 10'080);
   if (mqtt.host.empty() || !table.ok()) return;
+  if (mqtt.orders && mqtt.user.empty() && mqtt.host != "localhost" &&
+      !is_loopback_address(mqtt.host)) {
+    table.fail("mqtt_orders", "needs mqtt_user: a broker that lets in anybody lets anybody order");
+  }
   if (mqtt.port == 0) mqtt.port = mqtt.ca_file.empty() ? 1883 : 8883;
   if (!mqtt.ca_file.empty()) mqtt.ca_file = readable_file(table, "mqtt_ca_file", mqtt.ca_file);
   if (password_file.empty()) return;
@@ -136,6 +142,8 @@ bool load_notify_settings(const std::string& path, NotifySettings& settings, std
   if (!parse_toml_file(path, document, error)) return false;
   TomlTable root(&document, path, "", error);
   static_cast<ControllerPlaces&>(settings) = controller_places(root);
+  TomlTable battery(root.table("battery"), path, "[battery]", error);
+  battery.integer("power_w", settings.power_w, 1, 1'000'000'000);
   read_notify(TomlTable(root.table("notify"), path, "[notify]", error), settings);
   return error.empty();
 }

@@ -16,10 +16,13 @@ struct MqttSettings {
   std::string user;
   std::string password;
   std::string discovery_prefix;      ///< of Home Assistant; empty: no discovery
+  bool orders = false;               ///< holds may be ordered by it
+  std::int32_t hold_minutes = 60;    ///< of such a hold
   std::int32_t wait_ms_max = 5'000;  ///< for a connection, and for an acknowledgement
 };
 
 struct NotifySettings : ControllerPlaces {
+  std::int32_t power_w = 4'000;            ///< [battery] power_w: the most that may be held
   std::string memory;                      ///< file of what was told
   std::vector<std::string> memory_copies;  ///< the same, for a disk that forgets or dies
   std::string lock;                        ///< file that the one notifier of this memory holds

@@ -40,6 +40,11 @@ constexpr Entity kEntities[] = {
      "power", "W", "measurement"},
     {"sensor", "price", "Imbalance price", "{{ value_json.price_eur_per_mwh | default('None') }}",
      "", "EUR/MWh", "measurement"},
+    {"sensor", "charge_up_to", "Charges up to",
+     "{{ value_json.charge_up_to_eur_per_mwh | default('None') }}", "", "EUR/MWh", "measurement"},
+    {"sensor", "discharge_from", "Discharges from",
+     "{{ value_json.discharge_from_eur_per_mwh | default('None') }}", "", "EUR/MWh", "measurement"},
+    {"sensor", "why", "Why", "{{ value_json.why }}"},
     {"sensor", "reserve", "Reserve", "{{ value_json.reserve_percent | default('None') }}", "", "%",
      "measurement"},
     {"sensor", "full_cycles", "Full cycles today",
@@ -81,6 +86,32 @@ Json entity_json(const NotifySettings& settings, const std::string& id, const En
   return json;
 }
 
+/// The power of a hold and the hold itself, where both may be ordered.
+void add_controls(const NotifySettings& settings, const std::string& id, Json& components) {
+  const auto control = [&](const char* platform, const char* key, const char* name,
+                           const char* command, const char* value) {
+    return Json::object({{"platform", platform},
+                         {"unique_id", id + "_" + key},
+                         {"name", name},
+                         {"command_topic", topic(settings.node, command)},
+                         {"state_topic", topic(settings.node, "state")},
+                         {"value_template", value},
+                         {"availability_topic", topic(settings.node, "status")}});
+  };
+  Json power = control("number", "hold_power", "Power to hold", kHoldPowerTopic,
+                       "{{ value_json.hold_power_w | default(0) }}");
+  power.set("command_template", "{{ value | int }}");
+  power.set("min", -settings.power_w);
+  power.set("max", settings.power_w);
+  power.set("step", 1);
+  power.set("mode", "box");
+  power.set("unit_of_measurement", "W");
+  power.set("device_class", "power");
+  components.set((id + "_hold_power").c_str(), std::move(power));
+  components.set((id + "_hold").c_str(), control("switch", "hold", "Hold", kHoldTopic,
+                                                 "{{ 'ON' if value_json.held else 'OFF' }}"));
+}
+
 Json earned_yesterday_json(const NotifySettings& settings, const std::string& id) {
   return Json::object({{"platform", "sensor"},
                        {"unique_id", id + "_earned_yesterday"},
@@ -90,6 +121,14 @@ Json earned_yesterday_json(const NotifySettings& settings, const std::string& id
                        {"availability_topic", topic(settings.node, "status")},
                        {"device_class", "monetary"},
                        {"unit_of_measurement", "EUR"}});
+}
+
+/// Who decides, and what ends it: "student", or "price_age, until a newer price comes".
+std::string why_text(JsonValue next) {
+  const std::string reason = next["reason"].text_or("");
+  const std::string ends = next["ends"].text_or("");
+  if (reason.empty()) return next.exists() ? "student" : "unknown";
+  return ends.empty() ? reason : reason + ", " + ends;
 }
 
 /// What the last cycle saw and did: of a controller that has ended, nothing is known any more.
@@ -102,6 +141,9 @@ void set_newest(Json& json, JsonValue all) {
   set_scaled(json, "setpoint_w", last, "ordered_power_w", 1, 0);
   if (is_true(last["has_price"])) {
     set_scaled(json, "price_eur_per_mwh", last, "price_centi_eur_per_mwh", 100, 2);
+  }
+  for (const char* margin : {"charge_up_to_eur_per_mwh", "discharge_from_eur_per_mwh"}) {
+    set_scaled(json, margin, all["next"]["margins"], margin, 1, 2);
   }
   set_scaled(json, "reserve_percent", last, "reserve_soc_e4", 100, 1);
   set_scaled(json, "days_since_full", last, "days_since_full", 1, 0);
@@ -146,12 +188,14 @@ std::string state_json(const ControllerStatus& status, std::size_t open_alarms,
                     {"reason", all["last"]["reason"].text_or("none")},
                     {"in_control", is_running && is_true(all["control"])},
                     {"utc", all["last"]["utc"].text_or("")}});
+  json.set("why", is_running ? why_text(all["next"]) : kNotRunning);
   if (is_running) {
     set_newest(json, all);
   } else {
     json.set("held", false);
   }
   set_ledger(json, ledger);
+  if (ledger.desk != nullptr) json.set("hold_power_w", ledger.desk->power_w());
   return json.line();
 }
 
@@ -188,6 +232,7 @@ std::string discovery_json(const NotifySettings& settings, const std::string& ve
     components.set((id + "_" + entity.key).c_str(), entity_json(settings, id, entity));
   }
   components.set((id + "_earned_yesterday").c_str(), earned_yesterday_json(settings, id));
+  if (settings.mqtt.orders) add_controls(settings, id, components);
   Json ids = Json::list();
   ids.add(id);
   Json device = Json::object({{"identifiers", std::move(ids)},

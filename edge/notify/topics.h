@@ -5,6 +5,7 @@
 //   bess/v1/NODE/alarms   the alarms that are told and not over, JSON list, retained
 //   bess/v1/NODE/day      yesterday, JSON, retained
 //   bess/v1/NODE/event    each alarm and its end as it is told, JSON, not retained
+//   bess/v1/NODE/hold/set, hold_power/set   orders, where they are allowed (mqtt_orders.h)
 // A member may be added to an object; none is renamed or removed within v1.
 #pragma once
 
@@ -15,6 +16,7 @@
 #include "edge/notify/alarm_book.h"
 #include "edge/notify/controller_status.h"
 #include "edge/notify/energy_totals.h"
+#include "edge/notify/mqtt_orders.h"
 #include "edge/notify/notify_settings.h"
 
 namespace bess {
@@ -25,7 +27,8 @@ std::string topic(const std::string& node, const char* name);
 /// What the decision log adds up to.
 struct Ledger {
   const EnergyTotals& energy;
-  const DayAccount& today;  ///< empty: no cycle has ended yet
+  const DayAccount& today;         ///< empty: no cycle has ended yet
+  const HoldDesk* desk = nullptr;  ///< null: nothing may be ordered
 };
 
 std::string state_json(const ControllerStatus& status, std::size_t open_alarms,

@@ -5,10 +5,10 @@
 
 #include <functional>
 
+#include "edge/beside/orders.h"
 #include "edge/log/journal.h"
 #include "edge/page/page_files.h"
 #include "edge/page/page_html.h"
-#include "edge/page/page_orders.h"
 #include "shared/host/run_program.h"
 #include "shared/host/text.h"
 #include "shared/scaled_clock.h"
@@ -43,8 +43,8 @@ void refuse(httplib::Response& response, int status, const std::string& why) {
   response.set_content(why + "\n", "text/plain; charset=utf-8");
 }
 
-FormFields fields_of(const httplib::Request& request) {
-  FormFields fields;
+OrderFields fields_of(const httplib::Request& request) {
+  OrderFields fields;
   for (const auto& [name, value] : request.params) fields[name] = value;
   return fields;
 }
@@ -154,7 +154,7 @@ void PageServer::take_order(const httplib::Request& request, httplib::Response& 
     return refuse(response, 401, "the token is wrong");
   }
   OrderOutcome outcome;
-  PageOrder order = read_order(fields_of(request));
+  Order order = read_order(fields_of(request));
   if (!order.complaint.empty()) {
     outcome = {order.complaint, true};
   } else {

@@ -25,6 +25,12 @@ void find_beginning(const LogReader& log, std::uint64_t number, Explanation& exp
   }
 }
 
+/// What the student was given.
+LatticeState state_of(const CycleRecord& record) {
+  return make_lattice_state(local_minute_of(record.utc_s), record.context_class,
+                            record.measurement.soc_e4, record.price.price_centi_eur_per_mwh);
+}
+
 }  // namespace
 
 bool explain(const LogReader& log, std::uint64_t number, const PriceThresholds& thresholds,
@@ -33,13 +39,16 @@ bool explain(const LogReader& log, std::uint64_t number, const PriceThresholds& 
   if (!log.read(number, explanation.record)) return false;
   find_beginning(log, number, explanation);
   const CycleRecord& record = explanation.record;
-  if (!record.has_student_action || record.context_class == 0) return true;
-  const std::int32_t price_centi = record.price.price_centi_eur_per_mwh;
-  const LatticeState state = make_lattice_state(local_minute_of(record.utc_s), record.context_class,
-                                                record.measurement.soc_e4, price_centi);
-  explanation.margins = find_margins(state, price_centi, thresholds, decide_with_student);
-  explanation.has_margins = true;
-  explanation.is_other_student = decide_with_student(state) != record.student_action;
+  explanation.has_margins = margins_of(record, thresholds, explanation.margins);
+  explanation.is_other_student =
+      explanation.has_margins && decide_with_student(state_of(record)) != record.student_action;
+  return true;
+}
+
+bool margins_of(const CycleRecord& record, const PriceThresholds& thresholds, Margins& margins) {
+  if (!record.has_student_action || record.context_class == 0) return false;
+  margins = find_margins(state_of(record), record.price.price_centi_eur_per_mwh, thresholds,
+                         decide_with_student);
   return true;
 }
 

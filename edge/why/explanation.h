@@ -29,6 +29,9 @@ struct Explanation {
 bool explain(const LogReader& log, std::uint64_t number, const PriceThresholds& thresholds,
              Explanation& explanation);
 
+/// Of the student on what a cycle saw; false where it was not asked.
+bool margins_of(const CycleRecord& record, const PriceThresholds& thresholds, Margins& margins);
+
 /// The record whose order was in force at that instant, the newest where the clock was stepped; 0 =
 /// none.
 std::uint64_t number_at(const LogReader& log, std::int64_t utc_s);
@@ -36,6 +39,10 @@ std::uint64_t number_at(const LogReader& log, std::int64_t utc_s);
 /// What ends the reason, and when: "until the SoC is above 10.5 %". Empty for the student's own
 /// decision.
 std::string what_ends(const CycleRecord& record, const ControlSettings& settings);
+
+/// "charges up to 83.49, rests from 83.50 to 211.49, discharges from 211.50"
+std::string price_margins_text(const Margins& margins);
+Json margins_json(const Margins& margins);
 
 /// Some lines, each ended, in local time.
 std::string explanation_text(const Explanation& explanation, const ControlSettings& settings);

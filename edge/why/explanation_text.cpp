@@ -55,13 +55,7 @@ void add_price(const Explanation& explanation, std::string& text) {
   add_formatted(text, "price      %.2f EUR/MWh, %d s old",
                 eur(record.price.price_centi_eur_per_mwh), record.price_age_s);
   if (explanation.has_margins) {
-    const Margins& at = explanation.margins;
-    add_formatted(text, "; it charges up to %.2f", eur(at.charge_up_to_centi));
-    if (at.discharge_from_centi > at.charge_up_to_centi + 1) {
-      add_formatted(text, ", rests from %.2f to %.2f", eur(at.charge_up_to_centi + 1),
-                    eur(at.discharge_from_centi - 1));
-    }
-    add_formatted(text, ", discharges from %.2f", eur(at.discharge_from_centi));
+    text.append("; it ").append(price_margins_text(explanation.margins));
   }
   text += '\n';
 }
@@ -114,6 +108,18 @@ void add_limits(const CycleRecord& record, const ControlSettings& settings, std:
   text += '\n';
 }
 
+}  // namespace
+
+std::string price_margins_text(const Margins& at) {
+  std::string text = formatted("charges up to %.2f", eur(at.charge_up_to_centi));
+  if (at.discharge_from_centi > at.charge_up_to_centi + 1) {
+    add_formatted(text, ", rests from %.2f to %.2f", eur(at.charge_up_to_centi + 1),
+                  eur(at.discharge_from_centi - 1));
+  }
+  add_formatted(text, ", discharges from %.2f", eur(at.discharge_from_centi));
+  return text;
+}
+
 Json margins_json(const Margins& at) {
   const auto soc_or_null = [](bool exists, std::int32_t soc_e4) {
     return exists ? Json(Decimals{percent(soc_e4), 2}) : Json::null();
@@ -125,8 +131,6 @@ Json margins_json(const Margins& at) {
        {"discharge_from_soc_percent",
         soc_or_null(at.discharges_at_some_soc, at.discharge_from_soc_e4)}});
 }
-
-}  // namespace
 
 std::string explanation_text(const Explanation& explanation, const ControlSettings& settings) {
   const CycleRecord& record = explanation.record;

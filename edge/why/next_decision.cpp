@@ -14,14 +14,22 @@ namespace {
 
 constexpr std::int64_t kAhead_s = 86'400;
 
-Action decide_at(const CycleRecord& newest, std::int64_t utc_s, const PriceThresholds& thresholds) {
-  const std::int32_t price_centi = newest.price.price_centi_eur_per_mwh;
+Action decide_at(const LatticeState& state, std::int32_t price_centi,
+                 const PriceThresholds& thresholds) {
   if (price_centi <= thresholds.low_eur_per_mwh * kCentiPerEur) return Action::kCharge;
   if (price_centi >= thresholds.high_eur_per_mwh * kCentiPerEur) return Action::kDischarge;
+  return decide_with_student(state);
+}
+
+/// At the next tick, if price and SoC stay.
+LatticeState state_at(const CycleRecord& newest, std::int64_t utc_s) {
   const LocalMinute then = local_minute_of(utc_s);
-  return decide_with_student(make_lattice_state(then,
-                                                student_context_class(then, newest.price_level),
-                                                newest.measurement.soc_e4, price_centi));
+  return make_lattice_state(then, student_context_class(then, newest.price_level),
+                            newest.measurement.soc_e4, newest.price.price_centi_eur_per_mwh);
+}
+
+void add_metric(const char* name, const char* help, double value, std::string& text) {
+  add_formatted(text, "# HELP %s %s\n# TYPE %s gauge\n%s %.2f\n", name, help, name, name, value);
 }
 
 /// Reserves begin and end on whole minutes.
@@ -72,7 +80,11 @@ NextDecision find_next_decision(const CycleRecord& newest, std::int64_t now_utc_
   next.utc_s = (now_utc_s / kSecondsPerStep + 1) * kSecondsPerStep;
   next.has_action = newest.has_measurement && newest.price.has_row;
   if (next.has_action) {
-    next.action = decide_at(newest, next.utc_s, settings.guard.thresholds);
+    const LatticeState state = state_at(newest, next.utc_s);
+    const std::int32_t price_centi = newest.price.price_centi_eur_per_mwh;
+    const PriceThresholds& thresholds = settings.guard.thresholds;
+    next.action = decide_at(state, price_centi, thresholds);
+    next.margins = find_margins(state, price_centi, thresholds, decide_with_student);
     next.power_w = power_sign(next.action) * settings.guard.power_w;
   }
   if (newest.reason != Reason::kStudent) {
@@ -101,8 +113,24 @@ std::string next_decision_text(const NextDecision& next) {
     if (!next.ends.empty()) text += ", " + next.ends;
   }
   text += '\n';
+  if (next.has_action) {
+    text.append("margins    it ").append(price_margins_text(next.margins)).append(" EUR/MWh\n");
+  }
   const std::string ahead = ahead_text(next);
   return ahead.empty() ? text : text + "ahead      " + ahead + "\n";
+}
+
+std::string next_decision_metrics(const NextDecision& next) {
+  std::string text;
+  if (!next.has_action) return text;
+  const auto eur = [](std::int32_t centi) { return static_cast<double>(centi) / kCentiPerEur; };
+  add_metric("bess_charge_up_to_eur_per_mwh",
+             "Price up to which the student would charge at the next tick, at this SoC.",
+             eur(next.margins.charge_up_to_centi), text);
+  add_metric("bess_discharge_from_eur_per_mwh",
+             "Price from which the student would discharge at the next tick, at this SoC.",
+             eur(next.margins.discharge_from_centi), text);
+  return text;
 }
 
 Json next_decision_json(const NextDecision& next) {
@@ -117,6 +145,7 @@ Json next_decision_json(const NextDecision& next) {
                             {"ends", next.ends}});
   json.set("action", next.has_action ? Json(action_name(next.action)) : Json::null());
   json.set("power_w", next.has_action ? Json(next.power_w) : Json::null());
+  json.set("margins", next.has_action ? margins_json(next.margins) : Json::null());
   json.set("reserve_changes", std::move(reserves));
   json.set("full_charge_in_days",
            next.full_charge_in_days < 0 ? Json::null() : Json(next.full_charge_in_days));

@@ -9,6 +9,7 @@
 
 #include "edge/control/control_types.h"
 #include "edge/loop/control_settings.h"
+#include "edge/why/margins.h"
 #include "shared/host/json.h"
 
 namespace bess {
@@ -24,6 +25,7 @@ struct NextDecision {
   bool has_action = false;   ///< a price and a measurement are there
   Action action{};           ///< of student and thresholds, at the newest price and SoC
   std::int32_t power_w = 0;  ///< before ramp and limits
+  Margins margins{};         ///< of that action; only with it
   /// Something else than the student decided last, and this ends it; empty: nothing did.
   std::string reason;
   std::string ends;
@@ -34,8 +36,10 @@ struct NextDecision {
 NextDecision find_next_decision(const CycleRecord& newest, std::int64_t now_utc_s,
                                 const ControlSettings& settings);
 
-/// One line or two, each ended, in local time.
+/// One line to three, each ended, in local time.
 std::string next_decision_text(const NextDecision& next);
+/// For Prometheus; empty without an action.
+std::string next_decision_metrics(const NextDecision& next);
 Json next_decision_json(const NextDecision& next);
 
 }  // namespace bess

@@ -70,7 +70,9 @@ TEST_F(People, AHoldIsFollowedByTheRunningControllerUntilItIsReleased) {
   EXPECT_THAT(edge({"status", "--config", config_}).text,
               HasSubstr("hold       -1000 W until 2023-03-26T"));
   EXPECT_THAT(edge({"status", "--prometheus", "--config", config_}).text,
-              HasSubstr("\nbess_hold_watts -1000\n"));
+              AllOf(HasSubstr("\nbess_hold_watts -1000\n"),
+                    HasSubstr("\nbess_decision_info{reason=\"held\",mode=\"running\"} 1\n"),
+                    HasSubstr("\nbess_charge_up_to_eur_per_mwh ")));
   EXPECT_EQ(edge({"hold", "--release", "--config", config_}).exit_code, 0);
   EXPECT_EQ(await_line(controller, "hold: "), "hold: released; the prices decide again");
   EXPECT_THAT(await_line(controller, "utc="), Not(HasSubstr("reason=held")));

@@ -1,15 +1,15 @@
 // What reaches bess-page from outside: a host, an origin, an order's fields, and the file of
 // tokens. Lines: host, origin, fields as name=value&..., a token, then the file.
 #include "edge/page/access_tokens.h"
-#include "edge/page/page_orders.h"
+#include "edge/beside/orders.h"
 #include "edge/page/request_guard.h"
 #include "shared/host/text.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace {
 
-bess::FormFields fields_of(std::string_view form) {
-  bess::FormFields fields;
+bess::OrderFields fields_of(std::string_view form) {
+  bess::OrderFields fields;
   while (!form.empty()) {
     const std::size_t end = std::min(form.find('&'), form.size());
     const std::string_view pair = form.substr(0, end);
@@ -52,7 +52,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
          "a host of ours begins as one of its names");
   }
 
-  const PageOrder order = read_order(fields_of(form));
+  const Order order = read_order(fields_of(form));
   must(order.words.empty() != order.complaint.empty(), "an order or a complaint");
   for (const std::string& word : order.words) must(is_plain(word), "words of bess-edge alone");
 

@@ -113,6 +113,10 @@ class Listener {
     });
     return found;
   }
+  void publish(const std::string& topic, const std::string& payload, bool is_retained = false) {
+    mosquitto_publish(client_, nullptr, topic.c_str(), static_cast<int>(payload.size()),
+                      payload.data(), 1, is_retained);
+  }
   std::size_t count(const std::string& topic_end) {
     const std::lock_guard lock(mutex_);
     std::size_t count = 0;

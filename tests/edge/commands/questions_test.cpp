@@ -11,11 +11,13 @@
 #include "edge/why/local_moment.h"
 #include "edge/why/local_text.h"
 #include "shared/host/json.h"
+#include "shared/host/text.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bess {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
@@ -133,6 +135,18 @@ TEST_F(Questions, TheLogIsAskedByTheClockOnTheWall) {
   EXPECT_THAT(csv, HasSubstr(",local,energy_wh,earned_eur\n"));
   EXPECT_THAT(csv, HasSubstr("," + ago(7) + ",100.00,-0.004000\n"));
   EXPECT_EQ(ask({"log", "--at", "2020-01-01 12:00"}).out, "");
+  // The same margins as why tells, of the same cycle.
+  const Json why = Json::parse(ask({"why", "--at", ago(7), "--json"}).out);
+  const auto margin = [&](const char* name) {
+    return formatted("%.2f", why.value()["margins"][name].number().value_or(0));
+  };
+  const std::string charge = margin("charge_up_to_eur_per_mwh");
+  const std::string discharge = margin("discharge_from_eur_per_mwh");
+  EXPECT_THAT(ask({"log", "--explain", "--at", ago(7)}).out,
+              HasSubstr(" charge_up_to=" + charge + " discharge_from=" + discharge + "\n"));
+  EXPECT_THAT(ask({"log", "--csv", "--explain", "--at", ago(7)}).out,
+              AllOf(HasSubstr(",charge_up_to_eur_per_mwh,discharge_from_eur_per_mwh\n"),
+                    HasSubstr("," + charge + "," + discharge + "\n")));
 }
 
 TEST_F(Questions, EarnedAddsTheDaysUp) {

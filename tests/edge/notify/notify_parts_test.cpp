@@ -250,6 +250,8 @@ ControllerStatus sample_status(const std::string& health = "degraded") {
           "battery_power_w": -1990, "ordered_power_w": -2000, "has_price": true,
           "price_centi_eur_per_mwh": -16318, "held": true, "hold_power_w": -2000,
           "hold_until_utc": "2023-03-27T02:00:00Z", "reserve_soc_e4": 1500, "days_since_full": 6},
+          "next": {"reason": "held", "ends": "until 04:00", "margins": {
+          "charge_up_to_eur_per_mwh": 83.49, "discharge_from_eur_per_mwh": 211.5}},
           "totals": {"soc_moved_e4_today": 5000}})");
   return status;
 }
@@ -260,6 +262,8 @@ TEST(Topics, AreTheseToTheLetter) {
   NotifySettings settings;
   settings.node = "garage";
   settings.mqtt.discovery_prefix = "homeassistant";
+  settings.mqtt.orders = true;
+  HoldDesk desk(60);
   DayAccount day(20'231'126);
   day.add({});
   EnergyTotals energy;
@@ -269,7 +273,8 @@ TEST(Topics, AreTheseToTheLetter) {
   std::string text =
       "# generator notify_test, no seed, command: BESS_UPDATE_GOLDEN=1 notify_test "
       "--gtest_filter=Topics.*\n";
-  text += topic("garage", "state") + " " + state_json(sample_status(), 2, {energy, day}) + "\n";
+  text +=
+      topic("garage", "state") + " " + state_json(sample_status(), 2, {energy, day, &desk}) + "\n";
   text +=
       topic("garage", "state") + " " + state_json({.trouble = "x"}, 0, {{}, DayAccount(0)}) + "\n";
   text += topic("garage", "state") + " " +

@@ -235,6 +235,67 @@ TEST_F(Mqtt, TheCountersOfEnergyOnlyGrowOverRestarts) {
               AllOf(HasSubstr("\"charged_kwh\":0.300,"), HasSubstr("\"earned_today_eur\":0.02,")));
 }
 
+/// A hold and its end by the broker, where the key allows it: one at a time, in order, never one
+/// that was given when nobody was here, and nothing else.
+TEST_F(Mqtt, HoldsAreOrderedWhereTheKeyAllowsIt) {
+  Broker broker(folder_, port());
+  Listener all(port(), "#");
+  all.publish("bess/v1/garage/hold/set", "ON", true);  // retained, before the notifier comes
+  ASSERT_EQ(all.await("/hold/set", "ON"), "ON");
+  const std::string calls = folder_.file("calls");
+  const std::string program =
+      write_script("ordered", "[ $1 = hold ] && { echo \"$@\" >>" + calls +
+                                  "; [ $2 != 9999 ]; exit; }; cat " + folder_.file("status.json"));
+  const std::string config = folder_.write(
+      "edge.toml", "[battery]\npower_w = 5000\n[notify]\nnode = \"garage\"\nprogram = \"" +
+                       program + "\"\nmqtt_host = \"127.0.0.1\"\nmqtt_port = " +
+                       std::to_string(port()) + "\nmqtt_orders = true\nmqtt_hold_minutes = 90\n");
+  ChildProcess notify({BESS_NOTIFY_PROGRAM, "--config", config});
+  EXPECT_THAT(all.await("/config", "bess_garage_hold"),
+              AllOf(HasSubstr("\"min\":-5000,\"max\":5000"),
+                    HasSubstr("\"command_topic\":\"bess/v1/garage/hold_power/set\"")));
+  ASSERT_NE(all.await("/state", "\"hold_power_w\":0"), "");
+  all.publish("bess/v1/garage/hold_power/set", "-1500");
+  EXPECT_NE(all.await("/state", "\"hold_power_w\":-1500"), "") << "noted for the next hold";
+  for (const char* bad : {"on", "", "ON; rm -rf /", "{\"power_w\":1}"}) {
+    all.publish("bess/v1/garage/hold/set", bad);
+    all.publish("bess/v1/garage/hold_power/set", bad);
+  }
+  all.publish("bess/v1/garage/hold_power/set", std::string(100'000, '9'));
+  all.publish("bess/v1/garage/release/set", "ON");
+  const auto await_calls = [&](const std::string& wanted) {
+    for (int i = 0; i < 500 && text_of_file(calls) != wanted; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    return text_of_file(calls);
+  };
+  const std::string end = " --config " + config + "\n";
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));  // eight wait at most
+  all.publish("bess/v1/garage/hold/set", "ON");
+  EXPECT_EQ(await_calls("hold -1500 --for 90m" + end), "hold -1500 --for 90m" + end);
+  all.publish("bess/v1/garage/hold/set", "OFF");
+  const std::string both = "hold -1500 --for 90m" + end + "hold --release" + end;
+  EXPECT_EQ(await_calls(both), both);
+}
+
+/// Without the key nobody is heard, and a broker that lets in anybody gives no such right.
+TEST_F(Mqtt, NothingIsOrderedOtherwise) {
+  HoldDesk desk(60);
+  EXPECT_EQ(desk.follow({kHoldPowerTopic, "-7"}, true).words,
+            (std::vector<std::string>{"hold", "-7", "--for", "60m"}))
+      << "of a hold in force at once";
+  for (const char* power : {"1.5", "1e3", "", " 1", "99999999999", "NaN"}) {
+    EXPECT_NE(desk.follow({kHoldPowerTopic, power}, true).complaint, "") << power;
+  }
+  EXPECT_EQ(desk.power_w(), -7);
+  const std::string config =
+      folder_.write("edge.toml", "[notify]\nmqtt_host = \"10.0.0.1\"\nmqtt_orders = true\n");
+  NotifySettings settings;
+  std::string error;
+  EXPECT_FALSE(load_notify_settings(config, settings, error));
+  EXPECT_THAT(error, HasSubstr("mqtt_orders needs mqtt_user"));
+}
+
 /// The last will: a notifier that is killed is told of by the broker.
 TEST_F(Mqtt, AKilledNotifierIsOffline) {
   Broker broker(folder_, port());

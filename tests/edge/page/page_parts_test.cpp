@@ -10,7 +10,7 @@
 #include "edge/page/decision_map.h"
 #include "edge/page/html_number.h"
 #include "edge/page/page_html.h"
-#include "edge/page/page_orders.h"
+#include "edge/beside/orders.h"
 #include "edge/page/request_guard.h"
 #include "edge/page/svg.h"
 #include "shared/local_time.h"
@@ -67,7 +67,7 @@ TEST(PageOrders, AreCommandsOfBessEdge) {
 }
 
 TEST(PageOrders, WhatIsNoneIsRefused) {
-  const FormFields bad[] = {
+  const OrderFields bad[] = {
       {},
       {{"order", "commission"}},
       {{"order", "hold"}},
@@ -82,8 +82,8 @@ TEST(PageOrders, WhatIsNoneIsRefused) {
       {{"order", "limit"}, {"charge_w", "-1"}, {"minutes", "5"}},
       {{"order", "limit"}, {"charge_w", "5"}},
   };
-  for (const FormFields& fields : bad) {
-    const PageOrder order = read_order(fields);
+  for (const OrderFields& fields : bad) {
+    const Order order = read_order(fields);
     EXPECT_THAT(order.words, IsEmpty());
     EXPECT_THAT(order.complaint, Not(IsEmpty()));
   }

@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include "edge/settings/idle_keys.h"
+#include "edge/why/explanation.h"
 #include "edge/why/local_text.h"
+#include "shared/host/text.h"
 #include "shared/local_time.h"
 
 namespace bess {
@@ -30,13 +32,39 @@ CycleRecord at_noon(double price_eur) {
   return r;
 }
 
+std::string margins_line(const NextDecision& next) {
+  return "margins    it " + price_margins_text(next.margins) + " EUR/MWh\n";
+}
+
+/// The margins are of the tick that comes: a price on either side of each is another decision.
+TEST(NextDecision, HasTheMarginsOfItsTick) {
+  const ControlSettings settings;
+  const Margins at = find_next_decision(at_noon(60), kNoon, settings).margins;
+  const auto action_at = [&](std::int32_t centi) {
+    CycleRecord record = at_noon(0);
+    record.price.price_centi_eur_per_mwh = centi;
+    return find_next_decision(record, kNoon, settings).action;
+  };
+  EXPECT_EQ(action_at(at.charge_up_to_centi), Action::kCharge);
+  EXPECT_NE(action_at(at.charge_up_to_centi + 1), Action::kCharge);
+  EXPECT_EQ(action_at(at.discharge_from_centi), Action::kDischarge);
+  EXPECT_NE(action_at(at.discharge_from_centi - 1), Action::kDischarge);
+  EXPECT_EQ(next_decision_metrics({}), "");
+  const std::string metrics = next_decision_metrics(find_next_decision(at_noon(60), kNoon, {}));
+  EXPECT_THAT(metrics, HasSubstr(formatted("\nbess_charge_up_to_eur_per_mwh %.2f\n",
+                                           at.charge_up_to_centi / 100.0)));
+  EXPECT_THAT(metrics, HasSubstr(formatted("\nbess_discharge_from_eur_per_mwh %.2f\n",
+                                           at.discharge_from_centi / 100.0)));
+}
+
 TEST(NextDecision, IsThatOfTheNextTickAtTheNewestPrice) {
   const ControlSettings settings;
   const NextDecision cheap = find_next_decision(at_noon(-480), kNoon + 119, settings);
   EXPECT_EQ(cheap.utc_s, kNoon + 120);
   EXPECT_EQ(cheap.action, Action::kCharge);
   EXPECT_EQ(cheap.power_w, 4'000);
-  EXPECT_EQ(next_decision_text(cheap), "next       12:02, charging 4000 W if price and SoC stay\n");
+  EXPECT_EQ(next_decision_text(cheap),
+            "next       12:02, charging 4000 W if price and SoC stay\n" + margins_line(cheap));
   EXPECT_EQ(find_next_decision(at_noon(1'400), kNoon + 120, settings).action, Action::kDischarge);
   EXPECT_EQ(find_next_decision(at_noon(1'400), kNoon + 120, settings).utc_s, kNoon + 240);
 }

@@ -1,4 +1,4 @@
-#include "edge/page/page_orders.h"
+#include "edge/beside/orders.h"
 
 #include <charconv>
 #include <cstdint>
@@ -10,7 +10,7 @@ namespace {
 constexpr std::int64_t kPowerWMax = 1'000'000'000;
 constexpr std::int64_t kMinutesMax = 7 * 24 * 60;
 
-std::string_view field(const FormFields& fields, std::string_view name) {
+std::string_view field(const OrderFields& fields, std::string_view name) {
   const auto found = fields.find(name);
   return found == fields.end() ? std::string_view() : std::string_view(found->second);
 }
@@ -22,9 +22,9 @@ bool is_whole(std::string_view text, std::int64_t min, std::int64_t max) {
          value >= min && value <= max;
 }
 
-PageOrder refuse(const char* complaint) { return {{}, complaint}; }
+Order refuse(const char* complaint) { return {{}, complaint}; }
 
-PageOrder read_hold(const FormFields& fields) {
+Order read_hold(const OrderFields& fields) {
   const std::string_view power_w = field(fields, "power_w");
   const std::string_view minutes = field(fields, "minutes");
   if (!is_whole(power_w, -kPowerWMax, kPowerWMax)) {
@@ -34,8 +34,8 @@ PageOrder read_hold(const FormFields& fields) {
   return {{"hold", std::string(power_w), "--for", std::string(minutes) + "m"}, ""};
 }
 
-PageOrder read_limit(const FormFields& fields) {
-  PageOrder order{{"limit"}, ""};
+Order read_limit(const OrderFields& fields) {
+  Order order{{"limit"}, ""};
   for (const auto& [name, option] :
        {std::pair("charge_w", "--charge"), std::pair("discharge_w", "--discharge")}) {
     const std::string_view power_w = field(fields, name);
@@ -53,7 +53,7 @@ PageOrder read_limit(const FormFields& fields) {
 
 }  // namespace
 
-PageOrder read_order(const FormFields& fields) {
+Order read_order(const OrderFields& fields) {
   const std::string_view order = field(fields, "order");
   if (order == "hold") return read_hold(fields);
   if (order == "release") return {{"hold", "--release"}, ""};

@@ -1,5 +1,5 @@
-// What may be ordered by the page, as the command of bess-edge that does it: the same checks, the
-// same refusals, the same line in the journal.
+// What may be ordered by page or broker, as the command of bess-edge that does it: the same checks,
+// the same refusals, the same line in the journal.
 #pragma once
 
 #include <map>
@@ -8,9 +8,9 @@
 
 namespace bess {
 
-using FormFields = std::map<std::string, std::string, std::less<>>;
+using OrderFields = std::map<std::string, std::string, std::less<>>;
 
-struct PageOrder {
+struct Order {
   std::vector<std::string>
       words;  ///< of bess-edge, without --config; empty when there is a complaint
   std::string complaint;
@@ -18,6 +18,6 @@ struct PageOrder {
 
 /// Fields: order = hold (power_w, minutes), release, limit (charge_w, discharge_w, minutes; one of
 /// the powers may be empty), unlimit, clear. Whole numbers only.
-PageOrder read_order(const FormFields& fields);
+Order read_order(const OrderFields& fields);
 
 }  // namespace bess
