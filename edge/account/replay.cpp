@@ -7,6 +7,8 @@
 #include "edge/account/day_account.h"
 #include "edge/control/policy.h"
 #include "shared/host/text.h"
+#include "shared/local_text.h"
+#include "shared/utc_text.h"
 
 namespace bess {
 namespace {
@@ -33,6 +35,8 @@ void compare(const CycleRecord& record, double cycle_mwh, OpenDay& open, Replay&
   ++open.day.compared;
   ++replay.decisions[index(before)][index(now)];
   if (before == now) return;
+  replay.others.push_back(
+      {record.utc_s, record.price.price_centi_eur_per_mwh, record.measurement.soc_e4, before, now});
   const double more_mwh = (power_sign(now) - power_sign(before)) * cycle_mwh;
   ++open.day.differing;
   open.mwh_moved += more_mwh;
@@ -75,6 +79,18 @@ Replay replay_days(const LogReader& log, std::int32_t first_day, std::int32_t la
   return replay;
 }
 
+std::string replayed_cycles_text(const Replay& replay) {
+  std::string text;
+  for (const ReplayedCycle& other : replay.others) {
+    add_formatted(text, "%s local  price %.2f EUR/MWh, SoC %.1f %%: %s -> %s\n",
+                  local_text(other.utc_s).c_str(),
+                  static_cast<double>(other.price_centi_eur_per_mwh) / kCentiPerEur,
+                  other.soc_e4 / 100.0, action_name(other.before).data(),
+                  action_name(other.now).data());
+  }
+  return text;
+}
+
 std::string replay_text(const Replay& replay) {
   std::string text = formatted(
       "student %08x would decide otherwise in %d of %d cycles (%.2f %%), for about %+.2f EUR\n",
@@ -105,12 +121,23 @@ Json replay_json(const Replay& replay) {
                            {"differing", day.differing},
                            {"gained_eur", Decimals{day.gained_eur, 4}}}));
   }
+  Json others = Json::list();
+  for (const ReplayedCycle& other : replay.others) {
+    others.add(Json::object(
+        {{"utc", utc_text(other.utc_s).view()},
+         {"price_eur_per_mwh",
+          Decimals{static_cast<double>(other.price_centi_eur_per_mwh) / kCentiPerEur, 2}},
+         {"soc_percent", Decimals{other.soc_e4 / 100.0, 2}},
+         {"before", action_name(other.before)},
+         {"now", action_name(other.now)}}));
+  }
   return Json::object({{"student", formatted("%08x", student_hash())},
                        {"compared", replay.compared},
                        {"differing", replay.differing},
                        {"differing_percent", Decimals{100 * replay.differing_share(), 4}},
                        {"gained_eur", Decimals{replay.gained_eur, 4}},
-                       {"days", std::move(days)}});
+                       {"days", std::move(days)},
+                       {"others", std::move(others)}});
 }
 
 }  // namespace bess

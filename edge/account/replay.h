@@ -22,8 +22,18 @@ struct ReplayedDay {
   double gained_eur = 0;  ///< by the differing ones
 };
 
+/// A cycle in which it would have decided otherwise.
+struct ReplayedCycle {
+  std::int64_t utc_s = 0;
+  std::int32_t price_centi_eur_per_mwh = 0;
+  std::int32_t soc_e4 = 0;
+  Action before{};
+  Action now{};
+};
+
 struct Replay {
-  std::vector<ReplayedDay> days;  ///< the oldest first; of those with a cycle to compare
+  std::vector<ReplayedDay> days;      ///< the oldest first; of those with a cycle to compare
+  std::vector<ReplayedCycle> others;  ///< all that differ, the oldest first
   /// By what was decided, then by what would be.
   std::array<std::array<int, kActionCount>, kActionCount> decisions{};
   int compared = 0;
@@ -42,6 +52,8 @@ struct Replay {
 Replay replay_days(const LogReader& log, std::int32_t first_day, std::int32_t last_day,
                    std::int32_t power_w);
 
+/// "2026-11-23 14:32 local  price 84.10 EUR/MWh, SoC 45.2 %: charge -> idle" of each that differs.
+std::string replayed_cycles_text(const Replay& replay);
 std::string replay_text(const Replay& replay);
 Json replay_json(const Replay& replay);
 

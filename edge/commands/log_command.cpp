@@ -8,7 +8,7 @@
 #include "edge/log/log_reader.h"
 #include "edge/log/log_text.h"
 #include "edge/why/explanation.h"
-#include "edge/why/local_text.h"
+#include "shared/local_text.h"
 
 namespace bess {
 namespace {

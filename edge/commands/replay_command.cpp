@@ -14,25 +14,27 @@ namespace {
 struct ReplayGiven {
   std::string period;               ///< empty = month
   std::int64_t limit_percent = -1;  ///< of decisions that may differ; below 0 = any
+  bool each = false;
   bool json = false;
 };
 
 using O = OptionsOf<ReplayGiven>;
-constexpr CommandOption kOptions[] = {O::word<&ReplayGiven::period>(),
-                                      O::count<&ReplayGiven::limit_percent>("--limit"),
-                                      O::flag<&ReplayGiven::json>("--json")};
+constexpr CommandOption kOptions[] = {
+    O::word<&ReplayGiven::period>(), O::count<&ReplayGiven::limit_percent>("--limit"),
+    O::flag<&ReplayGiven::each>("--each"), O::flag<&ReplayGiven::json>("--json")};
 
 constexpr int kOverTheLimit = 3;
 
 constexpr const char* kHelp =
     R"(bess-edge replay: what this version would have decided in the cycles of the log
 
-  bess-edge replay [PERIOD] [--config FILE] [--limit PERCENT] [--json]
+  bess-edge replay [PERIOD] [--config FILE] [--limit PERCENT] [--each | --json]
 
   PERIOD           as bess-edge earned takes it: week, month, 2026-11-01..2026-11-23; default month
   --config FILE    the controller's settings; default /etc/bess/edge.toml
   --limit PERCENT  exit code 3 when more of the decisions would be others
-  --json           one JSON object: all days together, and each
+  --each           and each decision that would be another one, in a line of its own
+  --json           one JSON object: all days together, each, and each decision that would differ
 
 Asked of a new version before it may drive: with its program, on the log of the version before. Each
 cycle in which the student was asked is decided again with the same price, state of charge and
@@ -46,6 +48,7 @@ Exit codes: 0 done   1 the log cannot be read, or has no decision of these days 
 )";
 
 const char* complaint(const ReplayGiven& given) {
+  if (given.each && given.json) return "--each and --json exclude each other";
   if (given.limit_percent > 100) return "--limit is a share in percent: 1 to 100";
   Period period;
   if (given.period.empty() || parse_period(given.period, 19'700'101, period)) return nullptr;
@@ -71,6 +74,7 @@ int run_replay(const ReplayGiven& given, SettingsFile& settings) {
       replay_days(log, period.first_day, period.last_day, config.control.guard.power_w);
   if (replay.compared == 0) return fail("the log holds no decision of the student in these days");
   const std::string text = given.json ? replay_json(replay).text() : replay_text(replay);
+  if (given.each) std::fputs(replayed_cycles_text(replay).c_str(), stdout);
   std::fputs(text.c_str(), stdout);
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
     return fail("the output cannot be written");

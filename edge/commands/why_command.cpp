@@ -5,7 +5,7 @@
 #include "edge/commands/command_list.h"
 #include "edge/log/journal.h"
 #include "edge/why/explanation.h"
-#include "edge/why/local_text.h"
+#include "shared/local_text.h"
 
 namespace bess {
 namespace {

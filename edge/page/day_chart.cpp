@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "edge/page/svg.h"
-#include "edge/why/local_text.h"
 #include "shared/host/text.h"
+#include "shared/local_text.h"
 #include "shared/local_time.h"
 #include "shared/units_and_limits.h"
 #include "shared/utc_text.h"

@@ -1,9 +1,9 @@
 #include "edge/page/page_html.h"
 
 #include "edge/page/html_number.h"
-#include "edge/why/local_text.h"
 #include "shared/host/html_text.h"
 #include "shared/host/text.h"
+#include "shared/local_text.h"
 #include "shared/utc_text.h"
 
 namespace bess {

@@ -5,8 +5,8 @@
 
 #include "edge/control/policy.h"
 #include "edge/why/explanation.h"
-#include "edge/why/local_text.h"
 #include "shared/host/text.h"
+#include "shared/local_text.h"
 #include "shared/utc_text.h"
 
 namespace bess {

@@ -6,8 +6,8 @@
 #include "edge/control/policy.h"
 #include "edge/control/quarter_hour_energy.h"
 #include "edge/why/explanation.h"
-#include "edge/why/local_text.h"
 #include "shared/host/text.h"
+#include "shared/local_text.h"
 
 namespace bess {
 namespace {

@@ -12,7 +12,9 @@
 namespace bess {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 constexpr std::int64_t kMidnight = 1'679'698'800;  // 2023-03-24T23:00:00Z, in Brussels
 
@@ -67,7 +69,17 @@ TEST_F(RestedBefore, WhatItWouldHaveMovedIsWorthItsDistanceFromTheDaysMean) {
   EXPECT_THAT(text, HasSubstr("in 3 of 3 cycles (100.00 %), for about +0.18 EUR\n"));
   EXPECT_THAT(text, HasSubstr("idle      -> charge         2\n"));
   EXPECT_THAT(text, HasSubstr("worst day  2023-03-26: 1 of 1, +0.00 EUR\n"));
-  EXPECT_EQ(Json::parse(replay_json(found).text()).value()["days"].size(), 2u);
+  EXPECT_THAT(replayed_cycles_text(found),
+              StartsWith("2023-03-25 00:00 local  price -400.00 EUR/MWh, SoC 50.0 %: "
+                         "idle -> charge\n2023-03-25 00:02 local "));
+  const Json json = Json::parse(replay_json(found).text());
+  EXPECT_EQ(json.value()["days"].size(), 2u);
+  std::vector<std::string> others;
+  for (const JsonValue other : json.value()["others"]) {
+    others.push_back(std::string(other["utc"].text_or("")) + " " + other["now"].text_or(""));
+  }
+  EXPECT_THAT(others, ElementsAre("2023-03-24T23:00:00Z charge", "2023-03-24T23:02:00Z discharge",
+                                  "2023-03-25T23:00:00Z charge"));
 }
 
 TEST_F(RestedBefore, NothingComparedIsNothing) {

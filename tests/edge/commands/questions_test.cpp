@@ -9,9 +9,9 @@
 #include "edge/control/policy.h"
 #include "edge/log/ring_log.h"
 #include "edge/why/local_moment.h"
-#include "edge/why/local_text.h"
 #include "shared/host/json.h"
 #include "shared/host/text.h"
+#include "shared/local_text.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bess {

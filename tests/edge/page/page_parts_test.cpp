@@ -4,13 +4,13 @@
 
 #include <random>
 
+#include "edge/beside/orders.h"
 #include "edge/control/policy.h"
 #include "edge/page/access_tokens.h"
 #include "edge/page/day_chart.h"
 #include "edge/page/decision_map.h"
 #include "edge/page/html_number.h"
 #include "edge/page/page_html.h"
-#include "edge/beside/orders.h"
 #include "edge/page/request_guard.h"
 #include "edge/page/svg.h"
 #include "shared/local_time.h"

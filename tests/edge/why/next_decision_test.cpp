@@ -6,8 +6,8 @@
 
 #include "edge/settings/idle_keys.h"
 #include "edge/why/explanation.h"
-#include "edge/why/local_text.h"
 #include "shared/host/text.h"
+#include "shared/local_text.h"
 #include "shared/local_time.h"
 
 namespace bess {
