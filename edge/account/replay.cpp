@@ -68,6 +68,7 @@ Replay replay_days(const LogReader& log, std::int32_t first_day, std::int32_t la
       compare(record, cycle_mwh, open, replay);
     }
   });
+  std::ranges::reverse(replay.others);  // the log is read from its end
   for (auto& [day, open] : days) {
     if (open.day.compared == 0) continue;
     open.day.gained_eur = open.mwh_moved * open.account.mean_price_eur_per_mwh() - open.paid_eur;
