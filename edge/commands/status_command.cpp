@@ -132,9 +132,10 @@ Health health_of(const EdgeConfig& config, const PublishedStatus& published,
   return assess_health(in);
 }
 
-void print_health(const Health& health) {
+void print_health(const Health& health, const EdgeConfig& config) {
   std::printf("health     %s\n", health_name(health.level).data());
   for (const std::string& reason : health.reasons) std::printf("           %s\n", reason.c_str());
+  if (!config.contact.view().empty()) std::printf("call       %s\n", config.contact.c_str());
 }
 
 /// What the student is given besides clock, SoC and price, where that is the trailing level.
@@ -284,7 +285,7 @@ void print_controller(JsonValue s, bool is_running) {
 void print_text(const EdgeConfig& config, const PublishedStatus& published, const Health& health,
                 const TrialState& update) {
   const JsonValue status = published.status.value();
-  print_health(health);
+  print_health(health, config);
   if (!published.unknown.empty()) {
     std::printf("state      unknown: %s\n", published.unknown.c_str());
   } else if (status.exists()) {
@@ -325,6 +326,7 @@ void print_json(const EdgeConfig& config, PublishedStatus published, const Healt
   for (const std::string& reason : health.reasons) reasons.add(reason);
   status.set("health", health_name(health.level));
   status.set("health_reasons", std::move(reasons));
+  if (!config.contact.view().empty()) status.set("contact", config.contact.view());
   NextDecision next;
   if (health.level != HealthLevel::kNotRunning && find_next(config, next)) {
     status.set("next", next_decision_json(next));

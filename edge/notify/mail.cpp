@@ -19,6 +19,7 @@ std::string mail_text(const NotifySettings& settings, const Message& message) {
   }
   text += "seen at " + std::string(utc_text(message.utc_s).view()) + " by bess-notify on " +
           settings.node + "\nmore: bess-edge status, bess-edge log --last 20\n";
+  if (!settings.contact.empty()) text += "call: " + settings.contact + "\n";
   return text;
 }
 

@@ -142,6 +142,7 @@ bool load_notify_settings(const std::string& path, NotifySettings& settings, std
   if (!parse_toml_file(path, document, error)) return false;
   TomlTable root(&document, path, "", error);
   static_cast<ControllerPlaces&>(settings) = controller_places(root);
+  root.line("contact", settings.contact);
   TomlTable battery(root.table("battery"), path, "[battery]", error);
   battery.integer("power_w", settings.power_w, 1, 1'000'000'000);
   read_notify(TomlTable(root.table("notify"), path, "[notify]", error), settings);

@@ -48,11 +48,16 @@ std::string health_badge(const ControllerView& view) {
 }
 
 std::string alarms(const ControllerView& view) {
-  const JsonValue reasons = view.status.json.value()["health_reasons"];
-  if (reasons.size() == 0) return trouble_of(view.status);
-  std::string text = trouble_of(view.status) + "<ul class=\"alarms\">\n";
-  for (const JsonValue reason : reasons) text += "<li>" + escaped(reason) + "</li>\n";
-  return text + "</ul>\n";
+  const JsonValue status = view.status.json.value();
+  const JsonValue reasons = status["health_reasons"];
+  std::string text = trouble_of(view.status);
+  if (reasons.size() > 0) {
+    text += "<ul class=\"alarms\">\n";
+    for (const JsonValue reason : reasons) text += "<li>" + escaped(reason) + "</li>\n";
+    text += "</ul>\n";
+  }
+  if (status["contact"].text() == nullptr) return text;
+  return text + "<p>Call: " + escaped(status["contact"]) + "</p>\n";
 }
 
 /// The newest local day of the month's account; null when there is none.

@@ -47,6 +47,7 @@ bool load_edge_config(const std::string& path, EdgeConfig& config, std::string& 
   if (!parse_toml_file(path, document, error)) return false;
   TomlTable root(&document, path, "", error);
   root.boolean("control", config.control.control);
+  root.text("contact", config.contact);
   root.require("price");
   read_battery(section(root, "battery"), config.battery, config.control);
   check_battery_against_map(section(root, "battery"), config.battery, config.control);

@@ -22,6 +22,7 @@ struct EdgeConfig {
   EventLogSettings log;
   ScaledClock clock;
   bool require_synchronised_clock = true;
+  FixedText<159> contact;  ///< who is called when it does not work; empty = not said
 };
 
 /// Reads the file and the register map it names. False with one line ("file:line: what, and the

@@ -25,7 +25,8 @@ class Questions : public ::testing::Test {
  protected:
   Questions() {
     set_market_time_zone();
-    config_ = folder_.write("edge.toml", R"([battery]
+    config_ = folder_.write("edge.toml", R"(contact = "Ann, +32 2 000 00 00"
+[battery]
 map = ")" BESS_SOURCE_DIR R"(/edge/maps/simulator.toml"
 host = "127.0.0.1"
 [price]
@@ -147,6 +148,12 @@ TEST_F(Questions, TheLogIsAskedByTheClockOnTheWall) {
   EXPECT_THAT(ask({"log", "--csv", "--explain", "--at", ago(7)}).out,
               AllOf(HasSubstr(",charge_up_to_eur_per_mwh,discharge_from_eur_per_mwh\n"),
                     HasSubstr("," + charge + "," + discharge + "\n")));
+}
+
+TEST_F(Questions, StatusSaysWhomToCall) {
+  EXPECT_THAT(ask({"status"}).out, HasSubstr("\ncall       Ann, +32 2 000 00 00\n"));
+  const Json status = Json::parse(ask({"status", "--json"}).out);
+  EXPECT_STREQ(status.value()["contact"].text(), "Ann, +32 2 000 00 00");
 }
 
 TEST_F(Questions, EarnedAddsTheDaysUp) {

@@ -221,6 +221,7 @@ TEST(Mail, IsWholeAndNothingInAStatusBecomesAHeader) {
   settings.node = "garage";
   settings.mail_to = "a@b.example";
   settings.mail_from = "bess@b.example";
+  settings.contact = "Ann, +32 2";
   EXPECT_EQ(mail_text(settings, kAlarm),
             "To: a@b.example\nFrom: bess@b.example\n"
             "Subject: [bess garage] ALARM: WARN: mode is safe, reason link Bcc: evil@example.org\n"
@@ -228,7 +229,7 @@ TEST(Mail, IsWholeAndNothingInAStatusBecomesAHeader) {
             "Content-Type: text/plain; charset=UTF-8\n\n"
             "WARN: mode is safe, reason link Bcc: evil@example.org\n\n"
             "since 2023-03-26T23:57:00Z\nseen at 2023-03-27T00:02:00Z by bess-notify on garage\n"
-            "more: bess-edge status, bess-edge log --last 20\n");
+            "more: bess-edge status, bess-edge log --last 20\ncall: Ann, +32 2\n");
 }
 
 TEST(Webhook, OnlyHttpsOrThisVeryMachine) {

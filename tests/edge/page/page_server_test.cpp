@@ -224,6 +224,7 @@ TEST_F(PageServerTest, WithoutTokensNothingIsOrdered) {
   EXPECT_EQ(order(hold()).status, 403);
   EXPECT_EQ(order(hold("")).status, 403);
   EXPECT_THAT(get("/").body, Not(HasSubstr("<form")));
+  EXPECT_THAT(get("/").body, HasSubstr("<p>Call: Ann &amp; Bo, +32 2</p>"));
 }
 
 TEST_F(PageServerTest, AForeignNameIsNotAnswered) {

@@ -29,7 +29,7 @@ class PageSite {
     set_market_time_zone();
     write_log(cycles);
     config_ = folder.write(
-        "edge.toml", "[battery]\nmap = \"" BESS_SOURCE_DIR
+        "edge.toml", "contact = \"Ann & Bo, +32 2\"\n[battery]\nmap = \"" BESS_SOURCE_DIR
                      "/edge/maps/alphaess.toml\"\n[price]\nurl = \"https://example.org/rows\"\n"
                      "[simulation]\ntime_scale = 1\nutc_start = \"" +
                          std::string(utc_text(kStart + cycles * kSecondsPerStep).view()) +
