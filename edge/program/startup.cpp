@@ -60,8 +60,8 @@ Recall recall_at_start(const EdgeConfig& config, const EventLog& log,
          "state: %s: the battery may have tripped and is not driven until bess-edge clear --yes "
          "([state] drive_without_state = true drives it all the same)",
          what);
-  recalled.trip = {.reason = Reason::kStateLost,
-                   .utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond};
+  recalled.trip = trip_without_state(recalled, config.state.drive_without_state,
+                                     config.clock.now_utc_ns() / kNanosecondsPerSecond);
   return recalled;
 }
 

@@ -17,6 +17,15 @@ struct Recall {
   std::string unknown;   ///< not empty: what earlier runs left cannot be read, why
 };
 
+/// Of a start that cannot read what earlier runs left: the battery may have tripped, and nobody
+/// knows. A trip that is known stays, and the operator may say otherwise.
+inline Trip trip_without_state(const Recall& recalled, bool drive_without_state,
+                               std::int64_t now_utc_s) {
+  if (recalled.unknown.empty() || drive_without_state || recalled.trip.is_set())
+    return recalled.trip;
+  return {.reason = Reason::kStateLost, .utc_s = now_utc_s};
+}
+
 /// The trip by the newest records, wherever they are, that nobody has cleared; not set where there
 /// is none.
 Trip standing_trip(const RingLog& ring, const RingLog& run_ring, const BothPlaces& cleared);

@@ -203,6 +203,22 @@ TEST(FaultPlan, StrikesEveryNthChanceWithinItsSpan) {
   for (int i = 0; i < 9; ++i) EXPECT_EQ(plan.draw(FaultChance::kRead, 20), BatteryFault::kNone);
 }
 
+TEST(FaultPlan, OfSeveralEachHasItsSpanAndItsChances) {
+  FaultPlan plan({FaultSchedule{.faults = {BatteryFault::kDrop}, .every = 2, .to_s = 10},
+                  FaultSchedule{.faults = {BatteryFault::kAlarm}, .from_s = 20},
+                  FaultSchedule{.faults = {BatteryFault::kReset}, .every = 1, .from_s = 5}},
+                 false);
+  EXPECT_EQ(plan.draw(FaultChance::kRead, 1), BatteryFault::kNone);
+  EXPECT_EQ(plan.draw(FaultChance::kRead, 2), BatteryFault::kDrop);
+  EXPECT_EQ(plan.struck(), 0U);
+  EXPECT_EQ(plan.draw(FaultChance::kRead, 6), BatteryFault::kReset);
+  EXPECT_EQ(plan.struck(), 2U);
+  EXPECT_EQ(plan.draw(FaultChance::kRead, 7), BatteryFault::kDrop) << "of two, the first";
+  EXPECT_FALSE(plan.lasts(BatteryFault::kAlarm, 7));
+  EXPECT_TRUE(plan.lasts(BatteryFault::kAlarm, 20));
+  EXPECT_FALSE(plan.acts());
+}
+
 TEST(FaultPlan, DrawsByProbabilityTheSameForTheSameSeed) {
   const FaultSchedule schedule{
       .faults = {BatteryFault::kSilence, BatteryFault::kBadCrc}, .probability = 0.25, .seed = 5};

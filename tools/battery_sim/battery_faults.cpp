@@ -97,45 +97,70 @@ constexpr BatteryFaultInfo kFaults[] = {
 
 std::span<const BatteryFaultInfo> battery_faults() { return kFaults; }
 
-FaultPlan::FaultPlan(const FaultSchedule& schedule, bool rtu)
-    : schedule_(schedule), random_(schedule.seed) {
-  for (const BatteryFault fault : schedule.faults) {
-    for (const BatteryFaultInfo& info : kFaults) {
-      if (info.fault == fault && (rtu ? info.rtu : info.tcp)) possible_.push_back(info);
+FaultPlan::FaultPlan(const std::vector<FaultSchedule>& schedules, bool rtu) {
+  for (const FaultSchedule& schedule : schedules) {
+    Part& part = parts_.emplace_back(
+        Part{.schedule = schedule, .possible = {}, .random = std::mt19937_64(schedule.seed)});
+    for (const BatteryFault fault : schedule.faults) {
+      for (const BatteryFaultInfo& info : kFaults) {
+        if (info.fault == fault && (rtu ? info.rtu : info.tcp)) part.possible.push_back(info);
+      }
     }
   }
+  if (parts_.empty()) parts_.emplace_back();
 }
 
-bool FaultPlan::in_span(double at_s) const {
-  if (at_s < schedule_.from_s || at_s >= schedule_.to_s) return false;
-  const double period_s = schedule_.on_s + schedule_.off_s;
-  return schedule_.off_s == 0 || std::fmod(at_s - schedule_.from_s, period_s) < schedule_.on_s;
+bool FaultPlan::Part::is_in_span(double at_s) const {
+  if (at_s < schedule.from_s || at_s >= schedule.to_s) return false;
+  const double period_s = schedule.on_s + schedule.off_s;
+  return schedule.off_s == 0 || std::fmod(at_s - schedule.from_s, period_s) < schedule.on_s;
+}
+
+BatteryFault FaultPlan::Part::draw(FaultChance chance, double at_s) {
+  std::vector<BatteryFault> now;
+  for (const BatteryFaultInfo& info : possible) {
+    if ((info.chances & static_cast<unsigned>(chance)) != 0) now.push_back(info.fault);
+  }
+  if (now.empty() || !is_in_span(at_s)) return BatteryFault::kNone;
+  const bool strikes = schedule.probability > 0
+                           ? std::uniform_real_distribution<>(0, 1)(random) < schedule.probability
+                           : ++chances % schedule.every == 0;
+  if (!strikes) return BatteryFault::kNone;
+  return now[std::uniform_int_distribution<std::size_t>(0, now.size() - 1)(random)];
 }
 
 BatteryFault FaultPlan::draw(FaultChance chance, double at_s) {
-  std::vector<BatteryFault> now;
-  for (const BatteryFaultInfo& info : possible_) {
-    if ((info.chances & static_cast<unsigned>(chance)) != 0) now.push_back(info.fault);
+  BatteryFault first = BatteryFault::kNone;
+  for (std::size_t i = 0; i < parts_.size(); ++i) {
+    const BatteryFault fault = parts_[i].draw(chance, at_s);
+    if (fault == BatteryFault::kNone || first != BatteryFault::kNone) continue;
+    first = fault;
+    struck_ = i;
   }
-  if (now.empty() || !in_span(at_s)) return BatteryFault::kNone;
-  const bool strikes = schedule_.probability > 0
-                           ? std::uniform_real_distribution<>(0, 1)(random_) < schedule_.probability
-                           : ++chances_ % schedule_.every == 0;
-  if (!strikes) return BatteryFault::kNone;
-  return now[std::uniform_int_distribution<std::size_t>(0, now.size() - 1)(random_)];
+  return first;
 }
 
 bool FaultPlan::lasts(BatteryFault fault, double at_s) const {
-  return in_span(at_s) && std::any_of(possible_.begin(), possible_.end(),
-                                      [&](const auto& info) { return info.fault == fault; });
+  return std::any_of(parts_.begin(), parts_.end(), [&](const Part& part) {
+    return part.is_in_span(at_s) &&
+           std::any_of(part.possible.begin(), part.possible.end(),
+                       [&](const auto& info) { return info.fault == fault; });
+  });
+}
+
+bool FaultPlan::Part::acts() const {
+  return std::any_of(possible.begin(), possible.end(),
+                     [](const auto& info) { return is_by_period(info.fault); });
 }
 
 bool FaultPlan::acts() const {
-  using enum BatteryFault;
-  return std::any_of(possible_.begin(), possible_.end(), [](const auto& info) {
-    return info.fault == kOtherMaster || info.fault == kMasterStops || info.fault == kMasterMode ||
-           info.fault == kEndsOrders;
-  });
+  return std::any_of(parts_.begin(), parts_.end(), [](const Part& part) { return part.acts(); });
+}
+
+std::int32_t FaultPlan::period_s() const {
+  const auto found =
+      std::find_if(parts_.begin(), parts_.end(), [](const Part& part) { return part.acts(); });
+  return found == parts_.end() ? parts_.front().schedule.period_s : found->schedule.period_s;
 }
 
 }  // namespace bess

@@ -84,6 +84,13 @@ struct BatteryFaultInfo {
 /// Of what a device shows of the grid's power: a meter, or a battery's own grid point.
 constexpr bool is_of_grid(BatteryFault fault) { return fault >= BatteryFault::kGridScaled; }
 
+/// Of what acts by itself, every `period_s`, on the order in force.
+constexpr bool is_by_period(BatteryFault fault) {
+  using enum BatteryFault;
+  return fault == kOtherMaster || fault == kMasterStops || fault == kMasterMode ||
+         fault == kEndsOrders;
+}
+
 /// Every fault but kNone, in the order of the enumeration.
 std::span<const BatteryFaultInfo> battery_faults();
 
@@ -100,9 +107,12 @@ struct FaultSchedule {
   std::int32_t period_s = 30;  ///< at which somebody, or the device, ends or replaces the order
 };
 
+/// Several schedules, each with its own chances and its own seed; where two strike at once, the
+/// first.
 class FaultPlan {
  public:
-  FaultPlan(const FaultSchedule& schedule, bool rtu);
+  FaultPlan(const std::vector<FaultSchedule>& schedules, bool rtu);
+  FaultPlan(const FaultSchedule& schedule, bool rtu) : FaultPlan(std::vector{schedule}, rtu) {}
 
   /// The fault that strikes now, or kNone. `at_s` counts from the start.
   BatteryFault draw(FaultChance chance, double at_s);
@@ -110,16 +120,25 @@ class FaultPlan {
   [[nodiscard]] bool lasts(BatteryFault fault, double at_s) const;
   /// One of those that act by themselves, every `period_s`.
   [[nodiscard]] bool acts() const;
-  [[nodiscard]] std::int32_t period_s() const { return schedule_.period_s; }
-  std::mt19937_64& random() { return random_; }
+  [[nodiscard]] std::int32_t period_s() const;
+  /// Which schedule the last fault was of.
+  [[nodiscard]] std::size_t struck() const { return struck_; }
+  std::mt19937_64& random() { return parts_[struck_].random; }
 
  private:
-  [[nodiscard]] bool in_span(double at_s) const;
+  struct Part {
+    FaultSchedule schedule;
+    std::vector<BatteryFaultInfo> possible;
+    std::mt19937_64 random;
+    std::int64_t chances = 0;
 
-  FaultSchedule schedule_;
-  std::vector<BatteryFaultInfo> possible_;
-  std::mt19937_64 random_;
-  std::int64_t chances_ = 0;
+    [[nodiscard]] bool is_in_span(double at_s) const;
+    [[nodiscard]] bool acts() const;
+    BatteryFault draw(FaultChance chance, double at_s);
+  };
+
+  std::vector<Part> parts_;  ///< one at least
+  std::size_t struck_ = 0;
 };
 
 }  // namespace bess

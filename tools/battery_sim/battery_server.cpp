@@ -27,7 +27,8 @@ BatteryServer::BatteryServer(const BatteryServerSettings& settings, const Regist
                                        settings.parity, 8, settings.stop_bits)
                       : modbus_new_tcp(settings.host.c_str(), settings.port));
   if (context_ == nullptr) fail("no memory for libmodbus");
-  device_.emplace(map, battery, context_.get(), settings.faults, rtu_, clock.start_utc_ns(), house);
+  device_.emplace(map, battery, context_.get(), std::vector{settings.faults}, rtu_,
+                  clock.start_utc_ns(), house);
   if (rtu_) {
     open_serial();
   } else {

@@ -25,8 +25,8 @@ bool has_input_registers(const RegisterMap& map) {
 }  // namespace
 
 FaultyDevice::FaultyDevice(const RegisterMap& map, SimulatedBattery& battery, modbus_t* context,
-                           const FaultSchedule& faults, bool rtu, std::int64_t start_utc_ns,
-                           MeteredHouse* house)
+                           const std::vector<FaultSchedule>& faults, bool rtu,
+                           std::int64_t start_utc_ns, MeteredHouse* house)
     : map_(map),
       battery_(battery),
       house_(house),

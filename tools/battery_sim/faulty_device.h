@@ -24,7 +24,7 @@ class FaultyDevice {
   /// All but the schedule must outlive this object. `context` makes the frames; with a `house` the
   /// map's grid point shows it, and a meter's map makes this a meter.
   FaultyDevice(const RegisterMap& map, SimulatedBattery& battery, modbus_t* context,
-               const FaultSchedule& faults, bool rtu, std::int64_t start_utc_ns,
+               const std::vector<FaultSchedule>& faults, bool rtu, std::int64_t start_utc_ns,
                MeteredHouse* house = nullptr);
 
   [[nodiscard]] bool serves_unit(int unit) const;
@@ -33,6 +33,8 @@ class FaultyDevice {
   /// A request comes in: lasting faults come into force, and the registers are brought up to date.
   /// Returns how it is to be answered.
   BatteryFault on_request(const BusRequest& request, std::int64_t utc_ns);
+  /// Which of the schedules the last fault was of.
+  [[nodiscard]] std::size_t struck() const { return plan_.struck(); }
   /// The bytes of the answer, written registers acted on. A late one is given when it is due.
   Bytes answer(const BusRequest& request, BatteryFault fault, std::int64_t utc_ns);
   Bytes exception(const BusRequest& request, int code) { return reply_->exception(request, code); }

@@ -102,6 +102,62 @@ TEST(Judge, SeesAThresholdThatIsNotFollowed) {
   EXPECT_EQ(run.broken(), "");
 }
 
+/// 0 W at minute 8 and a price, with settings of the guard; only the thresholds are judged.
+HandMade at_rest(double eur_per_mwh, const char* guard = "") {
+  HandMade run;
+  run.scenario.invariants = {"thresholds"};
+  run.scenario.prices.steps = {{0, 100}, {7, eur_per_mwh}, {9, 100}};
+  run.scenario.edge_guard = guard;
+  return run;
+}
+
+TEST(Judge, KnowsHoldsAndLimitsAboveTheThresholds) {
+  using enum ScenarioEvent::Does;
+  HandMade held = at_rest(-600);
+  held.scenario.events = {{.at_min = 5, .does = kHold, .for_s = 600}};
+  EXPECT_EQ(held.broken(), "");
+  held.scenario.events.push_back({.at_min = 6, .does = kHoldRelease});
+  EXPECT_EQ(held.broken(), "thresholds");
+  HandMade over = at_rest(-600);
+  over.scenario.events = {{.at_min = 1, .does = kHold, .for_s = 120}};
+  EXPECT_EQ(over.broken(), "thresholds");
+  HandMade limited = at_rest(-600);
+  limited.scenario.events = {{.at_min = 5, .does = kLimit, .for_s = 600, .charge_w = 1'000}};
+  limited.order_of(8).power_w = 1'000;
+  EXPECT_EQ(limited.broken(), "");
+  limited.order_of(8).power_w = -1'000;
+  EXPECT_EQ(limited.broken(), "thresholds");
+}
+
+TEST(Judge, KnowsReserveBudgetAndCapsAboveTheThresholds) {
+  EXPECT_EQ(at_rest(1'600).broken(), "thresholds");
+  HandMade kept = at_rest(1'600);
+  kept.scenario.edge_other = "[[reserve]]\nfrom = \"00:00\"\nto = \"24:00\"\nsoc = 0.5\n";
+  EXPECT_EQ(kept.broken(), "");
+  kept.scenario.prices.steps[1].eur_per_mwh = -600;  // it may be charged all the same
+  EXPECT_EQ(kept.broken(), "thresholds");
+  HandMade spent = at_rest(1'600, "cycles_per_day_max = 0.2");
+  EXPECT_EQ(spent.broken(), "thresholds");
+  for (std::size_t minute = 1; minute < 7; minute += 2) {
+    spent.evidence.minutes[minute].soc_frac = 0.57;  // to and fro: 0.21 cycles
+  }
+  EXPECT_EQ(spent.broken(), "");
+  HandMade barred = at_rest(-600, "reversals_per_hour_max = 1");
+  barred.order_of(2).power_w = 4'000;
+  EXPECT_EQ(barred.broken(), "thresholds");
+  barred.order_of(4).power_w = -4'000;
+  EXPECT_EQ(barred.broken(), "");
+}
+
+TEST(Judge, ExpectsOfARampWhatItLetsGo) {
+  HandMade run = at_rest(-600, "ramp_w_max = 1000");
+  EXPECT_EQ(run.broken(), "thresholds");
+  run.order_of(8).power_w = 1'000;
+  EXPECT_EQ(run.broken(), "");
+  run.order_of(8).power_w = 4'000;
+  EXPECT_EQ(run.broken(), "thresholds");
+}
+
 TEST(Judge, SeesMoreWritesOfFlashThanTheMapAllows) {
   HandMade run;
   run.scenario.battery.map = BESS_SOURCE_DIR "/edge/maps/huawei_luna2000.toml";
@@ -142,10 +198,11 @@ TEST(Judge, SeesAnOrderThatIsLeftAtTheEnd) {
 
 TEST(Judge, SeesPowerAfterTheLinkIsLost) {
   HandMade run;
-  run.scenario.battery_fault.schedule.faults = {BatteryFault::kSilence};
-  run.scenario.battery_fault.schedule.every = 1;
-  run.scenario.battery_fault.schedule.from_s = 60;
-  run.scenario.battery_fault.schedule.to_s = 1'200;
+  FaultSchedule& schedule = run.scenario.battery_faults.emplace_back().schedule;
+  schedule.faults = {BatteryFault::kSilence};
+  schedule.every = 1;
+  schedule.from_s = 60;
+  schedule.to_s = 1'200;
   EXPECT_EQ(run.broken(), "");
   run.order_of(10).power_w = 2'000;
   EXPECT_EQ(run.broken(), "safe_state");
@@ -292,7 +349,8 @@ TEST(Judge, GivesAnOrderUntilItsDeadlineWhereTheBusIsDisturbed) {
   run.order_of(8).utc_ns = HandMade::at_ns(8, 40);
   run.scenario.invariants = {"order"};
   EXPECT_EQ(run.broken(), "order");
-  run.scenario.battery_fault.schedule = {.faults = {BatteryFault::kByteGap}, .every = 5};
+  run.scenario.battery_faults.emplace_back().schedule = {.faults = {BatteryFault::kByteGap},
+                                                         .every = 5};
   EXPECT_EQ(run.broken(), "");
   run.order_of(8).utc_ns = HandMade::at_ns(9, 10);
   EXPECT_EQ(run.broken(), "order");

@@ -47,8 +47,10 @@ TEST(Scenarios, AtLeastThirtyAreShippedEachWithATitle) {
 TEST(Scenarios, EveryFaultOfTheBatteryIsInOneOnEachBusThatHasIt) {
   std::set<std::pair<BatteryFault, bool>> tried;
   for (const Scenario& s : shipped()) {
-    for (const BatteryFault fault : s.battery_fault.schedule.faults) {
-      tried.insert({fault, s.battery.rtu});
+    for (const BatteryFaultWindow& window : s.battery_faults) {
+      for (const BatteryFault fault : window.schedule.faults) {
+        tried.insert({fault, s.battery.rtu});
+      }
     }
     for (const BatteryFault fault : s.meter.fault.schedule.faults) {
       if (is_of_grid(fault)) tried.insert({fault, false});
@@ -188,6 +190,30 @@ TEST(Scenarios, WhatIsWrongIsSaidWithItsLine) {
               HasSubstr("in the order of time"));
   EXPECT_THAT(refusal("title = \"x\"\n[price_fault]\nkind = \"frozen\"\nto_min = 9\n"),
               HasSubstr("s.toml:3: [price_fault] kind frozen lasts to the end"));
+}
+
+TEST(Scenarios, SeveralFaultsAreReadInTheirOrder) {
+  const TemporaryFolder folder;
+  const std::string two =
+      "[[battery_fault]]\nkinds = [\"late\"]\nlate_ms = 300\nto_min = 5\n"
+      "[[battery_fault]]\nkinds = [\"master-stops\", \"alarm\"]\nfrom_min = 9\nperiod_s = 40\n";
+  const std::string head = "title = \"x\"\ntime = \"virtual\"\n";
+  const Scenario scenario = read_scenario(folder.write("s.toml", head + two));
+  ASSERT_EQ(scenario.battery_faults.size(), 2U);
+  EXPECT_EQ(scenario.battery_faults[0].late_ms, 300);
+  EXPECT_EQ(scenario.battery_faults[1].schedule.from_s, 540);
+  EXPECT_EQ(scenario.battery_faults[1].schedule.faults.size(), 2U);
+  EXPECT_THAT(refusal("title = \"x\"\n" + two),
+              HasSubstr("s.toml:2: battery_fault several of them need time = \"virtual\""));
+  EXPECT_THAT(refusal(head + two + "[[battery_fault]]\nkinds = [\"ends-orders\"]\n"),
+              HasSubstr("period_s must be the same in all that have one"));
+  EXPECT_THAT(refusal(head + two + "[[battery_fault]]\nkinds = [\"alarm\"]\nto_min = 61\n"),
+              HasSubstr("s.toml:13: [[battery_fault]] to_min is after the end of 60 minutes"));
+}
+
+TEST(Scenarios, AStateIsNotLostUnderAnEdgeThatRuns) {
+  EXPECT_THAT(refusal("title = \"x\"\n[[event]]\nat_min = 1\ndoes = \"state_lost\"\n"),
+              HasSubstr("s.toml:2: [[event]] state_lost at minute 1 is in vain: the edge runs"));
 }
 
 TEST(Scenarios, AnExpectationThatNoRunCouldBreakIsRefused) {

@@ -25,14 +25,16 @@ constexpr Subject kSubjects[] = {
      }},
     {"fault of the battery's grid point",
      [](Scenario& s) {
-       auto& faults = s.battery_fault.schedule.faults;
-       return std::erase_if(faults, is_of_grid) > 0;
+       std::size_t erased = 0;
+       for (auto& fault : s.battery_faults) {
+         erased += std::erase_if(fault.schedule.faults, is_of_grid);
+       }
+       return erased > 0;
      }},
     // Of one that lies the limits are not the subject.
     {"limits of the connection",
      [](Scenario& s) {
-       const bool lies = !s.meter.fault.schedule.faults.empty() ||
-                         std::ranges::any_of(s.battery_fault.schedule.faults, is_of_grid);
+       const bool lies = !s.meter.fault.schedule.faults.empty() || s.has_battery_fault(is_of_grid);
        const bool has = !s.edge_meter.empty() && !lies;
        s.edge_meter.clear();
        return has;

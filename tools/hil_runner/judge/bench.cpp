@@ -67,12 +67,11 @@ void Bench::add_spans(std::vector<Window>& list, std::initializer_list<ScenarioE
 
 void Bench::find_disturbances() {
   const auto recovery_ns = static_cast<std::int64_t>(scenario.recovery_min * 60e9);
-  const BatteryFaultWindow& fault = scenario.battery_fault;
   const auto add = [&](std::vector<Window>& list, std::int64_t from_ns, std::int64_t to_ns) {
     list.push_back({from_ns, to_ns});
     disturbed_.push_back({from_ns, to_ns == INT64_MAX ? to_ns : to_ns + recovery_ns});
   };
-  if (!fault.schedule.faults.empty()) {
+  for (const BatteryFaultWindow& fault : scenario.battery_faults) {
     const Window span{scenario.utc_ns_at(fault.schedule.from_s / 60),
                       fault.schedule.to_s == kNeverMin
                           ? INT64_MAX

@@ -19,7 +19,8 @@ namespace {
 bool is_for_simulators(ScenarioEvent::Does does) {
   using enum ScenarioEvent::Does;
   return does == kBatteryPause || does == kBatteryContinue || does == kEdgeKill ||
-         does == kEdgePause || does == kEdgeContinue || does == kEdgeHandOver || is_of_people(does);
+         does == kEdgePause || does == kEdgeContinue || does == kEdgeHandOver ||
+         does == kStateLost || is_of_people(does);
 }
 
 using Registers = std::vector<std::uint16_t>;
@@ -58,9 +59,10 @@ void read_recording(const std::string& path, std::vector<BusExchange>& exchanges
 
 std::string why_not_real(const Scenario& scenario) {
   if (!scenario.runs_wall) return "it is for virtual time";
-  if (const auto& faults = scenario.battery_fault.schedule.faults; !faults.empty()) {
+  if (!scenario.battery_faults.empty()) {
+    const BatteryFault kind = scenario.battery_faults.front().schedule.faults.front();
     return fmt::format("only a simulated battery has the fault {}",
-                       battery_faults()[static_cast<std::size_t>(faults.front()) - 1].name);
+                       battery_faults()[static_cast<std::size_t>(kind) - 1].name);
   }
   const auto event = std::ranges::find_if(scenario.events, is_for_simulators, &ScenarioEvent::does);
   if (event != scenario.events.end()) {

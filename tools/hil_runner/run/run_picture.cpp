@@ -183,9 +183,11 @@ class RunPicture {
     constexpr const char* kOfBattery = "#e69f00";
     constexpr const char* kOfPrices = "#999999";
     std::vector<Trouble> all;
-    const std::pair<const char*, const FaultSchedule*> devices[] = {
-        {"battery:", &scenario_.battery_fault.schedule},
-        {"meter:", &scenario_.meter.fault.schedule}};
+    std::vector<std::pair<const char*, const FaultSchedule*>> devices;
+    for (const BatteryFaultWindow& fault : scenario_.battery_faults) {
+      devices.emplace_back("battery:", &fault.schedule);
+    }
+    devices.emplace_back("meter:", &scenario_.meter.fault.schedule);
     for (const auto& [device, schedule] : devices) {
       if (schedule->faults.empty()) continue;
       std::string names = device;

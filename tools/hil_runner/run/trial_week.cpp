@@ -92,7 +92,7 @@ Scenario trial_scenario(std::int64_t start_utc_s, const Disturbance& on) {
   scenario.prices.latency_s = on.delay ? kDelayedRowS : 0;
   if (on.missing) scenario.prices.missing.push_back(kOutage);
   if (on.response) {
-    FaultSchedule& schedule = scenario.battery_fault.schedule;
+    FaultSchedule& schedule = scenario.battery_faults.emplace_back().schedule;
     schedule.faults = {BatteryFault::kSlowAndNoisy, BatteryFault::kThrottle};
     schedule.every = 1;
   }

@@ -107,7 +107,7 @@ void check_battery_fault(TomlTable& table, const FaultSchedule& schedule) {
 
 void read_battery_fault(TomlTable table, Scenario& scenario) {
   if (table.value() == nullptr) return;
-  BatteryFaultWindow& fault = scenario.battery_fault;
+  BatteryFaultWindow& fault = scenario.battery_faults.emplace_back();
   const bool rtu = scenario.battery.rtu;
   MinuteSpan window;
   read_span(table, scenario.minutes, window);
@@ -135,6 +135,29 @@ void read_battery_fault(TomlTable table, Scenario& scenario) {
   });
   check_battery_fault(table, fault.schedule);
   table.finish();
+}
+
+/// [battery_fault], or several [[battery_fault]].
+template <typename Sub, typename Each>
+void read_battery_faults(TomlTable& table, Scenario& scenario, const Sub& sub, const Each& each) {
+  const TomlValue* const node = table.node("battery_fault");
+  if (node == nullptr) return;
+  if (node->as<TomlArray>() == nullptr) return read_battery_fault(sub("battery_fault"), scenario);
+  each("battery_fault", [&](TomlTable one) { read_battery_fault(std::move(one), scenario); });
+  const auto& faults = scenario.battery_faults;
+  if (table.ok() && faults.size() > 1 && scenario.runs_wall) {
+    table.fail("battery_fault", "several of them need time = \"virtual\": bess-sim takes one");
+  }
+  const auto acts = [](const BatteryFaultWindow& fault) {
+    return std::ranges::any_of(fault.schedule.faults, is_by_period);
+  };
+  const auto first = std::ranges::find_if(faults, acts);
+  const auto differs = [&](const BatteryFaultWindow& fault) {
+    return acts(fault) && fault.schedule.period_s != first->schedule.period_s;
+  };
+  if (table.ok() && std::ranges::any_of(faults, differs)) {
+    table.fail("battery_fault", "period_s must be the same in all that have one");
+  }
 }
 
 void read_price_fault(TomlTable table, Scenario& scenario) {
@@ -279,7 +302,8 @@ Scenario read_scenario(const std::string& path) {
   read_house(sub("house"), scenario);
   read_meter(sub("meter"), folder, scenario.meter);
   read_meter_fault(sub("meter_fault"), scenario);
-  read_battery_fault(sub("battery_fault"), scenario);
+  read_battery_faults(table, scenario, sub,
+                      [&](const char* key, const auto& read) { each(table, key, read); });
   read_price_fault(sub("price_fault"), scenario);
   each(table, "event", [&](TomlTable event) { read_event(std::move(event), scenario); });
   each(table, "expect", [&](TomlTable expect) { read_expectation(std::move(expect), scenario); });

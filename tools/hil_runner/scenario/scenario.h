@@ -3,6 +3,7 @@
 // minutes since the start.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -121,6 +122,7 @@ struct ScenarioEvent {
     kLimitClear,  //
     kLimitTorn,   ///< by a program that writes only half of its line
     kClear,       ///< bess-edge clear
+    kStateLost,   ///< while the edge does not run: what it left cannot be understood
     kDiskFull,    ///< of the edge's state folder
   };
   double at_min = 0;
@@ -172,7 +174,7 @@ struct Scenario {
   ScenarioMeter meter;
   // Lines of TOML for the edge's configuration, by its tables; `edge_other` is whole tables.
   std::string edge_battery, edge_price, edge_guard, edge_meter, edge_limits, edge_other;
-  BatteryFaultWindow battery_fault;
+  std::vector<BatteryFaultWindow> battery_faults;  ///< several: in virtual time
   PriceFaultWindow price_fault;
   std::vector<ScenarioEvent> events;  ///< in the order of time
   std::vector<Expectation> expectations;
@@ -186,6 +188,13 @@ struct Scenario {
   /// The edge has a limit file.
   [[nodiscard]] bool has_limits() const;
   [[nodiscard]] std::int64_t utc_ns_at(double minute) const;
+  /// Some fault of the battery is of this kind: `is_kind(BatteryFault)`.
+  template <typename IsKind>
+  [[nodiscard]] bool has_battery_fault(const IsKind& is_kind) const {
+    return std::ranges::any_of(battery_faults, [&](const BatteryFaultWindow& fault) {
+      return std::ranges::any_of(fault.schedule.faults, is_kind);
+    });
+  }
   /// From which on the price server is wrong.
   [[nodiscard]] std::int64_t price_fault_utc_s() const {
     return start_utc_s + static_cast<std::int64_t>(60 * price_fault.span.from_min);

@@ -15,7 +15,7 @@ constexpr std::string_view kEventNames[] = {
     "market_pause", "market_continue", "market_kill",    "market_start",
     "clock_step",   "clock_lost",      "clock_back",     "hold",
     "hold_release", "limit",           "limit_clear",    "limit_torn",
-    "clear",        "disk_full"};
+    "clear",        "state_lost",      "disk_full"};
 
 /// How long it holds, in whole seconds, as the command lines take it.
 void read_for_min(TomlTable& table, double minutes_min, std::int64_t& for_s) {
@@ -71,6 +71,7 @@ void check_order_of_events(TomlTable& table, const Scenario& scenario) {
       {kEdgeStop, kEdgeRuns, false, "the edge does not run"},
       {kEdgeHandOver, kEdgeRuns, false, "the edge does not run"},
       {kEdgeStart, kEdgeRuns, true, "the edge runs"},
+      {kStateLost, kEdgeRuns, true, "the edge runs, and keeps it open"},
       {kEdgePause, kEdgeStands, true, "the edge stands still"},
       {kEdgeContinue, kEdgeStands, false, "the edge does not stand still"},
       {kBatteryPause, kBatteryStands, true, "the battery stands still"},
@@ -95,7 +96,7 @@ void check_order_of_events(TomlTable& table, const Scenario& scenario) {
       table.error() = fmt::format("{}:{}: [[event]] {} at minute {:g} is in vain: {}", table.file(),
                                   event.line, event_name(event.does), event.at_min, turn->in_vain);
     }
-    is[turn->thing] = turn->turns_to;
+    if (event.does != kStateLost) is[turn->thing] = turn->turns_to;
   }
 }
 

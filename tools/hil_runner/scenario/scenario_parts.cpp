@@ -87,8 +87,13 @@ std::vector<ScenarioPart> parts_of(const Scenario& scenario) {
   parts.add_if(scenario.battery.map == usual_map && !scenario.battery.variant.empty(), "variant",
                [](Scenario& s) { s.battery.variant.clear(); });
   parts.add_if(scenario.battery.rtu, "transport", [](Scenario& s) { s.battery.rtu = false; });
-  parts.add_if(!scenario.battery_fault.schedule.faults.empty(), "battery_fault",
-               [](Scenario& s) { s.battery_fault = {}; });
+  if (scenario.battery_faults.size() > 1) {
+    parts.add_each(
+        "battery_fault", 0, [](Scenario & s) -> auto& { return s.battery_faults; });
+  } else {
+    parts.add_if(!scenario.battery_faults.empty(), "battery_fault",
+                 [](Scenario& s) { s.battery_faults.clear(); });
+  }
   parts.add_if(!scenario.meter.fault.schedule.faults.empty(), "meter_fault",
                [](Scenario& s) { s.meter.fault = {}; });
   parts.add_if(scenario.price_fault.fault != MarketFault::kNone, "price_fault",

@@ -102,8 +102,7 @@ void check_site(TomlTable& root, const Scenario& scenario) {
     return root.fail("edge", fmt::format("other: lines of {} go into the key {}", table,
                                          table[1] == 'm' ? "meter" : "limits"));
   }
-  const auto& faults = scenario.battery_fault.schedule.faults;
-  if (scenario.meter.source != kBattery && std::ranges::any_of(faults, is_of_grid)) {
+  if (scenario.meter.source != kBattery && scenario.has_battery_fault(is_of_grid)) {
     root.fail("battery_fault",
               "kinds: grid-... need [meter] map = \"battery\"; a meter's own are [meter_fault]");
   }

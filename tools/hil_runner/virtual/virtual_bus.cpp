@@ -25,6 +25,12 @@ modbus_t* make_context(bool rtu, int unit) {
   return context;
 }
 
+std::vector<FaultSchedule> schedules_of(const std::vector<BatteryFaultWindow>& faults) {
+  std::vector<FaultSchedule> schedules;
+  for (const BatteryFaultWindow& fault : faults) schedules.push_back(fault.schedule);
+  return schedules;
+}
+
 }  // namespace
 
 VirtualBus::VirtualBus(const VirtualBusSettings& settings, const RegisterMap& map,
@@ -33,7 +39,7 @@ VirtualBus::VirtualBus(const VirtualBusSettings& settings, const RegisterMap& ma
       time_(time),
       baud_(map.baud),
       context_(make_context(settings.rtu, map.unit)),
-      device_(map, battery, context_.get(), settings.fault.schedule, settings.rtu,
+      device_(map, battery, context_.get(), schedules_of(settings.faults), settings.rtu,
               settings.start_utc_ns, house) {
   buses().emplace_back(settings.port, this);
 }
@@ -80,8 +86,11 @@ Status VirtualBus::send(const ModbusFrame& frame) {
   for (int i = 0; i < frame.size; ++i) sent_.add(frame.bytes[i]);
   if (is_cut_) return Status::kNotConnected;
   answer_due();
-  Pending pending{
-      .due_ns = 0, .request = {}, .fault = BatteryFault::kNone, .connection = connection_};
+  Pending pending{.due_ns = 0,
+                  .request = {},
+                  .fault = BatteryFault::kNone,
+                  .window = 0,
+                  .connection = connection_};
   BusRequest& request = pending.request;
   std::copy_n(frame.bytes, frame.size, request.bytes);
   request.size = frame.size;
@@ -94,9 +103,10 @@ Status VirtualBus::send(const ModbusFrame& frame) {
   const std::int64_t begun_ns =
       pending_.empty() ? heard_ns : std::max(heard_ns, pending_.back().due_ns);
   pending.fault = device_.on_request(request, time_.utc_ns());
+  pending.window = device_.struck();
   pending.due_ns = begun_ns + settings_.response_delay_ms * kMillisecondNs;
   if (pending.fault == BatteryFault::kLate) {
-    pending.due_ns += settings_.fault.late_ms * kMillisecondNs;
+    pending.due_ns += window_of(pending).late_ms * kMillisecondNs;
   }
   pending_.push_back(pending);
   return Status::kOk;
@@ -129,10 +139,13 @@ void VirtualBus::answer_due() {
   }
 }
 
+const BatteryFaultWindow& VirtualBus::window_of(const Pending& pending) const {
+  return settings_.faults.at(pending.window);  // what has struck is of one of them
+}
+
 void VirtualBus::answer(const Pending& pending) {
   const bool is_heard = settings_.rtu || pending.connection == connection_;
   const std::int64_t due_utc_ns = time_.utc_ns() - time_.monotonic_ns() + pending.due_ns;
-  const std::int64_t late_ns = settings_.fault.late_ms * kMillisecondNs;
   switch (pending.fault) {
     case BatteryFault::kSilence:
       return;
@@ -145,7 +158,7 @@ void VirtualBus::answer(const Pending& pending) {
       return;
     case BatteryFault::kException:
       if (!is_heard) return;
-      return put(device_.exception(pending.request, settings_.fault.exception_code),
+      return put(device_.exception(pending.request, window_of(pending).exception_code),
                  pending.due_ns);
     default:
       break;
@@ -159,12 +172,12 @@ void VirtualBus::answer(const Pending& pending) {
              due_utc_ns);
   }
   if (pending.fault == BatteryFault::kDrip) {
-    return put(bytes, pending.due_ns, settings_.fault.drip_ms * kMillisecondNs);
+    return put(bytes, pending.due_ns, window_of(pending).drip_ms * kMillisecondNs);
   }
   if (pending.fault != BatteryFault::kByteGap) return put(bytes, pending.due_ns);
   const auto middle = bytes.begin() + static_cast<std::ptrdiff_t>(bytes.size() / 2);
   put({bytes.begin(), middle}, pending.due_ns);
-  put({middle, bytes.end()}, pending.due_ns + late_ns);
+  put({middle, bytes.end()}, pending.due_ns + window_of(pending).late_ms * kMillisecondNs);
 }
 
 void VirtualBus::put(const Bytes& bytes, std::int64_t first_ns, std::int64_t gap_ns) {

@@ -10,6 +10,7 @@
 #include <memory>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "edge/base/status.h"
 #include "edge/battery/modbus_frame.h"
@@ -26,7 +27,7 @@ struct VirtualBusSettings {
   std::int32_t port = 1;
   bool rtu = false;
   std::int32_t response_delay_ms = 20;
-  BatteryFaultWindow fault{};
+  std::vector<BatteryFaultWindow> faults{};
   std::int64_t start_utc_ns = 0;  ///< from which the faults count
 };
 
@@ -68,12 +69,14 @@ class VirtualBus {
     std::int64_t due_ns;
     BusRequest request;
     BatteryFault fault;
+    std::size_t window;       ///< of the faults it is of
     std::int64_t connection;  ///< on which it came: a closed one gets no answer
   };
   struct ByteOnTheWay {
     std::int64_t arrives_ns;
     std::uint8_t byte;
   };
+  [[nodiscard]] const BatteryFaultWindow& window_of(const Pending& pending) const;
   void answer_due();
   void answer(const Pending& pending);
   void put(const Bytes& bytes, std::int64_t first_ns, std::int64_t gap_ns = 0);

@@ -75,14 +75,14 @@ Evidence run_virtual(const Scenario& scenario, const MinuteSeries& prices, const
   VirtualBus bus({.port = config.battery.link.port,
                   .rtu = config.battery.link.rtu,
                   .response_delay_ms = scenario.battery.response_delay_ms,
-                  .fault = scenario.battery_fault,
+                  .faults = scenario.battery_faults,
                   .start_utc_ns = scenario.utc_ns_at(0)},
                  config.battery.map, battery, time, house ? &*house : nullptr);
   std::optional<VirtualBus> meter;
   if (scenario.meter.source == ScenarioMeter::Source::kMap) {
     meter.emplace(VirtualBusSettings{.port = config.site.link.port,
                                      .response_delay_ms = scenario.battery.response_delay_ms,
-                                     .fault = scenario.meter.fault,
+                                     .faults = {scenario.meter.fault},
                                      .start_utc_ns = scenario.utc_ns_at(0)},
                   config.site.map, battery, time, &*house);
   }
@@ -103,6 +103,7 @@ Evidence run_virtual(const Scenario& scenario, const MinuteSeries& prices, const
   state.reserve(static_cast<std::size_t>(60 * scenario.minutes / kSecondsPerStep) + 2);
   VirtualPeople people;
   time.on_people([&](const ScenarioEvent& event) {
+    if (event.does == ScenarioEvent::Does::kStateLost) return state.lose();
     people.act(event, time.edge_utc_ns() / kNanosecondsPerSecond, state.trip());
   });
   do {

@@ -107,6 +107,7 @@ void VirtualTime::apply(const ScenarioEvent& event) {
     case kLimitClear:
     case kLimitTorn:
     case kClear:
+    case kStateLost:
       on_people_(event);
       break;
     case kDiskFull:

@@ -16,19 +16,21 @@ void EdgeState::add(const CycleRecord& record) {
 }
 
 bool EdgeState::read_back(std::int64_t records, CycleRecord& record) const {
-  const auto size = std::ssize(records_);
+  const auto size = std::ssize(records_) - readable_from_;
   if (records >= size) return false;
-  record = records_[static_cast<std::size_t>(size - 1 - records)];
+  record = records_[records_.size() - 1 - static_cast<std::size_t>(records)];
   return true;
 }
 
 Trip EdgeState::trip() const {
-  return !records_.empty() && records_.back().is_tripped ? records_.back().trip : Trip{};
+  return !records_.empty() && !is_lost() && records_.back().is_tripped ? records_.back().trip
+                                                                       : Trip{};
 }
 
 VirtualWorld::VirtualWorld(const EdgeConfig& config, const VirtualPrices& prices,
                            const Surroundings& around)
     : around_(around),
+      drives_without_state_(config.state.drive_without_state),
       clock_(config.clock, config.require_synchronised_clock),
       battery_(config.battery.link, config.battery.map, config.clock),
       meter_(config.site.link, config.site.map, config.clock),
@@ -39,6 +41,10 @@ Recall VirtualWorld::recall() const {
   static_cast<void>(around_.state.read_back(0, recalled.before));
   const Trip trip = around_.state.trip();
   if (trip.is_set() && !around_.people.is_cleared(trip.utc_s)) recalled.trip = trip;
+  if (!around_.state.is_lost()) return recalled;
+  recalled.unknown = "the scenario's disk has lost it";
+  recalled.trip = trip_without_state(recalled, drives_without_state_,
+                                     around_.time.edge_utc_ns() / kNanosecondsPerSecond);
   return recalled;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,12 +26,19 @@ class EdgeState {
   [[nodiscard]] bool read_back(std::int64_t records, CycleRecord& record) const;
   /// By the newest record.
   [[nodiscard]] Trip trip() const;
+  /// The disk has lost all of it: what was recorded stays as evidence, and nobody can read it back.
+  void lose() { readable_from_ = std::ssize(records_); }
+  /// The edge is told that there was something, and that it cannot be understood.
+  [[nodiscard]] bool is_lost() const {
+    return readable_from_ > 0 && readable_from_ == std::ssize(records_);
+  }
   [[nodiscard]] const std::vector<CycleRecord>& records() const { return records_; }
   void reserve(std::size_t records) { records_.reserve(records); }
   [[nodiscard]] std::vector<CycleRecord> take_records() { return std::move(records_); }
 
  private:
   std::vector<CycleRecord> records_;
+  std::ptrdiff_t readable_from_ = 0;
 };
 
 class VirtualWorld {
@@ -81,6 +89,7 @@ class VirtualWorld {
 
  private:
   Surroundings around_;
+  bool drives_without_state_;
   EdgeClock clock_;
   ModbusBattery battery_;
   ModbusMeter meter_;

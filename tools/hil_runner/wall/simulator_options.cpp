@@ -92,7 +92,9 @@ std::vector<std::string> battery_options(const Scenario& scenario, const std::st
     options.add("--serial", serial_device);
     options.add("--baud", 115'200);
   }
-  add_battery_faults(options, scenario.battery_fault);
+  for (const BatteryFaultWindow& fault : scenario.battery_faults) {
+    add_battery_faults(options, fault);  // one: the reader has refused more
+  }
   add_house(options, scenario, folder);
   add_meter(options, scenario.meter);
   return options.take();

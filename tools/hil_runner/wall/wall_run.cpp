@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <optional>
 
 #include "edge/battery/commission.h"
@@ -166,6 +167,8 @@ class WallRun {
         return apply_to_simulators(event);
       case kDiskFull:
         return disk_->fill();
+      case kStateLost:
+        return lose_state();
       case kHold:
       case kHoldRelease:
       case kLimit:
@@ -177,6 +180,16 @@ class WallRun {
       case kClockUnsynchronised:
       case kClockSynchronised:
         return;  // refused by the reader: the clock of this machine is not touched
+    }
+  }
+
+  /// What a disk leaves that has died: files of the right size, of nothing.
+  void lose_state() const {
+    for (const char* const name : {"decisions.ring", "decisions.ring.old"}) {
+      const std::string path = state_file(edge_.config(), name).c_str();
+      std::error_code none;
+      const auto size = std::filesystem::file_size(path, none);
+      if (!none) write_file(path, std::string(size, '\xff'));
     }
   }
 
