@@ -30,7 +30,12 @@ Order HoldDesk::follow(const MqttOrder& order, bool is_held) {
   if (order.topic_end == kHoldPowerTopic) {
     Order asked = hold(order.payload);
     if (!asked.complaint.empty()) return asked;
-    std::from_chars(order.payload.data(), order.payload.data() + order.payload.size(), power_w_);
+    std::int32_t power_w = 0;
+    std::from_chars(order.payload.data(), order.payload.data() + order.payload.size(), power_w);
+    if (power_w < -power_w_max_ || power_w > power_w_max_) {
+      return {{}, "hold_power/set: " + order.payload + " W is beyond [battery] power_w"};
+    }
+    power_w_ = power_w;
     return is_held ? asked : Order{};
   }
   if (order.topic_end == kHoldTopic && order.payload == "ON") return hold(std::to_string(power_w_));

@@ -45,13 +45,15 @@ class MqttOrderBox {
 /// What the broker's orders come to, one after the other.
 class HoldDesk {
  public:
-  explicit HoldDesk(std::int32_t minutes) : minutes_(minutes) {}
+  HoldDesk(std::int32_t minutes, std::int32_t power_w_max)
+      : minutes_(minutes), power_w_max_(power_w_max) {}
   [[nodiscard]] std::int32_t power_w() const { return power_w_; }
   /// Without words and complaint: noted for the next hold.
   Order follow(const MqttOrder& order, bool is_held);
 
  private:
   std::int32_t minutes_;
+  std::int32_t power_w_max_;
   std::int32_t power_w_ = 0;
 };
 

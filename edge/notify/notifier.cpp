@@ -56,7 +56,7 @@ Notifier::Notifier(const NotifySettings& settings, MqttPresence presence)
       told_(recall(settings)),
       energy_(told_.energy),
       book_(settings.after_s, told_.alarms),
-      desk_(settings.mqtt.hold_minutes),
+      desk_(settings.mqtt.hold_minutes, settings.power_w),
       kept_(told_text(told_)) {
   if (!settings_.mail_to.empty()) {
     open_lane("mail", [this](const Message& message, const std::stop_token& stop) {

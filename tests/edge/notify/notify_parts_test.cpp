@@ -264,7 +264,7 @@ TEST(Topics, AreTheseToTheLetter) {
   settings.node = "garage";
   settings.mqtt.discovery_prefix = "homeassistant";
   settings.mqtt.orders = true;
-  HoldDesk desk(60);
+  HoldDesk desk(60, 4'000);
   DayAccount day(20'231'126);
   day.add({});
   EnergyTotals energy;

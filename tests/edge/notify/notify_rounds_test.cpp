@@ -280,11 +280,11 @@ TEST_F(Mqtt, HoldsAreOrderedWhereTheKeyAllowsIt) {
 
 /// Without the key nobody is heard, and a broker that lets in anybody gives no such right.
 TEST_F(Mqtt, NothingIsOrderedOtherwise) {
-  HoldDesk desk(60);
+  HoldDesk desk(60, 4'000);
   EXPECT_EQ(desk.follow({kHoldPowerTopic, "-7"}, true).words,
             (std::vector<std::string>{"hold", "-7", "--for", "60m"}))
       << "of a hold in force at once";
-  for (const char* power : {"1.5", "1e3", "", " 1", "99999999999", "NaN"}) {
+  for (const char* power : {"1.5", "1e3", "", " 1", "99999999999", "4001", "-4001", "NaN"}) {
     EXPECT_NE(desk.follow({kHoldPowerTopic, power}, true).complaint, "") << power;
   }
   EXPECT_EQ(desk.power_w(), -7);
