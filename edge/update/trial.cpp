@@ -78,6 +78,10 @@ TrialStep next_of_trial(const TrialState& state, const TrialUnit& unit, const Tr
 TrialStep next_of_comparison(const TrialState& state, const TrialUnit& unit,
                              const TrialLimits& limits) {
   const TrialCause cause = trial_cause_of(state.bad_cause);
+  // It had that trouble as well, and has it no more: the site's, and over.
+  if (state.other > 0 && state.same > 0 && state.passed < kPassedMax) {
+    return {TrialPhase::kTrying, ""};
+  }
   if (state.other > 0) {
     return {TrialPhase::kGoingBack, joined({state.reason, "; not so ", state.previous})};
   }
@@ -161,6 +165,12 @@ void count_cycle(TrialState& state, const TrialCycle& cycle, const TrialLimits& 
     state.bad_run = goes_on ? state.bad_run + 1 : 1;
     state.bad_cause = trial_cause_name(cycle.cause);
   }
+}
+
+void count_restarts(TrialState& state, const TrialUnit& unit) {
+  const bool is_awaited = state.phase == TrialPhase::kComparing &&
+                          trial_cause_of(state.bad_cause) == TrialCause::kNoStart;
+  if (is_awaited && unit.restarts > 0 && state.same == 0) state.same = 1;
 }
 
 void count_time(TrialState& state, const TrialUnit& unit, std::int64_t passed_s) {

@@ -70,6 +70,7 @@ struct TrialLimits {
   [[nodiscard]] std::int64_t window() const { return good_cycles + good_cycles / 5; }
 };
 inline constexpr std::int64_t kStandingCycles = 5;  ///< so many in a row: not a passing trouble
+inline constexpr std::int64_t kPassedMax = 3;   ///< so often a trouble may end while one compares
 inline constexpr std::int64_t kSameCycles = 3;  ///< of the version before, with that trouble too
 
 /// All that is kept of an upgrade (trial_state.h), each change of it on the disk before it is acted
@@ -96,6 +97,7 @@ struct TrialState {
   std::int64_t bad_run = 0;
   std::int64_t same = 0;  ///< cycles of the version before with bad_cause, while comparing
   std::int64_t other = 0;
+  std::int64_t passed = 0;  ///< comparisons in which the trouble ended by itself
   std::int64_t boots = 0;
   std::int64_t restarts =
       -1;                 ///< that systemd had counted at the last good cycle; -1 = not seen yet
@@ -118,6 +120,9 @@ void share(TrialState& state, TrialCause cause);
 
 /// Takes one cycle of the version that runs into the account of a trial or of a comparison.
 void count_cycle(TrialState& state, const TrialCycle& cycle, const TrialLimits& limits);
+
+/// Takes into a comparison that the version before does not start either.
+void count_restarts(TrialState& state, const TrialUnit& unit);
 
 /// Takes the time that has passed into it.
 void count_time(TrialState& state, const TrialUnit& unit, std::int64_t passed_s);

@@ -128,7 +128,8 @@ bool count_new_cycles(TrialState& state, const std::vector<SeenCycle>& cycles,
   }
   bool is_good = false;
   for (; next != cycles.end(); ++next) {
-    if (!state.is_fresh && next->number <= before) state.is_fresh = true;
+    // A process that was stopped before its first cycle leaves the number 0.
+    if (!state.is_fresh && next->number <= std::max<std::int64_t>(before, 1)) state.is_fresh = true;
     if (!state.is_fresh) before = next->number;
     state.mark = next->name;
     if (!state.is_fresh || !next->is_cycle) continue;

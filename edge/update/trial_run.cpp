@@ -276,6 +276,8 @@ int Trial::confirm_again(const std::string& version) {
   const bool runs = machine_.store().pointed("current") == version;
   state_.phase = TrialPhase::kConfirmed;
   state_.version = version;
+  state_.refused.clear();
+  state_.reason.clear();
   if (state_.previous == version) state_.previous.clear();
   state_.is_handed_over = runs;
   keep("confirmed", version);
@@ -300,7 +302,7 @@ void Trial::count_version_before(const std::string& running, const std::string& 
     std::int64_t number = INT64_MAX;
     for (const SeenCycle& seen : last_cycles(program, machine_.settings(), must_write)) {
       if (seen.number <= number) before.clear();  // of another process, and maybe another version
-      number = seen.number;
+      number = seen.is_cycle ? seen.number : INT64_MAX;
       if (seen.is_cycle) before.push_back(seen.cycle);
       if (seen.name == state_.mark) before.clear();  // until then it was on trial, or another was
       mark = seen.name;
@@ -312,7 +314,7 @@ void Trial::count_version_before(const std::string& running, const std::string& 
   if (mark.empty()) mark_newest_cycle(machine_.store().program_of(next));
   state_.window.clear();
   state_.bad_cause.clear();
-  state_.good_cycles = 0;
+  state_.good_cycles = state_.passed = 0;
   if (running != machine_.store().pointed("confirmed") && state_.needed_cycles > 0) return;
   state_.shared.clear();
   state_.needed_cycles = needed_good_cycles(before, limits);
@@ -352,12 +354,15 @@ bool Trial::take(const TrialStep& step) {
              static_cast<long long>(state_.good_cycles));
       break;
     case TrialPhase::kTrying:
+      report(JournalLevel::kNotice, "%s %s (%s): %s goes on with its trial",
+             state_.previous.c_str(),
+             step.cause == TrialCause::kNone ? "had it too, and it is over" : "is no better",
+             state_.bad_cause.c_str(), version.c_str());
+      if (step.cause == TrialCause::kNone) ++state_.passed;
       restart_account(state_);
       state_.bad_cause = trial_cause_name(step.cause);
       share(state_, step.cause);
       state_.reason.clear();
-      report(JournalLevel::kNotice, "%s is no better (%s): %s goes on with its trial",
-             state_.previous.c_str(), state_.bad_cause.c_str(), version.c_str());
       break;
     case TrialPhase::kComparing:
       state_.reason = with_last_error(step.reason);
@@ -434,6 +439,9 @@ void Trial::watch(std::int64_t passed_s) {
     const std::string program = machine_.store().program_of(running_version(state_));
     const bool must_write = wants_control(machine_.settings());
     const auto cycles = last_cycles(program, machine_.settings(), must_write);
+    TrialUnit since = unit;
+    since.restarts -= state_.restarts;
+    count_restarts(state_, since);
     if (count_new_cycles(state_, cycles, limits)) state_.restarts = unit.restarts;
   }
   unit.restarts -= state_.restarts;

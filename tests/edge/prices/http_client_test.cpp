@@ -223,6 +223,17 @@ TEST_F(HttpClientTest, RedirectsAreFewAndToHttpsOnly) {
   EXPECT_EQ(clear.requests(), 0);
   TestServer file(redirect_to("file:///etc/hostname"), tls_options());
   EXPECT_EQ(get(settings_for(tls_url_of(file))), Status::kHttpError);
+  for (const char* const status : {"299 Odd", "400 Bad Request"}) {  // a place to go, no redirect
+    TestServer other(
+        [&](TestConnection& connection, const std::string&) {
+          return connection.answer(
+              "", std::string("HTTP/1.1 ") + status + "\r\nLocation: " + tls_url_of(good) + "\r\n");
+        },
+        tls_options());
+    const int before = good.requests();
+    EXPECT_EQ(get(settings_for(tls_url_of(other))), Status::kHttpError) << status;
+    EXPECT_EQ(good.requests(), before) << status;
+  }
   TestServer loop(redirect_to("/again"), tls_options());  // to itself
   EXPECT_EQ(get(settings_for(tls_url_of(loop))), Status::kHttpError);
   EXPECT_EQ(loop.requests(), 1 + HttpClient::kRedirectsMax);

@@ -65,6 +65,23 @@ TEST(HeaderFile, KeepsHeadersAndSkipsComments) {
   EXPECT_EQ(headers, "X-Api-Key: abc def\nAuthorization: Bearer x");
 }
 
+TEST(HeaderFile, ANameIsOfLettersDigitsDashAndUnderscore) {
+  const TemporaryFolder folder;
+  const auto is_taken = [&](const std::string& name) {
+    const std::string path = folder.write("headers", name + ": v\n");
+    EXPECT_EQ(chmod(path.c_str(), 0600), 0);
+    FixedText<2047> headers;
+    std::string error;
+    return load_http_headers(path.c_str(), headers, error);
+  };
+  for (const char* const name : {"azAZ", "X-0", "X_9", "0", "9"})
+    EXPECT_TRUE(is_taken(name)) << name;
+  // The neighbours of each range in ASCII.
+  for (const char* const name : {"X/", "X@", "X[", "X`", "X{", "X;", "X=", "X.", "X,", "X\xc3"}) {
+    EXPECT_FALSE(is_taken(name)) << name;
+  }
+}
+
 TEST(HeaderFile, MistakesAreOneLineWithoutTheContent) {
   const TemporaryFolder folder;
   const std::string long_text = "X: " + std::string(3'000, 's') + "\n";

@@ -51,6 +51,16 @@ TEST(PriceJson, UnderstandsABareList) {
   EXPECT_EQ(row.price_centi_eur_per_mwh, 100);
 }
 
+TEST(PriceJson, AMinuteCountsFromItsEndButForTheClocksTolerance) {
+  constexpr std::int64_t kToleranceS = 5;
+  const std::int64_t minute_utc_s = utc("2025-08-17T00:37:00Z");
+  const char* const json = R"([{"datetime":"2025-08-17T00:37:00Z","imbalanceprice":1}])";
+  PriceRow row;
+  const std::int64_t first_utc_s = minute_utc_s + 60 - kToleranceS;
+  EXPECT_EQ(parse_newest_price(json, PriceFields{}, first_utc_s, row), Status::kOk);
+  EXPECT_EQ(parse_newest_price(json, PriceFields{}, first_utc_s - 1, row), Status::kNoRow);
+}
+
 TEST(PriceJson, RefusesRowsOfTheFutureAndImplausiblePrices) {
   PriceRow row;
   // The row of minute 38 is computed at 00:39 and cannot exist at 00:38.

@@ -109,6 +109,22 @@ TEST(TrialCycles, OnlyTheNewProcessCountsAndEachCycleOnce) {
   }
 }
 
+TEST(TrialCycles, AProcessThatWasStoppedBeforeItsFirstCycleHidesNoneOfTheNext) {
+  TrialState state;
+  state.phase = TrialPhase::kTrying;
+  CycleRecord end = good_cycle(5);
+  end.mode = Mode::kStopping;
+  end.cycle = 0;
+  state.mark = cycles_of_csv(csv_of({end}), true)[0].name;
+  std::vector<CycleRecord> log = {end};
+  for (int i = 1; i <= 3; ++i) {
+    log.push_back(good_cycle(i));
+    log.back().utc_s = end.utc_s + 120 * i;
+    EXPECT_TRUE(count_new_cycles(state, cycles_of_csv(csv_of(log), true), {}));
+    EXPECT_EQ(state.good_cycles, i);
+  }
+}
+
 TEST(TrialCycles, AfterAFirstInstallationEverythingCounts) {
   TrialState state;
   state.phase = TrialPhase::kTrying;

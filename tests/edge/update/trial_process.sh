@@ -163,6 +163,9 @@ machine; upgrade 2.0; judge 1; echo price >site; judge 9
 rm site; judge; expect "a market that goes away in the trial" confirmed 2.0
 grep -q '	comparing	2.0	' "$BESS_ROOT/var/lib/bess-update/history" ||
   fail "the version before was not asked"
+machine; upgrade 2.0; judge 1; echo price >site; judge 6
+[ "$(value phase)" = comparing ] || fail "a market that is away for six cycles: $(value phase)"
+tick; rm site; judge; expect "a market that comes back while one compares" confirmed 2.0
 machine; echo trip >site; tick; upgrade 2.0; judge 30
 [ "$(value phase)" = trying ] || fail "a trip from before: $(value phase)"
 rm site; judge; expect "a trip from before" confirmed 2.0
@@ -204,6 +207,9 @@ grep -q '	withdrawn	2.0	' "$BESS_ROOT/var/lib/bess-update/history" ||
   fail "the history does not tell what dpkg gave up"
 machine; trial announce 2.0; for _ in $(seq 31); do trial look; done
 gives_up "dpkg that gives up late" confirmed; may_come "dpkg that gave up late"
+machine; trial announce 2.0; for _ in $(seq 31); do trial look; done
+trial announce 1.0; deliver 1.0; trial begin; trial announce 3.0; trial withdraw 3.0
+expect "dpkg gives up, what it broke before is mended" confirmed 1.0
 machine; trial announce 2.0; trial withdraw 1.9; [ "$(value phase)" = upgrading ] ||
   fail "another version is withdrawn: $(value phase)"
 machine; echo crash >does_2.0; upgrade 2.0; judge; trial announce 3.0; : >systemctl; trial withdraw 3.0

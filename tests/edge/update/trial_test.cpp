@@ -125,12 +125,33 @@ TEST(Trial, TheVersionBeforeTellsWhoseFaultItIs) {
   const TrialStep same = judge(comparing(TrialCause::kPrice), "ppp");
   EXPECT_EQ(same.phase, TrialPhase::kTrying);
   EXPECT_EQ(same.cause, TrialCause::kPrice);
-  const TrialStep better = judge(comparing(TrialCause::kPrice), "p1");
+  const TrialStep better = judge(comparing(TrialCause::kPrice), "1");
   EXPECT_EQ(better.phase, TrialPhase::kGoingBack);
   EXPECT_THAT(better.reason, HasSubstr("not so 1.0"));
   // Another trouble is not that one.
   EXPECT_EQ(judge(comparing(TrialCause::kPrice), "l").phase, TrialPhase::kGoingBack);
   EXPECT_EQ(judge(comparing(TrialCause::kNoStart), "l").phase, TrialPhase::kGoingBack);
+}
+
+TEST(Trial, ATroubleThatEndsWhileOneComparesWasTheSites) {
+  for (const char* const cycles : {"p1", "pp1"}) {
+    const TrialStep over = judge(comparing(TrialCause::kPrice), cycles);
+    EXPECT_EQ(over.phase, TrialPhase::kTrying) << cycles;
+    EXPECT_EQ(over.cause, TrialCause::kNone) << "and it is not excused from now on";
+  }
+  TrialState often = comparing(TrialCause::kPrice);
+  often.passed = kPassedMax;
+  EXPECT_EQ(judge(often, "p1").phase, TrialPhase::kGoingBack);
+  // A version before that did not start at first, and then does.
+  TrialState silent = comparing(TrialCause::kNoStart);
+  count_restarts(silent, {.restarts = 0});
+  EXPECT_EQ(judge(silent, "1").phase, TrialPhase::kGoingBack);
+  count_restarts(silent, {.restarts = 1});
+  EXPECT_EQ(next_phase(silent, {}, kLimits).phase, TrialPhase::kComparing);
+  EXPECT_EQ(judge(silent, "1").phase, TrialPhase::kTrying);
+  TrialState priceless = comparing(TrialCause::kPrice);
+  count_restarts(priceless, {.restarts = 1});
+  EXPECT_EQ(judge(priceless, "1").phase, TrialPhase::kGoingBack);
 }
 
 TEST(Trial, AVersionThatDoesNotStartIsComparedAtOnce) {
