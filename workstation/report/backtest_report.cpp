@@ -225,6 +225,26 @@ HtmlTable total_table(const BacktestResults& results) {
   return table;
 }
 
+/// The same days, each from the same SoC; empty unless that was asked for.
+std::string day_reset_html(const BacktestResults& results) {
+  const Evaluation& first = results.policies.front().day_reset;
+  if (first.days.empty()) return {};
+  HtmlTable table;
+  table.caption = "EUR per day per MWh, each day from the same SoC, its end given away";
+  table.header = {"Policy", "Profit",   "s.e. over days", "By month",
+                  "Gain",   "Its s.e.", "Gain by month"};
+  for (const WalkForward& policy : results.policies) {
+    const DayErrors errors = policy.day_reset.errors();
+    const PairedDifference gain = paired_difference(policy.day_reset, first);
+    table.rows.push_back({policy.name,
+                          fmt::format("{:.1f}", policy.day_reset.profit_eur_per_day_per_mwh()),
+                          error_text(errors.plain, 1), error_text(errors.by_month, 1),
+                          fmt::format("{:+.1f}", gain.mean), error_text(gain.standard_error, 1),
+                          error_text(gain.standard_error_by_month, 1)});
+  }
+  return format_table(table);
+}
+
 HtmlTable month_table(const BacktestResults& results) {
   const WalkForward& first = results.policies.front();
   HtmlTable table;
@@ -256,6 +276,19 @@ std::string skipped_html(const BacktestResults& results) {
   return text.empty() ? text : fmt::format("<ul class=\"note\">\n{}</ul>\n", text);
 }
 
+/// The same days, each from the same SoC; null unless that was asked for.
+Json day_reset_json(const WalkForward& policy, const WalkForward& first) {
+  if (policy.day_reset.days.empty()) return Json::null();
+  const DayErrors errors = policy.day_reset.errors();
+  const PairedDifference gain = paired_difference(policy.day_reset, first.day_reset);
+  return Json::object({{key::kProfit, Decimals{policy.day_reset.profit_eur_per_day_per_mwh(), 4}},
+                       {key::kProfitError, Decimals{errors.plain, 4}},
+                       {key::kProfitErrorByMonth, Decimals{errors.by_month, 4}},
+                       {key::kGain, Decimals{gain.mean, 4}},
+                       {key::kGainError, Decimals{gain.standard_error, 4}},
+                       {key::kGainErrorByMonth, Decimals{gain.standard_error_by_month, 4}}});
+}
+
 Json policy_json(const WalkForward& policy, const WalkForward& first) {
   const Row row = rows_of(policy, first).back();
   Json json = Json::object({{"policy", policy.name},
@@ -272,6 +305,7 @@ Json policy_json(const WalkForward& policy, const WalkForward& first) {
                             {"cycles_per_day", Decimals{row.turnover_per_day / 2, 4}},
                             {"drawdown_eur_per_mwh", Decimals{policy.drawdown_eur_per_mwh(), 2}}});
   add_charge_left(policy.total.charge_left(), json);
+  json.set("day_reset", day_reset_json(policy, first));
   // Names of before schema version 1, until the next release.
   json.set("standard_error", Decimals{row.errors.plain, 4});
   json.set("gain_to_first", Decimals{row.gain.mean, 4});
@@ -418,8 +452,9 @@ void write_backtest_page(const BacktestResults& results, const std::filesystem::
       "EUR "
       "per MWh.</p>\n<figure>\n<h2>{}</h2>\n{}<div class=\"wide\">{}</div>\n"
       "<figcaption>{}</figcaption>\n</figure>\n{}\n{}",
-      html_escaped(results.provenance), format_table(total_table(results)),
-      html_escaped(first.name), html_escaped(by_month_meaning(first.total.errors().months)),
+      html_escaped(results.provenance),
+      format_table(total_table(results)) + day_reset_html(results), html_escaped(first.name),
+      html_escaped(by_month_meaning(first.total.errors().months)),
       charge_left_meaning(first.total.charge_price_eur_per_mwh),
       one_line(reference_wear_meaning(first.total.wear_eur_per_mwh)), html_escaped(figure.title),
       legend_html(results), inline_svg(read_file(svg), figure),

@@ -84,6 +84,25 @@ TEST(BacktestReport, TellsErrorsByMonthBesideThePlainOnes) {
               HasSubstr("<td data-label=\"Gain by month\">5.0</td>"));
 }
 
+TEST(BacktestReport, DaysFromTheSameSocStandInAllThreeWhenAskedFor) {
+  BacktestResults asked = results(5);
+  const TemporaryFolder folder;
+  write_backtest_page(asked, folder.file(""));
+  EXPECT_THAT(backtest_json(asked).line(), HasSubstr("\"day_reset\":null"));
+  EXPECT_THAT(read_file(folder.file("backtest.html")), Not(HasSubstr("from the same SoC")));
+  for (WalkForward& policy : asked.policies) {
+    policy.day_reset = policy.total;
+    for (DayResult& day : policy.day_reset.days) day.profit_eur += policy.name == "sdp" ? 3 : 1;
+  }
+  write_backtest_page(asked, folder.file(""));
+  EXPECT_THAT(backtest_json(asked).line(),
+              HasSubstr("\"day_reset\":{\"profit_eur_per_day_per_mwh\":23.0000,"));
+  EXPECT_THAT(backtest_json(asked).line(), HasSubstr("\"gain_eur_per_day_per_mwh\":13.6667,"));
+  EXPECT_THAT(format_backtest_table(asked), HasSubstr("+13.7"));
+  EXPECT_THAT(read_file(folder.file("backtest.html")),
+              AllOf(HasSubstr("each day from the same SoC"), HasSubstr("+13.7")));
+}
+
 TEST(BacktestReport, ThePageLabelsEachMonthOnceAndDrawsAFallWhereThereIsOne) {
   const TemporaryFolder folder;
   for (const double second_day_eur : {-30.0, 5.0}) {
