@@ -27,6 +27,7 @@ struct PricesStatsArguments {
 struct Described {
   MarketStatistics statistics;
   std::vector<double> settled;  ///< by quarter-hour
+  std::string_view what = "settled price";
 };
 
 Described describe_minutes(const MinuteSeries& series) {
@@ -59,7 +60,7 @@ Described describe_day_ahead_file(std::string_view text, const std::string& name
     if (!is_published(series.eur_per_mwh[q])) continue;
     quarter_hours.push_back({.utc_s = series.utc_s(q), .price_eur_per_mwh = series.eur_per_mwh[q]});
   }
-  return {statistics_of_quarter_hours(quarter_hours), series.eur_per_mwh};
+  return {statistics_of_quarter_hours(quarter_hours), series.eur_per_mwh, "day-ahead price"};
 }
 
 void run_prices_stats(const PricesStatsArguments& options) {
@@ -72,7 +73,7 @@ void run_prices_stats(const PricesStatsArguments& options) {
   if (options.json) {
     fmt::print("{}\n", format_statistics_json(described.statistics));
   } else {
-    fmt::print("{}", format_statistics_text(described.statistics));
+    fmt::print("{}", format_statistics_text(described.statistics, described.what));
   }
   if (!options.json && is_recorded_csv(text)) {
     fmt::print("{}", describe_lateness(lateness_of(parse_recorded_day(text, options.file))));

@@ -16,9 +16,8 @@ std::string day_of(const ClockChange& change) {
   return fmt::format("{:04}-{:02}-{:02}", change.year, change.month, change.day);
 }
 
-std::string format_price_text(const PriceStatistics& price) {
-  std::string text =
-      fmt::format("settled price, EUR/MWh, {}\n", counted(price.count, "quarter-hour"));
+std::string format_price_text(std::string_view what, const PriceStatistics& price) {
+  std::string text = fmt::format("{}, EUR/MWh, {}\n", what, counted(price.count, "quarter-hour"));
   if (price.count == 0) return text;
   text += fmt::format(
       "  mean {:.2f}  minimum {:.2f}  quartiles {:.2f} / {:.2f} / {:.2f}  maximum {:.2f}\n",
@@ -124,16 +123,16 @@ Json clock_changes_json(const std::vector<ClockChange>& changes) {
 
 }  // namespace
 
-std::string format_statistics_text(const MarketStatistics& statistics) {
+std::string format_statistics_text(const MarketStatistics& statistics, std::string_view what) {
   std::string text = fmt::format("{} to {}\n", utc_text(statistics.from_utc_s).view(),
                                  utc_text(statistics.until_utc_s).view());
-  text += format_price_text(statistics.price);
+  text += format_price_text(what, statistics.price);
   if (statistics.imbalance_sign_flip_rate) {
     text += fmt::format("system imbalance changes sides between {:.1f} % of quarter-hours\n",
                         100 * *statistics.imbalance_sign_flip_rate);
   }
   if (statistics.convergence) text += format_convergence_text(*statistics.convergence);
-  text += describe_gaps("settled price", statistics.settled_gaps);
+  text += describe_gaps(what, statistics.settled_gaps);
   if (statistics.convergence) text += describe_gaps("indicative price", statistics.indicative_gaps);
   for (const ClockChange& change : statistics.clock_changes) {
     text += fmt::format("clock change: {} has {} quarter-hours\n", day_of(change),

@@ -219,7 +219,8 @@ TEST_F(DayAheadCli, ImportsJudgesAndLeavesNothingOfWhatIsBad) {
   EXPECT_EQ(imported.exit_code, 0) << imported.output;
   EXPECT_THAT(imported.output, HasSubstr("96 quarter-hours of day-ahead prices"));
   EXPECT_THAT(read_file(path("da.csv")), HasSubstr("2025-05-31T22:15:00Z,"));
-  EXPECT_THAT(run({"prices", "stats", path("da.csv")}).output, HasSubstr("quartile"));
+  EXPECT_THAT(run({"prices", "stats", path("da.csv")}).output,
+              AllOf(HasSubstr("day-ahead price, EUR/MWh"), HasSubstr("quartile")));
   const std::string other = written("other.csv",
                                     "datetime_utc,price_eur_mwh\n"
                                     "2025-05-31T22:00:00Z,-9999\n"
