@@ -99,7 +99,8 @@ constexpr std::uint32_t student_architecture_hash() {
 /// By month the context adds nothing: nets of before have the hash that they had.
 constexpr std::uint32_t student_weights_hash(const StudentNet& net) {
   Crc32 crc;
-  if (net.context.kind == ContextKind::kLevel) {
+  if (net.context.is_outlook()) crc.add_integer(static_cast<int>(net.context.kind));
+  if (net.context.kind != ContextKind::kMonth) {
     for (const std::int16_t edge : net.context.level_edge_eur_per_mwh) crc.add_integer(edge);
   }
   for (const std::int16_t p : net.price_map) crc.add_integer(p);

@@ -34,15 +34,27 @@ std::shared_ptr<Policy> student_policy(StudentFile student) {
   return {holder, holder->policy.get()};
 }
 
-std::shared_ptr<Policy> model_policy(const std::string& path, const Risk& risk) {
+std::shared_ptr<Policy> model_policy(const std::string& path, const Risk& risk,
+                                     const MarketSteps* market) {
   if (!std::filesystem::exists(path)) {
     fail("--policy {}: neither a file nor one of: {}", path, policy_help());
   }
+  const auto require_day_ahead = [&](const ContextClasses& context) {
+    if (!context.is_outlook() || market == nullptr || market->day_ahead != nullptr) return;
+    fail(
+        "{}: decides by the outlook: give day-ahead prices, with --day-ahead to evaluate or "
+        "backtest",
+        path);
+  };
   if (is_teacher_file(path)) {
-    return owning<Teacher, TeacherPolicy>(load_teacher(path, risk),
+    Teacher teacher = load_teacher(path, risk);
+    require_day_ahead(teacher.context);
+    return owning<Teacher, TeacherPolicy>(std::move(teacher),
                                           [](const Teacher& t) -> const Teacher& { return t; });
   }
-  return student_policy(load_student(path));
+  StudentFile student = load_student(path);
+  require_day_ahead(student.net.context);
+  return student_policy(std::move(student));
 }
 
 }  // namespace
@@ -61,7 +73,7 @@ void require_policies(const std::vector<std::string>& names) {
     if (name == kCompiled || find_baseline(name) != nullptr) continue;
     const bool is_pipe = std::filesystem::exists(name) && !std::filesystem::is_regular_file(name);
     if (is_pipe) continue;  // it can be read once
-    name.starts_with(kGivenRule) ? given_rule(name) : model_policy(name, {});
+    name.starts_with(kGivenRule) ? given_rule(name) : model_policy(name, {}, nullptr);
   }
 }
 
@@ -77,7 +89,7 @@ std::shared_ptr<Policy> make_policy(const std::string& name, const MarketSteps& 
                                     const BatteryParameters& battery, const Risk& risk) {
   if (const auto baseline = make_baseline(name, market, battery)) return baseline;
   if (name == kCompiled) return student_policy(compiled_student());
-  return model_policy(name, risk);
+  return model_policy(name, risk, &market);
 }
 
 ContextClasses context_of_policy(const std::string& policy, const MarketSteps& market,

@@ -146,8 +146,9 @@ void KeyList::list(RunConfig& c) {
   section("train");
   choice("method", kLearning, c.train.method, {"c51", "dqn", "sdp"},
          "distributional or plain Q-learning, or the stochastic program, exact for its model");
-  choice("context", kLearning, c.train.context, {"month", "level"},
-         "the student's third input: local month, or class of the trailing price level");
+  choice("context", kLearning, c.train.context, {"month", "level", "outlook"},
+         "the student's third input: local month, class of the trailing price level, or of the "
+         "break-even price of a plan on day-ahead prices, which needs method sdp and --day-ahead");
   choice("source", kLearning, c.train.source, {"counterfactual", "replay"},
          "experience: one price move serves every SoC and action, or epsilon-greedy days");
   choice("horizon", kLearning, c.train.horizon, {"continuing", "day"},

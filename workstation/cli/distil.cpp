@@ -11,6 +11,7 @@
 #include "workstation/base/answer.h"
 #include "workstation/chain/chain_steps.h"
 #include "workstation/chain/common_options.h"
+#include "workstation/chain/day_ahead_input.h"
 #include "workstation/chain/interruption.h"
 #include "workstation/chain/price_input.h"
 #include "workstation/chain/rule_files.h"
@@ -27,6 +28,7 @@ namespace {
 struct DistilArguments {
   CommonOptions common;
   PriceInput price_input;
+  DayAheadInput day_ahead;
   RuleFiles rule_files;
   std::string prices;
   std::string teacher;
@@ -73,6 +75,7 @@ void run_distil(const DistilArguments& options) {
   require_distinct({{"--out", options.out}, {"--curve-out", options.curve_out}},
                    {{"--prices", options.prices},
                     {"--teacher", options.teacher},
+                    {"--day-ahead", options.day_ahead.path()},
                     {"--config", options.common.config_path}});
   require_writable(options.out);
   Teacher teacher = load_teacher(options.teacher, parse_risk(options.risk));
@@ -80,8 +83,10 @@ void run_distil(const DistilArguments& options) {
   warn_learnt_otherwise(options.teacher, circumstances_of(config_entries(config)));
   options.rule_files.apply(config, teacher.context.kind);
   if (!teacher.risk.is_mean()) teacher.provenance += ", risk " + options.risk;
-  const MarketSteps market =
-      market_of(options.price_input.read(options.prices), config.market, options.prices);
+  const MinuteSeries series = options.price_input.read(options.prices);
+  MarketSteps market = market_of(series, config.market, options.prices);
+  attach_day_ahead(market, options.day_ahead.read(series, options.price_input.accepted(),
+                                                  config.market.day_ahead_published_min));
   const Matrix visited = visited_inputs(teacher, market, config.battery, config.distil);
   const CorrectionResult result =
       correct_and_prove(teacher, visited, config.distil, interruption(),
@@ -108,6 +113,7 @@ void add_distil_command(ProgramCommand& app) {
       app.subcommand("distil", "Correct the teacher while distilling it, until proved");
   command.option("--prices", options->prices, "Minute file (.csv or .csv.gz)").required();
   options->price_input.add(command);
+  options->day_ahead.add(command);
   options->rule_files.add(command, "Rule files: your own rules, learnt and proved as well");
   command.option("--teacher", options->teacher, "Teacher file").required();
   command.option("--out", options->out, "Student file to write").required();

@@ -16,6 +16,7 @@
 #include "workstation/chain/chain_steps.h"
 #include "workstation/chain/common_options.h"
 #include "workstation/chain/config_plausibility.h"
+#include "workstation/chain/day_ahead_input.h"
 #include "workstation/chain/folder_lock.h"
 #include "workstation/chain/interruption.h"
 #include "workstation/chain/price_input.h"
@@ -32,6 +33,7 @@ namespace fs = std::filesystem;
 struct TrainArguments {
   CommonOptions common;
   PriceInput price_input;
+  DayAheadInput day_ahead;
   std::string prices;
   std::string out;
   std::string curve_out;
@@ -197,12 +199,16 @@ void run_train(const TrainArguments& options) {
   require_distinct({{"--out", options.out},
                     {"--curve-out", options.curve_out},
                     {"the checkpoint", checkpoint_path(options.out)}},
-                   {{"--prices", options.prices}, {"--config", options.common.config_path}});
+                   {{"--prices", options.prices},
+                    {"--day-ahead", options.day_ahead.path()},
+                    {"--config", options.common.config_path}});
   require_writable(options.out);
   const FolderLock folder_lock(fs::path(options.out).parent_path(), FolderLock::Of::kOneFile);
   const FileLock lock(options.out);
   const MinuteSeries series = options.price_input.read(options.prices);
-  const MarketSteps market = market_of(series, config.market, options.prices);
+  MarketSteps market = market_of(series, config.market, options.prices);
+  attach_day_ahead(market, options.day_ahead.read(series, options.price_input.accepted(),
+                                                  config.market.day_ahead_published_min));
   warn_untrained_months(market, config.train.context == ContextKind::kMonth);
   if (options.seeds > 1) return run_seeds(options, config, series, market);
   const TrainResult result = train_one(options.out, options, config, series, market);
@@ -224,6 +230,7 @@ void add_train_command(ProgramCommand& app) {
       app.subcommand("train", "Make the teacher: C51, DQN or the stochastic program");
   command.option("--prices", options->prices, "Minute file (.csv or .csv.gz)").required();
   options->price_input.add(command);
+  options->day_ahead.add(command);
   command.option("--out", options->out, "Teacher file to write").required();
   command.option("--method", options->method, "c51 (default), dqn or sdp")
       .one_of({"c51", "dqn", "sdp"});

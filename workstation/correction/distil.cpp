@@ -8,6 +8,7 @@
 #include "shared/host/user_error.h"
 #include "workstation/base/progress.h"
 #include "workstation/correction/lattice_rows.h"
+#include "workstation/correction/outlook_lessons.h"
 #include "workstation/correction/policy_loss.h"
 #include "workstation/rl/transition.h"
 
@@ -49,6 +50,7 @@ void fill_distinct(std::vector<int>& axis, int count, Draw draw) {
 
 Matrix visited_inputs(const Teacher& teacher, const MarketSteps& market,
                       const BatteryParameters& battery, const DistilOptions& options) {
+  if (teacher.outlook) return outlook_lessons(teacher, market, battery, options);
   Random random(derive_seed(options.seed, kSeedVisited));
   const std::vector<MarketDay> training = market.days_of(Split::kTrain);
   std::size_t steps = 0;

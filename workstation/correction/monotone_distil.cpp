@@ -55,8 +55,10 @@ void saturate(const Matrix& sum, Matrix& activation) {
 LessonStates make_lessons(const Teacher& teacher, const Matrix& visited,
                           const DistilOptions& options) {
   Random random(derive_seed(options.seed, kSeedLessons));
+  // By outlook they are among the visited ones: the five inputs do not tell what to do.
+  const double anywhere_share = teacher.outlook ? 0 : kRandomShare;
   const auto anywhere =
-      static_cast<Eigen::Index>(kRandomShare * static_cast<double>(visited.cols()));
+      static_cast<Eigen::Index>(anywhere_share * static_cast<double>(visited.cols()));
   LessonStates lessons;
   Matrix seen(visited.rows(), visited.cols() + anywhere);
   seen.leftCols(visited.cols()) = visited;

@@ -7,15 +7,20 @@
 
 #include "shared/context_classes.h"
 #include "workstation/env/market_steps.h"
+#include "workstation/env/outlook_book.h"
 
 namespace bess {
 
-/// "month", "level"; throws UserError otherwise.
+/// "month", "level", "outlook"; throws UserError otherwise.
 ContextKind parse_context(std::string_view name);
 
 /// By level the classes are evenly wide and reach beyond the training days' levels on both sides:
 /// another year lies elsewhere. Throws UserError when there are no training days.
 ContextClasses fit_context_classes(const MarketSteps& market, ContextKind kind);
+
+/// By outlook each class holds as many of the break-even prices that the training days have, at
+/// SoCs of the whole window.
+ContextClasses fit_outlook_classes(const MarketSteps& market, const OutlookBook& book);
 
 /// The level that stands for a class, EUR/MWh: its middle; of the open ones as far out as their
 /// neighbours'.

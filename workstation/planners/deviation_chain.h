@@ -36,6 +36,8 @@ class DeviationChain {
     double weight;  ///< of the upper neighbour
   };
   [[nodiscard]] Between between(double deviation) const;
+  /// Mean deviation of the newest price in a bin, EUR/MWh.
+  [[nodiscard]] double centre(int bin) const { return bin_centres_[static_cast<std::size_t>(bin)]; }
   /// Mean deviation paid, EUR/MWh.
   [[nodiscard]] double paid(int phase, int bin) const { return paid_[phase * kBins + bin]; }
   [[nodiscard]] double paid(int phase, Between bins) const {

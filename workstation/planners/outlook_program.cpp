@@ -99,6 +99,32 @@ OutlookProgram::OutlookProgram(const MarketSteps& market, const std::vector<Mark
   solve_usual_days();
 }
 
+void OutlookProgram::save(BinaryWriter& out) const {
+  out.put(battery_);
+  out.put(options_.gamma);
+  out.put(hour_);
+  out.put(day_ahead_mean_);
+  out.put(coefficients_);
+  out.put(row_age_min_);
+  out.put_list(levels_);
+  chain_.save(out);
+}
+
+OutlookProgram::OutlookProgram(BinaryReader& in)
+    : battery_(in.take<BatteryParameters>()),
+      options_{.gamma = in.take<double>()},
+      grid_(battery_, kSocPoints),
+      hour_(in.take<ByQuarterHour>()),
+      day_ahead_mean_(in.take<ByQuarterHour>()),
+      coefficients_(in.take<Coefficients>()),
+      row_age_min_(in.take<int>()),
+      levels_(in.take_list<double>()),
+      chain_(in),
+      recursion_(battery_, grid_, options_.gamma) {
+  if (levels_.size() < 2) in.damaged("is of another size of the program with an outlook");
+  solve_usual_days();
+}
+
 double OutlookProgram::usual(double day_ahead, int quarter_hour, double level) const {
   return coefficients_.constant + coefficients_.day_ahead * day_ahead +
          coefficients_.hour * hour_[static_cast<std::size_t>(quarter_hour)] +
@@ -113,7 +139,9 @@ double OutlookProgram::known_or_usual(const MarketStep& step, std::int64_t utc_s
 
 void OutlookProgram::fit_means(const MarketSteps& market, const std::vector<MarketDay>& days) {
   MeanByQuarterHour paid, day_ahead;
+  std::map<int, int> ages;
   for_each_step(market, days, [&](const MarketStep& step) {
+    ++ages[step.observed_age_min];
     paid.add(step.quarter_hour, step.paid_eur_per_mwh);
     const double known = step.day_ahead_eur_per_mwh(step.utc_s);
     if (is_published(known)) day_ahead.add(step.quarter_hour, known);
@@ -121,6 +149,7 @@ void OutlookProgram::fit_means(const MarketSteps& market, const std::vector<Mark
   if (day_ahead.weight() == 0) {
     fail("no day-ahead price on the days to fit on; give a file that covers them (--day-ahead)");
   }
+  row_age_min_ = std::ranges::max_element(ages, {}, &std::pair<const int, int>::second)->first;
   hour_ = paid.smoothed(options_.hour_smoothing);
   day_ahead_mean_ = day_ahead.smoothed(options_.hour_smoothing);
 }
@@ -343,13 +372,12 @@ std::array<double, kActionCount> OutlookProgram::action_values(const MarketStep&
 
 Action OutlookPolicy::decide(const MarketStep& step, std::size_t, double soc_frac) const {
   const std::lock_guard lock(mutex_);
-  const bool serves = step.utc_s >= plan_.from_utc_s && step.utc_s < plan_.until_utc_s;
-  if (!serves) plan_ = program_.plan_of(step);
-  return argmax_action(program_.action_values(step, soc_frac, plan_).data());
+  if (!plan_.serves(step)) plan_ = program_->plan_of(step);
+  return argmax_action(program_->action_values(step, soc_frac, plan_).data());
 }
 
 std::string OutlookPolicy::description() const {
-  const OutlookProgram::Coefficients& c = program_.coefficients();
+  const OutlookProgram::Coefficients& c = program_->coefficients();
   return fmt::format("usual = {:.1f} + {:.2f} day-ahead + {:.2f} by hour + {:.2f} level",
                      c.constant, c.day_ahead, c.hour, c.level);
 }

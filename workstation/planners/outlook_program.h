@@ -22,6 +22,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -43,6 +44,7 @@ struct OutlookOptions {
 class OutlookProgram {
  public:
   static constexpr int kSocPoints = 121;
+  using ByQuarterHour = std::array<double, 96>;
 
   /// What usual() is made of.
   struct Coefficients {
@@ -57,6 +59,10 @@ class OutlookProgram {
     std::int64_t first_quarter_hour_utc_s = 0;         ///< of `day_ahead`
     std::vector<double> day_ahead{};                   ///< D by quarter-hour
     std::map<int, std::vector<float>> continuation{};  ///< by level: [step][bin][SoC point], EUR
+
+    [[nodiscard]] bool serves(const MarketStep& step) const {
+      return step.utc_s >= from_utc_s && step.utc_s < until_utc_s;
+    }
   };
 
   /// Fits on `days` of `market`; throws UserError when there are none, or when none of their steps
@@ -71,10 +77,19 @@ class OutlookProgram {
   [[nodiscard]] std::array<double, kActionCount> action_values(const MarketStep& step,
                                                                double soc_frac, Plan& plan) const;
   [[nodiscard]] const Coefficients& coefficients() const { return coefficients_; }
+  [[nodiscard]] const ByQuarterHour& hour() const { return hour_; }
+  [[nodiscard]] const ByQuarterHour& day_ahead_mean() const { return day_ahead_mean_; }
+  [[nodiscard]] const DeviationChain& chain() const { return chain_; }
+  [[nodiscard]] const BatteryParameters& battery() const { return battery_; }
+  [[nodiscard]] double gamma() const { return options_.gamma; }
+  /// Of the newest price at a decision, as it mostly was on the days fitted on.
+  [[nodiscard]] int row_age_min() const { return row_age_min_; }
+
+  /// What was fitted, without what follows from it: reading solves again, to the same bits.
+  void save(BinaryWriter& out) const;
+  explicit OutlookProgram(BinaryReader& in);
 
  private:
-  using ByQuarterHour = std::array<double, 96>;
-
   [[nodiscard]] double usual(double day_ahead, int quarter_hour, double level) const;
   /// D at a step's own row or pay: what is published, or what stands for it.
   [[nodiscard]] double known_or_usual(const MarketStep& step, std::int64_t utc_s) const;
@@ -95,6 +110,7 @@ class OutlookProgram {
   SocGrid grid_;
   ByQuarterHour hour_{}, day_ahead_mean_{};  ///< h, d
   Coefficients coefficients_;
+  int row_age_min_ = 1;
   std::vector<double> levels_;  ///< that values are known for, ascending
   DeviationChain chain_;
   StorageRecursion recursion_;
@@ -105,12 +121,14 @@ class OutlookPolicy final : public Policy {
  public:
   OutlookPolicy(const MarketSteps& market, const std::vector<MarketDay>& days,
                 const BatteryParameters& battery, const OutlookOptions& options = {})
-      : program_(market, days, battery, options) {}
+      : program_(std::make_shared<const OutlookProgram>(market, days, battery, options)) {}
+  explicit OutlookPolicy(std::shared_ptr<const OutlookProgram> program)
+      : program_(std::move(program)) {}
   [[nodiscard]] Action decide(const MarketStep& step, std::size_t, double soc_frac) const override;
   [[nodiscard]] std::string description() const override;
 
  private:
-  OutlookProgram program_;
+  std::shared_ptr<const OutlookProgram> program_;
   mutable std::mutex mutex_;           ///< of the plan
   mutable OutlookProgram::Plan plan_;  ///< the newest; a function of the step alone
 };

@@ -6,6 +6,7 @@
 #include "shared/host/user_error.h"
 #include "workstation/base/binary_file.h"
 #include "workstation/env/context_fit.h"
+#include "workstation/planners/outlook_integers.h"
 #include "workstation/rl/c51.h"
 #include "workstation/rl/transition.h"
 
@@ -46,7 +47,7 @@ ContextClasses take_context(BinaryReader& in) {
   const auto kind = in.take<std::uint32_t>();
   context.kind = static_cast<ContextKind>(kind);
   for (std::int16_t& edge : context.level_edge_eur_per_mwh) edge = in.take<std::int16_t>();
-  if (kind > static_cast<std::uint32_t>(ContextKind::kLevel) || !context.is_valid()) {
+  if (kind > static_cast<std::uint32_t>(ContextKind::kOutlook) || !context.is_valid()) {
     in.damaged("has impossible context classes");
   }
   return context;
@@ -121,6 +122,14 @@ MlpShape teacher_shape(Method method, const Support& support, const TeacherInput
 }
 
 Matrix Teacher::action_values(const MatrixRef& x, MlpTile& tile) const {
+  if (outlook) {
+    if (x.rows() != kNetworkInputs + kActionCount) {
+      fail(
+          "a teacher by outlook has values of moments, not of points of the lattice: it has no "
+          "map, and nothing but distil learns from it");
+    }
+    return x.bottomRows(kActionCount);
+  }
   if (!program) return network_values(x, tile);
   Matrix values = program_values(*this, x);
   if (is_residual()) values += network_values(x, tile);
@@ -164,7 +173,8 @@ void begin_at_zero(Method method, const Support& support, const MlpShape& shape,
   for (int a = 0; a < kActionCount; ++a) mlp.b3[a * support.count + support.count / 2] = 0;
 }
 
-Action TeacherPolicy::decide(const MarketStep& step, std::size_t, double soc_frac) const {
+Action TeacherPolicy::decide(const MarketStep& step, std::size_t index, double soc_frac) const {
+  if (outlook_) return outlook_->decide(step, index, soc_frac);
   if (!teacher_.program || teacher_.is_residual()) {
     teacher_.write_inputs(step, soc_frac, x_.data());
   }
@@ -196,6 +206,7 @@ void save_teacher(const std::filesystem::path& path, const Teacher& teacher) {
   }
   put_parameters(out, teacher.parameters);  // none of a program's
   if (teacher.program) teacher.program->save(out);
+  if (teacher.outlook) teacher.outlook->save(out);
   out.save(path);
 }
 
@@ -227,20 +238,31 @@ Teacher load_teacher(const std::filesystem::path& path) {
   Parameters parameters(shape.parameter_count());
   std::shared_ptr<const StochasticProgram> program;
   take_parameters(in, parameters);
-  if (is_residual || method == Method::kSdp)
+  std::shared_ptr<const OutlookProgram> outlook;
+  if (context.is_outlook()) {
+    if (is_residual || method != Method::kSdp) in.damaged("has a network on the outlook");
+    outlook = std::make_shared<const OutlookProgram>(in);
+  } else if (is_residual || method == Method::kSdp)
     program = std::make_shared<const StochasticProgram>(in);
   in.finish();
-  return {method,
-          support,
-          shape,
-          price_map,
-          std::move(parameters),
-          std::move(provenance),
-          std::move(program),
-          context,
-          {},
-          inputs,
-          std::move(learnt_for)};
+  Teacher teacher{method,
+                  support,
+                  shape,
+                  price_map,
+                  std::move(parameters),
+                  std::move(provenance),
+                  std::move(program),
+                  context,
+                  {},
+                  inputs,
+                  std::move(learnt_for)};
+  if (outlook) set_outlook(std::move(outlook), teacher);
+  return teacher;
+}
+
+void set_outlook(std::shared_ptr<const OutlookProgram> program, Teacher& teacher) {
+  teacher.book = std::make_shared<const OutlookBook>(outlook_integers(*program));
+  teacher.outlook = std::move(program);
 }
 
 Teacher load_teacher(const std::filesystem::path& path, const Risk& risk) {

@@ -9,8 +9,10 @@
 #include <string>
 
 #include "workstation/base/entries.h"
+#include "workstation/env/outlook_book.h"
 #include "workstation/env/policy.h"
 #include "workstation/nn/mlp.h"
+#include "workstation/planners/outlook_program.h"
 #include "workstation/planners/stochastic_program.h"
 #include "workstation/rl/price_map.h"
 #include "workstation/rl/risk.h"
@@ -37,8 +39,13 @@ struct Teacher {
   Risk risk{};               ///< how decisions are made; not part of the file
   TeacherInputs inputs{};    ///< beside the student's five
   Entries learnt_for{};      ///< market, battery, costs and prices; empty: the file does not say
+  /// By outlook: the program that plans on day-ahead prices, instead of `program`, and its plans in
+  /// integers, which give the student its context.
+  std::shared_ptr<const OutlookProgram> outlook = nullptr;
+  std::shared_ptr<const OutlookBook> book = nullptr;
 
   [[nodiscard]] bool is_residual() const { return program != nullptr && method != Method::kSdp; }
+  /// By outlook the values are no function of the inputs: three rows below them hold them.
   /// Action values, means unless `risk` says otherwise, [3 x samples] in units of 1e4 EUR/h for
   /// inputs [5 x samples], or with the teacher's own below them; without, a state has no past.
   [[nodiscard]] Matrix action_values(const MatrixRef& x, MlpTile& tile) const;
@@ -70,6 +77,8 @@ MlpShape teacher_shape(Method method, const Support& support, const TeacherInput
 /// teacher, is damaged, or is of another version.
 void save_teacher(const std::filesystem::path& path, const Teacher& teacher);
 Teacher load_teacher(const std::filesystem::path& path);
+/// Makes `teacher` one by outlook: the program, its integers and the book of their plans.
+void set_outlook(std::shared_ptr<const OutlookProgram> program, Teacher& teacher);
 /// True when the file starts like a teacher's.
 bool is_teacher_file(const std::filesystem::path& path);
 /// load_teacher() that decides by `risk`. Throws UserError when that is not the mean and the
@@ -79,13 +88,15 @@ Teacher load_teacher(const std::filesystem::path& path, const Risk& risk);
 /// Greedy by action value, ties to the lowest action.
 class TeacherPolicy final : public Policy {
  public:
-  explicit TeacherPolicy(const Teacher& teacher)
-      : teacher_(teacher), x_(teacher.input_count(), 1) {}
+  explicit TeacherPolicy(const Teacher& teacher) : teacher_(teacher), x_(teacher.input_count(), 1) {
+    if (teacher.outlook) outlook_.emplace(teacher.outlook);
+  }
   [[nodiscard]] Action decide(const MarketStep& step, std::size_t index,
                               double soc_frac) const override;
 
  private:
   const Teacher& teacher_;
+  std::optional<OutlookPolicy> outlook_;
   mutable Matrix x_;
   mutable MlpTile tile_;
 };

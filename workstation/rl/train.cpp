@@ -351,18 +351,32 @@ class Training {
   long step_ = 0;
 };
 
+/// The program with an outlook, and classes of its plans' break-even prices.
+void fit_outlook(const MarketSteps& market, const BatteryParameters& battery, Teacher& teacher) {
+  if (market.day_ahead == nullptr) {
+    fail(
+        "[train] context = \"outlook\" learns from day-ahead prices: give their file with "
+        "--day-ahead");
+  }
+  const std::vector<MarketDay> training = market.days_of(Split::kTrain);
+  const BatteryParameters mindful =
+      battery_with_shadow_price<OutlookPolicy>(market, training, battery, OutlookOptions{});
+  set_outlook(std::make_shared<const OutlookProgram>(market, training, mindful), teacher);
+  teacher.context = fit_outlook_classes(market, *teacher.book);
+}
+
 /// Nothing to iterate: the program is fitted and solved.
 TrainResult train_program(const MarketSteps& market, const BatteryParameters& battery,
                           const TrainOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  Teacher teacher{Method::kSdp,
-                  {},
-                  {},
-                  PriceMap::fit(observed_training_prices(market)),
-                  {},
-                  "",
-                  fit_program(market, battery, options.context),
-                  fit_context_classes(market, options.context)};
+  Teacher teacher{Method::kSdp, {}, {},     PriceMap::fit(observed_training_prices(market)),
+                  {},           "", nullptr};
+  if (options.context == ContextKind::kOutlook) {
+    fit_outlook(market, battery, teacher);
+  } else {
+    teacher.program = fit_program(market, battery, options.context);
+    teacher.context = fit_context_classes(market, options.context);
+  }
   TeacherPolicy policy(teacher);
   EvaluationOptions evaluation;
   evaluation.battery = battery;
@@ -383,6 +397,11 @@ TrainResult train_teacher(const MarketSteps& market, const BatteryParameters& ba
   }
   require_training_days(market.days_of(Split::kTrain).size());
   if (options.method == Method::kSdp) return train_program(market, battery, options);
+  if (options.context == ContextKind::kOutlook) {
+    fail(
+        "[train] context = \"outlook\" has the stochastic program alone as its teacher: set "
+        "method = \"sdp\"");
+  }
   Training training(market, battery, options);
   training.run(interrupted, checkpoint);
   return training.take_result();

@@ -88,6 +88,11 @@ RunPlan plan_run(const RunRequest& request) {
   if (!there) require_free(plan.folder, request);
   if (known != nullptr) require_unedited_configuration(*known, plan.folder);
   RunConfig config = config_of(request, known, plan.folder);
+  if (config.train.context == ContextKind::kOutlook) {
+    fail(
+        "[train] context = \"outlook\": a run ends with a header, and bess-edge has no day-ahead "
+        "prices to plan on; use train, distil, evaluate and backtest with --day-ahead");
+  }
   request.rule_files.apply(config, config.train.context);
   RunRecord& record = plan.record;
   if (!request.prices.empty()) {

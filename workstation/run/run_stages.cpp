@@ -259,6 +259,10 @@ RunStages::Names RunStages::make_teacher() {
 
 RunStages::Names RunStages::take_teacher() const {
   Teacher taken = load_teacher(record_.teacher_file);
+  if (taken.outlook) {
+    fail("{}: plans on day-ahead prices, which a run does not know: use distil with --day-ahead",
+         record_.teacher_file);
+  }
   taken.learnt_for = learnt_for_of(record_.teacher_file);
   save_teacher(path(kTeacher), taken);
   write_file(path(kTrainingCurve), training_curve_csv({}));

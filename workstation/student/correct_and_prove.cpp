@@ -10,6 +10,7 @@
 #include "shared/host/user_error.h"
 #include "workstation/correction/monotone_distil.h"
 #include "workstation/env/evaluate.h"
+#include "workstation/rules/outlook_rule.h"
 #include "workstation/student/quantise.h"
 #include "workstation/student/student_policy.h"
 #include "workstation/student/verify.h"
@@ -145,7 +146,8 @@ CorrectionResult construct_and_prove(const Teacher& teacher, const Matrix& visit
       next_look = done + (1 - kFirstLook) / kLooks;
       StudentNet net = quantise_student(distiller.parameters(), teacher.price_map, kSaturation);
       net.context = teacher.context;
-      candidates.push_back({net, chooses ? score(net) : 0.0,
+      student.net = net;
+      candidates.push_back({net, chooses ? score(student) : 0.0,
                             epochs_before + static_cast<int>(std::lround(done * epochs))});
     });
     epochs_before += epochs;
@@ -179,8 +181,8 @@ CorrectionResult construct_and_prove(const Teacher& teacher, const Matrix& visit
 
 StudentScore validation_score(const MarketSteps& market, const BatteryParameters& battery,
                               double initial_soc_frac) {
-  return [&market, &battery, initial_soc_frac](const StudentNet& net) {
-    StudentPolicy policy(net);
+  return [&market, &battery, initial_soc_frac](const StudentFile& student) {
+    StudentPolicy policy(student.net, student.outlook);
     return evaluate(market, market.days_of(Split::kValidation), policy,
                     {battery, initial_soc_frac, true})
         .profit_eur_per_day_per_mwh();
@@ -188,9 +190,15 @@ StudentScore validation_score(const MarketSteps& market, const BatteryParameters
 }
 
 CorrectionResult correct_and_prove(const Teacher& teacher, const Matrix& visited,
-                                   const DistilOptions& options,
-                                   const std::atomic<bool>& interrupted, const StudentScore& score,
-                                   const RoundWatch& watch) {
+                                   const DistilOptions& given, const std::atomic<bool>& interrupted,
+                                   const StudentScore& score, const RoundWatch& watch) {
+  DistilOptions options = given;
+  if (teacher.outlook) {
+    if (options.method != CorrectionMethod::kConstruction) {
+      fail("[distil] method = \"layer\" does not know the outlook: use \"construction\"");
+    }
+    options.rules = with_outlook_rule(given.rules);
+  }
   require_consistent(options.rules, options.correction.thresholds, teacher.context.kind);
   if (options.method == CorrectionMethod::kConstruction) {
     StudentFile student{};
@@ -198,6 +206,7 @@ CorrectionResult correct_and_prove(const Teacher& teacher, const Matrix& visited
     student.certificate.thresholds = options.correction.thresholds;
     student.provenance = provenance_of(teacher, options);
     student.learnt_for = teacher.learnt_for;
+    student.outlook = teacher.book;
     return construct_and_prove(teacher, visited, options, interrupted, score, watch, student);
   }
   Distiller distiller(teacher, visited, options);
@@ -221,7 +230,7 @@ CorrectionResult correct_and_prove(const Teacher& teacher, const Matrix& visited
     if (score && options.correct) {  // the last one is taken, whatever it earns
       const bool is_proved = std::holds_alternative<ProvedStudent>(result.verdict);
       result.checkpoints.push_back(
-          {static_cast<int>(round) + 1, epochs_done, score(student.net),
+          {static_cast<int>(round) + 1, epochs_done, score(student),
            is_proved ? CheckpointState::kChosen : CheckpointState::kDisobeys});
     }
     teller.add(round_of(student_of(result.verdict).certificate), result.rounds);

@@ -22,7 +22,7 @@ struct CorrectionResult {
 };
 
 /// What a student earns on validation days.
-using StudentScore = std::function<double(const StudentNet&)>;
+using StudentScore = std::function<double(const StudentFile&)>;
 
 /// Never throws for a failed proof: the verdict says it. With options.correct false there is one
 /// round, no repair and no proof: violations are counted in a sample of the contexts. By

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "shared/host/user_error.h"
 #include "workstation/base/random.h"
 #include "workstation/student/rule_header.h"
 
@@ -126,6 +127,11 @@ std::string certificate_macros(const Certificate& c) {
 }  // namespace
 
 std::string format_weight_header(const ProvedStudent& student) {
+  if (student.file().outlook) {
+    fail(
+        "a student by outlook is not exported: bess-edge has no day-ahead prices to plan on; "
+        "learn with [train] context = \"level\" for it");
+  }
   const StudentNet& net = student.net();
   std::string text = preamble(student.certificate());
   text += fmt::format(

@@ -9,7 +9,7 @@ namespace {
 class GuardedStudent final : public Policy {
  public:
   explicit GuardedStudent(const StudentFile& student)
-      : student_(student.net),
+      : student_(student.net, student.outlook),
         classes_(student.net.context),
         guard_rules_(student.certificate.rules.guard_rules()) {}
 
@@ -36,7 +36,7 @@ class GuardedStudent final : public Policy {
 
 std::unique_ptr<Policy> exported_policy(const StudentFile& student) {
   if (student.certificate.rules.guard_rules().empty()) {
-    return std::make_unique<StudentPolicy>(student.net);
+    return std::make_unique<StudentPolicy>(student.net, student.outlook);
   }
   return std::make_unique<GuardedStudent>(student);
 }

@@ -2,9 +2,12 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <iterator>
 #include <numeric>
 #include <span>
 
+#include "shared/crc32.h"
 #include "shared/host/file.h"
 #include "shared/host/json_reader.h"
 #include "shared/nn/exported_student.h"
@@ -15,7 +18,8 @@ namespace bess {
 namespace {
 
 constexpr const char* kFormat = "bess-student";
-constexpr int kFormatVersion = 4;
+constexpr int kFormatVersion = 5;
+constexpr int kVersionWithoutOutlook = 4;  ///< still written when the context is another
 constexpr int kVersionWithoutRules = 3;    ///< still written when there are none
 constexpr int kVersionWithoutCounts = 1;   ///< it had the thresholds beside the weights
 constexpr int kVersionWithoutContext = 2;  ///< it, too, was by month
@@ -62,15 +66,17 @@ Certificate parse_certificate(const JsonReader& in, const std::string& name) {
 
 ContextClasses parse_context_classes(const JsonReader& in, const std::string& name) {
   ContextClasses classes;
-  const std::string kind = in.text("context");
-  if (kind == context_name(ContextKind::kLevel)) {
-    classes.kind = ContextKind::kLevel;
-  } else if (kind != context_name(ContextKind::kMonth)) {
-    fail("{}: \"context\" is neither \"level\" nor \"month\"", name);
+  const std::string written = in.text("context");
+  const auto* const kind = std::ranges::find(kContextKinds, written, context_name);
+  if (kind == std::end(kContextKinds)) {
+    fail("{}: \"context\" is neither \"level\" nor \"month\" nor \"outlook\"", name);
   }
+  classes.kind = *kind;
   in.wholes("level_edge_eur_per_mwh", std::span(classes.level_edge_eur_per_mwh));
   if (!classes.is_valid()) {
-    fail("{}: \"level_edge_eur_per_mwh\" must rise strictly by level, and be 0 by month", name);
+    fail(
+        "{}: \"level_edge_eur_per_mwh\" must rise strictly by level and outlook, and be 0 by month",
+        name);
   }
   return classes;
 }
@@ -119,6 +125,36 @@ void add_rule_claims(const Certificate& certificate, Json& json) {
   if (violations.empty()) return;  // nobody has looked
   json.set("rule_states", std::span<const std::int64_t>(states));
   json.set("rule_violations", std::span<const std::int64_t>(violations));
+}
+
+std::uint32_t model_hash(const OutlookModel& model) {
+  Crc32 crc;
+  OutlookModel::visit(model, [&crc](const char*, const std::int32_t* values, int count) {
+    for (int i = 0; i < count; ++i) crc.add_integer(values[i]);
+  });
+  return crc.value();
+}
+
+Json outlook_json(const OutlookModel& model) {
+  Json json = Json::object({{"hash", model_hash(model)}});
+  OutlookModel::visit(model, [&json](const char* key, const std::int32_t* values, int count) {
+    json.set(key, std::span(values, static_cast<std::size_t>(count)));
+  });
+  return json;
+}
+
+std::shared_ptr<const OutlookBook> parse_outlook(const JsonReader& in, const std::string& name) {
+  OutlookModel model;
+  OutlookModel::visit(model, [&in](const char* key, std::int32_t* values, int count) {
+    in.wholes(key, std::span(values, static_cast<std::size_t>(count)));
+  });
+  if (in.number("hash") != model_hash(model) || !model.is_sound()) {
+    fail(
+        "{}: damaged: \"outlook\" does not match its hash, or no market is like it; copy it again "
+        "or distil again",
+        name);
+  }
+  return std::make_shared<const OutlookBook>(model);
 }
 
 Json learnt_for_json(const Entries& learnt_for) {
@@ -175,7 +211,9 @@ void save_student(const std::filesystem::path& path, const StudentFile& student)
   check_net(student.net, path.string());
   const bool has_rules = !student.certificate.rules.empty();
   Json json = Json::object({{"format", kFormat},
-                            {"version", has_rules ? kFormatVersion : kVersionWithoutRules},
+                            {"version", student.outlook ? kFormatVersion
+                                        : has_rules     ? kVersionWithoutOutlook
+                                                        : kVersionWithoutRules},
                             {"architecture_hash", student_architecture_hash()},
                             {"weights_hash", student_weights_hash(student.net)},
                             {"provenance", student.provenance},
@@ -185,6 +223,7 @@ void save_student(const std::filesystem::path& path, const StudentFile& student)
   if (has_rules) add_rule_claims(student.certificate, json);
   json.set("level_edge_eur_per_mwh", std::span(student.net.context.level_edge_eur_per_mwh));
   visit_arrays(student.net, [&json](const char* key, auto values) { json.set(key, values); });
+  if (student.outlook) json.set("outlook", outlook_json(student.outlook->model()));
   write_file(path, json.text());
 }
 
@@ -200,8 +239,9 @@ StudentFile parse_student(const std::string& text, const std::string& name) {
   const JsonReader in(json.value(), name, "a student file");
   if (in.text("format") != kFormat) fail("{}: \"format\" is not \"{}\"", name, kFormat);
   const double version = in.number("version");
-  if (version != kFormatVersion && version != kVersionWithoutRules &&
-      version != kVersionWithoutContext && version != kVersionWithoutCounts) {
+  if (version != kFormatVersion && version != kVersionWithoutOutlook &&
+      version != kVersionWithoutRules && version != kVersionWithoutContext &&
+      version != kVersionWithoutCounts) {
     fail("{}: version {}, this program reads {} to {}; distil again", name, version,
          kVersionWithoutCounts, kFormatVersion);
   }
@@ -220,9 +260,10 @@ StudentFile parse_student(const std::string& text, const std::string& name) {
   } else {
     student.certificate = parse_certificate(in.object("certificate"), name);
   }
-  if (version == kFormatVersion) {
+  if (version >= kVersionWithoutOutlook) {
     parse_rule_claims(json.value(), in, name, student.net.context.kind, student.certificate);
   }
+  if (student.net.context.is_outlook()) student.outlook = parse_outlook(in.object("outlook"), name);
   student.provenance = in.text("provenance");
   student.learnt_for = parse_learnt_for(json.value()["learnt_for"], name);
   return student;

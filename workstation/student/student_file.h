@@ -3,11 +3,13 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 
 #include "shared/host/json.h"
 #include "shared/nn/student_net.h"
 #include "workstation/base/entries.h"
+#include "workstation/env/outlook_book.h"
 #include "workstation/student/certificate.h"
 
 namespace bess {
@@ -17,6 +19,8 @@ struct StudentFile {
   Certificate certificate;  ///< a claim: prove() finds out whether it holds
   std::string provenance;   ///< one line: prices, teacher, seed, options
   Entries learnt_for{};     ///< as the teacher was; empty: the file does not say
+  /// By outlook: the plans that give the net its context.
+  std::shared_ptr<const OutlookBook> outlook = nullptr;
 };
 
 /// Written beside and renamed.

@@ -205,13 +205,14 @@ TEST(CorrectAndProve, ByConstructionTheThresholdsAreLearntAndTheStudentEarns) {
                         validation_score(school().market, {}, 0.5));
   ASSERT_TRUE(std::holds_alternative<ProvedStudent>(result.verdict));
   EXPECT_LE(result.rounds.size(), 3U);
-  const StudentNet& net = student_of(result.verdict).net;
+  const StudentFile& file = student_of(result.verdict);
+  const StudentNet& net = file.net;
   EXPECT_EQ(net.context, school().teacher.context);
   const auto chosen =
       std::ranges::find(result.checkpoints, CheckpointState::kChosen, &StudentCheckpoint::state);
   ASSERT_NE(chosen, result.checkpoints.end());
   EXPECT_EQ(chosen->validation_eur_per_day_per_mwh,
-            validation_score(school().market, {}, 0.5)(net));
+            validation_score(school().market, {}, 0.5)(file));
   for (const StudentCheckpoint& other : result.checkpoints) {
     if (other.round != chosen->round) {
       EXPECT_EQ(other.state, CheckpointState::kDisobeys);

@@ -6,6 +6,7 @@
 
 #include "shared/host/user_error.h"
 #include "tests/support/market_series.h"
+#include "tests/support/outlook_market.h"
 #include "workstation/env/evaluate.h"
 #include "workstation/market/model/quarter_hours_to_minutes.h"
 #include "workstation/market/model/simulated_day_ahead.h"
@@ -15,27 +16,6 @@
 
 namespace bess {
 namespace {
-
-struct OutlookMarket {
-  MinuteSeries minutes;
-  DayAheadSeries day_ahead;
-
-  [[nodiscard]] MarketSteps steps(int published_min = kDayAheadPublishedMin) const {
-    return steps_with(day_ahead, published_min);
-  }
-  [[nodiscard]] MarketSteps steps_with(const DayAheadSeries& other,
-                                       int published_min = kDayAheadPublishedMin) const {
-    MarketSteps market = make_market_steps(minutes, {});
-    attach_day_ahead(market, std::make_shared<DayAheadPublication>(other, published_min));
-    return market;
-  }
-};
-
-OutlookMarket outlook_market(const LocalDate& start, int days, std::uint64_t seed = 2) {
-  const auto quarter_hours = simulate_quarter_hours(
-      {local_midnight_utc_s(start), local_midnight_utc_s(add_days(start, days))}, seed);
-  return {minutes_on_quarter_hours(quarter_hours, seed), simulate_day_ahead(quarter_hours, seed)};
-}
 
 /// What the auction of the last hours knows best: day-ahead prices that ARE what will be settled,
 /// by hour.

@@ -167,7 +167,7 @@ TEST(StudentFile, DamageIsRefused) {
       {"other JSON", "{\"a\": 1}", "\"format\" is missing"},
       {"other format", with(good, "format", "\"bess-teacher\""), "\"format\" is not"},
       {"format of another type", with(good, "format", "3"), "not a text"},
-      {"newer version", with(good, "version", "5"), "version 5"},
+      {"newer version", with(good, "version", "6"), "version 6"},
       {"rules are missing", with(good, "version", "4"), "rules"},
       {"unknown context", with(good, "context", "\"week\""), "neither \"level\" nor \"month\""},
       {"by level without edges", with(good, "context", "\"level\""), "rise strictly by level"},

@@ -6,9 +6,10 @@
 #include <cstdint>
 #include <limits>
 
+#include "shared/units_and_limits.h"
+
 namespace bess {
 
-inline constexpr int kSecondsPerQuarterHour = 900;
 inline constexpr double kNotPublished = std::numeric_limits<double>::quiet_NaN();
 
 inline bool is_published(double value) { return !std::isnan(value); }

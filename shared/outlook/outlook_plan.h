@@ -1,0 +1,94 @@
+// The plan of a day on its day-ahead prices, in integers: the workstation and the edge find the
+// same from the same prices, to the bit. What a student is given of it is one number, the
+// break-even price: the newest price at which the plan would as soon charge as discharge, at this
+// moment and this SoC.
+//
+//   ahead[b][i] = discount * sum over b' of P(b' | b, phase) value[b'][i]
+//   value[b][i] = max over actions of  ahead[b](SoC after it from point i) - cost of the exchange
+//
+// by backward induction from the end of tomorrow, where stored energy is worth what is usual there,
+// to the midnight that today began with. Of the bins of a step and SoC those up to a cut charge
+// rather than discharge; the cut is the one that gives away least, and the break-even price lies
+// between the bins beside it. It is held from rising with SoC, so that a policy which never charges
+// less at a higher break-even price never charges more at a higher SoC either.
+#pragma once
+
+#include <cstdint>
+
+#include "shared/outlook/outlook_model.h"
+
+namespace bess {
+
+inline constexpr int kLongestDayQuarterHours = 100;
+inline constexpr int kLongestDaySteps =
+    kLongestDayQuarterHours * kMinutesPerQuarterHour / kMinutesPerStep;
+inline constexpr std::int32_t kDayAheadUnknown = INT32_MIN;
+/// Plans are made for these levels apart; what is between is one slope away.
+inline constexpr std::int32_t kPlannedLevelCenti = 1600;
+
+constexpr std::int32_t planned_level_centi(std::int32_t level_centi) {
+  const std::int32_t half = kPlannedLevelCenti / 2;
+  const std::int32_t shifted = level_centi + half;
+  const std::int32_t whole = shifted / kPlannedLevelCenti;
+  return (whole - (shifted % kPlannedLevelCenti < 0 ? 1 : 0)) * kPlannedLevelCenti;
+}
+
+/// The three local days around now, and what is known of their day-ahead prices.
+struct OutlookDays {
+  std::int64_t yesterday_utc_s = 0;  ///< local midnights
+  std::int64_t today_utc_s = 0;
+  std::int64_t tomorrow_utc_s = 0;
+  std::int64_t end_utc_s = 0;
+  /// By quarter-hour from `yesterday_utc_s` on, hundredths of EUR/MWh or kDayAheadUnknown.
+  std::int32_t day_ahead_centi[3 * kLongestDayQuarterHours] = {};
+
+  [[nodiscard]] int index_of(std::int64_t utc_s) const {
+    return static_cast<int>((utc_s - yesterday_utc_s) / kSecondsPerQuarterHour);
+  }
+  friend bool operator==(const OutlookDays&, const OutlookDays&) = default;
+};
+
+/// The midnights around an instant, no price known. Needs the market's time zone.
+OutlookDays outlook_days_around(std::int64_t utc_s);
+
+class OutlookPlan {
+ public:
+  /// For a level that planned_level_centi() gives. Bounded: at most 1,500 steps, nothing allocated.
+  void make(const OutlookModel& model, const OutlookDays& days, std::int32_t level_centi);
+
+  [[nodiscard]] bool serves(std::int64_t utc_s) const {
+    return utc_s >= today_utc_s_ && utc_s < tomorrow_utc_s_;
+  }
+  /// Hundredths of EUR/MWh. Precondition: the plan serves the instant. Never rises with SoC.
+  [[nodiscard]] std::int32_t break_even_centi(const OutlookModel& model, std::int64_t utc_s,
+                                              std::int32_t soc_e4, std::int32_t level_centi) const;
+
+ private:
+  static constexpr int kBins = OutlookModel::kBins;
+  static constexpr int kPoints = OutlookModel::kSocPoints;
+  static constexpr int kQuarterHoursMax = 2 * kLongestDayQuarterHours;
+
+  /// Where a full step leads from a point of the grid; near the ends, what still fits.
+  struct Move {
+    std::int32_t to;          ///< lower neighbour
+    std::int32_t weight_q15;  ///< of the upper one
+    std::int32_t share_q15;   ///< of the full step
+  };
+  void find_usual(const OutlookModel& model, const OutlookDays& days);
+  void find_moves(const OutlookModel& model);
+  void step_back(const OutlookModel& model, std::int64_t utc_s);
+  void find_break_even(const OutlookModel& model, std::int64_t utc_s);
+  [[nodiscard]] std::int32_t usual_centi(std::int64_t utc_s) const;
+
+  std::int64_t today_utc_s_ = 0, tomorrow_utc_s_ = 0, end_utc_s_ = 0;
+  std::int32_t level_centi_ = 0;
+  /// Tenths of EUR/MWh.
+  std::int16_t break_even_[kLongestDaySteps][kPoints] = {};
+  // What is needed while a plan is made.
+  std::int32_t usual_[kQuarterHoursMax] = {};
+  Move charge_[kPoints] = {}, discharge_[kPoints] = {};
+  std::int32_t value_[kBins][kPoints] = {};  ///< hundredths of a cent a MWh of capacity
+  std::int32_t lead_[kBins][kPoints] = {};   ///< of charging over discharging
+};
+
+}  // namespace bess

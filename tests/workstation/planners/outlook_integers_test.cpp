@@ -1,0 +1,119 @@
+// The plan in integers is the program's: its break-even prices divide charging from discharging
+// where the program's own values do, and a policy's book of plans gives them whatever is asked
+// first.
+#include "workstation/planners/outlook_integers.h"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "tests/support/market_series.h"
+#include "tests/support/outlook_market.h"
+#include "workstation/base/random.h"
+#include "workstation/env/context_fit.h"
+#include "workstation/env/outlook_book.h"
+
+namespace bess {
+namespace {
+
+class OutlookIntegers : public testing::Test {
+ protected:
+  OutlookIntegers()
+      : market_(outlook_market({2025, 3, 1}, 40)),
+        steps_(market_.steps()),
+        program_(steps_, {steps_.days.begin(), steps_.days.begin() + 26}, {}),
+        model_(outlook_integers(program_)),
+        book_(model_) {}
+
+  OutlookMarket market_;
+  MarketSteps steps_;
+  OutlookProgram program_;
+  OutlookModel model_;
+  OutlookBook book_;
+};
+
+TEST_F(OutlookIntegers, DivideChargingFromDischargingWhereTheProgramDoes) {
+  Random random(3);
+  OutlookProgram::Plan plan;
+  double lost_eur = 0, at_stake_eur = 0;
+  for (std::size_t d = 26; d < steps_.days.size(); d += 3) {
+    for (const MarketStep& step : steps_.of(steps_.days[d])) {
+      if (!plan.serves(step)) plan = program_.plan_of(step);
+      const double soc_frac = 0.15 + 0.8 * random.uniform();
+      const auto worth = program_.action_values(step, soc_frac, plan);
+      const bool charges =
+          step.observed_eur_per_mwh * kCentiPerEur < book_.break_even_centi(step, soc_frac);
+      at_stake_eur += std::abs(worth[2] - worth[0]);
+      lost_eur += std::max(0.0, charges ? worth[0] - worth[2] : worth[2] - worth[0]);
+    }
+  }
+  EXPECT_LT(lost_eur, 0.02 * at_stake_eur);
+  EXPECT_GT(at_stake_eur, 1000);
+}
+
+TEST_F(OutlookIntegers, TheBookAnswersTheSameInAnyOrderAndFromThreads) {
+  const MarketDay& day = steps_.days[29];  // of a change of clocks
+  std::vector<std::int32_t> forward;
+  for (const MarketStep& step : steps_.of(day)) {
+    forward.push_back(book_.break_even_centi(step, 0.4));
+  }
+  const OutlookBook other(model_);
+  std::vector<std::int32_t> backward(forward.size());
+  const auto ask = [&](std::size_t first) {
+    for (std::size_t i = first; i < forward.size(); i += 2) {
+      const std::size_t at = forward.size() - 1 - i;
+      backward[at] = other.break_even_centi(steps_.of(day)[at], 0.4);
+    }
+  };
+  std::thread even(ask, 0);
+  ask(1);
+  even.join();
+  EXPECT_EQ(forward, backward);
+}
+
+// What is published at 13:00 changes the plan then, and not before. What tomorrow is worth shows
+// late: until then there is time to fill the battery for it.
+TEST_F(OutlookIntegers, TheBookKnowsTomorrowFromOneOClockOn) {
+  DayAheadSeries turned = market_.day_ahead;
+  for (std::size_t q = 0; q < turned.size(); ++q) {
+    if (turned.utc_s(q) >= local_midnight_utc_s({2025, 3, 30})) turned.eur_per_mwh[q] += 400;
+  }
+  const MarketSteps other = market_.steps_with(turned);
+  const OutlookBook other_book(model_);
+  const std::int64_t one_o_clock = utc_of("2025-03-29T12:00:00Z");
+  int differ = 0;
+  for (std::size_t i = 0; i < steps_.steps.size(); ++i) {
+    const MarketStep& step = steps_.steps[i];
+    if (step.utc_s < one_o_clock - 20'000 || step.utc_s > one_o_clock + 39'000) continue;
+    const bool same =
+        book_.break_even_centi(step, 0.5) == other_book.break_even_centi(other.steps[i], 0.5);
+    ASSERT_TRUE(same || step.utc_s >= one_o_clock) << step.utc_s - one_o_clock;
+    differ += same ? 0 : 1;
+  }
+  EXPECT_GT(differ, 30);
+}
+
+TEST_F(OutlookIntegers, AMarketWithoutPricesHasAPlanToo) {
+  const MarketSteps without = make_market_steps(market_.minutes, {});
+  const std::int32_t price = book_.break_even_centi(without.steps[20'000], 0.5);
+  EXPECT_LT(std::abs(price), 1'000'00);
+}
+
+TEST_F(OutlookIntegers, EachClassHoldsAsManyBreakEvenPrices) {
+  const ContextClasses classes = fit_outlook_classes(steps_, book_);
+  EXPECT_TRUE(classes.is_valid());
+  std::array<int, kContextClassCount> count{};
+  Random random(8);
+  int all = 0;
+  for (const MarketDay& day : steps_.days_of(Split::kTrain)) {
+    for (const MarketStep& step : steps_.of(day)) {
+      const std::int32_t price = book_.break_even_centi(step, 0.1 + 0.9 * random.uniform());
+      ++count[static_cast<std::size_t>(classes.class_of(step.month, price) - 1)];
+      ++all;
+    }
+  }
+  for (const int in_class : count) EXPECT_NEAR(in_class, all / 12.0, all / 40.0);
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,105 @@
+#include "workstation/correction/outlook_lessons.h"
+
+#include <vector>
+
+#include "shared/host/user_error.h"
+#include "workstation/rl/transition.h"
+
+namespace bess {
+namespace {
+
+constexpr std::uint64_t kSeedOutlook = 14;
+constexpr int kPasses = 4;
+constexpr double kExploration = 0.1;
+constexpr double kElsewhereShare = 0.25;  ///< of lessons at another price and SoC
+constexpr double kElsewhereEurPerMwh = 200;
+constexpr int kRows = kNetworkInputs + kActionCount;
+
+/// A day traded once, from its own SoC, at prices that are moved as a whole.
+struct Pass {
+  double soc_frac;
+  double shift_eur_per_mwh;
+};
+
+class LessonBook {
+ public:
+  LessonBook(const Teacher& teacher, const BatteryParameters& battery)
+      : teacher_(teacher), per_eur_(learned_per_eur(battery)) {}
+
+  /// Adds a lesson; returns what the program would do.
+  Action add(const MarketStep& step, double soc_frac, double shift_eur_per_mwh,
+             OutlookProgram::Plan& plan) {
+    const auto worth_eur = teacher_.outlook->action_values(step, soc_frac, plan);
+    const std::int32_t break_even_centi = teacher_.book->break_even_centi(step, soc_frac);
+    const std::int16_t context_class =
+        teacher_.context.class_of(step.month, break_even_centi + price_centi_of(shift_eur_per_mwh));
+    float x[kRows];
+    write_input(network_context(step.minute_of_quarter_hour, step.quarter_hour, context_class,
+                                teacher_.price_map(step.observed_eur_per_mwh + shift_eur_per_mwh)),
+                soc_frac, x);
+    for (int a = 0; a < kActionCount; ++a) {
+      x[kNetworkInputs + a] = static_cast<float>((worth_eur[a] - worth_eur[1]) * per_eur_);
+    }
+    all_.insert(all_.end(), x, x + kRows);
+    return argmax_action(worth_eur.data());
+  }
+  [[nodiscard]] Matrix matrix() const {
+    return Eigen::Map<const Matrix>(all_.data(), kRows,
+                                    static_cast<Eigen::Index>(all_.size() / kRows));
+  }
+
+ private:
+  const Teacher& teacher_;
+  double per_eur_;
+  std::vector<float> all_;
+};
+
+MarketStep elsewhere(MarketStep step, Random& random) {
+  if (random.uniform() < 0.5) {
+    step.observed_eur_per_mwh = kLatticePriceMinEurPerMwh + random.uniform() * (kPriceCount - 1);
+  } else {
+    step.observed_eur_per_mwh += kElsewhereEurPerMwh * random.normal();
+  }
+  return step;
+}
+
+}  // namespace
+
+Matrix outlook_lessons(const Teacher& teacher, const MarketSteps& market,
+                       const BatteryParameters& battery, const DistilOptions& options) {
+  if (market.day_ahead == nullptr) {
+    fail("this teacher plans on day-ahead prices: give their file to distil with --day-ahead");
+  }
+  Random random(derive_seed(options.seed, kSeedOutlook));
+  LessonBook book(teacher, battery);
+  const double window_frac = battery.soc_max_frac - battery.soc_min_frac;
+  for (const MarketDay& day : market.days_of(Split::kTrain)) {
+    std::vector<Pass> passes;
+    for (int p = 0; p < kPasses; ++p) {
+      const double soc_frac = battery.soc_min_frac + random.uniform() * window_frac;
+      passes.push_back(
+          {soc_frac, p == 0 ? 0.0 : options.level_shift_eur_per_mwh * random.normal()});
+    }
+    OutlookProgram::Plan plan;
+    for (const MarketStep& step : market.of(day)) {
+      if (!plan.serves(step)) plan = teacher.outlook->plan_of(step);
+      for (Pass& pass : passes) {
+        Action action = book.add(step, pass.soc_frac, pass.shift_eur_per_mwh, plan);
+        if (random.uniform() < kElsewhereShare) {
+          const MarketStep other = elsewhere(step, random);
+          book.add(other, battery.soc_min_frac + random.uniform() * window_frac,
+                   pass.shift_eur_per_mwh, plan);
+        }
+        if (random.uniform() < kExploration) {
+          action = static_cast<Action>(random.index(kActionCount));
+        }
+        pass.soc_frac = battery_step(battery, pass.soc_frac,
+                                     power_sign(action) * battery.power_w_max, kHoursPerStep)
+                            .soc_frac;
+      }
+    }
+  }
+  return book.matrix();
+}
+
+}  // namespace bess
