@@ -82,6 +82,12 @@ TrialStep next_of_comparison(const TrialState& state, const TrialUnit& unit,
   if (state.other > 0 && state.same > 0 && state.passed < kPassedMax) {
     return {TrialPhase::kTrying, ""};
   }
+  // It did not have it: by chance, the first time.
+  const bool may_be_chance =
+      cause != TrialCause::kNone && cause != TrialCause::kNoStart && state.worse + 1 < kWorseMax;
+  if (state.other > 0 && state.same == 0 && may_be_chance) {
+    return {TrialPhase::kTrying, ""};
+  }
   if (state.other > 0) {
     return {TrialPhase::kGoingBack, joined({state.reason, "; not so ", state.previous})};
   }

@@ -70,7 +70,9 @@ struct TrialLimits {
   [[nodiscard]] std::int64_t window() const { return good_cycles + good_cycles / 5; }
 };
 inline constexpr std::int64_t kStandingCycles = 5;  ///< so many in a row: not a passing trouble
-inline constexpr std::int64_t kPassedMax = 3;   ///< so often a trouble may end while one compares
+inline constexpr std::int64_t kPassedMax = 3;  ///< so often a trouble may end while one compares
+/// A trouble of the site may end by chance just when the version before starts; not twice.
+inline constexpr std::int64_t kWorseMax = 2;
 inline constexpr std::int64_t kSameCycles = 3;  ///< of the version before, with that trouble too
 
 /// All that is kept of an upgrade (trial_state.h), each change of it on the disk before it is acted
@@ -98,6 +100,7 @@ struct TrialState {
   std::int64_t same = 0;  ///< cycles of the version before with bad_cause, while comparing
   std::int64_t other = 0;
   std::int64_t passed = 0;  ///< comparisons in which the trouble ended by itself
+  std::int64_t worse = 0;   ///< comparisons in which the version before did not have it at all
   std::int64_t boots = 0;
   std::int64_t restarts =
       -1;                 ///< that systemd had counted at the last good cycle; -1 = not seen yet

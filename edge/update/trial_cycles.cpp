@@ -128,6 +128,11 @@ bool count_new_cycles(TrialState& state, const std::vector<SeenCycle>& cycles,
   }
   bool is_good = false;
   for (; next != cycles.end(); ++next) {
+    // The process before has left no last word: it died, and its successor has made it good.
+    const bool has_before = next != cycles.begin() && std::prev(next)->is_cycle;
+    const bool has_died = has_before && next->is_cycle && next->number <= std::prev(next)->number;
+    const bool is_on_trial = state.is_fresh && state.phase == TrialPhase::kTrying;
+    if (is_on_trial && has_died) count_cycle(state, {}, limits);
     // A process that was stopped before its first cycle leaves the number 0.
     if (!state.is_fresh && next->number <= std::max<std::int64_t>(before, 1)) state.is_fresh = true;
     if (!state.is_fresh) before = next->number;

@@ -314,7 +314,7 @@ void Trial::count_version_before(const std::string& running, const std::string& 
   if (mark.empty()) mark_newest_cycle(machine_.store().program_of(next));
   state_.window.clear();
   state_.bad_cause.clear();
-  state_.good_cycles = state_.passed = 0;
+  state_.good_cycles = state_.passed = state_.worse = 0;
   if (running != machine_.store().pointed("confirmed") && state_.needed_cycles > 0) return;
   state_.shared.clear();
   state_.needed_cycles = needed_good_cycles(before, limits);
@@ -356,9 +356,11 @@ bool Trial::take(const TrialStep& step) {
     case TrialPhase::kTrying:
       report(JournalLevel::kNotice, "%s %s (%s): %s goes on with its trial",
              state_.previous.c_str(),
-             step.cause == TrialCause::kNone ? "had it too, and it is over" : "is no better",
+             step.cause != TrialCause::kNone ? "is no better"
+             : state_.same > 0               ? "had it too, and it is over"
+                                             : "did not have it, maybe by chance",
              state_.bad_cause.c_str(), version.c_str());
-      if (step.cause == TrialCause::kNone) ++state_.passed;
+      if (step.cause == TrialCause::kNone) ++(state_.same > 0 ? state_.passed : state_.worse);
       restart_account(state_);
       state_.bad_cause = trial_cause_name(step.cause);
       share(state_, step.cause);

@@ -42,11 +42,11 @@ struct NumberKey {
 };
 /// `needed` is the last line: a text of an older program, without checksum, is whole when it ends
 /// with it.
-constexpr NumberKey kNumbers[] = {{"good", &S::good_cycles}, {"elapsed_s", &S::elapsed_s},
-                                  {"rest_s", &S::rest_s},    {"bad_run", &S::bad_run},
-                                  {"same", &S::same},        {"other", &S::other},
-                                  {"boots", &S::boots},      {"restarts", &S::restarts},
-                                  {"passed", &S::passed},    {"needed", &S::needed_cycles}};
+constexpr NumberKey kNumbers[] = {
+    {"good", &S::good_cycles}, {"elapsed_s", &S::elapsed_s}, {"rest_s", &S::rest_s},
+    {"bad_run", &S::bad_run},  {"same", &S::same},           {"other", &S::other},
+    {"boots", &S::boots},      {"restarts", &S::restarts},   {"passed", &S::passed},
+    {"worse", &S::worse},      {"needed", &S::needed_cycles}};
 struct FlagKey {
   std::string_view key;
   bool S::*member;

@@ -125,6 +125,23 @@ TEST(TrialCycles, AProcessThatWasStoppedBeforeItsFirstCycleHidesNoneOfTheNext) {
   }
 }
 
+TEST(TrialCycles, AProcessThatDiesIsACycleLostThoughTheNextOneGoesOn) {
+  TrialState state;
+  state.phase = TrialPhase::kTrying;
+  std::vector<CycleRecord> log;
+  const auto add = [&](std::int64_t number, bool is_end = false) {
+    log.push_back(good_cycle(number));
+    log.back().utc_s = 1'700'000'040 + 120 * static_cast<std::int64_t>(log.size());
+    if (is_end) log.back().mode = Mode::kStopping;
+    static_cast<void>(count_new_cycles(state, cycles_of_csv(csv_of(log), true), {}));
+  };
+  for (const std::int64_t number : {1, 2, 1, 1}) add(number);
+  EXPECT_EQ(state.window, "110101");
+  add(1, true);  // and one that is asked to end leaves its last word
+  add(1);
+  EXPECT_EQ(state.window, "1101011");
+}
+
 TEST(TrialCycles, AfterAFirstInstallationEverythingCounts) {
   TrialState state;
   state.phase = TrialPhase::kTrying;
