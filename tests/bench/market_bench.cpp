@@ -2,8 +2,10 @@
 #include "tests/bench/registry.h"
 #include "tests/bench/simulated_year.h"
 #include "workstation/env/evaluate.h"
+#include "workstation/env/outlook_book.h"
 #include "workstation/market/model/simulated_day_ahead.h"
 #include "workstation/planners/foresight.h"
+#include "workstation/planners/outlook_integers.h"
 #include "workstation/planners/outlook_program.h"
 #include "workstation/planners/tabular.h"
 
@@ -63,6 +65,21 @@ void register_market_benchmarks() {
       const MarketStep& step = market.of(market.days[day]).front();
       OutlookProgram::Plan plan = program.plan_of(step);
       benchmark::DoNotOptimize(program.action_values(step, 0.5, plan));
+      day = day + 1 < market.days.size() ? day + 1 : 60;
+    }
+  });
+  // The plan that a student by outlook decides with, in the integers of the edge.
+  add_benchmark("outlook-integer-plan", benchmark::kMillisecond, 5, [](benchmark::State& state) {
+    const MarketSteps market = year_with_outlook();
+    const std::vector<MarketDay> training(market.days.begin(), market.days.begin() + 60);
+    const OutlookModel model =
+        outlook_integers(OutlookProgram(market, training, BatteryParameters{}));
+    const auto plan = std::make_unique<OutlookPlan>();
+    std::size_t day = 60;
+    for (auto _ : state) {
+      const MarketStep& step = market.of(market.days[day]).front();
+      plan->make(model, outlook_days_of(step), planned_level_centi(step.level_centi_eur_per_mwh));
+      benchmark::DoNotOptimize(plan.get());
       day = day + 1 < market.days.size() ? day + 1 : 60;
     }
   });

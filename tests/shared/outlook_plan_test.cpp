@@ -179,7 +179,7 @@ TEST_F(OutlookPlanTest, IsTheSameToTheBitEverywhere) {
   for (const CivilTime& noon : {CivilTime{2025, 3, 29, 12, 0, 0}, CivilTime{2025, 3, 30, 12, 0, 0},
                                 CivilTime{2025, 10, 26, 12, 0, 0}}) {
     OutlookDays days = outlook_days_around(utc_from_civil(noon));
-    for (std::size_t q = 0; q < std::size(days.day_ahead_centi); ++q) {
+    for (std::uint64_t q = 0; q < std::size(days.day_ahead_centi); ++q) {
       if (q % 17 != 0) {
         days.day_ahead_centi[q] = static_cast<std::int32_t>(q * q * 2'654'435'761U % 25'000) - 4000;
       }
