@@ -1,10 +1,74 @@
 #include "edge/account/account_days.h"
 
-#include <map>
+#include <cmath>
 
+#include "edge/control/quarter_hour_energy.h"
 #include "shared/local_time.h"
+#include "shared/units_and_limits.h"
 
 namespace bess {
+namespace {
+
+/// What flowed in one quarter-hour, and the last price of it that was seen.
+struct QuarterHour {
+  double charged_wh = 0;
+  double discharged_wh = 0;
+  bool has_price = false;
+  std::int64_t price_minute_utc_s = -1;  ///< -1: it is of a decision, none of its own was seen
+  double indicative_eur_per_mwh = 0;
+
+  [[nodiscard]] double net_mwh() const { return (charged_wh - discharged_wh) / kWattsPerMegawatt; }
+  [[nodiscard]] double contract_eur(const Contract& contract, double eur_per_mwh) const {
+    return contract.costs_eur(charged_wh / kWattsPerMegawatt, eur_per_mwh) +
+           contract.costs_eur(-discharged_wh / kWattsPerMegawatt, eur_per_mwh);
+  }
+};
+
+using QuarterHours = std::map<std::int64_t, QuarterHour>;  ///< by its start
+
+std::int64_t start_of_quarter(std::int64_t utc_s) { return quarter_hour_of(utc_s) * kQuarterHourS; }
+
+void note_price(const ExchangeSample& sample, QuarterHours& quarters) {
+  if (!sample.has_price) return;
+  const auto found = quarters.find(start_of_quarter(sample.price_minute_utc_s));
+  if (found == quarters.end()) return;
+  QuarterHour& quarter = found->second;
+  if (sample.price_minute_utc_s < quarter.price_minute_utc_s) return;
+  quarter.has_price = true;
+  quarter.price_minute_utc_s = sample.price_minute_utc_s;
+  quarter.indicative_eur_per_mwh =
+      static_cast<double>(sample.price_centi_eur_per_mwh) / kCentiPerEur;
+}
+
+QuarterHourMoney money_of(std::int64_t start_utc_s, const QuarterHour& quarter,
+                          const MoneyTerms& terms) {
+  QuarterHourMoney money{.quarter_hours = 1};
+  const SettledQuarter* const settled = terms.settled.find(start_utc_s);
+  money.published = settled != nullptr ? 1 : 0;
+  money.validated = settled != nullptr && settled->state == PriceState::kValidated ? 1 : 0;
+  if (settled == nullptr && !quarter.has_price) {
+    money.unpriced = 1;
+    return money;
+  }
+  const double price = settled != nullptr ? settled->eur_per_mwh : quarter.indicative_eur_per_mwh;
+  money.billed_eur = 0.0 - quarter.net_mwh() * price;
+  money.contract_eur = quarter.contract_eur(terms.contract, price);
+  return money;
+}
+
+/// The newest record that is older than `day`, or the oldest of all; 0: the log is empty.
+std::uint64_t number_before(const LogReader& log, std::int32_t day) {
+  CycleRecord record;
+  std::uint64_t oldest = 0;
+  for (std::uint64_t n = log.newest_number(); n >= log.oldest_number() && n > 0; --n) {
+    if (!log.read(n, record)) continue;
+    oldest = n;
+    if (record.has_measurement && local_day_at(record.utc_s) < day) break;
+  }
+  return oldest;
+}
+
+}  // namespace
 
 std::int32_t local_day_at(std::int64_t utc_s) { return local_day_of(local_minute_of(utc_s)); }
 
@@ -19,17 +83,57 @@ void for_each_record(const LogReader& log, std::int32_t first_day, std::int32_t 
   }
 }
 
-std::vector<DayAccount> accounts_of_days(const LogReader& log, std::int32_t first_day,
-                                         std::int32_t last_day) {
-  std::map<std::int32_t, DayAccount> days;
-  for_each_record(log, first_day, last_day, [&](std::int32_t day, const CycleRecord& record) {
-    days.try_emplace(day, day).first->second.add(record);
+void DayBook::add(const CycleRecord& as_logged) {
+  CycleRecord record = as_logged;
+  if (record.measurement.capacity_wh <= 0) record.measurement.capacity_wh = terms_.capacity_wh;
+  const std::int32_t day = local_day_at(record.utc_s);
+  if (holds(day)) days_.try_emplace(day, day).first->second.add(record);
+  ExchangeSample sample;
+  if (sample_of(record, sample)) samples_.push_back(sample);
+}
+
+std::vector<DayAccount> DayBook::accounts() const {
+  std::map<std::int32_t, DayAccount> days = days_;
+  QuarterHours quarters;
+  for_each_exchange(samples_, [&](const Exchange& exchange) {
+    const auto utc_s = static_cast<std::int64_t>(exchange.from_utc_s);
+    const std::int32_t day = local_day_at(utc_s);
+    const bool is_nothing = !exchange.is_seen && exchange.energy_wh == 0;
+    if (!holds(day) || is_nothing) return;
+    days.try_emplace(day, day).first->second.add(exchange);
+    QuarterHour& quarter = quarters[start_of_quarter(utc_s)];
+    (exchange.energy_wh > 0 ? quarter.charged_wh : quarter.discharged_wh) +=
+        std::fabs(exchange.energy_wh);
+    if (!exchange.has_price || quarter.has_price) return;
+    quarter.has_price = true;
+    quarter.indicative_eur_per_mwh =
+        static_cast<double>(exchange.price_centi_eur_per_mwh) / kCentiPerEur;
   });
+  for (const ExchangeSample& sample : samples_) note_price(sample, quarters);
+  std::map<std::int32_t, QuarterHourMoney> money;
+  for (const auto& [start_utc_s, quarter] : quarters) {
+    money[local_day_at(start_utc_s)].add(money_of(start_utc_s, quarter, terms_));
+  }
   std::vector<DayAccount> accounts;
-  for (const auto& [day, account] : days) {
+  for (auto& [day, account] : days) {
+    account.set_money(money[day]);
     if (!account.is_empty()) accounts.push_back(account);
   }
   return accounts;
+}
+
+std::vector<DayAccount> accounts_of_days(const LogReader& log, std::int32_t first_day,
+                                         std::int32_t last_day, const MoneyTerms& terms) {
+  DayBook book(first_day, last_day, terms);
+  CycleRecord record;
+  const std::uint64_t first = number_before(log, first_day);
+  for (std::uint64_t n = first; n > 0 && n <= log.newest_number(); ++n) {
+    if (!log.read(n, record)) continue;
+    book.add(record);
+    // The one behind the last day tells what flowed at its end.
+    if (record.has_measurement && local_day_at(record.utc_s) > last_day) break;
+  }
+  return book.accounts();
 }
 
 }  // namespace bess

@@ -1,19 +1,22 @@
 #include "edge/account/day_account.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "shared/local_time.h"
 #include "shared/units_and_limits.h"
 
 namespace bess {
-namespace {
 
-double kwh_of_watt_steps(std::int64_t watt_steps) {
-  return static_cast<double>(watt_steps) * kHoursPerStep / 1'000;
+void QuarterHourMoney::add(const QuarterHourMoney& other) {
+  billed_eur += other.billed_eur;
+  contract_eur += other.contract_eur;
+  quarter_hours += other.quarter_hours;
+  published += other.published;
+  validated += other.validated;
+  unpriced += other.unpriced;
 }
-
-}  // namespace
 
 void DayAccount::add(const CycleRecord& record) {
   if (record.mode == Mode::kStopping) return;  // no cycle
@@ -24,13 +27,20 @@ void DayAccount::add(const CycleRecord& record) {
     soc_moved_e4_ = std::max(soc_moved_e4_, record.throughput.soc_moved_e4);
   }
   if (!record.has_measurement) return;
-  const std::int64_t power_w = record.measurement.power_w;
-  (power_w > 0 ? charged_w_ : discharged_w_) += power_w > 0 ? power_w : -power_w;
   note_soc(record);
   if (!record.price.has_row) return;
   ++valued_cycles_;
   price_centi_ += record.price.price_centi_eur_per_mwh;
-  watt_centi_ += power_w * record.price.price_centi_eur_per_mwh;
+}
+
+void DayAccount::add(const Exchange& exchange) {
+  const double size_wh = std::fabs(exchange.energy_wh);
+  (exchange.energy_wh > 0 ? charged_wh_ : discharged_wh_) += size_wh;
+  if (!exchange.is_seen) unseen_wh_ += size_wh;
+  if (!exchange.has_price) return;
+  // Subtracted: a day without exchange has earned nothing, and not minus nothing.
+  earned_eur_ -=
+      exchange.energy_wh / kWattsPerMegawatt * exchange.price_centi_eur_per_mwh / kCentiPerEur;
 }
 
 void DayAccount::note_soc(const CycleRecord& record) {
@@ -50,12 +60,6 @@ double DayAccount::mean_price_eur_per_mwh() const {
   return static_cast<double>(price_centi_) / valued_cycles_ / kCentiPerEur;
 }
 
-double DayAccount::earned_eur() const {
-  // From 0: a day without exchange has earned nothing, and not minus nothing.
-  return 0.0 - static_cast<double>(watt_centi_) * kHoursPerStep / kWattsPerMegawatt / kCentiPerEur;
-}
-double DayAccount::charged_kwh() const { return kwh_of_watt_steps(charged_w_); }
-double DayAccount::discharged_kwh() const { return kwh_of_watt_steps(discharged_w_); }
 double DayAccount::full_cycles() const { return soc_moved_e4_ / (2.0 * kSocFullE4); }
 
 int DayAccount::interventions() const {
@@ -91,11 +95,15 @@ std::string interventions_text(const CyclesByReason& cycles) {
 
 std::string DayAccount::line() const {
   char text[512];
+  char fees[64] = "no fees";
+  if (money_.contract_eur != 0) {
+    std::snprintf(fees, sizeof fees, "%.2f EUR of fees not taken off", money_.contract_eur);
+  }
   std::snprintf(
       text, sizeof text,
-      "%s: %+.2f EUR (estimate: measured power at the logged price, %d of %d cycles, no fees), "
+      "%s: %+.2f EUR (estimate: measured power at the logged price, %d of %d cycles, %s), "
       "charged %.1f kWh, discharged %.1f kWh, %.2f full cycles, %d interventions",
-      date().c_str(), earned_eur(), valued_cycles_, cycles_, charged_kwh(), discharged_kwh(),
+      date().c_str(), earned_eur(), valued_cycles_, cycles_, fees, charged_kwh(), discharged_kwh(),
       full_cycles(), interventions());
   std::string line = text;
   if (interventions() > 0) line += " (" + interventions_text(cycles_by_reason_) + ")";

@@ -1,15 +1,14 @@
 // A local day in one line: money, energy, cycles, interventions, from the decision log's records.
-// Integers until they are written.
 //
-// A record's power was measured 3 s before its tick, and its price is of the minute before it: both
-// stand for the two minutes that end there. The money is an estimate: the measured power of one
-// instant, at the indicative price, without the settlement of the quarter-hour, fees or taxes.
+// What was earned stands at two prices: at that of each decision, an estimate of the same evening;
+// and at the price of the quarter-hour, settled where it is published, with what the contract adds.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <string>
 
+#include "edge/account/exchange.h"
 #include "edge/control/control_types.h"
 
 namespace bess {
@@ -18,6 +17,20 @@ using CyclesByReason = std::array<int, kReasonCount>;
 /// "price_age 12, soc_empty 3": what ordered something else than the student.
 std::string interventions_text(const CyclesByReason& cycles);
 
+/// Money at the prices of whole quarter-hours: settled, or the last minute's where nothing is
+/// published yet.
+struct QuarterHourMoney {
+  double billed_eur = 0;    ///< earned, before the contract
+  double contract_eur = 0;  ///< what the contract takes of it
+  int quarter_hours = 0;    ///< of which the log knows something
+  int published = 0;        ///< of those, the validated among them
+  int validated = 0;
+  int unpriced = 0;  ///< without any price: their energy is not in the money
+
+  [[nodiscard]] double net_eur() const { return billed_eur - contract_eur; }
+  void add(const QuarterHourMoney& other);
+};
+
 class DayAccount {
  public:
   /// `local_day` as 20231126 (cycle_budget.h).
@@ -25,12 +38,18 @@ class DayAccount {
 
   /// A record of that day; the order does not matter.
   void add(const CycleRecord& record);
+  /// What flowed in it.
+  void add(const Exchange& exchange);
+  void set_money(const QuarterHourMoney& money) { money_ = money; }
 
   [[nodiscard]] bool is_empty() const { return cycles_ == 0; }
   [[nodiscard]] std::int32_t local_day() const { return local_day_; }
-  [[nodiscard]] double earned_eur() const;
-  [[nodiscard]] double charged_kwh() const;
-  [[nodiscard]] double discharged_kwh() const;
+  [[nodiscard]] double earned_eur() const { return earned_eur_; }
+  [[nodiscard]] double charged_kwh() const { return charged_wh_ / 1'000; }
+  [[nodiscard]] double discharged_kwh() const { return discharged_wh_ / 1'000; }
+  /// Of both together: while nobody looked, by the state of charge alone.
+  [[nodiscard]] double unseen_kwh() const { return unseen_wh_ / 1'000; }
+  [[nodiscard]] const QuarterHourMoney& money() const { return money_; }
   [[nodiscard]] double full_cycles() const;
   [[nodiscard]] int cycles() const { return cycles_; }
   /// In which the battery followed an order, 0 W included.
@@ -60,9 +79,11 @@ class DayAccount {
   void note_soc(const CycleRecord& record);
 
   std::int32_t local_day_;
-  std::int64_t watt_centi_ = 0;  ///< sum of W times hundredths of EUR/MWh, over two minutes each
-  std::int64_t charged_w_ = 0;   ///< sum of W, over two minutes each
-  std::int64_t discharged_w_ = 0;
+  double earned_eur_ = 0;
+  double charged_wh_ = 0;
+  double discharged_wh_ = 0;
+  double unseen_wh_ = 0;
+  QuarterHourMoney money_{};
   std::int32_t soc_moved_e4_ = 0;
   int cycles_ = 0;
   int driven_cycles_ = 0;

@@ -1,5 +1,5 @@
-// Local days as a person asks for them: today, yesterday, week, month, 2026-11-23,
-// 2026-11-01..2026-11-23.
+// Local days as a person asks for them: today, yesterday, week, month, last-month, 2026-11,
+// 2026-11-23, 2026-11-01..2026-11-23.
 #pragma once
 
 #include <cstdint>

@@ -4,7 +4,6 @@
 #include <array>
 
 #include "edge/account/account_days.h"
-#include "edge/control/policy.h"
 #include "shared/host/text.h"
 
 namespace bess {
@@ -13,90 +12,96 @@ namespace {
 constexpr int kSocLevels = 241;
 constexpr Action kActions[] = {Action::kDischarge, Action::kIdle, Action::kCharge};
 
-double eur_per_mwh(const PricedCycle& cycle) {
-  return static_cast<double>(cycle.price_centi_eur_per_mwh) / kCentiPerEur;
-}
-
 double mean_eur_per_mwh(std::span<const PricedCycle> cycles) {
   double sum = 0;
   for (const PricedCycle& cycle : cycles) sum += eur_per_mwh(cycle);
   return cycles.empty() ? 0 : sum / static_cast<double>(cycles.size());
 }
 
-BatteryStep step(const BatteryParameters& battery, double soc_frac, Action action) {
-  return battery_step(battery, soc_frac, power_sign(action) * battery.power_w_max, kHoursPerStep);
-}
-
-double paid_eur(const BatteryStep& step, double price_eur_per_mwh) {
-  return -step.power_w * kHoursPerStep / kWattsPerMegawatt * price_eur_per_mwh;
-}
-
 /// `decide(index of the cycle, SoC)`, over all cycles; what is stored besides counts at the mean.
 template <typename Decide>
 double drive(std::span<const PricedCycle> cycles, double soc_frac, const BatteryParameters& battery,
              const Decide& decide) {
-  const double first_frac = soc_frac;
-  double earned_eur = 0;
-  for (std::size_t i = 0; i < cycles.size(); ++i) {
-    const BatteryStep next = step(battery, soc_frac, decide(i, soc_frac));
-    earned_eur += paid_eur(next, eur_per_mwh(cycles[i]));
-    soc_frac = next.soc_frac;
-  }
-  const double stored_mwh = (soc_frac - first_frac) * battery.capacity_wh / kWattsPerMegawatt;
-  return earned_eur + stored_mwh * mean_eur_per_mwh(cycles);
+  const Driven driven = drive_through(cycles, soc_frac, battery, decide);
+  const double stored_mwh = (driven.soc_frac - soc_frac) * battery.capacity_wh / kWattsPerMegawatt;
+  return driven.earned_eur + stored_mwh * mean_eur_per_mwh(cycles);
 }
 
 /// What a state of charge is worth before each cycle, on a grid over the window; linear between.
+/// From the last cycle to the first; of that only every 150th is kept, and a block between two of
+/// them made again when it is asked for: a month fits into a small memory.
 class ValueOfCharge {
  public:
   ValueOfCharge(std::span<const PricedCycle> cycles, const BatteryParameters& battery)
-      : battery_(battery), values_(cycles.size() + 1) {
+      : cycles_(cycles), battery_(battery), anchors_(cycles.size() / kBlock + 2) {
+    Values values{};
     const double mean = mean_eur_per_mwh(cycles);
     for (int level = 0; level < kSocLevels; ++level) {
-      values_.back()[at(level)] =
+      values[at(level)] =
           static_cast<float>(soc_of(level) * battery.capacity_wh / kWattsPerMegawatt * mean);
     }
+    anchors_.back() = values;
     for (std::size_t i = cycles.size(); i-- > 0;) {
-      for (int level = 0; level < kSocLevels; ++level) {
-        double best = -1e30;
-        for (const Action action : kActions) {
-          best = std::max(best, value_of(i, soc_of(level), action, eur_per_mwh(cycles[i])));
-        }
-        values_[i][at(level)] = static_cast<float>(best);
-      }
+      values = before(i, values);
+      if (i % kBlock == 0) anchors_[i / kBlock] = values;
     }
   }
 
-  [[nodiscard]] Action best(std::size_t cycle, double soc_frac, double price_eur_per_mwh) const {
+  /// Cycles one after the other, from the first.
+  [[nodiscard]] Action best(std::size_t cycle, double soc_frac) {
+    if (cycle % kBlock == 0) make_block(cycle);
     std::array<double, kActionCount> values{};
     for (const Action action : kActions) {
       values[static_cast<std::size_t>(action)] =
-          value_of(cycle, soc_frac, action, price_eur_per_mwh);
+          value_of(cycle, soc_frac, action, block_[cycle % kBlock + 1]);
     }
     return argmax_action(values.data());
   }
 
  private:
+  static constexpr std::size_t kBlock = 150;
+  using Values = std::array<float, kSocLevels>;
+
   static std::size_t at(int level) { return static_cast<std::size_t>(level); }
   [[nodiscard]] double soc_of(int level) const {
     return battery_.soc_min_frac +
            (battery_.soc_max_frac - battery_.soc_min_frac) * level / (kSocLevels - 1);
   }
+
+  void make_block(std::size_t first) {
+    const std::size_t last = std::min(first + kBlock, cycles_.size());
+    block_[last - first] = last == cycles_.size() ? anchors_.back() : anchors_[last / kBlock];
+    for (std::size_t i = last; i-- > first;) block_[i - first] = before(i, block_[i - first + 1]);
+  }
+
+  [[nodiscard]] Values before(std::size_t cycle, const Values& after) const {
+    Values values{};
+    for (int level = 0; level < kSocLevels; ++level) {
+      double best = -1e30;
+      for (const Action action : kActions) {
+        best = std::max(best, value_of(cycle, soc_of(level), action, after));
+      }
+      values[at(level)] = static_cast<float>(best);
+    }
+    return values;
+  }
+
   [[nodiscard]] double value_of(std::size_t cycle, double soc_frac, Action action,
-                                double price_eur_per_mwh) const {
-    const BatteryStep next = step(battery_, soc_frac, action);
+                                const Values& after) const {
+    const BatteryStep next = full_step(battery_, soc_frac, action);
     const double window = battery_.soc_max_frac - battery_.soc_min_frac;
     const double place =
         std::clamp((next.soc_frac - battery_.soc_min_frac) / window, 0.0, 1.0) * (kSocLevels - 1);
     const int below = std::min(static_cast<int>(place), kSocLevels - 2);
-    const auto& values = values_[cycle + 1];
     const double share = place - below;
-    return paid_eur(next, price_eur_per_mwh) + (1 - share) * values[at(below)] +
-           share * values[at(below + 1)];
+    return earned_eur(next, eur_per_mwh(cycles_[cycle])) + (1 - share) * after[at(below)] +
+           share * after[at(below + 1)];
   }
 
+  std::span<const PricedCycle> cycles_;
   const BatteryParameters& battery_;
-  std::vector<std::array<float, kSocLevels>> values_;
+  std::vector<Values> anchors_;
+  std::array<Values, kBlock + 1> block_{};
 };
 
 double earned_by_rule(std::span<const PricedCycle> cycles, double soc_frac,
@@ -115,16 +120,6 @@ double earned_by_rule(std::span<const PricedCycle> cycles, double soc_frac,
   });
 }
 
-Action decide_undisturbed(const PricedCycle& cycle, double soc_frac,
-                          const PriceThresholds& thresholds) {
-  const std::int32_t price = cycle.price_centi_eur_per_mwh;
-  if (price <= thresholds.low_eur_per_mwh * kCentiPerEur) return Action::kCharge;
-  if (price >= thresholds.high_eur_per_mwh * kCentiPerEur) return Action::kDischarge;
-  const auto soc_e4 = static_cast<std::int32_t>(soc_frac * kSocFullE4 + 0.5);
-  return decide_with_student(
-      make_lattice_state(local_minute_of(cycle.utc_s), cycle.context_class, soc_e4, price));
-}
-
 }  // namespace
 
 std::vector<PricedCycle> priced_cycles(const LogReader& log, std::int32_t first_day,
@@ -132,11 +127,7 @@ std::vector<PricedCycle> priced_cycles(const LogReader& log, std::int32_t first_
   std::vector<PricedCycle> cycles;
   for_each_record(log, first_day, last_day, [&](std::int32_t, const CycleRecord& record) {
     if (record.mode == Mode::kStopping || !record.price.has_row) return;
-    const std::int16_t context_class =
-        record.context_class > 0
-            ? record.context_class
-            : student_context_class(local_minute_of(record.utc_s), record.price_level);
-    cycles.push_back({record.utc_s, record.price.price_centi_eur_per_mwh, context_class});
+    cycles.push_back(priced_cycle(record));
   });
   std::ranges::sort(cycles, {}, &PricedCycle::utc_s);
   return cycles;
@@ -150,10 +141,9 @@ Rivals find_rivals(std::span<const PricedCycle> cycles, double soc_frac,
   rivals.student_eur = drive(cycles, soc_frac, battery, [&](std::size_t i, double soc) {
     return decide_undisturbed(cycles[i], soc, thresholds);
   });
-  const ValueOfCharge value(cycles, battery);
-  rivals.foresight_eur = drive(cycles, soc_frac, battery, [&](std::size_t i, double soc) {
-    return value.best(i, soc, eur_per_mwh(cycles[i]));
-  });
+  ValueOfCharge value(cycles, battery);
+  rivals.foresight_eur = drive(cycles, soc_frac, battery,
+                               [&](std::size_t i, double soc) { return value.best(i, soc); });
   return rivals;
 }
 

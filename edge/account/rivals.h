@@ -12,19 +12,11 @@
 #include <string>
 #include <vector>
 
+#include "edge/account/drive.h"
 #include "edge/log/log_reader.h"
-#include "shared/battery_model.h"
 #include "shared/host/json.h"
-#include "shared/price_thresholds.h"
 
 namespace bess {
-
-/// A cycle that had a price.
-struct PricedCycle {
-  std::int64_t utc_s = 0;
-  std::int32_t price_centi_eur_per_mwh = 0;
-  std::int16_t context_class = 1;  ///< what the student is given, or would have been
-};
 
 /// Of the days from `first_day` to `last_day`, as 20231126, oldest first.
 std::vector<PricedCycle> priced_cycles(const LogReader& log, std::int32_t first_day,

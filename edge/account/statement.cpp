@@ -11,6 +11,17 @@ namespace {
 
 double driven_percent(int driven, int cycles) { return cycles == 0 ? 0 : 100.0 * driven / cycles; }
 
+void set_money(Json& json, const QuarterHourMoney& money, double unseen_kwh) {
+  json.set("billed_eur", Decimals{money.billed_eur, 4});
+  json.set("contract_eur", Decimals{money.contract_eur, 4});
+  json.set("net_eur", Decimals{money.net_eur(), 4});
+  json.set("quarter_hours", money.quarter_hours);
+  json.set("settled_quarter_hours", money.published);
+  json.set("validated_quarter_hours", money.validated);
+  json.set("unpriced_quarter_hours", money.unpriced);
+  json.set("unseen_kwh", Decimals{unseen_kwh, 3});
+}
+
 }  // namespace
 
 template <typename OfDay>
@@ -28,6 +39,16 @@ double Statement::charged_kwh() const {
 }
 double Statement::discharged_kwh() const {
   return sum([](const DayAccount& day) { return day.discharged_kwh(); });
+}
+
+double Statement::unseen_kwh() const {
+  return sum([](const DayAccount& day) { return day.unseen_kwh(); });
+}
+
+QuarterHourMoney Statement::money() const {
+  QuarterHourMoney money;
+  for (const DayAccount& day : days_) money.add(day.money());
+  return money;
 }
 
 const DayAccount* Statement::first_measured() const {
@@ -69,6 +90,26 @@ CyclesByReason Statement::cycles_by_reason() const {
   return together;
 }
 
+std::string Statement::money_text() const {
+  const QuarterHourMoney all = money();
+  std::string text;
+  add_formatted(text, "by quarter-hours: %+.2f EUR, of %d quarter-hours %d at the settled price",
+                all.billed_eur, all.quarter_hours, all.published);
+  if (all.published > 0) add_formatted(text, " (%d validated)", all.validated);
+  if (all.published + all.unpriced < all.quarter_hours)
+    text += ", the others at their last indicative one";
+  if (all.unpriced > 0) add_formatted(text, ", %d without any", all.unpriced);
+  if (!contract_.is_free()) {
+    add_formatted(text, "\nthe contract takes %.2f EUR (%s): %+.2f EUR net", all.contract_eur,
+                  contract_.text().c_str(), all.net_eur());
+  }
+  if (unseen_kwh() > 0) {
+    add_formatted(text, "\n%.2f kWh flowed while nobody looked, by the state of charge",
+                  unseen_kwh());
+  }
+  return text + "\n";
+}
+
 std::string Statement::text() const {
   std::string text =
       "day         earned EUR  charged kWh  discharged kWh  full cycles  driven  EUR/MWh\n";
@@ -95,30 +136,36 @@ std::string Statement::text() const {
       "%+.2f EUR with the same charge at both ends\n",
       std::abs(stored_kwh()), stored_kwh() < 0 ? "less" : "more", std::abs(stored_eur()),
       earned_at_equal_soc_eur());
+  text += money_text();
   const std::string others = interventions_text(cycles_by_reason());
   if (!others.empty())
     add_formatted(text, "cycles that the student did not decide: %s\n", others.c_str());
   text +=
-      "estimate: the power measured at each tick, at the price decided on; no settlement, fees, "
-      "taxes or losses "
-      "of what is stored\n";
+      "earned is an estimate, at the prices decided on, without the contract, taxes or losses of "
+      "what is stored\n";
   return text;
 }
 
 std::string Statement::csv() const {
   std::string text =
       "date,earned_eur,charged_kwh,discharged_kwh,full_cycles,cycles,driven_cycles,valued_cycles,"
-      "mean_price_eur_per_mwh,first_soc_percent,last_soc_percent\n";
+      "mean_price_eur_per_mwh,first_soc_percent,last_soc_percent,billed_eur,contract_eur,net_eur,"
+      "quarter_hours,settled_quarter_hours,validated_quarter_hours,unpriced_quarter_hours,"
+      "unseen_kwh\n";
   for (const DayAccount& day : days_) {
     add_formatted(text, "%s,%.4f,%.3f,%.3f,%.4f,%d,%d,%d,%.2f", day.date().c_str(),
                   day.earned_eur(), day.charged_kwh(), day.discharged_kwh(), day.full_cycles(),
                   day.cycles(), day.driven_cycles(), day.valued_cycles(),
                   day.mean_price_eur_per_mwh());
     if (day.has_soc()) {
-      add_formatted(text, ",%.2f,%.2f\n", day.first_soc_e4() / 100.0, day.last_soc_e4() / 100.0);
+      add_formatted(text, ",%.2f,%.2f", day.first_soc_e4() / 100.0, day.last_soc_e4() / 100.0);
     } else {
-      text += ",,\n";
+      text += ",,";
     }
+    const QuarterHourMoney& money = day.money();
+    add_formatted(text, ",%.4f,%.4f,%.4f,%d,%d,%d,%d,%.3f\n", money.billed_eur, money.contract_eur,
+                  money.net_eur(), money.quarter_hours, money.published, money.validated,
+                  money.unpriced, day.unseen_kwh());
   }
   return text;
 }
@@ -135,27 +182,33 @@ Json Statement::json() const {
     const auto soc = [&](std::int32_t soc_e4) {
       return day.has_soc() ? Json(Decimals{soc_e4 / 100.0, 2}) : Json::null();
     };
-    days.add(Json::object({{"date", day.date()},
-                           {"earned_eur", Decimals{day.earned_eur(), 4}},
-                           {"charged_kwh", Decimals{day.charged_kwh(), 3}},
-                           {"discharged_kwh", Decimals{day.discharged_kwh(), 3}},
-                           {"full_cycles", Decimals{day.full_cycles(), 4}},
-                           {"cycles", day.cycles()},
-                           {"driven_cycles", day.driven_cycles()},
-                           {"valued_cycles", day.valued_cycles()},
-                           {"mean_price_eur_per_mwh", Decimals{day.mean_price_eur_per_mwh(), 2}},
-                           {"first_soc_percent", soc(day.first_soc_e4())},
-                           {"last_soc_percent", soc(day.last_soc_e4())},
-                           {"cycles_by_reason", std::move(reasons)}}));
+    Json of_day =
+        Json::object({{"date", day.date()},
+                      {"earned_eur", Decimals{day.earned_eur(), 4}},
+                      {"charged_kwh", Decimals{day.charged_kwh(), 3}},
+                      {"discharged_kwh", Decimals{day.discharged_kwh(), 3}},
+                      {"full_cycles", Decimals{day.full_cycles(), 4}},
+                      {"cycles", day.cycles()},
+                      {"driven_cycles", day.driven_cycles()},
+                      {"valued_cycles", day.valued_cycles()},
+                      {"mean_price_eur_per_mwh", Decimals{day.mean_price_eur_per_mwh(), 2}},
+                      {"first_soc_percent", soc(day.first_soc_e4())},
+                      {"last_soc_percent", soc(day.last_soc_e4())},
+                      {"cycles_by_reason", std::move(reasons)}});
+    set_money(of_day, day.money(), day.unseen_kwh());
+    days.add(std::move(of_day));
   }
-  return Json::object({{"earned_eur", Decimals{earned_eur(), 4}},
-                       {"charged_kwh", Decimals{charged_kwh(), 3}},
-                       {"discharged_kwh", Decimals{discharged_kwh(), 3}},
-                       {"stored_kwh", Decimals{stored_kwh(), 3}},
-                       {"stored_eur", Decimals{stored_eur(), 4}},
-                       {"earned_at_equal_soc_eur", Decimals{earned_at_equal_soc_eur(), 4}},
-                       {"mean_price_eur_per_mwh", Decimals{mean_price_eur_per_mwh(), 2}},
-                       {"days", std::move(days)}});
+  Json all = Json::object({{"earned_eur", Decimals{earned_eur(), 4}},
+                           {"charged_kwh", Decimals{charged_kwh(), 3}},
+                           {"discharged_kwh", Decimals{discharged_kwh(), 3}},
+                           {"stored_kwh", Decimals{stored_kwh(), 3}},
+                           {"stored_eur", Decimals{stored_eur(), 4}},
+                           {"earned_at_equal_soc_eur", Decimals{earned_at_equal_soc_eur(), 4}},
+                           {"mean_price_eur_per_mwh", Decimals{mean_price_eur_per_mwh(), 2}}});
+  set_money(all, money(), unseen_kwh());
+  all.set("contract", contract_.json());
+  all.set("days", std::move(days));
+  return all;
 }
 
 }  // namespace bess

@@ -1,7 +1,7 @@
 // What a battery earned in some days, as a table for people, as CSV and as JSON.
 //
-// The money is an estimate: the power that was measured at each tick, at the price that was decided
-// on, without the settlement of the quarter-hour, fees or taxes. What the battery holds more or
+// Money stands there twice: at the price of each decision, an estimate; and at the price of each
+// quarter-hour, settled where it is published, with the contract's costs. What it holds more or
 // less at the end than at the beginning is told beside it, at the mean price: a day that ends empty
 // has sold what another one bought.
 #pragma once
@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "edge/account/contract.h"
 #include "edge/account/day_account.h"
 #include "shared/host/json.h"
 
@@ -17,12 +18,15 @@ namespace bess {
 class Statement {
  public:
   /// Oldest first, without gaps in what each counts; may be empty.
-  explicit Statement(std::vector<DayAccount> days) : days_(std::move(days)) {}
+  explicit Statement(std::vector<DayAccount> days, const Contract& contract = {})
+      : days_(std::move(days)), contract_(contract) {}
 
   [[nodiscard]] bool is_empty() const { return days_.empty(); }
   [[nodiscard]] double earned_eur() const;
   [[nodiscard]] double charged_kwh() const;
   [[nodiscard]] double discharged_kwh() const;
+  [[nodiscard]] double unseen_kwh() const;
+  [[nodiscard]] QuarterHourMoney money() const;
   /// More (negative: less) is stored at the end than at the beginning.
   [[nodiscard]] double stored_kwh() const;
   [[nodiscard]] double earned_at_equal_soc_eur() const { return earned_eur() + stored_eur(); }
@@ -37,6 +41,9 @@ class Statement {
     return stored_kwh() / 1'000 * mean_price_eur_per_mwh();
   }
 
+  [[nodiscard]] const std::vector<DayAccount>& days() const { return days_; }
+  [[nodiscard]] const Contract& contract() const { return contract_; }
+
   [[nodiscard]] std::string text() const;
   [[nodiscard]] std::string csv() const;
   [[nodiscard]] Json json() const;
@@ -49,7 +56,10 @@ class Statement {
   [[nodiscard]] const DayAccount* first_measured() const;
   [[nodiscard]] const DayAccount* last_measured() const;
 
+  [[nodiscard]] std::string money_text() const;
+
   std::vector<DayAccount> days_;
+  Contract contract_;
 };
 
 }  // namespace bess

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "edge/account/money_settings.h"
 #include "edge/battery/modbus_battery.h"
 #include "edge/battery/modbus_meter.h"
 #include "edge/control/policy.h"
@@ -142,6 +143,18 @@ bool read_own_map(const SiteConfig& site, ModbusMeter& meter, std::int32_t& grid
   return status == Status::kOk || complain_of_meter(site, status_text(status).data());
 }
 
+/// What only counts money keeps no controller from driving; --check names its slips.
+bool report_contract(const std::string& path) {
+  MoneySettings money;
+  std::string error;
+  if (!load_money_settings(path, money, error)) {
+    report(JournalLevel::kError, "%s", error.c_str());
+    return false;
+  }
+  std::printf("contract   %s\n", money.contract.text().c_str());
+  return true;
+}
+
 /// One reading of the meter, and the house's load that follows from it; true when there is none, or
 /// it can be read.
 bool report_site(const EdgeConfig& config, ModbusBattery& battery, ModbusMeter& meter) {
@@ -205,7 +218,8 @@ bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& p
 
 }  // namespace
 
-int run_check(const EdgeConfig& config) {
+int run_check(const EdgeConfig& config, const std::string& path) {
+  if (!report_contract(path)) return 1;
   DeviceSession session;
   if (!session.begin(config)) return 1;
   ModbusBattery battery(config.battery.link, config.battery.map, config.clock);

@@ -2,9 +2,12 @@
 #include <cstdio>
 
 #include "edge/account/account_days.h"
+#include "edge/account/money_settings.h"
 #include "edge/account/period.h"
 #include "edge/account/rivals.h"
 #include "edge/account/statement.h"
+#include "edge/account/statement_page.h"
+#include "edge/account/stops.h"
 #include "edge/commands/command_list.h"
 #include "edge/log/journal.h"
 #include "shared/local_time.h"
@@ -17,45 +20,53 @@ struct EarnedGiven {
   bool beside = false;
   bool csv = false;
   bool json = false;
+  bool html = false;
 };
 
 using O = OptionsOf<EarnedGiven>;
 constexpr CommandOption kOptions[] = {
     O::word<&EarnedGiven::period>(), O::flag<&EarnedGiven::beside>("--beside"),
-    O::flag<&EarnedGiven::csv>("--csv"), O::flag<&EarnedGiven::json>("--json")};
+    O::flag<&EarnedGiven::csv>("--csv"), O::flag<&EarnedGiven::json>("--json"),
+    O::flag<&EarnedGiven::html>("--html")};
 
 constexpr const char* kHelp =
     R"(bess-edge earned: what the battery earned in some days
 
-  bess-edge earned [PERIOD] [--config FILE] [--beside] [--csv | --json]
+  bess-edge earned [PERIOD] [--config FILE] [--beside] [--csv | --json | --html]
 
-  PERIOD         today, yesterday, week, month, a day as 2026-11-23, or 2026-11-01..2026-11-23;
-                 local days, default today; week and month are those that today lies in
+  PERIOD         today, yesterday, week, month, last-month, a month as 2026-10, a day as 2026-11-23,
+                 or 2026-11-01..2026-11-23; local days, default today; week and month are those that
+                 today lies in
   --config FILE  the controller's settings; default /etc/bess/edge.toml
   --beside       and what rest, a rule, the student undisturbed, and foresight would have earned
                  on the same prices with this battery (90 % there and back), from the same charge
                  to the same
   --csv          one line a day, with a header
   --json         one JSON object: the days, and all of them together
+  --html         a page to print, to hold beside the bill
 
-Money is an estimate: the power measured at each tick, at the price that was decided on; without the
-settlement of the quarter-hour, fees and taxes. What is stored more or less at the end than at the
-beginning is told beside it. Read from the log in [state] folder: days that it no longer holds are
-not counted.
+Earned is an estimate: what flowed, at the prices that were decided on. By quarter-hours it is told
+again: at the settled price where bess-notify has fetched it ([settled]), else at the last minute's,
+and with what [contract] takes. What is stored more or less at the end than at the beginning is told
+beside it; and where the student did not decide, by reasons, with what it would have earned there.
+Read from the log in [state] folder: days that it no longer holds are not counted.
 Exit codes: 0 done   1 the log cannot be read, or has nothing of these days   2 bad command line
 
   bess-edge earned
   bess-edge earned week --beside
   bess-edge earned month --csv > november.csv
+  bess-edge earned last-month --html > bill.html
 )";
 
 const char* complaint(const EarnedGiven& given) {
   if (given.csv && given.json) return "--csv or --json, not both";
+  if (given.html && (given.csv || given.json)) return "--html, or --csv or --json: one of them";
+  if (given.html && given.beside) return "--beside is no part of the bill: not with --html";
   if (given.csv && given.beside) return "--beside is of all days together: not with --csv";
   Period period;
   if (given.period.empty() || parse_period(given.period, 19'700'101, period)) return nullptr;
-  return "the period must be today, yesterday, week, month, a day as 2026-11-23, or two with .. "
-         "between";
+  return "the period must be today, yesterday, week, month, last-month, a month as 2026-10, a day "
+         "as 2026-11-23, or two with .. between";
 }
 
 int fail(const std::string& message) {
@@ -74,13 +85,24 @@ BatteryParameters battery_of(const EdgeConfig& config, const Statement& statemen
   return battery;
 }
 
-std::string text_of(const EarnedGiven& given, const Statement& statement, const Rivals& rivals) {
+/// What is told of some days.
+struct Earned {
+  Statement statement;
+  Stops stops{};
+  Rivals rivals{};
+};
+
+std::string text_of(const EarnedGiven& given, const Earned& earned) {
+  const auto& [statement, stops, rivals] = earned;
   const double earned_eur = statement.earned_at_equal_soc_eur();
   if (given.csv) return statement.csv();
+  if (given.html) return statement_page(statement, stops);
   if (!given.json) {
-    return statement.text() + (given.beside ? rivals_text(rivals, earned_eur) : "");
+    return statement.text() + stops_text(stops) +
+           (given.beside ? rivals_text(rivals, earned_eur) : "");
   }
   Json json = statement.json();
+  json.set("stops", stops_json(stops));
   if (given.beside) json.set("beside", rivals_json(rivals, earned_eur));
   return json.text();
 }
@@ -94,18 +116,27 @@ int run_earned(const EarnedGiven& given, SettingsFile& settings) {
   const std::int32_t today = local_day_at(config.clock.now_utc_ns() / kNanosecondsPerSecond);
   Period period{today, today};
   if (!given.period.empty()) parse_period(given.period, today, period);
-  const Statement statement(accounts_of_days(log, period.first_day, period.last_day));
+  std::string trouble;
+  MoneySettings money;
+  if (!load_money_settings(settings.path, money, trouble)) return fail(trouble);
+  const MoneyTerms terms = money_terms(money, trouble);
+  if (!trouble.empty()) report(JournalLevel::kWarning, "%s", trouble.c_str());
+  const auto [first_day, last_day] = period;
+  Earned earned{.statement =
+                    Statement(accounts_of_days(log, first_day, last_day, terms), terms.contract)};
+  const Statement& statement = earned.statement;
   if (statement.is_empty()) {
-    return fail("the log holds no cycle of " + DayAccount(period.first_day).date() + " to " +
-                DayAccount(period.last_day).date());
+    return fail("the log holds no cycle of " + DayAccount(first_day).date() + " to " +
+                DayAccount(last_day).date());
   }
-  Rivals rivals;
+  const BatteryParameters battery = battery_of(config, statement);
+  const PriceThresholds& thresholds = config.control.guard.thresholds;
+  earned.stops = stops_of_days(log, first_day, last_day, battery, thresholds);
   if (given.beside) {
-    rivals = find_rivals(priced_cycles(log, period.first_day, period.last_day),
-                         statement.first_soc_frac(), battery_of(config, statement),
-                         config.control.guard.thresholds);
+    earned.rivals = find_rivals(priced_cycles(log, first_day, last_day), statement.first_soc_frac(),
+                                battery, thresholds);
   }
-  std::fputs(text_of(given, statement, rivals).c_str(), stdout);
+  std::fputs(text_of(given, earned).c_str(), stdout);
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return 0;
   return fail("the output cannot be written");
 }

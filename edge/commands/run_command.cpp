@@ -89,7 +89,8 @@ int run_controller(const RunGiven& given, const EdgeConfig& config) {
 int run(const RunGiven& given, SettingsFile& settings) {
   if (given.self_test) return run_self_test(settings.config);
   if (given.dry_run) settings.config.control.control = false;
-  return given.check ? run_check(settings.config) : run_controller(given, settings.config);
+  return given.check ? run_check(settings.config, settings.path)
+                     : run_controller(given, settings.config);
 }
 
 }  // namespace

@@ -185,7 +185,11 @@ void Notifier::read_log(std::int64_t newest_utc_s, std::int64_t now_utc_s) {
   read_up_to_utc_s_ = newest_utc_s;
   energy_.count_new(log);
   const std::int32_t today = local_day_at(newest_utc_s);
-  const std::vector<DayAccount> accounts = accounts_of_days(log, today, today);
+  const std::vector<DayAccount> accounts =
+      accounts_of_days(log, today, today,
+                       {.contract = settings_.money.contract,
+                        .settled = {},
+                        .capacity_wh = settings_.money.capacity_wh});
   today_ = accounts.empty() ? DayAccount(today) : accounts.front();
   if (settings_.daily) tell_days(log, newest_utc_s, now_utc_s);
 }
@@ -197,7 +201,9 @@ void Notifier::tell_days(const LogReader& log, std::int64_t newest_utc_s, std::i
   if (told_.local_day == 0) told_.local_day = yesterday;     // the days before were not watched
   if (told_.local_day > today) told_.local_day = yesterday;  // told while the clock was wrong
   if (told_.local_day >= yesterday) return;
-  std::vector<DayAccount> days = accounts_of_days(log, told_.local_day + 1, yesterday);
+  std::string ignored;  // its fetcher tells it
+  const MoneyTerms terms = money_terms(settings_.money, ignored);
+  std::vector<DayAccount> days = accounts_of_days(log, told_.local_day + 1, yesterday, terms);
   if (days.size() > kDaysMax) days.erase(days.begin(), days.end() - kDaysMax);
   for (const DayAccount& day : days) {
     tell({.kind = MessageKind::kDay, .key = day.date(), .text = day.line(), .utc_s = now_utc_s});

@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "edge/account/money_settings.h"
 #include "edge/beside/controller_places.h"
+#include "edge/notify/settled_fetch.h"
 
 namespace bess {
 
@@ -40,6 +42,8 @@ struct NotifySettings : ControllerPlaces {
   std::int32_t webhook_ms_max = 20'000;
   std::int32_t mailer_ms_max = 60'000;
   MqttSettings mqtt;
+  MoneySettings money;
+  SettledSource settled;
 
   [[nodiscard]] bool has_a_way() const {
     return !mail_to.empty() || !webhook_url.empty() || !mqtt.host.empty();

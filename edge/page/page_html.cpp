@@ -11,6 +11,7 @@ namespace {
 
 constexpr NumberStyle kPercent{1, 1, "%"};
 constexpr NumberStyle kPercentOfE4{1, 100, "%"};
+constexpr NumberStyle kPercentOfOne{1, 0.01, "%"};
 constexpr NumberStyle kWatts{0, 1, "W"};
 constexpr NumberStyle kPrice{2, 1, "EUR/MWh"};
 constexpr NumberStyle kPriceOfCenti{2, 100, "EUR/MWh"};
@@ -209,7 +210,29 @@ std::string month_row(JsonValue day, std::size_t index) {
          cell("earned", "earned_eur", kEur) + cell("charged", "charged_kwh", kKwh) +
          cell("discharged", "discharged_kwh", kKwh) + cell("full cycles", "full_cycles", kCycles) +
          cell("cycles driven", "driven_cycles", kCount) +
-         cell("mean price", "mean_price_eur_per_mwh", kPrice) + "</tr>\n";
+         cell("mean price", "mean_price_eur_per_mwh", kPrice) +
+         cell("by quarter-hours", "billed_eur", kEur) + cell("contract", "contract_eur", kEur) +
+         cell("net", "net_eur", kEur) +
+         cell("quarter-hours settled", "settled_quarter_hours", kCount) + "</tr>\n";
+}
+
+/// What kept the student from deciding, and what that cost.
+std::string stops_of(JsonValue month) {
+  const JsonValue stops = month["stops"];
+  if (!stops.is_object()) return "";
+  std::string text = "<p>Driven " +
+                     html_number(stops["driven_share"], "month/stops/driven_share", kPercentOfOne) +
+                     " of the time.";
+  std::size_t index = 0;
+  for (const JsonValue stop : stops["by_reason"]) {
+    const std::string path = formatted("month/stops/by_reason/%zu/", index++);
+    text += " " + escaped(stop["reason"]) + ": " +
+            html_number(stop["cycles"], path + "cycles", kCount) + " cycles, cost ";
+    text += stop["cost_eur"].number() ? html_number(stop["cost_eur"], path + "cost_eur", kEur)
+                                      : std::string("not known");
+    text += ".";
+  }
+  return text + "</p>\n";
 }
 
 std::string month_table(const ControllerView& view) {
@@ -219,12 +242,18 @@ std::string month_table(const ControllerView& view) {
       "<p>" + html_number(month["earned_eur"], "month/earned_eur", kEur) +
       " earned; with the same charge at both ends " +
       html_number(month["earned_at_equal_soc_eur"], "month/earned_at_equal_soc_eur", kEur) +
-      ". An estimate: the power measured at each cycle at the price decided on, without "
-      "settlement, fees and "
-      "taxes.</p>\n<div class=\"wide\" role=\"region\" tabindex=\"0\" aria-label=\"The month by "
+      ". An estimate: what flowed, at the prices decided on.</p>\n<p>By quarter-hours " +
+      html_number(month["billed_eur"], "month/billed_eur", kEur) + ", " +
+      html_number(month["settled_quarter_hours"], "month/settled_quarter_hours", kCount) + " of " +
+      html_number(month["quarter_hours"], "month/quarter_hours", kCount) +
+      " at their settled price, the others at the last of their minutes; the contract takes " +
+      html_number(month["contract_eur"], "month/contract_eur", kEur) + ": " +
+      html_number(month["net_eur"], "month/net_eur", kEur) + " net.</p>\n" + stops_of(month) +
+      "<div class=\"wide\" role=\"region\" tabindex=\"0\" aria-label=\"The month by "
       "days\"><table>\n<caption>Local days</caption>\n<thead><tr>";
   for (const char* const head :
-       {"day", "earned", "charged", "discharged", "full cycles", "cycles driven", "mean price"}) {
+       {"day", "earned", "charged", "discharged", "full cycles", "cycles driven", "mean price",
+        "by quarter-hours", "contract", "net", "quarter-hours settled"}) {
     text += formatted("<th scope=\"col\">%s</th>", head);
   }
   text += "</tr></thead>\n<tbody>\n";

@@ -63,8 +63,10 @@ bool load_edge_config(const std::string& path, EdgeConfig& config, std::string& 
   read_simulation(section(root, "simulation"), config.clock);
   read_meter(section(root, "meter"), {config.battery.link, config.battery.map}, config.site);
   read_limits(section(root, "limits"), config.site);
-  // Of bess-notify and bess-page: a slip there must not stop the controller.
-  for (const char* const others : {"notify", "page"}) static_cast<void>(root.table(others));
+  // Of bess-notify, bess-page and bess-edge earned: a slip there must not stop the controller.
+  for (const char* const others : {"notify", "page", "contract", "settled"}) {
+    static_cast<void>(root.table(others));
+  }
   root.finish();
   config.control.price_wait_s = config.price.feed.wait_s;
   set_supervision(config.battery, config.control);

@@ -76,8 +76,7 @@ void TomlTable::integer(std::string_view key, std::int32_t& value, std::int64_t 
   value = static_cast<std::int32_t>(wide);
 }
 
-void TomlTable::scaled(std::string_view key, std::int32_t& value, double scale, double min,
-                       double max) {
+void TomlTable::number(std::string_view key, double& value, double min, double max) {
   const TomlValue* found = node(key);
   if (found == nullptr) return;
   const auto number = found->number();
@@ -85,7 +84,15 @@ void TomlTable::scaled(std::string_view key, std::int32_t& value, double scale, 
   if (!std::isfinite(*number) || *number < min || *number > max) {
     return fail(key, range_text(min, max));
   }
-  value = static_cast<std::int32_t>(std::lround(*number * scale));
+  value = *number;
+}
+
+void TomlTable::scaled(std::string_view key, std::int32_t& value, double scale, double min,
+                       double max) {
+  if (!has(key)) return static_cast<void>(node(key));
+  double found = 0;
+  number(key, found, min, max);
+  if (ok()) value = static_cast<std::int32_t>(std::lround(found * scale));
 }
 
 const std::string* TomlTable::text(std::string_view key) {

@@ -37,6 +37,7 @@ class TomlTable {
   void integer(std::string_view key, std::int32_t& value, std::int64_t min, std::int64_t max);
   /// A decimal number times `scale`, rounded: 0.05 with scale 10000 becomes 500.
   void scaled(std::string_view key, std::int32_t& value, double scale, double min, double max);
+  void number(std::string_view key, double& value, double min, double max);
   template <int kCapacity>
   void text(std::string_view key, FixedText<kCapacity>& value) {
     const std::string* found = text(key);

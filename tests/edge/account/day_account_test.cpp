@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include "edge/account/account_days.h"
+
 #include "shared/local_time.h"
 #include "shared/utc_text.h"
 
@@ -23,33 +25,45 @@ CycleRecord cycle(std::int32_t power_w, std::int32_t price_centi,
   return record;
 }
 
+/// Of records two minutes apart, from noon of the day.
+DayAccount account_of(std::vector<CycleRecord> records, const MoneyTerms& terms = {}) {
+  set_market_time_zone();
+  DayBook book(kDay, kDay, terms);
+  std::int64_t utc_s = DayAccount(kDay).start_utc_s() + 12 * 3'600;
+  for (CycleRecord& record : records) {
+    record.utc_s = utc_s += kSecondsPerStep;
+    record.price.minute_utc_s = utc_s - 60;
+    book.add(record);
+  }
+  return book.accounts().at(0);
+}
+
 /// Half an hour at 4 kW in at -50, half an hour out at 200 EUR/MWh: 2 kWh each, 0.10 + 0.40 EUR.
 TEST(DayAccount, CountsMoneyAsAMeterWould) {
-  DayAccount day(kDay);
-  for (int i = 0; i < 15; ++i) day.add(cycle(4'000, -5'000));
-  for (int i = 0; i < 15; ++i) day.add(cycle(-4'000, 20'000));
-  EXPECT_DOUBLE_EQ(day.charged_kwh(), 2);
-  EXPECT_DOUBLE_EQ(day.discharged_kwh(), 2);
-  EXPECT_NEAR(day.earned_eur(), 0.10 + 0.40, 1e-12);
+  std::vector<CycleRecord> records(15, cycle(4'000, -5'000));
+  records.insert(records.end(), 15, cycle(-4'000, 20'000));
+  const DayAccount day = account_of(records);
+  EXPECT_NEAR(day.charged_kwh(), 2, 1e-9);
+  EXPECT_NEAR(day.discharged_kwh(), 2, 1e-9);
+  EXPECT_NEAR(day.earned_eur(), 0.10 + 0.40, 1e-9);
   EXPECT_EQ(day.cycles(), 30);
   EXPECT_EQ(day.interventions(), 0);
 }
 
 TEST(DayAccount, TheLineIsThis) {
-  DayAccount day(kDay);
-  for (int i = 0; i < 15; ++i) day.add(cycle(-4'000, 20'000));
-  for (int i = 0; i < 3; ++i) day.add(cycle(0, 0, Reason::kSocEmpty));
+  std::vector<CycleRecord> records(15, cycle(-4'000, 20'000));
+  records.insert(records.end(), 3, cycle(0, 0, Reason::kSocEmpty));
   CycleRecord blind = cycle(0, 0, Reason::kLink);
   blind.has_measurement = false;
-  day.add(blind);
+  records.push_back(blind);
   CycleRecord last = cycle(0, 0, Reason::kHeld);
   last.throughput = {.local_day = kDay, .soc_moved_e4 = 5'000};
-  day.add(last);
+  records.push_back(last);
   CycleRecord stop = last;
   stop.mode = Mode::kStopping;
-  day.add(stop);
+  records.push_back(stop);
   EXPECT_EQ(
-      day.line(),
+      account_of(records).line(),
       "2023-11-26: +0.40 EUR (estimate: measured power at the logged price, 19 of 20 cycles, no "
       "fees), charged 0.0 kWh, discharged 2.0 kWh, 0.25 full cycles, 5 interventions (link 1, "
       "soc_empty 3, held 1)");

@@ -165,8 +165,11 @@ TEST_F(Questions, EarnedAddsTheDaysUp) {
   const Json json = Json::parse(said.out);
   EXPECT_NEAR(json.value()["charged_kwh"].number().value(), 3.0 * 2, 1e-9);
   EXPECT_NEAR(json.value()["earned_eur"].number().value(), -6.0 / 1'000 * 40, 1e-9);
-  EXPECT_THAT(ask({"earned", span}).out, HasSubstr("estimate: "));
+  EXPECT_THAT(ask({"earned", span}).out, HasSubstr("an estimate, "));
   EXPECT_THAT(ask({"earned", span, "--csv"}).out, StartsWith("date,earned_eur,"));
+  EXPECT_NEAR(json.value()["billed_eur"].number().value(), -6.0 / 1'000 * 40, 1e-9);
+  EXPECT_EQ(json.value()["settled_quarter_hours"].number(), 0);
+  EXPECT_EQ(json.value()["stops"]["driven_share"].number(), 1);
   EXPECT_THAT(ask({"earned", span, "--beside"}).out, HasSubstr("the student undisturbed "));
   const Json beside = Json::parse(ask({"earned", span, "--beside", "--json"}).out);
   EXPECT_DOUBLE_EQ(beside.value()["beside"]["this_battery_eur"].number().value(),

@@ -266,7 +266,7 @@ TEST(Topics, AreTheseToTheLetter) {
   settings.mqtt.orders = true;
   HoldDesk desk(60, 4'000);
   DayAccount day(20'231'126);
-  day.add({});
+  day.add(CycleRecord{});
   EnergyTotals energy;
   energy.charged_ws = 44'442'000;
   energy.discharged_ws = 36'000'000'000;

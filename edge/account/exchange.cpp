@@ -1,0 +1,272 @@
+#include "edge/account/exchange.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "edge/control/quarter_hour_energy.h"
+#include "shared/units_and_limits.h"
+
+namespace bess {
+namespace {
+
+constexpr double kSecondsPerHour = 3'600;
+/// An order is written within this; a later one is of a price that came late.
+constexpr double kWrittenWithinS = 60;
+/// So long a gap, the same power at both of its ends and an order of that power: it flowed.
+constexpr std::int64_t kShortGapS = 600;
+
+bool is_close(double power_w, double other_w) {
+  constexpr double kApartW = 50, kApartShare = 0.03;
+  return std::fabs(power_w - other_w) <= std::max(kApartW, kApartShare * std::fabs(other_w));
+}
+
+using Visit = std::function<void(const Exchange&)>;
+
+/// Power between two samples, one stretch behind the other.
+class Stretches {
+ public:
+  Stretches(const ExchangeSample& from, const ExchangeSample& until, const Visit& visit)
+      : at_s_(static_cast<double>(from.utc_s)),
+        end_s_(static_cast<double>(until.utc_s)),
+        price_of_(until),
+        visit_(visit) {}
+
+  [[nodiscard]] double left_s() const { return end_s_ - at_s_; }
+
+  [[nodiscard]] double energy_wh() const { return energy_wh_; }
+
+  /// For all that is left.
+  void flow(double power_w) { flow(power_w, left_s()); }
+  /// For `seconds` of what is left, at most.
+  void flow(double power_w, double seconds, bool is_seen = true) {
+    const double until_s = std::min(at_s_ + seconds, end_s_);
+    energy_wh_ += power_w * std::max(until_s - at_s_, 0.0) / kSecondsPerHour;
+    while (at_s_ < until_s) {
+      const double quarter_end_s =
+          (std::floor(at_s_ / kQuarterHourS) + 1) * static_cast<double>(kQuarterHourS);
+      const double stop_s = std::min(until_s, quarter_end_s);
+      visit_({.from_utc_s = at_s_,
+              .until_utc_s = stop_s,
+              .energy_wh = power_w * (stop_s - at_s_) / kSecondsPerHour,
+              .is_seen = is_seen,
+              .has_price = price_of_.has_price,
+              .price_centi_eur_per_mwh = price_of_.price_centi_eur_per_mwh});
+      at_s_ = stop_s;
+    }
+  }
+
+ private:
+  double at_s_;
+  double end_s_;
+  double energy_wh_ = 0;
+  const ExchangeSample& price_of_;
+  const Visit& visit_;
+};
+
+/// From sample to sample, with a count of the charge that is finer than what the battery shows.
+class Walk {
+ public:
+  Walk(const ChargeScale& scale, const ExchangeSample& first, const Visit& visit)
+      : scale_(scale), visit_(visit), soc_e4_(first.soc_e4), order_before_w_(first.power_w) {
+    ExchangeSample before = first;
+    before.utc_s -= kSecondsPerStep;
+    Stretches(before, first, visit).flow(first.power_w);
+  }
+
+  void go(const ExchangeSample& from, const ExchangeSample& until) {
+    if (until.utc_s < from.utc_s) return anchor(until);
+    Stretches stretches(from, until, visit_);
+    const double head_s = std::min<double>(from.written_after_s, kWrittenWithinS);
+    stretches.flow(from.power_w, head_s);
+    if (is_constant(from, until)) {
+      stretches.flow(until.power_w);
+    } else if (is_gap(from, until)) {
+      tell_gap(from, until, stretches);
+    } else {
+      tell_change(from, until, stretches);
+    }
+    count(stretches.energy_wh(), until);
+    if (is_gap(from, until)) anchor(until);
+    order_before_w_ = from.is_ordered ? from.order_w : from.power_w;
+  }
+
+ private:
+  static double ordered_w(const ExchangeSample& from) {
+    return from.is_ordered ? from.order_w : from.power_w;
+  }
+  static bool is_gap(const ExchangeSample& from, const ExchangeSample& until) {
+    return until.utc_s - from.utc_s > kSecondsPerStep;
+  }
+
+  [[nodiscard]] bool is_constant(const ExchangeSample& from, const ExchangeSample& until) const {
+    const bool follows = is_close(until.power_w, ordered_w(from));
+    if (is_gap(from, until))
+      return follows && from.is_ordered && until.utc_s - from.utc_s <= kShortGapS;
+    // A battery that gives less than ordered all along.
+    const bool stands =
+        from.is_ordered && from.order_w == order_before_w_ && is_close(until.power_w, from.power_w);
+    return follows || stands;
+  }
+
+  /// Since the older sample, less what has been told; empty or full it is known to the last Wh.
+  [[nodiscard]] double by_soc_wh(const ExchangeSample& until, const Stretches& told) const {
+    return scale_.energy_wh(until.soc_e4 - soc_e4_, until.capacity_wh) - told.energy_wh();
+  }
+
+  /// The ordered power first, and then that which was found; when it changed says the SoC.
+  void tell_change(const ExchangeSample& from, const ExchangeSample& until,
+                   Stretches& stretches) const {
+    const double left_h = stretches.left_s() / kSecondsPerHour;
+    const double found_wh = until.power_w * left_h;
+    const double ordered_wh = ordered_w(from) * left_h;
+    const double soc_wh = by_soc_wh(until, stretches);
+    const double step_wh = 1.5 * scale_.soc_step_e4 / kSocFullE4 * until.capacity_wh;
+    const bool says_nothing =
+        until.capacity_wh <= 0 || scale_.stands_still() ||
+        (!scale_.is_at_an_end(until.soc_e4) && std::fabs(soc_wh - found_wh) <= step_wh);
+    const auto [low_wh, high_wh] = std::minmax(found_wh, ordered_wh);
+    const double flowed_wh = says_nothing ? found_wh : std::clamp(soc_wh, low_wh, high_wh);
+    const double share = (flowed_wh - found_wh) / (ordered_wh - found_wh);
+    stretches.flow(ordered_w(from), share * left_h * kSecondsPerHour);
+    stretches.flow(until.power_w);
+  }
+
+  /// The order in force goes on until its battery ends it; where there was none, evenly.
+  void tell_gap(const ExchangeSample& from, const ExchangeSample& until,
+                Stretches& stretches) const {
+    constexpr bool kIsSeen = false;
+    const double order_w = from.is_ordered ? from.order_w : 0;
+    double rest_wh = scale_.energy_wh(until.soc_e4 - from.soc_e4, until.capacity_wh);
+    if (rest_wh != 0) rest_wh -= stretches.energy_wh();
+    if (order_w * rest_wh > 0) {
+      const double seconds = std::min(rest_wh / order_w * kSecondsPerHour, stretches.left_s());
+      stretches.flow(order_w, seconds, kIsSeen);
+      rest_wh -= order_w * seconds / kSecondsPerHour;
+    }
+    const double left_s = stretches.left_s();
+    if (left_s > 0) stretches.flow(rest_wh * kSecondsPerHour / left_s, left_s, kIsSeen);
+  }
+
+  void anchor(const ExchangeSample& sample) { soc_e4_ = sample.soc_e4; }
+
+  /// Within what the battery shows.
+  void count(double energy_wh, const ExchangeSample& until) {
+    if (until.capacity_wh <= 0) return;
+    soc_e4_ =
+        std::clamp<double>(soc_e4_ + scale_.moved_e4(energy_wh, until.capacity_wh),
+                           until.soc_e4 - scale_.soc_step_e4, until.soc_e4 + scale_.soc_step_e4);
+  }
+
+  const ChargeScale& scale_;
+  const Visit& visit_;
+  double soc_e4_;
+  double order_before_w_;
+};
+
+/// Energy by power, and charge that it moved, over stretches of one order.
+struct Seen {
+  double energy_wh = 0;
+  double charge_wh = 0;
+
+  /// Charge by energy; false until more than half of the battery has been seen to move.
+  [[nodiscard]] bool tells(double capacity_wh) const { return charge_wh > capacity_wh / 2; }
+};
+
+constexpr double sane(double efficiency) { return std::clamp(efficiency, 0.6, 1.0); }
+
+void walk_along(std::span<const ExchangeSample> samples, const ChargeScale& scale,
+                const Visit& visit) {
+  Walk walk(scale, samples.front(), visit);
+  for (std::size_t i = 1; i < samples.size(); ++i) walk.go(samples[i - 1], samples[i]);
+}
+
+/// The one efficiency e of both directions by which all that flowed explains the charge at both
+/// ends: in * e - out / e = stored.
+ChargeScale balanced(ChargeScale scale, std::span<const ExchangeSample> samples) {
+  double in_wh = 0, out_wh = 0;
+  walk_along(samples, scale, [&](const Exchange& e) {
+    if (e.from_utc_s < static_cast<double>(samples.front().utc_s)) return;
+    (e.energy_wh > 0 ? in_wh : out_wh) += std::fabs(e.energy_wh);
+  });
+  const double capacity_wh = samples.back().capacity_wh;
+  const double stored_wh = (samples.back().soc_e4 - samples.front().soc_e4) /
+                           static_cast<double>(kSocFullE4) * capacity_wh;
+  if (std::min(in_wh, out_wh) <= 10 * capacity_wh) return scale;
+  scale.charge_efficiency = scale.discharge_efficiency =
+      sane((stored_wh + std::sqrt(stored_wh * stored_wh + 4 * in_wh * out_wh)) / (2 * in_wh));
+  return scale;
+}
+
+}  // namespace
+
+bool sample_of(const CycleRecord& record, ExchangeSample& sample) {
+  if (!record.has_measurement) return false;
+  sample = {.utc_s = record.utc_s,
+            .power_w = record.measurement.power_w,
+            .soc_e4 = record.measurement.soc_e4,
+            .capacity_wh = record.measurement.capacity_wh,
+            .order_w = record.ordered_power_w,
+            .price_centi_eur_per_mwh = record.price.price_centi_eur_per_mwh,
+            .price_minute_utc_s = record.price.minute_utc_s,
+            .has_price = record.price.has_row};
+  sample.is_ordered =
+      record.written && (record.mode == Mode::kRunning || record.mode == Mode::kHolding);
+  if (sample.is_ordered && record.price.has_row) {
+    // Whole seconds, cut off: half a one more is right in the mean.
+    const std::int64_t written_utc_s = record.price.minute_utc_s + 60 + record.price_age_s;
+    const auto after_s = static_cast<float>(written_utc_s - record.utc_s) + 0.5F;
+    sample.written_after_s = after_s > 0 && after_s < kWrittenWithinS ? after_s : 0;
+  }
+  return true;
+}
+
+double ChargeScale::energy_wh(double moved_e4, double capacity_wh) const {
+  const double charge_wh = moved_e4 / kSocFullE4 * capacity_wh;
+  return charge_wh > 0 ? charge_wh / charge_efficiency : charge_wh * discharge_efficiency;
+}
+
+double ChargeScale::moved_e4(double energy_wh, double capacity_wh) const {
+  const double charge_wh =
+      energy_wh > 0 ? energy_wh * charge_efficiency : energy_wh / discharge_efficiency;
+  return charge_wh / capacity_wh * kSocFullE4;
+}
+
+ChargeScale charge_scale_of(std::span<const ExchangeSample> samples) {
+  Seen in, out;
+  std::int32_t step_e4 = INT32_MAX;
+  double capacity_wh = 0;
+  for (std::size_t i = 1; i < samples.size(); ++i) {
+    const ExchangeSample& from = samples[i - 1];
+    const ExchangeSample& until = samples[i];
+    const std::int32_t moved_e4 = until.soc_e4 - from.soc_e4;
+    if (moved_e4 != 0) step_e4 = std::min(step_e4, std::abs(moved_e4));
+    capacity_wh = until.capacity_wh;
+    const bool is_one_order = until.utc_s - from.utc_s == kSecondsPerStep && from.is_ordered &&
+                              is_close(until.power_w, from.order_w) &&
+                              is_close(from.power_w, from.order_w);
+    if (!is_one_order || from.order_w == 0) continue;
+    Seen& seen = from.order_w > 0 ? in : out;
+    seen.energy_wh += std::fabs(until.power_w * kHoursPerStep);
+    seen.charge_wh += std::abs(moved_e4) / static_cast<double>(kSocFullE4) * until.capacity_wh;
+  }
+  ChargeScale scale;
+  if (samples.empty()) return scale;
+  if (in.tells(capacity_wh)) scale.charge_efficiency = sane(in.charge_wh / in.energy_wh);
+  if (out.tells(capacity_wh)) scale.discharge_efficiency = sane(out.energy_wh / out.charge_wh);
+  if (step_e4 != INT32_MAX) scale.soc_step_e4 = step_e4;
+  const auto [low, high] = std::ranges::minmax(samples, {}, &ExchangeSample::soc_e4);
+  scale.soc_low_e4 = low.soc_e4;
+  scale.soc_high_e4 = high.soc_e4;
+  return scale;
+}
+
+void for_each_exchange(std::span<const ExchangeSample> samples,
+                       const std::function<void(const Exchange&)>& visit) {
+  if (samples.empty()) return;
+  ChargeScale scale = charge_scale_of(samples);
+  constexpr int kRounds = 3;
+  for (int i = 0; i < kRounds && scale.is_coarse(); ++i) scale = balanced(scale, samples);
+  walk_along(samples, scale, visit);
+}
+
+}  // namespace bess

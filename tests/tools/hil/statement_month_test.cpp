@@ -1,0 +1,262 @@
+// The statement of a month against the battery's own record of what flowed, and against bess-sim
+// settle: a month of real prices in virtual time with the clock change in it, once undisturbed, once
+// with a gap, restarts and a meter that is cut off.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+
+#include "edge/account/account_days.h"
+#include "edge/account/cycle_account.h"
+#include "edge/account/statement.h"
+#include "edge/log/log_text.h"
+#include "edge/log/ring_log.h"
+#include "shared/host/json.h"
+#include "shared/host/minute_file.h"
+#include "shared/host/run_program.h"
+#include "shared/local_time.h"
+#include "shared/utc_text.h"
+#include "tests/support/temporary_folder.h"
+#include "tools/hil_runner/run/run_scenario.h"
+#include "tools/settle/settlement.h"
+
+namespace bess {
+namespace {
+
+constexpr const char* kPrices = BESS_SOURCE_DIR "/tests/data/benchmark_minutes_2023.csv.gz";
+constexpr std::int32_t kFirstDay = 20'230'301, kLastDay = 20'230'331;
+constexpr double kOfTheMoney = 0.001;
+
+/// From midnight to midnight in Brussels, 31 days less the hour of the clock change; and a cycle
+/// more, which tells the power of the last.
+constexpr int kMonthMinutes = (31 * 24 - 1) * 60 + 4;
+
+std::string month_of(const std::string& parts) {
+  return "title = \"March\"\ntime = \"virtual\"\nstart_utc = \"2023-02-28T23:00:00Z\"\nminutes = " +
+         std::to_string(kMonthMinutes) + "\n[prices]\nfile = \"" + kPrices + "\"\n" + parts;
+}
+
+/// Six and a half hours without a controller, a stop and a kill with a start soon after, twelve hours
+/// without the meter, a day of a battery that is slow, noisy and slow near its ends.
+constexpr const char* kDisturbed = R"([battery]
+map = "alphaess"
+[house]
+seed = 7
+[meter]
+map = "simulator"
+[edge]
+meter = "import_w_max = 9000"
+[meter_fault]
+kinds = ["silence"]
+from_min = 10080
+to_min = 10800
+[battery_fault]
+kinds = ["slow-and-noisy", "throttle"]
+from_min = 36000
+to_min = 37440
+[[event]]
+at_min = 4000.5
+does = "edge_kill"
+[[event]]
+at_min = 4400
+does = "edge_start"
+[[event]]
+at_min = 20000.5
+does = "edge_stop"
+[[event]]
+at_min = 20003
+does = "edge_start"
+[[event]]
+at_min = 30000.5
+does = "edge_kill"
+[[event]]
+at_min = 30001
+does = "edge_start"
+)";
+
+MoneyTerms terms_of(const MinuteSeries& prices) {
+  MoneyTerms terms{.capacity_wh = 8'000};
+  std::vector<SettledQuarter> quarters;
+  for (std::size_t m = 0; m < prices.size(); m += 15) {
+    quarters.push_back({prices.utc_s(m), prices.settled[m], PriceState::kValidated});
+  }
+  terms.settled.put(quarters);
+  return terms;
+}
+
+/// As `bess-sim settle --record --edge-log --prices` counts it.
+Account settled_by_record(const Evidence& evidence, const MinuteSeries& prices,
+                          std::int64_t from_utc_s, std::int64_t until_utc_s) {
+  std::string record = "minute_utc,energy_wh,soc\n";
+  for (const MinuteRecord& m : evidence.minutes) {
+    if (m.minute_utc_s < from_utc_s || m.minute_utc_s >= until_utc_s) continue;
+    record +=
+        fmt::format("{},{:.6f},{:.8f}\n", utc_text(m.minute_utc_s).view(), m.energy_wh, m.soc_frac);
+  }
+  char line[kLogLineBytes];
+  std::string log = std::string(line, format_csv_header(line)) + "\n";
+  for (const CycleRecord& r : evidence.log) {
+    if (r.utc_s < from_utc_s || r.utc_s >= until_utc_s) continue;
+    log.append(line, format_csv_line(r, line)).append("\n");
+  }
+  return settle(CsvTable(record, "record"), CsvTable(log, "log"), prices, {}).battery;
+}
+
+/// Each order's power for as long as it was in force; only what still fits flows. In each direction
+/// by itself, where the record has one number a minute.
+struct Directions {
+  double charged_wh = 0, discharged_wh = 0;
+};
+Directions by_hand(const Scenario& scenario, const Evidence& evidence) {
+  const BatteryParameters& p = scenario.battery.physics;
+  Directions sums;
+  double soc = scenario.battery.soc_frac;
+  for (std::size_t i = 0; i + 1 < evidence.orders.size(); ++i) {
+    const DispatchEvent& order = evidence.orders[i];
+    const double hours = static_cast<double>(evidence.orders[i + 1].utc_ns - order.utc_ns) / 3.6e12;
+    BatteryParameters limited = p;
+    limited.soc_min_frac = 0.1;  // comes with the order
+    const BatteryStep step = battery_step(limited, soc, order.power_w, hours);
+    (step.power_w > 0 ? sums.charged_wh : sums.discharged_wh) += std::fabs(step.power_w) * hours;
+    soc = step.soc_frac;
+  }
+  return sums;
+}
+
+struct Month {
+  Scenario scenario;
+  Outcome outcome;
+  MinuteSeries prices;
+  MoneyTerms terms;
+  Account record;
+
+  [[nodiscard]] Statement statement() const {
+    DayBook book(kFirstDay, kLastDay, terms);
+    for (const CycleRecord& cycle : outcome.evidence.log) book.add(cycle);
+    return Statement(book.accounts(), terms.contract);
+  }
+};
+
+Month run_month(const std::string& parts) {
+  set_market_time_zone();
+  const TemporaryFolder folder;
+  Month month{.scenario = read_scenario(folder.write("march.toml", month_of(parts))),
+              .outcome = {},
+              .prices = read_minute_file(kPrices),
+              .terms = {},
+              .record = {}};
+  month.outcome = run_scenario(month.scenario, true, {});
+  EXPECT_TRUE(month.outcome.skipped.empty()) << month.outcome.skipped;
+  month.terms = terms_of(month.prices);
+  month.record =
+      settled_by_record(month.outcome.evidence, month.prices, DayAccount(kFirstDay).start_utc_s(),
+                        DayAccount(20'230'401).start_utc_s());
+  return month;
+}
+
+/// Each reading for two minutes, at the settled price: what a log says at first sight.
+double by_readings_eur(const Month& month) {
+  double eur = 0;
+  const std::int64_t begin_utc_s = DayAccount(kFirstDay).start_utc_s();
+  for (const CycleRecord& cycle : month.outcome.evidence.log) {
+    if (cycle.mode == Mode::kStopping || cycle.utc_s <= begin_utc_s) continue;
+    for (const std::int64_t minute_utc_s : {cycle.utc_s - 120, cycle.utc_s - 60}) {
+      const SettledQuarter* const price = month.terms.settled.find(minute_utc_s);
+      if (price == nullptr) continue;
+      eur -= cycle_energy_wh(cycle) / 2 / kWattsPerMegawatt * price->eur_per_mwh;
+    }
+  }
+  return eur;
+}
+
+void tell(const char* name, const Statement& statement, const Month& month) {
+  const double net_wh = month.record.charged_wh - month.record.discharged_wh;
+  const double told_wh = 1'000 * (statement.charged_kwh() - statement.discharged_kwh());
+  std::printf("%-12s by readings alone %+.3f %%\n", name,
+              100 * (by_readings_eur(month) / month.record.profit_eur - 1));
+  std::printf(
+      "%-12s %.4f EUR, record %.4f (%+.3f %%); net energy %+.1f Wh of %.0f; unseen %.2f kWh\n",
+      name, statement.money().billed_eur, month.record.profit_eur,
+      100 * (statement.money().billed_eur / month.record.profit_eur - 1), told_wh - net_wh,
+      month.record.charged_wh, statement.unseen_kwh());
+}
+
+/// On maps whose SoC is fine, and one that shows whole percents; that know their capacity or not.
+TEST(StatementOfAMonth, IsThatOfTheBatterysOwnRecord) {
+  for (const std::string map : {"alphaess", "sunspec_124", "huawei_luna2000", "victron_ess3"}) {
+    const double apart = map == "victron_ess3" ? 1.5 * kOfTheMoney : kOfTheMoney;
+    const Month month = run_month("[battery]\nmap = \"" + map + "\"\n");
+    EXPECT_TRUE(month.outcome.passed()) << complaint(month.outcome);
+    const Statement statement = month.statement();
+    tell(map.c_str(), statement, month);
+    const QuarterHourMoney money = statement.money();
+    EXPECT_NEAR(money.billed_eur, month.record.profit_eur, apart * month.record.profit_eur);
+    EXPECT_EQ(money.quarter_hours, 31 * 96 - 4);
+    EXPECT_EQ(money.published, money.quarter_hours);
+    EXPECT_EQ(money.unpriced, 0);
+    EXPECT_EQ(statement.unseen_kwh(), 0);
+  }
+}
+
+/// The contract is of each direction: the sums of both, and what it takes of them.
+TEST(StatementOfAMonth, CountsBothDirectionsAndTheContract) {
+  Month month = run_month("[battery]\nmap = \"alphaess\"\n");
+  month.terms.contract.costs = {.import_adder_eur_per_mwh = 45, .export_fee_eur_per_mwh = 3};
+  month.terms.contract.wear_eur_per_mwh = 4;
+  const Statement statement = month.statement();
+  const Directions hand = by_hand(month.scenario, month.outcome.evidence);
+  std::printf("charged %.3f kWh, by hand %.3f; discharged %.3f, by hand %.3f\n",
+              statement.charged_kwh(), hand.charged_wh / 1'000, statement.discharged_kwh(),
+              hand.discharged_wh / 1'000);
+  EXPECT_NEAR(statement.charged_kwh(), hand.charged_wh / 1'000, hand.charged_wh / 1e6);
+  EXPECT_NEAR(statement.discharged_kwh(), hand.discharged_wh / 1'000, hand.discharged_wh / 1e6);
+  const double contract_eur = (hand.charged_wh * (45 + 4) + hand.discharged_wh * (3 + 4)) / 1e6;
+  const double net_eur = month.record.profit_eur - contract_eur;
+  EXPECT_NEAR(statement.money().contract_eur, contract_eur, kOfTheMoney * contract_eur);
+  EXPECT_NEAR(statement.money().net_eur(), net_eur, kOfTheMoney * net_eur);
+}
+
+/// From its ring and the notifier's file, by the program, in the few MB that it has; with rivals.
+TEST(StatementOfAMonth, IsWhatTheProgramSays) {
+  const Month month = run_month("[battery]\nmap = \"alphaess\"\n");
+  const TemporaryFolder folder("/dev/shm");  // each record waits for its disk
+  RingLog ring;
+  FileMessage error;
+  std::filesystem::create_directories(folder.file("state"));
+  std::filesystem::create_directories(folder.file("notify"));
+  ASSERT_TRUE(ring.open(folder.file("state/decisions.ring").c_str(), 35 * 720, error));
+  for (const CycleRecord& cycle : month.outcome.evidence.log) ASSERT_TRUE(ring.append(cycle));
+  ASSERT_NE(folder.write("notify/settled.csv", month.terms.settled.text()), "");
+  const std::string config =
+      folder.write("edge.toml", "[battery]\nmap = \"" BESS_SOURCE_DIR
+                                "/edge/maps/alphaess.toml\"\n"
+                                "host = \"127.0.0.1\"\n[price]\nurl = \"http://127.0.0.1/\"\n");
+  const ProgramResult said = run_and_hear(
+      {BESS_EDGE_PROGRAM, "earned", "2023-03", "--beside", "--json", "--config", config}, 60);
+  ASSERT_TRUE(said.is_well()) << said.complaint();
+  const Json json = Json::parse(said.output);
+  const Statement statement = month.statement();
+  EXPECT_NEAR(json.value()["billed_eur"].number().value_or(0), statement.money().billed_eur, 1e-4);
+  EXPECT_NEAR(json.value()["charged_kwh"].number().value_or(0), statement.charged_kwh(), 1e-3);
+  EXPECT_EQ(json.value()["validated_quarter_hours"].number(), 31 * 96 - 4);
+  EXPECT_GT(json.value()["beside"]["foresight_eur"].number().value_or(0),
+            json.value()["beside"]["student_undisturbed_eur"].number().value_or(1e9));
+  EXPECT_EQ(json.value()["stops"]["missing_cycles"].number(), 0);
+}
+
+TEST(StatementOfAMonth, WithAGapRestartsAMeterCutAndAClockChange) {
+  const Month month = run_month(kDisturbed);
+  const Statement statement = month.statement();
+  tell("disturbed", statement, month);
+  EXPECT_NEAR(statement.money().billed_eur, month.record.profit_eur,
+              kOfTheMoney * month.record.profit_eur);
+  EXPECT_GT(statement.unseen_kwh(), 0);
+  EXPECT_LT(statement.unseen_kwh(), 2);
+  EXPECT_EQ(statement.json().value()["days"].size(), 31u);
+}
+
+}  // namespace
+}  // namespace bess
