@@ -31,7 +31,7 @@ std::string error_of(const std::function<void()>& call) {
 }
 
 struct School {
-  MarketSteps market = outlook_market({2025, 3, 1}, 45).steps();
+  MarketSteps market = outlook_market({2025, 3, 1}, 31).steps();
   Teacher teacher = train_teacher(market, {}, options(), [] { return false; }).teacher;
 
   static TrainOptions options() {
@@ -42,7 +42,7 @@ struct School {
   }
   static DistilOptions lessons() {
     DistilOptions o;
-    o.epochs = 40;
+    o.epochs = 30;
     o.rules = with_outlook_rule({});
     return o;
   }
@@ -127,7 +127,7 @@ TEST(OutlookStudent, IsReadBackFromItsFileAndDecidesTheSame) {
   EXPECT_EQ(read.certificate.rules.rules.size(), 1U);
   const auto policy = exported_policy(student());
   const auto again = exported_policy(read);
-  for (std::size_t i = 0; i < school().market.steps.size(); i += 311) {
+  for (std::size_t i = 0; i < school().market.steps.size(); i += 1511) {
     const MarketStep& step = school().market.steps[i];
     ASSERT_EQ(policy->decide(step, 0, 0.6), again->decide(step, 0, 0.6));
   }
@@ -151,7 +151,7 @@ TEST(OutlookStudent, TheTeachersFileIsReadBackAndDecidesTheSame) {
   save_teacher(path, school().teacher);
   const Teacher read = load_teacher(path);
   TeacherPolicy policy(school().teacher), again(read);
-  for (std::size_t i = 0; i < school().market.steps.size(); i += 311) {
+  for (std::size_t i = 0; i < school().market.steps.size(); i += 1511) {
     const MarketStep& step = school().market.steps[i];
     ASSERT_EQ(policy.decide(step, 0, 0.3), again.decide(step, 0, 0.3));
     ASSERT_EQ(school().teacher.book->break_even_centi(step, 0.3),
