@@ -1,6 +1,6 @@
 // What the contract adds to the price, by section [contract] of the configuration: the same keys,
-// ranges and arithmetic as [costs] and wear of the workstation, so that what was learned for is what
-// is billed. The controller knows nothing of it: a slip there must not keep it from driving.
+// ranges and arithmetic as [costs] and wear of the workstation, so that what was learned for is
+// what is billed. The controller knows nothing of it: a slip there must not keep it from driving.
 #pragma once
 
 #include <string>

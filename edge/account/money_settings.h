@@ -1,6 +1,6 @@
 // What of the configuration counts money: [contract], where [settled] keeps its prices, and the
-// capacity of a battery that does not tell its own. Read apart from the controller's settings, which
-// a slip here must not touch.
+// capacity of a battery that does not tell its own. Read apart from the controller's settings,
+// which a slip here must not touch.
 #pragma once
 
 #include <cstdint>

@@ -69,6 +69,19 @@ TEST(DayAccount, TheLineIsThis) {
       "soc_empty 3, held 1)");
 }
 
+/// 2 kWh in at 50 EUR/MWh and 45 a MWh.
+TEST(DayAccount, TheLineTellsTheFees) {
+  MoneyTerms terms{.capacity_wh = 8'000};
+  terms.contract.costs.import_adder_eur_per_mwh = 45;
+  const DayAccount day = account_of(std::vector<CycleRecord>(15, cycle(4'000, 5'000)), terms);
+  EXPECT_NEAR(day.money().contract_eur, 0.09, 1e-9);
+  EXPECT_NEAR(day.money().net_eur(), -0.19, 1e-9);
+  EXPECT_NE(day.line().find("-0.10 EUR (estimate: measured power at the logged price, 15 of 15 "
+                            "cycles, 0.09 EUR of fees not taken off)"),
+            std::string::npos)
+      << day.line();
+}
+
 TEST(DayAccount, TheThroughputOfAnotherDayIsNotThisDays) {
   DayAccount day(kDay);
   CycleRecord first = cycle(0, 0);

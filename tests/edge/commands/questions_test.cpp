@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <ctime>
+#include <filesystem>
 
+#include "edge/account/settled_prices.h"
 #include "edge/commands/command_line.h"
 #include "edge/control/policy.h"
 #include "edge/log/ring_log.h"
@@ -175,6 +177,45 @@ TEST_F(Questions, EarnedAddsTheDaysUp) {
   EXPECT_DOUBLE_EQ(beside.value()["beside"]["this_battery_eur"].number().value(),
                    beside.value()["earned_at_equal_soc_eur"].number().value());
   EXPECT_THAT(ask({"earned", span, "--beside", "--csv"}).error, HasSubstr("not with --csv"));
+}
+
+/// What only counts money is named by its file and line, and keeps nobody from driving.
+TEST_F(Questions, ASlipInTheContractIsNamed) {
+  log_until_now(2);
+  const std::string good = text_of_file(config_);
+  const std::string bad = folder_.write("edge.toml", good + "\n[contract]\nimport_percent = 101\n");
+  EXPECT_EQ(bad, config_);
+  for (const Said& said : {ask({"earned"}), ask({"--check"})}) {
+    EXPECT_EQ(said.exit_code, 1);
+    EXPECT_THAT(said.error, HasSubstr("[contract] import_percent must lie between 0 and 100"));
+  }
+  EXPECT_EQ(ask({"why"}).exit_code, 0);
+}
+
+/// The bill of the day that the log is of, at a price that was published since.
+TEST_F(Questions, EarnedIsBilledByWhatTheNotifierFetched) {
+  log_until_now(60);
+  const std::string day = std::string(local_text(newest_utc_s_).view()).substr(0, 10);
+  SettledPrices prices;
+  const SettledQuarter published[] = {{(newest_utc_s_ - 3'600) / 900 * 900, 140}};
+  prices.put(published);
+  std::filesystem::create_directories(folder_.file("notify"));
+  ASSERT_NE(folder_.write("notify/settled.csv", prices.text()), "");
+  const std::string good = text_of_file(config_);
+  ASSERT_NE(folder_.write("edge.toml", good + "\n[contract]\nimport_adder_eur_per_mwh = 100\n"),
+            "");
+  const std::string span = "2020-01-01.." + day;
+  const Json json = Json::parse(ask({"earned", span, "--json"}).out);
+  // 3 kW at 40 EUR/MWh for two hours, a quarter of an hour of it billed at 140.
+  EXPECT_NEAR(json.value()["billed_eur"].number().value_or(0), -0.240 - 0.750 * 0.1, 1e-9);
+  EXPECT_NEAR(json.value()["contract_eur"].number().value_or(0), 0.6, 1e-9);
+  EXPECT_EQ(json.value()["settled_quarter_hours"].number(), 1);
+  EXPECT_THAT(ask({"earned", span, "--html"}).out, HasSubstr("</html>"));
+  EXPECT_THAT(ask({"earned", "--html", "--csv"}).error, HasSubstr("one of them"));
+  ASSERT_NE(folder_.write("notify/settled.csv", "damaged"), "");
+  const Said damaged = ask({"earned", span});
+  EXPECT_EQ(damaged.exit_code, 0);
+  EXPECT_THAT(damaged.error, HasSubstr("settled.csv: is damaged"));
 }
 
 TEST_F(Questions, EarnedRefusesWhatItCannotAnswer) {

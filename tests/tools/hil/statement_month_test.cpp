@@ -1,6 +1,6 @@
 // The statement of a month against the battery's own record of what flowed, and against bess-sim
-// settle: a month of real prices in virtual time with the clock change in it, once undisturbed, once
-// with a gap, restarts and a meter that is cut off.
+// settle: a month of real prices in virtual time with the clock change in it, undisturbed, and with
+// a gap, restarts and a meter that is cut off.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -39,8 +39,8 @@ std::string month_of(const std::string& parts) {
          std::to_string(kMonthMinutes) + "\n[prices]\nfile = \"" + kPrices + "\"\n" + parts;
 }
 
-/// Six and a half hours without a controller, a stop and a kill with a start soon after, twelve hours
-/// without the meter, a day of a battery that is slow, noisy and slow near its ends.
+/// Six and a half hours without a controller, a stop and a kill with a start soon after, twelve
+/// hours without the meter, a day of a battery that is slow, noisy and slow near its ends.
 constexpr const char* kDisturbed = R"([battery]
 map = "alphaess"
 [house]
