@@ -9,7 +9,8 @@ constexpr const char* kStyle =
     "body{font:11pt/1.4 sans-serif;max-width:48em;margin:2em auto;padding:0 1em;color:#111;"
     "background:#fff}table{border-collapse:collapse;width:100%;font-variant-numeric:tabular-nums}"
     "th,td{padding:.15em .5em;text-align:right;border-bottom:1px solid #ccc}"
-    "th:first-child,td:first-child{text-align:left}tr.sum th,tr.sum td{border-top:2px solid #111;"
+    "th:first-child,td:first-child{text-align:left;white-space:nowrap}tr.sum th,tr.sum "
+    "td{border-top:2px solid #111;"
     "font-weight:bold}caption{text-align:left;font-weight:bold;padding:1em 0 .3em}"
     "@media print{body{margin:0;font-size:9pt}tr{break-inside:avoid}}";
 
