@@ -13,8 +13,8 @@
 #include "edge/program/device_session.h"
 #include "edge/program/find_battery.h"
 #include "edge/program/level_note.h"
+#include "edge/program/operator_note.h"
 #include "edge/program/threshold_note.h"
-#include "edge/program/wishes_note.h"
 #include "edge/registers/codec.h"
 #include "edge/settings/price_transport.h"
 #include "edge/site/house_watch.h"
@@ -197,7 +197,7 @@ bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& p
   print_transport(config);
   const std::int64_t now_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
   const Hold hold = read_newest_hold(both_places(config, kHoldFileName)).hold;
-  std::fputs(wishes_note(config.control, hold, now_utc_s).c_str(), stdout);
+  std::fputs(operator_note(config.control, hold, now_utc_s).c_str(), stdout);
   std::fflush(stdout);
   std::string trouble;
   const bool battery_ok = identify_battery(config, battery, trouble) == Status::kOk;

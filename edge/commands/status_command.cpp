@@ -156,7 +156,7 @@ void print_level(JsonValue s) {
 }
 
 /// What people asked for: a hold with its end, the reserve of this hour, full charges.
-void print_wishes(JsonValue s) {
+void print_operator_orders(JsonValue s) {
   if (is_true(field<&R::hold, &H::held>(s))) {
     std::printf("hold       %lld W until %s\n", whole(field<&R::hold, &H::power_w>(s)),
                 text_of(field<&R::hold, &H::until_utc_s>(s)));
@@ -205,7 +205,7 @@ void print_last_cycle(JsonValue s, bool is_running) {
   print_site(s);
   std::printf("order      %.0f W, reason %s\n", number(field<&R::ordered_power_w>(s)),
               text_of(field<&R::reason>(s)));
-  print_wishes(s);
+  print_operator_orders(s);
 }
 
 void print_counters(JsonValue s) {

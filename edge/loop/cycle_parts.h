@@ -5,11 +5,11 @@
 #include <tuple>
 
 #include "edge/loop/control_settings.h"
+#include "edge/loop/parts/operator_parts.h"
 #include "edge/loop/parts/price_part.h"
 #include "edge/loop/parts/site_part.h"
 #include "edge/loop/parts/supervision_part.h"
 #include "edge/loop/parts/wear_part.h"
-#include "edge/loop/parts/wishes_part.h"
 
 namespace bess {
 

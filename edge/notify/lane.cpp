@@ -35,7 +35,7 @@ void Dropped::forget(const Dropped& told) {
   if (count == 0) *this = {};
 }
 
-Lane::Lane(std::string name, Way way, Owed owed, const Bell& taken)
+Lane::Lane(std::string name, Channel way, Owed owed, const Bell& taken)
     : name_(std::move(name)), way_(std::move(way)), taken_(taken), owed_(std::move(owed)) {
   thread_ = std::jthread([this](const std::stop_token& stop) { work(stop); });
 }

@@ -24,7 +24,7 @@
 namespace bess {
 
 /// Empty when the message was taken; else why not. Gives up soon once it is asked to stop.
-using Way = std::function<std::string(const Message&, const std::stop_token&)>;
+using Channel = std::function<std::string(const Message&, const std::stop_token&)>;
 
 /// Messages that were given up, untold.
 struct Dropped {
@@ -49,7 +49,7 @@ class Lane {
   static constexpr std::int64_t kPatienceS = 3 * 86'400;
 
   /// `taken` rings after each message that was taken.
-  Lane(std::string name, Way way, Owed owed, const Bell& taken);
+  Lane(std::string name, Channel way, Owed owed, const Bell& taken);
   Lane(const Lane&) = delete;
   Lane& operator=(const Lane&) = delete;
   ~Lane() = default;  // jthread asks its thread to stop, and waits for it
@@ -72,7 +72,7 @@ class Lane {
   void note(const std::string& trouble);
 
   const std::string name_;
-  const Way way_;
+  const Channel way_;
   const Bell& taken_;
   mutable std::mutex mutex_;
   mutable std::condition_variable_any changed_;

@@ -147,7 +147,7 @@ void watch(Notifier& notifier, std::int32_t every_s, const sigset_t& stop_signal
 int run_once(Notifier& notifier) {
   constexpr std::chrono::minutes kPatience(2);  // a mailer's time, and as much again
   notifier.run_round(now_utc_s());
-  static_cast<void>(notifier.wait_for_ways(kPatience));
+  static_cast<void>(notifier.wait_for_channels(kPatience));
   return 0;
 }
 
@@ -159,7 +159,7 @@ int run(const Options& options) {
     return 1;
   }
   if (options.task == Task::kCheck) return print_check(settings), 0;
-  if (!settings.has_a_way()) {
+  if (!settings.has_channel()) {
     say(JournalLevel::kWarning,
         "[notify] names no way (mail_to, webhook_url, mqtt_host): alarms stand in the journal "
         "alone");

@@ -43,8 +43,8 @@ std::vector<std::string> memories_of(const NotifySettings& settings) {
   return paths;
 }
 
-Told recall(const NotifySettings& settings) {
-  ToldReading reading = read_newest_told(memories_of(settings));
+NotifierState recall(const NotifySettings& settings) {
+  NotifierStateReading reading = read_newest_notifier_state(memories_of(settings));
   for (const std::string& loss : reading.losses) say(JournalLevel::kError, loss);
   return std::move(reading.told);
 }
@@ -57,7 +57,7 @@ Notifier::Notifier(const NotifySettings& settings, MqttPresence presence)
       energy_(told_.energy),
       book_(settings.after_s, told_.alarms),
       desk_(settings.mqtt.hold_minutes, settings.power_w),
-      kept_(told_text(told_)) {
+      kept_(notifier_state_text(told_)) {
   if (!settings_.mail_to.empty()) {
     open_lane("mail", [this](const Message& message, const std::stop_token& stop) {
       return send_mail(settings_, message, stop);
@@ -84,13 +84,13 @@ void Notifier::open_mqtt(MqttPresence presence) {
   });
 }
 
-void Notifier::open_lane(const char* name, Way way) {
+void Notifier::open_lane(const char* name, Channel way) {
   lanes_.try_emplace(name, name, std::move(way), std::move(told_.owed[name]), taken_);
 }
 
 Notifier::~Notifier() {
   constexpr std::chrono::seconds kGrace(2);
-  static_cast<void>(wait_for_ways(kGrace));
+  static_cast<void>(wait_for_channels(kGrace));
   for (auto& [name, lane] : lanes_) lane.stop();
   keep();
 }
@@ -126,7 +126,7 @@ void Notifier::follow_orders() {
   if (has_changed) publish(ask_controller(settings_.program, settings_.config_path));
 }
 
-bool Notifier::wait_for_ways(std::chrono::milliseconds patience) {
+bool Notifier::wait_for_channels(std::chrono::milliseconds patience) {
   using std::chrono::steady_clock;
   const auto deadline = steady_clock::now() + patience;
   const auto left = [&] {
@@ -232,12 +232,12 @@ void Notifier::keep() {
   // Its growth can be counted again from the log: alone it is not worth a write to the card.
   const bool is_energy_due =
       energy_.counted_utc_s - told_.energy.counted_utc_s >= kKeepEnergyEveryS;
-  if (!is_energy_due && told_text(told_) == kept_ && memory_trouble_.empty()) return;
+  if (!is_energy_due && notifier_state_text(told_) == kept_ && memory_trouble_.empty()) return;
   told_.energy = energy_;
   ++told_.number;
-  const std::string text = told_text(told_);
+  const std::string text = notifier_state_text(told_);
   const std::string trouble_before =
-      std::exchange(memory_trouble_, write_told(memories_of(settings_), text));
+      std::exchange(memory_trouble_, write_notifier_state(memories_of(settings_), text));
   if (trouble_before.empty() && !memory_trouble_.empty()) {
     say(JournalLevel::kWarning, memory_trouble_);
   } else if (!trouble_before.empty() && memory_trouble_.empty()) {

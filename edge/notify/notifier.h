@@ -18,8 +18,8 @@
 #include "edge/notify/message.h"
 #include "edge/notify/mqtt_client.h"
 #include "edge/notify/mqtt_orders.h"
+#include "edge/notify/notifier_state.h"
 #include "edge/notify/notify_settings.h"
-#include "edge/notify/told.h"
 
 namespace bess {
 
@@ -42,13 +42,13 @@ class Notifier {
   void keep();
   /// Until every way has taken what is owed, or has failed, and a broker that is there has the newest values; then
   /// keeps it. False when the patience ends before.
-  bool wait_for_ways(std::chrono::milliseconds patience);
+  bool wait_for_channels(std::chrono::milliseconds patience);
   /// A message by every way, once. False when one did not take it.
   bool send_test(std::int64_t now_utc_s);
 
  private:
   void open_mqtt(MqttPresence presence);
-  void open_lane(const char* name, Way way);
+  void open_lane(const char* name, Channel way);
   void tell(const Message& message);
   void tell_events(const std::vector<AlarmEvent>& events, std::int64_t now_utc_s);
   void read_log(std::int64_t newest_utc_s, std::int64_t now_utc_s);
@@ -56,7 +56,7 @@ class Notifier {
   void publish(const ControllerStatus& status);
 
   const NotifySettings settings_;
-  Told told_;  ///< as it was kept last
+  NotifierState told_;  ///< as it was kept last
   EnergyTotals energy_;
   DayAccount today_{0};                ///< of the newest record
   std::int64_t read_up_to_utc_s_ = 0;  ///< the cycle behind which the log was read last

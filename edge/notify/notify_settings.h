@@ -45,7 +45,7 @@ struct NotifySettings : ControllerPlaces {
   MoneySettings money;
   SettledSource settled;
 
-  [[nodiscard]] bool has_a_way() const {
+  [[nodiscard]] bool has_channel() const {
     return !mail_to.empty() || !webhook_url.empty() || !mqtt.host.empty();
   }
 };

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "edge/settings/link_config.h"
-#include "edge/settings/people_config.h"
+#include "edge/settings/operator_config.h"
 
 namespace bess {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstdio>
 
 #include "edge/settings/guard_config.h"
-#include "edge/settings/people_config.h"
+#include "edge/settings/operator_config.h"
 #include "shared/utc_text.h"
 
 namespace bess {

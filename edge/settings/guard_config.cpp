@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "edge/settings/people_config.h"
+#include "edge/settings/operator_config.h"
 #include "shared/units_and_limits.h"
 
 namespace bess {

@@ -22,7 +22,7 @@ Message alarm(const std::string& text, std::int64_t utc_s = kNow) {
 /// A way that notes what it is given, and takes it or not as it is told to.
 class Recorder {
  public:
-  Way way() {
+  Channel way() {
     return [this](const Message& message, const std::stop_token& stop) {
       std::unique_lock lock(mutex_);
       tried_.push_back(message.text);

@@ -10,8 +10,8 @@
 
 #include "edge/notify/controller_status.h"
 #include "edge/notify/mail.h"
+#include "edge/notify/notifier_state.h"
 #include "edge/notify/notify_settings.h"
-#include "edge/notify/told.h"
 #include "edge/notify/topics.h"
 #include "edge/notify/webhook.h"
 #include "shared/host/run_program.h"
@@ -39,7 +39,7 @@ TEST(NotifySettings, WithoutASectionThereIsNoWay) {
   std::string error;
   ASSERT_TRUE(load_notify_settings(folder.write("edge.toml", "control = true\n"), settings, error))
       << error;
-  EXPECT_FALSE(settings.has_a_way());
+  EXPECT_FALSE(settings.has_channel());
   EXPECT_EQ(settings.ring, folder.file("state/decisions.ring"));
   EXPECT_EQ(settings.memory, folder.file("notify/told.json"));
   EXPECT_FALSE(settings.node.empty());
@@ -83,7 +83,7 @@ TEST(NotifySettings, ReadsEveryKey) {
                    "mqtt_password_file = \"password\"\nmqtt_discovery_prefix = \"ha\"\n"),
       settings, error))
       << error;
-  EXPECT_TRUE(settings.has_a_way());
+  EXPECT_TRUE(settings.has_channel());
   EXPECT_EQ(settings.ring, "/var/lib/bess/decisions.ring");
   EXPECT_EQ(settings.run_ring, "/run/bess/decisions.ring") << "as the controller has it";
   EXPECT_EQ(settings.memory, folder.file("memory/told.json"));
@@ -290,10 +290,10 @@ TEST(Topics, AreTheseToTheLetter) {
   expect_golden(BESS_SOURCE_DIR "/tests/golden/mqtt_topics.txt", text);
 }
 
-TEST(Told, OutlastsARestart) {
+TEST(NotifierStateFile, OutlastsARestart) {
   const TemporaryFolder folder;
   const std::string path = folder.file("new/told.json");
-  Told told;
+  NotifierState told;
   told.local_day = 20'231'126;
   told.alarms = {{.key = "k", .text = "t", .since_utc_s = 60, .seen_utc_s = 120, .is_told = true}};
   told.owed["mail"].messages = {kAlarm};
@@ -302,8 +302,8 @@ TEST(Told, OutlastsARestart) {
   told.energy.discharged_ws = 7;
   told.energy.counted_number = 25'200;
   told.energy.counted_utc_s = 1'679'875'320;
-  ASSERT_EQ(write_told({path}, told_text(told)), "");
-  const Told read = read_told(path);
+  ASSERT_EQ(write_notifier_state({path}, notifier_state_text(told)), "");
+  const NotifierState read = read_notifier_state(path);
   EXPECT_EQ(read.local_day, 20'231'126);
   ASSERT_EQ(read.alarms.size(), 1U);
   EXPECT_EQ(read.alarms[0].key, "k");
@@ -317,14 +317,14 @@ TEST(Told, OutlastsARestart) {
   EXPECT_EQ(message.utc_s, kAlarm.utc_s);
   EXPECT_EQ(read.owed.at("mqtt").dropped.count, 3);
   EXPECT_EQ(read.owed.at("mqtt").dropped.last_utc_s, 180);
-  EXPECT_EQ(told_text(read), told_text(told));
+  EXPECT_EQ(notifier_state_text(read), notifier_state_text(told));
 }
 
-TEST(Told, ADamagedFileIsAsIfNothingWasTold) {
+TEST(NotifierStateFile, ADamagedFileIsAsIfNothingWasTold) {
   const TemporaryFolder folder;
   for (const char* text : {"", "x", "{}", "[1]", R"({"version": 2, "local_day": 7})",
                            R"({"version": 1, "alarms": 5, "pending": [1]})"}) {
-    const Told told = read_told(folder.write("told.json", text));
+    const NotifierState told = read_notifier_state(folder.write("told.json", text));
     EXPECT_EQ(told.local_day, 0);
     EXPECT_TRUE(told.alarms.empty());
   }
@@ -334,14 +334,14 @@ TEST(Told, ADamagedFileIsAsIfNothingWasTold) {
 class ToldCopies : public ::testing::Test {
  protected:
   void keep(std::uint64_t number) {
-    Told told;
+    NotifierState told;
     told.number = number;
     told.local_day = static_cast<std::int32_t>(number);
-    text_ = told_text(told);
-    ASSERT_EQ(write_told(paths_, text_), "");
+    text_ = notifier_state_text(told);
+    ASSERT_EQ(write_notifier_state(paths_, text_), "");
   }
   void expect_known(std::uint64_t number, const std::vector<std::string>& losses) const {
-    const ToldReading reading = read_newest_told(paths_);
+    const NotifierStateReading reading = read_newest_notifier_state(paths_);
     EXPECT_EQ(reading.told.local_day, static_cast<std::int32_t>(number));
     EXPECT_EQ(reading.losses, losses);
   }
@@ -358,9 +358,9 @@ TEST_F(ToldCopies, TheNewestCounts) {
   keep(7);
   expect_known(7, {});
   for (const std::string& path : paths_) {
-    Told later;
+    NotifierState later;
     later.number = later.local_day = 8;
-    ASSERT_EQ(write_told({path}, told_text(later)), "");
+    ASSERT_EQ(write_notifier_state({path}, notifier_state_text(later)), "");
     expect_known(8, {});
     keep(7);
   }
@@ -375,7 +375,7 @@ TEST_F(ToldCopies, AnyFlippedByteIsSeenAndCostsNothing) {
       std::string flipped = text_;
       flipped[i] = static_cast<char>(flipped[i] ^ (1 << i % 8));
       std::ofstream(path, std::ios::binary) << flipped;
-      const ToldReading reading = read_newest_told(paths_);
+      const NotifierStateReading reading = read_newest_notifier_state(paths_);
       ASSERT_EQ(reading.told.local_day, 7) << i;
       // In the words around the checksum a flip makes it one without: what it says is as it was.
       EXPECT_TRUE(!reading.losses.empty() || i >= text_.rfind(",\n")) << i;
@@ -401,12 +401,12 @@ TEST_F(ToldCopies, WhereOnePlaceRefusesTheOthersKeepItAndThatIsSaid) {
   keep(7);
   std::filesystem::remove(paths_[0]);
   std::filesystem::create_directory(paths_[0]);
-  EXPECT_EQ(write_told(paths_, text_), paths_[0] +
-                                           ": cannot be written: Is a directory; what is "
-                                           "told is kept in " +
-                                           paths_[2] + " alone");
+  EXPECT_EQ(write_notifier_state(paths_, text_), paths_[0] +
+                                                     ": cannot be written: Is a directory; what is "
+                                                     "told is kept in " +
+                                                     paths_[2] + " alone");
   EXPECT_EQ(
-      write_told({"/proc/nowhere/told.json"}, text_),
+      write_notifier_state({"/proc/nowhere/told.json"}, text_),
       "/proc/nowhere/told.json: cannot be written: No such file or directory; what is told is "
       "kept nowhere: a restart tells it again");
 }

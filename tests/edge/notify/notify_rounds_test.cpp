@@ -116,7 +116,7 @@ TEST_F(Rounds, WhatWasToldIsWrittenWhenItChanges) {
   EXPECT_EQ(written(), first);
   cycle(30);
   EXPECT_NE(written(), first);
-  EXPECT_EQ(read_told(settings_.memory).energy.charged_ws, 30 * 120 * 4'000);
+  EXPECT_EQ(read_notifier_state(settings_.memory).energy.charged_ws, 30 * 120 * 4'000);
 }
 
 TEST_F(Rounds, AWebhookIsPostedAsJsonAndNothingButASuccessCounts) {

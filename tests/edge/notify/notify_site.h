@@ -59,7 +59,9 @@ class Rounds : public ::testing::Test {
     std::filesystem::rename(beside, folder_.file("status.json"));  // a round may look at any time
   }
   /// As it was kept.
-  [[nodiscard]] Owed owed(const char* way) const { return read_told(settings_.memory).owed[way]; }
+  [[nodiscard]] Owed owed(const char* way) const {
+    return read_notifier_state(settings_.memory).owed[way];
+  }
   [[nodiscard]] std::string mails() const { return text_of_file(folder_.file("mails")); }
 
   const TemporaryFolder folder_;
@@ -71,7 +73,7 @@ inline constexpr const char* kReason = R"("WARN: mode is safe, reason no_price")
 /// A round, and what the ways make of it.
 inline void whole_round(Notifier& notifier, std::int64_t now_utc_s) {
   notifier.run_round(now_utc_s);
-  EXPECT_TRUE(notifier.wait_for_ways(std::chrono::minutes(2)));
+  EXPECT_TRUE(notifier.wait_for_channels(std::chrono::minutes(2)));
 }
 
 /// The same by a notifier that has just started, and ends.

@@ -97,7 +97,7 @@ struct QuietHour {
   EdgeConfig config;
   std::optional<VirtualBus> bus;
   EdgeState state;
-  VirtualPeople people;
+  VirtualOperator people;
   sigset_t mask{};
   std::optional<WatchedWorld> world;
   std::optional<Controller<WatchedWorld>> controller;

@@ -101,7 +101,7 @@ Evidence run_virtual(const Scenario& scenario, const MinuteSeries& prices, const
   }
   EdgeState state;
   state.reserve(static_cast<std::size_t>(60 * scenario.minutes / kSecondsPerStep) + 2);
-  VirtualPeople people;
+  VirtualOperator people;
   time.on_people([&](const ScenarioEvent& event) {
     if (event.does == ScenarioEvent::Does::kStateLost) return state.lose();
     people.act(event, time.edge_utc_ns() / kNanosecondsPerSecond, state.trip());

@@ -12,7 +12,7 @@
 #include "edge/battery/modbus_meter.h"
 #include "edge/log/journal.h"
 #include "edge/program/controller.h"
-#include "tools/hil_runner/virtual/virtual_people.h"
+#include "tools/hil_runner/virtual/virtual_operator.h"
 #include "tools/hil_runner/virtual/virtual_prices.h"
 #include "tools/hil_runner/virtual/virtual_run.h"
 
@@ -45,7 +45,7 @@ class VirtualWorld {
  public:
   using Prices = VirtualPrices;
   using Meter = ModbusMeter;
-  using Limits = VirtualPeople;
+  using Limits = VirtualOperator;
   /// Here the records go into memory, cycle by cycle.
   struct Seal {
     Seal() {}
@@ -57,7 +57,7 @@ class VirtualWorld {
     SimulatedBattery& physics;
     Weather weather;
     EdgeState& state;
-    VirtualPeople& people;
+    VirtualOperator& people;
   };
   VirtualWorld(const EdgeConfig& config, const VirtualPrices& prices, const Surroundings& around);
 
@@ -65,7 +65,7 @@ class VirtualWorld {
   ModbusBattery& battery() { return battery_; }
   VirtualPrices& prices() { return prices_; }
   ModbusMeter& meter() { return meter_; }
-  VirtualPeople& limits() { return around_.people; }
+  VirtualOperator& limits() { return around_.people; }
 
   static bool open() { return true; }
   [[nodiscard]] Recall recall() const;

@@ -1,10 +1,10 @@
-#include "tools/hil_runner/virtual/virtual_people.h"
+#include "tools/hil_runner/virtual/virtual_operator.h"
 
 #include "tools/hil_runner/scenario/limit_line.h"
 
 namespace bess {
 
-void VirtualPeople::act(const ScenarioEvent& event, std::int64_t now_utc_s, const Trip& trip) {
+void VirtualOperator::act(const ScenarioEvent& event, std::int64_t now_utc_s, const Trip& trip) {
   using enum ScenarioEvent::Does;
   switch (event.does) {
     case kHold:
@@ -27,7 +27,7 @@ void VirtualPeople::act(const ScenarioEvent& event, std::int64_t now_utc_s, cons
   }
 }
 
-Status VirtualPeople::read(OutsideLimit& limit, bool& is_set) const {
+Status VirtualOperator::read(OutsideLimit& limit, bool& is_set) const {
   is_set = false;
   if (limit_.empty()) return Status::kOk;
   const Status status = parse_outside_limit(limit_, limit);

@@ -15,7 +15,7 @@
 
 namespace bess {
 
-struct Told {
+struct NotifierState {
   std::uint64_t number = 0;  ///< grows with every time that it is kept
   std::vector<Alarm> alarms{};
   std::int32_t local_day = 0;          ///< the last that was told; 0 = none yet
@@ -24,19 +24,19 @@ struct Told {
 };
 
 /// A file that is missing, damaged or not ours is as if nothing had been told.
-Told read_told(const std::string& path);
+NotifierState read_notifier_state(const std::string& path);
 
-struct ToldReading {
-  Told told{};
+struct NotifierStateReading {
+  NotifierState told{};
   std::vector<std::string> losses{};  ///< one line each
 };
 /// Of all files the one that was kept last.
-ToldReading read_newest_told(const std::vector<std::string>& paths);
+NotifierStateReading read_newest_notifier_state(const std::vector<std::string>& paths);
 
-std::string told_text(const Told& told);
+std::string notifier_state_text(const NotifierState& told);
 
-/// What `told_text` gave, to every place; a folder that is missing is made. Empty, or one line:
-/// which place could not be written first, and what follows from it.
-std::string write_told(const std::vector<std::string>& paths, const std::string& text);
+/// What `notifier_state_text` gave, to every place; a folder that is missing is made. Empty, or one
+/// line: which place could not be written first, and what follows from it.
+std::string write_notifier_state(const std::vector<std::string>& paths, const std::string& text);
 
 }  // namespace bess

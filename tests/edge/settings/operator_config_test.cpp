@@ -1,12 +1,12 @@
 // Reserve, full charge and spread of starts in the operator's configuration, and every mistake in
 // them.
-#include "edge/settings/people_config.h"
+#include "edge/settings/operator_config.h"
 #include "edge/settings/edge_config.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "edge/program/wishes_note.h"
+#include "edge/program/operator_note.h"
 #include "edge/settings/start_offset.h"
 #include "shared/local_time.h"
 #include "tests/support/temporary_folder.h"
@@ -121,18 +121,18 @@ TEST(WishesNote, SaysWhatIsWantedAndNothingElse) {
   set_market_time_zone();
   constexpr std::int64_t kNow = 1'679'875'320;  // 02:02 in Brussels
   ControlSettings control;
-  EXPECT_EQ(wishes_note(control, {}, kNow), "");
-  EXPECT_EQ(wishes_note(control, {.power_w = -5, .until_utc_s = kNow}, kNow), "");  // over
+  EXPECT_EQ(operator_note(control, {}, kNow), "");
+  EXPECT_EQ(operator_note(control, {.power_w = -5, .until_utc_s = kNow}, kNow), "");  // over
   control.reserve.push_back({.from_minute = 0, .to_minute = 180, .soc_e4 = 1'550});
   control.full_charge_every_days = 7;
   control.guard.full_charge_power_w = 2'000;
   control.start_offset_ms = 7'312;
   EXPECT_EQ(
-      wishes_note(control, {.power_w = -500, .until_utc_s = kNow + 60}, kNow),
+      operator_note(control, {.power_w = -500, .until_utc_s = kNow + 60}, kNow),
       "hold       -500 W until 2023-03-27T00:03:00Z\n"
       "reserve    SoC 15.5 % at this hour, 1 periods in all\nfull       every 7 days, with 2000 W\n"
       "spread     orders 7.312 s after each tick\n");
-  EXPECT_THAT(wishes_note({}, {.unreadable = true}, kNow), HasSubstr("not followed"));
+  EXPECT_THAT(operator_note({}, {.unreadable = true}, kNow), HasSubstr("not followed"));
 }
 
 TEST(StartOffset, IsTheSameAtEveryStartAndSpreadsOverAllMachines) {

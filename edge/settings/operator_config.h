@@ -1,4 +1,4 @@
-// What people decide besides trading: a reserve by the hour, full charges, the spread of the
+// What an operator decides besides trading: a reserve by the hour, full charges, the spread of the
 // starts.
 #pragma once
 

@@ -1,4 +1,4 @@
-#include "edge/notify/told.h"
+#include "edge/notify/notifier_state.h"
 
 #include <algorithm>
 #include <cerrno>
@@ -85,15 +85,15 @@ EnergyTotals read_energy(JsonValue energy) {
 /// What lies at one of the places.
 struct KeptTold {
   std::string path;
-  Told told{};
+  NotifierState told{};
   std::string loss{};  ///< why it does not count
   bool is_absent = false;
 
   [[nodiscard]] bool counts() const { return !is_absent && loss.empty(); }
 };
 
-Told told_in(JsonValue all) {
-  Told told;
+NotifierState notifier_state_in(JsonValue all) {
+  NotifierState told;
   told.number = whole_of<std::uint64_t>(all["number"]);
   told.local_day = whole_of<std::int32_t>(all["local_day"]);
   for (const JsonValue alarm : all["alarms"]) {
@@ -126,16 +126,18 @@ KeptTold read_place(const std::string& path) {
     place.loss = "is damaged, or of another version: not believed";
     return place;
   }
-  place.told = told_in(json.value());
+  place.told = notifier_state_in(json.value());
   return place;
 }
 
 }  // namespace
 
-Told read_told(const std::string& path) { return read_newest_told({path}).told; }
+NotifierState read_notifier_state(const std::string& path) {
+  return read_newest_notifier_state({path}).told;
+}
 
-ToldReading read_newest_told(const std::vector<std::string>& paths) {
-  ToldReading reading;
+NotifierStateReading read_newest_notifier_state(const std::vector<std::string>& paths) {
+  NotifierStateReading reading;
   std::vector<KeptTold> places;
   for (const std::string& path : paths) places.push_back(read_place(path));
   for (KeptTold& place : places) {
@@ -161,7 +163,7 @@ ToldReading read_newest_told(const std::vector<std::string>& paths) {
   return reading;
 }
 
-std::string told_text(const Told& told) {
+std::string notifier_state_text(const NotifierState& told) {
   Json alarms = Json::list();
   Json pending = Json::list();
   Json dropped = Json::list();
@@ -182,7 +184,7 @@ std::string told_text(const Told& told) {
   return body + std::string(checksum_end(body, kJsonChecksum).view());
 }
 
-std::string write_told(const std::vector<std::string>& paths, const std::string& text) {
+std::string write_notifier_state(const std::vector<std::string>& paths, const std::string& text) {
   std::string trouble;
   std::string kept;
   for (const std::string& path : paths) {

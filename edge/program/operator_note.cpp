@@ -1,4 +1,4 @@
-#include "edge/program/wishes_note.h"
+#include "edge/program/operator_note.h"
 
 #include <cstdio>
 
@@ -17,7 +17,8 @@ void add_line(std::string& note, const char* format, Values... values) {
 
 }  // namespace
 
-std::string wishes_note(const ControlSettings& control, const Hold& hold, std::int64_t now_utc_s) {
+std::string operator_note(const ControlSettings& control, const Hold& hold,
+                          std::int64_t now_utc_s) {
   std::string note;
   const HoldReport held = hold_at(hold, now_utc_s);
   if (held.held) {

@@ -1,4 +1,4 @@
-// What people want of a cycle: a hold, and a reserve at this hour.
+// What an operator asks of a cycle: a hold, and a reserve at this hour.
 #pragma once
 
 #include "edge/control/hold.h"

@@ -1,4 +1,4 @@
-// What --check says of people's wishes: each line only where there is one.
+// What --check says of what the operator asks: each line only where there is one.
 #pragma once
 
 #include <string>
@@ -10,6 +10,6 @@ namespace bess {
 
 /// Lines with their ends; empty when nothing is wanted. `now_utc_s` decides which reserve and hold
 /// are in force.
-std::string wishes_note(const ControlSettings& control, const Hold& hold, std::int64_t now_utc_s);
+std::string operator_note(const ControlSettings& control, const Hold& hold, std::int64_t now_utc_s);
 
 }  // namespace bess

@@ -1,4 +1,4 @@
-#include "edge/settings/people_config.h"
+#include "edge/settings/operator_config.h"
 
 #include <string>
 

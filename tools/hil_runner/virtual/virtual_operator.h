@@ -13,7 +13,7 @@
 
 namespace bess {
 
-class VirtualPeople {
+class VirtualOperator {
  public:
   /// `now_utc_s` by the edge's clock; `trip` is the one in force, if any.
   void act(const ScenarioEvent& event, std::int64_t now_utc_s, const Trip& trip);
