@@ -1,10 +1,10 @@
-// The two prices at which a rule stands above every policy [SPEC 5, 7]: charge at or below the low one,
-// discharge at or above the high one. The BRP sets them; the student is corrected and proved against
-// them, the edge's guard enforces its own whatever the student says.
+// The two prices at which a rule stands above every policy [SPEC 5, 7]: charge at or below the low
+// one, discharge at or above the high one. The BRP sets them; the student is corrected and proved
+// against them, the edge's guard enforces its own whatever the student says.
 //
-// Only a threshold inside the lattice binds the student: on all lattice prices beyond it, and so on every
-// price there is, because prices outside the lattice are clamped to its ends. One outside the lattice is
-// the guard's alone, and whoever shows a certificate says so [SPEC 6].
+// Only a threshold inside the lattice binds the student: on all lattice prices beyond it, and so on
+// every price there is, because prices outside the lattice are clamped to its ends. One outside the
+// lattice is the guard's alone, and whoever shows a certificate says so [SPEC 6].
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,8 @@
 
 namespace bess {
 
-/// Thresholds and the ends of rules lie within +- this many EUR/MWh: further out nobody has one, and a price
-/// beyond is beyond each of them.
+/// Thresholds and the ends of rules lie within +- this many EUR/MWh: further out nobody has one,
+/// and a price beyond is beyond each of them.
 inline constexpr std::int32_t kThresholdMaxEurPerMwh = kUnusualPriceMaxEurPerMwh;
 
 struct PriceThresholds {

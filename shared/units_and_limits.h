@@ -35,8 +35,8 @@ inline constexpr double kWattsPerMegawatt = 1e6;  ///< prices are per MWh, power
 
 // --- Prices as the edge counts them: integer hundredths of EUR/MWh [SPEC 7] --------------------
 inline constexpr std::int32_t kCentiPerEur = 100;
-/// Prices outside +-100,000 EUR/MWh are refused as implausible: no bid of a European balancing market may
-/// pass +-99,999, and one of them settled at 25,907.54 in January 2026.
+/// Prices outside +-100,000 EUR/MWh are refused as implausible: no bid of a European balancing
+/// market may pass +-99,999, and one of them settled at 25,907.54 in January 2026.
 inline constexpr std::int32_t kPlausiblePriceMaxEurPerMwh = 100'000;
 inline constexpr std::int32_t kPlausiblePriceMaxCentiEurPerMwh =
     kPlausiblePriceMaxEurPerMwh * kCentiPerEur;

@@ -322,8 +322,8 @@ class SignCheck {
     if (result_.meter == MeterVerdict::kRestless) fail(CommissionVerdict::kMeterRestless);
   }
 
-  /// On every way out, and tried until the link has had its chance to come back; a verdict that failed earlier says
-  /// more than the release's.
+  /// On every way out, and tried until the link has had its chance to come back; a verdict that
+  /// failed earlier says more than the release's.
   void release() {
     const std::int64_t last_ns = clock_.now_utc_ns() + kReleasePatienceNs;
     result_.release_status = battery_.release();

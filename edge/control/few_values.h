@@ -1,8 +1,8 @@
-// A price that goes to and fro between a few values under new stamps: a source that hangs, and shows now one and now
-// another of its last rows. Pure integers.
+// A price that goes to and fro between a few values under new stamps: a source that hangs, and
+// shows now one and now another of its last rows. Pure integers.
 //
-// How long honest prices stay within four values, to the cent, measured on 23 November 2026 on Elia's data, of every
-// second minute, as a controller asks:
+// How long honest prices stay within four values, to the cent, measured on 23 November 2026 on
+// Elia's data, of every second minute, as a controller asks:
 //   the 1,631 real minutes of 6 September 2024 and 8 April 2025   66 minutes at most
 //   the 204,420 rebuilt minutes of January to May 2023            50 minutes
 //   52,530 real settled quarter-hours of January 2023 to June 2025, had every minute of them shown it

@@ -1,5 +1,5 @@
-// A price that does not move although its stamps do: a source that hangs behind a clock that goes on. Told
-// after a while, after a longer one no price at all. Pure integers.
+// A price that does not move although its stamps do: a source that hangs behind a clock that goes
+// on. Told after a while, after a longer one no price at all. Pure integers.
 //
 // How long honest prices stand still, to the cent, measured on 23 November 2026 on Elia's data:
 //   the 1,631 real minutes of 6 September 2024 and 8 April 2025: 19 minutes at most (22 between the rows
@@ -7,8 +7,9 @@
 //   52,530 real settled quarter-hours of January 2023 to June 2025: 10 in a row at most (150.00, on
 //     29 December 2024); 7 or more 26 times, 9 or more 8 times. The minutes converge to what is settled, so
 //     a run of theirs is at most two times 14 minutes longer: under 3 hours, had each of them shown it
-// So what stands still for 30 minutes is worth a look, and no honest price stood still for 3 hours. Among four
-// values (few_values.h) it must stay four times as long to be told, and two and a half times as long to be none.
+// So what stands still for 30 minutes is worth a look, and no honest price stood still for 3 hours.
+// Among four values (few_values.h) it must stay four times as long to be told, and two and a half
+// times as long to be none.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +25,8 @@ struct FrozenPriceSettings {
   std::int32_t stop_s = 10'800;  ///< after this long the price counts as none; 0 = it always counts
 };
 
-/// The newest row that a decision saw, and how long its price has stood by then. Kept over restarts: none
-/// thaws a price.
+/// The newest row that a decision saw, and how long its price has stood by then. Kept over
+/// restarts: none thaws a price.
 struct StandingPrice {
   std::int64_t minute_utc_s = 0;  ///< 0 = no row yet
   std::int32_t centi_eur_per_mwh = 0;
@@ -49,8 +50,8 @@ class FrozenPrice {
     few_minute_utc_s_ = minute_utc_s;
   }
 
-  /// The newest row that a decision sees. Of an outage only a step counts: it neither thaws a price nor
-  /// makes two equal rows hours apart a frozen one.
+  /// The newest row that a decision sees. Of an outage only a step counts: it neither thaws a price
+  /// nor makes two equal rows hours apart a frozen one.
   constexpr void observe(std::int64_t minute_utc_s, std::int32_t centi_eur_per_mwh) {
     recall(minute_utc_s, centi_eur_per_mwh);
     const bool stands = price_.minute_utc_s > 0 && centi_eur_per_mwh == price_.centi_eur_per_mwh;

@@ -1,11 +1,12 @@
-// A way in a lane of its own: what is owed waits in order in its queue, and its own thread sends it. However
-// long a way takes to accept, to fail or to be silent, no other way waits, and no look at the controller.
+// A way in a lane of its own: what is owed waits in order in its queue, and its own thread sends
+// it. However long a way takes to accept, to fail or to be silent, no other way waits, and no look
+// at the controller.
 //
 //   add         owed from now on; nothing is sent yet, so that it can be kept in a file first
 //   begin_round an attempt at everything that is owed; it ends with the first message that is not taken
 //
-// The queue is bounded in number and in time. What had to go is counted, and the way is told how many before it
-// is told anything else.
+// The queue is bounded in number and in time. What had to go is counted, and the way is told how
+// many before it is told anything else.
 #pragma once
 
 #include <chrono>

@@ -1,7 +1,7 @@
 // One round of the notifier: ask, compare with what was told, hand the rest to every way's lane.
 //   bess-edge status, decision log --> AlarmBook, DayAccount --> messages --> lanes: mail, webhook, MQTT
-// It reads files and asks a program; nothing here holds what the controller needs. A round waits for no way: what
-// a way does not take is tried again every round, for three days, in its own lane.
+// It reads files and asks a program; nothing here holds what the controller needs. A round waits
+// for no way: what a way does not take is tried again every round, for three days, in its own lane.
 #pragma once
 
 #include <map>
@@ -29,7 +29,8 @@ class Notifier {
   Notifier(const NotifySettings& settings, MqttPresence presence = MqttPresence::kStays);
   Notifier(const Notifier&) = delete;
   Notifier& operator=(const Notifier&) = delete;
-  /// Lets the ways end what they are at, for two seconds; what is cut then is told after the next start.
+  /// Lets the ways end what they are at, for two seconds; what is cut then is told after the next
+  /// start.
   ~Notifier();
 
   void run_round(std::int64_t now_utc_s);
@@ -40,8 +41,8 @@ class Notifier {
   [[nodiscard]] int bell() const { return taken_.fd(); }
   /// Writes down what was told and what is owed, where that has changed.
   void keep();
-  /// Until every way has taken what is owed, or has failed, and a broker that is there has the newest values; then
-  /// keeps it. False when the patience ends before.
+  /// Until every way has taken what is owed, or has failed, and a broker that is there has the
+  /// newest values; then keeps it. False when the patience ends before.
   bool wait_for_channels(std::chrono::milliseconds patience);
   /// A message by every way, once. False when one did not take it.
   bool send_test(std::int64_t now_utc_s);

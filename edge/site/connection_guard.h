@@ -6,8 +6,9 @@
 //
 // The house is never limited: where its load alone is above a limit, the battery is left 0 W.
 //
-// Quarter-hour peak (the Belgian capacity tariff bills the mean import of the dearest quarter-hour):
-// with E imported so far, B of it taken by the battery, s seconds left and C = peak_w_max - margin,
+// Quarter-hour peak (the Belgian capacity tariff bills the mean import of the dearest
+// quarter-hour): with E imported so far, B of it taken by the battery, s seconds left and C =
+// peak_w_max - margin,
 //   (1) E + (house + charge) s <= 900 C           the mean stays under the cap if the house stays
 //   (2) B + charge t <= P (s - t)                 what was taken can still be given back by a battery
 //                                                 of P watts, should the house rise: t is how long an

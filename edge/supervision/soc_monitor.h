@@ -4,9 +4,10 @@
 //   changes at once by more than power explains                             jump: it was set right
 //   shows another share of the energy, or loses some at rest                 told (energy_balance.h)
 //
-// Near the ends a count of charge clings and is set right: charging above 95 %, and discharging below 10 %,
-// explains a SoC that stands still or goes further than power does. Only these: discharging at 97 %, it must
-// fall. And only for as much energy as an honest count can be wrong by.
+// Near the ends a count of charge clings and is set right: charging above 95 %, and discharging
+// below 10 %, explains a SoC that stands still or goes further than power does. Only these:
+// discharging at 97 %, it must fall. And only for as much energy as an honest count can be wrong
+// by.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,7 @@
-// The versions that a machine keeps, each a folder with all that makes it: programs, maps, exported header,
-// certificate, unit, and the SHA-256 of each file. What runs is a link to one of them; another link names the one that
-// judges, the last that has confirmed itself. A link is flipped by a rename: at once, without dpkg.
+// The versions that a machine keeps, each a folder with all that makes it: programs, maps, exported
+// header, certificate, unit, and the SHA-256 of each file. What runs is a link to one of them;
+// another link names the one that judges, the last that has confirmed itself. A link is flipped by
+// a rename: at once, without dpkg.
 //
 //   /usr/lib/bess-edge/{bin,share,systemd,SUMS}        what dpkg unpacked last: a delivery, which nothing runs from
 //   /var/lib/bess-edge/versions/VERSION/{the same}
@@ -35,9 +36,9 @@ class VersionStore {
     kRefused,  ///< it is not whole, or is another version than its name says
     kNoRoom,   ///< this machine's disk does not take it
   };
-  /// Copies a folder that is whole, under this name, onto the disk. The same bytes again are nothing
-  /// to do; other bytes under the name of a version that a link leads to are refused. One line in
-  /// `error` unless kWhole.
+  /// Copies a folder that is whole, under this name, onto the disk. The same bytes again are
+  /// nothing to do; other bytes under the name of a version that a link leads to are refused. One
+  /// line in `error` unless kWhole.
   Kept keep(std::string_view version, const std::string& from, std::string& error) const;
 
   /// The version that a link ("current", "confirmed") leads to; empty = none.

@@ -1,5 +1,5 @@
-// Prints what the supervision makes of every fault and of every honest battery of the trial, as tables
-// of Markdown or as CSV. Measures and asserts nothing: trial_test does.
+// Prints what the supervision makes of every fault and of every honest battery of the trial, as
+// tables of Markdown or as CSV. Measures and asserts nothing: trial_test does.
 //
 //   supervision_trial faults         each fault at SoC 45 %: constant, at some ticks, the SoC in whole
 //                                    percent, the controller killed after each cycle

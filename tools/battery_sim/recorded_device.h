@@ -1,5 +1,6 @@
-// A device as it was recorded (shared/host/bus_recording.h): answers a request as it answered the same one at that
-// time. Two rules, so that a replay takes the course of the recording and is not thrown off by milliseconds:
+// A device as it was recorded (shared/host/bus_recording.h): answers a request as it answered the
+// same one at that time. Two rules, so that a replay takes the course of the recording and is not
+// thrown off by milliseconds:
 //   the same request was recorded   its answers are given in their order, each when its time has come, give or take
 //                                   `kSlackNs`; what nobody asked for in its time is passed over
 //   it was not, a read              each register by itself, as it was last read before this time
@@ -28,8 +29,9 @@ class RecordedDevice {
   [[nodiscard]] std::int64_t last_utc_ns() const { return last_utc_ns_; }
   [[nodiscard]] bool has_unit(std::int32_t unit) const;
 
-  /// Fills outcome, exception, latency and the registers of a read into `request`, which holds all that was asked
-  /// and what was written, at its `utc_ns`. Returns what there is to tell of it, "" when nothing.
+  /// Fills outcome, exception, latency and the registers of a read into `request`, which holds all
+  /// that was asked and what was written, at its `utc_ns`. Returns what there is to tell of it, ""
+  /// when nothing.
   std::string answer(BusExchange& request);
 
  private:

@@ -1,5 +1,5 @@
-// A recorded device on the simulator's bus: requests as libmodbus received them -> what the device did, at what time
-// of the recording, after what latency.
+// A recorded device on the simulator's bus: requests as libmodbus received them -> what the device
+// did, at what time of the recording, after what latency.
 #pragma once
 
 #include <cstdint>
@@ -13,14 +13,15 @@ namespace bess {
 
 class ReplayedBus {
  public:
-  /// In simulated time a request has the recording's time; in real time the first request is made the recording's
-  /// first. `device` must outlive this object.
+  /// In simulated time a request has the recording's time; in real time the first request is made
+  /// the recording's first. `device` must outlive this object.
   ReplayedBus(RecordedDevice& device, const ScaledClock& clock) : device_(device), clock_(clock) {}
 
   [[nodiscard]] bool serves_unit(std::int32_t unit) const { return device_.has_unit(unit); }
   /// What came of it. Prints one line where the recording has no answer.
   BusExchange answer(const BusRequest& request);
-  /// How long that took, in wall time: a recording in real time that is replayed faster has shorter latencies.
+  /// How long that took, in wall time: a recording in real time that is replayed faster has shorter
+  /// latencies.
   [[nodiscard]] std::int32_t latency_ms(const BusExchange& answer) const;
 
   /// Unit and PDU of a good reply.

@@ -1,5 +1,5 @@
-// Factors of the active set of a strictly convex quadratic program with Hessian G = L L', as Goldfarb and
-// Idnani (1983) hold them. With N the active constraints' normals as columns,
+// Factors of the active set of a strictly convex quadratic program with Hessian G = L L', as
+// Goldfarb and Idnani (1983) hold them. With N the active constraints' normals as columns,
 //
 //   L^-1 N = Q [R; 0]      J = L^-T Q = [J1 J2]      J1: as many columns as N, J2: the rest
 //
@@ -9,11 +9,12 @@
 //   r = R^-1 d1      how the active multipliers fall along it
 //   J2 J2'           the inverse of G on the directions that the active rows leave free
 //
-// A row comes in by one Householder reflection of the columns of J2 that it meets, and goes out by Givens
-// rotations. It meets columns of the groups that its variables belong to (variable_groups.h), and of J2 often
-// fewer: an order between neighbours, whatever is active, meets two, because the reflection begins with a
-// column it meets and so leaves all others as they are. An image lists these columns, and all work is on them.
-// All memory is taken in the constructors.
+// A row comes in by one Householder reflection of the columns of J2 that it meets, and goes out by
+// Givens rotations. It meets columns of the groups that its variables belong to
+// (variable_groups.h), and of J2 often fewer: an order between neighbours, whatever is active,
+// meets two, because the reflection begins with a column it meets and so leaves all others as they
+// are. An image lists these columns, and all work is on them. All memory is taken in the
+// constructors.
 #pragma once
 
 #include <Eigen/Core>
@@ -45,8 +46,9 @@ class ActiveSetFactors {
   [[nodiscard]] Eigen::Index size() const { return basis_.rows(); }
   [[nodiscard]] Eigen::Index active() const { return active_; }
 
-  /// The image of the normal with `factors` at `variables` and 0 elsewhere. Its length is 1, by G^-1. Nothing
-  /// of J1 is looked at, and no `held` listed, when `of_free` alone is asked for: what the active rows lack.
+  /// The image of the normal with `factors` at `variables` and 0 elsewhere. Its length is 1, by
+  /// G^-1. Nothing of J1 is looked at, and no `held` listed, when `of_free` alone is asked for:
+  /// what the active rows lack.
   void image_of(std::span<const int> variables, std::span<const double> factors, double sign,
                 RowImage& image, bool of_free = false);
   /// The variables that the row can move, rising; `list` must hold n without growing.
@@ -65,11 +67,12 @@ class ActiveSetFactors {
   /// x += J1 y.
   void add_combination(const Eigen::VectorXd& y, Eigen::VectorXd& x) const;
 
-  /// z = direction(image), and its row becomes the last active one; its independence must be above 0.
-  /// Leaves the image changed.
+  /// z = direction(image), and its row becomes the last active one; its independence must be above
+  /// 0. Leaves the image changed.
   void add(RowImage& image, Eigen::VectorXd& z);
-  /// Active row `position` goes. Of the places returned, rising from `position` on, each row moves into the
-  /// place before its own: first the group's, then those behind the last of these. Valid until the next call.
+  /// Active row `position` goes. Of the places returned, rising from `position` on, each row moves
+  /// into the place before its own: first the group's, then those behind the last of these. Valid
+  /// until the next call.
   std::span<const int> drop(Eigen::Index position);
 
  private:

@@ -1,5 +1,5 @@
-// One linear demand on the student's logit differences at the states of a batch: what a property or an
-// operator's rule becomes before the constraint layer (constraint_layer.h) projects onto it.
+// One linear demand on the student's logit differences at the states of a batch: what a property or
+// an operator's rule becomes before the constraint layer (constraint_layer.h) projects onto it.
 //
 //   u = z_charge - z_idle     v = z_idle - z_discharge     (both in logits, one of each per state)
 //

@@ -1,11 +1,11 @@
-// Distillation into a student that is monotone by construction (sign_bounds.h). Nothing of property 3 is
-// left to training, so training has one aim, what the student earns:
+// Distillation into a student that is monotone by construction (sign_bounds.h). Nothing of property
+// 3 is left to training, so training has one aim, what the student earns:
 //
 //   L = fidelity KL(mu || pi') + E_pi'[regret] / temperature      mu = softmax(values / temperature)
 //
-// over states that the teacher visits and some from anywhere, with hinges where a rule binds, built-in
-// (properties 1 and 2) or an operator's: by monotony a state or two for each context tell. Hidden activations saturate at 0 and at 1, so that sums of them
-// bend both ways.
+// over states that the teacher visits and some from anywhere, with hinges where a rule binds,
+// built-in (properties 1 and 2) or an operator's: by monotony a state or two for each context tell.
+// Hidden activations saturate at 0 and at 1, so that sums of them bend both ways.
 #pragma once
 
 #include <atomic>
@@ -28,20 +28,20 @@ struct LessonStates {
   Matrix regret;  ///< [3 x states] what an action loses against the best, over the temperature
 };
 
-/// Visited states and, for what no day has shown, states from anywhere in the lattice. Where the teacher would
-/// break one of the options' rules, its next best takes its place.
+/// Visited states and, for what no day has shown, states from anywhere in the lattice. Where the
+/// teacher would break one of the options' rules, its next best takes its place.
 LessonStates make_lessons(const Teacher& teacher, const Matrix& visited,
                           const DistilOptions& options);
 
 class MonotoneDistiller {
  public:
-  /// Keeps a reference: `lessons` must outlive it. `options.correct` false: the same student and training
-  /// without any bound, for comparison.
+  /// Keeps a reference: `lessons` must outlive it. `options.correct` false: the same student and
+  /// training without any bound, for comparison.
   MonotoneDistiller(const Teacher& teacher, const LessonStates& lessons,
                     const DistilOptions& options);
 
-  /// Trains for `epochs`; `counterexamples` are states that the rules must be learnt in, besides random
-  /// ones. Calls `look` now and then, at the end for certain, with the share of epochs done.
+  /// Trains for `epochs`; `counterexamples` are states that the rules must be learnt in, besides
+  /// random ones. Calls `look` now and then, at the end for certain, with the share of epochs done.
   void run(int epochs, const std::vector<LatticeState>& counterexamples,
            const std::atomic<bool>& interrupted, const std::function<void(double done)>& look);
 

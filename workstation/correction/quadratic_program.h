@@ -1,19 +1,22 @@
-// A strictly convex quadratic program, dense in the variables and sparse in the rows, and its derivative:
+// A strictly convex quadratic program, dense in the variables and sparse in the rows, and its
+// derivative:
 //
 //   x = argmin 1/2 x'Gx - g'x    s.t.  a_i'x  = b_i  for the first rows,  a_i'x >= b_i  for the others
 //
-// Dual active-set method [Goldfarb, Idnani 1983, Mathematical Programming 27]: starts at the free minimum
-// G^-1 g, and takes in the row violated most, letting go of active rows whose multipliers would turn
-// negative, until none is violated. Each step raises the dual value, so it ends. Degenerate, dependent and
-// repeated rows need no care: a row that depends on the active ones takes a step in the multipliers alone.
-// When it can take none, no x satisfies all rows, and the multipliers say which of them clash (Farkas).
-// At the end x and multipliers are computed anew from the factors, so that steps leave no rounding behind.
+// Dual active-set method [Goldfarb, Idnani 1983, Mathematical Programming 27]: starts at the free
+// minimum G^-1 g, and takes in the row violated most, letting go of active rows whose multipliers
+// would turn negative, until none is violated. Each step raises the dual value, so it ends.
+// Degenerate, dependent and repeated rows need no care: a row that depends on the active ones takes
+// a step in the multipliers alone. When it can take none, no x satisfies all rows, and the
+// multipliers say which of them clash (Farkas). At the end x and multipliers are computed anew from
+// the factors, so that steps leave no rounding behind.
 //
 // Derivative: near g the same rows S stay active, where x is an affine function of g [dQP, arXiv
 // 2410.06324]. The adjoint w solves one linear system on them,
 //   [G N; N' 0] [w; .] = [dL/dx; 0]        hence        dL/dg = w = J2 J2' dL/dx.
-// Where a row is tight with multiplier 0 the derivative has several sides. It is then the mean of the one
-// with all such rows held and the one with all let go: for one such row, what a central difference sees.
+// Where a row is tight with multiplier 0 the derivative has several sides. It is then the mean of
+// the one with all such rows held and the one with all let go: for one such row, what a central
+// difference sees.
 //
 // After the constructor nothing allocates.
 #pragma once

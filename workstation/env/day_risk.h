@@ -1,5 +1,6 @@
-// How much a policy's days scatter, and how deep they fall: one definition of each, for every page and table. All are
-// of what a day brought (profit, or gain over another policy), by day and not annualised.
+// How much a policy's days scatter, and how deep they fall: one definition of each, for every page
+// and table. All are of what a day brought (profit, or gain over another policy), by day and not
+// annualised.
 //
 //   win rate        share of the days that brought more than nothing
 //   Sortino         mean over the downside deviation, sqrt(mean(min(0, day)^2)) over all days: target 0

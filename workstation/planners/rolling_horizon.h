@@ -1,6 +1,7 @@
-// Rolling-horizon control on a naive forecast: the model-predictive peer. At every step it plans the
-// next 24 hours by dynamic programming at forecast prices, does the plan's first action, and plans
-// anew at the next step. It sees what any policy sees: the newest published price and its age.
+// Rolling-horizon control on a naive forecast: the model-predictive peer. At every step it plans
+// the next 24 hours by dynamic programming at forecast prices, does the plan's first action, and
+// plans anew at the next step. It sees what any policy sees: the newest published price and its
+// age.
 //
 // Forecast (persistence), with d = newest price - usual price of the quarter-hour it belongs to:
 //   rest of this quarter-hour      usual + s d       s: by minute of the quarter-hour, least squares
@@ -29,8 +30,8 @@ class RollingHorizonPolicy final : public Policy {
   [[nodiscard]] Action decide(const MarketStep& step, std::size_t index,
                               double soc_frac) const override;
 
-  /// What the plan expects to earn in the next 24 hours from this step on, EUR, at `kSocPoints` even
-  /// points of the SoC window.
+  /// What the plan expects to earn in the next 24 hours from this step on, EUR, at `kSocPoints`
+  /// even points of the SoC window.
   static constexpr int kSocPoints = 121;
   using Values = std::array<float, kSocPoints>;
   [[nodiscard]] Values values(const MarketStep& step) const;

@@ -1,12 +1,12 @@
-// Stochastic dynamic program [SPEC 8]: the baseline that knows the hour and the price level, and the exact
-// teacher. The newest price is split into what is usual and a deviation:
+// Stochastic dynamic program [SPEC 8]: the baseline that knows the hour and the price level, and
+// the exact teacher. The newest price is split into what is usual and a deviation:
 //
 //   usual(q, level) = mean paid price of quarter-hour q, smoothed over the day + w (level - its mean)
 //   deviation       = newest price - usual(quarter-hour that the price belongs to, level)
 //
-// Deviations are a Markov chain over 48 quantile bins, counted by phase of the half-hour and pooled over
-// all hours, with the mean deviation paid in each bin. The value of stored energy follows by backward
-// induction over a day of 720 steps that repeats for ever, for each of a few price levels.
+// Deviations are a Markov chain over 48 quantile bins, counted by phase of the half-hour and pooled
+// over all hours, with the mean deviation paid in each bin. The value of stored energy follows by
+// backward induction over a day of 720 steps that repeats for ever, for each of a few price levels.
 // All of it is fitted on the days given; `level` is published by then, so nothing looks ahead.
 #pragma once
 
@@ -53,8 +53,8 @@ class StochasticProgram {
   explicit StochasticProgram(BinaryReader& in);
 
   [[nodiscard]] static Situation situation_of(const MarketStep& step);
-  /// The quarter-hour that the newest price belongs to at this minute of a quarter-hour, as it mostly was on
-  /// the days fitted on: in the first minutes it is still the one before.
+  /// The quarter-hour that the newest price belongs to at this minute of a quarter-hour, as it
+  /// mostly was on the days fitted on: in the first minutes it is still the one before.
   [[nodiscard]] int row_quarter_hour(int quarter_hour, int minute_of_quarter_hour) const {
     return (quarter_hour - row_age_[static_cast<std::size_t>(minute_of_quarter_hour)] +
             kQuarterHours) %

@@ -1,5 +1,5 @@
-// The operator's rules as the page draws and counts them (page/rule_boxes.js): where each holds on the lattice, what it
-// asks, and who is held to it.
+// The operator's rules as the page draws and counts them (page/rule_boxes.js): where each holds on
+// the lattice, what it asks, and who is held to it.
 #pragma once
 
 #include "shared/host/json.h"

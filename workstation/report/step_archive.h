@@ -1,5 +1,6 @@
-// The steps of many days, small enough for a page: what was published and paid, and what each policy did.
-// page/archive.js unpacks it. A day is one block of little-endian arrays, one after the other:
+// The steps of many days, small enough for a page: what was published and paid, and what each
+// policy did. page/archive.js unpacks it. A day is one block of little-endian arrays, one after the
+// other:
 //
 //   minute int32 (UTC, since 1970) | observed int32 (hundredths of EUR/MWh, as the edge reads it)
 //   | paid int32 (thousandths: a mean of two) | local minute of the day int16 | context class int8
@@ -22,8 +23,9 @@ struct PolicySteps {
   std::vector<StepRecord> records;
 };
 
-/// {"policies": [...], "days": [{"date", "steps"}...], "data": base64 of the zlib stream}. The policies' records
-/// are of all `days`, one after the other; `kept` are the indices of the days to pack, ascending.
+/// {"policies": [...], "days": [{"date", "steps"}...], "data": base64 of the zlib stream}. The
+/// policies' records are of all `days`, one after the other; `kept` are the indices of the days to
+/// pack, ascending.
 Json step_archive(const MarketSteps& market, const std::vector<MarketDay>& days,
                   const std::vector<PolicySteps>& policies, const std::vector<std::size_t>& kept,
                   const ContextClasses& classes);

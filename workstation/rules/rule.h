@@ -81,7 +81,8 @@ struct LatticeBox {
   std::int32_t classes;  ///< bit c - 1, of the student's context
 };
 
-/// The part of a box that a student of this context sees. Precondition: some of it lies on the lattice.
+/// The part of a box that a student of this context sees. Precondition: some of it lies on the
+/// lattice.
 LatticeBox lattice_box_of(const RuleBox& box, ContextKind kind);
 
 /// Whether the student sees the box at this hour and context class.

@@ -1,4 +1,5 @@
-// A day of recorded minutes as text: what `prices record` appends to and whatever takes prices reads.
+// A day of recorded minutes as text: what `prices record` appends to and whatever takes prices
+// reads.
 //   minute_utc            the minute's start; the price is computed at its end
 //   price_eur_mwh         indicative imbalance price (ods161); empty = published without one
 //   system_imbalance_mw   of the minute (ods169), negative = Belgium is short
@@ -7,10 +8,10 @@
 //   quality_status        Elia's, of the price
 //   arrival               seen = the look before, a short time earlier, did not show it; found = it may
 //                         have been there for long
-// A line holds what arrived of a minute; further lines of the same minute add to it or revise it, so
-// that nothing is ever overwritten. The reader takes the FIRST price of a minute: the one that could be
-// acted on. The last column is never empty and of two words, which no cut makes of one another: a line
-// that lost its end is known by it.
+// A line holds what arrived of a minute; further lines of the same minute add to it or revise it,
+// so that nothing is ever overwritten. The reader takes the FIRST price of a minute: the one that
+// could be acted on. The last column is never empty and of two words, which no cut makes of one
+// another: a line that lost its end is known by it.
 #pragma once
 
 #include <cstddef>
@@ -51,7 +52,8 @@ struct WholePart {
 };
 WholePart whole_part(std::string_view text);
 
-/// The lines of the whole part. Throws UserError naming the line when one of them is not a recorded one.
+/// The lines of the whole part. Throws UserError naming the line when one of them is not a recorded
+/// one.
 std::vector<RecordedLine> parse_recorded_day(std::string_view text, std::string_view name);
 
 /// How long after its minute's end a price arrived.

@@ -28,11 +28,11 @@ constexpr std::int64_t kGapWorthNaming_min = 60;
 constexpr double kGapShareMax = 0.05;
 constexpr std::int64_t kEarliest_s = 946'684'800;  // 2000-01-01
 constexpr std::int64_t kLatest_s = 4'102'444'800;  // 2100-01-01
-/// What databases and instruments write where there is no value, and what no market has settled at or
-/// limits its bids to.
+/// What databases and instruments write where there is no value, and what no market has settled at
+/// or limits its bids to.
 constexpr std::array kSentinels{-9'999.0, 9'999.0, -9'999.99, 9'999.99};
-/// What they write as well, and what is a price: seven quarter-hours of Belgium's 2025 were settled at -999,
-/// and bids end at +-99,999. Only many of them together are suspect.
+/// What they write as well, and what is a price: seven quarter-hours of Belgium's 2025 were settled
+/// at -999, and bids end at +-99,999. Only many of them together are suspect.
 constexpr std::array kAlsoPrices{-999.0, -99'999.0, 99'999.0};
 constexpr double kAlsoPricesShareMax = 0.01;  ///< -999 had 0.02 % of 2025
 

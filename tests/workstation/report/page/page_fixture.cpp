@@ -1,5 +1,6 @@
-// page_fixture FOLDER: the pages that bess-train writes, of small runs, and beside each report.html an expected.json:
-// what the C++ says about the same students, days and rules. page_test.py and pages_test.py open them and compare.
+// page_fixture FOLDER: the pages that bess-train writes, of small runs, and beside each report.html
+// an expected.json: what the C++ says about the same students, days and rules. page_test.py and
+// pages_test.py open them and compare.
 //   FOLDER          a run
 //   FOLDER/ruled    a run with rules, proved
 //   FOLDER/failed   a run with rules that its student does not obey
@@ -94,8 +95,8 @@ Json maps_of(const StudentNet& net) {
   return maps;
 }
 
-/// The compiled student with the signs of some weights turned round: no sum can leave its integers, and the
-/// order is lost.
+/// The compiled student with the signs of some weights turned round: no sum can leave its integers,
+/// and the order is lost.
 StudentNet disordered_student() {
   StudentNet net = compiled_student().net;
   std::mt19937 random(2);
@@ -149,7 +150,8 @@ Json days_of(const std::vector<NamedEvaluation>& evaluations, EvaluationField fi
   return policies;
 }
 
-/// What each student breaks of each rule on the maps, over all prices and charges: {student: [{rule: count} a map]}.
+/// What each student breaks of each rule on the maps, over all prices and charges: {student:
+/// [{rule: count} a map]}.
 Json broken_rules_of(const StudentNet& net, const RuleSet& rules) {
   Json maps = Json::list();
   for (const PolicyContext& at : kMaps) {
@@ -289,8 +291,8 @@ FixtureRun run_with(const RuleSet& rules) {
   return run;
 }
 
-/// Of every kind that a map shows in its own way: a box at some hours, one of the guard's, one beyond the lattice, a
-/// direction that two maps show, one that a single map does.
+/// Of every kind that a map shows in its own way: a box at some hours, one of the guard's, one
+/// beyond the lattice, a direction that two maps show, one that a single map does.
 RuleSet rules_for_a_map(const std::string& first) {
   return parse_rules("[[rule]]\nname = \"a rule whose name is forty letters long\"\n" + first +
                          "\n[[rule]]\nname = \"evening cap\"\nhours = \"12:00-21:00\"\n"
