@@ -144,15 +144,11 @@ bool read_own_map(const SiteConfig& site, ModbusMeter& meter, std::int32_t& grid
 }
 
 /// What only counts money keeps no controller from driving; --check names its slips.
-bool report_contract(const std::string& path) {
-  MoneySettings money;
+bool read_contract(const std::string& path, MoneySettings& money) {
   std::string error;
-  if (!load_money_settings(path, money, error)) {
-    report(JournalLevel::kError, "%s", error.c_str());
-    return false;
-  }
-  std::printf("contract   %s\n", money.contract.text().c_str());
-  return true;
+  if (load_money_settings(path, money, error)) return true;
+  report(JournalLevel::kError, "%s", error.c_str());
+  return false;
 }
 
 /// One reading of the meter, and the house's load that follows from it; true when there is none, or
@@ -219,9 +215,11 @@ bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& p
 }  // namespace
 
 int run_check(const EdgeConfig& config, const std::string& path) {
-  if (!report_contract(path)) return 1;
+  MoneySettings money;
+  if (!read_contract(path, money)) return 1;
   DeviceSession session;
   if (!session.begin(config)) return 1;
+  std::printf("contract   %s\n", money.contract.text().c_str());
   ModbusBattery battery(config.battery.link, config.battery.map, config.clock);
   ModbusMeter meter(config.site.link, config.site.map, config.clock);
   const auto prices = std::make_unique<PriceFeed>(config.price.feed, config.clock);
