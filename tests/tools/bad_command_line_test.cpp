@@ -11,8 +11,8 @@
 namespace bess {
 namespace {
 
-// GOOD is a minute file, MAPS the folder of the register maps, NONE nothing, FOLDER a folder, EMPTY
-// and GARBAGE files.
+// GOOD is a minute file, DAY a day-ahead file, MAPS the folder of the register maps, NONE nothing,
+// FOLDER a folder, EMPTY and GARBAGE files.
 constexpr BadCommandLine kCases[] = {
     {"", 2, "subcommand is required (see bess-sim --help)"},
     {"batery", 2, "did you mean battery? (see bess-sim --help)"},
@@ -95,6 +95,14 @@ constexpr BadCommandLine kCases[] = {
     {"market --prices GOOD --tls-key NONE", 2, "--tls-key requires --tls-cert"},
     {"market --prices GOOD --port 0 --tls-cert NONE --tls-key NONE", 1, "NONE"},
     {"market --prices GOOD --port 0 --host nowhere.invalid", 1, "nowhere.invalid"},
+    {"market --prices GOOD --day-ahead NONE", 1, "NONE: cannot open"},
+    {"market --prices GOOD --day-ahead EMPTY", 1, "EMPTY: holds no rows"},
+    {"market --prices GOOD --day-ahead GOOD", 1, "GOOD:1: the header must be"},
+    {"market --prices GOOD --day-ahead-at 13:00", 2, "--day-ahead-at requires --day-ahead"},
+    {"market --prices GOOD --day-ahead DAY --day-ahead-at 24:00", 1, "--day-ahead-at 24:00: not"},
+    {"market --prices GOOD --day-ahead-fault late", 2, "--day-ahead-fault requires --day-ahead"},
+    {"market --prices GOOD --day-ahead DAY --day-ahead-fault stale", 2, "--day-ahead-fault"},
+    {"market --prices GOOD --day-ahead DAY --day-ahead-mend-s 60", 2, "requires --day-ahead-fault"},
     {"settle --record NONE --edge-log NONE --prices GOOD", 1, "NONE: cannot open"},
     {"settle --record GARBAGE --edge-log GARBAGE --prices GOOD", 1, "GARBAGE"},
     {"settle --record GOOD --edge-log GOOD --prices GOOD", 1, "GOOD"},
@@ -112,6 +120,9 @@ TEST(BadSimCommandLine, EachIsRefusedInOneLineBeforeAnythingListens) {
       {"GOOD", folder.write("GOOD",
                             "minute_utc,indicative_eur_mwh,settled_eur_mwh\n"
                             "2023-01-01T00:00:00Z,1.0,2.0\n2023-01-01T00:01:00Z,1.5,2.0\n")},
+      {"DAY", folder.write("DAY",
+                           "quarter_hour_utc,day_ahead_eur_mwh,resolution_min,published_utc\n"
+                           "2023-01-01T00:00:00Z,1.0,60,\n")},
       {"EMPTY", folder.write("EMPTY", "")},
       {"GARBAGE", folder.write("GARBAGE", "\x7f ELF, or something \x01\x02 like that\n")},
       {"FOLDER", folder.file("FOLDER")},

@@ -3,6 +3,8 @@
 #include <httplib.h>
 
 #include <charconv>
+#include <chrono>
+#include <thread>
 
 #include "shared/host/json.h"
 #include "shared/host/user_error.h"
@@ -47,9 +49,10 @@ std::unique_ptr<httplib::Server> make_server(const MarketServerSettings& setting
 }  // namespace
 
 MarketServer::MarketServer(const MarketServerSettings& settings, const MarketView& view,
-                           const ScaledClock& clock)
+                           const ScaledClock& clock, const AuctionView* auction)
     : settings_(settings),
       view_(view),
+      auction_(auction),
       clock_(clock),
       start_utc_ns_(clock.start_utc_ns()),
       server_(make_server(settings)),
@@ -73,6 +76,11 @@ MarketServer::MarketServer(const MarketServerSettings& settings, const MarketVie
                  [this, dataset = dataset](const auto& request, auto& response) {
                    answer(dataset, request, response);
                  });
+  }
+  if (auction != nullptr) {
+    server_->Get("/price", [this](const auto& request, auto& response) {
+      answer_day_ahead(request, response);
+    });
   }
   if (settings.port == 0) {
     port_ = server_->bind_to_any_port(settings.host);
@@ -114,6 +122,23 @@ void MarketServer::answer(Dataset dataset, const httplib::Request& request,
         start_utc_ns_ / kNanosecondsPerSecond + static_cast<std::int64_t>(settings_.faults.from_s);
   }
   response.set_content(spoilt(fault, view_.records(query, now_ns)), kJson);
+}
+
+void MarketServer::answer_day_ahead(const httplib::Request& request, httplib::Response& response) {
+  const AuctionAnswer answer =
+      auction_->answer(request.get_param_value("start"), request.get_param_value("end"),
+                       clock_.now_utc_ns() / kNanosecondsPerSecond);
+  auction_faults_ += answer.fault != AuctionFault::kNone ? 1 : 0;
+  response.status = answer.status;
+  const char* type = answer.fault == AuctionFault::kHtml ? "text/html" : kJson;
+  if (answer.fault != AuctionFault::kSlow) return response.set_content(answer.body, type);
+  // A byte at a time, each a tenth of a second of wall time after the other.
+  response.set_content_provider(
+      answer.body.size(), type,
+      [body = answer.body](std::size_t offset, std::size_t, httplib::DataSink& sink) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        return sink.write(&body[offset], 1);
+      });
 }
 
 }  // namespace bess
