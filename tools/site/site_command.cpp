@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct SiteOptions {
-  std::string folder, prices, map, program;
+  std::string folder, prices, day_ahead, map, program;
   ClockOptions clock;
   double in_s = 2;
   std::string battery, market;        ///< options of theirs
@@ -43,7 +43,7 @@ void set(Tables& tables, const std::string& text) {
   const std::string table = text.substr(0, dot);
   if (dot == std::string::npos || equals == std::string::npos || equals < dot ||
       !tables.contains(table)) {
-    fail("--set {}: TABLE.KEY=VALUE, of the tables battery, price, guard and state", text);
+    fail("--set {}: TABLE.KEY=VALUE, of the tables battery, price, outlook, guard and state", text);
   }
   tables[table][text.substr(dot + 1, equals - dot - 1)] = text.substr(equals + 1);
 }
@@ -62,17 +62,22 @@ std::string settings_of(const SiteOptions& options, const SitePrograms& programs
                      {"port", std::to_string(programs.battery_port)},
                      {"response_timeout_ms", "200"}}},
                    {"price", {{"history_hours", "0"}}},
+                   {"outlook", {}},
                    {"guard", {}},
                    {"state",
                     {{"folder", quoted("state")},
                      {"lock_folder", quoted(fs::absolute(options.folder).string())}}}};
   for (const std::string& text : options.settings) set(tables, text);
+  const std::string market = "http://127.0.0.1:" + std::to_string(programs.market_port);
+  auto& outlook = tables["outlook"];  // only when a key of it is set
+  if (!outlook.empty()) outlook.emplace("url", quoted(market + "/price?bzn=BE"));
   return controller_settings({.control = !options.is_watching,
                               .battery = lines_of(tables["battery"]),
-                              .market = "http://127.0.0.1:" + std::to_string(programs.market_port),
+                              .market = market,
                               .price = lines_of(tables["price"]),
                               .guard = lines_of(tables["guard"]),
                               .state = lines_of(tables["state"]),
+                              .tables = outlook.empty() ? "" : "[outlook]\n" + lines_of(outlook),
                               .clock = programs.clock});
 }
 
@@ -96,6 +101,7 @@ void run_site(const SiteOptions& options) {
   programs.start_battery(battery);
   std::vector<std::string> market = words_of(options.market);
   market.insert(market.begin(), {"--prices", options.prices});
+  if (!options.day_ahead.empty()) market.insert(market.end(), {"--day-ahead", options.day_ahead});
   programs.start_market(market);
   const std::string path = programs.file("edge.toml");
   write_file(path, settings_of(options, programs));
@@ -133,6 +139,7 @@ void add_site_command(ProgramCommand& app) {
       "Exit codes: 0 stopped, 1 bad input or port in use, 2 bad command line.");
   command.option("--folder", options->folder, "Where all of it goes").required();
   command.option("--prices", options->prices, "Minute file, CSV or .csv.gz").required();
+  command.option("--day-ahead", options->day_ahead, "Day-ahead file that the market publishes too");
   command.option("--map", options->map, "Register map (TOML) of the battery").required();
   options->clock.add_to(command);
   command.option("--in-s", options->in_s, "Simulated time begins so long after the start")
