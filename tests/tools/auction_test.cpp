@@ -106,6 +106,18 @@ TEST(Auction, ADayHasTheQuarterHoursOrHoursThatTheClockGivesIt) {
   EXPECT_EQ(rows_of(with({}).answer("2025-03-28", "2025-04-30", now_utc_s)).size(), 284u);
 }
 
+TEST(Auction, ADayOfTwentyFiveHoursEndsAtItsMidnight) {
+  std::vector<AuctionRow> rows;
+  for (std::int64_t utc_s = utc("2025-10-25T22:00:00Z"); utc_s < utc("2025-10-27T23:00:00Z");
+       utc_s += 900) {
+    rows.push_back({utc_s, 1, 900, 0});
+  }
+  const AuctionView view(std::move(rows), {});
+  const std::int64_t now_utc_s = utc("2025-10-26T12:00:00Z");  // after 12:57, winter time
+  EXPECT_EQ(rows_of(view.answer("2025-10-26", "2025-10-26", now_utc_s)).size(), 100u);
+  EXPECT_EQ(rows_of(view.answer("2025-10-26", "2025-10-27", now_utc_s)).size(), 196u);
+}
+
 TEST(Auction, TakesDatesAndRefusesOthers) {
   const AuctionView view = with({});
   const std::int64_t now_utc_s = utc("2025-03-28T13:00:00Z");
@@ -236,6 +248,9 @@ TEST(AuctionFaults, AllComeInTurn) {
   EXPECT_EQ(view.answer("2025-03-30", "", utc("2025-03-30T00:00:00Z")).fault,
             AuctionFault::kMissing);
   EXPECT_EQ(view.answer("2025-03-31", "", utc("2025-03-31T00:00:00Z")).fault, AuctionFault::kHalf);
+  const AuctionView every_other = with({.fault = AuctionFault::kAll, .every = 2});
+  EXPECT_EQ(every_other.answer("2025-03-30", "", utc("2025-03-29T13:00:00Z")).fault,
+            AuctionFault::kLate);
 }
 
 TEST(AuctionFaults, AreMendedAWhileAfterPublication) {
