@@ -10,7 +10,7 @@ PricedCycle priced_cycle(const CycleRecord& record) {
   const std::int16_t context_class =
       record.context_class > 0
           ? record.context_class
-          : student_context_class(local_minute_of(record.utc_s), record.price_level);
+          : student_context_class(local_minute_of(record.utc_s), context_centi_of(record));
   return {record.utc_s, record.price.price_centi_eur_per_mwh, context_class};
 }
 

@@ -1,6 +1,6 @@
 // bess-edge without a command, or `run`: drives the battery. The composition root:
 //   price server -> PriceFeed (own thread) -+
-//                                           +-> ControlLoop -> student -> SafetyGuard -> ModbusBattery
+//   day-ahead ----> OutlookWatch (two own) -+-> ControlLoop -> student -> SafetyGuard -> ModbusBattery
 //   battery ------> ModbusBattery ----------+         |
 //   meter, limits -> SiteLimits ------------+         |
 //                                                     +-> EventLog (own thread), ServiceNotify
@@ -8,9 +8,11 @@
 #include "edge/commands/command_list.h"
 #include "edge/commands/self_test.h"
 #include "edge/log/journal.h"
+#include "edge/outlook/day_ahead_file.h"
 #include "edge/program/controller.h"
 #include "edge/program/device_session.h"
 #include "edge/program/real_world.h"
+#include "shared/outlook/exported_outlook.h"
 
 namespace bess {
 namespace {
@@ -67,6 +69,17 @@ int fail(const FileMessage& error) {
   return 1;
 }
 
+/// Static memory for the outlook, in builds whose student plans on it alone.
+template <bool kIsNeeded = kHasExportedOutlook>
+OutlookWatch* outlook_watch(const EdgeConfig& config) {
+  if constexpr (kIsNeeded) {
+    static OutlookWatch watch(config.outlook, *student_outlook(), config.clock,
+                              state_file(config, kDayAheadFileName).view());
+    return &watch;
+  }
+  return nullptr;
+}
+
 /// Once in a process: what lives as long as it is static, and the end of a run leaves it sealed.
 int run_controller(const RunGiven& given, const EdgeConfig& config) {
   static DeviceSession session;
@@ -76,8 +89,11 @@ int run_controller(const RunGiven& given, const EdgeConfig& config) {
   static PriceFeed prices(config.price.feed, config.clock);
   FileMessage error;
   if (!lock_state(config, session.locks(), error)) return fail(error);
-  static RealWorld world(
-      config, {.clock = session.clock(), .battery = battery, .meter = meter, .prices = prices});
+  static RealWorld world(config, {.clock = session.clock(),
+                                  .battery = battery,
+                                  .meter = meter,
+                                  .prices = prices,
+                                  .outlook = outlook_watch(config)});
   if (!world.record_battery(given.record_path, error)) return fail(error);
   static Controller<RealWorld> controller(config, world);
   if (!controller.reach() || !controller.begin()) return 1;

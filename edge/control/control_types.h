@@ -15,6 +15,7 @@
 #include "edge/control/hold.h"
 #include "edge/control/lost_order_history.h"
 #include "edge/control/mode.h"
+#include "edge/control/outlook.h"
 #include "edge/control/reasons.h"
 #include "edge/control/reversal_cap.h"
 #include "edge/control/site_types.h"
@@ -138,6 +139,7 @@ struct CycleRecord {
   bool price_frozen = false;  ///< it has stood for longer than is told
   ResponseFindings findings{};
   FollowedOrder followed{};
+  OutlookReport outlook{};
 };
 
 }  // namespace bess

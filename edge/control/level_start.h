@@ -3,7 +3,7 @@
 //   history      the prices of the last days, from the server
 //   setting      what the operator expects
 //   none         the first price sets it
-// Only a student whose context is the level needs more than the log.
+// A student by month needs no more than the log.
 #pragma once
 
 #include <algorithm>
@@ -42,7 +42,7 @@ LevelStart find_start_level(ContextKind kind, const PriceLevel& logged, std::int
   const PriceLevel kept = level_from_log(logged, now_utc_s);
   if (kept.is_known()) return {.level = kept, .source = LevelSource::kLog};
   LevelStart start{.refused_log = !logged.is_sound()};
-  if (kind != ContextKind::kLevel) return start;
+  if (kind == ContextKind::kMonth) return start;
   start.level = fetch_history();
   if (start.level.is_known()) {
     start.source = LevelSource::kHistory;

@@ -1,6 +1,7 @@
 #include "edge/control/policy.h"
 
 #include "shared/nn/exported_student.h"
+#include "shared/outlook/exported_outlook.h"
 
 namespace bess {
 namespace {
@@ -18,8 +19,10 @@ RulePoint rule_point(const LocalMinute& now, const LatticeState& state,
 
 const ContextClasses& student_context() { return kExportedStudent.context; }
 
-std::int16_t student_context_class(const LocalMinute& now, const PriceLevel& level) {
-  return kExportedStudent.context.class_of(now.month, level.centi_eur_per_mwh());
+const OutlookModel* student_outlook() { return exported_outlook(); }
+
+std::int16_t student_context_class(const LocalMinute& now, std::int32_t context_centi) {
+  return kExportedStudent.context.class_of(now.month, context_centi);
 }
 
 Action decide_with_student(const LatticeState& state) { return kExportedStudent.decide(state); }
@@ -43,13 +46,23 @@ int guard_rule_count() { return kExportedGuardRuleCount; }
 
 const char* guard_rule_name(int index) { return exported_guard_rule_name(index); }
 
-int count_student_self_check_failures() { return count_exported_self_check_failures(); }
+int count_student_self_check_failures() {
+  return count_exported_self_check_failures() + count_exported_outlook_failures();
+}
 
-int student_self_check_count() { return kExportedSelfCheckCount + kExportedRuleCheckCount; }
+int student_self_check_count() {
+  return kExportedSelfCheckCount + kExportedRuleCheckCount + kExportedOutlookCheckCount;
+}
 
 const char* student_provenance() { return BESS_STUDENT_PROVENANCE; }
 
-std::uint32_t student_hash() { return kExportedHash; }
+std::uint32_t student_hash() {
+  if (kExportedOutlookHash == 0) return kExportedHash;
+  Crc32 crc;
+  crc.add_integer(kExportedHash);
+  crc.add_integer(kExportedOutlookHash);
+  return crc.value();
+}
 
 PriceThresholds student_thresholds() { return kExportedThresholds; }
 

@@ -3,19 +3,28 @@
 
 #include <cstdint>
 
+#include "edge/control/control_types.h"
 #include "shared/action.h"
 #include "shared/context_classes.h"
 #include "shared/decision_rule.h"
 #include "shared/features.h"
-#include "shared/price_level.h"
+#include "shared/outlook/outlook_model.h"
 #include "shared/price_thresholds.h"
 
 namespace bess {
 
 /// What the student's context class is made from.
 const ContextClasses& student_context();
-/// The class that the student is given, 1..12.
-std::int16_t student_context_class(const LocalMinute& now, const PriceLevel& level);
+/// Of the plan that gives a student by outlook its context; null where the context is another.
+const OutlookModel* student_outlook();
+/// The class that the student is given, 1..12, of the trailing level or of the plan's break-even
+/// price, whichever is its context, in hundredths of EUR/MWh; by month neither counts.
+std::int16_t student_context_class(const LocalMinute& now, std::int32_t context_centi);
+/// What a cycle's class was made of.
+inline std::int32_t context_centi_of(const CycleRecord& record) {
+  return student_outlook() != nullptr ? record.outlook.break_even_centi
+                                      : record.price_level.centi_eur_per_mwh();
+}
 /// What the exported student would do.
 Action decide_with_student(const LatticeState& state);
 
@@ -33,7 +42,7 @@ bool guard_rule_holds(int index, const LocalMinute& now, const LatticeState& sta
 int count_student_self_check_failures();
 int student_self_check_count();
 const char* student_provenance();
-/// Of the weights, and of the rules that the guard enforces where there are any.
+/// Of the weights, and of the rules that the guard enforces and the outlook where there are any.
 std::uint32_t student_hash();
 /// What the exported student was proved for; the guard's own thresholds may be others.
 PriceThresholds student_thresholds();

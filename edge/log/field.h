@@ -29,7 +29,7 @@ struct Places {
 };
 
 /// Between the groups run_status.cpp writes what is more than one field.
-enum class MetricGroup { kSite = 1, kBus, kRun, kPeople, kConnection };
+enum class MetricGroup { kSite = 1, kBus, kRun, kPeople, kConnection, kOutlook };
 
 using Output = Place Places::*;
 

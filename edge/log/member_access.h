@@ -26,11 +26,14 @@ struct MemberAccess {
   const char* (*name_of)(std::int64_t);     ///< of a code; null when the kind is another
   bool (*exists)(const Source&) = nullptr;  ///< null: always
 
-  /// The value means something only while the flag at this path is set.
+  /// The value means something only while the flag at this path is set, or the enumerator at it is
+  /// not the first.
   template <auto... kFlagPath>
   [[nodiscard]] constexpr MemberAccess given() const {
     MemberAccess conditional = *this;
-    conditional.exists = [](const Source& source) -> bool { return (source.*....*kFlagPath); };
+    conditional.exists = [](const Source& source) -> bool {
+      return static_cast<bool>((source.*....*kFlagPath));
+    };
     return conditional;
   }
 };

@@ -26,6 +26,8 @@ consteval auto make_record_fields() {
   using F = ResponseFindings;
   using W = FollowedOrder;
   using M = MeterTrust;
+  using K = OutlookReport;
+  using Q = PricedQuarterHour;
   return std::to_array<Field<CycleRecord>>({
       {utc_member<&R::utc_s>(),
        "utc",
@@ -270,6 +272,36 @@ consteval auto make_record_fields() {
        "locked_readings",
        {.csv = 60, .totals = 84, .metrics = {40, "bess_locked_readings"}},
        {"Readings in a row in which the battery's own limits allow nothing."}},
+      {member<&R::outlook, &K::source>().given<&R::outlook, &K::source>(),
+       "outlook",
+       {.csv = 61, .last = 191}},
+      {member<&R::outlook, &K::break_even_centi>().given<&R::outlook, &K::source>(),
+       "break_even_centi",
+       {.csv = 62, .last = 192, .metrics = {60, "bess_break_even_eur_per_mwh"}},
+       {"Price at which the plan on day-ahead prices would as soon charge as discharge.", 100}},
+      {member<&R::outlook, &K::known_quarter_hours>().given<&R::outlook, &K::source>(),
+       "outlook_quarter_hours",
+       {.csv = 63, .last = 193, .metrics = {61, "bess_outlook_quarter_hours"}},
+       {"Quarter-hours from now on whose day-ahead price is published."}},
+      {utc_member<&R::outlook, &K::dearest, &Q::utc_s>().given<&R::outlook, &K::source>(),
+       "dearest_utc",
+       {.last = 201}},
+      {member<&R::outlook, &K::dearest, &Q::centi_eur_per_mwh>().given<&R::outlook, &K::source>(),
+       "dearest_centi",
+       {.last = 202}},
+      {utc_member<&R::outlook, &K::cheapest, &Q::utc_s>().given<&R::outlook, &K::source>(),
+       "cheapest_utc",
+       {.last = 203}},
+      {member<&R::outlook, &K::cheapest, &Q::centi_eur_per_mwh>().given<&R::outlook, &K::source>(),
+       "cheapest_centi",
+       {.last = 204}},
+      {utc_member<&R::outlook, &K::planned_utc_s>().given<&R::outlook, &K::source>(),
+       "planned_utc",
+       {.last = 194, .metrics = {62, "bess_outlook_planned_timestamp_seconds"}},
+       {"Newest decision that was planned on published prices."}},
+      {member<&R::outlook, &K::feed>().given<&R::outlook, &K::source>(),
+       "day_ahead_status",
+       {.csv = 64, .last = 195}},
   });
 }
 

@@ -202,6 +202,7 @@ void format_prometheus(const RunIdentity& identity, const RunTotals& totals, Tex
   add_fields(MetricGroup::kRun, totals, text);
   add_fields(MetricGroup::kPeople, totals, text);
   add_fields(MetricGroup::kConnection, totals, text);
+  add_fields(MetricGroup::kOutlook, totals, text);
   add_model(identity, text);
   add_wear(identity.wear, text);
   text.add("%s", checksum_end(text.view(), kCommentChecksum).c_str());

@@ -55,10 +55,19 @@ struct StableCodes<Status> {
   static constexpr auto kNameOf = status_name;
 };
 
+template <>
+struct StableCodes<OutlookSource> {
+  static constexpr OutlookSource kList[] = {OutlookSource::kNone, OutlookSource::kPlanned,
+                                            OutlookSource::kUsual, OutlookSource::kLate,
+                                            OutlookSource::kMissing};
+  static constexpr auto kNameOf = outlook_source_name;
+};
+
 template <typename Enum>
 inline constexpr std::size_t kCodeCount = std::size(StableCodes<Enum>::kList);
 static_assert(kCodeCount<Mode> == kModeCount && kCodeCount<Action> == kActionCount &&
-                  kCodeCount<Reason> == kReasonCount && kCodeCount<Status> == kStatusCount,
+                  kCodeCount<Reason> == kReasonCount && kCodeCount<Status> == kStatusCount &&
+                  kCodeCount<OutlookSource> == kOutlookSourceCount,
               "a new enumerator needs a code: append it to its list");
 
 template <typename Enum>

@@ -58,6 +58,8 @@ class ControlLoop {
 
   /// Follows the holds that are published there, which outlives the loop.
   void follow_holds(const HoldMailbox& holds) { of<HoldPart>().mailbox = &holds; }
+  /// The plans that give a student by outlook its context; null where it is another.
+  void follow_outlook(OutlookBoard* board) { of<OutlookPart>().board = board; }
 
   [[nodiscard]] const Trip& trip() const {
     return parts_.template get<SupervisionPart>().supervision.trip();
@@ -156,7 +158,7 @@ class ControlLoop {
     in.clock_ok = clock_.is_synchronised();
     in.previous_power_w = order_.power_w();
     parts_.put({.power_w = settings_.guard.power_w}, record, in);
-    ask_student(of<FullChargePart>().level, record, in);
+    ask_student(of<FullChargePart>().level, of<OutlookPart>(), record, in);
     const GuardDecision decision = guard_.decide(in);
     record.reason = cause_of(decision.reason, in.supervision, record.battery_status);
     record.ordered_power_w = decision.power_w;

@@ -19,6 +19,7 @@ auto parts_of(const ControlSettings& settings, const Site& site) {
                     HoldPart(),                                        //
                     ReservePart(settings.reserve),                     //
                     FullChargePart(settings.full_charge_every_days),   //
+                    OutlookPart(),                                     //
                     FrozenPricePart(settings.frozen_price),            //
                     CycleBudgetPart(settings.cycles_per_day_max_e4),   //
                     ReversalCapPart(settings.reversals_per_hour_max),  //

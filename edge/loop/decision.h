@@ -6,6 +6,7 @@
 
 #include "edge/control/policy.h"
 #include "edge/control/safety_guard.h"
+#include "edge/loop/parts/price_part.h"
 
 namespace bess {
 
@@ -23,11 +24,12 @@ inline GuardInputs guard_inputs(const CycleRecord& record, std::int64_t now_utc_
 }
 
 /// Its action, and what the operator's rules leave, where battery and price are known.
-inline void ask_student(const PriceLevel& level, CycleRecord& record, GuardInputs& in) {
+inline void ask_student(const PriceLevel& level, OutlookPart& outlook, CycleRecord& record,
+                        GuardInputs& in) {
   if (!record.has_measurement || !record.price.has_row) return;
   const std::int32_t price_centi = record.price.price_centi_eur_per_mwh;
   const LocalMinute now = local_minute_of(record.utc_s);
-  record.context_class = student_context_class(now, level);
+  record.context_class = student_context_class(now, outlook.context_centi(level, record));
   const LatticeState state =
       make_lattice_state(now, record.context_class, record.measurement.soc_e4, price_centi);
   record.student_action = decide_with_student(state);

@@ -98,7 +98,52 @@ const cJSON* rows_of(const cJSON* root, const PriceFields& fields) {
   return !rows.is_twice && cJSON_IsArray(rows.item) ? rows.item : nullptr;
 }
 
+/// kNoRow: it is passed over.
+Status take_timed(const cJSON* time, const cJSON* price, const PriceRowTaker& taker) {
+  PriceRow row;
+  if (!parse_time(time, row.minute_utc_s) || !parse_price(price, row.price_centi_eur_per_mwh)) {
+    return Status::kNoRow;
+  }
+  taker.take(taker.self, row);
+  return Status::kOk;
+}
+
+Status parse_lists(const cJSON* root, const PriceFields& fields, const PriceRowTaker& taker) {
+  const Found times = item_at(root, fields.time.view());
+  const Found prices = item_at(root, fields.price.view());
+  if (times.is_twice || prices.is_twice || !cJSON_IsArray(times.item) ||
+      !cJSON_IsArray(prices.item) ||
+      cJSON_GetArraySize(times.item) != cJSON_GetArraySize(prices.item)) {
+    return Status::kMalformed;
+  }
+  Status status = Status::kNoRow;
+  const cJSON* price = prices.item->child;
+  for (const cJSON* time = times.item->child; time != nullptr; time = time->next) {
+    if (take_timed(time, price, taker) == Status::kOk) status = Status::kOk;
+    price = price->next;
+  }
+  return status;
+}
+
 }  // namespace
+
+Status parse_day_ahead(std::string_view json, const PriceFields& fields,
+                       const PriceRowTaker& taker) {
+  const Json root = parse_document(json);
+  if (root == nullptr) return Status::kMalformed;
+  if (fields.rows.empty()) return parse_lists(root.get(), fields, taker);
+  const cJSON* const rows = rows_of(root.get(), fields);
+  if (rows == nullptr) return Status::kMalformed;
+  Status status = Status::kNoRow;
+  const cJSON* item = nullptr;
+  cJSON_ArrayForEach(item, rows) {
+    const Found time = item_at(item, fields.time.view());
+    const Found price = item_at(item, fields.price.view());
+    if (time.is_twice || price.is_twice) return Status::kMalformed;
+    if (take_timed(time.item, price.item, taker) == Status::kOk) status = Status::kOk;
+  }
+  return status;
+}
 
 Status parse_prices(std::string_view json, const PriceFields& fields, std::int64_t now_utc_s,
                     const PriceRowTaker& taker, int& items) {

@@ -43,4 +43,10 @@ struct PriceRowTaker {
 Status parse_prices(std::string_view json, const PriceFields& fields, std::int64_t now_utc_s,
                     const PriceRowTaker& taker, int& items);
 
+/// Every row that has a price, in the order of a day-ahead answer, whatever its time; the same
+/// otherwise. Without `fields.rows` times and prices are two lists of one length side by side, as
+/// energy-charts has them.
+Status parse_day_ahead(std::string_view json, const PriceFields& fields,
+                       const PriceRowTaker& taker);
+
 }  // namespace bess

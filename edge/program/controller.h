@@ -29,7 +29,7 @@ namespace bess {
 /// nothing may allocate.
 template <typename World>
 concept ControllerWorld = requires(World& world, const World& known, CycleRecord& record,
-                                   const CycleRecord& done, std::int64_t number,
+                                   const CycleRecord& done, std::int64_t number, std::int32_t level,
                                    const std::string& line) {
   typename World::Prices;
   typename World::Meter;
@@ -47,6 +47,8 @@ concept ControllerWorld = requires(World& world, const World& known, CycleRecord
   world.keep(done);
   // People: the holds that they ask for, and whether one has cleared the trip of an instant.
   { world.listen() } -> std::same_as<const HoldMailbox&>;
+  // The plans of a student by outlook, from this level on; null where its context is another.
+  { world.look_out(level) } -> std::same_as<OutlookBoard*>;
   { world.is_cleared(number) } -> std::same_as<bool>;
   // Who is told.
   world.needs_time(number);
@@ -132,7 +134,7 @@ class Controller {
   }
 
   void take_over(Status greeting) {
-    const bool needs_level = student_context().kind == ContextKind::kLevel;
+    const bool needs_level = student_context().kind != ContextKind::kMonth;
     if (needs_level) world_.needs_time(config_.price.history.wait_s + kStartMarginS);
     const Recall recalled = world_.recall();
     const BatteryCounters& counters = recalled.before.counters;
@@ -142,6 +144,7 @@ class Controller {
     if (needs_level) world_.write_line(journal_level_of(news), level_note(news));
     recall_cycles(world_, world_.clock().now_utc_ns() / kNanosecondsPerSecond, loop_);
     loop_.take_over(take_over_of(recalled.before, recalled.trip, news.start.level));
+    loop_.follow_outlook(world_.look_out(news.start.level.centi_eur_per_mwh()));
   }
 
   const EdgeConfig& config_;

@@ -46,7 +46,9 @@ std::string source_note(const LevelNews& news) {
 
 std::string context_note(const ContextClasses& context) {
   if (context.kind == ContextKind::kMonth) return "month";
-  std::string text = "trailing price level, classes divided at";
+  std::string text = context.is_outlook()
+                         ? "break-even price of a plan on day-ahead prices, classes divided at"
+                         : "trailing price level, classes divided at";
   const char* separator = " ";
   for (const std::int16_t edge : context.level_edge_eur_per_mwh) {
     text.append(separator).append(std::to_string(edge));

@@ -11,7 +11,7 @@
 
 namespace bess {
 
-/// "month", or the level with the edges of its classes.
+/// "month", or what the classes are of, with their edges.
 std::string context_note(const ContextClasses& context);
 
 /// How the level was come by. What is said of the history counts only if it was asked for.

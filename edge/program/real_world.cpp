@@ -10,6 +10,8 @@
 namespace bess {
 namespace {
 
+constexpr std::int64_t kPlanningSMax = 30;  ///< of the first plans, on the slowest board
+
 void write_farewell(const CycleRecord& last, bool is_in_control, bool ends_by_itself) {
   if (!is_in_control) {
     write_journal_line(JournalLevel::kNotice, "stopped: read-only, nothing was written");
@@ -64,6 +66,20 @@ const HoldMailbox& RealWorld::listen() {
   people_.start(both_places(config_, kHoldFileName), both_places(config_, kClearedFileName),
                 config_.clock.scale);
   return people_.mailbox();
+}
+
+OutlookBoard* RealWorld::look_out(std::int32_t level_centi) {
+  if (devices_.outlook == nullptr) return nullptr;
+  needs_time(config_.outlook.http.timeout_ms / 1'000 + kPlanningSMax);
+  devices_.outlook->start(level_centi);
+  return &devices_.outlook->board();
+}
+
+void RealWorld::keep(const CycleRecord& record) {
+  log_.write(record);
+  if (devices_.outlook != nullptr) {
+    devices_.outlook->plan_after(record.utc_s, record.price_level.centi_eur_per_mwh());
+  }
 }
 
 void RealWorld::complain(JournalLevel level, const std::string& line) {

@@ -9,6 +9,7 @@
 #include "edge/log/event_log.h"
 #include "edge/log/journal.h"
 #include "edge/memory/heap_seal.h"
+#include "edge/outlook/outlook_watch.h"
 #include "edge/prices/price_feed.h"
 #include "edge/program/edge_clock.h"
 #include "edge/program/hold_watch.h"
@@ -33,6 +34,7 @@ class RealWorld {
     ModbusBattery& battery;
     ModbusMeter& meter;
     PriceFeed& prices;
+    OutlookWatch* outlook;  ///< null unless the student's context is the outlook
   };
   RealWorld(const EdgeConfig& config, const Devices& devices);
 
@@ -54,9 +56,10 @@ class RealWorld {
   bool read_back(std::int64_t records, CycleRecord& record) const {
     return log_.read_back(records, record);
   }
-  void keep(const CycleRecord& record) { log_.write(record); }
+  void keep(const CycleRecord& record);
 
   const HoldMailbox& listen();
+  OutlookBoard* look_out(std::int32_t level_centi);
   bool is_cleared(std::int64_t trip_utc_s) { return people_.is_cleared(trip_utc_s); }
 
   void needs_time(std::int64_t seconds) { notify_.extend_start(seconds); }

@@ -52,6 +52,7 @@ bool load_edge_config(const std::string& path, EdgeConfig& config, std::string& 
   read_battery(section(root, "battery"), config.battery, config.control);
   check_battery_against_map(section(root, "battery"), config.battery, config.control);
   read_price(section(root, "price"), config.price, config.control.frozen_price);
+  read_outlook(section(root, "outlook"), config.outlook);
   read_guard(section(root, "guard"), config.battery, config.control,
              config.require_synchronised_clock);
   read_reserve(root, config.control);

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "edge/settings/battery_config.h"
+#include "edge/settings/outlook_config.h"
 #include "edge/settings/price_config.h"
 #include "edge/settings/site_config.h"
 #include "edge/settings/state_config.h"
@@ -17,6 +18,7 @@ struct EdgeConfig {
   ControlSettings control;
   BatteryConfig battery;
   PriceConfig price;
+  OutlookSettings outlook;
   SiteConfig site;
   StateSettings state;
   EventLogSettings log;

@@ -5,10 +5,8 @@
 #include "edge/prices/http_trust.h"
 
 namespace bess {
-namespace {
-
-void check_url(TomlTable& table, std::string_view key, std::string_view url,
-               const PriceTransportKeys& keys) {
+void check_price_url(TomlTable& table, std::string_view key, std::string_view url,
+                     const PriceTransportKeys& keys) {
   const UrlTransport transport = transport_of(url);
   if (transport == UrlTransport::kUnusable) {
     return table.fail(key, "must start with http:// or https:// and name a host");
@@ -32,13 +30,11 @@ void check_url(TomlTable& table, std::string_view key, std::string_view url,
   }
 }
 
-}  // namespace
-
 void check_price_transport(TomlTable& table, const PriceSources& sources,
                            const PriceTransportKeys& keys) {
-  check_url(table, "url", sources.price.http.url.view(), keys);
+  check_price_url(table, "url", sources.price.http.url.view(), keys);
   if (!sources.history.url.empty())
-    check_url(table, "history_url", sources.history.url.view(), keys);
+    check_price_url(table, "history_url", sources.history.url.view(), keys);
 }
 
 TransportNote transport_note(const PriceSources& sources) {

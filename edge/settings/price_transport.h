@@ -23,8 +23,12 @@ struct PriceTransportKeys {
   bool has_header_file = false;  ///< secrets are sent with every request
 };
 
-/// Complains, with the mend, of a URL of [price] that is none, of plain http that is not allowed,
-/// and of secrets on plain http.
+/// Complains, with the mend, of a URL that is none, of plain http that is not allowed, and of
+/// secrets on plain http.
+void check_price_url(TomlTable& table, std::string_view key, std::string_view url,
+                     const PriceTransportKeys& keys);
+
+/// The same of each URL of [price].
 void check_price_transport(TomlTable& table, const PriceSources& sources,
                            const PriceTransportKeys& keys);
 

@@ -24,7 +24,7 @@ Action decide_at(const LatticeState& state, std::int32_t price_centi,
 /// At the next tick, if price and SoC stay.
 LatticeState state_at(const CycleRecord& newest, std::int64_t utc_s) {
   const LocalMinute then = local_minute_of(utc_s);
-  return make_lattice_state(then, student_context_class(then, newest.price_level),
+  return make_lattice_state(then, student_context_class(then, context_centi_of(newest)),
                             newest.measurement.soc_e4, newest.price.price_centi_eur_per_mwh);
 }
 

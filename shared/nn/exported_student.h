@@ -28,6 +28,9 @@ constexpr void copy_layer(const std::int16_t (&weight)[kInputs][kOutputs],
 constexpr StudentNet assemble_exported_student() {
   StudentNet net{};
   net.context.kind = BESS_STUDENT_CONTEXT_IS_LEVEL ? ContextKind::kLevel : ContextKind::kMonth;
+#ifdef BESS_STUDENT_OUTLOOK_HASH
+  net.context.kind = ContextKind::kOutlook;
+#endif
   for (int c = 0; c + 1 < kContextClassCount; ++c) {
     net.context.level_edge_eur_per_mwh[c] = bess_student_level_edge_eur_per_mwh[c];
   }

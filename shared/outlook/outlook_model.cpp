@@ -52,4 +52,12 @@ bool OutlookModel::is_sound() const {
   return sound;
 }
 
+std::uint32_t OutlookModel::hash() const {
+  Crc32 crc;
+  visit(*this, [&crc](const char*, const std::int32_t* values, int count) {
+    for (int i = 0; i < count; ++i) crc.add_integer(values[i]);
+  });
+  return crc.value();
+}
+
 }  // namespace bess

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 
+#include "shared/crc32.h"
 #include "shared/units_and_limits.h"
 
 namespace bess {
@@ -69,6 +70,8 @@ struct OutlookModel {
 
   /// False of numbers that no fit leads to, and with which the plan could leave its integers.
   [[nodiscard]] bool is_sound() const;
+  /// Of every number, in the order of visit(), whatever the machine's byte order.
+  [[nodiscard]] std::uint32_t hash() const;
 };
 
 }  // namespace bess

@@ -189,7 +189,7 @@ void OutlookPlan::step_back(const OutlookModel& model, std::int64_t utc_s) {
 }
 
 void OutlookPlan::find_break_even(const OutlookModel& model, std::int64_t utc_s) {
-  std::int16_t(&row)[kPoints] = break_even_[(utc_s - today_utc_s_) / kSecondsPerStep];
+  std::int16_t(&row)[kPoints] = break_even_[(utc_s - today_utc_s_) / kSecondsPerStep].tenths;
   const std::int32_t usual_seen = usual_centi(utc_s - 60 * std::int64_t{model.row_age_min});
   for (int i = kEndPoints; i < kPoints - kEndPoints; ++i) {
     std::int64_t lost = 0;  // by a cut: what leads below it, and what does not above it
@@ -249,9 +249,8 @@ void OutlookPlan::make(const OutlookModel& model, const OutlookDays& days,
   }
 }
 
-std::int32_t OutlookPlan::break_even_centi(const OutlookModel& model, std::int64_t utc_s,
-                                           std::int32_t soc_e4, std::int32_t level_centi) const {
-  const std::int16_t(&row)[kPoints] = break_even_[(utc_s - today_utc_s_) / kSecondsPerStep];
+std::int32_t BreakEvenRow::at(const OutlookModel& model, std::int32_t soc_e4,
+                              std::int32_t level_centi, std::int32_t planned_level_centi) const {
   constexpr int kBits = OutlookModel::kPointBits;
   constexpr std::int64_t kLast = std::int64_t{kPoints - 1} << kBits;
   const std::int64_t span_e4 = model.soc_max_e4 - model.soc_min_e4;
@@ -259,11 +258,11 @@ std::int32_t OutlookPlan::break_even_centi(const OutlookModel& model, std::int64
       (soc_e4 - std::int64_t{model.soc_min_e4}) * kLast / span_e4, 0, kLast - 1);
   const auto lower = static_cast<int>(at >> kBits);
   const std::int64_t weight = at - (std::int64_t{lower} << kBits);
-  const std::int64_t fall = row[lower] - row[lower + 1];
+  const std::int64_t fall = tenths[lower] - tenths[lower + 1];
   const std::int64_t planned =
-      row[lower] * std::int64_t{kCentiPerTenth} - shifted(fall * kCentiPerTenth * weight, kBits);
+      tenths[lower] * std::int64_t{kCentiPerTenth} - shifted(fall * kCentiPerTenth * weight, kBits);
   return static_cast<std::int32_t>(
-      planned + shifted(std::int64_t{model.level_q12} * (level_centi - level_centi_),
+      planned + shifted(std::int64_t{model.level_q12} * (level_centi - planned_level_centi),
                         OutlookModel::kCoefficientBits));
 }
 

@@ -51,6 +51,16 @@ struct OutlookDays {
 /// The midnights around an instant, no price known. Needs the market's time zone.
 OutlookDays outlook_days_around(std::int64_t utc_s);
 
+/// What a plan says of one step: break-even prices over its grid of SoC, tenths of EUR/MWh, never
+/// rising.
+struct BreakEvenRow {
+  std::int16_t tenths[OutlookModel::kSocPoints] = {};
+
+  /// Hundredths of EUR/MWh, of a plan that was made for `planned_level_centi`.
+  [[nodiscard]] std::int32_t at(const OutlookModel& model, std::int32_t soc_e4,
+                                std::int32_t level_centi, std::int32_t planned_level_centi) const;
+};
+
 class OutlookPlan {
  public:
   /// For a level that planned_level_centi() gives. Bounded: at most 1,500 steps, nothing allocated.
@@ -61,7 +71,13 @@ class OutlookPlan {
   }
   /// Hundredths of EUR/MWh. Precondition: the plan serves the instant. Never rises with SoC.
   [[nodiscard]] std::int32_t break_even_centi(const OutlookModel& model, std::int64_t utc_s,
-                                              std::int32_t soc_e4, std::int32_t level_centi) const;
+                                              std::int32_t soc_e4, std::int32_t level_centi) const {
+    return row_at(utc_s).at(model, soc_e4, level_centi, level_centi_);
+  }
+  /// Precondition: the plan serves the instant.
+  [[nodiscard]] const BreakEvenRow& row_at(std::int64_t utc_s) const {
+    return break_even_[(utc_s - today_utc_s_) / kSecondsPerStep];
+  }
 
  private:
   static constexpr int kBins = OutlookModel::kBins;
@@ -82,8 +98,7 @@ class OutlookPlan {
 
   std::int64_t today_utc_s_ = 0, tomorrow_utc_s_ = 0, end_utc_s_ = 0;
   std::int32_t level_centi_ = 0;
-  /// Tenths of EUR/MWh.
-  std::int16_t break_even_[kLongestDaySteps][kPoints] = {};
+  BreakEvenRow break_even_[kLongestDaySteps] = {};
   // What is needed while a plan is made.
   std::int32_t usual_[kQuarterHoursMax] = {};
   Move charge_[kPoints] = {}, discharge_[kPoints] = {};

@@ -30,7 +30,8 @@ std::int64_t utc_of(const CsvRow& row, const char* column) {
 GuardInputs inputs_of(const CsvRow& row) {
   return undisturbed_inputs(
       utc_of(row, "utc"), std::stoi(row.at("soc_e4")),
-      {.centi_q16 = std::stoll(row.at("price_level_centi_q16")), .row_minute_utc_s = 1},
+      PriceLevel{.centi_q16 = std::stoll(row.at("price_level_centi_q16")), .row_minute_utc_s = 1}
+          .centi_eur_per_mwh(),
       utc_of(row, "price_minute_utc"), std::stoi(row.at("price_centi_eur_per_mwh")));
 }
 

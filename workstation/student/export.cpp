@@ -3,9 +3,11 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include <memory>
+#include <span>
 #include <vector>
 
-#include "shared/host/user_error.h"
+#include "shared/outlook/outlook_check.h"
 #include "workstation/base/random.h"
 #include "workstation/student/rule_header.h"
 
@@ -124,14 +126,27 @@ std::string certificate_macros(const Certificate& c) {
       c.states_evaluated, c.violations_of(1), c.violations_of(2), c.violations_of(3));
 }
 
+/// The plan's model as one array, each part behind its name, and how the exporter plans with it.
+std::string outlook_section(const OutlookModel& model) {
+  std::string numbers;
+  int size = 0;
+  OutlookModel::visit(model, [&](const char* name, const std::int32_t* values, int count) {
+    numbers += fmt::format("/* {} */\n{},\n", name,
+                           wrapped(std::span(values, static_cast<std::size_t>(count))));
+    size += count;
+  });
+  const auto plan = std::make_unique<OutlookPlan>();
+  return fmt::format(
+      "#define BESS_STUDENT_OUTLOOK_HASH 0x{:08x}u\n"
+      "#define BESS_STUDENT_OUTLOOK_CHECK 0x{:08x}u\n"
+      "/* Of the plan on day-ahead prices: shared/outlook/outlook_model.h */\n"
+      "BESS_STUDENT_CONST int32_t bess_student_outlook[{}] = {{\n{}}};\n",
+      model.hash(), outlook_check(model, *plan), size, numbers);
+}
+
 }  // namespace
 
 std::string format_weight_header(const ProvedStudent& student) {
-  if (student.file().outlook) {
-    fail(
-        "a student by outlook is not exported: bess-edge has no day-ahead prices to plan on; "
-        "learn with [train] context = \"level\" for it");
-  }
   const StudentNet& net = student.net();
   std::string text = preamble(student.certificate());
   text += fmt::format(
@@ -161,6 +176,7 @@ std::string format_weight_header(const ProvedStudent& student) {
   text += vector("int32_t", "layer3_bias", net.layer3.bias);
   text += self_checks(net);
   text += rule_section(student);
+  if (student.file().outlook) text += outlook_section(student.file().outlook->model());
   return text + "/* clang-format on */\n";
 }
 

@@ -7,10 +7,10 @@
 #include <numeric>
 #include <span>
 
-#include "shared/crc32.h"
 #include "shared/host/file.h"
 #include "shared/host/json_reader.h"
 #include "shared/nn/exported_student.h"
+#include "shared/outlook/exported_outlook.h"
 #include "workstation/rules/rule_file.h"
 #include "workstation/student/quantise.h"
 
@@ -127,16 +127,8 @@ void add_rule_claims(const Certificate& certificate, Json& json) {
   json.set("rule_violations", std::span<const std::int64_t>(violations));
 }
 
-std::uint32_t model_hash(const OutlookModel& model) {
-  Crc32 crc;
-  OutlookModel::visit(model, [&crc](const char*, const std::int32_t* values, int count) {
-    for (int i = 0; i < count; ++i) crc.add_integer(values[i]);
-  });
-  return crc.value();
-}
-
 Json outlook_json(const OutlookModel& model) {
-  Json json = Json::object({{"hash", model_hash(model)}});
+  Json json = Json::object({{"hash", model.hash()}});
   OutlookModel::visit(model, [&json](const char* key, const std::int32_t* values, int count) {
     json.set(key, std::span(values, static_cast<std::size_t>(count)));
   });
@@ -148,7 +140,7 @@ std::shared_ptr<const OutlookBook> parse_outlook(const JsonReader& in, const std
   OutlookModel::visit(model, [&in](const char* key, std::int32_t* values, int count) {
     in.wholes(key, std::span(values, static_cast<std::size_t>(count)));
   });
-  if (in.number("hash") != model_hash(model) || !model.is_sound()) {
+  if (in.number("hash") != model.hash() || !model.is_sound()) {
     fail(
         "{}: damaged: \"outlook\" does not match its hash, or no market is like it; copy it again "
         "or distil again",
@@ -276,6 +268,9 @@ StudentFile compiled_student() {
                          .states_checked = BESS_STUDENT_STATES_CHECKED,
                          .states_evaluated = BESS_STUDENT_STATES_EVALUATED};
   student.provenance = BESS_STUDENT_PROVENANCE;
+  if (const OutlookModel* const outlook = exported_outlook()) {
+    student.outlook = std::make_shared<const OutlookBook>(*outlook);
+  }
 #ifdef BESS_STUDENT_RULES
   student.certificate.rules = parse_rules(BESS_STUDENT_RULES, "compiled rules");
 #endif

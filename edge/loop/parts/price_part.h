@@ -1,5 +1,5 @@
-// What earlier prices have to do with this cycle: the level that student and full charge hold a
-// price against, and a price that stands still.
+// What other prices have to do with this cycle: the level that student and full charge hold a price
+// against, the outlook on later ones, and a price that stands still.
 #pragma once
 
 #include "edge/control/frozen_price.h"
@@ -32,6 +32,22 @@ struct FullChargePart : CyclePart {
 
   PriceLevel level;
   FullCharge charge;
+};
+
+struct OutlookPart : CyclePart {
+  void restore(const CycleRecord& before) { planned_utc_s = before.outlook.planned_utc_s; }
+  /// What the student's class is made of; the battery was read.
+  std::int32_t context_centi(const PriceLevel& level, CycleRecord& record) {
+    const std::int32_t level_centi = level.centi_eur_per_mwh();
+    if (board == nullptr) return level_centi;
+    record.outlook = outlook_at(*board, record.utc_s, record.measurement.soc_e4, level_centi);
+    if (record.outlook.source == OutlookSource::kPlanned) planned_utc_s = record.utc_s;
+    return record.outlook.break_even_centi;
+  }
+  void report(CycleRecord& record) const { record.outlook.planned_utc_s = planned_utc_s; }
+
+  OutlookBoard* board = nullptr;  ///< null unless the outlook is the student's context
+  std::int64_t planned_utc_s = 0;
 };
 
 struct FrozenPricePart : CyclePart {

@@ -25,6 +25,7 @@ CycleRecord bare_record() {
   CycleRecord r;
   r.has_measurement = r.price.has_row = r.has_student_action = r.is_tripped = r.hold.held = true;
   r.site.has_grid_power = true;
+  r.outlook.source = OutlookSource::kPlanned;
   return r;
 }
 
@@ -160,7 +161,8 @@ TEST(RecordFields, NoMemberOfTheRecordIsForgotten) {
   constexpr std::size_t kLeaves =
       count_leaves<BatteryMeasurement, PriceReport, DayThroughput, BatteryCounters, PriceLevel,
                    Trip, ReversalHistory, HoldReport, SiteReport, MeterTrust, LostOrderHistory,
-                   StandingPrice, ResponseFindings, FollowedOrder>();
+                   StandingPrice, ResponseFindings, FollowedOrder, OutlookReport, PricedQuarterHour,
+                   PricedQuarterHour>();
   constexpr std::size_t kElsewhere =
       2;  // the battery's own grid point: what counts of it is in `site`
   EXPECT_EQ(std::size(kRecordFields), kLeaves - kElsewhere);

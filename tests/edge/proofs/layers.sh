@@ -33,7 +33,10 @@ layer edge/registers                edge/registers edge/control/power_order.h ed
 layer edge/battery                  edge/battery edge/control edge/registers edge/base shared
 layer edge/prices                   edge/prices edge/control edge/memory edge/base shared
 layer edge/log                      edge/log edge/control edge/memory edge/base shared
-grounds="edge/battery edge/control edge/loop edge/site edge/supervision edge/log edge/memory edge/prices edge/registers edge/base shared"
+outlook_stands_on="edge/prices edge/log edge/control edge/memory edge/base shared"
+layer edge/outlook                 edge/outlook $outlook_stands_on
+grounds="edge/battery edge/control edge/loop edge/site edge/supervision edge/registers"
+grounds="$grounds edge/outlook $outlook_stands_on"
 layer edge/settings                 edge/settings $grounds
 layer edge/recording                edge/recording $grounds
 layer edge/storage                  edge/storage edge/settings $grounds

@@ -115,14 +115,15 @@ TEST(ControlWalk, RecordedDays) {
   walk.end_line("days");
   for (int i = 0; i < 4'000; ++i) {
     const PriceLevel level = PriceLevel::starting_at(walk.number(-50'000, 150'000));
-    const GuardInputs in =
-        undisturbed_inputs(kNowUtcS + walk.from(0, 500) * 86'400 + walk.from(0, 86'399),
-                           walk.number(0, 10'000), level, kNowUtcS, walk.number(-60'000, 160'000));
+    const GuardInputs in = undisturbed_inputs(
+        kNowUtcS + walk.from(0, 500) * 86'400 + walk.from(0, 86'399), walk.number(0, 10'000),
+        level.centi_eur_per_mwh(), kNowUtcS, walk.number(-60'000, 160'000));
     const LocalMinute now = local_minute_of(in.now_utc_s);
-    const LatticeState state = make_lattice_state(
-        now, student_context_class(now, level), in.measurement.soc_e4, in.price_centi_eur_per_mwh);
+    const LatticeState state =
+        make_lattice_state(now, student_context_class(now, level.centi_eur_per_mwh()),
+                           in.measurement.soc_e4, in.price_centi_eur_per_mwh);
     walk.see(in.student_action, in.rules.actions, in.rules.power_permille_max,
-             student_context_class(now, level), guard_rule_count());
+             student_context_class(now, level.centi_eur_per_mwh()), guard_rule_count());
     for (int rule = 0; rule < guard_rule_count(); ++rule) {
       walk.see(guard_rule_holds(rule, now, state, in.price_centi_eur_per_mwh));
     }

@@ -26,7 +26,7 @@ CycleRecord decided(std::int64_t cycle, std::int32_t price_centi) {
   r.price_age_s = 2;
   r.price_level = PriceLevel::starting_at(8'231);
   const LocalMinute now = local_minute_of(r.utc_s);
-  r.context_class = student_context_class(now, r.price_level);
+  r.context_class = student_context_class(now, context_centi_of(r));
   r.student_action =
       decide_with_student(make_lattice_state(now, r.context_class, 4'730, price_centi));
   r.has_student_action = true;

@@ -1,5 +1,6 @@
 // A student by outlook on its way through the chain: learnt by a program that plans on day-ahead
-// prices, monotone in its break-even price by construction, kept in files, and not exported.
+// prices, monotone in its break-even price by construction, kept in files, and exported with the
+// integers of its plan.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

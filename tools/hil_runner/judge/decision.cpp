@@ -14,7 +14,9 @@ void judge_decision(Bench& bench) {
       level.observe(cycle.price.minute_utc_s, cycle.price.price_centi_eur_per_mwh);
     if (!cycle.has_student_action) continue;
     const LocalMinute now = local_minute_of(cycle.utc_s);
-    const std::int16_t context = student_context_class(now, level);
+    const std::int32_t context_centi =
+        student_outlook() != nullptr ? context_centi_of(cycle) : level.centi_eur_per_mwh();
+    const std::int16_t context = student_context_class(now, context_centi);
     const Action action = decide_with_student(make_lattice_state(
         now, context, cycle.measurement.soc_e4, cycle.price.price_centi_eur_per_mwh));
     if (action != cycle.student_action || context != cycle.context_class) {

@@ -161,8 +161,9 @@ double plain_money(const MinuteSeries& prices, std::int64_t start_utc_s) {
     const auto newest = static_cast<std::size_t>((now_utc_s - 60 - prices.start_utc_s) / 60);
     const auto centi = static_cast<std::int32_t>(std::lround(100 * prices.indicative[newest]));
     level.observe(now_utc_s - 60, centi);
-    const GuardInputs in = undisturbed_inputs(
-        now_utc_s, static_cast<std::int32_t>(std::lround(1e4 * soc)), level, now_utc_s - 60, centi);
+    const GuardInputs in =
+        undisturbed_inputs(now_utc_s, static_cast<std::int32_t>(std::lround(1e4 * soc)),
+                           level.centi_eur_per_mwh(), now_utc_s - 60, centi);
     const BatteryStep step = battery_step(battery, soc, guard.decide(in).power_w, kHoursPerStep);
     soc = step.soc_frac;
     for (int m = 0; m < kMinutesPerStep; ++m) purse.pay(now_utc_s + 60 * m, step.power_w / 60);

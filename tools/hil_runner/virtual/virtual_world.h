@@ -74,6 +74,7 @@ class VirtualWorld {
   }
   void keep(const CycleRecord& record) { around_.state.add(record); }
   const HoldMailbox& listen() { return around_.people.holds(); }
+  static OutlookBoard* look_out(std::int32_t) { return nullptr; }
   [[nodiscard]] bool is_cleared(std::int64_t trip_utc_s) const {
     return around_.people.is_cleared(trip_utc_s);
   }
