@@ -15,9 +15,13 @@ namespace {
 
 std::size_t index(Action action) { return static_cast<std::size_t>(action); }
 
+/// By outlook the classes are this student's, of the break-even price that was logged.
 Action decide_again(const CycleRecord& record) {
-  return decide_with_student(make_lattice_state(local_minute_of(record.utc_s), record.context_class,
-                                                record.measurement.soc_e4,
+  const LocalMinute then = local_minute_of(record.utc_s);
+  const std::int16_t context_class = student_outlook() == nullptr
+                                         ? record.context_class
+                                         : student_context_class(then, context_centi_of(record));
+  return decide_with_student(make_lattice_state(then, context_class, record.measurement.soc_e4,
                                                 record.price.price_centi_eur_per_mwh));
 }
 
@@ -64,7 +68,9 @@ Replay replay_days(const LogReader& log, std::int32_t first_day, std::int32_t la
     OpenDay& open =
         days.try_emplace(day, OpenDay{{.local_day = day}, DayAccount(day)}).first->second;
     open.account.add(record);
-    if (record.has_student_action && record.context_class > 0) {
+    const bool has_context =
+        student_outlook() == nullptr || record.outlook.source != OutlookSource::kNone;
+    if (record.has_student_action && record.context_class > 0 && has_context) {
       compare(record, cycle_mwh, open, replay);
     }
   });

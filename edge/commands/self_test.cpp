@@ -55,6 +55,7 @@ std::string text(const char* format, Values... values) {
 }
 
 void test_student(Table& table) {
+  set_market_time_zone();  // a plan of local days is one of the checks
   const int wrong = count_student_self_check_failures();
   table.add("student", wrong == 0,
             text("%d of %d self-check vectors as exported; %s", student_self_check_count() - wrong,

@@ -69,11 +69,16 @@ using C = BatteryCounters;
 using L = PriceLevel;
 using S = SiteReport;
 using F = ResponseFindings;
+using K = OutlookReport;
 using M = MeterTrust;
 using T = RunTotals;
 using H = HoldReport;
 
 const char* text_of(JsonValue found) { return found.text_or("none"); }
+
+bool has_outlook(JsonValue s) {
+  return std::string_view(text_of(field<&R::outlook, &K::source>(s))) != "none";
+}
 
 bool is_true(JsonValue found) { return found.boolean().value_or(false); }
 
@@ -127,6 +132,15 @@ Health health_of(const EdgeConfig& config, const PublishedStatus& published,
       number(field<&R::price, &P::price_centi_eur_per_mwh>(status)) / kCentiPerEur;
   in.price_frozen = is_true(field<&R::price_frozen>(status));
   in.price_unchanged_s = whole(field<&R::standing_price, &StandingPrice::unchanged_s>(status));
+  if (has_outlook(status)) {
+    std::int64_t cycle_utc_s = 0;
+    std::int64_t planned_utc_s = 0;
+    if (parse_utc(text_of(field<&R::utc_s>(status)), cycle_utc_s) &&
+        parse_utc(text_of(field<&R::outlook, &K::planned_utc_s>(status)), planned_utc_s)) {
+      in.unplanned_s = cycle_utc_s - planned_utc_s;
+    }
+    in.day_ahead_status = text_of(field<&R::outlook, &K::feed>(status));
+  }
   in.hold_is_unreadable = is_true(field<&R::hold, &H::unreadable>(status));
   in.cycles_behind = published.cycles_behind;
   return assess_health(in);
@@ -136,6 +150,19 @@ void print_health(const Health& health, const EdgeConfig& config) {
   std::printf("health     %s\n", health_name(health.level).data());
   for (const std::string& reason : health.reasons) std::printf("           %s\n", reason.c_str());
   if (!config.contact.view().empty()) std::printf("call       %s\n", config.contact.c_str());
+}
+
+/// The same of a plan on day-ahead prices.
+void print_outlook(JsonValue s) {
+  if (!has_outlook(s)) return;
+  std::printf(
+      "outlook    %s, break-even %.2f EUR/MWh, class %lld of %d; day-ahead prices of the "
+      "next %.1f h, last answer %s\n",
+      text_of(field<&R::outlook, &K::source>(s)),
+      number(field<&R::outlook, &K::break_even_centi>(s)) / kCentiPerEur,
+      whole(field<&R::context_class>(s)), kContextClassCount,
+      number(field<&R::outlook, &K::known_quarter_hours>(s)) / 4,
+      text_of(field<&R::outlook, &K::feed>(s)));
 }
 
 /// What the student is given besides clock, SoC and price, where that is the trailing level.
@@ -202,6 +229,7 @@ void print_last_cycle(JsonValue s, bool is_running) {
                 number(field<&R::price, &P::held_centi_eur_per_mwh>(s)) / kCentiPerEur);
   }
   print_level(s);
+  print_outlook(s);
   print_site(s);
   std::printf("order      %.0f W, reason %s\n", number(field<&R::ordered_power_w>(s)),
               text_of(field<&R::reason>(s)));

@@ -37,7 +37,7 @@ struct OutlookReport {
   std::int16_t known_quarter_hours = 0;     ///< published, from the tick on
   PricedQuarterHour dearest{}, cheapest{};  ///< of those
   Status feed = Status::kOk;                ///< how day-ahead prices were last answered
-  std::int64_t planned_utc_s = 0;           ///< the newest tick that was planned; 0 = none yet
+  std::int64_t planned_utc_s = 0;           ///< newest tick that was planned, else the first of all
 };
 
 /// The rows of the next ticks, at the two levels between which the next decision's must lie.

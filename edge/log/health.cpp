@@ -14,6 +14,7 @@ constexpr std::int64_t kUnansweredOrdersMax = 5;
 constexpr std::int64_t kWeakAnswersMax = 1;
 /// An hour: a battery that is too cold or too warm may rest as long.
 constexpr std::int64_t kLockedReadingsMax = 30;
+constexpr std::int64_t kUnplannedSMax = 86'400;
 
 std::string seconds(std::int64_t ms) { return std::to_string(ms / 1'000) + " s"; }
 
@@ -62,6 +63,12 @@ void check_prices(const HealthInputs& in, std::vector<std::string>& reasons) {
   if (in.price_frozen) reasons.push_back(frozen_price(in));
   if (in.has_price && std::fabs(in.price_eur_per_mwh) > kUnusualPriceMaxEurPerMwh) {
     reasons.push_back(unusual_price(in.price_eur_per_mwh));
+  }
+  if (in.unplanned_s > kUnplannedSMax) {
+    reasons.push_back(
+        "WARN: outlook: no day-ahead price of today for more than a day (last answer: " +
+        std::string(in.day_ahead_status) +
+        "); planned on what is usual, which earns less: see [outlook]");
   }
 }
 

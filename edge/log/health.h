@@ -49,6 +49,8 @@ struct HealthInputs {
   double price_eur_per_mwh = 0;
   bool price_frozen = false;           ///< it has not moved, under new stamps
   std::int64_t price_unchanged_s = 0;  ///< for so long
+  std::int64_t unplanned_s = 0;        ///< without a plan on published day-ahead prices
+  std::string_view day_ahead_status = "ok";
   bool hold_is_unreadable = false;
   std::string_view unknown;         ///< not empty: a process runs, and nothing says how it is; why
   std::string_view update_trouble;  ///< what the last upgrade ended badly with; empty = none

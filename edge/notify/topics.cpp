@@ -40,6 +40,8 @@ constexpr Entity kEntities[] = {
      "power", "W", "measurement"},
     {"sensor", "price", "Imbalance price", "{{ value_json.price_eur_per_mwh | default('None') }}",
      "", "EUR/MWh", "measurement"},
+    {"sensor", "break_even", "Break-even price",
+     "{{ value_json.break_even_eur_per_mwh | default('None') }}", "", "EUR/MWh", "measurement"},
     {"sensor", "charge_up_to", "Charges up to",
      "{{ value_json.charge_up_to_eur_per_mwh | default('None') }}", "", "EUR/MWh", "measurement"},
     {"sensor", "discharge_from", "Discharges from",
@@ -142,6 +144,7 @@ void set_newest(Json& json, JsonValue all) {
   if (is_true(last["has_price"])) {
     set_scaled(json, "price_eur_per_mwh", last, "price_centi_eur_per_mwh", 100, 2);
   }
+  set_scaled(json, "break_even_eur_per_mwh", last, "break_even_centi", 100, 2);
   for (const char* margin : {"charge_up_to_eur_per_mwh", "discharge_from_eur_per_mwh"}) {
     set_scaled(json, margin, all["next"]["margins"], margin, 1, 2);
   }

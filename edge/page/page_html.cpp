@@ -70,6 +70,15 @@ JsonValue newest_day(const ControllerView& view, std::size_t& index) {
   return newest;
 }
 
+/// Of a student by outlook.
+std::string break_even_tile(JsonValue last) {
+  const std::string_view source = last["outlook"].text_or("none");
+  if (source == "none") return "";
+  return tile("Break-even",
+              html_number(last["break_even_centi"], "status/last/break_even_centi", kPriceOfCenti),
+              source == "planned" ? "by day-ahead prices" : escaped(last["outlook"]));
+}
+
 std::string now_tiles(const ControllerView& view) {
   const JsonValue last = view.status.json.value()["last"];
   std::size_t day_index = 0;
@@ -85,6 +94,7 @@ std::string now_tiles(const ControllerView& view) {
               "charging is positive") +
          tile("Price", html_number(last["price_centi_eur_per_mwh"],
                                    "status/last/price_centi_eur_per_mwh", kPriceOfCenti)) +
+         break_even_tile(last) +
          tile("Earned", html_number(day["earned_eur"], day_path, kEur),
               "on " + escaped(day["date"])) +
          tile("Mode", escaped(last["mode"])) + "</dl>\n";

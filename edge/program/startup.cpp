@@ -16,6 +16,7 @@
 
 namespace bess {
 bool check_student() {
+  set_market_time_zone();  // a plan of local days is one of the checks
   const int failures = count_student_self_check_failures();
   if (failures == 0) return true;
   report(JournalLevel::kError,

@@ -69,7 +69,9 @@ void add_soc(const Explanation& explanation, std::string& text) {
   add_formatted(text, "SoC        %.1f %%", percent(record.measurement.soc_e4));
   if (explanation.has_margins) {
     const Margins& at = explanation.margins;
-    text += "; at this price it ";
+    // The class falls with SoC, and the log has the one of this SoC.
+    text += record.outlook.source == OutlookSource::kNone ? "; at this price it "
+                                                          : "; at this price and class it ";
     if (at.charges_at_some_soc)
       add_formatted(text, "charges up to %.2f %%", percent(at.charge_up_to_soc_e4));
     if (at.charges_at_some_soc && at.discharges_at_some_soc) text += " and ";
@@ -86,6 +88,28 @@ void add_level(const CycleRecord& record, std::string& text) {
   add_formatted(text, "level      %.2f EUR/MWh, class %d of %d\n",
                 eur(record.price_level.centi_eur_per_mwh()), record.context_class,
                 kContextClassCount);
+}
+
+/// "tomorrow 07:00 (180.20)"
+std::string moment_text(const PricedQuarterHour& moment, std::int64_t now_utc_s) {
+  const bool is_today = local_day_number(local_minute_of(moment.utc_s)) ==
+                        local_day_number(local_minute_of(now_utc_s));
+  return formatted("%s %s (%.2f)", is_today ? "today" : "tomorrow",
+                   local_clock_text(moment.utc_s).c_str(), eur(moment.centi_eur_per_mwh));
+}
+
+void add_outlook(const CycleRecord& record, std::string& text) {
+  const OutlookReport& outlook = record.outlook;
+  if (outlook.source == OutlookSource::kNone) return;
+  add_formatted(text, "outlook    %s: a plan would charge below %.2f EUR/MWh",
+                outlook_source_name(outlook.source).data(), eur(outlook.break_even_centi));
+  if (outlook.known_quarter_hours > 0) {
+    text += " because " + moment_text(outlook.dearest, record.utc_s) + " is dear and " +
+            moment_text(outlook.cheapest, record.utc_s) + " cheap";
+  } else {
+    text += " as is usual at this hour and level: no day-ahead price is published";
+  }
+  add_formatted(text, "; class %d of %d\n", record.context_class, kContextClassCount);
 }
 
 void add_limits(const CycleRecord& record, const ControlSettings& settings, std::string& text) {
@@ -106,6 +130,20 @@ void add_limits(const CycleRecord& record, const ControlSettings& settings, std:
                   record.reversals.in_hour, settings.reversals_per_hour_max);
   }
   text += '\n';
+}
+
+Json outlook_json(const OutlookReport& outlook) {
+  if (outlook.source == OutlookSource::kNone) return Json::null();
+  const auto moment = [&](const PricedQuarterHour& at) {
+    if (outlook.known_quarter_hours == 0) return Json::null();
+    return Json::object({{"utc", utc_text(at.utc_s).view()},
+                         {"eur_per_mwh", Decimals{eur(at.centi_eur_per_mwh), 2}}});
+  };
+  return Json::object({{"source", outlook_source_name(outlook.source)},
+                       {"break_even_eur_per_mwh", Decimals{eur(outlook.break_even_centi), 2}},
+                       {"known_quarter_hours", outlook.known_quarter_hours},
+                       {"dearest", moment(outlook.dearest)},
+                       {"cheapest", moment(outlook.cheapest)}});
 }
 
 }  // namespace
@@ -140,6 +178,7 @@ std::string explanation_text(const Explanation& explanation, const ControlSettin
   add_price(explanation, text);
   add_soc(explanation, text);
   add_level(record, text);
+  add_outlook(record, text);
   add_limits(record, settings, text);
   if (explanation.is_other_student) {
     text +=
@@ -176,6 +215,7 @@ Json explanation_json(const Explanation& explanation, const ControlSettings& set
                ? Json::null()
                : Json(Decimals{eur(record.price_level.centi_eur_per_mwh()), 2}));
   json.set("context_class", record.context_class);
+  json.set("outlook", outlook_json(record.outlook));
   json.set("margins", explanation.has_margins ? margins_json(explanation.margins) : Json::null());
   json.set("is_other_student", explanation.is_other_student);
   json.set(

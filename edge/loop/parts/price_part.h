@@ -41,7 +41,9 @@ struct OutlookPart : CyclePart {
     const std::int32_t level_centi = level.centi_eur_per_mwh();
     if (board == nullptr) return level_centi;
     record.outlook = outlook_at(*board, record.utc_s, record.measurement.soc_e4, level_centi);
-    if (record.outlook.source == OutlookSource::kPlanned) planned_utc_s = record.utc_s;
+    if (record.outlook.source == OutlookSource::kPlanned || planned_utc_s == 0) {
+      planned_utc_s = record.utc_s;
+    }
     return record.outlook.break_even_centi;
   }
   void report(CycleRecord& record) const { record.outlook.planned_utc_s = planned_utc_s; }

@@ -1,0 +1,121 @@
+// bess-edge with a student by outlook built in, on a market that publishes day-ahead prices: what
+// is planned when they come in time, what over a restart while they stay away, and the seal.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "tests/support/simulated_site.h"
+
+namespace bess {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr std::int64_t kHour = 3'600;
+constexpr std::int64_t kPublishedS = SimulatedSite::kStartS + 11 * kHour;  // 13:00 in Brussels
+
+/// Three local days of hours, dear in the evening.
+std::string day_ahead() {
+  std::ostringstream text;
+  text << "quarter_hour_utc,day_ahead_eur_mwh,resolution_min,published_utc\n";
+  const std::int64_t first = SimulatedSite::kStartS - 25 * kHour;
+  for (std::int64_t t = first; t < SimulatedSite::kStartS + 70 * kHour; t += 900) {
+    const std::int64_t hour = t / kHour;
+    text << utc_text(t).view() << ',' << 50 + hour % 24 * 4 + hour / 24 % 3 << ",60,\n";
+  }
+  return text.str();
+}
+
+class OutlookSite : public testing::Test {
+ protected:
+  static constexpr std::int32_t kScale = 300;
+
+  OutlookSite() : site_(kScale) {
+    setenv("BESS_EDGE_UNDER_TEST", BESS_OUTLOOK_EDGE, 1);
+    site_.clock.start_utc_s = kPublishedS - 40 * 60;
+    site_.start_clock();
+    site_.start_battery({"--map", BESS_SOURCE_DIR "/edge/maps/alphaess.toml"});
+  }
+  enum class Publishes { kDayAhead, kNothing };
+  void start_market(Publishes publishes, int port = 0) {
+    std::vector<std::string> options;
+    if (publishes == Publishes::kDayAhead) {
+      options = {"--day-ahead", site_.folder.write("ahead.csv", day_ahead())};
+    }
+    site_.start_market(options, SimulatedSite::minute_prices(13 * 60), port);
+  }
+  std::string configure() {
+    const std::string config = site_.commission();
+    std::ofstream(config, std::ios::app)
+        << "[outlook]\nurl = \"http://127.0.0.1:" << site_.market_port
+        << "/price?bzn=BE&start={today}&end={tomorrow}\"\n";
+    return config;
+  }
+  static std::string run(const std::string& config, int cycles) {
+    ChildProcess edge({edge_program(), "--config", config, "--cycles", std::to_string(cycles)});
+    const std::string said = edge.read_all();
+    EXPECT_EQ(edge.wait(), 0) << said;
+    return said;
+  }
+  [[nodiscard]] std::vector<CsvRow> cycles() const {
+    std::vector<CsvRow> rows = read_csv(site_.folder.file("edge.csv"));
+    std::erase_if(rows, [](const CsvRow& row) { return row.at("mode") != "running"; });
+    return rows;
+  }
+  static int count(const std::vector<CsvRow>& rows, const char* source) {
+    return static_cast<int>(std::ranges::count_if(
+        rows, [&](const CsvRow& row) { return row.at("outlook") == source; }));
+  }
+
+  SimulatedSite site_;
+};
+
+TEST_F(OutlookSite, PlansOnTodayAndFromOneOnTomorrow) {
+  start_market(Publishes::kDayAhead);
+  const std::string said = run(configure(), 40);
+  EXPECT_THAT(said, HasSubstr("control_thread_calls=0 heap_segment=0"));
+  const std::vector<CsvRow> rows = cycles();
+  ASSERT_GT(rows.size(), 30U);
+  EXPECT_GT(count(rows, "planned"), static_cast<int>(rows.size()) * 3 / 4);
+  EXPECT_EQ(count(rows, "usual"), 0);
+  EXPECT_EQ(count(rows, "missing"), 0);
+  int before_one = 0;
+  int after_one = 0;
+  for (const CsvRow& row : rows) {
+    if (row.at("outlook") != "planned") continue;
+    const bool knows_tomorrow = std::stoi(row.at("outlook_quarter_hours")) > 96;
+    const bool is_after_one = row.at("utc") >= std::string(utc_text(kPublishedS).view());
+    EXPECT_EQ(knows_tomorrow, is_after_one) << row.at("utc");
+    ++(is_after_one ? after_one : before_one);
+  }
+  EXPECT_GT(before_one, 0);
+  EXPECT_GT(after_one, 0);
+}
+
+/// What came before is kept on the disk, on the day of 92 quarter-hours too.
+TEST_F(OutlookSite, OverARestartItKnowsWhatItKnew) {
+  start_market(Publishes::kDayAhead);
+  const int port = site_.market_port;
+  const std::string config = configure();
+  run(config, 8);
+  site_.market.reset();
+  start_market(Publishes::kNothing, port);
+  const std::string said = run(config, 8);
+  EXPECT_THAT(said, HasSubstr("outlook: 92 day-ahead prices kept"));
+  const std::vector<CsvRow> rows = cycles();
+  EXPECT_EQ(rows.back().at("outlook"), "planned");
+  EXPECT_EQ(rows.back().at("day_ahead_status"), "http_error");
+}
+
+TEST_F(OutlookSite, WithoutAnyItPlansOnWhatIsUsual) {
+  start_market(Publishes::kNothing);
+  run(configure(), 12);
+  const std::vector<CsvRow> rows = cycles();
+  EXPECT_GT(count(rows, "usual"), static_cast<int>(rows.size()) / 2);
+  EXPECT_EQ(count(rows, "planned"), 0);
+  for (const CsvRow& row : rows) EXPECT_NE(row.at("student_action"), "none") << row.at("utc");
+}
+
+}  // namespace
+}  // namespace bess

@@ -1,0 +1,109 @@
+// What people are told of an outlook: why, status, replay.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "edge/account/replay.h"
+#include "edge/control/policy.h"
+#include "edge/log/health.h"
+#include "edge/log/ring_log.h"
+#include "edge/program/level_note.h"
+#include "edge/why/explanation.h"
+#include "shared/local_time.h"
+#include "tests/support/temporary_folder.h"
+
+namespace bess {
+namespace {
+
+using testing::HasSubstr;
+
+/// Decided on a break-even price, as the loop would log it.
+CycleRecord decided(std::int64_t utc_s, std::int32_t break_even_centi) {
+  CycleRecord r{.utc_s = utc_s, .cycle = 1, .mode = Mode::kRunning};
+  r.has_measurement = r.price.has_row = r.has_student_action = true;
+  r.measurement.soc_e4 = 5'000;
+  r.price.minute_utc_s = utc_s - 60;
+  r.price.price_centi_eur_per_mwh = 6'000;
+  r.outlook = {.source = OutlookSource::kPlanned,
+               .break_even_centi = break_even_centi,
+               .known_quarter_hours = 120,
+               .dearest = {utc_s + 16 * 3'600, 18'020},
+               .cheapest = {utc_s + 3'600, 210}};
+  const LocalMinute now = local_minute_of(utc_s);
+  r.context_class = student_context_class(now, break_even_centi);
+  r.student_action = decide_with_student(make_lattice_state(now, r.context_class, 5'000, 6'000));
+  r.reason = Reason::kStudent;
+  return r;
+}
+
+class OutlookWords : public testing::Test {
+ protected:
+  OutlookWords() { set_market_time_zone(); }
+  static std::string text_of(const CycleRecord& record) {
+    Explanation explanation{.record = record, .since_utc_s = record.utc_s};
+    explanation.has_margins = margins_of(record, {}, explanation.margins);
+    return explanation_text(explanation, ControlSettings{});
+  }
+  std::int64_t noon_utc_s_ = utc_from_civil({2025, 6, 11, 13, 0, 0});  // 15:00 local
+};
+
+TEST_F(OutlookWords, WhyNamesTheDearAndTheCheapHourAhead) {
+  const std::string text = text_of(decided(noon_utc_s_, 9'240));
+  EXPECT_THAT(text, HasSubstr("planned: a plan would charge below 92.40 EUR/MWh because tomorrow "
+                              "07:00 (180.20) is dear and today 16:00 (2.10) cheap"));
+  EXPECT_THAT(text, HasSubstr("at this price and class it "));
+}
+
+TEST_F(OutlookWords, WithoutPublishedPricesItIsWhatIsUsual) {
+  CycleRecord record = decided(noon_utc_s_, 9'240);
+  record.outlook.source = OutlookSource::kUsual;
+  record.outlook.known_quarter_hours = 0;
+  EXPECT_THAT(text_of(record),
+              HasSubstr("usual: a plan would charge below 92.40 EUR/MWh as is usual"));
+}
+
+TEST_F(OutlookWords, ADayWithoutPublishedPricesIsATrouble) {
+  HealthInputs in;
+  in.is_running = in.is_of_this_run = true;
+  in.cycles = 10;
+  in.mode = "running";
+  in.battery_status = in.price_status = "ok";
+  in.day_ahead_status = "malformed";
+  in.unplanned_s = 86'400;
+  EXPECT_EQ(assess_health(in).level, HealthLevel::kOk);
+  in.unplanned_s = 86'520;
+  const Health health = assess_health(in);
+  ASSERT_EQ(health.reasons.size(), 1U);
+  EXPECT_THAT(health.reasons[0], HasSubstr("(last answer: malformed)"));
+}
+
+TEST_F(OutlookWords, TheContextIsNamedWithItsClasses) {
+  EXPECT_THAT(context_note(student_context()), HasSubstr("day-ahead prices, classes divided at"));
+}
+
+/// What was logged is decided again alike; by another break-even price some of it is not; what was
+/// logged without an outlook cannot be.
+TEST_F(OutlookWords, ReplayDecidesByTheBreakEvenPriceThatWasLogged) {
+  TemporaryFolder folder;
+  RingLog ring;
+  FileMessage error;
+  const std::string path = folder.file("decisions.ring");
+  ASSERT_TRUE(ring.open(path.c_str(), 720, error)) << error.c_str();
+  for (int i = 0; i < 40; ++i) {
+    CycleRecord record = decided(noon_utc_s_ + i * kSecondsPerStep, -3'000 + 500 * i);
+    record.cycle = i + 1;
+    if (i >= 30) record.outlook = {};
+    if (i < 10) record.outlook.break_even_centi = 30'000;
+    ASSERT_TRUE(ring.append(record));
+  }
+  LogReader log;
+  EventLogSettings settings;
+  settings.ring = path.c_str();
+  ASSERT_TRUE(log.open(settings, error)) << error.c_str();
+  const Replay replay = replay_days(log, 20'250'611, 20'250'611, 4'000);
+  EXPECT_EQ(replay.compared, 30);
+  EXPECT_GT(replay.differing, 0);
+  EXPECT_LE(replay.differing, 10);
+}
+
+}  // namespace
+}  // namespace bess
