@@ -70,8 +70,8 @@ std::string same_program_text(const std::vector<NamedEvaluation>& evaluations) {
   }
   if (teacher->name != kProgramAsTeacher) {
     return fmt::format(
-        "{} and {} decide the same at every step: nothing that was learnt earned more on "
-        "validation days than the program that it began as",
+        "{} and {} decide the same at every step: nothing that was learnt is shown to "
+        "earn more on validation days than the program that it began as",
         kProgramName, teacher->name);
   }
   return fmt::format(

@@ -162,7 +162,9 @@ Json contexts_json(const ContextClasses& classes) {
 Json learning_json(const ReportInputs& in) {
   Json training = Json::list();
   for (const CurvePoint& p : in.training_curve) {
-    training.add(numbers({static_cast<double>(p.step), p.validation_eur_per_day_per_mwh}));
+    const bool is_kept = &p == &kept_point(in.training_curve);
+    training.add(numbers(
+        {static_cast<double>(p.step), p.validation_eur_per_day_per_mwh, is_kept ? 1.0 : 0.0}));
   }
   Json distil = Json::list();
   bool by_construction = !in.distil_curve.empty();

@@ -221,13 +221,12 @@ PictureTable teacher_table(const ReportInputs& in) {
       {"step", "validation_eur_per_day_per_mwh", "state", "rule_eur_per_day_per_mwh"},
       {}};
   const std::string rule = exact(rule_validation_profit(in.market, in.battery));
-  const auto best =
-      std::ranges::max_element(in.training_curve, {}, &CurvePoint::validation_eur_per_day_per_mwh);
-  for (auto point = in.training_curve.begin(); point != in.training_curve.end(); ++point) {
-    const CheckpointState state =
-        point == best ? CheckpointState::kChosen : CheckpointState::kPassedOver;
-    table.rows.push_back({fmt::format("{}", point->step),
-                          exact(point->validation_eur_per_day_per_mwh),
+  for (const CurvePoint& point : in.training_curve) {
+    const CheckpointState state = &point == &kept_point(in.training_curve)
+                                      ? CheckpointState::kChosen
+                                      : CheckpointState::kPassedOver;
+    table.rows.push_back({fmt::format("{}", point.step),
+                          exact(point.validation_eur_per_day_per_mwh),
                           std::string(checkpoint_state_name(state)), rule});
   }
   return table;

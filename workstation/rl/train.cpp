@@ -174,7 +174,7 @@ class StoppablePolicy final : public Policy {
 };
 
 constexpr std::string_view kCheckpointMagic = "BESSCKPT";
-constexpr std::uint32_t kCheckpointVersion = 1;
+constexpr std::uint32_t kCheckpointVersion = 2;
 
 /// "A there and B here", of the first line that two identities have not in common.
 std::string first_difference(std::string_view there, std::string_view here) {
@@ -270,7 +270,7 @@ class Training {
            step_ != (result_.curve.empty() ? nothing_yet : result_.curve.back().step);
   }
 
-  /// Adds a point to the curve and keeps the averaged weights when they earn more than any before.
+  /// Adds a point to the curve and keeps the averaged weights when it is the one to be kept.
   /// False when it was stopped: nothing has changed then.
   bool validate(const std::function<bool()>& interrupted) {
     current_.parameters = average_;
@@ -279,21 +279,33 @@ class Training {
     EvaluationOptions evaluation;
     evaluation.battery = battery_;
     evaluation.carry_soc = true;  // the reset flatters one that ends its days empty
-    double profit = 0;
+    Evaluation earned;
     try {
-      profit = evaluate(market_, validation_, policy, evaluation).profit_eur_per_day_per_mwh();
+      earned = evaluate(market_, validation_, policy, evaluation);
     } catch (const ValidationStopped&) {
       return false;
     }
+    const double profit = earned.profit_eur_per_day_per_mwh();
     const auto n = static_cast<double>(std::max(summed_, 1L));
-    result_.curve.push_back({step_, sums_.loss / n, profit, sums_.edge_mass_frac / n});
+    result_.curve.push_back({step_, sums_.loss / n, profit, sums_.edge_mass_frac / n,
+                             program_ ? gain_at_least(earned) : 0});
     sums_ = {0, 0};
     summed_ = 0;
-    if (profit <= result_.best_validation_eur_per_day_per_mwh) return true;
+    if (&kept_point(result_.curve) != &result_.curve.back()) return true;
     result_.best_validation_eur_per_day_per_mwh = profit;
     result_.best_step = step_;
     result_.teacher.parameters = average_;
     return true;
+  }
+
+  /// Over the program, whose days are those of step 0.
+  double gain_at_least(const Evaluation& earned) {
+    if (step_ == 0) {
+      for (const DayResult& day : earned.days) program_eur_.push_back(day.profit_eur);
+      return 0;
+    }
+    const long looks = (options_.steps + options_.validate_every - 1) / options_.validate_every;
+    return gain_at_least_eur_per_day_per_mwh(earned, program_eur_, looks);
   }
 
   void save(const CheckpointOptions& checkpoint) const {
@@ -308,6 +320,7 @@ class Training {
     out.put(result_.best_validation_eur_per_day_per_mwh);
     out.put(static_cast<std::int64_t>(result_.best_step));
     out.put_list(result_.curve);
+    out.put_list(program_eur_);
     experience_.save(out);
     out.save(checkpoint.path);
   }
@@ -328,6 +341,7 @@ class Training {
     result_.best_validation_eur_per_day_per_mwh = in.take<double>();
     result_.best_step = in.take<std::int64_t>();
     result_.curve = in.take_list<CurvePoint>();
+    program_eur_ = in.take_list<double>();
     experience_.restore(in);
     in.finish();
   }
@@ -346,7 +360,8 @@ class Training {
   Teacher current_;     ///< whose weights act and are validated
   Parameters average_;  ///< of the online weights
   TrainResult result_;
-  Learner::StepResult sums_{0, 0};  ///< since the last validation
+  std::vector<double> program_eur_;  ///< that step 0 earned on each validation day
+  Learner::StepResult sums_{0, 0};   ///< since the last validation
   long summed_ = 0;
   long step_ = 0;
 };

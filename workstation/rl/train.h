@@ -1,8 +1,8 @@
 // Training of the teacher: one readable loop of draw, learn, blend the target, look at the
 // validation days. Differences from the paper: Adam; by default the network adds to the stochastic
 // program, from counterfactual experience and over a continuing horizon (the `paper` preset learns
-// alone, from a replay of daily episodes); the weights that earned most on the validation days,
-// charge carried over, win. Of a residual the program itself, step 0, is among them.
+// alone, from a replay of daily episodes). Validation days, charge carried over, choose the weights
+// that are kept (kept_step.h).
 #pragma once
 
 #include <atomic>
@@ -14,6 +14,7 @@
 #include "workstation/env/context_fit.h"
 #include "workstation/env/evaluate.h"
 #include "workstation/rl/experience.h"
+#include "workstation/rl/kept_step.h"
 #include "workstation/rl/teacher.h"
 
 namespace bess {
@@ -51,17 +52,10 @@ struct TrainOptions {
   int threads = 2;
 };
 
-struct CurvePoint {
-  long step;
-  double loss;
-  double validation_eur_per_day_per_mwh;
-  double edge_mass_frac;  ///< target mass on the two end atoms; above 1 % the support is too narrow
-};
-
 struct TrainResult {
-  Teacher teacher;  ///< best on the validation days
+  Teacher teacher;  ///< the one that validation kept
   std::vector<CurvePoint> curve;
-  double best_validation_eur_per_day_per_mwh;
+  double best_validation_eur_per_day_per_mwh;  ///< of the step that was kept
   long best_step;
   double seconds;
 };

@@ -121,9 +121,10 @@ TEST(Comparison, CsvQuotesNamesThatNeedIt) {
 }
 
 TEST(Curves, CsvAndSmoothing) {
-  EXPECT_EQ(training_curve_csv({{250, 3.5, 400.25, 0.001}}),
-            "step,loss,validation_eur_per_day_per_mwh,validation_smoothed,edge_mass_frac\n"
-            "250,3.5,400.2500,400.2500,0.001000\n");
+  EXPECT_EQ(training_curve_csv({{250, 3.5, 400.25, 0.001, -2.5}}),
+            "step,loss,validation_eur_per_day_per_mwh,validation_smoothed,edge_mass_frac,"
+            "gain_at_least_eur_per_day_per_mwh\n"
+            "250,3.5,400.2500,400.2500,0.001000,-2.5\n");
   EXPECT_EQ(distil_curve_csv({{1, 0.5, 0.25, 0.125}}),
             "epoch,teacher_loss,correction_loss,visited_loss\n1,0.5,0.25,0.125\n");
   EXPECT_EQ(centred_mean({0, 3, 6}, 1), (std::vector<double>{1.5, 3, 4.5}));
@@ -131,7 +132,7 @@ TEST(Curves, CsvAndSmoothing) {
 }
 
 TEST(Curves, ReadBackIsWhatWasWritten) {
-  const std::string training = training_curve_csv({{250, 3.5, 400.25, 0.001}, {500, 3, -20, 0}});
+  const std::string training = training_curve_csv({{0, 0, 400, 0}, {500, 3, -20, 0, -1e300}});
   EXPECT_EQ(training_curve_csv(parse_training_curve_csv(training, "a")), training);
   const std::string distil = distil_curve_csv({{1, 0.5, 1e-7, 0.125}, {2, 0.25, 0, 0.1}});
   EXPECT_EQ(distil_curve_csv(parse_distil_curve_csv(distil, "b")), distil);

@@ -37,7 +37,7 @@ struct FinishedRun {
     TeacherPolicy taught(teacher);
     ReportInputs in{.market = small_market()};
     in.evaluations = {named_evaluation("rule-based", rule), named_evaluation("teacher", taught)};
-    in.training_curve = {{0, 0, 100, 0}, {500, 3.0, 140, 0}, {750, 2.9, 120, 0}};
+    in.training_curve = {{0, 0, 100, 0}, {500, 3.0, 140, 0, 5}, {750, 2.9, 160, 0, -5}};
     in.distil_curve = {{1, 1.0, 0.1, 0.9}, {2, 0.5, 0.01, 0.4}, {3, 0.3, 0, 0.2}};
     in.teacher = &teacher;
     in.uncorrected = &student;
@@ -131,8 +131,9 @@ TEST(Report, TheLearningCurveShowsTheProgramWhereTheNetworkBeganAsIt) {
   const Figure begun = learning_figure(curve, 70.25);
   EXPECT_NE(begun.commands.find("'the program, step 0: 100.0'"), std::string::npos);
   EXPECT_NE(begun.commands.find("'rule-based 70.2'"), std::string::npos);
-  EXPECT_NE(begun.commands.find("0 100.000 120.000 NaN"), std::string::npos) << "no loss yet";
+  EXPECT_NE(begun.commands.find("0 100.000 133.333 NaN"), std::string::npos) << "no loss yet";
   EXPECT_NE(begun.caption.find("40.0 more than the program, its step 0"), std::string::npos);
+  EXPECT_NE(begun.commands.find("kept: 140.0 at step 500"), std::string::npos) << "not the most";
   const Figure alone = learning_figure({curve[1], curve[2]}, 70.25);
   EXPECT_EQ(alone.commands.find("the program"), std::string::npos);
   EXPECT_EQ(alone.caption.find("the program"), std::string::npos);

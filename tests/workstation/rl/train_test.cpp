@@ -68,16 +68,20 @@ TEST_P(TrainTeacher, RunsAndRepeatsToTheBit) {
   const TrainResult result = train(options);
   const std::size_t points = static_cast<std::size_t>((options.steps + 99) / 100);
   ASSERT_EQ(result.curve.size(), points + (options.residual ? 1 : 0));  // the program is step 0
-  double best = -1e300;
   for (const CurvePoint& point : result.curve) {
     EXPECT_TRUE(std::isfinite(point.loss));
     EXPECT_TRUE(std::isfinite(point.validation_eur_per_day_per_mwh));
     EXPECT_GE(point.edge_mass_frac, 0);
     EXPECT_LE(point.edge_mass_frac, 1);
-    best = std::max(best, point.validation_eur_per_day_per_mwh);
+    EXPECT_LE(point.gain_at_least_eur_per_day_per_mwh,
+              options.residual ? point.validation_eur_per_day_per_mwh -
+                                     result.curve[0].validation_eur_per_day_per_mwh + 1e-9
+                               : 0);
   }
   EXPECT_EQ(result.curve.back().step, options.steps);
-  EXPECT_EQ(result.best_validation_eur_per_day_per_mwh, best);
+  const CurvePoint& kept = kept_point(result.curve);
+  EXPECT_EQ(result.best_step, kept.step);
+  EXPECT_EQ(result.best_validation_eur_per_day_per_mwh, kept.validation_eur_per_day_per_mwh);
   EXPECT_TRUE(result.teacher.parameters.allFinite());
 
   const TrainResult again = train(options);
@@ -117,6 +121,8 @@ TEST_P(TrainTeacher, ResumedItGivesTheSameWeightsToTheBit) {
   ASSERT_EQ(resumed.curve.size(), whole.curve.size());
   for (std::size_t i = 0; i < whole.curve.size(); ++i) {
     EXPECT_EQ(resumed.curve[i].loss, whole.curve[i].loss);
+    EXPECT_EQ(resumed.curve[i].gain_at_least_eur_per_day_per_mwh,
+              whole.curve[i].gain_at_least_eur_per_day_per_mwh);
   }
 }
 

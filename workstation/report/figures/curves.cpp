@@ -11,7 +11,8 @@ namespace bess {
 namespace {
 
 constexpr std::string_view kTrainingHeader =
-    "step,loss,validation_eur_per_day_per_mwh,validation_smoothed,edge_mass_frac";
+    "step,loss,validation_eur_per_day_per_mwh,validation_smoothed,edge_mass_frac,"
+    "gain_at_least_eur_per_day_per_mwh";
 constexpr std::string_view kDistilHeader = "epoch,teacher_loss,correction_loss,visited_loss";
 
 /// Rows of `kColumns` numbers under a known header; none for a run that was over before its first
@@ -39,8 +40,8 @@ std::string training_curve_csv(const std::vector<CurvePoint>& curve) {
   std::string text = fmt::format("{}\n", kTrainingHeader);
   for (std::size_t i = 0; i < curve.size(); ++i) {
     const CurvePoint& p = curve[i];
-    text += fmt::format("{},{:.6g},{:.4f},{:.4f},{:.6f}\n", p.step, p.loss, profit[i], smoothed[i],
-                        p.edge_mass_frac);
+    text += fmt::format("{},{:.6g},{:.4f},{:.4f},{:.6f},{:.6g}\n", p.step, p.loss, profit[i],
+                        smoothed[i], p.edge_mass_frac, p.gain_at_least_eur_per_day_per_mwh);
   }
   return text;
 }
@@ -56,8 +57,8 @@ std::string distil_curve_csv(const std::vector<DistilPoint>& curve) {
 
 std::vector<CurvePoint> parse_training_curve_csv(std::string_view text, std::string_view name) {
   std::vector<CurvePoint> curve;
-  for (const auto& row : parse_rows<5>(text, kTrainingHeader, name)) {
-    curve.push_back({static_cast<long>(row[0]), row[1], row[2], row[4]});
+  for (const auto& row : parse_rows<6>(text, kTrainingHeader, name)) {
+    curve.push_back({static_cast<long>(row[0]), row[1], row[2], row[4], row[5]});
   }
   return curve;
 }

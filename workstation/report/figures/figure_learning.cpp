@@ -12,10 +12,6 @@
 namespace bess {
 namespace {
 
-const CurvePoint& best_of(const std::vector<CurvePoint>& curve) {
-  return *std::ranges::max_element(curve, {}, &CurvePoint::validation_eur_per_day_per_mwh);
-}
-
 /// Step 0 is a residual's alone.
 bool begins_as_program(std::span<const CurvePoint> curve) { return curve.front().step == 0; }
 
@@ -86,23 +82,24 @@ std::string program_line(const std::vector<CurvePoint>& curve) {
       curve.front().validation_eur_per_day_per_mwh, rgb(kMuted));
 }
 
-std::string best_point(const CurvePoint& best, bool label_right) {
+std::string kept_label(const CurvePoint& kept, bool label_right) {
   return fmt::format(
-      "set label 2 'best {0:.1f} at step {1}' at {1},{0} {2} offset {3},0.9 textcolor {4} point pt "
+      "set label 2 'kept: {0:.1f} at step {1}' at {1},{0} {2} offset {3},0.9 textcolor {4} point "
+      "pt "
       "7 ps 0.9 lc {4}\n",
-      best.validation_eur_per_day_per_mwh, best.step, label_right ? "left" : "right",
+      kept.validation_eur_per_day_per_mwh, kept.step, label_right ? "left" : "right",
       label_right ? "-1" : "1", rgb(kInk));
 }
 
 std::string profit_panel(const std::vector<CurvePoint>& curve, double rule) {
-  const CurvePoint& best = best_of(curve);
+  const CurvePoint& kept = kept_point(curve);
   const Range range = profit_range(curve, rule);
   return fmt::format(
              "set tmargin at screen 0.925\nset bmargin at screen 0.42\nset yrange [{}:{}]\n"
              "set ylabel \"validation profit,\\nEUR/day/MWh\"\nset format x ''\nset ytics {}\n",
              range.low, range.high, tic_distance(range.high - range.low, 6)) +
          rule_line(rule) + program_line(curve) +
-         best_point(best, best.step * 2 < curve.back().step) +
+         kept_label(kept, kept.step * 2 < curve.back().step) +
          fmt::format(
              "plot $curve using 1:2 with lines lw 1.5 lc {}, $curve using 1:3 with lines lw 3 lc "
              "{}\n",
@@ -159,11 +156,11 @@ double rule_validation_profit(const MarketSteps& market, const BatteryParameters
 }
 
 Figure learning_figure(const std::vector<CurvePoint>& curve, double rule) {
-  const CurvePoint& best = best_of(curve);
-  const double gain = best.validation_eur_per_day_per_mwh - rule;
+  const CurvePoint& kept = kept_point(curve);
+  const double gain = kept.validation_eur_per_day_per_mwh - rule;
   const bool has_program = begins_as_program(curve);
   const double over_program =
-      best.validation_eur_per_day_per_mwh - curve.front().validation_eur_per_day_per_mwh;
+      kept.validation_eur_per_day_per_mwh - curve.front().validation_eur_per_day_per_mwh;
   Figure figure;
   figure.name = "learning_curve";
   figure.title = "How the teacher learned";
@@ -173,13 +170,14 @@ Figure learning_figure(const std::vector<CurvePoint>& curve, double rule) {
       "controller{} as a dashed line; below it the training loss.",
       curve.back().step, has_program ? " and the program that it began as" : "");
   figure.caption = fmt::format(
-      "On the validation days the teacher earned most at step {}: {:.1f} EUR per day per MWh, "
-      "{:.1f} "
-      "{} than the rule-based controller{}. Those weights are kept; the smoothed line is the mean "
-      "over "
-      "up to two points on either side.",
-      best.step, best.validation_eur_per_day_per_mwh, std::abs(gain), gain < 0 ? "less" : "more",
-      has_program ? fmt::format(", {:.1f} more than the program, its step 0", over_program) : "");
+      "The teacher is what was learnt by step {}: {:.1f} EUR per day per MWh on the validation "
+      "days, {:.1f} {} than the rule-based controller{}. The smoothed line is the mean over up to "
+      "two points on either side.",
+      kept.step, kept.validation_eur_per_day_per_mwh, std::abs(gain), gain < 0 ? "less" : "more",
+      has_program ? fmt::format(", {:.1f} more than the program, its step 0; a later step is kept "
+                                "where its gain over that is shown, the days in pairs",
+                                over_program)
+                  : "");
   const KeyRow key = key_row(figure, 100,
                              {{"each validation", kSoft, KeyEntry::Kind::kLine, 1.5},
                               {"mean of five", kCharge, KeyEntry::Kind::kLine, 3}});

@@ -20,10 +20,10 @@ function drawLines(id, series, scales) {
 function drawTraining({training, rule}) {
   document.getElementById("training-figure").hidden = training.length < 2;  // a program is fitted, not trained
   if (training.length < 2) return;
-  const best = training.find(([, profit]) => profit === Math.max(...training.map((point) => point[1])));
+  const kept = training.find((point) => point[2] === 1);
   const level = (profit) => [training[0], training[training.length - 1]].map(([step]) => [step, profit]);
   const began = training[0][0] === 0 ? [["the program, step 0", level(training[0][1]), "line-4", [6, 4], 0]] : [];
-  drawLines("chart-training", [["checkpoint", training, "line-1"], ["chosen", [best], "line-2", undefined, 6], ...began,
+  drawLines("chart-training", [["checkpoint", training, "line-1"], ["chosen", [kept], "line-2", undefined, 6], ...began,
     ["rule-based", level(rule), "muted", [2, 3], 0]], () => ({}));
 }
 

@@ -256,7 +256,7 @@ void write_run_page(const FixtureRun& run, const std::filesystem::path& folder) 
   const std::vector<NamedEvaluation> evaluations = evaluations_of(run);
   write_report({.market = small_market(),
                 .evaluations = evaluations,
-                .training_curve = {{0, 0, 100, 0}, {500, 3.0, 140, 0}, {750, 2.9, 120, 0}},
+                .training_curve = {{0, 0, 100, 0}, {500, 3.0, 140, 0, 5}, {750, 2.9, 160, 0, -5}},
                 .distil_curve = {{1, 1.0, 0.1, 0.9}, {2, 0.5, 0.01, 0.4}, {3, 0.3, 0, 0.2}},
                 .checkpoints = {{1, 60, 101.5, CheckpointState::kPassedOver},
                                 {1, 80, 104.25, CheckpointState::kDisobeys},
