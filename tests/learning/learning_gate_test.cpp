@@ -18,7 +18,7 @@ namespace {
 TrainResult train_by_default(const MarketSteps& market, const RunConfig& config) {
   const std::atomic<bool> interrupted = false;
   TrainResult result = train_teacher(market, config.battery, config.train, interrupted);
-  fmt::print("trained for {:.0f} s, best at step {} of {}\n", result.seconds, result.best_step,
+  fmt::print("trained for {:.0f} s, kept at step {} of {}\n", result.seconds, result.best_step,
              config.train.steps);
   return result;
 }

@@ -27,7 +27,7 @@ std::string training_provenance(const std::string& prices, const TrainOptions& o
     text += fmt::format(" on the stochastic program, {} atoms to +-{:.0f} EUR/h", options.atoms,
                         double{result.teacher.support.v_max} / double{kRewardScale});
   }
-  return fmt::format("{}, seed {}, best at step {} of {}", text, options.seed, result.best_step,
+  return fmt::format("{}, seed {}, kept at step {} of {}", text, options.seed, result.best_step,
                      options.steps);
 }
 

@@ -215,7 +215,7 @@ void run_train(const TrainArguments& options) {
   if (options.json) {
     fmt::print("{}\n", result_json(options.out, config, result, config.train.seed));
   } else {
-    fmt::print("{}: {}, best at step {} of {}: {:.1f} EUR/day/MWh on validation days, {:.0f} s\n",
+    fmt::print("{}: {}, kept at step {} of {}: {:.1f} EUR/day/MWh on validation days, {:.0f} s\n",
                options.out, method_name(config.train.method), result.best_step,
                result.curve.back().step, result.best_validation_eur_per_day_per_mwh,
                result.seconds);

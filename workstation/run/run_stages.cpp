@@ -251,7 +251,7 @@ RunStages::Names RunStages::make_teacher() {
                                    : learnt_for(config_, series_, market_, fitted_days(market_));
   save_teacher(path(kTeacher), trained.teacher);
   write_file(path(kTrainingCurve), training_curve_csv(trained.curve));
-  tell(fmt::format("best at step {}: {:.1f} EUR/day/MWh on validation days, {:.0f} s",
+  tell(fmt::format("kept at step {}: {:.1f} EUR/day/MWh on validation days, {:.0f} s",
                    trained.best_step, trained.best_validation_eur_per_day_per_mwh,
                    trained.seconds));
   return {kTeacher, kTrainingCurve};

@@ -326,7 +326,8 @@ class PageTest(unittest.TestCase):
         self.assertEqual(drawn["checkpoint"], [[row["step"], row["validation_eur_per_day_per_mwh"]] for row in rows])
         chosen = [row for row in rows if row["state"] == "chosen"]
         self.assertEqual(drawn["chosen"], [[chosen[0]["step"], chosen[0]["validation_eur_per_day_per_mwh"]]])
-        self.assertLess(drawn["chosen"][0][1], max(y for _, y in drawn["checkpoint"]), "what is not shown is not kept")
+        highest = max(profit for _, profit in drawn["checkpoint"])
+        self.assertLess(drawn["chosen"][0][1], highest, "what is not shown is not kept")
         first, last = rows[0], rows[-1]
         self.assertEqual(first["step"], 0)
         self.assertEqual(drawn["the program, step 0"], [[row["step"], first["validation_eur_per_day_per_mwh"]] for row in (first, last)])
