@@ -9,13 +9,10 @@
 namespace bess {
 namespace {
 
-/// What flowed in one quarter-hour, and the last price of it that was seen.
+/// What flowed in one quarter-hour.
 struct QuarterHour {
   double charged_wh = 0;
   double discharged_wh = 0;
-  bool has_price = false;
-  std::int64_t price_minute_utc_s = -1;  ///< -1: it is of a decision, none of its own was seen
-  double indicative_eur_per_mwh = 0;
 
   [[nodiscard]] double net_mwh() const { return (charged_wh - discharged_wh) / kWattsPerMegawatt; }
   [[nodiscard]] double contract_eur(const Contract& contract, double eur_per_mwh) const {
@@ -24,35 +21,20 @@ struct QuarterHour {
   }
 };
 
-using QuarterHours = std::map<std::int64_t, QuarterHour>;  ///< by its start
-
-std::int64_t start_of_quarter(std::int64_t utc_s) { return quarter_hour_of(utc_s) * kQuarterHourS; }
-
-void note_price(const ExchangeSample& sample, QuarterHours& quarters) {
-  if (!sample.has_price) return;
-  const auto found = quarters.find(start_of_quarter(sample.price_minute_utc_s));
-  if (found == quarters.end()) return;
-  QuarterHour& quarter = found->second;
-  if (sample.price_minute_utc_s < quarter.price_minute_utc_s) return;
-  quarter.has_price = true;
-  quarter.price_minute_utc_s = sample.price_minute_utc_s;
-  quarter.indicative_eur_per_mwh =
-      static_cast<double>(sample.price_centi_eur_per_mwh) / kCentiPerEur;
-}
-
-QuarterHourMoney money_of(std::int64_t start_utc_s, const QuarterHour& quarter,
-                          const MoneyTerms& terms) {
+QuarterHourMoney money_of(const QuarterHour& quarter, const std::optional<SettledQuarter>& price,
+                          const Contract& contract) {
   QuarterHourMoney money{.quarter_hours = 1};
-  const SettledQuarter* const settled = terms.settled.find(start_utc_s);
-  money.published = settled != nullptr ? 1 : 0;
-  money.validated = settled != nullptr && settled->state == PriceState::kValidated ? 1 : 0;
-  if (settled == nullptr && !quarter.has_price) {
+  if (!price) {
     money.unpriced = 1;
     return money;
   }
-  const double price = settled != nullptr ? settled->eur_per_mwh : quarter.indicative_eur_per_mwh;
-  money.billed_eur = 0.0 - quarter.net_mwh() * price;
-  money.contract_eur = quarter.contract_eur(terms.contract, price);
+  money.published = price->state != PriceState::kIndicative ? 1 : 0;
+  money.validated = price->state == PriceState::kValidated ? 1 : 0;
+  money.prices_eur_per_mwh = price->eur_per_mwh;
+  // Subtracted: a day without exchange has earned nothing, and not minus nothing.
+  money.earned_eur = 0.0 - quarter.net_mwh() * price->eur_per_mwh;
+  if (money.published == 0) money.estimated_eur = money.earned_eur;
+  money.contract_eur = quarter.contract_eur(contract, price->eur_per_mwh);
   return money;
 }
 
@@ -83,36 +65,44 @@ void for_each_record(const LogReader& log, std::int32_t first_day, std::int32_t 
   }
 }
 
+void for_each_record_around(const LogReader& log, std::int32_t first_day, std::int32_t last_day,
+                            const std::function<void(const CycleRecord&)>& visit) {
+  CycleRecord record;
+  const std::uint64_t first = number_before(log, first_day);
+  for (std::uint64_t n = first; n > 0 && n <= log.newest_number(); ++n) {
+    if (!log.read(n, record)) continue;
+    visit(record);
+    if (record.has_measurement && local_day_at(record.utc_s) > last_day) break;
+  }
+}
+
 void DayBook::add(const CycleRecord& as_logged) {
   CycleRecord record = as_logged;
   if (record.measurement.capacity_wh <= 0) record.measurement.capacity_wh = terms_.capacity_wh;
   const std::int32_t day = local_day_at(record.utc_s);
   if (holds(day)) days_.try_emplace(day, day).first->second.add(record);
+  prices_.note(record);
   ExchangeSample sample;
   if (sample_of(record, sample)) samples_.push_back(sample);
 }
 
 std::vector<DayAccount> DayBook::accounts() const {
   std::map<std::int32_t, DayAccount> days = days_;
-  QuarterHours quarters;
+  std::map<std::int64_t, QuarterHour> quarters;  // by its start
   for_each_exchange(samples_, [&](const Exchange& exchange) {
     const auto utc_s = static_cast<std::int64_t>(exchange.from_utc_s);
     const std::int32_t day = local_day_at(utc_s);
     const bool is_nothing = !exchange.is_seen && exchange.energy_wh == 0;
     if (!holds(day) || is_nothing) return;
     days.try_emplace(day, day).first->second.add(exchange);
-    QuarterHour& quarter = quarters[start_of_quarter(utc_s)];
+    QuarterHour& quarter = quarters[quarter_hour_of(utc_s) * kQuarterHourS];
     (exchange.energy_wh > 0 ? quarter.charged_wh : quarter.discharged_wh) +=
         std::fabs(exchange.energy_wh);
-    if (!exchange.has_price || quarter.has_price) return;
-    quarter.has_price = true;
-    quarter.indicative_eur_per_mwh =
-        static_cast<double>(exchange.price_centi_eur_per_mwh) / kCentiPerEur;
   });
-  for (const ExchangeSample& sample : samples_) note_price(sample, quarters);
   std::map<std::int32_t, QuarterHourMoney> money;
   for (const auto& [start_utc_s, quarter] : quarters) {
-    money[local_day_at(start_utc_s)].add(money_of(start_utc_s, quarter, terms_));
+    money[local_day_at(start_utc_s)].add(
+        money_of(quarter, prices_.find(start_utc_s), terms_.contract));
   }
   std::vector<DayAccount> accounts;
   for (auto& [day, account] : days) {
@@ -125,14 +115,8 @@ std::vector<DayAccount> DayBook::accounts() const {
 std::vector<DayAccount> accounts_of_days(const LogReader& log, std::int32_t first_day,
                                          std::int32_t last_day, const MoneyTerms& terms) {
   DayBook book(first_day, last_day, terms);
-  CycleRecord record;
-  const std::uint64_t first = number_before(log, first_day);
-  for (std::uint64_t n = first; n > 0 && n <= log.newest_number(); ++n) {
-    if (!log.read(n, record)) continue;
-    book.add(record);
-    // The one behind the last day tells what flowed at its end.
-    if (record.has_measurement && local_day_at(record.utc_s) > last_day) break;
-  }
+  for_each_record_around(log, first_day, last_day,
+                         [&](const CycleRecord& record) { book.add(record); });
   return book.accounts();
 }
 

@@ -5,11 +5,15 @@
 
 namespace bess {
 
-double Contract::costs_eur(double energy_mwh, double price_eur_per_mwh) const {
-  BatteryParameters battery;
+BatteryParameters Contract::applied_to(BatteryParameters battery) const {
   battery.costs = costs;
   battery.wear_eur_per_mwh = wear_eur_per_mwh;
-  return exchange_cost_eur(battery, energy_mwh, price_eur_per_mwh) - energy_mwh * price_eur_per_mwh;
+  return battery;
+}
+
+double Contract::costs_eur(double energy_mwh, double price_eur_per_mwh) const {
+  return exchange_cost_eur(applied_to({}), energy_mwh, price_eur_per_mwh) -
+         energy_mwh * price_eur_per_mwh;
 }
 
 bool Contract::is_free() const {

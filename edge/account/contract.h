@@ -15,6 +15,8 @@ struct Contract {
   TradingCosts costs{};
   double wear_eur_per_mwh = 0;
 
+  /// That battery, with what using it costs.
+  [[nodiscard]] BatteryParameters applied_to(BatteryParameters battery) const;
   /// What exchanging costs beside the price itself; `energy_mwh` grid side, charge positive.
   [[nodiscard]] double costs_eur(double energy_mwh, double price_eur_per_mwh) const;
   [[nodiscard]] bool is_free() const;

@@ -1,4 +1,4 @@
-// What one cycle moved and earned, by its record: the estimate that day_account.h adds up.
+// What one cycle moved and earned, by its record alone: an estimate, at the price decided on.
 #pragma once
 
 #include "edge/control/control_types.h"

@@ -10,12 +10,19 @@
 namespace bess {
 
 void QuarterHourMoney::add(const QuarterHourMoney& other) {
-  billed_eur += other.billed_eur;
+  earned_eur += other.earned_eur;
+  estimated_eur += other.estimated_eur;
+  prices_eur_per_mwh += other.prices_eur_per_mwh;
   contract_eur += other.contract_eur;
   quarter_hours += other.quarter_hours;
   published += other.published;
   validated += other.validated;
   unpriced += other.unpriced;
+}
+
+double QuarterHourMoney::mean_price_eur_per_mwh() const {
+  const int priced = quarter_hours - unpriced;
+  return priced == 0 ? 0 : prices_eur_per_mwh / priced;
 }
 
 void DayAccount::add(const CycleRecord& record) {
@@ -28,19 +35,13 @@ void DayAccount::add(const CycleRecord& record) {
   }
   if (!record.has_measurement) return;
   note_soc(record);
-  if (!record.price.has_row) return;
-  ++valued_cycles_;
-  price_centi_ += record.price.price_centi_eur_per_mwh;
+  if (record.price.has_row) ++valued_cycles_;
 }
 
 void DayAccount::add(const Exchange& exchange) {
   const double size_wh = std::fabs(exchange.energy_wh);
   (exchange.energy_wh > 0 ? charged_wh_ : discharged_wh_) += size_wh;
   if (!exchange.is_seen) unseen_wh_ += size_wh;
-  if (!exchange.has_price) return;
-  // Subtracted: a day without exchange has earned nothing, and not minus nothing.
-  earned_eur_ -=
-      exchange.energy_wh / kWattsPerMegawatt * exchange.price_centi_eur_per_mwh / kCentiPerEur;
 }
 
 void DayAccount::note_soc(const CycleRecord& record) {
@@ -53,11 +54,6 @@ void DayAccount::note_soc(const CycleRecord& record) {
     last_soc_e4_ = record.measurement.soc_e4;
     capacity_wh_ = record.measurement.capacity_wh;
   }
-}
-
-double DayAccount::mean_price_eur_per_mwh() const {
-  if (valued_cycles_ == 0) return 0;
-  return static_cast<double>(price_centi_) / valued_cycles_ / kCentiPerEur;
 }
 
 double DayAccount::full_cycles() const { return soc_moved_e4_ / (2.0 * kSocFullE4); }
@@ -101,10 +97,10 @@ std::string DayAccount::line() const {
   }
   std::snprintf(
       text, sizeof text,
-      "%s: %+.2f EUR (estimate: measured power at the logged price, %d of %d cycles, %s), "
+      "%s: %+.2f EUR (%d of %d quarter-hours at the settled price, an estimate in the others; %s), "
       "charged %.1f kWh, discharged %.1f kWh, %.2f full cycles, %d interventions",
-      date().c_str(), earned_eur(), valued_cycles_, cycles_, fees, charged_kwh(), discharged_kwh(),
-      full_cycles(), interventions());
+      date().c_str(), earned_eur(), money_.published, money_.quarter_hours, fees, charged_kwh(),
+      discharged_kwh(), full_cycles(), interventions());
   std::string line = text;
   if (interventions() > 0) line += " (" + interventions_text(cycles_by_reason_) + ")";
   return line;

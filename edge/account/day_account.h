@@ -1,7 +1,7 @@
 // A local day in one line: money, energy, cycles, interventions, from the decision log's records.
 //
-// What was earned stands at two prices: at that of each decision, an estimate of the same evening;
-// and at the price of the quarter-hour, settled where it is published, with what the contract adds.
+// What was earned is counted by quarter-hours, at the settled price where it is published, else at
+// the last indicative one: that part is an estimate. What the contract adds stands beside it.
 #pragma once
 
 #include <array>
@@ -17,17 +17,20 @@ using CyclesByReason = std::array<int, kReasonCount>;
 /// "price_age 12, soc_empty 3": what ordered something else than the student.
 std::string interventions_text(const CyclesByReason& cycles);
 
-/// Money at the prices of whole quarter-hours: settled, or the last minute's where nothing is
-/// published yet.
+/// Money at the prices of whole quarter-hours (quarter_prices.h).
 struct QuarterHourMoney {
-  double billed_eur = 0;    ///< earned, before the contract
-  double contract_eur = 0;  ///< what the contract takes of it
-  int quarter_hours = 0;    ///< of which the log knows something
-  int published = 0;        ///< of those, the validated among them
+  double earned_eur = 0;          ///< before the contract
+  double estimated_eur = 0;       ///< of it, where nothing is published yet
+  double contract_eur = 0;        ///< what the contract takes of it
+  double prices_eur_per_mwh = 0;  ///< the sum of those that have one
+  int quarter_hours = 0;          ///< of which the log knows something
+  int published = 0;              ///< of those, the validated among them
   int validated = 0;
   int unpriced = 0;  ///< without any price: their energy is not in the money
 
-  [[nodiscard]] double net_eur() const { return billed_eur - contract_eur; }
+  [[nodiscard]] double net_eur() const { return earned_eur - contract_eur; }
+  /// 0 where none has a price.
+  [[nodiscard]] double mean_price_eur_per_mwh() const;
   void add(const QuarterHourMoney& other);
 };
 
@@ -44,7 +47,7 @@ class DayAccount {
 
   [[nodiscard]] bool is_empty() const { return cycles_ == 0; }
   [[nodiscard]] std::int32_t local_day() const { return local_day_; }
-  [[nodiscard]] double earned_eur() const { return earned_eur_; }
+  [[nodiscard]] double earned_eur() const { return money_.earned_eur; }
   [[nodiscard]] double charged_kwh() const { return charged_wh_ / 1'000; }
   [[nodiscard]] double discharged_kwh() const { return discharged_wh_ / 1'000; }
   /// Of both together: while nobody looked, by the state of charge alone.
@@ -54,10 +57,8 @@ class DayAccount {
   [[nodiscard]] int cycles() const { return cycles_; }
   /// In which the battery followed an order, 0 W included.
   [[nodiscard]] int driven_cycles() const { return driven_cycles_; }
-  /// Of `cycles`, with a measurement and a price: what the money is of.
+  /// Of `cycles`, with a measurement and a price.
   [[nodiscard]] int valued_cycles() const { return valued_cycles_; }
-  /// Over those; 0 where there are none.
-  [[nodiscard]] double mean_price_eur_per_mwh() const;
   /// State of charge when it was first and last measured, in 1e-4, and the newest capacity: false =
   /// never measured.
   [[nodiscard]] bool has_soc() const { return first_soc_utc_s_ != INT64_MAX; }
@@ -79,7 +80,6 @@ class DayAccount {
   void note_soc(const CycleRecord& record);
 
   std::int32_t local_day_;
-  double earned_eur_ = 0;
   double charged_wh_ = 0;
   double discharged_wh_ = 0;
   double unseen_wh_ = 0;
@@ -88,7 +88,6 @@ class DayAccount {
   int cycles_ = 0;
   int driven_cycles_ = 0;
   int valued_cycles_ = 0;
-  std::int64_t price_centi_ = 0;  ///< sum over the valued cycles
   std::int64_t first_soc_utc_s_ = INT64_MAX;
   std::int64_t last_soc_utc_s_ = INT64_MIN;
   std::int32_t first_soc_e4_ = 0;

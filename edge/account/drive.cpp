@@ -1,29 +1,45 @@
 #include "edge/account/drive.h"
 
+#include "edge/account/exchange.h"
 #include "edge/control/policy.h"
+#include "shared/exchange_cost.h"
 #include "shared/local_time.h"
 #include "shared/units_and_limits.h"
 
 namespace bess {
 
-PricedCycle priced_cycle(const CycleRecord& record) {
+PricedCycle priced_cycle(const CycleRecord& record, const QuarterPrices& prices) {
+  // Anew where the log tells of what: the class that was logged is of the student of that time.
+  const bool is_told = student_outlook() != nullptr ? record.outlook.source != OutlookSource::kNone
+                                                    : record.price_level.is_known();
   const std::int16_t context_class =
-      record.context_class > 0
+      record.context_class > 0 && !is_told
           ? record.context_class
           : student_context_class(local_minute_of(record.utc_s), context_centi_of(record));
-  return {record.utc_s, record.price.price_centi_eur_per_mwh, context_class};
-}
-
-double eur_per_mwh(const PricedCycle& cycle) {
-  return static_cast<double>(cycle.price_centi_eur_per_mwh) / kCentiPerEur;
+  const double from_utc_s = static_cast<double>(record.utc_s) + written_after_s(record);
+  const double decided_eur_per_mwh =
+      static_cast<double>(record.price.price_centi_eur_per_mwh) / kCentiPerEur;
+  return {record.utc_s, record.price.price_centi_eur_per_mwh,
+          static_cast<float>(prices.of_step_eur_per_mwh(from_utc_s).value_or(decided_eur_per_mwh)),
+          context_class};
 }
 
 BatteryStep full_step(const BatteryParameters& battery, double soc_frac, Action action) {
   return battery_step(battery, soc_frac, power_sign(action) * battery.power_w_max, kHoursPerStep);
 }
 
-double earned_eur(const BatteryStep& step, double price_eur_per_mwh) {
-  return -step.power_w * kHoursPerStep / kWattsPerMegawatt * price_eur_per_mwh;
+double earned_eur(const BatteryParameters& battery, const BatteryStep& step,
+                  double price_eur_per_mwh) {
+  return -exchange_cost_eur(battery, step.power_w * kHoursPerStep / kWattsPerMegawatt,
+                            price_eur_per_mwh);
+}
+
+double stored_worth_eur(const BatteryParameters& battery, double more_frac,
+                        double price_eur_per_mwh) {
+  const double stored_mwh = more_frac * battery.capacity_wh / kWattsPerMegawatt;
+  const double exchanged_mwh = stored_mwh > 0 ? -stored_mwh * battery.discharge_efficiency
+                                              : -stored_mwh / battery.charge_efficiency;
+  return -exchange_cost_eur(battery, exchanged_mwh, price_eur_per_mwh);
 }
 
 Action decide_undisturbed(const PricedCycle& cycle, double soc_frac,
@@ -32,8 +48,10 @@ Action decide_undisturbed(const PricedCycle& cycle, double soc_frac,
   if (price <= thresholds.low_eur_per_mwh * kCentiPerEur) return Action::kCharge;
   if (price >= thresholds.high_eur_per_mwh * kCentiPerEur) return Action::kDischarge;
   const auto soc_e4 = static_cast<std::int32_t>(soc_frac * kSocFullE4 + 0.5);
-  return decide_with_student(
-      make_lattice_state(local_minute_of(cycle.utc_s), cycle.context_class, soc_e4, price));
+  const LocalMinute now = local_minute_of(cycle.utc_s);
+  const LatticeState state = make_lattice_state(now, cycle.context_class, soc_e4, price);
+  return nearest_allowed(student_rule_limits(now, state, price).actions,
+                         decide_with_student(state));
 }
 
 }  // namespace bess

@@ -1,11 +1,12 @@
-// The battery of the specification, driven through logged prices: what others than the controller
-// would have earned. Estimates: 90 % there and back [SPEC 3], each cycle at the price that it was
-// decided on.
+// The battery of the specification, driven through the log's cycles: what others than the controller
+// would have earned, 90 % there and back [SPEC 3]. Each decides on the price that the controller
+// had, its order begins when the controller's began, and is paid as that was (quarter_prices.h).
 #pragma once
 
 #include <cstdint>
 #include <span>
 
+#include "edge/account/quarter_prices.h"
 #include "edge/control/control_types.h"
 #include "shared/battery_model.h"
 #include "shared/price_thresholds.h"
@@ -15,17 +16,23 @@ namespace bess {
 /// A cycle that had a price.
 struct PricedCycle {
   std::int64_t utc_s = 0;
-  std::int32_t price_centi_eur_per_mwh = 0;
-  std::int16_t context_class = 1;  ///< what the student is given, or would have been
+  std::int32_t price_centi_eur_per_mwh = 0;  ///< that is decided on
+  float paid_eur_per_mwh = 0;
+  std::int16_t context_class = 1;  ///< what this program's student is given
 };
 
-/// Of a record with a price.
-PricedCycle priced_cycle(const CycleRecord& record);
-double eur_per_mwh(const PricedCycle& cycle);
+/// Of a record with a price; the log behind it is noted in `prices`.
+PricedCycle priced_cycle(const CycleRecord& record, const QuarterPrices& prices);
 
 /// At full power.
 BatteryStep full_step(const BatteryParameters& battery, double soc_frac, Action action);
-double earned_eur(const BatteryStep& step, double price_eur_per_mwh);
+/// Less what the battery costs (exchange_cost.h).
+double earned_eur(const BatteryParameters& battery, const BatteryStep& step,
+                  double price_eur_per_mwh);
+/// What is stored more than before as if it was sold at once, and what is stored less as if it was
+/// bought, with losses and costs: as the workstation counts it (env/charge_left.h).
+double stored_worth_eur(const BatteryParameters& battery, double more_frac,
+                        double price_eur_per_mwh);
 
 /// What student and thresholds decide where nobody is in their way.
 Action decide_undisturbed(const PricedCycle& cycle, double soc_frac,
@@ -36,15 +43,16 @@ struct Driven {
   double soc_frac = 0;  ///< at the end
 };
 
-/// `decide(index of the cycle, SoC)`, over all cycles.
-template <typename Decide>
+/// `decide(index of the cycle, SoC)`, over all cycles; after each `see(cycle, driven so far)`.
+template <typename Decide, typename See>
 Driven drive_through(std::span<const PricedCycle> cycles, double soc_frac,
-                     const BatteryParameters& battery, const Decide& decide) {
+                     const BatteryParameters& battery, const Decide& decide, const See& see) {
   Driven driven{.soc_frac = soc_frac};
   for (std::size_t i = 0; i < cycles.size(); ++i) {
     const BatteryStep next = full_step(battery, driven.soc_frac, decide(i, driven.soc_frac));
-    driven.earned_eur += earned_eur(next, eur_per_mwh(cycles[i]));
+    driven.earned_eur += earned_eur(battery, next, cycles[i].paid_eur_per_mwh);
     driven.soc_frac = next.soc_frac;
+    see(cycles[i], driven);
   }
   return driven;
 }

@@ -28,7 +28,6 @@ class Stretches {
   Stretches(const ExchangeSample& from, const ExchangeSample& until, const Visit& visit)
       : at_s_(static_cast<double>(from.utc_s)),
         end_s_(static_cast<double>(until.utc_s)),
-        price_of_(until),
         visit_(visit) {}
 
   [[nodiscard]] double left_s() const { return end_s_ - at_s_; }
@@ -48,9 +47,7 @@ class Stretches {
       visit_({.from_utc_s = at_s_,
               .until_utc_s = stop_s,
               .energy_wh = power_w * (stop_s - at_s_) / kSecondsPerHour,
-              .is_seen = is_seen,
-              .has_price = price_of_.has_price,
-              .price_centi_eur_per_mwh = price_of_.price_centi_eur_per_mwh});
+              .is_seen = is_seen});
       at_s_ = stop_s;
     }
   }
@@ -59,7 +56,6 @@ class Stretches {
   double at_s_;
   double end_s_;
   double energy_wh_ = 0;
-  const ExchangeSample& price_of_;
   const Visit& visit_;
 };
 
@@ -172,6 +168,10 @@ struct Seen {
   [[nodiscard]] bool tells(double capacity_wh) const { return charge_wh > capacity_wh / 2; }
 };
 
+bool is_ordered(const CycleRecord& record) {
+  return record.written && (record.mode == Mode::kRunning || record.mode == Mode::kHolding);
+}
+
 constexpr double sane(double efficiency) { return std::clamp(efficiency, 0.6, 1.0); }
 
 void walk_along(std::span<const ExchangeSample> samples, const ChargeScale& scale,
@@ -199,6 +199,14 @@ ChargeScale balanced(ChargeScale scale, std::span<const ExchangeSample> samples)
 
 }  // namespace
 
+float written_after_s(const CycleRecord& record) {
+  if (!is_ordered(record) || !record.price.has_row) return 0;
+  // Whole seconds, cut off: half a one more is right in the mean.
+  const std::int64_t written_utc_s = record.price.minute_utc_s + 60 + record.price_age_s;
+  const auto after_s = static_cast<float>(written_utc_s - record.utc_s) + 0.5F;
+  return after_s > 0 && after_s < kWrittenWithinS ? after_s : 0;
+}
+
 bool sample_of(const CycleRecord& record, ExchangeSample& sample) {
   if (!record.has_measurement) return false;
   sample = {.utc_s = record.utc_s,
@@ -206,17 +214,8 @@ bool sample_of(const CycleRecord& record, ExchangeSample& sample) {
             .soc_e4 = record.measurement.soc_e4,
             .capacity_wh = record.measurement.capacity_wh,
             .order_w = record.ordered_power_w,
-            .price_centi_eur_per_mwh = record.price.price_centi_eur_per_mwh,
-            .price_minute_utc_s = record.price.minute_utc_s,
-            .has_price = record.price.has_row};
-  sample.is_ordered =
-      record.written && (record.mode == Mode::kRunning || record.mode == Mode::kHolding);
-  if (sample.is_ordered && record.price.has_row) {
-    // Whole seconds, cut off: half a one more is right in the mean.
-    const std::int64_t written_utc_s = record.price.minute_utc_s + 60 + record.price_age_s;
-    const auto after_s = static_cast<float>(written_utc_s - record.utc_s) + 0.5F;
-    sample.written_after_s = after_s > 0 && after_s < kWrittenWithinS ? after_s : 0;
-  }
+            .written_after_s = written_after_s(record),
+            .is_ordered = is_ordered(record)};
   return true;
 }
 

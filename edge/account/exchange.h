@@ -28,12 +28,12 @@ struct ExchangeSample {
   std::int32_t soc_e4 = 0;
   std::int32_t capacity_wh = 0;
   std::int32_t order_w = 0;
-  std::int32_t price_centi_eur_per_mwh = 0;
-  std::int64_t price_minute_utc_s = 0;
   float written_after_s = 0;  ///< the tick; 0: not known
-  bool has_price = false;
-  bool is_ordered = false;  ///< `order_w` is in force from then on
+  bool is_ordered = false;    ///< `order_w` is in force from then on
 };
+
+/// How long behind its tick the order of the record was written; 0: none was, or it is not known.
+float written_after_s(const CycleRecord& record);
 
 /// False of a record without a measurement.
 bool sample_of(const CycleRecord& record, ExchangeSample& sample);
@@ -43,8 +43,6 @@ struct Exchange {
   double until_utc_s = 0;
   double energy_wh = 0;  ///< grid side, charge positive
   bool is_seen = true;   ///< false: by the state of charge alone, nobody looked
-  bool has_price = false;
-  std::int32_t price_centi_eur_per_mwh = 0;  ///< of the record at the end of it
 };
 
 /// What the battery's state of charge says of energy.

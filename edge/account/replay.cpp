@@ -25,10 +25,15 @@ Action decide_again(const CycleRecord& record) {
                                                 record.price.price_centi_eur_per_mwh));
 }
 
+double eur_per_mwh(const PriceReport& price) {
+  return static_cast<double>(price.price_centi_eur_per_mwh) / kCentiPerEur;
+}
+
 /// A day while its mean price is not known yet.
 struct OpenDay {
   ReplayedDay day;
-  DayAccount account;
+  double prices_eur_per_mwh = 0;  ///< the sum over its cycles that have one
+  int priced = 0;
   double mwh_moved = 0;  ///< that the new decisions charge more
   double paid_eur = 0;   ///< for it
 };
@@ -44,7 +49,7 @@ void compare(const CycleRecord& record, double cycle_mwh, OpenDay& open, Replay&
   const double more_mwh = (power_sign(now) - power_sign(before)) * cycle_mwh;
   ++open.day.differing;
   open.mwh_moved += more_mwh;
-  open.paid_eur += more_mwh * record.price.price_centi_eur_per_mwh / kCentiPerEur;
+  open.paid_eur += more_mwh * eur_per_mwh(record.price);
 }
 
 std::string day_line(const ReplayedDay& day) {
@@ -65,9 +70,11 @@ Replay replay_days(const LogReader& log, std::int32_t first_day, std::int32_t la
   Replay replay;
   std::map<std::int32_t, OpenDay> days;
   for_each_record(log, first_day, last_day, [&](std::int32_t day, const CycleRecord& record) {
-    OpenDay& open =
-        days.try_emplace(day, OpenDay{{.local_day = day}, DayAccount(day)}).first->second;
-    open.account.add(record);
+    OpenDay& open = days.try_emplace(day, OpenDay{{.local_day = day}}).first->second;
+    if (record.has_measurement && record.price.has_row) {
+      open.prices_eur_per_mwh += eur_per_mwh(record.price);
+      ++open.priced;
+    }
     const bool has_context =
         student_outlook() == nullptr || record.outlook.source != OutlookSource::kNone;
     if (record.has_student_action && record.context_class > 0 && has_context) {
@@ -77,7 +84,8 @@ Replay replay_days(const LogReader& log, std::int32_t first_day, std::int32_t la
   std::ranges::reverse(replay.others);  // the log is read from its end
   for (auto& [day, open] : days) {
     if (open.day.compared == 0) continue;
-    open.day.gained_eur = open.mwh_moved * open.account.mean_price_eur_per_mwh() - open.paid_eur;
+    open.day.gained_eur =
+        open.mwh_moved * open.prices_eur_per_mwh / std::max(open.priced, 1) - open.paid_eur;
     replay.compared += open.day.compared;
     replay.differing += open.day.differing;
     replay.gained_eur += open.day.gained_eur;

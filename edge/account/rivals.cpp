@@ -2,9 +2,14 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
 
 #include "edge/account/account_days.h"
+#include "edge/control/policy.h"
+#include "edge/control/safety_guard.h"
 #include "shared/host/text.h"
+#include "shared/local_time.h"
 
 namespace bess {
 namespace {
@@ -12,19 +17,33 @@ namespace {
 constexpr int kSocLevels = 241;
 constexpr Action kActions[] = {Action::kDischarge, Action::kIdle, Action::kCharge};
 
-double mean_eur_per_mwh(std::span<const PricedCycle> cycles) {
-  double sum = 0;
-  for (const PricedCycle& cycle : cycles) sum += eur_per_mwh(cycle);
-  return cycles.empty() ? 0 : sum / static_cast<double>(cycles.size());
-}
+/// What all of them trade with.
+struct Trade {
+  std::span<const PricedCycle> cycles;
+  double soc_frac;
+  const BatteryParameters& battery;
+  double mean_eur_per_mwh;
 
-/// `decide(index of the cycle, SoC)`, over all cycles; what is stored besides counts at the mean.
+  [[nodiscard]] double stored_eur(double soc_end_frac) const {
+    return stored_worth_eur(battery, soc_end_frac - soc_frac, mean_eur_per_mwh);
+  }
+};
+
+/// `decide(index of the cycle, SoC)`, over all cycles.
 template <typename Decide>
-double drive(std::span<const PricedCycle> cycles, double soc_frac, const BatteryParameters& battery,
-             const Decide& decide) {
-  const Driven driven = drive_through(cycles, soc_frac, battery, decide);
-  const double stored_mwh = (driven.soc_frac - soc_frac) * battery.capacity_wh / kWattsPerMegawatt;
-  return driven.earned_eur + stored_mwh * mean_eur_per_mwh(cycles);
+Rival drive(const Trade& trade, const Decide& decide) {
+  Rival rival;
+  Driven before{.soc_frac = trade.soc_frac};
+  const auto see = [&](const PricedCycle& cycle, const Driven& driven) {
+    rival.by_day[local_day_at(cycle.utc_s)] += driven.earned_eur - before.earned_eur +
+                                               trade.stored_eur(driven.soc_frac) -
+                                               trade.stored_eur(before.soc_frac);
+    before = driven;
+  };
+  rival.paid_eur =
+      drive_through(trade.cycles, trade.soc_frac, trade.battery, decide, see).earned_eur;
+  rival.at_equal_charge_eur = rival.paid_eur + trade.stored_eur(before.soc_frac);
+  return rival;
 }
 
 /// What a state of charge is worth before each cycle, on a grid over the window; linear between.
@@ -32,16 +51,15 @@ double drive(std::span<const PricedCycle> cycles, double soc_frac, const Battery
 /// them made again when it is asked for: a month fits into a small memory.
 class ValueOfCharge {
  public:
-  ValueOfCharge(std::span<const PricedCycle> cycles, const BatteryParameters& battery)
-      : cycles_(cycles), battery_(battery), anchors_(cycles.size() / kBlock + 2) {
+  /// `counts_stored`: what is left at the end has its worth; else it has none.
+  ValueOfCharge(const Trade& trade, bool counts_stored)
+      : cycles_(trade.cycles), battery_(trade.battery), anchors_(cycles_.size() / kBlock + 2) {
     Values values{};
-    const double mean = mean_eur_per_mwh(cycles);
-    for (int level = 0; level < kSocLevels; ++level) {
-      values[at(level)] =
-          static_cast<float>(soc_of(level) * battery.capacity_wh / kWattsPerMegawatt * mean);
+    for (int level = 0; level < kSocLevels && counts_stored; ++level) {
+      values[at(level)] = static_cast<float>(trade.stored_eur(soc_of(level)));
     }
     anchors_.back() = values;
-    for (std::size_t i = cycles.size(); i-- > 0;) {
+    for (std::size_t i = cycles_.size(); i-- > 0;) {
       values = before(i, values);
       if (i % kBlock == 0) anchors_[i / kBlock] = values;
     }
@@ -94,8 +112,8 @@ class ValueOfCharge {
         std::clamp((next.soc_frac - battery_.soc_min_frac) / window, 0.0, 1.0) * (kSocLevels - 1);
     const int below = std::min(static_cast<int>(place), kSocLevels - 2);
     const double share = place - below;
-    return earned_eur(next, eur_per_mwh(cycles_[cycle])) + (1 - share) * after[at(below)] +
-           share * after[at(below + 1)];
+    return earned_eur(battery_, next, cycles_[cycle].paid_eur_per_mwh) +
+           (1 - share) * after[at(below)] + share * after[at(below + 1)];
   }
 
   std::span<const PricedCycle> cycles_;
@@ -104,74 +122,170 @@ class ValueOfCharge {
   std::array<Values, kBlock + 1> block_{};
 };
 
-double earned_by_rule(std::span<const PricedCycle> cycles, double soc_frac,
-                      const BatteryParameters& battery, Rivals& rivals) {
-  std::vector<std::int32_t> prices;
-  prices.reserve(cycles.size());
-  for (const PricedCycle& cycle : cycles) prices.push_back(cycle.price_centi_eur_per_mwh);
-  std::ranges::sort(prices);
-  rivals.rule_low_centi = prices[prices.size() / 4];
-  rivals.rule_high_centi = prices[prices.size() * 3 / 4];
-  return drive(cycles, soc_frac, battery, [&](std::size_t i, double) {
-    const std::int32_t price = cycles[i].price_centi_eur_per_mwh;
-    return price < rivals.rule_low_centi    ? Action::kCharge
-           : price > rivals.rule_high_centi ? Action::kDischarge
-                                            : Action::kIdle;
-  });
+Rival drive_knowing(const Trade& trade, bool counts_stored) {
+  ValueOfCharge value(trade, counts_stored);
+  return drive(trade, [&](std::size_t i, double soc) { return value.best(i, soc); });
+}
+
+/// By its rank; moves them.
+std::int32_t quantile(std::vector<std::int32_t>& prices, std::size_t rank) {
+  const auto at = prices.begin() + static_cast<std::ptrdiff_t>(rank);
+  std::ranges::nth_element(prices, at);
+  return *at;
+}
+
+bool decides_otherwise(const CycleRecord& record, const PricedCycle& cycle) {
+  return record.student_action !=
+         decide_with_student(make_lattice_state(local_minute_of(record.utc_s), cycle.context_class,
+                                                record.measurement.soc_e4,
+                                                record.price.price_centi_eur_per_mwh));
+}
+
+std::string rule_text(const QuartileRule& rule) {
+  std::string text = formatted("the rule charges below %.2f and discharges above %.2f EUR/MWh, ",
+                               rule.low_centi / static_cast<double>(kCentiPerEur),
+                               rule.high_centi / static_cast<double>(kCentiPerEur));
+  if (rule.days == 0) {
+    return text +
+           "the quartiles of the prices that this student learnt on: the log holds less than "
+           "a week before\n";
+  }
+  return text + formatted("the quartiles of the prices of %d days before\n", rule.days);
 }
 
 }  // namespace
 
-std::vector<PricedCycle> priced_cycles(const LogReader& log, std::int32_t first_day,
-                                       std::int32_t last_day) {
-  std::vector<PricedCycle> cycles;
-  for_each_record(log, first_day, last_day, [&](std::int32_t, const CycleRecord& record) {
-    if (record.mode == Mode::kStopping || !record.price.has_row) return;
-    cycles.push_back(priced_cycle(record));
-  });
-  std::ranges::sort(cycles, {}, &PricedCycle::utc_s);
-  return cycles;
+LoggedMarket logged_market(const LogReader& log, const Period& period, const QuarterPrices& prices,
+                           std::int32_t price_age_s_max) {
+  LoggedMarket market;
+  const auto see = [&](std::int32_t, const CycleRecord& record) {
+    const bool has_price = record.price.has_row &&
+                           price_age_s(record.utc_s, record.price.minute_utc_s) <= price_age_s_max;
+    if (record.mode == Mode::kStopping || !has_price) return;
+    const PricedCycle cycle = priced_cycle(record, prices);
+    market.cycles.push_back(cycle);
+    if (!record.has_student_action) return;
+    ++market.decided;
+    market.decided_otherwise += decides_otherwise(record, cycle) ? 1 : 0;
+  };
+  for_each_record(log, period.first_day, period.last_day, see);
+  std::ranges::sort(market.cycles, {}, &PricedCycle::utc_s);
+  const auto twice = std::ranges::unique(market.cycles, {}, &PricedCycle::utc_s);
+  market.cycles.erase(twice.begin(), twice.end());
+  return market;
+}
+
+QuartileRule quartile_rule(const LogReader& log, std::int32_t first_day) {
+  constexpr int kDays = 30, kDaysMin = 7;
+  std::vector<std::int32_t> prices;
+  for_each_record(log, day_after(first_day, -kDays), day_after(first_day, -1),
+                  [&](std::int32_t, const CycleRecord& record) {
+                    if (record.mode == Mode::kStopping || !record.price.has_row) return;
+                    prices.push_back(record.price.price_centi_eur_per_mwh);
+                  });
+  const auto days = static_cast<int>((prices.size() + kStepsPerDay / 2) / kStepsPerDay);
+  if (days < kDaysMin) {
+    return {student_price_quartile(1) * kCentiPerEur, student_price_quartile(3) * kCentiPerEur};
+  }
+  return {quantile(prices, prices.size() / 4), quantile(prices, prices.size() * 3 / 4), days};
 }
 
 Rivals find_rivals(std::span<const PricedCycle> cycles, double soc_frac,
-                   const BatteryParameters& battery, const PriceThresholds& thresholds) {
+                   const BatteryParameters& battery, const PriceThresholds& thresholds,
+                   const QuartileRule& rule, double mean_eur_per_mwh) {
+  if (cycles.empty() || battery.capacity_wh <= 0) return {};
+  const Trade trade{cycles, soc_frac, battery, mean_eur_per_mwh};
   Rivals rivals;
-  if (cycles.empty() || battery.capacity_wh <= 0) return rivals;
-  rivals.rule_eur = earned_by_rule(cycles, soc_frac, battery, rivals);
-  rivals.student_eur = drive(cycles, soc_frac, battery, [&](std::size_t i, double soc) {
+  rivals.rule = drive(trade, [&](std::size_t i, double) {
+    const std::int32_t price = cycles[i].price_centi_eur_per_mwh;
+    return price < rule.low_centi    ? Action::kCharge
+           : price > rule.high_centi ? Action::kDischarge
+                                     : Action::kIdle;
+  });
+  rivals.student = drive(trade, [&](std::size_t i, double soc) {
     return decide_undisturbed(cycles[i], soc, thresholds);
   });
-  ValueOfCharge value(cycles, battery);
-  rivals.foresight_eur = drive(cycles, soc_frac, battery,
-                               [&](std::size_t i, double soc) { return value.best(i, soc); });
+  rivals.foresight = drive_knowing(trade, true);
+  rivals.foresight.paid_eur = drive_knowing(trade, false).paid_eur;
   return rivals;
 }
 
-std::string rivals_text(const Rivals& rivals, double earned_eur) {
-  std::string text;
-  add_formatted(
-      text,
-      "on the same prices, with the same charge at both ends: this battery %+.2f, at rest "
-      "0.00, a rule (charge below %.2f, discharge above %.2f) %+.2f, the student "
-      "undisturbed %+.2f, foresight %+.2f EUR",
-      earned_eur, rivals.rule_low_centi / static_cast<double>(kCentiPerEur),
-      rivals.rule_high_centi / static_cast<double>(kCentiPerEur), rivals.rule_eur,
-      rivals.student_eur, rivals.foresight_eur);
-  if (rivals.foresight_eur > 0) {
-    add_formatted(text, "; %.0f %% of foresight", 100 * earned_eur / rivals.foresight_eur);
-  }
-  return text + "\n";
+double Comparison::ahead_eur(const Rival& rival) const {
+  return battery.earned_at_equal_soc_eur() - rival.at_equal_charge_eur;
 }
 
-Json rivals_json(const Rivals& rivals, double earned_eur) {
-  Json json = Json::object({{"this_battery_eur", Decimals{earned_eur, 4}},
-                            {"rest_eur", Decimals{0, 4}},
-                            {"rule_eur", Decimals{rivals.rule_eur, 4}},
-                            {"student_undisturbed_eur", Decimals{rivals.student_eur, 4}},
-                            {"foresight_eur", Decimals{rivals.foresight_eur, 4}}});
-  if (rivals.foresight_eur > 0) {
-    json.set("share_of_foresight", Decimals{earned_eur / rivals.foresight_eur, 4});
+double Comparison::error_eur(const Rival& rival) const {
+  constexpr std::size_t kDaysMin = 8;
+  const auto days = static_cast<double>(battery.days().size());
+  if (battery.days().size() < kDaysMin) return std::numeric_limits<double>::quiet_NaN();
+  double sum = 0, squares = 0;
+  for (const DayAccount& day : battery.days()) {
+    const auto found = rival.by_day.find(day.local_day());
+    const double rival_eur = found == rival.by_day.end() ? 0 : found->second;
+    const double ahead = battery.day_at_equal_soc_eur(day) - rival_eur;
+    sum += ahead;
+    squares += ahead * ahead;
   }
+  return std::sqrt(std::max(squares - sum * sum / days, 0.0) * days / (days - 1));
+}
+
+std::string Comparison::text() const {
+  const double earned_eur = battery.earned_at_equal_soc_eur();
+  std::string text =
+      "with the same battery on the same prices    paid EUR  with the same charge at both ends\n";
+  add_formatted(text, "  %-38s  %+10.2f  %+10.2f\n", "this battery", battery.money().net_eur(),
+                earned_eur);
+  add_formatted(text, "  %-38s  %+10.2f  %+10.2f\n", "at rest", 0.0, 0.0);
+  const auto row = [&](const std::string& name, const Rival& rival) {
+    add_formatted(text, "  %-38s  %+10.2f  %+10.2f: this battery %+.2f", name.c_str(),
+                  rival.paid_eur, rival.at_equal_charge_eur, ahead_eur(rival));
+    const double error = error_eur(rival);
+    if (!std::isnan(error)) add_formatted(text, " ± %.2f over days", error);
+    text += "\n";
+  };
+  row("a rule", rivals.rule);
+  row(formatted("this program's student %08x, undisturbed", student_hash()), rivals.student);
+  row("foresight, the most in either column", rivals.foresight);
+  if (rivals.foresight.at_equal_charge_eur > 0) {
+    add_formatted(text, "%.0f %% of foresight; ",
+                  100 * earned_eur / rivals.foresight.at_equal_charge_eur);
+  }
+  text += "all are paid by quarter-hours, less the contract, and rest where the log has no price\n";
+  text += rule_text(rule);
+  if (decided_otherwise > 0) {
+    add_formatted(text, "in %d of %d cycles the student of the time decided otherwise\n",
+                  decided_otherwise, decided);
+  }
+  return text;
+}
+
+Json Comparison::json() const {
+  Json json = Json::object({{"this_battery_eur", Decimals{battery.earned_at_equal_soc_eur(), 4}},
+                            {"rest_eur", Decimals{0, 4}}});
+  Json paid = Json::object({{"this_battery_eur", Decimals{battery.money().net_eur(), 4}}});
+  Json errors = Json::object();
+  const auto add = [&](const char* name, const Rival& rival) {
+    json.set(name, Decimals{rival.at_equal_charge_eur, 4});
+    paid.set(name, Decimals{rival.paid_eur, 4});
+    errors.set(name, Decimals{error_eur(rival), 4});
+  };
+  add("rule_eur", rivals.rule);
+  add("student_undisturbed_eur", rivals.student);
+  add("foresight_eur", rivals.foresight);
+  if (rivals.foresight.at_equal_charge_eur > 0) {
+    json.set("share_of_foresight",
+             Decimals{battery.earned_at_equal_soc_eur() / rivals.foresight.at_equal_charge_eur, 4});
+  }
+  json.set("paid", std::move(paid));
+  json.set("error_of_difference", std::move(errors));
+  json.set("rule", Json::object({{"charge_below_eur_per_mwh",
+                                  Decimals{rule.low_centi / static_cast<double>(kCentiPerEur), 2}},
+                                 {"discharge_above_eur_per_mwh",
+                                  Decimals{rule.high_centi / static_cast<double>(kCentiPerEur), 2}},
+                                 {"days_before", rule.days}}));
+  json.set("student", formatted("%08x", student_hash()));
+  json.set("student_decided", decided);
+  json.set("student_decided_otherwise", decided_otherwise);
   return json;
 }
 

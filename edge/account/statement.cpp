@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "edge/account/drive.h"
 #include "shared/host/text.h"
 #include "shared/units_and_limits.h"
 
@@ -12,7 +13,8 @@ namespace {
 double driven_percent(int driven, int cycles) { return cycles == 0 ? 0 : 100.0 * driven / cycles; }
 
 void set_money(Json& json, const QuarterHourMoney& money, double unseen_kwh) {
-  json.set("billed_eur", Decimals{money.billed_eur, 4});
+  json.set("billed_eur", Decimals{money.earned_eur, 4});  // its name until the next release
+  json.set("estimated_eur", Decimals{money.estimated_eur, 4});
   json.set("contract_eur", Decimals{money.contract_eur, 4});
   json.set("net_eur", Decimals{money.net_eur(), 4});
   json.set("quarter_hours", money.quarter_hours);
@@ -67,19 +69,24 @@ double Statement::first_soc_frac() const {
 }
 double Statement::capacity_wh() const { return has_soc() ? last_measured()->capacity_wh() : 0; }
 
-double Statement::stored_kwh() const {
-  if (!has_soc()) return 0;
-  const std::int32_t moved_e4 = last_measured()->last_soc_e4() - first_measured()->first_soc_e4();
-  return static_cast<double>(moved_e4) / kSocFullE4 * capacity_wh() / 1'000;
+std::int32_t Statement::stored_e4() const {
+  return has_soc() ? last_measured()->last_soc_e4() - first_measured()->first_soc_e4() : 0;
 }
 
-double Statement::mean_price_eur_per_mwh() const {
-  const double cycles = sum([](const DayAccount& day) { return day.valued_cycles(); });
-  if (cycles == 0) return 0;
-  return sum([](const DayAccount& day) {
-           return day.mean_price_eur_per_mwh() * day.valued_cycles();
-         }) /
-         cycles;
+double Statement::stored_kwh() const {
+  return static_cast<double>(stored_e4()) / kSocFullE4 * capacity_wh() / 1'000;
+}
+
+double Statement::worth_eur(std::int32_t more_e4) const {
+  return stored_worth_eur(contract_.applied_to({.capacity_wh = capacity_wh()}),
+                          static_cast<double>(more_e4) / kSocFullE4, mean_price_eur_per_mwh());
+}
+
+double Statement::stored_eur() const { return worth_eur(stored_e4()); }
+
+double Statement::day_at_equal_soc_eur(const DayAccount& day) const {
+  return day.money().net_eur() +
+         (day.has_soc() ? worth_eur(day.last_soc_e4() - day.first_soc_e4()) : 0);
 }
 
 CyclesByReason Statement::cycles_by_reason() const {
@@ -93,11 +100,13 @@ CyclesByReason Statement::cycles_by_reason() const {
 std::string Statement::money_text() const {
   const QuarterHourMoney all = money();
   std::string text;
-  add_formatted(text, "by quarter-hours: %+.2f EUR, of %d quarter-hours %d at the settled price",
-                all.billed_eur, all.quarter_hours, all.published);
+  add_formatted(text, "earned by quarter-hours: of %d, %d at the settled price", all.quarter_hours,
+                all.published);
   if (all.published > 0) add_formatted(text, " (%d validated)", all.validated);
-  if (all.published + all.unpriced < all.quarter_hours)
-    text += ", the others at their last indicative one";
+  if (all.published + all.unpriced < all.quarter_hours) {
+    add_formatted(text, ", the others at the last of their minutes: %+.2f EUR is an estimate",
+                  all.estimated_eur);
+  }
   if (all.unpriced > 0) add_formatted(text, ", %d without any", all.unpriced);
   if (!contract_.is_free()) {
     add_formatted(text, "\nthe contract takes %.2f EUR (%s): %+.2f EUR net", all.contract_eur,
@@ -120,7 +129,7 @@ std::string Statement::text() const {
     add_formatted(text, "%s  %+10.2f  %11.1f  %14.1f  %11.2f  %4.0f %%  %7.2f\n",
                   day.date().c_str(), day.earned_eur(), day.charged_kwh(), day.discharged_kwh(),
                   day.full_cycles(), driven_percent(day.driven_cycles(), day.cycles()),
-                  day.mean_price_eur_per_mwh());
+                  day.money().mean_price_eur_per_mwh());
     cycles += day.cycles();
     driven += day.driven_cycles();
     full_cycles += day.full_cycles();
@@ -130,19 +139,16 @@ std::string Statement::text() const {
                   earned_eur(), charged_kwh(), discharged_kwh(), full_cycles,
                   driven_percent(driven, cycles), mean_price_eur_per_mwh());
   }
+  text += money_text();
   add_formatted(
       text,
       "at the end %.1f kWh %s are stored than at the beginning, worth %.2f EUR at the mean price: "
       "%+.2f EUR with the same charge at both ends\n",
       std::abs(stored_kwh()), stored_kwh() < 0 ? "less" : "more", std::abs(stored_eur()),
       earned_at_equal_soc_eur());
-  text += money_text();
   const std::string others = interventions_text(cycles_by_reason());
   if (!others.empty())
     add_formatted(text, "cycles that the student did not decide: %s\n", others.c_str());
-  text +=
-      "earned is an estimate, at the prices decided on, without the contract, taxes or losses of "
-      "what is stored\n";
   return text;
 }
 
@@ -151,21 +157,21 @@ std::string Statement::csv() const {
       "date,earned_eur,charged_kwh,discharged_kwh,full_cycles,cycles,driven_cycles,valued_cycles,"
       "mean_price_eur_per_mwh,first_soc_percent,last_soc_percent,billed_eur,contract_eur,net_eur,"
       "quarter_hours,settled_quarter_hours,validated_quarter_hours,unpriced_quarter_hours,"
-      "unseen_kwh\n";
+      "unseen_kwh,estimated_eur\n";
   for (const DayAccount& day : days_) {
     add_formatted(text, "%s,%.4f,%.3f,%.3f,%.4f,%d,%d,%d,%.2f", day.date().c_str(),
                   day.earned_eur(), day.charged_kwh(), day.discharged_kwh(), day.full_cycles(),
                   day.cycles(), day.driven_cycles(), day.valued_cycles(),
-                  day.mean_price_eur_per_mwh());
+                  day.money().mean_price_eur_per_mwh());
     if (day.has_soc()) {
       add_formatted(text, ",%.2f,%.2f", day.first_soc_e4() / 100.0, day.last_soc_e4() / 100.0);
     } else {
       text += ",,";
     }
     const QuarterHourMoney& money = day.money();
-    add_formatted(text, ",%.4f,%.4f,%.4f,%d,%d,%d,%d,%.3f\n", money.billed_eur, money.contract_eur,
-                  money.net_eur(), money.quarter_hours, money.published, money.validated,
-                  money.unpriced, day.unseen_kwh());
+    add_formatted(text, ",%.4f,%.4f,%.4f,%d,%d,%d,%d,%.3f,%.4f\n", money.earned_eur,
+                  money.contract_eur, money.net_eur(), money.quarter_hours, money.published,
+                  money.validated, money.unpriced, day.unseen_kwh(), money.estimated_eur);
   }
   return text;
 }
@@ -191,7 +197,7 @@ Json Statement::json() const {
                       {"cycles", day.cycles()},
                       {"driven_cycles", day.driven_cycles()},
                       {"valued_cycles", day.valued_cycles()},
-                      {"mean_price_eur_per_mwh", Decimals{day.mean_price_eur_per_mwh(), 2}},
+                      {"mean_price_eur_per_mwh", Decimals{day.money().mean_price_eur_per_mwh(), 2}},
                       {"first_soc_percent", soc(day.first_soc_e4())},
                       {"last_soc_percent", soc(day.last_soc_e4())},
                       {"cycles_by_reason", std::move(reasons)}});

@@ -1,9 +1,9 @@
 // What a battery earned in some days, as a table for people, as CSV and as JSON.
 //
-// Money stands there twice: at the price of each decision, an estimate; and at the price of each
-// quarter-hour, settled where it is published, with the contract's costs. What it holds more or
-// less at the end than at the beginning is told beside it, at the mean price: a day that ends empty
-// has sold what another one bought.
+// Money is counted by quarter-hours: at the settled price where it is published, else, an estimate,
+// at the last indicative one. Then what the contract takes; and what the battery holds more or less
+// at the end than at the beginning, at the mean price: a day that ends empty has sold what another
+// one bought.
 #pragma once
 
 #include <string>
@@ -29,17 +29,19 @@ class Statement {
   [[nodiscard]] QuarterHourMoney money() const;
   /// More (negative: less) is stored at the end than at the beginning.
   [[nodiscard]] double stored_kwh() const;
-  [[nodiscard]] double earned_at_equal_soc_eur() const { return earned_eur() + stored_eur(); }
+  /// Less what the contract takes.
+  [[nodiscard]] double earned_at_equal_soc_eur() const { return money().net_eur() + stored_eur(); }
+  /// The same of one of the days, at the mean price of all.
+  [[nodiscard]] double day_at_equal_soc_eur(const DayAccount& day) const;
   /// As it was first measured; false: never.
   [[nodiscard]] bool has_soc() const { return first_measured() != nullptr; }
   [[nodiscard]] double first_soc_frac() const;
   /// Of the newest day that it was measured on.
   [[nodiscard]] double capacity_wh() const;
-  /// Of the valued cycles of all days.
-  [[nodiscard]] double mean_price_eur_per_mwh() const;
-  [[nodiscard]] double stored_eur() const {
-    return stored_kwh() / 1'000 * mean_price_eur_per_mwh();
-  }
+  /// Of the quarter-hours of all days.
+  [[nodiscard]] double mean_price_eur_per_mwh() const { return money().mean_price_eur_per_mwh(); }
+  /// With losses and the contract, as if it was sold at once, or bought (drive.h).
+  [[nodiscard]] double stored_eur() const;
 
   [[nodiscard]] const std::vector<DayAccount>& days() const { return days_; }
   [[nodiscard]] const Contract& contract() const { return contract_; }
@@ -56,6 +58,8 @@ class Statement {
   [[nodiscard]] const DayAccount* first_measured() const;
   [[nodiscard]] const DayAccount* last_measured() const;
 
+  [[nodiscard]] std::int32_t stored_e4() const;
+  [[nodiscard]] double worth_eur(std::int32_t more_e4) const;
   [[nodiscard]] std::string money_text() const;
 
   std::vector<DayAccount> days_;

@@ -21,7 +21,7 @@ std::string cell(const char* format, double value) {
 }
 
 std::string money_cells(const QuarterHourMoney& money) {
-  return cell("%.2f", money.billed_eur) + cell("%.2f", money.contract_eur) +
+  return cell("%.2f", money.earned_eur) + cell("%.2f", money.contract_eur) +
          cell("%.2f", money.net_eur()) +
          formatted("<td>%d / %d / %d</td>", money.quarter_hours, money.published, money.validated);
 }
@@ -81,11 +81,11 @@ std::string notes(const Statement& statement) {
   if (money.unpriced > 0) add_formatted(text, ", and %d without any", money.unpriced);
   add_formatted(
       text,
-      ". Before validation a settled price may still change. At the prices decided on it would be "
-      "%.2f EUR. %.3f kWh flowed while nobody looked, by the state of charge. At the end %.3f kWh "
+      ": %.2f EUR is an estimate. Before validation a settled price may still change. %.3f kWh "
+      "flowed while nobody looked, by the state of charge. At the end %.3f kWh "
       "more are stored than at the beginning. Taxes are in it as far as the contract's keys name "
       "them.</p>\n",
-      statement.earned_eur(), statement.unseen_kwh(), statement.stored_kwh());
+      money.estimated_eur, statement.unseen_kwh(), statement.stored_kwh());
   return text;
 }
 

@@ -45,7 +45,7 @@ void StopBook::add(const CycleRecord& record) {
               .is_driven = record.mode == Mode::kRunning,
               .has_price = record.price.has_row};
   cycle.priced.utc_s = record.utc_s;
-  if (cycle.has_price) cycle.priced = priced_cycle(record);
+  if (cycle.has_price) cycle.priced = priced_cycle(record, prices_);
   cycles_.push_back(cycle);
 }
 
@@ -54,7 +54,7 @@ double StopBook::mean_eur_per_mwh() const {
   int priced = 0;
   for (const Cycle& cycle : cycles_) {
     if (!cycle.has_price) continue;
-    sum += eur_per_mwh(cycle.priced);
+    sum += cycle.priced.paid_eur_per_mwh;
     ++priced;
   }
   return priced == 0 ? 0 : sum / priced;
@@ -70,19 +70,20 @@ void StopBook::value(std::size_t first, std::size_t end, double mean_eur_per_mwh
     const bool is_followed = i + 1 < cycles_.size() && cycles_[i + 1].soc_e4 >= 0;
     if (!cycles_[i].has_price || !is_followed) continue;
     priced.push_back(cycles_[i].priced);
-    moved_eur -=
-        cycles_[i + 1].power_w * kHoursPerStep / kWattsPerMegawatt * eur_per_mwh(cycles_[i].priced);
+    moved_eur += earned_eur(battery_, {static_cast<double>(cycles_[i + 1].power_w), 0},
+                            cycles_[i].priced.paid_eur_per_mwh);
     last_e4 = cycles_[i + 1].soc_e4;
   }
   if (priced.empty() || cycles_[first].soc_e4 < 0 || battery_.capacity_wh <= 0) return;
   const double soc_frac = static_cast<double>(cycles_[first].soc_e4) / kSocFullE4;
-  const Driven student = drive_through(priced, soc_frac, battery_, [&](std::size_t i, double soc) {
-    return decide_undisturbed(priced[i], soc, thresholds_);
-  });
+  const Driven student = drive_through(
+      priced, soc_frac, battery_,
+      [&](std::size_t i, double soc) { return decide_undisturbed(priced[i], soc, thresholds_); },
+      [](const PricedCycle&, const Driven&) {});
   const double more_frac = student.soc_frac - static_cast<double>(last_e4) / kSocFullE4;
   stop.valued += static_cast<int>(priced.size());
-  stop.cost_eur += student.earned_eur - moved_eur +
-                   more_frac * battery_.capacity_wh / kWattsPerMegawatt * mean_eur_per_mwh;
+  stop.cost_eur +=
+      student.earned_eur - moved_eur + stored_worth_eur(battery_, more_frac, mean_eur_per_mwh);
 }
 
 Stops StopBook::stops() const {
@@ -113,8 +114,9 @@ Stops StopBook::stops() const {
 }
 
 Stops stops_of_days(const LogReader& log, std::int32_t first_day, std::int32_t last_day,
-                    const BatteryParameters& battery, const PriceThresholds& thresholds) {
-  StopBook book(battery, thresholds);
+                    const BatteryParameters& battery, const PriceThresholds& thresholds,
+                    const QuarterPrices& prices) {
+  StopBook book(battery, thresholds, prices);
   CycleRecord record;
   for (std::uint64_t n = log.oldest_number(); n > 0 && n <= log.newest_number(); ++n) {
     if (!log.read(n, record)) continue;

@@ -1,8 +1,8 @@
 // What kept the student from deciding, for how long, and what that cost: by reasons.
 //
 // The cost is an estimate: what the student, undisturbed, would have earned in those very cycles
-// from the charge that the battery had when they began, less what was earned in them; what either
-// stores besides counts at the mean price of all days. A cycle without a price or without a reading
+// from the charge that the battery had when they began, less what was earned in them, both at the
+// price of their quarter-hours; what either stores besides counts at the mean price of all days. A cycle without a price or without a reading
 // has no cost that could be told; such cycles are counted. Below zero the stop has earned.
 #pragma once
 
@@ -35,11 +35,12 @@ struct Stops {
   [[nodiscard]] double driven_share() const;
 };
 
-/// Of a run of records, oldest first; the accounts of what is done with it live no longer.
+/// Of a run of records, oldest first; `prices` are of all of them.
 class StopBook {
  public:
-  StopBook(const BatteryParameters& battery, const PriceThresholds& thresholds)
-      : battery_(battery), thresholds_(thresholds) {}
+  StopBook(const BatteryParameters& battery, const PriceThresholds& thresholds,
+           const QuarterPrices& prices)
+      : battery_(battery), thresholds_(thresholds), prices_(prices) {}
 
   void add(const CycleRecord& record);
   [[nodiscard]] Stops stops() const;
@@ -58,12 +59,14 @@ class StopBook {
 
   BatteryParameters battery_;
   PriceThresholds thresholds_;
+  const QuarterPrices& prices_;
   std::vector<Cycle> cycles_;
 };
 
 /// Of the days from `first_day` to `last_day`, as 20231126.
 Stops stops_of_days(const LogReader& log, std::int32_t first_day, std::int32_t last_day,
-                    const BatteryParameters& battery, const PriceThresholds& thresholds);
+                    const BatteryParameters& battery, const PriceThresholds& thresholds,
+                    const QuarterPrices& prices);
 
 /// Lines, ended; nothing where nothing stopped it.
 std::string stops_text(const Stops& stops);

@@ -1,5 +1,6 @@
 // `bess-edge earned`: what the battery earned in some local days, from the decision log.
 #include <cstdio>
+#include <optional>
 
 #include "edge/account/account_days.h"
 #include "edge/account/money_settings.h"
@@ -38,17 +39,17 @@ constexpr const char* kHelp =
                  or 2026-11-01..2026-11-23; local days, default today; week and month are those that
                  today lies in
   --config FILE  the controller's settings; default /etc/bess/edge.toml
-  --beside       and what rest, a rule, the student undisturbed, and foresight would have earned
-                 on the same prices with this battery (90 % there and back), from the same charge
-                 to the same
+  --beside       and what rest, a rule, the student undisturbed, and foresight would have been paid
+                 with this battery (90 % there and back), from the same charge on; the rule's
+                 thresholds are the quartiles of the 30 days before
   --csv          one line a day, with a header
   --json         one JSON object: the days, and all of them together
   --html         a page to print, to hold beside the bill
 
-Earned is an estimate: what flowed, at the prices that were decided on. By quarter-hours it is told
-again: at the settled price where bess-notify has fetched it ([settled]), else at the last minute's,
-and with what [contract] takes. What is stored more or less at the end than at the beginning is told
-beside it; and where the student did not decide, by reasons, with what it would have earned there.
+Earned is what flowed, by quarter-hours: at the settled price where bess-notify has fetched it
+([settled]), else at the last of the minutes, an estimate. Then what [contract] takes; what is stored
+more or less at the end than at the beginning; and where the student did not decide, by reasons, with
+what it would have earned there.
 Read from the log in [state] folder: days that it no longer holds are not counted.
 Exit codes: 0 done   1 the log cannot be read, or has nothing of these days   2 bad command line
 
@@ -82,28 +83,36 @@ BatteryParameters battery_of(const EdgeConfig& config, const Statement& statemen
   battery.capacity_wh = statement.capacity_wh();
   battery.soc_min_frac = static_cast<double>(guard.soc_min_e4) / kSocFullE4;
   battery.soc_max_frac = static_cast<double>(guard.soc_max_e4) / kSocFullE4;
-  return battery;
+  return statement.contract().applied_to(battery);
 }
 
 /// What is told of some days.
 struct Earned {
   Statement statement;
   Stops stops{};
-  Rivals rivals{};
+  std::optional<Comparison> beside{};
 };
 
+void compare(const LogReader& log, const Period& period, const BatteryParameters& battery,
+             const GuardSettings& guard, const QuarterPrices& prices, Earned& earned) {
+  const Statement& statement = earned.statement;
+  const LoggedMarket market = logged_market(log, period, prices, guard.price_age_s_max);
+  const QuartileRule rule = quartile_rule(log, period.first_day);
+  earned.beside.emplace(find_rivals(market.cycles, statement.first_soc_frac(), battery,
+                                    guard.thresholds, rule, statement.mean_price_eur_per_mwh()),
+                        rule, market.decided, market.decided_otherwise, statement);
+}
+
 std::string text_of(const EarnedGiven& given, const Earned& earned) {
-  const auto& [statement, stops, rivals] = earned;
-  const double earned_eur = statement.earned_at_equal_soc_eur();
+  const auto& [statement, stops, beside] = earned;
   if (given.csv) return statement.csv();
   if (given.html) return statement_page(statement, stops);
   if (!given.json) {
-    return statement.text() + stops_text(stops) +
-           (given.beside ? rivals_text(rivals, earned_eur) : "");
+    return statement.text() + stops_text(stops) + (beside ? beside->text() : "");
   }
   Json json = statement.json();
   json.set("stops", stops_json(stops));
-  if (given.beside) json.set("beside", rivals_json(rivals, earned_eur));
+  if (beside) json.set("beside", beside->json());
   return json.text();
 }
 
@@ -131,11 +140,11 @@ int run_earned(const EarnedGiven& given, SettingsFile& settings) {
   }
   const BatteryParameters battery = battery_of(config, statement);
   const PriceThresholds& thresholds = config.control.guard.thresholds;
-  earned.stops = stops_of_days(log, first_day, last_day, battery, thresholds);
-  if (given.beside) {
-    earned.rivals = find_rivals(priced_cycles(log, first_day, last_day), statement.first_soc_frac(),
-                                battery, thresholds);
-  }
+  QuarterPrices prices(terms.settled);
+  for_each_record_around(log, first_day, last_day,
+                         [&](const CycleRecord& record) { prices.note(record); });
+  earned.stops = stops_of_days(log, first_day, last_day, battery, thresholds, prices);
+  if (given.beside) compare(log, period, battery, config.control.guard, prices, earned);
   std::fputs(text_of(given, earned).c_str(), stdout);
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return 0;
   return fail("the output cannot be written");

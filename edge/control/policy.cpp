@@ -1,6 +1,7 @@
 #include "edge/control/policy.h"
 
 #include "shared/nn/exported_student.h"
+#include "shared/nn/learnt_prices.h"
 #include "shared/outlook/exported_outlook.h"
 
 namespace bess {
@@ -45,6 +46,10 @@ bool guard_rule_holds(int index, const LocalMinute& now, const LatticeState& sta
 int guard_rule_count() { return kExportedGuardRuleCount; }
 
 const char* guard_rule_name(int index) { return exported_guard_rule_name(index); }
+
+std::int32_t student_price_quartile(int quartile) {
+  return learnt_price_quartile(kExportedStudent, quartile);
+}
 
 int count_student_self_check_failures() {
   return count_exported_self_check_failures() + count_exported_outlook_failures();

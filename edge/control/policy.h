@@ -38,6 +38,9 @@ const char* guard_rule_name(int index);
 bool guard_rule_holds(int index, const LocalMinute& now, const LatticeState& state,
                       std::int32_t price_centi_eur_per_mwh);
 
+/// Of the prices that the student learnt to decide on (learnt_prices.h).
+std::int32_t student_price_quartile(int quartile);
+
 /// 0 when this machine computes every golden vector of the weight header bit for bit.
 int count_student_self_check_failures();
 int student_self_check_count();

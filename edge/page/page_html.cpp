@@ -221,7 +221,7 @@ std::string month_row(JsonValue day, std::size_t index) {
          cell("discharged", "discharged_kwh", kKwh) + cell("full cycles", "full_cycles", kCycles) +
          cell("cycles driven", "driven_cycles", kCount) +
          cell("mean price", "mean_price_eur_per_mwh", kPrice) +
-         cell("by quarter-hours", "billed_eur", kEur) + cell("contract", "contract_eur", kEur) +
+         cell("of it an estimate", "estimated_eur", kEur) + cell("contract", "contract_eur", kEur) +
          cell("net", "net_eur", kEur) +
          cell("quarter-hours settled", "settled_quarter_hours", kCount) + "</tr>\n";
 }
@@ -250,20 +250,22 @@ std::string month_table(const ControllerView& view) {
   const JsonValue month = view.month.json.value();
   std::string text =
       "<p>" + html_number(month["earned_eur"], "month/earned_eur", kEur) +
-      " earned; with the same charge at both ends " +
-      html_number(month["earned_at_equal_soc_eur"], "month/earned_at_equal_soc_eur", kEur) +
-      ". An estimate: what flowed, at the prices decided on.</p>\n<p>By quarter-hours " +
-      html_number(month["billed_eur"], "month/billed_eur", kEur) + ", " +
+      " earned by quarter-hours, " +
       html_number(month["settled_quarter_hours"], "month/settled_quarter_hours", kCount) + " of " +
       html_number(month["quarter_hours"], "month/quarter_hours", kCount) +
-      " at their settled price, the others at the last of their minutes; the contract takes " +
+      " at their settled price, the others at the last of their minutes: " +
+      html_number(month["estimated_eur"], "month/estimated_eur", kEur) +
+      " is an estimate. The contract takes " +
       html_number(month["contract_eur"], "month/contract_eur", kEur) + ": " +
-      html_number(month["net_eur"], "month/net_eur", kEur) + " net.</p>\n" + stops_of(month) +
+      html_number(month["net_eur"], "month/net_eur", kEur) +
+      " net; with the same charge at both ends " +
+      html_number(month["earned_at_equal_soc_eur"], "month/earned_at_equal_soc_eur", kEur) +
+      ".</p>\n" + stops_of(month) +
       "<div class=\"wide\" role=\"region\" tabindex=\"0\" aria-label=\"The month by "
       "days\"><table>\n<caption>Local days</caption>\n<thead><tr>";
   for (const char* const head :
        {"day", "earned", "charged", "discharged", "full cycles", "cycles driven", "mean price",
-        "by quarter-hours", "contract", "net", "quarter-hours settled"}) {
+        "of it an estimate", "contract", "net", "quarter-hours settled"}) {
     text += formatted("<th scope=\"col\">%s</th>", head);
   }
   text += "</tr></thead>\n<tbody>\n";

@@ -64,8 +64,9 @@ TEST(DayAccount, TheLineIsThis) {
   records.push_back(stop);
   EXPECT_EQ(
       account_of(records).line(),
-      "2023-11-26: +0.40 EUR (estimate: measured power at the logged price, 19 of 20 cycles, no "
-      "fees), charged 0.0 kWh, discharged 2.0 kWh, 0.25 full cycles, 5 interventions (link 1, "
+      "2023-11-26: +0.40 EUR (0 of 3 quarter-hours at the settled price, an estimate in the "
+      "others; "
+      "no fees), charged 0.0 kWh, discharged 2.0 kWh, 0.25 full cycles, 5 interventions (link 1, "
       "soc_empty 3, held 1)");
 }
 
@@ -76,8 +77,8 @@ TEST(DayAccount, TheLineTellsTheFees) {
   const DayAccount day = account_of(std::vector<CycleRecord>(15, cycle(4'000, 5'000)), terms);
   EXPECT_NEAR(day.money().contract_eur, 0.09, 1e-9);
   EXPECT_NEAR(day.money().net_eur(), -0.19, 1e-9);
-  EXPECT_NE(day.line().find("-0.10 EUR (estimate: measured power at the logged price, 15 of 15 "
-                            "cycles, 0.09 EUR of fees not taken off)"),
+  EXPECT_NE(day.line().find("-0.10 EUR (0 of 2 quarter-hours at the settled price, an estimate in "
+                            "the others; 0.09 EUR of fees not taken off)"),
             std::string::npos)
       << day.line();
 }

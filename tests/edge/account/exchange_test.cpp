@@ -21,7 +21,6 @@ ExchangeSample sample_at(int i, std::int32_t power_w, std::int32_t soc_e4, std::
           .capacity_wh = 8'000,
           .order_w = order_w,
           .written_after_s = after_s,
-          .has_price = true,
           .is_ordered = true};
 }
 

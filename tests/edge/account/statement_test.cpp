@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "edge/account/account_days.h"
 #include "edge/account/statement_page.h"
 #include "shared/local_time.h"
@@ -62,8 +64,10 @@ TEST(Statements, AddUp) {
   EXPECT_NEAR(both.discharged_kwh(), 1, 1e-9);
   EXPECT_NEAR(both.unseen_kwh(), 0, 1e-9);
   EXPECT_NEAR(both.stored_kwh(), (0.425 - 0.30) * 8, 1e-9);
+  // Three quarter-hours each, of the first and of the second day; what is stored has losses.
   EXPECT_NEAR(both.mean_price_eur_per_mwh(), 150, 1e-9);
-  EXPECT_NEAR(both.stored_eur(), 0.15, 1e-9);
+  EXPECT_NEAR(both.stored_eur(), 0.15 * std::sqrt(0.9), 1e-9);
+  EXPECT_NEAR(both.money().estimated_eur, 0.15, 1e-9);
 }
 
 /// 2 kWh in and 1 kWh out, in three quarter-hours each; the first of the second day is published at
@@ -80,11 +84,16 @@ TEST(Statements, AreBilledByQuarterHoursAsFarAsTheyAreSettled) {
   const QuarterHourMoney money = both.money();
   const double before_kwh = 2.0 / 30, then_kwh = 0.5, last_kwh = 1 - before_kwh - then_kwh;
   const double out_eur = (before_kwh * 300 + then_kwh * 100 + last_kwh * 250) / 1'000;
-  EXPECT_NEAR(money.billed_eur, -0.10 + out_eur, 1e-9);
+  EXPECT_NEAR(money.earned_eur, -0.10 + out_eur, 1e-9);
+  EXPECT_NEAR(money.estimated_eur, -0.10 + last_kwh * 0.25, 1e-9);
   EXPECT_NEAR(money.contract_eur, 2 * 0.047 + 0.1 * out_eur + 1 * 0.002, 1e-9);
   EXPECT_EQ(money.published, 2);
   EXPECT_EQ(money.validated, 1);
-  EXPECT_NEAR(both.earned_eur(), 0.15, 1e-9);  // decided at the indicative price, as ever
+  EXPECT_EQ(both.earned_eur(), money.earned_eur);
+  // What is stored would be sold, by the same contract.
+  EXPECT_NEAR(both.earned_at_equal_soc_eur(),
+              money.net_eur() + 0.001 * std::sqrt(0.9) * (both.mean_price_eur_per_mwh() * 0.9 - 2),
+              1e-9);
   const Json json = Json::parse(both.json().text());
   EXPECT_NEAR(json.value()["net_eur"].number().value(), money.net_eur(), 5e-5);
   EXPECT_EQ(json.value()["settled_quarter_hours"].number(), 2);
@@ -98,15 +107,15 @@ TEST(Statements, SayTheSameInEachForm) {
   const std::string text = both.text();
   EXPECT_THAT(text, HasSubstr("2026-11-22       -0.10          2.0             0.0"));
   EXPECT_THAT(text, HasSubstr("together         +0.15          2.0             1.0"));
-  EXPECT_THAT(text, HasSubstr("1.0 kWh more are stored than at the beginning, worth 0.15 EUR"));
-  EXPECT_THAT(text, HasSubstr("+0.30 EUR with the same charge at both ends"));
+  EXPECT_THAT(text, HasSubstr("1.0 kWh more are stored than at the beginning, worth 0.14 EUR"));
+  EXPECT_THAT(text, HasSubstr("+0.29 EUR with the same charge at both ends"));
   EXPECT_THAT(text, HasSubstr("cycles that the student did not decide: price_age 1\n"));
   EXPECT_THAT(
       both.csv(),
       HasSubstr("2026-11-23,0.2500,0.000,1.000,0.0000,17,16,15,250.00,55.00,42.50,0.2500,"));
   const Json json = Json::parse(both.json().text());
   EXPECT_DOUBLE_EQ(json.value()["earned_eur"].number().value(), 0.15);
-  EXPECT_DOUBLE_EQ(json.value()["earned_at_equal_soc_eur"].number().value(), 0.30);
+  EXPECT_DOUBLE_EQ(json.value()["earned_at_equal_soc_eur"].number().value(), 0.2923);
   EXPECT_EQ(json.value()["days"].size(), 2u);
   for (const JsonValue day : json.value()["days"]) {
     EXPECT_THAT(both.csv(), HasSubstr(std::string(day["date"].text()) + ","));

@@ -179,8 +179,8 @@ void tell(const char* name, const Statement& statement, const Month& month) {
               100 * (by_readings_eur(month) / month.record.profit_eur - 1));
   std::printf(
       "%-12s %.4f EUR, record %.4f (%+.3f %%); net energy %+.1f Wh of %.0f; unseen %.2f kWh\n",
-      name, statement.money().billed_eur, month.record.profit_eur,
-      100 * (statement.money().billed_eur / month.record.profit_eur - 1), told_wh - net_wh,
+      name, statement.money().earned_eur, month.record.profit_eur,
+      100 * (statement.money().earned_eur / month.record.profit_eur - 1), told_wh - net_wh,
       month.record.charged_wh, statement.unseen_kwh());
 }
 
@@ -193,7 +193,7 @@ TEST(StatementOfAMonth, IsThatOfTheBatterysOwnRecord) {
     const Statement statement = month.statement();
     tell(map.c_str(), statement, month);
     const QuarterHourMoney money = statement.money();
-    EXPECT_NEAR(money.billed_eur, month.record.profit_eur, apart * month.record.profit_eur);
+    EXPECT_NEAR(money.earned_eur, month.record.profit_eur, apart * month.record.profit_eur);
     EXPECT_EQ(money.quarter_hours, 31 * 96 - 4);
     EXPECT_EQ(money.published, money.quarter_hours);
     EXPECT_EQ(money.unpriced, 0);
@@ -239,7 +239,7 @@ TEST(StatementOfAMonth, IsWhatTheProgramSays) {
   ASSERT_TRUE(said.is_well()) << said.complaint();
   const Json json = Json::parse(said.output);
   const Statement statement = month.statement();
-  EXPECT_NEAR(json.value()["billed_eur"].number().value_or(0), statement.money().billed_eur, 1e-4);
+  EXPECT_NEAR(json.value()["earned_eur"].number().value_or(0), statement.money().earned_eur, 1e-4);
   EXPECT_NEAR(json.value()["charged_kwh"].number().value_or(0), statement.charged_kwh(), 1e-3);
   EXPECT_EQ(json.value()["validated_quarter_hours"].number(), 31 * 96 - 4);
   EXPECT_GT(json.value()["beside"]["foresight_eur"].number().value_or(0),
@@ -251,7 +251,7 @@ TEST(StatementOfAMonth, WithAGapRestartsAMeterCutAndAClockChange) {
   const Month month = run_month(kDisturbed);
   const Statement statement = month.statement();
   tell("disturbed", statement, month);
-  EXPECT_NEAR(statement.money().billed_eur, month.record.profit_eur,
+  EXPECT_NEAR(statement.money().earned_eur, month.record.profit_eur,
               kOfTheMoney * month.record.profit_eur);
   EXPECT_GT(statement.unseen_kwh(), 0);
   EXPECT_LT(statement.unseen_kwh(), 2);

@@ -1,5 +1,6 @@
 #include "workstation/rl/price_map.h"
 
+#include "shared/nn/learnt_prices.h"
 #include "tests/workstation/rl/market_by_hand.h"
 #include "workstation/base/random.h"
 
@@ -79,6 +80,20 @@ TEST(PriceMap, ResolutionLiesWherePricesAre) {
   const PriceMap map = PriceMap::fit(normal_prices(100, 30, 20'000));
   EXPECT_GT(map(110) - map(90), 5 * (map(910) - map(890)));
   EXPECT_NEAR(map(100), 0.5 * 0.3 + 0.5 * 0.5, 0.01);  // half the line, half the median
+}
+
+/// What a header tells of the prices that its student learnt on.
+TEST(PriceMap, KeepsTheQuartilesOfItsPrices) {
+  std::vector<double> prices = normal_prices(100, 80, 20'000);
+  for (std::size_t i = 0; i < prices.size(); i += 9) prices[i] *= 12;  // far beyond the lattice
+  StudentNet net{};
+  std::ranges::copy(PriceMap::fit(prices).table(), net.price_map);
+  std::ranges::sort(prices);
+  for (const int quartile : {1, 2, 3}) {
+    EXPECT_NEAR(learnt_price_quartile(net, quartile),
+                prices[static_cast<std::size_t>(quartile) * 5'000], 1)
+        << quartile;
+  }
 }
 
 TEST(PriceMap, FitNeedsPrices) {
