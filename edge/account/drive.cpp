@@ -1,6 +1,5 @@
 #include "edge/account/drive.h"
 
-#include "edge/account/exchange.h"
 #include "edge/control/policy.h"
 #include "shared/exchange_cost.h"
 #include "shared/local_time.h"
@@ -16,11 +15,10 @@ PricedCycle priced_cycle(const CycleRecord& record, const QuarterPrices& prices)
       record.context_class > 0 && !is_told
           ? record.context_class
           : student_context_class(local_minute_of(record.utc_s), context_centi_of(record));
-  const double from_utc_s = static_cast<double>(record.utc_s) + written_after_s(record);
   const double decided_eur_per_mwh =
       static_cast<double>(record.price.price_centi_eur_per_mwh) / kCentiPerEur;
   return {record.utc_s, record.price.price_centi_eur_per_mwh,
-          static_cast<float>(prices.of_step_eur_per_mwh(from_utc_s).value_or(decided_eur_per_mwh)),
+          static_cast<float>(prices.of_step_eur_per_mwh(record.utc_s).value_or(decided_eur_per_mwh)),
           context_class};
 }
 

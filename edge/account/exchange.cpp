@@ -168,10 +168,6 @@ struct Seen {
   [[nodiscard]] bool tells(double capacity_wh) const { return charge_wh > capacity_wh / 2; }
 };
 
-bool is_ordered(const CycleRecord& record) {
-  return record.written && (record.mode == Mode::kRunning || record.mode == Mode::kHolding);
-}
-
 constexpr double sane(double efficiency) { return std::clamp(efficiency, 0.6, 1.0); }
 
 void walk_along(std::span<const ExchangeSample> samples, const ChargeScale& scale,
@@ -199,23 +195,21 @@ ChargeScale balanced(ChargeScale scale, std::span<const ExchangeSample> samples)
 
 }  // namespace
 
-float written_after_s(const CycleRecord& record) {
-  if (!is_ordered(record) || !record.price.has_row) return 0;
-  // Whole seconds, cut off: half a one more is right in the mean.
-  const std::int64_t written_utc_s = record.price.minute_utc_s + 60 + record.price_age_s;
-  const auto after_s = static_cast<float>(written_utc_s - record.utc_s) + 0.5F;
-  return after_s > 0 && after_s < kWrittenWithinS ? after_s : 0;
-}
-
 bool sample_of(const CycleRecord& record, ExchangeSample& sample) {
   if (!record.has_measurement) return false;
   sample = {.utc_s = record.utc_s,
             .power_w = record.measurement.power_w,
             .soc_e4 = record.measurement.soc_e4,
             .capacity_wh = record.measurement.capacity_wh,
-            .order_w = record.ordered_power_w,
-            .written_after_s = written_after_s(record),
-            .is_ordered = is_ordered(record)};
+            .order_w = record.ordered_power_w};
+  sample.is_ordered =
+      record.written && (record.mode == Mode::kRunning || record.mode == Mode::kHolding);
+  if (sample.is_ordered && record.price.has_row) {
+    // Whole seconds, cut off: half a one more is right in the mean.
+    const std::int64_t written_utc_s = record.price.minute_utc_s + 60 + record.price_age_s;
+    const auto after_s = static_cast<float>(written_utc_s - record.utc_s) + 0.5F;
+    sample.written_after_s = after_s > 0 && after_s < kWrittenWithinS ? after_s : 0;
+  }
   return true;
 }
 

@@ -32,9 +32,6 @@ struct ExchangeSample {
   bool is_ordered = false;    ///< `order_w` is in force from then on
 };
 
-/// How long behind its tick the order of the record was written; 0: none was, or it is not known.
-float written_after_s(const CycleRecord& record);
-
 /// False of a record without a measurement.
 bool sample_of(const CycleRecord& record, ExchangeSample& sample);
 

@@ -27,15 +27,14 @@ std::optional<SettledQuarter> QuarterPrices::find(std::int64_t utc_s) const {
   return SettledQuarter{start_utc_s, found->second.eur_per_mwh, PriceState::kIndicative};
 }
 
-std::optional<double> QuarterPrices::of_step_eur_per_mwh(double from_utc_s) const {
-  const auto start_utc_s = static_cast<std::int64_t>(from_utc_s);
-  const auto first = find(start_utc_s);
-  const std::int64_t end_utc_s = (quarter_hour_of(start_utc_s) + 1) * kQuarterHourS;
-  const double behind =
-      (from_utc_s + kSecondsPerStep - static_cast<double>(end_utc_s)) / kSecondsPerStep;
-  if (!first || behind <= 0) return first ? std::optional(first->eur_per_mwh) : std::nullopt;
+std::optional<double> QuarterPrices::of_step_eur_per_mwh(std::int64_t from_utc_s) const {
+  const auto first = find(from_utc_s);
+  if (!first) return std::nullopt;
+  const std::int64_t end_utc_s = (quarter_hour_of(from_utc_s) + 1) * kQuarterHourS;
+  const auto behind_s = std::max<std::int64_t>(from_utc_s + kSecondsPerStep - end_utc_s, 0);
   // The log may end in it, with nothing known of the next.
-  const SettledQuarter next = find(end_utc_s).value_or(*first);
+  const SettledQuarter next = behind_s > 0 ? find(end_utc_s).value_or(*first) : *first;
+  const double behind = static_cast<double>(behind_s) / kSecondsPerStep;
   return (1 - behind) * first->eur_per_mwh + behind * next.eur_per_mwh;
 }
 

@@ -21,8 +21,8 @@ class QuarterPrices {
 
   /// Of the quarter-hour that holds the instant. None: neither published, nor seen.
   [[nodiscard]] std::optional<SettledQuarter> find(std::int64_t utc_s) const;
-  /// For two minutes of the same power from then on.
-  [[nodiscard]] std::optional<double> of_step_eur_per_mwh(double from_utc_s) const;
+  /// For a cycle's two minutes of the same power from then on.
+  [[nodiscard]] std::optional<double> of_step_eur_per_mwh(std::int64_t from_utc_s) const;
 
  private:
   struct Minute {

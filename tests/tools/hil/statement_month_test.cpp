@@ -1,7 +1,6 @@
 // The statement of a month against the battery's own record of what flowed, and against bess-sim
 // settle: a month of real prices in virtual time with the clock change in it, undisturbed, and with
 // a gap, restarts and a meter that is cut off.
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +11,6 @@
 #include "edge/account/account_days.h"
 #include "edge/account/cycle_account.h"
 #include "edge/account/statement.h"
-#include "edge/log/log_text.h"
 #include "edge/log/ring_log.h"
 #include "shared/host/json.h"
 #include "shared/host/minute_file.h"
@@ -20,13 +18,12 @@
 #include "shared/local_time.h"
 #include "shared/utc_text.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/tools/hil/real_minutes.h"
 #include "tools/hil_runner/run/run_scenario.h"
-#include "tools/settle/settlement.h"
 
 namespace bess {
 namespace {
 
-constexpr const char* kPrices = BESS_SOURCE_DIR "/tests/data/benchmark_minutes_2023.csv.gz";
 constexpr std::int32_t kFirstDay = 20'230'301, kLastDay = 20'230'331;
 constexpr double kOfTheMoney = 0.001;
 
@@ -36,7 +33,7 @@ constexpr int kMonthMinutes = (31 * 24 - 1) * 60 + 4;
 
 std::string month_of(const std::string& parts) {
   return "title = \"March\"\ntime = \"virtual\"\nstart_utc = \"2023-02-28T23:00:00Z\"\nminutes = " +
-         std::to_string(kMonthMinutes) + "\n[prices]\nfile = \"" + kPrices + "\"\n" + parts;
+         std::to_string(kMonthMinutes) + "\n[prices]\nfile = \"" + kRealMinutes + "\"\n" + parts;
 }
 
 /// Six and a half hours without a controller, a stop and a kill with a start soon after, twelve
@@ -76,34 +73,6 @@ does = "edge_kill"
 at_min = 30001
 does = "edge_start"
 )";
-
-MoneyTerms terms_of(const MinuteSeries& prices) {
-  MoneyTerms terms{.capacity_wh = 8'000};
-  std::vector<SettledQuarter> quarters;
-  for (std::size_t m = 0; m < prices.size(); m += 15) {
-    quarters.push_back({prices.utc_s(m), prices.settled[m], PriceState::kValidated});
-  }
-  terms.settled.put(quarters);
-  return terms;
-}
-
-/// As `bess-sim settle --record --edge-log --prices` counts it.
-Account settled_by_record(const Evidence& evidence, const MinuteSeries& prices,
-                          std::int64_t from_utc_s, std::int64_t until_utc_s) {
-  std::string record = "minute_utc,energy_wh,soc\n";
-  for (const MinuteRecord& m : evidence.minutes) {
-    if (m.minute_utc_s < from_utc_s || m.minute_utc_s >= until_utc_s) continue;
-    record +=
-        fmt::format("{},{:.6f},{:.8f}\n", utc_text(m.minute_utc_s).view(), m.energy_wh, m.soc_frac);
-  }
-  char line[kLogLineBytes];
-  std::string log = std::string(line, format_csv_header(line)) + "\n";
-  for (const CycleRecord& r : evidence.log) {
-    if (r.utc_s < from_utc_s || r.utc_s >= until_utc_s) continue;
-    log.append(line, format_csv_line(r, line)).append("\n");
-  }
-  return settle(CsvTable(record, "record"), CsvTable(log, "log"), prices, {}).battery;
-}
 
 /// Each order's power for as long as it was in force; only what still fits flows. In each direction
 /// by itself, where the record has one number a minute.
@@ -145,7 +114,7 @@ Month run_month(const std::string& parts) {
   const TemporaryFolder folder;
   Month month{.scenario = read_scenario(folder.write("march.toml", month_of(parts))),
               .outcome = {},
-              .prices = read_minute_file(kPrices),
+              .prices = read_minute_file(kRealMinutes),
               .terms = {},
               .record = {}};
   month.outcome = run_scenario(month.scenario, true, {});
