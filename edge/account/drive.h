@@ -1,7 +1,8 @@
-// The battery of the specification, driven through the log's cycles: what others than the controller
-// would have earned, 90 % there and back [SPEC 3]. Each decides on the price that the controller had
-// then, with the delay that it came with, and is paid as the controller is (quarter_prices.h). Its
-// order begins at the tick, as in the workstation; the controller's some seconds later.
+// The battery of the specification, driven through the log's cycles: what others than the
+// controller would have earned, 90 % there and back [SPEC 3]. Each decides on the price that the
+// controller had then, with the delay that it came with, and is paid as the controller is
+// (quarter_prices.h). Its order begins at the tick, as in the workstation; the controller's some
+// seconds later.
 #pragma once
 
 #include <cstdint>

@@ -1,8 +1,8 @@
 // What others would have earned with the same battery, to hold what was earned against: resting, a
-// rule, the student with nobody in its way, and foresight. All begin at the state of charge at which
-// the days began, decide in the cycles of the log on the price that the controller had there, and are
-// paid as it was: by quarter-hours, at the settled price where it is published, less what the
-// contract takes. Where the log has no price, all rest.
+// rule, the student with nobody in its way, and foresight. All begin at the state of charge at
+// which the days began, decide in the cycles of the log on the price that the controller had there,
+// and are paid as it was: by quarter-hours, at the settled price where it is published, less what
+// the contract takes. Where the log has no price, all rest.
 //
 // Two figures of each: what was paid, and the same with what it stores more at the end than at the
 // beginning sold at the mean price, or what is missing bought. They are those of `bess-train
@@ -57,7 +57,8 @@ struct Rivals {
   Rival foresight;  ///< knows every price: the most in either figure, a bound and no rival
 };
 
-/// `soc_frac` before the first cycle. All zero without cycles, or where the battery has no capacity.
+/// `soc_frac` before the first cycle. All zero without cycles, or where the battery has no
+/// capacity.
 Rivals find_rivals(std::span<const PricedCycle> cycles, double soc_frac,
                    const BatteryParameters& battery, const PriceThresholds& thresholds,
                    const QuartileRule& rule, double mean_eur_per_mwh);

@@ -2,8 +2,9 @@
 //
 // The cost is an estimate: what the student, undisturbed, would have earned in those very cycles
 // from the charge that the battery had when they began, less what was earned in them, both at the
-// price of their quarter-hours; what either stores besides counts at the mean price of all days. A cycle without a price or without a reading
-// has no cost that could be told; such cycles are counted. Below zero the stop has earned.
+// price of their quarter-hours; what either stores besides counts at the mean price of all days. A
+// cycle without a price or without a reading has no cost that could be told; such cycles are
+// counted. Below zero the stop has earned.
 #pragma once
 
 #include <cstdint>

@@ -47,9 +47,9 @@ constexpr const char* kHelp =
   --html         a page to print, to hold beside the bill
 
 Earned is what flowed, by quarter-hours: at the settled price where bess-notify has fetched it
-([settled]), else at the last of the minutes, an estimate. Then what [contract] takes; what is stored
-more or less at the end than at the beginning; and where the student did not decide, by reasons, with
-what it would have earned there.
+([settled]), else at the last of the minutes, an estimate. Then what [contract] takes; what is
+stored more or less at the end than at the beginning; and where the student did not decide, by
+reasons, with what it would have earned there.
 Read from the log in [state] folder: days that it no longer holds are not counted.
 Exit codes: 0 done   1 the log cannot be read, or has nothing of these days   2 bad command line
 

@@ -88,8 +88,8 @@ TEST_F(Rounds, TheDayIsToldWhenTheNextBegins) {
   round_of_its_own(settings_, kNow + 86'430);
   EXPECT_EQ(count_of(mails(), "Subject: "), 1U);
   EXPECT_THAT(mails(),
-              HasSubstr("day 2023-03-27: +0.77 EUR (estimate: measured power at the logged "
-                        "price, 30 of 30 cycles, no fees), charged 0.0 kWh, discharged 3.9 "
+              HasSubstr("day 2023-03-27: +0.77 EUR (0 of 4 quarter-hours at the settled price, an "
+                        "estimate in the others; no fees), charged 0.0 kWh, discharged 3.9 "
                         "kWh, 0.00 full cycles, 0 interventions"));
 }
 

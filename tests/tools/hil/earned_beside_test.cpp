@@ -28,8 +28,9 @@ constexpr double kApart = 0.01;
 constexpr double kCapacityMwh = 0.008;
 constexpr const char* kNames[] = {"rule_eur", "student_undisturbed_eur", "foresight_eur"};
 
-/// A day without a controller for half an hour and without prices for twelve minutes; the day of the clock
-/// change, with a stop, a kill, and a start before the next tick each; one with none of it.
+/// A day without a controller for half an hour and without prices for twelve minutes; the day of
+/// the clock change, with a stop, a kill, and a start before the next tick each; one with none of
+/// it.
 constexpr const char* kThreeDays = R"(title = "Three days"
 time = "virtual"
 start_utc = "2023-03-24T23:00:00Z"
@@ -77,7 +78,7 @@ struct Judged {
 /// A run in virtual time, and what the three programs make of it.
 class SameDays {
  public:
-  explicit SameDays(const std::string& scenario)
+  explicit SameDays(const std::string& scenario, const std::string& costs = "")
       : folder_("/dev/shm") {  // a record waits for its disk
     set_market_time_zone();
     prices_ = read_minute_file(kRealMinutes);
@@ -95,7 +96,10 @@ class SameDays {
     config_ =
         folder_.write("edge.toml", "[battery]\nmap = \"" BESS_SOURCE_DIR
                                    "/edge/maps/alphaess.toml\"\n"
-                                   "host = \"127.0.0.1\"\n[price]\nurl = \"http://127.0.0.1/\"\n");
+                                   "host = \"127.0.0.1\"\n[price]\nurl = \"http://127.0.0.1/\"\n"
+                                   "[contract]\n" +
+                                       costs);
+    train_ = folder_.write("train.toml", "[costs]\n" + costs);
   }
 
   [[nodiscard]] Json earned(const std::string& period) const {
@@ -120,8 +124,8 @@ class SameDays {
     }
     const ProgramResult said = run_and_hear(
         {BESS_TRAIN_PROGRAM, "evaluate", "--prices", folder_.file("traded.csv"), "--split", "all",
-         "--carry-soc", "--initial-soc", formatted("%.4f", soc_percent / 100), "--json", "--policy",
-         rule, "compiled", "foresight"},
+         "--carry-soc", "--config", train_, "--initial-soc", formatted("%.4f", soc_percent / 100),
+         "--json", "--policy", rule, "compiled", "foresight"},
         60);
     EXPECT_TRUE(said.is_well()) << said.complaint();
     Judged judged;
@@ -168,7 +172,7 @@ class SameDays {
   }
 
   const TemporaryFolder folder_;
-  std::string config_;
+  std::string config_, train_;
   MinuteSeries prices_;
   Evidence evidence_;
 };
@@ -218,6 +222,20 @@ TEST(EarnedBeside, IsThatOfDaysWithAGapAClockChangeAndRestarts) {
   for (const char* period : {"2023-03-25", "2023-03-26", "2023-03-27", "2023-03-25..2023-03-27"}) {
     expect_alike(days, period);
   }
+}
+
+/// With a contract that lets none of them trade as before.
+TEST(EarnedBeside, TakesTheContractFromAllAlike) {
+  const SameDays days(std::string(kThreeDays) + kRealMinutes + kTheirEvents,
+                      "import_adder_eur_per_mwh = 20\nexport_fee_eur_per_mwh = 3\n"
+                      "export_percent = 4\n");
+  const Json earned = days.earned("2023-03-26");
+  const Judged judged = days.evaluated("2023-03-26", earned);
+  for (const char* name : kNames) {
+    expect_close(SameDays::number(earned.value()["beside"]["paid"][name]), judged.paid.at(name),
+                 std::string(name) + " less the contract");
+  }
+  EXPECT_LT(judged.paid.at("foresight_eur"), 6.5);  // of 7.24
 }
 
 }  // namespace
