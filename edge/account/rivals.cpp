@@ -231,30 +231,35 @@ double Comparison::error_eur(const Rival& rival) const {
 
 std::string Comparison::text() const {
   const double earned_eur = battery.earned_at_equal_soc_eur();
-  std::string text =
-      "with the same battery on the same prices    paid EUR  with the same charge at both ends\n";
-  add_formatted(text, "  %-38s  %+10.2f  %+10.2f\n", "this battery", battery.money().net_eur(),
-                earned_eur);
-  add_formatted(text, "  %-38s  %+10.2f  %+10.2f\n", "at rest", 0.0, 0.0);
-  const auto row = [&](const std::string& name, const Rival& rival) {
-    add_formatted(text, "  %-38s  %+10.2f  %+10.2f: this battery %+.2f", name.c_str(),
-                  rival.paid_eur, rival.at_equal_charge_eur, ahead_eur(rival));
+  std::string text = formatted("%-38s  %10s  with the same charge at both ends\n",
+                               "on the same prices, paid alike", "paid EUR");
+  const auto row = [&](const std::string& name, double paid_eur, double together_eur) {
+    add_formatted(text, "  %-36s  %+10.2f  %+10.2f", name.c_str(), paid_eur, together_eur);
+  };
+  row("this battery", battery.money().net_eur(), earned_eur);
+  text += "\n";
+  const auto rival_row = [&](const std::string& name, const Rival& rival) {
+    row(name, rival.paid_eur, rival.at_equal_charge_eur);
+    add_formatted(text, ": this battery %+.2f", ahead_eur(rival));
     const double error = error_eur(rival);
     if (!std::isnan(error)) add_formatted(text, " ± %.2f over days", error);
     text += "\n";
   };
-  row("a rule", rivals.rule);
-  row(formatted("this program's student %08x, undisturbed", student_hash()), rivals.student);
-  row("foresight, the most in either column", rivals.foresight);
+  rival_row("at rest", {});
+  rival_row("a rule", rivals.rule);
+  rival_row(formatted("student %08x, undisturbed", student_hash()), rivals.student);
+  rival_row("foresight, the most in each column", rivals.foresight);
   if (rivals.foresight.at_equal_charge_eur > 0) {
-    add_formatted(text, "%.0f %% of foresight; ",
+    add_formatted(text, "%.0f %% of foresight\n",
                   100 * earned_eur / rivals.foresight.at_equal_charge_eur);
   }
-  text += "all are paid by quarter-hours, less the contract, and rest where the log has no price\n";
+  text += "paid by quarter-hours, less the contract; where the log has no price all rest\n";
   text += rule_text(rule);
   if (decided_otherwise > 0) {
-    add_formatted(text, "in %d of %d cycles the student of the time decided otherwise\n",
-                  decided_otherwise, decided);
+    add_formatted(text,
+                  "student %08x is this program's: in %d of %d cycles that of the time decided "
+                  "otherwise\n",
+                  student_hash(), decided_otherwise, decided);
   }
   return text;
 }

@@ -247,15 +247,15 @@ TEST(Comparisons, SayTheSameInEachForm) {
                           12,
                           statement};
   const std::string text = beside.text();
-  EXPECT_THAT(text, HasSubstr("  a rule                                       +1.50       +1.00: "
+  EXPECT_THAT(text, HasSubstr("  a rule                                     +1.50       +1.00: "
                               "this battery +1.00\n"));
   EXPECT_THAT(text, HasSubstr("undisturbed  "));
   EXPECT_THAT(text, HasSubstr("+2.25       +2.50: this battery -0.50\n"));
-  EXPECT_THAT(text, HasSubstr("50 % of foresight; "));
+  EXPECT_THAT(text, HasSubstr("50 % of foresight\n"));
   EXPECT_THAT(text,
               HasSubstr("charges below 20.00 and discharges above 90.50 EUR/MWh, the quartiles "
                         "of the prices of 30 days before\n"));
-  EXPECT_THAT(text, HasSubstr("in 12 of 720 cycles the student of the time decided otherwise\n"));
+  EXPECT_THAT(text, HasSubstr("in 12 of 720 cycles that of the time decided otherwise\n"));
   const Json json = Json::parse(beside.json().text());
   EXPECT_DOUBLE_EQ(json.value()["share_of_foresight"].number().value(), 0.5);
   EXPECT_DOUBLE_EQ(json.value()["student_undisturbed_eur"].number().value(), 2.5);
