@@ -20,6 +20,7 @@ namespace {
 
 constexpr int kDaysMax = 7;  ///< told at once, after the notifier was away
 constexpr std::int64_t kOrderS = 10;
+constexpr std::int64_t kEarnedS = 30;  ///< once a day
 constexpr std::int64_t kKeepEnergyEveryS = 3'600;
 
 /// 0 when no cycle has ended yet.
@@ -99,11 +100,20 @@ void Notifier::run_round(std::int64_t now_utc_s) {
   const ControllerStatus status = ask_controller(settings_.program, settings_.config_path);
   std::vector<Trouble> troubles = troubles_of(status);
   if (!memory_trouble_.empty()) troubles.push_back({.key = "memory", .text = memory_trouble_});
+  look_at_settled(now_utc_s);
+  if (!settled_trouble_.empty()) troubles.push_back({.key = "settled", .text = settled_trouble_});
   tell_events(book_.observe(troubles, now_utc_s), now_utc_s);
   read_log(newest_utc_of(status), now_utc_s);
   publish(status);
   keep();  // before it is sent: killed in between, a message is sent late and not never
   for (auto& [name, lane] : lanes_) lane.begin_round(now_utc_s);
+}
+
+void Notifier::look_at_settled(std::int64_t now_utc_s) {
+  constexpr std::int64_t kEveryS = 3'600, kSoonS = 300;
+  if (settings_.settled.url.empty() || now_utc_s < settled_due_utc_s_) return;
+  settled_trouble_ = settled_trouble(settings_.settled, now_utc_s);
+  settled_due_utc_s_ = now_utc_s + (settled_trouble_.empty() ? kEveryS : kSoonS);
 }
 
 void Notifier::follow_orders() {
@@ -207,7 +217,12 @@ void Notifier::tell_days(const LogReader& log, std::int64_t newest_utc_s, std::i
   if (days.size() > kDaysMax) days.erase(days.begin(), days.end() - kDaysMax);
   for (const DayAccount& day : days) {
     tell({.kind = MessageKind::kDay, .key = day.date(), .text = day.line(), .utc_s = now_utc_s});
-    if (mqtt_ != nullptr) mqtt_->retain(topic(settings_.node, "day"), day_json(day));
+    if (mqtt_ == nullptr) continue;
+    const ProgramResult answer = run_and_hear({settings_.program, "earned", day.date(), "--beside",
+                                               "--json", "--config", settings_.config_path},
+                                              kEarnedS);
+    const Json earned = Json::parse(answer.output);
+    mqtt_->retain(topic(settings_.node, "day"), day_json(day, earned.value()["beside"]));
   }
   told_.local_day = yesterday;
 }

@@ -55,6 +55,8 @@ class Notifier {
   void read_log(std::int64_t newest_utc_s, std::int64_t now_utc_s);
   void tell_days(const LogReader& log, std::int64_t newest_utc_s, std::int64_t now_utc_s);
   void publish(const ControllerStatus& status);
+  /// Once an hour: the file is long.
+  void look_at_settled(std::int64_t now_utc_s);
 
   const NotifySettings settings_;
   NotifierState told_;  ///< as it was kept last
@@ -69,7 +71,9 @@ class Notifier {
   std::unique_ptr<MqttClient> mqtt_;
   std::map<std::string, Lane> lanes_;  ///< after what their threads use
   std::string kept_;                   ///< the text that was written last
-  std::string memory_trouble_;         ///< why what is told cannot be kept; empty = it is
+  std::string settled_trouble_;        ///< why nobody knows what is billed; empty = it is known
+  std::int64_t settled_due_utc_s_ = 0;
+  std::string memory_trouble_;  ///< why what is told cannot be kept; empty = it is
 };
 
 }  // namespace bess

@@ -159,6 +159,18 @@ SettledResult fetch_settled(const SettledSource& source, std::int64_t now_utc_s,
   return result;
 }
 
+std::string settled_trouble(const SettledSource& source, std::int64_t now_utc_s) {
+  constexpr std::int64_t kLateS = 3 * kDayS;  // a day is published on the next
+  constexpr const char* kMend = ": bess-notify --settle says why";
+  SettledPrices prices;
+  const std::string loss = prices.read(source.file);
+  if (!loss.empty()) return loss;
+  if (prices.quarters().empty()) return std::string("no settled price has come yet") + kMend;
+  const std::int64_t newest_utc_s = prices.quarters().back().start_utc_s;
+  if (midnight_before(now_utc_s) - newest_utc_s <= kLateS) return "";
+  return "no settled price is newer than " + std::string(utc_text(newest_utc_s).view()) + kMend;
+}
+
 SettledFetcher::SettledFetcher(const SettledSource& source)
     : source_(source), thread_([this](const std::stop_token& stop) { run(stop); }) {}
 

@@ -54,6 +54,9 @@ struct SettledResult {
   bool is_whole = false;  ///< up to the last of yesterday
   std::string trouble;    ///< empty: fetched and kept
 };
+/// Why what days ago should have been published is not there, in one line; empty: it is.
+std::string settled_trouble(const SettledSource& source, std::int64_t now_utc_s);
+
 /// Now, at once; waits as long as the settings say.
 SettledResult fetch_settled(const SettledSource& source, std::int64_t now_utc_s,
                             const std::stop_token& stop);

@@ -95,6 +95,28 @@ TEST_F(Rounds, TheDayIsToldWhenTheNextBegins) {
 
 /// A card wears by writing: what the log can give again is kept once an hour, and what has not
 /// changed not at all.
+/// A day late is no trouble, four are one, and its end is told.
+TEST_F(Rounds, SettledPricesThatStayAwayAreAnAlarm) {
+  use_mail();
+  settings_.after_s = 0;
+  settings_.settled.url = "http://127.0.0.1:1/";
+  settings_.settled.file = folder_.file("notify/settled.csv");
+  round_of_its_own(settings_, kNow);
+  EXPECT_THAT(mails(), HasSubstr("ALARM: no settled price has come yet: bess-notify --settle"));
+  const auto settle_until = [&](std::int64_t utc_s) {
+    SettledPrices prices;
+    prices.put(std::vector<SettledQuarter>{{utc_s / 900 * 900 - 900, 80}});
+    EXPECT_NE(folder_.write("notify/settled.csv", prices.text()), "");
+  };
+  settle_until(kNow - 2 * 86'400);
+  round_of_its_own(settings_, kNow + 600);
+  EXPECT_THAT(mails(), HasSubstr("over: no settled price has come yet"));
+  settle_until(kNow - 4 * 86'400);
+  round_of_its_own(settings_, kNow + 1'200);
+  EXPECT_THAT(mails(), HasSubstr("ALARM: no settled price is newer than 2023-03-22T23:45:00Z"));
+  EXPECT_EQ(count_of(mails(), "Subject: "), 3U);
+}
+
 TEST_F(Rounds, WhatWasToldIsWrittenWhenItChanges) {
   RingLog ring;
   FileMessage error;
@@ -233,6 +255,35 @@ TEST_F(Mqtt, TheCountersOfEnergyOnlyGrowOverRestarts) {
   round_of_its_own(settings_, kNow + 720);
   EXPECT_THAT(state("\"discharged_kwh\":0.6"),
               AllOf(HasSubstr("\"charged_kwh\":0.300,"), HasSubstr("\"earned_today_eur\":0.02,")));
+}
+
+/// What others would have earned is the program's own answer.
+TEST_F(Mqtt, TheDayComesWithContractAndRivals) {
+  Broker broker(folder_, port());
+  settings_.money.contract.costs.export_fee_eur_per_mwh = 30;
+  settings_.program = write_script("bess-edge", R"(case "$1 $3 $4 $5" in
+"earned --beside --json --config") echo "{\"beside\":{\"rule_eur\":1.25,\"date\":\"$2\"}}";;
+*) cat )" + folder_.file("status.json") + ";;\nesac");
+  RingLog ring;
+  FileMessage error;
+  ASSERT_TRUE(ring.open(settings_.ring.c_str(), 2'000, error)) << error.c_str();
+  const auto append = [&](std::int64_t utc_s) {
+    CycleRecord record{.utc_s = utc_s, .mode = Mode::kRunning};
+    record.has_measurement = record.price.has_row = true;
+    record.measurement.power_w = -3'000;
+    record.price = {.has_row = true, .minute_utc_s = utc_s - 60, .price_centi_eur_per_mwh = 10'000};
+    ASSERT_TRUE(ring.append(record));
+    set_status("ok", "", utc_s);
+  };
+  append(kNow);
+  round_of_its_own(settings_, kNow);
+  append(kNow + 120);
+  append(kNow + 86'400);
+  round_of_its_own(settings_, kNow + 86'400);
+  Listener later(port(), "bess/v1/garage/day");
+  EXPECT_THAT(later.await("/day", "net_eur"),
+              AllOf(HasSubstr("\"date\":\"2023-03-27\",\"earned_eur\":0.02,"),
+                    HasSubstr("\"contract_eur\":0.01,\"net_eur\":0.01,\"rule_eur\":1.25}")));
 }
 
 /// A hold and its end by the broker, where the key allows it: one at a time, in order, never one
