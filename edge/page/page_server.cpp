@@ -1,12 +1,12 @@
 #include "edge/page/page_server.h"
 
-#include <httplib.h>
 #include <sys/socket.h>
 
 #include <functional>
 
 #include "edge/beside/orders.h"
 #include "edge/log/journal.h"
+#include "edge/page/front_door.h"
 #include "edge/page/page_files.h"
 #include "edge/page/page_html.h"
 #include "shared/host/run_program.h"
@@ -16,9 +16,6 @@
 namespace bess {
 namespace {
 
-constexpr int kThreads = 4;
-constexpr time_t kPatienceS = 5;
-constexpr std::size_t kBodyBytesMax = 4'096;
 constexpr std::int64_t kOrderS = 20;
 constexpr const char* kHtml = "text/html; charset=utf-8";
 constexpr const char* kJson = "application/json";
@@ -64,13 +61,7 @@ bool wants_html(const httplib::Request& request) {
 }  // namespace
 
 PageServer::PageServer(const PageSettings& settings)
-    : settings_(settings), views_(settings), server_(std::make_unique<httplib::Server>()) {
-  server_->new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
-  server_->set_read_timeout(kPatienceS);
-  server_->set_write_timeout(kPatienceS);
-  server_->set_keep_alive_max_count(20);
-  server_->set_keep_alive_timeout(kPatienceS);
-  server_->set_payload_max_length(kBodyBytesMax);
+    : settings_(settings), views_(settings), server_(std::make_unique<FrontDoor>()) {
   // The library's own would let two pages share a port unnoticed.
   server_->set_socket_options([](socket_t socket) {
     const int yes = 1;
@@ -187,6 +178,7 @@ bool PageServer::bind(std::string& error) {
     error = "[page] host, port: " + settings_.host + ":" + std::to_string(settings_.port) +
             " cannot be listened on: is another program there?";
   }
+  if (is_bound) server_->lengthen_queue();
   return is_bound;
 }
 

@@ -4,8 +4,7 @@
 //   its numbers /statement    the month, to print         /metrics      for Prometheus POST /orders
 //   a form, or the same fields as JSON's poor cousin from curl: -d order=hold -d power_w=0 ...
 //
-// Four threads, five seconds for a slow client, small requests only: whoever is rude is in nobody's
-// way but the page's.
+// Small requests only, and nobody waits for whoever is slow or rude (front_door.h).
 #pragma once
 
 #include <memory>
@@ -15,12 +14,13 @@
 #include "edge/page/request_guard.h"
 
 namespace httplib {
-class Server;
 struct Request;
 struct Response;
 }  // namespace httplib
 
 namespace bess {
+
+class FrontDoor;
 
 class PageServer {
  public:
@@ -44,7 +44,7 @@ class PageServer {
   const PageSettings& settings_;
   ControllerViews views_;
   WrongTokens wrong_tokens_;
-  std::unique_ptr<httplib::Server> server_;
+  std::unique_ptr<FrontDoor> server_;
   int port_ = 0;
 };
 

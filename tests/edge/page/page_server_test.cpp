@@ -272,6 +272,48 @@ TEST_F(PageServerTest, ManyWhoLookAtOnceAskTheControllerOnce) {
   EXPECT_EQ(count, 2);  // status, and its metrics
 }
 
+/// Sixty connections of one address, which say nothing, a half of a header, or a byte now and then:
+/// the page is there all the same, while they stand and while new ones come.
+TEST_F(PageServerTest, HalfOpenConnectionsKeepNobodyWaiting) {
+  using std::chrono::steady_clock;
+  serve();
+  static_cast<void>(get("/"));  // its answers are made
+  std::vector<std::unique_ptr<FileDescriptor>> rude;
+  const sockaddr_in address = loopback_address(static_cast<std::uint16_t>(server_->port()));
+  const auto come = [&](int count) {
+    for (int i = 0; i < count; ++i) {
+      rude.push_back(std::make_unique<FileDescriptor>(socket(AF_INET, SOCK_STREAM, 0)));
+      ASSERT_EQ(
+          connect(rude.back()->get(), reinterpret_cast<const sockaddr*>(&address), sizeof address),
+          0);
+      const std::string said = i % 3 == 0 ? "" : "GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nX: ";
+      send(rude.back()->get(), said.data(), said.size(), MSG_NOSIGNAL);
+    }
+  };
+  come(60);
+  for (int round = 0; round < 6; ++round) {
+    const auto asked = steady_clock::now();
+    EXPECT_EQ(get("/page.css").status, 200);
+    const std::chrono::duration<double> waited = steady_clock::now() - asked;
+    std::printf("with %zu of them the page came after %.2f s\n", rude.size(), waited.count());
+    EXPECT_LT(waited.count(), 4);
+    come(10);
+    for (const auto& one : rude) send(one->get(), "y", 1, MSG_NOSIGNAL);
+  }
+  // Within its patience one that is alone, or nearly, may be as slow as before.
+  rude.clear();
+  std::this_thread::sleep_for(std::chrono::milliseconds(700));
+  come(1);
+  std::this_thread::sleep_for(std::chrono::seconds(2));
+  const std::string rest = "y\r\nConnection: close\r\n\r\n";
+  const std::string whole = "GET /page.css HTTP/1.1\r\nHost: 127.0.0.1\r\n" + rest;
+  EXPECT_EQ(send(rude.back()->get(), whole.data(), whole.size(), MSG_NOSIGNAL),
+            static_cast<ssize_t>(whole.size()));
+  char answer[16] = "";
+  EXPECT_GT(recv(rude.back()->get(), answer, 12, MSG_WAITALL), 0);
+  EXPECT_STREQ(answer, "HTTP/1.1 200");
+}
+
 /// Requests that no browser sends, drawn: nothing crashes, nothing is ordered, nothing but the page
 /// is read.
 TEST_F(PageServerTest, HostileRequestsGetNothing) {
