@@ -8,6 +8,7 @@
 #include "edge/account/account_days.h"
 #include "edge/control/policy.h"
 #include "edge/control/safety_guard.h"
+#include "shared/exchange_cost.h"
 #include "shared/host/text.h"
 #include "shared/local_time.h"
 
@@ -55,8 +56,10 @@ class ValueOfCharge {
   ValueOfCharge(const Trade& trade, bool counts_stored)
       : cycles_(trade.cycles), battery_(trade.battery), anchors_(cycles_.size() / kBlock + 2) {
     Values values{};
-    for (int level = 0; level < kSocLevels && counts_stored; ++level) {
-      values[at(level)] = static_cast<float>(trade.stored_eur(soc_of(level)));
+    for (int level = 0; level < kSocLevels; ++level) {
+      for (const Action action : kActions)
+        moves_[at(level)][at(action)] = move(soc_of(level), action);
+      if (counts_stored) values[at(level)] = static_cast<float>(trade.stored_eur(soc_of(level)));
     }
     anchors_.back() = values;
     for (std::size_t i = cycles_.size(); i-- > 0;) {
@@ -70,8 +73,7 @@ class ValueOfCharge {
     if (cycle % kBlock == 0) make_block(cycle);
     std::array<double, kActionCount> values{};
     for (const Action action : kActions) {
-      values[static_cast<std::size_t>(action)] =
-          value_of(cycle, soc_frac, action, block_[cycle % kBlock + 1]);
+      values[at(action)] = value_of(cycle, move(soc_frac, action), block_[cycle % kBlock + 1]);
     }
     return argmax_action(values.data());
   }
@@ -79,8 +81,15 @@ class ValueOfCharge {
  private:
   static constexpr std::size_t kBlock = 150;
   using Values = std::array<float, kSocLevels>;
+  /// What an action exchanges, and where between two levels it leads.
+  struct Move {
+    double mwh = 0;
+    int below = 0;
+    double share = 0;
+  };
 
   static std::size_t at(int level) { return static_cast<std::size_t>(level); }
+  static std::size_t at(Action action) { return static_cast<std::size_t>(action); }
   [[nodiscard]] double soc_of(int level) const {
     return battery_.soc_min_frac +
            (battery_.soc_max_frac - battery_.soc_min_frac) * level / (kSocLevels - 1);
@@ -96,28 +105,31 @@ class ValueOfCharge {
     Values values{};
     for (int level = 0; level < kSocLevels; ++level) {
       double best = -1e30;
-      for (const Action action : kActions) {
-        best = std::max(best, value_of(cycle, soc_of(level), action, after));
+      for (const Move& move : moves_[at(level)]) {
+        best = std::max(best, value_of(cycle, move, after));
       }
       values[at(level)] = static_cast<float>(best);
     }
     return values;
   }
 
-  [[nodiscard]] double value_of(std::size_t cycle, double soc_frac, Action action,
-                                const Values& after) const {
+  [[nodiscard]] Move move(double soc_frac, Action action) const {
     const BatteryStep next = full_step(battery_, soc_frac, action);
     const double window = battery_.soc_max_frac - battery_.soc_min_frac;
     const double place =
         std::clamp((next.soc_frac - battery_.soc_min_frac) / window, 0.0, 1.0) * (kSocLevels - 1);
     const int below = std::min(static_cast<int>(place), kSocLevels - 2);
-    const double share = place - below;
-    return earned_eur(battery_, next, cycles_[cycle].paid_eur_per_mwh) +
-           (1 - share) * after[at(below)] + share * after[at(below + 1)];
+    return {next.power_w * kHoursPerStep / kWattsPerMegawatt, below, place - below};
+  }
+
+  [[nodiscard]] double value_of(std::size_t cycle, const Move& move, const Values& after) const {
+    return -exchange_cost_eur(battery_, move.mwh, cycles_[cycle].paid_eur_per_mwh) +
+           (1 - move.share) * after[at(move.below)] + move.share * after[at(move.below + 1)];
   }
 
   std::span<const PricedCycle> cycles_;
   const BatteryParameters& battery_;
+  std::array<std::array<Move, kActionCount>, kSocLevels> moves_{};
   std::vector<Values> anchors_;
   std::array<Values, kBlock + 1> block_{};
 };

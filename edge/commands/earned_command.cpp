@@ -75,6 +75,17 @@ int fail(const std::string& message) {
   return 1;
 }
 
+std::string span_text(std::int32_t first_day, std::int32_t last_day) {
+  return DayAccount(first_day).date() + " to " + DayAccount(last_day).date();
+}
+
+/// The days that one can ask for.
+std::string held_text(const LogReader& log) {
+  CycleRecord oldest, newest;
+  if (!log.read(log.oldest_number(), oldest) || !log.newest(newest)) return "";
+  return "; it has " + span_text(local_day_at(oldest.utc_s), local_day_at(newest.utc_s));
+}
+
 /// As the controller may use it.
 BatteryParameters battery_of(const EdgeConfig& config, const Statement& statement) {
   const GuardSettings& guard = config.control.guard;
@@ -135,8 +146,7 @@ int run_earned(const EarnedGiven& given, SettingsFile& settings) {
                     Statement(accounts_of_days(log, first_day, last_day, terms), terms.contract)};
   const Statement& statement = earned.statement;
   if (statement.is_empty()) {
-    return fail("the log holds no cycle of " + DayAccount(first_day).date() + " to " +
-                DayAccount(last_day).date());
+    return fail("the log holds no cycle of " + span_text(first_day, last_day) + held_text(log));
   }
   const BatteryParameters battery = battery_of(config, statement);
   const PriceThresholds& thresholds = config.control.guard.thresholds;
