@@ -6,20 +6,17 @@
 //
 // Two figures of each: what was paid, and the same with what it stores more at the end than at the
 // beginning sold at the mean price, or what is missing bought. They are those of `bess-train
-// evaluate --carry-soc`, before and behind its charge left.
+// evaluate --carry-soc`, before and behind its charge left. Told in comparison.h.
 #pragma once
 
 #include <cstdint>
 #include <map>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "edge/account/drive.h"
 #include "edge/account/period.h"
-#include "edge/account/statement.h"
 #include "edge/log/log_reader.h"
-#include "shared/host/json.h"
 
 namespace bess {
 
@@ -62,22 +59,5 @@ struct Rivals {
 Rivals find_rivals(std::span<const PricedCycle> cycles, double soc_frac,
                    const BatteryParameters& battery, const PriceThresholds& thresholds,
                    const QuartileRule& rule, double mean_eur_per_mwh);
-
-/// All that is told of them beside the battery.
-struct Comparison {
-  Rivals rivals;
-  QuartileRule rule;
-  int decided = 0;
-  int decided_otherwise = 0;
-  const Statement& battery;
-
-  /// That much the battery has earned more, with the same charge at both ends.
-  [[nodiscard]] double ahead_eur(const Rival& rival) const;
-  /// Standard error of that over days, as if they were independent; NaN of seven and fewer.
-  [[nodiscard]] double error_eur(const Rival& rival) const;
-  /// Lines, ended.
-  [[nodiscard]] std::string text() const;
-  [[nodiscard]] Json json() const;
-};
 
 }  // namespace bess

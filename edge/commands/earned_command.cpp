@@ -3,10 +3,9 @@
 #include <optional>
 
 #include "edge/account/account_days.h"
+#include "edge/account/comparison.h"
 #include "edge/account/money_settings.h"
 #include "edge/account/period.h"
-#include "edge/account/rivals.h"
-#include "edge/account/statement.h"
 #include "edge/account/statement_page.h"
 #include "edge/account/stops.h"
 #include "edge/commands/command_list.h"
@@ -109,9 +108,10 @@ void compare(const LogReader& log, const Period& period, const BatteryParameters
   const Statement& statement = earned.statement;
   const LoggedMarket market = logged_market(log, period, prices, guard.price_age_s_max);
   const QuartileRule rule = quartile_rule(log, period.first_day);
-  earned.beside.emplace(find_rivals(market.cycles, statement.first_soc_frac(), battery,
-                                    guard.thresholds, rule, statement.mean_price_eur_per_mwh()),
-                        rule, market.decided, market.decided_otherwise, statement);
+  earned.beside.emplace(
+      Comparison{find_rivals(market.cycles, statement.first_soc_frac(), battery, guard.thresholds,
+                             rule, statement.mean_price_eur_per_mwh()),
+                 rule, market.decided, market.decided_otherwise, statement});
 }
 
 std::string text_of(const EarnedGiven& given, const Earned& earned) {

@@ -24,19 +24,15 @@ constexpr int kOfAnAddress = 4;
 constexpr int kOfAll = 8;
 constexpr std::size_t kHeaderBytesMax = 32'768;
 
-struct Peer {
-  std::string address;
-  int port = 0;
-};
-
-Peer peer_of(int socket) {
+/// "127.0.0.1"; empty when it has gone.
+std::string address_of(int socket) {
   sockaddr_storage name{};
   socklen_t size = sizeof name;
-  char host[NI_MAXHOST] = "", port[NI_MAXSERV] = "0";
+  char host[NI_MAXHOST] = "";
   auto* const address = reinterpret_cast<sockaddr*>(&name);
-  if (getpeername(socket, address, &size) != 0) return {};
-  getnameinfo(address, size, host, sizeof host, port, sizeof port, NI_NUMERICHOST | NI_NUMERICSERV);
-  return {host, std::atoi(port)};
+  if (getpeername(socket, address, &size) != 0) return "";
+  getnameinfo(address, size, host, sizeof host, nullptr, 0, NI_NUMERICHOST);
+  return host;
 }
 
 /// Of the header's field; 0 where there is none. What is no number the server refuses.
@@ -80,8 +76,8 @@ void send_all(int socket, std::string_view text) {
 /// A request that was read, and the answer until it is sent.
 class Talk final : public httplib::Stream {
  public:
-  Talk(std::string_view request, Peer peer, int socket)
-      : request_(request), peer_(std::move(peer)), socket_(socket) {}
+  Talk(std::string_view request, std::string address, int socket)
+      : request_(request), address_(std::move(address)), socket_(socket) {}
 
   [[nodiscard]] const std::string& answer() const { return answer_; }
 
@@ -97,8 +93,8 @@ class Talk final : public httplib::Stream {
     return static_cast<ssize_t>(size);
   }
   void get_remote_ip_and_port(std::string& ip, int& port) const override {
-    ip = peer_.address;
-    port = peer_.port;
+    ip = address_;
+    port = 0;
   }
   void get_local_ip_and_port(std::string& ip, int& port) const override {
     ip.clear();
@@ -109,7 +105,7 @@ class Talk final : public httplib::Stream {
  private:
   std::string_view request_;
   std::string answer_;
-  Peer peer_;
+  std::string address_;
   int socket_;
 };
 
@@ -150,16 +146,16 @@ std::string FrontDoor::read_request(int socket, const std::string& address) {
 
 bool FrontDoor::process_and_close_socket(int socket) {
   const FileDescriptor closed_behind(socket);
-  const Peer peer = peer_of(socket);
+  const std::string address = address_of(socket);
   const auto count = [&](int change) {
     const std::scoped_lock lock(lock_);
-    if ((waiting_[peer.address] += change) == 0) waiting_.erase(peer.address);
+    if ((waiting_[address] += change) == 0) waiting_.erase(address);
   };
   count(+1);
-  const std::string request = read_request(socket, peer.address);
+  const std::string request = read_request(socket, address);
   count(-1);
   if (request.empty()) return false;
-  Talk talk(request, peer, socket);
+  Talk talk(request, address, socket);
   bool is_closed = false;
   process_request(talk, true, is_closed, nullptr);
   send_all(socket, talk.answer());

@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <random>
 
+#include "edge/account/account_days.h"
+#include "edge/account/comparison.h"
 #include "edge/control/policy.h"
 #include "edge/log/ring_log.h"
 #include "shared/local_time.h"
