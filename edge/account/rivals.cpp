@@ -167,8 +167,11 @@ LoggedMarket logged_market(const LogReader& log, const Period& period, const Qua
   };
   for_each_record(log, period.first_day, period.last_day, see);
   std::ranges::sort(market.cycles, {}, &PricedCycle::utc_s);
-  const auto twice = std::ranges::unique(market.cycles, {}, &PricedCycle::utc_s);
-  market.cycles.erase(twice.begin(), twice.end());
+  const auto at_one_time = [](const PricedCycle& a, const PricedCycle& b) {
+    return a.utc_s == b.utc_s;
+  };
+  market.cycles.erase(std::unique(market.cycles.begin(), market.cycles.end(), at_one_time),
+                      market.cycles.end());
   return market;
 }
 
