@@ -69,6 +69,9 @@ std::string Comparison::text() const {
   }
   text += "paid by quarter-hours, less the contract; where the log has no price all rest\n";
   text += rule_text(rule);
+  if (student_outlook() != nullptr) {
+    text += "the student's plan is known at the battery's own charge alone: an estimate\n";
+  }
   if (decided_otherwise > 0) {
     add_formatted(text,
                   "student %08x is this program's: in %d of %d cycles that of the time decided "

@@ -226,7 +226,7 @@ TEST_F(LoggedDays, AreTradedOnceWhereThereIsAPrice) {
   EXPECT_EQ(market.decided_otherwise, 30);
   EXPECT_EQ(market.cycles.front().paid_eur_per_mwh, 900);
   EXPECT_EQ(market.cycles.front().context_class,
-            student_context_class(local_minute_of(kStart), PriceLevel::starting_at(9'000)));
+            student_context_class(local_minute_of(kStart), 9'000));
 }
 
 /// So many days, each with so much earned.
