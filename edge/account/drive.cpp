@@ -17,9 +17,10 @@ PricedCycle priced_cycle(const CycleRecord& record, const QuarterPrices& prices)
           : student_context_class(local_minute_of(record.utc_s), context_centi_of(record));
   const double decided_eur_per_mwh =
       static_cast<double>(record.price.price_centi_eur_per_mwh) / kCentiPerEur;
-  return {record.utc_s, record.price.price_centi_eur_per_mwh,
-          static_cast<float>(prices.of_step_eur_per_mwh(record.utc_s).value_or(decided_eur_per_mwh)),
-          context_class};
+  return {
+      record.utc_s, record.price.price_centi_eur_per_mwh,
+      static_cast<float>(prices.of_step_eur_per_mwh(record.utc_s).value_or(decided_eur_per_mwh)),
+      context_class};
 }
 
 BatteryStep full_step(const BatteryParameters& battery, double soc_frac, Action action) {

@@ -73,6 +73,24 @@ bool report_price(const EdgeConfig& config, PriceFeed& prices) {
   return true;
 }
 
+/// Asked once; what is missing stops nothing.
+void report_day_ahead(const EdgeConfig& config) {
+  if (student_outlook() == nullptr) return;
+  const OutlookSettings& outlook = config.outlook;
+  const std::string source =
+      outlook.file.empty() ? loggable_url(outlook.http.url.view()).c_str() : outlook.file.c_str();
+  const std::int64_t now_utc_s = config.clock.now_utc_ns() / kNanosecondsPerSecond;
+  const auto feed = std::make_unique<DayAheadFeed>(outlook);
+  DayAheadBook book;
+  Status status = feed->ask(now_utc_s);
+  if (status == Status::kOk) status = book.take(feed->rows(), now_utc_s);
+  if (status != Status::kOk) {
+    return report(JournalLevel::kWarning, "day-ahead prices from %s: %s; planned on what is usual",
+                  source.c_str(), price_status_text(status).data());
+  }
+  std::printf("day-ahead  %zu prices from %s\n", feed->rows().size(), source.c_str());
+}
+
 void print_thresholds(const EdgeConfig& config) {
   const ThresholdNote note =
       compare_thresholds(config.control.guard.thresholds, student_thresholds());
@@ -209,6 +227,7 @@ bool report_check(const EdgeConfig& config, ModbusBattery& battery, PriceFeed& p
   }
   const bool sign_ok = report_sign(config);
   const bool clock_ok = report_clock(config, clock);
+  report_day_ahead(config);
   return report_price(config, prices) && battery_ok && sign_ok && clock_ok;
 }
 

@@ -3,8 +3,8 @@
 // the other. Both threads have static stacks, the fetching one draws from the arena, the planning
 // one from nothing.
 //
-//   server or file --> DayAheadFeed --> DayAheadBook --> OutlookPlanner --> OutlookBoard --> cycle
-//                                          | kept over restarts     ^ the level of the last decision
+//   server or file -> DayAheadFeed -> DayAheadBook -> OutlookPlanner -> OutlookBoard -> cycle
+//                                     kept on disk    at the level of the last decision
 #pragma once
 
 #include <semaphore.h>
