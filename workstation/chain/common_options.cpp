@@ -28,7 +28,9 @@ void CommonOptions::add_market(ProgramCommand& command) {
   command.option("--initial-soc", initial_soc_frac, "0..1, default 0.5");
 }
 
-RunConfig CommonOptions::resolve() const { return resolve(load_run_config(config_path)); }
+RunConfig CommonOptions::resolve(ContextKind unless_said) const {
+  return resolve(load_run_config(config_path, unless_said));
+}
 
 RunConfig CommonOptions::resolve(RunConfig config) const {
   config.set_seed(seed.value_or(1));

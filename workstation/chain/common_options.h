@@ -23,7 +23,7 @@ struct CommonOptions {
   void add_market(ProgramCommand& command);
 
   /// The configuration file with the command line's options on top.
-  [[nodiscard]] RunConfig resolve() const;
+  [[nodiscard]] RunConfig resolve(ContextKind unless_said = ContextKind::kLevel) const;
   /// The same on top of `config`, whatever file is named.
   [[nodiscard]] RunConfig resolve(RunConfig config) const;
 };

@@ -11,7 +11,7 @@ namespace bess {
 
 void DayAheadInput::add(ProgramCommand& command) {
   command.option("--day-ahead", path_,
-                 "Day-ahead prices for sdp-outlook: a file of 'prices fetch --day-ahead', "
+                 "Day-ahead prices to plan on: a file of 'prices fetch --day-ahead', "
                  "'prices import --day-ahead' or 'prices simulate --day-ahead-out'");
 }
 

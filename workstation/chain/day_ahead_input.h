@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "shared/context_classes.h"
 #include "shared/host/command_line.h"
 #include "workstation/chain/price_input.h"
 #include "workstation/market/feed/day_ahead_rows.h"
@@ -13,9 +14,15 @@ namespace bess {
 
 class DayAheadInput {
  public:
+  DayAheadInput() = default;
+  explicit DayAheadInput(std::string path) : path_(std::move(path)) {}
   /// Declares --day-ahead.
   void add(ProgramCommand& command);
   [[nodiscard]] const std::string& path() const { return path_; }
+  /// What is learnt where no configuration says otherwise: by outlook when prices are given.
+  [[nodiscard]] ContextKind context_unless_said() const {
+    return path_.empty() ? ContextKind::kLevel : ContextKind::kOutlook;
+  }
   /// Nothing when none is given. Judged by itself and by what was settled: prices filed under the
   /// wrong day are look-ahead. Throws UserError.
   [[nodiscard]] std::shared_ptr<const DayAheadPublication> read(const MinuteSeries& settled,

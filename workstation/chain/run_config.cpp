@@ -148,7 +148,7 @@ void KeyList::list(RunConfig& c) {
          "distributional or plain Q-learning, or the stochastic program, exact for its model");
   choice("context", kLearning, c.train.context, {"month", "level", "outlook"},
          "the student's third input: local month, class of the trailing price level, or of the "
-         "break-even price of a plan on day-ahead prices, which needs method sdp and --day-ahead");
+         "break-even price of a plan on day-ahead prices: what it is with --day-ahead");
   choice("source", kLearning, c.train.source, {"counterfactual", "replay"},
          "experience: one price move serves every SoC and action, or epsilon-greedy days");
   choice("horizon", kLearning, c.train.horizon, {"continuing", "day"},
@@ -258,6 +258,15 @@ void check_relations(const RunConfig& config, const std::string& name) {
     fail("{}: [train] input_... needs source = \"counterfactual\": the ring holds five inputs",
          name);
   }
+  const TrainOptions& train = config.train;
+  if (train.context == ContextKind::kOutlook &&
+      (!train.residual || train.source != Source::kCounterfactual || train.inputs.deviation)) {
+    fail(
+        "{}: [train] context = \"outlook\" needs residual = true, source = \"counterfactual\" and "
+        "no "
+        "input_deviation: the network adds to the plan; or set context = \"level\"",
+        name);
+  }
   if (config.train.inputs.deviation && !config.train.residual) {
     fail("{}: [train] input_deviation needs residual = true: the program tells it", name);
   }
@@ -319,9 +328,13 @@ RunConfig parse_run_config(std::string_view text, const std::string& name) {
   return config;
 }
 
-RunConfig load_run_config(const std::filesystem::path& path) {
-  if (path.empty()) return {};
-  return parse_run_config(read_file(path, kTomlBytesMax), path.string());
+RunConfig load_run_config(const std::filesystem::path& path, ContextKind unless_said) {
+  RunConfig config;
+  config.train.context = unless_said;
+  if (path.empty()) return config;
+  apply_config_text(config, read_file(path, kTomlBytesMax), path.string());
+  require_consistent(config, path.string());
+  return config;
 }
 
 void set_config_key(RunConfig& config, std::string_view key, const TomlValue& value) {

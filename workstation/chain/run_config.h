@@ -29,8 +29,10 @@ struct RunConfig {
   void set_threads(int threads) { train.threads = distil.threads = threads; }
 };
 
-/// Defaults overlaid with the file's keys; an empty path gives the defaults.
-RunConfig load_run_config(const std::filesystem::path& path);
+/// Defaults overlaid with the file's keys; an empty path gives the defaults. `unless_said` is the
+/// context where the file names none.
+RunConfig load_run_config(const std::filesystem::path& path,
+                          ContextKind unless_said = ContextKind::kLevel);
 RunConfig parse_run_config(std::string_view text, const std::string& name);
 
 /// Sets one key, "section.name", and says file, line and mend of a value that it cannot have. What

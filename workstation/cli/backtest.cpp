@@ -60,8 +60,12 @@ struct BacktestArguments {
 /// All that a fold's student depends on, but for the fold.
 std::string identity_of(const RunConfig& config, const MinuteSeries& series,
                         const BacktestArguments& options) {
-  return fmt::format("# bess-train {}, prices {:08x}, window {} days, seed {}\n{}", BESS_VERSION,
-                     prices_checksum(series), options.window_days, config.train.seed,
+  const std::string day_ahead =
+      config.train.context == ContextKind::kOutlook
+          ? fmt::format(", day-ahead {}", file_mark(options.day_ahead.path()))
+          : "";
+  return fmt::format("# bess-train {}, prices {:08x}{}, window {} days, seed {}\n{}", BESS_VERSION,
+                     prices_checksum(series), day_ahead, options.window_days, config.train.seed,
                      format_run_config(config));
 }
 
@@ -182,7 +186,7 @@ void learn_folds(const Folds& folds, Learning of, const std::vector<std::string>
 }
 
 void run_backtest(const BacktestArguments& options) {
-  const RunConfig config = options.common.resolve();
+  const RunConfig config = options.common.resolve(options.day_ahead.context_unless_said());
   const fs::path folder = options.out;
   std::vector<GivenPath> inputs = given_paths("--prices", options.prices);
   inputs.push_back({"--config", options.common.config_path});

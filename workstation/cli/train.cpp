@@ -24,6 +24,7 @@
 #include "workstation/env/evaluate.h"
 #include "workstation/report/figures/curves.h"
 #include "workstation/run/learnt_for.h"
+#include "workstation/run/run_record.h"
 
 namespace bess {
 namespace {
@@ -73,9 +74,13 @@ fs::path seed_path(const fs::path& out, std::uint64_t seed) {
 }
 
 /// All that the weights depend on; a checkpoint is good for one of these only.
-std::string identity_of(const RunConfig& config, const MinuteSeries& series) {
+std::string identity_of(const RunConfig& config, const MinuteSeries& series,
+                        const std::string& day_ahead) {
   std::string text = fmt::format("bess-train {}\nseed {}\nthreads {}\nprices {}\n", BESS_VERSION,
                                  config.train.seed, config.train.threads, prices_hash(series));
+  if (config.train.context == ContextKind::kOutlook) {
+    text += fmt::format("day-ahead {}\n", file_mark(day_ahead));
+  }
   for (const auto& [key, value] : config_entries(config))
     text += fmt::format("{} {}\n", key, value);
   return text;
@@ -102,7 +107,7 @@ std::string result_json(const fs::path& out, const RunConfig& config, const Trai
 TrainResult train_one(const fs::path& out, const TrainArguments& options, const RunConfig& config,
                       const MinuteSeries& series, const MarketSteps& market) {
   const CheckpointOptions checkpoint{checkpoint_path(out), options.resume,
-                                     identity_of(config, series)};
+                                     identity_of(config, series, options.day_ahead.path())};
   end_when_interrupted();  // what an earlier seed was watched for is over
   TrainResult result = train_teacher(market, config.battery, config.train,
                                      watched_from_the_first_look(), checkpoint);
@@ -192,7 +197,7 @@ void run_seeds(const TrainArguments& options, RunConfig config, const MinuteSeri
 }
 
 void run_train(const TrainArguments& options) {
-  RunConfig config = options.common.resolve();
+  RunConfig config = options.common.resolve(options.day_ahead.context_unless_said());
   if (options.method) config.train.method = parse_method(*options.method);
   if (options.steps) config.train.steps = *options.steps;
   warn_long_training(config);
@@ -252,6 +257,7 @@ void add_train_command(ProgramCommand& app) {
       "Examples:\n"
       "  bess-train train --prices market.csv.gz --out teacher.bin\n"
       "  bess-train train --prices market.csv.gz --method sdp --out program.bin\n"
+      "  bess-train train --prices market.csv.gz --day-ahead day_ahead.csv --out outlook.bin\n"
       "  bess-train train --prices market.csv.gz --seeds 3 --out best.bin\n"
       "  bess-train train --prices market.csv.gz --config workstation/config/paper.toml --out "
       "paper.bin");

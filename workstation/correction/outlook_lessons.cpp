@@ -24,12 +24,13 @@ struct Pass {
 class LessonBook {
  public:
   LessonBook(const Teacher& teacher, const BatteryParameters& battery)
-      : teacher_(teacher), per_eur_(learned_per_eur(battery)) {}
+      : teacher_(teacher), per_eur_(learned_per_eur(battery)), x_(teacher.input_count(), 1) {}
 
-  /// Adds a lesson; returns what the program would do.
+  /// Adds a lesson; returns what the teacher would do.
   Action add(const MarketStep& step, double soc_frac, double shift_eur_per_mwh,
              OutlookProgram::Plan& plan) {
-    const auto worth_eur = teacher_.outlook->action_values(step, soc_frac, plan);
+    auto worth_eur = teacher_.outlook->action_values(step, soc_frac, plan);
+    if (teacher_.is_residual()) teacher_.add_network(step, soc_frac, x_, tile_, worth_eur);
     const std::int32_t break_even_centi = teacher_.book->break_even_centi(step, soc_frac);
     const std::int16_t context_class =
         teacher_.context.class_of(step.month, break_even_centi + price_centi_of(shift_eur_per_mwh));
@@ -51,6 +52,8 @@ class LessonBook {
  private:
   const Teacher& teacher_;
   double per_eur_;
+  Matrix x_;
+  MlpTile tile_;
   std::vector<float> all_;
 };
 

@@ -339,8 +339,7 @@ DeviationChain::Between OutlookProgram::between_levels(double level) const {
   return {lower, x - lower};
 }
 
-std::array<double, kActionCount> OutlookProgram::action_values(const MarketStep& step,
-                                                               double soc_frac, Plan& plan) const {
+OutlookProgram::Sight OutlookProgram::sight_of(const MarketStep& step, Plan& plan) const {
   const double level = step.level_eur_per_mwh();
   const auto bins =
       chain_.between(step.observed_eur_per_mwh - usual_at(plan, row_utc_s(step), level));
@@ -348,17 +347,22 @@ std::array<double, kActionCount> OutlookProgram::action_values(const MarketStep&
   const auto row =
       static_cast<std::size_t>((step.utc_s - plan.from_utc_s) / kSecondsPerStep) * kRow +
       static_cast<std::size_t>(bins.lower) * kSocPoints;
-  const std::array<const float*, 2> ahead{
-      &continuation_of(anchors.lower, plan)[row],
-      anchors.weight > 0 ? &continuation_of(anchors.lower + 1, plan)[row] : nullptr};
-  const double price =
-      chain_.paid(step.half_hour_phase, bins) + usual_paid(plan, step.utc_s, level);
+  return {{&continuation_of(anchors.lower, plan)[row],
+           anchors.weight > 0 ? &continuation_of(anchors.lower + 1, plan)[row] : nullptr},
+          bins,
+          anchors,
+          chain_.paid(step.half_hour_phase, bins) + usual_paid(plan, step.utc_s, level)};
+}
+
+std::array<double, kActionCount> OutlookProgram::action_values(const MarketStep& step,
+                                                               double soc_frac, Plan& plan) const {
+  const auto [ahead, bins, anchors, price] = sight_of(step, plan);
   std::array<double, kActionCount> worth{};
   for (int a = 0; a < kActionCount; ++a) {
     const double wanted_w = power_sign(static_cast<Action>(a)) * battery_.power_w_max;
     const BatteryStep moved = battery_step(battery_, soc_frac, wanted_w, kHoursPerStep);
     const SocGrid::Position soc = grid_.position(moved.soc_frac);
-    const auto of_level = [&](const float* values) {
+    const auto of_level = [&, bins = bins](const float* values) {
       return (1 - bins.weight) * double{interpolate(values, soc)} +
              bins.weight * double{interpolate(values + kSocPoints, soc)};
     };
@@ -370,10 +374,30 @@ std::array<double, kActionCount> OutlookProgram::action_values(const MarketStep&
   return worth;
 }
 
+double OutlookProgram::continuation(const MarketStep& step, Plan& plan, float* value_eur) const {
+  const Sight sees = sight_of(step, plan);
+  for (int p = 0; p < kSocPoints; ++p) {
+    double ahead = 0;
+    for (std::size_t l = 0; l < sees.ahead.size(); ++l) {
+      if (sees.ahead[l] == nullptr) continue;
+      const double weight = l == 0 ? 1 - sees.levels.weight : sees.levels.weight;
+      ahead += weight * ((1 - sees.bins.weight) * double{sees.ahead[l][p]} +
+                         sees.bins.weight * double{sees.ahead[l][kSocPoints + p]});
+    }
+    value_eur[p] = static_cast<float>(ahead);
+  }
+  return sees.price_eur_per_mwh;
+}
+
 Action OutlookPolicy::decide(const MarketStep& step, std::size_t, double soc_frac) const {
+  return argmax_action(action_values(step, soc_frac).data());
+}
+
+std::array<double, kActionCount> OutlookPolicy::action_values(const MarketStep& step,
+                                                              double soc_frac) const {
   const std::lock_guard lock(mutex_);
   if (!plan_.serves(step)) plan_ = program_->plan_of(step);
-  return argmax_action(program_->action_values(step, soc_frac, plan_).data());
+  return program_->action_values(step, soc_frac, plan_);
 }
 
 std::string OutlookPolicy::description() const {

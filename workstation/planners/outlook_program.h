@@ -76,6 +76,9 @@ class OutlookProgram {
   /// the values of the plan that it needs and keeps them there. The plan must serve the step.
   [[nodiscard]] std::array<double, kActionCount> action_values(const MarketStep& step,
                                                                double soc_frac, Plan& plan) const;
+  /// Writes what the rest is worth by SoC after this step, EUR, kSocPoints values; returns the price
+  /// that the step is expected to be paid. action_values() are of the two. The plan must serve it.
+  double continuation(const MarketStep& step, Plan& plan, float* value_eur) const;
   [[nodiscard]] const Coefficients& coefficients() const { return coefficients_; }
   [[nodiscard]] const ByQuarterHour& hour() const { return hour_; }
   [[nodiscard]] const ByQuarterHour& day_ahead_mean() const { return day_ahead_mean_; }
@@ -90,6 +93,13 @@ class OutlookProgram {
   explicit OutlookProgram(BinaryReader& in);
 
  private:
+  /// Where a step lies among the values that are known: two levels, of each two bins.
+  struct Sight {
+    std::array<const float*, 2> ahead;  ///< by level, at the lower bin; null: without weight
+    DeviationChain::Between bins, levels;
+    double price_eur_per_mwh;  ///< expected
+  };
+  [[nodiscard]] Sight sight_of(const MarketStep& step, Plan& plan) const;
   [[nodiscard]] double usual(double day_ahead, int quarter_hour, double level) const;
   /// D at a step's own row or pay: what is published, or what stands for it.
   [[nodiscard]] double known_or_usual(const MarketStep& step, std::int64_t utc_s) const;
@@ -125,6 +135,9 @@ class OutlookPolicy final : public Policy {
   explicit OutlookPolicy(std::shared_ptr<const OutlookProgram> program)
       : program_(std::move(program)) {}
   [[nodiscard]] Action decide(const MarketStep& step, std::size_t, double soc_frac) const override;
+  /// The program's action values, of the newest plan or a new one.
+  [[nodiscard]] std::array<double, kActionCount> action_values(const MarketStep& step,
+                                                               double soc_frac) const;
   [[nodiscard]] std::string description() const override;
 
  private:

@@ -27,10 +27,11 @@ TrainingMarket::TrainingMarket(const MarketSteps& market, const PriceMap& price_
                                const BatteryParameters& battery, Horizon horizon,
                                const RewardShaping& shaping, const ContextClasses& context,
                                const TeacherInputs& inputs)
-    : battery_(shaping.program ? shaping.program->battery() : battery),
+    : battery_(shaping.program ? shaping.program.battery() : battery),
       potential_grid_(battery, shaping.potential.soc_points),
       gamma_(static_cast<float>(shaping.gamma)),
       reward_centre_(static_cast<float>(shaping.reward_centre_eur_per_h) * kRewardScale),
+      price_map_(price_map),
       teacher_inputs_(inputs.count()) {
   if (shaping.program) program_.emplace(shaping.program);
   const std::vector<MarketDay> training = market.days_of(Split::kTrain);
@@ -58,13 +59,14 @@ TrainingMarket::TrainingMarket(const MarketSteps& market, const PriceMap& price_
       };
       step.potential = add(steps[i]);
       step.next_potential = add(follows ? *next : steps[i]);
-      step.is_midnight = last;
+      step.begins_anew =
+          program_ && program_->is_outlook() ? program_->begins_plan(step.next_potential) : last;
       step.follows_last = !steps_.empty() && steps_.back().next_potential == step.potential;
       steps_.push_back(step);
       if (teacher_inputs_ == 0) continue;
       TeacherSight& sight = sights_.emplace_back();
       const auto write = [&](const MarketStep& of, float* x) {
-        inputs.write(of.recent, price_map, deviation_frac(shaping.program.get(), of), x);
+        inputs.write(of.recent, price_map, deviation_frac(shaping.program.program.get(), of), x);
       };
       write(steps[i], sight.state);
       write(follows ? *next : steps[i], sight.next_state);
@@ -98,8 +100,8 @@ double TrainingMarket::make_transition(std::size_t index, double soc_frac, Actio
   const Step& step = steps_[index];
   const BatteryStep moved =
       battery_step(battery_, soc_frac, power_sign(action) * battery_.power_w_max, kHoursPerStep);
-  write_input(step.context, soc_frac, out.state);
-  write_input(step.next, moved.soc_frac, out.next_state);
+  write_input(seen(step.context, step.potential, soc_frac), soc_frac, out.state);
+  write_input(seen(step.next, step.next_potential, moved.soc_frac), moved.soc_frac, out.next_state);
   // r = -p * price in EUR/h for a battery of the paper's 4 MW: scaled by P, so that the same
   // support and learning rate serve every size [SPEC 3, 4]. The money of exchange_cost.h, in
   // floats.
@@ -115,6 +117,14 @@ double TrainingMarket::make_transition(std::size_t index, double soc_frac, Actio
   return moved.soc_frac;
 }
 
+NetworkContext TrainingMarket::seen(NetworkContext context, std::uint32_t row,
+                                    double soc_frac) const {
+  if (program_ && program_->is_outlook()) {
+    context.context_class = price_map_(program_->break_even(row, soc_frac));
+  }
+  return context;
+}
+
 void TrainingMarket::shape_by_potential(const Step& step, double soc_frac, double next_soc_frac,
                                         Transition& out) const {
   if (!step.terminal) out.reward += gamma_ * potential_at(step.next_potential, next_soc_frac);
@@ -127,35 +137,45 @@ void TrainingMarket::shape_by_program(const Step& step, double soc_frac, double 
                                       Transition& out) const {
   const ProgramRows::Values here = program_->at(step.potential, soc_frac);
   const ProgramRows::Values next = program_->at(step.next_potential, next_soc_frac);
-  out.reward += static_cast<float>(program_->program().gamma()) * next.best -
+  out.reward += static_cast<float>(program_->gamma()) * next.best -
                 here.action[static_cast<std::size_t>(out.action)];
-  if (step.is_midnight) out.reward -= midnight_centre_;
+  out.reward -= step.anew_centre;
   for (int b = 0; b < kActionCount; ++b) out.next_advantage[b] = next.action[b] - next.best;
 }
 
 template <typename Visit>
 void TrainingMarket::trade_by_program(Visit visit) const {
-  const double start_frac = 0.5 * (battery_.soc_min_frac + battery_.soc_max_frac);
-  double soc_frac = start_frac;
+  double soc_frac = middle_soc_frac();
   Transition transition{};
   for (std::size_t i = 0; i < steps_.size(); ++i) {
-    if (!steps_[i].follows_last) soc_frac = start_frac;
+    if (!steps_[i].follows_last) soc_frac = middle_soc_frac();
     const Action action = argmax_action(program_->at(steps_[i].potential, soc_frac).action.data());
     soc_frac = make_transition(i, soc_frac, action, transition);
     visit(steps_[i], transition);
   }
 }
 
-/// So that r' is zero on average where the program trades, and over midnight by itself.
+/// So that r' is zero on average where the program trades, and by itself where its values begin
+/// anew: over midnight, a day more. A new plan knows what no earlier one did; that is the same for
+/// every action, so what an idle step in the middle of the window has of it is taken off at once.
 void TrainingMarket::centre_residuals() {
+  for (std::size_t i = 0; i < steps_.size() && program_->is_outlook(); ++i) {
+    if (!steps_[i].begins_anew) continue;
+    Transition idle{};
+    make_transition(i, middle_soc_frac(), Action::kIdle, idle);
+    steps_[i].anew_centre = idle.reward;
+  }
   double sum[2] = {0, 0};
   double count[2] = {1e-9, 1e-9};  // a market may have no midnight
   trade_by_program([&](const Step& step, const Transition& transition) {
-    sum[step.is_midnight] += double{transition.reward};
-    count[step.is_midnight] += 1;
+    sum[step.begins_anew] += double{transition.reward};
+    count[step.begins_anew] += 1;
   });
   reward_centre_ += static_cast<float>(sum[0] / count[0]);
-  midnight_centre_ = static_cast<float>(sum[1] / count[1] - sum[0] / count[0]);
+  const auto anew_centre = static_cast<float>(sum[1] / count[1] - sum[0] / count[0]);
+  for (Step& step : steps_) {
+    if (step.begins_anew) step.anew_centre += anew_centre;
+  }
 }
 
 std::vector<float> TrainingMarket::residual_returns(double discount) const {

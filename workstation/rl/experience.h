@@ -31,7 +31,7 @@ struct RewardShaping {
   double gamma = 0.999;
   Potential potential{};
   /// Instead of all these: rewards are r' of program_residual.h, centred by themselves.
-  std::shared_ptr<const StochasticProgram> program = nullptr;
+  Foundation program{};
 };
 
 /// Standard deviations of a random shift of the calendar inputs, the same for a state and its
@@ -84,11 +84,15 @@ class TrainingMarket {
     float import_eur_per_mwh, export_eur_per_mwh;  ///< paid price with trading costs
     bool terminal;
     std::uint32_t potential = 0, next_potential = 0;  ///< rows of potential_, or of program_
-    bool is_midnight = false;                         ///< the successor is a day's first step
+    bool begins_anew = false;                         ///< the program's values do, at the successor
+    float anew_centre = 0;                            ///< of r' there
     bool follows_last = false;                        ///< the successor of the step before this one
   };
   std::uint32_t add_potential(const Potential& potential, const MarketStep& step);
   [[nodiscard]] float potential_at(std::uint32_t row, double soc_frac) const;
+  /// What the network sees of a row, at this SoC.
+  [[nodiscard]] NetworkContext seen(NetworkContext context, std::uint32_t row,
+                                    double soc_frac) const;
   void shape_by_potential(const Step& step, double soc_frac, double next_soc_frac,
                           Transition& out) const;
   void shape_by_program(const Step& step, double soc_frac, double next_soc_frac,
@@ -97,6 +101,9 @@ class TrainingMarket {
   template <typename Visit>
   void trade_by_program(Visit visit) const;
   void centre_residuals();
+  [[nodiscard]] double middle_soc_frac() const {
+    return 0.5 * (battery_.soc_min_frac + battery_.soc_max_frac);
+  }
 
   BatteryParameters battery_;
   SocGrid potential_grid_;
@@ -105,8 +112,7 @@ class TrainingMarket {
   float gamma_;
   float reward_centre_;  ///< scaled
   std::optional<ProgramRows> program_;
-  /// Of r', over midnight: there the program's values, of a finite number of days, begin anew.
-  float midnight_centre_ = 0;
+  PriceMap price_map_;
   int teacher_inputs_;
   std::vector<Step> steps_;
   std::vector<TeacherSight> sights_;  ///< [step], empty when the teacher has no inputs of its own

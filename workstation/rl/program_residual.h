@@ -26,15 +26,31 @@
 #include <memory>
 #include <vector>
 
+#include "workstation/env/outlook_book.h"
+#include "workstation/planners/outlook_program.h"
 #include "workstation/planners/stochastic_program.h"
+#include "workstation/rl/price_map.h"
 
 namespace bess {
 
+/// What a network adds to: a program by month or level, or one that plans on day-ahead prices.
+struct Foundation {
+  std::shared_ptr<const StochasticProgram> program = nullptr;
+  std::shared_ptr<const OutlookProgram> outlook = nullptr;
+  std::shared_ptr<const OutlookBook> book = nullptr;  ///< with `outlook`
+
+  explicit operator bool() const { return program != nullptr || outlook != nullptr; }
+  [[nodiscard]] const BatteryParameters& battery() const {
+    return outlook ? outlook->battery() : program->battery();
+  }
+  [[nodiscard]] double gamma() const { return outlook ? outlook->gamma() : program->gamma(); }
+};
+
 /// The program's action values in many steps, each for every SoC, in the unit that rewards are
-/// learned in.
+/// learned in. By outlook also the break-even price, which the network sees instead of a class.
 class ProgramRows {
  public:
-  explicit ProgramRows(std::shared_ptr<const StochasticProgram> program);
+  explicit ProgramRows(Foundation foundation);
 
   /// The row of this step. Asked for steps in the order of time: the successor of one is mostly the
   /// next one asked for, and shares its row.
@@ -45,15 +61,25 @@ class ProgramRows {
     float best;                              ///< V_P
   };
   [[nodiscard]] Values at(std::uint32_t row, double soc_frac) const;
-  [[nodiscard]] const StochasticProgram& program() const { return *program_; }
+  [[nodiscard]] double gamma() const { return foundation_.gamma(); }
+  [[nodiscard]] bool is_outlook() const { return foundation_.outlook != nullptr; }
+  /// By outlook: EUR/MWh.
+  [[nodiscard]] double break_even(std::uint32_t row, double soc_frac) const;
+  /// By outlook: the row is the first of its plan. Values of two plans have no common zero.
+  [[nodiscard]] bool begins_plan(std::uint32_t row) const { return begins_plan_[row]; }
 
  private:
-  std::shared_ptr<const StochasticProgram> program_;
-  SocGrid grid_;
+  void add_outlook(const MarketStep& step, float* value_eur);
+
+  Foundation foundation_;
+  SocGrid grid_, break_even_grid_;
   double unit_per_eur_;
   std::vector<float> continuation_;        ///< [row][SoC point], EUR
   std::vector<double> price_eur_per_mwh_;  ///< [row] expected
-  std::int64_t last_utc_s_ = -1;           ///< step of the last row
+  std::vector<float> break_even_;          ///< [row][SoC point], EUR/MWh
+  std::vector<bool> begins_plan_;
+  OutlookProgram::Plan plan_;     ///< of the last row
+  std::int64_t last_utc_s_ = -1;  ///< step of the last row
 };
 
 }  // namespace bess

@@ -14,7 +14,8 @@ namespace bess {
 namespace {
 
 constexpr std::string_view kMagic = "BESSTCHR";
-constexpr std::uint32_t kVersion = 3;
+constexpr std::uint32_t kVersion = 4;
+constexpr std::uint32_t kVersionWithoutNetworkOnOutlook = 3;  ///< still written of all others
 constexpr std::uint32_t kVersionWithoutLearntFor = 2;
 constexpr std::uint32_t kLearntForMax = 1000;
 constexpr int kTeacherHidden1 = 256;
@@ -162,6 +163,14 @@ Matrix Teacher::network_values(const MatrixRef& x, MlpTile& tile) const {
   return (values.array() / quantum).round() * quantum;
 }
 
+void Teacher::add_network(const MarketStep& step, double soc_frac, Matrix& x, MlpTile& tile,
+                          std::array<double, kActionCount>& worth_eur) const {
+  write_inputs(step, soc_frac, x.data());
+  const Matrix added = network_values(x, tile);
+  const double unit_per_eur = learned_per_eur(foundation().battery());
+  for (int a = 0; a < kActionCount; ++a) worth_eur[a] += double{added(a)} / unit_per_eur;
+}
+
 void begin_at_zero(Method method, const Support& support, const MlpShape& shape,
                    Parameters& parameters) {
   MutableMlp mlp(shape, parameters.data());
@@ -173,24 +182,23 @@ void begin_at_zero(Method method, const Support& support, const MlpShape& shape,
   for (int a = 0; a < kActionCount; ++a) mlp.b3[a * support.count + support.count / 2] = 0;
 }
 
-Action TeacherPolicy::decide(const MarketStep& step, std::size_t index, double soc_frac) const {
-  if (outlook_) return outlook_->decide(step, index, soc_frac);
-  if (!teacher_.program || teacher_.is_residual()) {
+Action TeacherPolicy::decide(const MarketStep& step, std::size_t, double soc_frac) const {
+  if (!teacher_.foundation()) {
     teacher_.write_inputs(step, soc_frac, x_.data());
+    return argmax_action(teacher_.action_values(x_, tile_).data());
   }
-  if (!teacher_.program) return argmax_action(teacher_.action_values(x_, tile_).data());
   // The program is asked for the step itself: it need not see through the network's inputs.
-  auto worth_eur = teacher_.program->action_values(StochasticProgram::situation_of(step), soc_frac);
-  if (teacher_.is_residual()) {
-    const Matrix added = teacher_.network_values(x_, tile_);
-    const double unit_per_eur = learned_per_eur(teacher_.program->battery());
-    for (int a = 0; a < kActionCount; ++a) worth_eur[a] += double{added(a)} / unit_per_eur;
-  }
+  auto worth_eur =
+      outlook_ ? outlook_->action_values(step, soc_frac)
+               : teacher_.program->action_values(StochasticProgram::situation_of(step), soc_frac);
+  if (teacher_.is_residual()) teacher_.add_network(step, soc_frac, x_, tile_, worth_eur);
   return argmax_action(worth_eur.data());
 }
 
 void save_teacher(const std::filesystem::path& path, const Teacher& teacher) {
-  BinaryWriter out(kMagic, kVersion);
+  BinaryWriter out(kMagic, teacher.outlook && teacher.is_residual()
+                               ? kVersion
+                               : kVersionWithoutNetworkOnOutlook);
   out.put(static_cast<std::uint32_t>(teacher.method) | (teacher.is_residual() ? kResidualFlag : 0) |
           teacher.inputs.bits() << kInputsShift);
   out.put(teacher.support);
@@ -240,7 +248,9 @@ Teacher load_teacher(const std::filesystem::path& path) {
   take_parameters(in, parameters);
   std::shared_ptr<const OutlookProgram> outlook;
   if (context.is_outlook()) {
-    if (is_residual || method != Method::kSdp) in.damaged("has a network on the outlook");
+    const bool is_sound =
+        is_residual ? in.version() >= kVersion && !inputs.deviation : method == Method::kSdp;
+    if (!is_sound) in.damaged("has a network by the outlook that adds to no plan");
     outlook = std::make_shared<const OutlookProgram>(in);
   } else if (is_residual || method == Method::kSdp)
     program = std::make_shared<const StochasticProgram>(in);

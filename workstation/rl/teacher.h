@@ -15,6 +15,7 @@
 #include "workstation/planners/outlook_program.h"
 #include "workstation/planners/stochastic_program.h"
 #include "workstation/rl/price_map.h"
+#include "workstation/rl/program_residual.h"
 #include "workstation/rl/risk.h"
 #include "workstation/rl/support.h"
 #include "workstation/rl/teacher_inputs.h"
@@ -44,7 +45,8 @@ struct Teacher {
   std::shared_ptr<const OutlookProgram> outlook = nullptr;
   std::shared_ptr<const OutlookBook> book = nullptr;
 
-  [[nodiscard]] bool is_residual() const { return program != nullptr && method != Method::kSdp; }
+  [[nodiscard]] Foundation foundation() const { return {program, outlook, book}; }
+  [[nodiscard]] bool is_residual() const { return foundation() && method != Method::kSdp; }
   /// By outlook the values are no function of the inputs: three rows below them hold them.
   /// Action values, means unless `risk` says otherwise, [3 x samples] in units of 1e4 EUR/h for
   /// inputs [5 x samples], or with the teacher's own below them; without, a state has no past.
@@ -52,12 +54,21 @@ struct Teacher {
   /// The network's part of them. Of a residual in whole millionths of the support's reach: a point
   /// mass at zero then is zero exactly, however its exponentials are rounded.
   [[nodiscard]] Matrix network_values(const MatrixRef& x, MlpTile& tile) const;
+  /// Of a residual: adds to the program's values of this step what the network does, EUR.
+  void add_network(const MarketStep& step, double soc_frac, Matrix& x, MlpTile& tile,
+                   std::array<double, kActionCount>& worth_eur) const;
   /// Writes the teacher's own inputs below the student's five, of a state without a past.
   void write_without_past(float* x) const;
   [[nodiscard]] int input_count() const { return kNetworkInputs + inputs.count(); }
-  /// Writes input_count() inputs of a step.
+  /// Writes input_count() inputs of a step. By outlook the break-even price, mapped as prices are,
+  /// stands where the student sees its class.
   void write_inputs(const MarketStep& step, double soc_frac, float* x) const {
-    write_input(network_context(step, price_map, context), soc_frac, x);
+    NetworkContext seen = network_context(step, price_map, context);
+    if (book) {
+      seen.context_class =
+          price_map(double{book->break_even_centi(step, soc_frac) / double{kCentiPerEur}});
+    }
+    write_input(seen, soc_frac, x);
     const double deviation_frac =
         inputs.deviation ? program->deviation_frac(StochasticProgram::situation_of(step)) : 0;
     inputs.write(step.recent, price_map, deviation_frac, x + kNetworkInputs);

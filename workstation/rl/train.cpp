@@ -115,6 +115,36 @@ std::shared_ptr<const StochasticProgram> fit_program(const MarketSteps& market,
       options);
 }
 
+/// The program with an outlook, and classes of its plans' break-even prices.
+void fit_outlook(const MarketSteps& market, const BatteryParameters& battery, Teacher& teacher) {
+  if (market.day_ahead == nullptr) {
+    fail(
+        "[train] context = \"outlook\" learns from day-ahead prices: give their file with "
+        "--day-ahead");
+  }
+  const std::vector<MarketDay> training = market.days_of(Split::kTrain);
+  const BatteryParameters mindful =
+      battery_with_shadow_price<OutlookPolicy>(market, training, battery, OutlookOptions{});
+  set_outlook(std::make_shared<const OutlookProgram>(market, training, mindful), teacher);
+  teacher.context = fit_outlook_classes(market, *teacher.book);
+}
+
+/// All of a teacher that is no network: what one adds to, the price map and the context classes.
+Teacher without_network(const MarketSteps& market, const BatteryParameters& battery,
+                        const TrainOptions& options) {
+  Teacher teacher{options.method, {}, {}, PriceMap::fit(observed_training_prices(market)), {}, "",
+                  nullptr};
+  if (options.context == ContextKind::kOutlook) {
+    fit_outlook(market, battery, teacher);
+  } else {
+    teacher.context = fit_context_classes(market, options.context);
+    const bool stands_on_it = options.residual || options.method == Method::kSdp;
+    if (stands_on_it) teacher.program = fit_program(market, battery, options.context);
+  }
+  if (options.method != Method::kSdp) teacher.inputs = options.inputs;
+  return teacher;
+}
+
 /// Half as far again, on both sides, as all but a thousandth of the returns that the program
 /// leaves: zero is the middle atom.
 Support residual_support(const TrainingMarket& market, const TrainOptions& options) {
@@ -196,26 +226,27 @@ class Training {
         battery_(battery),
         options_(options),
         validation_(market.days_of(Split::kValidation)),
-        price_map_(PriceMap::fit(observed_training_prices(market))),
-        context_(fit_context_classes(market, options.context)),
-        program_(options.residual ? fit_program(market, battery, options.context) : nullptr),
-        training_(
-            market, price_map_, battery, options.horizon,
-            program_ ? RewardShaping{.program = program_} : fit_shaping(market, battery, options),
-            context_, options.inputs),
-        support_(program_ ? residual_support(training_, options) : given_support(options)),
-        learner_(options.method, support_, program_ ? options.residual_gamma : options.gamma,
+        current_(without_network(market, battery, options)),
+        adds_(current_.is_residual()),
+        training_(market, current_.price_map, battery, options.horizon,
+                  adds_ ? RewardShaping{.program = current_.foundation()}
+                        : fit_shaping(market, battery, options),
+                  current_.context, options.inputs),
+        support_(adds_ ? residual_support(training_, options) : given_support(options)),
+        learner_(options.method, support_, adds_ ? options.residual_gamma : options.gamma,
                  derive_seed(options.seed, kSeedWeights), options.threads,
-                 program_ ? options.mean_weight / double{support_.step() * support_.step()}
-                          : options.mean_weight,
+                 adds_ ? options.mean_weight / double{support_.step() * support_.step()}
+                       : options.mean_weight,
                  kernels_of(options), options.inputs),
         experience_(training_, options),
-        current_{
-            options.method, support_, learner_.shape(), price_map_, learner_.online(), "", program_,
-            context_,       {},       options.inputs},
         average_(learner_.online()),
         result_{current_, {}, -1e300, 0, 0} {
-    if (!program_) return;
+    for (Teacher* teacher : {&current_, &result_.teacher}) {
+      teacher->support = support_;
+      teacher->shape = learner_.shape();
+      teacher->parameters = learner_.online();
+    }
+    if (!adds_) return;
     for (Parameters* p : {&learner_.online(), &learner_.target(), &average_, &current_.parameters,
                           &result_.teacher.parameters}) {
       begin_at_zero(options.method, support_, learner_.shape(), *p);
@@ -265,7 +296,7 @@ class Training {
   [[nodiscard]] bool is_validation_due() const {
     const bool is_its_step = step_ % options_.validate_every == 0 || step_ == options_.steps;
     // Of a residual step 0, the program, is a candidate too.
-    const long nothing_yet = program_ ? -1 : 0;
+    const long nothing_yet = adds_ ? -1 : 0;
     return is_its_step &&
            step_ != (result_.curve.empty() ? nothing_yet : result_.curve.back().step);
   }
@@ -350,14 +381,12 @@ class Training {
   const BatteryParameters& battery_;
   const TrainOptions& options_;
   std::vector<MarketDay> validation_;
-  PriceMap price_map_;
-  ContextClasses context_;
-  std::shared_ptr<const StochasticProgram> program_;  ///< that a residual adds to
+  Teacher current_;  ///< whose weights act and are validated
+  bool adds_;        ///< a residual, to a program
   TrainingMarket training_;
   Support support_;
   Learner learner_;
   Experience experience_;
-  Teacher current_;     ///< whose weights act and are validated
   Parameters average_;  ///< of the online weights
   TrainResult result_;
   std::vector<double> program_eur_;  ///< that step 0 earned on each validation day
@@ -366,32 +395,11 @@ class Training {
   long step_ = 0;
 };
 
-/// The program with an outlook, and classes of its plans' break-even prices.
-void fit_outlook(const MarketSteps& market, const BatteryParameters& battery, Teacher& teacher) {
-  if (market.day_ahead == nullptr) {
-    fail(
-        "[train] context = \"outlook\" learns from day-ahead prices: give their file with "
-        "--day-ahead");
-  }
-  const std::vector<MarketDay> training = market.days_of(Split::kTrain);
-  const BatteryParameters mindful =
-      battery_with_shadow_price<OutlookPolicy>(market, training, battery, OutlookOptions{});
-  set_outlook(std::make_shared<const OutlookProgram>(market, training, mindful), teacher);
-  teacher.context = fit_outlook_classes(market, *teacher.book);
-}
-
 /// Nothing to iterate: the program is fitted and solved.
 TrainResult train_program(const MarketSteps& market, const BatteryParameters& battery,
                           const TrainOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  Teacher teacher{Method::kSdp, {}, {},     PriceMap::fit(observed_training_prices(market)),
-                  {},           "", nullptr};
-  if (options.context == ContextKind::kOutlook) {
-    fit_outlook(market, battery, teacher);
-  } else {
-    teacher.program = fit_program(market, battery, options.context);
-    teacher.context = fit_context_classes(market, options.context);
-  }
+  Teacher teacher = without_network(market, battery, options);
   TeacherPolicy policy(teacher);
   EvaluationOptions evaluation;
   evaluation.battery = battery;
@@ -412,11 +420,6 @@ TrainResult train_teacher(const MarketSteps& market, const BatteryParameters& ba
   }
   require_training_days(market.days_of(Split::kTrain).size());
   if (options.method == Method::kSdp) return train_program(market, battery, options);
-  if (options.context == ContextKind::kOutlook) {
-    fail(
-        "[train] context = \"outlook\" has the stochastic program alone as its teacher: set "
-        "method = \"sdp\"");
-  }
   Training training(market, battery, options);
   training.run(interrupted, checkpoint);
   return training.take_result();

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "shared/host/file.h"
 #include "shared/host/user_error.h"
 #include "tests/support/temporary_folder.h"
 
@@ -64,6 +65,20 @@ TEST(RunConfig, TheDefaultIsC51OnTheProgramsShoulders) {
   const RunConfig config = load_run_config({});
   EXPECT_EQ(config.train.method, Method::kC51);
   EXPECT_TRUE(config.train.residual);
+}
+
+TEST(RunConfig, TheContextIsWhatTheFileSaysAndElseWhatDayAheadPricesMakeIt) {
+  const TemporaryFolder folder;
+  const auto path = folder.file("mine.toml");
+  const auto context_of = [&](const char* text) {
+    write_file(path, text);
+    return load_run_config(path, ContextKind::kOutlook).train.context;
+  };
+  EXPECT_EQ(load_run_config({}).train.context, ContextKind::kLevel);
+  EXPECT_EQ(load_run_config({}, ContextKind::kOutlook).train.context, ContextKind::kOutlook);
+  EXPECT_EQ(context_of("[train]\nmethod = \"sdp\"\n"), ContextKind::kOutlook);
+  EXPECT_EQ(context_of("[train]\ncontext = \"level\"\n"), ContextKind::kLevel);
+  EXPECT_THROW(context_of("[train]\nsource = \"replay\"\n"), UserError);
 }
 
 TEST(RunConfig, PaperFileIsValid) {
@@ -143,6 +158,9 @@ TEST(RunConfig, MistakesNamePlaceAndMend) {
        "[train] input_... needs source = \"counterfactual\""},
       {"[train]\nresidual = false\ninput_deviation = true\n", ": ",
        "[train] input_deviation needs residual = true"},
+      {"[train]\ncontext = \"outlook\"\nresidual = false\n", ": ",
+       "[train] context = \"outlook\" needs residual = true"},
+      {"[train]\ncontext = \"outlook\"\ninput_deviation = true\n", ": ", "no input_deviation"},
       {"[train]\natoms = 50\n", ": ", "[train] residual needs an odd number of atoms, not 50"},
       {"[correction]\nlow_price_eur_per_mwh = 1500\n", ": ",
        "[correction] low_price_eur_per_mwh must be below"},

@@ -116,7 +116,7 @@ INSTANTIATE_TEST_SUITE_P(Networks, BeforeTheFirstStep,
 TEST(ProgramResidual, RewardIsTheProgramsErrorInOneStep) {
   const auto& program = market_program();
   const PriceMap map = straight_price_map();
-  const TrainingMarket shaped(market(), map, {}, Horizon::kContinuing, {.program = program});
+  const TrainingMarket shaped(market(), map, {}, Horizon::kContinuing, {.program = {program}});
   const TrainingMarket plain(market(), map, {}, Horizon::kContinuing, {});
   const double unit = learned_per_eur({});
   const MarketStep* step = market().of(market().days_of(Split::kTrain)[0]).data();
@@ -146,7 +146,7 @@ TEST(ProgramResidual, RewardIsTheProgramsErrorInOneStep) {
 
 TEST(ProgramResidual, RewardsAreCentredWhereTheProgramTradesAndSoIsMidnight) {
   const TrainingMarket training(market(), straight_price_map(), {}, Horizon::kContinuing,
-                                {.program = market_program()});
+                                {.program = {market_program()}});
   // Without a discount the returns are the rewards.
   const std::vector<float> rewards = training.residual_returns(0);
   ASSERT_EQ(rewards.size(), training.step_count());
@@ -281,7 +281,7 @@ TEST(ProgramResidual, LearnsWhatTheProgramHasWrong) {
   const auto program = program_of(two_prices(false));
   const PriceMap map = PriceMap::fit(observed_training_prices(truth));
   const ContextClasses context{};
-  const TrainingMarket training(truth, map, {}, Horizon::kContinuing, {.program = program},
+  const TrainingMarket training(truth, map, {}, Horizon::kContinuing, {.program = {program}},
                                 context);
   const Support support{-0.4F, 0.4F, 41};
   Learner learner(Method::kC51, support, 0, 3, 1, 1e4);  // the reach of one step: known by hand

@@ -189,10 +189,10 @@ TEST_F(TeacherFile, OneOfBeforeIsReadAndSaysNothingOfWhatItWasLearntFor) {
 
 TEST_F(TeacherFile, OtherVersionNamesBoth) {
   std::string bytes = saved(Method::kDqn);
-  bytes[8] = 4;
+  bytes[8] = 5;
   const std::string message = refusal_of(bytes);
-  EXPECT_NE(message.find("version 4"), std::string::npos) << message;
-  EXPECT_NE(message.find("reads 2 to 3"), std::string::npos) << message;
+  EXPECT_NE(message.find("version 5"), std::string::npos) << message;
+  EXPECT_NE(message.find("reads 2 to 4"), std::string::npos) << message;
 }
 
 /// Fields in the file: magic 8, version 4, then these.

@@ -161,11 +161,7 @@ TEST(OutlookStudent, TheTeachersFileIsReadBackAndDecidesTheSame) {
 }
 
 TEST(OutlookStudent, WhatItCannotDoIsSaid) {
-  TrainOptions network = School::options();
-  network.method = Method::kC51;
   const auto never = [] { return false; };
-  EXPECT_THAT(error_of([&] { train_teacher(school().market, {}, network, never); }),
-              HasSubstr("set method = \"sdp\""));
   MarketSteps blind = school().market;
   blind.day_ahead = nullptr;
   EXPECT_THAT(error_of([&] { train_teacher(blind, {}, School::options(), never); }),
