@@ -76,8 +76,9 @@ class OutlookProgram {
   /// the values of the plan that it needs and keeps them there. The plan must serve the step.
   [[nodiscard]] std::array<double, kActionCount> action_values(const MarketStep& step,
                                                                double soc_frac, Plan& plan) const;
-  /// Writes what the rest is worth by SoC after this step, EUR, kSocPoints values; returns the price
-  /// that the step is expected to be paid. action_values() are of the two. The plan must serve it.
+  /// Writes what the rest is worth by SoC after this step, EUR, kSocPoints values; returns the
+  /// price that the step is expected to be paid: action_values() are made of the two. The plan must
+  /// serve the step.
   double continuation(const MarketStep& step, Plan& plan, float* value_eur) const;
   [[nodiscard]] const Coefficients& coefficients() const { return coefficients_; }
   [[nodiscard]] const ByQuarterHour& hour() const { return hour_; }

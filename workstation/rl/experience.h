@@ -85,7 +85,7 @@ class TrainingMarket {
     bool terminal;
     std::uint32_t potential = 0, next_potential = 0;  ///< rows of potential_, or of program_
     bool begins_anew = false;                         ///< the program's values do, at the successor
-    float anew_centre = 0;                            ///< of r' there
+    float centre = 0;                                 ///< of r', where it has one of its own
     bool follows_last = false;                        ///< the successor of the step before this one
   };
   std::uint32_t add_potential(const Potential& potential, const MarketStep& step);

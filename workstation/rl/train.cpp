@@ -227,16 +227,16 @@ class Training {
         options_(options),
         validation_(market.days_of(Split::kValidation)),
         current_(without_network(market, battery, options)),
-        adds_(current_.is_residual()),
-        training_(market, current_.price_map, battery, options.horizon,
-                  adds_ ? RewardShaping{.program = current_.foundation()}
-                        : fit_shaping(market, battery, options),
-                  current_.context, options.inputs),
-        support_(adds_ ? residual_support(training_, options) : given_support(options)),
-        learner_(options.method, support_, adds_ ? options.residual_gamma : options.gamma,
+        program_(options.residual ? current_.foundation() : Foundation{}),
+        training_(
+            market, current_.price_map, battery, options.horizon,
+            program_ ? RewardShaping{.program = program_} : fit_shaping(market, battery, options),
+            current_.context, options.inputs),
+        support_(program_ ? residual_support(training_, options) : given_support(options)),
+        learner_(options.method, support_, program_ ? options.residual_gamma : options.gamma,
                  derive_seed(options.seed, kSeedWeights), options.threads,
-                 adds_ ? options.mean_weight / double{support_.step() * support_.step()}
-                       : options.mean_weight,
+                 program_ ? options.mean_weight / double{support_.step() * support_.step()}
+                          : options.mean_weight,
                  kernels_of(options), options.inputs),
         experience_(training_, options),
         average_(learner_.online()),
@@ -246,7 +246,7 @@ class Training {
       teacher->shape = learner_.shape();
       teacher->parameters = learner_.online();
     }
-    if (!adds_) return;
+    if (!program_) return;
     for (Parameters* p : {&learner_.online(), &learner_.target(), &average_, &current_.parameters,
                           &result_.teacher.parameters}) {
       begin_at_zero(options.method, support_, learner_.shape(), *p);
@@ -296,7 +296,7 @@ class Training {
   [[nodiscard]] bool is_validation_due() const {
     const bool is_its_step = step_ % options_.validate_every == 0 || step_ == options_.steps;
     // Of a residual step 0, the program, is a candidate too.
-    const long nothing_yet = adds_ ? -1 : 0;
+    const long nothing_yet = program_ ? -1 : 0;
     return is_its_step &&
            step_ != (result_.curve.empty() ? nothing_yet : result_.curve.back().step);
   }
@@ -381,8 +381,8 @@ class Training {
   const BatteryParameters& battery_;
   const TrainOptions& options_;
   std::vector<MarketDay> validation_;
-  Teacher current_;  ///< whose weights act and are validated
-  bool adds_;        ///< a residual, to a program
+  Teacher current_;     ///< whose weights act and are validated
+  Foundation program_;  ///< that a residual adds to
   TrainingMarket training_;
   Support support_;
   Learner learner_;
