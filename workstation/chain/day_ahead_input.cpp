@@ -18,12 +18,18 @@ void DayAheadInput::add(ProgramCommand& command) {
 std::shared_ptr<const DayAheadPublication> DayAheadInput::read(const MinuteSeries& settled,
                                                                const AcceptedFindings& accepted,
                                                                int published_min) const {
-  if (path_.empty()) return nullptr;
-  const std::string text = read_file(path_);
-  DayAheadSeries series = parse_day_ahead_csv(text, path_);
+  return path_.empty() ? nullptr : read_day_ahead(path_, settled, accepted, published_min);
+}
+
+std::shared_ptr<const DayAheadPublication> read_day_ahead(const std::string& path,
+                                                          const MinuteSeries& settled,
+                                                          const AcceptedFindings& accepted,
+                                                          int published_min) {
+  const std::string text = read_file(path);
+  DayAheadSeries series = parse_day_ahead_csv(text, path);
   std::vector<Finding> found = implausible_day_ahead(series);
   for (Finding& finding : shifted_day_ahead(series, settled)) found.push_back(std::move(finding));
-  judge(found, accepted, {{path_, text}});
+  judge(found, accepted, {{path, text}});
   return std::make_shared<DayAheadPublication>(std::move(series), published_min);
 }
 

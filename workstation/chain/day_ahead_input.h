@@ -12,6 +12,13 @@
 
 namespace bess {
 
+/// Judged by itself and by what was settled: prices filed under the wrong day are look-ahead.
+/// Throws UserError.
+std::shared_ptr<const DayAheadPublication> read_day_ahead(const std::string& path,
+                                                          const MinuteSeries& settled,
+                                                          const AcceptedFindings& accepted,
+                                                          int published_min);
+
 class DayAheadInput {
  public:
   DayAheadInput() = default;
@@ -23,8 +30,7 @@ class DayAheadInput {
   [[nodiscard]] ContextKind context_unless_said() const {
     return path_.empty() ? ContextKind::kLevel : ContextKind::kOutlook;
   }
-  /// Nothing when none is given. Judged by itself and by what was settled: prices filed under the
-  /// wrong day are look-ahead. Throws UserError.
+  /// Nothing when none is given, else read_day_ahead().
   [[nodiscard]] std::shared_ptr<const DayAheadPublication> read(const MinuteSeries& settled,
                                                                 const AcceptedFindings& accepted,
                                                                 int published_min) const;

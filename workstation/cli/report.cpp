@@ -36,6 +36,11 @@ void run_report(const std::string& path, const std::string& prices) {
     fail("{}: are not the prices of this run: {}, and the run has {}",
          prices.empty() ? record->prices : prices, hash, record->value("prices"));
   }
+  if (!record->day_ahead.empty() &&
+      file_mark(folder.path / record->day_ahead) != record->value(kDayAheadKey)) {
+    fail("{}: are not the day-ahead prices of this run, which has {}", record->day_ahead,
+         record->value(kDayAheadKey));
+  }
   const FolderLock lock(folder.path);
   RunStages stages(folder, std::move(*record), series, stderr);
   stages.report_again();

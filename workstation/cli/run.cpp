@@ -55,8 +55,9 @@ void run_single(const RunArguments& options) {
   if (options.json) {
     fmt::print("{}\n", summary_json(load_run_summary(folder)).line());
   } else {
-    fmt::print("\n{}\n{}: report.html, student_weights.h and everything else of this run\n",
-               read_file(folder.file(run_file::kSummary)), folder.path.string());
+    fmt::print("\n{}\n{}: report.html{} and everything else of this run\n",
+               read_file(folder.file(run_file::kSummary)), folder.path.string(),
+               fs::exists(folder.file(run_file::kHeader)) ? ", student_weights.h" : "");
   }
 }
 
@@ -119,6 +120,7 @@ void add_run_command(ProgramCommand& app) {
       "run", "The whole chain into one folder: train, correct, prove, export, evaluate, report");
   command.option("--prices", request.prices, "Minute file; without it a built-in simulated year");
   request.price_input.add(command);
+  request.day_ahead.add(command);
   request.rule_files.add(command, "Rule files: your own rules, learnt and proved as well");
   command.option("--out", options->out, "Run folder").required();
   command.flag("--resume", request.resume,
@@ -141,6 +143,7 @@ void add_run_command(ProgramCommand& app) {
       "Examples:\n"
       "  bess-train run --out runs/first\n"
       "  bess-train run --resume --out runs/first\n"
+      "  bess-train run --prices market.csv.gz --day-ahead day_ahead.csv --out runs/outlook\n"
       "  bess-train run --prices market.csv.gz --config my.toml --seed 7 --out runs/second\n"
       "  bess-train run --prices market.csv.gz --from-teacher runs/second --config "
       "other.toml --out runs/third\n"

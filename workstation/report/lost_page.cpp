@@ -231,7 +231,7 @@ std::vector<DayLoss> losses_of(const ReportInputs& in) {
   std::shared_ptr<StudentPolicy> plain;
   std::unique_ptr<RuledPolicy> under_rules;
   if (in.corrected != nullptr && in.uncorrected != nullptr) {
-    plain = std::make_shared<StudentPolicy>(in.uncorrected->net);
+    plain = std::make_shared<StudentPolicy>(in.uncorrected->net, in.uncorrected->outlook);
     chain.plain = plain.get();
     const RuleSet rules = projected_rules(in.corrected->certificate.rules);
     if (!rules.empty()) {

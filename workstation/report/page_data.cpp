@@ -89,8 +89,8 @@ std::vector<double> against_foresight(const ReportInputs& in, std::vector<double
 }
 
 Json archive_json(const ReportInputs& in, const PageSteps& steps) {
-  Json archive =
-      step_archive(in.market, steps.days, steps.policies, steps.kept, context_classes_of(in));
+  Json archive = step_archive(in.market, steps.days, steps.policies, steps.kept,
+                              [&](const MarketStep& step) { return context_class_of(in, step); });
   archive.set("days_left_out", steps.days.size() - steps.kept.size());
   return archive;
 }
@@ -257,11 +257,10 @@ PageSteps page_steps(const ReportInputs& in) {
 }
 
 PolicyContext first_map(const ReportInputs& in) {
-  const ContextClasses classes = context_classes_of(in);
   std::array<std::size_t, kContextClassCount + 1> steps{};
   for (const MarketDay& day : in.market.days_of(Split::kTest)) {
     for (const MarketStep& step : in.market.of(day)) {
-      ++steps[static_cast<std::size_t>(classes.class_of(step.month, step.level_centi_eur_per_mwh))];
+      ++steps[static_cast<std::size_t>(context_class_of(in, step))];
     }
   }
   const auto most = std::max_element(steps.begin() + 1, steps.end()) - steps.begin();

@@ -35,7 +35,8 @@ constexpr const char* kFailedTitle =
 
 std::vector<NamedPolicyMap> policy_maps(const ReportInputs& in, const PolicyContext& context) {
   std::vector<NamedPolicyMap> maps;
-  if (in.teacher) maps.push_back({"teacher", teacher_grid(*in.teacher, context)});
+  if (in.teacher && !in.teacher->outlook)
+    maps.push_back({"teacher", teacher_grid(*in.teacher, context)});
   if (in.uncorrected) {
     maps.push_back({kPlainName, student_grid(in.uncorrected->net, context)});
   }
@@ -65,11 +66,10 @@ std::optional<PolicyContext> worst_context(const ReportInputs& in) {
   return worst == count.end() ? std::nullopt : std::optional(worst->first);
 }
 
-std::string context_note(const MarketSteps& market, const ContextClasses& classes,
-                         int context_class) {
-  for (const MarketDay& day : market.days_of(Split::kTrain)) {
-    for (const MarketStep& step : market.of(day)) {
-      if (classes.class_of(step.month, step.level_centi_eur_per_mwh) == context_class) return "";
+std::string context_note(const ReportInputs& in, int context_class) {
+  for (const MarketDay& day : in.market.days_of(Split::kTrain)) {
+    for (const MarketStep& step : in.market.of(day)) {
+      if (context_class_of(in, step) == context_class) return "";
     }
   }
   return "No training day saw this context: it is extrapolated. ";
@@ -80,9 +80,8 @@ void add_policy_map(const ReportInputs& in, const PolicyContext& context, const 
   const std::vector<NamedPolicyMap> maps = policy_maps(in, context);
   if (maps.empty()) return;
   const ContextClasses classes = context_classes_of(in);
-  figures.push_back(
-      policy_map_figure(context, classes, maps, rules_of(in), in.battery,
-                        note + context_note(in.market, classes, context.context_class)));
+  figures.push_back(policy_map_figure(context, classes, maps, rules_of(in), in.battery,
+                                      note + context_note(in, context.context_class)));
 }
 
 void add_policy_maps(const ReportInputs& in, std::vector<Figure>& figures) {
@@ -214,6 +213,16 @@ ContextClasses context_classes_of(const ReportInputs& in) {
   if (in.corrected) return in.corrected->net.context;
   if (in.uncorrected) return in.uncorrected->net.context;
   return in.teacher ? in.teacher->context : ContextClasses{};
+}
+
+int context_class_of(const ReportInputs& in, const MarketStep& step) {
+  const StudentFile* student = in.corrected != nullptr ? in.corrected : in.uncorrected;
+  const std::shared_ptr<const OutlookBook> book = student != nullptr      ? student->outlook
+                                                  : in.teacher != nullptr ? in.teacher->book
+                                                                          : nullptr;
+  const double middle_frac = 0.5 * (in.battery.soc_min_frac + in.battery.soc_max_frac);
+  return context_classes_of(in).class_of(
+      step.month, book ? book->break_even_centi(step, middle_frac) : step.level_centi_eur_per_mwh);
 }
 
 PriceThresholds thresholds_of(const ReportInputs& in) {

@@ -41,6 +41,8 @@ struct ReportInputs {
 
 /// Of what there is: corrected student's, uncorrected student's, teacher's.
 ContextClasses context_classes_of(const ReportInputs& inputs);
+/// The class of a step; by outlook that of a battery in the middle of its SoC window.
+int context_class_of(const ReportInputs& inputs, const MarketStep& step);
 /// What the students were checked against.
 PriceThresholds thresholds_of(const ReportInputs& inputs);
 

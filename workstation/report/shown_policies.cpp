@@ -23,7 +23,8 @@ std::vector<ShownPolicy> shown_policies(const ReportInputs& in) {
         {own_student_name(in.corrected->certificate), exported_policy(*in.corrected)});
   }
   if (in.uncorrected) {
-    policies.push_back({kPlainName, std::make_unique<StudentPolicy>(in.uncorrected->net)});
+    policies.push_back({kPlainName, std::make_unique<StudentPolicy>(in.uncorrected->net,
+                                                                    in.uncorrected->outlook)});
   }
   if (in.teacher) policies.push_back({"teacher", std::make_unique<TeacherPolicy>(*in.teacher)});
   if (policies.empty()) {

@@ -32,7 +32,7 @@ std::int32_t milli_of(double eur_per_mwh) {
   return static_cast<std::int32_t>(std::lround(eur_per_mwh * kMilliPerEur));
 }
 
-void append_market(std::span<const MarketStep> steps, const ContextClasses& classes,
+void append_market(std::span<const MarketStep> steps, const ClassOfStep& class_of,
                    std::string& bytes) {
   using Step = const MarketStep&;
   append<std::int32_t>(
@@ -45,8 +45,7 @@ void append_market(std::span<const MarketStep> steps, const ContextClasses& clas
       steps,
       [](Step s) { return s.quarter_hour * kMinutesPerQuarterHour + s.minute_of_quarter_hour; },
       bytes);
-  append<std::int8_t>(
-      steps, [&](Step s) { return classes.class_of(s.month, s.level_centi_eur_per_mwh); }, bytes);
+  append<std::int8_t>(steps, class_of, bytes);
 }
 
 void append_policy(std::span<const StepRecord> records, std::string& bytes) {
@@ -95,14 +94,14 @@ std::string base64(std::string_view bytes) {
 
 Json step_archive(const MarketSteps& market, const std::vector<MarketDay>& days,
                   const std::vector<PolicySteps>& policies, const std::vector<std::size_t>& kept,
-                  const ContextClasses& classes) {
+                  const ClassOfStep& class_of) {
   std::vector<std::size_t> first_record{0};  // of each day
   for (const MarketDay& day : days) first_record.push_back(first_record.back() + day.step_count);
   std::string bytes;
   Json index = Json::list();
   for (const std::size_t d : kept) {
     const MarketDay& day = days[d];
-    append_market(market.of(day), classes, bytes);
+    append_market(market.of(day), class_of, bytes);
     for (const PolicySteps& policy : policies) {
       append_policy({policy.records.data() + first_record[d], day.step_count}, bytes);
     }

@@ -7,11 +7,11 @@
 //   and for each policy  profit float32 (EUR) | power float32 (W) | SoC int16 (1e-4, before) | action int8
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "shared/context_classes.h"
 #include "shared/host/json.h"
 #include "workstation/env/evaluate.h"
 
@@ -23,12 +23,14 @@ struct PolicySteps {
   std::vector<StepRecord> records;
 };
 
+using ClassOfStep = std::function<int(const MarketStep&)>;
+
 /// {"policies": [...], "days": [{"date", "steps"}...], "data": base64 of the zlib stream}. The
 /// policies' records are of all `days`, one after the other; `kept` are the indices of the days to
 /// pack, ascending.
 Json step_archive(const MarketSteps& market, const std::vector<MarketDay>& days,
                   const std::vector<PolicySteps>& policies, const std::vector<std::size_t>& kept,
-                  const ContextClasses& classes);
+                  const ClassOfStep& class_of);
 
 /// RFC 4648, with padding.
 std::string base64(std::string_view bytes);

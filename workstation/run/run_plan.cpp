@@ -23,6 +23,7 @@ void require_free(const RunFolder& folder, const RunRequest& request) {
   std::vector<GivenPath> outputs;
   for (const std::string& name : run_files()) outputs.push_back({"--out", folder.file(name)});
   require_distinct(outputs, {{"--prices", request.prices},
+                             {"--day-ahead", request.day_ahead.path()},
                              {"--config", request.common.config_path},
                              {"--from-teacher", request.from_teacher}});
   for (const std::string& name : run_files()) {
@@ -63,12 +64,15 @@ void require_unedited_configuration(const RunRecord& there, const RunFolder& fol
 }
 
 RunConfig config_of(const RunRequest& request, const RunRecord* there, const RunFolder& folder) {
-  if (there == nullptr) return request.common.resolve();
+  const bool knows_day_ahead = there != nullptr && !there->day_ahead.empty();
+  const ContextKind unless_said =
+      knows_day_ahead ? ContextKind::kOutlook : request.day_ahead.context_unless_said();
+  if (there == nullptr) return request.common.resolve(unless_said);
   const RunConfig known = there->config(folder);
   CommonOptions common = request.common;
   if (!common.seed) common.seed = known.train.seed;
   if (!common.threads) common.threads = known.train.threads;
-  return common.config_path.empty() ? common.resolve(known) : common.resolve();
+  return common.config_path.empty() ? common.resolve(known) : common.resolve(unless_said);
 }
 
 }  // namespace
@@ -88,11 +92,6 @@ RunPlan plan_run(const RunRequest& request) {
   if (!there) require_free(plan.folder, request);
   if (known != nullptr) require_unedited_configuration(*known, plan.folder);
   RunConfig config = config_of(request, known, plan.folder);
-  if (config.train.context == ContextKind::kOutlook) {
-    fail(
-        "[train] context = \"outlook\": a run ends with a header, and bess-edge has no day-ahead "
-        "prices to plan on; use train, distil, evaluate and backtest with --day-ahead");
-  }
   request.rule_files.apply(config, config.train.context);
   RunRecord& record = plan.record;
   if (!request.prices.empty()) {
@@ -101,6 +100,16 @@ RunPlan plan_run(const RunRequest& request) {
   } else {
     record.prices = known ? known->prices : run_file::kSimulatedPrices;
     record.prices_name = known ? known->prices_name : kBuiltInMarketName;
+  }
+  if (!request.day_ahead.path().empty()) {
+    record.day_ahead = absolute(request.day_ahead.path());
+  } else if (known) {
+    record.day_ahead = known->day_ahead;
+  }
+  if (config.train.context == ContextKind::kOutlook && record.day_ahead.empty()) {
+    fail(
+        "[train] context = \"outlook\" plans on day-ahead prices: give their file with "
+        "--day-ahead");
   }
   std::string teacher_hash;
   if (!request.from_teacher.empty()) {
@@ -118,6 +127,12 @@ RunPlan plan_run(const RunRequest& request) {
   plan.series =
       prices_of_run(record, there ? AcceptedFindings::all() : request.price_input.accepted());
   record.identity = identity_of(config, prices_hash(plan.series), teacher_hash);
+  if (!record.day_ahead.empty()) {
+    (void)read_day_ahead(plan.folder.path / record.day_ahead, plan.series,
+                         there ? AcceptedFindings::all() : request.price_input.accepted(),
+                         config.market.day_ahead_published_min);
+    record.identity.emplace_back(kDayAheadKey, file_mark(plan.folder.path / record.day_ahead));
+  }
   if (there) {
     require_same(*there, record, plan.folder, request.resume);
     record = *there;

@@ -7,6 +7,7 @@
 
 #include "shared/host/minute_file.h"
 #include "workstation/chain/common_options.h"
+#include "workstation/chain/day_ahead_input.h"
 #include "workstation/chain/price_input.h"
 #include "workstation/chain/rule_files.h"
 #include "workstation/run/run_record.h"
@@ -16,6 +17,7 @@ namespace bess {
 struct RunRequest {
   CommonOptions common;
   PriceInput price_input;
+  DayAheadInput day_ahead;  ///< none: with `resume` what the folder says
   RuleFiles rule_files;
   std::string prices;        ///< empty: the built-in market, or with `resume` what the folder says
   std::string from_teacher;  ///< its file, or its run's folder; empty: train one, or the same

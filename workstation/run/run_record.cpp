@@ -185,6 +185,7 @@ std::optional<RunRecord> load_run_record(const RunFolder& folder) {
   record.prices_name = reader.text("prices_name");
   if (const char* file = json.value()["teacher_file"].text()) record.teacher_file = file;
   record.commit = json.value()["commit"].text_or("");
+  record.day_ahead = json.value()["day_ahead"].text_or("");
   record.identity = entries_of(json.value()["identity"], folder);
   for (const JsonValue stage : json.value()["stages"]) {
     record.stages.push_back(stage_of(stage, folder));
@@ -213,6 +214,7 @@ std::optional<RunRecord> load_run_record(const RunFolder& folder) {
 void save_run_record(const RunFolder& folder, const RunRecord& record) {
   Json json = Json::object({{"prices", record.prices}, {"prices_name", record.prices_name}});
   if (!record.teacher_file.empty()) json.set("teacher_file", record.teacher_file);
+  if (!record.day_ahead.empty()) json.set("day_ahead", record.day_ahead);
   json.set("commit", std::string(build_commit()));
   json.set("identity", json_of(record.identity));
   Json stages = Json::object();

@@ -54,18 +54,21 @@ struct RunFigures {
 
 /// In `identity`: the text of a rule file, if there are any rules.
 inline constexpr const char* kRulesKey = "rules";
-/// In `identity` of a run on one fold of a walk-forward alone (run_fold.h): its month.
+/// In `identity` where there are day-ahead prices: their file's mark.
+inline constexpr const char* kDayAheadKey = "day-ahead";
+/// In `identity` of a run on one fold of a walk-forward alone (run_fold.h): its month or days.
 inline constexpr const char* kFoldKey = "fold";
 /// In `identity` of a lean run, which makes no plain student, no figures and no page: "lean".
 inline constexpr const char* kStagesKey = "stages";
 inline constexpr const char* kLean = "lean";
 
 struct RunRecord {
-  std::string prices;        ///< the minute file; without a folder when it is the run's own
-  std::string prices_name;   ///< as students tell where they come from
-  std::string teacher_file;  ///< that the run began with; empty when it trains its own
-  Entries identity;          ///< all that the run's bytes depend on: options and every key
-  std::string commit = {};   ///< of the bess-train that wrote it last; empty: not told
+  std::string prices;          ///< the minute file; without a folder when it is the run's own
+  std::string prices_name;     ///< as students tell where they come from
+  std::string teacher_file;    ///< that the run began with; empty when it trains its own
+  Entries identity;            ///< all that the run's bytes depend on: options and every key
+  std::string commit = {};     ///< of the bess-train that wrote it last; empty: not told
+  std::string day_ahead = {};  ///< the day-ahead file, as `prices`; empty: there are none
   std::vector<StageRecord> stages;
   std::optional<RunFigures> figures;
 

@@ -66,7 +66,7 @@ std::string violations_text(const Certificate& plain, const Certificate& correct
 
 /// The plain student, also as each rule would hold it.
 void evaluate_plain(const RunResults& run, std::vector<NamedEvaluation>& all) {
-  const auto plain = std::make_shared<StudentPolicy>(run.plain->net);
+  const auto plain = std::make_shared<StudentPolicy>(run.plain->net, run.plain->outlook);
   all.push_back(evaluate_both(kPlainName, *plain, run));
   const auto under = [&](const std::string& name, const RuleSet& rules) {
     RuledPolicy ruled(plain, rules, run.plain->net.context);

@@ -14,6 +14,7 @@
 #include "shared/utc_text.h"
 #include "workstation/chain/built_in_market.h"
 #include "workstation/chain/chain_steps.h"
+#include "workstation/chain/day_ahead_input.h"
 #include "workstation/chain/interruption.h"
 #include "workstation/chain/price_input.h"
 #include "workstation/report/evaluation_days.h"
@@ -69,9 +70,14 @@ std::vector<std::string> sorted(std::vector<std::string> names) {
 
 /// All of the prices, or what the record's fold may see of them.
 MarketSteps market_of_run(const MinuteSeries& series, const RunConfig& config,
-                          const RunRecord& record) {
+                          const RunRecord& record, const RunFolder& folder) {
   const std::string month = record.value(kFoldKey);
   MarketSteps market = market_of(series, config.market, record.prices_name);
+  if (!record.day_ahead.empty()) {
+    attach_day_ahead(market,
+                     read_day_ahead(folder.path / record.day_ahead, series, AcceptedFindings::all(),
+                                    config.market.day_ahead_published_min));
+  }
   return month.empty() ? std::move(market) : market_of_fold(market, month);
 }
 
@@ -89,7 +95,7 @@ RunStages::RunStages(RunFolder folder, RunRecord record, const MinuteSeries& ser
       record_(std::move(record)),
       config_(record_.config(folder_)),
       series_(series),
-      market_(market_of_run(series, config_, record_)),
+      market_(market_of_run(series, config_, record_, folder_)),
       messages_(messages) {}
 
 void RunStages::tell(const std::string& text) const {
@@ -176,6 +182,8 @@ void RunStages::finish() {
 
 bool RunStages::is_due(const Stage& stage) const {
   if (stage.name == stage_name::kPrices) return record_.prices == kSimulatedPrices;
+  const bool has_header = config_.train.context != ContextKind::kOutlook;  // export refuses it
+  if (stage.name == stage_name::kHeader) return has_header;
   const bool is_shown = stage.name == stage_name::kPlain || stage.name == stage_name::kReport;
   if (is_shown && record_.is_lean()) return false;
   return stage.name != stage_name::kFailureReport;  // fail_the_proof() goes there
@@ -259,9 +267,9 @@ RunStages::Names RunStages::make_teacher() {
 
 RunStages::Names RunStages::take_teacher() const {
   Teacher taken = load_teacher(record_.teacher_file);
-  if (taken.outlook) {
-    fail("{}: plans on day-ahead prices, which a run does not know: use distil with --day-ahead",
-         record_.teacher_file);
+  if ((taken.outlook != nullptr) != (config_.train.context == ContextKind::kOutlook)) {
+    fail("{}: {} by outlook, and this run is the other way: [train] context, --day-ahead",
+         record_.teacher_file, taken.outlook ? "decides" : "does not decide");
   }
   taken.learnt_for = learnt_for_of(record_.teacher_file);
   save_teacher(path(kTeacher), taken);

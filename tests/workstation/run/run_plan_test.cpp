@@ -72,6 +72,42 @@ TEST_F(RunPlanning, OtherPricesAreRefused) {
   EXPECT_THAT(refusal(other), HasSubstr("prices is crc32 "));
 }
 
+/// Day-ahead prices make it one by outlook, and are part of what it is made of.
+TEST_F(RunPlanning, DayAheadPricesAreTheFoldersAndOthersAreRefused) {
+  const auto priced = [&](const char* name, double eur_per_mwh) {
+    const MinuteSeries series = small_series();
+    DayAheadSeries day_ahead;
+    for (std::int64_t t = series.utc_s(0); t < series.utc_s(series.size() - 1);
+         t += kSecondsPerQuarterHour) {
+      EXPECT_TRUE(append_day_ahead(day_ahead, {t, eur_per_mwh + static_cast<double>(t % 7), 15}));
+    }
+    write_day_ahead_file(folder_.file(name), day_ahead, "");
+    return DayAheadInput(folder_.file(name));
+  };
+  RunRequest request = request_;
+  request.day_ahead = priced("a.csv", 70);
+  request.out = folder_.file("outlook");
+  const RunPlan plan = plan_run(request);
+  save_run_record(plan.folder, plan.record);
+  EXPECT_EQ(plan.record.config(plan.folder).train.context, ContextKind::kOutlook);
+  EXPECT_EQ(plan.record.config(plan.folder).train.method, Method::kC51);
+  RunRequest bare;
+  bare.out = request.out;
+  bare.resume = true;
+  EXPECT_EQ(plan_run(bare).record.day_ahead, folder_.file("a.csv"));
+  bare.day_ahead = priced("b.csv", 80);
+  EXPECT_THAT(refusal(bare), HasSubstr("day-ahead is crc32 "));
+  request.out = folder_.file("blind");
+  request.day_ahead = {};
+  request.common.config_path = folder_.write("o.toml", "[train]\ncontext = \"outlook\"\n");
+  EXPECT_THAT(refusal(request), HasSubstr("give their file with --day-ahead"));
+  request.day_ahead = DayAheadInput(folder_.file("a.csv"));
+  request.common.config_path = folder_.write("level.toml", "[train]\ncontext = \"level\"\n");
+  request.out = folder_.file("named");
+  const RunPlan named = plan_run(request);
+  EXPECT_EQ(named.record.config(named.folder).train.context, ContextKind::kLevel);
+}
+
 TEST_F(RunPlanning, TheSameRunIsGoneOnWithOnlyWhenAsked) {
   EXPECT_THAT(refusal(request_),
               AllOf(HasSubstr("this very run, just begun"), HasSubstr("--resume")));
