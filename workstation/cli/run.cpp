@@ -55,9 +55,8 @@ void run_single(const RunArguments& options) {
   if (options.json) {
     fmt::print("{}\n", summary_json(load_run_summary(folder)).line());
   } else {
-    fmt::print("\n{}\n{}: report.html{} and everything else of this run\n",
-               read_file(folder.file(run_file::kSummary)), folder.path.string(),
-               fs::exists(folder.file(run_file::kHeader)) ? ", student_weights.h" : "");
+    fmt::print("\n{}\n{}: report.html, student_weights.h and everything else of this run\n",
+               read_file(folder.file(run_file::kSummary)), folder.path.string());
   }
 }
 
