@@ -15,25 +15,28 @@ namespace {
 
 constexpr double kWindowShareMin = 0.5;
 
-bool same_month(const MarketDay& a, const MarketDay& b) {
-  return a.year == b.year && a.month == b.month;
-}
-
 LocalDate date_of(const MarketDay& day) { return {day.year, day.month, day.day}; }
 
-/// The days [first, end) of `market` with their steps and nothing else; the last `traded` are test
-/// days.
-MarketSteps cut_out(const MarketSteps& market, std::size_t first, std::size_t end,
-                    std::size_t traded) {
+/// Index of the first day that is not before `date`.
+std::size_t day_from(const MarketSteps& market, const LocalDate& date) {
+  const auto found = std::ranges::lower_bound(market.days, date, {}, date_of);
+  return static_cast<std::size_t>(found - market.days.begin());
+}
+
+/// The days [first, known) and [traded, end) of `market`, the latter as test days, and no step that
+/// is earlier or later.
+MarketSteps cut_out(const MarketSteps& market, std::size_t first, std::size_t known,
+                    std::size_t traded, std::size_t end) {
   const std::size_t first_step = market.days[first].first_step;
   const std::size_t end_step = market.days[end - 1].first_step + market.days[end - 1].step_count;
   MarketSteps cut;
   cut.steps.assign(market.steps.begin() + static_cast<std::ptrdiff_t>(first_step),
                    market.steps.begin() + static_cast<std::ptrdiff_t>(end_step));
   for (std::size_t d = first; d < end; ++d) {
+    if (d >= known && d < traded) continue;
     MarketDay day = market.days[d];
     day.first_step -= first_step;
-    if (d + traded >= end) {
+    if (d >= traded) {
       day.split = Split::kTest;
     } else if (day.split == Split::kTest) {
       day.split = Split::kTrain;
@@ -44,14 +47,20 @@ MarketSteps cut_out(const MarketSteps& market, std::size_t first, std::size_t en
   return cut;
 }
 
-/// The months that `days` hold, each as [first, end).
-std::vector<std::pair<std::size_t, std::size_t>> months_of(const std::vector<MarketDay>& days) {
-  std::vector<std::pair<std::size_t, std::size_t>> months;
-  for (std::size_t d = 0; d < days.size(); ++d) {
-    if (d == 0 || !same_month(days[d], days[d - 1])) months.emplace_back(d, d);
-    months.back().second = d + 1;
+/// The stretches that a plan trades, from the first day to the last.
+std::vector<std::pair<LocalDate, LocalDate>> stretches(const std::vector<MarketDay>& days,
+                                                       const FoldPlan& plan) {
+  std::vector<std::pair<LocalDate, LocalDate>> all;
+  for (const MarketDay& day : days) {
+    if (!all.empty() && date_of(day) <= all.back().second) continue;
+    if (plan.traded_days > 0) {
+      all.emplace_back(date_of(day), add_days(date_of(day), plan.traded_days - 1));
+    } else {
+      const LocalDate next{day.year + day.month / 12, day.month % 12 + 1, 1};
+      all.emplace_back(LocalDate{day.year, day.month, 1}, add_days(next, -1));
+    }
   }
-  return months;
+  return all;
 }
 
 double mean_settled_of(const Evaluation& traded, const MarketSteps& market) {
@@ -64,31 +73,41 @@ double mean_settled_of(const Evaluation& traded, const MarketSteps& market) {
 
 }  // namespace
 
-Folds make_folds(const MarketSteps& market, int window_days) {
+std::variant<Fold, SkippedMonth> make_fold(const MarketSteps& market, const std::string& name,
+                                           const LocalDate& first, const LocalDate& last,
+                                           const FoldPlan& plan) {
+  const LocalDate until = add_days(first, -plan.lag_days);
+  const std::size_t window = day_from(market, add_days(until, -plan.window_days));
+  const std::size_t known = day_from(market, until);
+  const std::size_t traded = day_from(market, first);
+  const std::size_t end = day_from(market, add_days(last, 1));
+  if (static_cast<double>(known - window) < kWindowShareMin * plan.window_days) {
+    return SkippedMonth{name, fmt::format("{} of the {} days before it are there", known - window,
+                                          plan.window_days)};
+  }
+  Fold fold{name, cut_out(market, window, known, traded, end)};
+  if (fold.market.days_of(Split::kTrain).empty() ||
+      fold.market.days_of(Split::kValidation).empty()) {
+    return SkippedMonth{name, "no training or no validation days before it"};
+  }
+  return fold;
+}
+
+Folds make_folds(const MarketSteps& market, const FoldPlan& plan) {
   Folds folds;
-  for (const auto& [first, end] : months_of(market.days)) {
-    const MarketDay& day = market.days[first];
-    const std::string month = fmt::format("{:04}-{:02}", day.year, day.month);
-    const LocalDate since = add_days({day.year, day.month, 1}, -window_days);
-    std::size_t window = first;
-    while (window > 0 && date_of(market.days[window - 1]) >= since) --window;
-    const std::size_t known = first - window;
-    if (static_cast<double>(known) < kWindowShareMin * window_days) {
-      folds.skipped.push_back(
-          {month, fmt::format("{} of the {} days before it are there", known, window_days)});
-      continue;
+  for (const auto& [first, last] : stretches(market.days, plan)) {
+    const std::string date = format_local_date(first);
+    auto made =
+        make_fold(market, plan.traded_days > 0 ? date : date.substr(0, 7), first, last, plan);
+    if (auto* skipped = std::get_if<SkippedMonth>(&made)) {
+      folds.skipped.push_back(std::move(*skipped));
+    } else {
+      folds.traded.push_back(std::move(std::get<Fold>(made)));
     }
-    Fold fold{month, cut_out(market, window, end, end - first)};
-    if (fold.market.days_of(Split::kTrain).empty() ||
-        fold.market.days_of(Split::kValidation).empty()) {
-      folds.skipped.push_back({month, "no training or no validation days before it"});
-      continue;
-    }
-    folds.traded.push_back(std::move(fold));
   }
   if (folds.traded.empty()) {
     fail("no month has {} complete days in the {} before it; give more prices or a shorter window",
-         static_cast<int>(std::ceil(kWindowShareMin * window_days)), window_days);
+         static_cast<int>(std::ceil(kWindowShareMin * plan.window_days)), plan.window_days);
   }
   return folds;
 }
@@ -110,7 +129,9 @@ WalkForward walk_forward(const std::string& name, const Folds& folds, const Fold
     Evaluation evaluation;
     if (policy->sees_future()) {
       std::vector<MarketDay> days = market.days;
-      std::erase_if(days, [&](const MarketDay& day) { return !same_month(day, traded.front()); });
+      std::erase_if(days, [&](const MarketDay& day) {
+        return date_of(day) < date_of(traded.front()) || date_of(day) > date_of(traded.back());
+      });
       evaluation = evaluate(market, days, *policy, options);
     } else {
       evaluation = evaluate(fold.market, traded, *policy, options);

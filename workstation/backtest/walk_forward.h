@@ -6,16 +6,18 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "workstation/env/evaluate.h"
+#include "workstation/market/series/local_date.h"
 
 namespace bess {
 
 /// One traded month with the window that its policies are fitted on. Of the window, local days 21
 /// to 25 are validation days and all others training days; the month's are test days.
 struct Fold {
-  std::string month;  ///< "2024-06"
+  std::string month;  ///< "2024-06"; of other stretches their first day, "2024-06-08"
   MarketSteps market;
 };
 
@@ -30,9 +32,20 @@ struct Folds {
   std::vector<SkippedMonth> skipped;
 };
 
-/// A fold for each month that has at least half of `window_days` complete days before it, and
-/// training and validation days among them. Throws UserError when no month has.
-Folds make_folds(const MarketSteps& market, int window_days);
+struct FoldPlan {
+  int window_days;
+  int lag_days = 0;     ///< between the window and what is traded
+  int traded_days = 0;  ///< by one fold; 0: a calendar month
+};
+
+/// A fold for each month, or stretch of days, that has at least half of its window in complete
+/// days, and training and validation days among them. Throws UserError when none has.
+Folds make_folds(const MarketSteps& market, const FoldPlan& plan);
+
+/// The days of `market` from `first` to `last`, with their window.
+std::variant<Fold, SkippedMonth> make_fold(const MarketSteps& market, const std::string& name,
+                                           const LocalDate& first, const LocalDate& last,
+                                           const FoldPlan& plan);
 
 /// What a policy did, in the order of the days.
 struct WalkForward {

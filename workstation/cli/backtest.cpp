@@ -51,7 +51,8 @@ struct BacktestArguments {
   std::vector<std::string> prices;
   std::vector<std::string> policies = compared_with_the_chain();
   DayAheadInput day_ahead;
-  int window_days = 120;
+  FoldPlan plan{.window_days = 120};
+  bool weekly = false;
   bool and_day_reset = false;
   std::string out;
   bool json = false;
@@ -64,9 +65,12 @@ std::string identity_of(const RunConfig& config, const MinuteSeries& series,
       config.train.context == ContextKind::kOutlook
           ? fmt::format(", day-ahead {}", file_mark(options.day_ahead.path()))
           : "";
-  return fmt::format("# bess-train {}, prices {:08x}{}, window {} days, seed {}\n{}", BESS_VERSION,
-                     prices_checksum(series), day_ahead, options.window_days, config.train.seed,
-                     format_run_config(config));
+  const auto& [window_days, lag_days, traded_days] = options.plan;
+  return fmt::format("# bess-train {}, prices {:08x}{}, window {} days{}{}, seed {}\n{}",
+                     BESS_VERSION, prices_checksum(series), day_ahead, window_days,
+                     lag_days == 0 ? "" : fmt::format(", {} days before", lag_days),
+                     traded_days == 0 ? "" : fmt::format(", for {} days", traded_days),
+                     config.train.seed, format_run_config(config));
 }
 
 /// A folder belongs to one configuration: its folds are kept when that comes again.
@@ -206,7 +210,7 @@ void run_backtest(const BacktestArguments& options) {
   MarketSteps market = market_of(series, config.market, prices);
   attach_day_ahead(market, options.day_ahead.read(series, options.price_input.accepted(),
                                                   config.market.day_ahead_published_min));
-  const Folds folds = make_folds(market, options.window_days);
+  const Folds folds = make_folds(market, options.plan);
   require_writable(folder / "backtest.csv");
   const FolderLock lock(folder);
   claim_folder(folder, identity_of(config, series, options));
@@ -219,7 +223,7 @@ void run_backtest(const BacktestArguments& options) {
   BacktestResults results{{},
                           std::move(fitted_days),
                           folds.skipped,
-                          options.window_days,
+                          options.plan.window_days,
                           config.battery.capacity_wh / kWattsPerMegawatt,
                           fmt::format("{} on {} file{}, prices {:08x}, seed {}", BESS_VERSION,
                                       options.prices.size(), options.prices.size() == 1 ? "" : "s",
@@ -268,9 +272,16 @@ void add_backtest_command(ProgramCommand& app) {
                   " is the whole chain, learnt anew for each month, " + kTeacherName +
                   " its teacher; the others: " + policy_help())
       .with_default();
-  command.option("--window-days", options->window_days, "Days before a month that it is fitted on")
+  command
+      .option("--window-days", options->plan.window_days,
+              "Days before a month that it is fitted on")
       .range(30, 3650)
       .with_default();
+  command
+      .option("--lag-days", options->plan.lag_days,
+              "Days between them and the month that nothing is fitted on, as a refresh has 30")
+      .range(0, 365);
+  command.flag("--weekly", options->weekly, "Fit anew for every seven days instead of every month");
   options->day_ahead.add(command);
   command.flag("--day-reset", options->and_day_reset,
                "In the table also: each day from the same SoC, its end given away");
@@ -286,7 +297,10 @@ void add_backtest_command(ProgramCommand& app) {
       "  bess-train backtest --prices 2024.csv.gz --window-days 60 --policy rbc sdp --out quick\n"
       "  bess-train backtest --prices 2024.csv.gz --day-ahead day_ahead.csv.gz --policy sdp "
       "sdp-outlook --out outlook");
-  command.runs([options] { run_backtest(*options); });
+  command.runs([options] {
+    if (options->weekly) options->plan.traded_days = 7;
+    run_backtest(*options);
+  });
 }
 
 }  // namespace bess

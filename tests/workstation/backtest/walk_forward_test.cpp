@@ -23,7 +23,7 @@ FoldPolicy fitted(const char* name) {
 
 TEST(Folds, HoldTheirWindowAndTheirMonthAndNothingElse) {
   const MarketSteps market = four_months();
-  const Folds folds = make_folds(market, kWindowDays);
+  const Folds folds = make_folds(market, {kWindowDays});
   ASSERT_EQ(folds.traded.size(), 3U);  // of January to April, January has nothing before it
   ASSERT_EQ(folds.skipped.size(), 1U);
   EXPECT_EQ(folds.skipped[0].month, "2023-01");
@@ -51,13 +51,35 @@ TEST(Folds, HoldTheirWindowAndTheirMonthAndNothingElse) {
   }
 }
 
+TEST(Folds, OfSevenDaysAndALagLeaveTheDaysBetweenAlone) {
+  const MarketSteps market = four_months();
+  const Folds weekly = make_folds(market, {.window_days = 40, .lag_days = 30, .traded_days = 7});
+  ASSERT_GT(weekly.traded.size(), 6U);
+  EXPECT_EQ(weekly.traded.front().month,
+            "2023-02-19");  // 19 of its 40 days are there a week before
+  for (const Fold& fold : weekly.traded) {
+    const auto traded = fold.market.days_of(Split::kTest);
+    ASSERT_EQ(traded.front().date(), fold.month);
+    ASSERT_LE(traded.size(), 7U);
+    std::vector<MarketDay> fitted_on = fold.market.days;
+    std::erase_if(fitted_on, [](const MarketDay& day) { return day.split == Split::kTest; });
+    const std::int64_t between_s = fold.market.of(traded.front()).front().utc_s -
+                                   fold.market.of(fitted_on.back()).front().utc_s;
+    EXPECT_NEAR(static_cast<double>(between_s) / 86'400, 31, 0.05) << fold.month;
+  }
+  for (std::size_t f = 1; f < weekly.traded.size(); ++f) {  // no day is left out or traded twice
+    EXPECT_GT(weekly.traded[f].market.days_of(Split::kTest).front().date(),
+              weekly.traded[f - 1].market.days_of(Split::kTest).back().date());
+  }
+}
+
 TEST(Folds, AWindowThatNoMonthHasIsAnError) {
-  EXPECT_THROW(make_folds(four_months(), 400), UserError);
+  EXPECT_THROW(make_folds(four_months(), {400}), UserError);
 }
 
 TEST(WalkForward, RepeatsToTheBitAndCarriesTheCharge) {
   const MarketSteps market = four_months();
-  const Folds folds = make_folds(market, kWindowDays);
+  const Folds folds = make_folds(market, {kWindowDays});
   const WalkForward once = walk_forward("sdp", folds, fitted("sdp"), {}, 0.5, market);
   const WalkForward again = walk_forward("sdp", folds, fitted("sdp"), {}, 0.5, market);
   ASSERT_EQ(once.total.days.size(), again.total.days.size());
@@ -75,7 +97,7 @@ TEST(WalkForward, RepeatsToTheBitAndCarriesTheCharge) {
 /// What is decided in the first traded month before `until_utc_s`.
 std::vector<Action> actions_before(const MinuteSeries& series, const FoldPolicy& make,
                                    std::int64_t until_utc_s) {
-  const Folds folds = make_folds(make_market_steps(series, {}), kWindowDays);
+  const Folds folds = make_folds(make_market_steps(series, {}), {kWindowDays});
   const Fold& fold = folds.traded.front();
   std::vector<StepRecord> records;
   evaluate(fold.market, fold.market.days_of(Split::kTest), *make(fold), {}, &records);
