@@ -55,8 +55,8 @@ TEST(Folds, OfSevenDaysAndALagLeaveTheDaysBetweenAlone) {
   const MarketSteps market = four_months();
   const Folds weekly = make_folds(market, {.window_days = 40, .lag_days = 30, .traded_days = 7});
   ASSERT_GT(weekly.traded.size(), 6U);
-  EXPECT_EQ(weekly.traded.front().month,
-            "2023-02-19");  // 19 of its 40 days are there a week before
+  // The week before has 19 of its 40 days.
+  EXPECT_EQ(weekly.traded.front().month, "2023-02-26");
   for (const Fold& fold : weekly.traded) {
     const auto traded = fold.market.days_of(Split::kTest);
     ASSERT_EQ(traded.front().date(), fold.month);
