@@ -17,6 +17,7 @@ void add_commands(ProgramCommand& app) {
   add_omega_sweep_command(app);
   add_export_command(app);
   add_report_command(app);
+  add_refresh_command(app);
   add_config_command(app);
   add_schema_command(app);
 }

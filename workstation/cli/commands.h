@@ -25,6 +25,7 @@ void add_backtest_command(ProgramCommand& app);
 void add_delays_command(ProgramCommand& app);
 void add_omega_sweep_command(ProgramCommand& app);
 void add_export_command(ProgramCommand& app);
+void add_refresh_command(ProgramCommand& app);
 void add_report_command(ProgramCommand& app);
 void add_run_command(ProgramCommand& app);
 void add_runs_commands(ProgramCommand& app);  ///< compare

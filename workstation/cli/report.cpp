@@ -30,8 +30,9 @@ void run_report(const std::string& path, const std::string& prices) {
     require_distinct(outputs, {{"--prices", prices}});
   }
   // The run accepted what it accepted.
-  const MinuteSeries series = prices.empty() ? prices_of_run(*record, AcceptedFindings::all())
-                                             : read_judged_minutes(prices, AcceptedFindings::all());
+  const MinuteSeries series = prices.empty()
+                                  ? prices_of_run(*record, folder, AcceptedFindings::all())
+                                  : read_judged_minutes(prices, AcceptedFindings::all());
   if (const std::string hash = prices_hash(series); hash != record->value("prices")) {
     fail("{}: are not the prices of this run: {}, and the run has {}",
          prices.empty() ? record->prices : prices, hash, record->value("prices"));

@@ -45,7 +45,7 @@ void run_one(const RunRequest& request, std::FILE* messages) {
   fmt::print(messages, "[{}/{}] prices: {} ({} minutes)\n", stage_named(stage_name::kPrices).number,
              stage_count(), plan.record.prices_name, plan.series.size());
   if (!load_run_record(plan.folder)) save_run_record(plan.folder, plan.record);
-  end_when_interrupted(how_to_go_on(plan.folder));
+  end_when_interrupted(how_to_go_on(plan.folder, plan.record));
   RunStages(plan.folder, plan.record, plan.series, messages).finish();
 }
 

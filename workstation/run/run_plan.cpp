@@ -77,12 +77,14 @@ RunConfig config_of(const RunRequest& request, const RunRecord* there, const Run
 
 }  // namespace
 
-MinuteSeries prices_of_run(const RunRecord& record, const AcceptedFindings& accepted) {
+MinuteSeries prices_of_run(const RunRecord& record, const RunFolder& folder,
+                           const AcceptedFindings& accepted) {
   if (record.prices == run_file::kSimulatedPrices) return built_in_market();
-  if (!fs::exists(record.prices)) {
-    fail("{}: there is no such minute file; if it moved, name it with --prices", record.prices);
+  const fs::path prices = folder.path / record.prices;
+  if (!fs::exists(prices)) {
+    fail("{}: there is no such minute file; if it moved, name it with --prices", prices.string());
   }
-  return read_judged_minutes(record.prices, accepted);
+  return read_judged_minutes(prices, accepted);
 }
 
 RunPlan plan_run(const RunRequest& request) {
@@ -124,8 +126,8 @@ RunPlan plan_run(const RunRequest& request) {
     teacher_hash = known->value("teacher");
   }
   // A run that is there accepted what it accepted: other prices than its own are refused below.
-  plan.series =
-      prices_of_run(record, there ? AcceptedFindings::all() : request.price_input.accepted());
+  plan.series = prices_of_run(record, plan.folder,
+                              there ? AcceptedFindings::all() : request.price_input.accepted());
   record.identity = identity_of(config, prices_hash(plan.series), teacher_hash);
   if (!record.day_ahead.empty()) {
     (void)read_day_ahead(plan.folder.path / record.day_ahead, plan.series,

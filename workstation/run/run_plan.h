@@ -37,7 +37,8 @@ struct RunPlan {
 /// one of the inputs.
 RunPlan plan_run(const RunRequest& request);
 
-/// The series that a record names, judged. Throws UserError.
-MinuteSeries prices_of_run(const RunRecord& record, const AcceptedFindings& accepted);
+/// The series that a record in `folder` names, judged. Throws UserError.
+MinuteSeries prices_of_run(const RunRecord& record, const RunFolder& folder,
+                           const AcceptedFindings& accepted);
 
 }  // namespace bess

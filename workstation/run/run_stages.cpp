@@ -171,7 +171,8 @@ void RunStages::tidy() const {
 
 void RunStages::finish() {
   tidy();
-  warn_untrained_months(market_, config_.train.context == ContextKind::kMonth);
+  const bool by_month = config_.train.context == ContextKind::kMonth;
+  if (by_month || record_.value(kFoldKey).empty()) warn_untrained_months(market_, by_month);
   for (const Stage& stage : run_stages()) {
     if (!is_due(stage)) continue;
     announce(stage);
@@ -182,6 +183,8 @@ void RunStages::finish() {
 
 bool RunStages::is_due(const Stage& stage) const {
   if (stage.name == stage_name::kPrices) return record_.prices == kSimulatedPrices;
+  const bool has_header = config_.train.context != ContextKind::kOutlook;  // export refuses it
+  if (stage.name == stage_name::kHeader) return has_header;
   const bool is_shown = stage.name == stage_name::kPlain || stage.name == stage_name::kReport;
   if (is_shown && record_.is_lean()) return false;
   return stage.name != stage_name::kFailureReport;  // fail_the_proof() goes there
@@ -246,10 +249,10 @@ RunStages::Names RunStages::make_teacher() {
   };
   TrainResult trained = train_on();
   if (interruption()) {
-    fmt::print(stderr, "{}\n", how_to_go_on(folder_));
+    fmt::print(stderr, "{}\n", how_to_go_on(folder_, record_));
     throw Interrupted{};
   }
-  end_when_interrupted(how_to_go_on(folder_));
+  end_when_interrupted(how_to_go_on(folder_, record_));
   warn_narrow_support(config_.train, trained);
   trained.teacher.provenance = training_provenance(record_.prices_name, config_.train, trained);
   trained.teacher.learnt_for = record_.value(kFoldKey).empty()
@@ -406,7 +409,8 @@ RunStages::Names RunStages::make_report() {
   return sorted(std::move(names));
 }
 
-std::string how_to_go_on(const RunFolder& folder) {
+std::string how_to_go_on(const RunFolder& folder, const RunRecord& record) {
+  if (!record.value(kFoldKey).empty()) return "what is done is kept: the same command goes on";
   return fmt::format("what is done is kept: bess-train run --resume --out {} goes on",
                      folder.path.string());
 }

@@ -27,6 +27,8 @@ class RunStages {
   void report_again();
   /// The closing table.
   [[nodiscard]] std::string summary() const;
+  /// Of the days that the run may see.
+  [[nodiscard]] const MarketSteps& market() const { return market_; }
 
  private:
   using Names = std::vector<std::string>;
@@ -75,6 +77,6 @@ class RunStages {
 };
 
 /// One line for whoever interrupts the run.
-std::string how_to_go_on(const RunFolder& folder);
+std::string how_to_go_on(const RunFolder& folder, const RunRecord& record);
 
 }  // namespace bess

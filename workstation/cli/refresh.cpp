@@ -1,0 +1,129 @@
+// bess-train refresh: learns a run anew from what was published since, and puts it in the run's
+// place when it is not worse.
+#include "workstation/run/refresh.h"
+
+#include <fmt/core.h>
+
+#include <ctime>
+#include <memory>
+
+#include "shared/host/file.h"
+#include "shared/host/user_error.h"
+#include "workstation/chain/common_options.h"
+#include "workstation/chain/day_ahead_input.h"
+#include "workstation/chain/interruption.h"
+#include "workstation/chain/price_input.h"
+#include "workstation/cli/commands.h"
+#include "workstation/market/feed/day_ahead_fetch.h"
+#include "workstation/market/feed/elia_fetch.h"
+#include "workstation/market/feed/market_files.h"
+
+namespace bess {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RefreshArguments {
+  std::string run;
+  int window_days = 120;
+  bool adopt = false;
+  std::vector<std::string> prices;
+  PriceInput price_input;
+  DayAheadInput day_ahead;
+  std::string source = kEliaBaseUrl;
+  std::string day_ahead_source = kEnergyChartsBaseUrl;
+};
+
+/// What a proposal may need of the days that are over, and some for the price level to settle in.
+FetchSpan span_of(const RefreshArguments& options) {
+  constexpr int kSettlingDays = 10;
+  const LocalDate yesterday = add_days(local_date_of(std::time(nullptr)), -1);
+  return {add_days(yesterday, -kJudgedDays - options.window_days - kSettlingDays), yesterday};
+}
+
+void bring_prices(const RefreshArguments& options, const fs::path& out) {
+  if (!options.prices.empty()) {
+    return write_minute_file(out, options.price_input.read_joined(options.prices).series,
+                             "Of " + file_names(options.prices));
+  }
+  watch_interruption();
+  const auto fetched = fetch_prices({.span = span_of(options),
+                                     .out = out,
+                                     .base_url = checked_base_url(options.source, "--source"),
+                                     .now_utc_s = std::time(nullptr),
+                                     .retry = {},
+                                     .allow_gaps = true,  // days that are not whole are left out
+                                     .accepted = options.price_input.accepted(),
+                                     .sleep = sleep_unless},
+                                    interruption());
+  if (!fetched) throw Interrupted{};
+  fmt::print("{}", fetched->description);
+}
+
+void fetch_day_ahead_to(const RefreshArguments& options, const fs::path& out) {
+  watch_interruption();
+  const std::string url = checked_base_url(options.day_ahead_source, "--day-ahead-source");
+  const auto fetched = fetch_day_ahead({.span = span_of(options),
+                                        .base_url = url,
+                                        .now_utc_s = std::time(nullptr),
+                                        .retry = {},
+                                        .allow_gaps = true,
+                                        .sleep = sleep_unless},
+                                       interruption());
+  if (!fetched) throw Interrupted{};
+  write_day_ahead_file(out, fetched->series, "Day-ahead prices fetched from " + url);
+}
+
+void bring_day_ahead(const RefreshArguments& options, const fs::path& out,
+                     const MinuteSeries& settled) {
+  if (!options.day_ahead.path().empty()) {
+    write_file(out, read_file(options.day_ahead.path()));
+  } else if (options.prices.empty()) {
+    fetch_day_ahead_to(options, out);
+  } else {
+    fail("the run plans on day-ahead prices: give their file with --day-ahead beside --prices");
+  }
+  (void)read_day_ahead(out, settled, options.price_input.accepted(), kDayAheadPublishedMin);
+}
+
+}  // namespace
+
+void add_refresh_command(ProgramCommand& app) {
+  auto options = std::make_shared<RefreshArguments>();
+  ProgramCommand command =
+      app.subcommand("refresh", "Learn a run anew from the newest prices, as a proposal beside it");
+  command.option("--run", options->run, "Run folder").required();
+  command.flag("--adopt", options->adopt,
+               "Put the proposal in the run's place unless it is worse beyond its error");
+  command.option("--window-days", options->window_days, "Days that it is fitted on")
+      .range(30, 3650)
+      .with_default();
+  command.option("--prices", options->prices,
+                 "Minute files or downloads, instead of fetching the newest");
+  options->price_input.add(command);
+  options->day_ahead.add(command);
+  command.option("--source", options->source, "API root of the prices").with_default();
+  command.option("--day-ahead-source", options->day_ahead_source, "API root of day-ahead prices")
+      .with_default();
+  command.footer(
+      "The newest 30 days judge, and nothing is learnt from them; it is fitted on the days before\n"
+      "them. RUN.proposal is a run like any other. Adopted, it is RUN, and the run before it\n"
+      "RUN.before-DATE; refused, RUN.refused-DATE. After an interruption the same command goes "
+      "on.\n"
+      "Examples:\n"
+      "  bess-train refresh --run runs/site\n"
+      "  bess-train refresh --run runs/site --prices 2024.csv.gz 2025.csv.gz --adopt");
+  command.runs([options] {
+    refresh({.run = options->run,
+             .window_days = options->window_days,
+             .adopt = options->adopt,
+             .bring_prices = [&](const fs::path& out) { bring_prices(*options, out); },
+             .bring_day_ahead =
+                 [&](const fs::path& out, const MinuteSeries& settled) {
+                   bring_day_ahead(*options, out, settled);
+                 }},
+            stdout);
+  });
+}
+
+}  // namespace bess
