@@ -18,7 +18,7 @@ README_LINES = {"README.md": 150, "edge/README.md": 250}
 DATA = ("edge/generated/", "tests/data/", "tests/golden/", "tests/fuzz/seeds/",
         "tools/monitoring/grafana_dashboard.json")
 KINDS = set(".c .cmake .conf .cpp .css .csv .gz .h .html .in .js .json .jsonl .md .py .rules .service .sh"
-            " .sysusers .tmpfiles .toml .txt .xml .yaml .yml".split())
+            " .sysusers .timer .tmpfiles .toml .txt .xml .yaml .yml".split())
 KNOWN_NAMES = {"copyright", "conffiles", "lintian-overrides"}  # what Debian's packages have
 PLACES = ("edge", "shared", "tests", "toolchains", "tools", "workstation")
 

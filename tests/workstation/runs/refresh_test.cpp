@@ -20,7 +20,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 /// Its battery pays so much for every exchange that it idles: learnt and proved in seconds.
-constexpr const char* kIdle =
+constexpr const char* kIdleProgram =
     "[costs]\nimport_adder_eur_per_mwh = 1000\nimport_percent = 100\n"
     "export_fee_eur_per_mwh = 1000\nexport_percent = 100\n"
     "[train]\nmethod = \"sdp\"\n"
@@ -84,7 +84,7 @@ bool kill_once_there(const std::vector<std::string>& words, const fs::path& file
 
 TEST_F(RefreshCommand, KilledAtEveryStageEndsWithTheSameBytes) {
   EXPECT_THAT(refresh("next.csv").output, HasSubstr("site: holds no run"));
-  make_run(kIdle, small_series(31));
+  make_run(kIdleProgram, small_series(31));
   EXPECT_THAT(refresh("next.csv").output, HasSubstr("next.csv"));  // is not there yet
   write_minute_file(path("next.csv"), small_series(36), "");       // learnt to 25 January
   const Result early = refresh("next.csv");
