@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 
 struct RefreshArguments {
   std::string run;
-  int window_days = 120;
+  int window_days = 365;
   bool adopt = false;
   std::vector<std::string> prices;
   PriceInput price_input;
@@ -95,7 +95,9 @@ void add_refresh_command(ProgramCommand& app) {
   command.option("--run", options->run, "Run folder").required();
   command.flag("--adopt", options->adopt,
                "Put the proposal in the run's place unless it is worse beyond its error");
-  command.option("--window-days", options->window_days, "Days that it is fitted on")
+  command
+      .option("--window-days", options->window_days,
+              "Days that it is fitted on; half of them must be there")
       .range(30, 3650)
       .with_default();
   command.option("--prices", options->prices,

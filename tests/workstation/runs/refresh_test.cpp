@@ -129,17 +129,16 @@ TEST_F(RefreshCommand, KilledAtEveryStageEndsWithTheSameBytes) {
   expect_same("site", whole);
 }
 
-/// A month whose prices all came twelve hours late, as of a clock that takes p.m. for a.m.
-MinuteSeries late_by_half_a_day(const MinuteSeries& series, const char* from, const char* to) {
+/// A month whose settled prices were filed a day late, beside the right minutes.
+MinuteSeries settled_a_day_late(const MinuteSeries& series, const char* from, const char* to) {
   MinuteSeries spoilt = series;
   std::int64_t from_utc_s = 0;
   std::int64_t to_utc_s = 0;
   parse_utc(from, from_utc_s);
   parse_utc(to, to_utc_s);
-  for (std::size_t m = 720; m < series.size(); ++m) {
+  for (std::size_t m = 1440; m < series.size(); ++m) {
     if (series.utc_s(m) < from_utc_s || series.utc_s(m) >= to_utc_s) continue;
-    spoilt.indicative[m] = series.indicative[m - 720];
-    spoilt.settled[m] = series.settled[m - 720];
+    spoilt.settled[m] = series.settled[m - 1440];
   }
   return spoilt;
 }
@@ -151,6 +150,41 @@ MinuteSeries until(MinuteSeries series, const char* end) {
   series.indicative.resize(minutes);
   series.settled.resize(minutes);
   return series;
+}
+
+// By outlook, on a simulated market with its day-ahead prices.
+class RefreshedByOutlook : public RefreshCommand {};
+
+TEST_F(RefreshedByOutlook, BringsItsDayAheadPricesAlong) {
+  ASSERT_EQ(run({"prices", "simulate", "--start", "2023-01-01", "--days", "75", "--out",
+                 path("all.csv"), "--day-ahead-out", path("outlook.csv")})
+                .exit_code,
+            0);
+  const MinuteSeries all = read_minute_file(path("all.csv"));
+  write_minute_file(path("next.csv"), all, "");
+  std::string config = kIdleProgram;
+  config.insert(config.find("[train]\n") + 8, "context = \"outlook\"\n");
+  const auto begun = [&](std::vector<std::string> more) {
+    std::vector<std::string> words{
+        "run",   "--prices",  path("first.csv"), "--config", written("config.toml", config),
+        "--out", path("site")};
+    words.insert(words.end(), more.begin(), more.end());
+    return run(words);
+  };
+  write_minute_file(path("first.csv"), until(all, "2023-01-31T23:00:00Z"), "");
+  EXPECT_THAT(begun({}).output, HasSubstr("plans on day-ahead prices: give their file"));
+  const Result made = begun({"--day-ahead", path("outlook.csv")});
+  ASSERT_EQ(made.exit_code, 0) << made.output;
+  EXPECT_THAT(refresh("next.csv").output, HasSubstr("give their file with --day-ahead"));
+  std::vector<std::string> words = command("next.csv", false);
+  words.insert(words.end(), {"--day-ahead", path("outlook.csv")});
+  EXPECT_THAT(run(words).output, HasSubstr(" of 21600 decisions would differ"));
+  fs::remove(path("outlook.csv"));  // it is a run of its own: nothing outside it is needed
+  fs::remove(path("next.csv"));
+  const std::string again = refresh("next.csv", false).output;
+  EXPECT_THAT(again, AllOf(HasSubstr(" of 21600 decisions would differ"), Not(HasSubstr("[2/6]"))));
+  EXPECT_THAT(run({"runs", "compare", path("site"), path("site.proposal")}).output,
+              HasSubstr("site.proposal"));
 }
 
 // The yardstick's months, learnt in full: minutes of two cores.
@@ -166,12 +200,13 @@ TEST_F(RefreshedTwice, AdoptsOnRealPricesAndRefusesOnSpoiltOnes) {
   expect_same("site.before-2023-03-31", first);
   const auto second = contents("site");
   write_minute_file(path("may.csv"),
-                    late_by_half_a_day(until(year, "2023-05-20T22:00:00Z"), "2023-03-21T23:00:00Z",
+                    settled_a_day_late(until(year, "2023-05-20T22:00:00Z"), "2023-03-21T23:00:00Z",
                                        "2023-04-20T22:00:00Z"),
                     "");
-  EXPECT_THAT(refresh("may.csv").output,
-              AllOf(HasSubstr("site.refused-2023-05-20: refused: it would have earned "),
-                    HasSubstr("stays as it is"), Not(HasSubstr("adopted"))));
+  EXPECT_THAT(
+      refresh("may.csv").output,
+      AllOf(HasSubstr("site.refused-2023-05-20: refused: it is worse beyond its standard error; "),
+            HasSubstr("stays as it is"), Not(HasSubstr("adopted"))));
   expect_same("site", second);
   EXPECT_THAT(folders(),
               testing::ElementsAre("site", "site.before-2023-03-31", "site.refused-2023-05-20"));
