@@ -49,7 +49,7 @@ void bring_prices(const RefreshArguments& options, const fs::path& out) {
   watch_interruption();
   const auto fetched = fetch_prices({.span = span_of(options),
                                      .out = out,
-                                     .base_url = checked_base_url(options.source, "--source"),
+                                     .base_url = checked_base_url(options.source, "--base-url"),
                                      .now_utc_s = std::time(nullptr),
                                      .retry = {},
                                      .allow_gaps = true,  // days that are not whole are left out
@@ -62,7 +62,7 @@ void bring_prices(const RefreshArguments& options, const fs::path& out) {
 
 void fetch_day_ahead_to(const RefreshArguments& options, const fs::path& out) {
   watch_interruption();
-  const std::string url = checked_base_url(options.day_ahead_source, "--day-ahead-source");
+  const std::string url = checked_base_url(options.day_ahead_source, "--day-ahead-base-url");
   const auto fetched = fetch_day_ahead({.span = span_of(options),
                                         .base_url = url,
                                         .now_utc_s = std::time(nullptr),
@@ -104,8 +104,8 @@ void add_refresh_command(ProgramCommand& app) {
                  "Minute files or downloads, instead of fetching the newest");
   options->price_input.add(command);
   options->day_ahead.add(command);
-  command.option("--source", options->source, "API root of the prices").with_default();
-  command.option("--day-ahead-source", options->day_ahead_source, "API root of day-ahead prices")
+  command.option("--base-url", options->source, "API root of the prices").with_default();
+  command.option("--day-ahead-base-url", options->day_ahead_source, "API root of day-ahead prices")
       .with_default();
   command.footer(
       "The newest 30 days judge, and nothing is learnt from them; it is fitted on the days before\n"
