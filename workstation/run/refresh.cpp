@@ -173,9 +173,8 @@ class Refresh {
     record.prices_name = fmt::format("prices to {}", format_local_date(days.last));
     record.identity = identity_of(config, prices_hash(series), "");
     record.identity.emplace_back(kFoldKey, days.name());
-    const bool by_outlook = config.train.context == ContextKind::kOutlook;
-    if (is_lean || by_outlook) record.identity.emplace_back(kStagesKey, kLean);
-    if (!by_outlook) return record;
+    if (is_lean) record.identity.emplace_back(kStagesKey, kLean);
+    if (config.train.context != ContextKind::kOutlook) return record;
     record.day_ahead = kDayAhead;
     request_.bring_day_ahead(proposal_.file(kDayAhead), series);
     record.identity.emplace_back(kDayAheadKey, file_mark(proposal_.file(kDayAhead)));

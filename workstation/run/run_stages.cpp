@@ -183,8 +183,6 @@ void RunStages::finish() {
 
 bool RunStages::is_due(const Stage& stage) const {
   if (stage.name == stage_name::kPrices) return record_.prices == kSimulatedPrices;
-  const bool has_header = config_.train.context != ContextKind::kOutlook;  // export refuses it
-  if (stage.name == stage_name::kHeader) return has_header;
   const bool is_shown = stage.name == stage_name::kPlain || stage.name == stage_name::kReport;
   if (is_shown && record_.is_lean()) return false;
   return stage.name != stage_name::kFailureReport;  // fail_the_proof() goes there
