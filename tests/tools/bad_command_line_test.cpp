@@ -40,6 +40,7 @@ constexpr BadCommandLine kCases[] = {
     {"battery --capacity-wh -8000", 2, "must be above 0"},
     {"battery --efficiency 0", 2, "must be 0.01 to 1"},
     {"battery --efficiency 1.1", 2, "must be 0.01 to 1"},
+    {"battery --time-constant-s -1", 2, "must be 0 to 600"},
     {"battery --time-scale 0", 2, "not in range 1 to 100000"},
     {"battery --parity mark", 2, "--parity"},
     {"battery --stop-bits 3", 2, "not in range 1 to 2"},

@@ -114,6 +114,28 @@ TEST(BatteryFaults, ASlowRampTakesItsTimeFromOrderToOrder) {
   EXPECT_EQ(battery.power_w(), 0);
 }
 
+/// By hand: 1 - exp(-t / 5 s), behind a delay, behind a ramp, and the same however it is looked at.
+TEST(BatteryFaults, ATimeConstantIsAnExponentialBehindDelayAndRamp) {
+  for (const std::int64_t look_ms : {5'000, 250}) {
+    SimulatedBattery battery(kWithoutLosses, 0.5, 0);
+    battery.set_time_constant(5);
+    battery.set_habits({.delay_s = 2});
+    battery.start_dispatch(3'000, 1.0, 100'000);
+    for (std::int64_t ms = 0; ms <= 7'000; ms += look_ms) battery.advance(ms * 1'000'000);
+    battery.advance(7 * kNanosecondsPerSecond);
+    EXPECT_NEAR(battery.power_w(), 3'000 * (1 - std::exp(-1.0)), 2);
+    battery.advance(100 * kNanosecondsPerSecond);
+    EXPECT_EQ(battery.power_w(), 3'000);
+    EXPECT_NEAR(battery.soc_frac(), 0.5 + 3'000 * (100 - 2 - 5.0) / 3'600 / 8'000, 1e-5);
+  }
+  SimulatedBattery ramped(kWithoutLosses, 0.5, 0);
+  ramped.set_time_constant(5);
+  ramped.set_habits({.ramp_w_per_s = 100});
+  ramped.start_dispatch(3'000, 1.0, 100'000);
+  ramped.advance(25 * kNanosecondsPerSecond);
+  EXPECT_NEAR(ramped.power_w(), 100 * (25 - 5 * (1 - std::exp(-5.0))), 5);
+}
+
 TEST(BatteryFaults, AHiddenDrainEmptiesTheCellsAndShowsNothing) {
   SimulatedBattery battery(kWithoutLosses, 0.5, 0);
   battery.set_habits({.hidden_drain_w = 1'000});

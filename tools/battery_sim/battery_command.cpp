@@ -43,6 +43,7 @@ struct BatteryOptions {
   double soc_frac = 0.5;
   BatteryParameters battery{.power_w_max = 4'000, .capacity_wh = 8'000};
   double round_trip_efficiency = 0.9;
+  double time_constant_s = 0;
   std::string house;  ///< empty: none, and no meter
   std::uint64_t house_seed = 1;
   std::string meter_map_path;
@@ -156,6 +157,7 @@ void run_battery(BatteryOptions& options) {
     fail("--power-w {}: more than the map {} can express", battery.power_w_max, map.name.view());
   }
   SimulatedBattery simulated(battery, options.soc_frac, clock.now_utc_ns());
+  simulated.set_time_constant(options.time_constant_s);
   std::optional<MeteredHouse> house;
   if (!options.house.empty()) {
     house.emplace(HouseLoad::from_option(options.house, options.house_seed));
@@ -289,6 +291,11 @@ void add_plant_options(ProgramCommand& command, BatteryOptions& options) {
       .with_default();
   command.option("--efficiency", options.round_trip_efficiency, "Round trip")
       .range(0.01, 1.0)
+      .with_default();
+  command
+      .option("--time-constant-s", options.time_constant_s,
+              "Its power follows an order as a first-order lag of so many seconds; 0 = at once")
+      .range(0.0, 600.0)
       .with_default();
   command.option("--record", options.record_path,
                  "CSV of energy and SoC per simulated minute, written at exit");

@@ -16,6 +16,8 @@ constexpr double kThrottledSocFrac = 0.05;  ///< this close to a limit
 constexpr double kForcedBelowFrac = 0.10;
 constexpr double kForcedUntilFrac = 0.11;
 constexpr double kFullFrac = 0.995;
+constexpr std::int64_t kLagStepNs = kNanosecondsPerSecond / 20;
+constexpr double kArrivedW = 0.5;  ///< an exponential never does
 
 }  // namespace
 
@@ -29,6 +31,7 @@ void SimulatedBattery::advance(std::int64_t utc_ns) {
     if (dispatch_active_) end_ns = std::min(end_ns, dispatch_end_ns_);
     if (now_ns_ < change_ns_) end_ns = std::min(end_ns, change_ns_);
     if (changes_by_the_second()) end_ns = std::min(end_ns, now_ns_ + kNanosecondsPerSecond);
+    if (is_lagging()) end_ns = std::min(end_ns, now_ns_ + kLagStepNs);
     integrate_segment(end_ns);
     if (dispatch_active_ && now_ns_ >= dispatch_end_ns_) {
       dispatch_active_ = false;
@@ -60,6 +63,11 @@ bool SimulatedBattery::changes_by_the_second() const {
          habits_.balancing_w > 0;
 }
 
+bool SimulatedBattery::is_lagging() const {
+  const double wanted_w = dispatch_active_ ? ordered_flow_w() : 0;
+  return time_constant_s_ > 0 && (lagged_w_ != wanted_w || ramped_w_ != wanted_w);
+}
+
 /// What does not follow from the order alone, brought forward by a segment.
 void SimulatedBattery::follow_habits(double seconds) {
   if (soc_frac_ < kForcedBelowFrac) is_charging_itself_ = true;
@@ -67,6 +75,9 @@ void SimulatedBattery::follow_habits(double seconds) {
   const double reach_w = habits_.ramp_w_per_s > 0 ? habits_.ramp_w_per_s * seconds : INFINITY;
   const double wanted_w = dispatch_active_ ? ordered_flow_w() : 0;
   ramped_w_ = std::clamp(wanted_w, ramped_w_ - reach_w, ramped_w_ + reach_w);
+  const double kept = time_constant_s_ > 0 ? std::exp(-seconds / time_constant_s_) : 0;
+  const double left_w = (lagged_w_ - ramped_w_) * kept;
+  lagged_w_ = std::abs(left_w) < kArrivedW ? ramped_w_ : ramped_w_ + left_w;
 }
 
 BatteryParameters SimulatedBattery::limited() const {
@@ -90,6 +101,7 @@ BatteryParameters SimulatedBattery::limited() const {
 double SimulatedBattery::wanted_power_w() const {
   if (is_charging_itself_) return habits_.forced_charge_w;
   if (!dispatch_active_) return 0;
+  if (time_constant_s_ > 0) return lagged_w_;
   return habits_.ramp_w_per_s > 0 ? ramped_w_ : ordered_flow_w();
 }
 

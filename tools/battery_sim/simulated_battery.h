@@ -64,6 +64,8 @@ class SimulatedBattery {
   /// The share of its rated power that it can give, by heat or cold; it shows that. From now on.
   void set_derating(double power_frac) { derating_ = power_frac; }
   [[nodiscard]] double derating() const { return derating_; }
+  /// Its power follows as a first-order lag, behind delay and ramp; 0 = at once. From now on.
+  void set_time_constant(double seconds) { time_constant_s_ = seconds; }
 
   [[nodiscard]] bool dispatch_active() const { return dispatch_active_; }
   [[nodiscard]] double soc_frac() const { return soc_frac_; }
@@ -81,6 +83,7 @@ class SimulatedBattery {
   void note(DispatchEvent::Kind kind, double power_w = 0, std::int64_t duration_s = 0);
   [[nodiscard]] BatteryParameters limited() const;
   [[nodiscard]] bool changes_by_the_second() const;
+  [[nodiscard]] bool is_lagging() const;
   void follow_habits(double seconds);
   [[nodiscard]] double wanted_power_w() const;
   [[nodiscard]] double ordered_flow_w() const;
@@ -95,10 +98,12 @@ class SimulatedBattery {
   bool dispatch_active_ = false;
   BatteryHabits habits_{};
   double derating_ = 1;
+  double time_constant_s_ = 0;
   double power_w_ = 0;
   double power_before_w_ = 0;  ///< flows until `change_ns_`
   std::int64_t change_ns_ = 0;
   double ramped_w_ = 0;              ///< where the ramp has come to
+  double lagged_w_ = 0;              ///< and what flows of it by the time constant
   bool is_charging_itself_ = false;  ///< forced
   double soc_limit_frac_ = 1;
   std::int64_t dispatch_end_ns_ = 0;
