@@ -88,7 +88,7 @@ struct FollowedOrder {
 struct ResponseFindings {
   std::int16_t energy_share_percent = 0;  ///< of the measured energy shows in the SoC
   std::int32_t rest_loss_w = 0;           ///< lost at 0 W, or besides orders; negative: gained
-  std::int32_t ramp_w_per_s = 0;          ///< too slow for what its map says
+  std::int32_t ramp_w_per_s = 0;          ///< from an order on: too slow for its map
   std::int16_t locked_readings = 0;       ///< in a row: by its own limits it may do nothing
 };
 

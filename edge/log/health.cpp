@@ -96,9 +96,10 @@ void check_findings(const HealthInputs& in, std::vector<std::string>& reasons) {
                       std::to_string(in.locked_readings) + " readings: see its own display");
   }
   if (in.ramp_w_per_s != 0) {
-    reasons.push_back("WARN: the battery follows at " + std::to_string(in.ramp_w_per_s) +
-                      " W/s, slower than its map says: raise settle_s of [response] there; "
-                      "bess-edge commission measures it");
+    reasons.push_back("WARN: the battery is slower than its map says, at most " +
+                      std::to_string(in.ramp_w_per_s) +
+                      " W/s from an order on: bess-edge commission tells whether by lag or by "
+                      "ramp, and what to set");
   }
 }
 

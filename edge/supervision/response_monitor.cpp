@@ -150,7 +150,9 @@ bool ResponseMonitor::note_ramp(const Response& now, std::int32_t from_w) {
   const std::int64_t towards_w = left_w < 0 ? -moved_w : moved_w;
   const std::int64_t least_w = std::int64_t{settings_.power_w} * seconds / kFullRampS;
   if (towards_w < least_w || towards_w > std::max(left_w, -left_w)) return false;
-  ramp_w_per_s_ = static_cast<std::int32_t>(towards_w / seconds);
+  if (slow_.level == 0) ramp_w_per_s_ = 0;
+  // A lag moves a small step by less in the same time: what it cannot exceed shows at the largest.
+  ramp_w_per_s_ = std::max(ramp_w_per_s_, static_cast<std::int32_t>(towards_w / seconds));
   slow_.bad();
   return true;
 }

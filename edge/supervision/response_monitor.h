@@ -107,7 +107,7 @@ class ResponseMonitor {
   LeakyCount excessive_idle_;
   LeakyCount care_;
   LeakyCount slow_;
-  std::int32_t ramp_w_per_s_ = 0;  ///< of the newest answer that was still on its way
+  std::int32_t ramp_w_per_s_ = 0;  ///< the most of answers that were still on their way
   std::int16_t locked_readings_ = 0;
   std::int32_t weak_answers_ = 0;
   std::int32_t unanswered_orders_ = 0;

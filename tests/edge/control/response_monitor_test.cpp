@@ -251,6 +251,26 @@ TEST(ResponseMonitor, ASlowRampIsToldAndNoFault) {
   EXPECT_NEAR(site.monitor.findings().ramp_w_per_s, 29, 2);
 }
 
+/// A time constant of 60 s: 8 kW move by 59 W/s, and 2 kW by 15, which is no ramp of 15.
+TEST(ResponseMonitor, ALagIsNotTakenForTheRampOfItsSmallestStep) {
+  MonitoredSite site;
+  double power_w = -4'000;
+  for (int i = 0; i < 6; ++i) {
+    const std::int32_t size_w = i < 3 ? 4'000 : 1'000;
+    const std::int32_t ordered_w = i % 2 == 0 ? size_w : -size_w;
+    power_w = ordered_w + (power_w - ordered_w) * std::exp(-(kStepS - 5) / 60.0);
+    site.monitor.observe({.steady_s = site.utc_s += kStepS,
+                          .is_driven = true,
+                          .ordered_power_w = ordered_w,
+                          .order_age_s = kStepS - 5,
+                          .measurement = {.soc_e4 = 5'000 + i % 2 * 10,
+                                          .power_w = static_cast<std::int32_t>(power_w),
+                                          .capacity_wh = 80'000}});
+  }
+  EXPECT_EQ(site.monitor.trip(), Reason::kStudent);
+  EXPECT_GE(site.monitor.findings().ramp_w_per_s, 50);
+}
+
 TEST(ResponseMonitor, ABatteryThatLooksAfterItselfIsNoFault) {
   for (const auto& [soc_e4, power_w] : {std::pair{800, 2'000}, {1'100, 500}, {9'800, 450}}) {
     ResponseMonitor monitor{ResponseSettings{}};
