@@ -3,8 +3,12 @@
 // connection sees it. A map's sign is documented both ways for some devices, and registers that
 // read back as written prove nothing about it.
 //
-//   read -> rest: 0 W, power must be near 0 -> drive one way -> rest -> drive the other way -> rest -> release
+//   read -> rest: 0 W, power must be near 0 -> drive one way -> rest -> drive the other way -> rest
+//        -> where SoC and limits leave room: half the largest step one way -> from there the other
+//           way, which is the largest -> and back -> rest                              -> release
 //
+// The small steps say whether the way is right, and nothing larger is ordered before; the larger
+// ones, of a few seconds, tell a battery that lags from one that ramps (answer_speed.h).
 // A direction that the SoC, or the battery's own limit, does not leave is not tested, and said.
 // Power beyond the order ends it at once. A template over battery, clock and meter like the
 // control loop (control_loop.h names what the first two offer).
@@ -14,10 +18,11 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <string_view>
+#include <optional>
 
-#include "edge/base/response_band.h"
 #include "edge/battery/answer_curve.h"
+#include "edge/battery/answer_speed.h"
+#include "edge/battery/commission_types.h"
 #include "edge/battery/meter_proof.h"
 #include "edge/control/control_types.h"
 #include "edge/control/power_order.h"
@@ -25,95 +30,6 @@
 #include "shared/scaled_clock.h"
 
 namespace bess {
-
-struct CommissionSettings {
-  std::int32_t power_w = 500;
-  std::int32_t rest_s = 10;    ///< for the battery to come to 0 W
-  std::int32_t drive_s = 30;   ///< for the battery to follow
-  std::int32_t noise_w = 150;  ///< a resting battery and its meter may show this much
-  std::int32_t tolerance_percent =
-      50;                   ///< by which the power that flows may fall short of the order
-  ResponseBand response{};  ///< what the map says of its battery
-  std::int32_t step_w_max =
-      8'000;  ///< between two orders of the controller: what a ramp must manage
-  std::int32_t soc_min_e4 = 1'000;
-  std::int32_t soc_max_e4 = 10'000;
-  std::int32_t order_duration_s = 300;  ///< until the device's watchdog ends it
-};
-
-enum class CommissionVerdict : std::uint8_t {
-  kPassed,
-  kNoLink,         ///< a read, an order or the release failed; `status` says why
-  kAlarm,          ///< alarm or off-grid: no time for an experiment
-  kForeignOrder,   ///< the battery follows an order already
-  kNoRoom,         ///< neither direction can be tested
-  kNotAtRest,      ///< power flows although 0 W is ordered
-  kDoesNotFollow,  ///< hardly any power flows
-  kWrongSign,      ///< power flows the other way
-  kTooMuch,        ///< more than ordered
-  kTooLittle,      ///< less than the map's [response] allows
-  kSlow,           ///< slower than the map's [response] says
-  kMeterLost,      ///< `status` says why
-  kMeterMismatch,  ///< the meter does not step with the battery
-  kMeterRestless,  ///< the house moves too much to tell
-  kInterrupted
-};
-
-/// What it means and what mends it.
-constexpr std::string_view commission_text(CommissionVerdict verdict) {
-  constexpr std::string_view kTexts[] = {
-      "passed",
-      "the battery did not answer or refused",
-      "the battery reports an alarm or is off-grid: clear that first",
-      "the battery follows an order already: stop the other controller, or wait for its timer",
-      "neither direction can be tested: SoC, soc_min and soc_max leave no room, or the battery's "
-      "own limits",
-      "power flows although 0 W is ordered: is the map right, does another controller interfere?",
-      "hardly any power flows: is external control enabled on the device, is the battery ready?",
-      "power flows the wrong way: the sign of battery_power or of the order is wrong in the map",
-      "more power flows than ordered: unit or scale of the order or of battery_power is wrong in "
-      "the map, or something "
-      "else drives the battery",
-      "less power flows than [response] of the map allows: is its scale right? If this is how the "
-      "battery is, set",
-      "the battery follows more slowly than [response] of the map says; set",
-      "the meter cannot be read",
-      "the meter does not step with the battery: frozen, inverted, of another phase or ratio, or "
-      "not at the connection",
-      "the house moved too much to tell whether the meter follows: repeat it when the house is "
-      "quiet",
-      "interrupted; the battery was released"};
-  return kTexts[static_cast<int>(verdict)];
-}
-
-/// What one way of driving it showed.
-struct DirectionResult {
-  bool is_tested = false;
-  std::int32_t ordered_power_w = 0;
-  std::int32_t measured_power_w = 0;  ///< settled
-  std::int64_t lag_ms = 0;            ///< until anything showed
-  std::int64_t came_ms = 0;           ///< until it was what was ordered
-  std::int32_t ramp_w_per_s = 0;      ///< 0: too fast to be seen
-};
-
-struct CommissionResult {
-  CommissionVerdict verdict = CommissionVerdict::kNoLink;
-  Status status = Status::kOk;
-  Status release_status = Status::kOk;  ///< else the battery may still follow the order
-  std::int32_t soc_e4 = 0;
-  std::int32_t ordered_power_w = 0;   ///< last
-  std::int32_t measured_power_w = 0;  ///< with that order in force
-  DirectionResult charge{};
-  DirectionResult discharge{};
-  MeterVerdict meter = MeterVerdict::kNotAsked;
-  std::int32_t meter_percent = 0;  ///< of the battery's steps that the meter showed
-  std::int32_t rest_house_w = 0;   ///< grid less battery, at rest
-  /// Lines for the map and the configuration with which it would pass; 0: leave it.
-  std::int32_t wanted_settle_s = 0;
-  std::int32_t wanted_tolerance_w = 0;
-  std::int32_t wanted_ramp_w_max =
-      0;  ///< of [guard]: the largest step that it manages within settle_s
-};
 
 struct NoCommissionMeter {
   [[nodiscard]] static bool exists() { return false; }
@@ -128,22 +44,22 @@ class SignCheck {
       : settings_(settings), battery_(battery), clock_(clock), meter_(meter) {}
 
   CommissionResult run() {
-    BatteryMeasurement before;
-    if (!succeeded(battery_.read(before))) return result_;
-    result_.soc_e4 = before.soc_e4;
-    if (before.alarm || before.off_grid) return fail(CommissionVerdict::kAlarm);
-    if (before.dispatch_active) return fail(CommissionVerdict::kForeignOrder);
-    const bool can_charge =
-        before.soc_e4 <= settings_.soc_max_e4 - kRoomE4 && before.charge_w_max >= settings_.power_w;
-    const bool can_discharge = before.soc_e4 >= settings_.soc_min_e4 + kRoomE4 &&
-                               before.discharge_w_max >= settings_.power_w;
-    if (!can_charge && !can_discharge) return fail(CommissionVerdict::kNoRoom);
-    const bool has_room = before.soc_e4 < (settings_.soc_min_e4 + settings_.soc_max_e4) / 2;
+    if (!succeeded(battery_.read(before_))) return result_;
+    result_.soc_e4 = before_.soc_e4;
+    if (before_.alarm || before_.off_grid) return fail(CommissionVerdict::kAlarm);
+    if (before_.dispatch_active) return fail(CommissionVerdict::kForeignOrder);
+    const auto can_drive = [this](int sign) {
+      return room_e4(sign) >= kRoomE4 && limit_w(sign) >= settings_.power_w;
+    };
+    if (!can_drive(1) && !can_drive(-1)) return fail(CommissionVerdict::kNoRoom);
+    const int first = before_.soc_e4 < (settings_.soc_min_e4 + settings_.soc_max_e4) / 2 ? 1 : -1;
     result_.verdict = CommissionVerdict::kPassed;
-    if (rests() && (has_room ? can_charge : can_discharge)) drives(has_room ? 1 : -1);
-    if (passes() && (has_room ? can_discharge : can_charge)) drives(has_room ? -1 : 1);
+    if (rests() && can_drive(first)) drives(first);
+    if (passes() && can_drive(-first)) drives(-first);
     judge_meter();
+    if (passes() && settings_.drives_further) drives_further(first);
     release();
+    judge_speeds();
     return result_;
   }
 
@@ -152,7 +68,13 @@ class SignCheck {
   static constexpr std::int64_t kReadingEveryNs = kNanosecondsPerSecond;
   /// Of too much power, until it is given back.
   static constexpr int kReadingsBeyond = 2;
-  static constexpr std::int32_t kSettleSMax = 100;  ///< that a map may say
+  /// For a larger step: up to a minute of the rating, and away from where a battery holds back.
+  static constexpr std::int32_t kFurtherRoomE4 = 500;
+  static constexpr std::int32_t kFurtherS = 8;
+  /// What has come has to stay so long, and a third of its way.
+  static constexpr std::int64_t kStaysMs = 5'000;
+  /// A slow one takes its time to come to rest, too.
+  static constexpr std::int32_t kRestPatienceS = 240;
   /// Longer than the link pauses between two connects.
   static constexpr std::int64_t kReleasePatienceNs = 65 * kNanosecondsPerSecond;
 
@@ -169,13 +91,27 @@ class SignCheck {
     return false;
   }
 
-  bool rests() {
+  struct Seen {
+    std::optional<AnswerCurve> small;
+    std::optional<AnswerCurve> large;
+  };
+  DirectionResult& direction(int sign) { return sign > 0 ? result_.charge : result_.discharge; }
+  Seen& seen(int sign) { return sign > 0 ? seen_charge_ : seen_discharge_; }
+  [[nodiscard]] std::int32_t limit_w(int sign) const {
+    return sign > 0 ? before_.charge_w_max : before_.discharge_w_max;
+  }
+  [[nodiscard]] std::int32_t room_e4(int sign) const {
+    return sign > 0 ? settings_.soc_max_e4 - before_.soc_e4 : before_.soc_e4 - settings_.soc_min_e4;
+  }
+
+  bool rests(std::int32_t patience_s = 0) {
     AnswerCurve ignored(1, 0);
     // A meter may show a second later what the battery does, or ten.
-    const std::int32_t meter_s = meter_.exists() ? settings_.response.settle_s + 5 : 0;
-    if (!order_and_watch(0, std::max(settings_.rest_s, meter_s), ignored)) return false;
+    const std::int32_t meter_s = reads_meter() ? settings_.response.settle_s + 5 : 0;
+    const std::int32_t rest_s = std::max(settings_.rest_s, meter_s);
+    if (!order_and_watch(0, rest_s, std::max(settings_.drive_s, patience_s), ignored)) return false;
     if (!is_at_rest()) fail(CommissionVerdict::kNotAtRest);
-    result_.rest_house_w = last_grid_w_ - result_.measured_power_w;
+    if (reads_meter()) result_.rest_house_w = last_grid_w_ - result_.measured_power_w;
     return passes();
   }
   [[nodiscard]] bool is_at_rest() const {
@@ -183,27 +119,74 @@ class SignCheck {
            result_.measured_power_w >= -settings_.noise_w;
   }
 
+  [[nodiscard]] bool reads_meter() const { return meter_.exists() && !is_further_; }
+
   /// There and back again.
   void drives(int sign) {
-    DirectionResult& direction = sign > 0 ? result_.charge : result_.discharge;
-    AnswerCurve curve(settings_.power_w, band_w());
-    const bool is_watched = order_and_watch(sign * settings_.power_w, settings_.drive_s, curve);
-    direction = {.is_tested = true,
-                 .ordered_power_w = sign * settings_.power_w,
-                 .measured_power_w = result_.measured_power_w,
-                 .lag_ms = curve.lag_ms(),
-                 .came_ms = curve.came_ms(),
-                 .ramp_w_per_s = curve.ramp_w_per_s()};
+    AnswerCurve& curve = seen(sign).small.emplace(settings_.power_w, band_w(settings_.power_w),
+                                                  sign * last_power_w_);
+    const bool is_watched =
+        order_and_watch(sign * settings_.power_w, settings_.drive_s, settings_.drive_s, curve);
+    direction(sign) = {.is_tested = true,
+                       .ordered_power_w = sign * settings_.power_w,
+                       .measured_power_w = result_.measured_power_w,
+                       .came_ms = curve.came_ms()};
     if (is_watched) judge_drive(sign * result_.measured_power_w, curve);
-    if (!passes()) return;
-    const DirectionResult driven = direction;
-    rests();
+    if (passes()) rests_and_tells_of(direction(sign));
+  }
+  void rests_and_tells_of(const DirectionResult& driven) {
+    rests(kRestPatienceS);
     result_.ordered_power_w = driven.ordered_power_w;
     if (passes()) result_.measured_power_w = driven.measured_power_w;
   }
 
+  /// From rest half the largest step, and the largest from there to the other side and back; where
+  /// only one way is left, the largest that is.
+  void drives_further(int first) {
+    is_further_ = true;
+    const std::int32_t to_w = further_w(first);
+    const std::int32_t back_w = further_w(-first);
+    const std::int32_t both_w = std::min({to_w, back_w, settings_.step_w_max / 2});
+    const std::int32_t one_w = std::min(std::max(to_w, back_w), settings_.step_w_max);
+    const int one = to_w > 0 ? first : -first;
+    if (both_w >= settings_.power_w) {
+      for (const int sign : {first, -first, first}) {
+        if (!drives_on(sign, both_w) || !passes()) break;
+      }
+    } else if (std::min(to_w, back_w) == 0 && one_w >= 2 * settings_.power_w) {
+      drives_on(one, one_w);
+    } else {
+      return;
+    }
+    if (passes()) rests_and_tells_of(direction(direction(-first).is_tested ? -first : first));
+  }
+  /// 0: it is not to be tried.
+  [[nodiscard]] std::int32_t further_w(int sign) {
+    if (!direction(sign).is_tested || room_e4(sign) < kFurtherRoomE4) return 0;
+    const std::int64_t house_w = result_.rest_house_w;
+    const std::int64_t grid_w =
+        sign > 0 ? settings_.import_w_max - house_w : settings_.export_w_max + house_w;
+    const std::int64_t most_w =
+        std::min({grid_w, std::int64_t{settings_.rated_w}, std::int64_t{limit_w(sign)}});
+    return static_cast<std::int32_t>(std::max<std::int64_t>(most_w, 0));
+  }
+  /// Whether that came.
+  bool drives_on(int sign, std::int32_t power_w) {
+    AnswerCurve curve(power_w, band_w(power_w), sign * last_power_w_);
+    const std::int32_t last_s = std::max(2 * settings_.drive_s, settings_.response.settle_s + 10);
+    if (!order_and_watch(sign * power_w, kFurtherS, last_s - kFurtherS, curve)) return false;
+    DirectionResult& driven = direction(sign);
+    driven.further_w = sign * power_w;
+    driven.further_measured_w = result_.measured_power_w;
+    if (is_beyond(sign * power_w)) fail(CommissionVerdict::kTooMuch);
+    driven.is_held_back = !curve.has_come() && !curve.is_rising();
+    if (!driven.is_held_back) seen(sign).large = curve;
+    return curve.has_come();
+  }
+
   /// Orders, reads until the time is over, feeding the watchdog; false when that was not possible.
-  bool order_and_watch(std::int32_t power_w, std::int32_t seconds, AnswerCurve& curve) {
+  bool order_and_watch(std::int32_t power_w, std::int32_t seconds, std::int32_t patience_s,
+                       AnswerCurve& curve) {
     const PowerOrder order{.power_w = power_w,
                            .soc_min_e4 = settings_.soc_min_e4,
                            .soc_max_e4 = settings_.soc_max_e4,
@@ -214,12 +197,12 @@ class SignCheck {
     const std::int64_t start_ns = clock_.now_utc_ns();
     const std::int64_t end_ns = start_ns + seconds * kNanosecondsPerSecond;
     // One that is late is watched for longer, to say by how much.
-    const std::int64_t last_ns = end_ns + settings_.drive_s * kNanosecondsPerSecond;
+    const std::int64_t last_ns = end_ns + patience_s * kNanosecondsPerSecond;
     fed_ns_ = start_ns;
     int beyond = 0;
     while (true) {
       const std::int64_t now_ns = clock_.now_utc_ns();
-      const bool has_come = power_w == 0 ? is_at_rest() : curve.has_come();
+      const bool has_come = power_w == 0 ? is_at_rest() : has_stayed(curve, now_ns - start_ns);
       if (now_ns >= end_ns && (has_come || now_ns >= last_ns)) break;
       const std::int64_t next_ns = now_ns + kReadingEveryNs;
       if (!wait(now_ns < end_ns ? std::min(next_ns, end_ns) : next_ns)) return false;
@@ -230,18 +213,23 @@ class SignCheck {
     return true;
   }
 
+  static bool has_stayed(const AnswerCurve& curve, std::int64_t since_ns) {
+    const std::int64_t stays_ms = std::max(kStaysMs, curve.came_ms() / 3);
+    return curve.has_come() && since_ns / 1'000'000 - curve.came_ms() >= stays_ms;
+  }
+
   /// One reading of battery and meter.
   bool look(std::int32_t power_w, std::int64_t start_ns, std::int64_t end_ns, AnswerCurve& curve) {
     BatteryMeasurement m;
     const std::int64_t begin_ns = clock_.now_utc_ns();
     if (!succeeded(battery_.read(m))) return false;
     const std::int64_t now_ns = clock_.now_utc_ns();
-    result_.measured_power_w = m.power_w;
+    result_.measured_power_w = last_power_w_ = m.power_w;
     if (m.alarm || m.off_grid) fail(CommissionVerdict::kAlarm);
     curve.add({.begin_ms = (begin_ns - start_ns) / 1'000'000,
                .end_ms = (now_ns - start_ns) / 1'000'000,
                .along_w = power_w < 0 ? -std::max(m.power_w, -INT32_MAX) : m.power_w});
-    if (!passes() || !meter_.exists()) return passes();
+    if (!passes() || !reads_meter()) return passes();
     if (!succeeded(meter_.read(m, last_grid_w_), CommissionVerdict::kMeterLost)) return false;
     // The last third: both meters have had time.
     if (begin_ns - start_ns >= (end_ns - start_ns) / 3 * 2) proof_.add(m.power_w, last_grid_w_);
@@ -264,14 +252,14 @@ class SignCheck {
     return false;
   }
 
-  /// What a power may miss, by the map.
-  [[nodiscard]] std::int32_t band_w() const {
-    return std::max(settings_.response.tolerance_w,
-                    settings_.power_w * settings_.response.tolerance_percent / 100);
+  /// What a power may miss, by the map; of a small step nothing is forgiven for a high rating.
+  [[nodiscard]] std::int32_t band_w(std::int32_t power_w) const {
+    return settings_.response.tolerance_of_w(is_further_ ? settings_.rated_w : 0, power_w);
   }
   [[nodiscard]] bool is_beyond(std::int32_t power_w) const {
     if (power_w == 0) return false;  // it may still be on its way
-    const std::int64_t most_w = std::int64_t{settings_.power_w} + band_w();
+    const std::int64_t ordered_w = power_w < 0 ? -power_w : power_w;
+    const std::int64_t most_w = ordered_w + band_w(static_cast<std::int32_t>(ordered_w));
     return result_.measured_power_w > most_w || result_.measured_power_w < -most_w;
   }
 
@@ -281,32 +269,35 @@ class SignCheck {
       fail(CommissionVerdict::kWrongSign);
     } else if (along_w < least_w) {
       fail(CommissionVerdict::kDoesNotFollow);
-    } else if (along_w > settings_.power_w + band_w()) {
+    } else if (along_w > settings_.power_w + band_w(settings_.power_w)) {
       fail(CommissionVerdict::kTooMuch);
-    } else if (along_w < settings_.power_w - band_w()) {
+    } else if (along_w < settings_.power_w - band_w(settings_.power_w) && !curve.is_rising()) {
       result_.wanted_tolerance_w = rounded_up((settings_.power_w - along_w) * 5 / 4, 50);
       fail(CommissionVerdict::kTooLittle);
-    } else {
-      judge_speed(curve);
     }
   }
 
-  /// Also the largest step that the controller may order, at the ramp that was seen.
-  void judge_speed(const AnswerCurve& curve) {
-    const std::int64_t ramp = curve.ramp_w_per_s();
-    const std::int64_t lag_ms = curve.lag_ms();
-    const std::int64_t step_ms = ramp > 0 ? settings_.step_w_max * std::int64_t{1'000} / ramp : 0;
-    const std::int64_t needed_ms = std::max(curve.outside_until_ms(), lag_ms + step_ms);
-    const std::int64_t settle_ms = std::int64_t{settings_.response.settle_s} * 1'000;
-    if (needed_ms <= settle_ms) return;
-    const std::int64_t wanted_s = (needed_ms + needed_ms / 5) / 1'000 + 1;
-    result_.wanted_settle_s =
-        static_cast<std::int32_t>(std::min<std::int64_t>(wanted_s, kSettleSMax));
-    if (wanted_s > kSettleSMax && ramp > 0) {
-      const std::int64_t left_ms = std::max<std::int64_t>(kSettleSMax * 1'000 - lag_ms, 1'000);
-      result_.wanted_ramp_w_max = static_cast<std::int32_t>(ramp * left_ms / 1'000 * 4 / 5);
+  /// A battery may be quicker one way than the other.
+  void judge_speeds() {
+    const SpeedQuestion question{.response = settings_.response,
+                                 .rated_w = settings_.rated_w,
+                                 .step_w_max = settings_.step_w_max};
+    if (!passes()) return;
+    for (const int sign : {1, -1}) {
+      const Seen& of = seen(sign);
+      if (!of.small.has_value()) continue;
+      AnswerSpeed& speed = direction(sign).speed;
+      speed = judge_speed(*of.small, of.large.has_value() ? &*of.large : nullptr, question);
+      if (speed.is_slow) take_proposal(speed);
     }
+  }
+  void take_proposal(const AnswerSpeed& speed) {
     fail(CommissionVerdict::kSlow);
+    result_.wanted_settle_s = std::max(result_.wanted_settle_s, speed.wanted_settle_s);
+    const std::int32_t step_w = result_.wanted_ramp_w_max;
+    if (speed.wanted_ramp_w_max == 0) return;
+    result_.wanted_ramp_w_max =
+        step_w == 0 ? speed.wanted_ramp_w_max : std::min(step_w, speed.wanted_ramp_w_max);
   }
 
   static std::int32_t rounded_up(std::int32_t value, std::int32_t to) {
@@ -339,7 +330,12 @@ class SignCheck {
   Clock& clock_;
   Meter meter_;
   CommissionResult result_;
+  BatteryMeasurement before_;
+  Seen seen_charge_;
+  Seen seen_discharge_;
+  bool is_further_ = false;
   MeterProof proof_;
+  std::int32_t last_power_w_ = 0;
   std::int32_t last_grid_w_ = 0;
   std::int64_t fed_ns_ = 0;  ///< when the battery last got an order or a refresh
 };

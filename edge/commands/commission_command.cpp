@@ -11,6 +11,7 @@
 #include "edge/program/startup.h"
 #include "edge/site/house_watch.h"
 #include "edge/storage/commission_file.h"
+#include "edge/storage/limit_file.h"
 
 namespace bess {
 namespace {
@@ -32,10 +33,14 @@ constexpr const char* kHelp =
   --config FILE  the controller's settings; default /etc/bess/edge.toml
   --yes          really order it: without it only what would be ordered is said
 
-The battery rests for 10 s, then charges and discharges 500 W for 30 s each, then is released (the map's
-[commissioning] may say otherwise). Its measured power must follow each way, no less and no more than
-[response] of its map allows and as soon, and so must the meter of [meter]. A battery that is slower is
-refused with the lines to set; a direction that its SoC leaves no room for is not tested, and said.
+The battery rests for 10 s, then charges and discharges 500 W for 30 s each (the map's
+[commissioning] may say otherwise). Its measured power must follow each way, no less and no more
+than [response] of its map allows, and so must the meter of [meter]. Then, where SoC, limits and
+connection leave room, it follows half the largest step that the controller may order, for some
+seconds each way: a lag takes as long for any step, a ramp does not. A battery whose largest step
+surely takes longer than settle_s is refused with the lines to set; what one step alone leaves open
+is a warning with its figures. A direction that its SoC leaves no room for is not tested, and said.
+At the end the battery is released.
 The result is kept in the [state] folder and holds for this
 map, variant and address; bess-edge refuses to control a battery without it.
 Exit codes: 0 passed   1 refused: the line says why   2 the command line is bad, or --yes is missing
@@ -62,6 +67,21 @@ class SiteMeter {
   ModbusMeter& meter_;
 };
 
+/// With a limit of somebody else's in force, or a connection whose house is not seen, nothing
+/// larger than the sign needs is ordered.
+bool may_drive_further(const SiteConfig& site, std::int64_t utc_s) {
+  const ConnectionSettings& connection = site.settings.connection;
+  const bool is_seen = site.settings.meter != MeterSource::kNone && site.settings.witness.judges;
+  const std::int32_t narrowest_w =
+      std::min({connection.import_w_max, connection.export_w_max, connection.peak_w_max});
+  if (narrowest_w < kAnyPowerW && !is_seen) return false;
+  if (!site.settings.has_outside_limits) return true;
+  OutsideLimit limit;
+  bool is_set = false;
+  const Status status = LimitFile(site.limit_file.c_str()).read(limit, is_set);
+  return status == Status::kOk && !(is_set && utc_s < limit.until_utc_s);
+}
+
 CommissionSettings settings_of(const EdgeConfig& config) {
   const GuardSettings& guard = config.control.guard;
   CommissionSettings settings;
@@ -71,6 +91,11 @@ CommissionSettings settings_of(const EdgeConfig& config) {
   settings.drive_s = test.duration_s;
   settings.tolerance_percent = test.tolerance_percent;
   settings.response = config.battery.map.response;
+  const ConnectionSettings& connection = config.site.settings.connection;
+  settings.import_w_max =
+      std::min(connection.import_w_max, connection.peak_w_max) - connection.margin_w;
+  settings.export_w_max = connection.export_w_max - connection.margin_w;
+  settings.rated_w = guard.power_w;
   settings.step_w_max =
       guard.ramp_w_max > 0 ? std::min(guard.ramp_w_max, 2 * guard.power_w) : 2 * guard.power_w;
   settings.soc_min_e4 = guard.soc_min_e4;
@@ -79,12 +104,19 @@ CommissionSettings settings_of(const EdgeConfig& config) {
   return settings;
 }
 
+std::int32_t further_w(const CommissionSettings& settings) {
+  return settings.drives_further ? std::min(settings.rated_w, settings.step_w_max)
+                                 : settings.power_w;
+}
+
 int ask_for_yes(const EdgeConfig& config, const CommissionSettings& settings) {
-  report(JournalLevel::kError,
-         "commission orders the battery at %s to rest for %d s, then to charge and to discharge %d "
-         "W for %d s each, then releases it; add --yes to do that",
-         battery_place(config.battery).c_str(), settings.rest_s, settings.power_w,
-         settings.drive_s);
+  report(
+      JournalLevel::kError,
+      "commission orders the battery at %s to rest for %d s, then to charge and to discharge %d "
+      "W for %d s each, then, where SoC and limits leave room, up to %d W for some seconds, then "
+      "releases it; add --yes to do that",
+      battery_place(config.battery).c_str(), settings.rest_s, settings.power_w, settings.drive_s,
+      further_w(settings));
   return 2;
 }
 
@@ -101,7 +133,30 @@ void complain_about_release(const EdgeConfig& config, const CommissionResult& re
          result.ordered_power_w, timer);
 }
 
-void print_direction(const char* name, const DirectionResult& direction, std::int32_t soc_e4) {
+/// Doubts are told with their figure: no reason to refuse.
+void print_speed(const DirectionResult& direction, const EdgeConfig& config) {
+  const AnswerSpeed& speed = direction.speed;
+  if (speed.largest.most <= 0) return;  // refused before it was asked for
+  const std::int32_t step_w = settings_of(config).step_w_max;
+  const char* const indent = "           ";
+  std::printf("%sfits a lag of %.1f s, a time constant of %.1f s and ", indent,
+              speed.dynamics.dead_time_s, speed.dynamics.time_constant_s);
+  const std::int32_t ramp = ramp_w_per_s(speed);
+  ramp > 0 ? std::printf("a ramp of %d W/s", ramp) : std::printf("no ramp");
+  std::printf(": a step of %d W takes %.1f s (%.1f to %.1f s)\n", step_w, speed.largest.best,
+              speed.largest.least, speed.largest.most);
+  if (direction.is_held_back) {
+    std::printf("%swarning: of %d W only %d W came: the battery's own limits?\n", indent,
+                direction.further_w, direction.further_measured_w);
+  }
+  if (!speed.is_doubtful) return;
+  std::printf("%swarning: settle_s = %d may be too short for it%s\n", indent,
+              config.battery.map.response.settle_s,
+              speed.has_two ? "" : "; a larger step, at a middle SoC, would tell: repeat it then");
+}
+
+void print_direction(const char* name, const DirectionResult& direction, std::int32_t soc_e4,
+                     const EdgeConfig& config) {
   if (!direction.is_tested) {
     std::printf(
         "%-10s not tested: SoC %.1f %% or the battery's own limits leave no room; the other "
@@ -111,19 +166,16 @@ void print_direction(const char* name, const DirectionResult& direction, std::in
   }
   std::printf("%-10s ordered %d W, measured %d W", name, direction.ordered_power_w,
               direction.measured_power_w);
-  if (direction.came_ms >= 0) {
-    std::printf("; %.1f s until anything showed, there within %.1f s",
-                static_cast<double>(direction.lag_ms) / 1e3,
-                static_cast<double>(direction.came_ms) / 1e3);
-  }
-  if (direction.ramp_w_per_s > 0) std::printf(", %d W/s", direction.ramp_w_per_s);
+  if (direction.came_ms >= 0)
+    std::printf(", there within %.1f s", static_cast<double>(direction.came_ms) / 1e3);
   std::printf("\n");
+  print_speed(direction, config);
 }
 
 void print_measured(const EdgeConfig& config, const CommissionResult& result) {
   if (result.charge.is_tested || result.discharge.is_tested) {
-    print_direction("charge", result.charge, result.soc_e4);
-    print_direction("discharge", result.discharge, result.soc_e4);
+    print_direction("charge", result.charge, result.soc_e4, config);
+    print_direction("discharge", result.discharge, result.soc_e4, config);
   }
   if (result.meter == MeterVerdict::kNotAsked) return;
   std::printf("meter      shows %d %% of the battery's steps; house %d W at rest%s\n",
@@ -173,15 +225,18 @@ int run_commission(const CommissionGiven& given, SettingsFile& settings) {
   DeviceSession session;
   if (!session.begin(config)) return 1;
   EdgeClock& clock = session.clock();
-  const CommissionSettings test = settings_of(config);
+  CommissionSettings test = settings_of(config);
+  test.drives_further = may_drive_further(config.site, clock.now_utc_ns() / kNanosecondsPerSecond);
   if (!given.yes) return ask_for_yes(config, test);
   static ModbusBattery battery(config.battery.link, config.battery.map,
                                config.clock);  // outlives a failed check
   ModbusMeter meter(config.site.link, config.site.map, config.clock);
   release_if_a_check_fails(battery);
   if (!reach_battery(config, battery, clock)) return 1;
-  std::printf("commission %s: resting %d s, then %d W for %d s each way ...\n",
-              battery_place(config.battery).c_str(), test.rest_s, test.power_w, test.drive_s);
+  std::printf(
+      "commission %s: resting %d s, then %d W for %d s each way, then up to %d W for seconds ...\n",
+      battery_place(config.battery).c_str(), test.rest_s, test.power_w, test.drive_s,
+      further_w(test));
   std::fflush(stdout);
   const CommissionResult result = SignCheck<ModbusBattery, EdgeClock, SiteMeter>(
                                       test, battery, clock, SiteMeter(config.site.settings, meter))

@@ -24,10 +24,11 @@ constexpr CommandOption kOptions[] = {
 constexpr const char* kHelp =
     R"(bess-edge history: which versions and weights this machine has run, and what became of them
 
-  bess-edge history [--json] [--folder FOLDER]
+  bess-edge history [--json] [--folder FOLDER] [--config FILE]
 
   --json           a list of objects: utc, event, version, student, header_sha256, reason
   --folder FOLDER  where it is kept; default /var/lib/bess-update
+  --config FILE    as every command has it; the history is the machine's, and needs none
 
 Events: trying (on trial), confirmed, comparing (the version before runs: does it do better?), going_back and
 rolled_back (with the reason), refused (not let in), failed (nothing to go back to), broken_off (the power went while
@@ -89,7 +90,7 @@ const EdgeCommand kHistoryCommand = {.name = "history",
                                      .does = "versions that this machine has run",
                                      .help = kHelp,
                                      .options = kOptions,
-                                     .settings = EdgeCommand::Settings::kNone,
+                                     .settings = EdgeCommand::Settings::kIfAsked,
                                      .run = run_with<HistoryGiven, run_history>};
 
 }  // namespace bess

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -153,10 +154,13 @@ std::string battery_text(const EdgeConfig& config) {
 void add_direction(std::string_view name, const DirectionResult& direction,
                    std::ostringstream& text) {
   if (!direction.is_tested) return;
+  const AnswerSpeed& speed = direction.speed;
   text << name << "_measured_w = " << direction.measured_power_w << "\n"
-       << name << "_lag_ms = " << direction.lag_ms << "\n"
-       << name << "_ramp_w_per_s = " << direction.ramp_w_per_s
-       << (direction.ramp_w_per_s == 0 ? "  # faster than could be seen\n" : "\n");
+       << name << "_lag_ms = " << std::lround(speed.dynamics.dead_time_s * 1e3) << "\n"
+       << name << "_time_constant_ms = " << std::lround(speed.dynamics.time_constant_s * 1e3)
+       << "\n"
+       << name << "_ramp_w_per_s = " << ramp_w_per_s(speed)
+       << (ramp_w_per_s(speed) == 0 ? "  # faster than could be seen\n" : "\n");
 }
 
 std::string file_text(const EdgeConfig& config, const CommissionResult& result,

@@ -24,16 +24,10 @@ struct ResponseSettings {
   std::int32_t power_w = 4'000;      ///< rated
   std::int32_t capacity_wh = 8'000;  ///< where the device tells none
 
-  /// What measured power may be off by at any power; also 2.5 % of the rating: a large battery's
-  /// pumps and fans.
-  [[nodiscard]] constexpr std::int32_t noise_w() const {
-    return std::max(band.tolerance_w, power_w / 40);
-  }
+  [[nodiscard]] constexpr std::int32_t noise_w() const { return band.noise_w(power_w); }
   /// By how much power that answers this order may differ from it.
   [[nodiscard]] constexpr std::int32_t tolerance_w(std::int32_t ordered_w) const {
-    const std::int64_t share_w =
-        std::int64_t{power_magnitude_w(ordered_w)} * band.tolerance_percent / 100;
-    return std::max(noise_w(), static_cast<std::int32_t>(share_w));
+    return band.tolerance_of_w(power_w, power_magnitude_w(ordered_w));
   }
 };
 

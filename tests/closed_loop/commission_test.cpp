@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <vector>
 
@@ -58,11 +59,12 @@ TEST(Commission, DrivesABatteryBothWays) {
   EXPECT_TRUE(result.charge.is_tested && result.discharge.is_tested);
   EXPECT_EQ(result.charge.measured_power_w, 500);
   EXPECT_EQ(result.discharge.measured_power_w, -500);
-  EXPECT_EQ(result.charge.lag_ms, 0);
-  EXPECT_EQ(result.charge.ramp_w_per_s, 0);
-  EXPECT_EQ(site.ordered(), (std::vector{0, 500, 0, -500, 0}));
+  EXPECT_EQ(result.charge.speed.dynamics.dead_time_s, 0);
+  EXPECT_EQ(ramp_w_per_s(result.charge.speed), 0);
+  EXPECT_EQ(site.ordered(), (std::vector{0, 500, 0, -500, 0, 4'000, -4'000, 4'000, 0}));
   EXPECT_EQ(site.battery.releases, 1);
-  EXPECT_EQ((site.clock.now_ns - start_ns) / kNanosecondsPerSecond, 10 + 30 + 10 + 30 + 10);
+  EXPECT_EQ((site.clock.now_ns - start_ns) / kNanosecondsPerSecond,
+            10 + 30 + 10 + 30 + 10 + 3 * 8 + 10);
 }
 
 TEST(Commission, SaysWhichDirectionItsSocDoesNotLeave) {
@@ -71,7 +73,7 @@ TEST(Commission, SaysWhichDirectionItsSocDoesNotLeave) {
   EXPECT_EQ(discharged.verdict, CommissionVerdict::kPassed);
   EXPECT_FALSE(discharged.charge.is_tested);
   EXPECT_EQ(discharged.discharge.measured_power_w, -500);
-  EXPECT_EQ(full.ordered(), (std::vector{0, -500, 0}));
+  EXPECT_EQ(full.ordered(), (std::vector{0, -500, 0, -4'000, 0}));
   CommissionSite empty(0.1);
   const CommissionResult charged = empty.commission();
   EXPECT_EQ(charged.verdict, CommissionVerdict::kPassed);
@@ -128,7 +130,7 @@ TEST(Commission, MeasuresALagAndProposesTheTimeToSettle) {
   quick.battery.physics.set_habits({.delay_s = 5});
   const CommissionResult passed = quick.commission();
   EXPECT_EQ(passed.verdict, CommissionVerdict::kPassed);
-  EXPECT_NEAR(static_cast<double>(passed.charge.lag_ms), 5'000, 1'001);
+  EXPECT_NEAR(passed.charge.speed.dynamics.dead_time_s, 5, 1.001);
   EXPECT_NEAR(static_cast<double>(passed.charge.came_ms), 5'000, 1'001);
   CommissionSite late;
   late.battery.physics.set_habits({.delay_s = 25});
@@ -150,7 +152,7 @@ TEST(Commission, MeasuresARampAndProposesTheStepThatItManages) {
   site.battery.physics.set_habits({.ramp_w_per_s = 30});
   const CommissionResult result = site.commission();
   EXPECT_EQ(result.verdict, CommissionVerdict::kSlow);
-  EXPECT_NEAR(result.charge.ramp_w_per_s, 30, 2);
+  EXPECT_NEAR(ramp_w_per_s(result.charge.speed), 30, 2);
   EXPECT_EQ(result.wanted_settle_s, 100);
   EXPECT_NEAR(result.wanted_ramp_w_max, 2'400, 200);
   CommissionSettings told;
@@ -160,8 +162,69 @@ TEST(Commission, MeasuresARampAndProposesTheStepThatItManages) {
   again.battery.physics.set_habits({.ramp_w_per_s = 30});
   EXPECT_EQ(again.commission(told).verdict, CommissionVerdict::kPassed);
   CommissionSite brisk;
-  brisk.battery.physics.set_habits({.ramp_w_per_s = 200});
-  EXPECT_EQ(brisk.commission().verdict, CommissionVerdict::kPassed);  // too fast to be seen
+  brisk.battery.physics.set_habits({.ramp_w_per_s = 200});  // 500 W in 2.5 s, 8 kW in 40
+  const CommissionResult seen = brisk.commission();
+  EXPECT_EQ(seen.verdict, CommissionVerdict::kSlow);
+  EXPECT_NEAR(ramp_w_per_s(seen.discharge.speed), 200, 10);
+  EXPECT_NEAR(seen.wanted_settle_s, 45, 2);  // 37 s and a fifth
+  EXPECT_EQ(seen.wanted_ramp_w_max, 0);
+}
+
+/// 500 W are there within 8.3 s, which once was read as a ramp of 48 W/s, and 8 kW as 166 s.
+TEST(Commission, AFirstOrderLagIsNoRamp) {
+  for (const double seconds : {1.0, 3.0, 5.0}) {
+    CommissionSite site;
+    site.battery.physics.set_time_constant(seconds);
+    const CommissionResult result = site.commission();
+    EXPECT_EQ(result.verdict, CommissionVerdict::kPassed) << seconds;
+    for (const DirectionResult* direction : {&result.charge, &result.discharge}) {
+      const AnswerSpeed& speed = direction->speed;
+      EXPECT_NEAR(speed.dynamics.time_constant_s, seconds, 0.3);
+      EXPECT_EQ(ramp_w_per_s(speed), 0);
+      EXPECT_NEAR(speed.largest.best, std::log(8'000 / 600.0) * seconds, 0.5);
+      EXPECT_FALSE(speed.is_doubtful);
+    }
+  }
+}
+
+/// At 11 % nothing larger than 500 W is discharged, and charged only up to what the room leaves.
+TEST(Commission, WhatOneStepAloneShowedIsAWarning) {
+  CommissionSite site(0.12);
+  site.battery.physics.set_time_constant(5);
+  const CommissionResult result = site.commission();
+  EXPECT_EQ(result.verdict, CommissionVerdict::kPassed);
+  EXPECT_EQ(site.ordered(), (std::vector{0, 500, 0, -500, 0, 4'000, 0}));
+  EXPECT_TRUE(result.charge.speed.has_two);
+  EXPECT_FALSE(result.charge.speed.is_doubtful);
+  EXPECT_FALSE(result.discharge.speed.has_two);
+  EXPECT_TRUE(result.discharge.speed.is_doubtful);
+  CommissionSite bound(0.5);
+  bound.battery.physics.set_time_constant(5);
+  EXPECT_EQ(bound.commission({.drives_further = false}).verdict, CommissionVerdict::kPassed);
+  EXPECT_EQ(bound.ordered(), (std::vector{0, 500, 0, -500, 0}));
+}
+
+TEST(Commission, TheConnectionBoundsTheLargerSteps) {
+  CommissionSite site(0.5);
+  const CommissionResult result = SignCheck<FakeBattery, FakeClock, CommissionMeter>(
+                                      {.import_w_max = 3'000, .export_w_max = 900}, site.battery,
+                                      site.clock, {.battery = site.battery})
+                                      .run();
+  EXPECT_EQ(result.verdict, CommissionVerdict::kPassed);
+  // 400 W of house: 2600 W are left to charge, 1300 W to discharge.
+  EXPECT_EQ(site.ordered(), (std::vector{0, 500, 0, -500, 0, 1'300, -1'300, 1'300, 0}));
+}
+
+/// Near its limits it holds back: that is no ramp, and says nothing of its speed.
+TEST(Commission, ABatteryThatHoldsBackIsNotSlow) {
+  CommissionSite site(0.5);
+  site.battery.physics.set_derating(0.4);
+  const CommissionResult result = site.commission();
+  EXPECT_EQ(result.verdict, CommissionVerdict::kPassed);
+  EXPECT_TRUE(result.charge.is_held_back);
+  EXPECT_EQ(result.charge.further_measured_w, 1'600);
+  EXPECT_FALSE(result.charge.speed.has_two);
+  EXPECT_EQ(site.ordered(), (std::vector{0, 500, 0, -500, 0, 4'000, 0}));
 }
 
 TEST(Commission, AnAlarmThatComesMeanwhileEndsIt) {
@@ -289,7 +352,7 @@ TEST(Commission, FeedsTheWatchdogMeanwhile) {
   CommissionSite site;
   site.battery.refresh_s = 9;
   EXPECT_EQ(site.commission().verdict, CommissionVerdict::kPassed);
-  EXPECT_EQ(site.battery.refreshed_ns.size(), 3 * 1U + 2 * 3U);  // 10 s of rest, 30 s of driving
+  EXPECT_EQ(site.battery.refreshed_ns.size(), 4 * 1U + 2 * 3U);  // 10 s of rest, 30 s of driving
 }
 
 }  // namespace

@@ -179,6 +179,30 @@ TEST_F(SiteProcesses, CommissionMovesTheMeterToo) {
   EXPECT_EQ(honest.wait(), 0);
 }
 
+/// As most inverters do: once it was refused as a ramp of 48 W/s, which takes 166 s for 8 kW.
+TEST_F(SiteProcesses, CommissionAcceptsAFirstOrderLag) {
+  start({"--time-constant-s", "5"});
+  const std::string config = site_.write_config({.guard_keys = ""});
+  ChildProcess edge({edge_program(), "commission", "--config", config, "--yes"});
+  const std::string said = edge.read_all();
+  EXPECT_EQ(edge.wait(), 0) << said;
+  EXPECT_THAT(said, HasSubstr("and no ramp: a step of 8000 W takes 1"));
+  EXPECT_TRUE(std::filesystem::exists(site_.folder.file("state/commissioned.toml")));
+}
+
+/// Larger than the sign needs is only ordered where nobody forbids it.
+TEST_F(SiteProcesses, CommissionOrdersNothingLargerUnderALimit) {
+  start({});
+  const std::string config = site_.write_config({.guard_keys = "[limits]\nfile = \"limit\"\n"});
+  const std::vector<std::string> limit = {edge_program(), "limit", "--config", config,
+                                          "--charge",     "700",   "--for",    "2h"};
+  EXPECT_EQ(ChildProcess(limit).wait(), 0);
+  ChildProcess edge({edge_program(), "commission", "--config", config, "--yes"});
+  const std::string said = edge.read_all();
+  EXPECT_EQ(edge.wait(), 0) << said;
+  EXPECT_THAT(said, HasSubstr("then up to 500 W for seconds"));
+}
+
 TEST_F(SiteProcesses, CommissionRefusesAMeterThatDoesNotFollow) {
   std::vector<std::string> options = own_meter();
   options.insert(options.end(), {"--meter-fault", "wrong-sign"});

@@ -121,6 +121,8 @@ TEST(EdgeWords, CommandsRunInThisProcess) {
   EXPECT_EQ(said_to({"log", "--config", "/nonexistent"}).exit_code, 1);
   EXPECT_EQ(
       said_to({"map", "check", "--against", "/nonexistent", "--map", "/nonexistent"}).exit_code, 1);
+  EXPECT_EQ(said_to({"history", "--config", "/none", "--folder", folder.file("none")}).exit_code,
+            1);
   EXPECT_THAT(said_to({"history", "--json", "--folder", folder.file("none")}).text,
               HasSubstr("no history here"));
 }

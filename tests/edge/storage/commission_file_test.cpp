@@ -81,7 +81,10 @@ TEST_F(CommissionFile, AnEditedIncludedMapMustBeCheckedAgain) {
 
 TEST_F(CommissionFile, KeepsWhatWasMeasuredAndStillReadsOlderFiles) {
   CommissionResult result{.verdict = CommissionVerdict::kPassed};
-  result.charge = {.is_tested = true, .measured_power_w = 493, .lag_ms = 1'200, .ramp_w_per_s = 40};
+  result.charge = {
+      .is_tested = true,
+      .measured_power_w = 493,
+      .speed = {.dynamics = {.dead_time_s = 1.2, .time_constant_s = 3.1, .ramp_s_per_w = 0.025}}};
   result.meter = MeterVerdict::kFollows;
   result.meter_percent = 98;
   ASSERT_TRUE(write_commission_file(config_, result, 1'679'788'800, error_)) << error_;
@@ -89,8 +92,9 @@ TEST_F(CommissionFile, KeepsWhatWasMeasuredAndStillReadsOlderFiles) {
   std::ostringstream bytes;
   bytes << std::ifstream(folder_.file("state/commissioned.toml")).rdbuf();
   const std::string text = bytes.str();
-  for (const char* const line : {"charge_measured_w = 493\n", "charge_lag_ms = 1200\n",
-                                 "charge_ramp_w_per_s = 40\n", "meter_percent = 98\n"}) {
+  for (const char* const line :
+       {"charge_measured_w = 493\n", "charge_lag_ms = 1200\n", "charge_time_constant_ms = 3100\n",
+        "charge_ramp_w_per_s = 40\n", "meter_percent = 98\n"}) {
     EXPECT_THAT(text, HasSubstr(line));
   }
   EXPECT_EQ(text.find("discharge"), std::string::npos);

@@ -373,8 +373,8 @@ TEST(BatteryWalk, AnswerCurvesAndMeterProofs) {
                                            : battery_w + 300);
       if (r % 5 == 4) proof.end_plateau();
     }
-    walk.see(curve.outside_until_ms(), curve.has_come(), curve.came_ms(), curve.lag_ms(),
-             curve.ramp_w_per_s(), proof.verdict(), proof.percent());
+    walk.see(curve.outside_until_ms(), curve.has_come(), curve.came_ms(), curve.is_rising(),
+             curve.readings_outside_after(3'000), proof.verdict(), proof.percent());
     if (i % 200 == 199) walk.end_line(i);
   }
   walk.hold();
@@ -454,7 +454,9 @@ struct CommissionedMeter {
 };
 
 void see_direction(Walk& walk, const DirectionResult& d) {
-  walk.see(d.is_tested, d.ordered_power_w, d.measured_power_w, d.lag_ms, d.came_ms, d.ramp_w_per_s);
+  const AnswerSpeed& s = d.speed;
+  walk.see(d.is_tested, d.ordered_power_w, d.measured_power_w, d.came_ms, d.further_w,
+           d.further_measured_w, d.is_held_back, s.has_two, s.is_slow, s.is_doubtful);
 }
 
 TEST(BatteryWalk, Commission) {
