@@ -44,7 +44,7 @@ if mount "$small" mounted 2>/dev/null; then
   refuses "a mounted disk" "is in use ($folder/mounted)" os.img "$small"
   umount mounted
 fi
-system=$(findmnt -nro SOURCE /)
+system=$(findmnt -nro SOURCE / || true)  # nothing in a chroot
 [ ! -b "$system" ] || refuses "the disk of the system" "$(realpath "$system"): " os.img "$system"
 
 [ $failures -eq 0 ] || exit 1
