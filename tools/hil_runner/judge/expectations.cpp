@@ -40,6 +40,23 @@ void judge_reasons(Bench& bench, const Expectation& expectation, const Window& s
     bench.find(span.from_ns, "the reason " + expectation.reason + " by the end of its span", last);
 }
 
+/// At least one plan, and each of them as expected.
+void judge_plans(Bench& bench, const Expectation& e, const Window& span) {
+  bool is_any = false;
+  for (const CycleRecord& cycle : bench.evidence.log) {
+    const std::int64_t ns = cycle.utc_s * kSecondNs;
+    const OutlookReport& seen = cycle.outlook;
+    if (ns < span.from_ns || ns >= span.to_ns || seen.source == OutlookSource::kNone) continue;
+    is_any = true;
+    const bool is_source = e.outlook == OutlookSource::kNone || e.outlook == seen.source;
+    const int known = seen.known_quarter_hours;
+    if (is_source && known >= e.quarter_hours_min && known <= e.quarter_hours_max) continue;
+    bench.find(ns, "the outlook of its span",
+               fmt::format("{}, {} quarter-hours", outlook_source_name(seen.source), known));
+  }
+  if (!is_any) bench.find(span.from_ns, "a decision by a plan", "none");
+}
+
 }  // namespace
 
 void judge_expectations(Bench& bench) {
@@ -66,6 +83,7 @@ void judge_expectations(Bench& bench) {
       }
     }
     judge_reasons(bench, expectation, {from_ns, to_ns});
+    if (expectation.is_of_outlook()) judge_plans(bench, expectation, {from_ns, to_ns});
   }
 }
 

@@ -4,6 +4,8 @@
 
 #include <chrono>
 
+#include "edge/control/policy.h"
+#include "shared/host/user_error.h"
 #include "shared/utc_text.h"
 #include "tools/hil_runner/run/run_signature.h"
 #include "tools/hil_runner/scenario/edge_settings.h"
@@ -15,6 +17,12 @@ namespace {
 
 void run_and_judge(const Scenario& scenario, const WallSite& site, Outcome& outcome,
                    WorkFolder& folder) {
+  if (scenario.day_ahead.is_given && student_outlook() == nullptr) {
+    fail(
+        "{}: [day_ahead] is for a student by outlook, and this program's is another: run it with "
+        "bess-hil-outlook",
+        scenario.path);
+  }
   outcome.prices = scenario_prices(scenario);
   const EdgeConfig config = load_edge_settings(scenario, folder.file("judge.toml"),
                                                edge_settings(scenario, outcome.prices, {}));

@@ -25,6 +25,10 @@ void add(const CycleRecord& c, Signature& signature) {
         std::int64_t{c.written}}) {
     signature.add(part);
   }
+  if (c.outlook.source != OutlookSource::kNone) {
+    signature.add(static_cast<std::int64_t>(c.outlook.source));
+    signature.add(c.outlook.break_even_centi);
+  }
   for (const char letter : reason_name(c.reason)) signature.add(letter);
 }
 

@@ -15,6 +15,9 @@ namespace bess {
       "or empty")                                                                                \
   ROW(decision, "each logged decision is the certified student's, recomputed")                   \
   ROW(inputs, "the price and the SoC that it was made on are the market's and the battery's")    \
+  ROW(outlook,                                                                                   \
+      "each break-even price is the plan's on the day-ahead prices published by then, "          \
+      "recomputed")                                                                              \
   ROW(order, "what the log calls written is what the battery was commanded")                     \
   ROW(witness,                                                                                   \
       "with `witness = true`: what is ordered, shown and measured is what the maker's table "    \

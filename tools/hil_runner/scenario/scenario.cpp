@@ -9,6 +9,7 @@
 #include "shared/scaled_clock.h"
 #include "shared/units_and_limits.h"
 #include "shared/utc_text.h"
+#include "tools/hil_runner/scenario/day_ahead.h"
 #include "tools/hil_runner/scenario/rules.h"
 #include "tools/hil_runner/scenario/scenario_event.h"
 #include "tools/hil_runner/scenario/scenario_expectation.h"
@@ -305,6 +306,7 @@ Scenario read_scenario(const std::string& path) {
   read_battery_faults(table, scenario, sub,
                       [&](const char* key, const auto& read) { each(table, key, read); });
   read_price_fault(sub("price_fault"), scenario);
+  read_day_ahead(sub("day_ahead"), scenario);
   each(table, "event", [&](TomlTable event) { read_event(std::move(event), scenario); });
   each(table, "expect", [&](TomlTable expect) { read_expectation(std::move(expect), scenario); });
   read_edge(sub("edge"), scenario);

@@ -13,9 +13,11 @@
 #include <string_view>
 #include <vector>
 
+#include "edge/control/outlook.h"
 #include "edge/control/site_types.h"
 #include "shared/battery_model.h"
 #include "tools/battery_sim/battery_faults.h"
+#include "tools/market_sim/auction_view.h"
 #include "tools/market_sim/market_fault.h"
 
 namespace bess {
@@ -97,6 +99,14 @@ struct PriceFaultWindow {
   MinuteSpan span;
 };
 
+struct ScenarioDayAhead {
+  bool is_given = false;
+  AuctionFault fault = AuctionFault::kNone;
+  std::int32_t every = 1;
+  MinuteSpan span;       ///< in which a day must come to be struck
+  double mend_min = -1;  ///< after it came; negative: as bess-sim has it
+};
+
 /// What happens to a process, its clock or its disk, and what people and other programs say to the
 /// edge.
 struct ScenarioEvent {
@@ -157,6 +167,13 @@ struct Expectation {
   double power_w_max = kNeverMin;
   std::string reason;     ///< that the edge logs at least once in the span; empty = any
   std::string no_reason;  ///< that it never logs in the span
+  OutlookSource outlook = OutlookSource::kNone;  ///< of every plan that it logs in the span
+  double quarter_hours_min = -kNeverMin;         ///< that were known to it
+  double quarter_hours_max = kNeverMin;
+  [[nodiscard]] bool is_of_outlook() const {
+    return outlook != OutlookSource::kNone || quarter_hours_min > 0 ||
+           quarter_hours_max != kNeverMin;
+  }
 };
 
 struct Scenario {
@@ -176,6 +193,7 @@ struct Scenario {
   std::string edge_battery, edge_price, edge_guard, edge_meter, edge_limits, edge_other;
   std::vector<BatteryFaultWindow> battery_faults;  ///< several: in virtual time
   PriceFaultWindow price_fault;
+  ScenarioDayAhead day_ahead;
   std::vector<ScenarioEvent> events;  ///< in the order of time
   std::vector<Expectation> expectations;
   std::vector<std::string> invariants;  ///< that are judged

@@ -17,15 +17,16 @@ bool is_reason(std::string_view name) {
   return false;
 }
 
-/// power_w = [least, most]
-void read_expected_power(TomlTable& table, Expectation& expectation) {
-  const TomlArray* const range = table.array("power_w");
+/// key = [least, most]
+void read_range(TomlTable& table, std::string_view key, const char* unit, double& range_min,
+                double& range_max) {
+  const TomlArray* const range = table.array(key);
   if (range == nullptr) return;
   const auto least = range->size() == 2 ? (*range)[0].number() : std::nullopt;
   const auto most = least ? (*range)[1].number() : std::nullopt;
-  if (!most || *least > *most) return table.fail("power_w", "must be [least, most], in W");
-  expectation.power_w_min = *least;
-  expectation.power_w_max = *most;
+  if (!most || *least > *most) return table.fail(key, fmt::format("must be [least, most]{}", unit));
+  range_min = *least;
+  range_max = *most;
 }
 
 /// A command that its own range of power rules out.
@@ -62,8 +63,9 @@ void check_expectation(TomlTable& table, const Scenario& scenario, const Expecta
     table.fail("power_w", fmt::format("leaves nothing out: the battery has {:g} W", power_w));
   }
   if (e.command == Expectation::Command::kAny && !table.has("power_w") && e.reason.empty() &&
-      e.no_reason.empty()) {
-    table.fail("command", "or power_w, reason or no_reason: else nothing is expected");
+      e.no_reason.empty() && !e.is_of_outlook()) {
+    table.fail("command",
+               "or power_w, reason, no_reason, outlook or quarter_hours: else nothing is expected");
   }
   if (is_ruled_out(e)) table.fail("power_w", "rules out its command");
   if (!e.reason.empty() && e.reason == e.no_reason) table.fail("no_reason", "rules out its reason");
@@ -78,7 +80,12 @@ void read_expectation(TomlTable table, Scenario& scenario) {
   table.choice("command", command,
                {"any", "charge", "discharge", "zero", "none", "driven", "not_driven"});
   expectation.command = static_cast<Expectation::Command>(command);
-  read_expected_power(table, expectation);
+  read_range(table, "power_w", ", in W", expectation.power_w_min, expectation.power_w_max);
+  int outlook = 0;
+  table.choice("outlook", outlook, {"any", "planned", "usual", "late", "missing"});
+  expectation.outlook = static_cast<OutlookSource>(outlook);
+  read_range(table, "quarter_hours", "", expectation.quarter_hours_min,
+             expectation.quarter_hours_max);
   read_text(table, "reason", expectation.reason);
   read_text(table, "no_reason", expectation.no_reason);
   const std::pair<const char*, const std::string*> reasons[] = {

@@ -5,6 +5,7 @@
 
 #include <optional>
 
+#include "edge/control/policy.h"
 #include "edge/program/controller.h"
 #include "shared/host/user_error.h"
 #include "shared/scaled_clock.h"
@@ -102,15 +103,25 @@ Evidence run_virtual(const Scenario& scenario, const MinuteSeries& prices, const
   EdgeState state;
   state.reserve(static_cast<std::size_t>(60 * scenario.minutes / kSecondsPerStep) + 2);
   VirtualOperator people;
+  std::optional<VirtualOutlook> outlook;
+  if (const OutlookModel* const model = student_outlook())
+    outlook.emplace(scenario, config.outlook, *model, time);
   time.on_people([&](const ScenarioEvent& event) {
-    if (event.does == ScenarioEvent::Does::kStateLost) return state.lose();
+    if (event.does == ScenarioEvent::Does::kStateLost) {
+      if (outlook) outlook->lose();
+      return state.lose();
+    }
     people.act(event, time.edge_utc_ns() / kNanosecondsPerSecond, state.trip());
   });
   do {
     try {
-      VirtualWorld world(
-          config, VirtualPrices(config.price.feed, market, faults, scenario, time),
-          {.time = time, .physics = battery, .weather = weather, .state = state, .people = people});
+      VirtualWorld world(config, VirtualPrices(config.price.feed, market, faults, scenario, time),
+                         {.time = time,
+                          .physics = battery,
+                          .weather = weather,
+                          .state = state,
+                          .people = people,
+                          .outlook = outlook ? &*outlook : nullptr});
       evidence.edge_exit_code = run_edge(config, world);
     } catch (const EdgeKilled&) {
       evidence.edge_exit_code = 128 + SIGKILL;

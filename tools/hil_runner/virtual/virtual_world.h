@@ -13,6 +13,7 @@
 #include "edge/log/journal.h"
 #include "edge/program/controller.h"
 #include "tools/hil_runner/virtual/virtual_operator.h"
+#include "tools/hil_runner/virtual/virtual_outlook.h"
 #include "tools/hil_runner/virtual/virtual_prices.h"
 #include "tools/hil_runner/virtual/virtual_run.h"
 
@@ -58,6 +59,7 @@ class VirtualWorld {
     Weather weather;
     EdgeState& state;
     VirtualOperator& people;
+    VirtualOutlook* outlook;  ///< null unless the student's context is the outlook
   };
   VirtualWorld(const EdgeConfig& config, const VirtualPrices& prices, const Surroundings& around);
 
@@ -72,9 +74,14 @@ class VirtualWorld {
   bool read_back(std::int64_t records, CycleRecord& record) const {
     return around_.state.read_back(records, record);
   }
-  void keep(const CycleRecord& record) { around_.state.add(record); }
+  void keep(const CycleRecord& record) {
+    around_.state.add(record);
+    if (around_.outlook != nullptr) around_.outlook->cycle_done(record);
+  }
   const HoldMailbox& listen() { return around_.people.holds(); }
-  static OutlookBoard* look_out(std::int32_t) { return nullptr; }
+  OutlookBoard* look_out(std::int32_t level_centi) {
+    return around_.outlook == nullptr ? nullptr : around_.outlook->start(level_centi);
+  }
   [[nodiscard]] bool is_cleared(std::int64_t trip_utc_s) const {
     return around_.people.is_cleared(trip_utc_s);
   }

@@ -1,0 +1,62 @@
+#include "tools/hil_runner/scenario/day_ahead.h"
+
+#include <fmt/core.h>
+
+#include "shared/local_time.h"
+#include "shared/scaled_clock.h"
+#include "shared/units_and_limits.h"
+#include "shared/utc_text.h"
+#include "tools/hil_runner/scenario/scenario_reader.h"
+
+namespace bess {
+namespace {
+
+constexpr std::int64_t kDayS = 86'400;
+
+double made_up_day_ahead(std::int64_t utc_s) {
+  const LocalMinute local = local_minute_of(utc_s);
+  const int hour = local.minute_of_day / 60;
+  const std::int64_t day = utc_from_civil({local.year, local.month, local.day, 0, 0, 0}) / kDayS;
+  const double of_hour = hour >= 18 && hour < 21   ? 110
+                         : hour >= 11 && hour < 16 ? -70
+                         : hour >= 7 && hour < 10  ? 60
+                                                   : 0;
+  return 80 + of_hour + 9 * static_cast<double>(day % 7) + 2 * (local.quarter_hour % 4);
+}
+
+}  // namespace
+
+void read_day_ahead(TomlTable table, Scenario& scenario) {
+  if (table.value() == nullptr) return;
+  ScenarioDayAhead& day_ahead = scenario.day_ahead;
+  day_ahead.is_given = true;
+  int fault = 0;
+  table.choice("fault", fault,
+               {"none", "late", "missing", "half", "shifted-hour", "shifted-day", "doubled",
+                "yesterday", "hours", "out-of-range", "html", "slow", "all"});
+  day_ahead.fault = static_cast<AuctionFault>(fault);
+  for (const char* key : {"every", "from_min", "to_min", "mend_min"}) {
+    if (fault == 0 && table.has(key)) table.fail(key, "is of a fault: name one");
+  }
+  read_span(table, scenario.minutes, day_ahead.span);
+  table.integer("every", day_ahead.every, 1, 1'000'000);
+  read_decimal(table, "mend_min", day_ahead.mend_min, 0, kScenarioMinutesMax);
+  table.finish();
+}
+
+std::string day_ahead_csv(const Scenario& scenario) {
+  std::string csv = "quarter_hour_utc,day_ahead_eur_mwh,resolution_min,published_utc\n";
+  const LocalMinute first = local_minute_of(scenario.start_utc_s - kDayS);
+  const std::int64_t end_utc_s = scenario.end_utc_ns() / kNanosecondsPerSecond + 2 * kDayS;
+  for (std::int64_t t = utc_from_local({first.year, first.month, first.day, 0, 0, 0});
+       t < end_utc_s; t += kSecondsPerQuarterHour) {
+    csv += fmt::format("{},{:.2f},15,\n", utc_text(t).view(), made_up_day_ahead(t));
+  }
+  return csv;
+}
+
+std::vector<AuctionRow> day_ahead_rows(const Scenario& scenario) {
+  return parse_auction_rows(day_ahead_csv(scenario), scenario.path);
+}
+
+}  // namespace bess

@@ -1,0 +1,88 @@
+#include "tools/hil_runner/virtual/virtual_outlook.h"
+
+#include "shared/scaled_clock.h"
+#include "tools/hil_runner/scenario/day_ahead.h"
+
+namespace bess {
+namespace {
+
+AuctionSettings auction_settings(const Scenario& scenario) {
+  const ScenarioDayAhead& day_ahead = scenario.day_ahead;
+  AuctionSettings settings{.start_utc_s = scenario.start_utc_s,
+                           .fault = day_ahead.fault,
+                           .every = day_ahead.every,
+                           .from_s = 60 * day_ahead.span.from_min,
+                           .to_s = 60 * day_ahead.span.to_min};
+  if (day_ahead.mend_min >= 0) settings.mend_s = 60 * day_ahead.mend_min;
+  return settings;
+}
+
+}  // namespace
+
+VirtualOutlook::VirtualOutlook(const Scenario& scenario, const OutlookSettings& settings,
+                               const OutlookModel& model, VirtualTime& time)
+    : settings_(settings),
+      model_(model),
+      time_(time),
+      auction_(day_ahead_rows(scenario), auction_settings(scenario)) {}
+
+OutlookBoard* VirtualOutlook::start(std::int32_t level_centi) {
+  process_ = std::make_unique<Process>(model_);
+  process_->book = kept_;
+  const std::int64_t now = edge_utc_s();
+  fetch(now);
+  process_->planner.plan_usual_day(now, level_centi);
+  plan((now + kSecondsPerStep - 1) / kSecondsPerStep * kSecondsPerStep, level_centi);
+  return &process_->board;
+}
+
+void VirtualOutlook::cycle_done(const CycleRecord& record) {
+  const std::int64_t now = edge_utc_s();
+  const Process& p = *process_;
+  if (next_ask_utc_s(p.book, settings_, now, p.last_ask_utc_s, p.tries) <= now) fetch(now);
+  plan(record.utc_s + kSecondsPerStep, record.price_level.centi_eur_per_mwh());
+}
+
+void VirtualOutlook::fetch(std::int64_t now_utc_s) {
+  Process& p = *process_;
+  std::vector<TimedPrice> rows;
+  const Status asked = ask(now_utc_s, rows);
+  p.status = asked == Status::kOk ? p.book.take(rows, now_utc_s) : asked;
+  const OutlookDays days = outlook_days_around(now_utc_s);
+  const bool is_before_publication = now_utc_s < publication_utc_s(days.today_utc_s);
+  const bool is_whole = p.book.has_all(
+      days.today_utc_s, is_before_publication ? days.tomorrow_utc_s : days.end_utc_s, now_utc_s);
+  p.last_ask_utc_s = now_utc_s;
+  p.tries = is_whole ? 0 : p.tries + 1;
+  if (p.status == Status::kOk || p.status == Status::kImplausible) kept_ = p.book;
+}
+
+/// The server answers by the true time, and is asked for the days of the edge's.
+Status VirtualOutlook::ask(std::int64_t now_utc_s, std::vector<TimedPrice>& rows) const {
+  if (time_.market() == VirtualTime::Market::kPaused) return Status::kTimeout;
+  if (time_.market() == VirtualTime::Market::kDead) return Status::kNotConnected;
+  const OutlookDays days = outlook_days_around(now_utc_s);
+  const AuctionAnswer answer =
+      auction_.answer(std::string(day_ahead_url("{today}", days).view()),
+                      std::string(day_ahead_url("{tomorrow}", days).view()),
+                      time_.utc_ns() / kNanosecondsPerSecond);
+  if (answer.fault == AuctionFault::kSlow) return Status::kTimeout;
+  if (answer.status != 200) return Status::kHttpError;
+  const auto take = [](void* taken, const PriceRow& row) {
+    static_cast<std::vector<TimedPrice>*>(taken)->push_back(
+        {row.minute_utc_s, row.price_centi_eur_per_mwh});
+  };
+  return parse_day_ahead(answer.body, settings_.fields, {&rows, take});
+}
+
+void VirtualOutlook::plan(std::int64_t tick_utc_s, std::int32_t level_centi) {
+  process_->planner.plan(
+      {.tick_utc_s = tick_utc_s, .level_centi = level_centi, .feed = process_->status},
+      process_->book.days_at(tick_utc_s));
+}
+
+std::int64_t VirtualOutlook::edge_utc_s() const {
+  return time_.edge_utc_ns() / kNanosecondsPerSecond;
+}
+
+}  // namespace bess
