@@ -8,7 +8,7 @@
 
 #include "edge/outlook/day_ahead_file.h"
 #include "shared/host/file.h"
-#include "shared/local_time.h"
+#include "tests/support/market_zone.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bess {
@@ -28,10 +28,8 @@ std::vector<TimedPrice> rows_of(std::int64_t from, std::int64_t until,
   return rows;
 }
 
-class Book : public testing::Test {
+class Book : public InMarketZone, public testing::Test {
  protected:
-  Book() { set_market_time_zone(); }
-
   static std::int64_t local(int month, int day, int hour, int minute = 0) {
     return utc_from_local({2025, month, day, hour, minute, 0});
   }

@@ -7,17 +7,15 @@
 
 #include "shared/host/file.h"
 #include "shared/local_time.h"
+#include "tests/support/market_zone.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bess {
 namespace {
 
-class Feed : public testing::Test {
+class Feed : public InMarketZone, public testing::Test {
  protected:
-  Feed() {
-    set_market_time_zone();
-    settings_.file = folder_.file("answer.json").c_str();
-  }
+  Feed() { settings_.file = folder_.file("answer.json").c_str(); }
   Status ask(const std::string& answer) {
     write_file(settings_.file.c_str(), answer);
     feed_ = std::make_unique<DayAheadFeed>(settings_);

@@ -10,6 +10,7 @@
 #include "edge/outlook/outlook_planner.h"
 #include "shared/features.h"
 #include "shared/price_level.h"
+#include "tests/support/market_zone.h"
 #include "tests/support/outlook_inputs.h"
 #include "tests/support/thorough.h"
 
@@ -88,10 +89,7 @@ void expect_golden(const OutlookInputs& inputs) {
   EXPECT_EQ(edge->sources(OutlookSource::kMissing), 0);
 }
 
-class OutlookDecisions : public testing::Test {
- protected:
-  OutlookDecisions() { set_market_time_zone(); }
-};
+class OutlookDecisions : public InMarketZone, public testing::Test {};
 
 TEST_F(OutlookDecisions, OfWeeksAreTheWorkstations) { expect_golden(drawn_weeks()); }
 

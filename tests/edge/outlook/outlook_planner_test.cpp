@@ -9,14 +9,13 @@
 #include "edge/control/policy.h"
 #include "shared/local_time.h"
 #include "shared/outlook/outlook_check.h"
+#include "tests/support/market_zone.h"
 
 namespace bess {
 namespace {
 
-class Planner : public testing::Test {
+class Planner : public InMarketZone, public testing::Test {
  protected:
-  Planner() { set_market_time_zone(); }
-
   int plan(std::int64_t tick, std::int32_t level_centi, const OutlookDays& days) {
     return planner_->plan({.tick_utc_s = tick, .level_centi = level_centi}, days);
   }

@@ -9,6 +9,7 @@
 #include "edge/program/level_note.h"
 #include "edge/why/explanation.h"
 #include "shared/local_time.h"
+#include "tests/support/market_zone.h"
 #include "tests/support/temporary_folder.h"
 
 namespace bess {
@@ -35,9 +36,8 @@ CycleRecord decided(std::int64_t utc_s, std::int32_t break_even_centi) {
   return r;
 }
 
-class OutlookWords : public testing::Test {
+class OutlookWords : public InMarketZone, public testing::Test {
  protected:
-  OutlookWords() { set_market_time_zone(); }
   static std::string text_of(const CycleRecord& record) {
     Explanation explanation{.record = record, .since_utc_s = record.utc_s};
     explanation.has_margins = margins_of(record, {}, explanation.margins);
