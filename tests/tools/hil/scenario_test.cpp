@@ -220,8 +220,9 @@ TEST(Scenarios, AnExpectationThatNoRunCouldBreakIsRefused) {
   const std::string expect = "title = \"x\"\n[[expect]]\n";
   EXPECT_EQ(refusal(expect + "command = \"driven\"\n"), "");
   EXPECT_EQ(refusal(expect + "from_min = 57.5\ncommand = \"driven\"\n"), "");  // the tick of 58
-  EXPECT_THAT(refusal(expect + "from_min = 4\nto_min = 9\n"),
-              HasSubstr("s.toml:2: [[expect]] command or power_w, reason or no_reason: else"));
+  EXPECT_THAT(
+      refusal(expect + "from_min = 4\nto_min = 9\n"),
+      HasSubstr("s.toml:2: [[expect]] command or power_w, reason, no_reason or outlook: else"));
   EXPECT_THAT(refusal(expect + "command = \"any\"\n"),
               HasSubstr("s.toml:3: [[expect]] command or power_w"));
   EXPECT_THAT(refusal(expect + "from_min = 10.5\nto_min = 12\ncommand = \"zero\"\n"),

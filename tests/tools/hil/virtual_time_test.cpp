@@ -76,6 +76,12 @@ TEST(VirtualTime, LeavesClockAndSignalsOfTheProcessAsTheyWere) {
   EXPECT_EQ(VirtualTime::current(), nullptr);
 }
 
+TEST(VirtualTime, DayAheadPricesNeedAStudentByOutlook) {
+  Scenario scenario = shipped_scenario("quiet_hour");
+  scenario.day_ahead.is_given = true;
+  EXPECT_NE(run_scenario(scenario, true, {}).error.find("bess-hil-outlook"), std::string::npos);
+}
+
 TEST(VirtualTime, AScenarioOfTheOtherTimeIsSkippedAndSaysSo) {
   const Outcome outcome = run_scenario(shipped_scenario("disk_full"), true, {});
   EXPECT_EQ(outcome.skipped, "for wall time");

@@ -48,9 +48,9 @@ void judge_plans(Bench& bench, const Expectation& e, const Window& span) {
     const OutlookReport& seen = cycle.outlook;
     if (ns < span.from_ns || ns >= span.to_ns || seen.source == OutlookSource::kNone) continue;
     is_any = true;
-    const bool is_source = e.outlook == OutlookSource::kNone || e.outlook == seen.source;
     const int known = seen.known_quarter_hours;
-    if (is_source && known >= e.quarter_hours_min && known <= e.quarter_hours_max) continue;
+    if (e.outlook == seen.source && known >= e.quarter_hours_min && known <= e.quarter_hours_max)
+      continue;
     bench.find(ns, "the outlook of its span",
                fmt::format("{}, {} quarter-hours", outlook_source_name(seen.source), known));
   }
@@ -83,7 +83,8 @@ void judge_expectations(Bench& bench) {
       }
     }
     judge_reasons(bench, expectation, {from_ns, to_ns});
-    if (expectation.is_of_outlook()) judge_plans(bench, expectation, {from_ns, to_ns});
+    if (expectation.outlook != OutlookSource::kNone)
+      judge_plans(bench, expectation, {from_ns, to_ns});
   }
 }
 

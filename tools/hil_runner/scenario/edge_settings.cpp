@@ -86,12 +86,17 @@ std::string edge_settings(const Scenario& scenario, const MinuteSeries& prices,
                           const EdgePlaces& places) {
   const std::string limits =
       scenario.has_limits() ? "[limits]\nfile = \"limit\"\n" + scenario.edge_limits + "\n" : "";
+  const std::string outlook =
+      scenario.day_ahead.is_given
+          ? fmt::format("[outlook]\nurl = \"{}/price?bzn=BE&start={{today}}&end={{tomorrow}}\"\n",
+                        market_of(places))
+          : "";
   return controller_settings(
       {.battery = battery_keys(scenario, places) + "\n",
        .market = market_of(places),
        .price = history_keys(scenario, prices, places) + scenario.edge_price + "\n",
        .guard = scenario.edge_guard + "\n",
-       .tables = meter_table(scenario, places) + limits + scenario.edge_other + "\n",
+       .tables = meter_table(scenario, places) + limits + outlook + scenario.edge_other + "\n",
        .clock = places.clock});
 }
 

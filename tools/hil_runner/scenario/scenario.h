@@ -170,10 +170,6 @@ struct Expectation {
   OutlookSource outlook = OutlookSource::kNone;  ///< of every plan that it logs in the span
   double quarter_hours_min = -kNeverMin;         ///< that were known to it
   double quarter_hours_max = kNeverMin;
-  [[nodiscard]] bool is_of_outlook() const {
-    return outlook != OutlookSource::kNone || quarter_hours_min > 0 ||
-           quarter_hours_max != kNeverMin;
-  }
 };
 
 struct Scenario {

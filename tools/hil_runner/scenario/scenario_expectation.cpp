@@ -63,10 +63,11 @@ void check_expectation(TomlTable& table, const Scenario& scenario, const Expecta
     table.fail("power_w", fmt::format("leaves nothing out: the battery has {:g} W", power_w));
   }
   if (e.command == Expectation::Command::kAny && !table.has("power_w") && e.reason.empty() &&
-      e.no_reason.empty() && !e.is_of_outlook()) {
-    table.fail("command",
-               "or power_w, reason, no_reason, outlook or quarter_hours: else nothing is expected");
+      e.no_reason.empty() && e.outlook == OutlookSource::kNone) {
+    table.fail("command", "or power_w, reason, no_reason or outlook: else nothing is expected");
   }
+  if (table.has("quarter_hours") && e.outlook == OutlookSource::kNone)
+    table.fail("quarter_hours", "comes with an outlook");
   if (is_ruled_out(e)) table.fail("power_w", "rules out its command");
   if (!e.reason.empty() && e.reason == e.no_reason) table.fail("no_reason", "rules out its reason");
 }

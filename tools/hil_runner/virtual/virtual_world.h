@@ -59,7 +59,7 @@ class VirtualWorld {
     Weather weather;
     EdgeState& state;
     VirtualOperator& people;
-    VirtualOutlook* outlook;  ///< null unless the student's context is the outlook
+    VirtualOutlook* outlook = nullptr;  ///< null unless the student's context is the outlook
   };
   VirtualWorld(const EdgeConfig& config, const VirtualPrices& prices, const Surroundings& around);
 

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "shared/host/file.h"
+#include "tools/hil_runner/scenario/day_ahead.h"
 #include "tools/hil_runner/scenario/scenario_house.h"
 
 namespace bess {
@@ -82,6 +83,18 @@ void add_meter(Options& options, const ScenarioMeter& meter) {
   }
 }
 
+void add_day_ahead(Options& options, const Scenario& scenario, const WorkFolder& folder) {
+  const ScenarioDayAhead& day_ahead = scenario.day_ahead;
+  if (!day_ahead.is_given) return;
+  write_file(folder.file("day_ahead.csv"), day_ahead_csv(scenario));
+  options.add("--day-ahead", folder.file("day_ahead.csv"));
+  if (day_ahead.fault == AuctionFault::kNone) return;
+  options.add("--day-ahead-fault", kAuctionFaultNames[static_cast<int>(day_ahead.fault)]);
+  options.add("--day-ahead-fault-every", day_ahead.every);
+  options.add_span("--day-ahead-fault", 60 * day_ahead.span.from_min, 60 * day_ahead.span.to_min);
+  if (day_ahead.mend_min >= 0) options.add("--day-ahead-mend-s", 60 * day_ahead.mend_min);
+}
+
 }  // namespace
 
 std::vector<std::string> battery_options(const Scenario& scenario, const std::string& serial_device,
@@ -100,11 +113,13 @@ std::vector<std::string> battery_options(const Scenario& scenario, const std::st
   return options.take();
 }
 
-std::vector<std::string> market_options(const Scenario& scenario, const std::string& prices) {
+std::vector<std::string> market_options(const Scenario& scenario, const std::string& prices,
+                                        const WorkFolder& folder) {
   const PriceFaultWindow& fault = scenario.price_fault;
   Options options;
   options.add("--prices", prices);
   options.add("--latency-s", scenario.prices.latency_s);
+  add_day_ahead(options, scenario, folder);
   if (fault.fault == MarketFault::kNone) return options.take();
   options.add("--fault", kMarketFaultNames[static_cast<int>(fault.fault)]);
   options.add("--fault-every", fault.every);

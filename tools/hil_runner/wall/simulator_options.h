@@ -15,7 +15,8 @@ namespace bess {
 std::vector<std::string> battery_options(const Scenario& scenario, const std::string& serial_device,
                                          const WorkFolder& folder);
 
-/// On the minute file `prices`.
-std::vector<std::string> market_options(const Scenario& scenario, const std::string& prices);
+/// On the minute file `prices`. Of day-ahead prices a file is written.
+std::vector<std::string> market_options(const Scenario& scenario, const std::string& prices,
+                                        const WorkFolder& folder);
 
 }  // namespace bess

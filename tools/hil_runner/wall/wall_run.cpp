@@ -124,7 +124,8 @@ class WallRun {
 
   /// One that comes back is given the port that it had.
   void start_market() {
-    std::vector<std::string> options = market_options(scenario_, folder_.file("minutes.csv"));
+    std::vector<std::string> options =
+        market_options(scenario_, folder_.file("minutes.csv"), folder_);
     if (programs_.market) {
       options.insert(options.end(), {"--port", std::to_string(programs_.market_port)});
     }
