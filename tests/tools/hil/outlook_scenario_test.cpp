@@ -1,5 +1,5 @@
-// Scenarios of day-ahead prices with a student by outlook: every fault of the auction is in one, and
-// the rule that plans again finds what is wrong with a break-even price.
+// Scenarios of day-ahead prices with a student by outlook: every fault of the auction is in one,
+// and the rule that plans again finds what is wrong with a break-even price.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
