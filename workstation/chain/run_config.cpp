@@ -199,8 +199,6 @@ void KeyList::list(RunConfig& c) {
   number("average_decay", kLearning, c.train.average_decay, 0, 0.999999,
          "of the averaged weights that are validated and kept");
   integer("validate_every", kLearning, c.train.validate_every, 1, 1'000'000, "gradient steps");
-  boolean("bf16", kLearning, c.train.bf16,
-          "c51, dqn: products of the gradient step in bf16, sums in fp32; needs avx512_bf16");
 
   section("distil");
   choice("method", kLearning, c.distil.method, {"construction", "layer"},

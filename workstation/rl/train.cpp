@@ -9,7 +9,6 @@
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
 #include "workstation/base/progress.h"
-#include "workstation/nn/bf16_kernels.h"
 #include "workstation/planners/cycle_limit.h"
 #include "workstation/planners/tabular.h"
 #include "workstation/rl/learner.h"
@@ -163,19 +162,6 @@ Support given_support(const TrainOptions& options) {
           static_cast<float>(options.value_max_eur_per_h) * kRewardScale, options.atoms};
 }
 
-/// Throws UserError where bf16 is asked for and the processor has none.
-const TileKernels& kernels_of(const TrainOptions& options) {
-  if (!options.bf16) return packet_kernels();
-  const std::vector<const TileKernels*> kernels = bf16_kernels();
-  if (kernels.empty()) {
-    fail(
-        "[train] bf16 = true needs a processor with bf16 dot products (avx512_bf16 in "
-        "/proc/cpuinfo), "
-        "which this one is not: leave the key out");
-  }
-  return *kernels.front();
-}
-
 double cosine_rate(const TrainOptions& options, long step) {
   const double progress = static_cast<double>(step) / static_cast<double>(options.steps);
   const double blend = 0.5 * (1 + std::cos(std::numbers::pi * progress));
@@ -237,7 +223,7 @@ class Training {
                  derive_seed(options.seed, kSeedWeights), options.threads,
                  program_ ? options.mean_weight / double{support_.step() * support_.step()}
                           : options.mean_weight,
-                 kernels_of(options), options.inputs),
+                 packet_kernels(), options.inputs),
         experience_(training_, options),
         average_(learner_.online()),
         result_{current_, {}, -1e300, 0, 0} {

@@ -47,7 +47,6 @@ struct TrainOptions {
   double epsilon_end = 0.05;
   double average_decay = 0.998;  ///< of the averaged weights that are validated and kept; 0 = none
   long validate_every = 250;     ///< gradient steps
-  bool bf16 = false;             ///< factors of the gradient step's products (nn/bf16_products.h)
   std::uint64_t seed = 1;
   int threads = 2;
 };

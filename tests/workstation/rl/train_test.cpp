@@ -5,7 +5,6 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/workstation/rl/market_by_hand.h"
 #include "workstation/base/random.h"
-#include "workstation/nn/bf16_kernels.h"
 
 namespace bess {
 namespace {
@@ -238,26 +237,6 @@ TEST(Checkpoint, DamagedOrOfAnotherRunIsRefused) {
     expect_refused(flipped, "flipped");
   }
   expect_refused(sound + "x", "appended");
-}
-
-TEST(TrainInBf16, RepeatsToTheBitOrIsRefusedByNameWhereTheProcessorHasNone) {
-  TrainOptions options = small_options();
-  options.bf16 = true;
-  options.steps = 100;
-  if (bf16_kernels().empty()) {
-    try {
-      train(options);
-      FAIL() << "not refused";
-    } catch (const UserError& error) {
-      EXPECT_NE(std::string(error.what()).find("[train] bf16"), std::string::npos) << error.what();
-    }
-    return;
-  }
-  const Parameters learnt = train(options).teacher.parameters;
-  EXPECT_EQ(learnt, train(options).teacher.parameters);
-  options.bf16 = false;
-  const Parameters in_fp32 = train(options).teacher.parameters;
-  EXPECT_NE(learnt, in_fp32);
 }
 
 }  // namespace
