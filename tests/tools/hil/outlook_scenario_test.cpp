@@ -57,7 +57,7 @@ std::vector<std::string> found_after(const Change& change) {
 TEST(OutlookScenarios, EveryFaultOfTheAuctionIsInOne) {
   std::set<AuctionFault> tried;
   for (const auto& entry : std::filesystem::directory_iterator(kFolder)) {
-    tried.insert(read_scenario(entry.path().string()).day_ahead.fault);
+    tried.insert(read_scenario(entry.path().string()).day_ahead.value().fault);
   }
   for (int fault = 0; fault < static_cast<int>(AuctionFault::kAll); ++fault) {
     EXPECT_TRUE(tried.contains(AuctionFault(fault))) << kAuctionFaultNames[fault];

@@ -78,7 +78,7 @@ TEST(VirtualTime, LeavesClockAndSignalsOfTheProcessAsTheyWere) {
 
 TEST(VirtualTime, DayAheadPricesNeedAStudentByOutlook) {
   Scenario scenario = shipped_scenario("quiet_hour");
-  scenario.day_ahead.is_given = true;
+  scenario.day_ahead.emplace();
   EXPECT_NE(run_scenario(scenario, true, {}).error.find("bess-hil-outlook"), std::string::npos);
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 void run_and_judge(const Scenario& scenario, const WallSite& site, Outcome& outcome,
                    WorkFolder& folder) {
-  if (scenario.day_ahead.is_given && student_outlook() == nullptr) {
+  if (scenario.day_ahead && student_outlook() == nullptr) {
     fail(
         "{}: [day_ahead] is for a student by outlook, and this program's is another: run it with "
         "bess-hil-outlook",

@@ -28,19 +28,24 @@ double made_up_day_ahead(std::int64_t utc_s) {
 
 void read_day_ahead(TomlTable table, Scenario& scenario) {
   if (table.value() == nullptr) return;
-  ScenarioDayAhead& day_ahead = scenario.day_ahead;
-  day_ahead.is_given = true;
+  AuctionSettings& auction = scenario.day_ahead.emplace();
+  auction.start_utc_s = scenario.start_utc_s;
   int fault = 0;
   table.choice("fault", fault,
                {"none", "late", "missing", "half", "shifted-hour", "shifted-day", "doubled",
                 "yesterday", "hours", "out-of-range", "html", "slow", "all"});
-  day_ahead.fault = static_cast<AuctionFault>(fault);
+  auction.fault = static_cast<AuctionFault>(fault);
   for (const char* key : {"every", "from_min", "to_min", "mend_min"}) {
     if (fault == 0 && table.has(key)) table.fail(key, "is of a fault: name one");
   }
-  read_span(table, scenario.minutes, day_ahead.span);
-  table.integer("every", day_ahead.every, 1, 1'000'000);
-  read_decimal(table, "mend_min", day_ahead.mend_min, 0, kScenarioMinutesMax);
+  MinuteSpan span;
+  read_span(table, scenario.minutes, span);
+  auction.from_s = 60 * span.from_min;
+  auction.to_s = 60 * span.to_min;
+  table.integer("every", auction.every, 1, 1'000'000);
+  double mend_min = 0;
+  read_decimal(table, "mend_min", mend_min, 0, kScenarioMinutesMax);
+  if (table.has("mend_min")) auction.mend_s = 60 * mend_min;
   table.finish();
 }
 

@@ -87,7 +87,7 @@ std::string edge_settings(const Scenario& scenario, const MinuteSeries& prices,
   const std::string limits =
       scenario.has_limits() ? "[limits]\nfile = \"limit\"\n" + scenario.edge_limits + "\n" : "";
   const std::string outlook =
-      scenario.day_ahead.is_given
+      scenario.day_ahead
           ? fmt::format("[outlook]\nurl = \"{}/price?bzn=BE&start={{today}}&end={{tomorrow}}\"\n",
                         market_of(places))
           : "";

@@ -99,14 +99,6 @@ struct PriceFaultWindow {
   MinuteSpan span;
 };
 
-struct ScenarioDayAhead {
-  bool is_given = false;
-  AuctionFault fault = AuctionFault::kNone;
-  std::int32_t every = 1;
-  MinuteSpan span;       ///< in which a day must come to be struck
-  double mend_min = -1;  ///< after it came; negative: as bess-sim has it
-};
-
 /// What happens to a process, its clock or its disk, and what people and other programs say to the
 /// edge.
 struct ScenarioEvent {
@@ -189,8 +181,8 @@ struct Scenario {
   std::string edge_battery, edge_price, edge_guard, edge_meter, edge_limits, edge_other;
   std::vector<BatteryFaultWindow> battery_faults;  ///< several: in virtual time
   PriceFaultWindow price_fault;
-  ScenarioDayAhead day_ahead;
-  std::vector<ScenarioEvent> events;  ///< in the order of time
+  std::optional<AuctionSettings> day_ahead;  ///< and what goes wrong with those prices
+  std::vector<ScenarioEvent> events;         ///< in the order of time
   std::vector<Expectation> expectations;
   std::vector<std::string> invariants;  ///< that are judged
   bool witness = false;                 ///< the wire is read by the maker's table too; virtual time

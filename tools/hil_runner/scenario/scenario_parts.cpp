@@ -98,8 +98,8 @@ std::vector<ScenarioPart> parts_of(const Scenario& scenario) {
                [](Scenario& s) { s.meter.fault = {}; });
   parts.add_if(scenario.price_fault.fault != MarketFault::kNone, "price_fault",
                [](Scenario& s) { s.price_fault = {}; });
-  parts.add_if(scenario.day_ahead.fault != AuctionFault::kNone, "day_ahead fault",
-               [](Scenario& s) { s.day_ahead.fault = AuctionFault::kNone; });
+  parts.add_if(scenario.day_ahead && scenario.day_ahead->fault != AuctionFault::kNone,
+               "day_ahead fault", [](Scenario& s) { s.day_ahead->fault = AuctionFault::kNone; });
   parts.add_each(
       "event", 0, [](Scenario & s) -> auto& { return s.events; });
   parts.add_each(

@@ -4,27 +4,13 @@
 #include "tools/hil_runner/scenario/day_ahead.h"
 
 namespace bess {
-namespace {
-
-AuctionSettings auction_settings(const Scenario& scenario) {
-  const ScenarioDayAhead& day_ahead = scenario.day_ahead;
-  AuctionSettings settings{.start_utc_s = scenario.start_utc_s,
-                           .fault = day_ahead.fault,
-                           .every = day_ahead.every,
-                           .from_s = 60 * day_ahead.span.from_min,
-                           .to_s = 60 * day_ahead.span.to_min};
-  if (day_ahead.mend_min >= 0) settings.mend_s = 60 * day_ahead.mend_min;
-  return settings;
-}
-
-}  // namespace
 
 VirtualOutlook::VirtualOutlook(const Scenario& scenario, const OutlookSettings& settings,
                                const OutlookModel& model, VirtualTime& time)
     : settings_(settings),
       model_(model),
       time_(time),
-      auction_(day_ahead_rows(scenario), auction_settings(scenario)) {}
+      auction_(day_ahead_rows(scenario), scenario.day_ahead.value_or(AuctionSettings{})) {}
 
 OutlookBoard* VirtualOutlook::start(std::int32_t level_centi) {
   process_ = std::make_unique<Process>(model_);

@@ -84,15 +84,15 @@ void add_meter(Options& options, const ScenarioMeter& meter) {
 }
 
 void add_day_ahead(Options& options, const Scenario& scenario, const WorkFolder& folder) {
-  const ScenarioDayAhead& day_ahead = scenario.day_ahead;
-  if (!day_ahead.is_given) return;
+  if (!scenario.day_ahead) return;
   write_file(folder.file("day_ahead.csv"), day_ahead_csv(scenario));
   options.add("--day-ahead", folder.file("day_ahead.csv"));
-  if (day_ahead.fault == AuctionFault::kNone) return;
-  options.add("--day-ahead-fault", kAuctionFaultNames[static_cast<int>(day_ahead.fault)]);
-  options.add("--day-ahead-fault-every", day_ahead.every);
-  options.add_span("--day-ahead-fault", 60 * day_ahead.span.from_min, 60 * day_ahead.span.to_min);
-  if (day_ahead.mend_min >= 0) options.add("--day-ahead-mend-s", 60 * day_ahead.mend_min);
+  const AuctionSettings& auction = *scenario.day_ahead;
+  if (auction.fault == AuctionFault::kNone) return;
+  options.add("--day-ahead-fault", kAuctionFaultNames[static_cast<int>(auction.fault)]);
+  options.add("--day-ahead-fault-every", auction.every);
+  options.add_span("--day-ahead-fault", auction.from_s, auction.to_s);
+  if (auction.mend_s) options.add("--day-ahead-mend-s", *auction.mend_s);
 }
 
 }  // namespace
