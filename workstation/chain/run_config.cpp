@@ -162,15 +162,6 @@ void KeyList::list(RunConfig& c) {
           "c51, dqn: the network adds to the stochastic program and begins at adding nothing");
   number("residual_gamma", kLearning, c.train.residual_gamma, 0, 0.9995,
          "discount a step of what it adds, in place of gamma: beyond its reach the program stands");
-  boolean("input_previous", kLearning, c.train.inputs.previous,
-          "c51, dqn: the teacher sees the last price of the quarter-hour before; the student not");
-  boolean("input_earlier", kLearning, c.train.inputs.earlier,
-          "and the mean of the three before that one");
-  boolean("input_slope", kLearning, c.train.inputs.slope, "and what the last three minutes added");
-  boolean("input_calm", kLearning, c.train.inputs.calm,
-          "and the time since a price was 100 EUR/MWh off its level");
-  boolean("input_deviation", kLearning, c.train.inputs.deviation,
-          "residual: and where the price lies among the usual ones, by the program");
   number("tau", kLearning, c.train.tau, 1e-6, 1,
          "target <- tau * online + (1 - tau) * target, each step");
   integer("atoms", kLearning, c.train.atoms, 2, 1001, "of the value distribution");
@@ -189,8 +180,6 @@ void KeyList::list(RunConfig& c) {
          "by heart");
   number("jitter_classes", kLearning, c.train.jitter.classes, 0, 12,
          "the same for the context class");
-  number("jitter_price", kLearning, c.train.jitter.price, 0, 1,
-         "the same for the price input, of its range");
   integer("replay_capacity", kLearning, c.train.replay_capacity, 1, 100'000'000,
           "transitions in the ring");
   number("epsilon_start", kLearning, c.train.epsilon_start, 0, 1,
@@ -252,21 +241,13 @@ void check_relations(const RunConfig& config, const std::string& name) {
     fail("{}: [train] horizon = \"day\" needs residual = false: the program's days have no end",
          name);
   }
-  if (config.train.inputs.count() > 0 && config.train.source != Source::kCounterfactual) {
-    fail("{}: [train] input_... needs source = \"counterfactual\": the ring holds five inputs",
-         name);
-  }
   const TrainOptions& train = config.train;
   if (train.context == ContextKind::kOutlook &&
-      (!train.residual || train.source != Source::kCounterfactual || train.inputs.deviation)) {
+      (!train.residual || train.source != Source::kCounterfactual)) {
     fail(
-        "{}: [train] context = \"outlook\" needs residual = true, source = \"counterfactual\" and "
-        "no "
-        "input_deviation: the network adds to the plan; or set context = \"level\"",
+        "{}: [train] context = \"outlook\" needs residual = true and source = "
+        "\"counterfactual\": the network adds to the plan; or set context = \"level\"",
         name);
-  }
-  if (config.train.inputs.deviation && !config.train.residual) {
-    fail("{}: [train] input_deviation needs residual = true: the program tells it", name);
   }
   if (config.train.residual && config.train.atoms % 2 == 0) {
     fail("{}: [train] residual needs an odd number of atoms, not {}: zero is the middle one", name,

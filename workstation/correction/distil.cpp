@@ -55,7 +55,7 @@ Matrix visited_inputs(const Teacher& teacher, const MarketSteps& market,
   const std::vector<MarketDay> training = market.days_of(Split::kTrain);
   std::size_t steps = 0;
   for (const MarketDay& day : training) steps += day.step_count;
-  Matrix visited(teacher.input_count(), static_cast<Eigen::Index>(steps * kVisitedPasses));
+  Matrix visited(kNetworkInputs, static_cast<Eigen::Index>(steps * kVisitedPasses));
   Eigen::Index at = 0;
   // All days of all passes side by side: one forward pass over many columns per step of the day.
   struct Episode {
@@ -84,8 +84,6 @@ Matrix visited_inputs(const Teacher& teacher, const MarketSteps& market,
       MarketStep seen = episode.steps[step];
       seen.observed_eur_per_mwh += episode.shift_eur_per_mwh;
       seen.level_centi_eur_per_mwh += price_centi_of(episode.shift_eur_per_mwh);
-      seen.recent.previous_eur_per_mwh += static_cast<float>(episode.shift_eur_per_mwh);
-      seen.recent.earlier_eur_per_mwh += static_cast<float>(episode.shift_eur_per_mwh);
       teacher.write_inputs(seen, episode.soc_frac, visited.col(at++).data());
     }
     const Matrix values = teacher.action_values(visited.middleCols(first, at - first), tile);

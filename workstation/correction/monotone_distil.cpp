@@ -74,7 +74,6 @@ LessonStates make_lessons(const Teacher& teacher, const Matrix& visited,
     const auto minute = static_cast<int>(random.index(kMinuteOfQuarterHourCount));
     write_input(network_context(minute, quarter_hour, context_class, mapped), 0, x);
     x[3] = scaled_input(static_cast<int>(random.index(kSocCount)), kSocScale);
-    teacher.write_without_past(x);
   }
   lessons.inputs = seen.topRows(kNetworkInputs);
   MlpTile tile;

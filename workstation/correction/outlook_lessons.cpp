@@ -24,7 +24,7 @@ struct Pass {
 class LessonBook {
  public:
   LessonBook(const Teacher& teacher, const BatteryParameters& battery)
-      : teacher_(teacher), per_eur_(learned_per_eur(battery)), x_(teacher.input_count(), 1) {}
+      : teacher_(teacher), per_eur_(learned_per_eur(battery)), x_(kNetworkInputs, 1) {}
 
   /// Adds a lesson; returns what the teacher would do.
   Action add(const MarketStep& step, double soc_frac, double shift_eur_per_mwh,

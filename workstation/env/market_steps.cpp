@@ -57,44 +57,6 @@ double paid_price(const MinuteSeries& series, std::size_t minute, Settlement set
   return settlement == Settlement::kStep ? first : 0.5 * (first + series.settled[minute + 1]);
 }
 
-/// Looks back from the newest row; nothing behind it is read.
-class RecentRows {
- public:
-  RecentRows(const MinuteSeries& series, const std::vector<std::int64_t>& newest)
-      : series_(series), newest_(newest) {}
-
-  /// For the decision of minute `minute`, which sees `row` last; in the order of time.
-  RecentPrices before(std::int64_t minute, std::int64_t row, double level_eur_per_mwh) {
-    constexpr std::int64_t kSlopeMinutes = 3;
-    constexpr double kFarEurPerMwh = 100;
-    constexpr std::int64_t kCalmMinutesMax = 240;
-    constexpr int kEarlier = 3;
-    const double newest = price(row, row);
-    if (std::fabs(newest - level_eur_per_mwh) > kFarEurPerMwh) far_minute_ = minute;
-    const std::int64_t utc_minute = series_.utc_s(static_cast<std::size_t>(row)) / 60;
-    const std::int64_t end = row - utc_minute % kMinutesPerQuarterHour - 1;
-    double earlier = 0;
-    for (int q = 1; q <= kEarlier; ++q) {
-      earlier += price(end - std::int64_t{q} * kMinutesPerQuarterHour, row) / kEarlier;
-    }
-    return {static_cast<float>(price(end, row)), static_cast<float>(earlier),
-            static_cast<float>(newest - price(row - kSlopeMinutes, row)),
-            static_cast<float>(std::min(kCalmMinutesMax, minute - far_minute_))};
-  }
-
- private:
-  /// Of the row that was the newest at `minute`; before the first one, that of `fallback`.
-  [[nodiscard]] double price(std::int64_t minute, std::int64_t fallback) const {
-    std::int64_t row = minute >= 0 ? newest_[static_cast<std::size_t>(minute)] : -1;
-    if (row < 0) row = fallback;
-    return series_.indicative[static_cast<std::size_t>(row)];
-  }
-
-  const MinuteSeries& series_;
-  const std::vector<std::int64_t>& newest_;
-  std::int64_t far_minute_ = 0;
-};
-
 bool same_date(const MarketDay& day, const LocalMinute& local) {
   return day.day == local.day && day.month == local.month && day.year == local.year;
 }
@@ -162,7 +124,6 @@ MarketSteps make_market_steps(const MinuteSeries& series, const MarketOptions& o
   MarketSteps market;
   market.steps.reserve(series.size() / kMinutesPerStep);
   PriceLevel level;
-  RecentRows rows(series, newest);
   const std::size_t first = series.start_utc_s / 60 % kMinutesPerStep == 0 ? 0 : 1;
   for (std::size_t m = first; m + 1 < series.size(); m += kMinutesPerStep) {
     const std::int64_t visible = static_cast<std::int64_t>(m) - options.observation_delay_min;
@@ -171,9 +132,6 @@ MarketSteps make_market_steps(const MinuteSeries& series, const MarketOptions& o
     if (row < 0) continue;
     const auto newest_row = static_cast<std::size_t>(row);
     level.observe(series.utc_s(newest_row), price_centi_of(series.indicative[newest_row]));
-    const RecentPrices recent =
-        rows.before(static_cast<std::int64_t>(m), row,
-                    static_cast<double>(level.centi_eur_per_mwh()) / kCentiPerEur);
     const double paid = paid_price(series, m, options.settlement);
     if (std::isnan(paid)) continue;
     const std::int64_t utc_s = series.utc_s(m);
@@ -192,8 +150,7 @@ MarketSteps make_market_steps(const MinuteSeries& series, const MarketOptions& o
          .minute_of_quarter_hour = static_cast<std::int8_t>(local.minute_of_quarter_hour),
          .quarter_hour = static_cast<std::int8_t>(local.quarter_hour),
          .month = static_cast<std::int8_t>(local.month),
-         .half_hour_phase = static_cast<std::int8_t>(local.minute_of_day % 30 / kMinutesPerStep),
-         .recent = recent});
+         .half_hour_phase = static_cast<std::int8_t>(local.minute_of_day % 30 / kMinutesPerStep)});
   }
   std::erase_if(market.days, [](const MarketDay& d) { return d.step_count < kCompleteDaySteps; });
   if (market.days.empty()) fail_without_days(series);

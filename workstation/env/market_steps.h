@@ -43,14 +43,6 @@ struct MarketOptions {
   int day_ahead_published_min = kDayAheadPublishedMin;  ///< local, of the day before
 };
 
-/// What a teacher may know of the rows before the newest one; the student is not shown it.
-struct RecentPrices {
-  float previous_eur_per_mwh;  ///< last row of the quarter-hour before the newest row's
-  float earlier_eur_per_mwh;   ///< mean of those of the three before that one
-  float slope_eur_per_mwh;     ///< newest row minus the one three minutes older
-  float calm_min;  ///< since a decision saw a price 100 EUR/MWh off the level, at most 240
-};
-
 struct MarketStep {
   std::int64_t utc_s;                    ///< start of the step
   double observed_eur_per_mwh;           ///< newest indicative price published by then
@@ -61,7 +53,6 @@ struct MarketStep {
   std::int8_t quarter_hour;              ///< local, 0..95
   std::int8_t month;                     ///< local, 1..12
   std::int8_t half_hour_phase;           ///< (minute of the half-hour) / 2, 0..14
-  RecentPrices recent{};                 ///< what rows before the newest one tell
   const DayAheadPublication* day_ahead = nullptr;  ///< MarketSteps::day_ahead; asked below alone
 
   /// Day-ahead price of the quarter-hour that holds the instant, as it was known at this step; NaN

@@ -201,12 +201,6 @@ double StochasticProgram::expected_price(const Situation& at) const {
   return outlook(at).price_eur_per_mwh;
 }
 
-double StochasticProgram::deviation_frac(const Situation& at) const {
-  const double usual_price = usual(at.row_quarter_hour, at.level_eur_per_mwh);
-  const Between bins = chain_.between(at.price_eur_per_mwh - usual_price);
-  return (bins.lower + bins.weight) / (kBins - 1);
-}
-
 void StochasticProgram::continuation(const Situation& at, float* value_eur) const {
   const Outlook sees = outlook(at);
   for (int p = 0; p < kSocPoints; ++p) {

@@ -69,8 +69,6 @@ class StochasticProgram {
   /// the discounted value of the SoC grid's points [kSocPoints] after it, EUR.
   [[nodiscard]] double expected_price(const Situation& at) const;
   void continuation(const Situation& at, float* value_eur) const;
-  /// Where the deviation lies among the bins, 0..1: its quantile on the days fitted on.
-  [[nodiscard]] double deviation_frac(const Situation& at) const;
   [[nodiscard]] double gamma() const { return options_.gamma; }
   [[nodiscard]] double mean_level_eur_per_mwh() const { return level_mean_; }
   [[nodiscard]] const BatteryParameters& battery() const { return battery_; }

@@ -12,10 +12,6 @@ float scale_of_eur(const BatteryParameters& battery) {
   return static_cast<float>(learned_per_eur(battery));
 }
 
-double deviation_frac(const StochasticProgram* program, const MarketStep& step) {
-  return program == nullptr ? 0 : program->deviation_frac(StochasticProgram::situation_of(step));
-}
-
 /// Moves a normalised input by `shift` and keeps it in its range.
 void move_input(float& x, double shift) {
   x = std::clamp(x + static_cast<float>(shift), 0.0F, 1.0F);
@@ -25,14 +21,12 @@ void move_input(float& x, double shift) {
 
 TrainingMarket::TrainingMarket(const MarketSteps& market, const PriceMap& price_map,
                                const BatteryParameters& battery, Horizon horizon,
-                               const RewardShaping& shaping, const ContextClasses& context,
-                               const TeacherInputs& inputs)
+                               const RewardShaping& shaping, const ContextClasses& context)
     : battery_(shaping.program ? shaping.program.battery() : battery),
       potential_grid_(battery, shaping.potential.soc_points),
       gamma_(static_cast<float>(shaping.gamma)),
       reward_centre_(static_cast<float>(shaping.reward_centre_eur_per_h) * kRewardScale),
-      price_map_(price_map),
-      teacher_inputs_(inputs.count()) {
+      price_map_(price_map) {
   if (shaping.program) program_.emplace(shaping.program);
   const std::vector<MarketDay> training = market.days_of(Split::kTrain);
   require_training_days(training.size());
@@ -63,13 +57,6 @@ TrainingMarket::TrainingMarket(const MarketSteps& market, const PriceMap& price_
           program_ && program_->is_outlook() ? program_->begins_plan(step.next_potential) : last;
       step.follows_last = !steps_.empty() && steps_.back().next_potential == step.potential;
       steps_.push_back(step);
-      if (teacher_inputs_ == 0) continue;
-      TeacherSight& sight = sights_.emplace_back();
-      const auto write = [&](const MarketStep& of, float* x) {
-        inputs.write(of.recent, price_map, deviation_frac(shaping.program.program.get(), of), x);
-      };
-      write(steps[i], sight.state);
-      write(follows ? *next : steps[i], sight.next_state);
     }
     days_.push_back({first, steps_.size() - first});
   }
@@ -200,19 +187,15 @@ std::vector<double> observed_training_prices(const MarketSteps& market) {
 }
 
 void draw_counterfactual(const TrainingMarket& market, std::size_t count,
-                         const ContextJitter& jitter, Random& random, std::vector<Transition>& out,
-                         std::vector<TeacherSight>* sights) {
+                         const ContextJitter& jitter, Random& random,
+                         std::vector<Transition>& out) {
   constexpr int kQuarterHourInput = 1;  // order of write_input
   constexpr int kContextClassInput = 2;
-  constexpr int kPriceInput = 4;
   out.resize(count);
-  const bool draws_sights = sights != nullptr && market.teacher_inputs() > 0;
-  if (draws_sights) sights->resize(count);
   std::size_t index = 0;
   double soc_frac = 0;
   double quarter_hour_shift = 0;
   double class_shift = 0;
-  double price_shift = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t action = i % kActionCount;
     if (action == 0) {
@@ -220,15 +203,12 @@ void draw_counterfactual(const TrainingMarket& market, std::size_t count,
       soc_frac = market.draw_soc(random);
       quarter_hour_shift = random.normal() * jitter.quarter_hours / (kQuarterHourCount - 1);
       class_shift = random.normal() * jitter.classes / (kContextClassCount - 1);
-      if (jitter.price > 0) price_shift = random.normal() * jitter.price;
     }
-    if (draws_sights) (*sights)[i] = market.sight(index);
     Transition& transition = out[i];
     market.make_transition(index, soc_frac, static_cast<Action>(action), transition);
     for (float* x : {transition.state, transition.next_state}) {
       move_input(x[kQuarterHourInput], quarter_hour_shift);
       move_input(x[kContextClassInput], class_shift);
-      if (jitter.price > 0) move_input(x[kPriceInput], price_shift);
     }
   }
 }

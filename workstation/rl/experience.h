@@ -40,7 +40,6 @@ struct RewardShaping {
 struct ContextJitter {
   double quarter_hours = 4;
   double classes = 0.5;
-  double price = 0;  ///< of the price input, 0..1: the teacher's own inputs stay
 };
 
 /// Training steps with their successor, ready to become transitions.
@@ -49,7 +48,7 @@ class TrainingMarket {
   /// Throws UserError when `market` has no training days.
   TrainingMarket(const MarketSteps& market, const PriceMap& price_map,
                  const BatteryParameters& battery, Horizon horizon, const RewardShaping& shaping,
-                 const ContextClasses& context = {}, const TeacherInputs& inputs = {});
+                 const ContextClasses& context = {});
 
   /// The transition of taking `action` at `soc_frac` in step `index`; also returns the SoC after
   /// it.
@@ -63,9 +62,6 @@ class TrainingMarket {
   [[nodiscard]] const NetworkContext& context(std::size_t index) const {
     return steps_[index].context;
   }
-  /// What only the teacher sees of a step and its successor.
-  [[nodiscard]] const TeacherSight& sight(std::size_t index) const { return sights_[index]; }
-  [[nodiscard]] int teacher_inputs() const { return teacher_inputs_; }
   /// Residual only: the discounted sums of r' that the program leaves on the training days when it
   /// trades them from the middle of the SoC window, one a step, learned unit. Their spread is what
   /// the support must hold.
@@ -113,9 +109,7 @@ class TrainingMarket {
   float reward_centre_;  ///< scaled
   std::optional<ProgramRows> program_;
   PriceMap price_map_;
-  int teacher_inputs_;
   std::vector<Step> steps_;
-  std::vector<TeacherSight> sights_;  ///< [step], empty when the teacher has no inputs of its own
   std::vector<Day> days_;
 };
 
@@ -125,7 +119,6 @@ std::vector<double> observed_training_prices(const MarketSteps& market);
 /// Draws `count` counterfactual transitions. Each price transition and SoC serves all three actions
 /// in a row: they share its noise, so that what tells the actions apart is not drowned in it.
 void draw_counterfactual(const TrainingMarket& market, std::size_t count,
-                         const ContextJitter& jitter, Random& random, std::vector<Transition>& out,
-                         std::vector<TeacherSight>* sights = nullptr);
+                         const ContextJitter& jitter, Random& random, std::vector<Transition>& out);
 
 }  // namespace bess

@@ -24,13 +24,12 @@ void for_tiles(int action, Eigen::Index begin, Eigen::Index end, const Body& bod
 }  // namespace
 
 Learner::Learner(Method method, const Support& support, double gamma, std::uint64_t seed,
-                 int threads, double mean_weight, const TileKernels& kernels,
-                 const TeacherInputs& inputs)
+                 int threads, double mean_weight, const TileKernels& kernels)
     : method_(method),
       gamma_(static_cast<float>(gamma)),
       mean_weight_(static_cast<float>(mean_weight)),
       kernels_(kernels),
-      shape_(teacher_shape(method, support, inputs)),
+      shape_(teacher_shape(method, support)),
       online_(initial_parameters(shape_, seed)),
       target_(online_),
       gradient_(shape_.parameter_count()),

@@ -20,8 +20,7 @@ class Learner {
   /// `mean_weight`: see c51_tile_gradient. `kernels`: packet_kernels(), or their twin
   /// plain_kernels().
   Learner(Method method, const Support& support, double gamma, std::uint64_t seed, int threads,
-          double mean_weight = 0, const TileKernels& kernels = packet_kernels(),
-          const TeacherInputs& inputs = {});
+          double mean_weight = 0, const TileKernels& kernels = packet_kernels());
 
   struct StepResult {
     double loss;            ///< mean over the minibatch

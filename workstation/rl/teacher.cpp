@@ -25,9 +25,8 @@ constexpr int kAtomsMax = 10'000;
 constexpr float kResidualQuantum = 1e-6F;  ///< of network_values(), in the support's reach
 /// In the file beside the method's number: a program follows the parameters.
 constexpr std::uint32_t kResidualFlag = 0x100;
-/// And which inputs of its own the teacher has.
-constexpr int kInputsShift = 12;
-constexpr std::uint32_t kInputsMask = 0x1F000;
+/// Which inputs of its own a teacher had, until November 2026.
+constexpr std::uint32_t kOwnInputsMask = 0x1F000;
 
 bool is_possible(const Support& support) {
   return std::isfinite(support.v_min) && std::isfinite(support.v_max) &&
@@ -116,10 +115,10 @@ std::string_view method_name(Method method) {
   return kNames[static_cast<int>(method)];
 }
 
-MlpShape teacher_shape(Method method, const Support& support, const TeacherInputs& inputs) {
+MlpShape teacher_shape(Method method, const Support& support) {
   if (method == Method::kSdp) return {};
   const int outputs = method == Method::kC51 ? kActionCount * support.count : kActionCount;
-  return {kNetworkInputs + inputs.count(), kTeacherHidden1, kTeacherHidden2, outputs};
+  return {kNetworkInputs, kTeacherHidden1, kTeacherHidden2, outputs};
 }
 
 Matrix Teacher::action_values(const MatrixRef& x, MlpTile& tile) const {
@@ -137,21 +136,7 @@ Matrix Teacher::action_values(const MatrixRef& x, MlpTile& tile) const {
   return values;
 }
 
-void Teacher::write_without_past(float* x) const {
-  const double deviation_frac =
-      inputs.deviation ? program->deviation_frac(situation_at(*this, x)) : 0;
-  inputs.write_without_past(x[4], deviation_frac, x + kNetworkInputs);
-}
-
 Matrix Teacher::network_values(const MatrixRef& x, MlpTile& tile) const {
-  if (x.rows() < input_count()) {
-    Matrix whole(input_count(), x.cols());
-    whole.topRows(kNetworkInputs) = x;
-    for (Eigen::Index c = 0; c < x.cols(); ++c) {
-      write_without_past(whole.col(c).data());
-    }
-    return network_values(whole, tile);
-  }
   const ConstMlp mlp(shape, parameters.data());
   Matrix z;
   forward_hidden(mlp, x, tile);
@@ -199,8 +184,7 @@ void save_teacher(const std::filesystem::path& path, const Teacher& teacher) {
   BinaryWriter out(kMagic, teacher.outlook && teacher.is_residual()
                                ? kVersion
                                : kVersionWithoutNetworkOnOutlook);
-  out.put(static_cast<std::uint32_t>(teacher.method) | (teacher.is_residual() ? kResidualFlag : 0) |
-          teacher.inputs.bits() << kInputsShift);
+  out.put(static_cast<std::uint32_t>(teacher.method) | (teacher.is_residual() ? kResidualFlag : 0));
   out.put(teacher.support);
   out.put(teacher.shape);
   out.put(teacher.price_map.table());
@@ -227,8 +211,10 @@ Teacher load_teacher(const std::filesystem::path& path) {
                   kVersionWithoutLearntFor);
   const auto written_method = in.take<std::uint32_t>();
   const bool is_residual = (written_method & kResidualFlag) != 0;
-  const auto inputs = TeacherInputs::of_bits((written_method & kInputsMask) >> kInputsShift);
-  const std::uint32_t method_number = written_method & ~(kResidualFlag | kInputsMask);
+  if ((written_method & kOwnInputsMask) != 0) {
+    in.damaged("has inputs beside the student's five ([train] input_...), which are no more");
+  }
+  const std::uint32_t method_number = written_method & ~kResidualFlag;
   const auto support = in.take<Support>();
   // The checksum is right, so this was written by another program; say so before using any of it.
   if (method_number > static_cast<std::uint32_t>(Method::kSdp) ||
@@ -238,7 +224,7 @@ Teacher load_teacher(const std::filesystem::path& path) {
   }
   const auto method = static_cast<Method>(method_number);
   const auto shape = in.take<MlpShape>();
-  if (!(shape == teacher_shape(method, support, inputs))) in.damaged("is of another network shape");
+  if (!(shape == teacher_shape(method, support))) in.damaged("is of another network shape");
   const PriceMap price_map = take_price_map(in);
   const ContextClasses context = take_context(in);
   std::string provenance = in.take_text();
@@ -248,8 +234,7 @@ Teacher load_teacher(const std::filesystem::path& path) {
   take_parameters(in, parameters);
   std::shared_ptr<const OutlookProgram> outlook;
   if (context.is_outlook()) {
-    const bool is_sound =
-        is_residual ? in.version() >= kVersion && !inputs.deviation : method == Method::kSdp;
+    const bool is_sound = is_residual ? in.version() >= kVersion : method == Method::kSdp;
     if (!is_sound) in.damaged("has a network by the outlook that adds to no plan");
     outlook = std::make_shared<const OutlookProgram>(in);
   } else if (is_residual || method == Method::kSdp)
@@ -264,7 +249,6 @@ Teacher load_teacher(const std::filesystem::path& path) {
                   std::move(program),
                   context,
                   {},
-                  inputs,
                   std::move(learnt_for)};
   if (outlook) set_outlook(std::move(outlook), teacher);
   return teacher;

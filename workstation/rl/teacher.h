@@ -14,11 +14,11 @@
 #include "workstation/nn/mlp.h"
 #include "workstation/planners/outlook_program.h"
 #include "workstation/planners/stochastic_program.h"
+#include "workstation/rl/network_input.h"
 #include "workstation/rl/price_map.h"
 #include "workstation/rl/program_residual.h"
 #include "workstation/rl/risk.h"
 #include "workstation/rl/support.h"
-#include "workstation/rl/teacher_inputs.h"
 
 namespace bess {
 
@@ -38,7 +38,6 @@ struct Teacher {
   std::shared_ptr<const StochasticProgram> program = nullptr;
   ContextClasses context{};  ///< by month unless said otherwise
   Risk risk{};               ///< how decisions are made; not part of the file
-  TeacherInputs inputs{};    ///< beside the student's five
   Entries learnt_for{};      ///< market, battery, costs and prices; empty: the file does not say
   /// By outlook: the program that plans on day-ahead prices, instead of `program`, and its plans in
   /// integers, which give the student its context.
@@ -49,7 +48,7 @@ struct Teacher {
   [[nodiscard]] bool is_residual() const { return foundation() && method != Method::kSdp; }
   /// By outlook the values are no function of the inputs: three rows below them hold them.
   /// Action values, means unless `risk` says otherwise, [3 x samples] in units of 1e4 EUR/h for
-  /// inputs [5 x samples], or with the teacher's own below them; without, a state has no past.
+  /// inputs [5 x samples].
   [[nodiscard]] Matrix action_values(const MatrixRef& x, MlpTile& tile) const;
   /// The network's part of them. Of a residual in whole millionths of the support's reach: a point
   /// mass at zero then is zero exactly, however its exponentials are rounded.
@@ -57,10 +56,7 @@ struct Teacher {
   /// Of a residual: adds to the program's values of this step what the network does, EUR.
   void add_network(const MarketStep& step, double soc_frac, Matrix& x, MlpTile& tile,
                    std::array<double, kActionCount>& worth_eur) const;
-  /// Writes the teacher's own inputs below the student's five, of a state without a past.
-  void write_without_past(float* x) const;
-  [[nodiscard]] int input_count() const { return kNetworkInputs + inputs.count(); }
-  /// Writes input_count() inputs of a step. By outlook the break-even price, mapped as prices are,
+  /// Writes the five inputs of a step. By outlook the break-even price, mapped as prices are,
   /// stands where the student sees its class.
   void write_inputs(const MarketStep& step, double soc_frac, float* x) const {
     NetworkContext seen = network_context(step, price_map, context);
@@ -69,9 +65,6 @@ struct Teacher {
           price_map(double{book->break_even_centi(step, soc_frac) / double{kCentiPerEur}});
     }
     write_input(seen, soc_frac, x);
-    const double deviation_frac =
-        inputs.deviation ? program->deviation_frac(StochasticProgram::situation_of(step)) : 0;
-    inputs.write(step.recent, price_map, deviation_frac, x + kNetworkInputs);
   }
 };
 
@@ -82,7 +75,7 @@ void begin_at_zero(Method method, const Support& support, const MlpShape& shape,
 inline constexpr double kPriorMass = 2.5e-3;
 
 /// Outputs of the network for a method.
-MlpShape teacher_shape(Method method, const Support& support, const TeacherInputs& inputs = {});
+MlpShape teacher_shape(Method method, const Support& support);
 
 /// Versioned, checksummed, written beside and renamed. load throws UserError when the file is not a
 /// teacher, is damaged, or is of another version.
@@ -99,7 +92,7 @@ Teacher load_teacher(const std::filesystem::path& path, const Risk& risk);
 /// Greedy by action value, ties to the lowest action.
 class TeacherPolicy final : public Policy {
  public:
-  explicit TeacherPolicy(const Teacher& teacher) : teacher_(teacher), x_(teacher.input_count(), 1) {
+  explicit TeacherPolicy(const Teacher& teacher) : teacher_(teacher), x_(kNetworkInputs, 1) {
     if (teacher.outlook) outlook_.emplace(teacher.outlook);
   }
   [[nodiscard]] Action decide(const MarketStep& step, std::size_t index,

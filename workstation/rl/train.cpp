@@ -35,8 +35,8 @@ class Experience {
   const MiniBatch& next(long step, const Teacher& acting) {
     const auto count = static_cast<std::size_t>(options_.batch_size);
     if (options_.source == Source::kCounterfactual) {
-      draw_counterfactual(market_, count, options_.jitter, minibatch_random_, drawn_, &sights_);
-      fill_minibatch(drawn_, batch_, sights_, market_.teacher_inputs());
+      draw_counterfactual(market_, count, options_.jitter, minibatch_random_, drawn_);
+      fill_minibatch(drawn_, batch_);
     } else {
       if (step % kLockstepDays == 0) {
         replay_.play(acting, kLockstepDays, epsilon(step), experience_random_);
@@ -72,7 +72,6 @@ class Experience {
   Random experience_random_;
   Random minibatch_random_;
   std::vector<Transition> drawn_;
-  std::vector<TeacherSight> sights_;
   MiniBatch batch_;
 };
 
@@ -140,7 +139,6 @@ Teacher without_network(const MarketSteps& market, const BatteryParameters& batt
     const bool stands_on_it = options.residual || options.method == Method::kSdp;
     if (stands_on_it) teacher.program = fit_program(market, battery, options.context);
   }
-  if (options.method != Method::kSdp) teacher.inputs = options.inputs;
   return teacher;
 }
 
@@ -217,13 +215,12 @@ class Training {
         training_(
             market, current_.price_map, battery, options.horizon,
             program_ ? RewardShaping{.program = program_} : fit_shaping(market, battery, options),
-            current_.context, options.inputs),
+            current_.context),
         support_(program_ ? residual_support(training_, options) : given_support(options)),
         learner_(options.method, support_, program_ ? options.residual_gamma : options.gamma,
                  derive_seed(options.seed, kSeedWeights), options.threads,
                  program_ ? options.mean_weight / double{support_.step() * support_.step()}
-                          : options.mean_weight,
-                 packet_kernels(), options.inputs),
+                          : options.mean_weight),
         experience_(training_, options),
         average_(learner_.online()),
         result_{current_, {}, -1e300, 0, 0} {

@@ -32,7 +32,6 @@ struct TrainOptions {
   double learning_rate_end = 5e-5;
   double gamma = 0.999;
   bool residual = true;          ///< a network adds to the stochastic program (program_residual.h)
-  TeacherInputs inputs{};        ///< that the student does not have; counterfactual source only
   double residual_gamma = 0.98;  ///< discount a step of what it adds, in place of gamma
   double tau = 0.05;             ///< target <- tau * online + (1 - tau) * target, each step
   int atoms = 51;

@@ -7,11 +7,10 @@ namespace {
 
 /// `transition_of(i)` is the transition i of `size`; each is asked for twice.
 template <typename TransitionOf>
-void group_by_action(std::size_t size, const TransitionOf& transition_of, MiniBatch& batch,
-                     std::span<const TeacherSight> sights, int teacher_inputs) {
+void group_by_action(std::size_t size, const TransitionOf& transition_of, MiniBatch& batch) {
   const auto count = static_cast<Eigen::Index>(size);
-  batch.state.resize(kNetworkInputs + teacher_inputs, count);
-  batch.next_state.resize(kNetworkInputs + teacher_inputs, count);
+  batch.state.resize(kNetworkInputs, count);
+  batch.next_state.resize(kNetworkInputs, count);
   batch.next_advantage.resize(kActionCount, count);
   batch.reward.resize(count);
   batch.terminal.resize(size);
@@ -31,12 +30,6 @@ void group_by_action(std::size_t size, const TransitionOf& transition_of, MiniBa
     const Eigen::Index at = next[t.action]++;
     std::copy_n(t.state, kNetworkInputs, batch.state.col(at).data());
     std::copy_n(t.next_state, kNetworkInputs, batch.next_state.col(at).data());
-    if (teacher_inputs > 0) {
-      const TeacherSight& sight = sights[i];
-      std::copy_n(sight.state, teacher_inputs, batch.state.col(at).data() + kNetworkInputs);
-      std::copy_n(sight.next_state, teacher_inputs,
-                  batch.next_state.col(at).data() + kNetworkInputs);
-    }
     std::copy_n(t.next_advantage, kActionCount, batch.next_advantage.col(at).data());
     batch.reward[at] = t.reward;
     batch.terminal[static_cast<std::size_t>(at)] = t.terminal;
@@ -45,16 +38,15 @@ void group_by_action(std::size_t size, const TransitionOf& transition_of, MiniBa
 
 }  // namespace
 
-void fill_minibatch(std::span<const Transition> transitions, MiniBatch& batch,
-                    std::span<const TeacherSight> sights, int teacher_inputs) {
+void fill_minibatch(std::span<const Transition> transitions, MiniBatch& batch) {
   const auto at = [transitions](std::size_t i) -> const Transition& { return transitions[i]; };
-  group_by_action(transitions.size(), at, batch, sights, teacher_inputs);
+  group_by_action(transitions.size(), at, batch);
 }
 
 void fill_minibatch(std::span<const Transition> ring, std::span<const std::uint32_t> slots,
                     MiniBatch& batch) {
   const auto in_slot = [&](std::size_t i) -> const Transition& { return ring[slots[i]]; };
-  group_by_action(slots.size(), in_slot, batch, {}, 0);
+  group_by_action(slots.size(), in_slot, batch);
 }
 
 }  // namespace bess

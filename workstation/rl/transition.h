@@ -7,7 +7,7 @@
 
 #include "shared/battery_model.h"
 #include "workstation/nn/mlp.h"
-#include "workstation/rl/teacher_inputs.h"
+#include "workstation/rl/network_input.h"
 
 namespace bess {
 
@@ -35,12 +35,6 @@ struct alignas(64) Transition {
 };
 static_assert(sizeof(Transition) == 64);
 
-/// Of a transition, what only a teacher sees (teacher_inputs.h).
-struct TeacherSight {
-  float state[kTeacherInputsMax];
-  float next_state[kTeacherInputsMax];
-};
-
 /// Samples as columns, grouped by action: only the taken action's outputs carry gradient, so each
 /// group needs a third of the last layer. Exact, and a quarter faster.
 struct MiniBatch {
@@ -57,10 +51,8 @@ struct MiniBatch {
   }
 };
 
-/// Groups the given transitions by action, stable within each group. `sights`, one a transition,
-/// may be left out where the teacher has no inputs of its own.
-void fill_minibatch(std::span<const Transition> transitions, MiniBatch& batch,
-                    std::span<const TeacherSight> sights = {}, int teacher_inputs = 0);
+/// Groups the given transitions by action, stable within each group.
+void fill_minibatch(std::span<const Transition> transitions, MiniBatch& batch);
 /// The same of those in the given slots of a ring, one of which may come more than once.
 void fill_minibatch(std::span<const Transition> ring, std::span<const std::uint32_t> slots,
                     MiniBatch& batch);

@@ -78,10 +78,6 @@ TEST(MarketSteps, UnpublishedMinutesLeaveTheLastKnownPriceAndItsAge) {
 bool same_knowledge(const MarketStep& a, const MarketStep& b) {
   return a.utc_s == b.utc_s && a.observed_eur_per_mwh == b.observed_eur_per_mwh &&
          a.observed_age_min == b.observed_age_min &&
-         a.recent.previous_eur_per_mwh == b.recent.previous_eur_per_mwh &&
-         a.recent.earlier_eur_per_mwh == b.recent.earlier_eur_per_mwh &&
-         a.recent.slope_eur_per_mwh == b.recent.slope_eur_per_mwh &&
-         a.recent.calm_min == b.recent.calm_min &&
          a.minute_of_quarter_hour == b.minute_of_quarter_hour && a.quarter_hour == b.quarter_hour &&
          a.month == b.month;
 }
@@ -117,40 +113,6 @@ TEST(MarketSteps, RowsLaterThanTheDelayChangeNoDecision) {
       ASSERT_FALSE(same_knowledge(market.steps[compared - 1], seen.steps[compared - 1]));
     }
   }
-}
-
-TEST(MarketSteps, RecentPricesAreThoseOfTheQuarterHoursBeforeTheNewestRows) {
-  const MinuteSeries series = numbered_series("2023-01-31T23:00:00Z", kMinutesPerDay);
-  const MarketSteps market = make_market_steps(series, {});
-  const struct {
-    std::size_t minute;
-    float previous, earlier, slope;
-  } cases[] = {{2, 1, 1, 0},     // before the first row there is only the newest
-               {16, 14, 15, 3},  // row 15; three of the ends lie before the series
-               {60, 44, 34, 3},  // row 59: the ends before are rows 44, 29, 14 and the newest
-               {76, 74, (59 + 44 + 29) / 3.0F, 3},
-               {600, 584, (569 + 554 + 539) / 3.0F, 3}};
-  for (const auto& c : cases) {
-    const MarketStep& step = market.steps[c.minute / 2 - 1];
-    ASSERT_EQ(minute_of(series, step), c.minute);
-    EXPECT_EQ(step.recent.previous_eur_per_mwh, c.previous) << c.minute;
-    EXPECT_FLOAT_EQ(step.recent.earlier_eur_per_mwh, c.earlier) << c.minute;
-    EXPECT_EQ(step.recent.slope_eur_per_mwh, c.slope) << c.minute;
-  }
-}
-
-TEST(MarketSteps, CalmIsTheTimeSinceAPriceFarFromTheLevel) {
-  MinuteSeries series = flat_series("2023-01-31T23:00:00Z", kMinutesPerDay, 50);
-  series.indicative[301] = 155;  // seen at minute 302 alone
-  const MarketSteps market = make_market_steps(series, {});
-  const auto calm_at = [&](std::size_t minute) {
-    return market.steps[minute / 2 - 1].recent.calm_min;
-  };
-  EXPECT_EQ(calm_at(300), 240);
-  EXPECT_EQ(calm_at(302), 0);
-  EXPECT_EQ(calm_at(304), 2);
-  EXPECT_EQ(calm_at(542), 240);
-  EXPECT_EQ(calm_at(600), 240);
 }
 
 TEST(MarketSteps, AStepAcrossTwoQuarterHoursIsPaidAsTheSettlementSays) {

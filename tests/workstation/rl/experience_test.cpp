@@ -391,40 +391,6 @@ TEST_F(Counterfactual, JitterMovesStateAndSuccessorAlikeInsideTheRange) {
   EXPECT_NEAR(std::sqrt(squares[1] / count), kJitter.classes / 11, 0.15 * 2 / 11);
 }
 
-/// Of the price alone: one draw for a group of actions, in both states; nothing else changes.
-TEST_F(Counterfactual, JitterOfThePriceMovesStateAndSuccessorAlike) {
-  constexpr double kSpread = 0.02;
-  constexpr int kPriceInput = 4;
-  const auto plain = drawn(9000, {0, 0, 1e-12});  // draws as often
-  const auto moved = drawn(9000, {0, 0, kSpread});
-  double squares = 0;
-  std::size_t clamped = 0;
-  for (std::size_t i = 0; i < plain.size(); ++i) {
-    for (const int k : {0, 1, 2, 3}) {
-      ASSERT_EQ(moved[i].state[k], plain[i].state[k]);
-      ASSERT_EQ(moved[i].next_state[k], plain[i].next_state[k]);
-    }
-    ASSERT_EQ(moved[i].reward, plain[i].reward) << "what is paid is what was paid";
-    const float here = moved[i].state[kPriceInput];
-    const float next = moved[i].next_state[kPriceInput];
-    for (const float x : {here, next}) {
-      ASSERT_GE(x, 0);
-      ASSERT_LE(x, 1);
-    }
-    ASSERT_EQ(here, moved[i - i % 3].state[kPriceInput]) << "the three actions share it";
-    if (here == 0 || here == 1 || next == 0 || next == 1) {
-      ++clamped;
-      continue;
-    }
-    const double shift = double{here} - plain[i].state[kPriceInput];
-    ASSERT_NEAR(shift, double{next} - plain[i].next_state[kPriceInput], 1e-6);
-    squares += shift * shift;
-  }
-  const auto counted = static_cast<double>(plain.size() - clamped);
-  ASSERT_GT(counted, 0.5 * static_cast<double>(plain.size()));
-  EXPECT_NEAR(std::sqrt(squares / counted), kSpread, 0.1 * kSpread);
-}
-
 TEST_F(Counterfactual, WideJitterIsClamped) {
   std::size_t at_an_end = 0;
   for (const Transition& t : drawn(3000, {500, 50})) {

@@ -7,7 +7,6 @@
 
 #include "tests/workstation/nn/reference_net.h"
 #include "tests/workstation/rl/market_by_hand.h"
-#include "workstation/correction/monotone_distil.h"
 #include "workstation/env/context_fit.h"
 #include "workstation/rl/learner.h"
 #include "workstation/rl/train.h"
@@ -314,87 +313,6 @@ TEST(ProgramResidual, LearnsWhatTheProgramHasWrong) {
   EXPECT_NEAR(added(2) - added(1), -0.024, 0.006);
   EXPECT_NEAR(added(0) - added(1), 0.024, 0.006);
   EXPECT_NE(TeacherPolicy(teacher).decide(*cheap, 0, 0.5), Action::kCharge);
-}
-
-// ---- Inputs that the student does not have -----------------------------------------------------
-
-TEST(TeacherInputs, AreSeenInTheStepAndWithoutAPastWhereThereIsNone) {
-  Teacher teacher = beginner(Method::kC51, {-1, 1, 5});
-  teacher.inputs = {.previous = true, .earlier = true, .slope = true, .calm = true};
-  teacher.shape = teacher_shape(teacher.method, teacher.support, teacher.inputs);
-  teacher.parameters = initial_parameters(teacher.shape, 6);
-  MarketStep step = market().steps[1000];
-  const float seen = teacher.price_map(step.observed_eur_per_mwh);
-  step.recent = {static_cast<float>(step.observed_eur_per_mwh),
-                 static_cast<float>(step.observed_eur_per_mwh), 0, 240};
-  Matrix nine(9, 1);
-  teacher.write_inputs(step, 0.4, nine.data());
-  EXPECT_NEAR(nine(5), seen, 1e-6);  // recent prices are floats
-  EXPECT_NEAR(nine(6), seen, 1e-6);
-  EXPECT_EQ(nine(7), 0.5F);
-  EXPECT_EQ(nine(8), 1);
-  MlpTile tile;
-  const Matrix five = nine.topRows(kNetworkInputs);
-  EXPECT_TRUE(teacher.action_values(five, tile).isApprox(teacher.action_values(nine, tile), 1e-4F));
-  step.recent = {-200, 300, 1e6F, 0};
-  teacher.write_inputs(step, 0.4, nine.data());
-  EXPECT_EQ(nine(5), teacher.price_map(-200));
-  EXPECT_EQ(nine(6), teacher.price_map(300));
-  EXPECT_EQ(nine(7), 1);
-  EXPECT_EQ(nine(8), 0);
-  EXPECT_NE(teacher.action_values(five, tile), teacher.action_values(nine, tile));
-}
-
-TEST(TeacherInputs, ADeviationIsTheProgramsWithAPastAndWithout) {
-  Teacher teacher = beginner(Method::kC51, {-1, 1, 5});
-  teacher.inputs = {.deviation = true};
-  teacher.shape = teacher_shape(teacher.method, teacher.support, teacher.inputs);
-  teacher.parameters = initial_parameters(teacher.shape, 8);
-  const StochasticProgram& program = *teacher.program;
-  std::vector<float> seen;
-  double apart = 0;
-  for (std::size_t i = 0; i < market().steps.size(); i += 17) {
-    MarketStep step = market().steps[i];
-    Matrix six(6, 1);
-    teacher.write_inputs(step, 0.4, six.data());
-    const auto at = StochasticProgram::situation_of(step);
-    EXPECT_EQ(six(5), static_cast<float>(program.deviation_frac(at)));
-    EXPECT_GE(six(5), 0);
-    EXPECT_LE(six(5), 1);
-    seen.push_back(six(5));
-    // Without a past the level is that of its class: nearly the same deviation.
-    float without[6];
-    std::copy_n(six.data(), kNetworkInputs, without);
-    teacher.write_without_past(without);
-    apart += std::abs(double{without[5]} - double{six(5)});
-    step.observed_eur_per_mwh += 1;
-    EXPECT_GE(program.deviation_frac(StochasticProgram::situation_of(step)),
-              program.deviation_frac(at));
-  }
-  EXPECT_LT(apart / static_cast<double>(seen.size()), 0.1);
-  // A quantile: its values are spread evenly over the days that the program was fitted on.
-  EXPECT_NEAR(std::accumulate(seen.begin(), seen.end(), 0.0) / static_cast<double>(seen.size()),
-              0.5, 0.1);
-}
-
-TEST(TeacherInputs, AreTheTeachersInDistillationAndTheStudentHasFive) {
-  Teacher teacher = beginner(Method::kC51, {-1, 1, 5});
-  teacher.inputs = {.earlier = true, .slope = true};
-  teacher.shape = teacher_shape(teacher.method, teacher.support, teacher.inputs);
-  teacher.parameters = initial_parameters(teacher.shape, 7);
-  const DistilOptions options;
-  const Matrix visited = visited_inputs(teacher, market(), {}, options);
-  ASSERT_EQ(visited.rows(), 7);
-  const LessonStates lessons = make_lessons(teacher, visited, options);
-  ASSERT_EQ(lessons.inputs.rows(), kNetworkInputs);
-  MlpTile tile;
-  const Matrix some = visited.leftCols(500);
-  const Matrix values = teacher.action_values(some, tile);
-  for (Eigen::Index c = 0; c < some.cols(); ++c) {
-    EXPECT_EQ(lessons.inputs.col(c), some.col(c).head(kNetworkInputs));
-    const int best = static_cast<int>(argmax_action(values.col(c).data()));
-    EXPECT_EQ(lessons.regret(best, c), 0) << c;
-  }
 }
 
 // ---- Training --------------------------------------------------------------------------------

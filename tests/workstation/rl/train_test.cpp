@@ -22,7 +22,6 @@ struct TrainCase {
   Horizon horizon;
   long steps;
   bool residual = false;
-  TeacherInputs inputs{};
 };
 
 void PrintTo(const TrainCase& c, std::ostream* out) { *out << c.name; }
@@ -45,7 +44,6 @@ TrainOptions options_of(const TrainCase& c) {
   options.horizon = c.horizon;
   options.steps = c.steps;
   options.residual = c.residual;
-  options.inputs = c.inputs;
   return options;
 }
 
@@ -135,13 +133,6 @@ INSTANTIATE_TEST_SUITE_P(
         TrainCase{"paper", Method::kC51, Source::kReplay, Horizon::kDay, 40},
         TrainCase{"residual", Method::kC51, Source::kCounterfactual, Horizon::kContinuing, 200,
                   true},
-        TrainCase{"inputs_of_its_own",
-                  Method::kC51,
-                  Source::kCounterfactual,
-                  Horizon::kContinuing,
-                  100,
-                  true,
-                  {.previous = true, .slope = true}},
         TrainCase{"residual_dqn", Method::kDqn, Source::kReplay, Horizon::kContinuing, 40, true}),
     [](const auto& instance) { return instance.param.name; });
 
