@@ -170,9 +170,8 @@ void KeyList::list(RunConfig& c) {
   number("mean_weight", kLearning, c.train.mean_weight, 0, 1000,
          "c51: of the squared error of the mean beside the cross-entropy; 0 is plain C51");
   choice(
-      "potential", kLearning, c.train.potential, {"none", "price", "plan", "sdp"},
-      "shapes rewards without changing what is best: nothing, energy at the mean price, a plan's "
-      "value, or the stochastic program's");
+      "potential", kLearning, c.train.potential, {"none", "sdp"},
+      "shapes rewards without changing what is best: nothing, or the stochastic program's value");
   boolean("centre_rewards", kLearning, c.train.centre_rewards,
           "subtract the mean reward (continuing horizon): values lie around zero");
   number("jitter_quarter_hours", kLearning, c.train.jitter.quarter_hours, 0, 96,

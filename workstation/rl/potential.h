@@ -1,9 +1,8 @@
 // Potential of a state, for shaping rewards [Ng, Harada, Russell 1999]:
 //   r' = r + gamma Phi(s') - Phi(s)
-// changes no decision, whatever Phi is, and what is left to learn is what Phi does not know: with a
-// plan's value function the network learns to correct the plan, not that energy has a price. (On
-// the yardstick the step from `price` to `plan` brought both methods from under the tabular
-// baseline to 4 % above it on validation days.)
+// changes no decision, whatever Phi is, and what is left to learn is what Phi does not know: with
+// the stochastic program's value function the network learns to correct the program, not that
+// energy has a price.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +15,7 @@ namespace bess {
 
 enum class PotentialKind : std::uint8_t {
   kNone,
-  kPrice,  ///< stored energy at the training days' mean price, half-way from import to export
-  kPlan,   ///< value of a rolling-horizon plan on a naive forecast (planners/rolling_horizon.h)
-  kSdp,    ///< value of the stochastic program (planners/stochastic_program.h)
+  kSdp,  ///< value of the stochastic program (planners/stochastic_program.h)
 };
 
 struct Potential {

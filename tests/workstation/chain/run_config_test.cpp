@@ -155,6 +155,7 @@ TEST(RunConfig, MistakesNamePlaceAndMend) {
       {"[train]\nvalue_min_eur_per_h = 5e8\n", ": ", "[train] value_min_eur_per_h must be below"},
       {"[train]\nhorizon = \"day\"\n", ": ", "[train] horizon = \"day\" needs residual = false"},
       {"[train]\ninput_calm = true\n", ":2: ", "unknown key \"input_calm\" in [train]"},
+      {"[train]\npotential = \"plan\"\n", ":2: ", "use one of \"none\", \"sdp\""},
       {"[train]\nbf16 = true\n", ":2: ", "unknown key \"bf16\" in [train]"},
       {"[train]\ncontext = \"outlook\"\nresidual = false\n", ": ",
        "[train] context = \"outlook\" needs residual = true"},

@@ -1,6 +1,6 @@
 #include "workstation/rl/experience.h"
 #include "shared/exchange_cost.h"
-#include "workstation/planners/rolling_horizon.h"
+#include "workstation/planners/stochastic_program.h"
 
 #include <set>
 
@@ -154,26 +154,17 @@ TEST(Transitions, RewardsAreTheMoneyOfTheAccounting) {
 
 // ---- Potentials ------------------------------------------------------------------------------
 
-TEST(Potentials, AtTheMeanPriceLieBetweenImportAndExport) {
-  const MarketSteps market = market_by_hand({{Split::kTrain, {0, 1}}});  // paid 100 and 101
-  BatteryParameters battery;
-  battery.costs = {40, 0, 10, 0};
-  std::vector<float> phi(2);
-  fit_potential(PotentialKind::kPrice, market, battery).fill(market.steps[0], phi.data());
-  EXPECT_EQ(phi[0], 0);
-  EXPECT_NEAR(phi[1], (100.5 + (40 - 10) / 2.0) * 0.9 * 8, 1e-3);
-}
-
-TEST(Potentials, OfAPlanIsWhatThePlanExpectsToEarn) {
+TEST(Potentials, OfTheProgramIsWhatTheProgramExpectsToEarn) {
   const MarketSteps market = simulated_market({2023, 1, 1}, 24);
   BatteryParameters battery;
   battery.costs = {20, 3, 2, 1};
-  const RollingHorizonPolicy plan(market, market.days_of(Split::kTrain), battery);
-  const Potential potential = fit_potential(PotentialKind::kPlan, market, battery);
+  const StochasticProgram program(market, market.days_of(Split::kTrain), battery);
+  const Potential potential = fit_potential(PotentialKind::kSdp, market, battery);
   std::vector<float> phi(static_cast<std::size_t>(potential.soc_points));
+  std::array<float, StochasticProgram::kSocPoints> values{};
   for (std::size_t at = 0; at < market.steps.size(); at += 997) {
     potential.fill(market.steps[at], phi.data());
-    const auto values = plan.values(market.steps[at]);
+    program.values(StochasticProgram::situation_of(market.steps[at]), values.data());
     EXPECT_EQ(phi.front(), values.front());
     EXPECT_EQ(phi.back(), values.back());
     EXPECT_TRUE(std::ranges::is_sorted(phi)) << "at these prices energy has a worth";
@@ -206,8 +197,7 @@ TEST(Potentials, ShapedRewardsDifferByThePotentialOfTheEndsOnly) {
   };
   std::vector<float> row;
   const double plain = rewards_of(PotentialKind::kNone, row);
-  EXPECT_NEAR(rewards_of(PotentialKind::kPrice, row), plain, 1e-3);
-  EXPECT_NEAR(rewards_of(PotentialKind::kPlan, row), plain, 1e-3);
+  EXPECT_NEAR(rewards_of(PotentialKind::kSdp, row), plain, 1e-3);
 }
 
 // ---- Which transitions there are ------------------------------------------------------------

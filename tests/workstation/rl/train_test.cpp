@@ -185,7 +185,7 @@ TEST(Train, DaysThatLackAreNamedWithTheMend) {
                {"validation and test", {2023, 1, 24}, 5, "training days"}};
   const std::atomic<bool> interrupted = false;
   for (const auto& c : cases) {
-    for (const PotentialKind potential : {PotentialKind::kPlan, PotentialKind::kNone}) {
+    for (const PotentialKind potential : {PotentialKind::kSdp, PotentialKind::kNone}) {
       TrainOptions options = small_options();
       options.potential = potential;
       const MarketSteps market = simulated_market(c.first, c.days);
