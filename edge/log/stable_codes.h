@@ -81,14 +81,15 @@ std::int64_t code_of(const Enum& enumerator) {
 template <typename Enum>
 bool set_by_code(std::int64_t code, Enum& enumerator) {
   if (code < 0 || code >= static_cast<std::int64_t>(kCodeCount<Enum>)) return false;
-  enumerator = StableCodes<Enum>::kList[code];
+  enumerator = StableCodes<Enum>::kList[static_cast<std::size_t>(code)];
   return true;
 }
 
 /// As written in texts; ends in 0.
 template <typename Enum>
 const char* name_of_code(std::int64_t code) {
-  return StableCodes<Enum>::kNameOf(StableCodes<Enum>::kList[code]).data();
+  return StableCodes<Enum>::kNameOf(StableCodes<Enum>::kList[static_cast<std::size_t>(code)])
+      .data();
 }
 
 }  // namespace bess
