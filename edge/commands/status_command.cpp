@@ -120,6 +120,7 @@ Health health_of(const EdgeConfig& config, const PublishedStatus& published,
   in.rest_loss_w = whole(field<&R::findings, &F::rest_loss_w>(status));
   in.ramp_w_per_s = whole(field<&R::findings, &F::ramp_w_per_s>(status));
   in.locked_readings = whole(field<&R::findings, &F::locked_readings>(status));
+  in.wrong_energy_e6 = whole(field<&R::findings, &F::wrong_energy_e6>(status));
   in.trip = text_of(field<&R::trip, &Trip::reason>(status));
   in.battery_warns = is_true(field<&R::measurement, &B::warning>(status));
   in.disk_is_slow = is_true(field<&T::disk_is_slow>(status));

@@ -90,6 +90,7 @@ struct ResponseFindings {
   std::int32_t rest_loss_w = 0;           ///< lost at 0 W, or besides orders; negative: gained
   std::int32_t ramp_w_per_s = 0;          ///< from an order on: too slow for its map
   std::int16_t locked_readings = 0;       ///< in a row: by its own limits it may do nothing
+  std::int32_t wrong_energy_e6 = 0;       ///< against or beyond orders, of the capacity
 };
 
 struct GuardDecision {

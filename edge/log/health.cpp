@@ -15,6 +15,8 @@ constexpr std::int64_t kWeakAnswersMax = 1;
 /// An hour: a battery that is too cold or too warm may rest as long.
 constexpr std::int64_t kLockedReadingsMax = 30;
 constexpr std::int64_t kUnplannedSMax = 86'400;
+/// A trip is four times that (supervision/wrong_energy.h).
+constexpr std::int64_t kWrongEnergyE6Max = 50'000;
 
 std::string seconds(std::int64_t ms) { return std::to_string(ms / 1'000) + " s"; }
 
@@ -85,6 +87,11 @@ void check_findings(const HealthInputs& in, std::vector<std::string>& reasons) {
   if (in.energy_share_percent != 0) {
     reasons.push_back("WARN: the SoC shows about " + std::to_string(in.energy_share_percent) +
                       " % of the measured energy: is capacity_wh right, does the power arrive?");
+  }
+  if (in.wrong_energy_e6 >= kWrongEnergyE6Max) {
+    reasons.push_back("WARN: now and then the battery does not do as it is told: " +
+                      std::to_string(in.wrong_energy_e6 / 10'000) +
+                      " % of its capacity flowed against or beyond orders; a trip at 20 %");
   }
   if (in.rest_loss_w != 0) {
     reasons.push_back("WARN: at 0 W, or besides its orders, the battery " +

@@ -20,11 +20,12 @@ struct HealthInputs {
   std::int64_t lost_orders = 0;        ///< of the newest `judged_orders`
   std::int64_t judged_orders = 0;
   bool orders_are_lost = false;           ///< too many of them
-  std::int64_t energy_share_percent = 0;  ///< these four: ResponseFindings, 0 where all is well
+  std::int64_t energy_share_percent = 0;  ///< these five: ResponseFindings, 0 where all is well
   std::int64_t rest_loss_w = 0;
   std::int64_t ramp_w_per_s = 0;
   std::int64_t locked_readings = 0;  ///< in a row
-  std::string_view trip = "none";    ///< the reason's name
+  std::int64_t wrong_energy_e6 = 0;
+  std::string_view trip = "none";  ///< the reason's name
   std::string_view mode;
   std::string_view reason;
   std::string_view battery_status;

@@ -302,6 +302,12 @@ consteval auto make_record_fields() {
       {member<&R::outlook, &K::feed>().given<&R::outlook, &K::source>(),
        "day_ahead_status",
        {.csv = 64, .last = 195}},
+      {member<&R::findings, &F::wrong_energy_e6>(),
+       "wrong_energy_e6",
+       {.csv = 65, .totals = 85, .metrics = {45, "bess_wrong_energy_ratio"}},
+       {"Energy that flowed against or beyond orders, of the capacity, less 2.5 % a day; 0.2 is a "
+        "trip.",
+        1'000'000}},
   });
 }
 

@@ -226,8 +226,10 @@ void EnergyBalance::judge_drift(std::int64_t soc_variance) {
     const bool gains =
         2 * beyond_e4(gained) > kHalfSigmasToTell * noise && !settings_.charges_by_itself;
     if (!loses && !gains) continue;
-    const std::int64_t drift_e4 = lost.sum - kUsuallyLostPercent * moved_e4 / kPercent;
-    findings_.rest_loss_w = static_cast<std::int32_t>(drift_e4 * capacity_ws / 10'000 / seconds);
+    if (findings_.share_percent == 0) {  // else it is told already
+      const std::int64_t drift_e4 = lost.sum - kUsuallyLostPercent * moved_e4 / kPercent;
+      findings_.rest_loss_w = static_cast<std::int32_t>(drift_e4 * capacity_ws / 10'000 / seconds);
+    }
     const std::int64_t most_e4 = std::max(beyond_e4(lost), gains ? beyond_e4(gained) : 0);
     if (most_e4 > kRestContradictedE4) findings_.contradicts = true;
   }

@@ -44,7 +44,8 @@ ResponseFindings ResponseMonitor::findings() const {
   return {.energy_share_percent = soc_.balance().share_percent,
           .rest_loss_w = soc_.balance().rest_loss_w,
           .ramp_w_per_s = slow_.is_found() ? ramp_w_per_s_ : 0,
-          .locked_readings = locked_readings_};
+          .locked_readings = locked_readings_,
+          .wrong_energy_e6 = wrong_energy_.share_e6()};
 }
 
 /// Nothing is ordered then that could go unanswered.
@@ -59,6 +60,21 @@ void ResponseMonitor::count_locked(const BatteryMeasurement& m) {
 
 void ResponseMonitor::trip_if(bool is_found, Reason reason) {
   if (is_found && trip_ == Reason::kStudent) trip_ = reason;
+}
+
+void ResponseMonitor::note_wrong(const Response& now, std::int64_t wrong_w, Reason reason) {
+  const std::int32_t told_wh = now.measurement.capacity_wh;
+  wrong_energy_.add(now, wrong_w, told_wh > 0 ? told_wh : settings_.capacity_wh);
+  if (wrong_w > 0) trip_if(wrong_energy_.is_found(), reason);
+}
+
+/// Judged as if it ended a step. What has hardly begun is no evidence: orders may change before.
+void ResponseMonitor::note_between(const Response& now) {
+  if (now.order_age_s < settings_.band.settle_s + kLateS) return;
+  ResponseMonitor as_if = *this;
+  as_if.judge_power(now);
+  wrong_energy_ = as_if.wrong_energy_;
+  if (wrong_energy_.is_found()) trip_ = as_if.trip_;
 }
 
 void ResponseMonitor::judge_power(const Response& now) {
@@ -76,11 +92,13 @@ void ResponseMonitor::judge_idle(const Response& now) {
     excessive_idle_.good();
     care_.good();
     needs_no_care_ = true;
+    note_wrong(now, 0, Reason::kStudent);
   } else if (is_care(now.measurement)) {
     care_.bad();
   } else if (!is_ramp(now)) {
     excessive_idle_.bad();
     trip_if(excessive_idle_.is_found(), Reason::kUncontrolledPower);
+    note_wrong(now, power_magnitude_w(measured_w), Reason::kUncontrolledPower);
   }
 }
 
@@ -98,6 +116,7 @@ void ResponseMonitor::judge_driven(const Response& now) {
     if (!is_ramp(now) && !note_ramp(now, before_ordered_w_)) {
       opposed_.bad(is_charging);
       trip_if(opposed_.is_found(), Reason::kWrongDirection);
+      note_wrong(now, -std::int64_t{measured_w}, Reason::kWrongDirection);
     }
     return;
   }
@@ -105,9 +124,11 @@ void ResponseMonitor::judge_driven(const Response& now) {
   if (measured_w - ordered_w > settings_.tolerance_w(ordered_w) && !is_pv) {
     if (is_ramp(now)) return;
     excessive_driven_.bad(is_charging);
-    return trip_if(excessive_driven_.is_found(), Reason::kUncontrolledPower);
+    trip_if(excessive_driven_.is_found(), Reason::kUncontrolledPower);
+    return note_wrong(now, std::int64_t{measured_w} - ordered_w, Reason::kUncontrolledPower);
   }
   excessive_driven_.good(is_charging);
+  note_wrong(now, 0, Reason::kStudent);
   judge_answer(now, measured_w);
 }
 

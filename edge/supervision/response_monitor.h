@@ -13,8 +13,9 @@
 //   arrive, loss at 0 W, a slow ramp, limits of
 //   its own that allow nothing
 // Each kind of fault has counts of its own (leaky_count.h), so that one that comes and goes is
-// found. A reading that could not show a fault leaves its count as it is: a battery that goes the
-// wrong way at every other order, with idle between, is found as well.
+// found soon; what is too rare for them is found by its energy (wrong_energy.h). A reading that
+// could not show a fault leaves its count as it is: a battery that goes the wrong way at every
+// other order, with idle between, is found as well.
 #pragma once
 
 #include <cstdint>
@@ -22,6 +23,7 @@
 #include "edge/supervision/leaky_count.h"
 #include "edge/supervision/response.h"
 #include "edge/supervision/soc_monitor.h"
+#include "edge/supervision/wrong_energy.h"
 
 namespace bess {
 
@@ -57,6 +59,8 @@ class ResponseMonitor {
   void observe(const Response& now);
   /// Between two readings that are judged, just before an order changes: counts what has flowed.
   void note_power(const Response& now) { soc_.note_cut(now); }
+  /// Any other between the two: counts what has flowed wrongly, and nothing else.
+  void note_between(const Response& now);
 
   /// kWrongDirection, kUncontrolledPower or kSocMismatch once it is found; kStudent: nothing.
   [[nodiscard]] Reason trip() const { return trip_; }
@@ -75,8 +79,16 @@ class ResponseMonitor {
   /// Found, and short of a reason to stop.
   [[nodiscard]] ResponseFindings findings() const;
 
-  /// A person has looked, or a pause is over: counted anew from here.
-  void forget() { *this = ResponseMonitor(settings_); }
+  /// A person has looked: counted anew from here.
+  void clear() { *this = ResponseMonitor(settings_); }
+  /// A pause begins: the same, but that rare faults are rarer than pauses.
+  void forget() {
+    const WrongEnergy wrong_energy = wrong_energy_;
+    clear();
+    wrong_energy_ = wrong_energy;
+  }
+  /// Of an earlier run, by its log.
+  void restore(const ResponseFindings& logged) { wrong_energy_.restore(logged.wrong_energy_e6); }
 
  private:
   void count_locked(const BatteryMeasurement& m);
@@ -85,6 +97,7 @@ class ResponseMonitor {
   void judge_driven(const Response& now);
   void judge_answer(const Response& now, std::int32_t measured_w);
   void trip_if(bool is_found, Reason reason);
+  void note_wrong(const Response& now, std::int64_t wrong_w, Reason reason);
   bool note_ramp(const Response& now, std::int32_t from_w);
   bool is_ramp(const Response& now);
   bool is_ramp_of_held_back(const Response& now);
@@ -107,6 +120,7 @@ class ResponseMonitor {
   LeakyCount excessive_idle_;
   LeakyCount care_;
   LeakyCount slow_;
+  WrongEnergy wrong_energy_;       ///< what comes too seldom for the counts
   std::int32_t ramp_w_per_s_ = 0;  ///< the most of answers that were still on their way
   std::int16_t locked_readings_ = 0;
   std::int32_t weak_answers_ = 0;

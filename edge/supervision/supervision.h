@@ -81,6 +81,12 @@ class Supervision {
 
   /// A reading in the middle of a step, just before the order changes: nothing is judged by it.
   void note_power(const Response& now) { response_.note_power(now); }
+  /// Any other reading in the middle of a step.
+  void note_between(const Response& now) {
+    if (trip_.is_set()) return;
+    response_.note_between(now);
+    trip_if_found(now);
+  }
 
   /// How an order ended that was due, with the battery within reach.
   void on_ordered(std::int64_t utc_s, Status status) {
@@ -103,10 +109,12 @@ class Supervision {
   void restore(const Trip& trip) { trip_ = trip; }
   void clear() {
     trip_ = Trip{};
-    response_.forget();
+    response_.clear();
   }
   [[nodiscard]] const ResponseMonitor& response() const { return response_; }
   [[nodiscard]] const LostOrders& lost_orders() const { return lost_; }
+  /// Of an earlier run, by its log; nothing of one that tripped since a person has looked.
+  void restore(const ResponseFindings& logged) { response_.restore(logged); }
   /// Of an earlier run, by its log of then.
   void restore(const LostOrderHistory& orders, std::int64_t utc_s) { lost_.restore(orders, utc_s); }
 
@@ -114,14 +122,19 @@ class Supervision {
   void judge(const Response& now) {
     response_.observe(now);
     if (response_.needs_no_care()) care_since_s_ = 0;
-    if (response_.trip() != Reason::kStudent) {
-      trip_ = {.reason = response_.trip(), .utc_s = now.utc_s};
-    } else if (response_.gives_no_answer()) {
+    trip_if_found(now);
+    if (trip_.is_set()) return;
+    if (response_.gives_no_answer()) {
       pause(now.utc_s, Reason::kNoAnswer);
     } else if (response_.looks_after_itself()) {
       pause_for_care(now);
     } else if (response_.has_answered() && lost_.has_settled() && failed_orders_ == 0) {
       pause_.on_success();
+    }
+  }
+  void trip_if_found(const Response& now) {
+    if (response_.trip() != Reason::kStudent) {
+      trip_ = {.reason = response_.trip(), .utc_s = now.utc_s};
     }
   }
   void pause(std::int64_t utc_s, Reason reason) {

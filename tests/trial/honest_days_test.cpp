@@ -27,6 +27,7 @@ TEST_P(HonestBattery, TripsNothing) {
               days.cycles, kDays);
   EXPECT_EQ(days.trips, 0) << reason_name(days.first_trip) << " in cycle " << days.first_trip_cycle;
   EXPECT_GT(days.driven, days.cycles / 3);
+  EXPECT_LT(days.wrong_energy_e6_max, WrongEnergy::kToldE6);
   EXPECT_GT(days.moved_wh, kDays * GetParam().nature.capacity_wh);
 }
 
@@ -35,6 +36,7 @@ TEST_P(HonestBattery, TripsNothingAmongKills) {
     const HonestDays days = live_honest_days(GetParam(), (kDays + 5) / 6, {.kill_every = every});
     EXPECT_EQ(days.trips, 0) << reason_name(days.first_trip) << " in cycle "
                              << days.first_trip_cycle << ", killed after every " << every;
+    EXPECT_LT(days.wrong_energy_e6_max, WrongEnergy::kToldE6);
     EXPECT_GT(days.driven, days.cycles / 3);
   }
 }
@@ -51,6 +53,9 @@ TEST_P(HonestBattery, TripsNothingUnderAClockThatIsStepped) {
     EXPECT_EQ(days.trips, 0) << reason_name(days.first_trip) << " in cycle "
                              << days.first_trip_cycle << ", stepped after every "
                              << often.step_every << ", killed after " << often.kill_every;
+    if (!is_beyond_its_map) {
+      EXPECT_LT(days.wrong_energy_e6_max, WrongEnergy::kToldE6);
+    }
     EXPECT_GT(days.driven, days.cycles / 4);
   }
 }

@@ -5,12 +5,14 @@
 //                                    percent, the controller killed after each cycle
 //   supervision_trial ends           each fault near full and near empty
 //   supervision_trial honest [DAYS]  each variant of a healthy battery
+//   supervision_trial rare           faults too rare for the counts: what they move until found
 //   supervision_trial csv            every fault, schedule, kind of orders and SoC
 #include <cstdio>
 #include <cstdlib>
 #include <string>
 #include <string_view>
 
+#include "tests/trial/rare_faults.h"
 #include "tests/trial/trial_run.h"
 
 namespace bess::trial {
@@ -99,11 +101,27 @@ void print_ends() {
   }
 }
 
+void print_rare() {
+  std::printf("| fault | rhythm |");
+  for (const Orders orders : kRareOrders) std::printf(" %s |", orders_name(orders).data());
+  std::printf("\n|---|---|---|---|---|---|\n");
+  for (const char* fault : kRareFaults) {
+    for (const Rhythm& rhythm : kRhythms) {
+      std::printf("| %s | %s |", fault, rhythm.name);
+      for (const Orders orders : kRareOrders) {
+        std::printf(" %s |", say_rare(try_rare(fault, rhythm, orders)).c_str());
+      }
+      std::printf("\n");
+    }
+  }
+}
+
 void print_honest(int days) {
   std::printf("%d days each of real prices.\n\n", days);
   std::printf(
-      "| variant | trips | cycles lost | by reason | driven | weak | told | seen of it |\n");
-  std::printf("|---|---|---|---|---|---|---|---|\n");
+      "| variant | trips | cycles lost | by reason | driven | weak | told | most of wrong energy | "
+      "seen of it |\n");
+  std::printf("|---|---|---|---|---|---|---|---|---|\n");
   for (const HonestVariant& variant : honest_variants()) {
     const HonestDays r = live_honest_days(variant, days);
     std::string reasons;
@@ -118,9 +136,10 @@ void print_honest(int days) {
                std::to_string(r.first_trip_cycle) + ")";
     }
     const Oddities& o = r.oddities;
-    std::printf("| %s | %s | %d of %d | %s| %d | %d | %d (%d %%, %d W) | ", variant.name,
+    std::printf("| %s | %s | %d of %d | %s| %d | %d | %d (%d %%, %d W) | %.1f %% | ", variant.name,
                 trips.c_str(), r.lost_in_all(), r.cycles, reasons.c_str(), r.driven, r.weak_cycles,
-                r.told_cycles, r.told.energy_share_percent, r.told.rest_loss_w);
+                r.told_cycles, r.told.energy_share_percent, r.told.rest_loss_w,
+                r.wrong_energy_e6_max / 1e4);
     std::printf(
         "calibrations %d restarts %d late %d derated %.0f h forced %.1f h balancing %.1f h |\n",
         o.calibrations, o.restarts, o.late_answers, static_cast<double>(o.derated_s) / 3'600,
@@ -156,12 +175,14 @@ int run(int argc, char** argv) {
     print_faults();
   } else if (what == "ends") {
     print_ends();
+  } else if (what == "rare") {
+    print_rare();
   } else if (what == "honest") {
     print_honest(argc > 2 ? std::atoi(argv[2]) : 30);
   } else if (what == "csv") {
     print_csv();
   } else {
-    std::fprintf(stderr, "usage: supervision_trial faults|ends|honest [DAYS]|csv\n");
+    std::fprintf(stderr, "usage: supervision_trial faults|ends|rare|honest [DAYS]|csv\n");
     return 2;
   }
   return 0;

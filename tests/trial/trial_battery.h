@@ -19,6 +19,8 @@ namespace bess::trial {
 struct EnergyAccount {
   double moved_wh = 0;          ///< in and out, at the grid side
   double against_order_wh = 0;  ///< what flowed otherwise than ordered while an order was in force
+  double wrong_wh =
+      0;  ///< against what an honest battery would have let flow, or beyond order and it
 };
 
 /// What an honest battery did that looks odd; proves that a variant is what its name says.

@@ -23,6 +23,8 @@ bool charges_at(Orders orders, std::int64_t cycle) {
       return cycle % 2 == 0;
     case Orders::kPairs:
       return cycle / 2 % 2 == 0;
+    case Orders::kHours:
+      return cycle / 20 % 2 == 0;
     case Orders::kDischarge:
     case Orders::kZero:
     case Orders::kRealDay:
@@ -41,8 +43,8 @@ std::int32_t real_price_centi(std::int64_t minute_utc_s) {
 }  // namespace
 
 std::string_view orders_name(Orders orders) {
-  constexpr std::string_view kNames[] = {"charge",      "discharge", "0 W",
-                                         "alternating", "pairs",     "real day"};
+  constexpr std::string_view kNames[] = {"charge", "discharge", "0 W",  "alternating",
+                                         "pairs",  "real day",  "hours"};
   return kNames[static_cast<int>(orders)];
 }
 
@@ -133,25 +135,50 @@ void note_told(const ResponseFindings& findings, FaultResult& result) {
 
 }  // namespace
 
+namespace {
+
+/// Days of alternating orders end at the floor by losses alone, where no fault has much to move.
+Orders orders_at(const TrialSite& site, const FaultCase& c, bool& recharges) {
+  const bool drifts = c.orders == Orders::kAlternating || c.orders == Orders::kPairs;
+  if (c.cycles_max == 0 || !drifts) return c.orders;
+  const double soc_frac = site.battery.charge_frac();
+  if (soc_frac < 0.2) recharges = true;
+  if (soc_frac > 0.6) recharges = false;
+  return recharges ? Orders::kCharge : c.orders;
+}
+
+}  // namespace
+
 FaultResult try_fault(const FaultCase& c) {
   ControlSettings settings = trial_settings(
       {.name = "", .nature = c.nature, .told_soc_refresh_s = std::max(60, c.nature.soc_refresh_s)});
   if (c.orders != Orders::kRealDay) settings.reversals_per_hour_max = 0;
+  if (c.cycles_max > 0) settings.frozen_price = {.told_s = 0, .stop_s = 0};  // of two, for days
   TrialSite site(c.nature, c.soc_frac, settings, c.seed);
   // In balance, so that the fault begins where it was wanted.
   for (int i = 0; i < 3; ++i) site.cycle(Orders::kZero);
   if (c.soc_frac > 0.2) {
     for (int i = 0; i < 2; ++i) site.cycle(i == 0 ? Orders::kDischarge : Orders::kCharge);
   }
-  site.battery.begin_fault(*c.fault, c.times, site.next_tick_utc_s());
+  // Until a battery has reversed, what flows is still of the order before.
+  constexpr std::int64_t kReversedS = 10;
+  const std::int64_t begin_s = c.cycles_max > 0 ? kReversedS : 0;
+  site.battery.begin_fault(*c.fault, c.times, site.next_tick_utc_s() + begin_s);
   const EnergyAccount before = site.battery.energy();
   FaultResult result;
-  while (result.reason == Reason::kStudent && result.cycles < fault_cycles_max(c.orders)) {
-    const CycleRecord record = site.cycle(c.orders);
+  bool recharges = false;
+  const int cycles_max = c.cycles_max > 0 ? c.cycles_max : fault_cycles_max(c.orders);
+  while (result.reason == Reason::kStudent && result.cycles < cycles_max) {
+    const CycleRecord record = site.cycle(orders_at(site, c, recharges));
     ++result.cycles;
     result.weak_answers = std::max(result.weak_answers, record.weak_answers);
     note_told(record.findings, result);
-    if (is_stop_reason(record.reason)) result.reason = record.reason;
+    const double wrong_wh = site.battery.energy().wrong_wh - before.wrong_wh;
+    const bool is_told = record.findings.wrong_energy_e6 >= WrongEnergy::kToldE6;
+    if (is_told && result.wrong_until_told_wh == 0) result.wrong_until_told_wh = wrong_wh;
+    // For days: through the pauses.
+    const bool ends = c.cycles_max > 0 ? record.is_tripped : is_stop_reason(record.reason);
+    if (ends) result.reason = record.reason;
     result.is_trip = record.is_tripped;
     if (c.is_killed) site.kill_and_restart();
     if (c.step_every > 0 && result.cycles % c.step_every == 0) site.step_clock();
@@ -159,6 +186,7 @@ FaultResult try_fault(const FaultCase& c) {
   const EnergyAccount found = site.battery.energy();
   result.against_order_wh = found.against_order_wh - before.against_order_wh;
   result.moved_wh = found.moved_wh - before.moved_wh;
+  result.wrong_wh = found.wrong_wh - before.wrong_wh;
   result.soc_frac = site.battery.charge_frac();
   if (result.reason == Reason::kStudent) return result;
   for (int i = 0; i < kCyclesAfter; ++i) {
@@ -187,6 +215,8 @@ HonestDays live_honest_days(const HonestVariant& variant, int days, const Distur
     ++result.cycles;
     result.driven += record.ordered_power_w != 0 ? 1 : 0;
     result.weak_cycles += record.weak_answers >= 2 ? 1 : 0;
+    result.wrong_energy_e6_max =
+        std::max(result.wrong_energy_e6_max, record.findings.wrong_energy_e6);
     if (tells_of_energy(record.findings)) {
       ++result.told_cycles;
       result.told = record.findings;

@@ -16,7 +16,16 @@
 namespace bess::trial {
 
 /// What the prices, or a hold, make the controller order.
-enum class Orders : std::uint8_t { kCharge, kDischarge, kZero, kAlternating, kPairs, kRealDay };
+enum class Orders : std::uint8_t {
+  kCharge,
+  kDischarge,
+  kZero,
+  kAlternating,
+  kPairs,
+  kRealDay,
+  kHours
+};
+/// In the tables of every fault; kHours, 40 minutes each way, is for faults that take days.
 inline constexpr Orders kAllOrders[] = {Orders::kCharge,      Orders::kDischarge, Orders::kZero,
                                         Orders::kAlternating, Orders::kPairs,     Orders::kRealDay};
 std::string_view orders_name(Orders orders);
@@ -96,6 +105,7 @@ struct FaultCase {
   std::uint64_t seed = 1;
   bool is_killed = false;  ///< the controller, after each cycle
   int step_every = 0;      ///< the clock is stepped after so many cycles; 0 = never
+  int cycles_max = 0;      ///< 0 = fault_cycles_max
 };
 
 /// A fault is found when the battery is stopped for it.
@@ -105,6 +115,8 @@ struct FaultResult {
   bool is_trip = false;
   double against_order_wh = 0;  ///< until it was found
   double moved_wh = 0;
+  double wrong_wh = 0;
+  double wrong_until_told_wh = 0;  ///< until the sum of it was worth a line of `status`; 0 = never
   int driven_after = 0;       ///< of the next thirty cycles, those with an order that is not 0 W
   double moved_after_wh = 0;  ///< in the next thirty cycles
   int weak_answers = 0;       ///< the most that were told
@@ -129,6 +141,7 @@ struct HonestDays {
   int told_cycles = 0;          ///< that told of energy that does not arrive, or is lost
   ResponseFindings told{};      ///< the last of it
   int weak_cycles = 0;          ///< that told of two weak answers or more
+  std::int32_t wrong_energy_e6_max = 0;
   Oddities oddities{};
   double moved_wh = 0;
 

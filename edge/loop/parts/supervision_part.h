@@ -14,6 +14,8 @@ struct SupervisionPart : CyclePart {
 
   void restore(const CycleRecord& before) {
     supervision.restore(before.trip);
+    const bool was_cleared = before.is_tripped && !before.trip.is_set();
+    supervision.restore(was_cleared ? ResponseFindings{} : before.findings);
     supervision.restore(before.lost_orders, before.utc_s + time.ahead_s());
   }
   void recall(const CycleRecord& then, bool is_under_control) {
@@ -31,6 +33,7 @@ struct SupervisionPart : CyclePart {
     const std::int32_t capacity_wh = now.response.measurement.capacity_wh;
     if (!now.is_under_control) return;
     if (now.look == Look::kCut) return supervision.note_power(now.response);
+    if (now.look == Look::kCheck && now.is_read) return supervision.note_between(now.response);
     if (!now.ends_step()) return;
     if (now.is_read) {
       supervision.observe(now.response, now.holds_nothing);

@@ -62,6 +62,8 @@ TEST(Health, EveryTroubleHasItsReason) {
        "WARN: at 0 W, or besides its orders, the battery gains about 800 W"},
       {[](HealthInputs& in) { in.ramp_w_per_s = 30; }, HealthLevel::kDegraded,
        "WARN: the battery is slower than its map says, at most 30 W/s from an order on"},
+      {[](HealthInputs& in) { in.wrong_energy_e6 = 66'000; }, HealthLevel::kDegraded,
+       "WARN: now and then the battery does not do as it is told: 6 % of its capacity flowed"},
       {[](HealthInputs& in) { in.locked_readings = 31; }, HealthLevel::kDegraded,
        "WARN: by its own limits the battery may neither charge nor discharge, in 31 readings"},
       {[](HealthInputs& in) { in.meter_status = "timeout"; }, HealthLevel::kDegraded,
@@ -139,6 +141,12 @@ TEST(Health, EveryTroubleHasItsReason) {
     ASSERT_EQ(health.reasons.size(), 1U) << c.reason;
     EXPECT_THAT(health.reasons[0], HasSubstr(c.reason));
   }
+}
+
+TEST(Health, LittleWrongEnergyIsNotWorthALine) {
+  HealthInputs in = healthy_inputs();
+  in.wrong_energy_e6 = 49'999;
+  EXPECT_EQ(assess_health(in).level, HealthLevel::kOk);
 }
 
 /// A controller that hangs on a full disk must not look as if only the disk were full.

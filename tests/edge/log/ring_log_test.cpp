@@ -183,8 +183,10 @@ TEST(RecordCodec, LayoutOnDiskIsFixed) {
   EXPECT_EQ(bytes[358], 55);    // site.trust.error_squares
   EXPECT_EQ(bytes[366], 1);     // site.house_is_implausible
   EXPECT_EQ(bytes[367], 1);     // lost_orders.is_found
-  EXPECT_EQ(bytes[368], 69);    // findings.locked_readings, the last field
-  for (std::size_t i = 370; i < kRecordBytes - 4; ++i) EXPECT_EQ(bytes[i], 0) << i;
+  EXPECT_EQ(bytes[368], 69);    // findings.locked_readings
+  for (std::size_t i = 370; i < 410; ++i) EXPECT_EQ(bytes[i], 0) << i;  // outlook
+  EXPECT_EQ(bytes[410], 70);    // findings.wrong_energy_e6, the last field
+  for (std::size_t i = 414; i < kRecordBytes - 4; ++i) EXPECT_EQ(bytes[i], 0) << i;
 }
 
 /// A ring of the program that ended its records with flash_writes_today: later fields read as 0.

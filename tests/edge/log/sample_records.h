@@ -87,8 +87,11 @@ inline CycleRecord full_record(std::int64_t cycle) {
   r.lost_orders = {.orders = 44, .judged = 45, .lost = 46, .is_found = true};
   r.standing_price = {.minute_utc_s = 47, .centi_eur_per_mwh = -48, .unchanged_s = 49};
   r.price_frozen = true;
-  r.findings = {
-      .energy_share_percent = 50, .rest_loss_w = -51, .ramp_w_per_s = 52, .locked_readings = 69};
+  r.findings = {.energy_share_percent = 50,
+                .rest_loss_w = -51,
+                .ramp_w_per_s = 52,
+                .locked_readings = 69,
+                .wrong_energy_e6 = 70};
   r.followed = {.is_judged = true, .power_w = -53, .age_s = 54, .soc_floor_e4 = 55};
   return r;
 }

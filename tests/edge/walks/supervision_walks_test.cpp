@@ -132,7 +132,7 @@ void see_monitor(Walk& walk, const ResponseMonitor& m) {
   const ResponseFindings f = m.findings();
   walk.see(m.trip(), m.gives_no_answer(), m.looks_after_itself(), m.needs_no_care(), m.has_jumped(),
            m.has_answered(), m.weak_answers(), m.unanswered_orders(), f.energy_share_percent,
-           f.rest_loss_w, f.ramp_w_per_s, f.locked_readings);
+           f.rest_loss_w, f.ramp_w_per_s, f.locked_readings, f.wrong_energy_e6);
 }
 
 std::int64_t drawn_seconds(Walk& walk) {
