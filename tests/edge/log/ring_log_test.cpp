@@ -185,7 +185,7 @@ TEST(RecordCodec, LayoutOnDiskIsFixed) {
   EXPECT_EQ(bytes[367], 1);     // lost_orders.is_found
   EXPECT_EQ(bytes[368], 69);    // findings.locked_readings
   for (std::size_t i = 370; i < 410; ++i) EXPECT_EQ(bytes[i], 0) << i;  // outlook
-  EXPECT_EQ(bytes[410], 70);    // findings.wrong_energy_e6, the last field
+  EXPECT_EQ(bytes[410], 70);  // findings.wrong_energy_e6, the last field
   for (std::size_t i = 414; i < kRecordBytes - 4; ++i) EXPECT_EQ(bytes[i], 0) << i;
 }
 
