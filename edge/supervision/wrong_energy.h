@@ -38,7 +38,7 @@ class WrongEnergy {
   [[nodiscard]] bool is_found() const { return share_e6() >= kFoundE6; }
   /// Of the capacity.
   [[nodiscard]] std::int32_t share_e6() const { return static_cast<std::int32_t>(sum_e9_ / 1'000); }
-  /// Of an earlier run, by its log: what it has recalled since is in it.
+  /// Of an earlier run, by its log, in place of what was recalled of it.
   void restore(std::int32_t share_e6) {
     sum_e9_ = std::clamp<std::int64_t>(std::int64_t{share_e6} * 1'000, 0, kMostE9);
   }

@@ -223,6 +223,22 @@ TEST(SocMonitor, ADrainBesidesOrdersOfEitherSignIsToldWithAnEstimate) {
   }
 }
 
+/// One cause, one line: 60 % too much of what is charged is no gain besides.
+TEST(SocMonitor, ASocOfAnotherScaleIsNoGainBesides) {
+  CountedBattery scaled(0.1);
+  scaled.count = [](double stored) { return 0.1 + (stored - 0.1) * 1.7; };
+  bool is_told = false;
+  for (int i = 0; i < 15; ++i) {
+    scaled.step(4'000);
+    is_told = is_told || has_told_share(scaled.monitor);
+    if (is_told) {
+      EXPECT_NEAR(scaled.monitor.findings().energy_share_percent, 170, 15) << i;
+    }
+    EXPECT_EQ(scaled.monitor.findings().rest_loss_w, 0) << i;
+  }
+  EXPECT_TRUE(is_told);
+}
+
 TEST(SocMonitor, LossesAndAnotherCapacityAreNoDrain) {
   const Orders uneven = [](int i) { return i % 3 == 0 ? -4'000 : 2'500; };
   for (const Orders& orders : {Orders{alternating}, uneven}) {
