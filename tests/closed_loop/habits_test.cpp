@@ -121,6 +121,8 @@ TEST_P(EveryMapHabits, AHealthyHabitTripsNothing) {
       const CycleRecord record = site.cycle();
       ASSERT_FALSE(record.is_tripped)
           << habit.name << ": " << reason_name(record.trip.reason) << " in cycle " << i;
+      ASSERT_LT(record.findings.wrong_energy_e6, WrongEnergy::kToldE6)
+          << habit.name << " in cycle " << i;
       lost += is_stop_reason(record.reason) ? 1 : 0;
     }
     std::printf("%-16s %-12s %s: %d of %d cycles lost\n", GetParam().map, GetParam().variant,

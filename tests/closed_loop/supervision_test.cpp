@@ -181,6 +181,7 @@ TEST_P(EveryMapSupervised, DaysOfASlowNoisyThrottledBatteryRaisesNothing) {
         << "cycle " << i << " " << reason_name(record.reason);
     ASSERT_LT(record.weak_answers, 2) << "cycle " << i;
     ASSERT_EQ(record.replaced_orders + record.ended_orders, 0) << "cycle " << i;
+    ASSERT_LT(record.findings.wrong_energy_e6, WrongEnergy::kToldE6) << "cycle " << i;
     driven += record.ordered_power_w != 0 ? 1 : 0;
   }
   EXPECT_GT(driven, kDays * kStepsPerDay / 4);
@@ -221,6 +222,7 @@ TEST_P(EveryMapSupervised, DaysOfHoldsReserveAndCutOrdersRaiseNothing) {
         << "cycle " << i << " " << reason_name(record.reason);
     ASSERT_LT(record.weak_answers, 2) << "cycle " << i;
     ASSERT_EQ(record.replaced_orders + record.ended_orders, 0) << "cycle " << i;
+    ASSERT_LT(record.findings.wrong_energy_e6, WrongEnergy::kToldE6) << "cycle " << i;
     held += record.reason == Reason::kHeld;
     reserved += record.reason == Reason::kReserve;
     filled += record.reason == Reason::kFullCharge;
