@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "edge/outlook/day_ahead_file.h"
-#include "shared/host/file.h"
 #include "tests/support/market_zone.h"
 #include "tests/support/temporary_folder.h"
 
@@ -208,14 +207,14 @@ TEST_F(KeptBook, OfADamagedFileNothingComesBack) {
   EXPECT_EQ(restore_day_ahead(path().c_str(), book_), 0);
   ASSERT_EQ(book_.take(both(), now_), Status::kOk);
   ASSERT_TRUE(keep_day_ahead(path().c_str(), book_));
-  const std::string whole = read_file(path());
+  const std::string whole = text_of_file(path());
   for (std::size_t at = 3; at < whole.size(); at += 1'009) {
     std::string damaged = whole;
     damaged[at] = damaged[at] == '1' ? '2' : '1';
-    write_file(path(), damaged);
+    ASSERT_EQ(folder_.write("day_ahead", damaged), path());
     DayAheadBook again;
     EXPECT_EQ(restore_day_ahead(path().c_str(), again), 0) << at;
-    write_file(path(), whole.substr(0, at));
+    ASSERT_EQ(folder_.write("day_ahead", whole.substr(0, at)), path());
     EXPECT_EQ(restore_day_ahead(path().c_str(), again), 0) << at;
   }
 }

@@ -5,7 +5,6 @@
 
 #include <vector>
 
-#include "shared/host/file.h"
 #include "shared/local_time.h"
 #include "tests/support/market_zone.h"
 #include "tests/support/temporary_folder.h"
@@ -17,7 +16,7 @@ class Feed : public InMarketZone, public testing::Test {
  protected:
   Feed() { settings_.file = folder_.file("answer.json").c_str(); }
   Status ask(const std::string& answer) {
-    write_file(settings_.file.c_str(), answer);
+    EXPECT_EQ(settings_.file.view(), folder_.write("answer.json", answer));
     feed_ = std::make_unique<DayAheadFeed>(settings_);
     return feed_->ask(now_);
   }
