@@ -138,6 +138,9 @@ TEST_F(HostileHost, AFullDiskForbidsNoRestart) {
   start_simulators();
   const std::string config = site_.commission();
   run({"--config", config, "--cycles", "2"}, 0);
+  // Whose room would be enough for new ones of as many pages, whatever stands in them.
+  fs::remove(site_.folder.file("state/status.json"));
+  fs::remove(site_.folder.file("state/metrics.prom"));
   disk.fill();
   const std::string restarted = run({"--config", config, "--cycles", "2"}, 0);
   EXPECT_THAT(restarted,
