@@ -22,11 +22,15 @@ class Planner : public InMarketZone, public testing::Test {
   OutlookReport at(std::int64_t tick, std::int32_t level_centi, std::int32_t soc_e4 = 4'000) {
     return outlook_at(*board_, tick, soc_e4, level_centi);
   }
-  [[nodiscard]] static std::int32_t direct(std::int64_t tick, std::int32_t level_centi,
-                                           const OutlookDays& days, std::int32_t soc_e4 = 4'000) {
-    const auto plan = std::make_unique<OutlookPlan>();
-    plan->make(*student_outlook(), days, planned_level_centi(level_centi));
-    return plan->break_even_centi(*student_outlook(), tick, soc_e4, level_centi);
+  /// Of a plan of the days and level, which is kept until others are asked for.
+  std::int32_t direct(std::int64_t tick, std::int32_t level_centi, const OutlookDays& days,
+                      std::int32_t soc_e4 = 4'000) {
+    if (planned_for_ != planned_level_centi(level_centi) || planned_days_ != days) {
+      planned_for_ = planned_level_centi(level_centi);
+      planned_days_ = days;
+      plan_->make(*student_outlook(), days, planned_for_);
+    }
+    return plan_->break_even_centi(*student_outlook(), tick, soc_e4, level_centi);
   }
 
   std::int64_t tick_ = utc_from_civil({2025, 6, 11, 10, 2, 0});
@@ -34,6 +38,9 @@ class Planner : public InMarketZone, public testing::Test {
   std::unique_ptr<OutlookBoard> board_ = std::make_unique<OutlookBoard>();
   std::unique_ptr<OutlookPlanner> planner_ =
       std::make_unique<OutlookPlanner>(*student_outlook(), *board_);
+  std::unique_ptr<OutlookPlan> plan_ = std::make_unique<OutlookPlan>();
+  OutlookDays planned_days_{};
+  std::int32_t planned_for_ = INT32_MIN;
 };
 
 TEST_F(Planner, OffersWhatThePlanItselfSays) {
