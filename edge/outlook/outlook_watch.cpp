@@ -1,12 +1,12 @@
 #include "edge/outlook/outlook_watch.h"
 
 #include <sys/resource.h>
-#include <time.h>
 
 #include <algorithm>
 #include <cerrno>
 
 #include "edge/log/journal.h"
+#include "edge/memory/timed_wait.h"
 #include "edge/outlook/day_ahead_file.h"
 #include "edge/prices/price_feed.h"
 
@@ -105,19 +105,12 @@ void OutlookWatch::plan(std::int64_t tick_utc_s, std::int32_t level_centi) {
   planner_.plan({.tick_utc_s = tick_utc_s, .level_centi = level_centi, .feed = status}, days);
 }
 
-/// Looks up often: the clock may be stepped. False when the watch is being ended.
-bool OutlookWatch::pause() {
-  constexpr std::int64_t kLookEveryS = 10, kLookNsMin = 1'000'000;
-  const std::int64_t look_ns = clock_.wall_ns(kLookEveryS * kNanosecondsPerSecond);
-  const std::int64_t until_ns = clock_ns(CLOCK_MONOTONIC) + std::max(look_ns, kLookNsMin);
-  const timespec until{.tv_sec = static_cast<time_t>(until_ns / kNanosecondsPerSecond),
-                       .tv_nsec = static_cast<long>(until_ns % kNanosecondsPerSecond)};
-  while (sem_clockwait(&ending_, CLOCK_MONOTONIC, &until) != 0 && errno == EINTR) continue;
-  return !is_ending_;
-}
-
+/// Looks up often: the clock may be stepped.
 void OutlookWatch::fetch_for_ever() {
-  while (pause()) {
+  constexpr std::int64_t kLookEveryS = 10, kLookNsMin = 1'000'000;
+  const std::int64_t look_ns =
+      std::max(clock_.wall_ns(kLookEveryS * kNanosecondsPerSecond), kLookNsMin);
+  while (wait_ns(ending_, look_ns)) {
     const std::int64_t now = now_utc_s();
     // Only this thread writes the book from here on: it reads it without the lock.
     if (next_ask_utc_s(book_, settings_, now, last_ask_utc_s_, tries_) > now) continue;

@@ -47,7 +47,6 @@ class OutlookWatch {
   void plan(std::int64_t tick_utc_s, std::int32_t level_centi);
   /// In simulated time not before the instant that it begins at.
   [[nodiscard]] std::int64_t now_utc_s() const;
-  bool pause();
 
   const OutlookSettings settings_;
   const ScaledClock clock_;

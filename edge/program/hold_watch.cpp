@@ -1,28 +1,9 @@
 #include "edge/program/hold_watch.h"
 
-#include <time.h>
-
-#include <cerrno>
-
 #include "edge/log/journal.h"
-#include "shared/scaled_clock.h"
+#include "edge/memory/timed_wait.h"
 
 namespace bess {
-namespace {
-
-/// False when the semaphore was posted before the time was over.
-bool wait_ns(sem_t& semaphore, std::int64_t ns) {
-  const std::int64_t until_ns = clock_ns(CLOCK_MONOTONIC) + ns;
-  const timespec until{.tv_sec = static_cast<time_t>(until_ns / kNanosecondsPerSecond),
-                       .tv_nsec = static_cast<long>(until_ns % kNanosecondsPerSecond)};
-  int result = 0;
-  do result = sem_clockwait(&semaphore, CLOCK_MONOTONIC, &until);
-  while (result != 0 && errno == EINTR);
-  return result != 0;
-}
-
-}  // namespace
-
 HoldWatch::HoldWatch() { sem_init(&ending_, 0, 0); }
 
 HoldWatch::~HoldWatch() {
