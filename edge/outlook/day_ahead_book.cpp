@@ -124,6 +124,7 @@ void DayAheadBook::keep_day(const OutlookDays& answer, int day, std::int64_t now
     const KnownPrice* const kept = find(t, now_utc_s);
     if (kept != nullptr && kept->centi_eur_per_mwh == centi) return;
     prices_[place_of(t)] = {.utc_s = t, .received_utc_s = now_utc_s, .centi_eur_per_mwh = centi};
+    ++changes_;
   });
 }
 

@@ -46,6 +46,8 @@ class DayAheadBook {
   /// Whether every quarter-hour of [from, until) had come by `now_utc_s`.
   [[nodiscard]] bool has_all(std::int64_t from_utc_s, std::int64_t until_utc_s,
                              std::int64_t now_utc_s) const;
+  /// How many prices were kept since the start: the same, and the file still holds all of them.
+  [[nodiscard]] std::uint32_t changes() const { return changes_; }
   /// For the file; those with utc_s == 0 are none.
   [[nodiscard]] std::span<const KnownPrice> prices() const { return prices_; }
 
@@ -56,6 +58,7 @@ class DayAheadBook {
                                         std::int64_t now_utc_s) const;
   void keep_day(const OutlookDays& answer, int day, std::int64_t now_utc_s);
 
+  std::uint32_t changes_ = 0;
   KnownPrice prices_[kPricesMax] = {};  ///< at the quarter-hour's number modulo the size
 };
 

@@ -76,20 +76,32 @@ Status DayAheadFeed::ask(std::int64_t now_utc_s) {
   return is_too_large_ ? Status::kTooLarge : parsed;
 }
 
+std::int64_t due_utc_s(const DayAheadBook& book, const OutlookSettings& settings,
+                       std::int64_t now_utc_s) {
+  const OutlookDays days = outlook_days_around(now_utc_s);
+  if (!book.has_all(days.today_utc_s, days.tomorrow_utc_s, now_utc_s)) return now_utc_s;
+  const bool has_tomorrow = book.has_all(days.tomorrow_utc_s, days.end_utc_s, now_utc_s);
+  return settings.ask_offset_s - kBeforePublicationS +
+         publication_utc_s(has_tomorrow ? days.tomorrow_utc_s : days.today_utc_s);
+}
+
 std::int64_t next_ask_utc_s(const DayAheadBook& book, const OutlookSettings& settings,
                             std::int64_t now_utc_s, std::int64_t last_utc_s, int tries) {
-  const OutlookDays days = outlook_days_around(now_utc_s);
-  const std::int64_t offset_s = settings.ask_offset_s - kBeforePublicationS;
-  std::int64_t due_utc_s = now_utc_s;
-  if (book.has_all(days.today_utc_s, days.tomorrow_utc_s, now_utc_s)) {
-    const bool has_tomorrow = book.has_all(days.tomorrow_utc_s, days.end_utc_s, now_utc_s);
-    due_utc_s = offset_s + publication_utc_s(has_tomorrow ? days.tomorrow_utc_s : days.today_utc_s);
-  }
+  const std::int64_t due = due_utc_s(book, settings, now_utc_s);
   const std::int64_t pause_s =
       std::min(kLongestPauseS, kShortestPauseS << std::min(std::max(tries - 1, 0), kDoublingsMax));
   // A clock that was stepped back must not keep it from asking.
   const bool may_ask_at_once = last_utc_s == 0 || last_utc_s > now_utc_s;
-  return may_ask_at_once ? due_utc_s : std::max(due_utc_s, last_utc_s + pause_s);
+  return may_ask_at_once ? due : std::max(due, last_utc_s + pause_s);
+}
+
+bool DayAheadInquiry::take(Status asked, std::span<const TimedPrice> rows,
+                           const OutlookSettings& settings, std::int64_t now_utc_s) {
+  const std::uint32_t changes_before = book.changes();
+  status = asked == Status::kOk ? book.take(rows, now_utc_s) : asked;
+  last_utc_s = now_utc_s;
+  tries = due_utc_s(book, settings, now_utc_s) > now_utc_s ? 0 : tries + 1;
+  return book.changes() != changes_before;
 }
 
 }  // namespace bess

@@ -38,8 +38,8 @@ class DayAheadFeed {
       : settings_(settings), http_(settings.http) {}
 
   /// Asks for the days around now and gives `rows()` what is answered; within the time-out.
+  /// kTooLarge: also of more rows than four days have.
   Status ask(std::int64_t now_utc_s);
-  /// kTooLarge: more rows than four days have.
   [[nodiscard]] std::span<const TimedPrice> rows() const { return {rows_, count_}; }
 
  private:
@@ -54,10 +54,28 @@ class DayAheadFeed {
   bool is_too_large_ = false;
 };
 
-/// When to ask next: at once where something of today is missing, for tomorrow from 12:50 local
-/// time on, and while nothing whole comes after a minute, two, four, to half an hour.
-/// `last_utc_s`: 0 = not asked yet; `tries`: in vain, since something came.
+/// From when on there is something to ask for: now where something of today is missing, for
+/// tomorrow 12:50 local time.
+std::int64_t due_utc_s(const DayAheadBook& book, const OutlookSettings& settings,
+                       std::int64_t now_utc_s);
+/// When to ask next: when it is due, and while nothing whole comes after a minute, two, four, to
+/// half an hour. `last_utc_s`: 0 = not asked yet; `tries`: in vain, after which it was still due.
 std::int64_t next_ask_utc_s(const DayAheadBook& book, const OutlookSettings& settings,
                             std::int64_t now_utc_s, std::int64_t last_utc_s, int tries);
+
+/// What was asked for, and what came of it.
+struct DayAheadInquiry {
+  DayAheadBook book{};
+  Status status = Status::kNoRow;  ///< of the last answer
+  std::int64_t last_utc_s = 0;
+  int tries = 0;
+
+  [[nodiscard]] bool is_due(const OutlookSettings& settings, std::int64_t now_utc_s) const {
+    return next_ask_utc_s(book, settings, now_utc_s, last_utc_s, tries) <= now_utc_s;
+  }
+  /// An answer, or why there is none. True when the book holds something new.
+  bool take(Status asked, std::span<const TimedPrice> rows, const OutlookSettings& settings,
+            std::int64_t now_utc_s);
+};
 
 }  // namespace bess

@@ -50,10 +50,10 @@ OutlookWatch::~OutlookWatch() {
 
 void OutlookWatch::start(std::int32_t level_centi) {
   const std::int64_t now = now_utc_s();
-  const int kept = restore_day_ahead(kept_path_.c_str(), book_);
+  const int kept = restore_day_ahead(kept_path_.c_str(), inquiry_.book);
   fetch(now);
   report(JournalLevel::kNotice, "outlook: %d day-ahead prices kept; asked for more: %s", kept,
-         price_status_text(status_).data());
+         price_status_text(inquiry_.status).data());
   planner_.plan_usual_day(now, level_centi);
   plan(tick_from(now), level_centi);
   feed_thread_.start(
@@ -99,8 +99,8 @@ void OutlookWatch::plan(std::int64_t tick_utc_s, std::int32_t level_centi) {
   Status status = Status::kOk;
   {
     const std::lock_guard lock(mutex_);
-    days = book_.days_at(tick_utc_s);
-    status = status_;
+    days = inquiry_.book.days_at(tick_utc_s);
+    status = inquiry_.status;
   }
   planner_.plan({.tick_utc_s = tick_utc_s, .level_centi = level_centi, .feed = status}, days);
 }
@@ -112,13 +112,13 @@ void OutlookWatch::fetch_for_ever() {
       std::max(clock_.wall_ns(kLookEveryS * kNanosecondsPerSecond), kLookNsMin);
   while (wait_ns(ending_, look_ns)) {
     const std::int64_t now = now_utc_s();
-    // Only this thread writes the book from here on: it reads it without the lock.
-    if (next_ask_utc_s(book_, settings_, now, last_ask_utc_s_, tries_) > now) continue;
-    const Status before = status_;
+    // Only this thread writes the inquiry from here on: it reads it without the lock.
+    if (!inquiry_.is_due(settings_, now)) continue;
+    const Status before = inquiry_.status;
     fetch(now);
-    if (status_ != before) {
-      report(status_ == Status::kOk ? JournalLevel::kNotice : JournalLevel::kWarning,
-             "outlook: day-ahead prices: %s", price_status_text(status_).data());
+    if (inquiry_.status != before) {
+      report(inquiry_.status == Status::kOk ? JournalLevel::kNotice : JournalLevel::kWarning,
+             "outlook: day-ahead prices: %s", price_status_text(inquiry_.status).data());
     }
     sem_post(&to_plan_);
   }
@@ -126,19 +126,14 @@ void OutlookWatch::fetch_for_ever() {
 
 void OutlookWatch::fetch(std::int64_t now) {
   const Status asked = feed_.ask(now);
-  const OutlookDays days = outlook_days_around(now);
-  bool is_whole = false;
   {
     const std::lock_guard lock(mutex_);
-    status_ = asked == Status::kOk ? book_.take(feed_.rows(), now) : asked;
-    const bool is_before_publication = now < publication_utc_s(days.today_utc_s);
-    is_whole = book_.has_all(days.today_utc_s,
-                             is_before_publication ? days.tomorrow_utc_s : days.end_utc_s, now);
+    const bool is_new = inquiry_.take(asked, feed_.rows(), settings_, now);
+    is_kept_ = is_kept_ && !is_new;
   }
-  last_ask_utc_s_ = now;
-  tries_ = is_whole ? 0 : tries_ + 1;
-  if (status_ != Status::kOk && status_ != Status::kImplausible) return;
-  if (!keep_day_ahead(kept_path_.c_str(), book_)) {
+  if (is_kept_) return;
+  is_kept_ = keep_day_ahead(kept_path_.c_str(), inquiry_.book);
+  if (!is_kept_) {
     report(JournalLevel::kWarning, "outlook: %s cannot be written", kept_path_.c_str());
   }
 }

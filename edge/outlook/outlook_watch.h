@@ -54,11 +54,9 @@ class OutlookWatch {
   DayAheadFeed feed_;
   OutlookBoard board_;
   OutlookPlanner planner_;
-  std::mutex mutex_;  ///< of the book and its status, between the two threads
-  DayAheadBook book_;
-  Status status_ = Status::kNoRow;  ///< of the last answer
-  std::int64_t last_ask_utc_s_ = 0;
-  int tries_ = 0;
+  std::mutex mutex_;  ///< of the inquiry, between the two threads
+  DayAheadInquiry inquiry_;
+  bool is_kept_ = true;  ///< false: the file lacks something, and is tried again
   /// Tick in steps of two minutes, and the level: in one word, as a hold.
   std::atomic<std::uint64_t> wanted_{0};
   sem_t ending_;

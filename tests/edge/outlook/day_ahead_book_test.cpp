@@ -98,6 +98,13 @@ TEST_F(Book, ADayByHalfIsKeptAndFilledUpLater) {
   EXPECT_EQ(known_tomorrow(later), 96);
 }
 
+TEST_F(Book, AnAnswerWithNothingNewChangesNothing) {
+  ASSERT_EQ(book_.take(both(), now_), Status::kOk);
+  EXPECT_EQ(book_.changes(), 192U);
+  ASSERT_EQ(book_.take(both(), now_ + 60), Status::kOk);
+  EXPECT_EQ(book_.changes(), 192U);
+}
+
 TEST_F(Book, WhatIsNegativeOrExtremeIsAPrice) {
   std::vector<TimedPrice> rows = both();
   rows[5].centi_eur_per_mwh = -50'000;

@@ -125,6 +125,14 @@ TEST_F(Schedule, AsksAgainAfterAMinuteThenTwoToHalfAnHour) {
   EXPECT_EQ(next(last, last, 1'000'000), last + 1'800);
 }
 
+TEST_F(Schedule, AfterTenToOneItIsDueUntilTomorrowIsWhole) {
+  know_until(outlook_days_around(now_).tomorrow_utc_s);
+  EXPECT_GT(due_utc_s(book_, settings_, local(12, 49)), local(12, 49));
+  EXPECT_LE(due_utc_s(book_, settings_, local(12, 50)), local(12, 50));
+  know_until(outlook_days_around(now_).end_utc_s);
+  EXPECT_GT(due_utc_s(book_, settings_, local(12, 58)), local(12, 58));
+}
+
 TEST_F(Schedule, AClockThatWasSteppedBackKeepsItFromNothing) {
   EXPECT_LE(next(local(3, 0), local(20, 0), 5), local(3, 0));
 }

@@ -14,7 +14,7 @@ VirtualOutlook::VirtualOutlook(const Scenario& scenario, const OutlookSettings& 
 
 OutlookBoard* VirtualOutlook::start(std::int32_t level_centi) {
   process_ = std::make_unique<Process>(model_);
-  process_->book = kept_;
+  process_->inquiry.book = kept_;
   const std::int64_t now = edge_utc_s();
   fetch(now);
   process_->planner.plan_usual_day(now, level_centi);
@@ -24,23 +24,15 @@ OutlookBoard* VirtualOutlook::start(std::int32_t level_centi) {
 
 void VirtualOutlook::cycle_done(const CycleRecord& record) {
   const std::int64_t now = edge_utc_s();
-  const Process& p = *process_;
-  if (next_ask_utc_s(p.book, settings_, now, p.last_ask_utc_s, p.tries) <= now) fetch(now);
+  if (process_->inquiry.is_due(settings_, now)) fetch(now);
   plan(record.utc_s + kSecondsPerStep, record.price_level.centi_eur_per_mwh());
 }
 
 void VirtualOutlook::fetch(std::int64_t now_utc_s) {
-  Process& p = *process_;
   std::vector<TimedPrice> rows;
   const Status asked = ask(now_utc_s, rows);
-  p.status = asked == Status::kOk ? p.book.take(rows, now_utc_s) : asked;
-  const OutlookDays days = outlook_days_around(now_utc_s);
-  const bool is_before_publication = now_utc_s < publication_utc_s(days.today_utc_s);
-  const bool is_whole = p.book.has_all(
-      days.today_utc_s, is_before_publication ? days.tomorrow_utc_s : days.end_utc_s, now_utc_s);
-  p.last_ask_utc_s = now_utc_s;
-  p.tries = is_whole ? 0 : p.tries + 1;
-  if (p.status == Status::kOk || p.status == Status::kImplausible) kept_ = p.book;
+  DayAheadInquiry& inquiry = process_->inquiry;
+  if (inquiry.take(asked, rows, settings_, now_utc_s)) kept_ = inquiry.book;
 }
 
 /// The server answers by the true time, and is asked for the days of the edge's.
@@ -63,8 +55,8 @@ Status VirtualOutlook::ask(std::int64_t now_utc_s, std::vector<TimedPrice>& rows
 
 void VirtualOutlook::plan(std::int64_t tick_utc_s, std::int32_t level_centi) {
   process_->planner.plan(
-      {.tick_utc_s = tick_utc_s, .level_centi = level_centi, .feed = process_->status},
-      process_->book.days_at(tick_utc_s));
+      {.tick_utc_s = tick_utc_s, .level_centi = level_centi, .feed = process_->inquiry.status},
+      process_->inquiry.book.days_at(tick_utc_s));
 }
 
 std::int64_t VirtualOutlook::edge_utc_s() const {

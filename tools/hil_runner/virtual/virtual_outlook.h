@@ -33,10 +33,7 @@ class VirtualOutlook {
     explicit Process(const OutlookModel& model) : planner(model, board) {}
     OutlookBoard board;
     OutlookPlanner planner;
-    DayAheadBook book;
-    Status status = Status::kNoRow;
-    std::int64_t last_ask_utc_s = 0;
-    int tries = 0;
+    DayAheadInquiry inquiry;
   };
   void fetch(std::int64_t now_utc_s);
   [[nodiscard]] Status ask(std::int64_t now_utc_s, std::vector<TimedPrice>& rows) const;
