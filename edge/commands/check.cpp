@@ -86,7 +86,7 @@ void report_day_ahead(const EdgeConfig& config) {
   if (status == Status::kOk) status = book.take(feed->rows(), now_utc_s);
   if (status != Status::kOk) {
     return report(JournalLevel::kWarning, "day-ahead prices from %s: %s; planned on what is usual",
-                  source.c_str(), price_status_text(status).data());
+                  source.c_str(), day_ahead_status_text(status, outlook).data());
   }
   std::printf("day-ahead  %zu prices from %s\n", feed->rows().size(), source.c_str());
 }

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "edge/log/whole_file.h"
+#include "edge/prices/price_feed.h"
 #include "shared/local_time.h"
 
 namespace bess {
@@ -22,6 +23,25 @@ FixedText<10> date_text(std::int64_t midnight_utc_s) {
 }
 
 }  // namespace
+
+std::string_view day_ahead_status_text(Status status, const OutlookSettings& settings) {
+  switch (status) {
+    case Status::kNotConnected:
+      if (settings.file.empty()) break;
+      return "the file is not there or cannot be read (is [outlook] file right, who writes it?)";
+    case Status::kMalformed:
+      return "not the JSON that [outlook] describes, or times that do not rise by quarter-hours "
+             "(are rows_field, time_field and price_field right?)";
+    case Status::kNoRow:
+      return "no price of yesterday, today or tomorrow (are time_field, price_field and the dates "
+             "of url right?)";
+    case Status::kImplausible:
+      return "contradicts what was published before, or repeats the day before: refused";
+    default:
+      break;
+  }
+  return price_status_text(status);
+}
 
 DayAheadUrl day_ahead_url(std::string_view url, const OutlookDays& days) {
   constexpr std::string_view kToday = "{today}";

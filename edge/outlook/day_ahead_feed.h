@@ -26,6 +26,9 @@ struct OutlookSettings {
   std::int32_t ask_offset_s = 0;  ///< so that many machines do not ask at one instant
 };
 
+/// What a status means when it comes from there, and what mends it.
+std::string_view day_ahead_status_text(Status status, const OutlookSettings& settings);
+
 using DayAheadUrl = FixedText<639>;
 DayAheadUrl day_ahead_url(std::string_view url, const OutlookDays& days);
 

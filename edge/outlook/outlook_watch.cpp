@@ -8,7 +8,6 @@
 #include "edge/log/journal.h"
 #include "edge/memory/timed_wait.h"
 #include "edge/outlook/day_ahead_file.h"
-#include "edge/prices/price_feed.h"
 
 namespace bess {
 namespace {
@@ -53,7 +52,7 @@ void OutlookWatch::start(std::int32_t level_centi) {
   const int kept = restore_day_ahead(kept_path_.c_str(), inquiry_.book);
   fetch(now);
   report(JournalLevel::kNotice, "outlook: %d day-ahead prices kept; asked for more: %s", kept,
-         price_status_text(inquiry_.status).data());
+         day_ahead_status_text(inquiry_.status, settings_).data());
   planner_.plan_usual_day(now, level_centi);
   plan(tick_from(now), level_centi);
   feed_thread_.start(
@@ -118,7 +117,8 @@ void OutlookWatch::fetch_for_ever() {
     fetch(now);
     if (inquiry_.status != before) {
       report(inquiry_.status == Status::kOk ? JournalLevel::kNotice : JournalLevel::kWarning,
-             "outlook: day-ahead prices: %s", price_status_text(inquiry_.status).data());
+             "outlook: day-ahead prices: %s",
+             day_ahead_status_text(inquiry_.status, settings_).data());
     }
     sem_post(&to_plan_);
   }

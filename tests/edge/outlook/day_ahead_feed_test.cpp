@@ -79,6 +79,11 @@ TEST_F(Feed, AnswersOfMoreThanFourDaysAreTooLarge) {
 TEST_F(Feed, NoFileIsNoConnection) {
   settings_.file = folder_.file("nothing").c_str();
   EXPECT_EQ(DayAheadFeed(settings_).ask(now_), Status::kNotConnected);
+  EXPECT_NE(day_ahead_status_text(Status::kNotConnected, settings_).find("[outlook] file"),
+            std::string_view::npos);
+  settings_.file = {};
+  EXPECT_NE(day_ahead_status_text(Status::kNotConnected, settings_).find("url"),
+            std::string_view::npos);
 }
 
 TEST_F(Feed, TheUrlNamesLocalDates) {
