@@ -94,7 +94,7 @@ class OutlookDecisions : public InMarketZone, public testing::Test {};
 TEST_F(OutlookDecisions, OfWeeksAreTheWorkstations) { expect_golden(drawn_weeks()); }
 
 TEST_F(OutlookDecisions, OfMonthsAreTheWorkstations) {
-  if (few_or_all(0, 1) == 0) GTEST_SKIP() << "three months: with BESS_THOROUGH=1";
+  if (few_or_all(0, 1) == 0) GTEST_SKIP() << "three months: only with BESS_THOROUGH";
   expect_golden(drawn_months());
 }
 

@@ -72,7 +72,7 @@ TEST(OutlookEquality, OfWeeksAndTheEdges) {
 }
 
 TEST(OutlookEquality, OfMonthsAndTheEdges) {
-  if (few_or_all(0, 1) == 0) GTEST_SKIP() << "three months: with BESS_THOROUGH=1";
+  if (few_or_all(0, 1) == 0) GTEST_SKIP() << "three months: only with BESS_THOROUGH";
   const std::vector<std::string> found = decided(drawn_months());
   EXPECT_EQ(found, golden_lines_of(found));
   EXPECT_EQ(found.size(), 91U);
