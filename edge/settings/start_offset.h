@@ -1,5 +1,5 @@
-// How long after each tick this controller orders, so that a thousand of them do not switch at one
-// instant.
+// How long after each tick this controller orders, and how long after 12:50 it asks for tomorrow's
+// prices, so that a thousand of them do not do it at one instant.
 #pragma once
 
 #include <cstdint>

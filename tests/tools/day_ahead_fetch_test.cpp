@@ -158,7 +158,7 @@ TEST_F(FetchFromSimulatedAuction, ASitesMarketHasThemToo) {
   ASSERT_EQ(result.exit_code, 0) << result.output;
   EXPECT_EQ(got().eur_per_mwh, two_days().eur_per_mwh);
   EXPECT_THAT(read_file(path("site/edge.toml")),
-              HasSubstr("[outlook]\ntimeout_ms = 200\nurl = \"http://127.0.0.1:" +
+              HasSubstr("[outlook]\nask_spread_s = 0\ntimeout_ms = 200\nurl = \"http://127.0.0.1:" +
                         std::to_string(port) + "/price?bzn=BE\"\n"));
   EXPECT_EQ(SitePrograms::stop(site), 0);
 }

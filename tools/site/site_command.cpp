@@ -70,7 +70,10 @@ std::string settings_of(const SiteOptions& options, const SitePrograms& programs
   for (const std::string& text : options.settings) set(tables, text);
   const std::string market = "http://127.0.0.1:" + std::to_string(programs.market_port);
   auto& outlook = tables["outlook"];  // only when a key of it is set
-  if (!outlook.empty()) outlook.emplace("url", quoted(market + "/price?bzn=BE"));
+  if (!outlook.empty()) {
+    outlook.emplace("url", quoted(market + "/price?bzn=BE"));
+    outlook.emplace("ask_spread_s", "0");  // the same day on every machine
+  }
   return controller_settings({.control = !options.is_watching,
                               .battery = lines_of(tables["battery"]),
                               .market = market,

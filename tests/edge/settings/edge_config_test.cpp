@@ -7,6 +7,7 @@
 
 #include <filesystem>
 
+#include "edge/settings/start_offset.h"
 #include "edge/storage/run_locks.h"
 #include "tests/support/temporary_folder.h"
 
@@ -289,6 +290,50 @@ TEST(EdgeConfig, ReadsTheKeysOfAnotherPriceServer) {
   EXPECT_EQ(config.price.feed.http.resolve_every_s, 30);
   EXPECT_EQ(config.price.feed.fields.rows, "data.rows");
   EXPECT_EQ(config.price.feed.step_flag_centi_eur_per_mwh, 100'050);
+}
+
+TEST(EdgeConfig, ReadsWhereDayAheadPricesComeFrom) {
+  const TemporaryFolder folder;
+  const std::string headers = folder.write("headers", "X-Api-Key: k\n");
+  ASSERT_EQ(chmod(headers.c_str(), 0600), 0);
+  const auto load = [&](const std::string& keys, EdgeConfig& config, std::string& error) {
+    return load_edge_config(folder.write("edge.toml", valid_text() + "\n[outlook]\n" + keys),
+                            config, error);
+  };
+  EdgeConfig config;
+  std::string error;
+  ASSERT_TRUE(
+      load("url = \"https://a.example/{today}\"\nheader_file = \"headers\"\n"
+           "ca_file = \"headers\"\nrows_field = \"r\"\ntime_field = \"t\"\n"
+           "price_field = \"p\"\ntimeout_ms = 70\nask_spread_s = 0\n",
+           config, error))
+      << error;
+  EXPECT_EQ(config.outlook.http.url, "https://a.example/{today}");
+  EXPECT_EQ(config.outlook.http.headers, "X-Api-Key: k");
+  EXPECT_EQ(config.outlook.http.ca_file, headers);
+  EXPECT_EQ(config.outlook.http.timeout_ms, 70);
+  EXPECT_EQ(config.outlook.fields.rows, "r");
+  EXPECT_EQ(config.outlook.fields.time, "t");
+  EXPECT_EQ(config.outlook.fields.price, "p");
+  EXPECT_EQ(config.outlook.ask_offset_s, 0);
+  EdgeConfig by_file;
+  ASSERT_TRUE(load("file = \"answer.json\"\n", by_file, error)) << error;
+  EXPECT_EQ(by_file.outlook.file, folder.file("answer.json"));
+  EXPECT_EQ(by_file.outlook.ask_offset_s,
+            start_offset_ms(120, machine_id().view(), "day-ahead") / 1'000);
+  const std::pair<const char*, const char*> mistakes[] = {
+      {"file = \"a\"\nurl = \"https://a.example\"\n", "two sources: leave one of them out"},
+      {"url = \"http://a.example\"\n", "[outlook] url is plain http to another machine"},
+      {"url = \"http://a.example\"\nallow_http = true\nheader_file = \"headers\"\n", "header_file"},
+      {"ask_spread_s = 301\n", "ask_spread_s must lie between 0 and 300"},
+      {"minutes = 1\n", "minutes is not a known key"},
+  };
+  for (const auto& [keys, message] : mistakes) {
+    EdgeConfig refused;
+    error.clear();
+    EXPECT_FALSE(load(keys, refused, error)) << keys;
+    EXPECT_THAT(error, HasSubstr(message));
+  }
 }
 
 TEST(EdgeConfig, AByteOrderMarkIsPassedOver) {

@@ -87,10 +87,11 @@ std::string edge_settings(const Scenario& scenario, const MinuteSeries& prices,
   const std::string limits =
       scenario.has_limits() ? "[limits]\nfile = \"limit\"\n" + scenario.edge_limits + "\n" : "";
   const std::string outlook =
-      scenario.day_ahead
-          ? fmt::format("[outlook]\nurl = \"{}/price?bzn=BE&start={{today}}&end={{tomorrow}}\"\n",
-                        market_of(places))
-          : "";
+      scenario.day_ahead ? fmt::format(
+                               "[outlook]\nask_spread_s = 0\n"
+                               "url = \"{}/price?bzn=BE&start={{today}}&end={{tomorrow}}\"\n",
+                               market_of(places))
+                         : "";
   return controller_settings(
       {.battery = battery_keys(scenario, places) + "\n",
        .market = market_of(places),
