@@ -10,6 +10,8 @@
 #include "tests/support/small_market.h"
 #include "tests/support/thorough.h"
 #include "tests/support/train_commands.h"
+#include "tests/workstation/market/feed/fake_charts.h"
+#include "tests/workstation/market/feed/fake_elia.h"
 
 namespace bess {
 namespace {
@@ -185,6 +187,49 @@ TEST_F(RefreshedByOutlook, BringsItsDayAheadPricesAlong) {
   EXPECT_THAT(again, AllOf(HasSubstr(" of 21600 decisions would differ"), Not(HasSubstr("[2/6]"))));
   EXPECT_THAT(run({"runs", "compare", path("site"), path("site.proposal")}).output,
               HasSubstr("site.proposal"));
+}
+
+TEST_F(RefreshedByOutlook, FetchesWhatWasPublishedSince) {
+  ASSERT_EQ(run({"prices", "simulate", "--start", "2023-01-01", "--days", "31", "--out",
+                 path("first.csv"), "--day-ahead-out", path("outlook.csv")})
+                .exit_code,
+            0);
+  std::string config = kIdleProgram;
+  config.insert(config.find("[train]\n") + 8, "context = \"outlook\"\n");
+  ASSERT_EQ(run({"run", "--prices", path("first.csv"), "--day-ahead", path("outlook.csv"),
+                 "--config", written("config.toml", config), "--out", path("site")})
+                .exit_code,
+            0);
+  std::atomic<bool> is_down = true;
+  const FakeElia elia(
+      [&](const std::string&, int, httplib::Response& response) {
+        if (is_down) response.status = 404;
+        return is_down.load();
+      },
+      FakeRows::kAll);
+  const FakeCharts charts;
+  const std::vector<std::string> words{"refresh",
+                                       "--run",
+                                       path("site"),
+                                       "--window-days",
+                                       "30",
+                                       "--accept",
+                                       "shifted-day,repeated-day",
+                                       "--base-url",
+                                       elia.base_url(),
+                                       "--day-ahead-base-url",
+                                       charts.base_url()};
+  const Result without = run(words);
+  EXPECT_EQ(without.exit_code, 1);
+  EXPECT_THAT(without.output, HasSubstr("404"));
+  is_down = false;
+  const Result fetched = run(words);
+  EXPECT_EQ(fetched.exit_code, 0);
+  EXPECT_THAT(fetched.output, HasSubstr(" decisions would differ"));
+  const LocalDate yesterday = add_days(local_date_of(std::time(nullptr)), -1);
+  const MinuteSeries prices = read_minute_file(path("site.proposal/market.csv.gz"));
+  EXPECT_EQ(local_date_of(prices.utc_s(prices.size() - 1)), yesterday);
+  EXPECT_GT(charts.requests, 0);
 }
 
 // The yardstick's months, learnt in full: minutes of two cores.

@@ -6,10 +6,10 @@
 #include <atomic>
 
 #include "shared/utc_text.h"
-#include "tests/support/local_server.h"
 #include "tests/support/market_series.h"
 #include "tests/support/market_test_support.h"
 #include "tests/support/train_commands.h"
+#include "tests/workstation/market/feed/fake_charts.h"
 #include "workstation/market/feed/day_ahead_fetch.h"
 #include "workstation/market/feed/day_ahead_rows.h"
 #include "workstation/market/series/local_date.h"
@@ -81,12 +81,6 @@ TEST(DayAheadRows, BrokenDocumentsAreToldInTheirOwnWords) {
               HasSubstr("No matching data"));
 }
 
-std::string charts(const std::string& seconds, const std::string& prices,
-                   const std::string& unit = "EUR / MWh") {
-  return "{\"license_info\":\"CC BY 4.0\",\"unix_seconds\":[" + seconds + "],\"price\":[" + prices +
-         "],\"unit\":\"" + unit + "\",\"deprecated\":false}";
-}
-
 TEST(DayAheadRows, EnergyChartsOfHoursAndItsDamages) {
   const JoinedDayAhead day = joined(charts("1748728800,1748732400,1748736000", "10.5,null,12"));
   ASSERT_EQ(day.series.size(), 12u);
@@ -142,40 +136,6 @@ TEST(DayAheadRows, BrokenTablesAreToldByLine) {
   EXPECT_THAT(error_of(std::string("PK\3\4zip")), HasSubstr("ZIP"));
   EXPECT_EQ(joined(head + "2025-06-01T00:15:00Z,2\n2025-06-01T00:00:00Z,3\n").findings.size(), 1u);
 }
-
-/// Answers like energy-charts: hours of the asked local days.
-class FakeCharts {
- public:
-  explicit FakeCharts(int failures = 0) : failures_(failures) {
-    server_.routes().Get(
-        "/price", [this](const httplib::Request& request, httplib::Response& response) {
-          ++requests;
-          if (failures_-- > 0) {
-            response.status = 503;
-            return;
-          }
-          const LocalDate from = parse_local_date(request.get_param_value("start"), "start");
-          const LocalDate to = parse_local_date(request.get_param_value("end"), "end");
-          std::string seconds, prices;
-          for (std::int64_t utc_s = local_midnight_utc_s(from);
-               utc_s < local_midnight_utc_s(add_days(to, 1)); utc_s += 3600) {
-            if (utc_s == missing_utc_s) continue;
-            const char* comma = seconds.empty() ? "" : ",";
-            seconds += comma + std::to_string(utc_s);
-            prices += comma + std::to_string(utc_s / 3600 % 89);
-          }
-          response.set_content(charts(seconds, prices), "application/json");
-        });
-    server_.start();
-  }
-  [[nodiscard]] std::string base_url() const { return server_.url(); }
-  std::atomic<int> requests{0};
-  std::int64_t missing_utc_s = 0;
-
- private:
-  std::atomic<int> failures_;
-  LocalServer server_;  ///< the last: it stops before what its thread uses
-};
 
 DayAheadRequest request_of(const FakeCharts& server, const FetchSpan& span) {
   return {.span = span,
