@@ -8,19 +8,12 @@
 namespace bess {
 
 PricedCycle priced_cycle(const CycleRecord& record, const QuarterPrices& prices) {
-  // Anew where the log tells of what: the class that was logged is of the student of that time.
-  const bool is_told = student_outlook() != nullptr ? record.outlook.source != OutlookSource::kNone
-                                                    : record.price_level.is_known();
-  const std::int16_t context_class =
-      record.context_class > 0 && !is_told
-          ? record.context_class
-          : student_context_class(local_minute_of(record.utc_s), context_centi_of(record));
   const double decided_eur_per_mwh =
       static_cast<double>(record.price.price_centi_eur_per_mwh) / kCentiPerEur;
   return {
       record.utc_s, record.price.price_centi_eur_per_mwh,
       static_cast<float>(prices.of_step_eur_per_mwh(record.utc_s).value_or(decided_eur_per_mwh)),
-      context_class};
+      context_class_now(record)};
 }
 
 BatteryStep full_step(const BatteryParameters& battery, double soc_frac, Action action) {

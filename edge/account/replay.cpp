@@ -15,14 +15,10 @@ namespace {
 
 std::size_t index(Action action) { return static_cast<std::size_t>(action); }
 
-/// By outlook the classes are this student's, of the break-even price that was logged.
 Action decide_again(const CycleRecord& record) {
-  const LocalMinute then = local_minute_of(record.utc_s);
-  const std::int16_t context_class = student_outlook() == nullptr
-                                         ? record.context_class
-                                         : student_context_class(then, context_centi_of(record));
-  return decide_with_student(make_lattice_state(then, context_class, record.measurement.soc_e4,
-                                                record.price.price_centi_eur_per_mwh));
+  return decide_with_student(
+      make_lattice_state(local_minute_of(record.utc_s), context_class_now(record),
+                         record.measurement.soc_e4, record.price.price_centi_eur_per_mwh));
 }
 
 double eur_per_mwh(const PriceReport& price) {

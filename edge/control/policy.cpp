@@ -26,6 +26,13 @@ std::int16_t student_context_class(const LocalMinute& now, std::int32_t context_
   return kExportedStudent.context.class_of(now.month, context_centi);
 }
 
+std::int16_t context_class_now(const CycleRecord& record) {
+  const bool is_told = student_outlook() != nullptr ? record.outlook.source != OutlookSource::kNone
+                                                    : record.price_level.is_known();
+  if (record.context_class > 0 && !is_told) return record.context_class;
+  return student_context_class(local_minute_of(record.utc_s), context_centi_of(record));
+}
+
 Action decide_with_student(const LatticeState& state) { return kExportedStudent.decide(state); }
 
 RuleLimits student_rule_limits(const LocalMinute& now, const LatticeState& state,

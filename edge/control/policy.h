@@ -25,6 +25,9 @@ inline std::int32_t context_centi_of(const CycleRecord& record) {
   return student_outlook() != nullptr ? record.outlook.break_even_centi
                                       : record.price_level.centi_eur_per_mwh();
 }
+/// The class that this build's student would have been given in a cycle: anew where the log tells
+/// of what, for the class that was logged is of the student of that time.
+std::int16_t context_class_now(const CycleRecord& record);
 /// What the exported student would do.
 Action decide_with_student(const LatticeState& state);
 

@@ -4,6 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <optional>
+#include <vector>
+
 #include "edge/control/policy.h"
 #include "edge/log/ring_log.h"
 #include "shared/local_time.h"
@@ -27,7 +30,8 @@ class RestedBefore : public ::testing::Test {
     FileMessage error;
     EXPECT_TRUE(ring_.open(folder_.file("state/decisions.ring").c_str(), 2'000, error));
   }
-  void log(std::int64_t utc_s, std::int32_t price_eur, bool asked = true) {
+  void log(std::int64_t utc_s, std::int32_t price_eur, bool asked = true,
+           std::optional<std::int32_t> level_centi = {}) {
     CycleRecord r{.utc_s = utc_s, .mode = Mode::kRunning, .reason = Reason::kStudent};
     r.has_measurement = true;
     r.measurement.soc_e4 = 5'000;
@@ -36,6 +40,7 @@ class RestedBefore : public ::testing::Test {
     r.has_student_action = asked;
     r.student_action = Action::kIdle;
     r.context_class = 6;
+    if (level_centi) r.price_level = PriceLevel::starting_at(*level_centi);
     ASSERT_TRUE(ring_.append(r));
   }
   Replay replay() {
@@ -80,6 +85,29 @@ TEST_F(RestedBefore, WhatItWouldHaveMovedIsWorthItsDistanceFromTheDaysMean) {
   }
   EXPECT_THAT(others, ElementsAre("2023-03-24T23:00:00Z charge", "2023-03-24T23:02:00Z discharge",
                                   "2023-03-25T23:00:00Z charge"));
+}
+
+/// Another student's classes may lie elsewhere: what it would have decided is of the level itself.
+TEST_F(RestedBefore, ItIsAskedAtTheClassThatTheLevelHasForIt) {
+  constexpr std::int32_t kLowCenti = -10'000, kHighCenti = 60'000;
+  const LocalMinute then = local_minute_of(kMidnight);
+  const auto decides = [&](std::int32_t level_centi, std::int32_t price_eur) {
+    return decide_with_student(
+        make_lattice_state(then, student_context_class(then, level_centi), 5'000, price_eur * 100));
+  };
+  std::int32_t price_eur = -100;
+  while (decides(kLowCenti, price_eur) == decides(kHighCenti, price_eur) && price_eur < 600) {
+    ++price_eur;
+  }
+  ASSERT_LT(price_eur, 600) << "the shipped student minds the level";
+  log(kMidnight, price_eur, true, kLowCenti);
+  log(kMidnight + 120, price_eur, true, kHighCenti);
+  const Replay found = replay();
+  EXPECT_EQ(found.compared, 2);
+  std::vector<Action> now(2, Action::kIdle);
+  for (const ReplayedCycle& other : found.others) now[other.utc_s == kMidnight ? 0 : 1] = other.now;
+  EXPECT_EQ(now[0], decides(kLowCenti, price_eur));
+  EXPECT_EQ(now[1], decides(kHighCenti, price_eur));
 }
 
 TEST_F(RestedBefore, NothingComparedIsNothing) {
