@@ -11,8 +11,8 @@ namespace {
 constexpr std::string_view kPhaseNames[] = {"",          "upgrading",  "trying",      "comparing",
                                             "confirmed", "going_back", "rolled_back", "failed",
                                             "hidden"};
-constexpr std::string_view kCauseNames[] = {"none",  "no_start", "trip",  "price", "link",
-                                            "alarm", "off_grid", "clock", "hold"};
+constexpr std::string_view kCauseNames[] = {"none", "no_start", "no_cycle", "trip",  "price",
+                                            "link", "alarm",    "off_grid", "clock", "hold"};
 static_assert(std::size(kPhaseNames) == static_cast<std::size_t>(TrialPhase::kHidden) + 1);
 static_assert(std::size(kCauseNames) == kTrialCauseCount);
 
@@ -30,6 +30,7 @@ bool is_comparable(TrialCause cause) {
 
 std::string what_is_seen(TrialCause cause) {
   if (cause == TrialCause::kNoStart) return "it does not stay up";
+  if (cause == TrialCause::kNoCycle) return "it has no cycle";
   return joined({"its cycles are lost by ", trial_cause_name(cause)});
 }
 
@@ -60,6 +61,10 @@ TrialStep next_of_trial(const TrialState& state, const TrialUnit& unit, const Tr
   const bool does_not_start = unit.has_failed || unit.restarts > limits.restarts;
   if (does_not_start && !is_shared(state, TrialCause::kNoStart)) {
     return compare(state, TrialCause::kNoStart);
+  }
+  // While the order of the version before is still in force, which that one then takes over.
+  if (!state.is_fresh && state.elapsed_s >= limits.first_cycle_s && !state.previous.empty()) {
+    return compare(state, TrialCause::kNoCycle);
   }
   const TrialCause cause = trial_cause_of(state.bad_cause);
   if (state.bad_run >= kStandingCycles && cause != TrialCause::kNone) {
@@ -174,8 +179,9 @@ void count_cycle(TrialState& state, const TrialCycle& cycle, const TrialLimits& 
 }
 
 void count_restarts(TrialState& state, const TrialUnit& unit) {
+  const TrialCause awaited = trial_cause_of(state.bad_cause);
   const bool is_awaited = state.phase == TrialPhase::kComparing &&
-                          trial_cause_of(state.bad_cause) == TrialCause::kNoStart;
+                          (awaited == TrialCause::kNoStart || awaited == TrialCause::kNoCycle);
   if (is_awaited && unit.restarts > 0 && state.same == 0) state.same = 1;
 }
 

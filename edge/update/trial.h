@@ -38,6 +38,7 @@ TrialPhase trial_phase_of(std::string_view name);  ///< kUnknown for anything el
 enum class TrialCause : std::uint8_t {
   kNone,  ///< nothing of the site: the version's own
   kNoStart,
+  kNoCycle,  ///< it runs, and nothing comes of it
   kTrip,
   kPrice,
   kLink,
@@ -62,6 +63,9 @@ struct TrialLimits {
   std::int64_t good_cycles = 15;
   std::int64_t deadline_s = 3'600;  ///< of running time for the good cycles, and for a rest
   std::int64_t poll_s = 10;
+  /// From the hand-over to the first cycle: a tick that was missed, the next one and its price, 146
+  /// s. At a battery whose timer has 300 s the order from before has 180 s left then at least.
+  std::int64_t first_cycle_s = 160;
   std::int64_t upgrade_s = 600;  ///< for dpkg between unpacking and configuring
   std::int64_t restarts = 5;     ///< without a good cycle in between
   std::int64_t boots = 5;

@@ -59,6 +59,7 @@ TrialLimits TrialMachine::limits() const {
   take_setting(text, "good_cycles", limits.good_cycles);
   take_setting(text, "deadline_s", limits.deadline_s);
   take_setting(text, "poll_s", limits.poll_s);
+  take_setting(text, "first_cycle_s", limits.first_cycle_s);
   take_setting(text, "upgrade_s", limits.upgrade_s);
   return limits;
 }
@@ -89,6 +90,16 @@ std::string TrialMachine::last_error(std::int64_t since_utc_s) {
 }
 
 std::string TrialMachine::boot_id() { return one_line(text_of("/proc/sys/kernel/random/boot_id")); }
+
+std::string TrialMachine::process_version() const {
+  const std::string pid = value_of(systemctl({"show", "-p", "MainPID", kUnit}).output, "MainPID");
+  std::error_code none;
+  const std::string program =
+      std::filesystem::read_symlink(path("/proc/" + pid + "/exe"), none).string();
+  const std::string versions = store_.folder() + "/versions/";
+  if (!program.starts_with(versions)) return "";
+  return program.substr(versions.size(), program.find('/', versions.size()) - versions.size());
+}
 
 bool TrialMachine::settle(const TrialState& state, std::string& error) const {
   const std::string running = running_version(state);

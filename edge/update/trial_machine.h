@@ -27,6 +27,8 @@ class TrialMachine {
   /// The newest error that the unit has told since then.
   static std::string last_error(std::int64_t since_utc_s);
   static std::string boot_id();
+  /// What the controller's process is of; empty where none runs, or no program of the store.
+  [[nodiscard]] std::string process_version() const;
 
   /// The links and the unit file that this state asks for. False with one line in `error`; what a
   /// full disk refuses is tried once more with the reserve.

@@ -327,17 +327,24 @@ void Trial::mark_newest_cycle(const std::string& program) {
   }
 }
 
-/// Another version than before runs from here on: flip, stop, start. What runs is not stopped
-/// for a link that cannot be flipped: tried again.
+/// Another version than before runs from here on: flip, stop, start. The version that has confirmed
+/// itself is not stopped but hands its order over, and what runs already stays: a hand-over that
+/// was broken off behind the flip. Nor is anything stopped for a link that cannot be flipped: tried
+/// again.
 void Trial::start_other() {
   std::string error;
   if (!machine_.settle(state_, error)) {
     report(JournalLevel::kError, "%s", error.c_str());
     return;
   }
-  machine_.stop();
-  mark_newest_cycle(machine_.store().program_of(running_version(state_)));
-  state_.is_handed_over = machine_.start();
+  const std::string next = running_version(state_);
+  const std::string runs = machine_.process_version();
+  state_.is_handed_over = runs == next;
+  if (state_.is_handed_over) return;
+  const bool keeps_order = !runs.empty() && runs == state_.previous;
+  if (!keeps_order) machine_.stop();
+  mark_newest_cycle(machine_.store().program_of(next));
+  state_.is_handed_over = keeps_order ? machine_.hand_over(true) : machine_.start();
 }
 
 /// False where the disk does not keep it: then nothing may be done by it.
@@ -487,6 +494,7 @@ void Trial::count_boot() {
   const bool is_run = state_.phase == TrialPhase::kTrying || state_.phase == TrialPhase::kComparing;
   if (!is_run || state_.boot == boot) return;
   if (!state_.boot.empty()) ++state_.boots;
+  if (!state_.is_fresh) state_.elapsed_s = 0;  // nor is an order in force that could be kept
   state_.boot = boot;
   write();
 }

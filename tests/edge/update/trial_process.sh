@@ -17,6 +17,11 @@ cd "$BESS_ROOT/fake" || exit 1
 echo "$*" >>systemctl
 started() { basename "$(readlink "$BESS_ROOT/var/lib/bess-edge/current")" >running; echo 0 >cycle; echo active >active; }
 case "$*" in
+  *MainPID*)
+    mkdir -p "$BESS_ROOT/proc/7"
+    of=$BESS_ROOT/var/lib/bess-edge/versions/$(cat running)
+    ln -sfn "$of/bin/bess-edge" "$BESS_ROOT/proc/7/exe"
+    echo MainPID=7 ;;
   show*)
     # What crashes is started again and again.
     if [ "$(cat "does_$(cat running)" 2>/dev/null)" = crash ]; then echo $(($(cat restarts) + 3)) >restarts; started; fi
@@ -233,6 +238,28 @@ echo iHR1.0 >dpkg; trial announce 2.0; trial withdraw 2.0; [ "$(value delivered)
 (sleep 2; echo "ii 1.0" >dpkg) &
 timeout 50 "$edge" trial supervise >said 2>&1 || fail "after dpkg has ended, the supervisor has not"
 [ "$(value delivered)" = "ii 1.0" ] || fail "what dpkg has in the end: $(value delivered)"
+# A delivery that is killed around the flip: what has confirmed itself hands its order over, and what
+# was handed over to already is left alone.
+flipped=0 late=0 n=10
+while [ $((n += 1)) -le 16 ]; do
+  machine; trial announce 2.0; deliver 2.0
+  BESS_CUT_AT=$n BESS_CUT_KIND=kill LD_PRELOAD=$cut "$edge" trial begin >said 2>&1
+  case "$(value handed_over) $(readlink "$store/current") $(cat running)" in
+    "0 versions/2.0 1.0") flipped=1 ;;
+    "0 versions/2.0 2.0") late=1 ;;
+  esac
+  judge; expect "the delivery is killed at its write $n" confirmed 2.0
+  grep -q '^stop' systemctl && fail "killed at $n: the order from before is ended"
+  [ "$(grep -c '^reload bess' systemctl)" = 1 ] || fail "killed at $n: not one hand-over"
+done
+[ $flipped$late = 11 ] || fail "none was killed behind the flip, or the hand-over: $flipped, $late"
+machine; echo hang >does_2.0; upgrade 2.0; judge 8
+[ "$(value phase) $(value bad_cause)" = "comparing no_cycle" ] ||
+  fail "a version without a cycle in 160 s: $(value phase), $(value bad_cause)"
+: >systemctl; judge 1
+[ "$(value phase)" = trying ] || fail "the first time it is chance: $(value phase)"
+grep -q '^stop' systemctl && fail "after the comparison the order is ended"
+judge; expect "hangs a second time" rolled_back 1.0 "it has no cycle"
 machine; trial announce 2.0; trial recover; [ "$(value phase)" = confirmed ] ||
   fail "a cut in dpkg: $(value phase)"
 upgrade 2.0; judge; expect "the power cut while dpkg unpacks" confirmed 2.0

@@ -17,6 +17,7 @@ TrialState trying() {
   state.version = "2.0";
   state.previous = "1.0";
   state.needed_cycles = kLimits.good_cycles;
+  state.is_fresh = true;
   return state;
 }
 
@@ -176,15 +177,36 @@ TEST(Trial, AVersionThatDoesNotStartIsComparedAtOnce) {
   EXPECT_EQ(next_phase(trying(), {.restarts = 5}, kLimits).phase, TrialPhase::kTrying);
 }
 
+TEST(Trial, AVersionWithoutACycleIsComparedWhileTheOrderFromBeforeIsInForce) {
+  TrialState state = trying();
+  state.is_fresh = false;
+  count_time(state, {}, kLimits.first_cycle_s - 1);
+  EXPECT_EQ(next_phase(state, {}, kLimits).phase, TrialPhase::kTrying);
+  count_time(state, {}, 1);
+  EXPECT_EQ(next_phase(state, {}, kLimits).phase, TrialPhase::kComparing);
+  EXPECT_EQ(next_phase(state, {}, kLimits).cause, TrialCause::kNoCycle);
+  TrialState first = state;
+  first.previous.clear();
+  EXPECT_EQ(next_phase(first, {}, kLimits).phase, TrialPhase::kTrying) << "there is none before";
+  state.is_fresh = true;
+  EXPECT_EQ(next_phase(state, {}, kLimits).phase, TrialPhase::kTrying) << "it had one";
+  TrialState again = comparing(TrialCause::kNoCycle);
+  EXPECT_EQ(judge(again, "1").phase, TrialPhase::kTrying) << "maybe by chance";
+  again.worse = 1;
+  EXPECT_EQ(judge(again, "1").phase, TrialPhase::kGoingBack);
+  count_restarts(again, {.restarts = 1});
+  EXPECT_EQ(judge(again, "1").phase, TrialPhase::kTrying) << "it did not start at first either";
+}
+
 TEST(Trial, EachPhaseHasAnEnd) {
   TrialState upgrading = trying();
   upgrading.phase = TrialPhase::kUpgrading;
   EXPECT_EQ(running_version(upgrading), "") << "what runs is left as it is";
   count_time(upgrading, {.is_stopped = true}, kLimits.upgrade_s);
   EXPECT_EQ(next_phase(upgrading, {.is_stopped = true}, kLimits).phase, TrialPhase::kRolledBack);
-  TrialState silent = trying();
-  count_time(silent, {}, kLimits.deadline_s);
-  EXPECT_EQ(next_phase(silent, {}, kLimits).phase, TrialPhase::kGoingBack);
+  TrialState slow = trying();
+  count_time(slow, {}, kLimits.deadline_s);
+  EXPECT_EQ(next_phase(slow, {}, kLimits).phase, TrialPhase::kGoingBack);
   TrialState both_silent = comparing(TrialCause::kLink);
   count_time(both_silent, {}, kLimits.deadline_s);
   EXPECT_EQ(next_phase(both_silent, {}, kLimits).phase, TrialPhase::kGoingBack);
