@@ -1,20 +1,15 @@
 #!/bin/sh
 # layers_can_fail.sh TREE FOLDER: shows that layers.sh finds what it forbids. A copy of TREE below
-# FOLDER gets one wrong line at a time, and the line must be named; without it the copy must pass.
+# FOLDER gets wrong lines, and each must be named; without them the copy must pass.
 tree=$1 copy=$2
 proof=$tree/tests/edge/proofs/layers.sh
 rm -rf "$copy" && mkdir -p "$copy" && cp -R "$tree/edge" "$tree/shared" "$tree/tools" "$tree/workstation" "$copy" || exit 1
 mkdir "$copy/tests" && cp -R "$tree/tests/trial" "$copy/tests" || exit 1
 sh "$proof" "$copy" || { echo "layers.sh complains about a right copy"; exit 1; }
-wrong() {  # wrong FILE LINE
-  cp "$copy/$1" "$copy/kept"
+places=$copy/places
+wrong() {  # wrong FILE LINE: FILE gets it as its last one
   printf '%s\n' "$2" >>"$copy/$1"
-  place=$1:$(wc -l <"$copy/$1")
-  if found=$(sh "$proof" "$copy") || ! printf '%s\n' "$found" | grep -q "^$place:"; then
-    echo "layers.sh did not find $place: $2"
-    exit 1
-  fi
-  mv "$copy/kept" "$copy/$1"
+  echo "$1:$(wc -l <"$copy/$1"): $2" >>"$places"
 }
 wrong shared/features.h '#include "edge/registers/codec.h"'
 wrong edge/memory/static_arena.h '#include "edge/control/mode.h"'
@@ -63,6 +58,10 @@ wrong workstation/chain/run_config.cpp '#include "workstation/run/run_record.h"'
 wrong workstation/run/run_stages.cpp '#include "workstation/cli/commands.h"'
 wrong tools/battery_sim/bus_reply.cpp '#include "edge/battery/modbus_frame.h"'
 wrong tests/trial/trial_battery.h '#include "tools/battery_sim/simulated_battery.h"'
+found=$(sh "$proof" "$copy") && { echo "layers.sh passed a wrong copy"; exit 1; }
+while read -r place line; do
+  printf '%s\n' "$found" | grep -q "^$place" || { echo "layers.sh did not find $place $line"; exit 1; }
+done <"$places"
 rm -rf "$copy/edge/log"
 ! sh "$proof" "$copy" >/dev/null || { echo "layers.sh passed a tree without edge/log"; exit 1; }
 rm -rf "$copy"
