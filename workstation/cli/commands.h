@@ -17,7 +17,6 @@ void add_train_command(ProgramCommand& app);
 void add_distil_command(ProgramCommand& app);
 void add_rules_commands(ProgramCommand& app);
 void add_rules_check(ProgramCommand& rules);
-void add_rules_map(ProgramCommand& rules);
 void add_rules_price(ProgramCommand& rules);
 void add_verify_command(ProgramCommand& app);
 void add_evaluate_command(ProgramCommand& app);

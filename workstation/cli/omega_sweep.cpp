@@ -146,7 +146,6 @@ void run_omega_sweep(const OmegaSweepArguments& options) {
     if (options.json) print_json(points.back(), of_teacher);
   }
   write_file(out / kCsvName, omega_csv(points, of_teacher));
-  draw_figure(omega_figure(points, of_teacher), out);
   if (!options.json) fmt::print("{}", format_omega_table(points, of_teacher));
 }
 
@@ -159,8 +158,7 @@ void add_omega_sweep_command(ProgramCommand& app) {
   command.option("--prices", options->prices, "Minute file (.csv or .csv.gz)").required();
   options->price_input.add(command);
   command.option("--teacher", options->teacher, "Teacher file").required();
-  command.option("--out", options->out, "Folder for omega_sweep.csv and omega_sweep.svg")
-      .required();
+  command.option("--out", options->out, "Folder for omega_sweep.csv").required();
   command
       .option("--omega", options->omegas,
               "One or more trade-offs; each is a distillation through the layer without repair")

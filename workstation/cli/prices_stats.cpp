@@ -3,16 +3,13 @@
 
 #include <memory>
 
-#include "shared/host/distinct_files.h"
 #include "shared/host/file.h"
-#include "shared/host/user_error.h"
 #include "workstation/chain/price_input.h"
 #include "workstation/cli/commands.h"
 #include "workstation/market/feed/market_text.h"
 #include "workstation/market/feed/recorded_day.h"
 #include "workstation/market/series/day_ahead_plausibility.h"
 #include "workstation/market/series/judged_prices.h"
-#include "workstation/market/statistics/statistics_plot.h"
 #include "workstation/market/statistics/statistics_report.h"
 
 namespace bess {
@@ -20,19 +17,15 @@ namespace {
 
 struct PricesStatsArguments {
   std::string file;
-  std::string plot;
   bool json = false;
 };
 
 struct Described {
   MarketStatistics statistics;
-  std::vector<double> settled;  ///< by quarter-hour
   std::string_view what = "settled price";
 };
 
-Described describe_minutes(const MinuteSeries& series) {
-  return {statistics_of_minutes(series), settled_by_quarter_hour(series)};
-}
+Described describe_minutes(const MinuteSeries& series) { return {statistics_of_minutes(series)}; }
 
 Described describe_minute_file(std::string_view text, const std::string& name) {
   const MinuteSeries series = parse_minute_csv(text, name);
@@ -48,7 +41,7 @@ Described describe_download(std::string_view text, const std::string& name) {
   const JoinedMarket market = join_market(std::move(rows), name);
   judge_market(market.series, {}, {name}, AcceptedFindings::all());
   if (minutes) return describe_minutes(market.series);
-  return {statistics_of_quarter_hours(quarter_hours), settled_by_quarter_hour(market.series)};
+  return {statistics_of_quarter_hours(quarter_hours)};
 }
 
 /// A day-ahead file has the statistics of settled quarter-hours, what is wrong with it as warnings.
@@ -60,12 +53,10 @@ Described describe_day_ahead_file(std::string_view text, const std::string& name
     if (!is_published(series.eur_per_mwh[q])) continue;
     quarter_hours.push_back({.utc_s = series.utc_s(q), .price_eur_per_mwh = series.eur_per_mwh[q]});
   }
-  return {statistics_of_quarter_hours(quarter_hours), series.eur_per_mwh, "day-ahead price"};
+  return {statistics_of_quarter_hours(quarter_hours), "day-ahead price"};
 }
 
 void run_prices_stats(const PricesStatsArguments& options) {
-  require_distinct({{"--plot", options.plot}}, {{"the prices", options.file}});
-  if (!options.plot.empty()) require_drawable(options.plot);
   const std::string text = read_file(options.file);
   const Described described = is_minute_csv(text)      ? describe_minute_file(text, options.file)
                               : is_day_ahead_csv(text) ? describe_day_ahead_file(text, options.file)
@@ -77,10 +68,6 @@ void run_prices_stats(const PricesStatsArguments& options) {
   }
   if (!options.json && is_recorded_csv(text)) {
     fmt::print("{}", describe_lateness(lateness_of(parse_recorded_day(text, options.file))));
-  }
-  std::fflush(stdout);  // a picture that fails must not take the figures with it
-  if (!options.plot.empty()) {
-    plot_statistics(options.plot, described.statistics, described.settled);
   }
 }
 
@@ -96,15 +83,13 @@ void add_prices_stats(ProgramCommand& prices) {
               "plain or .gz")
       .required();
   command.flag("--json", options->json, "One JSON object");
-  command.option("--plot", options->plot,
-                 "Picture to draw with gnuplot (.svg or .png), and NAME_dark beside it");
   command.footer(
       "Sign flips of the system imbalance need a quarter-hour download, convergence by minute "
       "needs "
       "minutes.\n"
       "Examples:\n"
       "  bess-train prices stats prices.csv.gz\n"
-      "  bess-train prices stats ods047.csv --json --plot prices.svg");
+      "  bess-train prices stats ods047.csv --json");
   command.runs([options] { run_prices_stats(*options); });
 }
 

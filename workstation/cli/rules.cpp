@@ -9,7 +9,6 @@ void add_rules_commands(ProgramCommand& app) {
   rules.requires_subcommand();
   add_rules_check(rules);
   add_rules_price(rules);
-  add_rules_map(rules);
 }
 
 }  // namespace bess

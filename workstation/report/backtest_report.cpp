@@ -10,11 +10,12 @@
 #include "shared/host/file.h"
 #include "shared/host/text.h"
 #include "workstation/base/answer.h"
+#include "workstation/base/palette.h"
 #include "workstation/env/day_risk.h"
 #include "workstation/report/comparison.h"
-#include "workstation/report/figures/figure.h"
 #include "workstation/report/figures/html.h"
 #include "workstation/report/figures/picture_table.h"
+#include "workstation/report/report_page.h"
 
 namespace bess {
 namespace {
@@ -67,25 +68,6 @@ std::string window_text(const BacktestResults& results) {
   return is_short ? fmt::format("{}, of {} that were asked for", days, results.window_days) : days;
 }
 
-/// Labels of the first day of each month, at most a dozen of them; the panel above bears none.
-std::string month_tics(const std::vector<DayResult>& days, bool labelled) {
-  constexpr std::size_t kLabelsMax = 12;
-  constexpr std::size_t kMonthLength = 7;  // of "2024-06"
-  std::vector<std::string> firsts;
-  for (const DayResult& day : days) {
-    const bool is_new =
-        firsts.empty() || firsts.back().substr(0, kMonthLength) != day.date.substr(0, kMonthLength);
-    if (is_new) firsts.push_back(day.date);
-  }
-  const std::size_t stride = (firsts.size() + kLabelsMax - 1) / kLabelsMax;
-  std::string tics;
-  for (std::size_t m = 0; m < firsts.size(); m += stride) {
-    tics += fmt::format("{}'{}' '{}'", tics.empty() ? "" : ", ",
-                        labelled ? firsts[m].substr(0, kMonthLength) : "", firsts[m]);
-  }
-  return fmt::format("set xtics ({})\n", tics);
-}
-
 std::vector<const WalkForward*> shown_in_figure(const BacktestResults& results) {
   std::vector<const WalkForward*> shown;
   for (const WalkForward& policy : results.policies) {
@@ -102,84 +84,33 @@ std::string fall_text(double drawdown_eur_per_mwh) {
       drawdown_eur_per_mwh);
 }
 
-/// The colour of a policy's line, in picture and key.
-const Colour& line_colour(std::size_t policy) {
-  return *kLineColours[policy % kLineColours.size()];
-}
-
-/// The key as the page's own text: on a narrow screen that of the picture is cut off.
-std::string legend_html(const BacktestResults& results) {
-  std::string items;
+std::string chart_caption(const BacktestResults& results) {
   const std::vector<const WalkForward*> shown = shown_in_figure(results);
-  for (std::size_t p = 0; p < shown.size(); ++p) {
-    items += fmt::format("<li><i style=\"background:var(--{})\"></i>{}</li>", line_colour(p).name,
-                         html_escaped(shown[p]->name));
-  }
-  return fmt::format("<ul class=\"legend\">{}</ul>\n", items);
-}
-
-/// Cumulative profit of every policy but the bound, above; how far each is below its peak, below,
-/// unless none ever is.
-Figure cumulative_figure(const BacktestResults& results) {
-  const std::vector<const WalkForward*> shown = shown_in_figure(results);
-  std::vector<std::string> rows;
-  std::vector<std::vector<double>> sums;
-  std::vector<std::vector<double>> falls;
-  for (const WalkForward* policy : shown) {
-    sums.push_back(policy->cumulative_eur_per_mwh());
-    falls.push_back(below_peak(sums.back()));
-  }
-  for (std::size_t d = 0; d < shown.front()->total.days.size(); ++d) {
-    std::string row = shown.front()->total.days[d].date;
-    for (std::size_t p = 0; p < shown.size(); ++p) {
-      row += fmt::format(" {:.3f} {:.3f}", sums[p][d] / 1000, falls[p][d]);
-    }
-    rows.push_back(std::move(row));
-  }
-  Figure figure;
-  figure.name = "backtest";
-  figure.title = "Profit month after month";
-  figure.height_px = 560;
-  figure.alt =
-      "Line chart: cumulative profit of each policy over the traded days; below it, how far "
-      "each lies under its own peak.";
   const auto best = std::ranges::max_element(
       shown, {}, [](const WalkForward* p) { return p->total.profit_eur_per_day_per_mwh(); });
-  figure.caption = fmt::format(
+  return fmt::format(
       "Each month was traded by what was fitted on {}, the charge carried over. {} earned most: "
       "{:.1f} EUR per day per MWh; {}.",
       window_text(results), (*best)->name, (*best)->total.profit_eur_per_day_per_mwh(),
       fall_text((*best)->drawdown_eur_per_mwh()));
-  std::vector<KeyEntry> entries;
-  std::string profit_plot;
-  std::string fall_plot;
-  for (std::size_t p = 0; p < shown.size(); ++p) {
-    const Colour& colour = line_colour(p);
-    entries.push_back({shown[p]->name, colour, KeyEntry::Kind::kLine, 2.5});
-    const char* separator = p == 0 ? "plot " : ", ";
-    profit_plot += fmt::format("{}$days using 1:{} with lines lw 2.5 lc {}", separator, 2 + 2 * p,
-                               rgb(colour));
-    fall_plot += fmt::format("{}$days using 1:{} with lines lw 1.5 lc {}", separator, 3 + 2 * p,
-                             rgb(colour));
+}
+
+/// Of `table`, every second column from `first`.
+Json lines_chart(const char* id, const PictureTable& table, std::size_t first) {
+  Json labels = Json::list(), series = Json::list();
+  for (const auto& row : table.rows) labels.add(row.front());
+  for (std::size_t c = first; c < table.columns.size(); c += 2) {
+    Json values = Json::list(), line = Json::list();
+    for (const auto& row : table.rows) values.add(std::stod(row[c]));
+    line.add(table.columns[c]);
+    line.add(kLineColours[(c - 1) / 2 % kLineColours.size()]->name);
+    line.add(std::move(values));
+    series.add(std::move(line));
   }
-  const KeyRow key = key_row(figure, 100, entries);
-  const std::vector<DayResult>& days = shown.front()->total.days;
-  const bool any_falls = std::ranges::any_of(
-      shown, [](const WalkForward* policy) { return policy->drawdown_eur_per_mwh() > 0; });
-  figure.commands = data_block("days", rows) +
-                    "set xdata time\nset timefmt '%Y-%m-%d'\nset multiplot\n"
-                    "set lmargin at screen 0.115\nset rmargin at screen 0.96\n"
-                    "set tmargin at screen 0.925\n" +
-                    fmt::format("set bmargin at screen {}\n", any_falls ? 0.42 : 0.12) +
-                    month_tics(days, !any_falls) + "set ylabel \"profit,\\n1000 EUR/MWh\"\n" +
-                    key.set + profit_plot + "\n" + key.unset;
-  if (any_falls) {
-    figure.commands += "set tmargin at screen 0.36\nset bmargin at screen 0.12\n" +
-                       month_tics(days, true) + "set ylabel \"below its peak,\\nEUR/MWh\"\n" +
-                       fall_plot + "\n";
-  }
-  figure.commands += "unset multiplot\n";
-  return figure;
+  Json chart = Json::object({{"id", id}, {"kind", "lines"}});
+  chart.set("labels", std::move(labels));
+  chart.set("series", std::move(series));
+  return chart;
 }
 
 /// The numbers of the figure, EUR per MWh.
@@ -440,27 +371,35 @@ Json backtest_json(const BacktestResults& results) {
 
 void write_backtest_page(const BacktestResults& results, const std::filesystem::path& folder) {
   const WalkForward& first = results.policies.front();
-  const Figure figure = cumulative_figure(results);
-  draw_figure(figure, folder);
   const PictureTable curve = curve_table(results);
   write_picture(curve, folder);
-  const std::filesystem::path svg = folder / (figure.name + ".svg");
+  Json charts = Json::list();
+  charts.add(lines_chart("profit", curve, 1));
+  std::string pictures =
+      chart_html("profit", "Cumulative profit of each policy over the traded days");
+  const bool any_falls = std::ranges::any_of(results.policies, [](const WalkForward& policy) {
+    return policy.drawdown_eur_per_mwh() > 0;
+  });
+  if (any_falls) {
+    charts.add(lines_chart("falls", curve, 2));
+    pictures += "<p class=\"note\">Below its peak, EUR per MWh</p>\n" +
+                chart_html("falls", "How far each policy lies under its own peak");
+  }
   const std::string body = fmt::format(
       "<h1>Walk-forward backtest</h1>\n<p>{}</p>\n{}\n<p class=\"note\">Gain: day by day, over {}. "
       "By month: {}. The charge is carried over; {}. At wear 10: {}. Turnover: energy through it a "
       "day, in capacities. Drawdown: deepest fall from the end of a day to that of a later one, "
-      "EUR "
-      "per MWh.</p>\n<figure>\n<h2>{}</h2>\n{}<div class=\"wide\">{}</div>\n"
-      "<figcaption>{}</figcaption>\n</figure>\n{}\n{}",
+      "EUR per MWh.</p>\n<figure>\n<h2>Profit month after month, EUR per MWh</h2>\n{}"
+      "<figcaption>{} {}</figcaption>\n</figure>\n{}\n{}",
       html_escaped(results.provenance),
       format_table(total_table(results)) + day_reset_html(results), html_escaped(first.name),
       html_escaped(by_month_meaning(first.total.errors().months)),
       charge_left_meaning(first.total.charge_price_eur_per_mwh),
-      one_line(reference_wear_meaning(first.total.wear_eur_per_mwh)), html_escaped(figure.title),
-      legend_html(results), inline_svg(read_file(svg), figure),
-      html_escaped(with_true_minus(figure.caption)) + " " + csv_link(picture_file(curve)),
+      one_line(reference_wear_meaning(first.total.wear_eur_per_mwh)), pictures,
+      html_escaped(with_true_minus(chart_caption(results))), csv_link(picture_file(curve)),
       format_table(month_table(results)), skipped_html(results));
-  write_file(folder / "backtest.html", format_page("Walk-forward backtest", body));
+  write_file(folder / "backtest.html",
+             format_chart_page("Walk-forward backtest", body, std::move(charts)));
 }
 
 }  // namespace bess

@@ -8,7 +8,6 @@
 #include <string_view>
 
 #include "workstation/env/context_fit.h"
-#include "workstation/report/figures/figures.h"
 #include "workstation/report/figures/price_histogram.h"
 #include "workstation/report/headline.h"
 #include "workstation/report/page_rules.h"

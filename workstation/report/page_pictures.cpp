@@ -9,7 +9,7 @@
 #include "shared/utc_text.h"
 #include "workstation/env/day_risk.h"
 #include "workstation/report/figures/curves.h"
-#include "workstation/report/figures/figure.h"
+#include "workstation/report/figures/policy_map.h"
 #include "workstation/report/figures/price_histogram.h"
 #include "workstation/report/headline.h"
 #include "workstation/report/shown_policies.h"
@@ -96,6 +96,16 @@ PictureTable month_table(const ReportInputs& in) {
     }
   }
   return by_policy("months", "month", months, policies, means);
+}
+
+/// 1, 2 or 5 times a power of ten: the least that cuts `range` into at most `count`.
+double tic_distance(double range, int count) {
+  const double rough = std::max(range, 1e-9) / count;
+  const double power = std::pow(10, std::floor(std::log10(rough)));
+  for (const double factor : {1.0, 2.0, 5.0}) {
+    if (rough <= factor * power) return factor * power;
+  }
+  return 10 * power;
 }
 
 PictureTable distribution_table(const ReportInputs& in) {

@@ -33,84 +33,9 @@ constexpr const char* kPageTitle = "Battery arbitrage: what was learned, correct
 constexpr const char* kFailedTitle =
     "Battery arbitrage: what was learned, and where its proof failed";
 
-std::vector<NamedPolicyMap> policy_maps(const ReportInputs& in, const PolicyContext& context) {
-  std::vector<NamedPolicyMap> maps;
-  if (in.teacher && !in.teacher->outlook)
-    maps.push_back({"teacher", teacher_grid(*in.teacher, context)});
-  if (in.uncorrected) {
-    maps.push_back({kPlainName, student_grid(in.uncorrected->net, context)});
-  }
-  if (in.corrected) {
-    maps.push_back(
-        {own_student_name(in.corrected->certificate), student_grid(in.corrected->net, context)});
-  }
-  return maps;
-}
-
 /// What the corrected student was distilled for, besides the properties.
 RuleSet rules_of(const ReportInputs& in) {
   return in.corrected ? in.corrected->certificate.rules : RuleSet{};
-}
-
-/// Where counterexamples are most frequent; none without any.
-std::optional<PolicyContext> worst_context(const ReportInputs& in) {
-  const StudentFile* wrong = shown_as_wrong(in);
-  if (wrong == nullptr) return std::nullopt;
-  std::map<PolicyContext, int> count;
-  for (const LatticeState& s : wrong->certificate.counterexamples) {
-    ++count[{.context_class = s.context_class,
-             .quarter_hour = s.quarter_hour,
-             .minute_of_quarter_hour = s.minute_of_quarter_hour}];
-  }
-  const auto worst = std::ranges::max_element(count, {}, [](const auto& c) { return c.second; });
-  return worst == count.end() ? std::nullopt : std::optional(worst->first);
-}
-
-std::string context_note(const ReportInputs& in, int context_class) {
-  for (const MarketDay& day : in.market.days_of(Split::kTrain)) {
-    for (const MarketStep& step : in.market.of(day)) {
-      if (context_class_of(in, step) == context_class) return "";
-    }
-  }
-  return "No training day saw this context: it is extrapolated. ";
-}
-
-void add_policy_map(const ReportInputs& in, const PolicyContext& context, const std::string& note,
-                    std::vector<Figure>& figures) {
-  const std::vector<NamedPolicyMap> maps = policy_maps(in, context);
-  if (maps.empty()) return;
-  const ContextClasses classes = context_classes_of(in);
-  figures.push_back(policy_map_figure(context, classes, maps, rules_of(in), in.battery,
-                                      note + context_note(in, context.context_class)));
-}
-
-void add_policy_maps(const ReportInputs& in, std::vector<Figure>& figures) {
-  for (const PolicyContext& context : in.maps) add_policy_map(in, context, "", figures);
-  const std::optional<PolicyContext> worst = worst_context(in);
-  if (!worst || std::ranges::find(in.maps, *worst) != in.maps.end()) return;
-  add_policy_map(in, *worst,
-                 fmt::format("The time at which the {} erred most. ", shown_as_wrong_name(in)),
-                 figures);
-}
-
-Figure widest_day_figure(const ReportInputs& in, const MarketDay& day) {
-  const ShownPolicy shown = std::move(shown_policies(in).front());
-  std::vector<StepRecord> records;
-  evaluate(in.market, {day}, *shown.policy, {in.battery, in.initial_soc_frac, false}, &records);
-  return day_figure({day.date(), shown.name, in.market.of(day), records, in.battery});
-}
-
-std::vector<Figure> figures_of(const ReportInputs& in) {
-  std::vector<Figure> figures;
-  figures.push_back(widest_day_figure(in, *widest_test_day(in.market)));
-  add_policy_maps(in, figures);
-  if (in.training_curve.size() > 1) {  // a program is fitted, not trained
-    figures.push_back(
-        learning_figure(in.training_curve, rule_validation_profit(in.market, in.battery)));
-  }
-  if (!in.distil_curve.empty()) figures.push_back(distillation_figure(in.distil_curve));
-  figures.push_back(price_density_figure(in.market, thresholds_of(in)));
-  return figures;
 }
 
 std::string battery_text(const BatteryParameters& battery) {
@@ -238,9 +163,6 @@ std::vector<std::string> write_report(const ReportInputs& inputs, const fs::path
   fs::create_directories(folder, error);
   if (error) fail("{}: cannot create: {}", folder.string(), error.message());
   std::vector<std::string> names{kPage};
-  for (const Figure& figure : figures_of(inputs)) {
-    std::ranges::move(draw_figure(figure, folder), std::back_inserter(names));
-  }
   const std::vector<DayLoss> losses = losses_of(inputs);
   const PageSteps steps = page_steps(inputs);
   std::vector<PictureTable> pictures = page_pictures(inputs, steps);

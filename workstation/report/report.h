@@ -1,6 +1,6 @@
-// The report of a run: one HTML page that needs nothing beside it, and the figures as SVG files,
-// light and dark, from results that the caller already has. Only what nobody kept is computed here:
-// the rule-based validation profit, the teacher's map, and the steps of the test days.
+// The report of a run: one HTML page that needs nothing beside it, and the numbers of its pictures
+// as CSV files, from results that the caller already has. Only what nobody kept is computed here:
+// the rule-based validation profit, and the steps of the test days.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 #include "workstation/correction/distil.h"
 #include "workstation/report/comparison.h"
-#include "workstation/report/figures/figures.h"
+#include "workstation/report/figures/policy_map.h"
 #include "workstation/report/figures/walk_forward_figure.h"
 #include "workstation/report/provenance.h"
 #include "workstation/rl/train.h"
@@ -31,9 +31,6 @@ struct ReportInputs {
   const StudentFile* uncorrected = nullptr;  ///< both students with the prover's certificate
   const StudentFile* corrected = nullptr;
   std::vector<BrokenDemand> broken = {};  ///< of a corrected student that was not proved
-  std::vector<PolicyContext> maps = {
-      {.context_class = 11, .quarter_hour = 40, .minute_of_quarter_hour = 0},
-      {.context_class = 1, .quarter_hour = 80, .minute_of_quarter_hour = 0}};
   WalkForwardOfRun walk_forward = {};
   std::string provenance = {};   ///< lines, shown as they are
   std::vector<Fact> facts = {};  ///< when, where, from what and how
@@ -52,9 +49,9 @@ const StudentFile* shown_as_wrong(const ReportInputs& inputs);
 /// What it is called on the page.
 const char* shown_as_wrong_name(const ReportInputs& inputs);
 
-/// Writes the SVG figures, the CSV file of each picture and report.html into `folder`, which is
-/// created; each file appears complete or not at all. Returns the names of all of them. Throws
-/// UserError without gnuplot or room to write, or without test days.
+/// Writes report.html and the CSV file of each picture into `folder`, which is created; each file
+/// appears complete or not at all. Returns the names of all of them. Throws UserError without room
+/// to write, or without test days.
 std::vector<std::string> write_report(const ReportInputs& inputs,
                                       const std::filesystem::path& folder);
 

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <span>
 #include <stdexcept>
 
 #include "workstation/report/figures/html.h"
@@ -14,10 +15,11 @@ namespace {
 constexpr std::string_view kScripts[] = {
     "chart.min.js", "student.js",    "archive.js",    "charts.js",   "tear_sheet.js",
     "day.js",       "rule_boxes.js", "policy_map.js", "learning.js", "page.js"};
+constexpr std::string_view kPlainScripts[] = {"chart.min.js", "charts.js", "plain_charts.js"};
 
-std::string all_scripts() {
+std::string scripts_of(std::span<const std::string_view> names) {
   std::string text;
-  for (const std::string_view name : kScripts) {
+  for (const std::string_view name : names) {
     text += fmt::format("<script>\n{}</script>\n", page_file(name));
   }
   return text;
@@ -52,8 +54,21 @@ std::string format_report_page(const std::map<std::string, std::string>& parts, 
   std::map<std::string, std::string> all = parts;
   all["style"] = style_sheet() + std::string(page_file("report.css"));
   all["data"] = script_safe(data.line());
-  all["scripts"] = all_scripts();
+  all["scripts"] = scripts_of(kScripts);
   return filled_in(page_file("report.html"), all);
+}
+
+std::string format_chart_page(std::string_view title, std::string body, Json charts) {
+  body += fmt::format("<script type=\"application/json\" id=\"data\">{}</script>\n{}",
+                      script_safe(charts.line()), scripts_of(kPlainScripts));
+  return format_page(title, body);
+}
+
+std::string chart_html(std::string_view id, std::string_view alt) {
+  return fmt::format(
+      "<div class=\"chart tall\"><canvas id=\"{}\" role=\"img\" "
+      "aria-label=\"{}\"></canvas></div>\n",
+      id, html_escaped(alt));
 }
 
 }  // namespace bess

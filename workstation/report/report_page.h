@@ -14,6 +14,12 @@ namespace bess {
 /// {{placeholders}} of page/report.html by name, as HTML; `data` is for the scripts.
 std::string format_report_page(const std::map<std::string, std::string>& parts, const Json& data);
 
+/// A page of text and tables whose charts page/plain_charts.js draws from `charts`, a list.
+std::string format_chart_page(std::string_view title, std::string body, Json charts);
+
+/// Where such a chart stands; `alt` tells what is to be seen.
+std::string chart_html(std::string_view id, std::string_view alt);
+
 /// `template_text` with every {{name}} replaced by its part. Throws std::logic_error for a name
 /// without a part.
 std::string filled_in(std::string_view template_text,

@@ -35,4 +35,13 @@ std::vector<ShownPolicy> shown_policies(const ReportInputs& in) {
   return policies;
 }
 
+double rule_validation_profit(const MarketSteps& market, const BatteryParameters& battery) {
+  RuleBasedPolicy rule(kPaperRuleLowEurPerMwh, kPaperRuleHighEurPerMwh);
+  EvaluationOptions options;
+  options.battery = battery;
+  options.carry_soc = true;
+  return evaluate(market, market.days_of(Split::kValidation), rule, options)
+      .profit_eur_per_day_per_mwh();
+}
+
 }  // namespace bess

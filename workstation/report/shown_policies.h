@@ -25,4 +25,8 @@ const char* own_student_name(const Certificate& certificate);
 /// must outlive them.
 std::vector<ShownPolicy> shown_policies(const ReportInputs& inputs);
 
+/// What the paper's rule earns on the validation days as a teacher is judged there, charge carried
+/// over.
+double rule_validation_profit(const MarketSteps& market, const BatteryParameters& battery);
+
 }  // namespace bess

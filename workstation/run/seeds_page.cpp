@@ -6,10 +6,10 @@
 #include <cmath>
 
 #include "shared/host/file.h"
-#include "workstation/report/figures/figure.h"
 #include "workstation/report/figures/html.h"
 #include "workstation/report/headline.h"
 #include "workstation/report/judged_days.h"
+#include "workstation/report/report_page.h"
 #include "workstation/report/report_tables.h"
 #include "workstation/report/rule_prices.h"
 #include "workstation/run/run_facts.h"
@@ -82,45 +82,36 @@ std::string mean_text(const Band& band, std::size_t runs) {
                             band.low, band.high, band.deviation);
 }
 
-/// The least width at which the range of the seeds is drawn: a share of the axis.
-constexpr double kRangeShareMin = 0.006;
+Json pair_of(double from, double to) {
+  Json pair = Json::list();
+  pair.add(from);
+  pair.add(to);
+  return pair;
+}
 
-/// Each policy's interval over days, and the range of the seeds upon it; a policy a line.
-Figure bands_figure(const std::vector<Band>& bands) {
-  std::vector<std::string> rows;
-  double low = 0;
-  double high = 0;
+Json named_intervals(const char* name, Json intervals) {
+  Json named = Json::list();
+  named.add(name);
+  named.add(std::move(intervals));
+  return named;
+}
+
+/// Each policy's interval over days, and the range of the seeds upon it.
+Json bands_chart(const std::vector<Band>& bands) {
+  Json labels = Json::list(), days = Json::list(), seeds = Json::list();
   for (const Band& b : bands) {
     if (!is_shown_band(b, "carried") || b.policy == kForesightName) continue;
     const double half = interval_half_width(b.errors, kShownCoverage);
     const double reach = std::isnan(half) ? 0 : half;
-    rows.push_back(fmt::format("\"{}\" {:.4f} {:.4f} {:.4f} {:.4f}", b.policy, b.mean - reach,
-                               b.mean + reach, b.low, b.high));
-    low = std::min(low, b.mean - reach);
-    high = std::max(high, b.mean + reach);
+    labels.add(b.policy);
+    days.add(pair_of(b.mean - reach, b.mean + reach));
+    seeds.add(pair_of(b.low, b.high));
   }
-  Figure figure;
-  figure.name = "seeds";
-  figure.title = "Bands over days and over seeds, EUR per day per MWh of capacity";
-  figure.alt =
-      "A line for each policy: the interval of its mean profit over days, and upon it the range of "
-      "the seeds.";
-  figure.caption =
-      "Thin: the interval of 95 % over days, by the wider error. Thick: from the lowest to the "
-      "highest seed; a baseline knows no seed. Days are the same for all: how sure a difference "
-      "between two policies is, the gain's errors below say.";
-  figure.height_px = 360;
-  const double margin = kRangeShareMin * (high - low);
-  figure.commands =
-      data_block("bands", rows) +
-      fmt::format(
-          "set lmargin at screen 0.19\nset rmargin at screen 0.97\n"
-          "set bmargin at screen 0.17\nset tmargin at screen 0.97\n"
-          "set yrange [{}:-0.6]\nset xrange [*:*]\n"
-          "plot $bands using 2:0:($3-$2):(0):ytic(1) with vectors nohead lw 2 lc {}, "
-          "$bands using ($4-{}):0:($5-$4+{}):(0) with vectors nohead lw 9 lc {}\n",
-          static_cast<double>(rows.size()) - 0.4, rgb(kMuted), margin / 2, margin, rgb(kCharge));
-  return figure;
+  Json chart = Json::object({{"id", "bands"}, {"kind", "bands"}});
+  chart.set("labels", std::move(labels));
+  chart.set("thin", named_intervals("95 % over days", std::move(days)));
+  chart.set("thick", named_intervals("over seeds", std::move(seeds)));
+  return chart;
 }
 
 /// The exported policy, each day the mean over the runs.
@@ -136,13 +127,15 @@ Headline mean_headline(const std::vector<RunSummary>& runs) {
   return headline_of({{kExportedPolicy, mean_of(reset), mean_of(carried)}}).value();
 }
 
-std::string figure_html(const Figure& figure, const std::filesystem::path& folder) {
-  draw_figure(figure, folder);
-  return fmt::format(
-      "<figure>\n<h2>{}</h2>\n<div class=\"wide\">{}</div>\n<figcaption>{}</figcaption>\n"
-      "</figure>\n",
-      html_escaped(figure.title), inline_svg(read_file(folder / (figure.name + ".svg")), figure),
-      html_escaped(figure.caption));
+std::string bands_html() {
+  return "<figure>\n<h2>Bands over days and over seeds, EUR per day per MWh of capacity</h2>\n" +
+         chart_html("bands",
+                    "A line for each policy: the interval of its mean profit over days, and upon "
+                    "it the range of the seeds") +
+         "<figcaption>Thin: the interval of 95 % over days, by the wider error. Thick: from the "
+         "lowest to the highest seed; a baseline knows no seed. Days are the same for all: how "
+         "sure a difference between two policies is, the gain's errors below say.</figcaption>\n"
+         "</figure>\n";
 }
 
 std::string unproved_html(const std::vector<UnprovedSeed>& unproved) {
@@ -177,13 +170,14 @@ void write_seeds_page(const std::filesystem::path& folder, const std::vector<Run
       "other.</p></section>\n<section class=\"block\">{}</section>\n",
       kTitle, html_escaped(mean_text(exported, runs.size())),
       html_escaped(headline_accounting(mean_headline(runs))),
-      html_escaped(judged_days_text(judged_days_of(first))), unproved_html(unproved),
-      figure_html(bands_figure(bands), folder), runs_table(runs),
-      bands_table(bands, "carried", "Charge carried over from day to day"),
+      html_escaped(judged_days_text(judged_days_of(first))), unproved_html(unproved), bands_html(),
+      runs_table(runs), bands_table(bands, "carried", "Charge carried over from day to day"),
       bands_table(bands, "reset", "Each day starts at the same charge: the friendlier accounting"),
       html_escaped(first.evaluations.front().name),
       html_escaped(by_month_meaning(exported.errors.months)), facts_html(folder, first));
-  write_file(folder / "seeds.html", format_page(kTitle, body));
+  Json charts = Json::list();
+  charts.add(bands_chart(bands));
+  write_file(folder / "seeds.html", format_chart_page(kTitle, body, std::move(charts)));
 }
 
 }  // namespace bess

@@ -11,8 +11,8 @@
 #include "workstation/report/figures/html.h"
 #include "workstation/report/figures/page_files.h"
 #include "workstation/report/figures/sort_table.h"
+#include "workstation/report/report_page.h"
 #include "workstation/sweep/heat_map.h"
-#include "workstation/sweep/profit_cycles.h"
 
 namespace bess {
 namespace {
@@ -103,6 +103,23 @@ SortTable site_table(const std::vector<CollectedSite>& sites) {
   return table;
 }
 
+Json cycles_chart(const std::vector<CollectedTask>& tasks) {
+  Json points = Json::list();
+  for (const CollectedTask& task : tasks) {
+    if (!task.figures) continue;
+    Json point = Json::list();
+    point.add(task.figures->cycles_per_day);
+    point.add(task.figures->profit);
+    point.add(fmt::format("task {}: {}", task.task.number, settings_shown(task.task.settings)));
+    points.add(std::move(point));
+  }
+  Json chart = Json::object({{"id", "cycles"}, {"kind", "dots"}});
+  chart.set("x", "equivalent full cycles a day");
+  chart.set("y", "EUR per day per MWh");
+  chart.set("points", std::move(points));
+  return chart;
+}
+
 /// Of the map: what was asked for, or the first two that vary.
 std::vector<std::string> map_axes(std::vector<std::string> asked,
                                   const std::vector<std::string>& varying) {
@@ -152,12 +169,19 @@ std::string sweep_page(const SweepRecord& record, const std::vector<CollectedTas
     body += "<h2>Heat map</h2>\n" + heat_map_html(folded, map[0], map[1]);
   }
   body += "<h2>Settings</h2>\n" + sort_table_html(settings_table(folded, shown));
-  body += "<h2>Profit against cycles</h2>\n" + profit_cycles_svg(tasks);
+  Json charts = Json::list();
+  charts.add(cycles_chart(tasks));
+  body +=
+      "<h2>Profit against cycles</h2>\n" +
+      chart_html("cycles", "Profit against cycles of each proved task; the table has the numbers") +
+      "<p class=\"note\">A dot a proved task: higher at the same place earns more for the same "
+      "wear.</p>\n";
   if (!sites.empty()) body += "<h2>Sites</h2>\n" + sort_table_html(site_table(sites));
   body += "<h2>Tasks</h2>\n" + sort_table_html(task_table(tasks, varying));
   body += fmt::format("<p class=\"note\">{}</p>\n<script>\n{}</script>\n",
                       html_escaped(record.program), page_file("sort.js"));
-  return format_page(fmt::format("Sweep of {}", counted(tasks.size(), "task")), body);
+  return format_chart_page(fmt::format("Sweep of {}", counted(tasks.size(), "task")), body,
+                           std::move(charts));
 }
 
 }  // namespace bess

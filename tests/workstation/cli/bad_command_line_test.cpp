@@ -178,7 +178,6 @@ constexpr BadCommandLine kCases[] = {
     {"prices import GOOD --out FOLDER", 1, "FOLDER: is a folder, not a file"},
     {"prices reconstruct --quarter-hours NONE --out OUT", 1, "NONE"},
     {"prices stats NONE", 1, "NONE: cannot open"},
-    {"prices stats GOOD --plot -", 1, "-: a picture is .svg or .png"},
     {"prices record --out EMPTY", 1, "EMPTY"},
 };
 

@@ -118,7 +118,7 @@ TEST_F(BadPrices, ExtremePricesPassThroughEveryCommand) {
     const std::vector<std::vector<std::string>> commands{
         {"prices", "import", file, "--out", imported},
         {"prices", "reconstruct", "--quarter-hours", file, "--out", drawn},
-        {"prices", "stats", file, "--plot", path("stats.svg")},
+        {"prices", "stats", file},
         {"evaluate", "--prices", file, "--policy", "rbc", "foresight", "compiled", "--split",
          "all"}};
     for (const std::vector<std::string>& command : commands) {
@@ -128,10 +128,6 @@ TEST_F(BadPrices, ExtremePricesPassThroughEveryCommand) {
       const std::string told = fmt::format("price {} lies beyond 15000 EUR/MWh", c.price);
       EXPECT_EQ(result.output.find(told) != result.output.npos, c.is_told) << result.output;
     }
-    std::string drawn_price = c.price;  // a picture has true minus signs, a file hyphens
-    if (drawn_price.front() == '-') drawn_price.replace(0, 1, "\u2212");
-    EXPECT_THAT(read_file(path("stats.svg")),
-                HasSubstr(fmt::format("1 quarter-hour beyond, {0} to {0})", drawn_price)));
     EXPECT_THAT(read_file(imported), HasSubstr(fmt::format(",{0},{0}\n", c.price)));
     EXPECT_THAT(read_file(drawn), HasSubstr(fmt::format(",{0},{0}\n", c.price)));
   }

@@ -56,7 +56,6 @@ constexpr Case kOutputCases[] = {
     {"evaluate_policy", "evaluate --prices FOLDER/none --policy IN --csv OUT"},
     {"import", "prices import IN --out OUT"},
     {"reconstruct", "prices reconstruct --quarter-hours IN --out OUT"},
-    {"stats", "prices stats IN --plot OUT"},
     {"export", "export --student IN --out OUT"},
     {"backtest", "backtest --prices IN --out FOLDER"},
     {"run_prices", "run --prices OUT --out FOLDER"},

@@ -138,18 +138,6 @@ TEST_F(PricesCli, NegativeSeedsAreRefused) {
               HasSubstr("1 simulated day from"));
 }
 
-TEST_F(PricesCli, AFailingPictureDoesNotTakeTheFiguresWithIt) {
-  const std::string minutes =
-      written("m.csv", "minute_utc,indicative_eur_mwh,settled_eur_mwh\n2023-01-01T00:00:00Z,5,\n");
-  const Result pdf = run({"stats", minutes, "--plot", path("new/p.pdf")});
-  EXPECT_EQ(pdf.exit_code, 1);
-  EXPECT_THAT(pdf.output, HasSubstr(path("new/p.pdf") + ": a picture is .svg or .png"));
-  const Result unsettled = run({"stats", minutes, "--plot", path("p.svg")});
-  EXPECT_EQ(unsettled.exit_code, 1);
-  EXPECT_THAT(unsettled.output,
-              AllOf(HasSubstr("0 quarter-hours"), HasSubstr("no settled price from -600 to 1000")));
-}
-
 TEST_F(PricesCli, ImportSaysWhatToDoWithAZip) {
   const Result zip = run({"import", written("a.zip", "PK\x03\x04..."), "--out", path("o.csv")});
   EXPECT_EQ(zip.exit_code, 1);

@@ -209,35 +209,5 @@ TEST(DistilledPrices, TheErrorIsOverDaysAndTheSpreadOverSeeds) {
   EXPECT_TRUE(std::isnan(seeded_difference({with[0]}, {without[0]}).spread)) << "one seed";
 }
 
-TEST_F(RulesCli, MapsShowStudentsSideBySideWithTheirRules) {
-  StudentFile student{.net = LinearNet{}.net(), .certificate = {}, .provenance = ""};
-  save_student(folder_.file("before.json"), student);
-  student.certificate.rules = one_rule("price_min = 300\nat_most = \"idle\"", "dear");
-  save_student(folder_.file("after.json"), student);
-  const std::string before = folder_.file("before.json");
-  const std::string after = folder_.file("after.json");
-  const std::string out = folder_.file("maps");
-  const std::string said =
-      rules_output("map --student " + before + " " + after + " --out " + out + " --at 2@23:59");
-  EXPECT_THAT(said, AllOf(HasSubstr("policy_map_02_2359.svg"), HasSubstr("in February"),
-                          HasSubstr("Outlined: where rules hold: dear.")));
-  const std::string svg = read_file(folder_.file("maps/policy_map_02_2359.svg"));
-  EXPECT_THAT(svg, AllOf(HasSubstr("student without rules"), HasSubstr("with 'dear'"),
-                         HasSubstr("where a rule holds")));
-  rules_output("map --student " + before + " --out " + out + " --at 2@12:00");
-  EXPECT_THAT(read_file(folder_.file("maps/policy_map_02_1200.svg")),
-              Not(HasSubstr("where a rule holds")));
-  for (const char* at : {"0@12:00", "13@12:00", "2@24:00", "2@12:60", "2@12", "2@12:00h", "noon",
-                         "002@12:00", "2@12:000", "2@:00"}) {
-    EXPECT_THROW(rules_output("map --student " + before + " --out " + out + " --at " + at),
-                 UserError)
-        << at;
-  }
-  EXPECT_THROW(rules_output("map --out " + out + " --student " + before + " " + before + " " +
-                            after + " " + after),
-               UserError)
-      << "four maps";
-}
-
 }  // namespace
 }  // namespace bess

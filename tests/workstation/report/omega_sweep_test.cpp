@@ -3,8 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/support/temporary_folder.h"
-
 namespace bess {
 namespace {
 
@@ -41,20 +39,6 @@ TEST(OmegaSweep, TableAndCsvCountTheSame) {
   EXPECT_THAT(table, HasSubstr("violations in 1000 states"));
   EXPECT_THAT(table, HasSubstr("    -4.0    6.0        -\n"));
   EXPECT_THAT(table, HasSubstr("87.50 %    105.0   10.0        -     +5.0    0.0        -\n"));
-}
-
-TEST(OmegaSweep, FigureShowsNoneOnItsLogarithmicAxis) {
-  const Evaluation teacher = two_days(90, 110);
-  const Figure figure =
-      omega_figure({point(1e-6, 0, 0.75, two_days(80, 112)), point(1e-3, 7, 0.8, two_days(90, 112)),
-                    point(1, 421, 0.875, two_days(95, 115))},
-                   teacher);
-  EXPECT_THAT(figure.commands, HasSubstr("1e-06 0.3 0.3 0.3 75.0000 -4.0000 6.0000"));
-  EXPECT_THAT(figure.commands, HasSubstr("1 0.3 0.3 421 87.5000 5.0000 0.0000"));
-  EXPECT_THAT(figure.caption, HasSubstr("at omega 1 it is 87.5 % and 421"));
-  const TemporaryFolder folder;
-  draw_figure(figure, folder.file("."));
-  EXPECT_TRUE(std::filesystem::exists(folder.file("omega_sweep.svg")));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The paper's trade-off omega [Paper, Eq. 12] as table, CSV and picture: students distilled through
+// The paper's trade-off omega [Paper, Eq. 12] as table and CSV: students distilled through
 // the layer from one teacher, each with its own omega and before any repair, so that what a larger
 // omega costs in violations is seen, and what it brings in fidelity and money.
 #pragma once
@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "workstation/env/evaluate.h"
-#include "workstation/report/figures/figure.h"
 #include "workstation/student/certificate.h"
 
 namespace bess {
@@ -25,8 +24,5 @@ std::string format_omega_table(const std::vector<OmegaPoint>& points, const Eval
 
 /// Header `omega,violations_property_1,...`
 std::string omega_csv(const std::vector<OmegaPoint>& points, const Evaluation& teacher);
-
-/// Violations by property, agreement and profit over omega; at least one point.
-Figure omega_figure(const std::vector<OmegaPoint>& points, const Evaluation& teacher);
 
 }  // namespace bess

@@ -9,10 +9,8 @@
 
 #include "shared/host/file.h"
 #include "tests/support/market_test_support.h"
-#include "workstation/base/palette.h"
 #include "workstation/market/feed/market_files.h"
 #include "workstation/market/series/local_date.h"
-#include "workstation/market/statistics/statistics_plot.h"
 #include "workstation/market/statistics/statistics_report.h"
 
 namespace bess {
@@ -78,32 +76,6 @@ TEST(Statistics, TextAndJson) {
   EXPECT_THAT(
       json,
       HasSubstr("{\"from_utc\":\"1970-01-01T00:20:00Z\",\"until_utc\":\"1970-01-01T00:21:00Z\","));
-}
-
-TEST(Statistics, PictureIsWrittenOrTheReasonIsGiven) {
-  const ScratchFolder folder;
-  const std::vector<double> settled{1, 2, 3, 100};
-  MinuteSeries series;
-  series.settled.assign(15, 1.0);
-  series.indicative = series.settled;
-  const MarketStatistics statistics = statistics_of_minutes(series);
-  EXPECT_THAT(user_error_of([&] { plot_statistics(folder / "p.gif", statistics, settled); }),
-              HasSubstr("a picture is .svg or .png"));
-  EXPECT_THAT(user_error_of([&] {
-                plot_statistics(folder / "p.svg", statistics, std::vector{kNotPublished, 5000.0});
-              }),
-              HasSubstr("nothing to draw: no settled price from -600 to 1000"));
-  EXPECT_THAT(user_error_of([&] { require_drawable(folder / "p.pdf"); }),
-              HasSubstr((folder / "p.pdf").string()));
-  if (std::system("command -v gnuplot > /dev/null 2>&1") != 0) {
-    GTEST_SKIP() << "gnuplot is not installed";
-  }
-  plot_statistics(folder / "p.svg", statistics, settled);
-  EXPECT_THAT(read_file(folder / "p.svg"), HasSubstr("<svg"));
-  EXPECT_THAT(read_file(folder / "p.svg"), HasSubstr(std::string(kPaper.light)));
-  EXPECT_THAT(read_file(folder / "p_dark.svg"), HasSubstr(std::string(kPaper.dark)));
-  plot_statistics(folder / "none/p.svg", statistics, settled);  // makes its folder
-  EXPECT_THAT(read_file(folder / "none/p.svg"), HasSubstr("<svg"));
 }
 
 TEST(Statistics, RealQuarterHoursOf2023) {

@@ -77,6 +77,16 @@ Json answers_of(const StudentNet& net) {
   return answers;
 }
 
+/// Neighbours at which the action increases with price or with SoC.
+std::int64_t wrong_pairs_of(const ActionGrid& grid) {
+  std::int64_t pairs = 0;
+  for (std::size_t cell = 0; cell < grid.size(); ++cell) {
+    if (cell + kPriceCount < grid.size() && grid[cell + kPriceCount] > grid[cell]) ++pairs;
+    if ((cell + 1) % kPriceCount != 0 && grid[cell + 1] > grid[cell]) ++pairs;
+  }
+  return pairs;
+}
+
 /// One digit a cell, rows of SoC from 0 %, and how many neighbours are out of order.
 Json maps_of(const StudentNet& net) {
   Json maps = Json::list();
@@ -84,13 +94,11 @@ Json maps_of(const StudentNet& net) {
     const ActionGrid grid = student_grid(net, context);
     std::string cells;
     for (const std::int8_t action : grid) cells += static_cast<char>('0' + action);
-    std::int64_t pairs = 0;
-    for (const WrongBorder& border : wrong_borders_of(grid)) pairs += border.pairs;
     maps.add(Json::object({{"context_class", context.context_class},
                            {"quarter_hour", context.quarter_hour},
                            {"minute", context.minute_of_quarter_hour},
                            {"cells", cells},
-                           {"wrong_pairs", pairs}}));
+                           {"wrong_pairs", wrong_pairs_of(grid)}}));
   }
   return maps;
 }

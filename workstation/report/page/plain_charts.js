@@ -1,0 +1,54 @@
+// The charts of pages other than a run's: lines over days, bands, dots. The page's data says what they show.
+"use strict";
+
+const kKinds = {
+  /** `series`: [name, colour, values] each. */
+  lines: ({labels, series}) => ({
+    type: "line",
+    data: {
+      labels,
+      datasets: series.map(([label, ink, data]) => ({
+        label, data, borderColor: colour(ink), backgroundColor: colour(ink), borderWidth: 2, pointRadius: 0,
+        pointHitRadius: 8,
+      })),
+    },
+    options: {scales: {x: axis(), y: axis({ticks: kFewTicks})}},
+  }),
+
+  /** Of each label a thin interval [from, to], and a thick one upon it. */
+  bands: ({labels, thin, thick}) => ({
+    type: "bar",
+    data: {
+      labels,
+      datasets: [
+        {label: thick[0], data: thick[1], backgroundColor: colour("charge"), barThickness: 9, minBarLength: 4,
+         grouped: false},
+        {label: thin[0], data: thin[1], backgroundColor: colour("muted"), barThickness: 2, grouped: false},
+      ],
+    },
+    options: {indexAxis: "y", scales: {x: axis({ticks: kFewTicks}), y: axis({ticks: {autoSkip: false}})}},
+  }),
+
+  /** `points`: [x, y, what it is] each. */
+  dots: ({points, x, y}) => ({
+    type: "scatter",
+    data: {
+      datasets: [{data: points.map(([x, y, what]) => ({x, y, what})), backgroundColor: colour("charge"), pointRadius: 4}],
+    },
+    options: {
+      interaction: {mode: "nearest"},
+      plugins: {legend: {display: false}, tooltip: {callbacks: {label: ({raw}) => raw.what}}},
+      scales: {x: axis({title: axisTitle(x)}), y: axis({title: axisTitle(y), ticks: kFewTicks})},
+    },
+  }),
+};
+
+function axisTitle(text) {
+  return {display: true, text, color: colour("muted")};
+}
+
+for (const {id, kind, ...shown} of JSON.parse(document.getElementById("data").textContent)) {
+  drawChart(id, () => kKinds[kind](shown));
+}
+onColourScheme(redrawCharts);
+document.documentElement.dataset.ready = "true";
