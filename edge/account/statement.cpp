@@ -13,7 +13,6 @@ namespace {
 double driven_percent(int driven, int cycles) { return cycles == 0 ? 0 : 100.0 * driven / cycles; }
 
 void set_money(Json& json, const QuarterHourMoney& money, double unseen_kwh) {
-  json.set("billed_eur", Decimals{money.earned_eur, 4});  // its name until the next release
   json.set("estimated_eur", Decimals{money.estimated_eur, 4});
   json.set("contract_eur", Decimals{money.contract_eur, 4});
   json.set("net_eur", Decimals{money.net_eur(), 4});
@@ -155,7 +154,7 @@ std::string Statement::text() const {
 std::string Statement::csv() const {
   std::string text =
       "date,earned_eur,charged_kwh,discharged_kwh,full_cycles,cycles,driven_cycles,valued_cycles,"
-      "mean_price_eur_per_mwh,first_soc_percent,last_soc_percent,billed_eur,contract_eur,net_eur,"
+      "mean_price_eur_per_mwh,first_soc_percent,last_soc_percent,contract_eur,net_eur,"
       "quarter_hours,settled_quarter_hours,validated_quarter_hours,unpriced_quarter_hours,"
       "unseen_kwh,estimated_eur\n";
   for (const DayAccount& day : days_) {
@@ -169,9 +168,9 @@ std::string Statement::csv() const {
       text += ",,";
     }
     const QuarterHourMoney& money = day.money();
-    add_formatted(text, ",%.4f,%.4f,%.4f,%d,%d,%d,%d,%.3f,%.4f\n", money.earned_eur,
-                  money.contract_eur, money.net_eur(), money.quarter_hours, money.published,
-                  money.validated, money.unpriced, day.unseen_kwh(), money.estimated_eur);
+    add_formatted(text, ",%.4f,%.4f,%d,%d,%d,%d,%.3f,%.4f\n", money.contract_eur, money.net_eur(),
+                  money.quarter_hours, money.published, money.validated, money.unpriced,
+                  day.unseen_kwh(), money.estimated_eur);
   }
   return text;
 }

@@ -34,8 +34,7 @@ std::shared_ptr<Policy> student_policy(StudentFile student) {
   return {holder, holder->policy.get()};
 }
 
-std::shared_ptr<Policy> model_policy(const std::string& path, const Risk& risk,
-                                     const MarketSteps* market) {
+std::shared_ptr<Policy> model_policy(const std::string& path, const MarketSteps* market) {
   if (!std::filesystem::exists(path)) {
     fail("--policy {}: neither a file nor one of: {}", path, policy_help());
   }
@@ -47,7 +46,7 @@ std::shared_ptr<Policy> model_policy(const std::string& path, const Risk& risk,
         path);
   };
   if (is_teacher_file(path)) {
-    Teacher teacher = load_teacher(path, risk);
+    Teacher teacher = load_teacher(path);
     require_day_ahead(teacher.context);
     return owning<Teacher, TeacherPolicy>(std::move(teacher),
                                           [](const Teacher& t) -> const Teacher& { return t; });
@@ -73,7 +72,7 @@ void require_policies(const std::vector<std::string>& names) {
     if (name == kCompiled || find_baseline(name) != nullptr) continue;
     const bool is_pipe = std::filesystem::exists(name) && !std::filesystem::is_regular_file(name);
     if (is_pipe) continue;  // it can be read once
-    name.starts_with(kGivenRule) ? given_rule(name) : model_policy(name, {}, nullptr);
+    name.starts_with(kGivenRule) ? given_rule(name) : model_policy(name, nullptr);
   }
 }
 
@@ -86,10 +85,10 @@ void require_outlook(const std::vector<std::string>& names, const std::string& d
 }
 
 std::shared_ptr<Policy> make_policy(const std::string& name, const MarketSteps& market,
-                                    const BatteryParameters& battery, const Risk& risk) {
+                                    const BatteryParameters& battery) {
   if (const auto baseline = make_baseline(name, market, battery)) return baseline;
   if (name == kCompiled) return student_policy(compiled_student());
-  return model_policy(name, risk, &market);
+  return model_policy(name, &market);
 }
 
 ContextClasses context_of_policy(const std::string& policy, const MarketSteps& market,

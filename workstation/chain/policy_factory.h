@@ -7,7 +7,6 @@
 
 #include "workstation/chain/run_config.h"
 #include "workstation/env/policy.h"
-#include "workstation/rl/risk.h"
 
 namespace bess {
 
@@ -24,7 +23,7 @@ void require_policies(const std::vector<std::string>& names);
 /// A baseline (make_baseline), the compiled array, or a model with whatever it is made of. Throws
 /// UserError for an unknown name or an unreadable file.
 std::shared_ptr<Policy> make_policy(const std::string& name, const MarketSteps& market,
-                                    const BatteryParameters& battery, const Risk& risk = {});
+                                    const BatteryParameters& battery);
 
 /// What the context classes of rules mean for a policy: the student's or the teacher's own, else
 /// those that would be fitted on the training days of `market`.

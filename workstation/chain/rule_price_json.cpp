@@ -20,20 +20,6 @@ void add_gain(const RuleGain& gain, bool carry_soc, Json& json) {
   json.set("gain_deviation_over_seeds", Decimals{gain.spread, 4});
 }
 
-/// Names of before schema version 1, until the next release.
-void add_names_of_before(const RulePriceRow& row, Json& json) {
-  json.set("without_eur_per_day_per_mwh", Decimals{row.reset.without, 4});
-  json.set("difference", Decimals{row.reset.gain, 4});
-  json.set("standard_error", Decimals{row.reset.gain_error, 4});
-  json.set("spread", Decimals{row.reset.spread, 4});
-  json.set("carried_profit_eur_per_day_per_mwh", Decimals{row.carried.profit, 4});
-  json.set("carried_without_eur_per_day_per_mwh", Decimals{row.carried.without, 4});
-  json.set("carried_difference", Decimals{row.carried.gain, 4});
-  json.set("carried_standard_error", Decimals{row.carried.gain_error, 4});
-  json.set("carried_spread", Decimals{row.carried.spread, 4});
-  json.set("decisions_changed", Decimals{row.changed_share, 6});
-}
-
 }  // namespace
 
 Json rule_price_json(const RulePriceRow& row) {
@@ -54,7 +40,6 @@ Json rule_price_json(const RulePriceRow& row) {
   Json carried = Json::object();
   add_gain(row.carried, true, carried);
   json.set(key::kCarriedOver, std::move(carried));
-  add_names_of_before(row, json);
   return json;
 }
 

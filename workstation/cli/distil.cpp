@@ -34,7 +34,6 @@ struct DistilArguments {
   std::string teacher;
   std::string out;
   std::string curve_out;
-  std::string risk = "mean";
   std::optional<double> omega;
   std::optional<int> epochs;
   bool plain = false;
@@ -78,11 +77,10 @@ void run_distil(const DistilArguments& options) {
                     {"--day-ahead", options.day_ahead.path()},
                     {"--config", options.common.config_path}});
   require_writable(options.out);
-  Teacher teacher = load_teacher(options.teacher, parse_risk(options.risk));
+  Teacher teacher = load_teacher(options.teacher);
   teacher.learnt_for = learnt_for_of(options.teacher);
   warn_learnt_otherwise(options.teacher, circumstances_of(config_entries(config)));
   options.rule_files.apply(config, teacher.context.kind);
-  if (!teacher.risk.is_mean()) teacher.provenance += ", risk " + options.risk;
   const MinuteSeries series = options.price_input.read(options.prices);
   MarketSteps market = market_of(series, config.market, options.prices);
   attach_day_ahead(market, options.day_ahead.read(series, options.price_input.accepted(),
@@ -117,11 +115,6 @@ void add_distil_command(ProgramCommand& app) {
   options->rule_files.add(command, "Rule files: your own rules, learnt and proved as well");
   command.option("--teacher", options->teacher, "Teacher file").required();
   command.option("--out", options->out, "Student file to write").required();
-  command
-      .option("--risk", options->risk,
-              "What of the teacher is distilled: mean, or cvar:ALPHA, the mean of the worst "
-              "share ALPHA")
-      .with_default();
   command.option("--omega", options->omega,
                  "Of the layer: larger follows the teacher more closely");
   command.option("--epochs", options->epochs, "Before the first proof").positive();

@@ -36,7 +36,6 @@ struct EvaluateArguments {
   std::string date;
   std::string fit;
   std::optional<int> fit_delay_min;
-  std::string risk = "mean";
   bool carry_soc = false;
   bool json = false;
   std::string csv;
@@ -50,28 +49,23 @@ struct EvaluateArguments {
 
 /// Per-day and per-step records of every policy and way of counting, as CSV.
 struct Records {
-  // soc_mode, soc_end, soc and ..._eur_mwh are names of before schema version 1, until the next
-  // release.
-  std::string days =
-      "date,profit_eur,cycles,switches,soc_end,policy,soc_mode,carry_soc,soc_end_frac\n";
+  std::string days = "date,profit_eur,cycles,switches,policy,carry_soc,soc_end_frac\n";
   std::string steps =
-      "utc,observed_eur_mwh,paid_eur_mwh,level_eur_mwh,soc,action,power_w,profit_eur,policy,soc_"
-      "mode,carry_soc,observed_eur_per_mwh,paid_eur_per_mwh,level_eur_per_mwh,soc_frac\n";
+      "utc,action,power_w,profit_eur,policy,carry_soc,observed_eur_per_mwh,paid_eur_per_mwh,"
+      "level_eur_per_mwh,soc_frac\n";
 
   void add(const std::string& policy, bool carry_soc, const Evaluation& e,
            const std::vector<StepRecord>& records) {
-    const std::string tail = fmt::format("{},{},{}", csv_field(policy),
-                                         carry_soc ? "carried" : "reset", truth(carry_soc));
+    const std::string whose = fmt::format("{},{}", csv_field(policy), truth(carry_soc));
     for (const DayResult& d : e.days) {
-      days += fmt::format("{},{:.8g},{:.4f},{},{:.5f},{},{:.5f}\n", d.date, d.profit_eur, d.cycles,
-                          d.switches, d.soc_end_frac, tail, d.soc_end_frac);
+      days += fmt::format("{},{:.8g},{:.4f},{},{},{:.5f}\n", d.date, d.profit_eur, d.cycles,
+                          d.switches, whose, d.soc_end_frac);
     }
     for (const StepRecord& r : records) {
-      const std::string prices =
-          fmt::format("{:.10g},{:.10g},{:.2f},{:.6f}", r.observed_eur_per_mwh, r.paid_eur_per_mwh,
-                      r.level_eur_per_mwh, r.soc_frac);
-      steps += fmt::format("{},{},{},{:.3f},{:.8g},{},{}\n", utc_text(r.utc_s).view(), prices,
-                           action_name(r.action), r.power_w, r.profit_eur, tail, prices);
+      steps += fmt::format("{},{},{:.3f},{:.8g},{},{:.10g},{:.10g},{:.2f},{:.6f}\n",
+                           utc_text(r.utc_s).view(), action_name(r.action), r.power_w, r.profit_eur,
+                           whose, r.observed_eur_per_mwh, r.paid_eur_per_mwh, r.level_eur_per_mwh,
+                           r.soc_frac);
     }
   }
 };
@@ -163,15 +157,13 @@ struct Trial {
   std::optional<MarketDay> only_day;
   const RunConfig& config;
   const EvaluateArguments& options;
-  Risk risk;
 };
 
 /// In the ways of counting that are wanted; every step goes to `records` when it is given.
 NamedEvaluation evaluate_policy(const std::string& name, const Trial& trial, Records* records) {
   const EvaluateArguments& options = trial.options;
   const RunConfig& config = trial.config;
-  const std::shared_ptr<Policy> policy =
-      make_policy(name, trial.fitting, config.battery, trial.risk);
+  const std::shared_ptr<Policy> policy = make_policy(name, trial.fitting, config.battery);
   NamedEvaluation named{name, {}, {}, policy->description()};
   const bool wants_steps = records != nullptr && !options.steps_out.empty();
   for (const bool carry_soc : {false, true}) {
@@ -226,13 +218,7 @@ void run_evaluate(const EvaluateArguments& options) {
                                                 config.market.day_ahead_published_min);
   attach_day_ahead(market, day_ahead);
   attach_day_ahead(fitting, day_ahead);
-  Trial trial{market,
-              fitting,
-              market.days_of(parse_split(options.split)),
-              {},
-              config,
-              options,
-              parse_risk(options.risk)};
+  Trial trial{market, fitting, market.days_of(parse_split(options.split)), {}, config, options};
   if (trial.days.empty()) {
     fail("{}: no complete day in the {} split; add prices or use --split all", options.prices,
          options.split);
@@ -288,10 +274,6 @@ void add_evaluate_command(ProgramCommand& app) {
       .option("--fit-delay", options->fit_delay_min,
               fmt::format("Delay at which {} are fitted (default: --delay)", fitted))
       .range(0, 5);
-  command
-      .option("--risk", options->risk,
-              "A c51 teacher's choice: mean, or cvar:ALPHA, the mean of the worst share ALPHA")
-      .with_default();
   command.option("--days-out", options->days_out, "CSV of every policy's days");
   command.option("--steps-out", options->steps_out, "CSV of every policy's steps");
   command.footer(
@@ -306,7 +288,6 @@ void add_evaluate_command(ProgramCommand& app) {
       "--carry-soc --json\n"
       "  bess-train evaluate --prices market.csv.gz --policy compiled --date widest --steps-out "
       "day.csv\n"
-      "  bess-train evaluate --prices market.csv.gz --policy teacher.bin --risk cvar:0.1\n"
       "  bess-train evaluate --prices market.csv.gz --day-ahead day_ahead.csv.gz --policy sdp "
       "sdp-outlook");
   command.runs([options] { run_evaluate(*options); });

@@ -110,9 +110,6 @@ void print_json(const OmegaPoint& point, const Evaluation& teacher) {
   json.set(key::kGain, Decimals{gain.mean, 4});
   json.set(key::kGainError, Decimals{gain.standard_error, 4});
   json.set(key::kGainErrorByMonth, Decimals{gain.standard_error_by_month, 4});
-  // Names of before schema version 1, until the next release.
-  json.set("standard_error", Decimals{point.evaluation.standard_error(), 4});
-  json.set("gain_over_teacher", Decimals{gain.mean, 4});
   fmt::print("{}\n", json.line());
   std::fflush(stdout);  // each takes minutes
 }

@@ -59,7 +59,6 @@ Json rule_json(const Rule& rule, ContextKind kind, const std::string& policy,
   json.set("visited_broken", counted(&WatchCount::visited_broken));
   json.set("drawn", counted(&WatchCount::drawn));
   json.set("drawn_broken", counted(&WatchCount::drawn_broken));
-  json.set("text", rule.text());  // its name before schema version 1, until the next release
   return json;
 }
 

@@ -30,7 +30,7 @@ struct Row {
   double profit;
   DayErrors errors;
   PairedDifference gain;  ///< to the first policy; both 0 for itself
-  double turnover_per_day;
+  double cycles_per_day;
   double at_reference_wear;  ///< of the same decisions
 };
 
@@ -40,7 +40,7 @@ Row make_row(const std::string& month, const Evaluation& e, const Evaluation& fi
           .profit = e.profit_eur_per_day_per_mwh(),
           .errors = e.errors(),
           .gain = paired_difference(e, first),
-          .turnover_per_day = 2 * e.cycles_per_day(),
+          .cycles_per_day = e.cycles_per_day(),
           .at_reference_wear = e.profit_at_wear_eur_per_day_per_mwh(kReferenceWearEurPerMwh)};
 }
 
@@ -136,8 +136,8 @@ PictureTable curve_table(const BacktestResults& results) {
 HtmlTable total_table(const BacktestResults& results) {
   HtmlTable table;
   table.caption = "EUR per day per MWh of capacity, all traded days";
-  table.header = {"Policy",   "Profit",        "s.e. over days", "By month", "Gain",
-                  "Its s.e.", "Gain by month", "At wear 10",     "Turnover", "Drawdown"};
+  table.header = {"Policy",   "Profit",        "s.e. over days", "By month",     "Gain",
+                  "Its s.e.", "Gain by month", "At wear 10",     "Cycles a day", "Drawdown"};
   const WalkForward& first = results.policies.front();
   const std::string nothing = "\u2013";
   for (const WalkForward& policy : results.policies) {
@@ -150,7 +150,7 @@ HtmlTable total_table(const BacktestResults& results) {
          is_first ? nothing : fmt::format("{:+.1f}", gain.mean),
          is_first ? nothing : error_text(gain.standard_error, 1, nothing),
          is_first ? nothing : error_text(gain.standard_error_by_month, 1, nothing),
-         fmt::format("{:.1f}", row.at_reference_wear), fmt::format("{:.2f}", row.turnover_per_day),
+         fmt::format("{:.1f}", row.at_reference_wear), fmt::format("{:.2f}", row.cycles_per_day),
          fmt::format("{:.0f}", policy.drawdown_eur_per_mwh())});
   }
   return table;
@@ -233,14 +233,10 @@ Json policy_json(const WalkForward& policy, const WalkForward& first) {
                             {key::kGain, Decimals{row.gain.mean, 4}},
                             {key::kGainError, Decimals{row.gain.standard_error, 4}},
                             {key::kGainErrorByMonth, Decimals{row.gain.standard_error_by_month, 4}},
-                            {"cycles_per_day", Decimals{row.turnover_per_day / 2, 4}},
+                            {"cycles_per_day", Decimals{row.cycles_per_day, 4}},
                             {"drawdown_eur_per_mwh", Decimals{policy.drawdown_eur_per_mwh(), 2}}});
   add_charge_left(policy.total.charge_left(), json);
   json.set("day_reset", day_reset_json(policy, first));
-  // Names of before schema version 1, until the next release.
-  json.set("standard_error", Decimals{row.errors.plain, 4});
-  json.set("gain_to_first", Decimals{row.gain.mean, 4});
-  json.set("turnover_per_day", Decimals{row.turnover_per_day, 4});
   return json;
 }
 
@@ -273,15 +269,15 @@ std::string format_backtest_table(const BacktestResults& results) {
       "{} months, {} days, each month by what was fitted on {}; SoC carried over;\nEUR per day per "
       "MWh of capacity\n{:<{}}  {:>8} {:>6} {:>8}  {:>8} {:>6} {:>8}  {:>10}  {:>8}  {:>8}\n",
       first.months.size(), first.total.days.size(), window_text(results), "policy", width, "profit",
-      "s.e.", "by month", "gain", "s.e.", "by month", wear_column(), "turnover", "drawdown");
+      "s.e.", "by month", "gain", "s.e.", "by month", wear_column(), "cycles", "drawdown");
   for (const WalkForward& policy : results.policies) {
     const Row row = rows_of(policy, first).back();
     text += fmt::format(
         "{:<{}}  {:>8.1f} {:>6} {:>8}  {:>+8.1f} {:>6} {:>8}  {:>10.1f}  {:>8.2f}  {:>8.0f}\n",
         policy.name, width, row.profit, error_text(row.errors.plain, 1),
         error_text(row.errors.by_month, 1), row.gain.mean, error_text(row.gain.standard_error, 1),
-        error_text(row.gain.standard_error_by_month, 1), row.at_reference_wear,
-        row.turnover_per_day, policy.drawdown_eur_per_mwh());
+        error_text(row.gain.standard_error_by_month, 1), row.at_reference_wear, row.cycles_per_day,
+        policy.drawdown_eur_per_mwh());
   }
   text += day_reset_table(results, width);
   text += fmt::format("\nprofit by month\n{:<{}}", "policy", width);
@@ -296,7 +292,7 @@ std::string format_backtest_table(const BacktestResults& results) {
   }
   text += fmt::format(
       "\ngain: day-by-day difference to {}; by month: {}\n{}\n{}: {}\n"
-      "turnover: energy through it a day, in capacities; drawdown: deepest fall from the end of a "
+      "cycles: equivalent full cycles a day; drawdown: deepest fall from the end of a "
       "day to that\nof a later one, EUR per MWh\n",
       first.name, by_month_meaning(first.total.errors().months),
       charge_left_meaning(first.total.charge_price_eur_per_mwh), wear_column(),
@@ -308,11 +304,9 @@ std::string format_backtest_table(const BacktestResults& results) {
 }
 
 std::string backtest_csv(const BacktestResults& results) {
-  // standard_error and turnover_per_day are names of before schema version 1, until the next
-  // release.
   std::string text =
-      "month,policy,days,profit_eur_per_day_per_mwh,standard_error,gain_eur_per_day_per_mwh,"
-      "gain_standard_error,turnover_per_day,profit_at_wear_10_eur_per_day_per_mwh,fitted_days,"
+      "month,policy,days,profit_eur_per_day_per_mwh,gain_eur_per_day_per_mwh,"
+      "gain_standard_error,profit_at_wear_10_eur_per_day_per_mwh,fitted_days,"
       "profit_standard_error,profit_standard_error_by_month,gain_standard_error_by_month,"
       "cycles_per_day\n";
   for (const WalkForward& policy : results.policies) {
@@ -320,25 +314,23 @@ std::string backtest_csv(const BacktestResults& results) {
     for (const Row& row : rows_of(policy, results.policies.front())) {
       const std::string fitted =
           row.month == kAllMonths ? "" : fmt::format("{}", results.fitted_days[month++]);
-      const std::string error = error_text(row.errors.plain, 4, "");
-      text += fmt::format(
-          "{},{},{},{:.4f},{},{:.4f},{},{:.4f},{:.4f},{},{},{},{},{:.4f}\n", row.month,
-          csv_field(policy.name), row.days, row.profit, error, row.gain.mean,
-          error_text(row.gain.standard_error, 4, ""), row.turnover_per_day, row.at_reference_wear,
-          fitted, error, error_text(row.errors.by_month, 4, ""),
-          error_text(row.gain.standard_error_by_month, 4, ""), row.turnover_per_day / 2);
+      text +=
+          fmt::format("{},{},{},{:.4f},{:.4f},{},{:.4f},{},{},{},{},{:.4f}\n", row.month,
+                      csv_field(policy.name), row.days, row.profit, row.gain.mean,
+                      error_text(row.gain.standard_error, 4, ""), row.at_reference_wear, fitted,
+                      error_text(row.errors.plain, 4, ""), error_text(row.errors.by_month, 4, ""),
+                      error_text(row.gain.standard_error_by_month, 4, ""), row.cycles_per_day);
     }
   }
   return text;
 }
 
 std::string backtest_days_csv(const BacktestResults& results) {
-  // soc_end is the name of soc_end_frac before schema version 1, until the next release.
-  std::string text = "date,policy,profit_eur,cycles,switches,soc_end,soc_end_frac\n";
+  std::string text = "date,policy,profit_eur,cycles,switches,soc_end_frac\n";
   for (const WalkForward& policy : results.policies) {
     for (const DayResult& d : policy.total.days) {
-      text += fmt::format("{},{},{:.8g},{:.4f},{},{:.5f},{:.5f}\n", d.date, csv_field(policy.name),
-                          d.profit_eur, d.cycles, d.switches, d.soc_end_frac, d.soc_end_frac);
+      text += fmt::format("{},{},{:.8g},{:.4f},{},{:.5f}\n", d.date, csv_field(policy.name),
+                          d.profit_eur, d.cycles, d.switches, d.soc_end_frac);
     }
   }
   return text;
@@ -352,7 +344,6 @@ Json backtest_json(const BacktestResults& results) {
   Json json = answer("backtest");
   json.set("window_days", results.window_days);
   json.set(key::kCarrySoc, true);
-  json.set("soc", "carried");  // its name before schema version 1, until the next release
   json.set("learnt_from", results.learnt_from);
   json.set("policies", std::move(policies));
   Json months = Json::list();
@@ -387,8 +378,8 @@ void write_backtest_page(const BacktestResults& results, const std::filesystem::
   }
   const std::string body = fmt::format(
       "<h1>Walk-forward backtest</h1>\n<p>{}</p>\n{}\n<p class=\"note\">Gain: day by day, over {}. "
-      "By month: {}. The charge is carried over; {}. At wear 10: {}. Turnover: energy through it a "
-      "day, in capacities. Drawdown: deepest fall from the end of a day to that of a later one, "
+      "By month: {}. The charge is carried over; {}. At wear 10: {}. Drawdown: deepest fall from "
+      "the end of a day to that of a later one, "
       "EUR per MWh.</p>\n<figure>\n<h2>Profit month after month, EUR per MWh</h2>\n{}"
       "<figcaption>{} {}</figcaption>\n</figure>\n{}\n{}",
       html_escaped(results.provenance),

@@ -23,7 +23,7 @@ struct BacktestResults {
   std::string learnt_from{};  ///< by which a run knows its own: prices, seed and every key
 };
 
-/// One line a policy: profit, gain, turnover, drawdown; then the gain by month.
+/// One line a policy: profit, gain, cycles, drawdown; then the gain by month.
 std::string format_backtest_table(const BacktestResults& results);
 /// Header `month,policy,...`, one row a month and policy; the month of the whole is "all".
 std::string backtest_csv(const BacktestResults& results);

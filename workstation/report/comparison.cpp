@@ -81,29 +81,24 @@ std::string table_block(const std::string& title, const std::vector<ComparisonRo
   return text;
 }
 
-/// What had another name before schema version 1 stands under both until the next release: see
-/// kCsvHeader.
 std::string csv_line(const ComparisonRow& row, const std::string& first, bool carry_soc) {
   const auto& d = row.difference;
-  const std::string profit_error = error_text(row.errors.plain, 4, "");
-  const std::string share = row.foresight_share ? fmt::format("{:.6f}", *row.foresight_share) : "";
-  const std::string old_names = fmt::format(
-      "{},{},{},{:.4f},{},{},{},{:.4f},{:.4f},{:.4f},{},{:.4f}", csv_field(row.name),
-      carry_soc ? "carried" : "reset", row.days, row.profit, profit_error,
-      d ? fmt::format("{:.4f}", d->mean) : "", d ? error_text(d->standard_error, 4, "") : "",
-      row.worst_day, row.cycles_per_day, row.switches_per_day, share, row.profit_at_reference_wear);
-  return fmt::format("{},{},{},{},{},{},{},{},{:.5f}\n", old_names, truth(carry_soc), profit_error,
-                     error_text(row.errors.by_month, 4, ""), d ? csv_field(first) : "",
-                     d ? error_text(d->standard_error_by_month, 4, "") : "", row.errors.months,
-                     share, row.soc_end_frac_mean);
+  return fmt::format(
+      "{},{},{:.4f},{},{},{:.4f},{:.4f},{:.4f},{:.4f},{},{},{},{},{},{},{},{:.5f}\n",
+      csv_field(row.name), row.days, row.profit, d ? fmt::format("{:.4f}", d->mean) : "",
+      d ? error_text(d->standard_error, 4, "") : "", row.worst_day, row.cycles_per_day,
+      row.switches_per_day, row.profit_at_reference_wear, truth(carry_soc),
+      error_text(row.errors.plain, 4, ""), error_text(row.errors.by_month, 4, ""),
+      d ? csv_field(first) : "", d ? error_text(d->standard_error_by_month, 4, "") : "",
+      row.errors.months, row.foresight_share ? fmt::format("{:.6f}", *row.foresight_share) : "",
+      row.soc_end_frac_mean);
 }
 
 constexpr const char* kCsvHeader =
-    "policy,soc,days,profit_eur_per_day_per_mwh,standard_error,gain_eur_per_day_per_mwh,"
-    "gain_standard_error,worst_day_eur_per_mwh,cycles_per_day,switches_per_day,foresight_share,"
-    "profit_at_wear_10_eur_per_day_per_mwh,carry_soc,profit_standard_error,"
-    "profit_standard_error_by_month,gain_over,gain_standard_error_by_month,months,"
-    "share_of_foresight,soc_end_frac_mean\n";
+    "policy,days,profit_eur_per_day_per_mwh,gain_eur_per_day_per_mwh,gain_standard_error,"
+    "worst_day_eur_per_mwh,cycles_per_day,switches_per_day,profit_at_wear_10_eur_per_day_per_mwh,"
+    "carry_soc,profit_standard_error,profit_standard_error_by_month,gain_over,"
+    "gain_standard_error_by_month,months,share_of_foresight,soc_end_frac_mean\n";
 
 }  // namespace
 
@@ -145,11 +140,6 @@ void add_figures(const ComparisonRow& row, const std::string& first, Json& json)
   json.set(key::kShareOfForesight, Decimals{share, 5});
   json.set("soc_end_frac_mean", Decimals{row.soc_end_frac_mean, 5});
   add_charge_left(row.charge_left, json);
-  // Names of before schema version 1, until the next release.
-  json.set("standard_error", Decimals{row.errors.plain, 4});
-  json.set("difference_to_first", Decimals{gain.mean, 4});
-  json.set("difference_standard_error", Decimals{gain.standard_error, 4});
-  json.set("soc_end_mean", Decimals{row.soc_end_frac_mean, 5});
 }
 
 std::string format_comparison_table(const std::vector<NamedEvaluation>& evaluations,

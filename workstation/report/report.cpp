@@ -20,7 +20,6 @@
 #include "workstation/report/report_page.h"
 #include "workstation/report/report_tables.h"
 #include "workstation/report/risk_page.h"
-#include "workstation/report/risk_table.h"
 #include "workstation/report/shown_policies.h"
 
 namespace bess {
@@ -90,8 +89,6 @@ std::string page_of(const ReportInputs& in, const PageSteps& steps,
   std::vector<Fact> facts = in.facts;
   facts.push_back({"battery", battery_text(in.battery)});
   const std::optional<RulePrices> prices = rule_prices_of(in.evaluations);
-  const std::string risks =
-      in.teacher ? risk_choice_html(in.evaluations, teacher_name(*in.teacher)) : "";
   const bool has_failed = !in.broken.empty();
   return format_report_page(
       {{"title", has_failed ? kFailedTitle : kPageTitle},
@@ -102,8 +99,6 @@ std::string page_of(const ReportInputs& in, const PageSteps& steps,
         section_of("comparison", "What each policy earned",
                    comparison_html(in.evaluations) + same_program_html(in.evaluations) +
                        whole_battery_html(in.evaluations) + risk_html(in.evaluations))},
-       {"risk", section_of("risk", "What caution costs", risks)},
-       {"risk_link", risks.empty() ? "" : "<li><a href=\"#risk\">Caution</a></li>\n"},
        {"lost",
         section_of("lost", "Where it lost, and why", lost_html(losses, capacity_mwh_of(in)))},
        {"lost_link", losses.empty() ? "" : "<li><a href=\"#lost\">Where it lost</a></li>\n"},

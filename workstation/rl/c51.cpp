@@ -15,17 +15,6 @@ Matrix mean_values(const Support& support, const MatrixRef& logits) {
   return means.reshaped(kActionCount, logits.cols());
 }
 
-Matrix risk_values(const Support& support, const MatrixRef& logits, const Risk& risk) {
-  Matrix p = logits.reshaped(support.count, logits.size() / support.count);
-  softmax_columns(p);
-  Matrix values(kActionCount, logits.cols());
-  for (Eigen::Index i = 0; i < values.size(); ++i) {
-    values.data()[i] =
-        static_cast<float>(conditional_value_at_risk(support, p.col(i).data(), risk.worst_share));
-  }
-  return values;
-}
-
 namespace {
 
 /// Projected distribution of each sample's greedy next action -> tile.m.

@@ -5,7 +5,6 @@
 
 #include "workstation/rl/gradient_tile.h"
 #include "workstation/rl/projection.h"
-#include "workstation/rl/risk.h"
 #include "workstation/rl/support.h"
 
 namespace bess {
@@ -15,9 +14,6 @@ void softmax_columns(Matrix& z);
 
 /// Means of the value distributions, [actions x samples], from logits [actions*atoms x samples].
 Matrix mean_values(const Support& support, const MatrixRef& logits);
-
-/// The same with CVaR in the place of the mean.
-Matrix risk_values(const Support& support, const MatrixRef& logits, const Risk& risk);
 
 /// Working space of one thread for tile after tile.
 struct C51Tile {

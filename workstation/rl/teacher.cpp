@@ -142,7 +142,7 @@ Matrix Teacher::network_values(const MatrixRef& x, MlpTile& tile) const {
   forward_hidden(mlp, x, tile);
   forward_head(mlp, tile, z);
   if (method == Method::kDqn) return z;
-  Matrix values = risk.is_mean() ? mean_values(support, z) : risk_values(support, z, risk);
+  Matrix values = mean_values(support, z);
   if (!is_residual()) return values;
   const float quantum = support.v_max * kResidualQuantum;
   return (values.array() / quantum).round() * quantum;
@@ -248,7 +248,6 @@ Teacher load_teacher(const std::filesystem::path& path) {
                   std::move(provenance),
                   std::move(program),
                   context,
-                  {},
                   std::move(learnt_for)};
   if (outlook) set_outlook(std::move(outlook), teacher);
   return teacher;
@@ -257,18 +256,6 @@ Teacher load_teacher(const std::filesystem::path& path) {
 void set_outlook(std::shared_ptr<const OutlookProgram> program, Teacher& teacher) {
   teacher.book = std::make_shared<const OutlookBook>(outlook_integers(*program));
   teacher.outlook = std::move(program);
-}
-
-Teacher load_teacher(const std::filesystem::path& path, const Risk& risk) {
-  Teacher teacher = load_teacher(path);
-  if (teacher.method != Method::kC51 && !risk.is_mean()) {
-    fail(
-        "{}: this teacher knows means only, not how returns are distributed; train a c51 one for "
-        "--risk",
-        path.string());
-  }
-  teacher.risk = risk;
-  return teacher;
 }
 
 }  // namespace bess

@@ -17,7 +17,6 @@
 #include "workstation/rl/network_input.h"
 #include "workstation/rl/price_map.h"
 #include "workstation/rl/program_residual.h"
-#include "workstation/rl/risk.h"
 #include "workstation/rl/support.h"
 
 namespace bess {
@@ -37,7 +36,6 @@ struct Teacher {
   /// (program_residual.h).
   std::shared_ptr<const StochasticProgram> program = nullptr;
   ContextClasses context{};  ///< by month unless said otherwise
-  Risk risk{};               ///< how decisions are made; not part of the file
   Entries learnt_for{};      ///< market, battery, costs and prices; empty: the file does not say
   /// By outlook: the program that plans on day-ahead prices, instead of `program`, and its plans in
   /// integers, which give the student its context.
@@ -47,8 +45,8 @@ struct Teacher {
   [[nodiscard]] Foundation foundation() const { return {program, outlook, book}; }
   [[nodiscard]] bool is_residual() const { return foundation() && method != Method::kSdp; }
   /// By outlook the values are no function of the inputs: three rows below them hold them.
-  /// Action values, means unless `risk` says otherwise, [3 x samples] in units of 1e4 EUR/h for
-  /// inputs [5 x samples].
+  /// Action values, means of their distributions, [3 x samples] in units of 1e4 EUR/h for inputs
+  /// [5 x samples].
   [[nodiscard]] Matrix action_values(const MatrixRef& x, MlpTile& tile) const;
   /// The network's part of them. Of a residual in whole millionths of the support's reach: a point
   /// mass at zero then is zero exactly, however its exponentials are rounded.
@@ -85,9 +83,6 @@ Teacher load_teacher(const std::filesystem::path& path);
 void set_outlook(std::shared_ptr<const OutlookProgram> program, Teacher& teacher);
 /// True when the file starts like a teacher's.
 bool is_teacher_file(const std::filesystem::path& path);
-/// load_teacher() that decides by `risk`. Throws UserError when that is not the mean and the
-/// teacher knows nothing else.
-Teacher load_teacher(const std::filesystem::path& path, const Risk& risk);
 
 /// Greedy by action value, ties to the lowest action.
 class TeacherPolicy final : public Policy {

@@ -9,7 +9,6 @@
 #include "workstation/report/headline.h"
 #include "workstation/report/judged_days.h"
 #include "workstation/report/report_tables.h"
-#include "workstation/report/risk_table.h"
 #include "workstation/report/rule_prices.h"
 #include "workstation/report/shown_policies.h"
 #include "workstation/rules/ruled_policy.h"
@@ -95,14 +94,6 @@ std::vector<NamedEvaluation> evaluate_run(const RunResults& run) {
   }
   TeacherPolicy teacher(run.teacher);
   all.push_back(evaluate_both(teacher_name(run.teacher), teacher, run));
-  if (run.teacher.method == Method::kC51) {
-    for (const double share : kShownRiskShares) {
-      Teacher cautious = run.teacher;
-      cautious.risk.worst_share = share;
-      TeacherPolicy policy(cautious);
-      all.push_back(evaluate_both(risk_name(teacher_name(run.teacher), share), policy, run));
-    }
-  }
   if (run.plain) evaluate_plain(run, all);
   all.push_back(evaluate_both(own_student_name(run.corrected.certificate),
                               *exported_policy(run.corrected), run));
@@ -139,10 +130,6 @@ std::vector<std::string> write_run_report(const RunResults& run,
   }
   summary += format_comparison_table(evaluations) + (alike.empty() ? "" : alike + "\n") +
              whole_battery_text(evaluations) + violations_text(run.plain->certificate, certificate);
-  if (const std::string risks = risk_table(evaluations, teacher_name(run.teacher));
-      !risks.empty()) {
-    summary += '\n' + risks;
-  }
   if (const auto prices = rule_prices_of(evaluations)) {
     summary += '\n';
     summary += rule_prices_text(*prices);

@@ -18,21 +18,18 @@ constexpr PairedDifference kNoGain{kUnknown, kUnknown};
 std::string number(double value) { return error_text(value, 1); }
 
 std::string bands_csv(const std::vector<Band>& bands, std::size_t runs) {
-  // soc to mean_at_wear_10 are names of before schema version 1, until the next release.
   std::string text =
-      "policy,soc,runs,mean,deviation,lowest,highest,mean_at_wear_10,carry_soc,"
+      "policy,runs,carry_soc,"
       "profit_eur_per_day_per_mwh_mean,profit_eur_per_day_per_mwh_deviation,"
       "profit_eur_per_day_per_mwh_min,profit_eur_per_day_per_mwh_max,"
       "profit_at_wear_10_eur_per_day_per_mwh_mean,profit_standard_error,"
       "profit_standard_error_by_month,months,gain_over,gain_eur_per_day_per_mwh,"
       "gain_standard_error,gain_standard_error_by_month\n";
   for (const Band& b : bands) {
-    const std::string figures =
-        fmt::format("{:.4f},{},{:.4f},{:.4f},{:.4f}", b.mean, error_text(b.deviation, 4, ""), b.low,
-                    b.high, b.mean_at_reference_wear);
     const PairedDifference gain = b.gain.value_or(kNoGain);
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_field(b.policy), b.soc,
-                        runs, figures, truth(b.soc == "carried"), figures,
+    text += fmt::format("{},{},{},{:.4f},{},{:.4f},{:.4f},{:.4f},{},{},{},{},{},{},{}\n",
+                        csv_field(b.policy), runs, truth(b.soc == "carried"), b.mean,
+                        error_text(b.deviation, 4, ""), b.low, b.high, b.mean_at_reference_wear,
                         error_text(b.errors.plain, 4, ""), error_text(b.errors.by_month, 4, ""),
                         b.errors.months, b.gain ? csv_field(bands.front().policy) : "",
                         error_text(gain.mean, 4, ""), error_text(gain.standard_error, 4, ""),
@@ -57,14 +54,7 @@ Json band_json(const Band& b, const std::string& first) {
                        {key::kGainOver, b.gain ? Json(first) : Json::null()},
                        {key::kGain, Decimals{gain.mean, 4}},
                        {key::kGainError, Decimals{gain.standard_error, 4}},
-                       {key::kGainErrorByMonth, Decimals{gain.standard_error_by_month, 4}},
-                       // Names of before schema version 1, until the next release.
-                       {"soc", b.soc},
-                       {"mean_eur_per_day_per_mwh", Decimals{b.mean, 4}},
-                       {"deviation", Decimals{b.deviation, 4}},
-                       {"lowest", Decimals{b.low, 4}},
-                       {"highest", Decimals{b.high, 4}},
-                       {kReferenceWearKey, Decimals{b.mean_at_reference_wear, 4}}});
+                       {key::kGainErrorByMonth, Decimals{gain.standard_error_by_month, 4}}});
 }
 
 /// Columns of one way of counting; empty without any.

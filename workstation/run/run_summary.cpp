@@ -36,7 +36,6 @@ const NamedEvaluation& exported(const RunSummary& run) {
 Json row_json(const ComparisonRow& row, const std::string& first, const char* soc) {
   Json json = Json::object({{"policy", row.name}, {key::kCarrySoc, soc == kCarried}});
   add_figures(row, first, json);
-  json.set("soc", soc);  // its name before schema version 1, until the next release
   return json;
 }
 

@@ -125,8 +125,7 @@ class Answers(unittest.TestCase):
             return text
 
     def test_1_prices(self):
-        stats = self.answers("prices", "stats", "@market.csv")[0]
-        self.assertEqual(stats["mean"], stats["settled_eur_per_mwh_mean"])
+        self.answers("prices", "stats", "@market.csv")
         with open(self.file("quarter.csv"), "w") as file:  # no minutes, no imbalance
             file.write("Datetime;Resolution code;Imbalance Price\n")
             for quarter in range(8):
@@ -162,7 +161,6 @@ class Answers(unittest.TestCase):
         several = self.answers("evaluate", *common, "rbc", "rbc-tuned", "@plain.json", "foresight", "--csv",
                                "@evaluation.csv", "--days-out", "@days.csv", "--steps-out", "@steps.csv")
         self.assertEqual(several[1]["gain_over"], "rbc")
-        self.assertEqual(several[1]["gain_eur_per_day_per_mwh"], several[1]["difference_to_first"])
         self.assertEqual(several[3]["share_of_foresight"], 1)
         self.assertEqual(set(several[1]["carried_over"]) - {"carry_soc"}, set(several[1]) & set(
             several[1]["carried_over"]) - {"carry_soc"})

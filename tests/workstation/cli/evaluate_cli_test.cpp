@@ -58,9 +58,9 @@ TEST_F(EvaluateCli, OnePolicyKeepsItsJsonFields) {
   EXPECT_THAT(
       json_keys(text[0]),
       testing::IsSupersetOf({"policy", "split", "days", "profit_eur_per_day_per_mwh",
-                             "profit_at_wear_10_eur_per_day_per_mwh", "standard_error",
+                             "profit_at_wear_10_eur_per_day_per_mwh", "profit_standard_error",
                              "cycles_per_day", "worst_day_eur_per_mwh", "share_of_foresight",
-                             "switches_per_day", "soc_end_mean", "carry_soc", "description"}));
+                             "switches_per_day", "soc_end_frac_mean", "carry_soc", "description"}));
   EXPECT_THAT(text[0], HasSubstr("\"carry_soc\":false"));
   EXPECT_THAT(output("evaluate", "--policy rbc --json --carry-soc"),
               HasSubstr("\"carry_soc\":true"));
@@ -70,7 +70,7 @@ TEST_F(EvaluateCli, SeveralPoliciesAddTheDifferenceAndTheOtherWayOfCounting) {
   const auto text = lines(output("evaluate", "--policy rbc rbc:60:140 --json"));
   ASSERT_EQ(text.size(), 2U);
   const auto keys = json_keys(text[1]);
-  EXPECT_THAT(keys, testing::IsSupersetOf({"difference_to_first", "difference_standard_error",
+  EXPECT_THAT(keys, testing::IsSupersetOf({"gain_eur_per_day_per_mwh", "gain_standard_error",
                                            "gain_standard_error_by_month", "carried_over"}));
 }
 
@@ -117,11 +117,10 @@ TEST_F(EvaluateCli, FilesHoldEveryPolicy) {
   const auto table = lines(read_file(file("t.csv")));
   EXPECT_EQ(table.size(), 1U + 4U);
   const auto days = lines(read_file(file("d.csv")));
-  EXPECT_EQ(days[0],
-            "date,profit_eur,cycles,switches,soc_end,policy,soc_mode,carry_soc,soc_end_frac");
+  EXPECT_EQ(days[0], "date,profit_eur,cycles,switches,policy,carry_soc,soc_end_frac");
   const std::size_t test_days = 6 + 3;  // of January and February 2023
   EXPECT_EQ(days.size(), 1 + 4 * test_days);
-  EXPECT_THAT(days.back(), HasSubstr(",rbc:60:140,carried,true,"));
+  EXPECT_THAT(days.back(), HasSubstr(",rbc:60:140,true,"));
   EXPECT_EQ(lines(read_file(file("s.csv"))).size(), 1 + 4 * test_days * 720);
 }
 
@@ -155,7 +154,7 @@ TEST_F(EvaluateCli, OneDayOfTheSplitKeepsTheSocThatWasCarriedIntoIt) {
   EXPECT_EQ(lines(read_file(one_day)).size(), 1U + 2U * 2U);  // policies times ways of counting
   EXPECT_THAT(table, HasSubstr("1 day;"));
   EXPECT_THAT(output("evaluate", "--policy rbc --json --date " + date),
-              HasSubstr(R"("standard_error":null)"));  // one day tells nothing of the spread
+              HasSubstr(R"("profit_standard_error":null)"));  // one day tells nothing of the spread
 }
 
 TEST_F(EvaluateCli, FittedThresholdsAreTold) {

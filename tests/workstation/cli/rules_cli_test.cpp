@@ -111,8 +111,8 @@ TEST_F(RulesCli, PriceTellsEachRuleAloneAndAllTogether) {
   const Json& first = lines.front();
   EXPECT_NEAR(number(first, "profit_eur_per_day_per_mwh"), 0, 1)
       << "idles wherever these prices go";
-  EXPECT_LT(number(first, "difference"), -100);
-  EXPECT_GT(number(first, "standard_error"), 0);
+  EXPECT_LT(number(first, "gain_eur_per_day_per_mwh"), -100);
+  EXPECT_GT(number(first, "gain_standard_error"), 0);
   EXPECT_THROW(rules_output("price --policy foresight --rules " + file + with_prices()), UserError);
 }
 
@@ -154,11 +154,11 @@ TEST_F(RulesLearnt, EachIsPricedAloneAndAllTogetherByStudentsThatStay) {
     EXPECT_GT(number(lines[i], "states_checked"), 1e9);
     const double with = earned(names[i]);
     EXPECT_NEAR(number(lines[i], "profit_eur_per_day_per_mwh"), with, 1e-3);
-    EXPECT_NEAR(number(lines[i], "without_eur_per_day_per_mwh"), without, 1e-3);
-    EXPECT_NEAR(number(lines[i], "difference"), with - without, 1e-3);
-    EXPECT_GE(number(lines[i], "spread"), 0);
+    EXPECT_NEAR(number(lines[i], "profit_without_rules_eur_per_day_per_mwh"), without, 1e-3);
+    EXPECT_NEAR(number(lines[i], "gain_eur_per_day_per_mwh"), with - without, 1e-3);
+    EXPECT_GE(number(lines[i], "gain_deviation_over_seeds"), 0);
   }
-  EXPECT_LT(number(lines[0], "difference"), -50) << "a third of the day is quiet";
+  EXPECT_LT(number(lines[0], "gain_eur_per_day_per_mwh"), -50) << "a third of the day is quiet";
 }
 
 /// Two rules four EUR/MWh apart: consistent, and too steep for so few epochs.

@@ -165,45 +165,6 @@ TEST(MeanValues, AreThoseOfTheReferenceInActionOrder) {
   }
 }
 
-// ---- Risk ------------------------------------------------------------------------------------
-
-TEST(Risk, CvarByHand) {
-  const Support support{-2, 2, 5};
-  const float p[] = {0.1F, 0.2F, 0.3F, 0.2F, 0.2F};
-  const auto cvar = [&](double alpha) { return conditional_value_at_risk(support, p, alpha); };
-  EXPECT_NEAR(cvar(0.1), -2, 1e-6);
-  EXPECT_NEAR(cvar(0.05), -2, 1e-6);
-  EXPECT_NEAR(cvar(0.2), (0.1 * -2 + 0.1 * -1) / 0.2, 1e-6);
-  EXPECT_NEAR(cvar(1), 0.2, 1e-6);
-}
-
-TEST(Risk, OfAllIsTheMeanAndOfLessIsLess) {
-  Random random(34);
-  for (const Support& support : kSupports) {
-    const Matrix logits = Matrix::NullaryExpr(
-        kActionCount * support.count, 6, [&] { return static_cast<float>(2 * random.normal()); });
-    const Matrix means = mean_values(support, logits);
-    EXPECT_LT((risk_values(support, logits, {1}) - means).cwiseAbs().maxCoeff(),
-              1e-5F * (support.v_max - support.v_min));
-    Matrix above = means;
-    for (const double alpha : {0.5, 0.2, 0.05}) {
-      const Matrix values = risk_values(support, logits, {alpha});
-      EXPECT_TRUE((values.array() <= above.array() + 1e-5F).all());
-      EXPECT_TRUE((values.array() >= support.v_min - 1e-5F).all());
-      above = values;
-    }
-  }
-}
-
-TEST(Risk, IsWrittenAsMeanOrCvarOfAShare) {
-  EXPECT_TRUE(parse_risk("mean").is_mean());
-  EXPECT_EQ(parse_risk("cvar:0.1").worst_share, 0.1);
-  for (const char* bad :
-       {"", "cvar", "cvar:", "cvar:0", "cvar:1.5", "cvar:-1", "cvar:0.1x", "var:1"}) {
-    EXPECT_THROW(parse_risk(bad), UserError) << bad;
-  }
-}
-
 // ---- Loss and gradient ----------------------------------------------------------------------
 
 struct GradientCase {

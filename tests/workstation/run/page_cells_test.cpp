@@ -218,7 +218,7 @@ TEST(BacktestPage, EachCellIsTheJsons) {
       {"Its s.e.", "gain_standard_error", "{:.1f}"},
       {"Gain by month", "gain_standard_error_by_month", "{:.1f}"},
       {"At wear 10", "profit_at_wear_10_eur_per_day_per_mwh", "{:.1f}"},
-      {"Turnover", "turnover_per_day", "{:.2f}"},
+      {"Cycles a day", "cycles_per_day", "{:.2f}"},
       {"Drawdown", "drawdown_eur_per_mwh", "{:.0f}"}};
   const auto rows = rows_of(page, "EUR per day per MWh of capacity, all traded days");
   ASSERT_EQ(rows.size(), 3U);

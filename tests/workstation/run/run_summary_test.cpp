@@ -52,7 +52,7 @@ TEST(EvaluationDays, ReadBackToTheBit) {
   const auto read = parse_evaluation_days_csv(text, "days.csv", {});
   EXPECT_EQ(evaluation_days_csv(read), text);
   EXPECT_EQ(comparison_csv(read), comparison_csv(written));
-  EXPECT_THROW((void)parse_evaluation_days_csv(text + "rbc,half,2023-01-29,0,0,0,0,0,true,0\n",
+  EXPECT_THROW((void)parse_evaluation_days_csv(text + "rbc,2023-01-29,0,0,0,0,half,0,0,0,\n",
                                                "days.csv", {}),
                UserError);
 }
@@ -85,7 +85,7 @@ TEST(RunSummaries, TheSameFigureStandsEverywhere) {
   EXPECT_EQ(told["charge_price_eur_per_mwh"].number(), 87.3);
   for (const JsonValue row : json.value()["policies"]) {
     if (row["policy"].text_or("") != std::string_view(kExportedPolicy)) continue;
-    const bool is_carried = row["soc"].text_or("") == std::string_view("carried");
+    const bool is_carried = row["carry_soc"].boolean() == true;
     EXPECT_EQ(fmt::format("{:.1f}", row["profit_eur_per_day_per_mwh"].number().value()),
               is_carried ? figure : friendlier);
   }
@@ -97,20 +97,6 @@ TEST(RunSummaries, TheSameFigureStandsEverywhere) {
             HasSubstr("No walk-forward figure")));
   EXPECT_THAT(format_comparison_table(run.evaluations),
               AllOf(HasSubstr(figure), HasSubstr("valued at 87.30 EUR/MWh")));
-}
-
-/// A run of an older bess-train did not value the charge: its figures are not mixed with others.
-TEST(EvaluationDays, OfAnOlderProgramAreRefusedWithTheMend) {
-  try {
-    (void)parse_evaluation_days_csv(
-        "policy,soc,date,profit_eur,cycles,switches,soc_end,throughput_mwh\n"
-        "rbc,reset,2023-01-26,1,1,1,0.5,1\n",
-        "run/evaluation_days.csv", {});
-    ADD_FAILURE() << "believed";
-  } catch (const UserError& error) {
-    EXPECT_THAT(error.what(), AllOf(HasSubstr("run/evaluation_days.csv: an older bess-train"),
-                                    HasSubstr("bess-train report --run")));
-  }
 }
 
 TEST(RunSummaries, BandsSpanTheRuns) {
@@ -246,7 +232,8 @@ TEST(RunSummaries, AnEvaluationThatWasEditedIsNotBelieved) {
       {"evaluation", {}, {{run_file::kDays, file_mark(run.file(run_file::kDays))}}, false}};
   save_run_record(run, record);
   EXPECT_EQ(load_run_summary(run).evaluations.size(), 2U);
-  for (const std::string& other : {days + "rbc,reset,2023-01-29,1e9,0,0,0,0\n", std::string()}) {
+  for (const std::string& other :
+       {days + "rbc,2023-01-29,1e9,0,0,0,false,0,0,0,\n", std::string()}) {
     write_file(run.file(run_file::kDays), other);
     try {
       (void)load_run_summary(run);

@@ -63,13 +63,6 @@ void add_price(Json& json, const PriceStatistics& price) {
   set("share_below_0", price.share_below_0);
   set("share_above_1000", price.share_above_1000);
   set("sign_flip_rate", price.sign_flip_rate);
-  // Names of before schema version 1, until the next release.
-  set("mean", price.mean);
-  set("minimum", price.minimum);
-  set("quartile_1", price.quartile_1);
-  set("median", price.median);
-  set("quartile_3", price.quartile_3);
-  set("maximum", price.maximum);
   Json lags = Json::object();
   for (std::size_t i = 0; i < kAutocorrelationLags.size(); ++i) {
     lags.set(std::to_string(kAutocorrelationLags[i]).c_str(),
@@ -87,20 +80,14 @@ Json convergence_json(const ConvergenceByMinute& convergence) {
     list.add(Json::object({{"minute", m},
                            {"rows", convergence[m].count},
                            {"error_eur_per_mwh_median", median},
-                           {"error_eur_per_mwh_mean", mean},
-                           // Names of before schema version 1, until the next release.
-                           {"median_error", median},
-                           {"mean_error", mean}}));
+                           {"error_eur_per_mwh_mean", mean}}));
   }
   return list;
 }
 
-/// Under its names, and under those of before schema version 1, until the next release.
 void add_span(Json& json, std::int64_t from_utc_s, std::int64_t until_utc_s) {
   json.set("from_utc", utc_text(from_utc_s).view());
   json.set("until_utc", utc_text(until_utc_s).view());
-  json.set("from", utc_text(from_utc_s).view());
-  json.set("until", utc_text(until_utc_s).view());
 }
 
 Json gaps_json(const std::vector<Gap>& gaps) {

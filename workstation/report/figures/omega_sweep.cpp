@@ -30,24 +30,20 @@ std::string format_omega_table(const std::vector<OmegaPoint>& points, const Eval
 }
 
 std::string omega_csv(const std::vector<OmegaPoint>& points, const Evaluation& teacher) {
-  // standard_error and gain_over_teacher are names of before schema version 1, until the next
-  // release.
   std::string csv =
       "omega,states_checked,violations_property_1,violations_property_2,violations_property_3,"
-      "divergence_nats,agreement,profit_eur_per_day_per_mwh,standard_error,gain_over_teacher,"
+      "divergence_nats,agreement,profit_eur_per_day_per_mwh,"
       "gain_standard_error,profit_standard_error,gain_eur_per_day_per_mwh,"
       "profit_standard_error_by_month,gain_standard_error_by_month\n";
   for (const OmegaPoint& p : points) {
     const PairedDifference gain = paired_difference(p.evaluation, teacher);
-    const double profit_error = p.evaluation.standard_error();
-    csv += fmt::format(
-        "{:g},{},{},{},{},{:.6g},{:.6f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{},{}\n", p.omega,
-        p.certificate.states_checked, p.certificate.violations_of(1),
-        p.certificate.violations_of(2), p.certificate.violations_of(3), p.divergence_nats,
-        p.agreement, p.evaluation.profit_eur_per_day_per_mwh(), profit_error, gain.mean,
-        gain.standard_error, profit_error, gain.mean,
-        error_text(p.evaluation.errors().by_month, 4, ""),
-        error_text(gain.standard_error_by_month, 4, ""));
+    csv += fmt::format("{:g},{},{},{},{},{:.6g},{:.6f},{:.4f},{:.4f},{:.4f},{:.4f},{},{}\n",
+                       p.omega, p.certificate.states_checked, p.certificate.violations_of(1),
+                       p.certificate.violations_of(2), p.certificate.violations_of(3),
+                       p.divergence_nats, p.agreement, p.evaluation.profit_eur_per_day_per_mwh(),
+                       gain.standard_error, p.evaluation.standard_error(), gain.mean,
+                       error_text(p.evaluation.errors().by_month, 4, ""),
+                       error_text(gain.standard_error_by_month, 4, ""));
   }
   return csv;
 }

@@ -1,4 +1,5 @@
-// The charts of pages other than a run's: lines over days, bands, dots. The page's data says what they show.
+// The charts of pages other than a run's: lines over days, bands, dots. The page's data says what
+// they show.
 "use strict";
 
 const kKinds = {
@@ -8,8 +9,8 @@ const kKinds = {
     data: {
       labels,
       datasets: series.map(([label, ink, data]) => ({
-        label, data, borderColor: colour(ink), backgroundColor: colour(ink), borderWidth: 2, pointRadius: 0,
-        pointHitRadius: 8,
+        label, data, borderColor: colour(ink), backgroundColor: colour(ink), borderWidth: 2,
+        pointRadius: 0, pointHitRadius: 8,
       })),
     },
     options: {scales: {x: axis(), y: axis({ticks: kFewTicks})}},
@@ -21,19 +22,26 @@ const kKinds = {
     data: {
       labels,
       datasets: [
-        {label: thick[0], data: thick[1], backgroundColor: colour("charge"), barThickness: 9, minBarLength: 4,
+        {label: thick[0], data: thick[1], backgroundColor: colour("charge"), barThickness: 9,
+         minBarLength: 4, grouped: false},
+        {label: thin[0], data: thin[1], backgroundColor: colour("muted"), barThickness: 2,
          grouped: false},
-        {label: thin[0], data: thin[1], backgroundColor: colour("muted"), barThickness: 2, grouped: false},
       ],
     },
-    options: {indexAxis: "y", scales: {x: axis({ticks: kFewTicks}), y: axis({ticks: {autoSkip: false}})}},
+    options: {
+      indexAxis: "y",
+      scales: {x: axis({ticks: kFewTicks}), y: axis({ticks: {autoSkip: false}})},
+    },
   }),
 
   /** `points`: [x, y, what it is] each. */
   dots: ({points, x, y}) => ({
     type: "scatter",
     data: {
-      datasets: [{data: points.map(([x, y, what]) => ({x, y, what})), backgroundColor: colour("charge"), pointRadius: 4}],
+      datasets: [{
+        data: points.map(([x, y, what]) => ({x, y, what})), backgroundColor: colour("charge"),
+        pointRadius: 4,
+      }],
     },
     options: {
       interaction: {mode: "nearest"},

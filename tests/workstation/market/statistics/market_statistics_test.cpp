@@ -70,12 +70,12 @@ TEST(Statistics, TextAndJson) {
               HasSubstr("indicative price: 1 gap, 1 minute missing"));
   EXPECT_THAT(format_statistics_text(result), HasSubstr("lag 96: -"));  // not "nan"
   const std::string json = format_statistics_json(result);
-  EXPECT_THAT(json, HasSubstr("\"median\":100"));
+  EXPECT_THAT(json, HasSubstr("\"settled_eur_per_mwh_median\":100"));
   EXPECT_THAT(json, HasSubstr("\"autocorrelation\":{\"1\":null"));  // a constant has none
   EXPECT_THAT(json, HasSubstr("{\"minute\":5,\"rows\":2,\"error_eur_per_mwh_median\":10,"));
   EXPECT_THAT(
       json,
-      HasSubstr("{\"from_utc\":\"1970-01-01T00:20:00Z\",\"until_utc\":\"1970-01-01T00:21:00Z\","));
+      HasSubstr("{\"from_utc\":\"1970-01-01T00:20:00Z\",\"until_utc\":\"1970-01-01T00:21:00Z\"}"));
 }
 
 TEST(Statistics, RealQuarterHoursOf2023) {

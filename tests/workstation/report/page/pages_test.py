@@ -324,7 +324,7 @@ class Pages(unittest.TestCase):
             self.row_holds(name, cells, {
                 "Profit": of[PROFIT], "s.e. over days": of[ERRORS[0]], "By month": of[ERRORS[1]],
                 "Gain": gain, "Its s.e.": error, "Gain by month": by_months, "At wear 10": of[WEAR],
-                "Turnover": 2 * of["cycles_per_day"], "Drawdown": of["drawdown_eur_per_mwh"]})
+                "Cycles a day": of["cycles_per_day"], "Drawdown": of["drawdown_eur_per_mwh"]})
         with open(os.path.join(self.folder.name, "backtest/backtest.csv"), encoding="utf-8") as file:
             lines = {(line["policy"], line["month"]): line for line in csv.DictReader(file)}
         fitted = {month["month"]: month["fitted_days"] for month in result["months"]}
@@ -351,7 +351,8 @@ class Pages(unittest.TestCase):
             return tab.run(f"[...document.querySelectorAll('{of} li')].map((item) => item.textContent)")
         self.assertEqual(items("ul.note"), [f"{month['month']} is not traded: {month['reason']}"
                                             for month in result["not_traded"]])
-        self.assertEqual(items(".legend"), [policy["policy"] for policy in result["policies"]])
+        self.assertEqual(tab.run("shownCharts.get('profit').chart.data.datasets.map((line) => line.label)"),
+                         [policy["policy"] for policy in result["policies"]])
 
     # Many runs.
 
