@@ -34,7 +34,6 @@ void add_sweep_run(ProgramCommand& sweep);
 void add_sweep_task(ProgramCommand& sweep);
 void add_sweep_status(ProgramCommand& sweep);
 void add_sweep_collect(ProgramCommand& sweep);
-void add_sweep_check(ProgramCommand& sweep);
 void add_config_command(ProgramCommand& app);
 void add_schema_command(ProgramCommand& app);
 

@@ -13,7 +13,6 @@
 #include "workstation/cli/commands.h"
 #include "workstation/run/learnt_for.h"
 #include "workstation/run/run_plan.h"
-#include "workstation/run/run_seeds.h"
 #include "workstation/run/run_stages.h"
 #include "workstation/run/stage_table.h"
 
@@ -25,7 +24,6 @@ namespace fs = std::filesystem;
 struct RunArguments {
   RunRequest request;
   std::string out;
-  int seeds = 1;
   bool json = false;
 };
 
@@ -60,56 +58,6 @@ void run_single(const RunArguments& options) {
   }
 }
 
-/// Every seed's request; all are planned before the first one writes.
-std::vector<RunRequest> requests_of(const RunArguments& options) {
-  const RunFolder whole{options.request.out};
-  if (fs::exists(whole.record())) {
-    fail("{}: holds a run of one seed; give another --out", whole.path.string());
-  }
-  std::vector<RunRequest> requests;
-  const std::uint64_t first = options.request.common.seed.value_or(1);
-  for (int i = 0; i < options.seeds; ++i) {
-    RunRequest request = options.request;
-    request.common.seed = first + static_cast<std::uint64_t>(i);
-    request.out = seed_folder(options.request.out, *request.common.seed);
-    (void)plan_run(request);
-    requests.push_back(std::move(request));
-  }
-  return requests;
-}
-
-void run_seeds(const RunArguments& options) {
-  std::vector<RunSummary> finished;
-  std::vector<std::string> failures;
-  std::vector<UnprovedSeed> unproved;
-  for (const RunRequest& request : requests_of(options)) {
-    std::FILE* messages = options.json ? stderr : stdout;
-    fmt::print(messages, "seed {}\n", *request.common.seed);
-    try {
-      run_one(request, messages);
-      finished.push_back(load_run_summary({request.out}));
-    } catch (const ProofFailed& failed) {  // the other seeds may do better
-      failures.push_back(fmt::format("seed {}: {}", *request.common.seed, failed.what()));
-      fmt::print(stderr, "bess-train: {}\n", failures.back());
-      const std::string reason = failed.what();
-      unproved.push_back({request.out.filename().string(), reason.substr(0, reason.find('\n'))});
-    }
-  }
-  const std::vector<Band> bands = bands_of(finished);
-  if (!finished.empty()) write_seeds_report(options.request.out, finished, unproved);
-  if (options.json) {
-    for (const RunSummary& run : finished) fmt::print("{}\n", summary_json(run).line());
-    fmt::print("{}\n", bands_json(bands, finished.size()));
-  } else if (!finished.empty()) {
-    fmt::print("\n{}\n{}: seeds.html and seeds.csv, and a folder a seed\n",
-               format_bands(bands, finished.size()), options.request.out.string());
-  }
-  if (!failures.empty()) {
-    fail("{} of {} seeds were not proved; the first is {}", failures.size(), options.seeds,
-         failures.front());
-  }
-}
-
 }  // namespace
 
 void add_run_command(ProgramCommand& app) {
@@ -126,12 +74,7 @@ void add_run_command(ProgramCommand& app) {
                "Go on with the folder's run, to the same bytes; what is not given is the folder's");
   command.option("--from-teacher", request.from_teacher,
                  "Start at the correction, with this teacher: its file or its run's folder");
-  command
-      .option("--seeds", options->seeds,
-              "This many runs, from --seed on, in OUT/seed-1 and so on, and their bands")
-      .range(1, 1000);
-  command.flag("--json", options->json,
-               "One JSON object; with --seeds one a line and seed, and bands");
+  command.flag("--json", options->json, "One JSON object");
   request.common.add_market(command);
   request.common.add_config(command);
   request.common.add_seed_and_threads(command);
@@ -146,10 +89,10 @@ void add_run_command(ProgramCommand& app) {
       "  bess-train run --prices market.csv.gz --config my.toml --seed 7 --out runs/second\n"
       "  bess-train run --prices market.csv.gz --from-teacher runs/second --config "
       "other.toml --out runs/third\n"
-      "  bess-train run --prices market.csv.gz --seeds 3 --out runs/seeds");
+      "Several seeds: bess-train sweep plan --seeds 3");
   command.runs([options] {
     options->request.out = options->out;
-    options->seeds > 1 ? run_seeds(*options) : run_single(*options);
+    run_single(*options);
   });
 }
 

@@ -36,7 +36,7 @@ std::vector<RunFolder> runs_in(const std::string& name) {
   std::ranges::sort(runs, [](const RunFolder& a, const RunFolder& b) {
     const std::string x = a.path.string();
     const std::string y = b.path.string();
-    return std::pair(x.size(), x) < std::pair(y.size(), y);  // seed-9 before seed-10
+    return std::pair(x.size(), x) < std::pair(y.size(), y);  // run-9 before run-10
   });
   return runs;
 }
@@ -79,7 +79,7 @@ void add_runs_commands(ProgramCommand& app) {
   runs.requires_subcommand();
   ProgramCommand command = runs.subcommand(
       "compare", "What the exported policy of each run earned, and what the runs differ in");
-  command.option("folders", options->folders, "Run folders, or folders of 'run --seeds'")
+  command.option("folders", options->folders, "Run folders, or folders of run folders")
       .required();
   command.flag("--json", options->json, "One JSON object a line and run");
   command.option("--html", options->html,

@@ -12,7 +12,6 @@ void add_sweep_commands(ProgramCommand& app) {
   add_sweep_task(sweep);
   add_sweep_status(sweep);
   add_sweep_collect(sweep);
-  add_sweep_check(sweep);
 }
 
 }  // namespace bess

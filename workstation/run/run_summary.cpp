@@ -60,33 +60,6 @@ std::string what_differs(const std::vector<RunSummary>& runs) {
   return text;
 }
 
-/// The policy in every run that has it.
-std::vector<Evaluation> of_all_runs(const std::vector<RunSummary>& runs, const std::string& policy,
-                                    EvaluationField field) {
-  std::vector<Evaluation> all;
-  for (const RunSummary& run : runs) {
-    const auto same = std::ranges::find(run.evaluations, policy, &NamedEvaluation::name);
-    if (same != run.evaluations.end()) all.push_back((*same).*field);
-  }
-  return all;
-}
-
-Band band_of(const std::string& policy, const char* soc, const std::vector<Evaluation>& all) {
-  const auto n = static_cast<double>(all.size());
-  Band band{policy, soc, 0, 0, 0, 0, 0, mean_of(all).errors(), {}};
-  std::vector<double> profits;
-  for (const Evaluation& evaluation : all) {
-    profits.push_back(evaluation.profit_eur_per_day_per_mwh());
-    band.mean += profits.back() / n;
-    band.mean_at_reference_wear +=
-        evaluation.profit_at_wear_eur_per_day_per_mwh(kReferenceWearEurPerMwh) / n;
-  }
-  for (const double p : profits) band.deviation += (p - band.mean) * (p - band.mean);
-  band.deviation = std::sqrt(band.deviation / (n - 1));  // one run has none
-  std::tie(band.low, band.high) = std::pair(std::ranges::min(profits), std::ranges::max(profits));
-  return band;
-}
-
 /// Numbers that are compared are those that the run wrote.
 void require_unchanged(const RunRecord& record, const RunFolder& folder) {
   for (const StageRecord& stage : record.stages) {
@@ -214,23 +187,6 @@ Json summary_json(const RunSummary& run) {
   }
   json.set("policies", std::move(policies));
   return json;
-}
-
-std::vector<Band> bands_of(const std::vector<RunSummary>& runs) {
-  std::vector<Band> bands;
-  if (runs.empty()) return bands;
-  for (const auto& [soc, field] : kWays) {
-    std::optional<Evaluation> first;
-    for (const NamedEvaluation& named : runs.front().evaluations) {
-      const std::vector<Evaluation> all = of_all_runs(runs, named.name, field);
-      if (all.size() != runs.size()) continue;
-      bands.push_back(band_of(named.name, soc, all));
-      const Evaluation mean = mean_of(all);
-      if (first) bands.back().gain = paired_difference(mean, *first);
-      if (!first) first = mean;
-    }
-  }
-  return bands;
 }
 
 std::string format_runs_table(const std::vector<RunSummary>& runs) {

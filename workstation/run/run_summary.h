@@ -1,5 +1,4 @@
-// Finished runs as figures: what `run --json` prints, `run --seeds` makes bands of, and `runs
-// compare` lines up.
+// Finished runs as figures: what `run --json` prints and `runs compare` lines up.
 #pragma once
 
 #include <optional>
@@ -30,18 +29,6 @@ RunSummary load_run_summary(const RunFolder& folder);
 
 /// One object: the run, its figures and every policy in both ways of counting.
 Json summary_json(const RunSummary& run);
-
-/// Mean, deviation and range over runs with the same days, of one policy in one way of counting;
-/// EUR per day per MWh.
-struct Band {
-  std::string policy, soc;
-  double mean, deviation, low, high;
-  double mean_at_reference_wear;
-  DayErrors errors;                      ///< over days, of the mean over runs
-  std::optional<PairedDifference> gain;  ///< of that over the first policy's; none for itself
-};
-/// None of no run.
-std::vector<Band> bands_of(const std::vector<RunSummary>& runs);
 
 /// The value of a key for people, in one line; rules by what they say.
 std::string value_text(const RunRecord& record, const std::string& key);

@@ -1,6 +1,5 @@
-// The tables of the seeds' page and of the backtest's, cell by cell against the JSON of the same,
-// and that JSON against its schema: every key is there, none besides, and null stands where it may
-// alone.
+// The tables of the backtest's page, cell by cell against the JSON of the same, and that JSON
+// against its schema: every key is there, none besides, and null stands where it may alone.
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
@@ -12,7 +11,6 @@
 #include "workstation/report/backtest_report.h"
 #include "workstation/report/figures/html.h"
 #include "workstation/report/figures/page_files.h"
-#include "workstation/run/run_seeds.h"
 
 namespace bess {
 namespace {
@@ -107,89 +105,6 @@ Evaluation earned(double eur) {
                                1 / 3.0 + day, 4, 0.5, 2 / 3.0});
   }
   return evaluation;
-}
-
-RunSummary run_of(const std::string& seed, double eur) {
-  RunSummary run{{"runs/seed-" + seed}, {}, {}};
-  run.evaluations = {{"rbc", earned(100), earned(90)},
-                     {"rbc-tuned", earned(-170), earned(-150)},
-                     {kExportedPolicy, earned(eur), earned(0.9 * eur)}};
-  run.record.identity = {{"prices", "the same"}, {"seed", seed}};
-  run.record.figures = RunFigures{"made by hand", "0123abcd", 1, 2, 0};
-  return run;
-}
-
-const std::vector<Column> kBandColumns{
-    {"Mean", "profit_eur_per_day_per_mwh_mean", "{:.1f}"},
-    {"s.e. over days", "profit_standard_error", "{:.1f}"},
-    {"By month", "profit_standard_error_by_month", "{:.1f}"},
-    {"Gain", "gain_eur_per_day_per_mwh", "{:+.1f}"},
-    {"Its s.e.", "gain_standard_error", "{:.1f}"},
-    {"Gain by month", "gain_standard_error_by_month", "{:.1f}"},
-    {"s.d. over seeds", "profit_eur_per_day_per_mwh_deviation", "{:.1f}"},
-    {"Lowest", "profit_eur_per_day_per_mwh_min", "{:.1f}"},
-    {"Highest", "profit_eur_per_day_per_mwh_max", "{:.1f}"},
-    {"Mean at wear 10", "profit_at_wear_10_eur_per_day_per_mwh_mean", "{:.1f}"}};
-
-class SeedsPage : public testing::TestWithParam<std::vector<double>> {};
-
-TEST_P(SeedsPage, EachCellIsTheJsons) {
-  std::vector<RunSummary> runs;
-  for (const double eur : GetParam()) runs.push_back(run_of(std::to_string(runs.size() + 1), eur));
-  const TemporaryFolder folder;
-  write_seeds_report(folder.file(""), runs);
-  const std::string page = read_file(folder.file("seeds.html"));
-  const Json json = Json::parse(bands_json(bands_of(runs), runs.size()));
-  EXPECT_EQ(json.value()["runs"].number(), static_cast<double>(runs.size()));
-  std::size_t cells = 0;
-  for (const auto& [caption, is_carried] :
-       {std::pair{"Charge carried over from day to day", true},
-        {"Each day starts at the same charge: the friendlier accounting", false}}) {
-    const std::vector<ShownRow> rows = rows_of(page, caption);
-    auto row = rows.begin();
-    for (const JsonValue band : json.value()["bands"]) {
-      if (band["carry_soc"].boolean() != is_carried) continue;
-      ASSERT_NE(row, rows.end());
-      cells += row->cells.size();
-      expect_row(*row++, band, kBandColumns);
-    }
-    EXPECT_EQ(row, rows.end());
-  }
-  EXPECT_EQ(cells, 2 * 3 * kBandColumns.size());
-  for (std::size_t r = 0; r < runs.size(); ++r) {  // the table of the runs, each of its own JSON
-    const Json summary = Json::parse(summary_json(runs[r]).line());
-    const JsonValue told = summary.value()["headline"];
-    const ShownRow row = rows_of(page, "The runs").at(r);
-    EXPECT_EQ(row.cells.at(0).second, runs[r].record.value("seed"));
-    EXPECT_EQ(row.cells.at(1).second, shown(told["profit_eur_per_day_per_mwh"], "{:.1f}"));
-    EXPECT_EQ(row.cells.at(2).second, shown(told["profit_standard_error"], "{:.1f}"));
-    EXPECT_EQ(row.cells.at(3).second, shown(told["profit_standard_error_by_month"], "{:.1f}"));
-    EXPECT_EQ(row.cells.at(4).second,
-              shown(told["profit_from_same_soc_eur_per_day_per_mwh"], "{:.1f}"));
-    EXPECT_EQ(row.cells.at(5).second, summary.value()["weights_hash"].text_or(""));
-    EXPECT_EQ(row.cells.at(6).second, shown(summary.value()["violations_plain"], "{:.0f}"));
-  }
-}
-
-TEST_P(SeedsPage, TheAnswerIsAsTheSchemaSays) {
-  std::vector<RunSummary> runs;
-  for (const double eur : GetParam()) runs.push_back(run_of(std::to_string(runs.size() + 1), eur));
-  const Json schema = Json::parse(page_file("answers.schema.json"));
-  const JsonValue kinds = schema.value()["$defs"];
-  const Json json = Json::parse(bands_json(bands_of(runs), runs.size()));
-  expect_kind(json.value(), kinds["answer_run_bands"]);
-  for (const JsonValue band : json.value()["bands"]) expect_kind(band, kinds["band"]);
-}
-
-INSTANTIATE_TEST_SUITE_P(Runs, SeedsPage,
-                         testing::Values(std::vector<double>{240}, std::vector<double>{240, -480},
-                                         std::vector<double>{240, 250.5, 1e5}));
-
-/// With --json a machine gets its answer even when no seed was proved.
-TEST(SeedsPage, NoRunIsAnAnswerToo) {
-  const Json json = Json::parse(bands_json(bands_of({}), 0));
-  EXPECT_EQ(json.value()["runs"].number(), 0);
-  EXPECT_EQ(json.value()["bands"].size(), 0U);
 }
 
 TEST(BacktestPage, EachCellIsTheJsons) {

@@ -15,7 +15,6 @@
 #include "workstation/report/evaluation_days.h"
 #include "workstation/report/headline.h"
 #include "workstation/report/rule_prices.h"
-#include "workstation/run/run_seeds.h"
 
 namespace bess {
 namespace {
@@ -97,80 +96,6 @@ TEST(RunSummaries, TheSameFigureStandsEverywhere) {
             HasSubstr("No walk-forward figure")));
   EXPECT_THAT(format_comparison_table(run.evaluations),
               AllOf(HasSubstr(figure), HasSubstr("valued at 87.30 EUR/MWh")));
-}
-
-TEST(RunSummaries, BandsSpanTheRuns) {
-  const std::vector<Band> bands = bands_of({run_of("1", 24), run_of("2", 48), run_of("3", 72)});
-  ASSERT_EQ(bands.size(), 4U);
-  const Band& band = bands[1];
-  EXPECT_EQ(band.policy, kExportedPolicy);
-  EXPECT_EQ(band.soc, "reset");
-  EXPECT_NEAR(band.high - band.low, 48 / 3.0 / 8, 1e-12);  // EUR a day and MWh of 8
-  EXPECT_NEAR(band.mean, (band.low + band.high) / 2, 1e-12);
-  EXPECT_NEAR(band.deviation, (band.high - band.low) / 2, 1e-12);
-  EXPECT_EQ(bands[0].deviation, 0) << "a baseline knows no seed";
-}
-
-TEST(RunSummaries, BandsAreInTableReportAndJson) {
-  const TemporaryFolder folder;
-  const std::vector<RunSummary> runs{run_of("1", 24), run_of("2", 48)};
-  const std::vector<Band> bands = bands_of(runs);
-  EXPECT_THAT(format_bands(bands, 2), AllOf(HasSubstr("lowest"), HasSubstr(kExportedPolicy)));
-  EXPECT_THAT(bands_json(bands, 2), AllOf(HasSubstr("\"runs\":2"), HasSubstr("\"highest\":")));
-  write_seeds_report(folder.file(""), runs);
-  EXPECT_THAT(read_file(folder.file("seeds.html")),
-              AllOf(HasSubstr("seed-2"), HasSubstr("Highest")));
-  EXPECT_EQ(std::ranges::count(read_file(folder.file("seeds.csv")), '\n'), 1 + 4);
-}
-
-/// Four days of two months: what seeds differ in is one thing, what days differ in another.
-TEST(RunSummaries, SeedsTellDayErrorsBesideTheirSpreadAndWhereTheyComeFrom) {
-  const auto days = [](double january_eur, double february_eur) {
-    Evaluation evaluation = evaluation_of(0);
-    evaluation.days.clear();
-    for (const char* date : {"2023-01-30", "2023-01-31"}) {
-      evaluation.days.push_back({date, january_eur, 1, 1, 0.5});
-    }
-    for (const char* date : {"2023-02-27", "2023-02-28"}) {
-      evaluation.days.push_back({date, february_eur, 1, 1, 0.5});
-    }
-    return evaluation;
-  };
-  std::vector<RunSummary> runs{run_of("1", 0), run_of("2", 0)};
-  for (RunSummary& run : runs) {
-    const double seed_eur = run.record.value("seed") == "2" ? 16 : 0;
-    run.record.prices_name = "market.csv.gz";
-    run.evaluations = {
-        {"rbc", days(0, 0), days(0, 0)},
-        {kExportedPolicy, days(16 + seed_eur, 32 + seed_eur), days(80 + seed_eur, 160 + seed_eur)}};
-  }
-  // Carried over: 11 and 21 a MWh and day in January and February, the mean of both seeds.
-  const std::vector<Band> bands = bands_of(runs);
-  const Band& band = bands.back();
-  EXPECT_DOUBLE_EQ(band.mean, 16);
-  EXPECT_DOUBLE_EQ(band.errors.by_month, 5);
-  EXPECT_DOUBLE_EQ(band.errors.plain, std::sqrt(100.0 / 3 / 4));
-  EXPECT_DOUBLE_EQ(band.deviation, std::sqrt(2.0));
-  EXPECT_DOUBLE_EQ(band.gain.value().mean, 16);
-  EXPECT_DOUBLE_EQ(band.gain.value().standard_error_by_month, 5);
-  EXPECT_FALSE(bands.front().gain.has_value());
-  EXPECT_THAT(format_bands(bands, 2),
-              AllOf(HasSubstr("    16.0    2.9      5.0    +16.0    2.9      5.0      1.4 "),
-                    HasSubstr("2 months tell it to within 71 % only")));
-  EXPECT_THAT(bands_json(bands, 2), AllOf(HasSubstr("\"profit_standard_error_by_month\":5"),
-                                          HasSubstr("\"gain_standard_error_by_month\":5")));
-  const TemporaryFolder folder;
-  write_seeds_report(folder.file(""), runs, {{"seed-3", "41 violations <left>"}});
-  EXPECT_THAT(read_file(folder.file("seeds.html")),
-              AllOf(HasSubstr("<a href=\"seed-1/report.html\">seed-1</a>"),
-                    HasSubstr("<a href=\"seed-2/report.html\">seed-2</a>"),
-                    HasSubstr("<a href=\"seed-3/report.html\">seed-3</a> was not proved"),
-                    HasSubstr("41 violations &lt;left&gt;"),
-                    HasSubstr("standard error over days is 2.9, and 5.0 by month"),
-                    HasSubstr("<td data-label=\"Gain by month\">5.0</td>"),
-                    HasSubstr("<dt>prices</dt><dd>market.csv.gz: the same</dd>"),
-                    HasSubstr("<dt>command</dt><dd>report_test"),
-                    HasSubstr("local days 26 to the end of each month")));
 }
 
 TEST(RunSummaries, TheTableSaysWhatRunsEarnedAndDifferIn) {

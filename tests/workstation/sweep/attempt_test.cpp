@@ -15,7 +15,6 @@
 #include "shared/host/user_error.h"
 #include "tests/support/temporary_folder.h"
 #include "workstation/base/random.h"
-#include "workstation/sweep/check_share.h"
 #include "workstation/sweep/task_states.h"
 
 namespace bess {
@@ -129,23 +128,6 @@ TEST_F(Attempt, AnAttemptElsewhereIsLeftToItself) {
   EXPECT_EQ(attempt_task(folder_, 6, writing("a")), TaskEnd::kPublished);
   EXPECT_TRUE(fs::exists(other / "teacher.bin"));
   EXPECT_THAT(failures_of(folder_, 6), IsEmpty());
-}
-
-TEST_F(Attempt, CheckedAgainItMustBeTheSame) {
-  attempt_task(folder_, 7, writing("a"));
-  EXPECT_THAT(check_task(folder_, 7, writing("a")), IsEmpty());
-  EXPECT_THAT(check_task(folder_, 7, writing("b")), SizeIs(2));
-  EXPECT_FALSE(fs::exists(folder_.path / "checks"));
-}
-
-TEST(DrawnShare, IsSeededAndAtLeastOne) {
-  std::vector<int> done;
-  for (int task = 1; task <= 250; ++task) done.push_back(task);
-  EXPECT_THAT(drawn_share(done, 1, 1), SizeIs(3));
-  EXPECT_EQ(drawn_share(done, 1, 1), drawn_share(done, 1, 1));
-  EXPECT_NE(drawn_share(done, 1, 1), drawn_share(done, 1, 2));
-  EXPECT_EQ(drawn_share(done, 100, 1), done);
-  EXPECT_THAT(drawn_share({9}, 0.001, 1), ElementsAre(9));
 }
 
 /// Published are all tasks, each whole and as it must be, and nothing else is left.

@@ -1,5 +1,5 @@
-// The charts of pages other than a run's: lines over days, bands, dots. The page's data says what
-// they show.
+// The charts of pages other than a run's: lines over days, dots. The page's data says what they
+// show.
 "use strict";
 
 const kKinds = {
@@ -14,24 +14,6 @@ const kKinds = {
       })),
     },
     options: {scales: {x: axis(), y: axis({ticks: kFewTicks})}},
-  }),
-
-  /** Of each label a thin interval [from, to], and a thick one upon it. */
-  bands: ({labels, thin, thick}) => ({
-    type: "bar",
-    data: {
-      labels,
-      datasets: [
-        {label: thick[0], data: thick[1], backgroundColor: colour("charge"), barThickness: 9,
-         minBarLength: 4, grouped: false},
-        {label: thin[0], data: thin[1], backgroundColor: colour("muted"), barThickness: 2,
-         grouped: false},
-      ],
-    },
-    options: {
-      indexAxis: "y",
-      scales: {x: axis({ticks: kFewTicks}), y: axis({ticks: {autoSkip: false}})},
-    },
   }),
 
   /** `points`: [x, y, what it is] each. */

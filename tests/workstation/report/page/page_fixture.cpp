@@ -4,8 +4,6 @@
 //   FOLDER          a run
 //   FOLDER/ruled    a run with rules, proved
 //   FOLDER/failed   a run with rules that its student does not obey
-//   FOLDER/seeds    the same run from three seeds
-//   FOLDER/seeds    also bands.json and runs.json, as 'run --seeds --json' and 'runs compare --json' print them
 //   FOLDER/backtest a walk-forward backtest, with its JSON
 //   FOLDER/many     the folders of many runs, without their page (many_runs.h)
 #include <fmt/core.h>
@@ -28,7 +26,6 @@
 #include "workstation/report/shown_policies.h"
 #include "workstation/rules/rule_file.h"
 #include "workstation/rules/ruled_policy.h"
-#include "workstation/run/run_seeds.h"
 #include "workstation/student/exported_policy.h"
 #include "workstation/student/student_policy.h"
 #include "workstation/student/verify.h"
@@ -334,34 +331,6 @@ void write_runs(const std::filesystem::path& folder) {
   write_run_page(failed, folder / "failed");
 }
 
-void write_seeds(const std::filesystem::path& folder) {
-  std::vector<RunSummary> runs;
-  std::string json;
-  for (const std::uint64_t seed : {1, 2, 3}) {
-    RunSummary run{{seed_folder(folder, seed)}, {}, judged_baselines()};
-    NamedEvaluation student = judged_baselines()[2];  // what each seed earned differs a little
-    for (Evaluation* evaluation : {&student.day_reset, &student.carried_over}) {
-      for (DayResult& day : evaluation->days) {
-        day.profit_eur *= 1 + 0.01 * (static_cast<double>(seed) - 2);
-      }
-    }
-    student.name = kCorrectedName;
-    run.evaluations.insert(run.evaluations.end() - 1, student);
-    RunConfig config;
-    config.set_seed(seed);
-    run.record.prices_name = "prices.csv.gz";
-    run.record.identity = identity_of(config, "crc32 0123abcd, 4711 bytes", "");
-    run.record.figures = RunFigures{"made by hand", fmt::format("{}123abcd", seed),
-                                    kLatticeStateCount, 2, static_cast<std::int64_t>(1000 * seed)};
-    run.record.figures->last_learnt_day = "2023-02-25";
-    json += summary_json(run).line() + "\n";
-    runs.push_back(std::move(run));
-  }
-  write_seeds_report(folder, runs);
-  write_file(folder / "bands.json", bands_json(bands_of(runs), runs.size()));
-  write_file(folder / "runs.json", json);
-}
-
 /// The days of one month.
 Evaluation month_of(Evaluation evaluation, const std::string& month) {
   std::erase_if(evaluation.days,
@@ -397,11 +366,10 @@ int main(int argc, char** argv) {
   if (argc != 2) return 2;
   bess::set_market_time_zone();
   const std::filesystem::path folder = argv[1];
-  for (const char* part : {"ruled", "failed", "seeds", "backtest", "many"}) {
+  for (const char* part : {"ruled", "failed", "backtest", "many"}) {
     std::filesystem::create_directories(folder / part);
   }
   bess::write_runs(folder);
-  bess::write_seeds(folder / "seeds");
   bess::write_backtest(folder / "backtest");
   bess::write_many_runs(folder / "many", bess::judged_baselines());
   return 0;

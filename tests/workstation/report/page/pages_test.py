@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """pages_test.py FIXTURE_PROGRAM BESS_TRAIN: every page that bess-train writes, in a headless Chromium: of
-a run, of one with rules, of one whose proof failed, of seeds, of a backtest and of many runs. What they look
+a run, of one with rules, of one whose proof failed, of a backtest and of many runs. What they look
 like, narrow and wide, light and dark; that every number in their tables is that of their JSON; how many runs
 are sorted; and the rules on the maps, held against what the C++ counts.
 
@@ -22,7 +22,7 @@ FIXTURE = sys.argv.pop(1) if len(sys.argv) > 1 else ""
 BESS_TRAIN = sys.argv.pop(1) if len(sys.argv) > 1 else ""
 WIDTHS_PX = (1440, 800, 375)
 RUNS = {"run": "", "ruled": "ruled", "failed": "failed"}
-OTHERS = {"seeds": "seeds/seeds.html", "backtest": "backtest/backtest.html", "many": "many.html"}
+OTHERS = {"backtest": "backtest/backtest.html", "many": "many.html"}
 NOTHING = "\u2013"
 FINISHED = ("run-10", "run-9", "ruled", "losing", "other-days")
 UNFINISHED = ("failed", "stopped", "edited")
@@ -31,10 +31,6 @@ GAIN = "gain_eur_per_day_per_mwh"
 WEAR = "profit_at_wear_10_eur_per_day_per_mwh"
 ERRORS = ("profit_standard_error", "profit_standard_error_by_month")
 GAIN_AND_ERRORS = (GAIN, "gain_standard_error", "gain_standard_error_by_month")
-BAND_COLUMNS = {"Mean": PROFIT + "_mean", "s.e. over days": ERRORS[0], "By month": ERRORS[1],
-                "Gain": GAIN, "Its s.e.": GAIN_AND_ERRORS[1], "Gain by month": GAIN_AND_ERRORS[2],
-                "s.d. over seeds": PROFIT + "_deviation", "Lowest": PROFIT + "_min",
-                "Highest": PROFIT + "_max", "Mean at wear 10": WEAR + "_mean"}
 COMPLETE = "[...document.querySelectorAll('canvas.map')].every((canvas) => canvas.dataset.complete === 'true')"
 NUMBER = re.compile(r"[-+\u2212]?\d[\d,]*(?:\.\d+)?")
 
@@ -270,47 +266,6 @@ class Pages(unittest.TestCase):
           return table.caption.textContent; })""")
         return {caption: self.rows_of(tab, f'table[data-at="{i}"]')
                 for i, caption in enumerate(captions)}
-
-    def test_seeds_are_those_of_the_json(self):
-        tab, runs = self.tab("seeds"), self.lines_of("seeds/runs.json")
-        bands = {(band["policy"], band["carry_soc"]): band
-                 for band in self.json_of("seeds/bands.json")["bands"]}
-        tables = list(self.tables_of(tab).values())
-        self.assertEqual(len(tables), 3)
-        for carried, rows in zip((True, False), tables[1:]):
-            self.assertEqual([name for name, _ in rows],
-                             [policy for policy, way in bands if way == carried])
-            for name, cells in rows:
-                band = bands[name, carried]
-                self.row_holds(name, cells, {label: band[key] for label, key in BAND_COLUMNS.items()})
-        for (name, cells), run in zip(tables[0], runs, strict=True):
-            self.assertEqual(name, os.path.basename(run["run"]))
-            of = run["headline"]
-            self.row_holds(name, cells, {
-                "Seed": run["seed"], "Charge carried over": of[PROFIT],
-                "s.e. over days": of[ERRORS[0]], "By month": of[ERRORS[1]],
-                "Same charge each day": of["profit_from_same_soc_eur_per_day_per_mwh"],
-                "Weights": run["weights_hash"],
-                "Violations without correction": run["violations_plain"]})
-
-    def test_the_text_of_seeds_is_that_of_the_json(self):
-        tab, runs = self.tab("seeds"), self.lines_of("seeds/runs.json")
-        own = {band["carry_soc"]: band for band in self.json_of("seeds/bands.json")["bands"]
-               if band["policy"] == "corrected student"}
-        self.says(tab.run("document.getElementById('mean').textContent"),
-                  [own[True][PROFIT + "_mean"], len(runs), *[own[True][key] for key in ERRORS],
-                   *[own[True][PROFIT + end] for end in ("_min", "_max", "_deviation")]])
-        note = tab.run("document.querySelector('#mean + .note').textContent")
-        accounting, at, judged = note.partition("Test days: ")
-        charge = [mean([run["headline"][key] for run in runs])
-                  for key in ("charge_price_eur_per_mwh", "charge_value_eur_per_day_per_mwh")]
-        self.says(accounting, [*charge, own[False][PROFIT + "_mean"]])
-        days = runs[0]["judged_days"]
-        self.assertTrue(at)
-        self.assertIn(f"{days['days']} days in {days['months']} months from {days['from']} to "
-                      f"{days['to']}", judged)
-        self.assertIn(f"Learning saw days to {days['last_learnt_day']}, later than "
-                      f"{days['days_before_last_learnt']} of them", judged)
 
     def test_a_backtest_is_that_of_its_json(self):
         tab, result = self.tab("backtest"), self.json_of("backtest/backtest.json")
