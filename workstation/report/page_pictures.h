@@ -1,6 +1,7 @@
-// The numbers of every picture that the page's scripts draw, wear as configured: page/*.js computes
-// them once more from the page's data, and a browser test holds the two against each other. Those
-// of lost_page.h are its own.
+// The numbers of the pictures that the page's scripts draw and no other file of the run has: every
+// step of its days, the maps as they open, the prices. Those of lost_page.h are its own; days,
+// checkpoints and losses lie in evaluation_days.csv, training_curve.csv, student_checkpoints.csv
+// and distil_curve.csv.
 #pragma once
 
 #include <vector>

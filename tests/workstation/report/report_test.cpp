@@ -68,7 +68,7 @@ TEST(Report, TheNumbersOfItsPicturesLieBesideThePage) {
   for (const std::string& name : write_report(run.inputs(), folder.file("run"))) {
     EXPECT_TRUE(fs::exists(folder.file("run/" + name))) << name;
   }
-  for (const char* name : {"validation_teacher", "distillation", "policy_map", "prices_seen"}) {
+  for (const char* name : {"policy_map", "prices_seen"}) {
     EXPECT_GT(CsvTable::read(folder.file(fmt::format("run/{}.csv", name))).row_count(), 0U) << name;
   }
 }

@@ -71,16 +71,6 @@ std::vector<DistilPoint> parse_distil_curve_csv(std::string_view text, std::stri
   return curve;
 }
 
-PictureTable distil_losses_table(const std::string& name, const std::vector<DistilPoint>& curve) {
-  PictureTable table{name, {"epoch", "teacher_loss", "correction_loss", "visited_loss"}, {}};
-  for (const DistilPoint& p : curve) {
-    table.rows.push_back({fmt::format("{}", p.epoch), fmt::format("{:.9g}", p.teacher_loss),
-                          fmt::format("{:.9g}", p.correction_loss),
-                          fmt::format("{:.9g}", p.visited_loss)});
-  }
-  return table;
-}
-
 std::vector<double> centred_mean(const std::vector<double>& values, int reach) {
   std::vector<double> smoothed;
   const int count = static_cast<int>(values.size());

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "workstation/correction/distil.h"
-#include "workstation/report/figures/picture_table.h"
 #include "workstation/rl/train.h"
 
 namespace bess {
@@ -17,9 +16,6 @@ inline constexpr int kSmoothingReach = 2;
 
 std::string training_curve_csv(const std::vector<CurvePoint>& curve);
 std::string distil_curve_csv(const std::vector<DistilPoint>& curve);
-
-/// The losses of the distillation, a row an epoch that was looked at.
-PictureTable distil_losses_table(const std::string& name, const std::vector<DistilPoint>& curve);
 
 /// Mean over each point and up to `reach` neighbours on either side.
 std::vector<double> centred_mean(const std::vector<double>& values, int reach);

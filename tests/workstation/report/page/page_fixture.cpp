@@ -20,6 +20,8 @@
 #include "tests/workstation/report/report_test_support.h"
 #include "workstation/chain/policy_factory.h"
 #include "workstation/report/backtest_report.h"
+#include "workstation/report/evaluation_days.h"
+#include "workstation/report/figures/curves.h"
 #include "workstation/report/figures/policy_map.h"
 #include "workstation/report/headline.h"
 #include "workstation/report/rule_prices.h"
@@ -259,21 +261,28 @@ void write_expected(const FixtureRun& run, const std::vector<NamedEvaluation>& e
 void write_run_page(const FixtureRun& run, const std::filesystem::path& folder) {
   static const Teacher teacher = untrained_teacher();
   const std::vector<NamedEvaluation> evaluations = evaluations_of(run);
-  write_report({.market = small_market(),
-                .evaluations = evaluations,
-                .training_curve = {{0, 0, 100, 0}, {500, 3.0, 140, 0, 5}, {750, 2.9, 160, 0, -5}},
-                .distil_curve = {{1, 1.0, 0.1, 0.9}, {2, 0.5, 0.01, 0.4}, {3, 0.3, 0, 0.2}},
-                .checkpoints = {{1, 60, 101.5, CheckpointState::kPassedOver},
-                                {1, 80, 104.25, CheckpointState::kDisobeys},
-                                {1, 100, 103, CheckpointState::kChosen}},
-                .teacher = &teacher,
-                .uncorrected = &run.plain,
-                .corrected = &run.corrected,
-                .broken = run.broken,
-                .provenance = "a line of provenance that is long enough to be broken on a narrow "
-                              "screen: crc32 0123456789abcdef0123456789abcdef0123456789abcdef",
-                .facts = {{"prices", "prices.csv.gz: crc32 0badcafe, 123456 bytes"}}},
-               folder);
+  const ReportInputs inputs{
+      .market = small_market(),
+      .evaluations = evaluations,
+      .training_curve = {{0, 0, 100, 0}, {500, 3.0, 140, 0, 5}, {750, 2.9, 160, 0, -5}},
+      .distil_curve = {{1, 1.0, 0.1, 0.9}, {2, 0.5, 0.01, 0.4}, {3, 0.3, 0, 0.2}},
+      .checkpoints = {{1, 60, 101.5, CheckpointState::kPassedOver},
+                      {1, 80, 104.25, CheckpointState::kDisobeys},
+                      {1, 100, 103, CheckpointState::kChosen}},
+      .teacher = &teacher,
+      .uncorrected = &run.plain,
+      .corrected = &run.corrected,
+      .broken = run.broken,
+      .provenance =
+          "a line of provenance that is long enough to be broken on a narrow "
+          "screen: crc32 0123456789abcdef0123456789abcdef0123456789abcdef",
+      .facts = {{"prices", "prices.csv.gz: crc32 0badcafe, 123456 bytes"}}};
+  write_report(inputs, folder);
+  // As the stages of a run before its report do.
+  write_file(folder / "evaluation_days.csv", evaluation_days_csv(evaluations));
+  write_file(folder / "training_curve.csv", training_curve_csv(inputs.training_curve));
+  write_file(folder / "student_checkpoints.csv", student_checkpoints_csv(inputs.checkpoints));
+  write_file(folder / "distil_curve.csv", distil_curve_csv(inputs.distil_curve));
   write_expected(run, evaluations, folder);
 }
 

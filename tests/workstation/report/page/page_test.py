@@ -5,6 +5,7 @@ Exit code 77 where Chromium is not installed (tools/setup --test installs it).
 """
 import csv
 import gzip
+import itertools
 import json
 import os
 import re
@@ -305,35 +306,46 @@ class PageTest(unittest.TestCase):
             for value, row in zip(values, rows, strict=True):
                 self.assertAlmostEqual(value, row[name], places=places, msg=name)
 
-    def test_files_have_the_numbers_of_the_charts(self):
+    def days_of(self, policy):
+        """[(date, EUR per MWh of capacity)] of the run's file, charge carried over."""
+        return [(row["date"], row["profit_eur"] / self.expected["capacity_mwh"])
+                for row in self.csv("evaluation_days.csv")
+                if (row["policy"], row["carry_soc"]) == (policy, "true")]
+
+    def test_charts_have_the_numbers_of_the_files(self):
         self.page.run("document.querySelector('[data-wear=configured]').click()")
-        for chart in ("cumulative", "months", "days", "hours"):
-            self.assert_same(self.drawn("chart-" + chart), self.csv(chart + ".csv"), 3 if chart == "hours" else 5)
-        for name in ("corrected student", "rbc-tuned"):
-            falls = self.page.run(f"page.tearSheet.drawdowns(page.tearSheet.policies([{json.dumps(name)}])[0])")
-            self.assert_same({name: falls}, self.csv("drawdown.csv"))
-        labels = self.page.run("shownCharts.get('chart-days').chart.data.labels")
-        self.assertEqual([float(label.replace("\u2212", "-")) for label in labels],
-                         [row["from_eur_per_mwh"] for row in self.csv("days.csv")])
+        name = "corrected student"
+        days = self.days_of(name)
+        sums = list(itertools.accumulate(profit for _, profit in days))
+        months = sorted({date[:7] for date, _ in days})
+        own = [[profit for date, profit in days if date.startswith(month)] for month in months]
+        falls = [at - max(0, *sums[:d + 1]) for d, at in enumerate(sums)]
+        shown = f"page.tearSheet.drawdowns(page.tearSheet.policies([{json.dumps(name)}])[0])"
+        for drawn, expected in ((self.drawn("chart-cumulative")[name], sums),
+                                (self.drawn("chart-months")[name], [sum(o) / len(o) for o in own]),
+                                (self.page.run(shown), falls)):
+            for value, other in zip(drawn, expected, strict=True):
+                self.assertAlmostEqual(value, other, places=5)
+        self.assertEqual(sum(self.drawn("chart-days")[name]), len(days))
+        steps = self.csv("steps.csv.gz")
+        together = self.drawn("chart-hours")["together"]
+        count = self.page.run("page.days.length")
+        self.assertAlmostEqual(sum(together), sum(row[name + " profit_eur"] for row in steps) / count
+                               / self.expected["capacity_mwh"], places=2)
         prices = self.drawn("chart-prices")
         self.assert_same({"training_days_percent": prices["training days"], "test_days_percent": prices["test days"]},
                          self.csv("prices_seen.csv"))
 
     def test_checkpoints_and_the_chosen_one(self):
-        rows = self.csv("validation_teacher.csv")
+        rows = self.csv("training_curve.csv")
         drawn = self.drawn("chart-training")
         self.assertEqual(drawn["checkpoint"], [[row["step"], row["validation_eur_per_day_per_mwh"]] for row in rows])
-        chosen = [row for row in rows if row["state"] == "chosen"]
-        self.assertEqual(drawn["chosen"], [[chosen[0]["step"], chosen[0]["validation_eur_per_day_per_mwh"]]])
-        highest = max(profit for _, profit in drawn["checkpoint"])
-        self.assertLess(drawn["chosen"][0][1], highest, "what is not shown is not kept")
+        self.assertEqual(drawn["chosen"], [[500, 140]], "what is not shown is not kept")
         first, last = rows[0], rows[-1]
         self.assertEqual(first["step"], 0)
         self.assertEqual(drawn["the program, step 0"], [[row["step"], first["validation_eur_per_day_per_mwh"]] for row in (first, last)])
-        for (step, profit), row in zip(drawn["rule-based"], (first, last), strict=True):
-            self.assertEqual(step, row["step"])
-            self.assertAlmostEqual(profit, row["rule_eur_per_day_per_mwh"], places=5)
-        rows = self.csv("validation_student.csv")
+        self.assertEqual([step for step, _ in drawn["rule-based"]], [first["step"], last["step"]])
+        rows = self.csv("student_checkpoints.csv")
         drawn = self.drawn("chart-checkpoints")
         self.assertEqual(len(drawn["checkpoint"]), len(rows))
         for state in ("chosen", "disobeys"):
@@ -342,7 +354,7 @@ class PageTest(unittest.TestCase):
             self.assertEqual(len(drawn[state]), 1)
 
     def test_the_losses_of_the_student_are_in_the_file(self):
-        rows = self.csv("distillation.csv")
+        rows = self.csv("distil_curve.csv")
         drawn = self.drawn("chart-distil")
         self.assertEqual(drawn["on the states that the teacher visits"],
                          [[row["epoch"], row["visited_loss"]] for row in rows])
