@@ -14,6 +14,7 @@
 #include "workstation/run/learnt_for.h"
 #include "workstation/run/run_plan.h"
 #include "workstation/run/run_stages.h"
+#include "workstation/run/run_summary.h"
 #include "workstation/run/stage_table.h"
 
 namespace bess {
