@@ -77,7 +77,6 @@ class Teller {
       json.set("utc", utc_text(std::time(nullptr)).view());
       json.set("subject", text_or_null(event.subject));
       json.set("message", event.text);
-      json.set("text", event.text);  // its name before schema version 1, until the next release
       print_json(json);
     } else if (event.kind == RecorderEvent::Kind::kRecorded) {
       if (terminal_) fmt::print(stderr, "\r\033[Krecord: {}", event.text);

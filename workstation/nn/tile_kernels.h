@@ -1,7 +1,6 @@
-// The five loops that a gradient step spends its time in, over one tile of samples. Two
-// implementations behind one table: register-blocked with vector packets (packet_kernels.cpp), and
-// its twin in plain Eigen (plain_kernels.cpp) that it is tested against and that can stand in for
-// it. Samples are columns, features are contiguous; a matrix whose features run along vector lanes
+// The five loops that a gradient step spends its time in, over one tile of samples. Behind
+// one table: register-blocked with vector packets (packet_kernels.cpp); the tests have a twin in
+// plain Eigen that it is held against. Samples are columns, features are contiguous; a matrix whose features run along vector lanes
 // has its rows padded to whole panels.
 #pragma once
 
@@ -84,6 +83,5 @@ struct TileKernels {
 };
 
 const TileKernels& packet_kernels();
-const TileKernels& plain_kernels();
 
 }  // namespace bess

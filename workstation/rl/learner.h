@@ -17,8 +17,8 @@ namespace bess {
 
 class Learner {
  public:
-  /// `mean_weight`: see c51_tile_gradient. `kernels`: packet_kernels(), or their twin
-  /// plain_kernels().
+  /// `mean_weight`: see c51_tile_gradient. `kernels`: packet_kernels(), or a twin of
+  /// theirs.
   Learner(Method method, const Support& support, double gamma, std::uint64_t seed, int threads,
           double mean_weight = 0, const TileKernels& kernels = packet_kernels());
 

@@ -4,6 +4,7 @@
 
 #include <tuple>
 
+#include "tests/workstation/nn/plain_kernels.h"
 #include "tests/workstation/nn/reference_net.h"
 #include "workstation/nn/packed_mlp.h"
 

@@ -1,6 +1,7 @@
 #include "workstation/rl/c51.h"
 
 #include "shared/host/user_error.h"
+#include "tests/workstation/nn/plain_kernels.h"
 #include "tests/workstation/nn/reference_net.h"
 #include "tests/workstation/nn/tile_sums.h"
 #include "workstation/rl/learner.h"

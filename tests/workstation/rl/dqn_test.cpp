@@ -1,5 +1,6 @@
 #include "workstation/rl/dqn.h"
 
+#include "tests/workstation/nn/plain_kernels.h"
 #include "tests/workstation/nn/reference_net.h"
 #include "tests/workstation/nn/tile_sums.h"
 #include "workstation/rl/learner.h"

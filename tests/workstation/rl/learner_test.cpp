@@ -1,5 +1,6 @@
 #include "workstation/rl/learner.h"
 
+#include "tests/workstation/nn/plain_kernels.h"
 #include "tests/workstation/nn/reference_net.h"
 
 namespace bess {

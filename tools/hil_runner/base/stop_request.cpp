@@ -34,7 +34,6 @@ void watch_for_stop() {
   }).detach();
 }
 
-bool stop_is_requested() { return is_requested; }
 void request_stop() { is_requested = true; }
 
 void throw_if_stopped() {

@@ -9,7 +9,6 @@ namespace bess {
 /// Before any thread is started: all of them leave these signals to one that waits for nothing
 /// else.
 void watch_for_stop();
-[[nodiscard]] bool stop_is_requested();
 /// As a signal does: for a key.
 void request_stop();
 
@@ -24,7 +23,6 @@ class AbortKey {
   AbortKey(const AbortKey&) = delete;
   AbortKey& operator=(const AbortKey&) = delete;
   ~AbortKey();
-  [[nodiscard]] bool has_terminal() const { return terminal_ >= 0; }
   [[nodiscard]] bool is_pressed() const;
 
  private:
