@@ -3,8 +3,6 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <memory>
 
@@ -21,7 +19,6 @@
 #include "workstation/chain/interruption.h"
 #include "workstation/chain/price_input.h"
 #include "workstation/cli/commands.h"
-#include "workstation/env/evaluate.h"
 #include "workstation/report/figures/curves.h"
 #include "workstation/run/learnt_for.h"
 #include "workstation/run/run_record.h"
@@ -40,39 +37,11 @@ struct TrainArguments {
   std::string curve_out;
   std::optional<std::string> method;
   std::optional<long> steps;
-  int seeds = 1;
   bool resume = false;
   bool json = false;
 };
 
-/// What one seed led to. Money in EUR per day per MWh.
-struct SeedResult {
-  std::uint64_t seed;
-  TrainResult training;
-  Evaluation test, test_carried;
-};
-
-struct MeanAndSpread {
-  double mean = 0, deviation = 0;
-};
-
-MeanAndSpread mean_and_spread(const std::vector<double>& values) {
-  MeanAndSpread result;
-  const auto n = static_cast<double>(values.size());
-  for (const double value : values) result.mean += value / n;
-  for (const double value : values) {
-    result.deviation += (value - result.mean) * (value - result.mean) / (n - 1);
-  }
-  result.deviation = std::sqrt(result.deviation);
-  return result;
-}
-
 fs::path checkpoint_path(const fs::path& out) { return out.string() + ".checkpoint"; }
-fs::path seed_path(const fs::path& out, std::uint64_t seed) {
-  fs::path path = out;
-  return path.replace_extension(fmt::format(".seed{}{}", seed, out.extension().string()));
-}
-
 /// All that the weights depend on; a checkpoint is good for one of these only.
 std::string identity_of(const RunConfig& config, const MinuteSeries& series,
                         const std::string& day_ahead) {
@@ -86,19 +55,15 @@ std::string identity_of(const RunConfig& config, const MinuteSeries& series,
   return text;
 }
 
-/// One seed is not looked at on test days.
-std::string result_json(const fs::path& out, const RunConfig& config, const TrainResult& result,
-                        std::uint64_t seed, double test = NAN, double test_carried = NAN) {
+std::string result_json(const fs::path& out, const RunConfig& config, const TrainResult& result) {
   Json json = answer("teacher");
   json.set("teacher", out.string());
   json.set("method", method_name(config.train.method));
-  json.set("seed", seed);
+  json.set("seed", config.train.seed);
   json.set("steps", result.curve.back().step);
   json.set("best_step", result.best_step);
   json.set("validation_eur_per_day_per_mwh",
            Decimals{result.best_validation_eur_per_day_per_mwh, 4});
-  json.set("test_eur_per_day_per_mwh", Decimals{test, 4});
-  json.set("test_carried_eur_per_day_per_mwh", Decimals{test_carried, 4});
   json.set("seconds", Decimals{result.seconds, 2});
   return json.line();
 }
@@ -108,7 +73,6 @@ TrainResult train_one(const fs::path& out, const TrainArguments& options, const 
                       const MinuteSeries& series, const MarketSteps& market) {
   const CheckpointOptions checkpoint{checkpoint_path(out), options.resume,
                                      identity_of(config, series, options.day_ahead.path())};
-  end_when_interrupted();  // what an earlier seed was watched for is over
   TrainResult result = train_teacher(market, config.battery, config.train,
                                      watched_from_the_first_look(), checkpoint);
   result.teacher.provenance = training_provenance(options.prices, config.train, result);
@@ -116,9 +80,7 @@ TrainResult train_one(const fs::path& out, const TrainArguments& options, const 
   if (!result.curve.empty()) {
     save_teacher(out, result.teacher);
     if (!options.curve_out.empty()) {
-      const fs::path curve = options.seeds > 1 ? seed_path(options.curve_out, config.train.seed)
-                                               : fs::path(options.curve_out);
-      write_file(curve, training_curve_csv(result.curve));
+      write_file(options.curve_out, training_curve_csv(result.curve));
     }
   }
   if (interruption()) {
@@ -131,69 +93,6 @@ TrainResult train_one(const fs::path& out, const TrainArguments& options, const 
   fs::remove(checkpoint.path, error);  // a leftover is only wasted space
   warn_narrow_support(config.train, result);
   return result;
-}
-
-void print_seeds(const std::vector<SeedResult>& results, const TrainArguments& options,
-                 const RunConfig& config) {
-  const auto column = [&](auto figure) {
-    std::vector<double> values;
-    for (const SeedResult& r : results) values.push_back(figure(r));
-    return values;
-  };
-  const std::vector<double> validation =
-      column([](const SeedResult& r) { return r.training.best_validation_eur_per_day_per_mwh; });
-  const std::vector<double> test =
-      column([](const SeedResult& r) { return r.test.profit_eur_per_day_per_mwh(); });
-  const std::vector<double> carried =
-      column([](const SeedResult& r) { return r.test_carried.profit_eur_per_day_per_mwh(); });
-  if (options.json) {
-    for (std::size_t i = 0; i < results.size(); ++i) {
-      fmt::print("{}\n", result_json(seed_path(options.out, results[i].seed), config,
-                                     results[i].training, results[i].seed, test[i], carried[i]));
-    }
-    return;
-  }
-  fmt::print("{}, {} seeds; EUR per day per MWh of capacity\n", method_name(config.train.method),
-             results.size());
-  fmt::print("{:>9} {:>10} {:>11} {:>8} {:>13} {:>8}\n", "seed", "best step", "validation", "test",
-             "test carried", "seconds");
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    fmt::print("{:>9} {:>10} {:>11.1f} {:>8.1f} {:>13.1f} {:>8.0f}\n", results[i].seed,
-               results[i].training.best_step, validation[i], test[i], carried[i],
-               results[i].training.seconds);
-  }
-  const MeanAndSpread v = mean_and_spread(validation);
-  const MeanAndSpread t = mean_and_spread(test);
-  const MeanAndSpread c = mean_and_spread(carried);
-  fmt::print("{:>9} {:>10} {:>11.1f} {:>8.1f} {:>13.1f}\n", "mean", "", v.mean, t.mean, c.mean);
-  fmt::print("{:>9} {:>10} {:>11.1f} {:>8.1f} {:>13.1f}\n", "deviation", "", v.deviation,
-             t.deviation, c.deviation);
-}
-
-/// Several seeds: every teacher under its seed's name, the best on the validation days under `out`.
-void run_seeds(const TrainArguments& options, RunConfig config, const MinuteSeries& series,
-               const MarketSteps& market) {
-  const std::vector<MarketDay> test_days = market.days_of(Split::kTest);
-  std::vector<SeedResult> results;
-  for (int i = 0; i < options.seeds; ++i) {
-    if (i > 0) config.set_seed(config.train.seed + 1);
-    const fs::path out = seed_path(options.out, config.train.seed);
-    SeedResult result{config.train.seed, train_one(out, options, config, series, market), {}, {}};
-    TeacherPolicy policy(result.training.teacher);
-    result.test =
-        evaluate(market, test_days, policy, {config.battery, config.initial_soc_frac, false});
-    result.test_carried =
-        evaluate(market, test_days, policy, {config.battery, config.initial_soc_frac, true});
-    results.push_back(std::move(result));
-  }
-  const auto best = std::ranges::max_element(results, {}, [](const SeedResult& r) {
-    return r.training.best_validation_eur_per_day_per_mwh;
-  });
-  save_teacher(options.out, best->training.teacher);
-  print_seeds(results, options, config);
-  if (!options.json) {
-    fmt::print("{}: seed {}, the best on the validation days\n", options.out, best->seed);
-  }
 }
 
 void run_train(const TrainArguments& options) {
@@ -215,10 +114,9 @@ void run_train(const TrainArguments& options) {
   attach_day_ahead(market, options.day_ahead.read(series, options.price_input.accepted(),
                                                   config.market.day_ahead_published_min));
   warn_untrained_months(market, config.train.context == ContextKind::kMonth);
-  if (options.seeds > 1) return run_seeds(options, config, series, market);
   const TrainResult result = train_one(options.out, options, config, series, market);
   if (options.json) {
-    fmt::print("{}\n", result_json(options.out, config, result, config.train.seed));
+    fmt::print("{}\n", result_json(options.out, config, result));
   } else {
     fmt::print("{}: {}, kept at step {} of {}: {:.1f} EUR/day/MWh on validation days, {:.0f} s\n",
                options.out, method_name(config.train.method), result.best_step,
@@ -240,15 +138,9 @@ void add_train_command(ProgramCommand& app) {
   command.option("--method", options->method, "c51 (default), dqn or sdp")
       .one_of({"c51", "dqn", "sdp"});
   command.option("--steps", options->steps, "Gradient steps").positive();
-  command.option("--curve-out", options->curve_out, "CSV of the learning curve, one a seed");
-  command
-      .option("--seeds", options->seeds,
-              "Train this many, from --seed on; OUT is the best on the validation days, the "
-              "others lie beside it")
-      .range(1, 1000);
-  command.flag("--resume", options->resume, "Go on from OUT.checkpoint, to the same weights")
-      .excludes("--seeds");
-  command.flag("--json", options->json, "One JSON object; with --seeds one a line and seed");
+  command.option("--curve-out", options->curve_out, "CSV of the learning curve");
+  command.flag("--resume", options->resume, "Go on from OUT.checkpoint, to the same weights");
+  command.flag("--json", options->json, "One JSON object");
   options->common.add_market(command);
   options->common.add_config(command);
   options->common.add_seed_and_threads(command);
@@ -258,7 +150,6 @@ void add_train_command(ProgramCommand& app) {
       "  bess-train train --prices market.csv.gz --out teacher.bin\n"
       "  bess-train train --prices market.csv.gz --method sdp --out program.bin\n"
       "  bess-train train --prices market.csv.gz --day-ahead day_ahead.csv --out outlook.bin\n"
-      "  bess-train train --prices market.csv.gz --seeds 3 --out best.bin\n"
       "  bess-train train --prices market.csv.gz --config workstation/config/paper.toml --out "
       "paper.bin");
   command.runs([options] { run_train(*options); });

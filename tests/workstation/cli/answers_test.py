@@ -143,11 +143,8 @@ class Answers(unittest.TestCase):
         self.assertEqual(lines[-1]["prices"], 5)
 
     def test_3_teacher_and_plain_student(self):
-        one = self.answers("train", "--prices", "@market.csv", "--out", "@teacher.bin", "--steps", "20",
-                           "--curve-out", "@curve.csv")
-        self.assertIsNone(one[0]["test_eur_per_day_per_mwh"])
-        two = self.answers("train", "--prices", "@market.csv", "--out", "@best.bin", "--steps", "20", "--seeds", "2")
-        self.assertEqual([line["seed"] for line in two], [1, 2])
+        self.answers("train", "--prices", "@market.csv", "--out", "@teacher.bin", "--steps", "20",
+                     "--curve-out", "@curve.csv")
         self.answers("distil", "--prices", "@market.csv", "--teacher", "@teacher.bin", "--out", "@plain.json",
                      "--plain", "--config", "@few.toml", "--curve-out", "@distil.csv", "--rules", "@rules.toml")
         self.table(self.file("curve.csv"), "training_curve.csv")

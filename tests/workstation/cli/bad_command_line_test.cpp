@@ -94,7 +94,6 @@ constexpr BadCommandLine kCases[] = {
     {"train --prices GOOD --out OUT --steps 0", 2, "--steps"},
     {"train --prices GOOD --out OUT --steps -5", 2, "--steps"},
     {"train --prices GOOD --out OUT --steps 1e9", 2, "--steps"},
-    {"train --prices GOOD --out OUT --seeds 0", 2, "--seeds"},
     {"distil --prices GOOD --teacher NONE --out OUT --epochs 0", 2, "--epochs"},
     {"evaluate --prices GOOD --policy rbc --split tests", 2, "tests not in {"},
     {"evaluate --prices GOOD --policy rbc --fit-delay 9", 2, "not in range 0 to 5"},

@@ -68,7 +68,6 @@ CASES = [
     ("evaluate --policy rbc --prices doubled.csv", 1, "does not come after"),
     ("evaluate --policy rbc --prices swapped.csv", 1, "the header must be"),
     ("evaluate --policy rbc --prices trailing.csv.gz", 1, "bytes behind the end of its gzip data"),
-    ("train --prices market.csv --out new.bin --seeds 0", 2, "not in range 1 to 1000"),
     ("train --prices market.csv --prices market.csv --out new.bin", 2, "given 2 times"),
     ("prices fetch --from 2023-02-30 --to 2023-03-02 --out new.csv", 1, "is not a date"),
     ("prices import summer.csv --out new.csv", 1, "is not a time with its UTC offset"),
