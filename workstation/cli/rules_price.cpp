@@ -1,18 +1,17 @@
-// bess-train rules price: what each rule costs or earns a day, alone and all together. First by
-// projecting a policy's decisions, in seconds; then, if a teacher is given, by distilling a student
-// with them and one without.
+// bess-train rules price: what each rule costs or earns a day, alone and all together, by
+// projecting a policy's decisions.
 #include <fmt/core.h>
 
-#include <cstdio>
+#include <cmath>
 #include <memory>
 
+#include "shared/host/json.h"
 #include "shared/host/user_error.h"
+#include "workstation/base/answer.h"
 #include "workstation/chain/common_options.h"
-#include "workstation/chain/distilled_prices.h"
 #include "workstation/chain/policy_factory.h"
 #include "workstation/chain/price_input.h"
 #include "workstation/chain/rule_files.h"
-#include "workstation/chain/rule_price_json.h"
 #include "workstation/cli/commands.h"
 #include "workstation/env/evaluate.h"
 #include "workstation/rules/rule_conflicts.h"
@@ -27,13 +26,28 @@ struct PriceArguments {
   PriceInput price_input;
   std::string prices;
   std::string policy = "compiled";
-  std::string teacher;
-  std::string keep;
   std::string split = "val+test";
-  int seeds = 1;
-  bool alone = false;
   bool json = false;
 };
+
+/// The same days, each from the configured SoC and chained.
+struct BothWays {
+  Evaluation reset, carried;
+};
+
+/// What rules change in one way of counting; null of a rule that cannot be projected.
+void add_gain(const Evaluation* with, const Evaluation* without, bool carry_soc, Json& json) {
+  const auto figure = [&](double value) { return Decimals{with == nullptr ? NAN : value, 4}; };
+  const PairedDifference gain =
+      with == nullptr ? PairedDifference{NAN, NAN} : paired_difference(*with, *without);
+  json.set(key::kCarrySoc, carry_soc);
+  json.set(key::kProfit, figure(with == nullptr ? NAN : with->profit_eur_per_day_per_mwh()));
+  json.set("profit_without_rules_eur_per_day_per_mwh",
+           figure(with == nullptr ? NAN : without->profit_eur_per_day_per_mwh()));
+  json.set(key::kGain, figure(gain.mean));
+  json.set(key::kGainError, figure(gain.standard_error));
+  json.set(key::kGainErrorByMonth, figure(gain.standard_error_by_month));
+}
 
 class Pricing {
  public:
@@ -43,8 +57,13 @@ class Pricing {
     if (days_.empty()) fail("{}: no complete day in the {} split", options.prices, options.split);
   }
 
-  BothWays run(Policy& policy) const { return run_both_ways(policy, days_, config_, market_); }
-  [[nodiscard]] const std::vector<MarketDay>& days() const { return days_; }
+  BothWays run(Policy& policy) const {
+    const auto evaluated = [&](bool carry_soc) {
+      return evaluate(market_, days_, policy,
+                      {config_.battery, config_.initial_soc_frac, carry_soc});
+    };
+    return {evaluated(false), evaluated(true)};
+  }
 
   void print_head(const BothWays& base, const std::string& name) const {
     if (options_.json) return;
@@ -59,47 +78,39 @@ class Pricing {
 
   void print_row(const std::string& rule, const BothWays& base, const BothWays& ruled,
                  double changed_share) const {
+    if (options_.json) return print_json(rule, &base, &ruled, changed_share);
     const PairedDifference reset = paired_difference(ruled.reset, base.reset);
     const PairedDifference carried = paired_difference(ruled.carried, base.carried);
-    if (!options_.json) {
-      fmt::print("{:<40}  {:>+7.2f} {:>6} {:>8}  {:>+7.2f} {:>6} {:>8}  {:>12.2f}\n", rule,
-                 reset.mean, error_text(reset.standard_error, 2),
-                 error_text(reset.standard_error_by_month, 2), carried.mean,
-                 error_text(carried.standard_error, 2),
-                 error_text(carried.standard_error_by_month, 2), 100 * changed_share);
-      return;
-    }
-    const auto gain = [](const Evaluation& with, const Evaluation& without,
-                         const PairedDifference& difference) {
-      return RuleGain{with.profit_eur_per_day_per_mwh(), without.profit_eur_per_day_per_mwh(),
-                      difference.mean, difference.standard_error,
-                      difference.standard_error_by_month};
-    };
-    RulePriceRow row = row_of(rule);
-    row.reset = gain(ruled.reset, base.reset, reset);
-    row.carried = gain(ruled.carried, base.carried, carried);
-    row.changed_share = changed_share;
-    fmt::print("{}\n", rule_price_json(row).line());
+    fmt::print("{:<40}  {:>+7.2f} {:>6} {:>8}  {:>+7.2f} {:>6} {:>8}  {:>12.2f}\n", rule,
+               reset.mean, error_text(reset.standard_error, 2),
+               error_text(reset.standard_error_by_month, 2), carried.mean,
+               error_text(carried.standard_error, 2),
+               error_text(carried.standard_error_by_month, 2), 100 * changed_share);
   }
 
   /// Of a rule that no single decision can be moved by.
   void print_unknown(const std::string& rule) const {
-    if (options_.json) {
-      fmt::print("{}\n", rule_price_json(row_of(rule)).line());
-    } else {
-      fmt::print("{:<40}  no demand on single states: give --teacher to see\n", rule);
-    }
+    if (options_.json) return print_json(rule, nullptr, nullptr, NAN);
+    fmt::print("{:<40}  no demand on single states: learn it to see\n", rule);
   }
 
  private:
-  [[nodiscard]] RulePriceRow row_of(const std::string& rule) const {
-    return {.rule = rule,
-            .by = "projection",
-            .gain_over = options_.policy,
-            .split = options_.split,
-            .days = days_.size(),
-            .reset = {},
-            .carried = {}};
+  void print_json(const std::string& rule, const BothWays* base, const BothWays* ruled,
+                  double changed_share) const {
+    const auto way = [](const BothWays* both, Evaluation BothWays::*of) {
+      return both == nullptr ? nullptr : &(both->*of);
+    };
+    Json json = answer("rule_price");
+    json.set("rule", rule);
+    json.set(key::kGainOver, options_.policy);
+    json.set("split", options_.split);
+    json.set("days", days_.size());
+    json.set("share_of_decisions_changed", Decimals{changed_share, 6});
+    add_gain(way(ruled, &BothWays::reset), way(base, &BothWays::reset), false, json);
+    Json carried = Json::object();
+    add_gain(way(ruled, &BothWays::carried), way(base, &BothWays::carried), true, carried);
+    json.set(key::kCarriedOver, std::move(carried));
+    fmt::print("{}\n", json.line());
   }
 
   const PriceArguments& options_;
@@ -133,7 +144,7 @@ void price_by_projection(const PriceArguments& options, const RunConfig& config,
       pricing.print_unknown(rule.name);
     }
   }
-  if (rules.rules.size() > 1) price(kAllTogether, rules);
+  if (rules.rules.size() > 1) price("all together", rules);
 }
 
 void run_rules_price(const PriceArguments& options) {
@@ -143,16 +154,6 @@ void run_rules_price(const PriceArguments& options) {
       market_of(options.price_input.read(options.prices), config.market, options.prices);
   const Pricing pricing(options, config, market);
   price_by_projection(options, config, market, rules, pricing);
-  if (options.teacher.empty()) return;
-  std::fflush(stdout);  // what follows takes minutes
-  price_by_distilling({.rules = rules,
-                       .days = pricing.days(),
-                       .split = options.split,
-                       .seeds = options.seeds,
-                       .alone = options.alone,
-                       .keep = options.keep,
-                       .json = options.json},
-                      load_teacher(options.teacher), config, market);
 }
 
 }  // namespace
@@ -160,7 +161,7 @@ void run_rules_price(const PriceArguments& options) {
 void add_rules_price(ProgramCommand& rules) {
   auto options = std::make_shared<PriceArguments>();
   ProgramCommand command = rules.subcommand(
-      "price", "What each rule costs or earns a day, alone and together, before it is trained");
+      "price", "What each rule costs or earns a day, alone and together, before it is learnt");
   options->rule_files.add(command, "Rule files (TOML)").required();
   command.option("--prices", options->prices, "Minute file (.csv or .csv.gz)").required();
   options->price_input.add(command);
@@ -168,15 +169,6 @@ void add_rules_price(ProgramCommand& rules) {
       .option("--policy", options->policy,
               std::string("Whose decisions are projected; one of ") + policy_help())
       .with_default();
-  command.option("--teacher", options->teacher,
-                 "Also distil this teacher with all rules and without (minutes)");
-  command
-      .option("--seeds", options->seeds,
-              "With --teacher: so many students of each kind, and how far they are apart")
-      .range(1, 100)
-      .with_default();
-  command.flag("--alone", options->alone, "With --teacher: distil each rule alone as well");
-  command.option("--keep", options->keep, "With --teacher: folder for the students");
   command.option("--split", options->split, "Days of --prices that are traded")
       .one_of({kSplitNames.begin(), kSplitNames.end()})
       .with_default();
@@ -187,17 +179,8 @@ void add_rules_price(ProgramCommand& rules) {
   command.footer(
       "Examples:\n"
       "  bess-train rules price --rules my_rules.toml --prices market.csv.gz\n"
-      "  bess-train rules price --rules my_rules.toml --prices market.csv.gz --policy teacher.bin "
-      "--teacher teacher.bin\n"
-      "  bess-train rules price --rules a.toml b.toml --prices market.csv.gz --policy teacher.bin "
-      "--teacher teacher.bin --alone --seeds 3 --keep students");
-  command.runs([options] {
-    if (options->teacher.empty() &&
-        (options->alone || options->seeds > 1 || !options->keep.empty())) {
-      fail("--alone, --seeds and --keep are about distilling: add --teacher FILE");
-    }
-    run_rules_price(*options);
-  });
+      "  bess-train rules price --rules a.toml b.toml --prices market.csv.gz --policy teacher.bin");
+  command.runs([options] { run_rules_price(*options); });
 }
 
 }  // namespace bess

@@ -152,20 +152,6 @@ Evaluation evaluate(const MarketSteps& market, const std::vector<MarketDay>& day
   return evaluation;
 }
 
-Evaluation mean_of(const std::vector<Evaluation>& evaluations) {
-  Evaluation mean = evaluations.front();
-  for (std::size_t d = 0; d < mean.days.size(); ++d) {
-    DayResult& day = mean.days[d];
-    day.profit_eur = day.charge_value_eur = 0;
-    for (const Evaluation& evaluation : evaluations) {
-      day.profit_eur += evaluation.days[d].profit_eur / static_cast<double>(evaluations.size());
-      day.charge_value_eur +=
-          evaluation.days[d].charge_value_eur / static_cast<double>(evaluations.size());
-    }
-  }
-  return mean;
-}
-
 PairedDifference paired_difference(const Evaluation& a, const Evaluation& b) {
   if (a.days.size() != b.days.size() || a.days.empty()) {
     throw std::logic_error("paired difference needs the same days on both sides");

@@ -86,10 +86,6 @@ struct StepRecord {
 Evaluation evaluate(const MarketSteps& market, const std::vector<MarketDay>& days, Policy& policy,
                     const EvaluationOptions& options, std::vector<StepRecord>* records = nullptr);
 
-/// One evaluation of several on the same days, not none: each day's profit, and the
-/// charge valued in it, is their mean, all else is the first one's.
-Evaluation mean_of(const std::vector<Evaluation>& evaluations);
-
 /// Mean and standard errors of the day-by-day difference a - b, EUR per day per MWh. Same days
 /// required.
 struct PairedDifference {

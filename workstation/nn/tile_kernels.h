@@ -1,7 +1,7 @@
-// The five loops that a gradient step spends its time in, over one tile of samples. Behind
-// one table: register-blocked with vector packets (packet_kernels.cpp); the tests have a twin in
-// plain Eigen that it is held against. Samples are columns, features are contiguous; a matrix whose features run along vector lanes
-// has its rows padded to whole panels.
+// The five loops that a gradient step spends its time in, over one tile of samples. Behind one
+// table: register-blocked with vector packets (packet_kernels.cpp); the tests have a twin in plain
+// Eigen that it is held against. Samples are columns, features are contiguous; a matrix whose
+// features run along vector lanes has its rows padded to whole panels.
 #pragma once
 
 #include "workstation/nn/mlp.h"

@@ -197,9 +197,6 @@ class Answers(unittest.TestCase):
         self.answers("omega-sweep", "--prices", "@market.csv", "--teacher", "@teacher.bin", "--out", "@sweep",
                      "--omega", "1e-3", "--epochs", "1")
         self.table(self.file("sweep/omega_sweep.csv"))
-        by = [line["by"] for line in self.answers("rules", "price", "--rules", "@rules.toml", "--policy", "@teacher.bin",
-                                                  "--seeds", "2", *learn)]
-        self.assertIn("distillation", by)
 
     @unittest.skipUnless(FULL, "minutes: with --full")
     def test_8_runs(self):

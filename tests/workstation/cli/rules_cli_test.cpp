@@ -11,7 +11,6 @@
 #include "tests/support/small_market.h"
 #include "tests/support/student_nets.h"
 #include "tests/support/temporary_folder.h"
-#include "workstation/chain/distilled_prices.h"
 #include "workstation/cli/commands.h"
 #include "workstation/student/student_file.h"
 
@@ -118,49 +117,6 @@ TEST_F(RulesCli, PriceTellsEachRuleAloneAndAllTogether) {
 
 using RulesLearnt = RulesCli;
 
-/// Two seeds of three kinds of student, all of them proved; what is told of them, `evaluate` tells
-/// of those kept.
-TEST_F(RulesLearnt, EachIsPricedAloneAndAllTogetherByStudentsThatStay) {
-  const std::string config = " --config " + folder_.write("a.toml", "[distil]\nepochs = 60\n");
-  const std::string teacher = folder_.file("teacher.bin");
-  output("train --steps 20 --out " + teacher + with_prices() + config);
-  const std::string files =
-      example_rule_path("quiet_hours") + " " + example_rule_path("no_dear_charging");
-  const std::filesystem::path kept = folder_.file("kept");
-  std::vector<Json> lines;
-  for (Json& json : json_lines(rules_output("price --alone --seeds 2 --json --rules " + files +
-                                            " --policy " + teacher + " --teacher " + teacher +
-                                            " --keep " + kept.string() + with_prices() + config))) {
-    const char* const by = json.value()["by"].text();
-    if (by != nullptr && std::string_view(by) == "distillation") lines.push_back(std::move(json));
-  }
-  ASSERT_EQ(lines.size(), 3U);
-  const auto earned = [&](const std::string& name) {
-    double sum = 0;
-    for (const char* seed : {"1", "2"}) {
-      const std::string student = (kept / (name + ".seed-" + seed + ".json")).string();
-      const std::string line = output("evaluate --json --split val+test --policy '" + student +
-                                      "'" + with_prices() + config);
-      sum += number(Json::parse(line), "profit_eur_per_day_per_mwh");
-    }
-    return sum / 2;
-  };
-  const double without = earned("without rules");
-  const char* const names[] = {"quiet hours", "no dear charging", "all together"};
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    SCOPED_TRACE(names[i]);
-    EXPECT_STREQ(lines[i].value()["rule"].text(), names[i]);
-    EXPECT_EQ(number(lines[i], "violations"), 0);
-    EXPECT_GT(number(lines[i], "states_checked"), 1e9);
-    const double with = earned(names[i]);
-    EXPECT_NEAR(number(lines[i], "profit_eur_per_day_per_mwh"), with, 1e-3);
-    EXPECT_NEAR(number(lines[i], "profit_without_rules_eur_per_day_per_mwh"), without, 1e-3);
-    EXPECT_NEAR(number(lines[i], "gain_eur_per_day_per_mwh"), with - without, 1e-3);
-    EXPECT_GE(number(lines[i], "gain_deviation_over_seeds"), 0);
-  }
-  EXPECT_LT(number(lines[0], "gain_eur_per_day_per_mwh"), -50) << "a third of the day is quiet";
-}
-
 /// Two rules four EUR/MWh apart: consistent, and too steep for so few epochs.
 TEST_F(RulesLearnt, AStudentThatIsNotProvedIsKeptUnderAnotherName) {
   const std::string config =
@@ -183,30 +139,6 @@ TEST_F(RulesLearnt, AStudentThatIsNotProvedIsKeptUnderAnotherName) {
   EXPECT_FALSE(std::filesystem::exists(student));
   const Certificate kept = load_student(folder_.file("student_unproved.json")).certificate;
   EXPECT_GT(kept.rule_counts()[1].violations, 0);
-}
-
-TEST_F(RulesCli, WhatIsAboutDistillingNeedsATeacher) {
-  const std::string arguments =
-      "price --policy rbc --rules " + example_rule_path("quiet_hours") + with_prices();
-  for (const char* option : {" --alone", " --seeds 3", " --keep students"}) {
-    EXPECT_THROW(rules_output(arguments + option), UserError) << option;
-  }
-}
-
-Evaluation two_days(double first_eur, double second_eur) {
-  return {.days = {{"a", first_eur, 0, 0, 0}, {"b", second_eur, 0, 0, 0}}, .capacity_mwh = 2};
-}
-
-/// Two seeds whose differences are 1, 3 and 3, 5 EUR on two days of 2 MWh: means 1 and 2 a MWh;
-/// over seeds 2, 4 EUR a day.
-TEST(DistilledPrices, TheErrorIsOverDaysAndTheSpreadOverSeeds) {
-  const std::vector<Evaluation> without{two_days(10, 20), two_days(30, 40)};
-  const std::vector<Evaluation> with{two_days(11, 23), two_days(33, 45)};
-  const SeededDifference difference = seeded_difference(with, without);
-  EXPECT_NEAR(difference.mean, 1.5, 1e-12);
-  EXPECT_NEAR(difference.standard_error, 0.5, 1e-12);
-  EXPECT_NEAR(difference.spread, std::sqrt(0.5), 1e-12);
-  EXPECT_TRUE(std::isnan(seeded_difference({with[0]}, {without[0]}).spread)) << "one seed";
 }
 
 }  // namespace
