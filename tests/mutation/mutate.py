@@ -3,6 +3,7 @@
 
   mutate.py make         the mutated copy of the tree, built (tests/mutation/README.md)
   mutate.py run [--sample N --seed S] [--only TEXT]   each, against scenarios and unit tests
+  mutate.py run --each N --rooms control,loop         so many of each of these rooms
   mutate.py report       the score by folder, and who survived
 
 survivors.txt says of those that are known to survive why. Exit codes: 0 done; 1 fewer than
@@ -279,11 +280,31 @@ class Runner:
 
 
 def chosen(mutants, options):
-    numbers = [m["number"] for m in mutants if not options.only or options.only in key_of(m)]
-    if options.sample and options.sample < len(numbers):
-        numbers = sorted(random.Random(options.seed).sample(numbers, options.sample))
+    by_room = {room: [] for room in options.rooms}
+    for mutant in mutants:
+        room = mutant["file"].split("/")[1]
+        if room in by_room and options.only in key_of(mutant):
+            by_room[room].append(mutant["number"])
+    if options.each:
+        by_room = {room: drawn(numbers, options.each, f"{options.seed} {room}")
+                   for room, numbers in by_room.items()}
+    numbers = sorted(sum(by_room.values(), []))
+    if options.sample:
+        numbers = drawn(numbers, options.sample, options.seed)
     random.Random(options.seed).shuffle(numbers)  # a run that is cut short is a sample
     return numbers
+
+
+def drawn(numbers, count, seed):
+    return sorted(random.Random(seed).sample(numbers, min(count, len(numbers))))
+
+
+def rooms_of(text):
+    rooms = text.split(",")
+    for room in rooms:
+        if room not in ROOMS:
+            raise argparse.ArgumentTypeError(f'"{room}" is none of ' + ", ".join(ROOMS))
+    return rooms
 
 
 def survivors_known():
@@ -338,8 +359,12 @@ def report(options):
     for name, c in sorted(rooms.items()) + [("all", total)]:
         print(f"| {name} | {c['all']} | {c['scenario']} | {c['unit']} | {c['equivalent']} "
               f"| {c['survived']} | {caught_percent(c):.1f} % |")
-    for r in sorted(unknown, key=lambda r: r["key"]):
-        print(("not reached: " if r["passed"] == 0 else "survived:    ") + r["key"])
+    lines = [("not reached: " if r["passed"] == 0 else "survived:    ") + r["key"]
+             for r in sorted(unknown, key=lambda r: r["key"])]
+    print(*lines, sep="\n", end="\n" if lines else "")
+    if options.survivors:
+        with open(options.survivors, "w") as out:
+            out.writelines(line + "\n" for line in lines)
     if caught_percent(total) < options.at_least:
         caught = caught_percent(total)
         print(f"mutate.py: {caught:.1f} % are caught, {options.at_least} % are asked for: add a "
@@ -365,7 +390,12 @@ def main():
     parser.add_argument("--text-only", action="store_true",
             help="write the mutated tree, do not build it")
     parser.add_argument("--sample", type=int, default=0, help="only so many, drawn by --seed")
+    parser.add_argument("--each", type=int, default=0, help="only so many of each room")
+    parser.add_argument("--rooms", type=rooms_of, default=ROOMS,
+            help="only these, separated by commas: " + ", ".join(ROOMS))
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--survivors", default="",
+            help="a file for those whose reason survivors.txt does not know")
     parser.add_argument("--only", default="", help="only those whose line holds this text")
     parser.add_argument("--kinds", default="",
             help="by these alone, in this order: scenario, edge_walks_test, edge_test, ...")

@@ -238,8 +238,8 @@ echo iHR1.0 >dpkg; trial announce 2.0; trial withdraw 2.0; [ "$(value delivered)
 (sleep 2; echo "ii 1.0" >dpkg) &
 timeout 50 "$edge" trial supervise >said 2>&1 || fail "after dpkg has ended, the supervisor has not"
 [ "$(value delivered)" = "ii 1.0" ] || fail "what dpkg has in the end: $(value delivered)"
-# A delivery that is killed around the flip: what has confirmed itself hands its order over, and what
-# was handed over to already is left alone.
+# A delivery that is killed around the flip: what has confirmed itself hands its order over, and
+# what was handed over to already is left alone.
 flipped=0 late=0 n=10
 while [ $((n += 1)) -le 16 ]; do
   machine; trial announce 2.0; deliver 2.0
@@ -252,7 +252,7 @@ while [ $((n += 1)) -le 16 ]; do
   grep -q '^stop' systemctl && fail "killed at $n: the order from before is ended"
   [ "$(grep -c '^reload bess' systemctl)" = 1 ] || fail "killed at $n: not one hand-over"
 done
-[ $flipped$late = 11 ] || fail "none was killed behind the flip, or the hand-over: $flipped, $late"
+[ $flipped$late = 11 ] || fail "none was killed behind the flip: $flipped, $late"
 machine; echo hang >does_2.0; upgrade 2.0; judge 8
 [ "$(value phase) $(value bad_cause)" = "comparing no_cycle" ] ||
   fail "a version without a cycle in 160 s: $(value phase), $(value bad_cause)"
