@@ -133,8 +133,10 @@ bool count_new_cycles(TrialState& state, const std::vector<SeenCycle>& cycles,
     const bool has_died = has_before && next->is_cycle && next->number <= std::prev(next)->number;
     const bool is_on_trial = state.is_fresh && state.phase == TrialPhase::kTrying;
     if (is_on_trial && has_died) count_cycle(state, {}, limits);
-    // A process that was stopped before its first cycle leaves the number 0.
-    if (!state.is_fresh && next->number <= std::max<std::int64_t>(before, 1)) state.is_fresh = true;
+    // A process that was stopped before its first cycle leaves the number 0. Its last word bears
+    // the number of its last cycle, and is no other's.
+    const bool is_next = next->is_cycle && next->number <= std::max<std::int64_t>(before, 1);
+    state.is_fresh = state.is_fresh || is_next;
     if (!state.is_fresh) before = next->number;
     state.mark = next->name;
     if (!state.is_fresh || !next->is_cycle) continue;

@@ -100,6 +100,11 @@ TEST(TrialCycles, OnlyTheNewProcessCountsAndEachCycleOnce) {
   log.push_back(end);
   EXPECT_FALSE(count_new_cycles(state, cycles_of_csv(csv_of(log), true), {}));
   EXPECT_EQ(state.window, "") << "of the version before";
+  end.cycle = 41;  // as it leaves: its last word bears the number of its last cycle
+  end.utc_s += 10;
+  log.push_back(end);
+  EXPECT_FALSE(count_new_cycles(state, cycles_of_csv(csv_of(log), true), {}));
+  EXPECT_FALSE(state.is_fresh) << "the next one has had no cycle";
   for (int i = 1; i <= 3; ++i) {
     log.push_back(good_cycle(i));
     log.back().utc_s = end.utc_s + 120 * i;
