@@ -350,6 +350,7 @@ TEST_F(MapFormat, EveryMistakeHasItsMend) {
       {"type = \"s32\"", "type = \"s32\"\nmodel = 124", "not in the list [sunspec] models"},
       {"type = \"s32\"", "type = \"s32\"\nunit_group = \"x\"", "not a name in [unit_groups]"},
       {"type = \"s32\"", "type = \"s32\"\nmask = 3", "needs type"},
+      {"type = \"s32\"", "type = \"s32\"\nsign = 0", "must be 1 or -1"},
       {"type = \"s32\"", "type = \"s32\"\nscale_from = \"later\"", "no [[point]] is named"},
       {"type = \"s32\"", "type = \"s32\"\nstorage = \"eeprom\"",
        "eeprom_writes_per_day is missing"},

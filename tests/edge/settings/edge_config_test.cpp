@@ -197,6 +197,7 @@ TEST(EdgeConfig, EveryMistakeIsOneClearLineWithItsPlace) {
       {"power_w = 4000", "host = \"battery.local\"", 4, "numeric IPv4"},
       {"power_w = 4000", "transport = \"udp\"", 4, "\"tcp\", \"rtu\""},
       {"power_w = 4000", "baud = 14400", 4, "must be a speed of serial lines such as 9600"},
+      {"power_w = 4000", "baud = 1201", 4, "must be a speed of serial lines such as 9600"},
       {"power_w = 4000", "parity = \"mark\"", 4, "\"none\", \"even\", \"odd\""},
       {"power_w = 4000", "stop_bits = 3", 4, "must lie between 1 and 2"},
       {"power_w = 4000", "variant = \"blok\"", 0, "does not exist (there are: block"},
