@@ -34,8 +34,7 @@ struct ResponseSettings {
 /// One reading, and the order that the battery followed when it was taken.
 struct Response {
   std::int64_t utc_s = 0;
-  std::int64_t steady_s =
-      0;  ///< the same without the steps of this run's clock: for what lies between two
+  std::int64_t steady_s = 0;      ///< without this run's steps of the clock: for what lies between
   bool is_driven = false;         ///< false: the battery is in its own mode, which goes any way
   std::int64_t order_number = 0;  ///< every order that was read back has its own
   std::int32_t ordered_power_w = 0;

@@ -38,6 +38,7 @@ void ResponseMonitor::observe(const Response& now) {
   before_power_w_ = now.measurement.power_w;
   before_ordered_w_ = now.ordered_power_w;
   before_may_be_less_ = may_be_less(now);
+  before_is_on_its_way_ = is_on_its_way_;
 }
 
 ResponseFindings ResponseMonitor::findings() const {
@@ -51,11 +52,8 @@ ResponseFindings ResponseMonitor::findings() const {
 /// Nothing is ordered then that could go unanswered.
 void ResponseMonitor::count_locked(const BatteryMeasurement& m) {
   const bool is_locked = std::max(m.charge_w_max, m.discharge_w_max) <= settings_.noise_w();
-  if (!is_locked) {
-    locked_readings_ = 0;
-  } else if (locked_readings_ < INT16_MAX) {
-    ++locked_readings_;
-  }
+  const int readings = is_locked ? locked_readings_ + 1 : 0;
+  locked_readings_ = static_cast<std::int16_t>(std::min(readings, INT16_MAX));
 }
 
 void ResponseMonitor::trip_if(bool is_found, Reason reason) {
@@ -78,7 +76,7 @@ void ResponseMonitor::note_between(const Response& now) {
 }
 
 void ResponseMonitor::judge_power(const Response& now) {
-  answers_ = needs_no_care_ = false;
+  answers_ = needs_no_care_ = is_on_its_way_ = false;
   if (!now.is_driven || now.order_age_s < settings_.band.settle_s || has_not_begun(now)) return;
   if (power_magnitude_w(now.ordered_power_w) <= settings_.noise_w()) return judge_idle(now);
   judge_driven(now);
@@ -154,8 +152,7 @@ void ResponseMonitor::judge_answer(const Response& now, std::int32_t measured_w)
   }
   if (!answers_) unexplained_.bad(is_charging);
   // What stands at 0 W is not on its way through it.
-  const bool is_on_its_way = measured_w > noise_w && note_ramp(now, before_power_w_);
-  if (!is_on_its_way) ++weak_answers_;
+  if (measured_w <= noise_w || !note_ramp(now, before_power_w_)) ++weak_answers_;
 }
 
 /// Whether the power is on its way to a new order, too slow for its map but quicker than a fault
@@ -169,8 +166,11 @@ bool ResponseMonitor::note_ramp(const Response& now, std::int32_t from_w) {
   const std::int64_t left_w = std::int64_t{now.ordered_power_w} - from_w;
   const std::int64_t moved_w = std::int64_t{now.measurement.power_w} - from_w;
   const std::int64_t towards_w = left_w < 0 ? -moved_w : moved_w;
-  const std::int64_t least_w = std::int64_t{settings_.power_w} * seconds / kFullRampS;
+  const bool is_short = is_new_order(now) && now.order_age_s < kSecondsPerStep / 2;
+  const std::int64_t moving_s = is_short ? std::max<std::int64_t>(seconds - kLateS, 0) : seconds;
+  const std::int64_t least_w = settings_.power_w * moving_s / kFullRampS;
   if (towards_w < least_w || towards_w > std::max(left_w, -left_w)) return false;
+  is_on_its_way_ = true;
   if (slow_.level == 0) ramp_w_per_s_ = 0;
   // A lag moves a small step by less in the same time: what it cannot exceed shows at the largest.
   ramp_w_per_s_ = std::max(ramp_w_per_s_, static_cast<std::int32_t>(towards_w / seconds));
@@ -198,15 +198,16 @@ bool ResponseMonitor::has_not_begun(const Response& now) const {
 
 bool ResponseMonitor::is_ramp(const Response& now) {
   if (!knows_before(now)) return may_be_ramp(now);
-  return note_ramp(now, before_power_w_) || is_ramp_of_held_back(now);
+  return note_ramp(now, before_power_w_) || is_ramp_of_order_before(now);
 }
 
 /// Near full and near empty less flows than the setpoint of its ramp, which comes from the order
-/// before: first that has to fall below what flows.
-bool ResponseMonitor::is_ramp_of_held_back(const Response& now) {
+/// before: first that has to fall below what flows. And what was on its way has gone on with it.
+bool ResponseMonitor::is_ramp_of_order_before(const Response& now) {
   const std::int32_t moved_w =
       power_magnitude_w(before_power_w_) - power_magnitude_w(now.measurement.power_w);
-  return before_may_be_less_ && moved_w > settings_.noise_w() && note_ramp(now, before_ordered_w_);
+  const bool is_less = before_may_be_less_ && moved_w > settings_.noise_w();
+  return (is_less || before_is_on_its_way_) && note_ramp(now, before_ordered_w_);
 }
 
 /// The first reading of a new order, with nothing known of the one before: it comes from its rating

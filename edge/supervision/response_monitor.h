@@ -100,7 +100,7 @@ class ResponseMonitor {
   void note_wrong(const Response& now, std::int64_t wrong_w, Reason reason);
   bool note_ramp(const Response& now, std::int32_t from_w);
   bool is_ramp(const Response& now);
-  bool is_ramp_of_held_back(const Response& now);
+  bool is_ramp_of_order_before(const Response& now);
   [[nodiscard]] bool knows_before(const Response& now) const;
   [[nodiscard]] bool is_new_order(const Response& now) const;
   [[nodiscard]] bool has_not_begun(const Response& now) const;
@@ -114,6 +114,7 @@ class ResponseMonitor {
   Reason trip_ = Reason::kStudent;
   bool answers_ = false;
   bool needs_no_care_ = false;
+  bool is_on_its_way_ = false;
   DirectedCount opposed_;
   DirectedCount excessive_driven_;
   DirectedCount unexplained_;
@@ -130,6 +131,7 @@ class ResponseMonitor {
   std::int32_t before_power_w_ = 0;
   std::int32_t before_ordered_w_ = 0;
   bool before_may_be_less_ = false;  ///< it may have held back what it was ordered
+  bool before_is_on_its_way_ = false;
 };
 
 }  // namespace bess

@@ -438,6 +438,33 @@ TEST(ResponseMonitor, AnOrderThatIsReadTwiceOnItsWayIsOnItsWay) {
   EXPECT_EQ(cycles.monitor.trip(), Reason::kUncontrolledPower) << "what stands is not on its way";
 }
 
+/// 30 W/s, read at -2488 W and ordered back a minute later, when it had got to -4000 W.
+TEST(ResponseMonitor, WhatWasOnItsWayGoesOnUntilTheNextOrder) {
+  for (const bool is_on_its_way : {true, false}) {
+    ShortCycles cycles;
+    for (int i = 0; i < 4; ++i) {
+      const std::int32_t soc_e4 = 7'000 - 190 * i;
+      cycles.read(0, 117, 0, kStepS, soc_e4);
+      cycles.read(-4'000, is_on_its_way ? 89 : 300, -2'488, is_on_its_way ? 92 : 310, soc_e4 - 60);
+      cycles.read(0, 117, -630, 178, soc_e4 - 190);
+    }
+    EXPECT_EQ(cycles.monitor.trip(), is_on_its_way ? Reason::kStudent : Reason::kUncontrolledPower);
+  }
+}
+
+/// 30 W/s behind a lag of 9 s.
+TEST(ResponseMonitor, ALagCountsInAShortCycle) {
+  for (const std::int32_t power_w : {2'892, 3'225}) {
+    ShortCycles cycles;
+    for (int i = 0; i < 3; ++i) {
+      cycles.read(4'000, 117, 3'425, kStepS, 5'000 + 150 * i);
+      cycles.read(0, 30, power_w, 33, 5'040 + 150 * i);
+    }
+    EXPECT_EQ(cycles.monitor.trip(),
+              power_w < 3'000 ? Reason::kStudent : Reason::kUncontrolledPower);
+  }
+}
+
 /// Near full 1.6 of 4 kW flow: on the way to 0 W the setpoint is still above that at first.
 TEST(ResponseMonitor, ARampComesFromTheOrderThatWasHeldBack) {
   for (const std::int32_t soc_e4 : {9'700, 5'000}) {
