@@ -13,16 +13,14 @@ constexpr std::int32_t kSlowFromE4 = 8'000;
 constexpr std::int32_t kSlowAboveFloorE4 = 2'000;
 /// Below this, in 0.1 degC, charging is slowed down or refused.
 constexpr std::int32_t kColdDeciC = 80;
-/// Up to here a battery saves itself from being empty, with any power; from there on it balances
-/// its cells.
+/// Up to here a battery saves itself from being empty; from there on it balances its cells.
 constexpr std::int32_t kSavesItselfE4 = 1'200;
 constexpr std::int32_t kBalancesFromE4 = 9'500;
 constexpr std::int32_t kBalancingPercentMax = 15;  ///< of the rating
 /// A battery that takes longer from rest to its rating has not followed, whatever it moves.
 constexpr std::int32_t kFullRampS = 180;
-/// A device may begin that much later than its map says. Where readings are a step apart nobody
-/// sees it; after a cut, or in a cycle that a stepped clock makes short, it still shows the order
-/// before.
+/// A device may begin that much later than its map says: after a cut, or in a cycle that a stepped
+/// clock makes short, it still shows the order before.
 constexpr std::int32_t kLateS = 10;
 constexpr std::int64_t kReadingGapMaxS = 300;  ///< a reading that was lost, and the time of both
 
