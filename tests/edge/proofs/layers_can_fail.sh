@@ -60,7 +60,9 @@ wrong tools/battery_sim/bus_reply.cpp '#include "edge/battery/modbus_frame.h"'
 wrong tests/trial/trial_battery.h '#include "tools/battery_sim/simulated_battery.h"'
 found=$(sh "$proof" "$copy") && { echo "layers.sh passed a wrong copy"; exit 1; }
 while read -r place line; do
-  printf '%s\n' "$found" | grep -q "^$place" || { echo "layers.sh did not find $place $line"; exit 1; }
+  printf '%s\n' "$found" | grep -q "^$place" && continue
+  echo "layers.sh did not find $place $line"
+  exit 1
 done <"$places"
 rm -rf "$copy/edge/log"
 ! sh "$proof" "$copy" >/dev/null || { echo "layers.sh passed a tree without edge/log"; exit 1; }
