@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <future>
 
 #include "tests/support/peer_programs.h"
 #include "tests/support/simulated_site.h"
@@ -122,8 +123,9 @@ class LyingMeter : public ::testing::TestWithParam<Lie> {
 
 TEST_P(LyingMeter, PassesALimitForAMinuteAtMost) {
   const Lie& lie = GetParam();
-  const Damage before = run(lie, false);
+  auto believed = std::async(std::launch::async, run, lie, false);  // both wait nearly all the time
   const Damage now = run(lie, true);
+  const Damage before = believed.get();
   std::printf(
       "%-16s believed: %4.0f s over, by %4.0f W | judged: %4.0f s over, by %4.0f W, found "
       "in cycle %d\n",
