@@ -14,13 +14,13 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr std::int64_t kStart = 1'679'788'800;  // 2023-03-26T00:00:00Z
+constexpr std::int64_t kHouseStart = 1'679'788'800;  // 2023-03-26T00:00:00Z
 
 TEST(HouseLoad, IsConstantByANumber) {
   const HouseLoad house = HouseLoad::from_option("350.5", 1);
-  EXPECT_EQ(house.power_w(kStart), 350.5);
+  EXPECT_EQ(house.power_w(kHouseStart), 350.5);
   EXPECT_EQ(house.power_w(-5), 350.5);
-  EXPECT_EQ(HouseLoad::from_option("-2000", 1).power_w(kStart), -2'000);
+  EXPECT_EQ(HouseLoad::from_option("-2000", 1).power_w(kHouseStart), -2'000);
 }
 
 TEST(HouseLoad, RepeatsAFileFromItsEndOn) {
@@ -28,10 +28,10 @@ TEST(HouseLoad, RepeatsAFileFromItsEndOn) {
   const std::string path = folder.write(
       "house.csv", "minute_utc,house_w\n2023-03-26T00:00:00Z,100\n2023-03-26T00:01:00Z,-200\n");
   const HouseLoad house = HouseLoad::from_option(path, 1);
-  EXPECT_EQ(house.power_w(kStart + 59), 100);
-  EXPECT_EQ(house.power_w(kStart + 60), -200);
-  EXPECT_EQ(house.power_w(kStart + 120), 100);
-  EXPECT_EQ(house.power_w(kStart - 60), -200);
+  EXPECT_EQ(house.power_w(kHouseStart + 59), 100);
+  EXPECT_EQ(house.power_w(kHouseStart + 60), -200);
+  EXPECT_EQ(house.power_w(kHouseStart + 120), 100);
+  EXPECT_EQ(house.power_w(kHouseStart - 60), -200);
 }
 
 TEST(HouseLoad, AMistakeNamesItsLine) {
@@ -60,7 +60,7 @@ TEST(HouseLoad, AYearIsAHouseholdsAndTheSameForASeed) {
   double sum_kwh = 0, highest_w = 0;
   int differences = 0;
   for (int m = 0; m < 365 * 1'440; ++m) {
-    const std::int64_t utc_s = kStart + 60 * m;
+    const std::int64_t utc_s = kHouseStart + 60 * m;
     const double power_w = house.power_w(utc_s);
     EXPECT_EQ(power_w, same.power_w(utc_s));
     EXPECT_GE(power_w, 180);

@@ -15,13 +15,13 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-constexpr std::int64_t kStartS = 1'679'788'800;
+constexpr std::int64_t kRecordedFromS = 1'679'788'800;
 
 class RecordedDeviceTest : public ::testing::Test {
  protected:
   /// `at_s` after the start; `rest` of the line.
   void record(int at_s, int function, int address, int count, const std::string& rest) {
-    text_ += "{\"utc\":\"" + std::string(utc_text(kStartS + at_s).view()) +
+    text_ += "{\"utc\":\"" + std::string(utc_text(kRecordedFromS + at_s).view()) +
              "\",\"unit\":1,\"function\":" + std::to_string(function) +
              ",\"address\":" + std::to_string(address) + ",\"count\":" + std::to_string(count) +
              ",\"latency_us\":5000," + rest + "}\n";
@@ -29,13 +29,13 @@ class RecordedDeviceTest : public ::testing::Test {
   }
   void load() {
     const std::string path = folder_.write(
-        "device.jsonl", format_recording_head({.begin_utc_s = kStartS}) + "\n" + text_ +
+        "device.jsonl", format_recording_head({.begin_utc_s = kRecordedFromS}) + "\n" + text_ +
                             "{\"end\":\"2023-03-26T01:00:00Z\",\"exchanges\":" +
                             std::to_string(lines_) + ",\"dropped\":0}\n");
     device_ = std::make_unique<RecordedDevice>(path, CutRecording::kRefused);
   }
   BusExchange ask(double at_s, int function, int address, std::vector<std::uint16_t> values) {
-    BusExchange request{.utc_ns = kStartS * kNanosecondsPerSecond +
+    BusExchange request{.utc_ns = kRecordedFromS * kNanosecondsPerSecond +
                                   static_cast<std::int64_t>(at_s * kNanosecondsPerSecond),
                         .unit = 1,
                         .function = static_cast<std::uint8_t>(function),

@@ -10,7 +10,7 @@ namespace bess {
 namespace {
 
 constexpr std::int64_t kExchangeStart = 1'679'785'200;  // a quarter-hour begins
-const double kRootOf90 = std::sqrt(0.9);
+const double kOneWayOf90 = std::sqrt(0.9);
 
 /// 8 kWh, read at tick `i` with that power, and ordered that from `after_s` on.
 ExchangeSample sample_at(int i, std::int32_t power_w, std::int32_t soc_e4, std::int32_t order_w,
@@ -66,7 +66,7 @@ TEST(Exchanges, ABatteryThatIsFullBeforeTheTickTookWhatFitted) {
       exchange_sums({sample_at(0, 4'000, 9'700, 4'000), sample_at(1, 4'000, 9'858, 4'000),
                      sample_at(2, 0, 10'000, 4'000), sample_at(3, 0, 10'000, 4'000)});
   // From the first tick on 300e-4 of 8 kWh fit.
-  EXPECT_NEAR(sums.charged_wh, 0.03 * 8'000 / kRootOf90, 0.5);
+  EXPECT_NEAR(sums.charged_wh, 0.03 * 8'000 / kOneWayOf90, 0.5);
 }
 
 /// Killed while it charged: the order runs on until the battery's timer ends it.
@@ -75,7 +75,7 @@ TEST(Exchanges, AGapIsToldByTheStateOfCharge) {
   const ExchangeSums sums =
       exchange_sums({sample_at(0, 4'000, 5'000, 4'000), sample_at(1, 4'000, 5'158, 4'000),
                      sample_at(30, 0, after_e4, 0)});
-  const double gap_wh = 0.0396 * 8'000 / kRootOf90;
+  const double gap_wh = 0.0396 * 8'000 / kOneWayOf90;
   EXPECT_NEAR(sums.charged_wh, 4'000 / 30.0 + gap_wh, 2);
   EXPECT_NEAR(sums.unseen_wh, gap_wh - 4'000 * 6 / 3'600.0, 2);
   EXPECT_NEAR(sums.first_quarter_wh, sums.charged_wh, 1e-6);  // at once, not over the hour
@@ -105,7 +105,7 @@ TEST(Exchanges, TheEfficiencyIsThatOfTheLog) {
     soc_e4 += 120 * 0.95 / 8'000 * 1e4;
   }
   EXPECT_NEAR(charge_scale_of(samples).charge_efficiency, 0.95, 0.002);
-  EXPECT_NEAR(charge_scale_of({}).charge_efficiency, kRootOf90, 1e-9);
+  EXPECT_NEAR(charge_scale_of({}).charge_efficiency, kOneWayOf90, 1e-9);
 }
 
 /// A record says when its order was written by the age that its price had then.

@@ -15,7 +15,7 @@ namespace bess {
 namespace {
 
 constexpr std::int32_t kReadingS = 120;
-using Orders = std::function<std::int32_t(int)>;
+using OrdersByCycle = std::function<std::int32_t(int)>;
 
 std::int32_t charge(int) { return 4'000; }
 std::int32_t discharge(int) { return -4'000; }
@@ -61,7 +61,7 @@ struct CountedBattery {
 
   /// Honest readings at rest first: the fault has a reading before it.
   int readings_until(const std::function<bool(const ResponseMonitor&)>& is_found,
-                     const Orders& orders) {
+                     const OrdersByCycle& orders) {
     for (int i = 0; i < 100; ++i) {
       step(orders(i));
       if (is_found(monitor)) return i + 1;
@@ -78,7 +78,7 @@ bool has_told_loss(const ResponseMonitor& monitor) { return monitor.findings().r
 
 TEST(SocMonitor, AFrozenSocIsFoundInThreeReadingsAnywhere) {
   for (const double soc : {0.09, 0.11, 0.3, 0.5, 0.8, 0.93, 0.95, 0.97, 1.0}) {
-    for (const Orders& orders : {Orders{charge}, Orders{discharge}}) {
+    for (const OrdersByCycle& orders : {OrdersByCycle{charge}, OrdersByCycle{discharge}}) {
       const bool charges = orders(0) > 0;
       // Charging at the upper end and discharging at the lower are excused; for how long: below.
       if ((soc >= 0.95 && charges) || (soc <= 0.10 && !charges)) continue;
@@ -92,7 +92,7 @@ TEST(SocMonitor, AFrozenSocIsFoundInThreeReadingsAnywhere) {
 
 TEST(SocMonitor, ASocThatMovesTheWrongWayIsFoundInThreeReadingsAnywhere) {
   for (const double soc : {0.09, 0.3, 0.5, 0.8, 0.97}) {
-    for (const Orders& orders : {Orders{charge}, Orders{discharge}}) {
+    for (const OrdersByCycle& orders : {OrdersByCycle{charge}, OrdersByCycle{discharge}}) {
       CountedBattery battery(0.5);
       battery.count = [soc](double stored) { return soc - (stored - 0.5); };
       battery.step(0);
@@ -138,7 +138,8 @@ TEST(SocMonitor, ASocThatClingsToItsEndsAndIsSetRightThereIsHonest) {
 
 TEST(SocMonitor, ABatteryThatEchoesItsOrdersIsFound) {
   for (const std::int32_t step_e4 : {1, 10, 50, 100}) {
-    for (const Orders& orders : {Orders{charge}, Orders{discharge}, Orders{alternating}}) {
+    for (const OrdersByCycle& orders :
+         {OrdersByCycle{charge}, OrdersByCycle{discharge}, OrdersByCycle{alternating}}) {
       CountedBattery battery(0.5, step_e4);
       battery.flow = [](double) { return 0.0; };
       battery.meter = [](double ordered_w, double) { return ordered_w; };
@@ -152,7 +153,8 @@ TEST(SocMonitor, ABatteryThatEchoesItsOrdersIsFound) {
 
 TEST(SocMonitor, HalfOfTheEnergyIsToldWithAnEstimate) {
   for (const std::int32_t step_e4 : {1, 10, 50, 100}) {
-    for (const Orders& orders : {Orders{charge}, Orders{discharge}, Orders{alternating}}) {
+    for (const OrdersByCycle& orders :
+         {OrdersByCycle{charge}, OrdersByCycle{discharge}, OrdersByCycle{alternating}}) {
       // To and fro by 0.8 % under a display of 1 % shows whatever the rounding makes of it.
       if (step_e4 > 10 && orders(0) != orders(1)) continue;
       CountedBattery battery(0.5, step_e4);
@@ -168,7 +170,8 @@ TEST(SocMonitor, HalfOfTheEnergyIsToldWithAnEstimate) {
 
 TEST(SocMonitor, AnotherCapacityIsFoundBothWays) {
   for (const double factor : {0.2, 5.0}) {
-    for (const Orders& orders : {Orders{charge}, Orders{discharge}, Orders{alternating}}) {
+    for (const OrdersByCycle& orders :
+         {OrdersByCycle{charge}, OrdersByCycle{discharge}, OrdersByCycle{alternating}}) {
       CountedBattery battery(0.5);
       battery.count = [factor](double stored) { return 0.5 + (stored - 0.5) * factor; };
       battery.step(0);
@@ -203,8 +206,8 @@ TEST(SocMonitor, ALossAtRestIsToldShownOrHidden) {
 }
 
 TEST(SocMonitor, ADrainBesidesOrdersOfEitherSignIsToldWithAnEstimate) {
-  const Orders pairs = [](int i) { return i / 2 % 2 == 0 ? 4'000 : -4'000; };
-  for (const Orders& orders : {Orders{alternating}, pairs}) {
+  const OrdersByCycle pairs = [](int i) { return i / 2 % 2 == 0 ? 4'000 : -4'000; };
+  for (const OrdersByCycle& orders : {OrdersByCycle{alternating}, pairs}) {
     for (const std::int32_t step_e4 : {10, 100}) {
       CountedBattery drained(0.8, step_e4);
       drained.flow = [](double ordered_w) { return ordered_w - 1'200; };
@@ -240,8 +243,8 @@ TEST(SocMonitor, ASocOfAnotherScaleIsNoGainBesides) {
 }
 
 TEST(SocMonitor, LossesAndAnotherCapacityAreNoDrain) {
-  const Orders uneven = [](int i) { return i % 3 == 0 ? -4'000 : 2'500; };
-  for (const Orders& orders : {Orders{alternating}, uneven}) {
+  const OrdersByCycle uneven = [](int i) { return i % 3 == 0 ? -4'000 : 2'500; };
+  for (const OrdersByCycle& orders : {OrdersByCycle{alternating}, uneven}) {
     for (const double capacity : {0.8, 1.0, 1.2}) {
       CountedBattery battery(0.5);
       battery.count = [capacity](double stored) { return 0.5 + (stored - 0.5) * capacity; };
@@ -330,8 +333,8 @@ struct SeldomBattery {
                          .power_w = ordered_w,
                          .capacity_wh = 8'000}});
   }
-  int steps_until(const std::function<bool(const ResponseMonitor&)>& is_found, const Orders& orders,
-                  int most) {
+  int steps_until(const std::function<bool(const ResponseMonitor&)>& is_found,
+                  const OrdersByCycle& orders, int most) {
     for (int i = 0; i < most; ++i) {
       step(orders(i));
       if (is_found(monitor)) return i + 1;
