@@ -196,8 +196,7 @@ void run_backtest(const BacktestArguments& options) {
   inputs.push_back({"--config", options.common.config_path});
   inputs.push_back({"--day-ahead", options.day_ahead.path()});
   std::vector<GivenPath> outputs;
-  for (const char* name : {"backtest.csv", "backtest_days.csv", "backtest_curve.csv",
-                           "backtest.json", "backtest.html"}) {
+  for (const char* name : {"backtest.csv", "backtest_days.csv", "backtest.json", "backtest.html"}) {
     outputs.push_back({"--out", folder / name});
   }
   require_distinct(outputs, inputs);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 #include "shared/host/csv.h"
 #include "shared/host/file.h"
@@ -95,16 +96,18 @@ std::string chart_caption(const BacktestResults& results) {
       fall_text((*best)->drawdown_eur_per_mwh()));
 }
 
-/// Of `table`, every second column from `first`.
-Json lines_chart(const char* id, const PictureTable& table, std::size_t first) {
+/// A line a policy over the traded days, EUR per MWh: what `values` makes of its cumulative profit.
+template <typename Values>
+Json lines_chart(const char* id, const BacktestResults& results, Values values) {
   Json labels = Json::list(), series = Json::list();
-  for (const auto& row : table.rows) labels.add(row.front());
-  for (std::size_t c = first; c < table.columns.size(); c += 2) {
-    Json values = Json::list(), line = Json::list();
-    for (const auto& row : table.rows) values.add(std::stod(row[c]));
-    line.add(table.columns[c]);
-    line.add(kLineColours[(c - 1) / 2 % kLineColours.size()]->name);
-    line.add(std::move(values));
+  for (const DayResult& day : results.policies.front().total.days) labels.add(day.date);
+  const std::vector<const WalkForward*> shown = shown_in_figure(results);
+  for (std::size_t p = 0; p < shown.size(); ++p) {
+    Json line = Json::list(), sums = Json::list();
+    for (const double sum : values(shown[p]->cumulative_eur_per_mwh())) sums.add(sum);
+    line.add(shown[p]->name);
+    line.add(kLineColours[p % kLineColours.size()]->name);
+    line.add(std::move(sums));
     series.add(std::move(line));
   }
   Json chart = Json::object({{"id", id}, {"kind", "lines"}});
@@ -113,26 +116,6 @@ Json lines_chart(const char* id, const PictureTable& table, std::size_t first) {
   return chart;
 }
 
-/// The numbers of the figure, EUR per MWh.
-PictureTable curve_table(const BacktestResults& results) {
-  PictureTable table{"backtest_curve", {"date"}, {}};
-  std::vector<std::vector<double>> columns;
-  for (const WalkForward* policy : shown_in_figure(results)) {
-    table.columns.push_back(policy->name);
-    table.columns.push_back(policy->name + " below peak");
-    columns.push_back(policy->cumulative_eur_per_mwh());
-    columns.push_back(below_peak(columns.back()));
-  }
-  const std::vector<DayResult>& days = results.policies.front().total.days;
-  for (std::size_t d = 0; d < days.size(); ++d) {
-    std::vector<std::string> row{days[d].date};
-    for (const auto& column : columns) row.push_back(exact(column[d]));
-    table.rows.push_back(std::move(row));
-  }
-  return table;
-}
-
-/// The heads are those of the page of seeds.
 HtmlTable total_table(const BacktestResults& results) {
   HtmlTable table;
   table.caption = "EUR per day per MWh of capacity, all traded days";
@@ -362,17 +345,15 @@ Json backtest_json(const BacktestResults& results) {
 
 void write_backtest_page(const BacktestResults& results, const std::filesystem::path& folder) {
   const WalkForward& first = results.policies.front();
-  const PictureTable curve = curve_table(results);
-  write_picture(curve, folder);
   Json charts = Json::list();
-  charts.add(lines_chart("profit", curve, 1));
+  charts.add(lines_chart("profit", results, std::identity{}));
   std::string pictures =
       chart_html("profit", "Cumulative profit of each policy over the traded days");
   const bool any_falls = std::ranges::any_of(results.policies, [](const WalkForward& policy) {
     return policy.drawdown_eur_per_mwh() > 0;
   });
   if (any_falls) {
-    charts.add(lines_chart("falls", curve, 2));
+    charts.add(lines_chart("falls", results, below_peak));
     pictures += "<p class=\"note\">Below its peak, EUR per MWh</p>\n" +
                 chart_html("falls", "How far each policy lies under its own peak");
   }
@@ -387,7 +368,7 @@ void write_backtest_page(const BacktestResults& results, const std::filesystem::
       html_escaped(by_month_meaning(first.total.errors().months)),
       charge_left_meaning(first.total.charge_price_eur_per_mwh),
       one_line(reference_wear_meaning(first.total.wear_eur_per_mwh)), pictures,
-      html_escaped(with_true_minus(chart_caption(results))), csv_link(picture_file(curve)),
+      html_escaped(with_true_minus(chart_caption(results))), csv_link("backtest_days.csv"),
       format_table(month_table(results)), skipped_html(results));
   write_file(folder / "backtest.html",
              format_chart_page("Walk-forward backtest", body, std::move(charts)));

@@ -5,7 +5,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "shared/host/csv.h"
 #include "shared/host/file.h"
 #include "tests/support/temporary_folder.h"
 
@@ -118,21 +117,24 @@ TEST(BacktestReport, ThePageDrawsAFallWhereThereIsOne) {
   }
 }
 
-TEST(BacktestReport, ThePictureHasItsFile) {
+TEST(BacktestReport, ThePictureHasTheSumsOfTheDays) {
   const TemporaryFolder folder;
   const BacktestResults fitted = results(5);
   write_backtest_page(fitted, folder.file(""));
-  EXPECT_THAT(read_file(folder.file("backtest.html")), HasSubstr("href=\"backtest_curve.csv\""));
-  const CsvTable curve = CsvTable::read(folder.file("backtest_curve.csv"));
-  ASSERT_EQ(curve.row_count(), 6U);
-  for (const WalkForward& policy : fitted.policies) {
-    const std::vector<double> sums = policy.cumulative_eur_per_mwh();
-    double deepest = 0;
-    for (std::size_t d = 0; d < sums.size(); ++d) {
-      EXPECT_NEAR(curve.number(d, curve.column(policy.name)), sums[d], 1e-6);
-      deepest = std::min(deepest, curve.number(d, curve.column(policy.name + " below peak")));
+  const std::string page = read_file(folder.file("backtest.html"));
+  EXPECT_THAT(page, HasSubstr("href=\"backtest_days.csv\""));
+  constexpr std::string_view kData = "id=\"data\">";
+  const std::size_t begin = page.find(kData) + kData.size();
+  const Json charts = Json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+  const JsonValue chart = *charts.value().begin();
+  EXPECT_EQ(chart["labels"].size(), 6U);
+  auto policy = fitted.policies.begin();
+  for (const JsonValue line : chart["series"]) {
+    std::vector<double> drawn;
+    for (const JsonValue part : line) {
+      for (const JsonValue value : part) drawn.push_back(value.number().value_or(NAN));
     }
-    EXPECT_NEAR(-deepest, policy.drawdown_eur_per_mwh(), 1e-6) << "as the table has it";
+    EXPECT_EQ(drawn, (policy++)->cumulative_eur_per_mwh());
   }
 }
 
