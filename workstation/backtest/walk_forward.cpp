@@ -7,7 +7,7 @@
 
 #include "shared/host/user_error.h"
 #include "workstation/env/charge_left.h"
-#include "workstation/env/day_risk.h"
+#include "workstation/env/drawdown.h"
 #include "workstation/market/series/local_date.h"
 
 namespace bess {
@@ -116,7 +116,7 @@ std::vector<double> WalkForward::cumulative_eur_per_mwh() const {
   return cumulative(daily_profits(total));
 }
 
-double WalkForward::drawdown_eur_per_mwh() const { return day_risk(daily_profits(total)).drawdown; }
+double WalkForward::drawdown_eur_per_mwh() const { return drawdown(daily_profits(total)); }
 
 WalkForward walk_forward(const std::string& name, const Folds& folds, const FoldPolicy& make,
                          const BatteryParameters& battery, double initial_soc_frac,

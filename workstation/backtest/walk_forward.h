@@ -55,7 +55,7 @@ struct WalkForward {
   std::vector<Evaluation> by_month;  ///< parallel to `months`
   Evaluation day_reset{};  ///< the days, each from the initial SoC; empty unless asked for
 
-  /// As day_risk.h defines it, EUR per MWh of capacity.
+  /// As drawdown.h defines it, EUR per MWh of capacity.
   [[nodiscard]] double drawdown_eur_per_mwh() const;
   /// Profit after each day, EUR per MWh of capacity.
   [[nodiscard]] std::vector<double> cumulative_eur_per_mwh() const;

@@ -10,9 +10,8 @@
 
 namespace bess {
 
-/// Header `policy,soc,date,profit_eur,cycles,switches,soc_end,throughput_mwh,soc_start,
-/// charge_value_eur,charge_price_eur_mwh`; soc is "reset" or "carried"; no price: the charge is not
-/// valued.
+/// Header `policy,date,profit_eur,cycles,switches,throughput_mwh,carry_soc,soc_end_frac,
+/// soc_start_frac,charge_value_eur,charge_price_eur_per_mwh`; no price: the charge is not valued.
 std::string evaluation_days_csv(const std::vector<NamedEvaluation>& evaluations);
 
 /// Reads it back for the battery that was evaluated; policies keep their order. Throws UserError

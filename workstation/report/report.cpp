@@ -19,7 +19,6 @@
 #include "workstation/report/page_pictures.h"
 #include "workstation/report/report_page.h"
 #include "workstation/report/report_tables.h"
-#include "workstation/report/risk_page.h"
 #include "workstation/report/shown_policies.h"
 
 namespace bess {
@@ -98,7 +97,7 @@ std::string page_of(const ReportInputs& in, const PageSteps& steps,
        {"comparison",
         section_of("comparison", "What each policy earned",
                    comparison_html(in.evaluations) + same_program_html(in.evaluations) +
-                       whole_battery_html(in.evaluations) + risk_html(in.evaluations))},
+                       whole_battery_html(in.evaluations))},
        {"lost",
         section_of("lost", "Where it lost, and why", lost_html(losses, capacity_mwh_of(in)))},
        {"lost_link", losses.empty() ? "" : "<li><a href=\"#lost\">Where it lost</a></li>\n"},

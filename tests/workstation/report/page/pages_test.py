@@ -148,37 +148,15 @@ class Pages(unittest.TestCase):
                 100 * mean(own) / mean(self.profits(name, "foresight", carried)),
                 mean(self.profits(name, policy, carried, 10))]
 
-    def risk_of(self, name, policy):
-        """The same of the table of risk (workstation/env/day_risk.h)."""
-        def quantile(values, share):
-            at = share * (len(values) - 1)
-            below, ordered = int(at), sorted(values)
-            return ordered[below] + (at - below) * (ordered[min(below + 1, len(values) - 1)] - ordered[below])
-        def sortino(values):
-            losses = mean([min(value, 0) ** 2 for value in values])
-            return mean(values) / losses ** .5 if losses > 0 else None
-        def won(values):
-            return 100 * mean([value > 0 for value in values])
-        own = self.profits(name, policy)
-        gain = [a - b for a, b in zip(own, self.profits(name, "rbc"))]
-        deepest, peak, total = 0, 0, 0
-        for value in own:
-            total += value
-            peak = max(peak, total)
-            deepest = max(deepest, peak - total)
-        return [won(own), -quantile(own, .05), deepest, sortino(own),
-                *([None] * 2 if policy == "rbc" else [won(gain), sortino(gain)])]
-
     def test_comparisons_are_those_of_the_days(self):
         for name in RUNS:
             rows = self.rows_of(self.tab(name), "#comparison")
             policies = [policy for policy in self.expected[name]["days"] if not policy.startswith("plain student under")]
-            self.assertEqual([row[0] for row in rows], policies * 4)
+            self.assertEqual([row[0] for row in rows], policies * 3)
             for at, (policy, cells) in enumerate(rows):
                 table = at // len(policies)
                 capacity = self.expected[name]["capacity_mwh"]
-                wanted = (self.risk_of(name, policy) if table == 3
-                          else [capacity * mean(self.profits(name, policy, carried)) for carried in (False, True)]
+                wanted = ([capacity * mean(self.profits(name, policy, carried)) for carried in (False, True)]
                           if table == 2 else self.comparison_of(name, policy, table == 0))
                 self.assertEqual(len(cells), len(wanted), [label for label, _ in cells])
                 for (label, text), value in zip(cells, wanted):
