@@ -228,6 +228,20 @@ void add_bus_options(ProgramCommand& command, BatteryServerSettings& server) {
       .range(0, 60'000);
 }
 
+/// From when to when a fault strikes, and whether it comes and goes.
+void add_fault_span(ProgramCommand& command, const std::string& fault, FaultSchedule& faults) {
+  command.option(fault + "-from-s", faults.from_s, "Simulated seconds after the start")
+      .non_negative()
+      .needs(fault);
+  command.option(fault + "-to-s", faults.to_s, "And until when").non_negative().needs(fault);
+  command.option(fault + "-on-s", faults.on_s, "Comes and goes: so long it may strike")
+      .positive()
+      .needs(fault);
+  command.option(fault + "-off-s", faults.off_s, "And then so long not")
+      .positive()
+      .needs(fault + "-on-s");
+}
+
 void add_fault_options(ProgramCommand& command, BatteryOptions& options) {
   BatteryServerSettings& server = options.server;
   FaultSchedule& faults = server.faults;
@@ -245,16 +259,7 @@ void add_fault_options(ProgramCommand& command, BatteryOptions& options) {
       .needs("--fault")
       .excludes("--fault-every");
   command.option("--fault-seed", faults.seed, "Of what is random").with_default().needs("--fault");
-  command.option("--fault-from-s", faults.from_s, "Simulated seconds after the start")
-      .non_negative()
-      .needs("--fault");
-  command.option("--fault-to-s", faults.to_s, "And until when").non_negative().needs("--fault");
-  command.option("--fault-on-s", faults.on_s, "Comes and goes: so long it may strike")
-      .positive()
-      .needs("--fault");
-  command.option("--fault-off-s", faults.off_s, "And then so long not")
-      .positive()
-      .needs("--fault-on-s");
+  add_fault_span(command, "--fault", faults);
   command.option("--fault-period-s", faults.period_s, "Of what ends or replaces orders")
       .range(1, 86'400)
       .with_default()
@@ -335,22 +340,7 @@ void add_house_options(ProgramCommand& command, BatteryOptions& options) {
       .check(known_fault)
       .value_name("NAME")
       .needs("--meter-map");
-  command
-      .option("--meter-fault-from-s", options.meter.faults.from_s,
-              "Simulated seconds after the start")
-      .non_negative()
-      .needs("--meter-fault");
-  command.option("--meter-fault-to-s", options.meter.faults.to_s, "And until when")
-      .non_negative()
-      .needs("--meter-fault");
-  command
-      .option("--meter-fault-on-s", options.meter.faults.on_s,
-              "Comes and goes: so long it may strike")
-      .positive()
-      .needs("--meter-fault");
-  command.option("--meter-fault-off-s", options.meter.faults.off_s, "And then so long not")
-      .positive()
-      .needs("--meter-fault-on-s");
+  add_fault_span(command, "--meter-fault", options.meter.faults);
 }
 
 }  // namespace
