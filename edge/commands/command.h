@@ -137,6 +137,9 @@ inline constexpr const char* kDefaultConfigPath = "/etc/bess/edge.toml";
 /// One line on stderr that names the command's help; the exit code.
 int usage_error(const EdgeCommand& command, const std::string& message);
 
+/// One line on stderr, or in the journal; the exit code.
+int failed(const std::string& message);
+
 /// Nothing: go on. Otherwise it is done, with this exit code.
 std::optional<int> take_options(const EdgeCommand& command, const Words& words, void* given,
                                 SettingsFile& settings);

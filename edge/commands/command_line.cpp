@@ -155,6 +155,11 @@ int usage_error(const EdgeCommand& command, const std::string& message) {
   return 2;
 }
 
+int failed(const std::string& message) {
+  report(JournalLevel::kError, "%s", message.c_str());
+  return 1;
+}
+
 std::optional<int> take_options(const EdgeCommand& command, const Words& words, void* given,
                                 SettingsFile& settings) {
   for (std::size_t i = 0; i < words.size(); ++i) {
@@ -188,8 +193,7 @@ std::optional<int> load_settings(const EdgeCommand& command, SettingsFile& setti
   }
   std::string error;
   if (load_edge_config(settings.path, settings.config, error)) return std::nullopt;
-  report(JournalLevel::kError, "%s", error.c_str());
-  return 1;
+  return failed(error);
 }
 
 int run_command_line(Words words) {

@@ -69,11 +69,6 @@ const char* complaint(const EarnedGiven& given) {
          "as 2026-11-23, or two with .. between";
 }
 
-int fail(const std::string& message) {
-  report(JournalLevel::kError, "%s", message.c_str());
-  return 1;
-}
-
 std::string span_text(std::int32_t first_day, std::int32_t last_day) {
   return DayAccount(first_day).date() + " to " + DayAccount(last_day).date();
 }
@@ -132,13 +127,13 @@ int run_earned(const EarnedGiven& given, SettingsFile& settings) {
   const EdgeConfig& config = settings.config;
   LogReader log;
   FileMessage error;
-  if (!log.open(config.log, error)) return fail(error.c_str());
+  if (!log.open(config.log, error)) return failed(error.c_str());
   const std::int32_t today = local_day_at(config.clock.now_utc_ns() / kNanosecondsPerSecond);
   Period period{today, today};
   if (!given.period.empty()) parse_period(given.period, today, period);
   std::string trouble;
   MoneySettings money;
-  if (!load_money_settings(settings.path, money, trouble)) return fail(trouble);
+  if (!load_money_settings(settings.path, money, trouble)) return failed(trouble);
   const MoneyTerms terms = money_terms(money, trouble);
   if (!trouble.empty()) report(JournalLevel::kWarning, "%s", trouble.c_str());
   const auto [first_day, last_day] = period;
@@ -146,7 +141,7 @@ int run_earned(const EarnedGiven& given, SettingsFile& settings) {
                     Statement(accounts_of_days(log, first_day, last_day, terms), terms.contract)};
   const Statement& statement = earned.statement;
   if (statement.is_empty()) {
-    return fail("the log holds no cycle of " + span_text(first_day, last_day) + held_text(log));
+    return failed("the log holds no cycle of " + span_text(first_day, last_day) + held_text(log));
   }
   const BatteryParameters battery = battery_of(config, statement);
   const PriceThresholds& thresholds = config.control.guard.thresholds;
@@ -157,7 +152,7 @@ int run_earned(const EarnedGiven& given, SettingsFile& settings) {
   if (given.beside) compare(log, period, battery, config.control.guard, prices, earned);
   std::fputs(text_of(given, earned).c_str(), stdout);
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return 0;
-  return fail("the output cannot be written");
+  return failed("the output cannot be written");
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 
 #include "edge/account/cycle_account.h"
 #include "edge/commands/command_list.h"
-#include "edge/log/journal.h"
 #include "edge/log/log_reader.h"
 #include "edge/log/log_text.h"
 #include "edge/why/explanation.h"
@@ -132,10 +131,7 @@ int run_log(const LogGiven& given, SettingsFile& settings) {
   const EdgeConfig& config = settings.config;
   LogReader log;
   FileMessage error;
-  if (!log.open(config.log, error)) {
-    report(JournalLevel::kError, "%s", error.c_str());
-    return 1;
-  }
+  if (!log.open(config.log, error)) return failed(error.c_str());
   if (given.csv) {
     char header[kLogLineBytes];
     format_csv_header(header);
@@ -151,8 +147,7 @@ int run_log(const LogGiven& given, SettingsFile& settings) {
     given.csv ? print_csv(record, given, thresholds) : print_text(record, given, thresholds);
   }
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return 0;
-  report(JournalLevel::kError, "the output cannot be written");
-  return 1;
+  return failed("the output cannot be written");
 }
 
 }  // namespace

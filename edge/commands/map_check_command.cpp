@@ -5,7 +5,6 @@
 #include <memory>
 
 #include "edge/commands/command_list.h"
-#include "edge/log/journal.h"
 #include "edge/recording/map_check.h"
 #include "edge/registers/map_file.h"
 #include "shared/host/bus_recording.h"
@@ -50,11 +49,6 @@ Exit codes: 0 all points are plausible   1 not all, or a file cannot be read   2
 
   bess-edge map check --against inverter.jsonl --map edge/maps/sma.toml --variant setpoint
 )";
-
-int refuse(const std::string& error) {
-  report(JournalLevel::kError, "%s", error.c_str());
-  return 1;
-}
 
 /// Unit ids are the recorded device's, not the map's: they are settings of an installation.
 void take_units(const RecordingHead& head, RegisterMap& map) {
@@ -126,7 +120,7 @@ std::optional<int> find_map(const MapCheckGiven& given, SettingsFile& settings) 
   std::string error;
   RegisterMap& map = settings.config.battery.map;
   if (load_register_map(given.map_path, given.variant, map, error)) return std::nullopt;
-  return refuse(error);
+  return failed(error);
 }
 
 }  // namespace
@@ -137,7 +131,7 @@ int run_map_check(const MapCheckGiven& given, SettingsFile& settings) {
   std::string error;
   BusRecordingReader recording;
   const CutRecording cut = given.accept_cut ? CutRecording::kAccepted : CutRecording::kRefused;
-  if (!recording.open(given.against_path, cut, error)) return refuse(error);
+  if (!recording.open(given.against_path, cut, error)) return failed(error);
   take_units(recording.head(), map);
   const auto check = std::make_unique<MapCheck>(map, recording.head().unit);
   BusExchange exchange;
@@ -145,7 +139,7 @@ int run_map_check(const MapCheckGiven& given, SettingsFile& settings) {
   for (; next == BusRecordingReader::Next::kExchange; next = recording.next(exchange, error)) {
     check->add(exchange);
   }
-  if (next == BusRecordingReader::Next::kDamaged) return refuse(error);
+  if (next == BusRecordingReader::Next::kDamaged) return failed(error);
   Result result{.points = check->verdicts(),
                 .unjudged = check->unjudged(),
                 .exchanges = recording.exchanges()};

@@ -56,28 +56,23 @@ const char* complaint(const ReplayGiven& given) {
          "between";
 }
 
-int fail(const std::string& message) {
-  report(JournalLevel::kError, "%s", message.c_str());
-  return 1;
-}
-
 int run_replay(const ReplayGiven& given, SettingsFile& settings) {
   set_market_time_zone();
   const EdgeConfig& config = settings.config;
   LogReader log;
   FileMessage error;
-  if (!log.open(config.log, error)) return fail(error.c_str());
+  if (!log.open(config.log, error)) return failed(error.c_str());
   const std::int32_t today = local_day_at(config.clock.now_utc_ns() / kNanosecondsPerSecond);
   Period period;
   parse_period(given.period.empty() ? "month" : given.period, today, period);
   const Replay replay =
       replay_days(log, period.first_day, period.last_day, config.control.guard.power_w);
-  if (replay.compared == 0) return fail("the log holds no decision of the student in these days");
+  if (replay.compared == 0) return failed("the log holds no decision of the student in these days");
   const std::string text = given.json ? replay_json(replay).text() : replay_text(replay);
   if (given.each) std::fputs(replayed_cycles_text(replay).c_str(), stdout);
   std::fputs(text.c_str(), stdout);
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-    return fail("the output cannot be written");
+    return failed("the output cannot be written");
   }
   const std::int64_t differing_percent_of_all = std::int64_t{100} * replay.differing;
   const bool is_over = differing_percent_of_all > given.limit_percent * replay.compared;

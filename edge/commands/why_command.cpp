@@ -3,7 +3,6 @@
 #include <cstdio>
 
 #include "edge/commands/command_list.h"
-#include "edge/log/journal.h"
 #include "edge/why/explanation.h"
 #include "shared/local_text.h"
 
@@ -41,11 +40,6 @@ Exit codes: 0 done   1 the log cannot be read, or nothing was decided then   2 t
   bess-edge why --json | jq .margins
 )";
 
-int fail(const std::string& message) {
-  report(JournalLevel::kError, "%s", message.c_str());
-  return 1;
-}
-
 /// Of the cycle that was asked for; otherwise `trouble` says why there is none.
 std::uint64_t find_cycle(const WhyGiven& given, const EdgeConfig& config, const LogReader& log,
                          std::string& trouble) {
@@ -68,19 +62,19 @@ int run_why(const WhyGiven& given, SettingsFile& settings) {
   const EdgeConfig& config = settings.config;
   LogReader log;
   FileMessage error;
-  if (!log.open(config.log, error)) return fail(error.c_str());
+  if (!log.open(config.log, error)) return failed(error.c_str());
   std::string trouble;
   const std::uint64_t number = find_cycle(given, config, log, trouble);
-  if (!trouble.empty()) return fail(trouble);
+  if (!trouble.empty()) return failed(trouble);
   Explanation explanation;
   if (!explain(log, number, config.control.guard.thresholds, explanation)) {
-    return fail("the record of that cycle cannot be read");
+    return failed("the record of that cycle cannot be read");
   }
   const std::string text = given.json ? explanation_json(explanation, config.control).text()
                                       : explanation_text(explanation, config.control);
   std::fputs(text.c_str(), stdout);
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return 0;
-  return fail("the output cannot be written");
+  return failed("the output cannot be written");
 }
 
 }  // namespace
