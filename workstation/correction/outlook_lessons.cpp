@@ -1,8 +1,10 @@
 #include "workstation/correction/outlook_lessons.h"
 
+#include <span>
 #include <vector>
 
 #include "shared/host/user_error.h"
+#include "workstation/base/in_parallel.h"
 #include "workstation/rl/transition.h"
 
 namespace bess {
@@ -44,9 +46,8 @@ class LessonBook {
     all_.insert(all_.end(), x, x + kRows);
     return argmax_action(worth_eur.data());
   }
-  [[nodiscard]] Matrix matrix() const {
-    return Eigen::Map<const Matrix>(all_.data(), kRows,
-                                    static_cast<Eigen::Index>(all_.size() / kRows));
+  [[nodiscard]] Eigen::Map<const Matrix> lessons() const {
+    return {all_.data(), kRows, static_cast<Eigen::Index>(all_.size() / kRows)};
   }
 
  private:
@@ -66,6 +67,43 @@ MarketStep elsewhere(MarketStep step, Random& random) {
   return step;
 }
 
+/// Draws a day's lessons in the order of time; `add` adds one and returns what the teacher does.
+template <typename Add>
+void trade_day(std::span<const MarketStep> steps, const BatteryParameters& battery,
+               double level_shift_eur_per_mwh, Random& random, Add add) {
+  const double window_frac = battery.soc_max_frac - battery.soc_min_frac;
+  std::vector<Pass> passes;
+  for (int p = 0; p < kPasses; ++p) {
+    const double soc_frac = battery.soc_min_frac + random.uniform() * window_frac;
+    passes.push_back({soc_frac, p == 0 ? 0.0 : level_shift_eur_per_mwh * random.normal()});
+  }
+  for (const MarketStep& step : steps) {
+    for (Pass& pass : passes) {
+      Action action = add(step, pass.soc_frac, pass.shift_eur_per_mwh);
+      if (random.uniform() < kElsewhereShare) {
+        const MarketStep other = elsewhere(step, random);
+        add(other, battery.soc_min_frac + random.uniform() * window_frac, pass.shift_eur_per_mwh);
+      }
+      if (random.uniform() < kExploration) action = static_cast<Action>(random.index(kActionCount));
+      pass.soc_frac = battery_step(battery, pass.soc_frac, power_sign(action) * battery.power_w_max,
+                                   kHoursPerStep)
+                          .soc_frac;
+    }
+  }
+}
+
+Matrix joined(const std::vector<LessonBook>& books) {
+  Eigen::Index count = 0;
+  for (const LessonBook& book : books) count += book.lessons().cols();
+  Matrix all(kRows, count);
+  Eigen::Index at = 0;
+  for (const LessonBook& book : books) {
+    all.middleCols(at, book.lessons().cols()) = book.lessons();
+    at += book.lessons().cols();
+  }
+  return all;
+}
+
 }  // namespace
 
 Matrix outlook_lessons(const Teacher& teacher, const MarketSteps& market,
@@ -73,36 +111,26 @@ Matrix outlook_lessons(const Teacher& teacher, const MarketSteps& market,
   if (market.day_ahead == nullptr) {
     fail("this teacher plans on day-ahead prices: give their file to distil with --day-ahead");
   }
+  const std::vector<MarketDay> days = market.days_of(Split::kTrain);
+  const auto trade = [&](std::size_t d, Random& random, auto add) {
+    trade_day(market.of(days[d]), battery, options.level_shift_eur_per_mwh, random, add);
+  };
+  // What is drawn hangs on nothing that is planned: where each day's draws begin is known before.
   Random random(derive_seed(options.seed, kSeedOutlook));
-  LessonBook book(teacher, battery);
-  const double window_frac = battery.soc_max_frac - battery.soc_min_frac;
-  for (const MarketDay& day : market.days_of(Split::kTrain)) {
-    std::vector<Pass> passes;
-    for (int p = 0; p < kPasses; ++p) {
-      const double soc_frac = battery.soc_min_frac + random.uniform() * window_frac;
-      passes.push_back(
-          {soc_frac, p == 0 ? 0.0 : options.level_shift_eur_per_mwh * random.normal()});
-    }
-    OutlookProgram::Plan plan;
-    for (const MarketStep& step : market.of(day)) {
-      if (!plan.serves(step)) plan = teacher.outlook->plan_of(step);
-      for (Pass& pass : passes) {
-        Action action = book.add(step, pass.soc_frac, pass.shift_eur_per_mwh, plan);
-        if (random.uniform() < kElsewhereShare) {
-          const MarketStep other = elsewhere(step, random);
-          book.add(other, battery.soc_min_frac + random.uniform() * window_frac,
-                   pass.shift_eur_per_mwh, plan);
-        }
-        if (random.uniform() < kExploration) {
-          action = static_cast<Action>(random.index(kActionCount));
-        }
-        pass.soc_frac = battery_step(battery, pass.soc_frac,
-                                     power_sign(action) * battery.power_w_max, kHoursPerStep)
-                            .soc_frac;
-      }
-    }
+  std::vector<Random> draws;
+  for (std::size_t d = 0; d < days.size(); ++d) {
+    draws.push_back(random);
+    trade(d, random, [](const MarketStep&, double, double) { return Action::kIdle; });
   }
-  return book.matrix();
+  std::vector<LessonBook> books(days.size(), LessonBook(teacher, battery));
+  in_parallel(days.size(), options.threads, [&](std::size_t d) {
+    OutlookProgram::Plan plan;
+    trade(d, draws[d], [&](const MarketStep& step, double soc_frac, double shift_eur_per_mwh) {
+      if (!plan.serves(step)) plan = teacher.outlook->plan_of(step);
+      return books[d].add(step, soc_frac, shift_eur_per_mwh, plan);
+    });
+  });
+  return joined(books);
 }
 
 }  // namespace bess

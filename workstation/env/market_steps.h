@@ -63,6 +63,7 @@ struct MarketStep {
   [[nodiscard]] double level_eur_per_mwh() const {
     return static_cast<double>(level_centi_eur_per_mwh) / kCentiPerEur;
   }
+  friend bool operator==(const MarketStep&, const MarketStep&) = default;
   /// How many quarter-hours before this step's the newest row belongs: in its first minutes 1.
   [[nodiscard]] int quarter_hours_ago() const {
     const int before_this_min = std::max(0, observed_age_min - minute_of_quarter_hour);

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+
+#include "workstation/base/in_parallel.h"
 
 namespace bess {
 namespace {
 
-constexpr std::size_t kPagesMax = 1500;  ///< of 100 kB each
+constexpr std::size_t kPagesMax = 2500;  ///< of 100 kB each
 
 }  // namespace
 
@@ -19,8 +22,26 @@ OutlookDays outlook_days_of(const MarketStep& step) {
   return days;
 }
 
+std::shared_ptr<const OutlookBook> OutlookBook::of(const OutlookModel& model) {
+  static std::mutex mutex;
+  static std::weak_ptr<const OutlookBook> last;
+  const std::lock_guard lock(mutex);
+  std::shared_ptr<const OutlookBook> book = last.lock();
+  if (book == nullptr || std::memcmp(&book->model_, &model, sizeof model) != 0) {
+    last = book = std::make_shared<const OutlookBook>(model);
+  }
+  return book;
+}
+
+void OutlookBook::prepare(const MarketSteps& market, const std::vector<MarketDay>& days,
+                          int threads) const {
+  in_parallel(days.size(), threads, [&](std::size_t d) {
+    for (const MarketStep& step : market.of(days[d])) (void)plan_for(step);
+  });
+}
+
 std::shared_ptr<const OutlookPlan> OutlookBook::plan_for(const MarketStep& step) const {
-  const std::lock_guard lock(mutex_);
+  std::unique_lock lock(mutex_);
   if (publication_ != step.day_ahead || page_count_ > kPagesMax) {
     publication_ = step.day_ahead;
     pages_.clear();
@@ -32,7 +53,8 @@ std::shared_ptr<const OutlookPlan> OutlookBook::plan_for(const MarketStep& step)
     next_midnight_utc_s_ = days.tomorrow_utc_s;
   }
   const std::int32_t level = planned_level_centi(step.level_centi_eur_per_mwh);
-  std::vector<Page>& pages = pages_[{midnight_utc_s_, level}];
+  const Key key{midnight_utc_s_, level};
+  std::vector<Page>& pages = pages_[key];
   const auto found = std::ranges::find_if(pages, [&](const Page& page) {
     return page.from_utc_s <= step.utc_s && step.utc_s < page.until_utc_s;
   });
@@ -50,9 +72,12 @@ std::shared_ptr<const OutlookPlan> OutlookBook::plan_for(const MarketStep& step)
     known->until_utc_s = std::max(known->until_utc_s, until);
     return known->plan;
   }
+  lock.unlock();
   const auto plan = std::make_shared<OutlookPlan>();
   plan->make(model_, days, level);
-  pages.push_back({step.utc_s, until, days, plan});
+  lock.lock();
+  if (publication_ != step.day_ahead) return plan;  // other threads are at other prices by now
+  pages_[key].push_back({step.utc_s, until, days, plan});
   ++page_count_;
   return plan;
 }

@@ -20,10 +20,17 @@ OutlookDays outlook_days_of(const MarketStep& step);
 class OutlookBook {
  public:
   explicit OutlookBook(const OutlookModel& model) : model_(model) {}
+  /// The book of this model: that of the last one asked for, if it is the same and in use. So
+  /// teacher and student of a run look up one another's plans.
+  static std::shared_ptr<const OutlookBook> of(const OutlookModel& model);
 
   [[nodiscard]] const OutlookModel& model() const { return model_; }
   /// Break-even price at a step; threads may share the book.
   [[nodiscard]] std::int32_t break_even_centi(const MarketStep& step, double soc_frac) const;
+  /// The plan that it is of, for who asks at many SoCs.
+  [[nodiscard]] std::shared_ptr<const OutlookPlan> plan_for(const MarketStep& step) const;
+  /// Makes the plans of these days beforehand, on so many threads.
+  void prepare(const MarketSteps& market, const std::vector<MarketDay>& days, int threads) const;
 
  private:
   /// A plan and the decisions that know no more than it does.
@@ -33,8 +40,6 @@ class OutlookBook {
     std::shared_ptr<const OutlookPlan> plan;
   };
   using Key = std::pair<std::int64_t, std::int32_t>;  ///< local midnight, level
-
-  [[nodiscard]] std::shared_ptr<const OutlookPlan> plan_for(const MarketStep& step) const;
 
   OutlookModel model_;
   mutable std::mutex mutex_;

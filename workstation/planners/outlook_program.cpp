@@ -5,10 +5,12 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 
 #include "shared/exchange_cost.h"
 #include "shared/host/user_error.h"
 #include "shared/local_time.h"
+#include "workstation/base/in_parallel.h"
 #include "workstation/planners/smoothing_kernel.h"
 
 namespace bess {
@@ -19,7 +21,8 @@ constexpr int kSmoothedQuarterHours = 24;  ///< reach of the smoothing, on both 
 constexpr int kUsualDays = 4;              ///< of backward induction behind a plan
 constexpr double kLevelReach = 3;          ///< standard deviations of the level around its mean
 constexpr std::size_t kRow = std::size_t{DeviationChain::kBins} * OutlookProgram::kSocPoints;
-constexpr int kTerms = 4;  ///< of usual(): constant, D, h, L
+constexpr int kTerms = 4;                             ///< of usual(): constant, D, h, L
+constexpr std::size_t kKeptMax = 180 * kStepsPerDay;  ///< steps that are seen, of 2 kB each
 
 template <typename Visit>
 void for_each_step(const MarketSteps& market, const std::vector<MarketDay>& days, Visit visit) {
@@ -84,12 +87,37 @@ std::array<std::int64_t, 2> paid_minutes(std::int64_t step_utc_s) {
 
 }  // namespace
 
+struct OutlookProgram::Kept {
+  struct Seen {
+    MarketStep step;
+    Sight sees;                         ///< but for what is ahead
+    float ahead_eur[2][2][kSocPoints];  ///< by level and bin
+  };
+  std::mutex mutex;
+  std::unordered_map<std::int64_t, Seen> by_utc_s;
+
+  [[nodiscard]] const Seen* find(const MarketStep& step) const {
+    const auto found = by_utc_s.find(step.utc_s);
+    return found != by_utc_s.end() && found->second.step == step ? &found->second : nullptr;
+  }
+  void add(const MarketStep& step, const Sight& sees) {
+    if (by_utc_s.size() >= kKeptMax) by_utc_s.clear();
+    Seen& seen = by_utc_s.insert_or_assign(step.utc_s, Seen{step, sees, {}}).first->second;
+    for (std::size_t l = 0; l < sees.ahead.size(); ++l) {
+      if (sees.ahead[l] == nullptr) continue;
+      std::copy_n(sees.ahead[l], 2 * kSocPoints, &seen.ahead_eur[l][0][0]);
+      seen.sees.ahead[l] = &seen.ahead_eur[l][0][0];
+    }
+  }
+};
+
 OutlookProgram::OutlookProgram(const MarketSteps& market, const std::vector<MarketDay>& days,
                                const BatteryParameters& battery, const OutlookOptions& options)
     : battery_(battery),
       options_(options),
       grid_(battery, kSocPoints),
-      recursion_(battery_, grid_, options_.gamma) {
+      recursion_(battery_, grid_, options_.gamma),
+      kept_(std::make_shared<Kept>()) {
   require_training_days(days.size());
   fit_means(market, days);
   fit_lasting(market, days);
@@ -120,7 +148,8 @@ OutlookProgram::OutlookProgram(BinaryReader& in)
       row_age_min_(in.take<int>()),
       levels_(in.take_list<double>()),
       chain_(in),
-      recursion_(battery_, grid_, options_.gamma) {
+      recursion_(battery_, grid_, options_.gamma),
+      kept_(std::make_shared<Kept>()) {
   if (levels_.size() < 2) in.damaged("is of another size of the program with an outlook");
   solve_usual_days();
 }
@@ -356,8 +385,37 @@ OutlookProgram::Sight OutlookProgram::sight_of(const MarketStep& step, Plan& pla
 
 std::array<double, kActionCount> OutlookProgram::action_values(const MarketStep& step,
                                                                double soc_frac, Plan& plan) const {
-  const auto [ahead, bins, anchors, price] = sight_of(step, plan);
-  std::array<double, kActionCount> worth{};
+  return worth(sight_of(step, plan), soc_frac);
+}
+
+std::array<double, kActionCount> OutlookProgram::kept_action_values(const MarketStep& step,
+                                                                    double soc_frac,
+                                                                    Plan& plan) const {
+  const std::lock_guard lock(kept_->mutex);
+  if (kept_->find(step) == nullptr) {
+    if (!plan.serves(step)) plan = plan_of(step);
+    kept_->add(step, sight_of(step, plan));
+  }
+  return worth(kept_->find(step)->sees, soc_frac);
+}
+
+void OutlookProgram::prepare(const MarketSteps& market, const std::vector<MarketDay>& days,
+                             int threads) const {
+  if (days.size() * kStepsPerDay > kKeptMax) return;
+  in_parallel(days.size(), threads, [&](std::size_t d) {
+    Plan plan;
+    for (const MarketStep& step : market.of(days[d])) {
+      if (!plan.serves(step)) plan = plan_of(step);
+      const Sight sees = sight_of(step, plan);
+      const std::lock_guard lock(kept_->mutex);
+      kept_->add(step, sees);
+    }
+  });
+}
+
+std::array<double, kActionCount> OutlookProgram::worth(const Sight& sees, double soc_frac) const {
+  const auto& [ahead, bins, anchors, price] = sees;
+  std::array<double, kActionCount> values_eur{};
   for (int a = 0; a < kActionCount; ++a) {
     const double wanted_w = power_sign(static_cast<Action>(a)) * battery_.power_w_max;
     const BatteryStep moved = battery_step(battery_, soc_frac, wanted_w, kHoursPerStep);
@@ -366,12 +424,12 @@ std::array<double, kActionCount> OutlookProgram::action_values(const MarketStep&
       return (1 - bins.weight) * double{interpolate(values, soc)} +
              bins.weight * double{interpolate(values + kSocPoints, soc)};
     };
-    worth[static_cast<std::size_t>(a)] =
+    values_eur[static_cast<std::size_t>(a)] =
         (1 - anchors.weight) * of_level(ahead[0]) +
         (anchors.weight > 0 ? anchors.weight * of_level(ahead[1]) : 0.0) -
         exchange_cost_eur(battery_, moved.power_w / kWattsPerMegawatt * kHoursPerStep, price);
   }
-  return worth;
+  return values_eur;
 }
 
 double OutlookProgram::continuation(const MarketStep& step, Plan& plan, float* value_eur) const {
@@ -396,8 +454,7 @@ Action OutlookPolicy::decide(const MarketStep& step, std::size_t, double soc_fra
 std::array<double, kActionCount> OutlookPolicy::action_values(const MarketStep& step,
                                                               double soc_frac) const {
   const std::lock_guard lock(mutex_);
-  if (!plan_.serves(step)) plan_ = program_->plan_of(step);
-  return program_->action_values(step, soc_frac, plan_);
+  return program_->kept_action_values(step, soc_frac, plan_);
 }
 
 std::string OutlookPolicy::description() const {

@@ -80,6 +80,14 @@ class OutlookProgram {
   /// price that the step is expected to be paid: action_values() are made of the two. The plan must
   /// serve the step.
   double continuation(const MarketStep& step, Plan& plan, float* value_eur) const;
+  /// action_values() that keeps what it sees at this step for whoever asks again, of some hundred
+  /// days: validations and policies compared trade the same ones. A step that is not kept is seen
+  /// in `plan`, which need not serve it. Threads may share the program.
+  [[nodiscard]] std::array<double, kActionCount> kept_action_values(const MarketStep& step,
+                                                                    double soc_frac,
+                                                                    Plan& plan) const;
+  /// Sees all steps of these days beforehand, on so many threads, and keeps them.
+  void prepare(const MarketSteps& market, const std::vector<MarketDay>& days, int threads) const;
   [[nodiscard]] const Coefficients& coefficients() const { return coefficients_; }
   [[nodiscard]] const ByQuarterHour& hour() const { return hour_; }
   [[nodiscard]] const ByQuarterHour& day_ahead_mean() const { return day_ahead_mean_; }
@@ -100,7 +108,9 @@ class OutlookProgram {
     DeviationChain::Between bins, levels;
     double price_eur_per_mwh;  ///< expected
   };
+  struct Kept;
   [[nodiscard]] Sight sight_of(const MarketStep& step, Plan& plan) const;
+  [[nodiscard]] std::array<double, kActionCount> worth(const Sight& sees, double soc_frac) const;
   [[nodiscard]] double usual(double day_ahead, int quarter_hour, double level) const;
   /// D at a step's own row or pay: what is published, or what stands for it.
   [[nodiscard]] double known_or_usual(const MarketStep& step, std::int64_t utc_s) const;
@@ -126,6 +136,7 @@ class OutlookProgram {
   DeviationChain chain_;
   StorageRecursion recursion_;
   std::vector<std::vector<float>> usual_days_;  ///< by level: [bin][SoC point] at midnight, EUR
+  std::shared_ptr<Kept> kept_;
 };
 
 class OutlookPolicy final : public Policy {

@@ -3,8 +3,13 @@
 //   ahead[b][i] = gamma * sum over b' of P(b' | b, phase) * value[b'][i]
 //   value[b][i] = max over actions of  ahead[b](SoC after it from point i) - cost of the exchange
 // at the price that is expected to be paid: what is usual plus the bin's mean paid deviation.
+//
+// A full step moves most points of the grid by the same number of points: there the neighbours that
+// are interpolated lie side by side, and the loop becomes vector code. A year by outlook takes
+// millions of these steps.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "shared/battery_model.h"
@@ -23,10 +28,24 @@ class StorageRecursion {
                  float* value) const;
 
  private:
+  /// What charging or discharging does, by point of the grid.
+  struct Direction {
+    std::vector<int> lower;     ///< neighbour of the SoC after it
+    std::vector<float> weight;  ///< of the upper neighbour
+    std::vector<float> energy_mwh;
+    double full_mwh;  ///< where all of it fits
+    int shift;        ///< of the run: lower[i] = i + shift for i in [first, end)
+    int first, end;
+  };
+  [[nodiscard]] static Direction make_direction(const std::vector<GridMove>& moves, Action action,
+                                                int points);
+  void improve(const Direction& direction, double price_eur_per_mwh, const float* ahead,
+               float* value) const;
+
   BatteryParameters battery_;
   int points_;
   double gamma_;
-  std::vector<GridMove> moves_;
+  std::array<Direction, 2> directions_;
 };
 
 }  // namespace bess

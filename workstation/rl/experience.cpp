@@ -30,6 +30,7 @@ TrainingMarket::TrainingMarket(const MarketSteps& market, const PriceMap& price_
   if (shaping.program) program_.emplace(shaping.program);
   const std::vector<MarketDay> training = market.days_of(Split::kTrain);
   require_training_days(training.size());
+  if (program_ && program_->is_outlook()) program_->plan(market, training, shaping.threads);
   const TradingCosts& costs = battery_.costs;
   for (std::size_t d = 0; d < training.size(); ++d) {
     const std::size_t first = steps_.size();

@@ -32,6 +32,7 @@ struct RewardShaping {
   Potential potential{};
   /// Instead of all these: rewards are r' of program_residual.h, centred by themselves.
   Foundation program{};
+  int threads = 1;  ///< that its plans are made on
 };
 
 /// Standard deviations of a random shift of the calendar inputs, the same for a state and its

@@ -1,8 +1,10 @@
 #include "workstation/rl/program_residual.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "shared/exchange_cost.h"
+#include "workstation/base/in_parallel.h"
 #include "workstation/rl/transition.h"
 
 namespace bess {
@@ -20,29 +22,53 @@ ProgramRows::ProgramRows(Foundation foundation)
       unit_per_eur_(learned_per_eur(foundation_.battery())) {}
 
 std::uint32_t ProgramRows::add(const MarketStep& step) {
-  if (step.utc_s != last_utc_s_) {
-    continuation_.resize(continuation_.size() + kSocPoints);
-    float* const value_eur = &*(continuation_.end() - kSocPoints);
-    if (is_outlook()) {
-      add_outlook(step, value_eur);
-    } else {
-      const auto at = StochasticProgram::situation_of(step);
-      foundation_.program->continuation(at, value_eur);
-      price_eur_per_mwh_.push_back(foundation_.program->expected_price(at));
-    }
-    last_utc_s_ = step.utc_s;
+  if (is_outlook()) {
+    return static_cast<std::uint32_t>(std::ranges::lower_bound(utc_s_, step.utc_s) -
+                                      utc_s_.begin());
   }
-  return static_cast<std::uint32_t>(price_eur_per_mwh_.size() - 1);
+  if (utc_s_.empty() || step.utc_s != utc_s_.back()) {
+    continuation_.resize(continuation_.size() + kSocPoints);
+    const auto at = StochasticProgram::situation_of(step);
+    foundation_.program->continuation(at, &*(continuation_.end() - kSocPoints));
+    price_eur_per_mwh_.push_back(foundation_.program->expected_price(at));
+    utc_s_.push_back(step.utc_s);
+  }
+  return static_cast<std::uint32_t>(utc_s_.size() - 1);
 }
 
-void ProgramRows::add_outlook(const MarketStep& step, float* value_eur) {
-  begins_plan_.push_back(!plan_.serves(step));
-  if (begins_plan_.back()) plan_ = foundation_.outlook->plan_of(step);
-  price_eur_per_mwh_.push_back(foundation_.outlook->continuation(step, plan_, value_eur));
-  for (int p = 0; p < break_even_grid_.count; ++p) {
-    break_even_.push_back(
-        static_cast<float>(foundation_.book->break_even_centi(step, break_even_grid_.at(p))) /
-        kCentiPerEur);
+void ProgramRows::plan(const MarketSteps& market, const std::vector<MarketDay>& days, int threads) {
+  std::vector<std::size_t> first_row;
+  for (const MarketDay& day : days) {
+    first_row.push_back(utc_s_.size());
+    for (const MarketStep& step : market.of(day)) utc_s_.push_back(step.utc_s);
+  }
+  continuation_.resize(utc_s_.size() * kSocPoints);
+  break_even_.resize(utc_s_.size() * static_cast<std::size_t>(break_even_grid_.count));
+  price_eur_per_mwh_.resize(utc_s_.size());
+  begins_plan_.resize(utc_s_.size());
+  in_parallel(days.size(), threads,
+              [&](std::size_t d) { plan_day(market.of(days[d]), first_row[d]); });
+}
+
+void ProgramRows::plan_day(std::span<const MarketStep> steps, std::size_t row) {
+  const OutlookModel& model = foundation_.book->model();
+  const auto points = static_cast<std::size_t>(break_even_grid_.count);
+  OutlookProgram::Plan plan;
+  for (const MarketStep& step : steps) {
+    begins_plan_[row] = plan.serves(step) ? 0 : 1;
+    if (begins_plan_[row] != 0) plan = foundation_.outlook->plan_of(step);
+    price_eur_per_mwh_[row] =
+        foundation_.outlook->continuation(step, plan, &continuation_[row * kSocPoints]);
+    const auto integers = foundation_.book->plan_for(step);
+    for (std::size_t p = 0; p < points; ++p) {
+      const double soc_frac = break_even_grid_.at(static_cast<int>(p));
+      const auto soc_e4 = static_cast<std::int32_t>(std::lround(soc_frac * kSocFullE4));
+      break_even_[row * points + p] =
+          static_cast<float>(
+              integers->break_even_centi(model, step.utc_s, soc_e4, step.level_centi_eur_per_mwh)) /
+          kCentiPerEur;
+    }
+    ++row;
   }
 }
 

@@ -24,6 +24,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "workstation/env/outlook_book.h"
@@ -52,6 +53,8 @@ class ProgramRows {
  public:
   explicit ProgramRows(Foundation foundation);
 
+  /// By outlook, before any step is added: plans all steps that will be, on so many threads.
+  void plan(const MarketSteps& market, const std::vector<MarketDay>& days, int threads);
   /// The row of this step. Asked for steps in the order of time: the successor of one is mostly the
   /// next one asked for, and shares its row.
   std::uint32_t add(const MarketStep& step);
@@ -66,10 +69,10 @@ class ProgramRows {
   /// By outlook: EUR/MWh.
   [[nodiscard]] double break_even(std::uint32_t row, double soc_frac) const;
   /// By outlook: the row is the first of its plan. Values of two plans have no common zero.
-  [[nodiscard]] bool begins_plan(std::uint32_t row) const { return begins_plan_[row]; }
+  [[nodiscard]] bool begins_plan(std::uint32_t row) const { return begins_plan_[row] != 0; }
 
  private:
-  void add_outlook(const MarketStep& step, float* value_eur);
+  void plan_day(std::span<const MarketStep> steps, std::size_t row);
 
   Foundation foundation_;
   SocGrid grid_, break_even_grid_;
@@ -77,9 +80,8 @@ class ProgramRows {
   std::vector<float> continuation_;        ///< [row][SoC point], EUR
   std::vector<double> price_eur_per_mwh_;  ///< [row] expected
   std::vector<float> break_even_;          ///< [row][SoC point], EUR/MWh
-  std::vector<bool> begins_plan_;
-  OutlookProgram::Plan plan_;     ///< of the last row
-  std::int64_t last_utc_s_ = -1;  ///< step of the last row
+  std::vector<std::uint8_t> begins_plan_;  ///< [row]
+  std::vector<std::int64_t> utc_s_;        ///< [row] step
 };
 
 }  // namespace bess

@@ -254,7 +254,7 @@ Teacher load_teacher(const std::filesystem::path& path) {
 }
 
 void set_outlook(std::shared_ptr<const OutlookProgram> program, Teacher& teacher) {
-  teacher.book = std::make_shared<const OutlookBook>(outlook_integers(*program));
+  teacher.book = OutlookBook::of(outlook_integers(*program));
   teacher.outlook = std::move(program);
 }
 

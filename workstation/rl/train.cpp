@@ -114,7 +114,8 @@ std::shared_ptr<const StochasticProgram> fit_program(const MarketSteps& market,
 }
 
 /// The program with an outlook, and classes of its plans' break-even prices.
-void fit_outlook(const MarketSteps& market, const BatteryParameters& battery, Teacher& teacher) {
+void fit_outlook(const MarketSteps& market, const BatteryParameters& battery, int threads,
+                 Teacher& teacher) {
   if (market.day_ahead == nullptr) {
     fail(
         "[train] context = \"outlook\" learns from day-ahead prices: give their file with "
@@ -124,6 +125,11 @@ void fit_outlook(const MarketSteps& market, const BatteryParameters& battery, Te
   const BatteryParameters mindful =
       battery_with_shadow_price<OutlookPolicy>(market, training, battery, OutlookOptions{});
   set_outlook(std::make_shared<const OutlookProgram>(market, training, mindful), teacher);
+  // Every validation trades the same days.
+  const std::vector<MarketDay> validation = market.days_of(Split::kValidation);
+  teacher.outlook->prepare(market, validation, threads);
+  teacher.book->prepare(market, training, threads);
+  teacher.book->prepare(market, validation, threads);
   teacher.context = fit_outlook_classes(market, *teacher.book);
 }
 
@@ -133,7 +139,7 @@ Teacher without_network(const MarketSteps& market, const BatteryParameters& batt
   Teacher teacher{options.method, {}, {}, PriceMap::fit(observed_training_prices(market)), {}, "",
                   nullptr};
   if (options.context == ContextKind::kOutlook) {
-    fit_outlook(market, battery, teacher);
+    fit_outlook(market, battery, options.threads, teacher);
   } else {
     teacher.context = fit_context_classes(market, options.context);
     const bool stands_on_it = options.residual || options.method == Method::kSdp;
@@ -212,10 +218,10 @@ class Training {
         validation_(market.days_of(Split::kValidation)),
         current_(without_network(market, battery, options)),
         program_(options.residual ? current_.foundation() : Foundation{}),
-        training_(
-            market, current_.price_map, battery, options.horizon,
-            program_ ? RewardShaping{.program = program_} : fit_shaping(market, battery, options),
-            current_.context),
+        training_(market, current_.price_map, battery, options.horizon,
+                  program_ ? RewardShaping{.program = program_, .threads = options.threads}
+                           : fit_shaping(market, battery, options),
+                  current_.context),
         support_(program_ ? residual_support(training_, options) : given_support(options)),
         learner_(options.method, support_, program_ ? options.residual_gamma : options.gamma,
                  derive_seed(options.seed, kSeedWeights), options.threads,

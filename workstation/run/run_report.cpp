@@ -92,6 +92,11 @@ std::vector<NamedEvaluation> evaluate_run(const RunResults& run) {
   for (const std::string& name : baseline_names(kInRuns)) {
     if (name != kForesightName) baseline(name);
   }
+  if (run.teacher.outlook) {  // that all of its risks trade on
+    const std::vector<MarketDay> days = run.market.days_of(Split::kTest);
+    run.teacher.outlook->prepare(run.market, days, run.config.train.threads);
+    run.teacher.book->prepare(run.market, days, run.config.train.threads);
+  }
   TeacherPolicy teacher(run.teacher);
   all.push_back(evaluate_both(teacher_name(run.teacher), teacher, run));
   if (run.plain) evaluate_plain(run, all);

@@ -257,6 +257,7 @@ RunStages::Names RunStages::make_teacher() {
                                    ? learnt_for(config_, series_)
                                    : learnt_for(config_, series_, market_, fitted_days(market_));
   save_teacher(path(kTeacher), trained.teacher);
+  (void)teacher();  // read while what was trained is there: by outlook it takes its plans over
   write_file(path(kTrainingCurve), training_curve_csv(trained.curve));
   tell(fmt::format("kept at step {}: {:.1f} EUR/day/MWh on validation days, {:.0f} s",
                    trained.best_step, trained.best_validation_eur_per_day_per_mwh,

@@ -146,7 +146,7 @@ std::shared_ptr<const OutlookBook> parse_outlook(const JsonReader& in, const std
         "or distil again",
         name);
   }
-  return std::make_shared<const OutlookBook>(model);
+  return OutlookBook::of(model);
 }
 
 Json learnt_for_json(const Entries& learnt_for) {
@@ -269,7 +269,7 @@ StudentFile compiled_student() {
                          .states_evaluated = BESS_STUDENT_STATES_EVALUATED};
   student.provenance = BESS_STUDENT_PROVENANCE;
   if (const OutlookModel* const outlook = exported_outlook()) {
-    student.outlook = std::make_shared<const OutlookBook>(*outlook);
+    student.outlook = OutlookBook::of(*outlook);
   }
 #ifdef BESS_STUDENT_RULES
   student.certificate.rules = parse_rules(BESS_STUDENT_RULES, "compiled rules");
