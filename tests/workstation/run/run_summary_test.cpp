@@ -1,4 +1,4 @@
-// Finished runs as figures: bands over seeds, the table of runs, and the days that both are made
+// Finished runs as figures: the table of runs, and the days that it is made
 // of.
 #include "workstation/run/run_summary.h"
 
@@ -136,7 +136,6 @@ TEST(RunSummaries, ARunWithRulesTellsWhatEachOneCostAndWhoBrokeIt) {
                           HasSubstr("\"violations_plain\":68924057,\"violations_corrected\":0}"),
                           HasSubstr("{\"part\":\"rule\",\"rule\":\"rest\","),
                           HasSubstr("{\"part\":\"correction\",")));
-  EXPECT_THAT(format_bands(bands_of({run, run}), 2), Not(HasSubstr("under")));
   EXPECT_THAT(format_comparison_table(run.evaluations), Not(HasSubstr("under")));
   const RulePrices prices = rule_prices_of(run.evaluations).value();
   ASSERT_EQ(prices.rules.size(), 1U);
