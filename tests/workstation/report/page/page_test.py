@@ -226,10 +226,6 @@ class PageTest(unittest.TestCase):
             for fall, total in zip(falls, self.cumulative_of(name, 0), strict=True):
                 peak = max(peak, total)
                 self.assertAlmostEqual(fall, total - peak, places=6)
-            row = self.page.run(f"""[...document.querySelectorAll("#comparison tr")].find((row) =>
-              row.querySelector("[data-label=Drawdown]") && row.firstChild.textContent === {json.dumps(name)})
-              .querySelector("[data-label=Drawdown]").textContent""")
-            self.assertAlmostEqual(float(row), -min(falls), delta=.051)
         shown = self.page.run("!document.getElementById('drawdown-none').hidden")
         self.assertEqual(shown, not self.page.run("shownCharts.has('chart-drawdown')"))
 
