@@ -255,7 +255,7 @@ TEST(MarketOutage, NineHoursOfOldRowsGiveNoOrder) {
   for (bool more = true; more; more = record.utc_s < kOutageEndS + 1'800) {
     ASSERT_TRUE(loop.run_cycle(record));
     if (record.mode == Mode::kRunning) {
-      // The limit counts at the tick; the age in the record is that of the write, whenever that was.
+      // The limit counts at the tick; the age in the record is that of the write, whenever it was.
       EXPECT_LE(price_age_s(record.utc_s, record.price.minute_utc_s), 240)
           << utc_text(record.utc_s).view();
       EXPECT_EQ(record.ordered_power_w, 4'000);  // -600 EUR/MWh: charge
