@@ -57,7 +57,7 @@ struct HeaderFile {
 TEST(HeaderFile, KeepsHeadersAndSkipsComments) {
   const TemporaryFolder folder;
   const std::string path = folder.write(
-      "headers", "# from the portal\n\nX-Api-Key: abc def\r\n  Authorization: Bearer x\n");
+      "headers", "# from the portal\n\nX-Api-Key: abc def\r\n   Authorization: Bearer x\n");
   ASSERT_EQ(chmod(path.c_str(), 0640), 0);
   FixedText<2047> headers;
   std::string error;
