@@ -11,6 +11,7 @@
 #include "edge/settings/idle_keys.h"
 #include "edge/storage/published_status.h"
 #include "edge/storage/storage_health.h"
+#include "edge/update/trial_machine.h"
 #include "edge/update/trial_state.h"
 #include "edge/why/next_decision.h"
 #include "shared/host/json.h"
@@ -397,9 +398,18 @@ bool print_metrics(const EdgeConfig& config, JsonValue status, bool is_running) 
   return true;
 }
 
+/// What dpkg has is asked anew: work that it broke off before or after a trial, nobody has noted.
+TrialState upgrade_by_now() {
+  TrialState update = read_trial_state(kUpdateFolder).state;
+  if (update.phase == TrialPhase::kUnknown || update.phase == TrialPhase::kHidden) return update;
+  const std::string delivered = TrialMachine::delivered();
+  if (!delivered.empty()) update.delivered = delivered;
+  return update;
+}
+
 int print_once(const StatusGiven& given, const EdgeConfig& config) {
   PublishedStatus published = read_published_status(config, given.no_lock);
-  const TrialState update = read_trial_state(kUpdateFolder).state;
+  const TrialState update = upgrade_by_now();
   const Health health = health_of(config, published, update_trouble(update));
   if (given.prometheus) {
     const bool is_running = health.level != HealthLevel::kNotRunning;
