@@ -104,7 +104,8 @@ Json lines_chart(const char* id, const BacktestResults& results, Values values) 
   const std::vector<const WalkForward*> shown = shown_in_figure(results);
   for (std::size_t p = 0; p < shown.size(); ++p) {
     Json line = Json::list(), sums = Json::list();
-    for (const double sum : values(shown[p]->cumulative_eur_per_mwh())) sums.add(sum);
+    const std::vector<double> drawn = values(shown[p]->cumulative_eur_per_mwh());
+    for (const double sum : drawn) sums.add(sum);
     line.add(shown[p]->name);
     line.add(kLineColours[p % kLineColours.size()]->name);
     line.add(std::move(sums));

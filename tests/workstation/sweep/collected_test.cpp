@@ -110,7 +110,7 @@ TEST_F(Collected, ThePageHasMapDotsAndTables) {
   const std::string page = sweep_page(record, collected(), {}, {});
   EXPECT_THAT(page, AllOf(HasSubstr("<table id=\"map\">"), HasSubstr("distil.fidelity across"),
                           HasSubstr("<table class=\"sortable\" id=\"tasks\">"),
-                          HasSubstr("<circle"), HasSubstr("market &lt;1&gt;.csv"),
+                          HasSubstr("\"kind\":\"dots\""), HasSubstr("market &lt;1&gt;.csv"),
                           HasSubstr("1 without a result"), Not(HasSubstr("id=\"sites\""))));
   EXPECT_LT(page.find(">1</th>"), page.find(">10</th>")) << "numbers are sorted as numbers";
   EXPECT_THROW(sweep_page(record, collected(), {}, {"train.steps"}), UserError);
