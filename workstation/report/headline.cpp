@@ -12,12 +12,6 @@
 namespace bess {
 namespace {
 
-const NamedEvaluation* find(const std::vector<NamedEvaluation>& evaluations,
-                            std::string_view name) {
-  const auto found = std::ranges::find(evaluations, name, &NamedEvaluation::name);
-  return found == evaluations.end() || found->carried_over.days.empty() ? nullptr : &*found;
-}
-
 /// " ± 1.1", and " (1.4 by month)", each where it is known.
 std::string plain_error(const DayErrors& errors) {
   return std::isnan(errors.plain) ? "" : fmt::format(" \u00b1 {:.1f}", errors.plain);
@@ -130,8 +124,8 @@ bool is_shown(const PairedDifference& difference) {
 }
 
 const NamedEvaluation* find_own_student(const std::vector<NamedEvaluation>& evaluations) {
-  const NamedEvaluation* corrected = find(evaluations, kCorrectedName);
-  return corrected != nullptr ? corrected : find(evaluations, kUnprovedName);
+  const NamedEvaluation* corrected = carried_over_by(evaluations, kCorrectedName);
+  return corrected != nullptr ? corrected : carried_over_by(evaluations, kUnprovedName);
 }
 
 std::optional<Headline> headline_of(const std::vector<NamedEvaluation>& evaluations) {
@@ -151,7 +145,8 @@ std::optional<Headline> headline_of(const std::vector<NamedEvaluation>& evaluati
                     .gains = {}};
   if (!reset.days.empty()) headline.reset_profit = reset.profit_eur_per_day_per_mwh();
   const auto add = [&](const std::string& name, const std::string& meaning) {
-    const NamedEvaluation* other = find(evaluations, name);  // what was not evaluated is left out
+    const NamedEvaluation* other =
+        carried_over_by(evaluations, name);  // what was not evaluated is left out
     if (other != nullptr) headline.gains.push_back(gain_over(*exported, *other, meaning));
   };
   add(kPlainName, "the student without correction");
@@ -160,10 +155,10 @@ std::optional<Headline> headline_of(const std::vector<NamedEvaluation>& evaluati
   if (const auto prices = rule_prices_of(evaluations)) {
     if (is_finished) headline.correction = prices->correction;
     headline.rules = prices->together;
-  } else if (is_finished && find(evaluations, kPlainName) != nullptr) {
+  } else if (is_finished && carried_over_by(evaluations, kPlainName) != nullptr) {
     headline.correction = headline.gains.front();
   }
-  if (const NamedEvaluation* bound = find(evaluations, kForesightName)) {
+  if (const NamedEvaluation* bound = carried_over_by(evaluations, kForesightName)) {
     const double most = bound->carried_over.profit_eur_per_day_per_mwh();
     if (most > 0) headline.foresight_share = headline.profit / most;
   }

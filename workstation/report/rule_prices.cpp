@@ -9,12 +9,6 @@ namespace {
 
 constexpr std::string_view kUnder = "plain student under ";
 
-const NamedEvaluation* find(const std::vector<NamedEvaluation>& evaluations,
-                            std::string_view name) {
-  const auto found = std::ranges::find(evaluations, name, &NamedEvaluation::name);
-  return found == evaluations.end() || found->carried_over.days.empty() ? nullptr : &*found;
-}
-
 std::string price_line(const std::string& name, const HeadlineGain& gain) {
   std::string line = fmt::format("  {:<44}", name);
   for (const PairedDifference& d : gain.difference) {
@@ -26,6 +20,12 @@ std::string price_line(const std::string& name, const HeadlineGain& gain) {
 
 }  // namespace
 
+const NamedEvaluation* carried_over_by(const std::vector<NamedEvaluation>& evaluations,
+                                       std::string_view name) {
+  const auto found = std::ranges::find(evaluations, name, &NamedEvaluation::name);
+  return found == evaluations.end() || found->carried_over.days.empty() ? nullptr : &*found;
+}
+
 std::string under_rule_name(const std::string& rule) {
   return fmt::format("{}\"{}\"", kUnder, rule);
 }
@@ -33,8 +33,8 @@ std::string under_rule_name(const std::string& rule) {
 bool is_under_rules(std::string_view policy) { return policy.starts_with(kUnder); }
 
 std::optional<RulePrices> rule_prices_of(const std::vector<NamedEvaluation>& evaluations) {
-  const NamedEvaluation* plain = find(evaluations, kPlainName);
-  const NamedEvaluation* under_all = find(evaluations, kUnderAllRules);
+  const NamedEvaluation* plain = carried_over_by(evaluations, kPlainName);
+  const NamedEvaluation* under_all = carried_over_by(evaluations, kUnderAllRules);
   const NamedEvaluation* exported = find_own_student(evaluations);
   if (plain == nullptr || under_all == nullptr || exported == nullptr) return std::nullopt;
   const bool is_finished = exported->name == kCorrectedName;

@@ -14,6 +14,10 @@
 
 namespace bess {
 
+/// Null where it is not among them, or no day of it was carried over.
+const NamedEvaluation* carried_over_by(const std::vector<NamedEvaluation>& evaluations,
+                                       std::string_view name);
+
 /// Names of the evaluations that it is made from: parts of a price, no rivals, left out of tables
 /// of policies.
 inline constexpr const char* kUnderAllRules = "plain student under all rules";
