@@ -112,7 +112,7 @@ TEST(Statements, SayTheSameInEachForm) {
   EXPECT_THAT(text, HasSubstr("cycles that the student did not decide: price_age 1\n"));
   EXPECT_THAT(
       both.csv(),
-      HasSubstr("2026-11-23,0.2500,0.000,1.000,0.0000,17,16,15,250.00,55.00,42.50,0.2500,"));
+      HasSubstr("2026-11-23,0.2500,0.000,1.000,0.0000,17,16,15,250.00,55.00,42.50,0.0000,0.2500,"));
   const Json json = Json::parse(both.json().text());
   EXPECT_DOUBLE_EQ(json.value()["earned_eur"].number().value(), 0.15);
   EXPECT_DOUBLE_EQ(json.value()["earned_at_equal_soc_eur"].number().value(), 0.2923);
