@@ -3,7 +3,7 @@
 
   powers.py account CSV PACKAGE FOLDER SCALE   adds what has been left in FOLDER
   powers.py held CSV PACKAGE CASE              exit code 0: that case of that package held
-  powers.py table CSV                          prints it; exit code 1: something did not hold
+  powers.py table CSV PACKAGE                  prints its rows; exit code 1: one did not hold
 
 FOLDER has cases (tabs): what, phase, runs, dpkg, kept, begun, ended (seconds of the machine), how
 many orders may end otherwise than by the next one, reason, how many checks failed. events.N: each
@@ -81,8 +81,8 @@ def account(table, package, folder, scale):
                 print(f"{what}: nobody decided {event}")
 
 
-def print_table(table):
-    rows = list(read_rows(table).values())
+def print_table(table, package):
+    rows = [row for (of, _), row in read_rows(table).items() if of == package]
     print(f"{'package or moment':<50} {'phase':<11} {'runs':<5} {'dpkg':<8} {'kept':<4} "
           f"{'orders':>6} {'ended':>5} {'undecided':>9} {'s':>4}  reason")
     for row in rows:
@@ -97,12 +97,12 @@ def print_table(table):
     return 1 if bad else 0
 
 
-def main(what, table, package="", *more):
+def main(what, table, package, *more):
     table, package = pathlib.Path(table), pathlib.Path(package).name
     if what == "account":
         return account(table, package, pathlib.Path(more[0]), float(more[1]))
     if what == "table":
-        return print_table(table)
+        return print_table(table, package)
     return 0 if read_rows(table).get((package, more[0]), {}).get("held") == "yes" else 1
 
 
