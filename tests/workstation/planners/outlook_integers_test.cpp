@@ -69,6 +69,38 @@ TEST_F(OutlookIntegers, TheBookAnswersTheSameInAnyOrderAndFromThreads) {
   ask(1);
   even.join();
   EXPECT_EQ(forward, backward);
+  const OutlookBook prepared(model_);
+  prepared.prepare(steps_, {steps_.days.begin() + 28, steps_.days.begin() + 32}, 3);
+  for (std::size_t i = 0; i < forward.size(); ++i) {
+    ASSERT_EQ(prepared.break_even_centi(steps_.of(day)[i], 0.4), forward[i]) << i;
+  }
+}
+
+// Steps of one time need not be one step: with another price it is another.
+TEST_F(OutlookIntegers, WhatTheProgramKeepsIsOfTheVeryStepThatIsAsked) {
+  program_.prepare(steps_, {steps_.days.begin() + 28, steps_.days.begin() + 31}, 2);
+  OutlookProgram::Plan plan, kept_plan, other_plan;
+  int differ = 0;
+  for (const MarketStep& step : steps_.of(steps_.days[29])) {
+    if (!plan.serves(step)) plan = program_.plan_of(step);
+    const auto worth = program_.action_values(step, 0.4, plan);
+    ASSERT_EQ(program_.kept_action_values(step, 0.4, kept_plan), worth);
+    MarketStep dearer = step;
+    dearer.observed_eur_per_mwh += 70;
+    const auto dearer_worth = program_.action_values(dearer, 0.4, plan);
+    ASSERT_EQ(program_.kept_action_values(dearer, 0.4, other_plan), dearer_worth);
+    differ += worth != dearer_worth ? 1 : 0;
+  }
+  EXPECT_GT(differ, 600);
+}
+
+// A run's teacher and students plan once.
+TEST_F(OutlookIntegers, OneModelHasOneBookWhileItIsInUse) {
+  const auto book = OutlookBook::of(model_);
+  EXPECT_EQ(OutlookBook::of(model_), book);
+  OutlookModel other = model_;
+  ++other.constant_centi;
+  EXPECT_EQ(OutlookBook::of(other)->model().constant_centi, other.constant_centi);
 }
 
 // What is published at 13:00 changes the plan then, and not before. What tomorrow is worth shows

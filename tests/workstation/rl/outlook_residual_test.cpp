@@ -108,6 +108,29 @@ TEST(OutlookResidual, WhatItAddsDecidesAndIsTaught) {
   EXPECT_NE(taught(other), taught(program));
 }
 
+TEST(OutlookResidual, IsRewardedAndTaughtTheSameOnAnyNumberOfThreads) {
+  const Teacher& teacher = learnt().teacher;
+  const auto on = [&](int threads) {
+    return TrainingMarket(market(), teacher.price_map, {}, Horizon::kContinuing,
+                          {.program = teacher.foundation(), .threads = threads}, teacher.context);
+  };
+  const TrainingMarket alone = on(1), together = on(3);
+  for (std::size_t i = 0; i < alone.step_count(); i += 7) {
+    Transition a{}, b{};
+    (void)alone.make_transition(i, 0.37, Action::kCharge, a);
+    (void)together.make_transition(i, 0.37, Action::kCharge, b);
+    ASSERT_EQ(a.reward, b.reward) << i;
+    ASSERT_EQ(a.state[2], b.state[2]) << i;
+  }
+  MarketSteps three = market();
+  three.days.resize(3);
+  DistilOptions options;
+  options.threads = 1;
+  const Matrix taught_alone = visited_inputs(teacher, three, {}, options);
+  options.threads = 3;
+  EXPECT_EQ(taught_alone, visited_inputs(teacher, three, {}, options));
+}
+
 TEST(OutlookResidual, RewardIsTheProgramsErrorInOneStepBesideWhatEveryActionHasOfIt) {
   const Teacher& teacher = learnt().teacher;
   const OutlookProgram& program = *teacher.outlook;
