@@ -39,6 +39,16 @@ url = "http://127.0.0.1:1/prices"
     EXPECT_TRUE(ring_.open(folder_.file("state/decisions.ring").c_str(), 2'000, error))
         << error.c_str();
   }
+  /// Whenever a test runs: the newest cycle ends in the quarter-hour that its price is of, else
+  /// what it exchanges has no price yet.
+  void end_where_the_price_is() {
+    constexpr std::int64_t kQuarterHour = 900;
+    until_utc_s_ = until_utc_s_ / kSecondsPerStep * kSecondsPerStep;
+    while ((until_utc_s_ - 60) / kQuarterHour !=
+           (until_utc_s_ + kSecondsPerStep - 1) / kQuarterHour) {
+      until_utc_s_ -= kSecondsPerStep;
+    }
+  }
   /// `cycles` before now and up to it, charging 3 kW at 40 EUR/MWh.
   void log_until_now(int cycles) {
     log_until_now(cycles, [](const CycleRecord&) { return Action::kCharge; });
@@ -46,7 +56,7 @@ url = "http://127.0.0.1:1/prices"
   /// `decided` by the student.
   template <typename Decided>
   void log_until_now(int cycles, const Decided& decided) {
-    newest_utc_s_ = std::time(nullptr) / kSecondsPerStep * kSecondsPerStep;
+    newest_utc_s_ = until_utc_s_ / kSecondsPerStep * kSecondsPerStep;
     for (int i = cycles - 1; i >= 0; --i) {
       CycleRecord r{.utc_s = newest_utc_s_ - i * kSecondsPerStep,
                     .cycle = cycles - i,
@@ -83,6 +93,7 @@ url = "http://127.0.0.1:1/prices"
   std::string config_;
   RingLog ring_;
   std::int64_t newest_utc_s_ = 0;
+  std::int64_t until_utc_s_ = std::time(nullptr);
 };
 
 TEST_F(Questions, WhyAsksForTheNewestCycleOrAnother) {
@@ -159,6 +170,7 @@ TEST_F(Questions, StatusSaysWhomToCall) {
 }
 
 TEST_F(Questions, EarnedAddsTheDaysUp) {
+  end_where_the_price_is();
   log_until_now(60);
   const std::string span = std::string(local_text(newest_utc_s_ - 7'200).view()).substr(0, 10) +
                            ".." + std::string(local_text(newest_utc_s_).view()).substr(0, 10);
@@ -194,6 +206,7 @@ TEST_F(Questions, ASlipInTheContractIsNamed) {
 
 /// The bill of the day that the log is of, at a price that was published since.
 TEST_F(Questions, EarnedIsBilledByWhatTheNotifierFetched) {
+  end_where_the_price_is();
   log_until_now(60);
   const std::string day = std::string(local_text(newest_utc_s_).view()).substr(0, 10);
   SettledPrices prices;

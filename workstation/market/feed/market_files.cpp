@@ -10,7 +10,8 @@
 namespace bess {
 namespace {
 
-const char* attribution_of(MarketSource source) {
+/// Not an overload: {kElia} would mean this one where files are compiled together.
+const char* words_for(MarketSource source) {
   switch (source) {
     case MarketSource::kElia:
       return "Elia, opendata.elia.be, CC BY 4.0 (https://creativecommons.org/licenses/by/4.0/)";
@@ -76,7 +77,7 @@ std::string file_names(const std::vector<std::string>& paths) {
 
 std::string attribution_of(const std::set<MarketSource>& sources) {
   std::vector<std::string> names;
-  for (const MarketSource source : sources) names.emplace_back(attribution_of(source));
+  for (const MarketSource source : sources) names.emplace_back(words_for(source));
   return "Source: " + joined(names, "; ");
 }
 
