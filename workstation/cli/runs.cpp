@@ -79,8 +79,7 @@ void add_runs_commands(ProgramCommand& app) {
   runs.requires_subcommand();
   ProgramCommand command = runs.subcommand(
       "compare", "What the exported policy of each run earned, and what the runs differ in");
-  command.option("folders", options->folders, "Run folders, or folders of run folders")
-      .required();
+  command.option("folders", options->folders, "Run folders, or folders of run folders").required();
   command.flag("--json", options->json, "One JSON object a line and run");
   command.option("--html", options->html,
                  "Instead a page with a table to sort, also of runs that failed or were stopped");
