@@ -67,7 +67,7 @@ void print_table(const std::vector<UpdateEvent>& events) {
 int run_history(const HistoryGiven& given, SettingsFile&) {
   const std::string& folder = given.folder;
   const UpdateHistory history = read_update_history(folder);
-  if (!history.trouble.empty()) return failed(history.trouble.c_str());
+  if (!history.trouble.empty()) return failed(history.trouble);
   if (history.damaged_lines > 0) {
     report(JournalLevel::kWarning, "%s/history: %d damaged lines are left out", folder.c_str(),
            history.damaged_lines);

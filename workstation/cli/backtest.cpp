@@ -6,12 +6,12 @@
 #include <exception>
 #include <memory>
 #include <mutex>
-#include <thread>
 
 #include "shared/host/distinct_files.h"
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
 #include "workstation/backtest/walk_forward.h"
+#include "workstation/base/in_parallel.h"
 #include "workstation/base/progress.h"
 #include "workstation/chain/chain_steps.h"
 #include "workstation/chain/common_options.h"
@@ -161,31 +161,22 @@ void learn_folds(const Folds& folds, Learning of, const std::vector<std::string>
   Progress progress("learn", "folds", static_cast<double>(folds.traded.size()),
                     static_cast<double>(folds.traded.size() - missing.size()));
   std::mutex mutex;
-  std::size_t next = 0;
   std::size_t done = folds.traded.size() - missing.size();
   std::exception_ptr failure;
-  const auto work = [&] {
-    for (;;) {
-      const Fold* fold = nullptr;
-      {
-        const std::lock_guard lock(mutex);
-        if (next == missing.size() || failure) return;
-        fold = missing[next++];
-      }
-      try {
-        learn_fold(*fold, of);
-        const std::lock_guard lock(mutex);
-        progress.update(static_cast<double>(++done), fold->month);
-      } catch (...) {
-        const std::lock_guard lock(mutex);
-        if (!failure) failure = std::current_exception();
-      }
+  in_parallel(missing.size(), threads, [&](std::size_t i) {
+    {
+      const std::lock_guard lock(mutex);
+      if (failure) return;
     }
-  };
-  std::vector<std::thread> team;
-  for (int t = 1; t < threads; ++t) team.emplace_back(work);
-  work();
-  for (std::thread& thread : team) thread.join();
+    try {
+      learn_fold(*missing[i], of);
+      const std::lock_guard lock(mutex);
+      progress.update(static_cast<double>(++done), missing[i]->month);
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      if (!failure) failure = std::current_exception();
+    }
+  });
   if (failure) std::rethrow_exception(failure);
 }
 

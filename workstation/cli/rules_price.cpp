@@ -35,19 +35,26 @@ struct BothWays {
   Evaluation reset, carried;
 };
 
-/// What rules change in one way of counting; null of a rule that cannot be projected.
-void add_gain(const Evaluation* with, const Evaluation* without, bool carry_soc, Json& json) {
-  const auto figure = [&](double value) { return Decimals{with == nullptr ? NAN : value, 4}; };
-  const PairedDifference gain =
-      with == nullptr ? PairedDifference{NAN, NAN} : paired_difference(*with, *without);
-  json.set(key::kCarrySoc, carry_soc);
-  json.set(key::kProfit, figure(with == nullptr ? NAN : with->profit_eur_per_day_per_mwh()));
-  json.set("profit_without_rules_eur_per_day_per_mwh",
-           figure(with == nullptr ? NAN : without->profit_eur_per_day_per_mwh()));
-  json.set(key::kGain, figure(gain.mean));
-  json.set(key::kGainError, figure(gain.standard_error));
-  json.set(key::kGainErrorByMonth, figure(gain.standard_error_by_month));
-}
+/// What rules change in one way of counting; NaN of a rule that cannot be projected.
+struct RuleGain {
+  double profit = NAN, profit_without = NAN;
+  PairedDifference gain{NAN, NAN};
+
+  RuleGain() = default;
+  RuleGain(const Evaluation& with, const Evaluation& without)
+      : profit(with.profit_eur_per_day_per_mwh()),
+        profit_without(without.profit_eur_per_day_per_mwh()),
+        gain(paired_difference(with, without)) {}
+
+  void add_to(Json& json, bool carry_soc) const {
+    json.set(key::kCarrySoc, carry_soc);
+    json.set(key::kProfit, Decimals{profit, 4});
+    json.set("profit_without_rules_eur_per_day_per_mwh", Decimals{profit_without, 4});
+    json.set(key::kGain, Decimals{gain.mean, 4});
+    json.set(key::kGainError, Decimals{gain.standard_error, 4});
+    json.set(key::kGainErrorByMonth, Decimals{gain.standard_error_by_month, 4});
+  }
+};
 
 class Pricing {
  public:
@@ -78,37 +85,33 @@ class Pricing {
 
   void print_row(const std::string& rule, const BothWays& base, const BothWays& ruled,
                  double changed_share) const {
-    if (options_.json) return print_json(rule, &base, &ruled, changed_share);
-    const PairedDifference reset = paired_difference(ruled.reset, base.reset);
-    const PairedDifference carried = paired_difference(ruled.carried, base.carried);
+    const RuleGain reset(ruled.reset, base.reset), carried(ruled.carried, base.carried);
+    if (options_.json) return print_json(rule, reset, carried, changed_share);
     fmt::print("{:<40}  {:>+7.2f} {:>6} {:>8}  {:>+7.2f} {:>6} {:>8}  {:>12.2f}\n", rule,
-               reset.mean, error_text(reset.standard_error, 2),
-               error_text(reset.standard_error_by_month, 2), carried.mean,
-               error_text(carried.standard_error, 2),
-               error_text(carried.standard_error_by_month, 2), 100 * changed_share);
+               reset.gain.mean, error_text(reset.gain.standard_error, 2),
+               error_text(reset.gain.standard_error_by_month, 2), carried.gain.mean,
+               error_text(carried.gain.standard_error, 2),
+               error_text(carried.gain.standard_error_by_month, 2), 100 * changed_share);
   }
 
   /// Of a rule that no single decision can be moved by.
   void print_unknown(const std::string& rule) const {
-    if (options_.json) return print_json(rule, nullptr, nullptr, NAN);
-    fmt::print("{:<40}  no demand on single states: learn it to see\n", rule);
+    if (options_.json) return print_json(rule, {}, {}, NAN);
+    fmt::print("{:<40}  no demand on single states: 'distil --rules' shows it\n", rule);
   }
 
  private:
-  void print_json(const std::string& rule, const BothWays* base, const BothWays* ruled,
+  void print_json(const std::string& rule, const RuleGain& reset, const RuleGain& carried_over,
                   double changed_share) const {
-    const auto way = [](const BothWays* both, Evaluation BothWays::*of) {
-      return both == nullptr ? nullptr : &(both->*of);
-    };
     Json json = answer("rule_price");
     json.set("rule", rule);
     json.set(key::kGainOver, options_.policy);
     json.set("split", options_.split);
     json.set("days", days_.size());
     json.set("share_of_decisions_changed", Decimals{changed_share, 6});
-    add_gain(way(ruled, &BothWays::reset), way(base, &BothWays::reset), false, json);
+    reset.add_to(json, false);
     Json carried = Json::object();
-    add_gain(way(ruled, &BothWays::carried), way(base, &BothWays::carried), true, carried);
+    carried_over.add_to(carried, true);
     json.set(key::kCarriedOver, std::move(carried));
     fmt::print("{}\n", json.line());
   }

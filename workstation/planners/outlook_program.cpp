@@ -100,7 +100,7 @@ struct OutlookProgram::Kept {
     const auto found = by_utc_s.find(step.utc_s);
     return found != by_utc_s.end() && found->second.step == step ? &found->second : nullptr;
   }
-  void add(const MarketStep& step, const Sight& sees) {
+  const Seen& add(const MarketStep& step, const Sight& sees) {
     if (by_utc_s.size() >= kKeptMax) by_utc_s.clear();
     Seen& seen = by_utc_s.insert_or_assign(step.utc_s, Seen{step, sees, {}}).first->second;
     for (std::size_t l = 0; l < sees.ahead.size(); ++l) {
@@ -108,6 +108,7 @@ struct OutlookProgram::Kept {
       std::copy_n(sees.ahead[l], 2 * kSocPoints, &seen.ahead_eur[l][0][0]);
       seen.sees.ahead[l] = &seen.ahead_eur[l][0][0];
     }
+    return seen;
   }
 };
 
@@ -392,11 +393,12 @@ std::array<double, kActionCount> OutlookProgram::kept_action_values(const Market
                                                                     double soc_frac,
                                                                     Plan& plan) const {
   const std::lock_guard lock(kept_->mutex);
-  if (kept_->find(step) == nullptr) {
+  const Kept::Seen* seen = kept_->find(step);
+  if (seen == nullptr) {
     if (!plan.serves(step)) plan = plan_of(step);
-    kept_->add(step, sight_of(step, plan));
+    seen = &kept_->add(step, sight_of(step, plan));
   }
-  return worth(kept_->find(step)->sees, soc_frac);
+  return worth(seen->sees, soc_frac);
 }
 
 void OutlookProgram::prepare(const MarketSteps& market, const std::vector<MarketDay>& days,

@@ -92,7 +92,7 @@ std::vector<NamedEvaluation> evaluate_run(const RunResults& run) {
   for (const std::string& name : baseline_names(kInRuns)) {
     if (name != kForesightName) baseline(name);
   }
-  if (run.teacher.outlook) {  // that all of its risks trade on
+  if (run.teacher.outlook) {  // both accountings trade the same
     const std::vector<MarketDay> days = run.market.days_of(Split::kTest);
     run.teacher.outlook->prepare(run.market, days, run.config.train.threads);
     run.teacher.book->prepare(run.market, days, run.config.train.threads);

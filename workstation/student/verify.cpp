@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <thread>
 #include <utility>
 
+#include "workstation/base/in_parallel.h"
 #include "workstation/base/progress.h"
 
 namespace bess {
@@ -279,8 +279,9 @@ Certificate verify_student(const StudentNet& net, const VerifyOptions& options) 
   std::vector<Certificate> parts(static_cast<std::size_t>(options.threads));
   std::atomic<int> done{0};
   Progress progress("verify", "contexts", contexts);
-  const auto work = [&](int worker) {
-    Certificate& part = parts[static_cast<std::size_t>(worker)];
+  in_parallel(parts.size(), options.threads, [&](std::size_t w) {
+    const auto worker = static_cast<int>(w);
+    Certificate& part = parts[w];
     GridFiller filler(net, bounds);
     RuleChecker checker(demands, net.context.kind);
     std::vector<ActionGrid> neighbours(checker.neighbours_needed().size());
@@ -299,11 +300,7 @@ Certificate verify_student(const StudentNet& net, const VerifyOptions& options) 
       if (worker == 0) progress.update(finished);
     }
     part.counts = checker.counts();
-  };
-  std::vector<std::thread> threads;
-  for (int w = 1; w < options.threads; ++w) threads.emplace_back(work, w);
-  work(0);
-  for (std::thread& thread : threads) thread.join();
+  });
   total.counts.resize(demands.rules.size());
   for (const Certificate& part : parts) {
     total.states_checked += part.states_checked;

@@ -13,7 +13,6 @@
 #include "shared/price_level.h"
 #include "tests/support/market_zone.h"
 #include "tests/support/outlook_inputs.h"
-#include "tests/support/thorough.h"
 
 namespace bess {
 namespace {
@@ -102,10 +101,9 @@ class OutlookDecisions : public InMarketZone, public testing::Test {};
 
 TEST_F(OutlookDecisions, OfWeeksAreTheWorkstations) { expect_golden(drawn_weeks()); }
 
-TEST_F(OutlookDecisions, OfMonthsAreTheWorkstations) {
-  if (few_or_all(0, 1) == 0) GTEST_SKIP() << "three months: only with BESS_THOROUGH";
-  expect_golden(drawn_months());
-}
+using OutlookMonths = OutlookDecisions;  // long (tests/edge/CMakeLists.txt)
+
+TEST_F(OutlookMonths, AreTheWorkstations) { expect_golden(drawn_months()); }
 
 TEST_F(OutlookDecisions, TheSelfCheckOfTheHeaderHolds) {
   EXPECT_EQ(count_student_self_check_failures(), 0);

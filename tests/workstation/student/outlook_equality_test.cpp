@@ -71,8 +71,8 @@ TEST(OutlookEquality, OfWeeksAndTheEdges) {
   EXPECT_EQ(found.size(), 14U);
 }
 
-TEST(OutlookEquality, OfMonthsAndTheEdges) {
-  if (few_or_all(0, 1) == 0) GTEST_SKIP() << "three months: only with BESS_THOROUGH";
+// Long (tests/workstation/CMakeLists.txt).
+TEST(OutlookMonthsEquality, AndTheEdges) {
   const std::vector<std::string> found = decided(drawn_months());
   EXPECT_EQ(found, golden_lines_of(found));
   EXPECT_EQ(found.size(), 91U);
