@@ -6,8 +6,10 @@
 
 #include "edge/control/full_charge.h"
 #include "edge/control/hold.h"
+#include "edge/control/mailbox.h"
 #include "edge/control/reserve.h"
 #include "edge/control/safety_guard.h"
+#include "edge/loop/parts/operator_parts.h"
 #include "tests/support/guard_inputs.h"
 
 namespace bess {
@@ -24,6 +26,32 @@ TEST(Hold, CrossesTheMailboxAsItIs) {
         Hold{.power_w = INT32_MIN, .until_utc_s = 1}, Hold{.unreadable = true}, Hold{}}) {
     mailbox.publish(hold);
     EXPECT_EQ(mailbox.latest(), hold);
+  }
+}
+
+TEST(Hold, IsTakenUpAtATickAndNotBetweenTwo) {
+  HoldMailbox mailbox;
+  HoldPart part;
+  part.mailbox = &mailbox;
+  CycleRecord record{.utc_s = kNow};
+  GuardInputs in;
+  mailbox.publish({.power_w = 1'500, .until_utc_s = kSoon});
+  part.put({.is_tick = false}, record, in);
+  EXPECT_FALSE(in.held) << "the order in force is held against limits, not changed";
+  part.put({.is_tick = true}, record, in);
+  EXPECT_TRUE(in.held);
+  EXPECT_EQ(in.held_power_w, 1'500);
+}
+
+TEST(Mailbox, WhatWasPostedLastStaysUntilAnotherIsPosted) {
+  Mailbox<int> mailbox;
+  for (int i = 1; i < 6; ++i) {
+    for (int posts = 0; posts < i % 3; ++posts) {
+      mailbox.draft() = 10 * i + posts;
+      mailbox.post();
+    }
+    const int last = i % 3 == 0 ? 21 : 10 * i + i % 3 - 1;
+    for (int look = 0; look < 4; ++look) EXPECT_EQ(mailbox.latest(), last) << i;
   }
 }
 

@@ -65,6 +65,16 @@ TEST(HeaderFile, KeepsHeadersAndSkipsComments) {
   EXPECT_EQ(headers, "X-Api-Key: abc def\nAuthorization: Bearer x");
 }
 
+TEST(HeaderFile, TheLastLineNeedsNoEnd) {
+  const TemporaryFolder folder;
+  const std::string path = folder.write("headers", "A: b\nC: d");
+  ASSERT_EQ(chmod(path.c_str(), 0600), 0);
+  FixedText<2047> headers;
+  std::string error;
+  ASSERT_TRUE(load_http_headers(path.c_str(), headers, error)) << error;
+  EXPECT_EQ(headers, "A: b\nC: d");
+}
+
 TEST(HeaderFile, ANameIsOfLettersDigitsDashAndUnderscore) {
   const TemporaryFolder folder;
   const auto is_taken = [&](const std::string& name) {

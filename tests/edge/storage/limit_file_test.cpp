@@ -13,24 +13,25 @@
 namespace bess {
 namespace {
 
-struct Reading {
+struct ReadLimits {
   bool is_set = false;
   OutsideLimit limit;
   Status status;
 
-  explicit Reading(const std::string& path) : status(LimitFile(path.c_str()).read(limit, is_set)) {}
+  explicit ReadLimits(const std::string& path)
+      : status(LimitFile(path.c_str()).read(limit, is_set)) {}
 };
 
 TEST(LimitFile, NoFileIsNoLimit) {
   const TemporaryFolder folder;
-  const Reading reading(folder.file("limit"));
+  const ReadLimits reading(folder.file("limit"));
   EXPECT_EQ(reading.status, Status::kOk);
   EXPECT_FALSE(reading.is_set);
 }
 
 TEST(LimitFile, AGoodLineIsALimit) {
   const TemporaryFolder folder;
-  const Reading reading(folder.write("limit", "1500 any 2023-03-26T00:15:00Z\n"));
+  const ReadLimits reading(folder.write("limit", "1500 any 2023-03-26T00:15:00Z\n"));
   EXPECT_EQ(reading.status, Status::kOk);
   EXPECT_TRUE(reading.is_set);
   EXPECT_EQ(reading.limit.charge_w_max, 1'500);
@@ -41,7 +42,7 @@ TEST(LimitFile, WhatCannotBeUnderstoodIsMalformed) {
   for (const std::string& text :
        {std::string(), std::string("1500 any 2023-03-26T00:1"), std::string(4'096, '0'),
         std::string("1500 any 2023-03-26T00:15:00Z\n") + std::string(64, ' ')}) {
-    const Reading reading(folder.write("limit", text));
+    const ReadLimits reading(folder.write("limit", text));
     EXPECT_EQ(reading.status, Status::kMalformed);
     EXPECT_FALSE(reading.is_set);
   }
@@ -56,7 +57,7 @@ TEST(LimitFile, AFlippedBitIsMalformedOrAnotherDigit) {
   for (std::size_t bit = 0; bit < 8 * line.size(); ++bit) {
     std::string flipped = line;
     flipped[bit / 8] = static_cast<char>(flipped[bit / 8] ^ (1 << bit % 8));
-    const Reading reading(folder.write("limit", flipped));
+    const ReadLimits reading(folder.write("limit", flipped));
     EXPECT_TRUE(reading.is_set || reading.status == Status::kMalformed) << flipped;
     if (!reading.is_set) continue;
     ++accepted;
@@ -71,8 +72,8 @@ TEST(LimitFile, AFlippedBitIsMalformedOrAnotherDigit) {
 TEST(LimitFile, APipeOrAFolderIsNotWaitedFor) {
   const TemporaryFolder folder;
   ASSERT_EQ(mkfifo(folder.file("pipe").c_str(), 0600), 0);
-  EXPECT_EQ(Reading(folder.file("pipe")).status, Status::kMalformed);
-  EXPECT_EQ(Reading(folder.file("")).status, Status::kMalformed);
+  EXPECT_EQ(ReadLimits(folder.file("pipe")).status, Status::kMalformed);
+  EXPECT_EQ(ReadLimits(folder.file("")).status, Status::kMalformed);
 }
 
 }  // namespace
