@@ -1,12 +1,28 @@
 // One step of the battery, a pure function [Paper, Eq. 2, 4, 5; SPEC 3].
-//   SoC' = SoC + (max(p,0) * eta_charge + min(p,0) / eta_discharge) * dt / C
+//   SoC' = SoC + (max(p,0) * eta_charge + min(p,0) / eta_discharge - r * p^2 / P) * dt / C
 // p is the average power REALLY exchanged over the step: at a bound only what still fits flows, and
-// only that is paid.
+// only that is paid. The paper's battery has none of what a real one adds to that: r is 0.
 #pragma once
 
+#include <cmath>
+
+#include "shared/battery_response.h"
 #include "shared/trading_costs.h"
 
 namespace bess {
+
+/// Less power towards a bound of the SoC window, as cells ask for: all of it down to `width_frac`
+/// of SoC before the bound, `share` at the bound, a straight line between. A width of 0: none.
+struct PowerTaper {
+  double width_frac = 0;
+  double share = 1;
+
+  /// Of the power, this far from the bound.
+  [[nodiscard]] constexpr double at(double room_frac) const {
+    if (room_frac >= width_frac) return 1;
+    return room_frac <= 0 ? share : share + (1 - share) * room_frac / width_frac;
+  }
+};
 
 struct BatteryParameters {
   double power_w_max = 4e6;                       ///< P, grid side, both directions
@@ -15,6 +31,12 @@ struct BatteryParameters {
   double discharge_efficiency = 0.9486832980505138;
   double soc_min_frac = 0.10;
   double soc_max_frac = 1.00;
+  // What a real one adds to that.
+  PowerTaper charge_taper{};        ///< towards soc_max
+  PowerTaper discharge_taper{};     ///< towards soc_min
+  double full_power_loss_frac = 0;  ///< r: lost besides, of the power, at full power; by its square
+  double standby_w = 0;             ///< own consumption, from the grid at any time
+  PowerResponse response{};         ///< from an order to its power
   // What using it costs, and how much it may be used: battery_step knows nothing of these three,
   // accounting and planning do (exchange_cost.h).
   double wear_eur_per_mwh = 0;    ///< of throughput: charged and discharged energy, grid side
@@ -22,19 +44,48 @@ struct BatteryParameters {
   double cycles_per_day_max = 0;  ///< equivalent full cycles a local day; 0 = no limit
 };
 
+/// Whether each step of full power moves the same, wherever it does not meet a bound.
+constexpr bool has_constant_power(const BatteryParameters& battery) {
+  return battery.charge_taper.width_frac == 0 && battery.discharge_taper.width_frac == 0 &&
+         battery.full_power_loss_frac == 0;
+}
+
 struct BatteryStep {
   double power_w;   ///< average over the step, grid side, charge positive
   double soc_frac;  ///< at the end of the step
 };
 
+/// The same with r above 0: what reaches the cells, or leaves them, is a parabola of the power.
+inline BatteryStep lossy_step(const BatteryParameters& battery, double soc_frac, double power_w,
+                              double hours) {
+  const bool charges = power_w > 0;
+  const double bound_frac = charges ? battery.soc_max_frac : battery.soc_min_frac;
+  const double slope = charges ? battery.charge_efficiency : 1 / battery.discharge_efficiency;
+  const double square = battery.full_power_loss_frac / battery.power_w_max;
+  const double fits_stored_w = (bound_frac - soc_frac) * battery.capacity_wh / hours;
+  const bool has_room = charges ? fits_stored_w > 0 : fits_stored_w < 0;
+  if (power_w == 0 || !has_room) return {0.0, soc_frac};
+  const double stored_w = slope * power_w - square * power_w * power_w;
+  if (std::fabs(stored_w) < std::fabs(fits_stored_w)) {
+    return {power_w, soc_frac + stored_w * hours / battery.capacity_wh};
+  }
+  const double root = std::sqrt(slope * slope - 4 * square * fits_stored_w);
+  return {(slope - root) / (2 * square), bound_frac};
+}
+
 /// Exchanges up to `wanted_power_w` for `hours`. Never leaves [soc_min, soc_max]; a battery that
-/// starts outside moves towards the window or rests, never further away.
-constexpr BatteryStep battery_step(const BatteryParameters& battery, double soc_frac,
-                                   double wanted_power_w, double hours) {
-  const double limit_w = battery.power_w_max;
-  double power_w = wanted_power_w > limit_w    ? limit_w
-                   : wanted_power_w < -limit_w ? -limit_w
-                                               : wanted_power_w;
+/// starts outside moves towards the window or rests, never further away. The taper is that of the
+/// SoC before the step.
+inline BatteryStep battery_step(const BatteryParameters& battery, double soc_frac,
+                                double wanted_power_w, double hours) {
+  const double charge_w_max =
+      battery.power_w_max * battery.charge_taper.at(battery.soc_max_frac - soc_frac);
+  const double discharge_w_max =
+      battery.power_w_max * battery.discharge_taper.at(soc_frac - battery.soc_min_frac);
+  const double power_w = wanted_power_w > charge_w_max       ? charge_w_max
+                         : wanted_power_w < -discharge_w_max ? -discharge_w_max
+                                                             : wanted_power_w;
+  if (battery.full_power_loss_frac > 0) return lossy_step(battery, soc_frac, power_w, hours);
   if (power_w > 0) {
     const double room_wh = (battery.soc_max_frac - soc_frac) * battery.capacity_wh;
     const double fits_w = room_wh > 0 ? room_wh / (battery.charge_efficiency * hours) : 0.0;
@@ -49,6 +100,25 @@ constexpr BatteryStep battery_step(const BatteryParameters& battery, double soc_
             soc_frac + power_w / battery.discharge_efficiency * hours / battery.capacity_wh};
   }
   return {0.0, soc_frac};
+}
+
+/// The same with where its power stood before the step, and stands at its end: by its response,
+/// within what its taper leaves. Where it meets a bound its power has gone by then.
+struct FollowedStep {
+  BatteryStep step;
+  PowerState power;
+};
+inline FollowedStep followed_step(const BatteryParameters& battery, double soc_frac,
+                                  PowerState power, double wanted_power_w, double hours) {
+  const BatteryStep at_once = battery_step(battery, soc_frac, wanted_power_w, hours);
+  if (!battery.response.exists()) return {at_once, {}};
+  const FollowedPower followed =
+      followed_power(battery.response, power, at_once.power_w, hours * 3'600);
+  const BatteryStep step = battery_step(battery, soc_frac, followed.mean_w, hours);
+  if (step.power_w == followed.mean_w) return {step, followed.end};
+  const bool is_at_bound =
+      step.soc_frac == battery.soc_max_frac || step.soc_frac == battery.soc_min_frac;
+  return {step, is_at_bound ? PowerState{} : PowerState{step.power_w, step.power_w}};
 }
 
 }  // namespace bess

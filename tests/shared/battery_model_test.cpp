@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "shared/units_and_limits.h"
@@ -105,6 +106,102 @@ TEST(BatteryModel, RoundTripLosesWhatTheEfficiencySays) {
   }
   ASSERT_EQ(soc, battery.soc_min_frac);
   EXPECT_NEAR(sold_wh / bought_wh, 0.9, 1e-12);
+}
+
+BatteryParameters real_battery() {
+  BatteryParameters battery;
+  battery.charge_taper = {.width_frac = 0.1, .share = 0.2};
+  battery.discharge_taper = {.width_frac = 0.05, .share = 0.5};
+  battery.full_power_loss_frac = 0.03;
+  return battery;
+}
+
+TEST(RealBattery, TapersInAStraightLineTowardsItsBound) {
+  const BatteryParameters battery = real_battery();
+  const auto power_w = [&](double soc_frac, double wanted_w) {
+    return battery_step(battery, soc_frac, wanted_w, 1e-6).power_w;
+  };
+  EXPECT_EQ(power_w(0.89, 4e6), 4e6);
+  EXPECT_NEAR(power_w(0.95, 4e6), 0.6 * 4e6, 1);
+  EXPECT_NEAR(power_w(0.999, 4e6), 0.208 * 4e6, 1);
+  EXPECT_EQ(power_w(0.95, 1e6), 1e6) << "less than is left is given whole";
+  EXPECT_NEAR(power_w(0.125, -4e6), -0.75 * 4e6, 1);
+  EXPECT_EQ(power_w(0.95, -4e6), -4e6) << "each bound has its own direction";
+}
+
+TEST(RealBattery, LossesGrowWithTheSquareOfThePower) {
+  BatteryParameters battery;
+  battery.full_power_loss_frac = 0.04;
+  for (const double wanted_w : {4e6, 1e6, -1e6, -4e6}) {
+    const double stored = (battery_step(battery, 0.5, wanted_w, 0.01).soc_frac - 0.5) * 8e6;
+    const double loss_wh = 0.04 * wanted_w * wanted_w / 4e6 * 0.01;
+    EXPECT_NEAR(stored, stored_wh(battery, wanted_w, 0.01) - loss_wh, 1e-6) << wanted_w;
+  }
+}
+
+TEST(RealBattery, ConservesEnergyAndStaysInside) {
+  Random random(9);
+  for (int i = 0; i < 50'000; ++i) {
+    BatteryParameters battery = real_battery();
+    battery.full_power_loss_frac = 0.3 * random.uniform();
+    const double soc = 0.1 + 0.9 * random.uniform();
+    const double wanted_w = 3 * battery.power_w_max * (random.uniform() - 0.5);
+    const double hours = random.uniform() + 1e-3;
+    const BatteryStep step = battery_step(battery, soc, wanted_w, hours);
+    ASSERT_GE(step.soc_frac, 0.1 - 1e-12);
+    ASSERT_LE(step.soc_frac, 1 + 1e-12);
+    ASSERT_LE(std::fabs(step.power_w), std::fabs(wanted_w) * (1 + 1e-12));
+    const double loss_wh = battery.full_power_loss_frac * step.power_w * step.power_w / 4e6 * hours;
+    ASSERT_NEAR((step.soc_frac - soc) * 8e6, stored_wh(battery, step.power_w, hours) - loss_wh,
+                1e-3);
+  }
+}
+
+/// The same by small steps of time.
+FollowedPower integrated(const PowerResponse& response, PowerState from, double wanted_w,
+                         double seconds) {
+  constexpr double kStepS = 1e-4;
+  double ramp_w = from.ramped_w, lag_w = from.flowing_w, sum = 0;
+  for (double t = 0; t < seconds - kStepS / 2; t += kStepS) {
+    if (t >= response.delay_s) {
+      const double reach_w = response.ramp_w_per_s > 0 ? response.ramp_w_per_s * kStepS : INFINITY;
+      ramp_w = std::clamp(wanted_w, ramp_w - reach_w, ramp_w + reach_w);
+      const double tau_s = response.time_constant_s;
+      lag_w = tau_s > 0 ? lag_w + (ramp_w - lag_w) * kStepS / tau_s : ramp_w;
+    }
+    sum += lag_w * kStepS;
+  }
+  return {sum / seconds, {ramp_w, lag_w}};
+}
+
+TEST(PowerResponse, MeanAndEndAreThoseOfTheCourse) {
+  for (const double delay_s : {0.0, 2.0}) {
+    for (const double ramp_w_per_s : {0.0, 50.0, 400.0}) {
+      for (const double tau_s : {0.0, 3.0, 30.0}) {
+        const PowerResponse response{delay_s, ramp_w_per_s, tau_s};
+        PowerState from{-4'000, -4'000};
+        for (const double wanted_w :
+             {3'000.0, 3'000.0, -500.0}) {  // from each where it had come to
+          const FollowedPower exact = integrated(response, from, wanted_w, 30);
+          const FollowedPower closed = followed_power(response, from, wanted_w, 30);
+          SCOPED_TRACE(testing::Message() << delay_s << ' ' << ramp_w_per_s << ' ' << tau_s);
+          EXPECT_NEAR(closed.mean_w, exact.mean_w, 2);
+          EXPECT_NEAR(closed.end.ramped_w, exact.end.ramped_w, 2);
+          EXPECT_NEAR(closed.end.flowing_w, exact.end.flowing_w, 2);
+          from = exact.end;
+          if (tau_s == 0) from.flowing_w = from.ramped_w;
+        }
+      }
+    }
+  }
+}
+
+TEST(PowerResponse, NothingHappensWithinTheDelayOrWithoutAStep) {
+  const PowerState at{100, 90};
+  EXPECT_EQ(followed_power({.delay_s = 5}, at, 900, 4).mean_w, 90);
+  EXPECT_EQ(followed_power({.delay_s = 5}, at, 900, 4).end.ramped_w, 100);
+  EXPECT_EQ(followed_power({.time_constant_s = 5}, {700, 700}, 700, 60).mean_w, 700);
+  EXPECT_FALSE(PowerResponse{}.exists());
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <random>
 
 #include "edge/registers/codec.h"
 #include "shared/scaled_clock.h"
@@ -48,6 +49,55 @@ TEST(SimulatedBattery, GivesAndShowsNoMoreThanTheWeatherLeaves) {
   battery.start_dispatch(4'000, 1.0, 300);
   EXPECT_EQ(battery.power_w(), 2'000);
   EXPECT_EQ(battery.commanded_power_w(), 4'000);
+}
+
+/// A day of orders that were drawn: simulated by the second, and by the model's steps.
+TEST(SimulatedBattery, ARealOneMovesWhatTheModelOfTheEnvironmentSays) {
+  BatteryParameters real = kHouse;
+  real.charge_taper = {.width_frac = 0.1, .share = 0.2};
+  real.discharge_taper = {.width_frac = 0.05, .share = 0.3};
+  real.full_power_loss_frac = 0.03;
+  BatteryParameters slow = real;
+  slow.response = {.delay_s = 2, .ramp_w_per_s = 13.3, .time_constant_s = 3};
+  for (const BatteryParameters& battery : {real, slow}) {
+    SimulatedBattery simulated(battery, 0.5, kStartNs);
+    std::minstd_rand random(7);
+    double soc_frac = 0.5;
+    PowerState power;
+    std::vector<double> modelled_wh;
+    for (int step = 0; step < 720; ++step) {
+      const int trend = (step / 90) % 2 == 0 ? 1 : -1;  // three hours each way, as prices go
+      const double wanted_w = random() % 4 == 0 ? 0 : trend * 4'000.0;
+      simulated.start_dispatch(wanted_w, wanted_w > 0 ? 1.0 : 0.1, 300);
+      simulated.advance(after_s(120.0 * (step + 1)));
+      const FollowedStep moved = followed_step(battery, soc_frac, power, wanted_w, 1.0 / 30);
+      soc_frac = moved.step.soc_frac;
+      power = moved.power;
+      modelled_wh.push_back(moved.step.power_w / 30);
+    }
+    const std::vector<MinuteRecord> minutes = simulated.record();
+    double moved_wh = 0, apart_wh = 0;
+    for (std::size_t step = 0; step < modelled_wh.size(); ++step) {
+      const double wh = minutes[2 * step].energy_wh + minutes[2 * step + 1].energy_wh;
+      moved_wh += std::abs(wh);
+      apart_wh += std::abs(wh - modelled_wh[step]);
+    }
+    EXPECT_GT(moved_wh, 30'000);
+    EXPECT_LT(apart_wh, 0.03 * moved_wh);
+    EXPECT_NEAR(simulated.soc_frac(), soc_frac, 0.02);
+  }
+}
+
+TEST(SimulatedBattery, ItsOwnConsumptionFlowsAtRestAndAtWork) {
+  BatteryParameters battery = kHouse;
+  battery.standby_w = 40;
+  SimulatedBattery simulated(battery, 0.5, kStartNs);
+  EXPECT_EQ(simulated.power_w(), 40);
+  simulated.start_dispatch(-1'000, 0.1, 300);
+  EXPECT_EQ(simulated.power_w(), -960);
+  simulated.advance(after_s(60));
+  EXPECT_NEAR(simulated.record().front().energy_wh, -16, 1e-9);
+  EXPECT_NEAR(simulated.soc_frac(), 0.5 - 1'000 / std::sqrt(0.9) / 60 / 8'000, 1e-12);
 }
 
 TEST(SimulatedBattery, IntegratesTheSameInOneStepAndInMany) {

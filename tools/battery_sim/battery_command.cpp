@@ -13,6 +13,7 @@
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
 #include "tools/battery_sim/battery_faults.h"
+#include "tools/battery_sim/battery_file.h"
 #include "tools/battery_sim/battery_record.h"
 #include "tools/battery_sim/battery_server.h"
 #include "tools/battery_sim/replay_command.h"
@@ -43,8 +44,8 @@ struct BatteryOptions {
   double soc_frac = 0.5;
   BatteryParameters battery{.power_w_max = 4'000, .capacity_wh = 8'000};
   double round_trip_efficiency = 0.9;
-  double time_constant_s = 0;
-  std::string house;  ///< empty: none, and no meter
+  std::string battery_path;  ///< empty: none
+  std::string house;         ///< empty: none, and no meter
   std::uint64_t house_seed = 1;
   std::string meter_map_path;
   std::string meter_variant;
@@ -62,6 +63,15 @@ const BatteryFaultInfo* find_fault(const std::string& name) {
 
 std::string known_fault(const std::string& name) {
   return find_fault(name) != nullptr ? "" : "there is no fault " + name;
+}
+
+/// What the options say; then what the file says of it.
+BatteryParameters battery_of(const BatteryOptions& options) {
+  BatteryParameters battery = options.battery;
+  battery.charge_efficiency = battery.discharge_efficiency =
+      std::sqrt(options.round_trip_efficiency);
+  if (!options.battery_path.empty()) read_battery_file(options.battery_path, battery);
+  return battery;
 }
 
 /// The meter at the house's connection, on a thread of its own until it is ended.
@@ -150,14 +160,11 @@ void run_battery(BatteryOptions& options) {
   if (!load_register_map(options.map_path, options.map_variant, map, error)) {
     throw UserError(error);
   }
-  BatteryParameters& battery = options.battery;
-  battery.charge_efficiency = battery.discharge_efficiency =
-      std::sqrt(options.round_trip_efficiency);
+  const BatteryParameters battery = battery_of(options);
   if (battery.power_w_max > map.charge_w_max || battery.power_w_max > map.discharge_w_max) {
     fail("--power-w {}: more than the map {} can express", battery.power_w_max, map.name.view());
   }
   SimulatedBattery simulated(battery, options.soc_frac, clock.now_utc_ns());
-  simulated.set_time_constant(options.time_constant_s);
   std::optional<MeteredHouse> house;
   if (!options.house.empty()) {
     house.emplace(HouseLoad::from_option(options.house, options.house_seed));
@@ -297,8 +304,10 @@ void add_plant_options(ProgramCommand& command, BatteryOptions& options) {
   command.option("--efficiency", options.round_trip_efficiency, "Round trip")
       .range(0.01, 1.0)
       .with_default();
+  command.option("--battery", options.battery_path,
+                 "Act [battery] of this file, as bess-train battery fit writes it");
   command
-      .option("--time-constant-s", options.time_constant_s,
+      .option("--time-constant-s", options.battery.response.time_constant_s,
               "Its power follows an order as a first-order lag of so many seconds; 0 = at once")
       .range(0.0, 600.0)
       .with_default();

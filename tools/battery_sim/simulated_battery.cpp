@@ -45,7 +45,9 @@ void SimulatedBattery::integrate_segment(std::int64_t end_ns) {
   if (hours > 0) {
     follow_habits(hours * 3'600);
     const double burnt_wh = burnt_w() * hours;
-    const BatteryStep step = battery_step(limited(), soc_frac_, wanted_power_w(), hours);
+    const double wanted_w = wanted_power_w();
+    const BatteryStep step = battery_step(limited(), soc_frac_, wanted_w, hours);
+    if (step.power_w != wanted_w) ramped_w_ = lagged_w_ = step.power_w;  // it goes on from there
     minute_energy_wh_ += step.power_w * hours + burnt_wh;
     const double drained_frac = habits_.hidden_drain_w * hours / parameters_.capacity_wh;
     soc_frac_ = std::max(step.soc_frac - drained_frac, 0.0);
@@ -59,23 +61,32 @@ void SimulatedBattery::integrate_segment(std::int64_t end_ns) {
 }
 
 bool SimulatedBattery::changes_by_the_second() const {
-  return habits_.slows_near_limits || habits_.ramp_w_per_s > 0 || habits_.forced_charge_w > 0 ||
-         habits_.balancing_w > 0;
+  return habits_.slows_near_limits || ramp_w_per_s() > 0 || habits_.forced_charge_w > 0 ||
+         habits_.balancing_w > 0 || !has_constant_power(parameters_);
+}
+
+/// Of battery and habit the slower; 0: at once.
+double SimulatedBattery::ramp_w_per_s() const {
+  const double own = parameters_.response.ramp_w_per_s;
+  if (own <= 0 || habits_.ramp_w_per_s <= 0) return std::max(own, habits_.ramp_w_per_s);
+  return std::min(own, habits_.ramp_w_per_s);
 }
 
 bool SimulatedBattery::is_lagging() const {
   const double wanted_w = dispatch_active_ ? ordered_flow_w() : 0;
-  return time_constant_s_ > 0 && (lagged_w_ != wanted_w || ramped_w_ != wanted_w);
+  return parameters_.response.time_constant_s > 0 &&
+         (lagged_w_ != wanted_w || ramped_w_ != wanted_w);
 }
 
 /// What does not follow from the order alone, brought forward by a segment.
 void SimulatedBattery::follow_habits(double seconds) {
   if (soc_frac_ < kForcedBelowFrac) is_charging_itself_ = true;
   if (soc_frac_ >= kForcedUntilFrac || habits_.forced_charge_w == 0) is_charging_itself_ = false;
-  const double reach_w = habits_.ramp_w_per_s > 0 ? habits_.ramp_w_per_s * seconds : INFINITY;
+  const double reach_w = ramp_w_per_s() > 0 ? ramp_w_per_s() * seconds : INFINITY;
   const double wanted_w = dispatch_active_ ? ordered_flow_w() : 0;
   ramped_w_ = std::clamp(wanted_w, ramped_w_ - reach_w, ramped_w_ + reach_w);
-  const double kept = time_constant_s_ > 0 ? std::exp(-seconds / time_constant_s_) : 0;
+  const double tau_s = parameters_.response.time_constant_s;
+  const double kept = tau_s > 0 ? std::exp(-seconds / tau_s) : 0;
   const double left_w = (lagged_w_ - ramped_w_) * kept;
   lagged_w_ = std::abs(left_w) < kArrivedW ? ramped_w_ : ramped_w_ + left_w;
 }
@@ -101,14 +112,14 @@ BatteryParameters SimulatedBattery::limited() const {
 double SimulatedBattery::wanted_power_w() const {
   if (is_charging_itself_) return habits_.forced_charge_w;
   if (!dispatch_active_) return 0;
-  if (time_constant_s_ > 0) return lagged_w_;
-  return habits_.ramp_w_per_s > 0 ? ramped_w_ : ordered_flow_w();
+  if (parameters_.response.time_constant_s > 0) return lagged_w_;
+  return ramp_w_per_s() > 0 ? ramped_w_ : ordered_flow_w();
 }
 
 /// At the grid side, and into no cell.
 double SimulatedBattery::burnt_w() const {
   const bool is_full = soc_frac_ >= kFullFrac * parameters_.soc_max_frac;
-  return is_full && commanded_power_w() >= 0 ? habits_.balancing_w : 0;
+  return parameters_.standby_w + (is_full && commanded_power_w() >= 0 ? habits_.balancing_w : 0);
 }
 
 double SimulatedBattery::ordered_flow_w() const {
@@ -129,7 +140,7 @@ void SimulatedBattery::start_dispatch(double power_w, double soc_limit_frac,
                                       std::int64_t duration_s) {
   if (power_w != commanded_power_w()) {
     power_before_w_ = commanded_power_w();
-    change_ns_ = now_ns_ + std::llround(habits_.delay_s * 1e9);
+    change_ns_ = now_ns_ + std::llround((habits_.delay_s + parameters_.response.delay_s) * 1e9);
   }
   dispatch_active_ = duration_s > 0;
   power_w_ = power_w;

@@ -1,6 +1,7 @@
 // Physics and dispatch of the simulated battery, without any bus: event-driven and exact. Between
 // two events (new order, expiry, minute boundary) the power is constant, so one battery_step per
-// segment integrates without error, whatever the time scale.
+// segment integrates without error, whatever the time scale. Where it is not, by ramp, lag, taper
+// or a habit, segments are a second or a twentieth of one.
 #pragma once
 
 #include <cstdint>
@@ -65,7 +66,7 @@ class SimulatedBattery {
   void set_derating(double power_frac) { derating_ = power_frac; }
   [[nodiscard]] double derating() const { return derating_; }
   /// Its power follows as a first-order lag, behind delay and ramp; 0 = at once. From now on.
-  void set_time_constant(double seconds) { time_constant_s_ = seconds; }
+  void set_time_constant(double seconds) { parameters_.response.time_constant_s = seconds; }
 
   [[nodiscard]] bool dispatch_active() const { return dispatch_active_; }
   [[nodiscard]] double soc_frac() const { return soc_frac_; }
@@ -84,6 +85,7 @@ class SimulatedBattery {
   [[nodiscard]] BatteryParameters limited() const;
   [[nodiscard]] bool changes_by_the_second() const;
   [[nodiscard]] bool is_lagging() const;
+  [[nodiscard]] double ramp_w_per_s() const;
   void follow_habits(double seconds);
   [[nodiscard]] double wanted_power_w() const;
   [[nodiscard]] double ordered_flow_w() const;
@@ -98,7 +100,6 @@ class SimulatedBattery {
   bool dispatch_active_ = false;
   BatteryHabits habits_{};
   double derating_ = 1;
-  double time_constant_s_ = 0;
   double power_w_ = 0;
   double power_before_w_ = 0;  ///< flows until `change_ns_`
   std::int64_t change_ns_ = 0;

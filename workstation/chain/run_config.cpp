@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "shared/battery_keys.h"
 #include "shared/host/file.h"
 #include "shared/host/nearest_word.h"
 #include "shared/host/text.h"
@@ -119,13 +120,9 @@ void KeyList::list(RunConfig& c) {
       "local minute of the day before from which day-ahead prices count as known; 780 is 13:00");
 
   section("battery");
-  number("power_w", kLearning, c.battery.power_w_max, 1, 1e9, "both directions, grid side");
-  number("capacity_wh", kLearning, c.battery.capacity_wh, 1, 1e10, "usable and not usable");
-  number("charge_efficiency", kLearning, c.battery.charge_efficiency, 0.5, 1, "grid to battery");
-  number("discharge_efficiency", kLearning, c.battery.discharge_efficiency, 0.5, 1,
-         "battery to grid");
-  number("soc_min", kLearning, c.battery.soc_min_frac, 0, 0.95, "lower end of the SoC window");
-  number("soc_max", kLearning, c.battery.soc_max_frac, 0.05, 1, "upper end of the SoC window");
+  for (const BatteryKey& key : kBatteryKeys) {
+    number(key.name, kLearning, key.of(c.battery), key.low, key.high, key.comment);
+  }
   number("wear_eur_per_mwh", kLearning, c.battery.wear_eur_per_mwh, 0, 1000,
          "cost of throughput, charged and discharged; every profit and reward is net of it");
   number("cycles_per_day_max", kLearning, c.battery.cycles_per_day_max, 0, 1000,

@@ -26,6 +26,7 @@ class Runner {
   void reset_soc() {
     soc_frac_ = options_.initial_soc_frac;
     last_action_ = Action::kIdle;
+    power_ = {};
   }
 
   [[nodiscard]] double soc_frac() const { return soc_frac_; }
@@ -40,15 +41,18 @@ class Runner {
                                       : std::numeric_limits<double>::infinity();
     DayResult result{date, 0, 0, 0, 0};
     result.soc_start_frac = soc_frac_;
+    const double standby_mwh = battery.standby_w / kWattsPerMegawatt * kHoursPerStep;
     double energy_mwh = 0;
     for (const MarketStep& step : steps) {
       Action action = policy_.decide(step, index++, soc_frac_);
       if (energy_mwh >= energy_mwh_max) action = Action::kIdle;
       const double power_w =
           power_sign(action) * battery.power_w_max * policy_.power_share_max(step, soc_frac_);
-      const BatteryStep moved = battery_step(battery, soc_frac_, power_w, kHoursPerStep);
+      const auto [moved, power] = followed_step(battery, soc_frac_, power_, power_w, kHoursPerStep);
       const double mwh = moved.power_w / kWattsPerMegawatt * kHoursPerStep;
-      const double profit_eur = -exchange_cost_eur(battery, mwh, step.paid_eur_per_mwh);
+      const double profit_eur =
+          -exchange_cost_eur(battery, mwh, step.paid_eur_per_mwh) -
+          standby_mwh * battery.costs.import_eur_per_mwh(step.paid_eur_per_mwh);
       result.profit_eur += profit_eur;
       energy_mwh += std::fabs(mwh);
       result.switches += action != last_action_ ? 1 : 0;
@@ -59,6 +63,7 @@ class Runner {
       }
       last_action_ = action;
       soc_frac_ = moved.soc_frac;
+      power_ = power;
     }
     result.cycles = energy_mwh / two_capacities_mwh;
     result.throughput_mwh = energy_mwh;
@@ -70,6 +75,8 @@ class Runner {
   Policy& policy_;
   const EvaluationOptions& options_;
   double soc_frac_;
+  PowerState power_;      ///< at the end of the step before
+  double flowing_w_ = 0;  ///< at the end of the step before
   Action last_action_ = Action::kIdle;
 };
 

@@ -41,6 +41,7 @@ BellmanSweep::Direction BellmanSweep::make_direction(const BatteryParameters& ba
   const std::vector<GridMove> moves = tabulate_moves(battery, grid_);
   const auto row = moves.begin() + static_cast<std::ptrdiff_t>(action) * grid_.count;
   d.moves.assign(row, row + grid_.count);
+  if (!has_constant_power(battery)) return d;
   // The bound's own neighbours go through the table: full power ends exactly on or beyond them.
   d.first_unbounded = std::clamp(-d.shift, 0, grid_.count);
   d.end_unbounded = std::clamp(grid_.count - 1 - d.shift, d.first_unbounded, grid_.count);

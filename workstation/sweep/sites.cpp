@@ -133,6 +133,9 @@ SiteConfig config_of_site(const CsvTable& table, std::size_t row, const Columns&
 
 RunConfig canonical(RunConfig config) {
   const double rate_per_h = config.battery.power_w_max / config.battery.capacity_wh;
+  const double scale = BatteryParameters{}.capacity_wh / config.battery.capacity_wh;
+  config.battery.standby_w *= scale;
+  config.battery.response.ramp_w_per_s *= scale;
   config.battery.capacity_wh = BatteryParameters{}.capacity_wh;
   config.battery.power_w_max =
       std::stod(fmt::format("{:.12g}", rate_per_h)) * config.battery.capacity_wh;

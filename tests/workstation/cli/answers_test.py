@@ -87,7 +87,7 @@ class Answers(unittest.TestCase):
     def answers(self, *arguments, code=0):
         """What a command answers, each line held; all keys of a kind are always there."""
         arguments = [self.file(a[1:]) if a.startswith("@") else a for a in arguments]
-        self.run_commands.add(re.match(r"((runs|rules|prices|sweep) )?\S+", " ".join(arguments))[0])
+        self.run_commands.add(re.match(r"((runs|rules|prices|sweep|battery) )?\S+", " ".join(arguments))[0])
         lines = [json.loads(line) for line in self.bess([*arguments, "--json"], code).splitlines()]
         self.assertTrue(lines, arguments)
         for line in lines:
@@ -168,6 +168,16 @@ class Answers(unittest.TestCase):
         self.answers("delays", "--prices", "@market.csv", "--policy", "rbc", "tabular", "--carry-soc")
         for name in ("evaluation.csv", "days.csv", "steps.csv"):
             self.table(self.file(name))
+
+    def test_4_battery(self):
+        with open(self.file("log.csv"), "w") as log:
+            print("utc,soc_e4,battery_power_w,ordered_power_w", file=log)
+            for cycle in range(40):
+                print(f"2026-06-01T{cycle // 30:02}:{2 * cycle % 60:02}:00Z,5000,{30 + cycle % 3},0", file=log)
+        keys = self.answers("battery", "fit", "--log", "@log.csv", "--out", "@battery.toml")
+        self.assertEqual([(k["key"], k["observations"]) for k in keys], [("standby_w", 38)])
+        shown = self.answers("evaluate", "--prices", "@market.csv", "--policy", "rbc", "--config", "@battery.toml")
+        self.assertEqual(len(shown), 1)
 
     def test_5_rules(self):
         check = ["rules", "check", "--rules", "@rules.toml"]

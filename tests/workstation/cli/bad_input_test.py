@@ -58,6 +58,10 @@ CASES = [
     ("evaluate --policy rbc --prices hour.csv", 1, "hour.csv: the prices hold no complete local day"),
     ("run --prices hour.csv --out new", 1, "hour.csv: the prices hold no complete local day"),
     ("backtest --prices market.csv --out new", 1, "no month has 60 complete days in the 120 before it"),
+    ("battery fit --log few.csv", 1, 'few.csv: has no column "utc"'),
+    ("battery fit --log log.csv", 1, "log.csv: 2 cycles show nothing of the battery"),
+    ("battery fit --log log.csv --out log.csv", 1, "would replace the input --log log.csv"),
+    ("battery fit --log nowhere.csv", 1, "nowhere.csv"),
     # Not as TOML writes it.
     ("config --config cr.toml", 1, "cr.toml:1: not valid TOML: a line that ends in CR alone: save it with LF or CR LF"),
     ("rules check --rules single.toml", 1, "single.toml:1: [rule] is written [[rule]], as there may be many"),
@@ -92,6 +96,8 @@ class BadInputs(unittest.TestCase):
             "swapped.csv": head.replace("indicative_eur_mwh,settled_eur_mwh", "settled_eur_mwh,indicative_eur_mwh"),
             "summer.csv": "Datetime;Resolution code;Imbalance Price\n2023-10-29T02:30:00;PT15M;5\n",
             "scalar.toml": "battery = 3\n",
+            "log.csv": "utc,soc_e4,battery_power_w,ordered_power_w\n"
+                       "2026-06-01T00:00:00Z,5000,0,0\n2026-06-01T00:02:00Z,5000,0,0\n",
             "few.csv": head + "".join(rows[: 15 * 1440]),
             "hour.csv": head + "".join(rows[:60]),
             "cr.toml": "[train]\rsteps = 100\r",

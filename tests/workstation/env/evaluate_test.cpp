@@ -71,6 +71,44 @@ TEST(Evaluate, ProfitCyclesAndSwitchesRecountedFromTheRecords) {
   }
 }
 
+/// Charges and discharges by turns.
+class AlternatingPolicy final : public Policy {
+ public:
+  [[nodiscard]] Action decide(const MarketStep&, std::size_t index, double) const override {
+    return index % 2 == 0 ? Action::kCharge : Action::kDischarge;
+  }
+};
+
+TEST(Evaluate, ABatteryThatTakesHalfAMinuteMovesThatMuchLess) {
+  const MarketSteps market =
+      make_market_steps(flat_series("2023-01-31T23:00:00Z", kMinutesPerDay, 100), {});
+  AlternatingPolicy policy;
+  EvaluationOptions options;
+  options.battery.response.delay_s = 30;
+  std::vector<StepRecord> records;
+  static_cast<void>(evaluate(market, market.days, policy, options, &records));
+  EXPECT_DOUBLE_EQ(records[0].power_w, 0.75 * 4e6) << "from rest";
+  EXPECT_DOUBLE_EQ(records[1].power_w, -0.5 * 4e6) << "a quarter of the step flowed the other way";
+  EXPECT_DOUBLE_EQ(records[2].power_w, 0.5 * 4e6);
+}
+
+TEST(Evaluate, StandbyIsBoughtWhateverThePolicyDoes) {
+  const MarketSteps market =
+      make_market_steps(flat_series("2023-01-31T23:00:00Z", kMinutesPerDay, 100), {});
+  AlternatingPolicy policy;
+  EvaluationOptions options;
+  const double without = evaluate(market, market.days, policy, options).days[0].profit_eur;
+  options.battery.costs.import_adder_eur_per_mwh = 20;
+  std::vector<StepRecord> steps;
+  const double with_costs =
+      evaluate(market, market.days, policy, options, &steps).days[0].profit_eur;
+  options.battery.standby_w = 10'000;
+  const double with_standby = evaluate(market, market.days, policy, options).days[0].profit_eur;
+  EXPECT_LT(with_costs, without);
+  const double mwh = 0.01 / 30 * static_cast<double>(steps.size());
+  EXPECT_NEAR(with_costs - with_standby, mwh * 120, 1e-9) << "at 100 + 20 EUR/MWh";
+}
+
 TEST(Evaluate, OneKnownStepIsPaidToTheCent) {
   MinuteSeries series = flat_series("2023-01-31T22:58:00Z", kMinutesPerDay + 2, 100);
   series.indicative.assign(series.size(), 50);

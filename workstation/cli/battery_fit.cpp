@@ -1,0 +1,127 @@
+// bess-train battery fit: what a battery really does, from the log of its controller.
+#include <fmt/core.h>
+
+#include <memory>
+
+#include "shared/battery_keys.h"
+#include "shared/host/distinct_files.h"
+#include "shared/host/file.h"
+#include "shared/host/json.h"
+#include "shared/host/user_error.h"
+#include "workstation/base/answer.h"
+#include "workstation/chain/run_config.h"
+#include "workstation/cli/commands.h"
+#include "workstation/env/battery_fit.h"
+
+namespace bess {
+namespace {
+
+struct FitArguments {
+  std::vector<std::string> logs;
+  std::string config;
+  std::string out;
+  bool json = false;
+};
+
+/// What was found, under the names of [battery].
+std::vector<std::pair<std::string, Fitted>> named(const BatteryFit& fit) {
+  std::vector<std::pair<std::string, Fitted>> found;
+  const auto add = [&](const char* key, const std::optional<Fitted>& of) {
+    if (of) found.emplace_back(key, *of);
+  };
+  add("charge_efficiency", fit.charge_efficiency);
+  add("discharge_efficiency", fit.discharge_efficiency);
+  add("charge_taper_width", fit.charge_taper_width);
+  add("charge_taper_share", fit.charge_taper_share);
+  add("discharge_taper_width", fit.discharge_taper_width);
+  add("discharge_taper_share", fit.discharge_taper_share);
+  add("full_power_loss", fit.full_power_loss);
+  add("standby_w", fit.standby_w);
+  return found;
+}
+
+std::string toml_of(const BatteryFit& fit, BatteryParameters battery) {
+  battery = fit.applied_to(battery);
+  const auto found = named(fit);
+  std::string text = "[battery]\n";
+  for (const BatteryKey& key : kBatteryKeys) {
+    text += fmt::format("{} = {:.6g}", key.name, key.of(battery));
+    for (const auto& [name, value] : found) {
+      if (name != key.name) continue;
+      text += fmt::format("  # +- {:.2g}, from {}", value.standard_error, value.observations);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+void print_found(const std::vector<std::pair<std::string, Fitted>>& found, bool json) {
+  for (const auto& [name, value] : found) {
+    if (!json) {
+      fmt::print("{:<22} {:>9.5g} +- {:<9.2g} from {}\n", name, value.value, value.standard_error,
+                 value.observations);
+      continue;
+    }
+    Json line = answer("battery_key");
+    line.set("key", name);
+    line.set("value", Decimals{value.value, 6});
+    line.set("standard_error", Decimals{value.standard_error, 6});
+    line.set("observations", value.observations);
+    fmt::print("{}\n", line.line());
+  }
+}
+
+void fit_from_logs(const FitArguments& options) {
+  std::vector<GivenPath> inputs = given_paths("--log", options.logs);
+  inputs.push_back({"--config", options.config});
+  require_distinct({{"--out", options.out}}, inputs);
+  std::vector<LoggedCycle> cycles;
+  for (const std::string& log : options.logs)
+    std::ranges::copy(read_cycle_log(log), std::back_inserter(cycles));
+  std::ranges::sort(cycles, {}, &LoggedCycle::utc_s);
+  const RunConfig config = load_run_config(options.config);
+  const BatteryFit fit = fit_battery(cycles, config.battery);
+  const auto found = named(fit);
+  if (found.empty()) {
+    fail(
+        "{}: {} cycles show nothing of the battery: a log of some days, with orders in both "
+        "directions and rests between, does",
+        options.logs.front(), cycles.size());
+  }
+  print_found(found, options.json);
+  if (options.out.empty()) return;
+  write_file(options.out, toml_of(fit, config.battery));
+  if (!options.json) fmt::print("{}\n", options.out);
+}
+
+void add_battery_fit(ProgramCommand& battery) {
+  auto options = std::make_shared<FitArguments>();
+  ProgramCommand command =
+      battery.subcommand("fit", "Efficiency, taper and own consumption, from its controller's log");
+  command.option("--log", options->logs, "Of bess-edge log --csv; several are one log").required();
+  command.option("--config", options->config,
+                 "Its [battery] has power_w, capacity_wh, soc_min and soc_max of the nameplate");
+  command.option("--out", options->out,
+                 "[battery] as TOML: for --config here, and bess-sim battery "
+                 "--battery");
+  command.flag("--json", options->json, "One JSON object a line, a key each");
+  command.footer(
+      "What a log does not show keeps the value of --config: a battery that never rested tells\n"
+      "nothing of its own consumption. delay_s, ramp_w_per_s and time_constant_s need readings\n"
+      "within a cycle: bess-edge commission measures and prints them.\n"
+      "Examples:\n"
+      "  bess-edge log --csv > june.csv     # on the controller\n"
+      "  bess-train battery fit --log june.csv --config house.toml --out battery.toml\n"
+      "  bess-train evaluate --prices market.csv.gz --config battery.toml --policy sdp");
+  command.runs([options] { fit_from_logs(*options); });
+}
+
+}  // namespace
+
+void add_battery_commands(ProgramCommand& app) {
+  ProgramCommand battery = app.subcommand("battery", "What a battery really does: fit");
+  battery.requires_subcommand();
+  add_battery_fit(battery);
+}
+
+}  // namespace bess

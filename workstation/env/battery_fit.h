@@ -1,0 +1,49 @@
+// What a battery really does, learnt from the log of its controller (`bess-edge log --csv`): own
+// consumption, taper towards full and empty, efficiency and how it falls with power. A tick's
+// reading shows the order of the cycle before, long settled; what happens within a cycle, delay,
+// ramp and lag, such a log cannot show: `bess-edge commission` measures those.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "shared/battery_model.h"
+
+namespace bess {
+
+struct LoggedCycle {
+  std::int64_t utc_s;
+  double soc_frac;
+  double power_w;    ///< measured at the tick, before its order
+  double ordered_w;  ///< from this tick on
+};
+
+/// Of `bess-edge log --csv`, cycles without a reading left out. Throws UserError naming file and
+/// line.
+std::vector<LoggedCycle> read_cycle_log(const std::string& path);
+
+struct Fitted {
+  double value = 0;
+  double standard_error = 0;
+  int observations = 0;
+};
+
+/// Nothing where the log does not show it: too few such cycles, or no more than the noise.
+struct BatteryFit {
+  std::optional<Fitted> standby_w;
+  std::optional<Fitted> charge_taper_width, charge_taper_share;
+  std::optional<Fitted> discharge_taper_width, discharge_taper_share;
+  std::optional<Fitted> charge_efficiency, discharge_efficiency;
+  std::optional<Fitted> full_power_loss;
+
+  /// `battery` with what was found.
+  [[nodiscard]] BatteryParameters applied_to(BatteryParameters battery) const;
+};
+
+/// Power, capacity and SoC window are those of `nameplate`. Throws UserError where the log says that
+/// they cannot be: more power than it has, or cells that give back more than they were given.
+BatteryFit fit_battery(const std::vector<LoggedCycle>& cycles, const BatteryParameters& nameplate);
+
+}  // namespace bess
