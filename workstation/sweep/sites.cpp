@@ -20,13 +20,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kSitesHeader = "id,class,power_w,capacity_wh,initial_soc,region";
 
-/// FNV-1a, 64 bits: a name, not a proof; that two keys never share it is looked at.
-std::string name_of_key(const std::string& key) {
-  std::uint64_t hash = 0xcbf29ce484222325ULL;
-  for (const char c : key) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
-  return fmt::format("{:016x}", hash);
-}
-
 /// Files that many sites name are read once.
 class FilesBeside {
  public:
@@ -131,6 +124,12 @@ SiteConfig config_of_site(const CsvTable& table, std::size_t row, const Columns&
 
 }  // namespace
 
+std::uint64_t fnv1a(std::string_view text) {
+  std::uint64_t hash = 0xcbf29ce484222325ULL;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
+  return hash;
+}
+
 RunConfig canonical(RunConfig config) {
   const double rate_per_h = config.battery.power_w_max / config.battery.capacity_wh;
   const double scale = BatteryParameters{}.capacity_wh / config.battery.capacity_wh;
@@ -183,7 +182,7 @@ Sites read_sites(const fs::path& csv, const RunConfig& base) {
       const std::string key = learning_key(config, own.rules);
       const auto [at, is_new] = names.try_emplace(key);
       if (is_new) {
-        at->second = name_of_key(key);
+        at->second = fmt::format("{:016x}", fnv1a(key));
         if (!used.insert(at->second).second) fail("two classes share the name {}", at->second);
         read.classes.push_back({at->second, config, std::move(own.rules)});
       }

@@ -13,6 +13,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "workstation/chain/run_config.h"
@@ -39,6 +40,9 @@ struct Sites {
   std::vector<Site> sites;
   std::vector<SiteClass> classes;  ///< in the order of their first site
 };
+
+/// FNV-1a, 64 bits: a name or a draw, not a proof; that two classes never share it is looked at.
+std::uint64_t fnv1a(std::string_view text);
 
 /// `config` at the canonical size. The C-rate is taken to twelve digits: 3300 W / 10000 Wh and 3.3
 /// kW / 10 kWh are the same one.
