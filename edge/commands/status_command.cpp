@@ -391,9 +391,12 @@ bool print_metrics(const EdgeConfig& config, JsonValue status, bool is_running) 
   if (is_running && find_next(config, next)) {
     std::fputs(next_decision_metrics(next).c_str(), stdout);
   }
-  std::string updates;  // bess-update's own, where this is a package
-  if (read_text((std::string(kUpdateFolder) + "/update.prom").c_str(), updates)) {
-    std::fputs(updates.c_str(), stdout);
+  // Where this is a package: the supervisor's own, and what a fleet's inventory expects here.
+  for (const char* file : {"/update.prom", "/expected.prom"}) {
+    std::string more;
+    if (read_text((std::string(kUpdateFolder) + file).c_str(), more)) {
+      std::fputs(more.c_str(), stdout);
+    }
   }
   return true;
 }

@@ -1,6 +1,6 @@
 // From a sweep to the machines: each class of sites gets a folder with its header and its packages,
-// which tools/package makes, and the sites an inventory for tools/ansible: which class a site is of,
-// which student is expected there, and with which share of the fleet it is rolled out.
+// which tools/package makes, and the sites an inventory for tools/ansible: of which class a site
+// is, which student is expected there, and with which share of the fleet it is rolled out.
 //
 //   inventory.yml                    for ansible-playbook -i
 //   CLASS/student_weights.h          of the class's first proved task, as in sites.csv

@@ -49,7 +49,7 @@ FAULTS = {
 ONLY_IN_UNIT_TESTS = {
     "BessUnreachable", "BessOrdersUnanswered", "BessRampSlow", "BessBatteryLocked",
     "BessBatteryWarns", "BessLogLost", "BessCardWorn", "BessUpdateRolledBack", "BessUpdateFailed",
-    "BessStudentsDiffer", "BessOutlookUnplanned"}
+    "BessStudentsDiffer", "BessStudentUnexpected", "BessOutlookUnplanned"}
 # Nothing is wrong in these: nobody is called.
 WELL = {"quiet_hour", "rtu_quiet_hour", "a_day_of_2023", "a_week_of_2023", "summer_time_begins",
         "summer_time_ends", "reserve_kept", "reversal_cap", "edge_restarted", "edge_handed_over",
@@ -228,12 +228,14 @@ class Scenarios(Folder):
                            "bess_file_system_errors"}
         of_an_update = {"bess_update_rolled_back", "bess_update_failed"}
         of_an_outlook = {"bess_outlook_planned_timestamp_seconds"}  # the built-in student has none
-        elsewhere = of_this_machine | of_an_update | of_an_outlook
+        of_an_inventory = {"bess_expected_student_info"}
+        elsewhere = of_this_machine | of_an_update | of_an_outlook | of_an_inventory
         exist = {name.decode() for name in self.names} | elsewhere
         self.assertGreater(len(asked), 20)
         self.assertEqual(asked - exist, set())
-        for name in elsewhere:  # written where the machine or an update tells
-            found = subprocess.run(["grep", "-rq", name, os.path.join(SOURCE, "edge")], check=False)
+        for name in elsewhere:  # written where the machine, an update or an inventory tells
+            found = subprocess.run(["grep", "-rq", name, os.path.join(SOURCE, "edge"),
+                                    os.path.join(SOURCE, "tools/ansible")], check=False)
             self.assertEqual(found.returncode, 0, name)
 
 
