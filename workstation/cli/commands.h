@@ -34,8 +34,8 @@ void add_sweep_run(ProgramCommand& sweep);
 void add_sweep_task(ProgramCommand& sweep);
 void add_sweep_status(ProgramCommand& sweep);
 void add_sweep_collect(ProgramCommand& sweep);
-void add_battery_commands(ProgramCommand& app);  ///< fit
 void add_sweep_packages(ProgramCommand& sweep);
+void add_battery_commands(ProgramCommand& app);  ///< fit
 void add_config_command(ProgramCommand& app);
 void add_schema_command(ProgramCommand& app);
 

@@ -1,7 +1,7 @@
 // bess-train sweep packages: a Debian package a class of sites, and what Ansible rolls them out by.
 #include <fmt/core.h>
 
-#include <algorithm>
+#include <filesystem>
 #include <memory>
 
 #include "shared/host/file.h"
@@ -18,27 +18,22 @@ namespace fs = std::filesystem;
 
 struct PackagesArguments {
   std::string folder, out, source = ".";
-  PackageRequest request{{}, {}, {"arm64"}, false};
+  std::vector<std::string> architectures{"arm64"};
   bool partial = false;
 };
 
-void require_source(const fs::path& source) {
-  if (fs::exists(source / "tools/package")) return;
-  fail(
-      "{}: no tools/package there: packages are compiled from a checkout of the source; --source "
-      "DIR names yours",
-      source.string());
-}
-
-void make_packages(PackagesArguments& options) {
-  PackageRequest& request = options.request;
-  require_source(options.source);
-  request.source = fs::canonical(options.source);
-  request.out = fs::absolute(options.out);
+void package_sweep(const PackagesArguments& options) {
+  if (!fs::exists(fs::path(options.source) / "tools/package"))
+    fail(
+        "{}: no tools/package there: packages are compiled from a checkout of the source; "
+        "--source DIR names yours",
+        options.source);
+  const PackageRequest request{fs::canonical(options.source), fs::absolute(options.out),
+                               options.architectures};
   const SweepFolder folder{options.folder};
   const std::vector<SweepTask> planned = load_tasks(folder);
-  const auto tasks =
-      collect_tasks(folder, planned, task_states(folder, static_cast<int>(planned.size())));
+  const auto states = task_states(folder, static_cast<int>(planned.size()));
+  const auto tasks = collect_tasks(folder, planned, states);
   const std::vector<Site> sites = load_sites(folder);
   if (sites.empty()) fail("{}: was planned without --sites: it has no classes", options.folder);
   auto classes = classes_to_package(tasks, collect_sites(folder, tasks, sites), options.partial);
@@ -51,7 +46,7 @@ void make_packages(PackagesArguments& options) {
     packaged += one.sites.size();
   }
   const fs::path inventory = fs::path(options.out) / "inventory.yml";
-  write_file(inventory, format_inventory(classes, request.architectures.front()));
+  write_file(inventory, format_inventory(classes, options.architectures.front()));
   fmt::print("{}: {} of {}, {}\n", inventory.string(), packaged, counted(sites.size(), "site"),
              counted(classes.size(), "student"));
 }
@@ -65,22 +60,21 @@ void add_sweep_packages(ProgramCommand& sweep) {
   command.option("folder", options->folder, "Folder of the sweep").required();
   command.option("--out", options->out, "Folder: inventory.yml, and one a class").required();
   command
-      .option("--arch", options->request.architectures,
-              "arm64, armhf, amd64; most machines have the first (default arm64)")
+      .option("--arch", options->architectures,
+              "One or more; most machines have the first (default arm64)")
       .one_of({"arm64", "armhf", "amd64"});
   command.option("--source", options->source, "A checkout of the source, with tools/package")
       .with_default();
   command.flag("--partial", options->partial, "Leave sites out that have no proved student");
-  command.flag("--again", options->request.again,
-               "Also what is there: after a change of the source");
   command.footer(
       "The student is that of the class's first proved task, as in sites.csv. A class whose "
-      "packages are there, of the same student, is left alone.\n"
+      "packages are there, of the same student, is left alone: remove its folder to have it made "
+      "anew.\n"
       "Examples:\n"
       "  bess-train sweep packages sweeps/fleet --out debs\n"
       "  bess-train sweep packages sweeps/fleet --out debs --arch arm64 armhf --source ~/bess\n"
       "  ansible-playbook -i debs/inventory.yml tools/ansible/roll_out.yml --limit rollout_1");
-  command.runs([options] { make_packages(*options); });
+  command.runs([options] { package_sweep(*options); });
 }
 
 }  // namespace bess

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <map>
 
 #include "shared/host/child_process.h"
@@ -18,13 +19,14 @@ namespace fs = std::filesystem;
 constexpr const char* kSignature = "decision_signature.txt";
 
 void require_host_name(const std::string& id) {
-  constexpr const char* kAllowed =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-";
-  if (id.find_first_not_of(kAllowed) == id.npos) return;
+  const auto is_of_a_name = [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '.' || c == '-' || c == '_';
+  };
+  if (std::ranges::all_of(id, is_of_a_name)) return;
   fail("site \"{}\" is no name of a host: use letters, digits, dots, hyphens and underscores", id);
 }
 
-/// Its newest package, by the date in its version; empty: none.
+/// Of its newest package, by the date in it; empty: there is none.
 std::string version_in(const fs::path& folder, const std::string& architecture) {
   const std::string begin = "bess-edge_", end = "_" + architecture + ".deb";
   std::string newest;
@@ -38,8 +40,8 @@ std::string version_in(const fs::path& folder, const std::string& architecture) 
 
 bool is_packaged(const fs::path& folder, const std::string& header,
                  const std::vector<std::string>& architectures) {
-  return fs::exists(folder / kSignature) && fs::exists(folder / run_file::kHeader) &&
-         read_file(folder / run_file::kHeader) == header &&
+  const fs::path there = folder / run_file::kHeader;
+  return fs::exists(there) && read_file(there) == header && fs::exists(folder / kSignature) &&
          std::ranges::none_of(architectures, [&](const std::string& architecture) {
            return version_in(folder, architecture).empty();
          });
@@ -56,33 +58,24 @@ void make_packages(const PackageRequest& request, const fs::path& folder, const 
   fail("class {}: its package was not made: {}", name, said.substr(said.rfind('\n') + 1));
 }
 
-std::string student_told(const fs::path& signature) {
-  const std::string text = read_file(signature);
-  constexpr std::string_view kName = "student=";
-  if (!text.starts_with(kName)) fail("{}: names no student", signature.string());
-  return text.substr(kName.size(), text.find(' ') - kName.size());
-}
-
 }  // namespace
 
 std::vector<PackagedClass> classes_to_package(const std::vector<CollectedTask>& tasks,
                                               const std::vector<CollectedSite>& sites,
                                               bool partial) {
-  for (const CollectedTask& task : tasks) {
-    if (task.task.value(setting::kFold).empty()) continue;
+  if (!tasks.empty() && !tasks.front().task.value(setting::kFold).empty())
     fail("a sweep by months has no student for a site: plan one without folds");
-  }
   std::vector<PackagedClass> classes;
   std::map<std::string, std::size_t> place;
   for (const CollectedSite& site : sites) {
+    const std::string& name = site.site.student;
     require_host_name(site.site.id);
     if (site.header.empty() && partial) continue;
-    if (site.header.empty()) {
+    if (site.header.empty())
       fail("site \"{}\": none of {} tasks of its class {} is proved; --partial leaves it out",
-           site.site.id, site.tasks, site.site.student);
-    }
-    const auto [at, is_new] = place.try_emplace(site.site.student, classes.size());
-    if (is_new) classes.push_back({site.site.student, {}, {}, {}});
+           site.site.id, site.tasks, name);
+    const auto [at, is_new] = place.try_emplace(name, classes.size());
+    if (is_new) classes.push_back({name, {}, {}, {}});
     classes[at->second].sites.push_back(site);
   }
   if (classes.empty()) fail("no site has a proved student: nothing to package");
@@ -92,19 +85,20 @@ std::vector<PackagedClass> classes_to_package(const std::vector<CollectedTask>& 
 bool package_class(const SweepFolder& sweep, const PackageRequest& request, PackagedClass& one) {
   const fs::path folder = request.out / one.name;
   const std::string header = read_file(sweep.path / one.sites.front().header);
-  const bool is_due = request.again || !is_packaged(folder, header, request.architectures);
+  const bool is_due = !is_packaged(folder, header, request.architectures);
   if (is_due) {
     fs::remove_all(folder);  // never a header beside packages of another
     write_file(folder / run_file::kHeader, header);
     make_packages(request, folder, one.name);
   }
-  one.student = student_told(folder / kSignature);
+  const std::string signature = read_file(folder / kSignature);  // "student=4d10ef93 decisions=..."
+  one.student = signature.substr(signature.find('=') + 1, 8);
   one.version = version_in(folder, request.architectures.front());
   return is_due;
 }
 
 int rollout_percent(const std::string& id) {
-  const auto drawn = static_cast<int>(fnv1a(id) % 100);
+  const auto drawn = fnv1a(id) % 100;
   return drawn < 1 ? 1 : drawn < 10 ? 10 : 100;
 }
 
@@ -117,22 +111,20 @@ std::string format_inventory(const std::vector<PackagedClass>& classes,
       architecture);
   std::map<int, std::string> shares{{1, ""}, {10, ""}, {100, ""}};
   for (const PackagedClass& one : classes) {
-    fmt::format_to(std::back_inserter(text),
-                   "    class_{0}:\n      vars:\n        bess_class: \"{0}\"\n"
-                   "        bess_expected_student: \"{1}\"\n        bess_package: \"{{{{ "
-                   "inventory_dir }}}}/{0}/bess-edge_{2}_{{{{ bess_architecture }}}}.deb\"\n"
-                   "      hosts:\n",
-                   one.name, one.student, one.version);
+    text += fmt::format(
+        "    class_{0}:\n      vars:\n        bess_class: \"{0}\"\n"
+        "        bess_expected_student: \"{1}\"\n        bess_package: \"{{{{ inventory_dir }}}}"
+        "/{0}/bess-edge_{2}_{{{{ bess_architecture }}}}.deb\"\n      hosts:\n",
+        one.name, one.student, one.version);
     for (const CollectedSite& site : one.sites) {
-      fmt::format_to(std::back_inserter(text),
-                     "        \"{}\": {{bess_expected_eur_per_day: {:.4f}}}\n", site.site.id,
-                     site.eur_per_day.value_or(0));
+      text += fmt::format("        \"{}\": {{bess_expected_eur_per_day: {:.4f}}}\n", site.site.id,
+                          site.eur_per_day.value_or(0));
       shares[rollout_percent(site.site.id)] += fmt::format("        \"{}\":\n", site.site.id);
     }
   }
   for (const auto& [percent, hosts] : shares) {
-    fmt::format_to(std::back_inserter(text), "    rollout_{}:\n      hosts:{}\n{}", percent,
-                   hosts.empty() ? " {}" : "", hosts);
+    text += fmt::format("    rollout_{}:\n      hosts:{}\n{}", percent, hosts.empty() ? " {}" : "",
+                        hosts);
   }
   return text;
 }

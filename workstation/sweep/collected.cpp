@@ -13,6 +13,7 @@
 #include "workstation/run/run_folder.h"
 #include "workstation/run/run_record.h"
 #include "workstation/run/run_summary.h"
+#include "workstation/sweep/own_rate.h"
 
 namespace bess {
 namespace {
@@ -175,7 +176,7 @@ std::vector<CollectedSite> collect_sites(const SweepFolder& folder,
   struct Class {
     int tasks = 0, proved = 0;
     double sum = 0;
-    std::string header;
+    const CollectedTask* first = nullptr;  ///< proved
   };
   std::map<std::string, Class> classes;
   for (const CollectedTask& task : tasks) {
@@ -184,19 +185,22 @@ std::vector<CollectedSite> collect_sites(const SweepFolder& folder,
     if (!task.figures) continue;
     ++one.proved;
     one.sum += task.figures->profit;
-    if (one.header.empty()) {
-      one.header = (folder.result(task.task.number) / run_file::kHeader)
-                       .lexically_relative(folder.path)
-                       .string();
-    }
+    if (one.first == nullptr) one.first = &task;
   }
+  OwnRates rates(folder);
   std::vector<CollectedSite> collected;
   for (const Site& site : sites) {
     const Class& one = classes[site.student];
-    CollectedSite row{site, one.tasks, one.proved, {}, {}, one.header};
-    if (one.proved > 0) {
+    CollectedSite row{site, one.tasks, one.proved, {}, {}, {}, {}, {}};
+    if (one.first != nullptr) {
+      const fs::path result = folder.result(one.first->task.number);
+      row.header = (result / run_file::kHeader).lexically_relative(folder.path).string();
       row.profit = one.sum / one.proved;
-      row.eur_per_day = *row.profit * site.capacity_wh / 1e6;
+      if (const auto own = rates.earned(*one.first, site)) {
+        row.profit_at_own_rate = own->profit;
+        row.rounding_loss_at_most = own->loss_at_most;
+      }
+      row.eur_per_day = row.profit_at_own_rate.value_or(*row.profit) * site.capacity_wh / 1e6;
     }
     collected.push_back(std::move(row));
   }
@@ -259,12 +263,14 @@ std::string tasks_csv(const std::vector<CollectedTask>& tasks) {
 std::string sites_csv(const std::vector<CollectedSite>& sites) {
   std::string text =
       "id,region,class,power_w,capacity_wh,tasks,proved,profit_eur_per_day_per_mwh,"
-      "profit_eur_per_day,header\n";
+      "profit_eur_per_day,header,profit_at_own_rate_eur_per_day_per_mwh,"
+      "rounding_loss_at_most_eur_per_day_per_mwh\n";
   for (const CollectedSite& row : sites) {
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{}\n", csv_field(row.site.id),
-                        csv_field(row.site.region), row.site.student, row.site.power_w,
-                        row.site.capacity_wh, row.tasks, row.proved, optional_text(row.profit, 4),
-                        optional_text(row.eur_per_day, 4), csv_field(row.header));
+    text += fmt::format(
+        "{},{},{},{},{},{},{},{},{},{},{},{}\n", csv_field(row.site.id), csv_field(row.site.region),
+        row.site.student, row.site.power_w, row.site.capacity_wh, row.tasks, row.proved,
+        optional_text(row.profit, 4), optional_text(row.eur_per_day, 4), csv_field(row.header),
+        optional_text(row.profit_at_own_rate, 4), optional_text(row.rounding_loss_at_most, 4));
   }
   return text;
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <set>
 
@@ -130,8 +131,12 @@ std::uint64_t fnv1a(std::string_view text) {
   return hash;
 }
 
-RunConfig canonical(RunConfig config) {
-  const double rate_per_h = config.battery.power_w_max / config.battery.capacity_wh;
+RunConfig canonical(RunConfig config, double rate_step_percent) {
+  double rate_per_h = config.battery.power_w_max / config.battery.capacity_wh;
+  if (rate_step_percent > 0) {
+    const double step = std::log1p(rate_step_percent / 100);
+    rate_per_h = std::exp(step * std::round(std::log(rate_per_h) / step));
+  }
   const double scale = BatteryParameters{}.capacity_wh / config.battery.capacity_wh;
   config.battery.standby_w *= scale;
   config.battery.response.ramp_w_per_s *= scale;
@@ -152,7 +157,7 @@ std::string learning_key(const RunConfig& config, const std::string& rules) {
   return text + rules;
 }
 
-Sites read_sites(const fs::path& csv, const RunConfig& base) {
+Sites read_sites(const fs::path& csv, const RunConfig& base, double rate_step_percent) {
   const std::string text = read_file(csv);
   const CsvTable table(text, csv.string());
   const Columns columns(csv_header(text), table, csv.string());
@@ -178,7 +183,7 @@ Sites read_sites(const fs::path& csv, const RunConfig& base) {
                 battery.capacity_wh,
                 own.config.initial_soc_frac,
                 {}};
-      const RunConfig config = canonical(own.config);
+      const RunConfig config = canonical(own.config, rate_step_percent);
       const std::string key = learning_key(config, own.rules);
       const auto [at, is_new] = names.try_emplace(key);
       if (is_new) {

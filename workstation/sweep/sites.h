@@ -45,14 +45,16 @@ struct Sites {
 std::uint64_t fnv1a(std::string_view text);
 
 /// `config` at the canonical size. The C-rate is taken to twelve digits: 3300 W / 10000 Wh and 3.3
-/// kW / 10 kWh are the same one.
-RunConfig canonical(RunConfig config);
+/// kW / 10 kWh are the same one. With a step it becomes the nearest of 1, 1 + step, (1 + step)^2...
+/// and their reciprocals: at most half a step away.
+RunConfig canonical(RunConfig config, double rate_step_percent = 0);
 
 /// All that a learning stage reads of a configuration and of rules, a line each.
 std::string learning_key(const RunConfig& config, const std::string& rules);
 
 /// Throws UserError naming file, line and column.
-Sites read_sites(const std::filesystem::path& csv, const RunConfig& base);
+Sites read_sites(const std::filesystem::path& csv, const RunConfig& base,
+                 double rate_step_percent = 0);
 
 /// A site a line, with its class; and back.
 std::string format_sites(const std::vector<Site>& sites);

@@ -39,6 +39,7 @@ struct PlanText {
   std::vector<std::uint64_t> seeds{1};
   bool by_month = false;
   bool is_full = false;
+  double rate_step_percent = 0;  ///< of rounded C-rates
   Axes axes;
 };
 
@@ -97,6 +98,10 @@ void read_sweep_section(const TomlValue& table, const fs::path& beside, PlanText
       if (value.as<bool>() == nullptr)
         complain_of_plan(value, "[sweep] full: expected true or false");
       plan.is_full = *value.as<bool>();
+    } else if (key == "c_rate_step_percent") {
+      plan.rate_step_percent = value.number().value_or(-1);
+      if (plan.rate_step_percent < 0 || plan.rate_step_percent > 20)
+        complain_of_plan(value, "[sweep] c_rate_step_percent: expected a number from 0 to 20");
     } else if (key == "rules") {
       const auto* list = value.as<TomlArray>();
       if (list == nullptr) complain_of_plan(value, "[sweep] rules: expected a list of files");
@@ -106,7 +111,7 @@ void read_sweep_section(const TomlValue& table, const fs::path& beside, PlanText
     } else {
       complain_of_plan(
           value, fmt::format("unknown key \"{}\" in [sweep]: use config, rules, sites, seeds, "
-                             "folds or full",
+                             "folds, full or c_rate_step_percent",
                              one_line(key, 40)));
     }
   }
@@ -192,7 +197,7 @@ std::vector<Entries> class_axis(const PlanText& text, SweepPlan& plan) {
     return {settings};
   }
   if (!rules.empty()) fail("{}: with sites, the rules stand in their column \"rules\"", text.sites);
-  Sites sites = read_sites(text.sites, plan.base);
+  Sites sites = read_sites(text.sites, plan.base, text.rate_step_percent);
   std::vector<Entries> axis;
   for (const SiteClass& one : sites.classes) axis.push_back(class_settings(one, plan.base, plan));
   plan.sites = std::move(sites.sites);

@@ -41,7 +41,8 @@ class ClassPackages : public testing::Test {
   }
   /// A site whose class's student is `header`, which is written; empty: it has none.
   CollectedSite site(const std::string& id, const std::string& of, const std::string& header) {
-    CollectedSite one{{id, "", 4000, 8000, 0.5, of}, 1, header.empty() ? 0 : 1, {}, 3.25, ""};
+    CollectedSite one{
+        {id, "", 4000, 8000, 0.5, of}, 1, header.empty() ? 0 : 1, {}, 3.25, "", {}, {}};
     if (header.empty()) return one;
     one.header = of + "/student_weights.h";
     write_file(folder_.path / one.header, header);
@@ -58,7 +59,7 @@ class ClassPackages : public testing::Test {
 
   TemporaryFolder root_;
   SweepFolder folder_{root_.file("sweep")};
-  PackageRequest request_{root_.file("source"), root_.file("debs"), {"arm64", "armhf"}, false};
+  PackageRequest request_{root_.file("source"), root_.file("debs"), {"arm64", "armhf"}};
 };
 
 TEST_F(ClassPackages, OneAClassAndAgainOnlyWhereItsStudentIsAnother) {
@@ -80,13 +81,11 @@ TEST_F(ClassPackages, OneAClassAndAgainOnlyWhereItsStudentIsAnother) {
   write_file(folder_.path / "22/student_weights.h", "retrained");
   EXPECT_TRUE(package_class(folder_, request_, classes[0]));
   EXPECT_EQ(classes[0].version, "0.1.0+2026.g1.22") << "none of the student before is left";
-  request_.again = true;
-  EXPECT_TRUE(package_class(folder_, request_, classes[0]));
 }
 
 TEST_F(ClassPackages, TheInventoryHasEachSiteInItsClassAndInOneShare) {
-  std::vector<PackagedClass> classes{{"22", "0a0b0c0d", "1.g1.22", {site("site-184", "22", "x")}},
-                                     {"11", "00000001", "1.g1.11", {site("site-2", "11", "x")}}};
+  std::vector<PackagedClass> classes{{"22", {site("site-184", "22", "x")}, "0a0b0c0d", "1.g1.22"},
+                                     {"11", {site("site-2", "11", "x")}, "00000001", "1.g1.11"}};
   EXPECT_EQ(format_inventory(classes, "armhf").substr(0, 5), "# By ");
   EXPECT_THAT(format_inventory(classes, "armhf"),
               AllOf(HasSubstr("all:\n  vars: {bess_architecture: armhf}\n  children:\n"),

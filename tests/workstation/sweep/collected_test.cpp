@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "shared/host/file.h"
@@ -94,6 +96,7 @@ TEST_F(Collected, ASiteEarnsByItsCapacityWhatItsClassDoes) {
   for (SweepTask& task : tasks_) task.settings.emplace_back(setting::kClass, "c");
   publish(1, 80);
   publish(2, 96);
+  write_file(folder_.base(), "");
   const auto sites = collect_sites(folder_, collected(),
                                    {{"a", "north", 4e3, 8e3, 0.5, "c"}, {"b", "", 1, 1, 0.5, "d"}});
   EXPECT_DOUBLE_EQ(*sites[0].profit, 11);
@@ -101,7 +104,37 @@ TEST_F(Collected, ASiteEarnsByItsCapacityWhatItsClassDoes) {
   EXPECT_EQ(sites[0].header, "tasks/000/000001/student_weights.h");
   EXPECT_FALSE(sites[1].profit.has_value());
   EXPECT_THAT(sites_csv(sites), AllOf(HasSubstr("\na,north,c,4000,8000,4,2,11.0000,0.0880,tasks/"),
-                                      HasSubstr("\nb,,d,1,1,0,0,,,\n")));
+                                      HasSubstr("\nb,,d,1,1,0,0,,,,,\n")));
+}
+
+TEST_F(Collected, OfARoundedRateASiteEarnsWhatTheStudentDoesAtItsOwn) {
+  const std::string tests = std::string(BESS_SOURCE_DIR) + "/tests/";
+  write_file(folder_.base(), "");
+  write_file(folder_.prices(), read_file(tests + "data/benchmark_minutes_2023.csv.gz"));
+  tasks_[0].settings.emplace_back(setting::kClass, "c");
+  const std::string student = read_file(tests + "fuzz/seeds/student_file_fuzz/proved.json");
+  const auto of_rate = [&](double rate_per_h) {
+    return collect_sites(folder_, collected(), {{"a", "", 8e6 * rate_per_h, 8e6, 0.5, "c"}})[0];
+  };
+  publish(1, 80);
+  write_file(folder_.result(1) / run_file::kStudent, student);
+  const double at_same = *of_rate(0.5 + 1e-7).profit_at_own_rate;
+  publish(1, 8 * at_same);  // what evaluation had found
+  write_file(folder_.result(1) / run_file::kStudent, student);
+  EXPECT_FALSE(of_rate(0.5).profit_at_own_rate.has_value());
+
+  const CollectedSite stronger = of_rate(0.505), weaker = of_rate(0.495);
+  EXPECT_LT(*weaker.profit_at_own_rate, at_same);
+  EXPECT_GT(*stronger.profit_at_own_rate, at_same);
+  EXPECT_DOUBLE_EQ(*stronger.eur_per_day, *stronger.profit_at_own_rate * 8);
+  for (const CollectedSite& site : {stronger, weaker}) {
+    EXPECT_GT(*site.rounding_loss_at_most, 0);
+    EXPECT_LT(*site.rounding_loss_at_most, 0.01 * at_same) << "a hundredth less power";
+  }
+  EXPECT_GT(*of_rate(0.3).rounding_loss_at_most, 0.1 * at_same) << "a rate that is far away";
+  EXPECT_THAT(sites_csv({weaker}),
+              HasSubstr(fmt::format(",{:.4f},{:.4f}\n", *weaker.profit_at_own_rate,
+                                    *weaker.rounding_loss_at_most)));
 }
 
 TEST_F(Collected, ThePageHasMapDotsAndTables) {

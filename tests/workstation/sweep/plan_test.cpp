@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <functional>
 
@@ -206,6 +207,26 @@ TEST_F(SweepPlans, SitesThatLearnAlikeShareAStudent) {
   const auto of_rule = std::ranges::find_if(
       planned.tasks, [](const SweepTask& task) { return !task.value("rules").empty(); });
   EXPECT_THAT(config_of_task(folder_, planned.base, *of_rule).distil.rules.rules, SizeIs(1));
+}
+
+TEST_F(SweepPlans, RoundedRatesShareAStudentOnlyWhereThePlanSaysSo) {
+  request_.sites = root_.write("sites.csv",
+                               "id,battery.power_w,battery.capacity_wh\na,5000,13500\n"
+                               "b,5000,13400\nc,5000,13100\nd,4000,8000\n");
+  EXPECT_EQ(plan("").classes, 4);
+  const SweepPlan rounded = plan("[sweep]\nc_rate_step_percent = 2\n");
+  EXPECT_EQ(rounded.classes, 3);
+  EXPECT_EQ(rounded.sites[0].student, rounded.sites[1].student);
+  EXPECT_EQ(rounded.sites[0].power_w, 5000) << "the site's own";
+  for (double rate = 0.1; rate < 3; rate *= 1.0013) {
+    RunConfig config;
+    config.battery.power_w_max = rate * config.battery.capacity_wh;
+    const double ratio = canonical(config, 2).battery.power_w_max / config.battery.power_w_max;
+    EXPECT_NEAR(std::log(ratio), 0, std::log(1.02) / 2 + 1e-9);
+  }
+  EXPECT_THAT(
+      refusal("[sweep]\nc_rate_step_percent = 21\n"),
+      HasSubstr("plan.toml:2: [sweep] c_rate_step_percent: expected a number from 0 to 20"));
 }
 
 TEST_F(SweepPlans, WhatIsWrongWithASiteIsToldWithItsLine) {
