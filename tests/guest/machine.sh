@@ -4,6 +4,7 @@
 #   make_base             what all machines start from, once: FOLDER/base
 #   boot NAME             a machine over a copy of it (made when it is not there) is started
 #   on NAME COMMAND       as root inside;  send NAME FILE PLACE
+#   play OPTION...        the Ansible roll-out; its exit code is in $code, its words in ansible.log
 #   cut_power NAME        every process of the machine is killed at once;  shut_down NAME;  forget NAME
 # They use $folder, $source and $programs (where bess-sim is). The kernel is this machine's: a cut
 # kills all processes of a machine, but what they had written without waiting for the disk is not
@@ -21,6 +22,14 @@ on() {
   nsenter -t "${first[$name]}" -m -u -i -n -p -C -r -w env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 sh -c "$*"
 }
 send() { on "$1" "cat >$3" <"$2"; }
+
+play() {
+  code=0
+  ANSIBLE_SSH_EXECUTABLE=$BESS_SSH ANSIBLE_SSH_TRANSFER_METHOD=piped ANSIBLE_SSH_ARGS="" \
+    ANSIBLE_PYTHON_INTERPRETER=/usr/bin/python3 ANSIBLE_NOCOLOR=1 LC_ALL=C.UTF-8 \
+    ansible-playbook "$@" "$source/tools/ansible/roll_out.yml" \
+    -e bess_confirm_retries=300 -e bess_confirm_delay_s=1 >"$folder/ansible.log" 2>&1 || code=$?
+}
 
 make_base() {
   local program base=$folder/base
