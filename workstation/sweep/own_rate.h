@@ -15,8 +15,8 @@ class OwnRates {
 
   struct Earned {
     double profit = 0;  ///< as TaskFigures::profit
-    /// More than this a student of its own would not earn: the best profit grows with the power,
-    /// and at most in proportion. What the class's lacks to the best counts as no loss.
+    /// A student of its own would not earn more than this besides: the best profit grows with the
+    /// power, and at most in proportion. But for chance: two students of one rate differ too.
     double loss_at_most = 0;
   };
   /// By the student of a proved task; none where the site's C-rate is the task's.
