@@ -10,7 +10,8 @@
 #include "shared/host/user_error.h"
 #include "workstation/chain/folder_lock.h"
 #include "workstation/cli/commands.h"
-#include "workstation/sweep/run_here.h"
+#include "workstation/sweep/collected.h"
+#include "workstation/sweep/learn_task.h"
 #include "workstation/sweep/slurm.h"
 #include "workstation/sweep/sweep_plan.h"
 #include "workstation/sweep/task_states.h"
@@ -33,6 +34,7 @@ struct Todo {
   SweepFolder folder;
   SweepRecord record;
   SweepCounts counts;
+  std::vector<TaskState> states;
   std::vector<int> missing;
 };
 
@@ -41,10 +43,22 @@ Todo look_at_sweep(const SweepRunArguments& options) {
   todo.folder = {options.folder};
   todo.record = load_own_sweep(todo.folder);
   if (options.again) fs::remove_all(todo.folder.path / "failures");
-  const auto states = task_states(todo.folder, static_cast<int>(load_tasks(todo.folder).size()));
-  todo.counts = counts_of(todo.folder, states);
-  todo.missing = missing_tasks(states);
+  todo.states = task_states(todo.folder, static_cast<int>(load_tasks(todo.folder).size()));
+  todo.counts = counts_of(todo.folder, todo.states);
+  todo.missing = missing_tasks(todo.states);
   return todo;
+}
+
+/// Of one task: as those took that are done, else as planned; the machinery's own at the least.
+double seconds_of_task(const Todo& todo, const SweepFolder& folder) {
+  constexpr double kMachinery_s = 0.01;
+  const double done_s = mean_seconds(folder, todo.states);
+  if (done_s > 0) return std::max(done_s, kMachinery_s);
+  SweepPlan plan;
+  plan.record = todo.record;
+  plan.base = load_run_config(folder.base());
+  plan.tasks = load_tasks(folder);
+  return estimate_of(plan).seconds / static_cast<double>(plan.tasks.size());
 }
 
 void require_none_failed(int failed, const SweepFolder& folder) {
@@ -61,10 +75,7 @@ void run_here_now(const SweepRunArguments& options) {
   fmt::print("{}: {} of {} to do, {} at once\n", options.folder, todo.missing.size(),
              counted(static_cast<std::size_t>(todo.counts.planned), "task"), jobs);
   std::fflush(stdout);
-  const TaskCommand command{
-      fs::read_symlink("/proc/self/exe").string(), "sweep", "task", "{}", "--of",
-      fs::absolute(todo.folder.path).string()};
-  const RunHereResult result = run_here(todo.folder, todo.missing, jobs, command, stdout);
+  const RunHereResult result = learn_here(todo.folder, todo.missing, jobs);
   require_none_failed(result.failed + todo.counts.failed, todo.folder);
 }
 
@@ -72,6 +83,7 @@ void send_to_slurm(SweepRunArguments& options) {
   if (options.chunk != "auto") options.request.chunk = std::atoi(options.chunk.c_str());
   const Todo todo = look_at_sweep(options);
   const FolderLock lock(todo.folder.path);  // of two clients here one sends
+  if (!todo.missing.empty()) options.request.task_s = seconds_of_task(todo, todo.folder);
   const Submission sent = submit(todo.folder, todo.record.id, todo.missing, options.request);
   const int done = todo.counts.proved + todo.counts.unproved;
   if (sent.tasks == 0) {
@@ -79,10 +91,13 @@ void send_to_slurm(SweepRunArguments& options) {
                done, todo.counts.planned, sent.waiting, todo.counts.failed);
     return require_none_failed(todo.counts.failed, todo.folder);
   }
-  fmt::print("{}\njob {}: {} in {} of {} each, {} done, {} wait or run already\n", sent.command,
-             sent.job, counted(static_cast<std::size_t>(sent.tasks), "task"),
-             counted(static_cast<std::size_t>(sent.elements), "element"), sent.chunk, done,
-             sent.waiting);
+  fmt::print(
+      "{}\njob {}: {} in {} of {} each (about {:.0f} s at {:.3g} s a task), {} done, {} wait or "
+      "run "
+      "already\n",
+      sent.command, sent.job, counted(static_cast<std::size_t>(sent.tasks), "task"),
+      counted(static_cast<std::size_t>(sent.elements), "element"), sent.chunk,
+      sent.chunk * options.request.task_s, options.request.task_s, done, sent.waiting);
   const int later = static_cast<int>(todo.missing.size()) - sent.waiting - sent.tasks;
   if (later > 0) fmt::print("{} more than Slurm takes at once: call again later\n", later);
 }
@@ -104,7 +119,7 @@ void add_sweep_run(ProgramCommand& sweep) {
       .range(1, 100'000)
       .with_default()
       .needs("--slurm");
-  command.option("--chunk", options->chunk, "Slurm: tasks an element, or auto")
+  command.option("--chunk", options->chunk, "Slurm: tasks an element, or auto: a minute of them")
       .with_default()
       .needs("--slurm")
       .check([](const std::string& text) -> std::string {

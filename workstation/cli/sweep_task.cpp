@@ -25,36 +25,14 @@ struct TaskArguments {
 
 void do_task(const SweepFolder& folder, int task) {
   end_when_interrupted("what others made is kept; the task is begun anew, where it was");
-  const TaskEnd end = attempt_task(folder, task, learning_work(folder, task));
-  const std::string name = folder.result(task).string();
-  switch (end) {
-    case TaskEnd::kAlreadyThere:
-      fmt::print("task {}: is there already: {}\n", task, name);
-      return;
-    case TaskEnd::kSame:
-      fmt::print("task {}: another copy was first, and made the same: {}\n", task, name);
-      return;
-    case TaskEnd::kPublished:
-      fmt::print("task {}: {}: {}\n", task,
-                 is_proved(folder.result(task)) ? "proved" : "not proved", name);
-      return;
-    case TaskEnd::kDifferent:
-      break;
-  }
-  fail(
-      "task {}: another copy was first, and made something else: {} has both; is one of them of "
-      "another machine or program?",
-      task, folder.different().string());
+  LearningTasks learning(folder);
+  say_end(folder, task, attempt_task(folder, task, learning.work(task)));
 }
 
-/// Each a program of its own: one that dies takes no other along.
+/// Each a process of its own: one that dies takes no other along.
 void do_element(const SweepFolder& folder, int submission, int element) {
   const std::vector<int> tasks = tasks_of_element(folder, submission, element);
-  if (tasks.size() == 1) return do_task(folder, tasks.front());
-  const TaskCommand command{
-      std::filesystem::read_symlink("/proc/self/exe").string(), "sweep", "task", "{}", "--of",
-      std::filesystem::absolute(folder.path).string()};
-  const RunHereResult result = run_here(folder, tasks, 1, command, stdout);
+  const RunHereResult result = learn_here(folder, tasks, 1);
   if (result.failed > 0) fail("{} of {} tasks failed", result.failed, tasks.size());
 }
 

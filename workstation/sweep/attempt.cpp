@@ -6,7 +6,7 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
+#include <climits>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -16,6 +16,7 @@
 #include "shared/host/file.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
+#include "workstation/chain/interruption.h"
 #include "workstation/run/run_folder.h"
 #include "workstation/run/run_record.h"
 
@@ -97,12 +98,27 @@ void note_failure(const SweepFolder& folder, int task, const std::string& who,
   }
 }
 
-/// In the folder of an attempt whose program is gone, or in an empty one.
+bool is_left(const std::string& who) { return who.ends_with(kEnded) || is_gone(who); }
+
+char own_attempt[PATH_MAX];
+char ended_attempt[PATH_MAX];
+
+/// Who is ended on purpose says so by a rename, which a signal's handler may do.
+void say_when_ended(const fs::path& own) {
+  const std::string ended = own.string() + kEnded;
+  if (ended.size() >= PATH_MAX) return;  // then it counts as killed
+  std::strcpy(own_attempt, own.c_str());
+  std::strcpy(ended_attempt, ended.c_str());
+  before_interrupted_end([] { rename(own_attempt, ended_attempt); });
+}
+
+/// In the folder of an attempt that was left, or in an empty one.
 fs::path begin_attempt(const SweepFolder& folder, int task) {
   const fs::path own = folder.attempts(task) / own_name();
   fs::create_directories(folder.attempts(task));
+  say_when_ended(own);
   for (const fs::path& left : entries_in(folder.attempts(task))) {
-    if (!is_gone(left.filename().string())) continue;
+    if (!is_left(left.filename().string())) continue;
     if (rename(left.c_str(), own.c_str()) == 0) return own;  // one of several gets it
   }
   fs::create_directories(own);
@@ -114,16 +130,21 @@ void clear_attempts(const SweepFolder& folder, int task) {
   std::error_code error;
   for (const fs::path& left : entries_in(folder.attempts(task))) {
     const std::string who = left.filename().string();
-    if (who == own_name() || is_gone(who)) fs::remove_all(left, error);
+    if (who == own_name() || is_left(who)) fs::remove_all(left, error);
   }
   fs::remove(folder.attempts(task), error);
 }
 
-TaskEnd compare_with_published(const SweepFolder& folder, int task, const fs::path& own) {
-  if (marks_of_folder(own) == marks_of_folder(folder.result(task))) return TaskEnd::kSame;
+/// What is no result, or another one: nothing is thrown away.
+void set_aside(const SweepFolder& folder, int task, const fs::path& what) {
   std::error_code error;
   fs::create_directories(folder.different(), error);
-  fs::rename(own, folder.different() / (SweepFolder::number_text(task) + "." + own_name()), error);
+  fs::rename(what, folder.different() / (SweepFolder::number_text(task) + "." + own_name()), error);
+}
+
+TaskEnd compare_with_published(const SweepFolder& folder, int task, const fs::path& own) {
+  if (marks_of_folder(own) == marks_of_folder(folder.result(task))) return TaskEnd::kSame;
+  set_aside(folder, task, own);
   return TaskEnd::kDifferent;
 }
 
@@ -162,17 +183,22 @@ std::vector<std::string> failures_of(const SweepFolder& folder, int task) {
 void count_dead_attempts(const SweepFolder& folder, int task) {
   for (const fs::path& left : entries_in(folder.attempts(task))) {
     const std::string who = left.filename().string();
-    if (is_gone(who)) note_failure(folder, task, who, "was killed, or its machine went down");
+    const bool is_killed = is_gone(who) && !who.ends_with(kEnded);
+    if (is_killed) note_failure(folder, task, who, "was killed, or its machine went down");
   }
 }
 
-void forgive_attempts(const SweepFolder& folder, int task) { clear_attempts(folder, task); }
+bool is_published(const SweepFolder& folder, int task) {
+  std::error_code error;
+  return fs::exists(folder.result(task) / run_file::kRecord, error);
+}
 
 TaskEnd attempt_task(const SweepFolder& folder, int task, const TaskWork& work) {
-  if (fs::exists(folder.result(task))) {
+  if (is_published(folder, task)) {
     clear_attempts(folder, task);
     return TaskEnd::kAlreadyThere;
   }
+  if (fs::exists(folder.result(task))) set_aside(folder, task, folder.result(task));
   count_dead_attempts(folder, task);
   const std::vector<std::string> before = failures_of(folder, task);
   if (before.size() >= static_cast<std::size_t>(kFailuresMax)) {

@@ -21,6 +21,9 @@ inline constexpr int kFailuresMax = 3;
 std::string own_name();
 /// True when it was on this machine and is there no more; who is elsewhere is never called gone.
 bool is_gone(const std::string& who);
+/// Of an attempt that was ended on purpose, behind its name: by Ctrl-C, or by an engine's TERM. It
+/// is no failure, and whoever comes next goes on in it, on any machine.
+inline constexpr const char* kEnded = ".ended";
 
 enum class TaskEnd {
   kPublished,
@@ -40,8 +43,9 @@ std::vector<std::string> marks_of_folder(const std::filesystem::path& folder);
 std::vector<std::string> failures_of(const SweepFolder& folder, int task);
 /// Attempts of programs that are gone become failures.
 void count_dead_attempts(const SweepFolder& folder, int task);
-/// Attempts here that were ended on purpose are no failures.
-void forgive_attempts(const SweepFolder& folder, int task);
+
+/// A result without its record is half of one, as a copy by hand leaves it: no result.
+bool is_published(const SweepFolder& folder, int task);
 
 /// Once, unless it is published already. Throws what `work` throws, after noting it as a failure,
 /// and UserError when the task failed too often before.

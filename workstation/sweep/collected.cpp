@@ -148,6 +148,18 @@ std::vector<CollectedTask> collect_tasks(const SweepFolder& folder,
   return collected;
 }
 
+double mean_seconds(const SweepFolder& folder, const std::vector<TaskState>& states) {
+  constexpr int kAsked = 100;
+  double sum = 0;
+  int count = 0;
+  for (std::size_t t = 0; t < states.size() && count < kAsked; ++t) {
+    if (states[t] != TaskState::kProved && states[t] != TaskState::kUnproved) continue;
+    sum += seconds_in(folder.result(static_cast<int>(t) + 1));
+    ++count;
+  }
+  return count == 0 ? 0 : sum / count;
+}
+
 std::vector<FoldedSettings> fold_seeds(const std::vector<CollectedTask>& tasks) {
   std::map<std::string, std::size_t> place;
   std::vector<Folded> folded;

@@ -58,6 +58,8 @@ struct CollectedSite {
 std::vector<CollectedTask> collect_tasks(const SweepFolder& folder,
                                          const std::vector<SweepTask>& tasks,
                                          const std::vector<TaskState>& states);
+/// What a task took of one core: the mean of the first hundred that are done; 0: none is.
+double mean_seconds(const SweepFolder& folder, const std::vector<TaskState>& states);
 std::vector<FoldedSettings> fold_seeds(const std::vector<CollectedTask>& tasks);
 std::vector<CollectedSite> collect_sites(const SweepFolder& folder,
                                          const std::vector<CollectedTask>& tasks,

@@ -28,10 +28,10 @@ const std::set<std::string> kLeanFiles{kRecord,      kConfig, kStudent,         
                                        kProofRounds, kTimes};
 
 struct LearningTask {
-  SweepRecord sweep;
-  SweepTask task;
-  RunConfig config;
-  MinuteSeries series;
+  const SweepRecord& sweep;
+  const SweepTask& task;
+  const RunConfig& config;
+  const MinuteSeries& series;
 };
 
 /// Prices go by their content: what a file is called changes no byte of a result.
@@ -87,20 +87,62 @@ void learn(const LearningTask& of, const fs::path& folder) {
 
 }  // namespace
 
-TaskWork learning_work(const SweepFolder& folder, int task) {
-  auto of = std::make_shared<LearningTask>();
-  of->sweep = load_own_sweep(folder);
-  of->task = parse_one_task(read_file(folder.tasks()), task, folder.tasks().string());
-  setenv("SOURCE_DATE_EPOCH", fmt::format("{}", of->sweep.date_utc_s).c_str(), 1);
-  return [of, folder](const fs::path& at) {
-    of->config = config_of_task(folder, load_run_config(folder.base()), of->task);
-    of->series = read_judged_minutes(folder.prices().string(), AcceptedFindings::all());
-    if (prices_hash(of->series) != of->sweep.prices) {
-      fail("{}: holds other prices ({}) than the sweep was planned with ({})",
-           folder.prices().string(), prices_hash(of->series), of->sweep.prices);
-    }
-    learn(*of, at);
+LearningTasks::LearningTasks(const SweepFolder& folder)
+    : folder_(folder),
+      sweep_(load_own_sweep(folder)),
+      base_(load_run_config(folder.base())),
+      tasks_(read_file(folder.tasks())) {
+  setenv("SOURCE_DATE_EPOCH", fmt::format("{}", sweep_.date_utc_s).c_str(), 1);
+}
+
+const MinuteSeries& LearningTasks::prices() {
+  if (series_) return *series_;
+  const std::string name = folder_.prices().string();
+  MinuteSeries series = read_judged_minutes(name, AcceptedFindings::all());
+  if (prices_hash(series) != sweep_.prices) {
+    fail("{}: holds other prices ({}) than the sweep was planned with ({})", name,
+         prices_hash(series), sweep_.prices);
+  }
+  return series_.emplace(std::move(series));
+}
+
+TaskWork LearningTasks::work(int number) {
+  return
+      [this, task = parse_one_task(tasks_, number, folder_.tasks().string())](const fs::path& at) {
+        learn({sweep_, task, config_of_task(folder_, base_, task), prices()}, at);
+      };
+}
+
+RunHereResult learn_here(const SweepFolder& folder, const std::vector<int>& tasks, int jobs) {
+  if (tasks.empty()) return {};
+  LearningTasks learning(folder);
+  learning.prices();
+  const auto one = [&](int task) {
+    say_end(folder, task, attempt_task(folder, task, learning.work(task)));
   };
+  return run_here(folder, tasks, jobs, one, stdout);
+}
+
+void say_end(const SweepFolder& folder, int task, TaskEnd end) {
+  const std::string name = folder.result(task).string();
+  switch (end) {
+    case TaskEnd::kAlreadyThere:
+      fmt::print("task {}: is there already: {}\n", task, name);
+      return;
+    case TaskEnd::kSame:
+      fmt::print("task {}: another copy was first, and made the same: {}\n", task, name);
+      return;
+    case TaskEnd::kPublished:
+      fmt::print("task {}: {}: {}\n", task,
+                 is_proved(folder.result(task)) ? "proved" : "not proved", name);
+      return;
+    case TaskEnd::kDifferent:
+      break;
+  }
+  fail(
+      "task {}: another copy was first, and made something else: {} has both; is one of them of "
+      "another machine or program?",
+      task, folder.different().string());
 }
 
 bool is_proved(const fs::path& result) {

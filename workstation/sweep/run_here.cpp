@@ -3,18 +3,19 @@
 #include <fcntl.h>
 #include <fmt/core.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <chrono>
 #include <cstring>
 #include <deque>
+#include <initializer_list>
 #include <map>
+#include <string>
 
 #include "shared/file_descriptor.h"
-#include "shared/host/command_line.h"
 #include "shared/host/user_error.h"
 #include "workstation/chain/interruption.h"
 #include "workstation/sweep/attempt.h"
@@ -25,49 +26,58 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Programs at work, each on one task.
-class TaskPrograms {
+sigset_t set_of(std::initializer_list<int> signals) {
+  sigset_t set;
+  sigemptyset(&set);
+  for (const int signal : signals) sigaddset(&set, signal);
+  return set;
+}
+
+/// Signals that wait for as long as this lives.
+class HeldSignals {
  public:
-  TaskPrograms(const SweepFolder& folder, const TaskCommand& command)
-      : command_(command), log_(open_log(folder)) {}
+  HeldSignals(std::initializer_list<int> signals) {
+    const sigset_t held = set_of(signals);
+    sigprocmask(SIG_BLOCK, &held, &before_);
+  }
+  HeldSignals(const HeldSignals&) = delete;
+  HeldSignals& operator=(const HeldSignals&) = delete;
+  ~HeldSignals() { sigprocmask(SIG_SETMASK, &before_, nullptr); }
+
+ private:
+  sigset_t before_{};
+};
+
+/// Processes at work, each on one task.
+class TaskProcesses {
+ public:
+  TaskProcesses(const SweepFolder& folder, const TaskProgram& program)
+      : program_(program), log_(open_log(folder)) {}
 
   void start(int task) {
-    std::vector<std::string> arguments = command_;
-    for (std::string& argument : arguments) {
-      if (argument == "{}") argument = std::to_string(task);
-    }
-    std::vector<char*> argv;
-    for (std::string& argument : arguments) argv.push_back(argument.data());
-    argv.push_back(nullptr);
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_adddup2(&actions, log_.get(), STDOUT_FILENO);
-    posix_spawn_file_actions_adddup2(&actions, log_.get(), STDERR_FILENO);
-    posix_spawnattr_t attributes;
-    posix_spawnattr_init(&attributes);
-    posix_spawnattr_setpgroup(&attributes, 0);  // Ctrl-C is ours to pass on
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
-    pid_t pid = -1;
-    const int error = posix_spawnp(&pid, argv[0], &actions, &attributes, argv.data(), environ);
-    posix_spawn_file_actions_destroy(&actions);
-    posix_spawnattr_destroy(&attributes);
-    if (error != 0) fail("{}: cannot be started: {}", command_[0], std::strerror(error));
+    std::fflush(nullptr);                     // or the child says again what waits to be said
+    const HeldSignals held{SIGINT, SIGTERM};  // until the child can take them
+    const pid_t pid = fork();
+    if (pid < 0) fail("task {}: cannot be started: {}", task, std::strerror(errno));
+    if (pid == 0) be_child(task);
+    setpgid(pid, pid);  // Ctrl-C is ours to pass on; whoever is first
     task_of_[pid] = task;
   }
 
-  /// The task whose program ended, and how; 0 when none did within a tenth of a second.
+  /// The task whose process ended, and how; 0 when none did within a tenth of a second.
   int ended(int& status) {
-    for (int slice = 0; slice < 100; ++slice) {
-      const pid_t pid = waitpid(-1, &status, WNOHANG);
-      const auto found = task_of_.find(pid);
-      if (pid > 0 && found != task_of_.end()) {
-        const int task = found->second;
-        task_of_.erase(found);
-        return task;
-      }
-      usleep(1'000);
+    pid_t pid = waitpid(-1, &status, WNOHANG);
+    if (pid == 0) {
+      constexpr timespec kTenth{0, 100'000'000};
+      const sigset_t child_ended = set_of({SIGCHLD});
+      sigtimedwait(&child_ended, nullptr, &kTenth);
+      pid = waitpid(-1, &status, WNOHANG);
     }
-    return 0;
+    const auto found = task_of_.find(pid);
+    if (found == task_of_.end()) return 0;
+    const int task = found->second;
+    task_of_.erase(found);
+    return task;
   }
 
   void end_all() {
@@ -76,9 +86,26 @@ class TaskPrograms {
   }
 
   [[nodiscard]] std::size_t count() const { return task_of_.size(); }
-  [[nodiscard]] const std::map<pid_t, int>& at_work() const { return task_of_; }
 
  private:
+  [[noreturn]] void be_child(int task) const {
+    setpgid(0, 0);
+    dup2(log_.get(), STDOUT_FILENO);
+    dup2(log_.get(), STDERR_FILENO);
+    end_when_interrupted("what task " + std::to_string(task) + " made is kept");
+    const sigset_t none = set_of({});
+    sigprocmask(SIG_SETMASK, &none, nullptr);
+    int exit_code = 0;
+    try {
+      program_(task);
+    } catch (const std::exception& error) {
+      fmt::print(stderr, "task {}: {}\n", task, error.what());
+      exit_code = 1;
+    }
+    std::fflush(nullptr);
+    _exit(exit_code);  // what the parent holds is its own to take down
+  }
+
   static int open_log(const SweepFolder& folder) {
     fs::create_directories(folder.log());
     const fs::path path = folder.log() / "here.txt";
@@ -87,13 +114,14 @@ class TaskPrograms {
     return fd;
   }
 
-  const TaskCommand& command_;
+  const HeldSignals held_{SIGCHLD};  ///< is waited for
+  const TaskProgram& program_;
   FileDescriptor log_;
   std::map<pid_t, int> task_of_;
 };
 
 std::string end_text(const SweepFolder& folder, int task, int status) {
-  if (fs::exists(folder.result(task))) {
+  if (is_published(folder, task)) {
     return is_proved(folder.result(task)) ? "proved" : "not proved";
   }
   if (WIFSIGNALED(status)) return fmt::format("killed by signal {}", WTERMSIG(status));
@@ -103,7 +131,7 @@ std::string end_text(const SweepFolder& folder, int task, int status) {
 /// True when the task is to be tried again. A failure that could not be written down is counted
 /// here.
 bool is_to_be_tried(const SweepFolder& folder, int task, int tries) {
-  if (fs::exists(folder.result(task))) return false;
+  if (is_published(folder, task)) return false;
   count_dead_attempts(folder, task);
   const std::size_t failures = failures_of(folder, task).size();
   return failures < std::size_t{kFailuresMax} && tries < kFailuresMax;
@@ -112,24 +140,27 @@ bool is_to_be_tried(const SweepFolder& folder, int task, int tries) {
 }  // namespace
 
 RunHereResult run_here(const SweepFolder& folder, const std::vector<int>& tasks, int jobs,
-                       const TaskCommand& command, std::FILE* messages) {
+                       const TaskProgram& program, std::FILE* messages) {
   watch_interruption();
   std::deque<int> waiting(tasks.begin(), tasks.end());
   std::map<int, int> tries;
-  TaskPrograms programs(folder, command);
+  TaskProcesses processes(folder, program);
   RunHereResult result;
   const auto start = std::chrono::steady_clock::now();
-  while (!waiting.empty() || programs.count() > 0) {
-    while (!waiting.empty() && programs.count() < static_cast<std::size_t>(jobs)) {
-      programs.start(waiting.front());
+  while (!waiting.empty() || processes.count() > 0) {
+    while (!waiting.empty() && processes.count() < static_cast<std::size_t>(jobs)) {
+      const int task = waiting.front();
       waiting.pop_front();
+      if (is_published(folder, task)) {
+        ++result.ran;
+      } else {
+        processes.start(task);
+      }
     }
     int status = 0;
-    const int task = programs.ended(status);
+    const int task = processes.ended(status);
     if (interruption()) {
-      const auto at_work = programs.at_work();
-      programs.end_all();
-      for (const auto& [pid, number] : at_work) forgive_attempts(folder, number);
+      processes.end_all();
       fmt::print(stderr, "what is done is kept: bess-train sweep run {} goes on\n",
                  folder.path.string());
       throw Interrupted{};
@@ -137,8 +168,8 @@ RunHereResult run_here(const SweepFolder& folder, const std::vector<int>& tasks,
     if (task == 0) continue;
     const bool is_again = is_to_be_tried(folder, task, ++tries[task]);
     if (is_again) waiting.push_back(task);
-    result.ran += fs::exists(folder.result(task)) ? 1 : 0;
-    result.failed += !is_again && !fs::exists(folder.result(task)) ? 1 : 0;
+    result.ran += is_published(folder, task) ? 1 : 0;
+    result.failed += !is_again && !is_published(folder, task) ? 1 : 0;
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
     fmt::print(messages, "task {}: {}{} ({} of {}, {:.0f} s)\n", task,
                end_text(folder, task, status), is_again ? ", is tried again" : "",

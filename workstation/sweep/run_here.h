@@ -3,16 +3,16 @@
 #pragma once
 
 #include <cstdio>
-#include <string>
+#include <functional>
 #include <vector>
 
 #include "workstation/sweep/sweep_folder.h"
 
 namespace bess {
 
-/// How one task is run: a program and its arguments, before which no shell stands. "{}" is the
-/// task's number.
-using TaskCommand = std::vector<std::string>;
+/// Does one task, in a process that is forked for it: what was read before is there, and costs
+/// neither time nor memory again. What it throws is said in the log.
+using TaskProgram = std::function<void(int task)>;
 
 /// What came of it; tasks that were published meanwhile by others among them.
 struct RunHereResult {
@@ -22,8 +22,8 @@ struct RunHereResult {
 
 /// Tries each of `tasks` until it is published or has failed too often; `jobs` at once. What tasks
 /// say goes to the sweep's log folder, a line for each that ended to `messages`. Throws Interrupted
-/// after Ctrl-C, having ended what it started.
+/// after Ctrl-C or TERM, having ended what it started. No other thread may run.
 RunHereResult run_here(const SweepFolder& folder, const std::vector<int>& tasks, int jobs,
-                       const TaskCommand& command, std::FILE* messages);
+                       const TaskProgram& program, std::FILE* messages);
 
 }  // namespace bess

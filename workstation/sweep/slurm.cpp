@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 #include <set>
 
@@ -24,8 +25,8 @@ namespace fs = std::filesystem;
 
 constexpr int kAsk_s = 30;
 constexpr int kSubmit_s = 300;  // sbatch waits two minutes by itself when the queue is full
-/// More elements than this only cost Slurm: a thousand are as quick as it gets.
 constexpr int kElementsWanted = 1'000;
+constexpr double kElement_s = 60;
 
 std::string ask(const std::vector<std::string>& command) {
   const ProgramResult result = run_and_hear(command, kAsk_s);
@@ -61,6 +62,12 @@ std::string job_name(const std::string& sweep_id, int submission) {
 /// Job names and array indices of everything that waits or runs, a pair a line. No user is named:
 /// names are this sweep's own.
 std::string queue() { return ask({"squeue", "--noheader", "--array", "--format=%j %K"}); }
+
+/// Whether an sbatch that failed, or never answered, did its work nevertheless.
+bool is_queued(const std::string& sweep_id, int submission) {
+  return std::ranges::count(parse_queue(queue(), sweep_id), submission,
+                            &WaitingElement::submission) > 0;
+}
 
 fs::path list_of(const SweepFolder& folder, int submission) {
   return folder.submissions() / fmt::format("{}.tsv", submission);
@@ -156,6 +163,12 @@ SlurmLimits parse_limits(const std::string& config) {
   return limits;
 }
 
+int elements_wanted(std::size_t tasks, double task_s) {
+  if (task_s <= 0) return kElementsWanted;
+  const double minutes = std::ceil(static_cast<double>(tasks) * task_s / kElement_s);
+  return static_cast<int>(std::clamp(minutes, 1.0, double{kElementsWanted}));
+}
+
 Chunks chunked(const std::vector<int>& tasks, int chunk, int elements_max) {
   const auto most = static_cast<std::size_t>(std::max(1, elements_max));
   const std::size_t needed = (tasks.size() + most - 1) / most;
@@ -205,18 +218,19 @@ Submission submit(const SweepFolder& folder, const std::string& sweep_id,
     fail("Slurm has {} jobs and takes {} (MaxJobCount): wait until some are done, and call again",
          limits.jobs_now, limits.jobs_max);
   }
+  const int elements = elements_wanted(wanted.size(), request.task_s);
   const Chunks chunks =
-      chunked(wanted, request.chunk, request.chunk > 0 ? room : std::min(room, kElementsWanted));
+      chunked(wanted, request.chunk, request.chunk > 0 ? room : std::min(room, elements));
   const int number = claim_submission(folder);
   write_file(list_of(folder, number), lines_of(chunks));
   fs::create_directories(folder.log());
   const auto command = sbatch_command(folder, sweep_id, number, chunks.size(), request);
   done.command = fmt::format("{}", fmt::join(command, " "));
   const ProgramResult result = run_and_hear(command, kSubmit_s);
-  if (!result.is_well()) {
-    fail("{}: {}; nothing was sent", done.command, result.complaint());
+  done.job = result.is_well() ? one_line(result.output, 100) : job_name(sweep_id, number);
+  if (!result.is_well() && !is_queued(sweep_id, number)) {
+    fail("{}: {}; squeue shows none of it: nothing was sent", done.command, result.complaint());
   }
-  done.job = one_line(result.output, 100);
   done.elements = static_cast<int>(chunks.size());
   done.chunk = static_cast<int>(chunks.front().size());
   for (const std::vector<int>& tasks : chunks) done.tasks += static_cast<int>(tasks.size());

@@ -27,6 +27,9 @@ using Chunks = std::vector<std::vector<int>>;
 /// "MaxArraySize = 1001" of 'scontrol show config'.
 SlurmLimits parse_limits(const std::string& config);
 
+/// How many of them: a minute of work each, at a task's seconds (0: unknown), and a thousand at
+/// most: Slurm starts some few a second, and more of them are no quicker.
+int elements_wanted(std::size_t tasks, double task_s);
 /// At most `elements_max` of them; `chunk` tasks each, or 0 for as many as that needs.
 Chunks chunked(const std::vector<int>& tasks, int chunk, int elements_max);
 
@@ -39,8 +42,9 @@ std::vector<WaitingElement> parse_queue(const std::string& queue, const std::str
 
 struct SlurmRequest {
   int at_once = 256;
-  int chunk = 0;                     ///< 0: what the limits need
-  std::vector<std::string> options;  ///< for sbatch
+  int chunk = 0;                          ///< 0: by what a task takes, and the limits
+  double task_s = 0;                      ///< 0: unknown
+  std::vector<std::string> options = {};  ///< for sbatch
 };
 
 struct Submission {
@@ -49,10 +53,10 @@ struct Submission {
   int chunk = 0;
   int waiting = 0;      ///< tasks that wait or run already
   std::string command;  ///< as it was called
-  std::string job;      ///< what sbatch said
+  std::string job;      ///< what sbatch said; or what squeue shows, when its answer was lost
 };
 
-/// Throws UserError when Slurm is not there, or refuses; then nothing was sent.
+/// Throws UserError when Slurm is not there, or refuses.
 Submission submit(const SweepFolder& folder, const std::string& sweep_id,
                   const std::vector<int>& missing, const SlurmRequest& request);
 

@@ -48,6 +48,7 @@ std::vector<TaskState> task_states(const SweepFolder& folder, int count) {
   std::error_code error;
   for (const auto& thousand : fs::directory_iterator(folder.results(), error)) {
     for_each_number(thousand.path(), count, [&](int task, const fs::path& result) {
+      if (!is_published(folder, task)) return;
       state(task) = is_proved(result) ? TaskState::kProved : TaskState::kUnproved;
     });
   }

@@ -27,7 +27,10 @@ using testing::IsEmpty;
 using testing::SizeIs;
 
 TaskWork writing(const std::string& text) {
-  return [text](const fs::path& at) { write_file(at / "student.json", text); };
+  return [text](const fs::path& at) {
+    write_file(at / "student.json", text);
+    write_file(at / "run.json", "{}");
+  };
 }
 const TaskWork kFailing = [](const fs::path& at) {
   write_file(at / "student.json", "half");
@@ -54,6 +57,15 @@ class Attempt : public testing::Test {
     return {name, static_cast<std::size_t>(size)};
   }
 
+  int at_work_on(int task) {
+    int count = 0;
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder_.attempts(task), error)) {
+      count += entry.path().extension() == kEnded ? 0 : 1;
+    }
+    return count;
+  }
+
   TemporaryFolder root_;
   SweepFolder folder_{root_.file("sweep")};
 };
@@ -70,8 +82,9 @@ TEST_F(Attempt, ASecondCopyComparesWhatItMade) {
   const auto beside = [&](const std::string& first, const std::string& second) {
     return [&, first, second](const fs::path& at) {  // the other one is quicker
       write_file(folder_.result(1) / "student.json", first);
+      write_file(folder_.result(1) / "run.json", "{}");
       write_file(folder_.result(1) / "times.json", "never the same");
-      write_file(at / "student.json", second);
+      writing(second)(at);
     };
   };
   EXPECT_EQ(attempt_task(folder_, 1, beside("a", "a")), TaskEnd::kSame);
@@ -116,10 +129,44 @@ TEST_F(Attempt, WhoIsGoneIsCountedOnceAndItsFolderTakenOver) {
   EXPECT_EQ(attempt_task(folder_, 5,
                          [](const fs::path& at) {
                            EXPECT_EQ(read_file(at / "teacher.bin"), "learnt");
-                           write_file(at / "student.json", "a");
+                           writing("a")(at);
                          }),
             TaskEnd::kPublished);
   EXPECT_THAT(failures_of(folder_, 5), ElementsAre(HasSubstr("was killed")));
+}
+
+TEST_F(Attempt, WhoWasEndedElsewhereDidNotFailAndItsFolderIsTakenOver) {
+  write_file(folder_.attempts(5) / "elsewhere.00000000.1.1.ended" / "teacher.bin", "learnt");
+  EXPECT_EQ(attempt_task(folder_, 5,
+                         [](const fs::path& at) {
+                           EXPECT_EQ(read_file(at / "teacher.bin"), "learnt");
+                           writing("a")(at);
+                         }),
+            TaskEnd::kPublished);
+  EXPECT_THAT(failures_of(folder_, 5), IsEmpty());
+  EXPECT_FALSE(fs::exists(folder_.attempts(5)));
+}
+
+TEST_F(Attempt, TermAndCtrlCAreNoFailuresAndKillIsOne) {
+  int failures = 0;
+  for (const int signal : {SIGTERM, SIGINT, SIGKILL}) {
+    ChildProcess one({BESS_SWEEP_WORKER, "task", folder_.path, "9", "5000"});
+    while (at_work_on(9) == 0) usleep(1'000);
+    one.signal(signal);
+    one.read_all();
+    one.wait();
+    failures += signal == SIGKILL ? 1 : 0;
+    EXPECT_EQ(task_states(folder_, 9).at(8), TaskState::kMissing);
+    EXPECT_EQ(failures_of(folder_, 9).size(), failures) << signal;
+  }
+}
+
+TEST_F(Attempt, HalfOfAResultIsSetAsideAndMadeAgain) {
+  write_file(folder_.result(3) / "student.json", "ha");
+  EXPECT_EQ(task_states(folder_, 3).at(2), TaskState::kMissing);
+  EXPECT_EQ(attempt_task(folder_, 3, writing("a")), TaskEnd::kPublished);
+  EXPECT_EQ(read_file(folder_.result(3) / "student.json"), "a");
+  EXPECT_EQ(read_file(folder_.different() / ("000003." + own_name()) / "student.json"), "ha");
 }
 
 TEST_F(Attempt, AnAttemptElsewhereIsLeftToItself) {

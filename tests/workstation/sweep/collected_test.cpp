@@ -53,6 +53,9 @@ class Collected : public testing::Test {
 TEST_F(Collected, ARowATaskWithWhatBecameOfIt) {
   publish(1, 80);
   write_file(folder_.result(3) / run_file::kUnprovedStudent, "{}");
+  write_file(folder_.result(3) / run_file::kRecord, "{}");
+  EXPECT_EQ(mean_seconds(folder_, task_states(folder_, 2)), 3.5);
+  EXPECT_EQ(mean_seconds(folder_, {TaskState::kMissing}), 0) << "nobody knows yet";
   const std::string csv = tasks_csv(collected());
   EXPECT_THAT(csv, HasSubstr("task,state,seed,distil.fidelity,days,"));
   EXPECT_THAT(csv, HasSubstr("\n1,proved,1,1,2,10.0000,"));

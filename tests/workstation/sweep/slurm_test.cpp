@@ -46,6 +46,14 @@ TEST(Chunks, AsManyTasksAnElementAsTheLimitsNeed) {
   EXPECT_EQ(chunked({1, 2, 3, 4, 5}, 1, 2).size(), 2) << "the rest is sent later";
 }
 
+TEST(Chunks, AnElementIsAMinuteOfTasks) {
+  EXPECT_EQ(elements_wanted(10'000, 0), 1'000) << "unknown";
+  EXPECT_EQ(elements_wanted(10'000, 45), 1'000);
+  EXPECT_EQ(elements_wanted(400, 15), 100) << "four tasks each";
+  EXPECT_EQ(elements_wanted(10'000, 0.01), 2);
+  EXPECT_EQ(elements_wanted(3, 0.01), 1);
+}
+
 TEST(Limits, AsScontrolShowsThem) {
   const SlurmLimits limits =
       parse_limits("MaxArraySize            = 501\nMaxJobCount             = 2000\n");
@@ -89,7 +97,8 @@ class PlayedSlurm : public testing::Test {
 TEST_F(PlayedSlurm, OneArrayWithAChunkAnElement) {
   std::vector<int> missing;
   for (int task = 1; task <= 25; ++task) missing.push_back(task);
-  const Submission sent = submit(folder_, kId, missing, {4, 0, {"--partition=main"}});
+  const Submission sent =
+      submit(folder_, kId, missing, {.at_once = 4, .options = {"--partition=main"}});
   EXPECT_EQ(sent.tasks, 25);
   EXPECT_EQ(sent.elements, 9) << "at most 10, 3 each";
   EXPECT_EQ(sent.job, "4711");
@@ -104,16 +113,26 @@ TEST_F(PlayedSlurm, OneArrayWithAChunkAnElement) {
 }
 
 TEST_F(PlayedSlurm, WhatWaitsOrRunsIsNotSentAgain) {
-  submit(folder_, kId, {1, 2, 3, 4}, {4, 2, {}});
+  submit(folder_, kId, {1, 2, 3, 4}, {.at_once = 4, .chunk = 2});
   (void)root_.write("queue.txt", "bess-0123abcd-1 2\n");  // tasks 3 and 4; element 1 is gone
-  const Submission again = submit(folder_, kId, {1, 3, 4}, {4, 0, {}});
+  const Submission again = submit(folder_, kId, {1, 3, 4}, {.at_once = 4});
   EXPECT_EQ(again.tasks, 1);
   EXPECT_EQ(again.waiting, 2);
   EXPECT_THAT(tasks_of_element(folder_, 2, 1), ElementsAre(1));
   EXPECT_THAT(waiting_tasks(folder_, kId), ElementsAre(3, 4));
   (void)root_.write("queue.txt", "bess-0123abcd-1 2\nbess-0123abcd-2 1\n");
-  EXPECT_EQ(submit(folder_, kId, {1, 3, 4}, {4, 0, {}}).tasks, 0);
+  EXPECT_EQ(submit(folder_, kId, {1, 3, 4}, {.at_once = 4}).tasks, 0);
   EXPECT_FALSE(fs::exists(folder_.submissions() / "3.tsv"));
+}
+
+TEST_F(PlayedSlurm, AJobWhoseAnswerIsLostWasSent) {
+  const std::string queue = root_.file("queue.txt");
+  play("sbatch", "echo 'bess-0123abcd-1 1' >'" + queue + "'; echo 'connection lost' >&2; exit 1");
+  const Submission sent = submit(folder_, kId, {1, 2}, {.task_s = 10});
+  EXPECT_EQ(sent.tasks, 2);
+  EXPECT_EQ(sent.chunk, 2);
+  EXPECT_EQ(sent.job, "bess-0123abcd-1");
+  EXPECT_EQ(submit(folder_, kId, {1, 2}, {}).tasks, 0);
 }
 
 TEST_F(PlayedSlurm, NothingMissingAsksNobody) {
