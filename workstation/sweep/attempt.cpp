@@ -13,6 +13,7 @@
 
 #include "shared/crc32.h"
 #include "shared/file_descriptor.h"
+#include "shared/host/command_line.h"
 #include "shared/host/file.h"
 #include "shared/host/text.h"
 #include "shared/host/user_error.h"
@@ -103,13 +104,15 @@ bool is_left(const std::string& who) { return who.ends_with(kEnded) || is_gone(w
 char own_attempt[PATH_MAX];
 char ended_attempt[PATH_MAX];
 
+void rename_as_ended() { rename(own_attempt, ended_attempt); }
+
 /// Who is ended on purpose says so by a rename, which a signal's handler may do.
 void say_when_ended(const fs::path& own) {
   const std::string ended = own.string() + kEnded;
   if (ended.size() >= PATH_MAX) return;  // then it counts as killed
   std::strcpy(own_attempt, own.c_str());
   std::strcpy(ended_attempt, ended.c_str());
-  before_interrupted_end([] { rename(own_attempt, ended_attempt); });
+  before_interrupted_end(rename_as_ended);
 }
 
 /// In the folder of an attempt that was left, or in an empty one.
@@ -208,6 +211,9 @@ TaskEnd attempt_task(const SweepFolder& folder, int task, const TaskWork& work) 
   const fs::path own = begin_attempt(folder, task);
   try {
     work(own);
+  } catch (const Interrupted&) {  // it has saved how far it was
+    rename_as_ended();
+    throw;
   } catch (const std::exception& error) {
     note_failure(folder, task, own_name(), error.what());
     std::error_code ignored;

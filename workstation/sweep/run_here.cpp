@@ -16,6 +16,7 @@
 #include <string>
 
 #include "shared/file_descriptor.h"
+#include "shared/host/command_line.h"
 #include "shared/host/user_error.h"
 #include "workstation/chain/interruption.h"
 #include "workstation/sweep/attempt.h"
@@ -98,6 +99,8 @@ class TaskProcesses {
     int exit_code = 0;
     try {
       program_(task);
+    } catch (const Interrupted&) {
+      exit_code = 3;
     } catch (const std::exception& error) {
       fmt::print(stderr, "task {}: {}\n", task, error.what());
       exit_code = 1;

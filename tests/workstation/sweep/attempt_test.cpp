@@ -11,6 +11,7 @@
 #include <cstdlib>
 
 #include "shared/host/child_process.h"
+#include "shared/host/command_line.h"
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
 #include "tests/support/temporary_folder.h"
@@ -159,6 +160,22 @@ TEST_F(Attempt, TermAndCtrlCAreNoFailuresAndKillIsOne) {
     EXPECT_EQ(task_states(folder_, 9).at(8), TaskState::kMissing);
     EXPECT_EQ(failures_of(folder_, 9).size(), failures) << signal;
   }
+}
+
+TEST_F(Attempt, WorkThatIsInterruptedSavesItselfAndDidNotFail) {
+  const auto interrupted = [](const fs::path& at) {
+    write_file(at / "teacher.bin", "half learnt");
+    throw Interrupted{};
+  };
+  EXPECT_THROW(attempt_task(folder_, 1, interrupted), Interrupted);
+  EXPECT_EQ(at_work_on(1), 0);
+  EXPECT_EQ(attempt_task(folder_, 1,
+                         [](const fs::path& at) {
+                           EXPECT_EQ(read_file(at / "teacher.bin"), "half learnt");
+                           writing("a")(at);
+                         }),
+            TaskEnd::kPublished);
+  EXPECT_THAT(failures_of(folder_, 1), IsEmpty());
 }
 
 TEST_F(Attempt, HalfOfAResultIsSetAsideAndMadeAgain) {
