@@ -87,20 +87,6 @@ bool publish(const fs::path& from, const fs::path& to) {
   fail("{}: cannot be published as {}: {}", from.string(), to.string(), std::strerror(errno));
 }
 
-/// Under the name of who failed: counted once, whoever tells of it.
-void note_failure(const SweepFolder& folder, int task, const std::string& who,
-                  const std::string& why) {
-  const fs::path path = folder.failures(task) / who;
-  std::error_code error;
-  if (fs::exists(path, error)) return;
-  try {
-    write_file(path, one_line(why, 1'000) + "\n");
-  } catch (const UserError&) {  // a full disk: then it is not counted, and the disk is the matter
-  }
-}
-
-bool is_left(const std::string& who) { return who.ends_with(kEnded) || is_gone(who); }
-
 char own_attempt[PATH_MAX];
 char ended_attempt[PATH_MAX];
 
@@ -114,6 +100,31 @@ void say_when_ended(const fs::path& own) {
   std::strcpy(ended_attempt, ended.c_str());
   before_interrupted_end(rename_as_ended);
 }
+
+/// What was made but cannot be published, as nobody may write there, is no failure of the task.
+bool publish_made(const SweepFolder& folder, int task, const fs::path& own) {
+  try {
+    fs::create_directories(folder.result(task).parent_path());
+    return publish(own, folder.result(task));
+  } catch (const std::exception&) {
+    rename_as_ended();
+    throw;
+  }
+}
+
+/// Under the name of who failed: counted once, whoever tells of it.
+void note_failure(const SweepFolder& folder, int task, const std::string& who,
+                  const std::string& why) {
+  const fs::path path = folder.failures(task) / who;
+  std::error_code error;
+  if (fs::exists(path, error)) return;
+  try {
+    write_file(path, one_line(why, 1'000) + "\n");
+  } catch (const UserError&) {  // a full disk: then it is not counted, and the disk is the matter
+  }
+}
+
+bool is_left(const std::string& who) { return who.ends_with(kEnded) || is_gone(who); }
 
 /// In the folder of an attempt that was left, or in an empty one.
 fs::path begin_attempt(const SweepFolder& folder, int task) {
@@ -221,8 +232,7 @@ TaskEnd attempt_task(const SweepFolder& folder, int task, const TaskWork& work) 
     throw;
   }
   sync_folder(own);
-  fs::create_directories(folder.result(task).parent_path());
-  const bool is_first = publish(own, folder.result(task));
+  const bool is_first = publish_made(folder, task, own);
   if (is_first) sync_folder(folder.result(task).parent_path());
   const TaskEnd end = is_first ? TaskEnd::kPublished : compare_with_published(folder, task, own);
   clear_attempts(folder, task);

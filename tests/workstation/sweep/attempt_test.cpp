@@ -178,6 +178,19 @@ TEST_F(Attempt, WorkThatIsInterruptedSavesItselfAndDidNotFail) {
   EXPECT_THAT(failures_of(folder_, 1), IsEmpty());
 }
 
+TEST_F(Attempt, WhatCannotBePublishedIsKeptUntilItCan) {
+  const fs::path in_the_way = folder_.result(1).parent_path();
+  write_file(in_the_way, "a file where the folder of a thousand results must be");
+  EXPECT_ANY_THROW(attempt_task(folder_, 1, writing("a")));
+  EXPECT_THAT(failures_of(folder_, 1), IsEmpty());
+  fs::remove(in_the_way);
+  const TaskWork already = [](const fs::path& at) {
+    EXPECT_EQ(read_file(at / "student.json"), "a");
+  };
+  EXPECT_EQ(attempt_task(folder_, 1, already), TaskEnd::kPublished);
+  EXPECT_THAT(failures_of(folder_, 1), IsEmpty());
+}
+
 TEST_F(Attempt, HalfOfAResultIsSetAsideAndMadeAgain) {
   write_file(folder_.result(3) / "student.json", "ha");
   EXPECT_EQ(task_states(folder_, 3).at(2), TaskState::kMissing);

@@ -5,6 +5,7 @@
 //   sweep_worker send DIR COUNT TASK_S OPTION...   what is missing, to Slurm as one array
 //   sweep_worker sweep task --of DIR --submission N --element K    as Slurm calls it
 //   sweep_worker check DIR COUNT            whether all are whole, and what came of them
+//   sweep_worker page DIR COUNT             sweep.html and tasks.csv of so many made-up results
 // On Slurm a task takes BESS_WORKER_MS.
 #include <fmt/core.h>
 #include <unistd.h>
@@ -18,10 +19,12 @@
 #include "shared/crc32.h"
 #include "shared/host/file.h"
 #include "shared/host/user_error.h"
+#include "workstation/base/random.h"
 #include "workstation/chain/interruption.h"
 #include "workstation/sweep/attempt.h"
 #include "workstation/sweep/run_here.h"
 #include "workstation/sweep/slurm.h"
+#include "workstation/sweep/sweep_page.h"
 #include "workstation/sweep/task_states.h"
 
 namespace bess {
@@ -85,6 +88,50 @@ int check(const SweepFolder& folder, int count) {
   return 0;
 }
 
+/// Over two settings, every 50th not proved, failed or missing.
+std::vector<CollectedTask> made_up(int count) {
+  Random random(1);
+  std::vector<CollectedTask> tasks;
+  for (int t = 0; t < count; ++t) {
+    const int fidelity = 1 + t % 10;
+    const int rate = 1 + t / 10 % 10;
+    CollectedTask task{{t + 1,
+                        {{"seed", fmt::format("{}", 1 + t / 100)},
+                         {"distil.fidelity", fmt::format("{}", fidelity)},
+                         {"train.learning_rate", fmt::format("{}e-4", rate)}}},
+                       t % 50 == 7 ? static_cast<TaskState>((t / 50) % 4) : TaskState::kProved,
+                       {},
+                       40};
+    if (task.state == TaskState::kProved) {
+      const double profit = 100 + 3.0 * fidelity - 7.0 * rate + 20 * random.uniform();
+      task.figures = {profit,
+                      2.5,
+                      3.5,
+                      profit - 90,
+                      profit - 12,
+                      profit - 4,
+                      1 + random.uniform(),
+                      0.8,
+                      60,
+                      fmt::format("{:08x}", 2'654'435'761U * static_cast<unsigned>(t + 1))};
+    }
+    tasks.push_back(task);
+  }
+  return tasks;
+}
+
+int write_page(const SweepFolder& folder, int count) {
+  const std::vector<CollectedTask> tasks = made_up(count);
+  const std::vector<CollectedSite> sites{
+      {{"zürich-10", "ch", 4e6, 8e6, 0.5, "00ff"}, 3, 3, 91.25, 730, ""},
+      {{"zürich-9", "ch", 4e3, 8e3, 0.5, "00ff"}, 3, 3, 91.25, 0.73, ""},
+      {{"antwerp", "be", 1e3, 2e3, 0.5, "11ff"}, 3, 0, {}, {}, ""}};
+  const SweepRecord record{"0123abcd", "bess-train", "prices", "market.csv.gz", "lean", 0};
+  write_file(folder.path / "tasks.csv", tasks_csv(tasks));
+  write_file(folder.path / "sweep.html", sweep_page(record, tasks, sites, {}));
+  return 0;
+}
+
 int work(std::span<char*> words) {
   const std::string mode = words.size() > 2 ? words[0] : "";
   const SweepFolder folder{words.size() > 2 ? words[1] : ""};
@@ -100,12 +147,13 @@ int work(std::span<char*> words) {
     return send(folder, std::atoi(words[2]), words.subspan(3));
   }
   if (mode == "check" && words.size() == 3) return check(folder, std::atoi(words[2]));
+  if (mode == "page" && words.size() == 3) return write_page(folder, std::atoi(words[2]));
   if (mode == "sweep" && words.size() == 8) {
     const SweepFolder of{words[3]};
     const auto tasks = tasks_of_element(of, std::atoi(words[5]), std::atoi(words[7]));
     return run_all(of, tasks, 1, milliseconds_on_slurm()).failed > 0 ? 1 : 0;
   }
-  fmt::print(stderr, "sweep_worker: see the head of its source for its five modes\n");
+  fmt::print(stderr, "sweep_worker: see the head of its source for its modes\n");
   return 2;
 }
 

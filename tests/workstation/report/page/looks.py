@@ -29,8 +29,9 @@ def low_contrast(page):
     """Texts that stand out from what is behind them by less than WCAG 2 AA asks for."""
     return page.run("""(() => {
       const parse = (text) => {
+        const scale = text.startsWith("color(srgb") ? 255 : 1;  // what color-mix() gives
         const [red, green, blue, alpha = 1] = text.match(/[\\d.]+/g).map(Number);
-        return {rgb: [red, green, blue], alpha};
+        return {rgb: [red, green, blue].map((c) => scale * c), alpha};
       };
       const behind = (element) => {
         for (let e = element; e; e = e.parentElement) {
