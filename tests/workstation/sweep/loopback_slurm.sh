@@ -51,7 +51,8 @@ stop_slurm() {
 start_slurm() {
   [ "$(id -u)" = 0 ] || skip "Slurm on loopback needs root"
   for tool in slurmctld slurmd munged sbatch unshare; do
-    command -v $tool >/dev/null || skip "no $tool here; tools/setup --test installs slurm-wlm and munge"
+    command -v $tool >/dev/null ||
+      skip "no $tool here; tools/setup --test installs slurm-wlm and munge"
   done
   slurm=$1/slurm
   mkdir -p "$slurm/munge" "$slurm/state" "$slurm/spool-n1" "$slurm/spool-n2"

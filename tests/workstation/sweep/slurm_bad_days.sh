@@ -72,7 +72,8 @@ end() {
 }
 # pid_at_work: of a task's process, which is the third field from the end of its attempt's name.
 pid_at_work() {
-  find "$sweep/attempts" -mindepth 2 -maxdepth 2 ! -name '*.ended' | head -n 1 | sed 's/.*\.\([0-9]*\)\.[0-9]*$/\1/'
+  find "$sweep/attempts" -mindepth 2 -maxdepth 2 ! -name '*.ended' | head -n 1 |
+    sed 's/.*\.\([0-9]*\)\.[0-9]*$/\1/'
 }
 
 begin a_task_killed
@@ -129,7 +130,8 @@ wait_until 60 "both nodes are idle" nodes_idle
 # The tasks' clock: an hour ahead, then an hour behind; and as if it had been so for the files.
 echo +1h >clock
 preload=$(dpkg -L libfaketime | grep '/libfaketime.so.1$')
-begin a_clock_that_steps "--export=ALL,LD_PRELOAD=$preload,FAKETIME_TIMESTAMP_FILE=$folder/clock,FAKETIME_NO_CACHE=1,FAKETIME_DONT_FAKE_MONOTONIC=1"
+fake="LD_PRELOAD=$preload,FAKETIME_TIMESTAMP_FILE=$folder/clock,FAKETIME_NO_CACHE=1"
+begin a_clock_that_steps "--export=ALL,$fake,FAKETIME_DONT_FAKE_MONOTONIC=1"
 wait_until 30 "$day: a task is at work" is_at_work
 echo -1h >clock
 find "$sweep" -exec touch --no-create -d '+1 hour' {} + || true
@@ -173,7 +175,8 @@ for answer in 'exit 1' 'sleep 600'; do
   printf '#!/bin/sh\n%s "$@" >/dev/null\n%s\n' "$real" "$answer" >lost/sbatch
   chmod +x lost/sbatch
   day="lost_${answer%% *}" sweep=$folder/lost_${answer%% *}
-  PATH=$folder/lost:$path_before timeout 10 "$worker" send "$sweep" $tasks 10 || echo "$day: gave up"
+  PATH=$folder/lost:$path_before timeout 10 "$worker" send "$sweep" $tasks 10 ||
+    echo "$day: gave up"
   sends_nothing
   end 0 0
 done
@@ -182,8 +185,8 @@ export BESS_WORKER_MS=0
 sweep=$folder/ten_thousand
 start_s=$(date +%s)
 "$worker" send "$sweep" 10000 0.01
-all_done() { "$worker" check "$sweep" 10000 | grep -q '^10000 done, 0 missing, 0 failed, 0 failures'; }
 while ! queue_is_empty; do sleep 1; done
-all_done || complain "not all of 10,000"
+"$worker" check "$sweep" 10000 | grep -q '^10000 done, 0 missing, 0 failed, 0 failures' ||
+  complain "not all of 10,000"
 seconds=$(($(date +%s) - start_s))
 echo "10,000 tasks through Slurm in $seconds s: $((10000 / seconds)) a second"
