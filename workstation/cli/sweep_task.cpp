@@ -1,7 +1,6 @@
 // bess-train sweep task: one task by its number, for any engine that can count.
 #include <fmt/core.h>
 
-#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -9,9 +8,7 @@
 #include "workstation/chain/interruption.h"
 #include "workstation/cli/commands.h"
 #include "workstation/sweep/learn_task.h"
-#include "workstation/sweep/run_here.h"
 #include "workstation/sweep/slurm.h"
-#include "workstation/sweep/sweep_plan.h"
 
 namespace bess {
 namespace {

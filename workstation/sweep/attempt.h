@@ -1,7 +1,7 @@
 // One attempt at a task: a folder of its own, named after who is at work, published by one rename
 // onto a name that does not exist. So two copies of a task do no harm: the second compares what it
 // has with what is there. Nobody is trusted to live: an attempt whose program is gone is counted as
-// a failure by the next one, which goes on in its folder.
+// a failure by the next one, which goes on in its folder; one that was ended on purpose is not.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// A sweep on this machine: its missing tasks side by side, each a program of its own, so that one
+// A sweep on this machine: its missing tasks side by side, each a process of its own, so that one
 // that dies takes nothing along. Another `run` in the same folder does no harm.
 #pragma once
 

@@ -9,9 +9,9 @@
 //   tasks.tsv       a task a line; more may be appended, none is changed
 //   sites.tsv       which class of students each site belongs to
 //   tasks/000/000017/       what task 17 came to, published by one rename
-//   attempts/000017/WHO/    at work on it, or left behind
+//   attempts/000017/WHO/    at work on it, or left behind; WHO.ended: ended on purpose
 //   failures/000017/WHO     why an attempt came to nothing
-//   different/000017.WHO/   a second copy that came to something else
+//   different/000017.WHO/   a second copy that came to something else, or half of one
 //   submissions/3.tsv       what was sent to Slurm at once, an element of the array a line
 //   log/                    what tasks said
 #pragma once
