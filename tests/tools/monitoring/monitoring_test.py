@@ -49,7 +49,7 @@ FAULTS = {
 ONLY_IN_UNIT_TESTS = {
     "BessUnreachable", "BessOrdersUnanswered", "BessRampSlow", "BessBatteryLocked",
     "BessBatteryWarns", "BessLogLost", "BessCardWorn", "BessUpdateRolledBack", "BessUpdateFailed",
-    "BessStudentsDiffer", "BessStudentUnexpected", "BessOutlookUnplanned"}
+    "BessStudentsDiffer", "BessStudentUnexpected", "BessOutlookUnplanned", "BessSourceLate"}
 # Nothing is wrong in these: nobody is called.
 WELL = {"quiet_hour", "rtu_quiet_hour", "a_day_of_2023", "a_week_of_2023", "summer_time_begins",
         "summer_time_ends", "reserve_kept", "reversal_cap", "edge_restarted", "edge_handed_over",
