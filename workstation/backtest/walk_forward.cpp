@@ -93,6 +93,13 @@ std::variant<Fold, SkippedMonth> make_fold(const MarketSteps& market, const std:
   return fold;
 }
 
+FoldRegimes regimes_of(const Fold& fold) {
+  const auto met = [&](const std::vector<MarketDay>& days) {
+    return regimes_met(fold.market.span_of(days));
+  };
+  return {met(fold.market.fitted_days()), met(fold.market.days_of(Split::kTest))};
+}
+
 Folds make_folds(const MarketSteps& market, const FoldPlan& plan) {
   Folds folds;
   for (const auto& [first, last] : stretches(market.days, plan)) {

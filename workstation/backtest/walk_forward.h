@@ -21,6 +21,14 @@ struct Fold {
   MarketSteps market;
 };
 
+/// Of the price regimes, those that a fold's window lies in and those that it trades.
+struct FoldRegimes {
+  std::vector<const PriceRegime*> fitted, traded;
+  /// A boundary of the market lies in the fold.
+  [[nodiscard]] bool crosses() const { return fitted != traded || traded.size() > 1; }
+};
+FoldRegimes regimes_of(const Fold& fold);
+
 /// A month that is not traded, and why.
 struct SkippedMonth {
   std::string month;

@@ -116,18 +116,11 @@ struct Learning {
   bool and_student;
 };
 
-/// The days that a fold is fitted on.
-std::vector<MarketDay> fitted_days_of(const Fold& fold) {
-  std::vector<MarketDay> days = fold.market.days;
-  std::erase_if(days, [](const MarketDay& day) { return day.split == Split::kTest; });
-  return days;
-}
-
 /// Its file says the prices and days that it was learnt from; so does its student's.
 Teacher teacher_of_fold(const Fold& fold, const Learning& of) {
   TrainResult trained =
       train_teacher(fold.market, of.config.battery, of.config.train, interruption());
-  const std::vector<MarketDay> days = fitted_days_of(fold);
+  const std::vector<MarketDay> days = fold.market.fitted_days();
   trained.teacher.provenance =
       fmt::format("{}, days {} to {}", training_provenance(of.prices, of.config.train, trained),
                   days.front().date(), days.back().date());
@@ -209,7 +202,12 @@ void run_backtest(const BacktestArguments& options) {
       std::ranges::find(options.policies, kChainName) != options.policies.end();
   learn_folds(folds, {config, series, prices, folder, and_student}, options.policies);
   std::vector<std::size_t> fitted_days;
-  for (const Fold& fold : folds.traded) fitted_days.push_back(fitted_days_of(fold).size());
+  std::vector<FoldRegimes> regimes;
+  for (const Fold& fold : folds.traded) {
+    fitted_days.push_back(fold.market.fitted_days().size());
+    regimes.push_back(regimes_of(fold));
+    warn_unknown_regimes(fold.month, fold.market, fold.market, fold.market.days_of(Split::kTest));
+  }
   BacktestResults results{{},
                           std::move(fitted_days),
                           folds.skipped,
@@ -218,7 +216,8 @@ void run_backtest(const BacktestArguments& options) {
                           fmt::format("{} on {} file{}, prices {:08x}, seed {}", BESS_VERSION,
                                       options.prices.size(), options.prices.size() == 1 ? "" : "s",
                                       prices_checksum(series), config.train.seed),
-                          learning_identity(prices_hash(series), config)};
+                          learning_identity(prices_hash(series), config),
+                          std::move(regimes)};
   Progress progress("trade", "policies", static_cast<double>(options.policies.size()));
   for (const std::string& name : options.policies) {
     const FoldPolicy make = [&](const Fold& fold) {

@@ -19,6 +19,7 @@
 #include "workstation/chain/price_input.h"
 #include "workstation/cli/commands.h"
 #include "workstation/env/charge_left.h"
+#include "workstation/planners/baselines.h"
 #include "workstation/report/comparison.h"
 #include "workstation/report/judged_days.h"
 #include "workstation/run/learnt_for.h"
@@ -149,6 +150,11 @@ MarketSteps fitting_market(const MinuteSeries& series, const RunConfig& config,
   return market_of(options.price_input.read(options.fit), market, options.fit);
 }
 
+bool is_fitted(const std::string& policy) {
+  const Baseline* baseline = find_baseline(policy);
+  return baseline != nullptr && baseline->is_for(kFitted);
+}
+
 /// What every policy is evaluated on.
 struct Trial {
   const MarketSteps& market;
@@ -228,6 +234,9 @@ void run_evaluate(const EvaluateArguments& options) {
   const NamedEvaluation foresight = evaluate_policy(kForesightName, trial, nullptr);
   std::vector<NamedEvaluation> results;
   Records records;
+  if (std::ranges::any_of(options.policies, is_fitted)) {
+    warn_unknown_regimes("what is fitted here", fitting, market, trial.days);
+  }
   for (const std::string& name : options.policies) {
     warn_learnt_otherwise(name, circumstances_of(config_entries(config)), market, trial.days);
     results.push_back(evaluate_policy(name, trial, &records));

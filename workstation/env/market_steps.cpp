@@ -90,6 +90,16 @@ std::vector<MarketDay> MarketSteps::days_of(Split split) const {
   return selected;
 }
 
+std::vector<MarketDay> MarketSteps::fitted_days() const {
+  std::vector<MarketDay> fitted = days;
+  std::erase_if(fitted, [](const MarketDay& day) { return day.split == Split::kTest; });
+  return fitted;
+}
+
+UtcSpan MarketSteps::span_of(const std::vector<MarketDay>& of_days) const {
+  return {of(of_days.front()).front().utc_s, of(of_days.back()).back().utc_s + kSecondsPerStep};
+}
+
 void require_training_days(std::size_t count) {
   if (count == 0) fail("no training days (local days 1 to 20) in these prices; add some");
 }

@@ -17,6 +17,7 @@
 #include "shared/host/minute_file.h"
 #include "shared/units_and_limits.h"
 #include "workstation/market/series/day_ahead_publication.h"
+#include "workstation/market/series/price_regime.h"
 
 namespace bess {
 
@@ -99,6 +100,10 @@ struct MarketSteps {
     return {steps.data() + day.first_step, day.step_count};
   }
   [[nodiscard]] std::vector<MarketDay> days_of(Split split) const;
+  /// Training and validation days: something is learnt or chosen on them.
+  [[nodiscard]] std::vector<MarketDay> fitted_days() const;
+  /// From the first to the last of `days`, which are ascending and not empty.
+  [[nodiscard]] UtcSpan span_of(const std::vector<MarketDay>& days) const;
 };
 
 /// A day with fewer tradable steps than this is left out (a 23-hour day has exactly 690).

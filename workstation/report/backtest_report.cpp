@@ -96,6 +96,40 @@ std::string chart_caption(const BacktestResults& results) {
       fall_text((*best)->drawdown_eur_per_mwh()));
 }
 
+/// Where a price regime begins in the days that are drawn: place among them, and what changed.
+Json regime_marks(const std::vector<DayResult>& days) {
+  Json marks = Json::list();
+  for (const PriceRegime& regime : price_regimes()) {
+    const auto from =
+        std::ranges::lower_bound(days, std::string_view(regime.from_date), {}, &DayResult::date);
+    if (from == days.begin() || from == days.end()) continue;
+    Json mark = Json::list();
+    mark.add(static_cast<std::size_t>(from - days.begin()));
+    mark.add(regime.change);
+    marks.add(std::move(mark));
+  }
+  return marks;
+}
+
+/// What a month was fitted on and trades, where a boundary of the market lies between or in them.
+std::vector<std::string> crossing_lines(const BacktestResults& results) {
+  std::vector<std::string> lines;
+  for (std::size_t m = 0; m < results.regimes.size(); ++m) {
+    const FoldRegimes& of = results.regimes[m];
+    if (!of.crosses()) continue;
+    lines.push_back(fmt::format("{} crosses a boundary of the market: fitted {}; traded {}",
+                                results.policies.front().months[m], regime_names(of.fitted),
+                                regime_names(of.traded)));
+  }
+  return lines;
+}
+
+Json names_json(const std::vector<const PriceRegime*>& regimes) {
+  Json names = Json::list();
+  for (const PriceRegime* regime : regimes) names.add(regime->name);
+  return names;
+}
+
 /// A line a policy over the traded days, EUR per MWh: what `values` makes of its cumulative profit.
 template <typename Values>
 Json lines_chart(const char* id, const BacktestResults& results, Values values) {
@@ -113,6 +147,7 @@ Json lines_chart(const char* id, const BacktestResults& results, Values values) 
   }
   Json chart = Json::object({{"id", id}, {"kind", "lines"}});
   chart.set("labels", std::move(labels));
+  chart.set("marks", regime_marks(results.policies.front().total.days));
   chart.set("series", std::move(series));
   return chart;
 }
@@ -182,8 +217,12 @@ HtmlTable month_table(const BacktestResults& results) {
   return table;
 }
 
-std::string skipped_html(const BacktestResults& results) {
+/// What is to be known of single months: those that cross, those that are not traded.
+std::string months_html(const BacktestResults& results) {
   std::string text;
+  for (const std::string& line : crossing_lines(results)) {
+    text += fmt::format("<li>{}</li>\n", html_escaped(line));
+  }
   for (const SkippedMonth& month : results.skipped) {
     text += fmt::format("<li>{} is not traded: {}</li>\n", html_escaped(month.month),
                         html_escaped(month.reason));
@@ -281,6 +320,7 @@ std::string format_backtest_table(const BacktestResults& results) {
       first.name, by_month_meaning(first.total.errors().months),
       charge_left_meaning(first.total.charge_price_eur_per_mwh), wear_column(),
       reference_wear_meaning(first.total.wear_eur_per_mwh));
+  for (const std::string& line : crossing_lines(results)) text += line + "\n";
   for (const SkippedMonth& month : results.skipped) {
     text += fmt::format("{} is not traded: {}\n", month.month, month.reason);
   }
@@ -332,8 +372,13 @@ Json backtest_json(const BacktestResults& results) {
   json.set("policies", std::move(policies));
   Json months = Json::list();
   for (std::size_t m = 0; m < results.fitted_days.size(); ++m) {
-    months.add(Json::object(
-        {{"month", results.policies.front().months[m]}, {"fitted_days", results.fitted_days[m]}}));
+    Json month = Json::object(
+        {{"month", results.policies.front().months[m]}, {"fitted_days", results.fitted_days[m]}});
+    if (m < results.regimes.size()) {
+      month.set("regimes_fitted", names_json(results.regimes[m].fitted));
+      month.set("regimes_traded", names_json(results.regimes[m].traded));
+    }
+    months.add(std::move(month));
   }
   json.set("months", std::move(months));
   Json skipped = Json::list();
@@ -370,7 +415,7 @@ void write_backtest_page(const BacktestResults& results, const std::filesystem::
       charge_left_meaning(first.total.charge_price_eur_per_mwh),
       one_line(reference_wear_meaning(first.total.wear_eur_per_mwh)), pictures,
       html_escaped(with_true_minus(chart_caption(results))), csv_link("backtest_days.csv"),
-      format_table(month_table(results)), skipped_html(results));
+      format_table(month_table(results)), months_html(results));
   write_file(folder / "backtest.html",
              format_chart_page("Walk-forward backtest", body, std::move(charts)));
 }

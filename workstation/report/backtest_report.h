@@ -19,8 +19,9 @@ struct BacktestResults {
   std::vector<SkippedMonth> skipped;
   int window_days;
   double capacity_mwh;
-  std::string provenance;     ///< a line: prices, configuration
-  std::string learnt_from{};  ///< by which a run knows its own: prices, seed and every key
+  std::string provenance;              ///< a line: prices, configuration
+  std::string learnt_from{};           ///< by which a run knows its own: prices, seed and every key
+  std::vector<FoldRegimes> regimes{};  ///< of each month
 };
 
 /// One line a policy: profit, gain, cycles, drawdown; then the gain by month.

@@ -58,8 +58,7 @@ Entries learnt_for(const RunConfig& config, const MinuteSeries& series) {
 
 Entries learnt_for(const RunConfig& config, const MinuteSeries& series, const MarketSteps& market,
                    const std::vector<MarketDay>& days) {
-  const std::int64_t from_utc_s = market.of(days.front()).front().utc_s;
-  const std::int64_t until_utc_s = market.of(days.back()).back().utc_s + kSecondsPerStep;
+  const auto [from_utc_s, until_utc_s] = market.span_of(days);
   Entries entries = circumstances_of(config_entries(config));
   entries.emplace_back(kPricesKey, prices_hash(prices_checksum(series),
                                                (until_utc_s - from_utc_s) / 60, from_utc_s));
@@ -91,8 +90,7 @@ std::string unknown_regimes(const Entries& there, const MarketSteps& market,
                             const std::vector<MarketDay>& days) {
   const auto learnt = span_of(there);
   if (!learnt || days.empty()) return {};
-  const UtcSpan traded{market.of(days.front()).front().utc_s, market.of(days.back()).back().utc_s};
-  const std::string regimes = regimes_not_learnt(*learnt, traded);
+  const std::string regimes = regimes_not_learnt(*learnt, market.span_of(days));
   if (regimes.empty()) return {};
   return fmt::format("its prices are of {} to {}, these days of another regime: {}",
                      date_of(learnt->from_s), date_of(learnt->until_s - 1), regimes);
@@ -107,6 +105,18 @@ void warn_learnt_otherwise(const std::filesystem::path& model, const Entries& he
   if (other.empty()) return;
   fmt::print(stderr, "bess-train: warning: {} was learnt for other circumstances: {}\n",
              model.string(), other);
+}
+
+void warn_unknown_regimes(const std::string& what, const MarketSteps& fitting,
+                          const MarketSteps& market, const std::vector<MarketDay>& days) {
+  const std::vector<MarketDay> fitted = fitting.fitted_days();
+  if (fitted.empty() || days.empty()) return;
+  const std::string regimes = regimes_not_learnt(fitting.span_of(fitted), market.span_of(days));
+  if (regimes.empty()) return;
+  fmt::print(stderr,
+             "bess-train: warning: {} is fitted on {} to {}, and trades in a price regime that it "
+             "saw nothing of: {}\n",
+             what, fitted.front().date(), fitted.back().date(), regimes);
 }
 
 }  // namespace bess

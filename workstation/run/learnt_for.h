@@ -30,6 +30,11 @@ std::string learnt_otherwise(const Entries& there, const Entries& here);
 std::string unknown_regimes(const Entries& there, const MarketSteps& market,
                             const std::vector<MarketDay>& days);
 
+/// One line on stderr when `days` of `market` meet a price regime that no training or validation
+/// day of `fitting` lies in.
+void warn_unknown_regimes(const std::string& what, const MarketSteps& fitting,
+                          const MarketSteps& market, const std::vector<MarketDay>& days);
+
 /// One line on stderr when there is something to tell; of `days`, when they are given.
 void warn_learnt_otherwise(const std::filesystem::path& model, const Entries& here,
                            const MarketSteps& market = {}, const std::vector<MarketDay>& days = {});

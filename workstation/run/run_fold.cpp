@@ -52,10 +52,4 @@ MarketSteps market_of_fold(const MarketSteps& market, const std::string& month) 
   return std::move(found->market);
 }
 
-std::vector<MarketDay> fitted_days(const MarketSteps& fold) {
-  std::vector<MarketDay> days = fold.days;
-  std::erase_if(days, [](const MarketDay& day) { return day.split == Split::kTest; });
-  return days;
-}
-
 }  // namespace bess

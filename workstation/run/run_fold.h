@@ -32,7 +32,4 @@ std::vector<std::string> fold_months(const MarketSteps& market);
 /// when it is not traded.
 MarketSteps market_of_fold(const MarketSteps& market, const std::string& name);
 
-/// The days of a fold that something is fitted on.
-std::vector<MarketDay> fitted_days(const MarketSteps& fold);
-
 }  // namespace bess

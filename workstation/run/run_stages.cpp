@@ -173,6 +173,7 @@ void RunStages::finish() {
   tidy();
   const bool by_month = config_.train.context == ContextKind::kMonth;
   if (by_month || record_.value(kFoldKey).empty()) warn_untrained_months(market_, by_month);
+  warn_unknown_regimes("this run", market_, market_, market_.days_of(Split::kTest));
   for (const Stage& stage : run_stages()) {
     if (!is_due(stage)) continue;
     announce(stage);
@@ -255,7 +256,7 @@ RunStages::Names RunStages::make_teacher() {
   trained.teacher.provenance = training_provenance(record_.prices_name, config_.train, trained);
   trained.teacher.learnt_for = record_.value(kFoldKey).empty()
                                    ? learnt_for(config_, series_)
-                                   : learnt_for(config_, series_, market_, fitted_days(market_));
+                                   : learnt_for(config_, series_, market_, market_.fitted_days());
   save_teacher(path(kTeacher), trained.teacher);
   (void)teacher();  // read while what was trained is there: by outlook it takes its plans over
   write_file(path(kTrainingCurve), training_curve_csv(trained.curve));

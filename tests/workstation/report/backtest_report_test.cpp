@@ -117,6 +117,32 @@ TEST(BacktestReport, ThePageDrawsAFallWhereThereIsOne) {
   }
 }
 
+/// The second month is traded where the first lies on the other side of a boundary.
+TEST(BacktestReport, AFoldThatCrossesABoundaryOfTheMarketIsNamed) {
+  const PriceRegime* const regimes = price_regimes().data();
+  BacktestResults crossing = results(5);
+  for (WalkForward& policy : crossing.policies) {
+    policy.months = {"2024-10", "2024-12"};
+    for (std::size_t d = 0; d < policy.total.days.size(); ++d) {
+      policy.total.days[d].date = (d < 3 ? "2024-10-0" : "2024-12-0") + std::to_string(d % 3 + 1);
+    }
+  }
+  crossing.regimes = {{{regimes + 1}, {regimes + 1}}, {{regimes + 1}, {regimes + 2}}};
+  const std::string line = std::string("2024-12 crosses a boundary of the market: fitted ") +
+                           regimes[1].name + "; traded " + regimes[2].name;
+  EXPECT_THAT(format_backtest_table(crossing),
+              AllOf(HasSubstr(line + "\n"), Not(HasSubstr("2024-10 crosses"))));
+  EXPECT_THAT(backtest_json(crossing).line(),
+              HasSubstr("\"fitted_days\":120,\"regimes_fitted\":[\"from 22 May 2024 (dead band and "
+                        "floor, local mFRR)\"],\"regimes_traded\":[\"from 26 November 2024"));
+  const TemporaryFolder folder;
+  write_backtest_page(crossing, folder.file(""));
+  EXPECT_THAT(read_file(folder.file("backtest.html")),
+              AllOf(HasSubstr("\"marks\":[[3,\"PICASSO\"]]"), HasSubstr("<li>" + line)));
+  write_backtest_page(results(5), folder.file(""));
+  EXPECT_THAT(read_file(folder.file("backtest.html")), HasSubstr("\"marks\":[]"));
+}
+
 TEST(BacktestReport, ThePictureHasTheSumsOfTheDays) {
   const TemporaryFolder folder;
   const BacktestResults fitted = results(5);

@@ -9,7 +9,9 @@
 #include "shared/host/json.h"
 #include "tests/support/small_market.h"
 #include "tests/support/temporary_folder.h"
+#include "workstation/chain/interruption.h"
 #include "workstation/cli/commands.h"
+#include "workstation/market/series/local_date.h"
 #include "workstation/market/series/price_regime.h"
 #include "workstation/rl/teacher.h"
 #include "workstation/student/student_file.h"
@@ -87,6 +89,46 @@ TEST_F(LearntFor, AnotherPriceRegimeIsNamed) {
                     HasSubstr("another regime: from 26 November 2024 (PICASSO)")));
 }
 
+/// Two months of which the last six days are PICASSO's: what is fitted before them is told of.
+TEST_F(LearntFor, WhatIsFittedBeforeABoundaryIsToldOfBehindIt) {
+  MinuteSeries across = small_series(30);
+  across.start_utc_s = kPicasso_s - 25 * kDay_s;
+  const std::string prices = folder_.file("across.csv.gz");
+  write_minute_file(prices, across, "");
+  const auto told = HasSubstr("saw nothing of: from 26 November 2024 (PICASSO)");
+  const std::string test = "evaluate --prices " + prices + " --policy ";
+  EXPECT_THAT(warnings(test + "sdp"), AllOf(told, HasSubstr("on 2024-11-01 to 2024-11-25")));
+  EXPECT_EQ(warnings(test + "rbc"), "") << "it is fitted on nothing";
+  EXPECT_EQ(warnings("evaluate --split val --prices " + prices + " --policy sdp"), "");
+  EXPECT_EQ(warnings("evaluate --fit " + prices + " --prices " + prices_ + " --policy rbc"), "");
+  EXPECT_THAT(warnings("evaluate --fit " + prices_ + " --prices " + prices + " --policy sdp"),
+              told);
+  MinuteSeries months = small_series(100);
+  months.start_utc_s = kPicasso_s - 61 * kDay_s;
+  write_minute_file(prices, months, "");
+  EXPECT_THAT(warnings("backtest --window-days 30 --policy rbc --prices " + prices + " --out " +
+                       folder_.file("months")),
+              AllOf(HasSubstr("2024-11 is fitted on 2024-10-02"), told,
+                    Not(HasSubstr("2025-01 is fitted"))));
+}
+
+/// A run's days 26 to 30 lie behind the boundary, and nothing else does.
+TEST_F(LearntFor, ARunWhoseTestDaysLieBehindABoundarySaysSo) {
+  MinuteSeries across = small_series(30);
+  across.start_utc_s = kPicasso_s - 25 * kDay_s;
+  const std::string prices = folder_.file("across.csv.gz");
+  write_minute_file(prices, across, "");
+  const std::string config = folder_.write("small.toml", "[train]\nmethod = \"sdp\"\n");
+  const std::string out = folder_.file("run");
+  interruption() = true;  // it ends with its first stage
+  EXPECT_THROW(warnings("run --prices " + prices + " --config " + config + " --out " + out),
+               Interrupted);
+  interruption() = false;
+  testing::internal::GetCapturedStdout();
+  EXPECT_THAT(testing::internal::GetCapturedStderr(),
+              HasSubstr("this run is fitted on 2024-11-01 to 2024-11-25, and trades in"));
+}
+
 /// Each month's teacher is learnt from the days before it, says so, and is kept.
 TEST_F(LearntFor, ABacktestsTeachersNameTheirPricesAndDays) {
   const std::string out = folder_.file("backtest");
@@ -116,6 +158,11 @@ TEST_F(LearntFor, ABacktestsTeachersNameTheirPricesAndDays) {
 TEST(PriceRegimes, BeginAtLocalMidnight) {
   const auto day = [](std::int64_t from_s) { return UtcSpan{from_s, from_s + kDay_s}; };
   const UtcSpan before = day(kPicasso_s - kDay_s);
+  for (const PriceRegime& regime : price_regimes().subspan(1)) {
+    EXPECT_EQ(regime.from_utc_s, local_midnight_utc_s(parse_local_date(regime.from_date, "")));
+    EXPECT_EQ(regimes_met(day(regime.from_utc_s)), std::vector{&regime});
+    EXPECT_EQ(regimes_met(day(regime.from_utc_s - 60)), (std::vector{&regime - 1, &regime}));
+  }
   EXPECT_EQ(regimes_not_learnt(before, before), "");
   EXPECT_THAT(regimes_not_learnt(before, day(kPicasso_s)), HasSubstr("PICASSO"));
   EXPECT_THAT(regimes_not_learnt(day(kPicasso_s), before), HasSubstr("22 May 2024"));

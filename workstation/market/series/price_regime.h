@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace bess {
 
@@ -12,8 +14,23 @@ struct UtcSpan {
   std::int64_t from_s, until_s;
 };
 
-/// Names of the regimes that `traded` meets and `learnt` does not, "from 26 November 2024
-/// (PICASSO)"; or empty.
+struct PriceRegime {
+  std::int64_t from_utc_s;  ///< local midnight
+  const char* from_date;    ///< local, "2024-05-22"; empty of the first
+  const char* change;       ///< what changed with it, for a mark in a picture
+  const char* name;         ///< "from 26 November 2024 (PICASSO)"
+};
+
+/// Ascending; every moment belongs to one.
+std::span<const PriceRegime> price_regimes();
+
+/// Those that the span meets, in order.
+std::vector<const PriceRegime*> regimes_met(const UtcSpan& span);
+
+/// Names of the regimes that `traded` meets and `learnt` does not, or empty.
 std::string regimes_not_learnt(const UtcSpan& learnt, const UtcSpan& traded);
+
+/// Names, a comma between.
+std::string regime_names(const std::vector<const PriceRegime*>& regimes);
 
 }  // namespace bess

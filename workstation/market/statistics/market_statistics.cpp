@@ -55,6 +55,26 @@ std::vector<ClockChange> clock_changes_between(std::int64_t from_utc_s, std::int
   return changes;
 }
 
+/// `settled` by quarter-hour of the UTC grid, from the one that holds `from_utc_s`.
+std::vector<RegimeStatistics> regime_statistics(std::span<const double> settled,
+                                                std::int64_t from_utc_s) {
+  const std::int64_t first = from_utc_s / kSecondsPerQuarterHour;
+  const auto count = static_cast<std::int64_t>(settled.size());
+  std::vector<RegimeStatistics> rows;
+  auto end = settled.begin();
+  for (const PriceRegime* regime :
+       regimes_met({from_utc_s, (first + count) * kSecondsPerQuarterHour})) {
+    const PriceRegime* const next = regime + 1;
+    const bool is_last = next == std::to_address(price_regimes().end());
+    const auto begin = end;
+    end = is_last ? settled.end()
+                  : settled.begin() +
+                        std::min(count, next->from_utc_s / kSecondsPerQuarterHour - first);
+    rows.push_back({regime, price_statistics({begin, end})});
+  }
+  return rows;
+}
+
 /// How often two neighbours lie on different sides of zero.
 struct FlipCount {
   std::size_t pairs = 0, flips = 0;
@@ -155,7 +175,9 @@ MarketStatistics statistics_of_minutes(const MinuteSeries& series) {
   MarketStatistics result;
   result.from_utc_s = series.start_utc_s;
   result.until_utc_s = series.utc_s(series.size());
-  result.price = price_statistics(settled_by_quarter_hour(series));
+  const std::vector<double> settled = settled_by_quarter_hour(series);
+  result.price = price_statistics(settled);
+  result.regimes = regime_statistics(settled, result.from_utc_s);
   result.convergence = convergence_by_minute(series);
   result.settled_gaps = gaps_in(series.settled, series.start_utc_s, 60);
   result.indicative_gaps = gaps_in(series.indicative, series.start_utc_s, 60);
@@ -175,6 +197,7 @@ MarketStatistics statistics_of_quarter_hours(const std::vector<QuarterHour>& qua
                                      kSecondsPerQuarterHour)] = quarter_hour.price_eur_per_mwh;
   }
   result.price = price_statistics(settled);
+  result.regimes = regime_statistics(settled, result.from_utc_s);
   const double flips = imbalance_sign_flip_rate(quarter_hours);
   if (is_published(flips)) result.imbalance_sign_flip_rate = flips;
   result.settled_gaps = gaps_in(settled, result.from_utc_s, kSecondsPerQuarterHour);

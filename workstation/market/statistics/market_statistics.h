@@ -12,6 +12,7 @@
 #include "shared/host/minute_file.h"
 #include "shared/units_and_limits.h"
 #include "workstation/market/series/gaps.h"
+#include "workstation/market/series/price_regime.h"
 #include "workstation/market/series/quarter_hour.h"
 
 namespace bess {
@@ -39,6 +40,12 @@ struct ClockChange {
   int quarter_hours;  ///< 92 or 100
 };
 
+/// The settled prices of one regime.
+struct RegimeStatistics {
+  const PriceRegime* regime;
+  PriceStatistics price;
+};
+
 struct MarketStatistics {
   std::int64_t from_utc_s = 0, until_utc_s = 0;  ///< exclusive
   PriceStatistics price;
@@ -47,6 +54,7 @@ struct MarketStatistics {
   std::vector<Gap> settled_gaps;                   ///< no settled price
   std::vector<Gap> indicative_gaps;                ///< no indicative price (minute files only)
   std::vector<ClockChange> clock_changes;
+  std::vector<RegimeStatistics> regimes;  ///< those that the file meets, in order
 };
 
 /// Settled price of each quarter-hour of the grid, NaN where unknown. `settled[q]`.

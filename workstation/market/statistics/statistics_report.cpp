@@ -35,6 +35,21 @@ std::string format_price_text(std::string_view what, const PriceStatistics& pric
                             100 * price.sign_flip_rate);
 }
 
+std::string format_regimes_text(const std::vector<RegimeStatistics>& regimes) {
+  std::string text = fmt::format("{:<52} {:>6} {:>8} {:>25} {:>8} {:>8}\n", "by price regime",
+                                 "count", "mean", "quartiles", "< -200", "> 1000");
+  for (const auto& [regime, price] : regimes) {
+    text += fmt::format("  {:<50} {:>6}", regime->name, price.count);
+    text += price.count == 0
+                ? "\n"
+                : fmt::format(" {:>8.2f} {:>25} {:>6.2f} % {:>6.3f} %\n", price.mean,
+                              fmt::format("{:.2f} / {:.2f} / {:.2f}", price.quartile_1,
+                                          price.median, price.quartile_3),
+                              100 * price.share_below_minus_200, 100 * price.share_above_1000);
+  }
+  return text;
+}
+
 std::string format_convergence_text(const ConvergenceByMinute& convergence) {
   std::string text = "indicative against settled price, absolute error, EUR/MWh\n";
   text += "  minute    rows    median      mean\n";
@@ -69,6 +84,16 @@ void add_price(Json& json, const PriceStatistics& price) {
              price.count > 0 ? price.autocorrelation[i] : NAN);
   }
   json.set("autocorrelation", std::move(lags));
+}
+
+Json regimes_json(const std::vector<RegimeStatistics>& regimes) {
+  Json list = Json::list();
+  for (const auto& [regime, price] : regimes) {
+    Json row = Json::object({{"regime", regime->name}});
+    add_price(row, price);
+    list.add(std::move(row));
+  }
+  return list;
 }
 
 Json convergence_json(const ConvergenceByMinute& convergence) {
@@ -114,6 +139,7 @@ std::string format_statistics_text(const MarketStatistics& statistics, std::stri
   std::string text = fmt::format("{} to {}\n", utc_text(statistics.from_utc_s).view(),
                                  utc_text(statistics.until_utc_s).view());
   text += format_price_text(what, statistics.price);
+  text += format_regimes_text(statistics.regimes);
   if (statistics.imbalance_sign_flip_rate) {
     text += fmt::format("system imbalance changes sides between {:.1f} % of quarter-hours\n",
                         100 * *statistics.imbalance_sign_flip_rate);
@@ -132,6 +158,7 @@ std::string format_statistics_json(const MarketStatistics& statistics) {
   Json json = answer("price_statistics");
   add_span(json, statistics.from_utc_s, statistics.until_utc_s);
   add_price(json, statistics.price);
+  json.set("regimes", regimes_json(statistics.regimes));
   json.set("imbalance_sign_flip_rate", statistics.imbalance_sign_flip_rate.value_or(NAN));
   json.set("convergence",
            statistics.convergence ? convergence_json(*statistics.convergence) : Json::null());

@@ -47,6 +47,28 @@ TEST(Statistics, SignFlipsSkipGaps) {
                    0.5);
 }
 
+/// Two days on either side of PICASSO, at other prices.
+TEST(Statistics, EachRegimeHasARowOfItsOwn) {
+  MinuteSeries series;
+  series.start_utc_s = local_midnight_utc_s({2024, 11, 24});
+  series.settled.assign(2 * 1440, -300.0);
+  series.settled.resize(5 * 1440, 80.0);
+  series.indicative = series.settled;
+  const MarketStatistics result = statistics_of_minutes(series);
+  ASSERT_EQ(result.regimes.size(), 2U);
+  EXPECT_EQ(result.regimes[0].price.count, 2U * 96);
+  EXPECT_EQ(result.regimes[0].price.maximum, -300);
+  EXPECT_EQ(result.regimes[0].price.share_below_minus_200, 1);
+  EXPECT_EQ(result.regimes[1].price.count, 3U * 96);
+  EXPECT_EQ(result.regimes[1].price.minimum, 80);
+  EXPECT_THAT(format_statistics_text(result),
+              HasSubstr("from 26 November 2024 (PICASSO)                       288    80.00"));
+  EXPECT_THAT(format_statistics_json(result),
+              HasSubstr("{\"regime\":\"from 26 November 2024 (PICASSO)\",\"quarter_hours\":288,"));
+  series.start_utc_s = local_midnight_utc_s({2025, 1, 1});
+  ASSERT_EQ(statistics_of_minutes(series).regimes.size(), 1U);
+}
+
 TEST(Statistics, ClockChangesOfAYear) {
   MinuteSeries series;
   series.start_utc_s = local_midnight_utc_s({2023, 1, 1});
