@@ -127,7 +127,8 @@ double WalkForward::drawdown_eur_per_mwh() const { return drawdown(daily_profits
 
 WalkForward walk_forward(const std::string& name, const Folds& folds, const FoldPolicy& make,
                          const BatteryParameters& battery, double initial_soc_frac,
-                         const MarketSteps& market, bool and_day_reset) {
+                         const MarketSteps& market, bool and_day_reset,
+                         std::vector<StepRecord>* records) {
   WalkForward result{.name = name, .total = {}, .months = {}, .by_month = {}};
   EvaluationOptions options{battery, initial_soc_frac, true};
   for (const Fold& fold : folds.traded) {
@@ -139,9 +140,9 @@ WalkForward walk_forward(const std::string& name, const Folds& folds, const Fold
       std::erase_if(days, [&](const MarketDay& day) {
         return date_of(day) < date_of(traded.front()) || date_of(day) > date_of(traded.back());
       });
-      evaluation = evaluate(market, days, *policy, options);
+      evaluation = evaluate(market, days, *policy, options, records);
     } else {
-      evaluation = evaluate(fold.market, traded, *policy, options);
+      evaluation = evaluate(fold.market, traded, *policy, options, records);
       options.initial_soc_frac = evaluation.days.back().soc_end_frac;
     }
     if (and_day_reset) {

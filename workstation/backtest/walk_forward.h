@@ -73,9 +73,10 @@ struct WalkForward {
 using FoldPolicy = std::function<std::shared_ptr<Policy>(const Fold&)>;
 
 /// Trades fold after fold. A policy that sees the future, the bound, plans over `market` as a
-/// whole.
+/// whole. Appends every step to `records` when it is given.
 WalkForward walk_forward(const std::string& name, const Folds& folds, const FoldPolicy& make,
                          const BatteryParameters& battery, double initial_soc_frac,
-                         const MarketSteps& market, bool and_day_reset = false);
+                         const MarketSteps& market, bool and_day_reset = false,
+                         std::vector<StepRecord>* records = nullptr);
 
 }  // namespace bess

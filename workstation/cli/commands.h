@@ -21,6 +21,7 @@ void add_rules_price(ProgramCommand& rules);
 void add_verify_command(ProgramCommand& app);
 void add_evaluate_command(ProgramCommand& app);
 void add_backtest_command(ProgramCommand& app);
+void add_size_command(ProgramCommand& app);
 void add_delays_command(ProgramCommand& app);
 void add_omega_sweep_command(ProgramCommand& app);
 void add_export_command(ProgramCommand& app);

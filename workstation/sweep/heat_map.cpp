@@ -60,7 +60,7 @@ std::string shown(const std::string& value) { return value.empty() ? "as configu
 }  // namespace
 
 std::string heat_map_html(const std::vector<FoldedSettings>& rows, const std::string& across,
-                          const std::string& down) {
+                          const std::string& down, const std::string& what, const std::string& id) {
   Means means;
   double low = 0, high = 0;
   for (const FoldedSettings& row : rows) {
@@ -76,10 +76,11 @@ std::string heat_map_html(const std::vector<FoldedSettings>& rows, const std::st
   }
   const std::vector<std::string> columns = values_of(rows, across);
   std::string text = fmt::format(
-      "<div class=\"wide\"><table id=\"map\">\n<caption style=\"white-space:nowrap\">Mean profit: "
+      "<div class=\"wide\"><table id=\"{}\">\n<caption style=\"white-space:nowrap\">{}: "
       "{} across{}</caption>\n"
       "<thead><tr><th scope=\"col\">{}</th>",
-      html_escaped(across), down.empty() ? "" : ", " + html_escaped(down) + " down",
+      html_escaped(id), html_escaped(what), html_escaped(across),
+      down.empty() ? "" : ", " + html_escaped(down) + " down",
       html_escaped(down.empty() ? "all" : down));
   for (const std::string& column : columns) {
     text += fmt::format("<th scope=\"col\">{}</th>", html_escaped(shown(column)));

@@ -9,8 +9,9 @@
 
 namespace bess {
 
-/// `down` may be empty: one row then.
+/// `down` may be empty: one row then. `what` is shown; `id` is the table's, once on a page.
 std::string heat_map_html(const std::vector<FoldedSettings>& rows, const std::string& across,
-                          const std::string& down);
+                          const std::string& down, const std::string& what = "Mean profit",
+                          const std::string& id = "map");
 
 }  // namespace bess

@@ -226,6 +226,13 @@ class Answers(unittest.TestCase):
         status = self.answers("sweep", "status", "@sweeps")[0]
         self.assertEqual([status["tasks"], status["missing"], status["proved"]], [6, 6, 0])
 
+    def test_8_size(self):
+        with open(self.file("plan.toml"), "w") as plan:
+            plan.write('[size]\npower_kw = [5, 10]\ncapacity_kwh = [10]\nwindow_days = 30\npolicy = "rbc"\n'
+                       '[[contract]]\nname = "a, b"\n[purchase]\neur_per_kwh = 300\n')
+        self.answers("size", "--prices", "@market.csv", "--plan", "@plan.toml", "--out", "@sizes")
+        self.table(self.file("sizes/size.csv"))
+
     def test_9_nothing_is_left_out(self):
         """Every command that knows --json was asked, and every kind of answer and table was met."""
         kinds = {name.removeprefix("answer_") for name in self.schema["$defs"] if name.startswith("answer_")}

@@ -27,6 +27,7 @@ constexpr BadCommandLine kCases[] = {
     {"distil", 2, "is required (see bess-train distil --help)"},
     {"evaluate", 2, "is required (see bess-train evaluate --help)"},
     {"backtest", 2, "is required (see bess-train backtest --help)"},
+    {"size", 2, "is required (see bess-train size --help)"},
     {"delays", 2, "is required (see bess-train delays --help)"},
     {"export", 2, "--student is required (see bess-train export --help)"},
     {"report", 2, "--run is required (see bess-train report --help)"},

@@ -1,0 +1,124 @@
+// bess-train size: what a battery would earn, before it is bought: of what size, under which
+// contract.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <memory>
+
+#include "shared/host/distinct_files.h"
+#include "shared/host/file.h"
+#include "workstation/chain/chain_steps.h"
+#include "workstation/chain/common_options.h"
+#include "workstation/chain/day_ahead_input.h"
+#include "workstation/chain/interruption.h"
+#include "workstation/chain/policy_factory.h"
+#include "workstation/chain/price_input.h"
+#include "workstation/cli/commands.h"
+#include "workstation/run/run_record.h"
+#include "workstation/run/run_report.h"
+#include "workstation/size/size_report.h"
+
+namespace bess {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct SizeArguments {
+  CommonOptions common;
+  PriceInput price_input;
+  DayAheadInput day_ahead;
+  std::vector<std::string> prices;
+  std::string plan;
+  std::string out;
+  bool json = false;
+};
+
+void require_files(const SizeArguments& options) {
+  std::vector<GivenPath> inputs = given_paths("--prices", options.prices);
+  inputs.push_back({"--plan", options.plan});
+  inputs.push_back({"--config", options.common.config_path});
+  inputs.push_back({"--day-ahead", options.day_ahead.path()});
+  std::vector<GivenPath> outputs;
+  for (const char* name : {"size.csv", "size.html", "best.toml"}) {
+    outputs.push_back({"--out", fs::path(options.out) / name});
+  }
+  require_distinct(outputs, inputs);
+}
+
+/// The student of the best cell is made by the normal run: this is its configuration, and how.
+std::string how_to_learn_it(const SizeArguments& options, const RunConfig& base,
+                            const SizeCell& best) {
+  const fs::path config = fs::path(options.out) / "best.toml";
+  write_file(config,
+             format_run_config(cell_config(base, best.power_w, best.capacity_wh, *best.contract)));
+  const std::string all = (fs::path(options.out) / "prices.csv.gz").string();
+  const bool is_one = options.prices.size() == 1;
+  const std::string join = is_one ? std::string()
+                                  : fmt::format("bess-train prices import {} --out {} && ",
+                                                fmt::join(options.prices, " "), all);
+  const std::string day_ahead =
+      options.day_ahead.path().empty() ? "" : " --day-ahead " + options.day_ahead.path();
+  return fmt::format("its student: {}bess-train run --prices {}{} --config {} --out {}", join,
+                     is_one ? options.prices.front() : all, day_ahead, config.string(),
+                     (fs::path(options.out) / "student").string());
+}
+
+void run_size(const SizeArguments& options) {
+  require_files(options);
+  const RunConfig base = options.common.resolve(options.day_ahead.context_unless_said());
+  const SizePlan plan = read_size_plan(options.plan, base);
+  require_policies({plan.policy});
+  require_outlook({plan.policy}, options.day_ahead.path());
+  const MinuteSeries series = options.price_input.read_joined(options.prices).series;
+  MarketSteps market = market_of(series, base.market, options.prices.front());
+  attach_day_ahead(market, options.day_ahead.read(series, options.price_input.accepted(),
+                                                  base.market.day_ahead_published_min));
+  const Folds folds = make_folds(market, {plan.window_days});
+  const fs::path folder = options.out;
+  require_writable(folder / "size.csv");
+  end_when_interrupted();
+  const SizeCells weighed = weigh_up(plan, base, {market, folds, plan.policy, base.train.threads});
+  const SizeReport report{
+      plan, weighed,
+      fmt::format("{} cells of {} classes, {} on prices {:08x}, {} months, each fitted on the {} "
+                  "days before it",
+                  weighed.cells.size(), weighed.classes.size(), plan.policy,
+                  prices_checksum(series), folds.traded.size(), plan.window_days)};
+  write_file(folder / "size.csv", size_csv(report));
+  write_size_page(report, folder);
+  const std::string student = how_to_learn_it(options, base, best_of(weighed.cells));
+  if (options.json) {
+    fmt::print("{}\n", size_json(report).line());
+  } else {
+    fmt::print("{}{}\n{}: size.html and size.csv\n", format_size_table(report), student,
+               options.out);
+  }
+}
+
+}  // namespace
+
+void add_size_command(ProgramCommand& app) {
+  auto options = std::make_shared<SizeArguments>();
+  ProgramCommand command = app.subcommand(
+      "size", "Before buying: powers x capacities x contracts, what each earns and pays back");
+  command
+      .option("--prices", options->prices, "Minute files or downloads, which may lie apart in time")
+      .required();
+  options->price_input.add(command);
+  command.option("--plan", options->plan, "TOML file (workstation/size/README.md)").required();
+  command.option("--out", options->out, "Folder for table and page").required();
+  options->day_ahead.add(command);
+  command.flag("--json", options->json, "One JSON object");
+  options->common.add_market(command);
+  options->common.add_config(command);
+  options->common.add_seed_and_threads(command);
+  command.footer(
+      "The least plan: [size], power_kw = [5, 10], capacity_kwh = [10, 20].\n"
+      "Examples:\n"
+      "  bess-train size --prices 2024.csv.gz 2025.csv.gz --plan plan.toml --out sizes\n"
+      "  bess-train size --prices 2024.csv.gz --day-ahead day_ahead.csv --plan outlook.toml --out "
+      "sizes");
+  command.runs([options] { run_size(*options); });
+}
+
+}  // namespace bess
