@@ -14,6 +14,7 @@ void add_commands(ProgramCommand& app) {
   add_evaluate_command(app);
   add_backtest_command(app);
   add_size_command(app);
+  add_impact_command(app);
   add_delays_command(app);
   add_omega_sweep_command(app);
   add_export_command(app);

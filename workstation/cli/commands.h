@@ -22,6 +22,7 @@ void add_verify_command(ProgramCommand& app);
 void add_evaluate_command(ProgramCommand& app);
 void add_backtest_command(ProgramCommand& app);
 void add_size_command(ProgramCommand& app);
+void add_impact_command(ProgramCommand& app);
 void add_delays_command(ProgramCommand& app);
 void add_omega_sweep_command(ProgramCommand& app);
 void add_export_command(ProgramCommand& app);

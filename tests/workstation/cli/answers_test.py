@@ -233,6 +233,12 @@ class Answers(unittest.TestCase):
         self.answers("size", "--prices", "@market.csv", "--plan", "@plan.toml", "--out", "@sizes")
         self.table(self.file("sizes/size.csv"))
 
+    def test_8_impact(self):
+        answer = self.answers("impact", "--fleet-mw", "300", "0", "--policy", "rbc", "--train-days", "10", "--test-days",
+                              "2", "--seeds", "1", "--rounds", "1", "--out", "@impact")[0]
+        self.assertEqual(len(answer["fleets"]), 3 * 2 * 5)
+        self.table(self.file("impact/impact.csv"))
+
     def test_9_nothing_is_left_out(self):
         """Every command that knows --json was asked, and every kind of answer and table was met."""
         kinds = {name.removeprefix("answer_") for name in self.schema["$defs"] if name.startswith("answer_")}

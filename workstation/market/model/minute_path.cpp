@@ -59,28 +59,35 @@ MinutePathGenerator::Sides MinutePathGenerator::final_sides(const QuarterHour& q
   return sides;
 }
 
-MinutePrices MinutePathGenerator::next(const QuarterHour& quarter_hour) {
+MinutePath MinutePathGenerator::draw(const QuarterHour& quarter_hour) {
   const double settled = quarter_hour.price_eur_per_mwh;
-  const double imbalance_mw = quarter_hour.system_imbalance_mw;
   const Sides sides = final_sides(quarter_hour);
-  const Path imbalance = imbalance_path(imbalance_mw);
+  const Path imbalance = imbalance_path(quarter_hour.system_imbalance_mw);
   const Path incremental = staircase(previous_sides_.incremental, sides.incremental, +1);
   const Path decremental = staircase(previous_sides_.decremental, sides.decremental, -1);
-  const auto price_of = [&](int m, double previous_mw) {
-    return imbalance_price_eur_per_mwh({imbalance[m], previous_mw, incremental[m], decremental[m]});
-  };
   // What the formula leaves unexplained at the end: dead band and alpha' since 2024. Less than a
   // cent's rounding is none.
-  const double by_formula = price_of(kMinutesPerQuarterHour - 1, previous_imbalance_mw_);
+  const double by_formula = imbalance_price_eur_per_mwh(
+      {imbalance.back(), previous_imbalance_mw_, incremental.back(), decremental.back()});
   const double unexplained = in_cents(by_formula) == settled ? 0 : settled - by_formula;
+  const MinutePath path{imbalance, incremental, decremental, previous_imbalance_mw_, unexplained};
+  previous_sides_ = sides;
+  previous_imbalance_mw_ = quarter_hour.system_imbalance_mw;
+  return path;
+}
+
+MinutePrices MinutePathGenerator::next(const QuarterHour& quarter_hour) {
+  const MinutePath path = draw(quarter_hour);
   MinutePrices prices{};
   for (int m = 0; m < kMinutesPerQuarterHour; ++m) {
-    prices[m] = price_of(m, m == 0 ? 0 : previous_imbalance_mw_);
-    if (is_short(imbalance[m]) == is_short(imbalance_mw)) prices[m] += unexplained;
+    prices[m] = imbalance_price_eur_per_mwh(
+        {path.imbalance_mw[m], m == 0 ? 0 : path.previous_imbalance_mw,
+         path.incremental_eur_per_mwh[m], path.decremental_eur_per_mwh[m]});
+    if (is_short(path.imbalance_mw[m]) == is_short(quarter_hour.system_imbalance_mw)) {
+      prices[m] += path.unexplained_eur_per_mwh;
+    }
   }
-  prices.back() = settled;
-  previous_sides_ = sides;
-  previous_imbalance_mw_ = imbalance_mw;
+  prices.back() = quarter_hour.price_eur_per_mwh;
   return prices;
 }
 

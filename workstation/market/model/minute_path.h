@@ -20,13 +20,22 @@ namespace bess {
 
 using MinutePrices = std::array<double, kMinutesPerQuarterHour>;
 
+/// What the fifteen prices of a quarter-hour are made of; by minute, each of everything so far.
+struct MinutePath {
+  std::array<double, kMinutesPerQuarterHour> imbalance_mw, incremental_eur_per_mwh,
+      decremental_eur_per_mwh;
+  double previous_imbalance_mw;
+  double unexplained_eur_per_mwh;  ///< what the formula leaves at the end; 0 of a simulated one
+};
+
 class MinutePathGenerator {
  public:
   explicit MinutePathGenerator(std::uint64_t seed);
 
-  /// Path of the next quarter-hour in time; the last price is the settled one. `quarter_hour` needs
-  /// a price and an imbalance; a missing marginal price is replaced by the last one seen on that
-  /// side.
+  /// Path of the next quarter-hour in time. `quarter_hour` needs a price and an imbalance; a
+  /// missing marginal price is replaced by the last one seen on that side.
+  MinutePath draw(const QuarterHour& quarter_hour);
+  /// Its prices; the last one is the settled one.
   MinutePrices next(const QuarterHour& quarter_hour);
 
  private:

@@ -30,9 +30,7 @@ double alpha_eur_per_mwh(const ImbalanceState& state) {
 }
 
 double imbalance_price_eur_per_mwh(const ImbalanceState& state) {
-  const double alpha = alpha_eur_per_mwh(state);
-  return is_short(state.system_imbalance_mw) ? state.marginal_incremental_eur_per_mwh + alpha
-                                             : state.marginal_decremental_eur_per_mwh - alpha;
+  return imbalance_price_eur_per_mwh(state, alpha_eur_per_mwh(state));
 }
 
 }  // namespace bess

@@ -23,6 +23,12 @@ constexpr bool is_short(double system_imbalance_mw) { return system_imbalance_mw
 
 /// The additional component alpha, never negative.
 double alpha_eur_per_mwh(const ImbalanceState& state);
+/// The price with this alpha in place of it.
+inline double imbalance_price_eur_per_mwh(const ImbalanceState& state, double alpha_eur_per_mwh) {
+  return is_short(state.system_imbalance_mw)
+             ? state.marginal_incremental_eur_per_mwh + alpha_eur_per_mwh
+             : state.marginal_decremental_eur_per_mwh - alpha_eur_per_mwh;
+}
 double imbalance_price_eur_per_mwh(const ImbalanceState& state);
 
 }  // namespace bess

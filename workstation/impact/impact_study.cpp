@@ -1,0 +1,235 @@
+#include "workstation/impact/impact_study.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <mutex>
+
+#include "workstation/base/in_parallel.h"
+#include "workstation/base/progress.h"
+#include "workstation/chain/policy_factory.h"
+#include "workstation/market/series/imbalance_price.h"
+#include "workstation/market/series/local_date.h"
+
+namespace bess {
+namespace {
+
+/// The year whose imbalances the simulated market was fitted to.
+constexpr LocalDate kFirstDay{2023, 1, 1};
+/// Before the test days, not counted: the trailing price level finds its place.
+constexpr int kWarmUpDays = 5;
+
+/// Wear that a shy fleet plans with beside its own, EUR/MWh.
+constexpr double kShynesses[] = {0, 20, 50, 100, 200, 400};
+
+using Policies = std::vector<std::shared_ptr<Policy>>;
+
+std::vector<FleetPart> fleet_of(const Policies& policies, const ImpactVariant& variant,
+                                const ImpactPlan& plan) {
+  const int clocks = variant.is_spread ? plan.jitter_min + 1 : 1;
+  std::vector<FleetPart> fleet;
+  for (const auto& policy : policies) {
+    for (int late_min = 0; late_min < clocks; ++late_min) {
+      fleet.push_back({policy, 1.0 / static_cast<double>(clocks * policies.size()), late_min,
+                       variant.has_small_steps ? plan.step_share : 2});
+    }
+  }
+  return fleet;
+}
+
+/// One seed's market, cut into what is learnt from and what is traded.
+class SeedOfMarket {
+ public:
+  SeedOfMarket(const ImpactPlan& plan, std::uint64_t seed)
+      : plan_(plan),
+        whole_(
+            draw_market(local_midnight_utc_s(kFirstDay), plan.train_days + plan.test_days, seed)),
+        train_(whole_) {
+    train_.quarter_hours.resize(quarter_hour_of(plan.train_days));
+    train_.paths.resize(train_.quarter_hours.size());
+  }
+
+  /// What the fleet makes of the training days.
+  [[nodiscard]] FleetRun trained(const std::vector<FleetPart>& fleet,
+                                 const FleetOptions& options) const {
+    return run_fleet(train_, fleet, options);
+  }
+
+  [[nodiscard]] ImpactFigures traded(const std::vector<FleetPart>& fleet,
+                                     FleetOptions options) const {
+    options.first_quarter_hour = quarter_hour_of(plan_.train_days - kWarmUpDays);
+    FleetRun run = run_fleet(whole_, fleet, options);
+    ImpactFigures figures = imbalances(run, options.first_quarter_hour);
+    const std::string first_day = format_local_date(add_days(kFirstDay, plan_.train_days));
+    for (std::size_t p = 0; p < fleet.size(); ++p) {
+      std::erase_if(run.parts[p].days, [&](const DayResult& day) { return day.date < first_day; });
+      figures.switches_per_day += fleet[p].share * run.parts[p].switches_per_day();
+    }
+    figures.eur_per_mw_day = eur_per_mw_day(run, fleet, options);
+    return figures;
+  }
+
+  [[nodiscard]] static double eur_per_mw_day(const FleetRun& run,
+                                             const std::vector<FleetPart>& fleet,
+                                             const FleetOptions& options) {
+    double eur = 0;
+    for (std::size_t p = 0; p < fleet.size(); ++p) {
+      eur += fleet[p].share * run.parts[p].profit_eur_per_day_per_mwh() * run.parts[p].capacity_mwh;
+    }
+    return eur / (options.battery.power_w_max / kWattsPerMegawatt);
+  }
+
+ private:
+  [[nodiscard]] std::size_t quarter_hour_of(int day) const {
+    const std::int64_t utc_s = local_midnight_utc_s(add_days(kFirstDay, day));
+    return static_cast<std::size_t>((utc_s - whole_.quarter_hours.front().utc_s) /
+                                    kSecondsPerQuarterHour);
+  }
+
+  [[nodiscard]] ImpactFigures imbalances(const FleetRun& run, std::size_t first) const {
+    ImpactFigures figures{};
+    const std::size_t begin = quarter_hour_of(plan_.train_days);
+    const auto count = static_cast<double>(whole_.paths.size() - begin);
+    for (std::size_t q = begin; q < whole_.paths.size(); ++q) {
+      const double alone_mw = whole_.paths[q].imbalance_mw.back();
+      const double with_mw = run.imbalance_mw[q - first];
+      figures.imbalance_alone_mw += std::fabs(alone_mw) / count;
+      figures.imbalance_mw += std::fabs(with_mw) / count;
+      figures.overshoot_share += is_short(alone_mw) != is_short(with_mw) ? 1 / count : 0;
+    }
+    return figures;
+  }
+
+  const ImpactPlan& plan_;
+  DrawnMarket whole_, train_;
+};
+
+Policies fitted(const ImpactPlan& plan, const MinuteSeries& prices, const FleetOptions& options) {
+  Policies policies;
+  for (const std::string& name : plan.policies) {
+    policies.push_back(fitted_policy(name, prices, options));
+  }
+  return policies;
+}
+
+/// Of policies with more and more wear that which earned most on the training days.
+const Policies& shy(const std::vector<Policies>& candidates, const ImpactPlan& plan,
+                    const FleetOptions& options, const SeedOfMarket& market) {
+  const auto earned = [&](const Policies& policies) {
+    const std::vector<FleetPart> fleet = fleet_of(policies, {}, plan);
+    return SeedOfMarket::eur_per_mw_day(market.trained(fleet, options), fleet, options);
+  };
+  return *std::ranges::max_element(candidates, {}, earned);
+}
+
+/// All fleets of one formula and seed: [fleet][variant].
+std::vector<std::vector<ImpactFigures>> figures_of(const ImpactPlan& plan,
+                                                   const FleetOptions& options,
+                                                   const SeedOfMarket& market) {
+  const std::vector<ImpactVariant> variants = impact_variants(plan);
+  const MinuteSeries untouched = market.trained({}, options).prices;
+  std::vector<Policies> candidates;
+  for (const double shyness : kShynesses) {
+    FleetOptions wary = options;
+    wary.battery.wear_eur_per_mwh += shyness;
+    candidates.push_back(fitted(plan, untouched, wary));
+  }
+  std::vector<std::vector<ImpactFigures>> all;
+  for (const double mw : plan.fleet_mw) {
+    FleetOptions with = options;
+    with.fleet_mw = mw;
+    Policies learnt = candidates.front();
+    std::vector<ImpactFigures> row;
+    for (const ImpactVariant& variant : variants) {
+      if (variant.round > 0) {
+        learnt = fitted(plan, market.trained(fleet_of(learnt, variant, plan), with).prices, with);
+      }
+      const Policies& used = variant.is_shy ? shy(candidates, plan, with, market) : learnt;
+      row.push_back(market.traded(fleet_of(used, variant, plan), with));
+    }
+    all.push_back(std::move(row));
+  }
+  return all;
+}
+
+ImpactRow row_of(const std::vector<ImpactFigures>& seeds) {
+  ImpactRow row{};
+  const auto count = static_cast<double>(seeds.size());
+  for (const ImpactFigures& seed : seeds) {
+    row.mean.eur_per_mw_day += seed.eur_per_mw_day / count;
+    row.mean.overshoot_share += seed.overshoot_share / count;
+    row.mean.imbalance_mw += seed.imbalance_mw / count;
+    row.mean.imbalance_alone_mw += seed.imbalance_alone_mw / count;
+    row.mean.switches_per_day += seed.switches_per_day / count;
+  }
+  double squares = 0;
+  for (const ImpactFigures& seed : seeds) {
+    squares += std::pow(seed.eur_per_mw_day - row.mean.eur_per_mw_day, 2);
+  }
+  row.standard_error = seeds.size() > 1 ? std::sqrt(squares / (count - 1) / count) : NAN;
+  return row;
+}
+
+}  // namespace
+
+std::vector<ImpactVariant> impact_variants(const ImpactPlan& plan) {
+  std::vector<ImpactVariant> variants{{"as it is"},
+                                      {"spread in time", true},
+                                      {"small steps", false, true},
+                                      {"shy", false, false, true}};
+  for (int round = 1; round <= plan.rounds; ++round) {
+    variants.push_back({fmt::format("round {}", round), false, false, false, round});
+  }
+  return variants;
+}
+
+std::shared_ptr<Policy> fitted_policy(const std::string& name, const MinuteSeries& prices,
+                                      const FleetOptions& options) {
+  MarketSteps market =
+      make_market_steps(prices, {.observation_delay_min = options.observation_delay_min});
+  for (MarketDay& day : market.days) day.split = Split::kTrain;
+  return make_policy(name, market, options.battery);
+}
+
+std::vector<ImpactRow> study_impact(const ImpactPlan& plan, const FleetOptions& base) {
+  const std::size_t formulas = kFormulaNames.size();
+  const auto seeds = static_cast<std::size_t>(plan.seeds);
+  std::vector<std::vector<std::vector<ImpactFigures>>> found(formulas * seeds);
+  Progress progress("impact", "markets", static_cast<double>(found.size()));
+  std::mutex mutex;
+  std::size_t done = 0;
+  std::exception_ptr failure;
+  in_parallel(found.size(), plan.threads, [&](std::size_t i) {
+    try {
+      FleetOptions options = base;
+      options.formula = static_cast<PriceFormula>(i / seeds);
+      found[i] = figures_of(plan, options, SeedOfMarket(plan, i % seeds + 1));
+      const std::lock_guard lock(mutex);
+      progress.update(static_cast<double>(++done));
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      if (!failure) failure = std::current_exception();
+    }
+  });
+  if (failure) std::rethrow_exception(failure);
+  const std::vector<ImpactVariant> variants = impact_variants(plan);
+  std::vector<ImpactRow> rows;
+  for (std::size_t f = 0; f < formulas; ++f) {
+    for (std::size_t m = 0; m < plan.fleet_mw.size(); ++m) {
+      for (std::size_t v = 0; v < variants.size(); ++v) {
+        std::vector<ImpactFigures> of_seeds;
+        for (std::size_t s = 0; s < seeds; ++s) of_seeds.push_back(found[f * seeds + s][m][v]);
+        ImpactRow row = row_of(of_seeds);
+        row.formula = static_cast<PriceFormula>(f);
+        row.fleet_mw = plan.fleet_mw[m];
+        row.variant = variants[v].name;
+        rows.push_back(std::move(row));
+      }
+    }
+  }
+  return rows;
+}
+
+}  // namespace bess
