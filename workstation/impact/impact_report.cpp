@@ -19,7 +19,7 @@
 namespace bess {
 namespace {
 
-constexpr std::array kLineColours{&kInk, &kCharge, &kDischarge, &kMuted, &kSoft, &kMark};
+constexpr std::array kLineColours{&kInk, &kCharge, &kDischarge, &kMuted, &kSoft, &kMark, &kIdle};
 
 std::string formula_name(PriceFormula formula) {
   return std::string(kFormulaNames[static_cast<std::size_t>(formula)]);
