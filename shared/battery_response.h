@@ -1,5 +1,5 @@
-// From an order to its power: nothing for a while, then a ramp, then a first-order lag. Mean and end
-// of a stretch follow in closed form, however long it is.
+// From an order to its power: nothing for a while, then a ramp, then a first-order lag. Mean and
+// end of a stretch follow in closed form, however long it is.
 #pragma once
 
 #include <cmath>

@@ -42,8 +42,8 @@ struct BatteryFit {
   [[nodiscard]] BatteryParameters applied_to(BatteryParameters battery) const;
 };
 
-/// Power, capacity and SoC window are those of `nameplate`. Throws UserError where the log says that
-/// they cannot be: more power than it has, or cells that give back more than they were given.
+/// Power, capacity and SoC window are those of `nameplate`. Throws UserError where the log says
+/// that they cannot be: more power than it has, or cells that give back more than they were given.
 BatteryFit fit_battery(const std::vector<LoggedCycle>& cycles, const BatteryParameters& nameplate);
 
 }  // namespace bess

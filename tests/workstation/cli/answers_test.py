@@ -166,6 +166,14 @@ class Answers(unittest.TestCase):
         day = self.answers("evaluate", *common, "rbc", "rbc-tuned", "--date", "widest")[1]
         self.assertIsNone(day["gain_standard_error"])
         self.answers("delays", "--prices", "@market.csv", "--policy", "rbc", "tabular", "--carry-soc")
+        ramps = self.answers("delays", "--prices", "@market.csv", "--policy", "rbc",
+                             "--ramps", "0", "20", "--html", "@delays.html")
+        self.assertEqual([r["run_delay_min"] for r in ramps], [0, 1, 2, 3, 4, 5, 6] * 2)
+        self.assertEqual([r["ramp_percent_per_min"] for r in ramps], [0] * 7 + [20] * 7)
+        at_once, slowly = (ramps[i]["profit_eur_per_day_per_mwh"] for i in (0, 7))
+        self.assertLess(slowly, at_once)
+        with open(self.file("delays.html")) as page:
+            self.assertIn("ramp, % a minute", page.read())
         for name in ("evaluation.csv", "days.csv", "steps.csv"):
             self.table(self.file(name))
 
@@ -173,10 +181,12 @@ class Answers(unittest.TestCase):
         with open(self.file("log.csv"), "w") as log:
             print("utc,soc_e4,battery_power_w,ordered_power_w", file=log)
             for cycle in range(40):
-                print(f"2026-06-01T{cycle // 30:02}:{2 * cycle % 60:02}:00Z,5000,{30 + cycle % 3},0", file=log)
+                at = f"2026-06-01T{cycle // 30:02}:{2 * cycle % 60:02}:00Z"
+                print(f"{at},5000,{30 + cycle % 3},0", file=log)
         keys = self.answers("battery", "fit", "--log", "@log.csv", "--out", "@battery.toml")
         self.assertEqual([(k["key"], k["observations"]) for k in keys], [("standby_w", 38)])
-        shown = self.answers("evaluate", "--prices", "@market.csv", "--policy", "rbc", "--config", "@battery.toml")
+        shown = self.answers("evaluate", "--prices", "@market.csv", "--policy", "rbc",
+                             "--config", "@battery.toml")
         self.assertEqual(len(shown), 1)
 
     def test_5_rules(self):
