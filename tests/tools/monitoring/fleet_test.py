@@ -233,7 +233,7 @@ class TenThousand(base.Folder):
             print(f"{name}: {COUNT} batteries, {series:.0f} series every {SCRAPE_S} s: "
                   f"{peak_memory_bytes(program.process.pid) / 1e9:.2f} GB of memory at most, "
                   f"{disk / 1e6:.0f} MB of disk, {lost} scrapes lost of "
-                  f"{COUNT * MEASURED_S // SCRAPE_S}, {count} planted faults told once each",
+                  f"{COUNT * MEASURED_S // SCRAPE_S}, {count} planted faults held once each",
                   flush=True)
             self.assertEqual(lost, 0, name)
         told = [alert["labels"] for message in base.Called.heard for alert in message["alerts"]
@@ -249,7 +249,7 @@ if __name__ == "__main__":
     if missing:
         print(f"skipped: no {missing[0]}: run tools/setup --test")
         sys.exit(77)
-    base.SOURCE, BESS_EDGE, BESS_SIM = sys.argv[1:4]
+    base.SOURCE, BESS_EDGE, BESS_SIM = map(os.path.abspath, sys.argv[1:4])
     COUNT = int(sys.argv[4])
     del sys.argv[1:5]
     unittest.main(verbosity=2)
