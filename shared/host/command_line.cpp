@@ -234,6 +234,7 @@ ProgramOption ProgramCommand::option(const std::string& name, T& value, const st
                                                 const std::string&)
 BESS_OPTION_TYPE(std::string);
 BESS_OPTION_TYPE(std::vector<std::string>);
+BESS_OPTION_TYPE(std::vector<double>);
 BESS_OPTION_TYPE(int);
 BESS_OPTION_TYPE(double);
 BESS_OPTION_TYPE(std::uint8_t);
