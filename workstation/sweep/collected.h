@@ -51,7 +51,7 @@ struct CollectedSite {
   std::optional<double> eur_per_day;  ///< of the whole battery, at its own C-rate
   std::string header;                 ///< of its first proved task; empty: none
   /// Of that task, where its C-rate is a rounded one: at the site's own (own_rate.h).
-  std::optional<double> profit_at_own_rate, rounding_loss_at_most;
+  std::optional<double> profit_at_own_rate = {}, rounding_loss_at_most = {};
 };
 
 /// Throws UserError naming file and line of a damaged result.
