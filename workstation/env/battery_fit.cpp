@@ -44,14 +44,21 @@ std::vector<Interval> intervals_of(const std::vector<LoggedCycle>& cycles) {
   return intervals;
 }
 
-std::optional<Fitted> mean_of(const std::vector<double>& values, int least) {
-  const auto count = static_cast<int>(values.size());
-  if (count < least) return std::nullopt;
+/// Mean of the middle half: what a stop or a late order left in a reading does not count.
+std::optional<Fitted> middle_mean(std::vector<double> values, int least) {
+  if (std::ssize(values) < least) return std::nullopt;
+  std::ranges::sort(values);
+  const std::size_t quarter = values.size() / 4;
+  const auto count = static_cast<double>(values.size() - 2 * quarter);
   double sum = 0, squares = 0;
-  for (const double value : values) sum += value;
+  for (std::size_t i = quarter; i < values.size() - quarter; ++i) sum += values[i];
   const double mean = sum / count;
-  for (const double value : values) squares += (value - mean) * (value - mean);
-  return Fitted{mean, std::sqrt(squares / (count - 1) / count), count};
+  for (std::size_t i = quarter; i < values.size() - quarter; ++i) {
+    squares += (values[i] - mean) * (values[i] - mean);
+  }
+  const double rounding_w = 0.5;  // of readings that are all the same
+  return Fitted{mean, std::max(std::sqrt(squares / (count - 1)), rounding_w) / std::sqrt(count),
+                static_cast<int>(values.size())};
 }
 
 std::optional<Fitted> standby_of(const std::vector<Interval>& intervals) {
@@ -59,7 +66,7 @@ std::optional<Fitted> standby_of(const std::vector<Interval>& intervals) {
   for (const Interval& i : intervals) {
     if (i.before_w == 0 && i.begin.ordered_w == 0) rests_w.push_back(i.end.power_w);
   }
-  std::optional<Fitted> found = mean_of(rests_w, kRestsMin);
+  std::optional<Fitted> found = middle_mean(std::move(rests_w), kRestsMin);
   if (found && found->value <= kSure * found->standard_error) found.reset();
   return found;
 }

@@ -198,7 +198,7 @@ TEST(MarketSteps, DaysUnder690StepsAreDropped) {
 TEST(MarketSteps, OptionsOutOfRangeAndPricesWithoutADayAreErrors) {
   const MinuteSeries day = flat_series("2023-01-31T23:00:00Z", kMinutesPerDay, 1);
   EXPECT_THROW(make_market_steps(day, {.observation_delay_min = -1}), UserError);
-  EXPECT_THROW(make_market_steps(day, {.observation_delay_min = 6}), UserError);
+  EXPECT_THROW(make_market_steps(day, {.observation_delay_min = 7}), UserError);
   EXPECT_THROW(make_market_steps(flat_series("2023-01-31T23:00:00Z", 600, 1), {}), UserError);
   EXPECT_THROW(parse_split("training"), UserError);
   EXPECT_THROW(parse_settlement("hour"), UserError);
