@@ -14,6 +14,7 @@
 #include "workstation/chain/policy_factory.h"
 #include "workstation/cli/commands.h"
 #include "workstation/impact/impact_report.h"
+#include "workstation/planners/baselines.h"
 
 namespace bess {
 namespace {
@@ -43,8 +44,7 @@ std::vector<double> fleets_of(const std::vector<std::string>& texts) {
     fleets.push_back(mw);
   }
   std::ranges::sort(fleets);
-  const auto [first, last] = std::ranges::unique(fleets);
-  fleets.erase(first, last);
+  fleets.erase(std::unique(fleets.begin(), fleets.end()), fleets.end());
   return fleets;
 }
 

@@ -16,6 +16,7 @@
 #include "workstation/report/comparison.h"
 #include "workstation/report/figures/html.h"
 #include "workstation/report/figures/picture_table.h"
+#include "workstation/report/figures/regime_marks.h"
 #include "workstation/report/report_page.h"
 
 namespace bess {
@@ -96,21 +97,6 @@ std::string chart_caption(const BacktestResults& results) {
       fall_text((*best)->drawdown_eur_per_mwh()));
 }
 
-/// Where a price regime begins in the days that are drawn: place among them, and what changed.
-Json regime_marks(const std::vector<DayResult>& days) {
-  Json marks = Json::list();
-  for (const PriceRegime& regime : price_regimes()) {
-    const auto from =
-        std::ranges::lower_bound(days, std::string_view(regime.from_date), {}, &DayResult::date);
-    if (from == days.begin() || from == days.end()) continue;
-    Json mark = Json::list();
-    mark.add(static_cast<std::size_t>(from - days.begin()));
-    mark.add(regime.change);
-    marks.add(std::move(mark));
-  }
-  return marks;
-}
-
 /// What a month was fitted on and trades, where a boundary of the market lies between or in them.
 std::vector<std::string> crossing_lines(const BacktestResults& results) {
   std::vector<std::string> lines;
@@ -134,7 +120,9 @@ Json names_json(const std::vector<const PriceRegime*>& regimes) {
 template <typename Values>
 Json lines_chart(const char* id, const BacktestResults& results, Values values) {
   Json labels = Json::list(), series = Json::list();
-  for (const DayResult& day : results.policies.front().total.days) labels.add(day.date);
+  std::vector<std::string> dates;
+  for (const DayResult& day : results.policies.front().total.days) dates.push_back(day.date);
+  for (const std::string& date : dates) labels.add(date);
   const std::vector<const WalkForward*> shown = shown_in_figure(results);
   for (std::size_t p = 0; p < shown.size(); ++p) {
     Json line = Json::list(), sums = Json::list();
@@ -147,7 +135,7 @@ Json lines_chart(const char* id, const BacktestResults& results, Values values) 
   }
   Json chart = Json::object({{"id", id}, {"kind", "lines"}});
   chart.set("labels", std::move(labels));
-  chart.set("marks", regime_marks(results.policies.front().total.days));
+  chart.set("marks", regime_marks(dates));
   chart.set("series", std::move(series));
   return chart;
 }

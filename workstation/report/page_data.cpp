@@ -9,6 +9,7 @@
 
 #include "workstation/env/context_fit.h"
 #include "workstation/report/figures/price_histogram.h"
+#include "workstation/report/figures/regime_marks.h"
 #include "workstation/report/headline.h"
 #include "workstation/report/page_rules.h"
 #include "workstation/report/rule_prices.h"
@@ -279,13 +280,18 @@ Json page_data(const ReportInputs& in, const PageSteps& steps) {
   const std::vector<MarketDay>& days = steps.days;
   const ContextClasses classes = context_classes_of(in);
   Json dates = Json::list();
-  for (const MarketDay& day : days) dates.add(day.date());
+  std::vector<std::string> shown;
+  for (const MarketDay& day : days) {
+    shown.push_back(day.date());
+    dates.add(shown.back());
+  }
   const bool has_own = in.corrected != nullptr;
   Json data = Json::object(
       {{"exported", has_own ? own_student_name(in.corrected->certificate) : kCorrectedName},
        {"foresight", kForesightName}});
   data.set("battery", battery_json(in.battery));
   data.set("dates", std::move(dates));
+  data.set("marks", regime_marks(shown));
   data.set("policies", policies_json(in.evaluations));
   data.set("rivals", rivals_json());
   data.set("archive", archive_json(in, steps));

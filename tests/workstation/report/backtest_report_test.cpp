@@ -7,6 +7,7 @@
 
 #include "shared/host/file.h"
 #include "tests/support/temporary_folder.h"
+#include "workstation/report/figures/regime_marks.h"
 
 namespace bess {
 namespace {
@@ -141,6 +142,13 @@ TEST(BacktestReport, AFoldThatCrossesABoundaryOfTheMarketIsNamed) {
               AllOf(HasSubstr("\"marks\":[[3,\"PICASSO\"]]"), HasSubstr("<li>" + line)));
   write_backtest_page(results(5), folder.file(""));
   EXPECT_THAT(read_file(folder.file("backtest.html")), HasSubstr("\"marks\":[]"));
+}
+
+TEST(BacktestReport, MarksStandWhereARegimeBeginsAmongTheDays) {
+  EXPECT_EQ(regime_marks({"2024-11-24", "2024-11-27", "2025-10-01"}).line(),
+            R"([[1,"PICASSO"],[2,"day-ahead in quarter-hours"]])");
+  EXPECT_EQ(regime_marks({"2024-11-26", "2024-11-27"}).line(), "[]") << "it began before";
+  EXPECT_EQ(regime_marks({}).line(), "[]");
 }
 
 TEST(BacktestReport, ThePictureHasTheSumsOfTheDays) {

@@ -112,6 +112,7 @@ TEST(Report, ThePageHoldsAllAndFetchesNothing) {
   EXPECT_EQ(count_of(markup, "{{"), 0);
   EXPECT_NE(markup.find("seed 1 &lt;untrained&gt; &amp; small"), std::string::npos);
   EXPECT_NE(markup.find("may not be exported"), std::string::npos);
+  EXPECT_EQ(count_of(html, "\"marks\":[]"), 1) << "no price regime begins in these days";
   EXPECT_LT(html.size(), 5'000'000u);
 }
 

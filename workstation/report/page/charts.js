@@ -56,6 +56,26 @@ function baseOptions(options) {
   };
 }
 
+/** Upright lines where something changed; `marks`: [place among the labels, what changed] each. */
+const marksDrawn = marks => ({
+  id: "marks",
+  afterDatasetsDraw({ctx, chartArea: {top, bottom}, scales: {x}}) {
+    ctx.save();
+    ctx.strokeStyle = ctx.fillStyle = colour("muted");
+    ctx.setLineDash([4, 4]);
+    for (const [place, what] of marks) {
+      const at = x.getPixelForValue(place), toTheLeft = at > (x.left + x.right) / 2;
+      ctx.beginPath();
+      ctx.moveTo(at, top);
+      ctx.lineTo(at, bottom);
+      ctx.stroke();
+      ctx.textAlign = toTheLeft ? "right" : "left";
+      ctx.fillText(what, at + (toTheLeft ? -4 : 4), bottom - 6);
+    }
+    ctx.restore();
+  },
+});
+
 /** Draws the chart of a canvas; `configure` makes its configuration, and makes it anew for other colours. */
 function drawChart(id, configure) {
   const before = shownCharts.get(id);

@@ -2,26 +2,6 @@
 // show.
 "use strict";
 
-/** Upright lines where something changed; `marks`: [place among the labels, what changed] each. */
-const marksDrawn = marks => ({
-  id: "marks",
-  afterDatasetsDraw({ctx, chartArea: {top, bottom}, scales: {x}}) {
-    ctx.save();
-    ctx.strokeStyle = ctx.fillStyle = colour("muted");
-    ctx.setLineDash([4, 4]);
-    for (const [place, what] of marks) {
-      const at = x.getPixelForValue(place), toTheLeft = at > (x.left + x.right) / 2;
-      ctx.beginPath();
-      ctx.moveTo(at, top);
-      ctx.lineTo(at, bottom);
-      ctx.stroke();
-      ctx.textAlign = toTheLeft ? "right" : "left";
-      ctx.fillText(what, at + (toTheLeft ? -4 : 4), bottom - 6);
-    }
-    ctx.restore();
-  },
-});
-
 const kKinds = {
   /** `series`: [name, colour, values] each. */
   lines: ({labels, series, marks = []}) => ({

@@ -47,6 +47,7 @@ class TearSheet {
   drawCumulative(exported) {
     drawChart("chart-cumulative", () => ({
       type: "line",
+      plugins: [marksDrawn(this.data.marks)],
       data: {
         labels: this.data.dates,
         datasets: [exported, ...this.rivals()].map((policy) => ({
