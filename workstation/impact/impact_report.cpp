@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "shared/host/csv.h"
 #include "shared/host/file.h"
 #include "workstation/base/answer.h"
 #include "workstation/base/palette.h"
@@ -20,6 +19,29 @@ namespace bess {
 namespace {
 
 constexpr std::array kLineColours{&kInk, &kCharge, &kDischarge, &kMuted, &kSoft, &kMark, &kIdle};
+
+/// A figure of a fleet, in CSV, JSON and on the page.
+struct Column {
+  const char* key;
+  const char* head;
+  int decimals;  ///< on the page
+  double (*value)(const ImpactRow& row);
+};
+
+constexpr Column kColumns[] = {
+    {"eur_per_mw_day", "EUR a MW and day", 1,
+     [](const ImpactRow& row) { return row.mean.eur_per_mw_day; }},
+    {"eur_per_mw_day_standard_error", "s.e. over seeds", 1,
+     [](const ImpactRow& row) { return row.standard_error; }},
+    {"overshoot_share", "Overshoot", 3,
+     [](const ImpactRow& row) { return row.mean.overshoot_share; }},
+    {"imbalance_mw", "Mean |SI|, MW", 1,
+     [](const ImpactRow& row) { return row.mean.imbalance_mw; }},
+    {"imbalance_alone_mw", "Without, MW", 1,
+     [](const ImpactRow& row) { return row.mean.imbalance_alone_mw; }},
+    {"switches_per_day", "Switches a day", 1,
+     [](const ImpactRow& row) { return row.mean.switches_per_day; }},
+};
 
 std::string formula_name(PriceFormula formula) {
   return std::string(kFormulaNames[static_cast<std::size_t>(formula)]);
@@ -74,18 +96,15 @@ Json lines_chart(const std::string& id, const ImpactPlan& plan,
 }
 
 SortTable row_table(const std::vector<ImpactRow>& rows) {
-  SortTable table{"rows",
-                  "Every fleet",
-                  {"Formula", "MW", "Variant", "EUR a MW and day", "s.e. over seeds",
-                   "Overshoot, %", "Mean |SI|, MW", "Without, MW", "Switches a day"},
-                  {}};
+  SortTable table{"rows", "Every fleet", {"Formula", "MW", "Variant"}, {}};
+  for (const Column& column : kColumns) table.header.emplace_back(column.head);
   for (const ImpactRow& row : rows) {
-    const ImpactFigures& f = row.mean;
-    table.rows.push_back(
-        {text_cell(formula_name(row.formula)), number_cell(row.fleet_mw, 0), text_cell(row.variant),
-         number_cell(f.eur_per_mw_day, 1), number_cell(row.standard_error, 1),
-         number_cell(100 * f.overshoot_share, 1), number_cell(f.imbalance_mw, 1),
-         number_cell(f.imbalance_alone_mw, 1), number_cell(f.switches_per_day, 1)});
+    std::vector<Cell> cells{text_cell(formula_name(row.formula)), number_cell(row.fleet_mw, 0),
+                            text_cell(row.variant)};
+    for (const Column& column : kColumns) {
+      cells.push_back(number_cell(column.value(row), column.decimals));
+    }
+    table.rows.push_back(std::move(cells));
   }
   return table;
 }
@@ -134,34 +153,27 @@ std::string format_impact_table(const ImpactPlan& plan, const std::vector<Impact
 }
 
 std::string impact_csv(const std::vector<ImpactRow>& rows) {
-  std::string text =
-      "formula,fleet_mw,variant,eur_per_mw_day,eur_per_mw_day_standard_error,overshoot_share,"
-      "imbalance_mw,imbalance_alone_mw,switches_per_day\n";
+  std::string text = "formula,fleet_mw,variant";
+  for (const Column& column : kColumns) text.append(",").append(column.key);
   for (const ImpactRow& row : rows) {
-    const ImpactFigures& f = row.mean;
-    text +=
-        fmt::format("{},{:g},{},{:.4f},{},{:.6f},{:.4f},{:.4f},{:.4f}\n", formula_name(row.formula),
-                    row.fleet_mw, csv_field(row.variant), f.eur_per_mw_day,
-                    std::isnan(row.standard_error) ? "" : fmt::format("{:.4f}", row.standard_error),
-                    f.overshoot_share, f.imbalance_mw, f.imbalance_alone_mw, f.switches_per_day);
+    text += fmt::format("\n{},{:g},{}", formula_name(row.formula), row.fleet_mw, row.variant);
+    for (const Column& column : kColumns) {
+      const double value = column.value(row);
+      text += std::isnan(value) ? "," : fmt::format(",{:.4f}", value);
+    }
   }
-  return text;
+  return text + "\n";
 }
 
 Json impact_json(const ImpactPlan& plan, const std::vector<ImpactRow>& rows) {
   Json policies = Json::list(), list = Json::list();
   for (const std::string& policy : plan.policies) policies.add(policy);
   for (const ImpactRow& row : rows) {
-    const ImpactFigures& f = row.mean;
-    list.add(Json::object({{"formula", formula_name(row.formula)},
-                           {"fleet_mw", row.fleet_mw},
-                           {"variant", row.variant},
-                           {"eur_per_mw_day", Decimals{f.eur_per_mw_day, 4}},
-                           {"eur_per_mw_day_standard_error", Decimals{row.standard_error, 4}},
-                           {"overshoot_share", Decimals{f.overshoot_share, 6}},
-                           {"imbalance_mw", Decimals{f.imbalance_mw, 4}},
-                           {"imbalance_alone_mw", Decimals{f.imbalance_alone_mw, 4}},
-                           {"switches_per_day", Decimals{f.switches_per_day, 4}}}));
+    Json fleet = Json::object({{"formula", formula_name(row.formula)},
+                               {"fleet_mw", row.fleet_mw},
+                               {"variant", row.variant}});
+    for (const Column& column : kColumns) fleet.set(column.key, Decimals{column.value(row), 4});
+    list.add(std::move(fleet));
   }
   Json json = answer("impact");
   json.set("policies", std::move(policies));
