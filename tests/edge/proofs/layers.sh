@@ -90,7 +90,7 @@ layer $w/backtest                   $w/backtest $w/env $w/market/series $w/base 
 layer $w/rl                         $w/rl $w/nn $w/planners $w/env $w/base shared
 layer $w/correction                 $w/correction $w/rules $w/rl $w/nn $w/env $w/base shared
 layer $w/student                    $w/student $w/correction $w/rules $w/rl $w/nn $w/env $w/base shared student_weights.h
-taught="$w/student $w/correction $w/rl $w/rules $w/env $w/base"
+taught="$w/student $w/correction $w/rl $w/rules $w/env $w/market/series $w/base"
 layer $w/report/figures  $w/report/figures $w/backtest $w/market/statistics $taught shared
 shown="$w/planners/foresight.h $w/planners/baselines.h"
 layer $w/report                     $w/report $w/backtest $w/market/statistics $shown $taught shared
