@@ -59,15 +59,18 @@ class PartRunner {
         static_cast<std::int64_t>(t) - options_.observation_delay_min - (part_.late_min - late);
     if (row < 0 || t + 1 >= prices.size()) return void(power_w_ = 0);
     const MarketStep step = step_at(t, static_cast<std::size_t>(row), prices);
-    const Action action = part_.policy->decide(step, steps_.size(), soc_frac_);
     const BatteryParameters& battery = options_.battery;
+    Action action = part_.policy->decide(step, steps_.size(), soc_frac_);
+    if (is_used_up(local_date_of(step.utc_s))) action = Action::kIdle;
     const double wanted_w =
         power_sign(action) * battery.power_w_max * part_.policy->power_share_max(step, soc_frac_);
     const double change_w = part_.step_share * battery.power_w_max;
-    const BatteryStep moved =
-        battery_step(battery, soc_frac_,
-                     std::clamp(wanted_w, power_w_ - change_w, power_w_ + change_w), kHoursPerStep);
+    const auto [moved, power] = followed_step(
+        battery, soc_frac_, power_, std::clamp(wanted_w, power_w_ - change_w, power_w_ + change_w),
+        kHoursPerStep);
     steps_.push_back({t, action, moved.power_w, moved.soc_frac});
+    day_energy_mwh_ += std::fabs(moved.power_w / kWattsPerMegawatt * kHoursPerStep);
+    power_ = power;
     power_w_ = moved.power_w;
     soc_frac_ = moved.soc_frac;
   }
@@ -81,6 +84,7 @@ class PartRunner {
   Evaluation settled(const MinuteSeries& prices) && {
     const BatteryParameters& battery = options_.battery;
     double soc_frac = options_.initial_soc_frac;
+    const double standby_mwh = battery.standby_w / kWattsPerMegawatt * kHoursPerStep;
     Action before = Action::kIdle;
     for (const Step& step : steps_) {
       const std::string date = format_local_date(local_date_of(prices.utc_s(step.minute)));
@@ -91,7 +95,8 @@ class PartRunner {
       DayResult& day = evaluation_.days.back();
       const double paid = 0.5 * (prices.settled[step.minute] + prices.settled[step.minute + 1]);
       const double mwh = step.power_w / kWattsPerMegawatt * kHoursPerStep;
-      day.profit_eur += -exchange_cost_eur(battery, mwh, paid);
+      day.profit_eur += -exchange_cost_eur(battery, mwh, paid) -
+                        standby_mwh * battery.costs.import_eur_per_mwh(paid);
       day.throughput_mwh += std::fabs(mwh);
       day.switches += step.action != before ? 1 : 0;
       day.soc_end_frac = soc_frac = step.soc_frac;
@@ -109,6 +114,16 @@ class PartRunner {
     Action action;
     double power_w, soc_frac;
   };
+
+  /// The day's cycles are; a new day has them anew.
+  bool is_used_up(const LocalDate& date) {
+    if (date != day_) day_energy_mwh_ = 0;
+    day_ = date;
+    const BatteryParameters& battery = options_.battery;
+    return battery.cycles_per_day_max > 0 && day_energy_mwh_ >= battery.cycles_per_day_max * 2 *
+                                                                    battery.capacity_wh /
+                                                                    kWattsPerMegawatt;
+  }
 
   /// As make_market_steps() has it, but for what will be paid.
   MarketStep step_at(std::size_t t, std::size_t row, const MinuteSeries& prices) {
@@ -130,7 +145,10 @@ class PartRunner {
   const FleetPart& part_;
   const FleetOptions& options_;
   double soc_frac_;
-  double power_w_ = 0;
+  double power_w_ = 0;  ///< mean of the step
+  PowerState power_;    ///< at its end
+  LocalDate day_{};
+  double day_energy_mwh_ = 0;
   PriceLevel level_;
   std::vector<Step> steps_;
   Evaluation evaluation_;

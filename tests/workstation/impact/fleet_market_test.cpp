@@ -25,7 +25,8 @@ std::int64_t start_utc_s() {
   return local_midnight_utc_s(kFirstDay);
 }
 
-/// Today's environment: the simulated market's minute file, and the policy evaluated on it.
+/// Today's environment: the simulated market's minute file, and the policy evaluated on it; by the
+/// longest delay with a battery that has losses, taper, response, standby and a limit on cycles.
 TEST(FleetMarket, OneBatteryWithoutImpactIsTodaysEnvironmentToTheBit) {
   for (const int delay_min : {1, 2, 5}) {
     const DrawnMarket drawn = draw_market(start_utc_s(), 12, 5);
@@ -36,6 +37,13 @@ TEST(FleetMarket, OneBatteryWithoutImpactIsTodaysEnvironmentToTheBit) {
     FleetOptions options{.battery = {}, .observation_delay_min = delay_min};
     options.battery.wear_eur_per_mwh = 5;
     options.battery.costs.export_percent = 3;
+    if (delay_min == 5) {
+      options.battery.charge_taper = {.width_frac = 0.2, .share = 0.3};
+      options.battery.full_power_loss_frac = 0.02;
+      options.battery.standby_w = 20'000;
+      options.battery.response = {.delay_s = 4, .ramp_w_per_s = 5e4, .time_constant_s = 6};
+      options.battery.cycles_per_day_max = 2.5;
+    }
     const auto policy = fitted_policy("sdp", series, options);
     const Evaluation today = evaluate(market, market.days, *policy, {options.battery, 0.5, true});
 
