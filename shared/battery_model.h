@@ -55,6 +55,13 @@ struct BatteryStep {
   double soc_frac;  ///< at the end of the step
 };
 
+/// What reaches the cells of a power, or leaves them: W, positive is charging.
+inline double stored_power_w(const BatteryParameters& battery, double power_w) {
+  const double lossless_w =
+      power_w > 0 ? power_w * battery.charge_efficiency : power_w / battery.discharge_efficiency;
+  return lossless_w - battery.full_power_loss_frac * power_w * power_w / battery.power_w_max;
+}
+
 /// The same with r above 0: what reaches the cells, or leaves them, is a parabola of the power.
 inline BatteryStep lossy_step(const BatteryParameters& battery, double soc_frac, double power_w,
                               double hours) {
@@ -65,7 +72,7 @@ inline BatteryStep lossy_step(const BatteryParameters& battery, double soc_frac,
   const double fits_stored_w = (bound_frac - soc_frac) * battery.capacity_wh / hours;
   const bool has_room = charges ? fits_stored_w > 0 : fits_stored_w < 0;
   if (power_w == 0 || !has_room) return {0.0, soc_frac};
-  const double stored_w = slope * power_w - square * power_w * power_w;
+  const double stored_w = stored_power_w(battery, power_w);
   if (std::fabs(stored_w) < std::fabs(fits_stored_w)) {
     return {power_w, soc_frac + stored_w * hours / battery.capacity_wh};
   }

@@ -10,16 +10,18 @@ void judge_energy(Bench& bench) {
   double moved_wh = 0;
   double unknown_wh = 0.5;
   double before_wh = 0;
+  const double lost_wh_max = p.full_power_loss_frac * p.power_w_max / 60;  // of a minute
   for (const MinuteRecord& m : bench.evidence.minutes) {
+    const double flow_wh = m.energy_wh - p.standby_w / 60;
     // Of a minute that was charged and discharged in, the record knows the sum; the slowest battery
-    // that is simulated turns 5 s after its order.
-    if (m.energy_wh * before_wh < 0) {
+    // that is simulated turns 5 s after its order. Nor does it know the squares of what changed.
+    if (flow_wh * before_wh < 0) {
       unknown_wh += p.power_w_max * (6 + bench.evidence.slack_s) / 3'600 *
                     (1 / p.discharge_efficiency - p.charge_efficiency);
     }
-    before_wh = m.energy_wh;
-    stored_wh +=
-        m.energy_wh > 0 ? m.energy_wh * p.charge_efficiency : m.energy_wh / p.discharge_efficiency;
+    if (std::abs(flow_wh - before_wh) > 0.01 * p.power_w_max / 60) unknown_wh += lost_wh_max;
+    before_wh = flow_wh;
+    stored_wh += stored_power_w(p, 60 * flow_wh) / 60;
     moved_wh += std::abs(m.energy_wh);
   }
   if (bench.evidence.minutes.empty()) return;

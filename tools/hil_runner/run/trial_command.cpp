@@ -12,6 +12,7 @@
 #include "shared/host/minute_file.h"
 #include "shared/host/user_error.h"
 #include "shared/utc_text.h"
+#include "tools/battery_sim/battery_file.h"
 #include "tools/hil_runner/base/stop_request.h"
 #include "tools/hil_runner/run/hil_command.h"
 #include "tools/hil_runner/run/report_page.h"
@@ -22,6 +23,7 @@ namespace {
 
 struct TrialOptions {
   std::string prices;
+  std::string battery;
   std::string report;
   int weeks = 8;
   bool json = false;
@@ -74,13 +76,26 @@ void tell_progress(std::chrono::steady_clock::time_point begin, int done, int al
   if (done == all) fmt::print(stderr, "\n");
 }
 
+BatteryParameters battery_of(const TrialOptions& options) {
+  BatteryParameters battery = paper_house();
+  if (options.battery.empty()) return battery;
+  read_battery_file(options.battery, battery);
+  const BatteryParameters house = paper_house();
+  if (battery.power_w_max == house.power_w_max && battery.capacity_wh == house.capacity_wh) {
+    return battery;
+  }
+  fail("{}: the trial is of a battery of {:g} W and {:g} Wh: set power_w and capacity_wh so",
+       options.battery, house.power_w_max, house.capacity_wh);
+}
+
 void run(const TrialOptions& options) {
   if (!options.report.empty()) require_writable(options.report);
   watch_for_stop();
   const MinuteSeries prices = read_minute_file(options.prices);
+  const BatteryParameters physics = battery_of(options);
   const auto begin = std::chrono::steady_clock::now();
-  const std::vector<TrialWeek> weeks =
-      run_trial(prices, options.weeks, [&](int done, int all) { tell_progress(begin, done, all); });
+  const std::vector<TrialWeek> weeks = run_trial(
+      prices, options.weeks, physics, [&](int done, int all) { tell_progress(begin, done, all); });
   const std::string text = fmt::format(
       "{} weeks of {} days from {}, house battery of 4 kW and 8 kWh; loss against the plain "
       "simulation,\nin percent of it, with the standard error of the paired difference\n{}",
@@ -93,7 +108,7 @@ void run(const TrialOptions& options) {
             "The trial week",
             "<div class=\"picture\"><pre>" + html_escaped(text) +
                 "</pre></div>\n<h2>Four hours, everything on</h2>\n<div class=\"picture\">" +
-                trial_picture(prices) +
+                trial_picture(prices, physics) +
                 "</div>\n<p>Measured power of each minute in the colour of its order: blue charge, "
                 "orange discharge, grey none.</p>\n"));
   }
@@ -114,9 +129,12 @@ void add_trial_command(ProgramCommand& app) {
   command.footer(
       "Examples:\n"
       "  bess-hil trial --prices tests/data/benchmark_minutes_2023.csv.gz\n"
+      "  bess-hil trial --prices mine.csv.gz --battery house.toml\n"
       "  bess-hil trial --prices mine.csv.gz --weeks 12 --report trial.html");
   command.option("--prices", options->prices, "Minute file, CSV or .csv.gz").required();
   command.option("--weeks", options->weeks, "Of eight days each").range(1, 1'000).with_default();
+  command.option("--battery", options->battery,
+                 "[battery] of this file, for loop and simulation alike (bess-train battery fit)");
   command.option("--report", options->report, "Write table and picture here (HTML)");
   command.flag("--json", options->json, "One JSON object instead of the table");
   command.runs([options] { run(*options); });

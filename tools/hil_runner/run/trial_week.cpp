@@ -82,8 +82,10 @@ class Purse {
   double eur_ = 0;
 };
 
-Scenario trial_scenario(std::int64_t start_utc_s, const Disturbance& on) {
+Scenario trial_scenario(std::int64_t start_utc_s, const BatteryParameters& physics,
+                        const Disturbance& on) {
   Scenario scenario;
+  scenario.battery.physics = physics;
   scenario.name = on.name;
   scenario.start_utc_s = start_utc_s;
   scenario.minutes = kTrialMinutes;
@@ -120,9 +122,12 @@ struct WeekRun {
   Evidence evidence;
 };
 
-WeekRun run_week(const MinuteSeries& prices, std::int64_t start_utc_s, const Disturbance& on) {
-  WeekRun run{
-      .scenario = trial_scenario(start_utc_s, on), .prices = prices, .config = {}, .evidence = {}};
+WeekRun run_week(const MinuteSeries& prices, std::int64_t start_utc_s,
+                 const BatteryParameters& physics, const Disturbance& on) {
+  WeekRun run{.scenario = trial_scenario(start_utc_s, physics, on),
+              .prices = prices,
+              .config = {},
+              .evidence = {}};
   if (on.missing) lose_rows(run.scenario, run.prices);
   const WorkFolder folder;
   run.config = load_edge_settings(run.scenario, folder.file("edge.toml"),
@@ -145,10 +150,10 @@ double money_of(const WeekRun& run, const MinuteSeries& prices) {
 }
 
 /// Student, guard and battery model, each order in force from its tick on: nothing is late or
-/// missing.
-double plain_money(const MinuteSeries& prices, std::int64_t start_utc_s) {
+/// missing but what the battery's own response is.
+double plain_money(const MinuteSeries& prices, std::int64_t start_utc_s,
+                   BatteryParameters battery) {
   const ScenarioBattery house;
-  BatteryParameters battery = house.physics;
   const GuardSettings settings;
   battery.soc_min_frac = settings.soc_min_e4 / 1e4;
   battery.soc_max_frac = settings.soc_max_e4 / 1e4;
@@ -156,6 +161,7 @@ double plain_money(const MinuteSeries& prices, std::int64_t start_utc_s) {
   PriceLevel level = PriceLevel::starting_at(level_before(prices, start_utc_s).centi_eur_per_mwh());
   Purse purse(prices, start_utc_s);
   double soc = house.soc_frac;
+  PowerState power;
   for (int minute = 0; minute < kTrialMinutes; minute += kMinutesPerStep) {
     const std::int64_t now_utc_s = start_utc_s + 60 * minute;
     const auto newest = static_cast<std::size_t>((now_utc_s - 60 - prices.start_utc_s) / 60);
@@ -164,9 +170,12 @@ double plain_money(const MinuteSeries& prices, std::int64_t start_utc_s) {
     const GuardInputs in =
         undisturbed_inputs(now_utc_s, static_cast<std::int32_t>(std::lround(1e4 * soc)),
                            level.centi_eur_per_mwh(), now_utc_s - 60, centi);
-    const BatteryStep step = battery_step(battery, soc, guard.decide(in).power_w, kHoursPerStep);
-    soc = step.soc_frac;
-    for (int m = 0; m < kMinutesPerStep; ++m) purse.pay(now_utc_s + 60 * m, step.power_w / 60);
+    const FollowedStep moved =
+        followed_step(battery, soc, power, guard.decide(in).power_w, kHoursPerStep);
+    soc = moved.step.soc_frac;
+    power = moved.power;
+    const double minute_wh = (moved.step.power_w + battery.standby_w) / 60;
+    for (int m = 0; m < kMinutesPerStep; ++m) purse.pay(now_utc_s + 60 * m, minute_wh);
   }
   return purse.eur(battery, house.soc_frac, soc);
 }
@@ -214,7 +223,10 @@ const std::array<Disturbance, kDisturbanceCount>& disturbances() {
   return kAll;
 }
 
+BatteryParameters paper_house() { return ScenarioBattery{}.physics; }
+
 std::vector<TrialWeek> run_trial(const MinuteSeries& prices, int weeks,
+                                 const BatteryParameters& physics,
                                  const std::function<void(int, int)>& tell) {
   const std::vector<std::int64_t> starts = week_starts(prices);
   if (std::ssize(starts) < weeks) {
@@ -227,9 +239,9 @@ std::vector<TrialWeek> run_trial(const MinuteSeries& prices, int weeks,
     const MinuteSeries own = week_prices(prices, start_utc_s);
     TrialWeek week;
     week.start_utc_s = start_utc_s;
-    week.plain_eur = plain_money(own, start_utc_s);
+    week.plain_eur = plain_money(own, start_utc_s, physics);
     for (std::size_t i = 0; i < disturbances().size(); ++i) {
-      const WeekRun run = run_week(own, start_utc_s, disturbances()[i]);
+      const WeekRun run = run_week(own, start_utc_s, physics, disturbances()[i]);
       week.loop_eur[i] = money_of(run, own);
       std::ranges::move(judge({run.scenario, run.prices, run.config, run.evidence}),
                         std::back_inserter(week.findings));
@@ -254,11 +266,11 @@ TrialLoss loss_of(const std::vector<TrialWeek>& weeks, std::size_t disturbance) 
           .percent_error = 100 * std::sqrt(variance / n) / (plain / n)};
 }
 
-std::string trial_picture(const MinuteSeries& prices) {
+std::string trial_picture(const MinuteSeries& prices, const BatteryParameters& physics) {
   constexpr int kPictureMinutes = 240;
   const std::int64_t start_utc_s = week_starts(prices).at(0);
   const MinuteSeries own = week_prices(prices, start_utc_s);
-  const WeekRun run = run_week(own, start_utc_s, disturbances().back());
+  const WeekRun run = run_week(own, start_utc_s, physics, disturbances().back());
   std::int64_t widest_utc_s = start_utc_s;
   double widest = -1;
   for (int minute = 0; minute + kPictureMinutes <= kTrialMinutes; minute += 60) {

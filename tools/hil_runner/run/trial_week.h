@@ -30,8 +30,8 @@ struct Disturbance {
 inline constexpr int kDisturbanceCount = 6;
 const std::array<Disturbance, kDisturbanceCount>& disturbances();
 
-/// EUR of the paper's house battery, 4 kW and 8 kWh, over eight days; what is left in the battery
-/// at the end counts at the week's mean price.
+/// EUR of a house battery of 4 kW and 8 kWh over eight days; what is left in the battery at the end
+/// counts at the week's mean price.
 struct TrialWeek {
   std::int64_t start_utc_s = 0;
   double plain_eur = 0;
@@ -46,13 +46,18 @@ struct TrialLoss {
   double percent_error = 0;
 };
 
+/// The house battery, of which plain simulation and loop know the same: the paper's, with constant
+/// power.
+BatteryParameters paper_house();
+
 /// Calls `tell(weeks done, weeks in all)` after each. Throws UserError when the file holds fewer
 /// weeks.
 std::vector<TrialWeek> run_trial(const MinuteSeries& prices, int weeks,
+                                 const BatteryParameters& physics,
                                  const std::function<void(int, int)>& tell);
 TrialLoss loss_of(const std::vector<TrialWeek>& weeks, std::size_t disturbance);
 
 /// The first week with everything on: four hours of its largest price range as a picture (SVG).
-std::string trial_picture(const MinuteSeries& prices);
+std::string trial_picture(const MinuteSeries& prices, const BatteryParameters& physics);
 
 }  // namespace bess
