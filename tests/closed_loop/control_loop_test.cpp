@@ -207,6 +207,22 @@ TEST(ClosedLoop, AStopWithoutADeadManTriesAgainUntilTheBatteryIsReleased) {
   EXPECT_LE(unreachable.clock.now_ns - start_ns, 90 * kNanosecondsPerSecond);
 }
 
+TEST(ClosedLoop, AStopWithADeadManTriesOnceAndSaysWhatFailed) {
+  ControlSettings settings = in_control();
+  settings.has_watchdog = true;
+  for (const bool has_link : {true, false}) {
+    Plant plant(0.5, settings);
+    plant.cycle();
+    plant.battery.link = has_link;
+    plant.battery.failing_releases = 100;
+    const std::int64_t start_ns = plant.clock.now_ns;
+    CycleRecord record;
+    plant.loop.stop(record);
+    EXPECT_EQ(record.battery_status, Status::kTimeout) << "also where its 0 W was taken";
+    EXPECT_LT(plant.clock.now_ns - start_ns, 5 * kNanosecondsPerSecond);
+  }
+}
+
 TEST(ClosedLoop, TheWatchdogIsFedAsOftenAsTheMapAsks) {
   Plant plant;
   plant.battery.refresh_s = 30;
