@@ -29,7 +29,7 @@ std::shared_ptr<Policy> student_policy(StudentFile student) {
     StudentFile student;
     std::unique_ptr<Policy> policy;
   };
-  const auto holder = std::make_shared<Holder>(std::move(student), nullptr);
+  const auto holder = std::make_shared<Holder>(Holder{std::move(student), nullptr});
   holder->policy = exported_policy(holder->student);
   return {holder, holder->policy.get()};
 }

@@ -75,8 +75,7 @@ class Runner {
   Policy& policy_;
   const EvaluationOptions& options_;
   double soc_frac_;
-  PowerState power_;      ///< at the end of the step before
-  double flowing_w_ = 0;  ///< at the end of the step before
+  PowerState power_;  ///< at the end of the step before
   Action last_action_ = Action::kIdle;
 };
 

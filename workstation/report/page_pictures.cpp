@@ -7,6 +7,7 @@
 #include "shared/utc_text.h"
 #include "workstation/report/figures/policy_map.h"
 #include "workstation/report/figures/price_histogram.h"
+#include "workstation/report/headline.h"
 #include "workstation/report/shown_policies.h"
 
 namespace bess {

@@ -119,9 +119,10 @@ std::string value_text(const RunRecord& record, const std::string& key) {
 std::vector<std::string> differing_keys(const std::vector<const RunRecord*>& runs) {
   std::vector<std::string> keys;
   for (const RunRecord* run : runs) {
-    for (const auto& [key, value] : run->identity) {
+    for (const auto& entry : run->identity) {
+      const std::string& key = entry.first;
       const bool is_same = std::ranges::all_of(
-          runs, [&](const RunRecord* other) { return other->value(key) == value; });
+          runs, [&](const RunRecord* other) { return other->value(key) == entry.second; });
       if (!is_same && std::ranges::find(keys, key) == keys.end()) keys.push_back(key);
     }
   }
