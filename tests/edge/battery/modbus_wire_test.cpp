@@ -58,5 +58,13 @@ TEST(ModbusWire, ASignalIsNoLostConnection) {
   EXPECT_EQ(frame.size, 0);
 }
 
+TEST(ModbusWire, TheSpeedsOfSerialLinesAndNoneBeside) {
+  for (const std::int32_t baud :
+       {1'200, 2'400, 4'800, 9'600, 19'200, 38'400, 57'600, 115'200, 230'400}) {
+    EXPECT_TRUE(is_serial_speed(baud)) << baud;
+    EXPECT_FALSE(is_serial_speed(baud - 1) || is_serial_speed(baud + 1)) << baud;
+  }
+}
+
 }  // namespace
 }  // namespace bess

@@ -36,6 +36,14 @@ TEST(FrozenPrice, IsToldAfterHalfAnHourAndNoPriceAfterThree) {
   EXPECT_FALSE(rows.frozen.is_told() || rows.frozen.is_no_price());
 }
 
+TEST(FrozenPrice, OneSecondIsALimitAndZeroIsNone) {
+  Rows soon({.stop_s = 1}), never({.stop_s = 0});
+  soon.add(2, 5'550);
+  never.add(2'000, 5'550);
+  EXPECT_TRUE(soon.frozen.is_no_price());
+  EXPECT_FALSE(never.frozen.is_no_price());
+}
+
 TEST(FrozenPrice, ZeroAndTheEndsOfTheRangeArePricesLikeOthers) {
   for (const std::int32_t centi : {0, -1, 9'999'900, -9'999'900, 10'000'000, -10'000'000}) {
     Rows rows;

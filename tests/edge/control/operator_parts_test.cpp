@@ -10,6 +10,7 @@
 #include "edge/control/reserve.h"
 #include "edge/control/safety_guard.h"
 #include "edge/loop/parts/operator_parts.h"
+#include "edge/loop/parts/price_part.h"
 #include "tests/support/guard_inputs.h"
 
 namespace bess {
@@ -27,6 +28,22 @@ TEST(Hold, CrossesTheMailboxAsItIs) {
     mailbox.publish(hold);
     EXPECT_EQ(mailbox.latest(), hold);
   }
+}
+
+TEST(FullCharge, IsSeenAtTheEndOfAStepAndNotBetweenTwoTicks) {
+  FullChargePart part(7);
+  CycleRecord record{.utc_s = kNow, .days_since_full = 3};
+  part.restore(record);
+  Reading reading{.look = Look::kCheck, .utc_s = kNow, .is_read = true};
+  reading.response.measurement.soc_e4 = 10'000;
+  part.observe(reading);
+  part.report(record);
+  EXPECT_EQ(record.days_since_full, 0) << "nothing was counted yet";
+  reading.response.measurement.soc_e4 = 5'000;
+  reading.look = Look::kTick;
+  part.observe(reading);
+  part.report(record);
+  EXPECT_EQ(record.days_since_full, 3);
 }
 
 TEST(Hold, IsTakenUpAtATickAndNotBetweenTwo) {

@@ -116,7 +116,7 @@ TEST(HeaderFile, MistakesAreOneLineWithoutTheContent) {
   FixedText<2047> headers;
   std::string error;
   EXPECT_FALSE(load_http_headers(folder.file("none").c_str(), headers, error));
-  EXPECT_THAT(error, HasSubstr("cannot open the header file"));
+  EXPECT_THAT(error, HasSubstr("cannot open the header file: No such file"));
   EXPECT_FALSE(load_http_headers("/proc", headers, error));
 }
 

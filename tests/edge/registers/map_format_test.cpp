@@ -277,6 +277,19 @@ TEST_F(MapFormat, AByteOrderMarkIsPassedOver) {
   EXPECT_TRUE(load_register_map(path, "", map, error)) << error;
 }
 
+TEST_F(MapFormat, AWriteOfItsOwnFunctionIsReadBackExactlyUnlessSaid) {
+  std::string text = std::string(kHead) + "type = \"s32\"\nmin = -1000\nmax = 1000\n";
+  const std::string plain = "\"enable = on\", \"power";
+  text.replace(text.find(plain), plain.size(),
+               "{ write = \"enable = on\", function = 16 }, \"power");
+  RegisterMap map;
+  std::string error;
+  ASSERT_TRUE(load_register_map(folder_.write("map.toml", text), "", map, error)) << error;
+  const BlockWrite& write = map.sequence(Command::kCharge).writes[0];
+  EXPECT_EQ(write.function, 16);
+  EXPECT_EQ(write.read_back, ReadBack::kExact);
+}
+
 TEST_F(MapFormat, MistakesNameTheFileInWhichTheyAre) {
   std::string base = std::string(kHead) + "type = \"s31\"\nmin = -1000\nmax = 1000\n";
   const std::string base_path = folder_.write("base.toml", base);
