@@ -214,6 +214,22 @@ void fit_efficiency(const std::vector<Run>& charged, const std::vector<Run>& dis
   }
 }
 
+/// A log of kilowatts beside a nameplate of megawatts would show nothing, and say nothing.
+void require_same_battery(const std::vector<LoggedCycle>& cycles,
+                          const BatteryParameters& nameplate) {
+  double flowed_w = 0, ordered_w = 0;
+  for (const LoggedCycle& cycle : cycles) {
+    flowed_w = std::max(flowed_w, std::fabs(cycle.power_w));
+    ordered_w = std::max(ordered_w, std::fabs(cycle.ordered_w));
+  }
+  const bool is_smaller = ordered_w > 0 && ordered_w < 0.2 * nameplate.power_w_max;
+  if (flowed_w <= 1.3 * nameplate.power_w_max && !is_smaller) return;
+  fail(
+      "{:.0f} W were ordered and {:.0f} W flowed at most, [battery] power_w says {:g}: give the "
+      "nameplate by --config, with capacity_wh",
+      ordered_w, flowed_w, nameplate.power_w_max);
+}
+
 }  // namespace
 
 std::vector<LoggedCycle> read_cycle_log(const std::string& path) {
@@ -248,11 +264,7 @@ BatteryParameters BatteryFit::applied_to(BatteryParameters battery) const {
 }
 
 BatteryFit fit_battery(const std::vector<LoggedCycle>& cycles, const BatteryParameters& nameplate) {
-  for (const LoggedCycle& cycle : cycles) {
-    if (std::fabs(cycle.power_w) <= 1.3 * nameplate.power_w_max) continue;
-    fail("{:.0f} W flowed, [battery] power_w says {:g}: not the log of this battery", cycle.power_w,
-         nameplate.power_w_max);
-  }
+  require_same_battery(cycles, nameplate);
   const std::vector<Interval> intervals = intervals_of(cycles);
   BatteryFit fit;
   fit.standby_w = standby_of(intervals);

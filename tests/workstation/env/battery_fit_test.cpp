@@ -99,6 +99,7 @@ TEST(BatteryFit, TheLogOfAnotherBatteryIsRefused) {
   BatteryParameters smaller = kHouse;
   smaller.power_w_max = 2'500;
   EXPECT_THROW(fit_battery(cycles, smaller), UserError);
+  EXPECT_THROW(fit_battery(cycles, BatteryParameters{}), UserError) << "megawatts";
   BatteryParameters larger = kHouse;
   larger.capacity_wh = 16'000;  // cells that keep twice of what they get
   EXPECT_THROW(fit_battery(cycles, larger), UserError);
