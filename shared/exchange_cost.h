@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "shared/battery_model.h"
+#include "shared/units_and_limits.h"
 
 namespace bess {
 
@@ -16,6 +17,14 @@ inline double exchange_cost_eur(const BatteryParameters& battery, double energy_
                                       ? battery.costs.import_eur_per_mwh(price_eur_per_mwh)
                                       : battery.costs.export_eur_per_mwh(price_eur_per_mwh);
   return energy_mwh * paid_eur_per_mwh + std::fabs(energy_mwh) * battery.wear_eur_per_mwh;
+}
+
+/// What a step of `hours` earns, with its own consumption bought beside the exchange.
+inline double step_profit_eur(const BatteryParameters& battery, double energy_mwh, double hours,
+                              double price_eur_per_mwh) {
+  const double standby_mwh = battery.standby_w / kWattsPerMegawatt * hours;
+  return -exchange_cost_eur(battery, energy_mwh, price_eur_per_mwh) -
+         standby_mwh * battery.costs.import_eur_per_mwh(price_eur_per_mwh);
 }
 
 }  // namespace bess

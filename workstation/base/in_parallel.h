@@ -4,21 +4,49 @@
 
 #include <atomic>
 #include <cstddef>
+#include <exception>
+#include <mutex>
 #include <thread>
 #include <vector>
 
+#include "workstation/base/progress.h"
+
 namespace bess {
 
-/// Runs job(0) .. job(count - 1); returns when all are done. `job` must not throw.
+/// Runs job(0) .. job(count - 1); returns when all are done. After one has thrown no other begins,
+/// and what it threw is thrown again when those at work are done.
 template <typename Job>
 void in_parallel(std::size_t count, int threads, const Job& job) {
   std::atomic<std::size_t> next = 0;
+  std::atomic<bool> has_failed = false;
+  std::exception_ptr failure;
   const auto work = [&] {
-    for (std::size_t i = next++; i < count; i = next++) job(i);
+    for (std::size_t i = next++; i < count && !has_failed; i = next++) {
+      try {
+        job(i);
+      } catch (...) {
+        if (!has_failed.exchange(true)) failure = std::current_exception();
+      }
+    }
   };
-  std::vector<std::jthread> others;
-  for (int t = 1; t < threads; ++t) others.emplace_back(work);
-  work();
+  {
+    std::vector<std::jthread> others;
+    for (int t = 1; t < threads; ++t) others.emplace_back(work);
+    work();
+  }
+  if (failure) std::rethrow_exception(failure);
+}
+
+/// The same, and tells of each that is done.
+template <typename Job>
+void in_parallel(std::size_t count, int threads, Progress& progress, const Job& job) {
+  std::mutex mutex;
+  std::size_t done = 0;
+  in_parallel(count, threads, [&](std::size_t i) {
+    job(i);
+    const std::lock_guard lock(mutex);
+    progress.update(static_cast<double>(++done));
+  });
 }
 
 }  // namespace bess

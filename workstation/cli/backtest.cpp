@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <exception>
 #include <memory>
 #include <mutex>
 
@@ -155,22 +154,11 @@ void learn_folds(const Folds& folds, Learning of, const std::vector<std::string>
                     static_cast<double>(folds.traded.size() - missing.size()));
   std::mutex mutex;
   std::size_t done = folds.traded.size() - missing.size();
-  std::exception_ptr failure;
   in_parallel(missing.size(), threads, [&](std::size_t i) {
-    {
-      const std::lock_guard lock(mutex);
-      if (failure) return;
-    }
-    try {
-      learn_fold(*missing[i], of);
-      const std::lock_guard lock(mutex);
-      progress.update(static_cast<double>(++done), missing[i]->month);
-    } catch (...) {
-      const std::lock_guard lock(mutex);
-      if (!failure) failure = std::current_exception();
-    }
+    learn_fold(*missing[i], of);
+    const std::lock_guard lock(mutex);
+    progress.update(static_cast<double>(++done), missing[i]->month);
   });
-  if (failure) std::rethrow_exception(failure);
 }
 
 void run_backtest(const BacktestArguments& options) {

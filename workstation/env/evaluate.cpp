@@ -41,7 +41,6 @@ class Runner {
                                       : std::numeric_limits<double>::infinity();
     DayResult result{date, 0, 0, 0, 0};
     result.soc_start_frac = soc_frac_;
-    const double standby_mwh = battery.standby_w / kWattsPerMegawatt * kHoursPerStep;
     double energy_mwh = 0;
     for (const MarketStep& step : steps) {
       Action action = policy_.decide(step, index++, soc_frac_);
@@ -50,9 +49,7 @@ class Runner {
           power_sign(action) * battery.power_w_max * policy_.power_share_max(step, soc_frac_);
       const auto [moved, power] = followed_step(battery, soc_frac_, power_, power_w, kHoursPerStep);
       const double mwh = moved.power_w / kWattsPerMegawatt * kHoursPerStep;
-      const double profit_eur =
-          -exchange_cost_eur(battery, mwh, step.paid_eur_per_mwh) -
-          standby_mwh * battery.costs.import_eur_per_mwh(step.paid_eur_per_mwh);
+      const double profit_eur = step_profit_eur(battery, mwh, kHoursPerStep, step.paid_eur_per_mwh);
       result.profit_eur += profit_eur;
       energy_mwh += std::fabs(mwh);
       result.switches += action != last_action_ ? 1 : 0;

@@ -84,7 +84,6 @@ class PartRunner {
   Evaluation settled(const MinuteSeries& prices) && {
     const BatteryParameters& battery = options_.battery;
     double soc_frac = options_.initial_soc_frac;
-    const double standby_mwh = battery.standby_w / kWattsPerMegawatt * kHoursPerStep;
     Action before = Action::kIdle;
     for (const Step& step : steps_) {
       const std::string date = format_local_date(local_date_of(prices.utc_s(step.minute)));
@@ -95,8 +94,7 @@ class PartRunner {
       DayResult& day = evaluation_.days.back();
       const double paid = 0.5 * (prices.settled[step.minute] + prices.settled[step.minute + 1]);
       const double mwh = step.power_w / kWattsPerMegawatt * kHoursPerStep;
-      day.profit_eur += -exchange_cost_eur(battery, mwh, paid) -
-                        standby_mwh * battery.costs.import_eur_per_mwh(paid);
+      day.profit_eur += step_profit_eur(battery, mwh, kHoursPerStep, paid);
       day.throughput_mwh += std::fabs(mwh);
       day.switches += step.action != before ? 1 : 0;
       day.soc_end_frac = soc_frac = step.soc_frac;

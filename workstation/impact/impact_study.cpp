@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
-#include <mutex>
 
 #include "workstation/base/in_parallel.h"
 #include "workstation/base/progress.h"
@@ -198,22 +196,11 @@ std::vector<ImpactRow> study_impact(const ImpactPlan& plan, const FleetOptions& 
   const auto seeds = static_cast<std::size_t>(plan.seeds);
   std::vector<std::vector<std::vector<ImpactFigures>>> found(formulas * seeds);
   Progress progress("impact", "markets", static_cast<double>(found.size()));
-  std::mutex mutex;
-  std::size_t done = 0;
-  std::exception_ptr failure;
-  in_parallel(found.size(), plan.threads, [&](std::size_t i) {
-    try {
-      FleetOptions options = base;
-      options.formula = static_cast<PriceFormula>(i / seeds);
-      found[i] = figures_of(plan, options, SeedOfMarket(plan, i % seeds + 1));
-      const std::lock_guard lock(mutex);
-      progress.update(static_cast<double>(++done));
-    } catch (...) {
-      const std::lock_guard lock(mutex);
-      if (!failure) failure = std::current_exception();
-    }
+  in_parallel(found.size(), plan.threads, progress, [&](std::size_t i) {
+    FleetOptions options = base;
+    options.formula = static_cast<PriceFormula>(i / seeds);
+    found[i] = figures_of(plan, options, SeedOfMarket(plan, i % seeds + 1));
   });
-  if (failure) std::rethrow_exception(failure);
   const std::vector<ImpactVariant> variants = impact_variants(plan);
   std::vector<ImpactRow> rows;
   for (std::size_t f = 0; f < formulas; ++f) {

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
-#include <mutex>
 
 #include "workstation/base/in_parallel.h"
 #include "workstation/base/progress.h"
@@ -101,20 +99,8 @@ std::vector<SizeClass> trade_classes(const std::vector<RunConfig>& configs,
                                      const SizeTrial& trial) {
   std::vector<SizeClass> classes(configs.size());
   Progress progress("size", "classes", static_cast<double>(configs.size()));
-  std::mutex mutex;
-  std::size_t done = 0;
-  std::exception_ptr failure;
-  in_parallel(configs.size(), trial.threads, [&](std::size_t c) {
-    try {
-      classes[c] = trade_class(configs[c], trial);
-      const std::lock_guard lock(mutex);
-      progress.update(static_cast<double>(++done));
-    } catch (...) {
-      const std::lock_guard lock(mutex);
-      if (!failure) failure = std::current_exception();
-    }
-  });
-  if (failure) std::rethrow_exception(failure);
+  in_parallel(configs.size(), trial.threads, progress,
+              [&](std::size_t c) { classes[c] = trade_class(configs[c], trial); });
   return classes;
 }
 

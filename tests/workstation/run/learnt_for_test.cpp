@@ -7,10 +7,10 @@
 
 #include "shared/host/file.h"
 #include "shared/host/json.h"
+#include "tests/support/said_by_command.h"
 #include "tests/support/small_market.h"
 #include "tests/support/temporary_folder.h"
 #include "workstation/chain/interruption.h"
-#include "workstation/cli/commands.h"
 #include "workstation/market/series/local_date.h"
 #include "workstation/market/series/price_regime.h"
 #include "workstation/rl/teacher.h"
@@ -27,16 +27,7 @@ constexpr std::int64_t kDay_s = 86'400;
 constexpr std::int64_t kPicasso_s = 1'732'575'600;
 
 /// What a command tells on the standard error.
-std::string warnings(const std::string& arguments) {
-  CommandLine command_line("bess-train", "", "");
-  ProgramCommand root = command_line.root();
-  add_commands(root);
-  testing::internal::CaptureStdout();
-  testing::internal::CaptureStderr();
-  command_line.parse(arguments);
-  testing::internal::GetCapturedStdout();
-  return testing::internal::GetCapturedStderr();
-}
+std::string warnings(const std::string& arguments) { return said_by_command(arguments).errors; }
 
 class LearntFor : public testing::Test {
  protected:

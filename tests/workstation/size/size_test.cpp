@@ -9,9 +9,9 @@
 #include "shared/host/file.h"
 #include "shared/host/json.h"
 #include "shared/host/user_error.h"
+#include "tests/support/said_by_command.h"
 #include "tests/support/small_market.h"
 #include "tests/support/temporary_folder.h"
-#include "workstation/cli/commands.h"
 #include "workstation/market/series/local_date.h"
 #include "workstation/size/size_cell.h"
 
@@ -20,16 +20,7 @@ namespace {
 
 using testing::HasSubstr;
 
-std::string output_of(const std::string& arguments) {
-  CommandLine command_line("bess-train", "", "");
-  ProgramCommand root = command_line.root();
-  add_commands(root);
-  testing::internal::CaptureStdout();
-  testing::internal::CaptureStderr();
-  command_line.parse(arguments);
-  testing::internal::GetCapturedStderr();
-  return testing::internal::GetCapturedStdout();
-}
+std::string output_of(const std::string& arguments) { return said_by_command(arguments).output; }
 
 /// Minutes [from, until) of `series` are not there.
 void leave_out(MinuteSeries& series, std::int64_t from_utc_s, std::int64_t until_utc_s) {

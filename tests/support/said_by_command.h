@@ -1,0 +1,28 @@
+// What a command of bess-train says, run in this process.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "shared/host/command_line.h"
+#include "workstation/cli/commands.h"
+
+namespace bess {
+
+struct SaidByCommand {
+  std::string output, errors;
+};
+
+inline SaidByCommand said_by_command(const std::string& arguments) {
+  CommandLine command_line("bess-train", "", "");
+  ProgramCommand root = command_line.root();
+  add_commands(root);
+  testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
+  command_line.parse(arguments);
+  std::string errors = testing::internal::GetCapturedStderr();
+  return {testing::internal::GetCapturedStdout(), std::move(errors)};
+}
+
+}  // namespace bess
