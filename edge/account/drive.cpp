@@ -11,7 +11,7 @@ PricedCycle priced_cycle(const CycleRecord& record, const QuarterPrices& prices)
   const double decided_eur_per_mwh =
       static_cast<double>(record.price.price_centi_eur_per_mwh) / kCentiPerEur;
   return {
-      record.utc_s, record.price.price_centi_eur_per_mwh,
+      record.utc_s, decided_price_centi(record),
       static_cast<float>(prices.of_step_eur_per_mwh(record.utc_s).value_or(decided_eur_per_mwh)),
       context_class_now(record)};
 }

@@ -18,7 +18,7 @@ std::size_t index(Action action) { return static_cast<std::size_t>(action); }
 Action decide_again(const CycleRecord& record) {
   return decide_with_student(
       make_lattice_state(local_minute_of(record.utc_s), context_class_now(record),
-                         record.measurement.soc_e4, record.price.price_centi_eur_per_mwh));
+                         record.measurement.soc_e4, decided_price_centi(record)));
 }
 
 double eur_per_mwh(const PriceReport& price) {
@@ -41,7 +41,7 @@ void compare(const CycleRecord& record, double cycle_mwh, OpenDay& open, Replay&
   ++replay.decisions[index(before)][index(now)];
   if (before == now) return;
   replay.others.push_back(
-      {record.utc_s, record.price.price_centi_eur_per_mwh, record.measurement.soc_e4, before, now});
+      {record.utc_s, decided_price_centi(record), record.measurement.soc_e4, before, now});
   const double more_mwh = (power_sign(now) - power_sign(before)) * cycle_mwh;
   ++open.day.differing;
   open.mwh_moved += more_mwh;

@@ -144,10 +144,9 @@ std::int32_t quantile(std::vector<std::int32_t>& prices, std::size_t rank) {
 }
 
 bool decides_otherwise(const CycleRecord& record, const PricedCycle& cycle) {
-  return record.student_action !=
-         decide_with_student(make_lattice_state(local_minute_of(record.utc_s), cycle.context_class,
-                                                record.measurement.soc_e4,
-                                                record.price.price_centi_eur_per_mwh));
+  return record.student_action != decide_with_student(make_lattice_state(
+                                      local_minute_of(record.utc_s), cycle.context_class,
+                                      record.measurement.soc_e4, decided_price_centi(record)));
 }
 
 }  // namespace
@@ -156,8 +155,10 @@ LoggedMarket logged_market(const LogReader& log, const Period& period, const Qua
                            std::int32_t price_age_s_max) {
   LoggedMarket market;
   const auto see = [&](std::int32_t, const CycleRecord& record) {
-    const bool has_price = record.price.has_row &&
-                           price_age_s(record.utc_s, record.price.minute_utc_s) <= price_age_s_max;
+    const bool has_price =
+        record.price_stands_in ||
+        (record.price.has_row &&
+         price_age_s(record.utc_s, record.price.minute_utc_s) <= price_age_s_max);
     if (record.mode == Mode::kStopping || !has_price) return;
     const PricedCycle cycle = priced_cycle(record, prices);
     market.cycles.push_back(cycle);

@@ -27,7 +27,7 @@ struct LoggedMarket {
   int decided_otherwise = 0;        ///< of them, than this program's would have
 };
 
-/// Of those days; a price older than `price_age_s_max` is none.
+/// Of those days; a price older than `price_age_s_max` is none, but what stood in for it is one.
 LoggedMarket logged_market(const LogReader& log, const Period& period, const QuarterPrices& prices,
                            std::int32_t price_age_s_max);
 

@@ -141,6 +141,14 @@ struct CycleRecord {
   ResponseFindings findings{};
   FollowedOrder followed{};
   OutlookReport outlook{};
+  bool price_stands_in = false;  ///< the newest is too old: decided on what it has become
+  std::int32_t stand_in_centi_eur_per_mwh = 0;
 };
+
+/// Of a record with a price: what student, rules and thresholds were asked at.
+constexpr std::int32_t decided_price_centi(const CycleRecord& record) {
+  return record.price_stands_in ? record.stand_in_centi_eur_per_mwh
+                                : record.price.price_centi_eur_per_mwh;
+}
 
 }  // namespace bess

@@ -146,7 +146,13 @@ namespace bess {
   ROW(kFullCharge, 29, "full_charge", kGoesOn,                                                     \
       "a full charge is due: charging, or not discharging", "nothing; it ends at 99.5 %",          \
       "until the SoC is at 99.5 %")                                                                \
-  ROW(kStudent, 14, "student", kGoesOn, "the student's action", "nothing", "")
+  ROW(kStudent, 14, "student", kGoesOn, "the student's action", "nothing", "")                     \
+  ROW(kStandIn, 40, "stand_in", kGoesOn,                                                           \
+      "the student's action, at what the newest price has probably become: it is older than "      \
+      "`price_age_s_max`, and `stand_in_s_max` lets it",                                           \
+      "as price_age",                                                                              \
+      "until there is a price that is at most {price_age_s_max} s old, or for at most "            \
+      "{stand_in_s_max} s beyond that")
 
 enum class Reason : std::uint8_t {
 #define BESS_ROW(enumerator, ...) enumerator,

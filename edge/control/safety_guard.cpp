@@ -4,6 +4,13 @@
 #include "shared/fixed_point.h"
 
 namespace bess {
+namespace {
+
+Reason students_reason(const GuardInputs& in) {
+  return in.price_stands_in ? Reason::kStandIn : Reason::kStudent;
+}
+
+}  // namespace
 
 GuardDecision SafetyGuard::decide(const GuardInputs& in) {
   if (in.link_ok) update_soc_latches(in.measurement.soc_e4, in.reserve_soc_e4);
@@ -52,20 +59,31 @@ bool SafetyGuard::find_price_stop_reason(const GuardInputs& in, Reason& reason) 
     reason = Reason::kNoPrice;
     return true;
   }
-  const std::int64_t age_s = price_age_s(in.now_utc_s, in.price_minute_utc_s);
-  if (age_s > settings_.price_age_s_max || age_s < -60) {  // a row of the future is no price either
-    reason = Reason::kPriceAge;
-    return true;
-  }
-  if (quarter_hour_of(in.now_utc_s) - quarter_hour_of(in.price_minute_utc_s) > 1) {
-    reason = Reason::kPriceQuarterHour;
-    return true;
-  }
+  reason = age_stop_reason(in);
+  if (is_stop_reason(reason) && !(in.price_stands_in && may_stand_in(in))) return true;
   if (in.price_is_frozen) {
     reason = Reason::kFrozenPrice;
     return true;
   }
   return false;
+}
+
+/// kStudent: it is young enough.
+Reason SafetyGuard::age_stop_reason(const GuardInputs& in) const {
+  const std::int64_t age_s = price_age_s(in.now_utc_s, in.price_minute_utc_s);
+  if (age_s > settings_.price_age_s_max || age_s < -60) {  // a row of the future is no price either
+    return Reason::kPriceAge;
+  }
+  const bool is_of_now =
+      quarter_hour_of(in.now_utc_s) - quarter_hour_of(in.price_minute_utc_s) <= 1;
+  return is_of_now ? Reason::kStudent : Reason::kPriceQuarterHour;
+}
+
+bool SafetyGuard::may_stand_in(const GuardInputs& in) const {
+  const std::int64_t age_s = price_age_s(in.now_utc_s, in.price_minute_utc_s);
+  return in.has_price && settings_.stand_in_s_max > 0 && age_s >= 0 &&
+         age_s <= settings_.price_age_s_max + settings_.stand_in_s_max &&
+         is_stop_reason(age_stop_reason(in));
 }
 
 GuardDecision SafetyGuard::find_wish(const GuardInputs& in) const {
@@ -95,7 +113,7 @@ GuardDecision SafetyGuard::find_wish_of_price(const GuardInputs& in) const {
   const Reason of_threshold = of_price == Action::kCharge ? Reason::kPriceLow : Reason::kPriceHigh;
   // Where the student agrees it is no intervention.
   return {.power_w = power_sign(of_price) * settings_.power_w,
-          .reason = of_price == in.student_action ? Reason::kStudent : of_threshold};
+          .reason = of_price == in.student_action ? students_reason(in) : of_threshold};
 }
 
 GuardDecision SafetyGuard::find_wish_between_thresholds(const GuardInputs& in) const {
@@ -105,7 +123,8 @@ GuardDecision SafetyGuard::find_wish_between_thresholds(const GuardInputs& in) c
   if (in.full_charge == FullChargeWish::kNoDischarge && in.student_action == Action::kDischarge) {
     return {.power_w = 0, .reason = Reason::kFullCharge};
   }
-  return {.power_w = power_sign(in.student_action) * settings_.power_w, .reason = Reason::kStudent};
+  return {.power_w = power_sign(in.student_action) * settings_.power_w,
+          .reason = students_reason(in)};
 }
 
 /// kIdle between the thresholds, where the student is asked.

@@ -23,6 +23,8 @@ struct GuardSettings {
   std::int32_t soc_hysteresis_e4 = 50;  ///< back inside by this much before the bound opens again
   std::int32_t ramp_w_max = 0;          ///< largest change from one order to the next; 0 = any
   std::int32_t price_age_s_max = 240;
+  /// For so long after it what the price has probably become may stand in; 0 = not at all.
+  std::int32_t stand_in_s_max = 0;
   std::int32_t temperature_min_deci_c = 0;
   std::int32_t temperature_max_deci_c = 500;
   std::int32_t full_charge_power_w = 0;  ///< of a full charge that is due
@@ -42,6 +44,7 @@ struct GuardInputs {
   std::int64_t price_minute_utc_s = 0;
   std::int32_t price_centi_eur_per_mwh = 0;
   bool price_is_frozen = false;  ///< for so long that it is none
+  bool price_stands_in = false;  ///< what it has probably become, the newest being too old
   Action student_action = Action::kIdle;
   bool held = false;                ///< an operator's hold is in force
   std::int32_t held_power_w = 0;    ///< of that hold
@@ -63,6 +66,9 @@ class SafetyGuard {
   /// Power to order, and the reason when it is not the student's wish.
   GuardDecision decide(const GuardInputs& in);
 
+  /// The newest price is too old to trade on, and not for so long that nothing may stand in for it.
+  [[nodiscard]] bool may_stand_in(const GuardInputs& in) const;
+
   /// The order in force (`previous_power_w`) held against the limits as they are now, between two
   /// decisions: never more charging or discharging than it was, but for the site's relief.
   [[nodiscard]] GuardDecision recheck(const GuardInputs& in) const;
@@ -70,6 +76,7 @@ class SafetyGuard {
  private:
   [[nodiscard]] bool find_stop_reason(const GuardInputs& in, Reason& reason) const;
   [[nodiscard]] bool find_price_stop_reason(const GuardInputs& in, Reason& reason) const;
+  [[nodiscard]] Reason age_stop_reason(const GuardInputs& in) const;
   [[nodiscard]] GuardDecision find_wish(const GuardInputs& in) const;
   [[nodiscard]] GuardDecision find_wish_of_price(const GuardInputs& in) const;
   [[nodiscard]] GuardDecision find_wish_between_thresholds(const GuardInputs& in) const;

@@ -308,6 +308,10 @@ consteval auto make_record_fields() {
        {"Energy that flowed against or beyond orders, of the capacity, less 2.5 % a day; 0.2 is a "
         "trip.",
         1'000'000}},
+      {member<&R::price_stands_in>(), "price_stands_in", {.csv = 66, .last = 57}},
+      {member<&R::stand_in_centi_eur_per_mwh>().given<&R::price_stands_in>(),
+       "stand_in_centi",
+       {.csv = 67, .last = 58}},
   });
 }
 

@@ -158,6 +158,7 @@ class ControlLoop {
     in.clock_ok = clock_.is_synchronised();
     in.previous_power_w = order_.power_w();
     parts_.put({.power_w = settings_.guard.power_w}, record, in);
+    let_stand_in(guard_, of<FullChargePart>().level, record, in);
     ask_student(of<FullChargePart>().level, of<OutlookPart>(), record, in);
     const GuardDecision decision = guard_.decide(in);
     record.reason = cause_of(decision.reason, in.supervision, record.battery_status);

@@ -6,6 +6,7 @@
 
 #include "edge/control/policy.h"
 #include "edge/control/safety_guard.h"
+#include "edge/control/stand_in_price.h"
 #include "edge/loop/parts/price_part.h"
 
 namespace bess {
@@ -23,11 +24,21 @@ inline GuardInputs guard_inputs(const CycleRecord& record, std::int64_t now_utc_
           .price_centi_eur_per_mwh = record.price.price_centi_eur_per_mwh};
 }
 
+/// What a price that is too old to trade on has probably become, where the guard lets it.
+inline void let_stand_in(const SafetyGuard& guard, const PriceLevel& level, CycleRecord& record,
+                         GuardInputs& in) {
+  if (!level.is_known() || !guard.may_stand_in(in)) return;
+  in.price_centi_eur_per_mwh = stand_in_centi(in.price_centi_eur_per_mwh, level.centi_eur_per_mwh(),
+                                              price_age_s(in.now_utc_s, in.price_minute_utc_s));
+  in.price_stands_in = record.price_stands_in = true;
+  record.stand_in_centi_eur_per_mwh = in.price_centi_eur_per_mwh;
+}
+
 /// Its action, and what the operator's rules leave, where battery and price are known.
 inline void ask_student(const PriceLevel& level, OutlookPart& outlook, CycleRecord& record,
                         GuardInputs& in) {
   if (!record.has_measurement || !record.price.has_row) return;
-  const std::int32_t price_centi = record.price.price_centi_eur_per_mwh;
+  const std::int32_t price_centi = decided_price_centi(record);
   const LocalMinute now = local_minute_of(record.utc_s);
   record.context_class = student_context_class(now, outlook.context_centi(level, record));
   const LatticeState state =

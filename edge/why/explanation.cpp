@@ -28,7 +28,7 @@ void find_beginning(const LogReader& log, std::uint64_t number, Explanation& exp
 /// What the student was given.
 LatticeState state_of(const CycleRecord& record) {
   return make_lattice_state(local_minute_of(record.utc_s), record.context_class,
-                            record.measurement.soc_e4, record.price.price_centi_eur_per_mwh);
+                            record.measurement.soc_e4, decided_price_centi(record));
 }
 
 }  // namespace
@@ -47,8 +47,8 @@ bool explain(const LogReader& log, std::uint64_t number, const PriceThresholds& 
 
 bool margins_of(const CycleRecord& record, const PriceThresholds& thresholds, Margins& margins) {
   if (!record.has_student_action || record.context_class == 0) return false;
-  margins = find_margins(state_of(record), record.price.price_centi_eur_per_mwh, thresholds,
-                         decide_with_student);
+  margins =
+      find_margins(state_of(record), decided_price_centi(record), thresholds, decide_with_student);
   return true;
 }
 

@@ -54,6 +54,9 @@ void add_price(const Explanation& explanation, std::string& text) {
   }
   add_formatted(text, "price      %.2f EUR/MWh, %d s old",
                 eur(record.price.price_centi_eur_per_mwh), record.price_age_s);
+  if (record.price_stands_in) {
+    add_formatted(text, ", decided on as %.2f", eur(record.stand_in_centi_eur_per_mwh));
+  }
   if (explanation.has_margins) {
     text.append("; it ").append(price_margins_text(explanation.margins));
   }

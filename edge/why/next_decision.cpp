@@ -25,7 +25,7 @@ Action decide_at(const LatticeState& state, std::int32_t price_centi,
 LatticeState state_at(const CycleRecord& newest, std::int64_t utc_s) {
   const LocalMinute then = local_minute_of(utc_s);
   return make_lattice_state(then, student_context_class(then, context_centi_of(newest)),
-                            newest.measurement.soc_e4, newest.price.price_centi_eur_per_mwh);
+                            newest.measurement.soc_e4, decided_price_centi(newest));
 }
 
 void add_metric(const char* name, const char* help, double value, std::string& text) {
@@ -81,7 +81,7 @@ NextDecision find_next_decision(const CycleRecord& newest, std::int64_t now_utc_
   next.has_action = newest.has_measurement && newest.price.has_row;
   if (next.has_action) {
     const LatticeState state = state_at(newest, next.utc_s);
-    const std::int32_t price_centi = newest.price.price_centi_eur_per_mwh;
+    const std::int32_t price_centi = decided_price_centi(newest);
     const PriceThresholds& thresholds = settings.guard.thresholds;
     next.action = decide_at(state, price_centi, thresholds);
     next.margins = find_margins(state, price_centi, thresholds, decide_with_student);

@@ -21,7 +21,7 @@ std::string string(const Text& text) {
 
 /// Names of the rules that have a say at this point.
 std::string rules_at(const CycleRecord& record) {
-  const std::int32_t price_centi = record.price.price_centi_eur_per_mwh;
+  const std::int32_t price_centi = decided_price_centi(record);
   const LocalMinute now = local_minute_of(record.utc_s);
   const LatticeState state =
       make_lattice_state(now, record.context_class, record.measurement.soc_e4, price_centi);
@@ -47,6 +47,7 @@ const NamedValue kValues[] = {
     {"temperature_max_c",
      [](Cycle, Settings s) { return celsius(s.guard.temperature_max_deci_c); }},
     {"price_age_s_max", [](Cycle, Settings s) { return std::to_string(s.guard.price_age_s_max); }},
+    {"stand_in_s_max", [](Cycle, Settings s) { return std::to_string(s.guard.stand_in_s_max); }},
     {"soc_below_full",
      [](Cycle, Settings s) { return percent(s.guard.soc_max_e4 - s.guard.soc_hysteresis_e4); }},
     {"soc_above_empty",

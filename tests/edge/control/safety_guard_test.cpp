@@ -185,6 +185,46 @@ TEST(SafetyGuard, PriceAgeAndQuarterHour) {
   EXPECT_EQ(SafetyGuard(patient).decide(in).reason, Reason::kPriceQuarterHour);
 }
 
+TEST(SafetyGuard, WhatAnOldPriceHasBecomeStandsInForItsTimeAlone) {
+  GuardSettings settings;
+  settings.stand_in_s_max = 3'600;
+  const SafetyGuard guard(settings);
+  GuardInputs in = healthy(Action::kDischarge);
+  const auto aged = [&](std::int64_t age_s) {
+    in.price_minute_utc_s = kNow - 60 - age_s;
+    return guard.may_stand_in(in);
+  };
+  EXPECT_FALSE(aged(240)) << "it is traded on";
+  EXPECT_TRUE(aged(241));
+  EXPECT_TRUE(aged(3'840));
+  EXPECT_FALSE(aged(3'841));
+  EXPECT_FALSE(aged(-61)) << "a row of the future";
+  EXPECT_FALSE(SafetyGuard(GuardSettings{}).may_stand_in(in)) << "off by default";
+
+  EXPECT_FALSE(aged(3'841));
+  in.price_stands_in = true;  // whoever says so
+  EXPECT_EQ(SafetyGuard(settings).decide(in).reason, Reason::kPriceAge);
+  EXPECT_TRUE(aged(3'840));
+  EXPECT_EQ(SafetyGuard(settings).decide(in).reason, Reason::kStandIn);
+  EXPECT_EQ(SafetyGuard(settings).decide(in).power_w, -settings.power_w);
+  in.price_is_frozen = true;
+  EXPECT_EQ(SafetyGuard(settings).decide(in).reason, Reason::kFrozenPrice);
+  in.price_is_frozen = false;
+  in.has_price = false;
+  EXPECT_EQ(SafetyGuard(settings).decide(in).reason, Reason::kNoPrice);
+}
+
+TEST(SafetyGuard, APriceOfTwoQuarterHoursAgoMayStandInHoweverYoung) {
+  GuardSettings settings;
+  settings.price_age_s_max = 1'800;
+  settings.stand_in_s_max = 600;
+  GuardInputs in = healthy(Action::kCharge);
+  in.price_minute_utc_s = kNow - 120 - 960;
+  EXPECT_EQ(SafetyGuard(settings).decide(in).reason, Reason::kPriceQuarterHour);
+  in.price_stands_in = SafetyGuard(settings).may_stand_in(in);
+  EXPECT_EQ(SafetyGuard(settings).decide(in).reason, Reason::kStandIn);
+}
+
 TEST(SafetyGuard, AFrozenPriceIsNoneWhateverItSays) {
   for (const std::int32_t centi : {0, 9'000, 9'999'900, -9'999'900}) {
     GuardInputs in = healthy(Action::kCharge);

@@ -124,6 +124,14 @@ std::optional<Publication::Row> Bench::fresh_row(std::int64_t tick_ns) const {
   return is_fresh ? row : std::nullopt;
 }
 
+bool Bench::may_stand_in(std::int64_t tick_ns) const {
+  const GuardSettings& guard = config.control.guard;
+  const auto row = publication.newest(tick_ns + config.control.price_wait_s * kSecondNs);
+  return row && guard.stand_in_s_max > 0 &&
+         price_age_s(tick_ns / kSecondNs, row->minute_utc_s) <=
+             guard.price_age_s_max + guard.stand_in_s_max;
+}
+
 bool Bench::may_be_frozen(const Publication::Row& row) const {
   const std::int32_t stop_s = config.control.frozen_price.stop_s;
   return stop_s > 0 && has_stood(row, stop_s);

@@ -24,6 +24,7 @@ namespace {
 struct TrialOptions {
   std::string prices;
   std::string battery;
+  TrialHouse house;
   std::string report;
   int weeks = 8;
   bool json = false;
@@ -92,10 +93,11 @@ void run(const TrialOptions& options) {
   if (!options.report.empty()) require_writable(options.report);
   watch_for_stop();
   const MinuteSeries prices = read_minute_file(options.prices);
-  const BatteryParameters physics = battery_of(options);
+  TrialHouse house = options.house;
+  house.physics = battery_of(options);
   const auto begin = std::chrono::steady_clock::now();
   const std::vector<TrialWeek> weeks = run_trial(
-      prices, options.weeks, physics, [&](int done, int all) { tell_progress(begin, done, all); });
+      prices, options.weeks, house, [&](int done, int all) { tell_progress(begin, done, all); });
   const std::string text = fmt::format(
       "{} weeks of {} days from {}, house battery of 4 kW and 8 kWh; loss against the plain "
       "simulation,\nin percent of it, with the standard error of the paired difference\n{}",
@@ -108,7 +110,7 @@ void run(const TrialOptions& options) {
             "The trial week",
             "<div class=\"picture\"><pre>" + html_escaped(text) +
                 "</pre></div>\n<h2>Four hours, everything on</h2>\n<div class=\"picture\">" +
-                trial_picture(prices, physics) +
+                trial_picture(prices, house) +
                 "</div>\n<p>Measured power of each minute in the colour of its order: blue charge, "
                 "orange discharge, grey none.</p>\n"));
   }
@@ -130,11 +132,20 @@ void add_trial_command(ProgramCommand& app) {
       "Examples:\n"
       "  bess-hil trial --prices tests/data/benchmark_minutes_2023.csv.gz\n"
       "  bess-hil trial --prices mine.csv.gz --battery house.toml\n"
+      "  bess-hil trial --prices mine.csv.gz --guard 'stand_in_s_max = 1800' --outage-min 15\n"
       "  bess-hil trial --prices mine.csv.gz --weeks 12 --report trial.html");
   command.option("--prices", options->prices, "Minute file, CSV or .csv.gz").required();
   command.option("--weeks", options->weeks, "Of eight days each").range(1, 1'000).with_default();
   command.option("--battery", options->battery,
                  "[battery] of this file, for loop and simulation alike (bess-train battery fit)");
+  command.option("--guard", options->house.edge_guard,
+                 "Lines of [guard] for the loop, e.g. 'stand_in_s_max = 3600'");
+  command.option("--outage-min", options->house.outage_min, "Of outages: how long")
+      .range(1, 1'440)
+      .with_default();
+  command.option("--outage-every-min", options->house.outage_every_min, "Of outages: one in each")
+      .range(15, 11'520)
+      .with_default();
   command.option("--report", options->report, "Write table and picture here (HTML)");
   command.flag("--json", options->json, "One JSON object instead of the table");
   command.runs([options] { run(*options); });

@@ -82,10 +82,22 @@ class Purse {
   double eur_ = 0;
 };
 
-Scenario trial_scenario(std::int64_t start_utc_s, const BatteryParameters& physics,
-                        const Disturbance& on) {
+/// Each at any minute of its stretch.
+std::vector<MinuteSpan> short_outages(int outage_min, int every_min) {
+  std::mt19937_64 random(7);
+  std::vector<MinuteSpan> outages;
+  for (int from = 0; from < kTrialMinutes; from += every_min) {
+    const int begin = from + static_cast<int>(random() % static_cast<unsigned>(every_min));
+    outages.push_back({.from_min = static_cast<double>(begin),
+                       .to_min = static_cast<double>(begin + outage_min)});
+  }
+  return outages;
+}
+
+Scenario trial_scenario(std::int64_t start_utc_s, const TrialHouse& house, const Disturbance& on) {
   Scenario scenario;
-  scenario.battery.physics = physics;
+  scenario.battery.physics = house.physics;
+  scenario.edge_guard = house.edge_guard;
   scenario.name = on.name;
   scenario.start_utc_s = start_utc_s;
   scenario.minutes = kTrialMinutes;
@@ -93,6 +105,9 @@ Scenario trial_scenario(std::int64_t start_utc_s, const BatteryParameters& physi
   scenario.battery.response_delay_ms = on.delay ? kDelayedReplyMs : 1;
   scenario.prices.latency_s = on.delay ? kDelayedRowS : 0;
   if (on.missing) scenario.prices.missing.push_back(kOutage);
+  if (on.outages) {
+    scenario.prices.missing = short_outages(house.outage_min, house.outage_every_min);
+  }
   if (on.response) {
     FaultSchedule& schedule = scenario.battery_faults.emplace_back().schedule;
     schedule.faults = {BatteryFault::kSlowAndNoisy, BatteryFault::kThrottle};
@@ -102,7 +117,7 @@ Scenario trial_scenario(std::int64_t start_utc_s, const BatteryParameters& physi
   return scenario;
 }
 
-void lose_rows(const Scenario& scenario, MinuteSeries& prices) {
+void lose_rows(const Scenario& scenario, double probability, MinuteSeries& prices) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<> dice(0, 1);
   for (std::size_t m = 0; m < prices.size(); ++m) {
@@ -110,7 +125,7 @@ void lose_rows(const Scenario& scenario, MinuteSeries& prices) {
     const bool is_out = std::ranges::any_of(scenario.prices.missing, [&](const MinuteSpan& gap) {
       return minute >= gap.from_min && minute < gap.to_min;
     });
-    if (is_out || dice(random) < kMissingRowProbability) prices.indicative[m] = std::nan("");
+    if (is_out || dice(random) < probability) prices.indicative[m] = std::nan("");
   }
 }
 
@@ -122,13 +137,15 @@ struct WeekRun {
   Evidence evidence;
 };
 
-WeekRun run_week(const MinuteSeries& prices, std::int64_t start_utc_s,
-                 const BatteryParameters& physics, const Disturbance& on) {
-  WeekRun run{.scenario = trial_scenario(start_utc_s, physics, on),
+WeekRun run_week(const MinuteSeries& prices, std::int64_t start_utc_s, const TrialHouse& house,
+                 const Disturbance& on) {
+  WeekRun run{.scenario = trial_scenario(start_utc_s, house, on),
               .prices = prices,
               .config = {},
               .evidence = {}};
-  if (on.missing) lose_rows(run.scenario, run.prices);
+  if (on.missing || on.outages) {
+    lose_rows(run.scenario, on.missing ? kMissingRowProbability : 0, run.prices);
+  }
   const WorkFolder folder;
   run.config = load_edge_settings(run.scenario, folder.file("edge.toml"),
                                   edge_settings(run.scenario, run.prices, {}));
@@ -207,6 +224,9 @@ const std::array<Disturbance, kDisturbanceCount>& disturbances() {
       {.name = "missing",
        .text = "2 % of the rows never come, and nine hours of one night",
        .missing = true},
+      {.name = "outages",
+       .text = "no rows now and then: --outage-min in each --outage-every-min",
+       .outages = true},
       {.name = "temperature",
        .text = "0.6 of the power from 2 to 7 o'clock, as the battery shows",
        .temperature = true},
@@ -214,7 +234,7 @@ const std::array<Disturbance, kDisturbanceCount>& disturbances() {
        .text = "orders show 5 s later with 2 % noise, a quarter of the power within 5 % of a limit",
        .response = true},
       {.name = "together",
-       .text = "all four",
+       .text = "all but outages",
        .delay = true,
        .missing = true,
        .temperature = true,
@@ -225,8 +245,7 @@ const std::array<Disturbance, kDisturbanceCount>& disturbances() {
 
 BatteryParameters paper_house() { return ScenarioBattery{}.physics; }
 
-std::vector<TrialWeek> run_trial(const MinuteSeries& prices, int weeks,
-                                 const BatteryParameters& physics,
+std::vector<TrialWeek> run_trial(const MinuteSeries& prices, int weeks, const TrialHouse& house,
                                  const std::function<void(int, int)>& tell) {
   const std::vector<std::int64_t> starts = week_starts(prices);
   if (std::ssize(starts) < weeks) {
@@ -239,9 +258,9 @@ std::vector<TrialWeek> run_trial(const MinuteSeries& prices, int weeks,
     const MinuteSeries own = week_prices(prices, start_utc_s);
     TrialWeek week;
     week.start_utc_s = start_utc_s;
-    week.plain_eur = plain_money(own, start_utc_s, physics);
+    week.plain_eur = plain_money(own, start_utc_s, house.physics);
     for (std::size_t i = 0; i < disturbances().size(); ++i) {
-      const WeekRun run = run_week(own, start_utc_s, physics, disturbances()[i]);
+      const WeekRun run = run_week(own, start_utc_s, house, disturbances()[i]);
       week.loop_eur[i] = money_of(run, own);
       std::ranges::move(judge({run.scenario, run.prices, run.config, run.evidence}),
                         std::back_inserter(week.findings));
@@ -266,11 +285,11 @@ TrialLoss loss_of(const std::vector<TrialWeek>& weeks, std::size_t disturbance) 
           .percent_error = 100 * std::sqrt(variance / n) / (plain / n)};
 }
 
-std::string trial_picture(const MinuteSeries& prices, const BatteryParameters& physics) {
+std::string trial_picture(const MinuteSeries& prices, const TrialHouse& house) {
   constexpr int kPictureMinutes = 240;
   const std::int64_t start_utc_s = week_starts(prices).at(0);
   const MinuteSeries own = week_prices(prices, start_utc_s);
-  const WeekRun run = run_week(own, start_utc_s, physics, disturbances().back());
+  const WeekRun run = run_week(own, start_utc_s, house, disturbances().back());
   std::int64_t widest_utc_s = start_utc_s;
   double widest = -1;
   for (int minute = 0; minute + kPictureMinutes <= kTrialMinutes; minute += 60) {

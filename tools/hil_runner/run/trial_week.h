@@ -24,10 +24,11 @@ struct Disturbance {
   const char* text;
   bool delay = false;
   bool missing = false;
+  bool outages = false;
   bool temperature = false;
   bool response = false;
 };
-inline constexpr int kDisturbanceCount = 6;
+inline constexpr int kDisturbanceCount = 7;
 const std::array<Disturbance, kDisturbanceCount>& disturbances();
 
 /// EUR of a house battery of 4 kW and 8 kWh over eight days; what is left in the battery at the end
@@ -50,14 +51,19 @@ struct TrialLoss {
 /// power.
 BatteryParameters paper_house();
 
+struct TrialHouse {
+  BatteryParameters physics = paper_house();
+  std::string edge_guard;                       ///< lines of [guard], of the loop alone
+  int outage_min = 60, outage_every_min = 720;  ///< how long, and one within each so many
+};
+
 /// Calls `tell(weeks done, weeks in all)` after each. Throws UserError when the file holds fewer
 /// weeks.
-std::vector<TrialWeek> run_trial(const MinuteSeries& prices, int weeks,
-                                 const BatteryParameters& physics,
+std::vector<TrialWeek> run_trial(const MinuteSeries& prices, int weeks, const TrialHouse& house,
                                  const std::function<void(int, int)>& tell);
 TrialLoss loss_of(const std::vector<TrialWeek>& weeks, std::size_t disturbance);
 
 /// The first week with everything on: four hours of its largest price range as a picture (SVG).
-std::string trial_picture(const MinuteSeries& prices, const BatteryParameters& physics);
+std::string trial_picture(const MinuteSeries& prices, const TrialHouse& house);
 
 }  // namespace bess
