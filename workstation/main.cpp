@@ -1,6 +1,7 @@
 // bess-train: from prices to a proved, exported student. Each subcommand lives in cli/; this file
 // only wires them together.
-//   exit 0 done   1 the input or its content is bad   2 the command line is bad   3 interrupted   130 by a second Ctrl-C
+//   exit 0 done   1 the input or its content is bad   2 the command line is bad
+//        3 interrupted   130 by a second Ctrl-C
 #include <csignal>
 
 #include "shared/host/command_line.h"

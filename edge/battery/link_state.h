@@ -5,8 +5,8 @@
 //        |  +-------- lost -------+   +--no answer (RTU)--> draining --drained--> connected
 //        +--connect failed--> backing off --pause over--> disconnected
 //
-// disconnected  the next request connects              backing off  requests fail without trying
-// connected     the next request may go at ready_ns    draining     RTU: a late reply may still come
+// disconnected  the next request connects            backing off  requests fail without trying
+// connected     the next request may go at ready_ns  draining     RTU: a late reply may still come
 // The pause after a failed connect doubles from 1 s to 60 s until something answers: a dead battery
 // is not hammered, and each cycle of 120 s tries at least once.
 #pragma once

@@ -1,7 +1,7 @@
 // Modbus frames as pure functions: the bytes of a request, and whether some bytes are its reply. No
 // socket, no clock, no library, so that every check can be tested and fuzzed on its own:
-//   TCP   transaction(2) protocol=0(2) length(2) unit(1) | function(1) data
-//   RTU                                          unit(1) | function(1) data | CRC(2, low byte first)
+//   TCP  transaction(2) protocol=0(2) length(2) unit(1) | function(1) data
+//   RTU                                         unit(1) | function(1) data | CRC(2, low byte first)
 // libmodbus 3.1.6 would take a TCP reply of another unit or protocol, and a write's echo of another
 // address or value, for good; here a reply is compared with its request in everything it repeats.
 #pragma once

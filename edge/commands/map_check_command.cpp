@@ -33,7 +33,8 @@ constexpr CommandOption kOptions[] = {
 constexpr const char* kHelp =
     R"(bess-edge map check: does a register map fit what a battery answered? Needs no battery
 
-  bess-edge map check --against FILE [--map FILE [--variant NAME] | --config FILE] [--json] [--accept-cut]
+  bess-edge map check --against FILE [--map FILE [--variant NAME] | --config FILE] [--json])"
+    R"( [--accept-cut]
 
   --against FILE  a recording: bess-edge record, or bess-edge run --record
   --map FILE      the register map; default: that of the configuration
@@ -42,10 +43,14 @@ constexpr const char* kHelp =
   --json          one JSON object
   --accept-cut    take a recording without its last line up to where it was cut
 
-Names every point whose values cannot be true, with what would fit: never answered, outside its range, another
-scale, word order or type; a state of charge that stands still or does not follow the measured power; power that
-flows against the order. For the last three the battery must have moved energy while it was recorded.
-Exit codes: 0 all points are plausible   1 not all, or a file cannot be read   2 the command line is bad
+Names every point whose values cannot be true, with what would fit: never answered,)"
+    R"( outside its range, another
+scale, word order or type; a state of charge that stands still or does not follow the measured)"
+    R"( power; power that
+flows against the order. For the last three the battery must have moved energy while it was)"
+    R"( recorded.
+Exit codes: 0 all points are plausible   1 not all, or a file cannot be read)"
+    R"(   2 the command line is bad
 
   bess-edge map check --against inverter.jsonl --map edge/maps/sma.toml --variant setpoint
 )";

@@ -20,8 +20,8 @@ constexpr CommandOption kOptions[] = {
     O::flag<&ReleaseGiven::force>("--force"),
 };
 
-constexpr const char* kHelp =
-    R"(bess-edge release: gives a battery back to its own mode, when a controller that is gone left an order
+constexpr const char* kHelp = R"(bess-edge release: gives a battery back to its own mode,)"
+                              R"( when a controller that is gone left an order
 
   bess-edge release [--config FILE] --yes [--force]
 
@@ -30,7 +30,8 @@ constexpr const char* kHelp =
   --force        also to a device that does not answer as its register map says
 
 Needs no sign check. Refused while a bess-edge controls the battery: stop that instead.
-Exit codes: 0 released   1 refused or failed: the line says why   2 the command line is bad, or --yes is missing
+Exit codes: 0 released   1 refused or failed: the line says why   2 the command line is bad,)"
+                              R"( or --yes is missing
 
   systemctl stop bess-edge; bess-edge release --yes
 )";

@@ -18,22 +18,29 @@ using O = OptionsOf<WhyGiven>;
 constexpr CommandOption kOptions[] = {O::moment<&WhyGiven::at>("--at"),
                                       O::flag<&WhyGiven::json>("--json")};
 
-constexpr const char* kHelp =
-    R"(bess-edge why: why the battery does what it does, and at which price it would do something else
+constexpr const char* kHelp = R"(bess-edge why: why the battery does what it does,)"
+                              R"( and at which price it would do something else
 
   bess-edge why [--config FILE] [--at MOMENT] [--json]
 
   --config FILE  the controller's settings; default /etc/bess/edge.toml
-  --at MOMENT    the cycle whose order was in force then, by the clock on the wall: 14:32 (the newest that has
-                 been), "2026-11-23 14:32", or in UTC 2026-11-23T13:32:00Z; default: the newest cycle
+  --at MOMENT    the cycle whose order was in force then, by the clock on the wall:)"
+                              R"( 14:32 (the newest that has
+                 been), "2026-11-23 14:32", or in UTC 2026-11-23T13:32:00Z; default:)"
+                              R"( the newest cycle
   --json         one JSON object with the same numbers
 
-Who decided, since when, what ends it; price and state of charge, each with the exact values up to which this
-cycle would have charged and from which it would have discharged. The student is proved to be monotone in
-both, so that no price or SoC between them decides otherwise. Limits, rules of your own and stop reasons stand
-above it, and are named where they decided. Read from the log in [state] folder, while the controller runs or
+Who decided, since when, what ends it; price and state of charge,)"
+                              R"( each with the exact values up to which this
+cycle would have charged and from which it would have discharged.)"
+                              R"( The student is proved to be monotone in
+both, so that no price or SoC between them decides otherwise. Limits,)"
+                              R"( rules of your own and stop reasons stand
+above it, and are named where they decided. Read from the log in [state] folder,)"
+                              R"( while the controller runs or
 not.
-Exit codes: 0 done   1 the log cannot be read, or nothing was decided then   2 the command line is bad
+Exit codes: 0 done   1 the log cannot be read, or nothing was decided then)"
+                              R"(   2 the command line is bad
 
   bess-edge why
   bess-edge why --at 14:32

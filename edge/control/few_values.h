@@ -5,8 +5,8 @@
 // Elia's data, of every second minute, as a controller asks:
 //   the 1,631 real minutes of 6 September 2024 and 8 April 2025   66 minutes at most
 //   the 204,420 rebuilt minutes of January to May 2023            50 minutes
-//   52,530 real settled quarter-hours of January 2023 to June 2025, had every minute of them shown it
-//                                                                 405 minutes, in December 2024
+//   52,530 real settled quarter-hours of January 2023 to June     405 minutes, in December 2024
+//   2025, had every minute of them shown it
 // Five values and more pass for a price that moves.
 #pragma once
 

@@ -2,11 +2,12 @@
 // on. Told after a while, after a longer one no price at all. Pure integers.
 //
 // How long honest prices stand still, to the cent, measured on 23 November 2026 on Elia's data:
-//   the 1,631 real minutes of 6 September 2024 and 8 April 2025: 19 minutes at most (22 between the rows
-//     that a controller asks for)
+//   the 1,631 real minutes of 6 September 2024 and 8 April 2025: 19 minutes at most (22 between the
+//     rows that a controller asks for)
 //   52,530 real settled quarter-hours of January 2023 to June 2025: 10 in a row at most (150.00, on
-//     29 December 2024); 7 or more 26 times, 9 or more 8 times. The minutes converge to what is settled, so
-//     a run of theirs is at most two times 14 minutes longer: under 3 hours, had each of them shown it
+//     29 December 2024); 7 or more 26 times, 9 or more 8 times. The minutes converge to what is
+//     settled, so a run of theirs is at most two times 14 minutes longer: under 3 hours, had each
+//     of them shown it
 // So what stands still for 30 minutes is worth a look, and no honest price stood still for 3 hours.
 // Among four values (few_values.h) it must stay four times as long to be told, and two and a half
 // times as long to be none.

@@ -1,7 +1,7 @@
 // Why a cycle ordered what it did, in one table. A row is a reason; their order is precedence,
 // lower ones win. A row has
-//   enumerator, code on disk, name in log and status, what it does to the battery, what it means, what to look at, what
-//   ends it, with {values} that edge/why/what_ends.cpp knows
+//   enumerator, code on disk, name in log and status, what it does to the battery, what it means,
+//   what to look at, what ends it, with {values} that edge/why/what_ends.cpp knows
 // A code is never used for another reason: what was logged a year ago must keep its meaning. A new
 // row takes the next. edge/README.md has the table for people, held by
 // tests/edge/control/reasons_test.cpp.
@@ -163,8 +163,8 @@ enum class Reason : std::uint8_t {
 /// What a reason makes of the battery.
 enum class ReasonEffect : std::uint8_t {
   kRests,     ///< it must not be driven: 0 W, held, then released
-  kReleases,  ///< nor held: a house that lives on its battery goes dark, and a battery that does not follow its orders
-              ///< need not follow this one either
+  kReleases,  ///< nor held: a house that lives on its battery goes dark, and a battery that does
+              ///< not follow its orders need not follow this one either
   kGoesOn     ///< it is driven; the reason is what the order is as it is
 };
 

@@ -1,7 +1,7 @@
 // Makes "no heap after start-up" true for the running process, and checks that it is:
 //   prepare_memory   at start: the arena serves malloc, there is no [heap] segment
-//   HeapSeal         around the loop: memory locked, the control thread may not allocate, the kernel
-//                    refuses to give memory, threads or programs (seccomp)
+//   HeapSeal         around the loop: memory locked, the control thread may not allocate, the
+//                    kernel refuses to give memory, threads or programs (seccomp)
 // The filter names only what is forbidden; sockets, files, clocks and futexes stay as they are.
 // BESS_SECCOMP=kill in the environment ends the process at a forbidden call, for tests; otherwise
 // the call fails with ENOMEM (memory) or EPERM (threads, programs) and whoever made it copes.

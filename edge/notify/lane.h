@@ -3,7 +3,8 @@
 // at the controller.
 //
 //   add         owed from now on; nothing is sent yet, so that it can be kept in a file first
-//   begin_round an attempt at everything that is owed; it ends with the first message that is not taken
+//   begin_round an attempt at everything that is owed; it ends with the first message that is not
+//               taken
 //
 // The queue is bounded in number and in time. What had to go is counted, and the way is told how
 // many before it is told anything else.

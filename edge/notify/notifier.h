@@ -1,5 +1,6 @@
 // One round of the notifier: ask, compare with what was told, hand the rest to every way's lane.
-//   bess-edge status, decision log --> AlarmBook, DayAccount --> messages --> lanes: mail, webhook, MQTT
+//   bess-edge status, decision log -> AlarmBook, DayAccount -> messages
+//   messages -> lanes: mail, webhook, MQTT
 // It reads files and asks a program; nothing here holds what the controller needs. A round waits
 // for no way: what a way does not take is tried again every round, for three days, in its own lane.
 #pragma once

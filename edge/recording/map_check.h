@@ -1,7 +1,8 @@
 // Does a register map fit what a device answered? Takes the exchanges of a recording one by one and
 // tells, for every point of the map, whether its values can be true and, if not, what would fit.
 // Two kinds of evidence:
-//   each point by itself   never answered, outside its range; then other scale, word order and type are tried
+//   each point by itself   never answered, outside its range; then other scale, word order and type
+//                          are tried
 //   points together        energy_evidence.h
 #pragma once
 

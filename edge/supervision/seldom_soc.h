@@ -2,10 +2,12 @@
 // ([response] soc_refresh_s). Each reading of it is of some instant since then, and orders turn
 // meanwhile: what the energy of an interval between two readings is off by may be more than the
 // interval. So
-//   - a reading of the SoC has a range of energies, not one; where the SoC has just changed, a narrower one;
+//   - a reading of the SoC has a range of energies, not one; where the SoC has just changed, a
+//     narrower one;
 //   - it stands still only if energy has flowed whichever instants the readings are of;
-//   - readings are put together until that is three quarters of what has flowed, most of it one way: then they
-//     are one interval of energy_balance.h. Where orders turn more often than that, nothing is said.
+//   - readings are put together until that is three quarters of what has flowed, most of it one
+//     way: then they are one interval of energy_balance.h. Where orders turn more often than that,
+//     nothing is said.
 #pragma once
 
 #include <cstdint>

@@ -1,8 +1,8 @@
 // The state of charge against the measured power, reading by reading.
 //
-//   stands still while power flows; runs apart from it over a longer span    contradiction
+//   stands still while power flows; runs apart from it over a longer span   contradiction
 //   changes at once by more than power explains                             jump: it was set right
-//   shows another share of the energy, or loses some at rest                 told (energy_balance.h)
+//   shows another share of the energy, or loses some at rest                told (energy_balance.h)
 //
 // Near the ends a count of charge clings and is set right: charging above 95 %, and discharging
 // below 10 %, explains a SoC that stands still or goes further than power does. Only these:

@@ -3,9 +3,11 @@
 // another link names the one that judges, the last that has confirmed itself. A link is flipped by
 // a rename: at once, without dpkg.
 //
-//   /usr/lib/bess-edge/{bin,share,systemd,SUMS}        what dpkg unpacked last: a delivery, which nothing runs from
+//   /usr/lib/bess-edge/{bin,share,systemd,SUMS}       what dpkg unpacked last: a delivery, which
+//                                                     nothing runs from
 //   /var/lib/bess-edge/versions/VERSION/{the same}
-//   /var/lib/bess-edge/current -> versions/VERSION     /usr/bin/bess-edge and /usr/share/bess lead here
+//   /var/lib/bess-edge/current -> versions/VERSION    /usr/bin/bess-edge and /usr/share/bess lead
+//                                                     here
 //   /var/lib/bess-edge/confirmed -> versions/VERSION
 #pragma once
 

@@ -1,8 +1,9 @@
 // Whatever a Modbus server sends: the frame check for TCP and RTU, then the whole link against a
 // server on loopback that sends these bytes. Good is only what an independent reading of the
 // standard finds good.
-//   input: framing and function, count, address (2), bytes at a time, then the reply; the top bit of the
-//   first byte puts the right transaction id or checksum into the reply, so that the rest is reached
+//   input: framing and function, count, address (2), bytes at a time, then the reply; the top bit
+//   of the first byte puts the right transaction id or checksum into the reply, so that the rest is
+//   reached
 #include <arpa/inet.h>
 #include <netinet/in.h>
 #include <sys/socket.h>

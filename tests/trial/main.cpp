@@ -1,8 +1,8 @@
 // Prints what the supervision makes of every fault and of every honest battery of the trial, as
 // tables of Markdown or as CSV. Measures and asserts nothing: trial_test does.
 //
-//   supervision_trial faults         each fault at SoC 45 %: constant, at some ticks, the SoC in whole
-//                                    percent, the controller killed after each cycle
+//   supervision_trial faults         each fault at SoC 45 %: constant, at some ticks, the SoC in
+//                                    whole percent, the controller killed after each cycle
 //   supervision_trial ends           each fault near full and near empty
 //   supervision_trial honest [DAYS]  each variant of a healthy battery
 //   supervision_trial rare           faults too rare for the counts: what they move until found

@@ -1,8 +1,9 @@
 // A device as it was recorded (shared/host/bus_recording.h): answers a request as it answered the
 // same one at that time. Two rules, so that a replay takes the course of the recording and is not
 // thrown off by milliseconds:
-//   the same request was recorded   its answers are given in their order, each when its time has come, give or take
-//                                   `kSlackNs`; what nobody asked for in its time is passed over
+//   the same request was recorded   its answers are given in their order, each when its time has
+//                                   come, give or take `kSlackNs`; what nobody asked for in its
+//                                   time is passed over
 //   it was not, a read              each register by itself, as it was last read before this time
 // What was never recorded is answered with exception 2, and told.
 #pragma once

@@ -5,9 +5,10 @@
 //
 // so that for a normal n and d = J'n, split alike into d1 and d2,
 //
-//   z = J2 d2        the direction in x along which n'x grows fastest and the active rows stay, |d2|^2 a unit
-//   r = R^-1 d1      how the active multipliers fall along it
-//   J2 J2'           the inverse of G on the directions that the active rows leave free
+//   z = J2 d2      the direction in x along which n'x grows fastest and the active rows stay,
+//                  |d2|^2 a unit
+//   r = R^-1 d1    how the active multipliers fall along it
+//   J2 J2'         the inverse of G on the directions that the active rows leave free
 //
 // A row comes in by one Householder reflection of the columns of J2 that it meets, and goes out by
 // Givens rotations. It meets columns of the groups that its variables belong to

@@ -3,9 +3,10 @@
 //
 //   u = z_charge - z_idle     v = z_idle - z_discharge     (both in logits, one of each per state)
 //
-//   state 4 charges:             u_4 >= m, v_4 >= 0          {"rule", {{4, kU, 1}}, m}, {"rule", {{4, kV, 1}}, 0}
-//   state 4 does not discharge:  v_4 >= m                    {"rule", {{4, kV, 1}}, m}
-//   u falls from state 4 to 7:   u_4 - u_7 >= slope          {"rule", {{4, kU, 1}, {7, kU, -1}}, slope}
+//   state 4 charges:             u_4 >= m             {"rule", {{4, kU, 1}}, m}
+//                                v_4 >= 0             {"rule", {{4, kV, 1}}, 0}
+//   state 4 does not discharge:  v_4 >= m             {"rule", {{4, kV, 1}}, m}
+//   u falls from state 4 to 7:   u_4 - u_7 >= slope   {"rule", {{4, kU, 1}, {7, kU, -1}}, slope}
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // Distillation into a student that is monotone by construction (sign_bounds.h). Nothing of property
 // 3 is left to training, so training has one aim, what the student earns:
 //
-//   L = fidelity KL(mu || pi') + E_pi'[regret] / temperature      mu = softmax(values / temperature)
+//   L = fidelity KL(mu || pi') + E_pi'[regret] / temperature   mu = softmax(values / temperature)
 //
 // over states that the teacher visits and some from anywhere, with hinges where a rule binds,
 // built-in (properties 1 and 2) or an operator's: by monotony a state or two for each context tell.

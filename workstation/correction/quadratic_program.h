@@ -1,7 +1,7 @@
 // A strictly convex quadratic program, dense in the variables and sparse in the rows, and its
 // derivative:
 //
-//   x = argmin 1/2 x'Gx - g'x    s.t.  a_i'x  = b_i  for the first rows,  a_i'x >= b_i  for the others
+//   x = argmin 1/2 x'Gx - g'x   s.t.  a_i'x = b_i  for the first rows, a_i'x >= b_i for the others
 //
 // Dual active-set method [Goldfarb, Idnani 1983, Mathematical Programming 27]: starts at the free
 // minimum G^-1 g, and takes in the row violated most, letting go of active rows whose multipliers

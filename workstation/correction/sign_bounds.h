@@ -7,8 +7,8 @@
 //              time and context enter all of them freely
 //   hidden 2   16 falling units: weights >= 0 from falling, <= 0 from rising, free from the others;
 //              16 rising units: the other way round
-//   logits     idle is the origin; charge takes falling units >= 0 and rising ones <= 0, discharge the
-//              other way round
+//   logits     idle is the origin; charge takes falling units >= 0 and rising ones <= 0, discharge
+//              the other way round
 //
 // So neither charge - idle nor idle - discharge can rise with price or SoC, whatever the weights
 // are inside these bounds. Rounding to integers keeps every sign, and the integer activations rise

@@ -4,8 +4,8 @@
 // age.
 //
 // Forecast (persistence), with d = newest price - usual price of the quarter-hour it belongs to:
-//   rest of this quarter-hour      usual + s d       s: by minute of the quarter-hour, least squares
-//   k quarter-hours later          usual + s d rho^k
+//   rest of this quarter-hour   usual + s d        s: by minute of the quarter-hour, least squares
+//   k quarter-hours later       usual + s d rho^k
 // usual = mean settled price of the training days by quarter-hour of day; rho = their lag-1
 // autocorrelation by quarter-hours. A row older than the ordinary delay decays on by rho.
 //

@@ -1,7 +1,8 @@
 // Stochastic dynamic program [SPEC 8]: the baseline that knows the hour and the price level, and
 // the exact teacher. The newest price is split into what is usual and a deviation:
 //
-//   usual(q, level) = mean paid price of quarter-hour q, smoothed over the day + w (level - its mean)
+//   usual(q, level) = mean paid price of quarter-hour q, smoothed over the day
+//                     + w (level - its mean)
 //   deviation       = newest price - usual(quarter-hour that the price belongs to, level)
 //
 // Deviations are a Markov chain over 48 quantile bins, counted by phase of the half-hour and pooled

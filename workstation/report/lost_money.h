@@ -5,16 +5,17 @@
 // when all later decisions are the best ones (ForesightPolicy::worth_eur). Along the way s_0, s_1,
 // ... that the policy really went,
 //
-//   foresight - earned = sum over steps of  max_b Q_t(s_t, b) - Q_t(s_t, a_t)      [Kakade, Langford 2002, Lemma 6.1]
+//   foresight - earned = sum over steps of  max_b Q_t(s_t, b) - Q_t(s_t, a_t)
+//                                                       [Kakade, Langford 2002, Lemma 6.1]
 //
 // so what was missed is a sum of regrets, none negative, each of one decision: what an empty
 // battery could not sell is charged to the decision that emptied it. Each regret is then split by
 // asking others at the same step and SoC, each with one fetter less:
 //
-//   a_0 what was done  -> a_1 the plain student under the rules               the correction
-//   a_1                -> a_2 the plain student                               a rule or the guard
-//   a_2                -> a_3 that student, shown the price that is paid      newest price, or none came
-//   a_3                -> b   the best                                        what later prices bring
+//   a_0 what was done -> a_1 the plain student under the rules           the correction
+//   a_1               -> a_2 the plain student                           a rule or the guard
+//   a_2               -> a_3 that student, shown the price that is paid  newest price, or none came
+//   a_3               -> b   the best                                    what later prices bring
 //
 // (Once the day's cycles are used up there is nothing to ask: all of it is the limit's.) Part k is
 // Q(a_k+1) - Q(a_k); it may be negative, where a fetter helped. The last part is named by which

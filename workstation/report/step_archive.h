@@ -4,7 +4,8 @@
 //
 //   minute int32 (UTC, since 1970) | observed int32 (hundredths of EUR/MWh, as the edge reads it)
 //   | paid int32 (thousandths: a mean of two) | local minute of the day int16 | context class int8
-//   and for each policy  profit float32 (EUR) | power float32 (W) | SoC int16 (1e-4, before) | action int8
+//   and for each policy  profit float32 (EUR) | power float32 (W) | SoC int16 (1e-4, before)
+//   | action int8
 #pragma once
 
 #include <functional>

@@ -12,7 +12,8 @@
 // With g = gamma_P that is the optimum, up to V_P; with less, the program's own values stand beyond
 // the reach 1 / (1 - g) steps. Q = A + E[Z] on both sides, and V_P + A = Q_P, give
 //
-//   Z(s, a) =(in distribution) r' + g A(s', a*) + g Z(s', a*)    a* = argmax_b A(s', b) + E[Z(s', b)]
+//   Z(s, a) =(in distribution) r' + g A(s', a*) + g Z(s', a*)
+//   a* = argmax_b A(s', b) + E[Z(s', b)]
 //   r' = r - c + gamma_P V_P(s') - Q_P(s, a)
 //
 // So in Algorithm 1 [Bellemare, Dabney, Munos 2017] atom z_j of Z(s', a*) moves to

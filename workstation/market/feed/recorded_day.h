@@ -6,8 +6,8 @@
 //   price_arrived_utc     when each of them was there for the first time; empty = not in this line
 //   imbalance_arrived_utc
 //   quality_status        Elia's, of the price
-//   arrival               seen = the look before, a short time earlier, did not show it; found = it may
-//                         have been there for long
+//   arrival               seen = the look before, a short time earlier, did not show it; found = it
+//                         may have been there for long
 // A line holds what arrived of a minute; further lines of the same minute add to it or revise it,
 // so that nothing is ever overwritten. The reader takes the FIRST price of a minute: the one that
 // could be acted on. The last column is never empty and of two words, which no cut makes of one

@@ -195,7 +195,8 @@ TEST(MarketJson, AMemberThatStandsTwiceIsRefused) {
 TEST(MarketJson, QuarterHourAndNullPrice) {
   const MarketRows rows = parse_market_text(
       R"([{"datetime":"2025-10-08T13:00:00+02:00","resolutioncode":"PT15M","imbalanceprice":100.06},
-          {"datetime":"2025-10-08T12:45:00+02:00","resolutioncode":"PT15M","imbalanceprice":null}])",
+          {"datetime":"2025-10-08T12:45:00+02:00","resolutioncode":"PT15M",)"
+      R"("imbalanceprice":null}])",
       "answer.json");
   ASSERT_EQ(rows.quarter_hours.size(), 2u);
   EXPECT_EQ(rows.quarter_hours[0].price_eur_per_mwh, 100.06);
