@@ -14,7 +14,8 @@ set(BESS_SYSROOT "${CMAKE_CURRENT_LIST_DIR}/../build-sysroot-${BESS_DEBIAN_ARCH}
 list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES BESS_SYSROOT)
 cmake_path(ABSOLUTE_PATH BESS_SYSROOT NORMALIZE OUTPUT_VARIABLE CMAKE_SYSROOT)
 if(NOT EXISTS "${CMAKE_SYSROOT}/MANIFEST")
-  message(FATAL_ERROR "${CMAKE_SYSROOT}: no sysroot here; make it with: tools/sysroot --arch ${BESS_DEBIAN_ARCH}")
+  message(FATAL_ERROR "${CMAKE_SYSROOT}: no sysroot here; "
+                      "make it with: tools/sysroot --arch ${BESS_DEBIAN_ARCH}")
 endif()
 find_program(BESS_CROSS_COMPILER ${BESS_TRIPLE}-g++)
 if(NOT BESS_CROSS_COMPILER)
@@ -28,7 +29,8 @@ set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
 set(ENV{PKG_CONFIG_SYSROOT_DIR} ${CMAKE_SYSROOT})
-set(ENV{PKG_CONFIG_LIBDIR} ${CMAKE_SYSROOT}/usr/lib/${BESS_TRIPLE}/pkgconfig:${CMAKE_SYSROOT}/usr/share/pkgconfig)
+set(ENV{PKG_CONFIG_LIBDIR}
+    ${CMAKE_SYSROOT}/usr/lib/${BESS_TRIPLE}/pkgconfig:${CMAKE_SYSROOT}/usr/share/pkgconfig)
 # Libraries of libraries: the linker looks for them to resolve their symbols.
 set(CMAKE_EXE_LINKER_FLAGS_INIT
     "-Wl,-rpath-link,${CMAKE_SYSROOT}/lib/${BESS_TRIPLE}:${CMAKE_SYSROOT}/usr/lib/${BESS_TRIPLE}")

@@ -1,7 +1,8 @@
 # Thread sanitizer, for the programs that have threads: edge and simulators. The release's tests
 # start them:
 #   cmake -C toolchains/tsan.cmake -S . -B build-tsan && cmake --build build-tsan
-#   BESS_EDGE_UNDER_TEST=$PWD/build-tsan/bess-edge BESS_SIM_UNDER_TEST=$PWD/build-tsan/bess-sim build/processes_test
+#   BESS_EDGE_UNDER_TEST=$PWD/build-tsan/bess-edge BESS_SIM_UNDER_TEST=$PWD/build-tsan/bess-sim \
+#     build/processes_test
 set(CMAKE_C_COMPILER clang CACHE STRING "")
 set(CMAKE_CXX_COMPILER clang++ CACHE STRING "")
 set(CMAKE_BUILD_TYPE RelWithDebInfo CACHE STRING "")

@@ -3,11 +3,15 @@
 # (man pages, completion, certificate) in BUILD/package/edge.
 set(package_dir ${CMAKE_SOURCE_DIR}/edge/package)
 install(PROGRAMS ${CMAKE_SOURCE_DIR}/edge/update/trial DESTINATION lib/bess COMPONENT edge_package)
-install(FILES ${CMAKE_SOURCE_DIR}/edge/update/update.conf DESTINATION /etc/bess RENAME update.conf.example
+install(FILES ${CMAKE_SOURCE_DIR}/edge/update/update.conf DESTINATION /etc/bess
+        RENAME update.conf.example
         COMPONENT edge_package)
-install(FILES ${CMAKE_SOURCE_DIR}/edge/systemd/bess-trial.service ${CMAKE_SOURCE_DIR}/edge/systemd/bess-recover.service
+install(FILES ${CMAKE_SOURCE_DIR}/edge/systemd/bess-trial.service
+        ${CMAKE_SOURCE_DIR}/edge/systemd/bess-recover.service
         DESTINATION lib/systemd/system COMPONENT edge_package)
-install(FILES ${package_dir}/bess.tmpfiles DESTINATION lib/tmpfiles.d RENAME bess.conf COMPONENT edge_package)
-install(FILES ${package_dir}/60-bess-rs485.rules DESTINATION lib/udev/rules.d COMPONENT edge_package)
+install(FILES ${package_dir}/bess.tmpfiles DESTINATION lib/tmpfiles.d RENAME bess.conf
+        COMPONENT edge_package)
+install(FILES ${package_dir}/60-bess-rs485.rules DESTINATION lib/udev/rules.d
+        COMPONENT edge_package)
 install(FILES ${BESS_STUDENT_DIR}/student_weights.h DESTINATION share/bess COMPONENT edge_package)
 install(DIRECTORY ${CMAKE_BINARY_DIR}/package/edge/ DESTINATION . COMPONENT edge_package)
