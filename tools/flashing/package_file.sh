@@ -1,7 +1,8 @@
 # Sourced by the commands of tools/flash: which package is meant, and may it be installed at all.
 #   package_for ARCH [FILE]   prints the file: FILE, or the newest of build-packages/ for ARCH
 #   require_whole FILE        dies unless its archive can be read to the end
-#   require_certified FILE    dies unless the package carries a proved student and the certificate of just that one
+#   require_certified FILE    dies unless the package carries a proved student and the certificate
+#                             of just that one
 # They use die of the command that sources them.
 
 flashing_root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
@@ -9,15 +10,17 @@ flashing_root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 package_for() {
   local file=${2:-}
   if [ -z "$file" ]; then
-    file=$(find "$flashing_root/build-packages" -name "bess-edge_*_$1.deb" -printf '%T@ %p\n' 2>/dev/null | sort -n |
-      tail -n 1 | cut -d' ' -f2-)
+    file=$(find "$flashing_root/build-packages" -name "bess-edge_*_$1.deb" -printf '%T@ %p\n' \
+      2>/dev/null | sort -n | tail -n 1 | cut -d' ' -f2-)
     [ -n "$file" ] || die "build-packages/ has no bess-edge for $1; make it with: tools/package $1"
   fi
   [ -f "$file" ] || die "$file: no such package"
-  [ "$(dpkg-deb -f "$file" Package 2>/dev/null)" = bess-edge ] || die "$file: is no package of bess-edge"
+  [ "$(dpkg-deb -f "$file" Package 2>/dev/null)" = bess-edge ] ||
+    die "$file: is no package of bess-edge"
   local found
   found=$(dpkg-deb -f "$file" Architecture)
-  [ "$found" = "$1" ] || die "$file is for $found, the machine is $1; make it with: tools/package $1"
+  [ "$found" = "$1" ] ||
+    die "$file is for $found, the machine is $1; make it with: tools/package $1"
   echo "$file"
 }
 
@@ -31,9 +34,12 @@ require_certified() {
   require_whole "$1"
   local work
   work=$(mktemp -d)
-  dpkg-deb --fsys-tarfile "$1" | tar -x -C "$work" ./usr/lib/bess-edge/share/certificate.json ./usr/lib/bess-edge/share/student_weights.h 2>/dev/null || true
+  dpkg-deb --fsys-tarfile "$1" | tar -x -C "$work" ./usr/lib/bess-edge/share/certificate.json \
+    ./usr/lib/bess-edge/share/student_weights.h 2>/dev/null || true
   local said
-  said=$("$flashing_root/tools/packaging/certificate" check "$work/usr/lib/bess-edge/share/student_weights.h" "$work/usr/lib/bess-edge/share/certificate.json" 2>&1) || {
+  said=$("$flashing_root/tools/packaging/certificate" check \
+    "$work/usr/lib/bess-edge/share/student_weights.h" \
+    "$work/usr/lib/bess-edge/share/certificate.json" 2>&1) || {
     rm -rf "$work"
     die "${1##*/}: ${said//$work/}"
   }

@@ -1,5 +1,6 @@
-# Run by cpack when all is installed into its folder, before it is packed: what makes a version goes to
-# /usr/lib/bess-edge, which only delivers (edge/update/version_store.h); what people call leads to the version that runs.
+# Run by cpack when all is installed into its folder, before it is packed: what makes a version goes
+# to /usr/lib/bess-edge, which only delivers (edge/update/version_store.h); what people call leads
+# to the version that runs.
 file(GLOB_RECURSE programs ${CPACK_TEMPORARY_DIRECTORY}/*/usr/bin/bess-edge)
 foreach(program ${programs})
   string(REGEX REPLACE "/bin/bess-edge$" "" usr ${program})
@@ -14,7 +15,8 @@ foreach(program ${programs})
   endforeach()
   file(RENAME ${usr}/share/bess ${delivery}/share)
   file(COPY ${usr}/lib/systemd/system/bess-edge.service DESTINATION ${delivery}/systemd)
-  execute_process(COMMAND sh -c "find bin share systemd -type f | LC_ALL=C sort | xargs sha256sum >SUMS"
+  execute_process(COMMAND sh -c
+                  "find bin share systemd -type f | LC_ALL=C sort | xargs sha256sum >SUMS"
                   WORKING_DIRECTORY ${delivery} COMMAND_ERROR_IS_FATAL ANY)
   file(CHMOD ${delivery}/SUMS PERMISSIONS OWNER_READ OWNER_WRITE GROUP_READ WORLD_READ)
 endforeach()

@@ -5,9 +5,11 @@ include(${CMAKE_SOURCE_DIR}/edge/package/install.cmake)
 if(TARGET bess-train)
   install(TARGETS bess-train bess-sim DESTINATION bin COMPONENT workstation)
   # Its own copies: on a workstation bess-edge need not be installed, and may be.
-  install(DIRECTORY ${CMAKE_SOURCE_DIR}/edge/maps ${CMAKE_SOURCE_DIR}/edge/meters DESTINATION share/bess-workstation
+  install(DIRECTORY ${CMAKE_SOURCE_DIR}/edge/maps ${CMAKE_SOURCE_DIR}/edge/meters
+          DESTINATION share/bess-workstation
           COMPONENT workstation FILES_MATCHING PATTERN *.toml)
-  install(FILES ${CMAKE_SOURCE_DIR}/workstation/report/page/answers.schema.json DESTINATION share/bess-workstation
+  install(FILES ${CMAKE_SOURCE_DIR}/workstation/report/page/answers.schema.json
+          DESTINATION share/bess-workstation
           COMPONENT workstation)
   install(DIRECTORY ${CMAKE_BINARY_DIR}/package/workstation/ DESTINATION . COMPONENT workstation)
 endif()
@@ -21,8 +23,8 @@ set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
-set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE
-    WORLD_READ WORLD_EXECUTE)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE
+    GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 set(CPACK_DEBIAN_PACKAGE_HOMEPAGE "")
 set(CPACK_DEBIAN_PACKAGE_SECTION misc)
 set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
