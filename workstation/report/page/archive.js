@@ -9,8 +9,9 @@ async function inflated(base64) {
 }
 
 /**
- * Days with their steps. Per step: minute (UTC, since 1970), localMinute (of the day), contextClass, observed and
- * paid (EUR/MWh); and for each policy profit (EUR), power (W, charge positive), soc (0..1, before the step), action.
+ * Days with their steps. Per step: minute (UTC, since 1970), localMinute (of the day),
+ * contextClass, observed and paid (EUR/MWh); and for each policy profit (EUR), power (W, charge
+ * positive), soc (0..1, before the step), action.
  */
 async function unpackDays(archive) {
   const buffer = await inflated(archive.data);

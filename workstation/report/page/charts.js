@@ -23,7 +23,8 @@ function colour(name) {
 }
 
 /** The colours of the chain's own policies; page.js adds those of its rivals. */
-const kPolicyColours = {"corrected student": "line-1", "unproved student": "line-1", "plain student": "line-2", "teacher": "line-3"};
+const kPolicyColours = {"corrected student": "line-1", "unproved student": "line-1",
+                        "plain student": "line-2", "teacher": "line-3"};
 
 /** The colour of each policy, everywhere on the page. */
 function policyColour(name) {
@@ -76,7 +77,10 @@ const marksDrawn = marks => ({
   },
 });
 
-/** Draws the chart of a canvas; `configure` makes its configuration, and makes it anew for other colours. */
+/**
+ * Draws the chart of a canvas; `configure` makes its configuration, and makes it anew for other
+ * colours.
+ */
 function drawChart(id, configure) {
   const before = shownCharts.get(id);
   if (before) before.chart.destroy();

@@ -1,4 +1,5 @@
-// One day, chosen: prices, power, state of charge and money, step by step, of the run's own policies.
+// One day, chosen: prices, power, state of charge and money, step by step, of the run's own
+// policies.
 "use strict";
 
 const kOrdinaryShare = 20 / 24;  // of the day's steps, that the ordinary scale shows
@@ -22,7 +23,8 @@ class DayView {
     click("day-best", () => this.openAt(this.extreme((day) => this.earned(day))));
     click("day-widest", () => this.openAt(this.widest()));
     click("step-to-map", () => showOnMap(this.state()));
-    document.getElementById("step-slider").addEventListener("input", (event) => this.moveTo(Number(event.target.value)));
+    document.getElementById("step-slider")
+      .addEventListener("input", (event) => this.moveTo(Number(event.target.value)));
     bindChoice("scale-choice", "scale", (scale) => {
       this.scale = scale;
       this.draw();
@@ -78,26 +80,35 @@ class DayView {
   /** The step that is looked at, as the policy's map shows it. */
   state() {
     const {day, step} = this;
-    return {contextClass: day.contextClass[step], quarterHour: Math.floor(day.localMinute[step] / 15),
-            minute: day.localMinute[step] % 15, price: day.observed[step], soc: day.policies[0].soc[step]};
+    return {contextClass: day.contextClass[step],
+            quarterHour: Math.floor(day.localMinute[step] / 15),
+            minute: day.localMinute[step] % 15, price: day.observed[step],
+            soc: day.policies[0].soc[step]};
   }
 
   draw() {
     this.describe();
     this.drawPrices();
     this.drawPower();
-    this.drawSteps("chart-soc", (policy) => Array.from(policy.soc, (soc) => 100 * soc), {min: 0, max: 100});
+    this.drawSteps(
+      "chart-soc", (policy) => Array.from(policy.soc, (soc) => 100 * soc), {min: 0, max: 100});
     this.drawSteps("chart-eur", (_, p) => this.earnings[p], {});
   }
 
   describe() {
-    const earned = this.data.archive.policies.map((name, p) => `${name} ${signed(this.earnings[p].at(-1), 0)} EUR`);
+    const earned = this.data.archive.policies.map(
+      (name, p) => `${name} ${signed(this.earnings[p].at(-1), 0)} EUR`);
     const left = this.data.archive.days_left_out;
     document.getElementById("day-note").textContent = `${this.day.date}: ${earned.join(", ")}.` +
-      (left > 0 ? ` ${left} of the test days are not in this page: it holds the newest and the worst.` : "");
+      (left > 0
+        ? ` ${left} of the test days are not in this page: it holds the newest and the worst.`
+        : "");
   }
 
-  /** Ends of the price axis: of the whole day, or without the few steps whose prices are far from all others. */
+  /**
+   * Ends of the price axis: of the whole day, or without the few steps whose prices are far from
+   * all others.
+   */
   priceRange() {
     const sorted = [...this.day.observed, ...this.day.paid].sort((a, b) => a - b);
     const tail = this.scale === "all" ? 0 : Math.floor(sorted.length * (1 - kOrdinaryShare) / 2);
@@ -110,14 +121,18 @@ class DayView {
     const {low, high} = this.priceRange();
     const beyond = Array.from(this.day.paid).filter((price) => price < low || price > high).length;
     document.getElementById("price-note").textContent = "EUR/MWh" + (beyond > 0
-      ? `; ${beyond} steps are paid beyond this scale, marked at its edge: from ${trueMinus(Math.min(...this.day.paid).toFixed(0))} to ${trueMinus(Math.max(...this.day.paid).toFixed(0))}`
+      ? `; ${beyond} steps are paid beyond this scale, marked at its edge: from ` +
+        `${trueMinus(Math.min(...this.day.paid).toFixed(0))} to ` +
+        `${trueMinus(Math.max(...this.day.paid).toFixed(0))}`
       : "");
     drawChart("chart-price", () => ({
       type: "line",
       data: {
         datasets: [
-          this.line("paid", Array.from(this.day.paid), colour("ink"), {borderWidth: 2, stepped: "before"}),
-          this.line("observed", Array.from(this.day.observed), colour("line-1"), {borderWidth: 1, stepped: "before"}),
+          this.line("paid", Array.from(this.day.paid), colour("ink"),
+                    {borderWidth: 2, stepped: "before"}),
+          this.line("observed", Array.from(this.day.observed), colour("line-1"),
+                    {borderWidth: 1, stepped: "before"}),
         ],
       },
       options: this.options({min: low, max: high}),
@@ -130,7 +145,8 @@ class DayView {
     drawChart("chart-power", () => ({
       type: "line",
       data: {datasets: []},
-      options: this.options({min: 0, max: this.day.policies.length, ticks: {display: false}, grid: {display: false}}),
+      options: this.options({min: 0, max: this.day.policies.length, ticks: {display: false},
+                             grid: {display: false}}),
       plugins: [this.lanesPlugin(), this.cursorPlugin()],
     }));
   }
@@ -141,7 +157,8 @@ class DayView {
       type: "line",
       data: {
         datasets: this.day.policies.map((policy, p) => this.line(
-          this.data.archive.policies[p], valuesOf(policy, p), policyColour(this.data.archive.policies[p]),
+          this.data.archive.policies[p], valuesOf(policy, p),
+          policyColour(this.data.archive.policies[p]),
           {borderWidth: p === 0 ? 2.5 : 1.2, borderDash: p === 2 ? [4, 3] : [], order: p})),
       },
       options: this.options({min, max}),
@@ -150,7 +167,8 @@ class DayView {
   }
 
   line(label, values, ink, more) {
-    return {label, data: values.map((y, i) => ({x: this.hours[i], y})), borderColor: ink, backgroundColor: ink,
+    return {label, data: values.map((y, i) => ({x: this.hours[i], y})), borderColor: ink,
+            backgroundColor: ink,
             pointRadius: 0, ...more};
   }
 
@@ -159,8 +177,10 @@ class DayView {
     const end = this.hours.at(-1) + 2 / 60;
     return {
       parsing: false, events: ["mousemove", "click", "touchstart", "touchmove"],
-      onHover: (event, _, chart) => this.moveTo(this.stepAt(chart.scales.x.getValueForPixel(event.x))),
-      plugins: {tooltip: {enabled: false}, legend: {labels: {color: colour("ink"), boxWidth: 14, boxHeight: 3}}},
+      onHover: (event, _, chart) =>
+        this.moveTo(this.stepAt(chart.scales.x.getValueForPixel(event.x))),
+      plugins: {tooltip: {enabled: false},
+                legend: {labels: {color: colour("ink"), boxWidth: 14, boxHeight: 3}}},
       scales: {
         x: axis({type: "linear", min: 0, max: end,
                  ticks: {stepSize: 3, callback: (hour) => this.timeAt(hour)}}),
@@ -193,11 +213,14 @@ class DayView {
       return line;
     };
     document.getElementById("step-readout").replaceChildren(
-      text("price", trueMinus(`observed ${day.observed[step].toFixed(1)}, paid ${day.paid[step].toFixed(1)} EUR/MWh`)),
+      text("price", trueMinus(`observed ${day.observed[step].toFixed(1)}, ` +
+                              `paid ${day.paid[step].toFixed(1)} EUR/MWh`)),
       ...day.policies.map((policy, p) => text(
         this.data.archive.policies[p],
-        `${kActions[policy.action[step]]}, ${(Math.abs(policy.power[step]) / 1e6).toPrecision(3)} MW at ` +
-        `${(100 * policy.soc[step]).toFixed(1)} %, ${signed(this.earnings[p][step], 1)} EUR so far`)));
+        `${kActions[policy.action[step]]}, ` +
+        `${(Math.abs(policy.power[step]) / 1e6).toPrecision(3)} MW at ` +
+        `${(100 * policy.soc[step]).toFixed(1)} %, ` +
+        `${signed(this.earnings[p][step], 1)} EUR so far`)));
     for (const id of kDayCharts) shownCharts.get(id).chart.draw();
   }
 
@@ -221,7 +244,8 @@ class DayView {
           ctx.fillRect(chartArea.left, top + kLaneNamePx, chartArea.right - chartArea.left, strip);
           for (let s = 0; s < this.day.steps; ++s) {
             if (power[s] === 0) continue;
-            const x = scales.x.getPixelForValue(this.hours[s]), end = scales.x.getPixelForValue(this.hours[s] + 2 / 60);
+            const x = scales.x.getPixelForValue(this.hours[s]),
+                  end = scales.x.getPixelForValue(this.hours[s] + 2 / 60);
             ctx.globalAlpha = .25 + .75 * Math.abs(power[s]) / most;
             ctx.fillStyle = power[s] > 0 ? charging : discharging;
             ctx.fillRect(x, top + kLaneNamePx, end - x + .3, strip);

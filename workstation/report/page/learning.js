@@ -1,33 +1,45 @@
 // How teacher and student learned, and on which prices.
 "use strict";
 
-/** Lines over numbers; `series`: [name, points, colour, dash, radius] each, points [x, y]; with a radius there is no line. */
+/**
+ * Lines over numbers; `series`: [name, points, colour, dash, radius] each, points [x, y]; with a
+ * radius there is no line.
+ */
 function drawLines(id, series, scales) {
   drawChart(id, () => ({
     type: "line",
     data: {
       datasets: series.map(([label, points, ink, dash, radius]) => ({
-        label, data: points.map(([x, y]) => ({x, y})), borderColor: colour(ink), backgroundColor: colour(ink),
+        label, data: points.map(([x, y]) => ({x, y})), borderColor: colour(ink),
+        backgroundColor: colour(ink),
         pointRadius: radius || (points.length > 40 ? 0 : 2), borderWidth: 2, borderDash: dash || [],
         showLine: !radius, order: radius ? 0 : 1,
       })),
     },
-    options: {parsing: false, scales: {x: axis({type: "linear", ticks: {precision: 0}}), y: axis({ticks: kFewTicks}), ...scales()}},
+    options: {parsing: false, scales: {x: axis({type: "linear", ticks: {precision: 0}}),
+                                       y: axis({ticks: kFewTicks}), ...scales()}},
   }));
 }
 
 /** Step 0 is a residual's: there it is still the stochastic program. */
 function drawTraining({training, rule}) {
-  document.getElementById("training-figure").hidden = training.length < 2;  // a program is fitted, not trained
+  // A program is fitted, not trained.
+  document.getElementById("training-figure").hidden = training.length < 2;
   if (training.length < 2) return;
   const kept = training.find((point) => point[2] === 1);
-  const level = (profit) => [training[0], training[training.length - 1]].map(([step]) => [step, profit]);
-  const began = training[0][0] === 0 ? [["the program, step 0", level(training[0][1]), "line-4", [6, 4], 0]] : [];
-  drawLines("chart-training", [["checkpoint", training, "line-1"], ["chosen", [kept], "line-2", undefined, 6], ...began,
+  const level = (profit) =>
+    [training[0], training[training.length - 1]].map(([step]) => [step, profit]);
+  const began = training[0][0] === 0
+    ? [["the program, step 0", level(training[0][1]), "line-4", [6, 4], 0]] : [];
+  drawLines("chart-training", [["checkpoint", training, "line-1"],
+                               ["chosen", [kept], "line-2", undefined, 6], ...began,
     ["rule-based", level(rule), "muted", [2, 3], 0]], () => ({}));
 }
 
-/** Every student that was looked at: [epoch, profit on validation days, "chosen" | "disobeys" | "passed over"]. */
+/**
+ * Every student that was looked at: [epoch, profit on validation days, "chosen" | "disobeys" |
+ * "passed over"].
+ */
 function drawCheckpoints({checkpoints}) {
   document.getElementById("checkpoints-figure").hidden = checkpoints.length === 0;
   if (checkpoints.length === 0) return;
@@ -44,7 +56,8 @@ function drawDistillation({distil, by_construction}) {
   document.getElementById("distil-note").textContent = by_construction
     ? "loss over passes; its order holds by construction" : "losses over epochs, logarithmic";
   const visited = ["on the states that the teacher visits", column(3), "line-1"];
-  const losses = [["distance to the teacher", column(1), "line-3"], ["distance to the ordered", column(2), "line-2"], visited];
+  const losses = [["distance to the teacher", column(1), "line-3"],
+                  ["distance to the ordered", column(2), "line-2"], visited];
   drawLines("chart-distil", by_construction ? [visited] : losses.map(
     ([name, points, ink]) => [name, points.filter(([, y]) => y > 0), ink]),
             () => (by_construction ? {} : {y: axis({type: "logarithmic"})}));
@@ -52,15 +65,18 @@ function drawDistillation({distil, by_construction}) {
 
 function drawPriceHistogram({low, bin, train, test, outside_train, outside_test}) {
   document.getElementById("prices-note").textContent =
-    `; the far tails are left out: ${outside_train.toFixed(2)} % of the training and ${outside_test.toFixed(2)} % of the test prices`;
+    `; the far tails are left out: ${outside_train.toFixed(2)} % of the training and ` +
+    `${outside_test.toFixed(2)} % of the test prices`;
   drawChart("chart-prices", () => ({
     type: "bar",
     data: {
       labels: train.map((_, b) => trueMinus(low + b * bin)),
       datasets: [
-        {type: "line", label: "test days", data: test, borderColor: colour("ink"), backgroundColor: colour("ink"),
+        {type: "line", label: "test days", data: test, borderColor: colour("ink"),
+         backgroundColor: colour("ink"),
          borderWidth: 2, pointRadius: 0, stepped: "middle", order: 0},
-        {label: "training days", data: train, backgroundColor: colour("soft"), barPercentage: 1, categoryPercentage: 1,
+        {label: "training days", data: train, backgroundColor: colour("soft"), barPercentage: 1,
+         categoryPercentage: 1,
          order: 1},
       ],
     },

@@ -14,7 +14,8 @@ if(NOT chart_js_head MATCHES "Chart\\.js v3\\.9\\.")
                       "for: name that of Debian 12's libjs-chart.js with -DBESS_CHART_JS=FILE")
 endif()
 
-file(GLOB page_files CONFIGURE_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/*.js ${CMAKE_CURRENT_LIST_DIR}/*.css
+file(GLOB page_files CONFIGURE_DEPENDS ${CMAKE_CURRENT_LIST_DIR}/*.js
+     ${CMAKE_CURRENT_LIST_DIR}/*.css
      ${CMAKE_CURRENT_LIST_DIR}/*.html)
 # Of the answers of --json: 'bess-train schema' prints it, and the package installs it.
 list(APPEND page_files ${BESS_CHART_JS} ${CMAKE_CURRENT_LIST_DIR}/answers.schema.json)

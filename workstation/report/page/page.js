@@ -32,7 +32,8 @@ async function openPage() {
 openPage().catch((error) => {
   const text = document.createElement("p");
   text.className = "failure";
-  text.textContent = `Part of this page could not be shown: ${error.message}. It needs a browser of 2023 or newer.`;
+  text.textContent =
+    `Part of this page could not be shown: ${error.message}. It needs a browser of 2023 or newer.`;
   document.querySelector("main").prepend(text);
   throw error;
 });

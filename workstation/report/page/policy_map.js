@@ -1,5 +1,6 @@
-// The students' decisions over price and state of charge, evaluated here by their integers (student.js). Computed in
-// slices between frames: the sliders stay quick, and what stands there when it is done is exact, cell by cell.
+// The students' decisions over price and state of charge, evaluated here by their integers
+// (student.js). Computed in slices between frames: the sliders stay quick, and what stands there
+// when it is done is exact, cell by cell.
 "use strict";
 
 const kSliceMs = 20;
@@ -20,7 +21,8 @@ class StudentMap {
     this.canvas = document.createElement("canvas");
     this.canvas.className = "map";
     this.canvas.setAttribute("role", "img");
-    this.canvas.setAttribute("aria-label", `Decisions of the ${name} over price and state of charge`);
+    this.canvas.setAttribute(
+      "aria-label", `Decisions of the ${name} over price and state of charge`);
     this.found = document.createElement("p");
     this.found.className = "found";
     figure.append(caption, this.canvas, this.found);
@@ -33,8 +35,10 @@ class PolicyMap {
     this.data = data;
     this.lattice = data.lattice;
     const host = document.getElementById("maps");
-    this.maps = data.students.map(({name, net}) => new StudentMap(name, new Student(net, data.lattice), host));
-    this.context = {contextClass: data.first_map.context_class, quarterHour: data.first_map.quarter_hour,
+    this.maps = data.students.map(
+      ({name, net}) => new StudentMap(name, new Student(net, data.lattice), host));
+    this.context = {contextClass: data.first_map.context_class,
+                    quarterHour: data.first_map.quarter_hour,
                     minute: data.first_map.minute};
     this.marked = null;
     this.nextViolation = 0;
@@ -63,7 +67,8 @@ class PolicyMap {
     slider("quarter-slider", "quarterHour");
     slider("minute-slider", "minute");
     bindChoice("window-choice", "window", (value) => this.setWindow(
-      value === "all" ? {first: this.lattice.price_min, last: this.lattice.price_max} : this.decisions));
+      value === "all" ? {first: this.lattice.price_min, last: this.lattice.price_max}
+      : this.decisions));
     for (const id of ["price-from", "price-to"]) {
       const input = document.getElementById(id);
       input.min = String(this.lattice.price_min);
@@ -85,14 +90,18 @@ class PolicyMap {
     new ResizeObserver(() => this.paint()).observe(document.getElementById("maps"));
   }
 
-  /** Prices between which an ordered policy changes its mind, nearly always: over classes, hours and charges. */
+  /**
+   * Prices between which an ordered policy changes its mind, nearly always: over classes, hours
+   * and charges.
+   */
   decisionWindow(student) {
     const {price_min, price_max, soc_count} = this.lattice;
     const borders = [];
     for (let contextClass = 1; contextClass <= 12; ++contextClass) {
       for (let quarterHour = 0; quarterHour < 96; quarterHour += 8) {
         for (const share of [.2, .4, .6, .8]) {
-          student.beginRow({contextClass, quarterHour, minute: 7}, Math.round(share * (soc_count - 1)));
+          student.beginRow(
+            {contextClass, quarterHour, minute: 7}, Math.round(share * (soc_count - 1)));
           for (const level of [1, 0]) {  // from which price on is the action at most this
             let low = price_min, high = price_max;
             while (low < high) {
@@ -108,7 +117,8 @@ class PolicyMap {
     const at = (share) => borders[Math.round(share * (borders.length - 1))];
     const room = Math.max(kWindowRoundTo, .1 * (at(.98) - at(.02)));
     const round = (price) => Math.round(price / kWindowRoundTo) * kWindowRoundTo;
-    return {first: Math.max(price_min, round(at(.02) - room)), last: Math.min(price_max, round(at(.98) + room))};
+    return {first: Math.max(price_min, round(at(.02) - room)),
+            last: Math.min(price_max, round(at(.98) + room))};
   }
 
   setWindow(window) {
@@ -118,7 +128,8 @@ class PolicyMap {
 
   readWindow() {
     const value = (id) => Math.round(Number(document.getElementById(id).value));
-    const clamp = (price) => Math.min(Math.max(price, this.lattice.price_min), this.lattice.price_max);
+    const clamp = (price) =>
+      Math.min(Math.max(price, this.lattice.price_min), this.lattice.price_max);
     const first = clamp(value("price-from")), last = clamp(value("price-to"));
     pressChoice("window-choice", "window", "");
     this.setWindow(first < last ? {first, last} : this.window);
@@ -132,7 +143,8 @@ class PolicyMap {
   }
 
   showLatticeState([minute, quarterHour, contextClass, soc, price]) {
-    this.showState({minute, quarterHour, contextClass, price, soc: soc / (this.lattice.soc_count - 1)});
+    this.showState(
+      {minute, quarterHour, contextClass, price, soc: soc / (this.lattice.soc_count - 1)});
   }
 
   /** Goes to a state, and marks its price and charge. */
@@ -141,7 +153,8 @@ class PolicyMap {
     this.marked = {price, soc};
     if (price < this.window.first || price > this.window.last) {
       const half = Math.round((this.decisions.last - this.decisions.first) / 2);
-      const clamp = (edge) => Math.min(Math.max(edge, this.lattice.price_min), this.lattice.price_max);
+      const clamp = (edge) =>
+        Math.min(Math.max(edge, this.lattice.price_min), this.lattice.price_max);
       this.window = {first: clamp(Math.round(price) - half), last: clamp(Math.round(price) + half)};
       pressChoice("window-choice", "window", "");
     }
@@ -159,10 +172,12 @@ class PolicyMap {
     set("minute-text", clockText(quarterHour * 15 + minute));
     set("price-from", this.window.first);
     set("price-to", this.window.last);
-    const count = this.data.counterexamples.length, button = document.getElementById("next-violation");
+    const count = this.data.counterexamples.length,
+          button = document.getElementById("next-violation");
     button.hidden = count === 0;
     button.textContent =
-      `a violation of the ${this.data.counterexamples_of} (${this.nextViolation + 1} of ${count} kept)`;
+      `a violation of the ${this.data.counterexamples_of} ` +
+      `(${this.nextViolation + 1} of ${count} kept)`;
     this.rules.showLegend(document.getElementById("rule-keys"), this.context, () => this.paint());
   }
 
@@ -231,7 +246,8 @@ class PolicyMap {
     const {order, threshold, rules} = map.violations;
     const found = [[order.length, "neighbouring pairs out of order"],
                    [threshold.length, "states beyond a threshold not obeyed"],
-                   ...rules.map(({rule, cells}) => [cells.length, `states against \u201c${rule.name}\u201d`])];
+                   ...rules.map(({rule, cells}) =>
+                     [cells.length, `states against \u201c${rule.name}\u201d`])];
     const some = found.filter(([count]) => count > 0);
     map.found.textContent = some.length === 0 ? "no violation in what is shown"
       : some.map(([count, what]) => `${count} ${what}`).join(", ");
@@ -274,7 +290,8 @@ class PolicyMap {
     const pixels = new Uint32Array(image.data.buffer);
     const inks = kActions.map((name) => pixelOf(colour(name)));
     for (let soc = 0; soc < rows; ++soc) {
-      const from = map.grid[soc * columns] < 0 ? soc - soc % kCoarseRows : soc;  // a row that was looked at
+      // A row that was looked at.
+      const from = map.grid[soc * columns] < 0 ? soc - soc % kCoarseRows : soc;
       for (let column = 0; column < columns; ++column) {
         const action = map.grid[from * columns + column];
         if (action >= 0) pixels[(rows - 1 - soc) * columns + column] = inks[action];
@@ -291,11 +308,13 @@ class PolicyMap {
     const cells = new OffscreenCanvas(columns, rows), image = new ImageData(columns, rows);
     const pixels = new Uint32Array(image.data.buffer), ink = pixelOf("#000000");
     for (const {cells: broken} of map.violations.rules) {
-      for (const cell of broken) pixels[(rows - 1 - Math.floor(cell / columns)) * columns + cell % columns] = ink;
+      for (const cell of broken)
+        pixels[(rows - 1 - Math.floor(cell / columns)) * columns + cell % columns] = ink;
     }
     cells.getContext("2d").putImageData(image, 0, 0);
     const ratio = devicePixelRatio || 1;
-    const lines = new OffscreenCanvas(Math.ceil(plot.w * ratio), Math.ceil(plot.h * ratio)), pen = lines.getContext("2d");
+    const lines = new OffscreenCanvas(Math.ceil(plot.w * ratio), Math.ceil(plot.h * ratio)),
+          pen = lines.getContext("2d");
     pen.scale(ratio, ratio);
     pen.strokeStyle = colour("mark");
     pen.lineWidth = 1.5;
@@ -319,11 +338,15 @@ class PolicyMap {
     ctx.fillStyle = colour("mark");
     const w = Math.max(cellW, kMarkPx), h = Math.max(cellH, kMarkPx);
     const fill = (x, y) => ctx.fillRect(x - w / 2, y - h / 2, w, h);
-    const left = (column) => plot.x + column * cellW, top = (soc) => plot.y + (rows - 1 - soc) * cellH;
+    const left = (column) => plot.x + column * cellW,
+          top = (soc) => plot.y + (rows - 1 - soc) * cellH;
     for (const {soc, column, towards} of map.violations.order) {  // on the border between the two
-      fill(left(column) + (towards === "price" ? cellW : cellW / 2), top(soc) + (towards === "soc" ? 0 : cellH / 2));
+      fill(
+        left(column) + (towards === "price" ? cellW : cellW / 2),
+        top(soc) + (towards === "soc" ? 0 : cellH / 2));
     }
-    for (const {soc, column} of map.violations.threshold) fill(left(column) + cellW / 2, top(soc) + cellH / 2);
+    for (const {soc, column} of map.violations.threshold)
+      fill(left(column) + cellW / 2, top(soc) + cellH / 2);
     ctx.restore();
   }
 
@@ -335,13 +358,15 @@ class PolicyMap {
     ctx.font = "12px system-ui, sans-serif";
     ctx.textAlign = "right";
     ctx.textBaseline = "middle";
-    for (const percent of [0, 25, 50, 75, 100]) ctx.fillText(`${percent} %`, plot.x - 6, yOf(2 * percent));
+    for (const percent of [0, 25, 50, 75, 100])
+      ctx.fillText(`${percent} %`, plot.x - 6, yOf(2 * percent));
     ctx.textAlign = "center";
     ctx.textBaseline = "top";
     const {first, last} = map.window, step = niceStep((last - first) / (width / 60));
     for (let price = Math.ceil(first / step) * step; price <= last; price += step) {
       const label = trueMinus(price), half = ctx.measureText(label).width / 2;
-      ctx.fillText(label, Math.min(xOf(price), width - half), plot.y + plot.h + 5);  // the last one ends with the canvas
+      // The last one ends with the canvas.
+      ctx.fillText(label, Math.min(xOf(price), width - half), plot.y + plot.h + 5);
       ctx.fillRect(xOf(price) - .5, plot.y + plot.h, 1, 4);
     }
     ctx.fillText("price, EUR/MWh", plot.x + plot.w / 2, plot.y + plot.h + 20);
@@ -381,7 +406,8 @@ class PolicyMap {
     const rules = this.rules.atState(this.context, soc, price);
     const names = rules.map(({number, name}) => `${number} ${name}`);
     document.getElementById("map-readout").textContent =
-      `${trueMinus(price)} EUR/MWh at ${(100 * soc / (rows - 1)).toFixed(1)} %: ${actions.join(", ")}` +
+      `${trueMinus(price)} EUR/MWh at ${(100 * soc / (rows - 1)).toFixed(1)} %: ` +
+      actions.join(", ") +
       (names.length > 0 ? `. Rules that hold there: ${names.join(", ")}` : "");
     this.point(rules.length > 0 ? rules.at(-1) : null);
   }
@@ -402,10 +428,11 @@ function pixelOf(hex) {
 
 /** The key of the maps, in the page's colours. */
 function showMapKeys(hasRules) {
-  const keys = [["charge", "charge"], ["idle", "idle"], ["discharge", "discharge"], ["mark", "violation"],
+  const keys = [["charge", "charge"], ["idle", "idle"], ["discharge", "discharge"],
+                ["mark", "violation"],
                 ["", "dashed across: charge that the battery keeps"],
-                ...(hasRules ? [["", "outlined, with its number: where a rule holds, dashed the guard\u2019s alone; " +
-                                     "hatched: states that break one"]] : [])];
+                ...(hasRules ? [["", "outlined, with its number: where a rule holds, dashed the " +
+                                     "guard\u2019s alone; hatched: states that break one"]] : [])];
   document.getElementById("map-keys").replaceChildren(...keys.map(([name, text]) => {
     const item = document.createElement("li");
     if (name) {

@@ -1,9 +1,10 @@
-// The operator's rules on the maps: where each holds, what breaks it, and its entry in the legend below. As
-// rules_json() of page_rules.h has them.
+// The operator's rules on the maps: where each holds, what breaks it, and its entry in the legend
+// below. As rules_json() of page_rules.h has them.
 "use strict";
 
 const kRuleBadgePx = 16;
-const kHeldByAPair = ["minute", "quarterHour", "contextClass"];  // directions that one map alone does not show
+// Directions that one map alone does not show.
+const kHeldByAPair = ["minute", "quarterHour", "contextClass"];
 
 class RuleBoxes {
   /** `show(context)` goes to another map. */
@@ -32,9 +33,13 @@ class RuleBoxes {
                                              soc >= rule.soc[0] && soc <= rule.soc[1]);
   }
 
-  /** Rules whose violations a map shows only beside the map of the next minute, quarter-hour or class. */
+  /**
+   * Rules whose violations a map shows only beside the map of the next minute, quarter-hour or
+   * class.
+   */
   pairRules() {
-    return this.rules.filter((rule) => rule.binds_student && rule.direction && kHeldByAPair.includes(rule.direction.input));
+    return this.rules.filter((rule) =>
+      rule.binds_student && rule.direction && kHeldByAPair.includes(rule.direction.input));
   }
 
   /** The context after this one along an input; null after its last value. */
@@ -44,8 +49,9 @@ class RuleBoxes {
   }
 
   /**
-   * Cells of a map that break a rule, by rule: [{rule, cells}], those without any left out. `nextGrids[input]` is the
-   * same part of the next context's map, for pairRules(). Directions with price and charge are property 3.
+   * Cells of a map that break a rule, by rule: [{rule, cells}], those without any left out.
+   * `nextGrids[input]` is the same part of the next context's map, for pairRules(). Directions with
+   * price and charge are property 3.
    */
   violations(grid, {first, last}, context, nextGrids) {
     const width = last - first + 1, found = [];
@@ -53,7 +59,8 @@ class RuleBoxes {
       if (!rule.binds_student || !rule.forbidden) continue;
       const cells = [];
       for (let soc = rule.soc[0]; soc <= rule.soc[1]; ++soc) {
-        for (let price = Math.max(first, rule.price[0]); price <= Math.min(last, rule.price[1]); ++price) {
+        for (let price = Math.max(first, rule.price[0]); price <= Math.min(last, rule.price[1]);
+             ++price) {
           const cell = soc * width + price - first;
           if (rule.forbidden.includes(grid[cell])) cells.push(cell);
         }
@@ -71,7 +78,10 @@ class RuleBoxes {
     return found;
   }
 
-  /** A context at which a rule holds, the nearest to this one in time; null for one without a region. */
+  /**
+   * A context at which a rule holds, the nearest to this one in time; null for one without a
+   * region.
+   */
   contextOf(rule, context) {
     if (!rule.price) return null;
     for (let away = 0; away < 12; ++away) {
@@ -93,12 +103,15 @@ class RuleBoxes {
     ctx.clip();
     const badges = [];
     for (const rule of this.at(context)) {
-      const first = Math.max(rule.price[0], window.first), last = Math.min(rule.price[1], window.last);
+      const first = Math.max(rule.price[0], window.first),
+            last = Math.min(rule.price[1], window.last);
       if (first > last) continue;
       const x = plot.x + (first - window.first) * cellW, w = (last - first + 1) * cellW;
-      const y = plot.y + (rows - 1 - rule.soc[1]) * cellH, h = (rule.soc[1] - rule.soc[0] + 1) * cellH;
+      const y = plot.y + (rows - 1 - rule.soc[1]) * cellH,
+            h = (rule.soc[1] - rule.soc[0] + 1) * cellH;
       const pointed = this.pointed === rule;
-      for (const [ink, width] of [[colour("paper"), pointed ? 7 : 4.5], [colour("ink"), pointed ? 3.5 : 2]]) {
+      for (const [ink, width] of [[colour("paper"), pointed ? 7 : 4.5],
+                                  [colour("ink"), pointed ? 3.5 : 2]]) {
         ctx.strokeStyle = ink;
         ctx.lineWidth = width;
         ctx.setLineDash(rule.binds_student || width > 4 ? [] : [7, 5]);
@@ -112,7 +125,10 @@ class RuleBoxes {
     ctx.restore();
   }
 
-  /** The rule's number in the upper left corner of its region, with its name while it is pointed at. */
+  /**
+   * The rule's number in the upper left corner of its region, with its name while it is pointed
+   * at.
+   */
   paintBadge(ctx, {rule, x, y}, plot, taken) {
     const pointed = this.pointed === rule;
     ctx.font = `${pointed ? "600 " : ""}12px system-ui, sans-serif`;
@@ -122,8 +138,10 @@ class RuleBoxes {
     const width = Math.min(ctx.measureText(text).width + 8, plot.w);
     const left = Math.max(plot.x, Math.min(x, plot.x + plot.w - width));
     let top = Math.max(plot.y, Math.min(y, plot.y + plot.h - kRuleBadgePx));
-    const overlaps = (other) => left < other.right && other.left < left + width && Math.abs(top - other.top) < kRuleBadgePx;
-    while (taken.some(overlaps) && top + 2 * kRuleBadgePx < plot.y + plot.h) top += kRuleBadgePx + 1;
+    const overlaps = (other) =>
+      left < other.right && other.left < left + width && Math.abs(top - other.top) < kRuleBadgePx;
+    while (taken.some(overlaps) && top + 2 * kRuleBadgePx < plot.y + plot.h)
+      top += kRuleBadgePx + 1;
     taken.push({left, right: left + width, top});
     ctx.fillStyle = colour("ink");
     ctx.fillRect(left, top, width, kRuleBadgePx);
@@ -131,7 +149,10 @@ class RuleBoxes {
     ctx.fillText(text, left + 4, top + kRuleBadgePx / 2 + .5, width - 8);
   }
 
-  /** What stands below the maps: each rule with its number, its text, and whether it holds in what is shown. */
+  /**
+   * What stands below the maps: each rule with its number, its text, and whether it holds in what
+   * is shown.
+   */
   showLegend(host, context, repaint) {
     host.hidden = this.rules.length === 0;
     host.replaceChildren(...this.rules.map((rule) => {
@@ -143,7 +164,8 @@ class RuleBoxes {
       const elsewhere = this.contextOf(rule, context);
       const here = rule.direction ? "everywhere, no region of its own"
         : !rule.price ? "beyond the prices of the map"
-        : this.isAt(rule, context) ? "holds on this map" : "does not hold at this time: tap to go where it does";
+        : this.isAt(rule, context) ? "holds on this map"
+        : "does not hold at this time: tap to go where it does";
       const text = rule.text.replace(/(^|\s)-(?=\d)/g, "$1\u2212");
       button.append(badge, name, ` ${text}. Held to it: ${rule.held_by}; ${here}.`);
       button.disabled = elsewhere === null;

@@ -1,7 +1,11 @@
-// Tables of class "sortable": a head sorts by its column; where heads are hidden, on a narrow screen, a list does.
+// Tables of class "sortable": a head sorts by its column; where heads are hidden, on a narrow
+// screen, a list does.
 "use strict";
 
-/** Rows by what `data-sort` of a column says, numbers as numbers; what is empty comes last either way. */
+/**
+ * Rows by what `data-sort` of a column says, numbers as numbers; what is empty comes last either
+ * way.
+ */
 function sortTable(table, column, descending) {
   const value = (row) => row.cells[column].dataset.sort;
   const filled = [...table.tBodies[0].rows].filter((row) => value(row) !== "");

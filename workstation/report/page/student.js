@@ -1,6 +1,7 @@
-// The edge's student in the browser: the same integers, the same shifts, hence the same decisions, bit for bit
-// (shared/nn/student_net.h). JavaScript's bit operations and Math.imul are two's complement on 32 bits, as the
-// edge's; the exporter proves that no accumulator leaves them. No floating point takes part.
+// The edge's student in the browser: the same integers, the same shifts, hence the same decisions,
+// bit for bit (shared/nn/student_net.h). JavaScript's bit operations and Math.imul are two's
+// complement on 32 bits, as the edge's; the exporter proves that no accumulator leaves them. No
+// floating point takes part.
 "use strict";
 
 const kHidden1 = 64;
@@ -52,7 +53,9 @@ class Student {
     }
   }
 
-  /** Action 0..2 of the row's state at `price`, EUR/MWh of the lattice; leaves its logits behind. */
+  /**
+   * Action 0..2 of the row's state at `price`, EUR/MWh of the lattice; leaves its logits behind.
+   */
   decideInRow(price) {
     const x = this.priceMap[price - this.lattice.price_min];
     const sums2 = this.sums2, weight2 = this.weight2, logits = this.logits;
@@ -88,8 +91,9 @@ class Student {
 }
 
 /**
- * Where a map breaks a property. `grid[soc * width + column]`, columns from `priceFirst` on. Returns lists of
- * cells: `order` with the neighbour towards which the action increases ("price" or "soc"), and `threshold`.
+ * Where a map breaks a property. `grid[soc * width + column]`, columns from `priceFirst` on.
+ * Returns lists of cells: `order` with the neighbour towards which the action increases ("price" or
+ * "soc"), and `threshold`.
  */
 function violationsOf(grid, width, priceFirst, thresholds) {
   const order = [], threshold = [];

@@ -18,7 +18,8 @@ class TearSheet {
 
   /** Of these, those that were evaluated. */
   policies(names) {
-    return names.map((name) => this.data.policies.find((policy) => policy.name === name)).filter(Boolean);
+    return names.map((name) => this.data.policies.find((policy) => policy.name === name))
+      .filter(Boolean);
   }
 
   /** The first `count` rivals, or all. */
@@ -51,7 +52,8 @@ class TearSheet {
       data: {
         labels: this.data.dates,
         datasets: [exported, ...this.rivals()].map((policy) => ({
-          label: policy.name, data: cumulative(this.profits(policy)), borderColor: policyColour(policy.name),
+          label: policy.name, data: cumulative(this.profits(policy)),
+          borderColor: policyColour(policy.name),
           backgroundColor: policyColour(policy.name), pointRadius: 0, pointHitRadius: 8,
           borderWidth: policy === exported ? 3 : 1.5, hidden: policy.name === this.data.foresight,
           borderDash: policy.name === this.data.foresight ? [5, 4] : [],
@@ -61,14 +63,18 @@ class TearSheet {
     }));
   }
 
-  /** By day: the cumulative profit at its end minus the highest at the end of a day before, 0 at the beginning. */
+  /**
+   * By day: the cumulative profit at its end minus the highest at the end of a day before, 0 at
+   * the beginning.
+   */
   drawdowns(policy) {
     let peak = 0;
     return cumulative(this.profits(policy)).map((sum) => sum - (peak = Math.max(peak, sum)));
   }
 
   drawDrawdown(exported) {
-    const falls = [exported, ...this.rivals(1)].map((policy) => [policy.name, this.drawdowns(policy)]);
+    const falls =
+      [exported, ...this.rivals(1)].map((policy) => [policy.name, this.drawdowns(policy)]);
     const anyFalls = falls.some(([, values]) => Math.min(...values) < 0);
     document.getElementById("drawdown-none").hidden = anyFalls;
     document.getElementById("chart-drawdown").parentElement.hidden = !anyFalls;
@@ -122,10 +128,13 @@ class TearSheet {
       data: {
         labels: charging.map((_, hour) => padded(hour)),
         datasets: [
-          {type: "line", label: "together", data: net, borderColor: colour("ink"), backgroundColor: colour("ink"),
+          {type: "line", label: "together", data: net, borderColor: colour("ink"),
+           backgroundColor: colour("ink"),
            borderWidth: 2, pointRadius: 2, order: 0},
-          {type: "bar", label: "charging", data: charging, backgroundColor: colour("charge"), stack: "eur", order: 1},
-          {type: "bar", label: "discharging", data: discharging, backgroundColor: colour("discharge"), stack: "eur",
+          {type: "bar", label: "charging", data: charging, backgroundColor: colour("charge"),
+           stack: "eur", order: 1},
+          {type: "bar", label: "discharging", data: discharging,
+           backgroundColor: colour("discharge"), stack: "eur",
            order: 1},
         ],
       },
@@ -139,7 +148,8 @@ class TearSheet {
       type: "bar",
       data: {
         labels,
-        datasets: series.map(([name, values]) => ({label: name, data: values, backgroundColor: policyColour(name)})),
+        datasets: series.map(([name, values]) => ({label: name, data: values,
+                                                   backgroundColor: policyColour(name)})),
       },
       options: {scales: {x: axis(), y: axis({ticks: {precision: 0}, ...y})}},
     }));
